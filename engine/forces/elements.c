@@ -7,20 +7,30 @@
 #include "engine/forces/capstan.h"
 #include "engine/forces/elements_kernel.h"
 #include "engine/forces/history.h"
+#include "engine/forces/strains/along.h"
 #include "engine/forces/strains/angle.h"
 #include "engine/forces/strains/area.h"
-#include "engine/forces/strains/length.h"
 #include "engine/forces/strains/path.h"
 #include "engine/forces/strains/reach.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/pose.h"
+
+/* What a strain is told beside positions. */
+#define STRUT_REFERENCE_TURN (void)e, turn
+#define STRUT_REFERENCE_AXIS (void)turn, e->axis
+#define STRUT_REFERENCE_ROW(NAME, name, unit, reference, ...)                                      \
+  static inline double reference_##name(const strut_element *e, double turn) {                     \
+    return STRUT_REFERENCE_##reference;                                                            \
+  }
+STRUT_STRAINS(STRUT_REFERENCE_ROW, )
 
 /* Strain and gradient. */
 static double strain_of(const strut_element *e, const uint32_t *at, const double *q, double turn,
                         double *b) {
   switch (e->strain) {
 #define STRUT_CASE(NAME, name, ...)                                                                \
-  case STRUT_STRAIN_##NAME: return strut_strain_##name(at, e->nodes, q, turn, b);
+  case STRUT_STRAIN_##NAME:                                                                        \
+    return strut_strain_##name(at, e->nodes, q, reference_##name(e, turn), b);
     STRUT_STRAINS(STRUT_CASE, )
 #undef STRUT_CASE
     case STRUT_STRAIN_COUNT: break;
@@ -197,8 +207,8 @@ static inline void add_powers(strut_state *state, const exertion *x, double rest
       const strut_element *e = &t->element[i];                                                     \
       const uint32_t *at = t->at + e->first;                                                       \
       double b[STRUT_MOST_GRADIENT], rate = 0.0;                                                   \
-      double strain =                                                                              \
-          strut_strain_##strain_name(at, e->nodes, q, state->latest.element_turn[i], b);           \
+      double strain = strut_strain_##strain_name(                                                  \
+          at, e->nodes, q, reference_##strain_name(e, state->latest.element_turn[i]), b);          \
       double natural = strut_element_natural(e, state->latest.rest);                               \
       double rest_rate = e->slot >= 0 ? state->latest.rest_rate[e->slot] : 0.0;                    \
       state->latest.element_turn[i] = strain;                                                      \

@@ -62,6 +62,13 @@ typedef struct strut_collision_values {
 /** By its first element, see strut_element_of_collision. */
 STRUT_API strut_collision_values strut_collision_measure(const strut_model *model,
                                                          const strut_state *state, int32_t element);
+/** A distance spring at the state: the distance [m], its rate [m/s], its force [N], tension positive. */
+typedef struct strut_distance_values {
+  double distance, rate, force;
+} strut_distance_values;
+/** By its element, see strut_element_of_distance. */
+STRUT_API strut_distance_values strut_distance_measure(const strut_model *model,
+                                                       const strut_state *state, int32_t element);
 /** Lengths [m] and forces [N] (tension positive) of all members at the state, (count) each. */
 STRUT_API void strut_members_measure(const strut_model *model, const strut_state *state,
                                      double *length, double *force);

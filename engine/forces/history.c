@@ -315,14 +315,15 @@ double strut_element_plastic(const strut_model *model, const strut_state *state,
 
 static void keep_worst(const strut_model *model, strut_element_role role, int32_t item, bool breaks,
                        double force, double limit, strut_overload *worst) {
-  const strut_scene *scene = model->scene;
   bool hinge = role == STRUT_ELEMENT_HINGE;
   if (!(force > limit) || (worst->name && force / limit <= worst->force / worst->limit)) return;
-  *worst = (strut_overload){.name = hinge ? scene->hinges[item].name : scene->members[item].name,
-                            .hinge = hinge,
-                            .breaks = breaks,
-                            .force = force,
-                            .limit = limit};
+  *worst = (strut_overload){
+      .kind = strut_thing_at(strut_element_thing(role))->word,
+      .name = strut_thing_name(model->scene, strut_element_thing(role), (size_t)item),
+      .hinge = hinge,
+      .breaks = breaks,
+      .force = force,
+      .limit = limit};
 }
 
 bool strut_history_overload(const strut_model *model, const double *q, strut_overload *worst) {

@@ -93,7 +93,7 @@ bool strut_history_release(const strut_model *model, strut_state *state, double 
 
 /** A member or a hinge that carries more than it can. */
 typedef struct strut_overload {
-  const char *name; /* owned by the scene */
+  const char *kind, *name; /* "member", "hinge", ...; owned by the scene */
   bool hinge;
   bool breaks;         /* the limit is that of breaking; otherwise of yielding */
   double force, limit; /* sizes [N] or [N m] */

@@ -79,6 +79,14 @@ strut_collision_values strut_collision_measure(const strut_model *model, const s
   return values;
 }
 
+strut_distance_values strut_distance_measure(const strut_model *model, const strut_state *state,
+                                             int32_t element) {
+  strut_element_pose pose;
+  double force = strut_element_measure(model, state, element, &pose);
+  return (strut_distance_values){pose.strain, strut_element_rate(model, element, &pose, state->v),
+                                 force};
+}
+
 void strut_members_measure(const strut_model *model, const strut_state *state, double *length,
                            double *force) {
   for (int32_t j = 0; j < model->members.count; j++) {

@@ -36,6 +36,7 @@ static size_t count_history_slots(const strut_scene *scene) {
   }
   for (size_t i = 0; i < scene->hinge_count; i++)
     count += strut_hinge_ends(&scene->hinges[i]) || yields(&scene->hinges[i].law);
+  for (size_t i = 0; i < scene->distance_count; i++) count += yields(&scene->distances[i].law);
   return count;
 }
 
@@ -91,8 +92,8 @@ static void count_elements(const strut_scene *scene, const uint8_t *reeled, size
   *elements = scene->hinge_count + scene->cell_count;
   *nodes = 3 * scene->hinge_count;
   for (size_t i = 0; i < scene->cell_count; i++) *nodes += scene->cells[i].node_count;
-  *elements += MOST_PAIRS * scene->collision_count;
-  *nodes += 3 * MOST_PAIRS * scene->collision_count;
+  *elements += MOST_PAIRS * scene->collision_count + scene->distance_count;
+  *nodes += 3 * (MOST_PAIRS * scene->collision_count + scene->distance_count);
   for (size_t j = 0; j < scene->member_count; j++) {
     size_t own = elements_of_member(&scene->members[j], reeled && reeled[j]);
     *elements += own;
@@ -355,6 +356,28 @@ static void add_collision(compilation *c, size_t i) {
     add_pair(c, i, m[k / 2]->node[k % 2], m[1 - k / 2]->node[0], m[1 - k / 2]->node[1]);
 }
 
+/* Against a direction that points to -x the nodes change places, so that the half angle has a tangent. */
+static void add_distance(compilation *c, size_t i) {
+  const strut_distance_spring *d = &c->model->scene->distances[i];
+  bool line = d->line[0] >= 0, back = !line && cos(d->along) < 0.0;
+  double sign = back ? -1.0 : 1.0;
+  strut_element *e =
+      add_element(c, (strut_element){.strain = line ? STRUT_STRAIN_OFFSET : STRUT_STRAIN_ALONG,
+                                     .law = d->law.kind,
+                                     .role = STRUT_ELEMENT_DISTANCE,
+                                     .item = (int32_t)i,
+                                     .slot = -1,
+                                     .carries = sign_of(d->law.carries),
+                                     .natural = strut_distance_rest(c->model->scene, i),
+                                     .axis = sign * sin(d->along) / (1.0 + sign * cos(d->along)),
+                                     .damping = d->damping});
+  add_node(c, e, line ? d->node[0] : d->node[back]);
+  add_node(c, e, line ? d->line[0] : d->node[!back]);
+  if (line) add_node(c, e, d->line[1]);
+  if (!set_numbers(c->model, &d->law, d->stiffness, &e->numbers)) c->failed = true;
+  if (yields(&d->law)) remember(c, e);
+}
+
 /* Blocks of one strain and one law, in the tables' order; in a block the scene's order. */
 static bool sort_elements(compilation *c, strut_element_table *t) {
   strut_arena *arena = &c->model->arena;
@@ -486,6 +509,7 @@ static bool compile(strut_model *model, const uint8_t *reeled) {
   for (size_t i = 0; i < scene->hinge_count; i++) add_hinge(&c, i);
   for (size_t i = 0; i < scene->cell_count; i++) add_cell(&c, i);
   for (size_t i = 0; i < scene->collision_count; i++) add_collision(&c, i);
+  for (size_t i = 0; i < scene->distance_count; i++) add_distance(&c, i);
   assert(c.count <= (int32_t)elements && c.nodes <= (int32_t)nodes);
   model->elements.at = c.at;
   model->terms |= STRUT_TERM_ELEMENTS;

@@ -15,14 +15,20 @@
 #include <stdint.h>
 
 #include "engine/scene/scene.h"
+#include "engine/scene/things.h"
 
-/** The strains: X(NAME, name, unit, context); context is passed on. */
+/**
+ * The strains: X(NAME, name, unit, reference, context); context is passed on. reference: what its function
+ * is told beside positions: TURN, the strain before, or AXIS, the element's direction.
+ */
 #define STRUT_STRAINS(X, context)                                                                  \
-  X(LENGTH, length, "m", context)                                                                  \
-  X(PATH, path, "m", context)                                                                      \
-  X(ANGLE, angle, "rad", context)                                                                  \
-  X(AREA, area, "m^2", context)                                                                    \
-  X(REACH, reach, "m", context)
+  X(LENGTH, length, "m", TURN, context)                                                            \
+  X(PATH, path, "m", TURN, context)                                                                \
+  X(ANGLE, angle, "rad", TURN, context)                                                            \
+  X(AREA, area, "m^2", TURN, context)                                                              \
+  X(REACH, reach, "m", TURN, context)                                                              \
+  X(ALONG, along, "m", AXIS, context)                                                              \
+  X(OFFSET, offset, "m", TURN, context)
 
 typedef enum strut_strain_kind {
 #define STRUT_STRAIN_ROW(NAME, ...) STRUT_STRAIN_##NAME,
@@ -48,7 +54,8 @@ typedef enum strut_element_role {
   STRUT_ELEMENT_SHORTEST, /* a stop of a member, which pushes below its shortest length */
   STRUT_ELEMENT_HINGE,    /* the moment of a hinge */
   STRUT_ELEMENT_CELL,     /* the pressure in a cell */
-  STRUT_ELEMENT_COLLISION /* what two bodies exert on each other; of two members it has four elements */
+  STRUT_ELEMENT_COLLISION, /* what two bodies exert on each other; of two members it has four elements */
+  STRUT_ELEMENT_DISTANCE /* the force of a distance */
 } strut_element_role;
 
 typedef struct strut_element {
@@ -59,6 +66,7 @@ typedef struct strut_element {
   int32_t first, nodes; /* its nodes: `nodes` entries of the table's `at`, from `first` on */
   int32_t slot;         /* index of its natural strain in arrays of rest lengths; -1: fixed */
   double natural;       /* natural strain where there is no slot */
+  double axis;          /* of the strain `along`: tangent of half the angle of its direction */
   int32_t place;        /* of its (2 nodes) (2 nodes + 1) / 2 entries among those of all elements */
   int32_t sibling;      /* the next element of the same member, or -1 */
   int8_t carries;       /* 1 tension only, -1 compression only, 0 both; only beyond e0 */
@@ -131,6 +139,10 @@ static inline int32_t strut_element_of_collision(const strut_element_table *t, i
   return strut_element_find(t, STRUT_ELEMENT_COLLISION, i);
 }
 
+static inline int32_t strut_element_of_distance(const strut_element_table *t, int32_t i) {
+  return strut_element_find(t, STRUT_ELEMENT_DISTANCE, i);
+}
+
 /** The element behind the last one of the same item; elements of a collision follow each other. */
 static inline int32_t strut_element_end(const strut_element_table *t, int32_t first) {
   assert(first >= 0 && first < t->count);
@@ -147,17 +159,23 @@ static inline bool strut_element_is_of_member(const strut_element *e) {
          e->role == STRUT_ELEMENT_SHORTEST;
 }
 
-/** The name of the thing that the element belongs to. */
-static inline const char *strut_element_name(const strut_scene *scene, const strut_element *e) {
-  switch (e->role) {
-    case STRUT_ELEMENT_HINGE: return scene->hinges[e->item].name;
-    case STRUT_ELEMENT_CELL: return scene->cells[e->item].name;
-    case STRUT_ELEMENT_COLLISION: return scene->collisions[e->item].name;
+/** The kind of thing that elements of a role belong to. */
+static inline strut_thing strut_element_thing(strut_element_role role) {
+  switch (role) {
+    case STRUT_ELEMENT_HINGE: return STRUT_THING_HINGE;
+    case STRUT_ELEMENT_CELL: return STRUT_THING_CELL;
+    case STRUT_ELEMENT_COLLISION: return STRUT_THING_COLLISION;
+    case STRUT_ELEMENT_DISTANCE: return STRUT_THING_DISTANCE;
     case STRUT_ELEMENT_MEMBER:
     case STRUT_ELEMENT_LONGEST:
     case STRUT_ELEMENT_SHORTEST: break;
   }
-  return scene->members[e->item].name;
+  return STRUT_THING_MEMBER;
+}
+
+/** The name of the thing that the element belongs to. */
+static inline const char *strut_element_name(const strut_scene *scene, const strut_element *e) {
+  return strut_thing_name(scene, strut_element_thing(e->role), (size_t)e->item);
 }
 
 /** The natural strain in the unit of the strain: the law of a cell has a pressure there instead. */

@@ -154,6 +154,11 @@ typedef struct strut_model {
   struct strut_small_model *small; /* small_model.h; NULL where only the general kernel steps it */
 } strut_model;
 
+/** Does nothing but supports and the ground tell one direction in space from another? */
+static inline bool strut_model_may_turn(const strut_model *model) {
+  return !(model->laws.strain & 1u << STRUT_STRAIN_ALONG);
+}
+
 /**
  * Compiles a valid scene. The model refers to the scene. Fails with STRUT_NO_MEMORY or
  * STRUT_SINGULAR (a mass matrix that cannot be factorised).

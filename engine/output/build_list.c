@@ -174,10 +174,13 @@ char *strut_build_table(const strut_build *b) {
   strut_buffer_add(&text, "\n  node    holes\n");
   for (size_t i = 0; i < scene->node_count; i++)
     strut_buffer_add(&text, "  %-6s  %5zu\n", scene->nodes[i].name, strut_build_holes(scene, i));
-  if (scene->hinge_count || scene->cell_count || scene->collision_count || scene->sliding_count)
+  if (scene->hinge_count || scene->cell_count || scene->collision_count || scene->distance_count ||
+      scene->sliding_count)
     strut_buffer_add(
-        &text, "\n  not in this list: %zu hinges, %zu cells, %zu collisions, %zu sliders\n",
-        scene->hinge_count, scene->cell_count, scene->collision_count, scene->sliding_count);
+        &text,
+        "\n  not in this list: %zu hinges, %zu cells, %zu collisions, %zu distances, %zu sliders\n",
+        scene->hinge_count, scene->cell_count, scene->collision_count, scene->distance_count,
+        scene->sliding_count);
   strut_c_locale_leave(locale);
   return strut_buffer_take(&text);
 }

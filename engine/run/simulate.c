@@ -148,9 +148,8 @@ static void begin_history(strut_run *r, double begin) {
     strut_summary_warn(r->summary, "overloaded_start",
                        "%s '%s' carries %.4g %s at the start, above the %.4g %s at which it %s; it "
                        "does so at once",
-                       worst.hinge ? "hinge" : "member", worst.name, worst.force,
-                       worst.hinge ? "N m" : "N", worst.limit, worst.hinge ? "N m" : "N",
-                       worst.breaks ? "breaks" : "yields");
+                       worst.kind, worst.name, worst.force, worst.hinge ? "N m" : "N", worst.limit,
+                       worst.hinge ? "N m" : "N", worst.breaks ? "breaks" : "yields");
   }
   strut_history_begin(r->model, r->state, begin);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rules about laws, hinges, cells and collisions. See check.h. */
+/* Rules about laws, hinges, cells, collisions and distances. See check.h. */
 #include <math.h>
 #include <stdio.h>
 
@@ -408,6 +408,65 @@ void strut_check_collisions(strut_checker *checker) {
                            owner, name);
   }
 }
+
+/* ---- distances ---- */
+
+/* Do its nodes exist, and differ where they must? */
+static bool check_ends(strut_checker *checker, size_t index, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const strut_distance_spring *d = &scene->distances[index];
+  bool line = d->line[0] != -1 || d->line[1] != -1;
+  const int32_t node[3] = {d->node[0], line ? d->line[0] : d->node[1], line ? d->line[1] : -1};
+  const char *key = line ? "line" : "nodes";
+  for (int k = 0; k < (line ? 3 : 2); k++) {
+    if (!strut_exists(node[k], scene->node_count)) {
+      strut_report_finding(checker, STRUT_ON_DISTANCE, index, key,
+                           "%s is of a node that does not exist", owner);
+      return false;
+    }
+    for (int i = 0; i < k; i++)
+      if (node[i] == node[k]) {
+        strut_report_finding(checker, STRUT_ON_DISTANCE, index, key,
+                             "%s names node '%s' twice, expected different nodes", owner,
+                             scene->nodes[node[k]].name);
+        return false;
+      }
+  }
+  if (!line) return true;
+  const strut_node *a = &scene->nodes[d->line[0]], *b = &scene->nodes[d->line[1]];
+  bool drawn = strut_distance(a->position, b->position) == 0.0;
+  if (!drawn && strut_distance(a->start, b->start) > 0.0) return true;
+  strut_report_finding(checker, STRUT_ON_DISTANCE, index, key,
+                       "nodes '%s' and '%s' %s in one place, so the line of %s has no direction",
+                       a->name, b->name, drawn ? "are drawn" : "start", owner);
+  return false;
+}
+
+void strut_check_distances(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  for (size_t i = 0; i < scene->distance_count; i++) {
+    const strut_distance_spring *d = &scene->distances[i];
+    char owner[200];
+    strut_format_name(owner, "distance", d->name, i);
+    const strut_checked whose = {STRUT_ON_DISTANCE, i, owner, NULL};
+    bool valid = strut_check_fields(checker, &whose, STRUT_FIELDS_DISTANCE, d,
+                                    strut_thing_at(STRUT_THING_DISTANCE)->usual) &&
+                 check_ends(checker, i, owner) &&
+                 check_law(checker, STRUT_ON_DISTANCE, i, owner, &d->law, d->stiffness > 0.0) &&
+                 check_hardening(checker, STRUT_ON_DISTANCE, i, owner, &d->law, d->stiffness);
+    const char *fault =
+        !isfinite(d->along) ? "has a direction that is not finite"
+        : d->law.kind == STRUT_LAW_LOGARITHMIC
+            ? "has the law logarithmic, which is for members only"
+        : d->stiffness == 0.0 && d->damping == 0.0 && !strut_law_at(d->law.kind)->own
+            ? "has neither stiffness nor damping, so it does nothing"
+            : NULL;
+    if (valid && fault)
+      strut_report_finding(checker, STRUT_ON_DISTANCE, i, NULL, "%s %s", owner, fault);
+  }
+}
+
+/* ---- collisions that overlap ---- */
 
 static double distance_to_segment(const double p[2], const double a[2], const double b[2]) {
   double wx = b[0] - a[0], wy = b[1] - a[1], w2 = wx * wx + wy * wy;

@@ -27,6 +27,7 @@ typedef enum strut_column_owner {
   STRUT_COLUMN_OF_LOSSES,    /* losses.friction */
   STRUT_COLUMN_OF_CELL,      /* CELL.area */
   STRUT_COLUMN_OF_COLLISION, /* COLLISION.gap */
+  STRUT_COLUMN_OF_DISTANCE,  /* DISTANCE.force */
   STRUT_COLUMN_OF_SLIDER,    /* SLIDER.share */
   STRUT_COLUMN_OF_FEEDBACK   /* the name of a sensor, a signal or a state alone; rate(SENSOR) */
 } strut_column_owner;
@@ -75,6 +76,9 @@ typedef enum strut_column_owner {
   X(PRESSURE, CELL, "pressure", 1, 0, -2, 0)                                                       \
   X(COLLISION_GAP, COLLISION, "gap", 0, 1, 0, 0)                                                   \
   X(COLLISION_FORCE, COLLISION, "force", 1, 1, -2, 0)                                              \
+  X(DISTANCE_VALUE, DISTANCE, "distance", 0, 1, 0, 0)                                              \
+  X(DISTANCE_RATE, DISTANCE, "rate", 0, 1, -1, 0)                                                  \
+  X(DISTANCE_FORCE, DISTANCE, "force", 1, 1, -2, 0)                                                \
   X(SENSOR, FEEDBACK, "sensor", 0, 0, 0, 0) /* in SI units, of whatever dimension */               \
   X(SIGNAL, FEEDBACK, "signal", 0, 0, 0, 0)                                                        \
   X(SENSOR_RATE, FEEDBACK, "rate", 0, 0, 0, 0)                                                     \

@@ -82,6 +82,22 @@ double strut_hinge_rest(const strut_scene *scene, size_t index) {
   return isnan(rest) ? strut_hinge_drawn(scene, index) : rest;
 }
 
+double strut_distance_drawn(const strut_scene *scene, size_t index) {
+  const strut_distance_spring *d = &scene->distances[index];
+  bool line = d->line[0] >= 0;
+  const double *from = scene->nodes[line ? d->line[0] : d->node[0]].position,
+               *to = scene->nodes[line ? d->node[0] : d->node[1]].position;
+  strut_vec2 u = strut_vec2_between(from, to);
+  if (!line) return u.x * cos(d->along) + u.y * sin(d->along);
+  strut_vec2 w = strut_vec2_between(from, scene->nodes[d->line[1]].position);
+  return (w.x * u.y - w.y * u.x) / hypot(w.x, w.y);
+}
+
+double strut_distance_rest(const strut_scene *scene, size_t index) {
+  double rest = scene->distances[index].rest_distance;
+  return isnan(rest) ? strut_distance_drawn(scene, index) : rest;
+}
+
 double strut_cell_drawn(const strut_scene *scene, size_t index) {
   const strut_cell *cell = &scene->cells[index];
   const double *o = scene->nodes[cell->node[0]].position;

@@ -117,6 +117,20 @@ typedef struct strut_collision {
   double damping;             /* [N s/m] while they push */
 } strut_collision;
 
+/**
+ * A spring of a distance: of node[1] from node[0] along a direction, positive where it lies ahead; or of
+ * node[0] from the line through two nodes, positive on the left of the way from line[0] to line[1].
+ */
+typedef struct strut_distance_spring {
+  const char *name;
+  int32_t node[2], line[2]; /* -1 where there is none */
+  double along;             /* the direction, from +x [rad] */
+  double stiffness;         /* [N/m] */
+  double damping;           /* [N s/m] */
+  double rest_distance;     /* [m], of either sign; NAN: as drawn */
+  strut_law law;            /* of distance - rest distance and the force, tension positive */
+} strut_distance_spring;
+
 /** Damping law of the ground; d is the depth, d' its rate. */
 typedef enum strut_ground_damping {
   STRUT_DAMPING_APPROACH,      /* (8): c_g d + k_g max(d', 0), which jumps at touchdown */
@@ -268,6 +282,8 @@ typedef struct strut_scene {
   strut_cell *cells;
   size_t collision_count;
   strut_collision *collisions;
+  size_t distance_count;
+  strut_distance_spring *distances;
   size_t unbalance_count;
   strut_unbalance *unbalances;
   size_t ground_count;   /* 0 without a ground, and with `ground` */
@@ -322,6 +338,10 @@ static inline int32_t strut_member_node(const strut_member *member, size_t k) {
 static inline bool strut_member_ends(const strut_member *member) {
   return member->breaks_at > 0.0 || member->released_at > 0.0;
 }
+
+/** A distance in the drawn shape, and the one without force [m]. */
+STRUT_API double strut_distance_drawn(const strut_scene *scene, size_t index);
+STRUT_API double strut_distance_rest(const strut_scene *scene, size_t index);
 
 /** The same of a hinge. */
 static inline bool strut_hinge_ends(const strut_hinge *hinge) {

@@ -39,6 +39,9 @@ STRUT_API int32_t strut_thing_find(const strut_scene *scene, strut_thing kind, c
 STRUT_API const strut_configuration *strut_configuration_named(const strut_scene *scene,
                                                                const char *name);
 
+/** The kind of things that have columns of that owner; STRUT_THING_COUNT: they are of no kind of thing. */
+STRUT_API strut_thing strut_thing_of_column(strut_column_owner owner);
+
 /** The object of the section `ground`: its line, and the contact that every node starts from. */
 typedef struct strut_ground_section {
   strut_ground ground;

@@ -213,6 +213,12 @@ static void warn_of_loose_masses(strut_checker *checker) {
   for (size_t i = 0; i < scene->collision_count; i++)
     for (int k = 0; k < 2; k++)
       if (scene->collisions[i].node[k] >= 0) used[scene->collisions[i].node[k]] = true;
+  for (size_t i = 0; i < scene->distance_count; i++)
+    for (int k = 0; k < 2; k++) {
+      const strut_distance_spring *d = &scene->distances[i];
+      if (d->node[k] >= 0) used[d->node[k]] = true;
+      if (d->line[k] >= 0) used[d->line[k]] = true;
+    }
   for (size_t i = 0; i < scene->node_count && scene->member_count; i++) {
     const strut_node *node = &scene->nodes[i];
     if (!used[i] && node->mass > 0.0 && !(node->fixed[0] && node->fixed[1]))

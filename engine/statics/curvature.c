@@ -453,6 +453,7 @@ int32_t strut_rigid_motions(const strut_potential *p, const double *q, double *m
   const strut_model *model = p->model;
   frame f = frame_of(model, q);
   double held[3][3] = {{0}}, value[3], vector[3][3], row[3];
+  if (!strut_model_may_turn(model)) held[2][2] = 1.0;
   for (int32_t at = 0; at < 2 * model->node_count; at++) {
     if (p->row_of[at] >= 0) continue;
     motion_at(&f, q, at, row);

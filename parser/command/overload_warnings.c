@@ -13,8 +13,8 @@ void strut_warn_of_overload(const strut_listener *listener, const strut_model *m
   const char *unit = worst.hinge ? "N m" : "N";
   strut_tell(listener, STRUT_MESSAGE_WARNING, NULL,
              "%s %s '%s' carries %.4g %s, above the %.4g %s at which it %s; statics take it as %s",
-             where, worst.hinge ? "hinge" : "member", worst.name, worst.force, unit, worst.limit,
-             unit, worst.breaks ? "breaks" : "yields", worst.breaks ? "whole" : "elastic");
+             where, worst.kind, worst.name, worst.force, unit, worst.limit, unit,
+             worst.breaks ? "breaks" : "yields", worst.breaks ? "whole" : "elastic");
 }
 
 void strut_warn_of_equilibria(const strut_listener *listener, const strut_model *model,

@@ -112,7 +112,7 @@ static bool read_raw_name(strut_expression_reader *r, char last, strut_piece *na
   return strut_expression_unexpected(r, last == ',' ? "',' and a second node" : "')'");
 }
 
-/* node(NAME).FIELD, member(NAME).FIELD and hinge(NAME).FIELD, for names that expressions would take apart. */
+/* node(NAME).FIELD, member(NAME).FIELD and the like, for names that expressions would take apart. */
 static int read_quoted(strut_expression_reader *r, const char *kind, size_t begin,
                        strut_quantity *q) {
   strut_piece name;
@@ -151,7 +151,7 @@ static int read_rate(strut_expression_reader *r, size_t begin, strut_quantity *q
 
 /*
  * What looks like a function: node(A).x, member(A).force, hinge(A).moment, cell(A).area, angle(A, B),
- * distance(A, B).
+ * distance(A, B) of two nodes, distance(A).force.
  */
 static int read_call(strut_expression_reader *r, size_t begin, size_t length, strut_quantity *q) {
   static const char *const words[] = {"node",   "member", "hinge",    "cell", "collision",
@@ -162,8 +162,9 @@ static int read_call(strut_expression_reader *r, size_t begin, size_t length, st
     if (strut_expression_peek(r) != '(') break;
     r->at++;
     if (i == 8) return read_rate(r, begin, q);
-    return i < 6 ? read_quoted(r, words[i], begin, q)
-                 : read_pair(r, piece(r, begin, begin + length), begin, q);
+    bool one = i == 7 && r->text[r->at + strcspn(r->text + r->at, "(),")] == ')';
+    return i < 6 || one ? read_quoted(r, words[i], begin, q)
+                        : read_pair(r, piece(r, begin, begin + length), begin, q);
   }
   r->at = begin;
   return 0;

@@ -317,6 +317,27 @@ static void print_collisions(const strut_model *model, const double *q) {
     printf("  ... and %zu more; --json lists all\n", scene->collision_count - MOST_MEMBERS);
 }
 
+/* The stiffness at rest, of a law that brings its own too. */
+static double distance_stiffness(const strut_model *model, size_t i) {
+  int32_t element = strut_element_of_distance(&model->elements, (int32_t)i);
+  return model->elements.element[element].numbers.stiffness;
+}
+
+static void print_distances(const strut_model *model) {
+  const strut_scene *scene = model->scene;
+  for (size_t i = 0; i < scene->distance_count && i < MOST_MEMBERS; i++) {
+    const strut_distance_spring *d = &scene->distances[i];
+    if (!i)
+      printf("\n  %-12s %12s %12s %14s %14s\n", "distance", "drawn", "rest", "stiffness",
+             "damping");
+    printf("  %-12s %12s %12s %14s %14s\n", d->name, in(strut_distance_drawn(scene, i), "m").text,
+           in(strut_distance_rest(scene, i), "m").text,
+           in(distance_stiffness(model, i), "N/m").text, in(d->damping, "N s/m").text);
+  }
+  if (scene->distance_count > MOST_MEMBERS)
+    printf("  ... and %zu more; --json lists all\n", scene->distance_count - MOST_MEMBERS);
+}
+
 /* Sketches the drawn shape, whatever a run starts with, since that is where typing errors show. */
 static strut_status print_sketch(const strut_model *model, const double *q) {
   int columns = strut_terminal_columns(STDOUT_FILENO, SKETCH_COLUMNS);
@@ -347,6 +368,7 @@ static strut_status print_estimate(const strut_cost_estimate *estimate, const st
   print_hinges(model, q);
   print_cells(scene);
   print_collisions(model, q);
+  print_distances(model);
   strut_release(q);
   return status;
 }
@@ -457,6 +479,21 @@ static void add_collisions(strut_json *json, const strut_model *model, const dou
   }
 }
 
+static void add_distances(strut_json *json, const strut_model *model) {
+  const strut_scene *scene = model->scene;
+  if (!scene->distance_count) return;
+  struct cJSON *distances = strut_json_object(json, json->root, "distances");
+  for (size_t i = 0; i < scene->distance_count; i++) {
+    const strut_distance_spring *d = &scene->distances[i];
+    struct cJSON *row = strut_json_object(json, distances, d->name);
+    strut_json_number(json, row, "drawn", strut_distance_drawn(scene, i));
+    strut_json_number(json, row, "rest", strut_distance_rest(scene, i));
+    strut_json_number(json, row, "stiffness", distance_stiffness(model, i));
+    strut_json_number(json, row, "damping", d->damping);
+    strut_json_text(json, row, "law", strut_law_at(d->law.kind)->word);
+  }
+}
+
 static void add_members(strut_json *json, const strut_model *model, const double *q) {
   const strut_scene *scene = model->scene;
   struct cJSON *members = strut_json_object(json, json->root, "members");
@@ -504,6 +541,7 @@ static strut_status print_json(const strut_cost_estimate *estimate, const strut_
   add_hinges(&json, model, q);
   add_cells(&json, model->scene);
   add_collisions(&json, model, q);
+  add_distances(&json, model);
   strut_release(q);
   if (!add_warnings(&json, setup, report)) json.failed = true;
   return strut_print_block(strut_json_end(&json));

@@ -43,14 +43,20 @@ static bool is(strut_piece piece, const char *word) {
   return strlen(word) == piece.length && memcmp(word, piece.text, piece.length) == 0;
 }
 
+/* The kinds of things with columns, in the order in which messages prefer them. */
+static const strut_thing kinds[] = {STRUT_THING_NODE,    STRUT_THING_MEMBER, STRUT_THING_HINGE,
+                                    STRUT_THING_CELL,    STRUT_THING_SLIDER, STRUT_THING_COLLISION,
+                                    STRUT_THING_DISTANCE};
+enum { KIND_COUNT = sizeof kinds / sizeof kinds[0] };
+
 /* The owners that a name may refer to, and their words in messages. */
 typedef struct found_owner {
-  unsigned owners; /* bits 1 << strut_column_owner */
-  int32_t node, member, hinge, cell, collision, slider;
+  unsigned owners;  /* bits 1 << strut_column_owner */
+  bool thing;       /* some are things */
   const char *what; /* "node", "member", "hinge", "the energy" */
+  int32_t
+      item[STRUT_THING_COUNT]; /* the thing of each kind, where its columns are among the owners */
 } found_owner;
-
-#define OWNER(name) (1u << STRUT_COLUMN_OF_##name)
 
 static int shown(size_t length) { return length > SHOWN_MOST ? SHOWN_MOST : (int)length; }
 
@@ -61,56 +67,41 @@ static const char *text_of(strut_reader *reader, strut_piece piece) {
   return text ? text : "";
 }
 
-/* Nodes, members, hinges and the owners above, for suggestions. */
+/* Things of all kinds and the owners above, for suggestions. */
 static const char *owner_name(const void *context, size_t i) {
   const strut_reader *reader = context;
-  const strut_scene *scene = reader->scene;
-  if (i < scene->node_count) return scene->nodes[i].name;
-  i -= scene->node_count;
-  if (i < scene->member_count) return scene->members[i].name;
-  i -= scene->member_count;
-  if (i < scene->hinge_count) return scene->hinges[i].name;
-  i -= scene->hinge_count;
-  if (i < scene->cell_count) return scene->cells[i].name;
-  i -= scene->cell_count;
-  if (i < scene->collision_count) return scene->collisions[i].name;
-  i -= scene->collision_count;
-  if (i < scene->sliding_count) return scene->sliding_masses[i].name;
-  i -= scene->sliding_count;
+  for (size_t k = 0; k < KIND_COUNT; k++) {
+    size_t count = strut_thing_count(reader->scene, kinds[k]);
+    if (i < count) return strut_thing_name(reader->scene, kinds[k], i);
+    i -= count;
+  }
   return i < GROUP_COUNT ? groups[i].word : NULL;
 }
 
 static bool all_known(strut_reader *reader) {
-  return strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN &&
-         strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state != STRUT_BROKEN &&
-         strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES)->state != STRUT_BROKEN &&
-         strut_slot_of(&reader->top, STRUT_KEY_SCENE_CELLS)->state != STRUT_BROKEN &&
-         strut_slot_of(&reader->top, STRUT_KEY_SCENE_COLLISIONS)->state != STRUT_BROKEN &&
-         strut_slot_of(&reader->top, STRUT_KEY_SCENE_SLIDERS)->state != STRUT_BROKEN;
+  bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
+  for (size_t k = 0; k < KIND_COUNT; k++)
+    known =
+        known && strut_slot_of(&reader->top, strut_key_of_things(kinds[k]))->state != STRUT_BROKEN;
+  return known;
 }
 
 static found_owner find_owner(strut_reader *reader, const char *kind, strut_piece name) {
-  found_owner found = {
-      .node = -1, .member = -1, .hinge = -1, .cell = -1, .collision = -1, .slider = -1};
+  found_owner found = {.owners = 0};
   const char *text = text_of(reader, name);
-  if (!kind || strcmp(kind, "member") == 0)
-    found.member = strut_find_thing(reader, STRUT_THING_MEMBER, NULL, text);
-  if (!kind || strcmp(kind, "node") == 0)
-    found.node = strut_find_thing(reader, STRUT_THING_NODE, NULL, text);
-  if (!kind || strcmp(kind, "hinge") == 0)
-    found.hinge = strut_find_thing(reader, STRUT_THING_HINGE, NULL, text);
-  if (!kind || strcmp(kind, "cell") == 0)
-    found.cell = strut_find_thing(reader, STRUT_THING_CELL, NULL, text);
-  if (!kind || strcmp(kind, "collision") == 0)
-    found.collision = strut_find_thing(reader, STRUT_THING_COLLISION, NULL, text);
-  if (found.collision >= 0) found.owners |= OWNER(COLLISION), found.what = "collision";
-  if (!kind || strcmp(kind, "slider") == 0)
-    found.slider = strut_name_map_find(&reader->things[STRUT_THING_SLIDER].names, text);
-  if (found.slider >= 0) found.owners |= OWNER(SLIDER), found.what = "slider";
-  if (found.cell >= 0) found.owners |= OWNER(CELL), found.what = "cell";
-  if (found.hinge >= 0) found.owners |= OWNER(HINGE), found.what = "hinge";
-  if (found.member >= 0) found.owners |= OWNER(MEMBER), found.what = "member";
-  if (found.node >= 0) found.owners |= OWNER(NODE) | OWNER(CONTACT), found.what = "node";
+  for (size_t k = 0; k < KIND_COUNT; k++) {
+    const char *word = strut_thing_at(kinds[k])->word;
+    if (kind && strcmp(kind, word) != 0) continue;
+    int32_t item = kinds[k] == STRUT_THING_SLIDER
+                       ? strut_name_map_find(&reader->things[STRUT_THING_SLIDER].names, text)
+                       : strut_find_thing(reader, kinds[k], NULL, text);
+    if (item < 0) continue;
+    for (int owner = 0; owner <= STRUT_COLUMN_OF_FEEDBACK; owner++)
+      if (strut_thing_of_column((strut_column_owner)owner) == kinds[k]) found.owners |= 1u << owner;
+    if (!found.what) found.what = word;
+    found.item[kinds[k]] = item;
+    found.thing = true;
+  }
   for (size_t i = 0; i < GROUP_COUNT && !kind; i++)
     if (is(name, groups[i].word)) {
       found.owners |= 1u << groups[i].owner;
@@ -149,9 +140,8 @@ static const char *field_list(unsigned owners, char *text, size_t size) {
 static int refuse_owner(strut_reader *reader, const char *kind, strut_piece owner,
                         strut_refusal *refusal) {
   if (!all_known(reader)) return -1;
-  size_t count = reader->scene->node_count + reader->scene->member_count +
-                 reader->scene->hinge_count + reader->scene->cell_count +
-                 reader->scene->collision_count + reader->scene->sliding_count + GROUP_COUNT;
+  size_t count = GROUP_COUNT;
+  for (size_t k = 0; k < KIND_COUNT; k++) count += strut_thing_count(reader->scene, kinds[k]);
   snprintf(refusal->text, sizeof refusal->text, "unknown %s '%.*s'%s",
            kind                         ? kind
            : reader->scene->hinge_count ? "node, member or hinge"
@@ -164,8 +154,7 @@ static int refuse_owner(strut_reader *reader, const char *kind, strut_piece owne
 static int refuse_field(strut_reader *reader, const found_owner *found, strut_piece owner,
                         strut_piece field, strut_refusal *refusal) {
   char list[200];
-  bool thing = found->node >= 0 || found->member >= 0 || found->hinge >= 0 || found->cell >= 0 ||
-               found->collision >= 0 || found->slider >= 0;
+  bool thing = found->thing;
   const char *hint = strut_hint(reader, text_of(reader, field), field_name, &found->owners,
                                 field_count(found->owners));
   snprintf(refusal->text, sizeof refusal->text, "%s%s%.*s%s has no column '%.*s'%s%s%s",
@@ -257,14 +246,10 @@ static int find_column(void *context, const char *kind, strut_piece owner, strut
     return -1;
   }
   strut_column_owner of = columns[column->kind].owner;
-  if (of == STRUT_COLUMN_OF_MEMBER) column->item = found.member;
-  if (of == STRUT_COLUMN_OF_HINGE) column->item = found.hinge;
-  if (of == STRUT_COLUMN_OF_CELL) column->item = found.cell;
-  if (of == STRUT_COLUMN_OF_COLLISION) column->item = found.collision;
-  if (of == STRUT_COLUMN_OF_SLIDER) column->item = found.slider;
+  strut_thing thing = strut_thing_of_column(of);
+  if (thing < STRUT_THING_COUNT) column->item = found.item[thing];
   if (of != STRUT_COLUMN_OF_NODE && of != STRUT_COLUMN_OF_CONTACT) return 1;
-  column->item = found.node;
-  return touches(reader, column->kind, found.node, refusal) ? 1 : -1;
+  return touches(reader, column->kind, column->item, refusal) ? 1 : -1;
 }
 
 static int find_pair(void *context, strut_piece word, strut_piece first, strut_piece second,

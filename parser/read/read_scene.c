@@ -69,6 +69,7 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
       STEP(strut_add_beam_hinges),
       THINGS(CELL),
       THINGS(COLLISION),
+      THINGS(DISTANCE),
       STEP(strut_read_rayleigh),
       STEP(strut_list_signals),
       STEP(strut_list_controllers),

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Nodes, members, hinges, cells and collisions, and their laws, beyond their rows. See reader.h. */
+/* Nodes, members, hinges, cells, collisions and distances, and their laws, beyond their rows. See reader.h. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "parser/read/copies.h"
 #include "parser/read/reader.h"
 
@@ -388,4 +389,47 @@ bool strut_read_collision(strut_reader *reader, strut_fields *fields, strut_owne
                      alone && pair ? "names a node beside a pair" : "does not name two things");
   fields->unresolved = true;
   return false;
+}
+
+/* x, y, or an angle, turned with the copy that it is in. */
+static bool read_direction(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                           double *direction) {
+  bool y = strcmp(value->text, "y") == 0;
+  double angle = y ? 0.25 * STRUT_TAU : 0.0;
+  if (value->kind != STRUT_TREE_SCALAR)
+    return strut_refuse_form(reader, STRUT_KEY_DISTANCE_ALONG, value, owner);
+  if (!y && strcmp(value->text, "x") != 0 &&
+      !strut_read_number(reader, value, "along", owner, STRUT_DIM_ANGLE, STRUT_RANGE_ANY, &angle))
+    return false;
+  *direction = angle;
+  if (!strut_scope_of(reader, value)) return true;
+  double vector[2] = {y ? 0.0 : cos(angle), y ? 1.0 : sin(angle)};
+  strut_place_vector(reader, value, vector);
+  *direction = atan2(vector[1], vector[0]);
+  return true;
+}
+
+/* Is it one of the two forms? If not, that is reported. */
+bool strut_read_distance(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                         void *object) {
+  strut_distance_spring *d = object;
+  const strut_slot *along = strut_slot_of(fields, STRUT_KEY_DISTANCE_ALONG);
+  bool pair = strut_slot_of(fields, STRUT_KEY_DISTANCE_NODES)->state != STRUT_ABSENT;
+  bool node = strut_slot_of(fields, STRUT_KEY_DISTANCE_NODE)->state != STRUT_ABSENT;
+  bool line = strut_slot_of(fields, STRUT_KEY_DISTANCE_LINE)->state != STRUT_ABSENT;
+  if (strut_scope_flips(reader)) { /* left is the other side */
+    int32_t first = d->line[0];
+    d->line[0] = d->line[1], d->line[1] = first;
+  }
+  if (fields->broken) fields->unresolved = true;
+  if (fields->broken) return true;
+  bool directed = pair && !line && !node && along->state != STRUT_ABSENT;
+  if (!directed && (pair || !node || !line || along->state != STRUT_ABSENT)) {
+    strut_report_error(reader, fields->key->place,
+                       "%s must have 'nodes' and 'along', or 'node' and 'line'",
+                       strut_owner_text(reader, owner));
+    fields->unresolved = true;
+    return false;
+  }
+  return !directed || read_direction(reader, along->value, owner, &d->along);
 }

@@ -433,8 +433,8 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
 typedef bool strut_thing_reader(strut_reader *reader, const strut_tree *key, void *object);
 strut_thing_reader strut_read_node, strut_read_configuration;
 strut_section_reader strut_read_member, strut_read_hinge, strut_read_cell, strut_read_gas,
-    strut_read_collision, strut_read_actuator, strut_read_load, strut_read_unbalance,
-    strut_read_slider, strut_read_sensor, strut_read_trigger;
+    strut_read_collision, strut_read_distance, strut_read_actuator, strut_read_load,
+    strut_read_unbalance, strut_read_slider, strut_read_sensor, strut_read_trigger;
 
 /** The law of a member or a hinge, whose strain and force have these dimensions. */
 bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner owner,

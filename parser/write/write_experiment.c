@@ -320,18 +320,10 @@ static void put_column(strut_writer *writer, strut_column column) {
     strut_put(writer, ")");
     return;
   }
-  if (owner == STRUT_COLUMN_OF_MEMBER)
-    put_owner(writer, "member", scene->members[column.item].name);
-  else if (owner == STRUT_COLUMN_OF_HINGE)
-    put_owner(writer, "hinge", scene->hinges[column.item].name);
-  else if (owner == STRUT_COLUMN_OF_CELL)
-    put_owner(writer, "cell", scene->cells[column.item].name);
-  else if (owner == STRUT_COLUMN_OF_SLIDER)
-    put_owner(writer, "slider", scene->sliding_masses[column.item].name);
-  else if (owner == STRUT_COLUMN_OF_COLLISION)
-    put_owner(writer, "collision", scene->collisions[column.item].name);
-  else if (owner == STRUT_COLUMN_OF_NODE || owner == STRUT_COLUMN_OF_CONTACT)
-    put_owner(writer, "node", scene->nodes[column.item].name);
+  strut_thing thing = strut_thing_of_column(owner);
+  if (thing < STRUT_THING_COUNT)
+    put_owner(writer, strut_thing_at(thing)->word,
+              strut_thing_name(scene, thing, (size_t)column.item));
   else if (owner != STRUT_COLUMN_OF_RUN)
     strut_put(writer, strut_column_group(owner));
   if (owner != STRUT_COLUMN_OF_RUN) strut_put(writer, ".");

@@ -384,6 +384,17 @@ static void put_cell_by_hand(strut_writer *writer, strut_mapping *mapping, int k
   strut_put(writer, "}");
 }
 
+static void put_distance_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                                 const void *object) {
+  const strut_distance_spring *d = object;
+  if (key != STRUT_KEY_DISTANCE_ALONG || d->line[0] >= 0) return;
+  strut_put_key_name(writer, mapping, key);
+  if (d->along == 0.0 || d->along == 0.25 * STRUT_TAU)
+    strut_put(writer, d->along == 0.0 ? "x" : "y");
+  else
+    strut_put_number(writer, d->along);
+}
+
 static void put_rayleigh(strut_writer *writer) {
   strut_mapping mapping = STRUT_MAPPING_INLINE;
   if (!strut_fields_differ(STRUT_SECTION_RAYLEIGH, writer->scene, &writer->usual.scene)) return;
@@ -556,6 +567,8 @@ char *strut_setup_write(const strut_setup *setup) {
   strut_put_things(&writer, STRUT_THING_HINGE, STRUT_SECTION_HINGE, NULL, NULL);
   strut_put_things(&writer, STRUT_THING_CELL, STRUT_SECTION_CELL, NULL, put_cell_by_hand);
   strut_put_things(&writer, STRUT_THING_COLLISION, STRUT_SECTION_COLLISION, NULL, NULL);
+  strut_put_things(&writer, STRUT_THING_DISTANCE, STRUT_SECTION_DISTANCE, NULL,
+                   put_distance_by_hand);
   put_rayleigh(&writer);
   put_ground(&writer);
   strut_put_drives(&writer);

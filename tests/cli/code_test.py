@@ -120,6 +120,10 @@ cells:
 collisions:
   on: {node: c, member: tendon_line, thickness: 0.9 m, stiffness: 100 N/m, damping: 2 N s/m}
   discs: {nodes: [p, q], thickness: 0.95 m, stiffness: 1 kN/m}
+distances:
+  ahead: {nodes: [p, q], along: 30 deg, stiffness: 5 N/m, damping: 0.1}
+  high: {nodes: [c, a], along: y, law: {kind: polynomial, coefficients: [5 N/m, 0, 20 N/m^3]}}
+  aside: {node: c, line: [p, q], stiffness: 5 N/m, damping: 0.1, rest_distance: -0.1 m, law: compression_only}
 signals:
   wave: {sine: {amplitude: 50 mm, frequency: 1 Hz}}
   all: {expression: "0.02 m * (sin(9 Hz*t) + cos(3 Hz*t) - tan(0.1 Hz*t) * exp(-t/(1 s)) + log(1 + t/(1 s)) / log10(20 + t/(1 s)) + sqrt(1 + t/(1 s)) + abs(sin(5 Hz*t)) + min(t/(1 s), 0.3) - max(t/(1 s), 0.2) + floor(4 Hz*t) - ceil(3 Hz*t) + round(2 Hz*t) + hypot(t/(1 s), 1) + (atan2(t/(1 s), 1) + asin(0.1) + acos(0.5 Hz*t) - atan(t/(1 s)))/(1 rad) + (1 + t/(1 s))^1.5) - wave"}

@@ -195,7 +195,7 @@ def keys_of(node):
 def unknown_to_strut(path, text):
     run = subprocess.run([strut, "check", "-q", "-"], input=text, encoding="utf-8", cwd=os.path.dirname(path),
                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    return {int(line) for line in re.findall(r":([0-9]+):[0-9]+: error: unknown key", run.stderr)}
+    return {int(line) for line in re.findall(r":([0-9]+):[0-9]+: error: (?:unknown key|there is no '[^']*' to remove)", run.stderr)}
 
 
 random.seed(1)

@@ -14,6 +14,7 @@ enum section {
   HINGES,
   CELLS,
   COLLISIONS,
+  DISTANCES,
   GROUNDS,
   SIGNALS,
   ACTUATORS,
@@ -28,8 +29,9 @@ enum section {
 };
 
 static const char *const KEYS[SECTION_COUNT] = {
-    "nodes",     "members", "hinges",     "cells",   "collisions", "grounds",     "signals",
-    "actuators", "loads",   "unbalances", "sensors", "states",     "oscillators", "controllers"};
+    "nodes",      "members", "hinges",  "cells",       "collisions",
+    "distances",  "grounds", "signals", "actuators",   "loads",
+    "unbalances", "sensors", "states",  "oscillators", "controllers"};
 
 __attribute__((format(printf, 3, 4))) static void put(random_world *w, enum section section,
                                                       const char *format, ...) {
@@ -174,6 +176,19 @@ static void put_bodies(random_world *w) {
     put(w, COLLISIONS, "  hit%d: {%s, thickness: %.17g, stiffness: %.17g, damping: %.17g}\n", k,
         who, between(w, 0.2, 1.2), between(w, 30, 200), between(w, 0, 3));
   }
+}
+
+static void put_distances(random_world *w) {
+  bool smooth = has(w, WORLD_SMOOTH);
+  put(w, DISTANCES,
+      "  ahead: {nodes: [n1, n4], along: %.17g deg, damping: %.17g, law: {kind: polynomial, "
+      "coefficients: [%.17g, 0, %.17g]}}\n",
+      between(w, -180, 180), between(w, 0, 1), between(w, 2, 12), between(w, 0, 50));
+  put(w, DISTANCES,
+      "  high: {nodes: [n%d, n2], along: y, stiffness: %.17g, rest_distance: %.17g%s}\n", w->ring,
+      between(w, 2, 12), between(w, -1, 1), smooth ? "" : ", damping: 0.5, law: compression_only");
+  put(w, DISTANCES, "  aside: {node: n3, line: [n0, n5], stiffness: %.17g, damping: %.17g%s}\n",
+      between(w, 2, 12), between(w, 0, 1), smooth ? "" : ", law: {kind: play, gap: 0.05}");
 }
 
 /* ---- grounds ---- */
@@ -430,6 +445,7 @@ void random_world_make(random_world *w, uint64_t seed, unsigned parts) {
   put(w, OTHERS, "strut: 1\ngravity: [%.17g, %.17g]\n", between(w, -1, 1), between(w, -9, 0));
   put_structure(w);
   if (has(w, WORLD_BODIES)) put_bodies(w);
+  if (has(w, WORLD_BODIES)) put_distances(w);
   if (has(w, WORLD_GROUNDS)) put_grounds(w);
   if (has(w, WORLD_DRIVES)) put_drives(w);
   if (has(w, WORLD_FEEDBACK)) put_feedback(w);

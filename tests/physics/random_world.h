@@ -9,7 +9,7 @@
 
 /** What a scene has beside springs, a running cable and hinges. */
 typedef enum world_part {
-  WORLD_BODIES = 1,   /* cells and collisions */
+  WORLD_BODIES = 1,   /* cells, collisions and distances */
   WORLD_GROUNDS = 2,  /* several, of every shape, some of them shaken */
   WORLD_DRIVES = 4,   /* moved supports, rotating masses, forces, moments; damping by ratios */
   WORLD_FEEDBACK = 8, /* sensors, expressions, states, lags, Maxwell branches */

@@ -60,12 +60,25 @@ static long double reach_of(const slow_strain *s, const long double *q) {
   return distance(foot, p);
 }
 
+static long double along_of(const slow_strain *s, const long double *q) {
+  const long double *a = q + 2 * s->node[0], *b = q + 2 * s->node[1];
+  return distance(a, b) * cosl(atan2l(b[1] - a[1], b[0] - a[0]) - s->near);
+}
+
+/* By the sine of the angle at the line's first node. */
+static long double offset_of(const slow_strain *s, const long double *q) {
+  const long double *p = q + 2 * s->node[0], *a = q + 2 * s->node[1], *b = q + 2 * s->node[2];
+  return distance(a, p) * sinl(atan2l(p[1] - a[1], p[0] - a[0]) - atan2l(b[1] - a[1], b[0] - a[0]));
+}
+
 long double slow_strain_value(const slow_strain *s, const long double *q) {
   switch (s->kind) {
     case SLOW_PATH: return path_of(s, q);
     case SLOW_ANGLE: return angle_of(s, q);
     case SLOW_AREA: return area_of(s, q);
     case SLOW_REACH: return reach_of(s, q);
+    case SLOW_ALONG: return along_of(s, q);
+    case SLOW_OFFSET: return offset_of(s, q);
   }
   fail_msg("no such strain");
   return 0;

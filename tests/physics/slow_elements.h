@@ -14,7 +14,9 @@ typedef enum slow_kind {
   SLOW_PATH,  /* sum of the distances from node to node */
   SLOW_ANGLE, /* at the second of three nodes, nearest to `near` */
   SLOW_AREA,  /* of a polygon, positive as `near` is */
-  SLOW_REACH  /* distance of the first node from the segment between the others */
+  SLOW_REACH, /* distance of the first node from the segment between the others */
+  SLOW_ALONG, /* how far the second node is ahead of the first in the direction `near` */
+  SLOW_OFFSET /* distance of the first node from the line through the others, positive on its left */
 } slow_kind;
 
 typedef struct slow_strain {

@@ -487,6 +487,26 @@ static void add_collisions(const slow_world *w, const slow_instant *at, slow_rat
   }
 }
 
+static void add_distances(const slow_world *w, const slow_instant *at, slow_rates *r) {
+  for (size_t i = 0; i < w->scene->distance_count; i++) {
+    const strut_distance_spring *d = &w->scene->distances[i];
+    slow_instant here = *at;
+    slow_strain s = {
+        .kind = SLOW_ALONG, .count = 2, .node = {d->node[0], d->node[1]}, .near = d->along};
+    if (d->line[0] >= 0)
+      s = (slow_strain){
+          .kind = SLOW_OFFSET, .count = 3, .node = {d->node[0], d->line[0], d->line[1]}};
+    long double b[6], drawn[SLOW_PLACES], e = slow_strain_value(&s, here.q);
+    for (size_t k = 0; k < w->n; k++) drawn[k] = w->scene->nodes[k / 2].position[k % 2];
+    long double natural = isnan(d->rest_distance) ? slow_strain_value(&s, drawn) : d->rest_distance;
+    slow_strain_gradient(&s, here.q, b);
+    pull(&s, b,
+         element_force(&d->law, d->stiffness, d->damping, natural, e - natural,
+                       rate_of(&s, b, at->v), sign_of(d->law.carries), 0),
+         r->force);
+  }
+}
+
 /* ---- loads, weights, rotating masses, damping by mass ---- */
 
 static void add_loads(const slow_world *w, const slow_instant *at, slow_rates *r) {
@@ -725,6 +745,7 @@ void slow_world_rates(const slow_world *w, const slow_instant *at, slow_rates *r
   add_hinges(w, at, r);
   add_cells(w, at, r);
   add_collisions(w, at, r);
+  add_distances(w, at, r);
   add_unbalances(w, at, r);
   add_pushes(w, at, r);
   add_contacts(w, at, r);

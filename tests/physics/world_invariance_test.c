@@ -53,6 +53,7 @@ static void move_points(strut_scene *scene, void move(double *)) {
 /* ---- numbers changed ---- */
 
 static void turn_numbers(strut_scene *scene) {
+  for (size_t i = 0; i < scene->distance_count; i++) scene->distances[i].along += TURN;
   for (size_t i = 0; i < scene->ground_count; i++) scene->grounds[i].slope += TURN;
 }
 
@@ -80,7 +81,15 @@ static int by_place(const void *a, const void *b) {
   return x->piece < y->piece ? -1 : x->piece > y->piece;
 }
 
+/* What is ahead stays ahead; what was left of a line is right of it, so that the line runs the other way. */
+static void mirror_distance(strut_distance_spring *d) {
+  int32_t first = d->line[0];
+  d->along = acos(-1) - d->along;
+  d->line[0] = d->line[1], d->line[1] = first;
+}
+
 static void mirror_numbers(strut_scene *scene) {
+  for (size_t i = 0; i < scene->distance_count; i++) mirror_distance(&scene->distances[i]);
   for (size_t i = 0; i < scene->ground_count; i++) mirror_ground(scene, i);
   if (scene->contact_count)
     qsort(scene->contacts, scene->contact_count, sizeof *scene->contacts, by_place);
@@ -120,6 +129,10 @@ static void enlarge_elements(strut_scene *scene) {
     enlarge_law(scene, &h->law, 1, LARGER * LARGER);
   }
   for (size_t i = 0; i < scene->collision_count; i++) scene->collisions[i].thickness *= LARGER;
+  for (size_t i = 0; i < scene->distance_count; i++) {
+    scene->distances[i].rest_distance *= LARGER;
+    enlarge_law(scene, &scene->distances[i].law, LARGER, LARGER);
+  }
 }
 
 static void enlarge_numbers(strut_scene *scene) {

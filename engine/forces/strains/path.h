@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Strain `path`: the sum of the distances from node to node [m], of a cable that runs through guides.
- * A segment without length has no direction and adds no gradient.
+ * Strain `path`: the sum of the distances from node to node [m], of a cable that runs through guides. A segment
+ * without length has no direction and adds no gradient. And `length`, that of one segment.
  */
 #ifndef STRUT_ENGINE_FORCES_STRAINS_PATH_H
 #define STRUT_ENGINE_FORCES_STRAINS_PATH_H
@@ -38,6 +38,19 @@ static inline void strut_strain_path_bend(const uint32_t *at, int n, const doubl
       for (int j = 0; j < 4; j++)
         h[(2 * k + i) * 2 * n + 2 * k + j] += (i / 2 == j / 2 ? 1.0 : -1.0) * block[i % 2][j % 2];
   }
+}
+
+/* The strain `length`: the distance of two nodes [m]. */
+static inline double strut_strain_length(const uint32_t *at, int n, const double *q,
+                                         double reference, double *b) {
+  (void)n;
+  return strut_strain_path(at, 2, q, reference, b);
+}
+
+static inline void strut_strain_length_bend(const uint32_t *at, int n, const double *q, double t,
+                                            double *h) {
+  (void)n;
+  strut_strain_path_bend(at, 2, q, t, h);
 }
 
 #endif

@@ -327,6 +327,7 @@ static void add_element(strut_code_writer *w, int32_t i, int32_t *coefficient) {
   strut_code_add_field(w, e->carries);
   strut_code_add_field(w, natural);
   strut_code_add_field(w, e->damping);
+  if (has_strain(w, STRUT_STRAIN_ALONG)) strut_code_add_field(w, e->axis);
   add_numbers(w, i, coefficient);
   if (has_law(w, STRUT_LAW_ELASTIC_PLASTIC)) add_slider(w, i);
   if (strut_code_has_breakables(w))

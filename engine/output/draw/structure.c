@@ -597,6 +597,24 @@ static void draw_collisions(strut_canvas *canvas, const drawing *d) {
   }
 }
 
+/* A dashed line along which the distance is measured: to the first node's foot, then to the second. */
+static void draw_distance(strut_canvas *canvas, const drawing *d, int32_t element,
+                          const strut_element_pose *pose, strut_pen pen) {
+  const strut_element_table *t = &d->model->elements;
+  const strut_element *e = &t->element[element];
+  const uint32_t *at = t->at + e->first;
+  bool line = e->strain == STRUT_STRAIN_OFFSET;
+  const double *from = d->q + at[0];
+  double side = line ? -pose->strain : pose->strain, foot[2], way[3][2];
+  for (int c = 0; c < 2; c++) foot[c] = from[c] + side * pose->b[line ? c : 2 + c];
+  strut_window_point(d->window, from, way[0]);
+  strut_window_point(d->window, foot, way[1]);
+  strut_window_point(d->window, line ? foot : d->q + at[1], way[2]);
+  pen.dash[0] = pen.dash[1] = 2.0 * pen.width;
+  if (!isfinite(way[0][0] + way[0][1] + way[1][0] + way[1][1] + way[2][0] + way[2][1])) return;
+  strut_draw_line(canvas, (const double(*)[2])way, 3, pen);
+}
+
 static void draw_elements(strut_canvas *canvas, const drawing *d) {
   bool one = d->style->colouring == STRUT_COLOUR_ONE;
   strut_pen pen = {.colour =
@@ -609,8 +627,11 @@ static void draw_elements(strut_canvas *canvas, const drawing *d) {
         e->role == STRUT_ELEMENT_COLLISION)
       continue;
     strut_element_evaluate(d->model, i, d->model->members.rest, d->q, (double)NAN, &pose);
-    pen.width = (e->role == STRUT_ELEMENT_HINGE ? 1.0 : 1.6) * d->thin / (1 + d->style->thinness);
-    if (e->role == STRUT_ELEMENT_HINGE)
+    bool thin = e->role == STRUT_ELEMENT_HINGE || e->role == STRUT_ELEMENT_DISTANCE;
+    pen.width = (thin ? 1.0 : 1.6) * d->thin / (1 + d->style->thinness);
+    if (e->role == STRUT_ELEMENT_DISTANCE)
+      draw_distance(canvas, d, i, &pose, pen);
+    else if (e->role == STRUT_ELEMENT_HINGE)
       draw_hinge(canvas, d, &d->model->scene->hinges[e->item], pose.strain, pen);
     else if (pose.acts)
       draw_stop(canvas, d, (size_t)e->item, pen);

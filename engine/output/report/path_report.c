@@ -24,22 +24,22 @@ static const double ROUNDING = 1e-12; /* of the largest force */
 /* One line of a path, a point or an event. */
 typedef struct state {
   double factor, arc;
-  const double *q, *force, *moment, *reaction, *contact, *pressure;
+  const double *q, *force, *moment, *reaction, *contact, *pressure, *distance;
 } state;
 
 static state state_of_point(const strut_path_point *p) {
-  return (state){p->factor, p->arc,      p->q,       p->force,
-                 p->moment, p->reaction, p->contact, p->pressure};
+  return (state){p->factor,   p->arc,     p->q,        p->force,   p->moment,
+                 p->reaction, p->contact, p->pressure, p->distance};
 }
 
 static state state_of_event(const strut_path_event *e) {
-  return (state){e->factor, e->arc,      e->q,       e->force,
-                 e->moment, e->reaction, e->contact, e->pressure};
+  return (state){e->factor,   e->arc,     e->q,        e->force,   e->moment,
+                 e->reaction, e->contact, e->pressure, e->distance};
 }
 
 /* ---- what carries load: one row for JSON, CSV and the table each ---- */
 
-typedef enum carrier { MEMBERS, HINGES, CELLS, SUPPORTS, CONTACTS, CARRIERS } carrier;
+typedef enum carrier { MEMBERS, HINGES, CELLS, DISTANCES, SUPPORTS, CONTACTS, CARRIERS } carrier;
 
 /* Key in JSON; column of the CSV and words in the table, of supports along x and y; unit. */
 static const struct {
@@ -48,6 +48,7 @@ static const struct {
     [MEMBERS] = {"forces", {"force [N]"}, {""}, "N"},
     [HINGES] = {"moments", {"moment [N m]"}, {" moment"}, "N m"},
     [CELLS] = {"pressures", {"pressure [N/m]"}, {" pressure"}, "N/m"},
+    [DISTANCES] = {"distance_forces", {"force [N]"}, {""}, "N"},
     [SUPPORTS] = {"reactions",
                   {"reaction_x [N]", "reaction_y [N]"},
                   {" support x", " support y"},
@@ -57,14 +58,15 @@ static const struct {
 
 /* Number of values of a kind at a state; of supports two for each node. */
 static size_t count_values(const strut_scene *scene, carrier kind) {
-  const size_t counts[CARRIERS] = {scene->member_count, scene->hinge_count, scene->cell_count,
+  const size_t counts[CARRIERS] = {scene->member_count,   scene->hinge_count,
+                                   scene->cell_count,     scene->distance_count,
                                    2 * scene->node_count, scene->contact_count};
   return counts[kind];
 }
 
 static const double *values_of(const state *at, carrier kind) {
-  const double *const values[CARRIERS] = {at->force, at->moment, at->pressure, at->reaction,
-                                          at->contact};
+  const double *const values[CARRIERS] = {at->force,    at->moment,   at->pressure,
+                                          at->distance, at->reaction, at->contact};
   return values[kind];
 }
 
@@ -73,6 +75,7 @@ static const char *name_of(const strut_scene *scene, carrier kind, size_t i) {
     case MEMBERS: return scene->members[i].name;
     case HINGES: return scene->hinges[i].name;
     case CELLS: return scene->cells[i].name;
+    case DISTANCES: return scene->distances[i].name;
     case SUPPORTS: return scene->nodes[i / 2].name;
     case CONTACTS: return scene->nodes[scene->contacts[i].node].name;
     case CARRIERS: break;
@@ -82,7 +85,7 @@ static const char *name_of(const strut_scene *scene, carrier kind, size_t i) {
 
 /* The largest value of a kind anywhere on the path; of supports and the ground that of members. */
 static double largest_value(const strut_path *path, const strut_scene *scene, carrier kind) {
-  carrier of = kind == HINGES || kind == CELLS ? kind : MEMBERS;
+  carrier of = kind == HINGES || kind == CELLS || kind == DISTANCES ? kind : MEMBERS;
   double most = 0;
   for (size_t k = 0; k < path->point_count; k++) {
     state at = state_of_point(&path->points[k]);
@@ -118,7 +121,7 @@ static void add_forces(strut_json *json, struct cJSON *to, const strut_path *pat
                        const strut_scene *scene, const state *at) {
   for (carrier kind = MEMBERS; kind < CARRIERS; kind++) {
     size_t count = count_values(scene, kind);
-    if (!count && (kind == HINGES || kind == CELLS)) continue;
+    if (!count && (kind == HINGES || kind == CELLS || kind == DISTANCES)) continue;
     struct cJSON *values = strut_json_object(json, to, carriers[kind].key);
     for (size_t i = 0; i < count; i += kind == SUPPORTS ? 2 : 1) {
       const double *value = values_of(at, kind) + i;

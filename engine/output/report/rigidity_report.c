@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "engine/base/c_locale.h"
 #include "engine/output/buffer.h"
@@ -117,6 +118,20 @@ static void put_pressures(strut_json *json, struct cJSON *to, const char *key,
                       -force[scene->member_count + scene->hinge_count + i] / r->matrix.size);
 }
 
+/* The column of the first distance. */
+static size_t first_distance(const strut_scene *scene) {
+  return scene->member_count + scene->hinge_count + scene->cell_count;
+}
+
+/* Forces of distances that go with those of members. */
+static void put_distances(strut_json *json, struct cJSON *to, const char *key,
+                          const strut_scene *scene, const double *force) {
+  if (scene->distance_count == 0) return;
+  struct cJSON *map = strut_json_object(json, to, key);
+  for (size_t i = 0; i < scene->distance_count; i++)
+    strut_json_number(json, map, scene->distances[i].name, force[first_distance(scene) + i]);
+}
+
 static void put_head(strut_json *json, const strut_rigidity *r, const strut_model *model,
                      const char *at) {
   const strut_scene *scene = model->scene;
@@ -128,6 +143,8 @@ static void put_head(strut_json *json, const strut_rigidity *r, const strut_mode
   strut_json_integer(json, root, "members", (int64_t)scene->member_count);
   if (scene->hinge_count) strut_json_integer(json, root, "hinges", (int64_t)scene->hinge_count);
   if (scene->cell_count) strut_json_integer(json, root, "cells", (int64_t)scene->cell_count);
+  if (scene->distance_count)
+    strut_json_integer(json, root, "distances", (int64_t)scene->distance_count);
   strut_json_integer(json, root, "free_coordinates", r->matrix.rows);
   strut_json_integer(json, root, "supports", 2 * model->node_count - r->matrix.rows);
   strut_json_text(json, root, "method", r->spaces.dense ? "svd" : "qr");
@@ -156,6 +173,7 @@ static void put_self_stress(strut_json *json, const strut_rigidity *r, const str
     put_map(json, state, "force_densities", scene, force, r->matrix.length);
     put_moments(json, state, "moments", r, scene, force);
     put_pressures(json, state, "pressures", r, scene, force);
+    put_distances(json, state, "distance_forces", scene, force);
     strut_json_bool(json, state, "feasible", r->states.cables_pull[i]);
   }
   if (r->states.count == 0) return;
@@ -163,6 +181,7 @@ static void put_self_stress(strut_json *json, const strut_rigidity *r, const str
     put_map(json, stress, "feasible", scene, r->feasible, NULL);
     put_moments(json, stress, "feasible_moments", r, scene, r->feasible);
     put_pressures(json, stress, "feasible_pressures", r, scene, r->feasible);
+    put_distances(json, stress, "feasible_distance_forces", scene, r->feasible);
   } else {
     strut_json_text(json, stress, "feasible", NULL);
   }
@@ -217,6 +236,7 @@ static void put_mechanisms(strut_json *json, const strut_rigidity *r, const stru
   put_map(json, to, "stiffened_by", scene, m->stiffener, NULL);
   put_moments(json, to, "stiffened_by_moments", r, scene, m->stiffener);
   put_pressures(json, to, "stiffened_by_pressures", r, scene, m->stiffener);
+  put_distances(json, to, "stiffened_by_distance_forces", scene, m->stiffener);
 }
 
 static void put_verdicts(strut_json *json, const strut_rigidity *r) {
@@ -280,6 +300,14 @@ static void put_members(strut_json *json, const strut_rigidity *r, const strut_s
     strut_json_number(json, row, "area", r->matrix.length[j] * r->matrix.size);
     strut_json_number(json, row, "pressure", -r->force[j] / r->matrix.size + 0.0);
   }
+  struct cJSON *distances =
+      scene->distance_count ? strut_json_object(json, json->root, "distances_at") : NULL;
+  for (size_t i = 0; i < scene->distance_count; i++) {
+    struct cJSON *row = strut_json_object(json, distances, scene->distances[i].name);
+    size_t j = first_distance(scene) + i;
+    strut_json_number(json, row, "distance", r->matrix.length[j]);
+    strut_json_number(json, row, "force", r->force[j]);
+  }
   if (scene->hinge_count == 0) return;
   struct cJSON *hinges = strut_json_object(json, json->root, "hinges_at");
   for (size_t i = 0; i < scene->hinge_count; i++) {
@@ -328,10 +356,16 @@ static void add_rank(strut_buffer *table, const strut_rigidity *r) {
 }
 
 static void add_counts(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
-  const char *others = scene->hinge_count && scene->cell_count ? ", hinges and cells"
-                       : scene->hinge_count                    ? " and hinges"
-                       : scene->cell_count                     ? " and cells"
-                                                               : "";
+  const size_t counts[] = {scene->hinge_count, scene->cell_count, scene->distance_count};
+  static const char *const words[] = {"hinges", "cells", "distances"};
+  char others[60] = "";
+  int left = 0;
+  for (int i = 0; i < 3; i++) left += counts[i] > 0;
+  for (int i = 0; i < 3; i++)
+    if (counts[i]) {
+      size_t used = strlen(others);
+      snprintf(others + used, sizeof others - used, "%s%s", --left ? ", " : " and ", words[i]);
+    }
   const strut_mechanisms *m = &r->mechanisms;
   strut_buffer_add(table, "  self-stress        s = %d\n", r->states.count);
   strut_buffer_add(table, "  mechanisms         f = %d", m->count);
@@ -429,6 +463,24 @@ static void add_cells(strut_buffer *table, const strut_rigidity *r, const strut_
                      scene->cell_count - MOST_ROWS);
 }
 
+static void add_distances(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene,
+                          int32_t states) {
+  size_t columns = (size_t)r->matrix.columns;
+  if (scene->distance_count)
+    strut_buffer_add(table, "  %-12s %-6s %12s %12s\n", "distance", "", "distance", "force");
+  for (size_t i = 0; i < scene->distance_count && i < MOST_ROWS; i++) {
+    size_t j = first_distance(scene) + i;
+    strut_buffer_add(table, "  %-12s %-6s %12s %12s %13s", scene->distances[i].name, "",
+                     in(r->matrix.length[j], "m").text, in(r->force[j], "N").text, "");
+    for (int32_t k = 0; k < states; k++)
+      strut_buffer_add(table, " %10.6g", r->states.force[(size_t)k * columns + j]);
+    strut_buffer_add(table, "\n");
+  }
+  if (scene->distance_count > MOST_ROWS)
+    strut_buffer_add(table, "  ... and %zu more; --json lists all\n",
+                     scene->distance_count - MOST_ROWS);
+}
+
 static void add_members(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
   size_t members = scene->member_count, columns = (size_t)r->matrix.columns;
   int32_t states = r->states.force ? r->states.count : 0;
@@ -450,6 +502,7 @@ static void add_members(strut_buffer *table, const strut_rigidity *r, const stru
     strut_buffer_add(table, "  ... and %zu more; --json lists all\n", members - MOST_ROWS);
   add_hinges(table, r, scene, states);
   add_cells(table, r, scene, states);
+  add_distances(table, r, scene, states);
   if (r->states.count > states)
     strut_buffer_add(table, "  %d more self-stress states%s\n", r->states.count - states,
                      r->states.force ? "; --json lists all" : ": too many to list");

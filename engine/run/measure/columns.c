@@ -79,6 +79,8 @@ size_t strut_columns_add(strut_columns *c, strut_column column) {
     column.item = strut_element_of_cell(&c->model->elements, column.item);
   if (rows[column.kind].owner == STRUT_COLUMN_OF_COLLISION)
     column.item = strut_element_of_collision(&c->model->elements, column.item);
+  if (rows[column.kind].owner == STRUT_COLUMN_OF_DISTANCE)
+    column.item = strut_element_of_distance(&c->model->elements, column.item);
   for (size_t i = 0; i < c->count; i++) {
     const strut_column *other = &c->column[i];
     if (other->kind == column.kind && other->item == column.item && other->other == column.other)
@@ -277,6 +279,12 @@ static double evaluate_column(strut_columns *c, const strut_state *state, strut_
       return strut_collision_measure(c->model, state, column.item).gap;
     case STRUT_COLUMN_COLLISION_FORCE:
       return strut_collision_measure(c->model, state, column.item).force;
+    case STRUT_COLUMN_DISTANCE_VALUE:
+      return strut_distance_measure(c->model, state, column.item).distance;
+    case STRUT_COLUMN_DISTANCE_RATE:
+      return strut_distance_measure(c->model, state, column.item).rate;
+    case STRUT_COLUMN_DISTANCE_FORCE:
+      return strut_distance_measure(c->model, state, column.item).force;
     case STRUT_COLUMN_SENSOR: return state->latest.sensor[column.item];
     case STRUT_COLUMN_SENSOR_RATE: return state->latest.sensor_rate[column.item];
     case STRUT_COLUMN_STATE: return state->v[c->model->feedback.base + column.item];
@@ -364,7 +372,7 @@ double strut_columns_noise(const strut_columns *c, size_t index) {
   if (column.kind == STRUT_COLUMN_HINGE_RATE) return SUM_ROUNDING * c->fastest / c->model->size;
   if (column.kind == STRUT_COLUMN_MOMENT)
     return POSITION_ROUNDING * c->model->elements.element[column.item].numbers.stiffness;
-  if (column.kind == STRUT_COLUMN_COLLISION_FORCE)
+  if (column.kind == STRUT_COLUMN_COLLISION_FORCE || column.kind == STRUT_COLUMN_DISTANCE_FORCE)
     return length * c->model->elements.element[column.item].numbers.stiffness;
   if (column.kind == STRUT_COLUMN_CELL_AREA) return length * c->model->size;
   if (column.kind == STRUT_COLUMN_PRESSURE)

@@ -45,10 +45,9 @@ void strut_list_nodes(const strut_scene *scene, const uint8_t *flag, size_t size
 static bool mirror_axis(const strut_model *model, const uint8_t *held, const double *q, double *x) {
   bool any = false;
   double sum = 0.0;
-  for (int32_t b = 0; b < model->elements.block_count; b++)
-    if (model->elements.block[b].strain == STRUT_STRAIN_ANGLE ||
-        model->elements.block[b].strain == STRUT_STRAIN_AREA)
-      return false; /* they change their sign */
+  const uint32_t sided = 1u << STRUT_STRAIN_ANGLE | 1u << STRUT_STRAIN_AREA |
+                         1u << STRUT_STRAIN_ALONG | 1u << STRUT_STRAIN_OFFSET;
+  if (model->laws.strain & sided) return false; /* they change their sign */
   for (int32_t i = 0; i < model->node_count; i++) {
     if (model->constant_force && model->constant_force[2 * i] != 0.0) return false;
     sum += q[2 * i];

@@ -482,6 +482,11 @@ static strut_status refuse_elements(const strut_scene *scene, strut_form_source 
         error, STRUT_BAD_SCENE,
         "form finding by %s knows straight members with a linear law only: %s is a collision",
         strut_form_source_name(from), scene->collisions[0].name);
+  if (scene->distance_count)
+    return strut_fail(
+        error, STRUT_BAD_SCENE,
+        "form finding by %s knows straight members with a linear law only: %s is a distance",
+        strut_form_source_name(from), scene->distances[0].name);
   if (scene->cell_count)
     return strut_fail(
         error, STRUT_BAD_SCENE,

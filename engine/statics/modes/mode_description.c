@@ -196,34 +196,28 @@ static double stretch_energy(const strut_vibration *v, int32_t j, const double *
   return v->model->members.stiffness[j] * e * e;
 }
 
-/* Members, hinges, cells, collisions. */
+/* Things that store energy: items, in this order. */
+static const strut_thing kinds[] = {STRUT_THING_MEMBER, STRUT_THING_HINGE, STRUT_THING_CELL,
+                                    STRUT_THING_COLLISION, STRUT_THING_DISTANCE};
+enum { KIND_COUNT = sizeof kinds / sizeof kinds[0] };
+
 static int32_t count_items(const strut_model *model) {
-  const strut_scene *scene = model->scene;
-  return model->members.count +
-         (int32_t)(scene->hinge_count + scene->cell_count + scene->collision_count);
+  size_t count = 0;
+  for (int k = 0; k < KIND_COUNT; k++) count += strut_thing_count(model->scene, kinds[k]);
+  return (int32_t)count;
 }
 
 static int32_t item_of(const strut_model *model, const strut_element *e) {
-  const strut_scene *scene = model->scene;
-  size_t before = scene->member_count;
-  switch (e->role) {
-    case STRUT_ELEMENT_MEMBER:
-    case STRUT_ELEMENT_LONGEST:
-    case STRUT_ELEMENT_SHORTEST: return e->item;
-    case STRUT_ELEMENT_HINGE: break;
-    case STRUT_ELEMENT_CELL: before += scene->hinge_count; break;
-    case STRUT_ELEMENT_COLLISION: before += scene->hinge_count + scene->cell_count; break;
-  }
+  strut_thing thing = strut_element_thing(e->role);
+  size_t before = 0;
+  for (int k = 0; kinds[k] != thing; k++) before += strut_thing_count(model->scene, kinds[k]);
   return (int32_t)before + e->item;
 }
 
 static const char *name_of_item(const strut_scene *scene, size_t j) {
-  if (j < scene->member_count) return scene->members[j].name;
-  j -= scene->member_count;
-  if (j < scene->hinge_count) return scene->hinges[j].name;
-  j -= scene->hinge_count;
-  return j < scene->cell_count ? scene->cells[j].name
-                               : scene->collisions[j - scene->cell_count].name;
+  int k = 0;
+  for (size_t count; j >= (count = strut_thing_count(scene, kinds[k])); k++) j -= count;
+  return strut_thing_name(scene, kinds[k], j);
 }
 
 /* Energies of the items in a motion; a member's with those of its elements. */

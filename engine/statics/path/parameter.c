@@ -449,11 +449,11 @@ double strut_path_element_tension(const strut_path_system *s, int32_t member) {
   return sum;
 }
 
-void strut_path_moments(const strut_path_system *s, double *moment) {
+void strut_path_element_forces(const strut_path_system *s, strut_element_role role, double *force) {
   const strut_element_table *t = &s->model->elements;
   for (int32_t i = 0; i < t->count; i++)
-    if (t->element[i].role == STRUT_ELEMENT_HINGE)
-      moment[t->element[i].item] = s->elements.element[i].pose.force + 0.0; /* no -0 */
+    if (t->element[i].role == role)
+      force[t->element[i].item] = s->elements.element[i].pose.force + 0.0; /* no -0 */
 }
 
 void strut_path_pressures(const strut_path_system *s, double *pressure) {

@@ -54,6 +54,7 @@ typedef struct strut_path_point {
   double *reaction; /* (length) force of supports on held coordinates, else 0 [N] */
   double *contact;  /* (contacts) normal force of the ground [N] */
   double *pressure; /* (cells) inside [N/m] */
+  double *distance; /* (distances) force [N] */
 } strut_path_point;
 
 typedef struct strut_path_event {
@@ -64,7 +65,7 @@ typedef struct strut_path_event {
                          kink */
   int32_t before, after; /* eigenvalues of the stiffness below zero on its two sides */
   const char *detail;    /* in words */
-  double *q, *force, *moment, *reaction, *contact, *pressure; /* as of a point */
+  double *q, *force, *moment, *reaction, *contact, *pressure, *distance; /* as of a point */
 } strut_path_event;
 
 typedef enum strut_path_end {

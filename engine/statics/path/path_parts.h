@@ -105,8 +105,9 @@ void strut_path_keep_turns(struct strut_path_system *system);
 
 /** Force of all elements of member j [N]. */
 double strut_path_element_tension(const struct strut_path_system *system, int32_t member);
-/** Moments of the hinges [N m] (hinges). */
-void strut_path_moments(const struct strut_path_system *system, double *moment);
+/** Forces of the elements of a role, one of each thing: moments of hinges [N m], forces of distances [N]. */
+void strut_path_element_forces(const struct strut_path_system *system, strut_element_role role,
+                               double *force);
 /** Pressures in the cells [N/m] (cells). */
 void strut_path_pressures(const struct strut_path_system *system, double *pressure);
 

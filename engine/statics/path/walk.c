@@ -36,11 +36,13 @@ static bool keep_state(strut_path_walk *w, const double *y, strut_path_point *po
   point->force = strut_arena_allocate(&w->path->arena, members, sizeof(double));
   point->moment = strut_arena_allocate(&w->path->arena, model->scene->hinge_count, sizeof(double));
   point->pressure = strut_arena_allocate(&w->path->arena, model->scene->cell_count, sizeof(double));
+  point->distance =
+      strut_arena_allocate(&w->path->arena, model->scene->distance_count, sizeof(double));
   point->reaction = strut_arena_allocate(&w->path->arena, length, sizeof(double));
   point->contact =
       strut_arena_allocate(&w->path->arena, (size_t)model->contacts.count, sizeof(double));
   if (!point->q || !point->force || !point->moment || !point->reaction || !point->contact ||
-      !point->pressure) {
+      !point->pressure || !point->distance) {
     w->failed = true;
     return false;
   }
@@ -52,7 +54,8 @@ static bool keep_state(strut_path_walk *w, const double *y, strut_path_point *po
     if (strut_element_of_member(&model->elements, (int32_t)j))
       point->force[j] += strut_path_element_tension(s, (int32_t)j);
   }
-  strut_path_moments(s, point->moment);
+  strut_path_element_forces(s, STRUT_ELEMENT_HINGE, point->moment);
+  strut_path_element_forces(s, STRUT_ELEMENT_DISTANCE, point->distance);
   strut_path_pressures(s, point->pressure);
   strut_path_reactions(s, point->reaction, point->contact);
   return true;
@@ -94,7 +97,8 @@ void strut_path_add_event(strut_path_walk *w, strut_path_event_kind kind, const 
                             .moment = state.moment,
                             .reaction = state.reaction,
                             .contact = state.contact,
-                            .pressure = state.pressure};
+                            .pressure = state.pressure,
+                            .distance = state.distance};
   size_t at = p->event_count++; /* in the order of the path */
   for (; at > 0 && p->events[at - 1].arc > event.arc; at--) p->events[at] = p->events[at - 1];
   p->events[at] = event;

@@ -63,11 +63,13 @@ static bool add_bend(const strut_model *model, const strut_element *e, const dou
   return true;
 }
 
-/* The column of a hinge or a cell after the last. */
+/* The column of a hinge, a cell or a distance after the last. */
 static bool add_curved(const strut_model *model, const strut_element *e, const double *q,
                        strut_arena *arena, strut_equilibrium_matrix *a) {
   int32_t j = a->columns++;
-  double scale = e->role == STRUT_ELEMENT_CELL ? 1.0 / a->size : a->size;
+  double scale = e->role == STRUT_ELEMENT_CELL    ? 1.0 / a->size
+                 : e->role == STRUT_ELEMENT_HINGE ? a->size
+                                                  : 1.0;
   a->start[j + 1] = a->start[j];
   add_gradient(model, e, q, scale, a);
   return add_bend(model, e, q, scale, arena, a);
@@ -99,17 +101,19 @@ static bool add_column(const strut_model *model, const double *q, strut_arena *a
   return true;
 }
 
-/* Hinges in the scene's order, then cells. */
+/* Hinges in the scene's order, then cells, then distances. */
 static bool add_elements(const strut_model *model, const double *q, strut_arena *arena,
                          strut_equilibrium_matrix *a) {
   const strut_element_table *t = &model->elements;
-  size_t hinges = model->scene->hinge_count, all = hinges + model->scene->cell_count;
+  size_t hinges = model->scene->hinge_count, cells = hinges + model->scene->cell_count,
+         all = cells + model->scene->distance_count;
   const strut_element **element = strut_arena_allocate(arena, all + 1, sizeof *element);
   if (!element) return false;
   for (int32_t i = 0; i < t->count; i++) {
     const strut_element *e = &t->element[i];
     if (e->role == STRUT_ELEMENT_HINGE) element[e->item] = e;
     if (e->role == STRUT_ELEMENT_CELL) element[hinges + (size_t)e->item] = e;
+    if (e->role == STRUT_ELEMENT_DISTANCE) element[cells + (size_t)e->item] = e;
   }
   for (size_t i = 0; i < all; i++)
     if (!add_curved(model, element[i], q, arena, a)) return false;

@@ -39,7 +39,9 @@ typedef struct strut_equilibrium_matrix {
 
 /** Columns of the equilibrium matrix of a model. */
 static inline int32_t strut_equilibrium_columns(const strut_model *model) {
-  return model->members.count + (int32_t)(model->scene->hinge_count + model->scene->cell_count);
+  const strut_scene *scene = model->scene;
+  return model->members.count +
+         (int32_t)(scene->hinge_count + scene->cell_count + scene->distance_count);
 }
 
 /** Is column j a cable? */

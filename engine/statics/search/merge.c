@@ -35,11 +35,11 @@ static void find_free_motions(strut_stationary_set *g) {
   bool grounded = p->ground && model->contacts.count > 0;
   double net[2] = {0.0, 0.0};
   for (int32_t at = 0; at < 2 * model->node_count; at++) net[at % 2] += p->force[at];
-  g->congruent = fixed[0] + fixed[1] <= 3;
+  g->congruent = fixed[0] + fixed[1] <= 3 && strut_model_may_turn(model);
   g->shifts[0] =
       fixed[0] == 0 && net[0] == 0 && !(grounded && !strut_contacts_are_level(&model->contacts));
   g->shifts[1] = fixed[1] == 0 && net[1] == 0 && !grounded;
-  g->turns = at_one_node && !loaded && !grounded;
+  g->turns = at_one_node && !loaded && !grounded && strut_model_may_turn(model);
 }
 
 void strut_stationary_set_start(strut_stationary_set *g, const strut_potential *potential,

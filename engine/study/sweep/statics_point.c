@@ -372,9 +372,8 @@ static void warn_of_overload(strut_sweep_job *job, const strut_model *model, con
   snprintf(warning->text, sizeof warning->text,
            "in %.60s %s '%.60s' carries %.4g %s, above the %.4g at which it %s; statics take it as "
            "%s",
-           where, worst.hinge ? "hinge" : "member", worst.name, worst.force,
-           worst.hinge ? "N m" : "N", worst.limit, worst.breaks ? "breaks" : "yields",
-           worst.breaks ? "whole" : "elastic");
+           where, worst.kind, worst.name, worst.force, worst.hinge ? "N m" : "N", worst.limit,
+           worst.breaks ? "breaks" : "yields", worst.breaks ? "whole" : "elastic");
 }
 
 static strut_status find_equilibria(const strut_sweep_worker *w, strut_sweep_job *job,

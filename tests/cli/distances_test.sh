@@ -1,0 +1,151 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Distances along a direction and from a line, against closed forms and the contact of the ground.
+. "$(dirname "$0")/lib.sh"
+
+# A mass on a distance along 30 deg: 1 Hz along it, nothing across it.
+cat >along.yaml <<'YAML'
+strut: 1
+nodes: {a: {position: [1, 2], fixed: both}, b: {position: [3, 1], mass: 1}}
+distances:
+  d: {nodes: [a, b], along: 30 deg, stiffness: "4 * pi^2", rest_distance: 1 m}
+initial: {velocities: {b: [-0.5, 0.8660254037844386]}}
+solver: {integrator: rk4, step: 1 ms}
+run:
+  duration: 0.25 s
+  measure: {quantities: {at: {of: d.distance, take: final}, rate: {of: d.rate, take: final}, f: {of: d.force, take: max},
+    across: {of: (b.y - a.y) * cos(30 deg) - (b.x - a.x) * sin(30 deg), take: final}}}
+YAML
+drawn='(3 | sqrt) - 0.5'
+for method in rk4 adaptive midpoint verlet rk4-events; do
+  expect 0 run along.yaml --integrator $method --json
+  near .measured.at.value 1 1e-4
+  near .measured.rate.value "-2 * 3.141592653589793 * ($drawn - 1)" 1e-4
+  near .measured.f.value "4 * 3.141592653589793 * 3.141592653589793 * ($drawn - 1)" 1e-9
+  near .measured.across.value '-1 - 0.5 * (3 | sqrt) + 0.25' 1e-9
+  near '.energy.residual / .energy.exchanged' 0 1e-5
+done
+expect 0 modes along.yaml --json
+near '.modes[1].frequency' 1 1e-9
+near '.modes[0].frequency' 0 1e-9
+expect 0 run along.yaml --quiet --plot along.svg -o out-along
+expect 0 view out-along -o along.html
+
+# In copies of a part the direction turns and lengths grow; a line keeps its side where it is flipped.
+cat >parts.yaml <<'YAML'
+strut: 1
+parts:
+  leg:
+    nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0.5], mass: 1}, t: {position: [2, 0], fixed: both}}
+    distances: {d: {nodes: [a, b], along: x, stiffness: 5, rest_distance: 0.8 m}, o: {node: b, line: [a, t], stiffness: 5, rest_distance: 0.2 m}}
+place: {one: {part: leg}, two: {part: leg, flip: y, turn: 90 deg, at: [5, 0], scale: 2}}
+YAML
+expect 0 check parts.yaml --json
+near '.distances["one.d"].drawn' 1 0
+near '.distances["two.d"].drawn' 2 1e-15
+near '.distances["two.d"].rest' 1.6 1e-15
+near '.distances["one.o"].drawn' 0.5 0
+near '.distances["two.o"].drawn' 1 1e-15
+expect 0 write parts.yaml
+out_has 'one.d: {nodes: [one.a, one.b], along: x, stiffness: 5, rest_distance: 0.8}'
+out_has 'two.d: {nodes: [two.a, two.b], along: y, stiffness: 5, rest_distance: 1.6}'
+out_has 'two.o: {node: two.b, line: [two.t, two.a], stiffness: 5, rest_distance: 0.4}'
+cp out written.yaml
+expect 0 write written.yaml
+cmp -s out written.yaml || fail 'a written scene is written differently'
+expect 0 modes parts.yaml --json # each node by itself: 2 and 2 frequencies
+near '.modes[3].frequency' '(5 | sqrt) / 2 / 3.141592653589793' 1e-9
+
+# A ball that falls on a line of fixed nodes bounces as on the ground.
+cat >ball.yaml <<'YAML'
+strut: 1
+gravity: [0, -10]
+nodes:
+  left: {position: [-1, -0.2], fixed: both}
+  right: {position: [3, 0.6], fixed: both}
+  ball: {position: [0, 0.5], mass: 1}
+distances: {hit: {node: ball, line: [left, right], rest_distance: 0, stiffness: 1e4, law: compression_only}}
+solver: {integrator: rk4-events, step: 1 ms}
+run:
+  duration: 1 s
+  measure: {quantities: {x: {of: ball.x, take: final}, y: {of: ball.y, take: final}, f: {of: hit.force, take: min}}}
+YAML
+sed -e '/distances/d' -e '/left/d' -e '/right/d' -e 's/hit.force, take: min/ball.normal, take: max/' ball.yaml >ground.yaml
+echo 'ground: {slope: "atan(0.2)", stiffness: 1e4, contacts: {ball: {}}}' >>ground.yaml
+expect 0 run ground.yaml --json
+for what in x y f; do eval "$what=\$(jq .measured.$what.value out)"; done
+expect 0 run ball.yaml --json
+near .measured.x.value "$x" 1e-9
+near .measured.y.value "$y" 1e-9
+near .measured.f.value "-$f" 1e-6
+near '.energy.residual / .energy.exchanged' 0 1e-5
+
+# Three free nodes: a line gives neither momentum nor, about any point, a moment; work and losses are balanced.
+cat >free.yaml <<'YAML'
+strut: 1
+nodes: {a: {position: [0, 0], mass: 1}, b: {position: [2, 0.3], mass: 2}, c: {position: [0.7, 0.9], mass: 3}}
+members: {m: {kind: spring, nodes: [a, b], stiffness: 100}}
+distances: {o: {node: c, line: [a, b], damping: 2, law: {kind: bilinear, knee: 20 mm, second_stiffness: 90}, stiffness: 30, rest_distance: 0.5 m}}
+solver: {integrator: rk4-events, step: 1 ms}
+run:
+  duration: 2 s
+  measure: {quantities: {vx: {of: com.vx, take: rms}, vy: {of: com.vy, take: rms},
+    turn: {of: 1 kg * (a.x * a.vy - a.y * a.vx) + 2 kg * (b.x * b.vy - b.y * b.vx) + 3 kg * (c.x * c.vy - c.y * c.vx), take: rms}}}
+YAML
+expect 0 run free.yaml --json
+near .measured.vx.value 0 1e-13
+near .measured.vy.value 0 1e-13
+near .measured.turn.value 0 1e-11
+near .energy.residual 0 1e-9
+
+# Statics: a node on two crossed distances; it moves by F / k, has no mechanism, and one with a bar has self-stress.
+cat >held.yaml <<'YAML'
+strut: 1
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 1], mass: 1}}
+members: {m: {kind: spring, nodes: [a, b], stiffness: 1}}
+distances: {x: {nodes: [a, b], along: x, stiffness: 50}, y: {nodes: [a, b], along: y, stiffness: 20, rest_distance: 0.9 m}}
+loads: {f: {node: b, force: [3 N, 0]}}
+YAML
+expect 0 rigidity held.yaml --json
+near .rank 2 0
+near .distances 2 0
+near .self_stress.count 1 0
+near .mechanisms.count 0 0
+near .distances_at.y.force 2 1e-12
+sed '/^members/d' held.yaml >crossed.yaml
+expect 0 path crossed.yaml --load f --until 2 --json
+near '.points[-1].nodes.b[0]' '1 + 6 / 50' 1e-9
+near '.points[-1].nodes.b[1]' 0.9 1e-9
+near '.points[-1].distance_forces.x' 6 1e-9
+expect 0 equilibria crossed.yaml --json
+near '.equilibria | length' 1 0
+expect 2 form held.yaml --from densities
+err_has 'x is a distance'
+
+# What a distance cannot be.
+cat >bad.yaml <<'YAML'
+strut: 1
+nodes: {a: [0, 0], b: [1, 0], c: [1, 1]}
+members: {m: {kind: spring, nodes: [a, b], stiffness: 1}}
+distances:
+  one: {nodes: [a, b], stiffness: 1}
+  two: {node: a, line: [b, b], stiffness: 1}
+  three: {nodes: [a, b], along: 3 m, stiffness: 1}
+  four: {nodes: [a, b], along: x}
+  five: {node: c, line: [a, b], along: x, stiffness: 1}
+  six: {nodes: [a, b], along: [1, 2], stiffness: 1}
+  seven: {nodes: [a, c], along: y, stiffness: 1, law: logarithmic}
+YAML
+expect 2 check bad.yaml
+err_has "bad.yaml:5:3: error: distance 'one' must have 'nodes' and 'along', or 'node' and 'line'"
+err_has "distance 'two' names node 'b' twice"
+err_has "bad.yaml:7:33: error: expected an angle such as '30 deg' for 'along' of distance 'three', found a length"
+err_has "distance 'four' has neither stiffness nor damping"
+err_has "distance 'five' must have"
+err_has "expected x, y, or an angle from +x for 'along' of distance 'six', found a list of 2"
+err_has "distance 'seven' has the law logarithmic, which is for members only"
+sed 's/along: 30 deg/along: x/; s/d.force/d.forse/' along.yaml >misspelt.yaml
+expect 2 check misspelt.yaml
+err_has "distance 'd' has no column 'forse'; did you mean 'force'?"
+
+done_testing
