@@ -233,7 +233,8 @@ strut_status strut_import(strut_import_format format, strut_import_file *files, 
     if (files[i].diagnostics.count) status = STRUT_BAD_SCENE;
     if (files[i].diagnostics.out_of_memory) s.out_of_memory = true;
   }
-  bool any = s.section[STRUT_IMPORT_MEMBERS].length || s.section[STRUT_IMPORT_HINGES].length;
+  bool any = s.section[STRUT_IMPORT_MEMBERS].length || s.section[STRUT_IMPORT_HINGES].length ||
+             s.section[STRUT_IMPORT_DISTANCES].length;
   if (!status && !any && !s.out_of_memory)
     status = strut_fail(error, STRUT_BAD_SCENE, "'%s' has no member that a scene could have",
                         files[0].name);

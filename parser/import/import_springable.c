@@ -35,8 +35,8 @@ typedef struct springable {
   size_t parameter_count, node_count, node_room;
   springable_parameter *parameters;
   springable_node *nodes;
-  size_t springs, angles, paths, loads; /* so far */
-  bool later;                           /* of LOADING: after "then" */
+  size_t springs, angles, paths, distances, loads; /* so far */
+  bool later;                                      /* of LOADING: after "then" */
 } springable;
 
 typedef enum section {
@@ -46,6 +46,9 @@ typedef enum section {
   SPRINGS,
   ANGULAR,
   PATHS,
+  X_DISTANCES,
+  Y_DISTANCES,
+  LINE_DISTANCES,
   LOADING,
   OTHERS /* that a scene has no words for */
 } section;
@@ -461,6 +464,53 @@ static void read_angle(springable *r) {
                     ++r->angles, nodes, stiffness, rest);
 }
 
+/* CONTACT(f0; uc; delta): the force f0 ((delta - d) / uc)^3 pushes below the distance delta. False: another. */
+static bool read_contact(springable *r, spring_values *v) {
+  static const char *const keys[] = {"f0=", "uc=", "delta="};
+  const char *text = text_of(r, 1), *value[3];
+  char argument[LONGEST_FIELD + 1];
+  if (strncmp(text, "CONTACT(", 8) != 0) return false;
+  for (int i = 0; i < 3; i++) {
+    if (!find_argument(text, keys[i], argument)) return false;
+    value[i] = read_expression(r, argument, place_of(r, 1), NULL);
+    if (!value[i]) return false;
+  }
+  v->rest = strut_import_text(r->scene, ", rest_distance: %s", value[2]);
+  v->law = strut_import_text(r->scene,
+                             ", law: {kind: polynomial, coefficients: [0, 0, \"(%s) / (%s)^3\"], "
+                             "carries: compression}",
+                             value[0], value[1]);
+  return true;
+}
+
+/* Along x or y, the first node seen from the second; or of the first node from the line of the others. */
+static void read_distance(springable *r, section in) {
+  strut_import_scene *s = r->scene;
+  size_t count = in == LINE_DISTANCES ? 3 : 2, before = r->said->count;
+  const char *nodes = read_chain(r, count, count), *rest = text_of(r, 2);
+  spring_values v = {.rest = "", .law = ""};
+  if (!nodes) return;
+  v.stiffness = read_stiffness(r);
+  if (v.stiffness) {
+    v.stiffness = strut_import_text(s, ", stiffness: %s", v.stiffness);
+    if (*rest) rest = read_expression(r, rest, place_of(r, 2), NULL);
+    if (!rest) return;
+    if (*rest) v.rest = strut_import_text(s, ", rest_distance: %s", rest);
+  } else if (!read_contact(r, &v)) {
+    if (r->said->count == before) note_behaviour(r);
+    return;
+  }
+  use_nodes(r);
+  const char *second = strchr(nodes, ',') + 2;
+  int first = (int)(second - nodes) - 2;
+  const char *which = in == LINE_DISTANCES
+                          ? strut_import_text(s, "node: %.*s, line: [%s]", first, nodes, second)
+                          : strut_import_text(s, "nodes: [%s, %.*s], along: %s", second, first,
+                                              nodes, in == X_DISTANCES ? "x" : "y");
+  strut_import_line(s, &s->section[STRUT_IMPORT_DISTANCES], "  d%zu: {%s%s%s%s}", ++r->distances,
+                    which, v.stiffness ? v.stiffness : "", v.rest, v.law);
+}
+
 static void read_load(springable *r) {
   strut_import_scene *s = r->scene;
   const char *at = text_of(r, 0), *axis = text_of(r, 1);
@@ -499,6 +549,12 @@ static section section_of(const char *text) {
                {"ANGULAR FLEXELS", ANGULAR},
                {"PATH SPRINGS", PATHS},
                {"PATH FLEXELS", PATHS},
+               {"X DISTANCE SPRINGS", X_DISTANCES},
+               {"X DISTANCE FLEXELS", X_DISTANCES},
+               {"Y DISTANCE SPRINGS", Y_DISTANCES},
+               {"Y DISTANCE FLEXELS", Y_DISTANCES},
+               {"DISTANCE SPRINGS", LINE_DISTANCES},
+               {"DISTANCE FLEXELS", LINE_DISTANCES},
                {"LOADING", LOADING}};
   for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
     if (strcmp(words[i].word, text) == 0) return words[i].of;
@@ -527,9 +583,12 @@ static void read_line(springable *r, section *in, const char *line, size_t lengt
     case SPRINGS: read_spring(r, false); break;
     case ANGULAR: read_angle(r); break;
     case PATHS: read_spring(r, true); break;
+    case X_DISTANCES:
+    case Y_DISTANCES:
+    case LINE_DISTANCES: read_distance(r, *in); break;
     case LOADING: read_load(r); break;
     case OTHERS:
-      strut_note(r->said, place_of(r, 0), "not imported: an element on an area or a distance");
+      strut_note(r->said, place_of(r, 0), "not imported: an element on an area or a midpoint");
       break;
   }
 }

@@ -125,6 +125,30 @@ def springable():
         return [e["factor"] for e in path["events"] if "limit" in e["kind"]][:2]
     same_numbers(limits("scene.yaml"), limits(f"{gallery}/arch-with-flexure.yaml"), 1e-6,
                  "limit loads of the arch with a flexure")
+    # distances: their signs and nodes, and a contact by its formula
+    write("distances.csv", """PARAMETERS
+f, 3
+NODES
+0,0,0,1,1
+1,2,1,0,0
+2,5,0,1,1
+X DISTANCE FLEXELS
+1-0, 20, 1.5
+Y DISTANCE SPRINGS
+1-0, CONTACT(f0=f;uc=.05;delta=0.9)
+DISTANCE SPRINGS
+1-0-2, LINEAR(k=1e-9)
+POINT2MID Y DISTANCE SPRINGS
+1-0-2, 5
+LOADING
+1, Y, -2
+""")
+    scene, said = imported("distances.csv")
+    check("d1: {nodes: [n0, n1], along: x, stiffness: 20, rest_distance: 1.5}" in scene, scene)
+    check("d3: {node: n1, line: [n0, n2], stiffness: 1e-9}" in scene, scene)
+    check("14:1: note: not imported: an element on an area or a midpoint" in said, said)
+    end = json.loads(run("path", "scene.yaml", "--load", "load1", "--json").stdout)["points"][-1]
+    same_numbers(end["nodes"]["n1"], [1.5, 0.9 - 0.05 * (2 / 3) ** (1 / 3)], 1e-6, "a node on distances")
     # cables that are written as two pieces, a running one, an angle beyond half a turn
     write("cables.csv", """PARAMETERS
 k, 100
