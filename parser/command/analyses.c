@@ -215,6 +215,27 @@ static strut_status read_path_options(const strut_command *command,
   return status;
 }
 
+/* NODE.x=VALUE */
+static strut_status read_stop(const strut_command *command, const strut_arguments *arguments,
+                              const strut_scene *scene, strut_path_stop *stop) {
+  const char *text = strut_option_text(arguments, STRUT_OPTION_STOP);
+  strut_arena arena = {0};
+  if (!text) return STRUT_OK;
+  const char *equal = strrchr(text, '=');
+  const char *name = equal ? strut_arena_text(&arena, text, (size_t)(equal - text)) : NULL;
+  stop->coordinate = name ? strut_path_coordinate(scene, name) : -1;
+  stop->given = true;
+  bool number = equal &&
+                strut_option_numbers(equal + 1, STRUT_DIM_LENGTH, &stop->displacement, 1) == 1 &&
+                isfinite(stop->displacement) && stop->displacement != 0.0;
+  strut_arena_free(&arena);
+  if (stop->coordinate >= 0 && number) return STRUT_OK;
+  return strut_usage_error(command, arguments,
+                           "--stop expects a node's displacement, not 0, such as %s.x=10mm, not "
+                           "'%s'",
+                           scene->node_count ? scene->nodes[0].name : "node", text);
+}
+
 static strut_status read_followed(const strut_command *command, const strut_arguments *arguments,
                                   const strut_scene *scene, strut_varied_scenes *scenes,
                                   strut_path_options *wanted) {
@@ -239,7 +260,7 @@ static strut_status read_followed(const strut_command *command, const strut_argu
   if (status == STRUT_OK &&
       !(isfinite(wanted->from) && isfinite(wanted->until) && wanted->from != wanted->until))
     return strut_usage_error(command, arguments, "--from and --until are equal");
-  return status;
+  return status == STRUT_OK ? read_stop(command, arguments, scene, &wanted->stop) : status;
 }
 
 #define END                                                                                        \

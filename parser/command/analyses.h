@@ -54,6 +54,8 @@
        "vary a parameter, an actuator, or a displacement NODE.x or NODE.y"},                       \
       {STRUT_OPTION_FROM, "from", "VALUE", "start value: a load factor, or in the unit of WHAT"},  \
       {STRUT_OPTION_UNTIL, "until", "VALUE", "end value, likewise (default: load factor 1)"},      \
+      {STRUT_OPTION_STOP, "stop", "NODE.x=VALUE",                                                  \
+       "or end earlier, where a node has moved so far along x or y"},                              \
       {STRUT_OPTION_AT, "at", "NAME", "equilibrium to start from (default: that of the start)"}, { \
     STRUT_OPTION_STEPS, "steps", "N",                                                              \
         "maximum number of steps (default " STRUT_TEXT_OF(STRUT_PATH_USUAL_STEPS) ")"              \

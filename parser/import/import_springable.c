@@ -527,8 +527,13 @@ static void read_load(springable *r) {
     return;
   }
   const char *force = read_expression(r, text_of(r, 2), place_of(r, 2), NULL);
-  if (*text_of(r, 3))
-    strut_note(r->said, place_of(r, 3), "not imported: the displacement at which the loading ends");
+  double end;
+  if (*text_of(r, 3) && read_expression(r, text_of(r, 3), place_of(r, 3), &end))
+    strut_note(
+        r->said, place_of(r, 3),
+        "not imported: the displacement at which the loading ends; give it to strut path, as "
+        "--stop n%ld.%c=%.10g",
+        index, x ? 'x' : 'y', end);
   if (!force) return;
   use_nodes(r);
   strut_import_line(s, &s->section[STRUT_IMPORT_LOADS], "  load%zu: {node: n%ld, force: [%s, %s]}",

@@ -117,6 +117,16 @@ expect 0 path crossed.yaml --load f --until 2 --json
 near '.points[-1].nodes.b[0]' '1 + 6 / 50' 1e-9
 near '.points[-1].nodes.b[1]' 0.9 1e-9
 near '.points[-1].distance_forces.x' 6 1e-9
+expect 0 path crossed.yaml --load f --until 2 --stop 'b.x=2 cm' --json
+near '.points[-1].nodes.b[0]' 1.02 1e-9
+near '.points[-1].factor' '50 * 0.02 / 3' 1e-9
+[ "$(jq -r .end out)" = stop ] || fail 'the path does not say that it stops'
+expect 0 path crossed.yaml --load f --until 2 --stop b.x=1 --json
+near '.points[-1].factor' 2 0
+for stop in b.x b.z=1 c.x=1 b.x=0 b.x=1N b.x= =1; do
+  expect 1 path crossed.yaml --stop $stop
+  err_has "--stop expects a node's displacement, not 0, such as a.x=10mm, not '$stop'"
+done
 expect 0 equilibria crossed.yaml --json
 near '.equilibria | length' 1 0
 expect 2 form held.yaml --from densities

@@ -178,7 +178,7 @@ static void add_events(strut_json *json, const strut_path *path, const strut_sce
 }
 
 char *strut_path_json(const strut_path *path, const strut_scene *scene) {
-  static const char *const ends[] = {"until", "steps", "away", "lost", "invalid"};
+  static const char *const ends[] = {"until", "stop", "steps", "away", "lost", "invalid"};
   bool loads = path->over == STRUT_PATH_OVER_LOAD;
   strut_json json = strut_json_begin();
   strut_json_text(&json, json.root, "name", scene->name);

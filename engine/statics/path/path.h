@@ -70,6 +70,7 @@ typedef struct strut_path_event {
 
 typedef enum strut_path_end {
   STRUT_PATH_UNTIL,  /* the value asked for */
+  STRUT_PATH_STOP,   /* the displacement asked for */
   STRUT_PATH_STEPS,  /* the maximum number of steps */
   STRUT_PATH_AWAY,   /* a node left all bounds, or the parameter went ten ranges the other way */
   STRUT_PATH_LOST,   /* no equilibrium nearby; the remark says where */
@@ -105,6 +106,13 @@ typedef struct strut_path {
 typedef strut_status (*strut_path_scene_at)(void *context, double value, strut_setup *setup,
                                             strut_error *error);
 
+/** A displacement at which a path ends, counted from where it begins. */
+typedef struct strut_path_stop {
+  bool given;
+  int32_t coordinate;  /* 2 node + 1 for y */
+  double displacement; /* [m] */
+} strut_path_stop;
+
 typedef struct strut_path_options {
   strut_path_over over;
   const char *load; /* over a load: its name; NULL: all loads without a signal */
@@ -118,7 +126,8 @@ typedef struct strut_path_options {
                         comes to rest */
   double from;  /* where the path begins: in SI, or the factor */
   double until; /* where it ends; a load's factor from 0 to 0 ends at 1 */
-  int32_t steps; /* maximum number of steps; 0: the usual ones */
+  int32_t steps;        /* maximum number of steps; 0: the usual ones */
+  strut_path_stop stop; /* or earlier, here */
 } strut_path_options;
 
 /** The coordinate that a path may be driven by: "node.x" is 2 node, "node.y" 2 node + 1; -1: none. */

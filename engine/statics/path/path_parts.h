@@ -136,8 +136,9 @@ typedef struct strut_path_system {
   const strut_model *model;
   strut_potential *potential; /* for the numbers of its free coordinates */
   int32_t n;
-  bool drifts; /* the parameter works on a motion of the whole that meets no stiffness */
-  double size; /* [m] */
+  bool drifts;    /* the parameter works on a motion of the whole that meets no stiffness */
+  double stop_at; /* position of the coordinate at which the path stops [m] */
+  double size;    /* [m] */
   strut_path_parameter parameter;
   strut_path_member *member; /* (members) */
   strut_path_elements elements;

@@ -296,6 +296,29 @@ static bool land_on_end(strut_path_walk *w) {
   return true;
 }
 
+/* How far the coordinate at which the path stops is from there. */
+static double measure_stop(strut_path_system *s, const double *y, const strut_path_piece *piece,
+                           int32_t which) {
+  (void)piece, (void)which;
+  if (!strut_path_evaluate(s, y)) return (double)NAN;
+  return s->latest.q[s->parameter.options->stop.coordinate] - s->stop_at;
+}
+
+/* Ends the piece where the path is to stop, if it passes that. */
+static bool land_on_stop(strut_path_walk *w, const strut_path_piece *piece) {
+  strut_path_system *s = &w->system;
+  const strut_path_stop *stop = &s->parameter.options->stop;
+  if (!stop->given) return false;
+  s->stop_at = w->path->points[0].q[stop->coordinate] + stop->displacement;
+  double from = measure_stop(s, piece->from, piece, 0), to = measure_stop(s, piece->to, piece, 0);
+  if (!(from * to <= 0.0) || from == 0.0) return false;
+  if (strut_path_locate(s, piece, measure_stop, 0, w->trial) < 0) return false;
+  memcpy(w->next, w->trial, bytes_of(w));
+  if (!strut_path_tangent(s, w->next, w->tangent, w->next_tangent))
+    memcpy(w->next_tangent, w->tangent, bytes_of(w));
+  return true;
+}
+
 /* All eigenvalues that change their sign on the piece, in the order in which they leave or come. */
 static void find_criticals(strut_path_walk *w, const strut_path_piece *piece) {
   strut_path_system *s = &w->system;
@@ -391,8 +414,9 @@ bool strut_path_walk_step(strut_path_walk *w) {
   int32_t which;
   if (!find_next_on_branch(w)) return end_path(w, find_reason(w));
   piece.length = dot_product(w, w->tangent, w->next) - dot_product(w, w->tangent, w->y);
-  bool landed = land_on_end(w);
-  if (landed) piece.length = dot_product(w, w->tangent, w->next) - dot_product(w, w->tangent, w->y);
+  bool landed = land_on_end(w), stopped = land_on_stop(w, &piece);
+  if (landed || stopped)
+    piece.length = dot_product(w, w->tangent, w->next) - dot_product(w, w->tangent, w->y);
   double place = first_switch(w, &piece, &which);
   if (which >= 0) {
     piece.length = place;
@@ -408,8 +432,8 @@ bool strut_path_walk_step(strut_path_walk *w) {
   memcpy(w->tangent, w->next_tangent, bytes_of(w));
   strut_path_add_point(w, w->negative);
   if (w->failed) return false;
-  if (landed) {
-    w->path->end = STRUT_PATH_UNTIL;
+  if (landed || stopped) {
+    w->path->end = stopped ? STRUT_PATH_STOP : STRUT_PATH_UNTIL;
     return false;
   }
   if (is_away(w)) return end_path(w, STRUT_PATH_AWAY);

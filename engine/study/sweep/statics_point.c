@@ -118,6 +118,7 @@ static double super_stability(const strut_rigidity *r) {
 static const char *end_word(strut_path_end end) {
   switch (end) {
     case STRUT_PATH_UNTIL: return "until";
+    case STRUT_PATH_STOP: return "stop";
     case STRUT_PATH_STEPS: return "steps";
     case STRUT_PATH_AWAY: return "away";
     case STRUT_PATH_LOST: return "lost";
