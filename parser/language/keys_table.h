@@ -351,7 +351,7 @@
   X(GROUND, "ground", GROUND_HEIGHT, "`ground: {...}`: the line, profile or circle that nodes may touch; or several of them, `grounds: {NAME: {...}}`.") \
   X(CIRCLE, "circle", CIRCLE_CENTRE, "`circle: {...}` of a ground.") \
   X(MOTION, "motion", MOTION_IN_X, "`motion: {x: SIGNAL, y: SIGNAL}` of a ground: its displacement, in lengths. Its work on the structure is in the energy balance. A displacement must not jump.") \
-  X(FRICTION, "friction", FRICTION_LAW, "`friction: {...}` of the ground, of a group, or of a contact; keys of a contact take precedence over those of its groups, and these over those of the ground. Karnopp's law and `coulomb` need `mu`, or `mu_static` and `mu_kinetic`; Karnopp's law also needs `stick_velocity`. The smooth law needs `mu` or `mu_kinetic`, and `width`. Where friction depends on the direction, `mu_forward` and `mu_backward` replace `mu`, in every law.") \
+  X(FRICTION, "friction", FRICTION_LAW, "`friction: {...}` of the ground, of a group, or of a contact; keys of a contact take precedence over those of its groups, and these over those of the ground. Karnopp's law and `coulomb` need `mu`, or `mu_static` and `mu_kinetic`; Karnopp's law also needs `stick_velocity`. The smooth law needs `mu` or `mu_kinetic`, and `width`; Stribeck's needs `mu_static`, `mu_kinetic`, `width` and `decay_velocity`. Where friction depends on the direction, `mu_forward` and `mu_backward` replace `mu`, in every law.") \
   X(CONTACT, "contact", CONTACT_GROUP, "`ground: {contacts: {NODE: {...}}}`: settings of a single contact.") \
   X(ACTUATOR, "actuator", ACTUATOR_MEMBER, "`actuators: {NAME: {...}}`, with a `signal`, a `force` of a member or a `moment` of a hinge.") \
   X(LOAD, "load", LOAD_NODE, "`loads: {NAME: {...}}`.") \

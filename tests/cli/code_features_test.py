@@ -57,7 +57,7 @@ grounds:
   wall: {slope: 90 deg, through: [100 mm, 0], stiffness: 1 kN/m, damping: 1 N s/m, friction: {law: smooth, mu: 0.2, width: 1 mm/s}}
   chute: {normal: [3, 4], through: [-50 mm, 0], stiffness: 1 kN/m, damping_law: hunt_crossley, dissipation: 1 s/m, belt_speed: 30 mm/s, friction: {law: karnopp, mu_forward: 0.2, mu_backward: 0.6, stick_velocity: 1 mm/s}}
   hill: {profile: [[-10 mm, -5 mm], [0, -5 mm], [5 mm, 10 mm], [10 mm, -5 mm], [20 mm, 5 mm], [40 mm, 5 mm], [40 mm, -5 mm]], stiffness: 1 kN/m, friction: {mu_static: 0.8, mu_kinetic: 0.5, stick_velocity: 1 mm/s}}
-  stone: {circle: {centre: [70 mm, 0], radius: 8 mm}, stiffness: 1 kN/m, damping: 1 N s/m, friction: {mu: 0.3, stick_velocity: 1 mm/s}}
+  stone: {circle: {centre: [70 mm, 0], radius: 8 mm}, stiffness: 1 kN/m, damping: 1 N s/m, friction: {law: stribeck, mu_static: 0.5, mu_kinetic: 0.3, width: 1 mm/s, decay_velocity: 30 mm/s}}
   hoop: {circle: {centre: [0, 0], radius: 0.12 m, inside: yes}, stiffness: 1 kN/m, motion: {x: wave, y: {ramp: {amplitude: 2 mm, stop: 0.5 s}}}}
   table: {height: 2 mm, nodes: [a, d], motion: {y: shake}, stiffness: 1 kN/m, damping: 0.5 N s/m, friction: {mu: 0.4, stick_velocity: 1 mm/s}}
 signals:

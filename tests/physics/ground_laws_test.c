@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The Hunt-Crossley ground and smooth friction against their closed forms; who may use Coulomb's. */
+#include <gsl/gsl_integration.h>
 #include <math.h>
 #include <string.h>
 
@@ -112,6 +113,32 @@ TEST(smooth_friction_slows_a_block_by_its_closed_form) {
     motion_end(&m);
     strut_setup_free(&setup);
   }
+}
+
+/* Time to slow down from u to v: the integral of du / (mu(u) g) with the law by its words. */
+static double slowing(double u, void *context) {
+  const strut_friction *f = context;
+  double share = 1 / (1 + u * u / (f->decay_velocity * f->decay_velocity));
+  double mu = share * f->mu_static + (1 - share) * f->mu_kinetic;
+  return sqrt(u * u + f->width * f->width) / (mu * G * u);
+}
+
+TEST(stribeck_friction_slows_a_block_by_its_integral) {
+  strut_setup setup;
+  motion m;
+  double time, error;
+  size_t count;
+  block(&setup, 0, 0.2, 0.01);
+  strut_friction *f = &setup.scene.contacts[0].friction;
+  f->law = STRUT_FRICTION_STRIBECK, f->mu_static = 0.5, f->decay_velocity = 0.3;
+  setup.scene.nodes[0].velocity[0] = 1.0;
+  motion_begin(&m, &setup.scene, 1e-4);
+  motion_steps(&m, 3000);
+  gsl_function law = {slowing, f};
+  gsl_integration_qng(&law, m.state->v[0], 1.0, 0, 1e-10, &time, &error, &count);
+  assert_near(time, 0.3, 1e-8);
+  motion_end(&m);
+  strut_setup_free(&setup);
 }
 
 /* Under a load below mu N it creeps at w F / sqrt((mu N)^2 - F^2). */

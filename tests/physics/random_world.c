@@ -197,7 +197,8 @@ static void put_friction(random_world *w) {
   double mu = between(w, 0.2, 0.8);
   bool smooth = once_in(w, 2);
   if (once_in(w, 3)) return;
-  put(w, GROUNDS, ", friction: {law: %s", smooth ? "smooth" : "karnopp");
+  const char *curve = w->ring % 2 ? "smooth" : "stribeck, decay_velocity: 0.4";
+  put(w, GROUNDS, ", friction: {law: %s", smooth ? curve : "karnopp");
   if (once_in(w, 2))
     put(w, GROUNDS, ", mu_forward: %.17g, mu_backward: %.17g", mu, between(w, 0.2, 0.8));
   else

@@ -594,13 +594,18 @@ static long double normal_of(const slow_world *w, size_t i, const touch *k) {
 /* Under the other forces on the node along the ground. */
 static long double friction_of(const strut_friction *f, long double normal, long double slip,
                                long double others) {
-  bool slides = f->law == STRUT_FRICTION_SMOOTH || fabsl(slip) >= f->stick_velocity;
+  bool stribeck = f->law == STRUT_FRICTION_STRIBECK;
+  bool slides = stribeck || f->law == STRUT_FRICTION_SMOOTH || fabsl(slip) >= f->stick_velocity;
   long double towards = slides && slip != 0 ? slip : others;
   bool back = f->directional && towards < 0;
   long double held = back ? f->mu_static_backward : f->mu_static;
   long double mu = back ? f->mu_kinetic_backward : f->mu_kinetic;
   if (f->law == STRUT_FRICTION_NONE) return 0;
-  if (f->law == STRUT_FRICTION_SMOOTH)
+  if (stribeck) { /* half way at the speed of decay */
+    long double v2 = (long double)f->decay_velocity * f->decay_velocity;
+    mu = (held * v2 + mu * slip * slip) / (v2 + slip * slip);
+  }
+  if (stribeck || f->law == STRUT_FRICTION_SMOOTH)
     return -mu * normal * slip / sqrtl(slip * slip + (long double)f->width * f->width);
   if (!slides && fabsl(others) < held * normal) return -others;
   return -copysignl(mu * normal, towards);

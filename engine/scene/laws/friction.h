@@ -15,7 +15,8 @@
   X(MU_STATIC, mu_static, NOT_NEGATIVE)         /* mu_0 [1] */                                     \
   X(MU_KINETIC, mu_kinetic, NOT_NEGATIVE)       /* mu [1] */                                       \
   X(STICK_VELOCITY, stick_velocity, ABOVE_ZERO) /* delta [m/s] */                                  \
-  X(WIDTH, width, ABOVE_ZERO)                   /* of a continuous law [m/s] */
+  X(WIDTH, width, ABOVE_ZERO)                   /* of a continuous law [m/s] */                    \
+  X(DECAY_VELOCITY, decay_velocity, ABOVE_ZERO) /* half way from mu_0 to mu [m/s] */
 
 /**
  * X(NAME, name, word, class, needs): the laws, in the order of the key's words. class: its contact states, see
@@ -26,7 +27,9 @@
   /* equation (9) of the paper as printed: with a stick band */                                    \
   X(KARNOPP, karnopp, "karnopp", STICK_BAND, MU_STATIC_BIT | MU_KINETIC_BIT | STICK_VELOCITY_BIT)  \
   X(COULOMB, coulomb, "coulomb", EXACT_STICK, MU_STATIC_BIT | MU_KINETIC_BIT)                      \
-  X(SMOOTH, smooth, "smooth", CONTINUOUS, MU_KINETIC_BIT | WIDTH_BIT)
+  X(SMOOTH, smooth, "smooth", CONTINUOUS, MU_KINETIC_BIT | WIDTH_BIT)                              \
+  X(STRIBECK, stribeck, "stribeck", CONTINUOUS,                                                    \
+    MU_STATIC_BIT | MU_KINETIC_BIT | WIDTH_BIT | DECAY_VELOCITY_BIT)
 
 #endif
 
@@ -97,6 +100,21 @@ LAW_INLINE real LAW(friction_smooth)(const LAW(friction_numbers) * f, real norma
 }
 LAW_INLINE real LAW(friction_smooth_slope)(const LAW(friction_numbers) * f, real normal) {
   return normal * f->mu_kinetic / f->width;
+}
+
+/*
+ * As smooth, with the coefficient mu + (mu_0 - mu) / (1 + (u/v)^2) of Stribeck's curve, which falls from static
+ * to kinetic friction; in this form, of Hess and Soom (1990), it is algebraic.
+ */
+LAW_INLINE real LAW(friction_stribeck)(const LAW(friction_numbers) * f, real normal, real slip,
+                                       real applied) {
+  real u = slip / f->decay_velocity;
+  real mu = f->mu_kinetic + (f->mu_static - f->mu_kinetic) / (1.0 + u * u);
+  (void)applied;
+  return -mu * normal * slip / root(slip * slip + f->width * f->width);
+}
+LAW_INLINE real LAW(friction_stribeck_slope)(const LAW(friction_numbers) * f, real normal) {
+  return normal * f->mu_static / f->width;
 }
 
 /** The numbers for contacts that move, or are pushed, towards -x along the ground where `back` holds. */
