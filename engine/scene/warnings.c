@@ -183,6 +183,8 @@ static void warn_of_pairs(strut_checker *checker) {
     char text[200];
     if (pairs[i].low != pairs[i - 1].low || pairs[i].high != pairs[i - 1].high) continue;
     if (only_damps(m) != only_damps(n)) continue; /* a spring and its damper */
+    if (m->law.kind != STRUT_LAW_LINEAR && n->law.kind != STRUT_LAW_LINEAR)
+      continue; /* as in an Iwan model */
     snprintf(text, sizeof text, "'%.80s' and '%.80s'", m->name, n->name);
     add_name(&twice, pairs[i].member, text);
   }

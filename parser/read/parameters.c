@@ -219,7 +219,8 @@ static int look_up_parameter(void *context, const char *name, size_t length,
   if (!p && is_copy_number(reader, text)) {
     strut_report_error(reader, asking_place(reader),
                        "'%s', the number of a copy, is known in the keys of a repeated placement "
-                       "and in its 'next', but not in its 'count'; 'set' gives it to the part",
+                       "and in its 'next', but neither in its 'count' nor within the part; 'set' "
+                       "of the placement gives it to a parameter of the part",
                        text);
     return -1;
   }

@@ -84,6 +84,13 @@ members:
   again: {kind: cable, nodes: [b, a], stiffness: 100}
 EOF
 reported twice.yaml same_nodes "members 'm' and 'again' join the same two nodes"
+write iwan.yaml <<'EOF'
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}}
+members:
+  m: {kind: spring, nodes: [a, b], stiffness: 100, law: {kind: play, gap: 1 mm}}
+  again: {kind: spring, nodes: [b, a], stiffness: 100, law: {kind: play, gap: 2 mm}}
+EOF
+unreported iwan.yaml
 write damped.yaml <<'EOF'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}}
 members:
