@@ -167,6 +167,7 @@ static void fill_wave(double *to, int32_t width, int32_t slot, const strut_signa
 
 /* The i-th of a model's signals: those of its drives, then those of its loads. */
 static const strut_signal *signal_at(const strut_model *m, int32_t i) {
+  assert(i >= 0 && i < m->drives.count + m->loads.count);
   int32_t drives = m->drives.count;
   return &m->scene->signals[i < drives ? m->drives.signal[i] : m->loads.signal[i - drives]];
 }
@@ -255,6 +256,7 @@ void strut_batch_tables_fill(strut_batch_tables *t, int32_t slot, const strut_mo
 }
 
 void strut_batch_tables_copy(strut_batch_tables *t, int32_t to, int32_t from) {
+  assert(to >= 0 && to < t->width && from >= 0 && from < t->width);
   table list[TABLES];
   list_tables(t, list);
   t->model[to] = t->model[from];

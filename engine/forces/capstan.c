@@ -30,6 +30,7 @@ typedef struct cable {
 } cable;
 
 static void turn_at(cable *c, int k) {
+  assert(k >= 0 && k + 1 < c->n);
   c->turn[k] = atan2(c->x[k] * c->y[k + 1] - c->y[k] * c->x[k + 1],
                      c->x[k] * c->x[k + 1] + c->y[k] * c->y[k + 1]);
   c->side[k] = c->turn[k] < 0.0 ? -1 : 1;
@@ -38,6 +39,7 @@ static void turn_at(cable *c, int k) {
 
 /* The angle continued through straight, from the side that is kept; at half a turn it turns back. */
 static double bend_on_side(const cable *c, int k, int side) {
+  assert(k >= 0 && k + 1 < c->n);
   double bend = side * c->turn[k];
   return bend < -1.5 ? c->bend[k] : bend;
 }
@@ -75,6 +77,7 @@ static void share_evenly(cable *c) {
 
 /* Ratio of the tension of segment k + 1 to that of k where guide k slips. */
 static double ratio_at(const cable *c, int k) {
+  assert(k >= 0 && k + 1 < c->n);
   return exp(-c->mode[k] * c->friction * c->bend[k]);
 }
 
@@ -112,6 +115,7 @@ static void solve_group(cable *c, int a, int b) {
 }
 
 static int group_end(const cable *c, int a) {
+  assert(a >= 0 && a < c->n);
   while (a + 1 < c->n && c->mode[a] != STRUT_GUIDE_STICKS) a++;
   return a;
 }
@@ -138,6 +142,7 @@ static void solve(cable *c) {
 
 /* How far the tensions at guide k are within their bounds, which are relaxed by `more`, on the worse side. */
 static double room_at(const cable *c, int k, double more) {
+  assert(k >= 0 && k + 1 < c->n);
   double bound = exp(c->friction * c->bend[k]) * (1.0 + more);
   double left = c->tension[k], right = c->tension[k + 1];
   double bits = more < 0.0 ? -LAST_BITS * c->ea : LAST_BITS * c->ea;
@@ -179,6 +184,7 @@ static void settle(cable *c) {
 /* Rates of lengths and turning angles, and what flows through slipping guides. */
 static void find_rates(const strut_model *model, const strut_state *state, int32_t i,
                        const double *v, cable *c) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   double spin[MOST];
@@ -225,6 +231,7 @@ static void find_flows(cable *c) {
 
 /* d energy / d material, with its sign turned: what a length of cable takes with it. */
 static double carried(const cable *c, int k) {
+  assert(k >= 0 && k < c->n);
   return c->tension[k] + 0.5 * c->tension[k] * c->tension[k] / c->ea;
 }
 
@@ -239,16 +246,19 @@ static double energy_of(const cable *c) {
 }
 
 static int8_t *modes_of(const strut_model *model, const strut_state *state, int32_t i) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element_table *t = &model->elements;
   return state->history.guide_mode + (t->element[i].slot + 1 - t->history_slot);
 }
 
 static int8_t *sides_of(const strut_model *model, const strut_state *state, int32_t i) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element_table *t = &model->elements;
   return state->history.guide_side + (t->element[i].slot + 1 - t->history_slot);
 }
 
 static double *drops_of(const strut_model *model, const strut_state *state, int32_t i) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element_table *t = &model->elements;
   return state->history.guide_drop + (t->element[i].slot + 1 - t->history_slot);
 }
@@ -276,6 +286,7 @@ static bool stand(const strut_model *model, const strut_state *state, int32_t i,
 
 static void keep_materials(const strut_model *model, strut_state *state, int32_t i,
                            const cable *c) {
+  assert(i >= 0 && i < model->elements.count);
   double *material = state->latest.rest + model->elements.element[i].slot + 1;
   memcpy(material, c->material, (size_t)c->n * sizeof *material);
 }
@@ -384,18 +395,21 @@ void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t 
 
 double strut_capstan_bend(const strut_model *model, const strut_state *state, int32_t i, int k,
                           const double *q) {
+  assert(i >= 0 && i < model->elements.count);
   cable c;
   measure(model, state->latest.rest, i, q, &c);
   return bend_on_side(&c, k, sides_of(model, state, i)[k]) + STRAIGHT;
 }
 
 void strut_capstan_pass_straight(const strut_model *model, strut_state *state, int32_t i, int k) {
+  assert(i >= 0 && i < model->elements.count);
   int8_t *side = sides_of(model, state, i);
   side[k] = (int8_t)-side[k];
 }
 
 double strut_capstan_margin(const strut_model *model, const strut_state *state, int32_t i, int k,
                             const double *q, const double *v, double h) {
+  assert(i >= 0 && i < model->elements.count);
   cable c;
   if (!stand(model, state, i, q, &c) || is_slack(&c)) return c.ea;
   if (c.mode[k] == STRUT_GUIDE_STICKS) return room_at(&c, k, ROUNDING);
@@ -430,6 +444,7 @@ void strut_capstan_tauten(const strut_model *model, strut_state *state, int32_t 
 
 void strut_capstan_switch(const strut_model *model, strut_state *state, int32_t i, int k,
                           const double *q) {
+  assert(i >= 0 && i < model->elements.count);
   int8_t *mode = modes_of(model, state, i);
   cable c;
   stand(model, state, i, q, &c);

@@ -168,6 +168,7 @@ bool strut_feedback_sample(const strut_model *model, strut_state *state, double 
 }
 
 static bool start_signal(const strut_model *model, strut_state *state, int32_t signal, double t) {
+  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
   const strut_trigger *trigger = &model->scene->signals[signal].trigger;
   if (state->signals.started[signal] < (double)INFINITY && !trigger->each) return false;
   state->signals.started[signal] = t + state->time_offset;
@@ -216,6 +217,7 @@ bool strut_feedback_watch(const strut_model *model, strut_state *state, double t
 
 static double input_of(const strut_model *model, const strut_state *state, int32_t signal,
                        double now, const double *v) {
+  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
   strut_signal_inputs in = strut_drive_inputs(model, state, v);
   double input, unused;
   in.values_only = true;
@@ -226,6 +228,7 @@ static double input_of(const strut_model *model, const strut_state *state, int32
 
 void strut_relay_start(const strut_model *model, strut_state *state, int32_t signal, double now,
                        const double *v) {
+  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
   const strut_relay *r = &model->scene->signals[signal].relay;
   double input = input_of(model, state, signal, now, v);
   bool above = input > r->upper || (!(input < r->lower) && r->on_at_start == r->on_above);
@@ -242,6 +245,7 @@ double strut_relay_margin(const strut_model *model, const strut_state *state, in
 
 bool strut_relay_sample(const strut_model *model, strut_state *state, int32_t signal, double now,
                         const double *v) {
+  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
   if (!(strut_relay_margin(model, state, signal, now, v) < 0.0)) return false;
   state->signals.relay_side[signal] = (int8_t)-state->signals.relay_side[signal];
   return true;

@@ -315,6 +315,7 @@ double strut_element_plastic(const strut_model *model, const strut_state *state,
 
 static void keep_worst(const strut_model *model, strut_element_role role, int32_t item, bool breaks,
                        double force, double limit, strut_overload *worst) {
+  assert(item >= 0 && limit > 0.0);
   bool hinge = role == STRUT_ELEMENT_HINGE;
   if (!(force > limit) || (worst->name && force / limit <= worst->force / worst->limit)) return;
   *worst = (strut_overload){

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/moving_masses.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -21,6 +22,7 @@ typedef struct slide {
 
 static slide slide_at(const strut_model *model, const strut_state *state, int32_t k,
                       const double *q, const double *v) {
+  assert(k >= 0 && k < model->sliding.moving_count);
   const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
   const strut_sliding_motion *at = &state->latest.sliding[k];
   return (slide){.item = s,

@@ -93,6 +93,7 @@ bool strut_rigid_create(const strut_model *model, strut_state *state) {
 }
 
 static double distance(const strut_rigid *g, int32_t r, const double *q) {
+  assert(r >= 0 && r < g->most);
   const double *a = q + g->at[g->end[r][0]], *b = q + g->at[g->end[r][1]];
   return strut_distance(a, b);
 }
@@ -325,6 +326,7 @@ void strut_rigid_add_foot(const strut_model *model, strut_rigid *rigid, int32_t 
 }
 
 double strut_rigid_along(const strut_rigid *rigid, int32_t r, const double *x) {
+  assert(r >= 0 && r < rigid->most);
   const strut_vec2 u = rigid->direction[r];
   const double *b = x + rigid->at[rigid->row[r][1]];
   double sum = b[0] * u.x + b[1] * u.y;
@@ -335,6 +337,7 @@ double strut_rigid_along(const strut_rigid *rigid, int32_t r, const double *x) {
 
 /* The entry of J M^-1 J' between two rows. */
 static double between(const strut_rigid *rigid, int32_t r, int32_t s) {
+  assert(r >= 0 && r < rigid->most && s >= 0 && s < rigid->most);
   const strut_vec2 u = rigid->direction[r], w = rigid->direction[s];
   double sum = 0.0;
   for (int e = 0; e < 2; e++)

@@ -39,6 +39,7 @@ static touching push(const strut_model *model, strut_state *state, const double 
 
 static double slip_of(const strut_model *model, const strut_state *state, const double *v,
                       int32_t i) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_contact_table *c = &model->contacts;
   strut_vec2 u = strut_contact_velocity(c, i, v, state->latest.ground_motion);
   return strut_component(state->latest.pose[i].axes.tangent, u.x, u.y) - strut_contact_belt(c, i);

@@ -140,6 +140,7 @@ typedef struct assembly {
 } assembly;
 
 static void add_member(void *context, int32_t j, const strut_member_tangent *m) {
+  assert(j >= 0 && m);
   assembly *a = context;
   double k = a->model->members.damping[j];
   strut_stiffness_block stiffness = strut_block_of(m->along, m->across, m->pose.unit);
@@ -151,6 +152,7 @@ static void add_member(void *context, int32_t j, const strut_member_tangent *m) 
 }
 
 static void add_element(void *context, int32_t i, const strut_element_pose *pose) {
+  assert(i >= 0 && pose);
   assembly *a = context;
   const strut_element *e = &a->model->elements.element[i];
   double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
@@ -168,6 +170,7 @@ static void add_element(void *context, int32_t i, const strut_element_pose *pose
 }
 
 static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
+  assert(i >= 0 && contact);
   assembly *a = context;
   const strut_contact_table *c = &a->model->contacts;
   const strut_contact_entry *e = &c->entry[i];

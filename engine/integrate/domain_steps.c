@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/integrate/domain_parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -84,6 +85,7 @@ static void make_arrays(const strut_domain_steps *s, domain_part *p) {
 
 /* By the thread that works on it, so that its memory is near. */
 static void create_part(void *context, int thread) {
+  assert(thread >= 0);
   strut_domain_steps *s = context;
   domain_part *p = s->part[thread];
   p->good = strut_subdomain_create(&s->division, thread, &p->arena, &p->domain);
@@ -243,6 +245,7 @@ static void evaluate_signals(const strut_domain_steps *s, domain_part *p, int64_
 }
 
 static void publish(const strut_domain_steps *s, const domain_part *p, int side) {
+  assert(side == 0 || side == 1);
   for (int32_t i = 0; i < p->domain.published_count; i++) {
     int32_t at = 2 * p->domain.published[i];
     double *to = s->exchange[side] + DOMAIN_EXCHANGED * s->division.shared[p->domain.node[at / 2]];
@@ -253,6 +256,7 @@ static void publish(const strut_domain_steps *s, const domain_part *p, int side)
 }
 
 static void take_ghosts(const strut_domain_steps *s, const domain_part *p, int side) {
+  assert(side == 0 || side == 1);
   for (int32_t i = 0; i < p->domain.ghost_count; i++) {
     int32_t at = 2 * p->domain.ghost[i];
     const double *from =
@@ -382,6 +386,7 @@ static void add_works(strut_domain_steps *s, int k) {
 }
 
 static void keep_balance(strut_domain_steps *s, int passes, int side) {
+  assert((side == 0 || side == 1) && passes > 0);
   strut_state *state = s->state;
   bool lanes = s->stepping == DOMAIN_RK4;
   const domain_balance *l = &s->balance[side];

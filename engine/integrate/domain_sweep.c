@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Hot: one sweep over a subdomain. See domain_parts.h. */
+#include <assert.h>
 #include <string.h>
 
 #include "engine/forces/ground_kernel.h"
@@ -100,6 +101,7 @@ static void finish_euler(const domain_part *p, double h, bool last, int32_t begi
 
 /* Loads of pass k on nodes before `end` that have none of it yet. */
 static void add_loads(domain_part *p, int k, int32_t end) {
+  assert(k >= 0 && k < STRUT_PASSES);
   const strut_load_table *l = &p->domain.model.loads;
   for (; p->loaded[k] < l->count && l->node[p->loaded[k]] < end; p->loaded[k]++) {
     int32_t i = p->loaded[k];
@@ -125,6 +127,7 @@ static void pay_loads(const strut_domain_steps *s, domain_part *p, int k, int si
 /* The ground's forces of pass k, one contact after the other where the energy balance asks what each one does. */
 static void touch_ground(const strut_domain_steps *s, domain_part *p, int k, int side,
                          int32_t end) {
+  assert(k >= 0 && k < STRUT_PASSES);
   strut_subdomain *d = &p->domain;
   const strut_contact_table *c = &d->model.contacts;
   bool balance = d->state.balance;
@@ -167,6 +170,7 @@ static void act_to(const strut_domain_steps *s, domain_part *p, int k, int side,
 }
 
 static void move_to(const strut_domain_steps *s, domain_part *p, int k, bool last, int32_t end) {
+  assert(k >= 0 && k < STRUT_PASSES);
   int32_t begin = p->done[k];
   switch (s->stepping) {
     case DOMAIN_RK4: finish_rk4(p, k, s->dt, s->needs_velocity, begin, end); break;
@@ -179,6 +183,7 @@ static void move_to(const strut_domain_steps *s, domain_part *p, int k, bool las
 
 static void finish_to(const strut_domain_steps *s, domain_part *p, int k, int passes, int side,
                       int32_t end) {
+  assert(k >= 0 && k < passes && passes <= STRUT_PASSES);
   if (end <= p->done[k]) return;
   act_to(s, p, k, side, end);
   move_to(s, p, k, k + 1 == passes, end);
@@ -196,6 +201,7 @@ static void work_on_members(const strut_subdomain *d, const double *q, const dou
 }
 
 static void drive_block(domain_part *p, int k, int32_t block) {
+  assert(k >= 0 && k < STRUT_PASSES && block >= 0);
   strut_subdomain *d = &p->domain;
   const strut_drive_table *t = &d->model.drives;
   int32_t end = (block + 1) * STRUT_BLOCK;
@@ -208,6 +214,7 @@ static void drive_block(domain_part *p, int k, int32_t block) {
 
 /* A block of members at pass k. */
 static void add_block(const strut_domain_steps *s, domain_part *p, int k, int side, int32_t block) {
+  assert(k >= 0 && k < STRUT_PASSES && block >= 0);
   strut_subdomain *d = &p->domain;
   bool counted = d->state.balance && block >= d->block_begin && block < d->block_end;
   if (d->model.drives.count) drive_block(p, k, block);

@@ -326,6 +326,7 @@ void strut_model_free(strut_model *model) {
 
 /* Inverse of a node's lumped mass along d, in which supported directions are infinitely heavy. */
 static double lightness(const strut_model *model, int32_t node, strut_vec2 d) {
+  assert(node >= 0 && node < model->node_count);
   const uint8_t *fixed = model->fixed + 2 * node;
   double along = (fixed[0] ? 0.0 : d.x * d.x) + (fixed[1] ? 0.0 : d.y * d.y);
   return along > 0.0 ? along / model->weight[node] : 0.0;
@@ -355,6 +356,7 @@ static double mass_of_length(const strut_model *model, size_t j) {
 }
 
 static void damp_member(strut_model *model, size_t j, double more) {
+  assert(j < (size_t)model->members.count);
   strut_member_table *t = &model->members;
   if (!(more > 0.0)) return;
   if (strut_member_is_element(&model->elements, (int32_t)j)) {
@@ -368,6 +370,7 @@ static void damp_member(strut_model *model, size_t j, double more) {
 }
 
 static double stiffness_of(const strut_model *model, size_t j) {
+  assert(j < (size_t)model->members.count);
   const strut_element *e = strut_element_of_member(&model->elements, (int32_t)j);
   bool element = e && e->role == STRUT_ELEMENT_MEMBER;
   return fmax(0.0, element ? e->numbers.stiffness : model->members.stiffness[j]);

@@ -252,6 +252,7 @@ static void add_stop(compilation *c, size_t j, strut_element_role role, double a
 }
 
 static void add_member(compilation *c, size_t j) {
+  assert(j < c->model->scene->member_count);
   const strut_member *m = &c->model->scene->members[j];
   double stiffness = c->model->members.stiffness[j];
   bool reeled = c->reeled && c->reeled[j];
@@ -279,6 +280,7 @@ static void add_member(compilation *c, size_t j) {
 }
 
 static void add_hinge(compilation *c, size_t i) {
+  assert(i < c->model->scene->hinge_count);
   strut_model *model = c->model;
   const strut_hinge *h = &model->scene->hinges[i];
   int32_t slot = hinge_slot(model, (int32_t)i);
@@ -302,6 +304,7 @@ static int kind_of(const strut_element *e) {
 
 /* Its nodes run counter-clockwise, so that its area is positive. */
 static void add_cell(compilation *c, size_t i) {
+  assert(i < c->model->scene->cell_count);
   strut_model *model = c->model;
   const strut_cell *cell = &model->scene->cells[i];
   double area = strut_cell_drawn(model->scene, i);
@@ -345,6 +348,7 @@ static void add_pair(compilation *c, size_t i, int32_t node, int32_t a, int32_t 
 }
 
 static void add_collision(compilation *c, size_t i) {
+  assert(i < c->model->scene->collision_count);
   const strut_scene *scene = c->model->scene;
   const strut_collision *s = &scene->collisions[i];
   const strut_member *m[2] = {NULL, NULL};

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/mass.h"
 
+#include <assert.h>
+
 #include "engine/model/hot.h"
 #include "engine/model/mass_kernel.h"
 #include "engine/model/memory_estimate.h"
@@ -9,6 +11,7 @@
 
 /* Disjoint sets of rows that masses couple: parent[i] leads to the smallest row of the set. */
 static int32_t find_root(int32_t *parent, int32_t i) {
+  assert(i >= 0);
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
   return i;
 }

@@ -18,6 +18,7 @@ static strut_contact_axes axes_along(double x, double y) {
 
 static void find_on_facet(const strut_surface *s, const double p[2], int32_t k,
                           strut_contact_pose *pose) {
+  assert(k >= 0 && k < s->facets);
   *pose = (strut_contact_pose){
       .axes = s->facet[k].axes, .gap = strut_facet_across(&s->facet[k], p), .facet = k};
 }
@@ -220,12 +221,14 @@ static void bound_across(const strut_line_bounds *b, const double p[2], double *
 }
 
 static void reach_of(const strut_surface *s, int32_t k, double *low, double *high) {
+  assert(k >= 0 && k < s->facets);
   *low = k == 0 ? -s->before : 0.0;
   *high = s->facet[k].length + (k + 1 == s->facets ? s->beyond : 0.0);
 }
 
 /* Widens a box by a facet, as far as that reaches. */
 static void add_facet(const strut_surface *s, int32_t k, double box_low[2], double box_high[2]) {
+  assert(k >= 0 && k < s->facets);
   const strut_facet *f = &s->facet[k];
   double end[2];
   reach_of(s, k, &end[0], &end[1]);
@@ -383,6 +386,7 @@ double strut_surface_outermost(const strut_surface *surface, const double p[2], 
 }
 
 static strut_facet_foot foot_on(const strut_surface *s, int32_t k, const double p[2]) {
+  assert(k >= 0 && k < s->facets);
   const strut_facet *f = &s->facet[k];
   double low, high, at = strut_facet_along(f, p);
   reach_of(s, k, &low, &high);
@@ -448,6 +452,7 @@ int32_t strut_contacts_end_of_node(const strut_contact_table *c, int32_t first) 
 /* The node of contact i, as its ground sees it. */
 static void place_of(const strut_contact_table *c, int32_t i, const double *q,
                      const strut_ground_motion *motion, double p[2]) {
+  assert(i >= 0 && i < c->count);
   const strut_ground_motion *own = strut_contact_motion(c, i, motion);
   p[0] = q[c->at[i]] - (own ? own->place[0] : 0.0);
   p[1] = q[c->at[i] + 1] - (own ? own->place[1] : 0.0);

@@ -215,10 +215,14 @@ static int check_one(int folder, list *l, const char *name) {
   if (S_ISDIR(found.st_mode)) return EISDIR;
   if (!S_ISREG(found.st_mode)) return EEXIST;
   if (found.st_size == 0) return 0; /* nothing would be lost */
-  if (!l->length) return EEXIST;
   int code = measure_at(folder, name, &size, &sum);
   if (code == EACCES || code == ENOMEM) return code;
-  return !code && is_listed(l, name, size, sum) ? 0 : EEXIST;
+  if (code) return EEXIST;
+  if (is_listed(l, name, size, sum)) return 0;
+  /* another process may have listed it, and moved it here, since the list was read */
+  strut_release(l->text);
+  if (read_list(folder, l, NULL) != STRUT_OK) return ENOMEM;
+  return is_listed(l, name, size, sum) ? 0 : EEXIST;
 }
 
 strut_status strut_ownership_check(const char *directory, const char *const *names,

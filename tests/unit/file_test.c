@@ -348,3 +348,41 @@ TEST(stages_of_dead_processes_go) {
   free(out);
   scratch_remove();
 }
+
+enum { WRITERS = 6 }; /* more than processors, so that the reader is interrupted now and then */
+
+/* Puts ever other bytes where strut's file is, as another process of a sweep does. */
+static void write_again_and_again(const char *directory, int writer) {
+  static const char *const names[] = {"model.yaml", NULL};
+  char stage[200], from[220], to[220];
+  snprintf(stage, sizeof stage, "%s/stage-%d", directory, writer);
+  snprintf(from, sizeof from, "%s/model.yaml", stage);
+  snprintf(to, sizeof to, "%s/model.yaml", directory);
+  if (mkdir(stage, 0777) != 0) _exit(1);
+  for (int i = 0; i < 1000; i++) {
+    FILE *file = fopen(from, "wb");
+    if (!file || fprintf(file, "%d %d\n", i, writer) < 1 || fclose(file) != 0) _exit(2);
+    if (strut_ownership_claim(directory, stage, names, NULL) != STRUT_OK) _exit(3);
+    if (__real_rename(from, to) != 0) _exit(4);
+  }
+  _exit(0);
+}
+
+TEST(a_file_that_other_processes_write_is_struts_own) {
+  static const char *const names[] = {"model.yaml", NULL};
+  const char *out = scratch_make();
+  int refused = 0, code = 0;
+  for (int i = 0; i < WRITERS; i++) {
+    pid_t writer = fork();
+    assert_true(writer >= 0);
+    if (writer == 0) write_again_and_again(out, i);
+  }
+  for (int running = WRITERS; running > 0;) {
+    refused += strut_ownership_check(out, names, NULL) != STRUT_OK;
+    if (waitpid(-1, &code, WNOHANG) <= 0) continue;
+    assert_int_equal(code, 0);
+    running--;
+  }
+  assert_int_equal(refused, 0);
+  scratch_remove();
+}

@@ -72,6 +72,7 @@ static void copy_rows(double *table, int32_t rows, int32_t width, int32_t to, in
 
 /* An idle slot does what another one does, which keeps it finite. */
 static void imitate(strut_batch *b, int32_t to, int32_t from) {
+  assert(to >= 0 && to < STRUT_BATCH_MOST && from >= 0 && from < STRUT_BATCH_MOST);
   int32_t width = b->tables.width, length = b->tables.first->length;
   strut_batch_tables_copy(&b->tables, to, from);
   copy_rows(b->q, length, width, to, from);

@@ -8,6 +8,8 @@
  * below its mode's edge and comes back is rejected as well: its ends alone would not show that.
  */
 #include "engine/integrate/events/dormand_prince.h"
+
+#include <assert.h>
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/small/small_trials.h"
 #include "engine/integrate/integrator.h"
@@ -107,6 +109,7 @@ static double dip(double g0, double d0, double g1, double d1, double faint) {
  */
 static bool contradicts_at_stage(const strut_model *model, const strut_event_stepper *l,
                                  int32_t i) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_contact_entry *e = &model->contacts.entry[i];
   const strut_touch *o = &l->next->touch[i];
   double more = 1.0 + STRUT_STAGE_ERROR, fewer = 1.0 - STRUT_STAGE_ERROR, s = l->side[i];

@@ -10,6 +10,8 @@
 #ifndef STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_STEPPING_H
 #define STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_STEPPING_H
 
+#include <assert.h>
+
 #include "engine/forces/drives.h"
 #include "engine/integrate/integrator.h"
 
@@ -271,6 +273,7 @@ static inline int32_t strut_laws_of(const strut_event_stepper *l) {
   return l->law_list ? l->law_list_count : l->law_count;
 }
 static inline int32_t strut_law_of(const strut_event_stepper *l, int32_t place) {
+  assert(place >= 0 && place < (l->law_list ? l->law_list_count : l->law_count));
   return l->law_list ? l->law_list[place] : place;
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How contact nodes answer to forces on them, and the multipliers that hold stuck ones. */
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -21,6 +22,7 @@ static const double MOST_REFINED = 64.0;
 /* The column of M^-1 for one coordinate of a node, into `column` (length). */
 static void solve_column(const strut_model *model, strut_state *state, uint32_t at,
                          double *column) {
+  assert(at < (uint32_t)model->length);
   memset(state->latest.force, 0, (size_t)model->length * sizeof(double));
   state->latest.force[at] = 1.0;
   strut_mass_solve(model, state->latest.force, column, state->buffers.mass_solve);
@@ -68,6 +70,7 @@ static void mark_nodes(const strut_model *model, const double *x, const double *
 static strut_status make_response(const strut_model *model, strut_state *state, int32_t i,
                                   double *x, double *y, uint8_t *answers,
                                   strut_contact_compliance *r) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_contact_table *c = &model->contacts;
   uint32_t at = c->at[i];
   solve_column(model, state, at, x);
@@ -98,6 +101,7 @@ static strut_status make_response(const strut_model *model, strut_state *state, 
 /* The compliance of contact i with sliding masses as they have been placed. */
 static void refresh_compliance(const strut_model *model, const strut_state *state,
                                strut_event_stepper *l, int32_t i) {
+  assert(i >= 0 && i < model->contacts.count);
   strut_contact_compliance *r = &l->response[i];
   double *xy = (double *)r->xy, *column = l->scatter;
   uint32_t at = model->contacts.at[i];

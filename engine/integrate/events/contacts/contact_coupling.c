@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/integrate/events/contacts/contact_coupling.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -126,6 +127,7 @@ void strut_contact_coupling_solve(const strut_event_stepper *l, double *x) {
 
 static void add_force(const strut_contact_table *c, int32_t i, double normal, double shear,
                       double *force) {
+  assert(i >= 0 && i < c->count);
   force[c->at[i]] += shear * c->tangent[0] + normal * c->normal[0];
   force[c->at[i] + 1] += shear * c->tangent[1] + normal * c->normal[1];
 }
@@ -154,6 +156,7 @@ void strut_contact_coupling_push(const strut_model *model, const strut_event_ste
 /* Contact i is pushed by so much more: the accelerations of all contacts answer. */
 static void push_contact(const strut_contact_table *c, struct strut_contact_coupling *p, int32_t i,
                          double normal, double shear) {
+  assert(i >= 0 && i < c->count);
   const double *n = c->normal, *t = c->tangent;
   double fx = shear * t[0] + normal * n[0], fy = shear * t[1] + normal * n[1];
   p->normal[i] += normal, p->shear[i] += shear;

@@ -44,6 +44,7 @@ void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
 /* Along and out of the ground where the node of closed contact i is. */
 static strut_contact_axes axes_now(const strut_contact_table *c, const strut_event_stepper *l,
                                    int32_t i) {
+  assert(i >= 0 && i < c->count);
   int32_t facet = c->surface ? l->facet[i] : -1;
   return strut_contact_pose_at(c, i, l->now->q, l->now->motion, facet).axes;
 }
@@ -65,6 +66,7 @@ void strut_contact_snap(const strut_model *model, strut_event_stepper *l, int32_
 }
 
 void strut_cable_set_acting(strut_state *state, strut_event_stepper *l, int32_t k, bool pulls) {
+  assert(k >= 0 && k < l->law_count);
   int32_t j = l->laws[k].member;
   l->acting[k] = pulls;
   l->fresh = false;
@@ -78,6 +80,7 @@ void strut_cable_set_acting(strut_state *state, strut_event_stepper *l, int32_t 
 
 /* May the node of a contact move along it? Otherwise a support holds it. */
 static bool is_free_along(const strut_model *model, const strut_event_stepper *l, int32_t i) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_contact_compliance *r = &l->response[i];
   if (!model->contacts.surface) return r->tangent > 0.0;
   strut_contact_axes axes = axes_now(&model->contacts, l, i);
@@ -117,6 +120,7 @@ void strut_contact_close(const strut_model *model, strut_event_stepper *l, int32
 
 /* Is what holds stuck contact i no more than rounding of the forces on its node? */
 static bool is_held_by_rounding(const strut_model *model, const strut_event_stepper *l, int32_t i) {
+  assert(i >= 0 && i < model->contacts.count);
   const double *force = l->now->structure + model->contacts.at[i];
   return fabs(l->now->touch[i].friction) <= TIE * hypot(force[0], force[1]);
 }
@@ -154,6 +158,7 @@ void strut_modes_derive(const strut_model *model, strut_state *state, strut_even
 }
 
 static void set_piece(strut_state *state, strut_event_stepper *l, int32_t k, int piece) {
+  assert(k >= 0 && k < l->law_count);
   state->modes.element_piece[l->laws[k].element] = (int16_t)piece;
   l->fresh = false;
 }
@@ -161,12 +166,14 @@ static void set_piece(strut_state *state, strut_event_stepper *l, int32_t k, int
 /* On the piece on which the strain is; it has been measured. */
 static void find_piece(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        int32_t k) {
+  assert(k >= 0 && k < l->law_count);
   const strut_element *e = &model->elements.element[l->laws[k].element];
   set_piece(state, l, k, strut_law_piece(e->law, &e->numbers, l->now->stretch[k]));
 }
 
 void strut_law_pass_kink(const strut_model *model, strut_state *state, strut_event_stepper *l,
                          int32_t k) {
+  assert(k >= 0 && k < l->law_count);
   const strut_element *e = &model->elements.element[l->laws[k].element];
   int piece = state->modes.element_piece[l->laws[k].element];
   double low, high;

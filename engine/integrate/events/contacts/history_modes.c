@@ -4,6 +4,7 @@
 #include "engine/forces/drives.h"
 #include "engine/forces/history.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "engine/integrate/events/event_stepping.h"
@@ -72,6 +73,7 @@ static bool is_taut(const strut_event_stepper *l, int32_t k) {
 
 void strut_history_measure(const strut_model *model, const strut_state *state,
                            const strut_event_stepper *l, const strut_step_end *end, int32_t k) {
+  assert(k >= 0 && k < l->law_count);
   const strut_law_switch *law = &l->laws[k];
   end->stretch[k] = 1.0;
   end->stretch_rate[k] = 0.0;
@@ -118,6 +120,7 @@ void strut_history_thaw(const strut_model *model, strut_state *state, strut_even
 
 void strut_history_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
                          int32_t k) {
+  assert(k >= 0 && k < l->law_count);
   int32_t i = l->laws[k].element;
   if (l->laws[k].event != STRUT_EVENT_SLIDER || is_gone(model, state, i)) return;
   l->fresh = false;
@@ -145,6 +148,7 @@ void strut_history_drop_gone(const strut_model *model, strut_state *state, strut
 
 void strut_history_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
                          int32_t k, double t) {
+  assert(k >= 0 && k < l->law_count);
   const strut_law_switch *law = &l->laws[k];
   l->fresh = false;
   strut_drive_apply(model, state, t); /* a rejected step has been further */

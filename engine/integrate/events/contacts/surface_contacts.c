@@ -136,6 +136,7 @@ void strut_surface_move(const strut_model *model, const strut_state *state, stru
  */
 static double dip_margin(const strut_contact_table *c, const strut_event_stepper *l, int32_t i,
                          double h) {
+  assert(i >= 0 && i < c->count);
   const strut_step_end *end[2] = {l->now, l->next};
   double place[2][2], margin = 0.0;
   for (int e = 0; e < 2; e++) {

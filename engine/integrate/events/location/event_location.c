@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Finding what ends a mode within a step. See event_stepping.h. */
+#include <assert.h>
 #include <math.h>
 
 #include "engine/forces/feedback.h"
@@ -32,6 +33,7 @@ static double cubic_root(double g0, double d0, double g1, double d1) {
  */
 static double room_to_leave(const strut_model *model, const strut_event_stepper *l, int32_t i,
                             double room) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_contact_entry *e = &model->contacts.entry[i];
   if (!l->stepper->exact && !strut_friction_drops(&e->friction)) return room;
   double faint = 1e-9 * stick_band_edge(e), rate = 0.0;
@@ -46,6 +48,7 @@ static double room_to_leave(const strut_model *model, const strut_event_stepper 
  */
 static double room_to_slip(const strut_model *model, const strut_event_stepper *l, int32_t i,
                            double room, double after) {
+  assert(i >= 0 && i < model->contacts.count);
   double edge = stick_band_edge(&model->contacts.entry[i]), least = 1e-9 * edge, rate = 0.0;
   if (edge > 0.0 && !l->stepper->exact) return room;
   strut_event_rate(l, l->now, STRUT_EVENT_SLIP_ENDS, i, &rate);
@@ -147,6 +150,7 @@ static void measure_cables(const strut_model *model, const strut_state *state,
 /* Of an element that carries one sign, with that sign; of kinks, the margins of the piece. */
 static void measure_element(const strut_model *model, const strut_state *state,
                             const strut_law_switch *law, const strut_step_end *end, int32_t k) {
+  assert(k >= 0);
   const strut_element *e = &model->elements.element[law->element];
   strut_element_motion m = strut_element_move(model, state, law->element, end->q, end->v);
   if (law->event == STRUT_EVENT_ACTS) {
@@ -166,6 +170,7 @@ static void measure_element(const strut_model *model, const strut_state *state,
 /* The sensors are those of the end. */
 static void measure_relay(const strut_model *model, const strut_state *state,
                           const strut_law_switch *law, const strut_step_end *end, int32_t k) {
+  assert(k >= 0);
   double now = state->latest.drive_time + state->time_offset;
   end->stretch[k] = 1.0;
   end->stretch_rate[k] = 0.0;

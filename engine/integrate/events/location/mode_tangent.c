@@ -269,6 +269,7 @@ static void differentiate_normal(const strut_contact_entry *e, int8_t damper, bo
 static void add_contact(const strut_model *model, const strut_state *state,
                         const strut_event_stepper *l, int32_t i, const double *q, const double *v,
                         strut_mode_tangent *t) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_contact_table *c = &model->contacts;
   const strut_contact_entry *e = &c->entry[i];
   const int32_t *row = t->row_of + c->at[i];

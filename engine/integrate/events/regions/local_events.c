@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/integrate/events/regions/local_events.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -163,6 +164,7 @@ static void clear_pair(const strut_local_region *r) {
 
 /* Accelerations along the ground of the region's contacts under a unit force on contact i, once for each. */
 static const double *find_answers(const strut_model *model, strut_local_events *p, int32_t i) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_local_region *r = &p->region;
   const strut_contact_table *c = &model->contacts;
   int32_t n = r->contact_count;

@@ -34,6 +34,7 @@ static int64_t mask_of(bool holds) { return holds ? -1 : 0; }
 /* A closed contact, at the lane of its node. */
 static void list_contact(const strut_model *model, const strut_event_stepper *l, int32_t i,
                          strut_small_modes *m) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_contact_entry *e = &model->contacts.entry[i];
   int32_t n = e->node;
   uint8_t mode = l->mode[i];
@@ -64,6 +65,7 @@ static void list_contact(const strut_model *model, const strut_event_stepper *l,
 /* The nodes that answer to contact i, and to no other that is closed. */
 static void list_answers(const strut_model *model, const strut_event_stepper *l, int32_t i,
                          strut_small_modes *m) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_contact_compliance *r = &l->response[i];
   int32_t from = model->contacts.entry[i].node;
   for (int32_t k = 0; k < r->count; k++)
@@ -88,6 +90,7 @@ static void list_stuck(const strut_model *model, const strut_event_stepper *l, i
 
 /* See law_value. */
 static void list_cable(const strut_event_stepper *l, int32_t k, strut_small_modes *m) {
+  assert(k >= 0 && k < l->law_count);
   const strut_law_switch *law = &l->laws[k];
   double d = law->damping;
   int32_t j = law->member;
