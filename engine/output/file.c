@@ -71,7 +71,9 @@ static int take_over(const char *name) {
 static int create_new(const char *name) {
   int descriptor = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) return -1;
-  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return descriptor;
+  bool locked = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  /* before the lock, another process may have taken it over, and even given it its name */
+  if (locked ? is_still(descriptor, name) : errno != EWOULDBLOCK) return descriptor;
   close(descriptor);
   errno = EEXIST;
   return -1;
