@@ -15,7 +15,7 @@
 #include "engine/model/compile_parts.h"
 #include "engine/model/pose.h"
 
-/* What a strain is told beside positions. */
+/* The number that the function of a strain takes beside the positions. */
 #define STRUT_REFERENCE_TURN (void)e, turn
 #define STRUT_REFERENCE_AXIS (void)turn, e->axis
 #define STRUT_REFERENCE_ROW(NAME, name, unit, reference, ...)                                      \

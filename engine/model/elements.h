@@ -18,8 +18,8 @@
 #include "engine/scene/things.h"
 
 /**
- * The strains: X(NAME, name, unit, reference, context); context is passed on. reference: what its function
- * is told beside positions: TURN, the strain before, or AXIS, the element's direction.
+ * The strains: X(NAME, name, unit, reference, context); context is passed on. reference: the number that its
+ * function takes beside the positions: TURN, the strain before, or AXIS, the element's direction.
  */
 #define STRUT_STRAINS(X, context)                                                                  \
   X(LENGTH, length, "m", TURN, context)                                                            \

@@ -123,7 +123,7 @@ typedef struct strut_collision {
  */
 typedef struct strut_distance_spring {
   const char *name;
-  int32_t node[2], line[2]; /* -1 where there is none */
+  int32_t node[2], line[2]; /* -1: unused in its form */
   double along;             /* the direction, from +x [rad] */
   double stiffness;         /* [N/m] */
   double damping;           /* [N s/m] */
