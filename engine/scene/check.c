@@ -294,9 +294,28 @@ static void check_shape(strut_checker *checker, size_t index, const char *owner)
                          key, m->rest_value, owner, drawn, m->stiffness);
 }
 
+/* Steps lead somewhere, and two of them span the plane. */
+static void check_lattice(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  const double(*a)[2] = scene->lattice;
+  double length[2] = {hypot(a[0][0], a[0][1]), hypot(a[1][0], a[1][1])};
+  double area = fabs(a[0][0] * a[1][1] - a[0][1] * a[1][0]);
+  bool empty = false;
+  for (int32_t k = 0; k < scene->lattice_count; k++)
+    empty = empty || !(length[k] > 0.0 && length[k] < HUGE_VAL);
+  if (empty)
+    strut_report_finding(checker, STRUT_ON_SCENE, 0, "lattice",
+                         "a step of the lattice must lead somewhere, it is [0, 0]");
+  else if (scene->lattice_count == 2 && !(area > 1e-9 * length[0] * length[1]))
+    strut_report_finding(checker, STRUT_ON_SCENE, 0, "lattice",
+                         "the two steps of the lattice are parallel; one step is enough for a "
+                         "structure that repeats along a line");
+}
+
 void strut_check_members(strut_checker *checker) {
   const strut_checked rayleigh = {STRUT_ON_SCENE, 0, "rayleigh in the scene", "rayleigh"};
   strut_check_fields(checker, &rayleigh, STRUT_FIELDS_RAYLEIGH, checker->scene, NULL);
+  check_lattice(checker);
   for (size_t i = 0; i < checker->scene->member_count; i++) {
     char owner[200];
     strut_format_name(owner, "member", checker->scene->members[i].name, i);

@@ -274,6 +274,8 @@ typedef struct strut_scene {
   int32_t start_equilibrium; /* configuration at whose equilibrium a run starts, or -1. A run wants
                                 it resolved into positions: strut_resolve_start_equilibrium */
   strut_arena arena;         /* owns every text and array of the scene */
+  int32_t lattice_count;     /* 1 or 2 where the structure repeats without end; else 0 */
+  double lattice[2][2];      /* (lattice_count, 2) steps from cell to cell [m] */
   double rayleigh_mass;      /* damping by mass, alpha M v [1/s] */
   double rayleigh_stiffness; /* damping by stiffness, beta c in every member and hinge [s] */
   size_t support_motion_count;

@@ -97,6 +97,7 @@
   X(SCENE, MASS_MODEL, "mass_model", WORD, NONE, ANY, "consistent", WRITTEN, 0, "consistent|lumped", FIELD(strut_scene, mass_model), "How a member's mass acts: `consistent` as that of a uniform rod (the paper's model), `lumped` as half of it at each end.") \
   X(SCENE, BARS, "bars", WORD, NONE, ANY, "elastic", OPTIONAL, 0, "elastic|rigid", FIELD(strut_scene, bar_model), "`rigid` bars keep, during a run, the length they have at its start; their stiffness and damping then count only while the structure settles.") \
   X(SCENE, GRAVITY, "gravity", PAIR, ACCELERATION, ANY, "[0, 0]", WRITTEN, 0, "", FIELD(strut_scene, gravity), "Gravitational acceleration.") \
+  X(SCENE, LATTICE, "lattice", FREE, NONE, ANY, "", OPTIONAL, 0, "one or two displacements, such as [[1 m, 0]]", BY_HAND, "Steps by which the structure repeats without end, for `strut modes --wave`. A node that lies such a step from another one is that node of the next cell.") \
   X(SCENE, GROUND, "ground", MAP, NONE, ANY, "", OPTIONAL, 1, "", SECTION(GROUND), "The line that nodes may touch; without it there is no ground.") \
   X(SCENE, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", THINGS(ACTUATOR), "Members whose rest length a signal changes, or to which it adds a force. Several actuators on one member add up.") \
   X(SCENE, LOADS, "loads", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a load", THINGS(LOAD), "Forces on nodes.") \

@@ -320,31 +320,49 @@ const strut_analysis_kind strut_equilibria_analysis = {.files = {"equilibria.jso
 static strut_status compute_modes(strut_analysis *a, strut_error *error) {
   strut_modes_options wanted;
   strut_status status = read_modes_options(a->command, a->arguments, &wanted);
+  if (status == STRUT_OK && a->arguments->wave && wanted.stuck)
+    status = strut_usage_error(a->command, a->arguments,
+                               "--stuck holds contacts with the ground; --wave knows no ground");
   if (status != STRUT_OK) return status;
   a->result.modes.count = (size_t)wanted.count;
+  a->result.modes.wave = a->arguments->wave;
+  const strut_waves_options waves = {.at = wanted.at, .count = wanted.count};
+  if (a->result.modes.wave)
+    return strut_waves_find(a->model, &a->setup->experiment, &waves, &a->result.modes.waves, error);
   return strut_modes_find(a->model, &a->setup->experiment, &wanted, &a->result.modes.found, error);
 }
 
 static char *modes_json(const strut_analysis *a) {
-  return strut_modes_json(a->model, &a->result.modes.found);
+  return a->result.modes.wave ? strut_waves_json(a->model, &a->result.modes.waves)
+                              : strut_modes_json(a->model, &a->result.modes.found);
 }
 
-static char *modes_csv(const strut_analysis *a) { return strut_modes_csv(&a->result.modes.found); }
+static char *modes_csv(const strut_analysis *a) {
+  return a->result.modes.wave ? strut_waves_csv(&a->result.modes.waves)
+                              : strut_modes_csv(&a->result.modes.found);
+}
 
 static char *modes_table(const strut_analysis *a) {
-  return strut_modes_table(a->model, &a->result.modes.found);
+  return a->result.modes.wave ? strut_waves_table(a->model, &a->result.modes.waves)
+                              : strut_modes_table(a->model, &a->result.modes.found);
 }
 
 static void warn_of_modes(const strut_analysis *a, const strut_listener *listener) {
-  strut_warn_of_overload(listener, a->model, a->result.modes.found.q, "in this shape");
+  const double *q = a->result.modes.wave ? a->result.modes.waves.q : a->result.modes.found.q;
+  strut_warn_of_overload(listener, a->model, q, "in this shape");
 }
 
 static strut_status draw_modes(const strut_analysis *a, const strut_plot *plot,
                                strut_error *error) {
+  if (a->result.modes.wave)
+    return strut_waves_figure(plot, a->model, &a->result.modes.waves, error);
   return strut_modes_figure(plot, a->model, &a->result.modes.found, a->result.modes.count, error);
 }
 
-static void free_modes(strut_analysis *a) { strut_modes_free(&a->result.modes.found); }
+static void free_modes(strut_analysis *a) {
+  strut_modes_free(&a->result.modes.found);
+  strut_waves_free(&a->result.modes.waves);
+}
 
 const strut_option strut_modes_analysis_options[] = {STRUT_MODES_OPTIONS, END};
 

@@ -11,6 +11,7 @@
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/form/form.h"
 #include "engine/statics/modes/modes.h"
+#include "engine/statics/modes/waves.h"
 #include "engine/statics/path/path.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "parser/command/arguments.h"
@@ -29,7 +30,10 @@
 #define STRUT_MODES_OPTIONS                                                                        \
   {STRUT_OPTION_AT, "at", "NAME",                                                                  \
    "equilibrium to linearise about (default: that of the start), or drawn"},                       \
-      {STRUT_OPTION_COUNT, "count", "N", "number of modes, lowest first"}, {                       \
+      {STRUT_OPTION_COUNT, "count", "N", "number of modes or bands, lowest first"},                \
+      {STRUT_OPTION_WAVE, "wave", NULL,                                                            \
+       "instead: waves of the structure repeated by its lattice, bands and gaps"},                 \
+  {                                                                                                \
     STRUT_OPTION_STUCK, "stuck", NULL, "treat closed contacts as stuck instead of frictionless"    \
   }
 
@@ -119,6 +123,8 @@ struct strut_analysis {
     strut_equilibria equilibria;
     struct {
       strut_modes found;
+      strut_waves waves; /* instead, where `wave` */
+      bool wave;
       size_t count; /* asked for; 0: as many as are usual */
     } modes;
     struct {

@@ -45,6 +45,7 @@ static const char *option_name_at(const void *context, size_t i) {
 static bool *flag_of(strut_option_id id, strut_arguments *arguments) {
   if (id == STRUT_OPTION_FORCE) return &arguments->force;
   if (id == STRUT_OPTION_STUCK) return &arguments->stuck;
+  if (id == STRUT_OPTION_WAVE) return &arguments->wave;
   return id == STRUT_OPTION_ALL ? &arguments->all : NULL;
 }
 

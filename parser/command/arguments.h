@@ -24,6 +24,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_JSON,
   STRUT_OPTION_FORCE,
   STRUT_OPTION_STUCK,
+  STRUT_OPTION_WAVE,
   STRUT_OPTION_OWN_MODEL,
   STRUT_OPTION_ALL,
   STRUT_OPTION_CSV,
@@ -137,7 +138,7 @@ typedef struct strut_arguments {
   const char **models; /* (model_count) all positional arguments */
   size_t model_count;
   const char *output;
-  bool help, json, quiet, force, stuck, own_model, csv, no_motion, no_states;
+  bool help, json, quiet, force, stuck, wave, own_model, csv, no_motion, no_states;
   bool all, count_points, status, retry;
   const char *texts[STRUT_OPTION_TEXTS_END - STRUT_OPTION_TEXTS]; /* NULL where not given */
   strut_override *overrides;                                      /* (override_count) of --set */

@@ -115,6 +115,7 @@ static strut_status store_option(const strut_command *command, int id, strut_arg
     case STRUT_OPTION_QUIET: to->quiet = true; break;
     case STRUT_OPTION_FORCE: to->force = true; break;
     case STRUT_OPTION_STUCK: to->stuck = true; break;
+    case STRUT_OPTION_WAVE: to->wave = true; break;
     case STRUT_OPTION_OWN_MODEL: to->own_model = true; break;
     case STRUT_OPTION_ALL: to->all = true; break;
     case STRUT_OPTION_CSV: to->csv = true; break;

@@ -71,6 +71,7 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
       THINGS(COLLISION),
       THINGS(DISTANCE),
       STEP(strut_read_rayleigh),
+      STEP(strut_read_lattice),
       STEP(strut_list_signals),
       STEP(strut_list_controllers),
       STEP(strut_list_states),

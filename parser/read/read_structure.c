@@ -332,6 +332,29 @@ void strut_read_rayleigh(strut_reader *reader) {
                        sizeof *reader->scene);
 }
 
+void strut_read_lattice(strut_reader *reader) {
+  strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_LATTICE);
+  strut_owner owner = {"lattice", NULL};
+  strut_scene *scene = reader->scene;
+  if (slot->state != STRUT_GIVEN) return;
+  const strut_tree *item = slot->value->first;
+  bool list =
+      slot->value->kind == STRUT_TREE_LIST && slot->value->count >= 1 && slot->value->count <= 2;
+  for (const strut_tree *step = item; list && step; step = step->next)
+    list = step->kind == STRUT_TREE_LIST && step->count == 2;
+  if (!list) {
+    strut_report_error(reader, slot->value->place,
+                       "a lattice has one or two steps, as in [[1 m, 0]] or "
+                       "[[1 m, 0], [0, 1 m]], found %s",
+                       strut_found(reader, slot->value));
+    return;
+  }
+  scene->lattice_count = (int32_t)slot->value->count;
+  for (int k = 0; k < scene->lattice_count; k++, item = item->next)
+    if (!strut_read_pair(reader, item, "lattice", owner, STRUT_DIM_LENGTH, scene->lattice[k]))
+      scene->lattice_count = 0, k = 2; /* the check has nothing to add */
+}
+
 /* ---- hinges, cells, collisions ---- */
 
 bool strut_read_hinge(strut_reader *reader, strut_fields *fields, strut_owner owner, void *object) {

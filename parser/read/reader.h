@@ -440,6 +440,7 @@ strut_section_reader strut_read_member, strut_read_hinge, strut_read_cell, strut
 bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner owner,
                     strut_dimension strain, strut_dimension force, strut_law *law);
 void strut_read_rayleigh(strut_reader *reader);
+void strut_read_lattice(strut_reader *reader);
 
 /* read_beams.c */
 

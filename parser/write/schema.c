@@ -283,7 +283,14 @@ static void put_free(schema *s, const strut_key *key) {
     put_either(s, "array", put_two_next, put_next);
   else if (strcmp(key->name, "closed") == 0)
     put_either(s, "object", put_names_of_things, put_switch);
-  else if (strcmp(key->name, "step") == 0) { /* a displacement or two of them */
+  else if (strcmp(key->name, "lattice") == 0) {
+    put_member(s, "type", "\"array\"");
+    open_object(s, "items");
+    put_pair(s);
+    close_object(s);
+    put_member(s, "minItems", "1");
+    put_member(s, "maxItems", "2");
+  } else if (strcmp(key->name, "step") == 0) { /* a displacement or two of them */
     put_member(s, "type", "\"array\"");
     open_object(s, "items");
     put_either(s, "array", put_pair, put_number);

@@ -262,6 +262,13 @@ static void put_head_by_hand(strut_writer *writer, strut_mapping *mapping, int k
   } else if (key == STRUT_KEY_SCENE_PARAMETERS && scene->parameter_count) {
     strut_put_key_name(writer, mapping, key);
     put_parameters(writer);
+  } else if (key == STRUT_KEY_SCENE_LATTICE && scene->lattice_count) {
+    strut_put_key_name(writer, mapping, key);
+    for (int k = 0; k < scene->lattice_count; k++) {
+      strut_put(writer, k ? ", " : "[");
+      strut_put_pair(writer, scene->lattice[k]);
+    }
+    strut_put(writer, "]");
   }
 }
 

@@ -99,12 +99,13 @@ TEST(plain_keys_are_bound_to_fields) {
   assert_int_equal(wrong, 0);
 }
 
-/* Each of these has code in the reader, and in the writer: a key that rows can describe is none of them. */
+/* Each of these has code in the reader, and in the writer: a key that rows can describe is none of them. With every
+   kind of thing the language grows; their share must not. */
 TEST(few_keys_are_read_by_hand) {
   int by_hand = 0;
   for (int i = 0; i < STRUT_KEY_COUNT; i++)
     by_hand += strut_key_at(i)->field.role == STRUT_FIELD_BY_HAND;
-  assert_true(by_hand <= 90);
+  assert_true(5 * by_hand <= STRUT_KEY_COUNT);
 }
 
 /* A mapping leads to a section, which has the keys below it. */

@@ -123,9 +123,10 @@ typedef struct strut_series {
   bool right;                  /* y belongs to the right axis */
 } strut_series;
 
-/** A grey area from x = low to high; its label goes into the legend, or is NULL. */
+/** A grey area from x = low to high, or y; its label goes into the legend, or is NULL. */
 typedef struct strut_band {
   double low, high;
+  bool level; /* from y = low to high */
   const char *label;
   int look; /* index of grey and hatching */
 } strut_band;

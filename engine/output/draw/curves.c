@@ -104,16 +104,18 @@ static bool place_curves(plotter *p, strut_box box) {
 }
 
 static void draw_bands(const plotter *p) {
-  const strut_box *f = &p->axes.frame;
   for (size_t i = 0; i < p->curves->band_count; i++) {
     const strut_band *b = &p->curves->bands[i];
     const strut_fill fill = strut_band_fill(b->look);
-    double low[2], high[2];
-    strut_axes_point(&p->axes, fmax(b->low, p->axes.x.low), p->axes.y.low, low);
-    strut_axes_point(&p->axes, fmin(b->high, p->axes.x.high), p->axes.y.low, high);
-    if (high[0] > low[0])
-      strut_draw_box(p->canvas, (strut_box){low[0], f->y, high[0] - low[0], f->height}, &fill,
-                     NULL);
+    const strut_axis *axis = b->level ? &p->axes.y : &p->axes.x;
+    double from = fmax(b->low, axis->low), to = fmin(b->high, axis->high), low[2], high[2];
+    if (!(to > from)) continue;
+    strut_axes_point(&p->axes, b->level ? p->axes.x.low : from, b->level ? to : p->axes.y.high,
+                     low);
+    strut_axes_point(&p->axes, b->level ? p->axes.x.high : to, b->level ? from : p->axes.y.low,
+                     high);
+    strut_draw_box(p->canvas, (strut_box){low[0], low[1], high[0] - low[0], high[1] - low[1]},
+                   &fill, NULL);
   }
 }
 
@@ -122,6 +124,7 @@ static void draw_markers(const plotter *p, size_t i) {
   const strut_axes axes = axes_of(p, s);
   size_t look = style_of(p->curves, i);
   bool all = s->count <= FEW_POINTS || s->points || s->no_line;
+  if (!all && !s->label) return;
   /* A few markers, at other points than those of the other curves. */
   size_t every = all ? 1 : s->count / MARKERS;
   size_t first = all ? 0 : (look * every / 3 + every / 2) % every;

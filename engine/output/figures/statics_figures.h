@@ -10,6 +10,7 @@
 #include "engine/output/draw/chart.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/modes/modes.h"
+#include "engine/statics/modes/waves.h"
 #include "engine/statics/path/path.h"
 #include "engine/statics/rigidity/rigidity.h"
 
@@ -40,6 +41,10 @@ enum { STRUT_MODES_FIGURE_PANELS = 6, STRUT_MODES_FIGURE_MOST = 24 };
 STRUT_API strut_status strut_modes_figure(const strut_plot *plot, const strut_model *model,
                                           const strut_modes *modes, size_t panels,
                                           strut_error *error);
+
+/** Frequencies over the line through the zone of phases, gaps between bands in grey. */
+STRUT_API strut_status strut_waves_figure(const strut_plot *plot, const strut_model *model,
+                                          const strut_waves *waves, strut_error *error);
 
 /**
  * The load factor over the displacement of the coordinate of a loaded node that moves farthest,

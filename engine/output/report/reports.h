@@ -7,6 +7,7 @@
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/form/form.h"
 #include "engine/statics/modes/modes.h"
+#include "engine/statics/modes/waves.h"
 #include "engine/statics/path/path.h"
 #include "engine/statics/rigidity/rigidity.h"
 
@@ -45,6 +46,13 @@ STRUT_API char *strut_modes_json(const strut_model *model, const strut_modes *mo
 STRUT_API char *strut_modes_table(const strut_model *model, const strut_modes *modes);
 /** A row for each mode, shapes left out. */
 STRUT_API char *strut_modes_csv(const strut_modes *modes);
+
+/* ---- waves of a structure that repeats: bands, gaps, speeds; CSV has the samples along the zone ---- */
+
+/** Blocks of strut_allocate, or NULL when memory is out. */
+STRUT_API char *strut_waves_json(const strut_model *model, const strut_waves *waves);
+STRUT_API char *strut_waves_table(const strut_model *model, const strut_waves *waves);
+STRUT_API char *strut_waves_csv(const strut_waves *waves);
 
 /* ---- a path of equilibria as a table for people, as JSON, and as a curve in CSV ---- */
 
