@@ -204,7 +204,7 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
   double rest_rate = e->slot >= 0 ? step->rest_rate[e->slot] : 0.0;
   double origin0 = strut_element_origin(e, natural0),
          origin1 = strut_element_origin(e, end.natural);
-  if (e->strain == STRUT_STRAIN_AREA) rest_rate = 0.0; /* its drive is all excess */
+  if (strut_law_is_of_cells(e->law)) rest_rate = 0.0; /* its drive is all excess */
   double change = end.strain - step->strain0[i], rate = change / step->h - rest_rate;
   for (int32_t k = 0; k < 2 * e->nodes; k++) {
     uint32_t c = at[k / 2] + (uint32_t)(k % 2);

@@ -37,6 +37,7 @@ static size_t count_history_slots(const strut_scene *scene) {
   for (size_t i = 0; i < scene->hinge_count; i++)
     count += strut_hinge_ends(&scene->hinges[i]) || yields(&scene->hinges[i].law);
   for (size_t i = 0; i < scene->distance_count; i++) count += yields(&scene->distances[i].law);
+  for (size_t i = 0; i < scene->cell_count; i++) count += yields(&scene->cells[i].elastic);
   return count;
 }
 
@@ -302,12 +303,38 @@ static int kind_of(const strut_element *e) {
   return 2 * ((int)e->strain * STRUT_LAW_COUNT + (int)e->law) + e->remembers;
 }
 
-/* Its nodes run counter-clockwise, so that its area is positive. */
+/* Their nodes run counter-clockwise, so that their area is positive. */
+static void add_corners(compilation *c, strut_element *e, const strut_cell *cell, double area) {
+  for (size_t k = 0; k < cell->node_count; k++)
+    add_node(c, e, cell->node[area < 0.0 ? cell->node_count - 1 - k : k]);
+}
+
+static void add_elastic_cell(compilation *c, size_t i, double area) {
+  const strut_cell *cell = &c->model->scene->cells[i];
+  strut_element *e = add_element(
+      c, (strut_element){.strain = STRUT_STRAIN_AREA,
+                         .law = cell->elastic.kind,
+                         .role = STRUT_ELEMENT_CELL,
+                         .item = (int32_t)i,
+                         .slot = -1,
+                         .carries = sign_of(cell->elastic.carries),
+                         .natural = isnan(cell->rest_area) ? fabs(area) : cell->rest_area,
+                         .damping = cell->damping});
+  add_corners(c, e, cell, area);
+  if (!set_numbers(c->model, &cell->elastic, cell->stiffness, &e->numbers)) c->failed = true;
+  e->numbers.area = fabs(area);
+  if (yields(&cell->elastic)) remember(c, e);
+}
+
 static void add_cell(compilation *c, size_t i) {
   assert(i < c->model->scene->cell_count);
   strut_model *model = c->model;
   const strut_cell *cell = &model->scene->cells[i];
   double area = strut_cell_drawn(model->scene, i);
+  if (strut_cell_is_elastic(cell)) {
+    add_elastic_cell(c, i, area);
+    return;
+  }
   int32_t slot = cell_slot(model, (int32_t)i);
   double stiffness = strut_law_respond(cell->law,
                                        &(strut_law_numbers){.area = fabs(area),
@@ -324,8 +351,7 @@ static void add_cell(compilation *c, size_t i) {
                                                                 .area = fabs(area),
                                                                 .exponent = cell->exponent,
                                                                 .outside = cell->outside}});
-  for (size_t k = 0; k < cell->node_count; k++)
-    add_node(c, e, cell->node[area < 0.0 ? cell->node_count - 1 - k : k]);
+  add_corners(c, e, cell, area);
   ((double *)model->members.rest)[slot] = cell->pressure;
 }
 

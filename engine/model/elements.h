@@ -178,9 +178,9 @@ static inline const char *strut_element_name(const strut_scene *scene, const str
   return strut_thing_name(scene, strut_element_thing(e->role), (size_t)e->item);
 }
 
-/** The natural strain in the unit of the strain: the law of a cell has a pressure there instead. */
+/** The natural strain in the unit of the strain: the laws of cells have a pressure there instead. */
 static inline double strut_element_origin(const strut_element *e, double natural) {
-  return e->strain == STRUT_STRAIN_AREA ? 0.0 : natural;
+  return strut_law_is_of_cells(e->law) ? 0.0 : natural;
 }
 
 /** Does an element take the place of the plain member j? */

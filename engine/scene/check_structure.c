@@ -310,14 +310,29 @@ static void check_area(strut_checker *checker, size_t index, const char *owner) 
                          "%s starts without an area, or turned over beside how it is drawn", owner);
 }
 
+/* Is the law of an elastic cell one that works on an area, and does it do anything? */
+static void check_elastic(strut_checker *checker, size_t index, const char *owner) {
+  const strut_cell *c = &checker->scene->cells[index];
+  if (!check_law(checker, STRUT_ON_CELL, index, owner, &c->elastic, c->stiffness > 0.0) ||
+      !check_hardening(checker, STRUT_ON_CELL, index, owner, &c->elastic, c->stiffness))
+    return;
+  const char *fault =
+      c->elastic.kind == STRUT_LAW_LOGARITHMIC
+          ? "has the law logarithmic, which is for members only"
+      : c->stiffness == 0.0 && c->damping == 0.0 && !strut_law_at(c->elastic.kind)->own
+          ? "has neither stiffness nor damping, so it does nothing"
+          : NULL;
+  if (fault) strut_report_finding(checker, STRUT_ON_CELL, index, NULL, "%s %s", owner, fault);
+}
+
 void strut_check_cells(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   for (size_t i = 0; i < scene->cell_count; i++) {
     const strut_cell *c = &scene->cells[i];
-    bool gas = c->law != STRUT_LAW_PRESSURE;
+    bool elastic = c->law == STRUT_LAW_LINEAR, gas = !elastic && c->law != STRUT_LAW_PRESSURE;
     char owner[200];
     strut_format_name(owner, "cell", c->name, i);
-    if ((unsigned)c->law >= STRUT_LAW_COUNT || !strut_law_is_of_cells(c->law))
+    if ((unsigned)c->law >= STRUT_LAW_COUNT || !(elastic || strut_law_is_of_cells(c->law)))
       strut_report_finding(checker, STRUT_ON_CELL, i, "gas", "%s has a law that is not for cells",
                            owner);
     const strut_checked whose = {STRUT_ON_CELL, i, owner, NULL};
@@ -326,6 +341,7 @@ void strut_check_cells(strut_checker *checker) {
     if (fine && c->law == STRUT_LAW_ISENTROPIC && !(c->exponent > 1.0))
       strut_report_finding(checker, STRUT_ON_CELL, i, "exponent",
                            "the exponent of %s must be above 1, found %g", owner, c->exponent);
+    if (fine && elastic) check_elastic(checker, i, owner);
     if (check_corners(checker, i, owner)) check_area(checker, i, owner);
   }
 }

@@ -94,16 +94,25 @@ typedef struct strut_hinge {
   double released_at; /* time from which on it has none [s]; 0: never */
 } strut_hinge;
 
-/** A polygon of nodes, in either sense, under a given pressure or filled with a closed gas. */
+/** A polygon of nodes, in either sense, under a given pressure, filled with a closed gas, or elastic. */
 typedef struct strut_cell {
   const char *name;
   int32_t *node; /* (node_count) */
   size_t node_count;
-  strut_law_kind law; /* one of STRUT_CELL_LAWS */
+  strut_law_kind law; /* one of STRUT_CELL_LAWS; STRUT_LAW_LINEAR: it is elastic */
   double pressure;    /* [N/m], pushing outwards; of a gas as drawn, absolute */
   double exponent;    /* of an isentropic gas, > 1 */
   double outside;     /* pressure outside a gas [N/m] */
+  /* of an elastic cell */
+  double stiffness, damping; /* loss of pressure per area and its rate [N/m^3], [N s/m^3] */
+  double rest_area;          /* without pressure [m^2]; NAN: as drawn */
+  strut_law elastic;         /* of the area beyond that one and minus the pressure */
 } strut_cell;
+
+/** Does its area have a law of its own, with neither a given pressure nor a gas? */
+static inline bool strut_cell_is_elastic(const strut_cell *cell) {
+  return !strut_law_is_of_cells(cell->law);
+}
 
 /**
  * Two bodies that may touch: two of nodes and members, each as thick as half of `thickness`. A node is a

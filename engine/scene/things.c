@@ -198,6 +198,9 @@ static const struct {
   size_t offset, size;
 } parts[] = {{STRUT_THING_MEMBER, STRUT_FIELDS_LAW, offsetof(strut_member, law), sizeof(strut_law)},
              {STRUT_THING_HINGE, STRUT_FIELDS_LAW, offsetof(strut_hinge, law), sizeof(strut_law)},
+             {STRUT_THING_DISTANCE, STRUT_FIELDS_LAW, offsetof(strut_distance_spring, law),
+              sizeof(strut_law)},
+             {STRUT_THING_CELL, STRUT_FIELDS_LAW, offsetof(strut_cell, elastic), sizeof(strut_law)},
              {STRUT_THING_CELL, STRUT_FIELDS_GAS, 0, sizeof(strut_cell)},
              {STRUT_THING_GROUND, STRUT_FIELDS_CIRCLE, 0, sizeof(strut_ground)}};
 

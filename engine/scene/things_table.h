@@ -46,7 +46,7 @@
   X(NODE, "node", "nodes", strut_node, nodes, node_count, AT_REST, .name = "") \
   X(MEMBER, "member", "members", strut_member, members, member_count, AT_REST, .name = "", .node = {-1, -1}, .rest_kind = STRUT_REST_RATIO, .rest_value = 1.0) \
   X(HINGE, "hinge", "hinges", strut_hinge, hinges, hinge_count, AT_REST, .name = "", .node = {-1, -1, -1}, .rest_angle = (double)NAN) \
-  X(CELL, "cell", "cells", strut_cell, cells, cell_count, AT_REST, .name = "", .law = STRUT_LAW_PRESSURE, .exponent = 1.4) \
+  X(CELL, "cell", "cells", strut_cell, cells, cell_count, AT_REST, .name = "", .law = STRUT_LAW_PRESSURE, .exponent = 1.4, .rest_area = (double)NAN) \
   X(COLLISION, "collision", "collisions", strut_collision, collisions, collision_count, AT_REST, .name = "", .node = {-1, -1}, .member = {-1, -1}) \
   X(DISTANCE, "distance", "distances", strut_distance_spring, distances, distance_count, AT_REST, .name = "", .node = {-1, -1}, .line = {-1, -1}, .rest_distance = (double)NAN) \
   X(ACTUATOR, "actuator", "actuators", strut_actuator, actuators, actuator_count, OF_RUNS, .name = "", .member = -1, .signal = -1, .hinge = -1, .cell = -1) \
@@ -168,7 +168,11 @@
 #define STRUT_CELL_FIELDS(X) \
   X(CELL, NODES, "nodes", NODE_RING, NONE, ANY, "", REQUIRED, 0, "", REFERENCES(strut_cell, node, node_count, NODE), "The corners `[a, b, c, ...]` in order, in either sense. They need no members between them.") \
   X(CELL, PRESSURE, "pressure", NUMBER, STIFFNESS, ANY, "", OPTIONAL, 7, "", CHOICE(strut_cell, law, STRUT_LAW_PRESSURE, FIELD(strut_cell, pressure)), "Given pressure, force per length of the boundary, outwards; negative: suction. An actuator may change it.") \
-  X(CELL, GAS, "gas", MAP, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "A closed gas, whose pressure follows from the area.")
+  X(CELL, GAS, "gas", MAP, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "A closed gas, whose pressure follows from the area.") \
+  X(CELL, STIFFNESS, "stiffness", NUMBER, AREA_STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_cell, stiffness), "Of an elastic cell, instead of a pressure or a gas: pressure per loss of area.") \
+  X(CELL, DAMPING, "damping", NUMBER, AREA_DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_cell, damping), "Of an elastic cell: pressure per rate at which it loses area.") \
+  X(CELL, REST_AREA, "rest_area", NUMBER, AREA, ABOVE_ZERO, "as drawn", OPTIONAL, 0, "", FIELD(strut_cell, rest_area), "Area at which an elastic cell has no pressure.") \
+  X(CELL, LAW, "law", LAW, PRESSURE, ANY, "linear", OPTIONAL, 0, "", NESTED(strut_cell, elastic, LAW), "Law of an elastic cell, of minus the pressure over area - rest area. With `compression` it only resists being squeezed.")
 
 #define STRUT_GAS_FIELDS(X) \
   X(GAS, KIND, "kind", WORD, NONE, ANY, "", REQUIRED, 0, "isothermal|isentropic", BY_HAND, "With the area A, A0 as drawn: `isothermal`, p = pressure * A0 / A. `isentropic`, p = pressure * (A0 / A)^exponent.") \

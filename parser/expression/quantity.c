@@ -297,6 +297,8 @@ static const struct dimension_words {
     {POWER, "a power", "1 W", "W"},
     {PRESSURE, "a pressure", "1 MPa", "Pa"},
     {{0, 0, -1, 1}, "an angular velocity", "10 rad/s", "rad/s"},
+    {{1, -2, -2, 0}, "a stiffness of an area", "5 N/m^3", "N/m^3"},
+    {{1, -2, -1, 0}, "a damping of an area", "0.1 N s/m^3", "N s/m^3"},
     {{1, 3, -2, 0}, "a bending stiffness", "2 N m^2", "N m^2"},
     {{1, 2, -2, -1}, "an angular stiffness", "3 N m/rad", "N m/rad"},
     {{1, 2, -1, -1}, "an angular damping", "0.01 N m s/rad", "N m s/rad"},

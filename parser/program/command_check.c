@@ -273,7 +273,8 @@ static void print_hinges(const strut_model *model, const double *q) {
 }
 
 static const char *cell_content(const strut_cell *cell) {
-  return cell->law == STRUT_LAW_PRESSURE     ? "given pressure"
+  return strut_cell_is_elastic(cell)         ? "elastic"
+         : cell->law == STRUT_LAW_PRESSURE   ? "given pressure"
          : cell->law == STRUT_LAW_ISOTHERMAL ? "isothermal gas"
                                              : "isentropic gas";
 }

@@ -384,12 +384,32 @@ bool strut_read_gas(strut_reader *reader, strut_fields *fields, strut_owner owne
 bool strut_read_cell(strut_reader *reader, strut_fields *fields, strut_owner owner, void *object) {
   const strut_slot *gas = strut_slot_of(fields, STRUT_KEY_CELL_GAS);
   const strut_slot *pressure = strut_slot_of(fields, STRUT_KEY_CELL_PRESSURE);
+  strut_cell *cell = object;
+  static const int own[] = {STRUT_KEY_CELL_STIFFNESS, STRUT_KEY_CELL_LAW, STRUT_KEY_CELL_DAMPING,
+                            STRUT_KEY_CELL_REST_AREA};
+  const strut_slot *elastic = NULL;
+  for (size_t k = 0; k < sizeof own / sizeof own[0] && !elastic; k++)
+    if (strut_slot_of(fields, own[k])->state != STRUT_ABSENT)
+      elastic = strut_slot_of(fields, own[k]);
+  bool other = gas->state != STRUT_ABSENT || pressure->state != STRUT_ABSENT;
+  if (elastic && other) {
+    strut_report_error(reader, elastic->key->place,
+                       "%s gives '%s' beside '%s'; a cell is elastic, or has a pressure, or a gas",
+                       strut_owner_text(reader, owner), elastic->key->text,
+                       gas->state != STRUT_ABSENT ? "gas" : "pressure");
+    return false;
+  }
+  if (elastic) {
+    cell->law = STRUT_LAW_LINEAR;
+    return true;
+  }
   if (gas->state == STRUT_GIVEN)
     return strut_read_nested(reader, strut_key_at(STRUT_KEY_CELL_GAS), gas, owner, object,
                              sizeof(strut_cell));
-  if (gas->state != STRUT_ABSENT || pressure->state != STRUT_ABSENT || fields->broken) return true;
+  if (other || fields->broken) return true;
   strut_report_error(reader, fields->key->place,
-                     "%s lacks 'pressure', expected a pressure such as '500 N/m', or 'gas'",
+                     "%s lacks 'pressure', expected a pressure such as '500 N/m', or 'gas', or the "
+                     "'stiffness' of its area",
                      strut_owner_text(reader, owner));
   return false;
 }

@@ -265,15 +265,16 @@ bool strut_read_nested(strut_reader *reader, const strut_key *key, const strut_s
   return fine && !fields.broken;
 }
 
-/* A law's strain and force follow from what its force measures: a moment acts on an angle. */
+/* A law's strain and force follow from what its force measures: a moment acts on an angle, a pressure on an area. */
 static bool store_nested(strut_reader *reader, const strut_key *key, const strut_slot *slot,
                          strut_owner owner, char *object) {
   void *within = object + key->field.offset;
   if (key->type != STRUT_TYPE_LAW)
     return strut_read_nested(reader, key, slot, owner, within, key->field.size);
-  bool moment = key->measure == STRUT_MEASURE_MOMENT;
-  return strut_read_law(reader, slot, owner, moment ? STRUT_DIM_ANGLE : STRUT_DIM_LENGTH,
-                        strut_measure_dimension(key->measure), within);
+  strut_dimension strain = key->measure == STRUT_MEASURE_MOMENT     ? STRUT_DIM_ANGLE
+                           : key->measure == STRUT_MEASURE_PRESSURE ? STRUT_DIM_AREA
+                                                                    : STRUT_DIM_LENGTH;
+  return strut_read_law(reader, slot, owner, strain, strut_measure_dimension(key->measure), within);
 }
 
 static bool store_key(strut_reader *reader, const strut_key *key, strut_slot *slot,

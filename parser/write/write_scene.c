@@ -384,7 +384,8 @@ static void put_cell_by_hand(strut_writer *writer, strut_mapping *mapping, int k
                              const void *object) {
   const strut_cell *cell = object, usual = strut_cell_default();
   strut_mapping inner = STRUT_MAPPING_INLINE;
-  if (key != STRUT_KEY_CELL_GAS || cell->law == STRUT_LAW_PRESSURE) return;
+  if (key != STRUT_KEY_CELL_GAS || cell->law == STRUT_LAW_PRESSURE || strut_cell_is_elastic(cell))
+    return;
   strut_put_key_name(writer, mapping, key);
   strut_put(writer, "{");
   strut_put_fields(writer, &inner, STRUT_SECTION_GAS, cell, &usual, put_gas_by_hand);

@@ -130,6 +130,50 @@ piston "gas: {kind: isothermal, pressure: 50 N/m}" -1000 rk4 "1 ms" >flat.yaml
 expect 3 run flat.yaml
 err_has "the area of cell 'air' reached zero at t = 0.002 s"
 
+# An elastic cell: a triangle whose apex swings at 1 Hz by the law of its area, and is damped by its rate.
+cat >tent.yaml <<'YAML'
+strut: 1
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [2, 0], fixed: both}, top: {position: [1, 1.5], mass: 1, fixed: x}}
+cells: {air: {nodes: [b, a, top], stiffness: "4 * pi^2", rest_area: 1 m^2}}
+solver: {integrator: rk4, step: 1 ms}
+run:
+  duration: 0.25 s
+  measure: {quantities: {area: {of: air.area, take: final}, p: {of: air.pressure, take: min}, y: {of: top.y, take: final}}}
+YAML
+for method in rk4 adaptive midpoint verlet rk4-events; do
+  expect 0 run tent.yaml --integrator $method --json
+  near .measured.area.value 1 1e-4
+  near .measured.y.value 1 1e-4
+  near .measured.p.value '-2 * 3.141592653589793 * 3.141592653589793' 1e-4
+  near '.energy.residual / .energy.exchanged' 0 1e-5
+done
+expect 0 modes tent.yaml --at drawn --json
+near '.modes[0].frequency' 1 1e-9
+expect 0 equilibria tent.yaml --json
+near '[.equilibria[].energy] | min' 0 1e-12
+expect 0 check tent.yaml
+out_has "elastic"
+expect 0 write tent.yaml
+cp out written.yaml
+expect 0 write written.yaml
+same out written.yaml
+expect 0 run written.yaml --json
+near .measured.y.value 1 1e-4
+# with a one-sided cubic law the apex stands where its weight is carried, twice as high in a part of twice the size
+cat >cushion.yaml <<'YAML'
+strut: 1
+gravity: [0, -10 m/s^2]
+parts:
+  cushion:
+    nodes: {a: {position: [0, 0], fixed: both}, b: {position: [2, 0], fixed: both}, top: {position: [1, 1.5], mass: 1, fixed: x}}
+    cells: {air: {nodes: [a, b, top], rest_area: 1.5 m^2, law: {kind: polynomial, coefficients: [0, 0, 80 N/m^7], carries: compression}}}
+place: {small: {part: cushion}, large: {part: cushion, scale: 2, at: [9, 0]}}
+YAML
+expect 0 path cushion.yaml --over small.top.x --until 1.0001 --json
+near '.points[0].nodes["small.top"][1]' 1 1e-9
+near '.points[0].nodes["large.top"][1]' '(6 - (pow(0.5 / 8; 1 / 3))) / 2' 1e-9
+near '.points[0].pressures["small.air"]' 10 1e-9
+
 # Everything else knows cells.
 expect 0 check piston.yaml
 out_has "isentropic gas"

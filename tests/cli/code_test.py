@@ -117,6 +117,8 @@ cells:
   pumped: {nodes: [p, q, c], pressure: 2 N/m}
   cold: {nodes: [p, q, c], gas: {kind: isothermal, pressure: 3 N/m, outside: 1 N/m}}
   quick: {nodes: [q, c, p], gas: {kind: isentropic, exponent: 1.3, pressure: 3 N/m}}
+  foam: {nodes: [p, q, c], stiffness: 20 N/m^3, damping: 0.5, rest_area: 0.1, law: compression_only}
+  stiffening: {nodes: [q, c, p], law: {kind: polynomial, coefficients: [5, 0, 40]}}
 collisions:
   on: {node: c, member: tendon_line, thickness: 0.9 m, stiffness: 100 N/m, damping: 2 N s/m}
   discs: {nodes: [p, q], thickness: 0.95 m, stiffness: 1 kN/m}

@@ -162,6 +162,12 @@ static void put_bodies(random_world *w) {
     put(w, CELLS, "], gas: {kind: isentropic, exponent: %.17g, pressure: %.17g, outside: %.17g}}\n",
         between(w, 1.1, 1.7), between(w, 50, 150), between(w, 50, 150));
   put(w, CELLS, "  sail: {nodes: [n4, n%d, n2], pressure: %.17g}\n", w->ring, between(w, -20, 20));
+  put(w, CELLS, "  pad: {nodes: [n0");
+  for (int i = 1; i < w->ring; i++) put(w, CELLS, ", n%d", i);
+  put(w, CELLS, "], damping: 0.7, %s}\n",
+      w->ring % 2            ? "law: {kind: polynomial, coefficients: [9, 3, 7]}"
+      : has(w, WORLD_SMOOTH) ? "stiffness: 6, rest_area: 2.5"
+                             : "stiffness: 9, law: compression_only, rest_area: 3");
   put(w, ACTUATORS, "  blow: {cell: sail, signal: breath}\n");
   put(w, SIGNALS, "  breath: {sine: {amplitude: %.17g, frequency: 3}}\n", between(w, 1, 9));
   if (has(w, WORLD_SMOOTH)) return;

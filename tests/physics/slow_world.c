@@ -449,6 +449,14 @@ static void add_cells(const slow_world *w, const slow_instant *at, slow_rates *r
     long double first = fabsl(s.near), now = slow_strain_value(&s, here.q);
     slow_strain_gradient(&s, here.q, b);
     if (now < first / 100) r->undecided = true; /* a run ends where a cell collapses */
+    if (strut_cell_is_elastic(c)) {
+      long double natural = isnan(c->rest_area) ? first : (long double)c->rest_area;
+      pull(&s, b,
+           element_force(&c->elastic, c->stiffness, c->damping, natural, now - natural,
+                         rate_of(&s, b, at->v), sign_of(c->elastic.carries), 0),
+           r->force);
+      continue;
+    }
     if (c->law == STRUT_LAW_ISOTHERMAL) pressure *= first / now;
     if (c->law == STRUT_LAW_ISENTROPIC) pressure *= powl(first / now, c->exponent);
     pressure += drive_of(w, at, 2, i, false).value - c->outside;

@@ -128,6 +128,11 @@ static void enlarge_elements(strut_scene *scene) {
     h->breaks_at *= LARGER * LARGER;
     enlarge_law(scene, &h->law, 1, LARGER * LARGER);
   }
+  for (size_t i = 0; i < scene->cell_count; i++) { /* pressures stay */
+    strut_cell *c = &scene->cells[i];
+    c->stiffness /= LARGER * LARGER, c->damping /= LARGER * LARGER, c->rest_area *= LARGER * LARGER;
+    enlarge_law(scene, &c->elastic, LARGER * LARGER, 1);
+  }
   for (size_t i = 0; i < scene->collision_count; i++) scene->collisions[i].thickness *= LARGER;
   for (size_t i = 0; i < scene->distance_count; i++) {
     scene->distances[i].rest_distance *= LARGER;

@@ -23,6 +23,7 @@ static const char text[] =
     "hinges: {h: {nodes: [b, a, d], stiffness: 1, law: {kind: play, gap: 0.1}}}\n"
     "cells: {k: {nodes: [a, b, c, d], gas: {kind: isentropic, pressure: 3}}}\n"
     "collisions: {t: {node: b, member: q, thickness: 0.1, stiffness: 5}}\n"
+    "distances: {w: {nodes: [b, d], along: x, stiffness: 2, law: {kind: play, gap: 0.1}}}\n"
     "loads: {l: {node: c, force: [1, 2]}}\n"
     "unbalances: {u: {node: b, mass: 1, radius: 0.1, speed: 3 Hz}}\n"
     "sliders: {s: {member: q, mass: 1, position: 0.5}}\n"
