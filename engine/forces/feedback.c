@@ -9,6 +9,7 @@
 #include "engine/forces/elements.h"
 #include "engine/forces/energy.h"
 #include "engine/forces/forces.h"
+#include "engine/forces/surfaces.h"
 #include "engine/model/pose.h"
 #include "engine/scene/signal_program.h"
 
@@ -19,14 +20,24 @@ static void sense_length(const strut_model *model, const strut_state *state, int
   *value = values.length, *rate = values.rate;
 }
 
-static void sense_angle(const strut_model *model, const strut_state *state, int32_t element,
-                        const double *q, const double *v, double *value, double *rate) {
+static void sense_strain(const strut_model *model, const strut_state *state, int32_t element,
+                         const double *q, const double *v, double *value, double *rate) {
   assert(element >= 0 && element < model->elements.count);
   strut_element_pose pose;
   strut_element_evaluate(model, element, state->latest.rest, q, state->latest.element_turn[element],
                          &pose);
   *value = pose.strain;
   *rate = strut_element_rate(model, element, &pose, v);
+}
+
+/* Of the first element of a cell or a collision, and those that follow it. */
+static double sense_push(const strut_model *model, const strut_state *state, int32_t first,
+                         const double *q, const double *v) {
+  strut_element_pose pose;
+  double push = model->elements.element[first].numbers.outside;
+  for (int32_t i = first; i < strut_element_end(&model->elements, first); i++)
+    push -= strut_element_measure_at(model, state, i, q, v, &pose);
+  return push;
 }
 
 static double sense_energy(const strut_model *model, const strut_state *state, int32_t which,
@@ -47,12 +58,31 @@ static bool touches(const strut_model *model, const strut_state *state, int32_t 
   return false;
 }
 
+/* Normal forces on the node of contact `first`, or -1, of all its grounds. */
+static double sense_contact_force(const strut_model *model, const strut_state *state, int32_t first,
+                                  const double *q, const double *v) {
+  const strut_contact_table *c = &model->contacts;
+  double sum = 0.0;
+  for (int32_t i = first; i >= 0 && i < c->count && c->at[i] == c->at[first]; i++) {
+    const strut_contact_pose pose = strut_contact_pose_at(c, i, q, state->latest.ground_motion, -1);
+    if (!(pose.gap < 0.0)) continue;
+    strut_vec2 u = strut_contact_velocity(c, i, v, state->latest.ground_motion);
+    const strut_law_ground_numbers numbers = strut_contact_numbers(&c->entry[i]);
+    double spring = strut_law_ground_spring(&numbers, pose.gap);
+    double into = strut_component(pose.axes.normal, u.x, u.y);
+    sum += spring + strut_law_ground_damper(&numbers, spring, into, true);
+  }
+  return sum;
+}
+
 static void sense(const strut_model *model, const strut_state *state, strut_sensor_entry sensor,
                   const double *q, const double *v, double *value, double *rate) {
   *rate = 0.0;
   switch (sensor.kind) {
     case STRUT_SENSOR_LENGTH: sense_length(model, state, sensor.at, q, v, value, rate); break;
-    case STRUT_SENSOR_ANGLE: sense_angle(model, state, sensor.at, q, v, value, rate); break;
+    case STRUT_SENSOR_AREA:
+    case STRUT_SENSOR_DISTANCE:
+    case STRUT_SENSOR_ANGLE: sense_strain(model, state, sensor.at, q, v, value, rate); break;
     case STRUT_SENSOR_CONTACT: *value = touches(model, state, sensor.at, q); break;
     case STRUT_SENSOR_POSITION: *value = q[sensor.at], *rate = v[sensor.at]; break;
     case STRUT_SENSOR_VELOCITY: *value = v[sensor.at]; break;
@@ -60,6 +90,11 @@ static void sense(const strut_model *model, const strut_state *state, strut_sens
       *value = strut_member_measure_at(model, state, sensor.at, q, v).force;
       break;
     case STRUT_SENSOR_ENERGY: *value = sense_energy(model, state, sensor.at, q, v); break;
+    case STRUT_SENSOR_PRESSURE:
+    case STRUT_SENSOR_COLLISION_FORCE: *value = sense_push(model, state, sensor.at, q, v); break;
+    case STRUT_SENSOR_CONTACT_FORCE:
+      *value = sense_contact_force(model, state, sensor.at, q, v);
+      break;
     case STRUT_SENSOR_KINDS: break;
   }
 }

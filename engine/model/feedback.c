@@ -11,7 +11,16 @@ static strut_sensor_entry compile_sensor(const strut_model *model, const strut_s
   strut_sensor_entry entry = {s->kind, s->item};
   switch (s->kind) {
     case STRUT_SENSOR_ANGLE: entry.at = strut_element_of_hinge(&model->elements, s->item); break;
+    case STRUT_SENSOR_CONTACT_FORCE:
     case STRUT_SENSOR_CONTACT: entry.at = find_contact(model, s->item); break;
+    case STRUT_SENSOR_AREA:
+    case STRUT_SENSOR_PRESSURE: entry.at = strut_element_of_cell(&model->elements, s->item); break;
+    case STRUT_SENSOR_DISTANCE:
+      entry.at = strut_element_of_distance(&model->elements, s->item);
+      break;
+    case STRUT_SENSOR_COLLISION_FORCE:
+      entry.at = strut_element_of_collision(&model->elements, s->item);
+      break;
     case STRUT_SENSOR_POSITION:
     case STRUT_SENSOR_VELOCITY: entry.at = 2 * s->item + (int32_t)s->along; break;
     case STRUT_SENSOR_ENERGY: entry.at = (int32_t)s->energy; break;

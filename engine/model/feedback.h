@@ -16,7 +16,7 @@
 typedef struct strut_sensor_entry {
   strut_sensor_kind kind;
   int32_t
-      at; /* member, element of a hinge, contact (-1: none), coordinate, or strut_sensed_energy */
+      at; /* member, element, first contact of a node (-1: none), coordinate, or strut_sensed_energy */
 } strut_sensor_entry;
 
 /** The Maxwell branch of a member, whose force is an internal state. */

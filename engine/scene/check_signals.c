@@ -245,12 +245,19 @@ static void check_sensor(strut_checker *checker, size_t index) {
   const strut_scene *scene = checker->scene;
   const strut_sensor *s = &scene->sensors[index];
   bool known = true;
+  bool contact = s->kind == STRUT_SENSOR_CONTACT || s->kind == STRUT_SENSOR_CONTACT_FORCE;
+  const char *key = s->kind == STRUT_SENSOR_CONTACT ? "contact" : "contact_force";
   char owner[200];
   strut_format_name(owner, "sensor", s->name, index);
   switch (s->kind) {
     case STRUT_SENSOR_LENGTH:
     case STRUT_SENSOR_FORCE: known = strut_exists(s->item, scene->member_count); break;
     case STRUT_SENSOR_ANGLE: known = strut_exists(s->item, scene->hinge_count); break;
+    case STRUT_SENSOR_AREA:
+    case STRUT_SENSOR_PRESSURE: known = strut_exists(s->item, scene->cell_count); break;
+    case STRUT_SENSOR_DISTANCE: known = strut_exists(s->item, scene->distance_count); break;
+    case STRUT_SENSOR_COLLISION_FORCE: known = strut_exists(s->item, scene->collision_count); break;
+    case STRUT_SENSOR_CONTACT_FORCE:
     case STRUT_SENSOR_CONTACT:
     case STRUT_SENSOR_POSITION:
     case STRUT_SENSOR_VELOCITY:
@@ -262,12 +269,12 @@ static void check_sensor(strut_checker *checker, size_t index) {
   if (!known)
     strut_report_finding(checker, STRUT_ON_SENSOR, index, NULL,
                          "%s is of a thing that does not exist", owner);
-  else if (s->kind == STRUT_SENSOR_CONTACT && !strut_scene_has_ground(scene))
-    strut_report_finding(checker, STRUT_ON_SENSOR, index, "contact",
+  else if (contact && !strut_scene_has_ground(scene))
+    strut_report_finding(checker, STRUT_ON_SENSOR, index, key,
                          "%s is of a contact, but there is no ground; add 'ground' to the scene",
                          owner);
-  else if (s->kind == STRUT_SENSOR_CONTACT && !touches(scene, s->item))
-    strut_report_finding(checker, STRUT_ON_SENSOR, index, "contact",
+  else if (contact && !touches(scene, s->item))
+    strut_report_finding(checker, STRUT_ON_SENSOR, index, key,
                          "%s is of node '%s', which cannot touch the ground; list it in 'nodes' of "
                          "the ground",
                          owner, scene->nodes[s->item].name);

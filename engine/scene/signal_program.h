@@ -19,13 +19,18 @@
 enum { STRUT_MOST_PROGRAM_DEPTH = 64 };
 
 typedef enum strut_sensor_kind {
-  STRUT_SENSOR_LENGTH,   /* of a member [m] */
-  STRUT_SENSOR_FORCE,    /* of a member, tension positive [N] */
-  STRUT_SENSOR_ANGLE,    /* of a hinge [rad] */
-  STRUT_SENSOR_CONTACT,  /* 1 while a node touches the ground, else 0 */
-  STRUT_SENSOR_POSITION, /* of a node, along x or y [m] */
-  STRUT_SENSOR_VELOCITY, /* likewise [m/s] */
-  STRUT_SENSOR_ENERGY,   /* of the structure [J] */
+  STRUT_SENSOR_LENGTH,          /* of a member [m] */
+  STRUT_SENSOR_FORCE,           /* of a member, tension positive [N] */
+  STRUT_SENSOR_ANGLE,           /* of a hinge [rad] */
+  STRUT_SENSOR_CONTACT,         /* 1 while a node touches the ground, else 0 */
+  STRUT_SENSOR_POSITION,        /* of a node, along x or y [m] */
+  STRUT_SENSOR_VELOCITY,        /* likewise [m/s] */
+  STRUT_SENSOR_ENERGY,          /* of the structure [J] */
+  STRUT_SENSOR_AREA,            /* of a cell [m^2] */
+  STRUT_SENSOR_PRESSURE,        /* in a cell [N/m] */
+  STRUT_SENSOR_DISTANCE,        /* of a distance [m] */
+  STRUT_SENSOR_CONTACT_FORCE,   /* of all grounds on a node, normal to them [N] */
+  STRUT_SENSOR_COLLISION_FORCE, /* of a collision, pushing positive [N] */
   STRUT_SENSOR_KINDS
 } strut_sensor_kind;
 
@@ -39,7 +44,7 @@ typedef enum strut_sensed_energy {
 typedef struct strut_sensor {
   const char *name;
   strut_sensor_kind kind;
-  int32_t item;    /* member, hinge or node */
+  int32_t item;    /* of the scene: member, hinge, node, cell, distance or collision */
   uint32_t along;  /* of POSITION and VELOCITY: 0 x, 1 y */
   uint32_t energy; /* of ENERGY: strut_sensed_energy */
 } strut_sensor;
@@ -71,12 +76,16 @@ static inline double strut_relay_value(const strut_signal *relay, int8_t side) {
 
 /** True where the rate of a sensor follows from positions and velocities alone. */
 static inline bool strut_sensor_has_rate(strut_sensor_kind kind) {
-  return kind == STRUT_SENSOR_LENGTH || kind == STRUT_SENSOR_ANGLE || kind == STRUT_SENSOR_POSITION;
+  return kind == STRUT_SENSOR_LENGTH || kind == STRUT_SENSOR_ANGLE ||
+         kind == STRUT_SENSOR_POSITION || kind == STRUT_SENSOR_AREA ||
+         kind == STRUT_SENSOR_DISTANCE;
 }
 
 /** True where a sensor needs the driven rest lengths, or where shaken grounds are. */
 static inline bool strut_sensor_needs_drives(strut_sensor_kind kind) {
-  return kind == STRUT_SENSOR_FORCE || kind == STRUT_SENSOR_ENERGY || kind == STRUT_SENSOR_CONTACT;
+  return kind == STRUT_SENSOR_FORCE || kind == STRUT_SENSOR_ENERGY ||
+         kind == STRUT_SENSOR_CONTACT || kind == STRUT_SENSOR_PRESSURE ||
+         kind == STRUT_SENSOR_CONTACT_FORCE;
 }
 
 /** Operands of an operation. */

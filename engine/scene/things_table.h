@@ -334,6 +334,11 @@
   X(SENSOR, POSITION, "position", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_POSITION, REFERENCE(strut_sensor, item, NODE)), "The node whose position it senses [m], `along` x or y.") \
   X(SENSOR, VELOCITY, "velocity", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_VELOCITY, REFERENCE(strut_sensor, item, NODE)), "The node whose velocity it senses [m/s], `along` x or y.") \
   X(SENSOR, ENERGY, "energy", WORD, NONE, ANY, "", OPTIONAL, 7, "kinetic|elastic|total", CHOICE(strut_sensor, kind, STRUT_SENSOR_ENERGY, FIELD(strut_sensor, energy)), "The energy of the structure that it senses [J].") \
+  X(SENSOR, AREA, "area", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_AREA, REFERENCE(strut_sensor, item, CELL)), "The cell whose area it senses [m^2].") \
+  X(SENSOR, PRESSURE, "pressure", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_PRESSURE, REFERENCE(strut_sensor, item, CELL)), "The cell whose pressure it senses [N/m]; of a gas the absolute one.") \
+  X(SENSOR, DISTANCE, "distance", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_DISTANCE, REFERENCE(strut_sensor, item, DISTANCE)), "The distance that it senses [m].") \
+  X(SENSOR, CONTACT_FORCE, "contact_force", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_CONTACT_FORCE, REFERENCE(strut_sensor, item, NODE)), "The node whose force on the ground, normal to it, it senses [N]; on several grounds their sum.") \
+  X(SENSOR, COLLISION_FORCE, "collision_force", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_COLLISION_FORCE, REFERENCE(strut_sensor, item, COLLISION)), "The collision whose force it senses [N].") \
   X(SENSOR, ALONG, "along", WORD, NONE, ANY, "", OPTIONAL, 0, "x|y", BY_HAND, "Direction of a position or a velocity.")
 
 #define STRUT_STATE_FIELDS(X) \

@@ -9,7 +9,12 @@
 strut_dimension strut_sensor_dimension(strut_sensor_kind kind) {
   switch (kind) {
     case STRUT_SENSOR_LENGTH:
+    case STRUT_SENSOR_DISTANCE:
     case STRUT_SENSOR_POSITION: return STRUT_DIM_LENGTH;
+    case STRUT_SENSOR_AREA: return STRUT_DIM_AREA;
+    case STRUT_SENSOR_PRESSURE: return STRUT_DIM_STIFFNESS;
+    case STRUT_SENSOR_CONTACT_FORCE:
+    case STRUT_SENSOR_COLLISION_FORCE:
     case STRUT_SENSOR_FORCE: return STRUT_DIM_FORCE;
     case STRUT_SENSOR_ANGLE: return STRUT_DIM_ANGLE;
     case STRUT_SENSOR_VELOCITY: return STRUT_DIM_VELOCITY;
@@ -81,7 +86,8 @@ bool strut_read_sensor(strut_reader *reader, strut_fields *fields, strut_owner o
   if (!known)
     strut_report_error(reader, fields->key->place,
                        "sensor '%s' senses nothing; write one of length, force, angle, contact, "
-                       "position, velocity and energy, such as {length: MEMBER}",
+                       "position, velocity, energy, area, pressure, distance, contact_force and "
+                       "collision_force, such as {length: MEMBER}",
                        fields->key->text);
   else if (directed && along->state == STRUT_ABSENT)
     strut_report_error(reader, fields->key->place, "sensor '%s' needs 'along': x or y",

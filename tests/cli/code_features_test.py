@@ -355,6 +355,12 @@ FEATURES = {  # of the first member, and of the scene
     "energy": ("", loaded_by("{energy: kinetic}", "J")),
     "force": (", law: {kind: elastic_plastic, yield: 0.3}", loaded_by("{force: one}", "N")),
     "broken_force": (", breaks_at: 1, shortest: 0.98, stop_stiffness: 100", loaded_by("{force: one}", "N")),
+    "area": ("", loaded_by("{area: c}", "m^2", "cells: {c: {nodes: [a, b, d], stiffness: 3}}\n")),
+    "pressure": ("", loaded_by("{pressure: c}", "N/m", "cells: {c: {nodes: [a, b, d], gas: {kind: isothermal, "
+                               "pressure: 3, outside: 2}}}\n")),
+    "distance": ("", loaded_by("{distance: c}", "m", "distances: {c: {nodes: [b, d], along: 30 deg, stiffness: 3}}\n")),
+    "hit": ("", loaded_by("{collision_force: c}", "N", "collisions: {c: {node: d, member: one, thickness: 1.05, "
+                          "stiffness: 30}}\n")),
     "maxwell_force": (", maxwell: {stiffness: 3, time: 0.1 s}", loaded_by("{force: one}", "N")),
     "slides": ("", f"sliders: {{m: {{member: one, mass: 0.1, position: 50 %, moves: {WAVE}}}}}\n"),
     "turns": ("", GRAVITY + "sliders: {m: {member: one, mass: 0.1, position: 50 %, moves: {ramp: {amplitude: 0.1, "

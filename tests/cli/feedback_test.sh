@@ -583,8 +583,70 @@ out_has 'feedback           not counted in this frequency and these steps'
 expect 0 run pd.yaml
 out_has 'without feedback'
 
+# Sensors of cells, distances, contacts and collisions are the columns of the same things, all the way.
+cat >sensed.yaml <<'END'
+strut: 1
+gravity: [0, -9.81]
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: both}
+  top: {position: [0.5, 1], mass: 1}
+  ball: {position: [0.5, 1.1], mass: 0.3}
+members:
+  left: {kind: spring, nodes: [a, top], stiffness: 30, damping: 0.3}
+  right: {kind: spring, nodes: [b, top], stiffness: 30}
+cells: {air: {nodes: [a, b, top], gas: {kind: isothermal, pressure: 5 N/m, outside: 5 N/m}}}
+collisions: {hit: {nodes: [top, ball], thickness: 0.15, stiffness: 500, damping: 2}}
+distances: {wide: {nodes: [ball, top], along: x, stiffness: 3}}
+ground: {height: 0.93, stiffness: 200, damping: 3, friction: {law: none}, nodes: [top]}
+sensors:
+  area: {area: air}
+  p: {pressure: air}
+  d: {distance: wide}
+  c: {collision_force: hit}
+  n: {contact_force: top}
+signals:
+  lift: {expression: "(n + c + 0.1*p*(1 m))/(10 N) + rate(area)/(1 m^2/s) + rate(d)/(1 m/s)"}
+loads: {lift: {node: ball, force: [0.2 N, 1 N], signal: lift}}
+initial: {velocities: {ball: [0.1, 0], top: [0, 0.5]}}
+solver: {integrator: rk4, step: 0.1 ms}
+run:
+  duration: 1 s
+  measure:
+    quantities:
+      area: {of: abs(area/(1 m^2) - air.area/(1 m^2)), take: max}
+      p: {of: abs(p/(1 N/m) - air.pressure/(1 N/m)), take: max}
+      d: {of: abs(d/(1 m) - wide.distance/(1 m)), take: max}
+      c: {of: abs(c/(1 N) - hit.force/(1 N)), take: max}
+      n: {of: abs(n/(1 N) - top.normal/(1 N)), take: max}
+      pushed: {of: n, take: max}
+      hit: {of: c, take: max}
+      y: {of: ball.y, take: final}
+END
+expect 0 run sensed.yaml --json
+for what in area p d c n; do near ".measured.$what.value" 0 1e-12; done
+jq -e '.measured.pushed.value > 1 and .measured.hit.value > 1' out >/dev/null || fail "nothing touched"
+y=$(jq .measured.y.value out)
+for method in rk4-events adaptive verlet; do
+  expect 0 run sensed.yaml --integrator $method --json
+  near .measured.y.value "$y" 1e-4
+done
+# a load that lifts a weight from the ground as the ground pushes: it carries half of it
+cat >half.yaml <<'END'
+strut: 1
+gravity: [0, -10]
+nodes: {a: {position: [0, 0], mass: 2}}
+ground: {stiffness: 1000, damping: 50}
+sensors: {n: {contact_force: a}}
+loads: {lift: {node: a, force: [0, 1 N], signal: {expression: n/(1 N)}}}
+solver: {integrator: rk4, step: 0.1 ms}
+run: {duration: 3 s, measure: {quantities: {n: {of: n, take: final}}}}
+END
+expect 0 run half.yaml --json
+near .measured.n.value 10 1e-6
+
 # What is written reads back to the same run; statics, figures, sweeps and pages know such scenes.
-for scene in pd length force all lag oscillators sampled held pi free maxwell shaken starts; do
+for scene in pd length force all lag oscillators sampled held pi free maxwell shaken starts sensed half; do
   expect 0 run $scene.yaml --json
   jq 'del(.wall_time, .scene, .source)' out >first
   expect 0 write $scene.yaml

@@ -704,6 +704,16 @@ static long double sensor_value(const slow_world *w, const slow_instant *at,
         for (size_t k = 0; k < w->scene->node_count; k++)
           sum += m[i / 2][k] * at->v[i] * at->v[2 * k + i % 2] / 2;
       return sum;
+    case STRUT_SENSOR_CONTACT_FORCE:
+      for (size_t i = 0; i < w->scene->contact_count; i++) {
+        const touch k = touch_of(w, at, i);
+        if (w->scene->contacts[i].node == s->item) sum += normal_of(w, i, &k);
+      }
+      return sum;
+    case STRUT_SENSOR_AREA: /* as columns of cells, distances and collisions: tests/cli/feedback_test.sh */
+    case STRUT_SENSOR_PRESSURE:
+    case STRUT_SENSOR_DISTANCE:
+    case STRUT_SENSOR_COLLISION_FORCE:
     case STRUT_SENSOR_KINDS: break;
   }
   fail_msg("no such sensor");

@@ -56,6 +56,10 @@ strut_status strut_code_check(const strut_model *model, strut_error *error) {
   strut_unsupported_add(&r, (model->terms & STRUT_TERM_RIGID) != 0,
                         "bars: rigid (their forces follow from equations "
                         "that each step would solve; use bars: elastic)");
+  size_t pushed = 0;
+  for (size_t i = 0; i < s->sensor_count; i++)
+    pushed += s->sensors[i].kind == STRUT_SENSOR_CONTACT_FORCE;
+  strut_unsupported_add(&r, pushed, "sensors of contact forces");
   strut_unsupported_add(&r, count_rubbing(s), "friction at guides");
   add_unwritten_laws(&r, model->laws);
   strut_unsupported_add(&r, s->support_motion_count, "moves of nodes");

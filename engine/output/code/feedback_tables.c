@@ -105,8 +105,12 @@ static bool has_sensors(const strut_code_writer *w) {
 static bool has_sensed_length(const strut_code_writer *w) {
   return has_sensor(w, STRUT_SENSOR_LENGTH);
 }
-static bool has_sensed_angle(const strut_code_writer *w) {
-  return has_sensor(w, STRUT_SENSOR_ANGLE);
+static bool has_sensed_strain(const strut_code_writer *w) {
+  return has_sensor(w, STRUT_SENSOR_ANGLE) || has_sensor(w, STRUT_SENSOR_AREA) ||
+         has_sensor(w, STRUT_SENSOR_DISTANCE);
+}
+static bool has_sensed_push(const strut_code_writer *w) {
+  return has_sensor(w, STRUT_SENSOR_PRESSURE) || has_sensor(w, STRUT_SENSOR_COLLISION_FORCE);
 }
 
 const strut_code_condition strut_code_feedback_conditions[] = {
@@ -118,7 +122,8 @@ const strut_code_condition strut_code_feedback_conditions[] = {
     {"sensors", has_sensors},
     {"driven_sensors", has_driven_sensors},
     {"sensed_length", has_sensed_length},
-    {"sensed_angle", has_sensed_angle},
+    {"sensed_strain", has_sensed_strain},
+    {"sensed_push", has_sensed_push},
     {"samples", has_samples},
     {"starts", has_starts},
     {"relays", strut_code_has_relays},
@@ -188,6 +193,24 @@ static void add_energy_sensor(strut_code_writer *w, int32_t i, int32_t which) {
                                    "e.contact;\n");
 }
 
+/* The block of an element. */
+static int32_t block_of(const strut_code_writer *w, int32_t element) {
+  int32_t b = 0;
+  while (w->model->elements.block[b].end <= element) b++;
+  return b;
+}
+
+/* What the elements of a cell or a collision push with. */
+static void add_push_sensor(strut_code_writer *w, int32_t i, int32_t first) {
+  const strut_element_table *t = &w->model->elements;
+  begin_sensor(w, i);
+  strut_code_add_real(w, t->element[first].numbers.outside);
+  for (int32_t k = first; k < strut_element_end(t, first); k++)
+    strut_buffer_add(&w->text, " - force_of(s, &blocks[%d], %d, q, v)", (int)block_of(w, k),
+                     (int)k);
+  strut_buffer_add(&w->text, ";\n");
+}
+
 /* The lines that evaluate sensor i; of those without a rate that stays 0. */
 static void add_sensor(strut_code_writer *w, int32_t i) {
   strut_sensor_entry e = w->model->feedback.sensor[i];
@@ -197,10 +220,15 @@ static void add_sensor(strut_code_writer *w, int32_t i) {
       strut_buffer_add(&w->text, "  sense_length(s, %s_SENSOR_%s, %s_MEMBER_%s, q, v);\n", w->upper,
                        name, w->upper, w->members.name[e.at]);
       break;
+    case STRUT_SENSOR_AREA:
+    case STRUT_SENSOR_DISTANCE:
     case STRUT_SENSOR_ANGLE:
-      strut_buffer_add(&w->text, "  sense_angle(s, %s_SENSOR_%s, %d, q, v);\n", w->upper, name,
-                       e.at);
+      strut_buffer_add(&w->text, "  sense_strain(s, %s_SENSOR_%s, &blocks[%d], %d, q, v);\n",
+                       w->upper, name, (int)block_of(w, e.at), e.at);
       break;
+    case STRUT_SENSOR_PRESSURE:
+    case STRUT_SENSOR_COLLISION_FORCE: add_push_sensor(w, i, e.at); break;
+    case STRUT_SENSOR_CONTACT_FORCE: break; /* refused */
     case STRUT_SENSOR_CONTACT:
       begin_sensor(w, i);
       if (e.at < 0)
