@@ -136,6 +136,7 @@ typedef enum strut_sensitivity {
   X(EXP, 1, "exp", EXPONENTIAL)                                                                    \
   X(LOG, 1, "log", LOGARITHM)                                                                      \
   X(LOG10, 1, "log10", LOGARITHM)                                                                  \
+  X(TANH, 1, "tanh", BOUNDED)                                                                      \
   X(ABS, 1, "abs", SUM)                                                                            \
   X(MIN, 2, "min", SUM)                                                                            \
   X(MAX, 2, "max", SUM)                                                                            \

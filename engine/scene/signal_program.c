@@ -60,6 +60,7 @@ static dual combine(strut_operation operation, dual a, dual b) {
     case STRUT_OPERATION_EXP:
     case STRUT_OPERATION_LOG:
     case STRUT_OPERATION_LOG10:
+    case STRUT_OPERATION_TANH:
     case STRUT_OPERATION_ABS:
     case STRUT_OPERATION_FLOOR:
     case STRUT_OPERATION_CEIL:
@@ -87,6 +88,7 @@ static dual apply(strut_operation operation, dual a) {
     case STRUT_OPERATION_EXP: y = exp(x); return chain(y, y, a.rate);
     case STRUT_OPERATION_LOG: return chain(log(x), 1.0 / x, a.rate);
     case STRUT_OPERATION_LOG10: return chain(log10(x), 1.0 / (ten * x), a.rate);
+    case STRUT_OPERATION_TANH: y = tanh(x); return chain(y, 1.0 - y * y, a.rate);
     case STRUT_OPERATION_ABS: return (dual){fabs(x), x < 0.0 ? -a.rate : a.rate};
     case STRUT_OPERATION_FLOOR: return (dual){floor(x), 0.0};
     case STRUT_OPERATION_CEIL: return (dual){ceil(x), 0.0};

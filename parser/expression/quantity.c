@@ -46,6 +46,7 @@ static const strut_function functions[] = {
     {"exp", OF_NUMBER, 1, 1, exp, NULL, STRUT_OPERATION_EXP},
     {"log", OF_NUMBER, 1, 1, log, NULL, STRUT_OPERATION_LOG},
     {"log10", OF_NUMBER, 1, 1, log10, NULL, STRUT_OPERATION_LOG10},
+    {"tanh", OF_NUMBER, 1, 1, tanh, NULL, STRUT_OPERATION_TANH},
     {"abs", OF_ANY, 1, 1, fabs, NULL, STRUT_OPERATION_ABS},
     {"min", OF_LIKE, 2, STRUT_ARGUMENT_MOST, NULL, lesser, STRUT_OPERATION_MIN},
     {"max", OF_LIKE, 2, STRUT_ARGUMENT_MOST, NULL, greater, STRUT_OPERATION_MAX},

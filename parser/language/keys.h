@@ -123,6 +123,14 @@ typedef struct strut_controller {
   bool limited[2];
 } strut_controller;
 
+/** The object of the section `network`. */
+typedef struct strut_network {
+  const char *file;
+  int64_t output; /* from 1 */
+  uint32_t last;  /* 0: tanh, 1: linear */
+  double every;   /* [s] */
+} strut_network;
+
 /** The object of the section `oscillator`. */
 typedef struct strut_oscillator {
   double frequency, phase, bias; /* [Hz], [rad] */

@@ -108,6 +108,14 @@
   X(CONTROLLER, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_controller, every), "Time between samples; 0: the controller is continuous.") \
   X(CONTROLLER, KIND, "kind", WORD, NONE, ANY, "pid", OPTIONAL, 0, "pid|relay", NONE, "`relay`: the controller has the keys of a [relay](#relay) instead.")
 
+#define STRUT_NETWORK_KEYS(X) \
+  X(NETWORK, FILE, "network", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_network, file), "File of weights, in the folder of the scene or below: a line for each neuron, its weights for the values before it and last its bias, separated by commas; an empty line between layers.") \
+  X(NETWORK, INPUTS, "inputs", FREE, NONE, ANY, "", REQUIRED, 0, "a list of expressions without unit", BY_HAND, "What the first layer sees, such as `[l/(1 mm), touch]`.") \
+  X(NETWORK, OUTPUT, "output", NUMBER, NONE, WHOLE(1, 1000), "1", OPTIONAL, 0, "", FIELD(strut_network, output), "Which neuron of the last layer is the signal.") \
+  X(NETWORK, LAST, "last", WORD, NONE, ANY, "tanh", OPTIONAL, 0, "tanh|linear", FIELD(strut_network, last), "Function of the last layer; the others have tanh.") \
+  X(NETWORK, SCALE, "scale", NUMBER, CONTEXT, ANY, "1", OPTIONAL, 0, "", BY_HAND, "Factor of the signal, which gives it its unit.") \
+  X(NETWORK, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_network, every), "Time between samples; 0: the controller is continuous.")
+
 #define STRUT_STUDY_KEYS(X) \
   X(STUDY, VERSION, "strut", VERSION, NONE, ANY, "", REQUIRED, 0, "1", NONE, "Version of the language.") \
   X(STUDY, NAME, "study", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, name), "Name of the study.") \
@@ -299,6 +307,7 @@
   STRUT_OSCILLATOR_KEYS(X) \
   STRUT_CONTROLLER_KEYS(X) \
   STRUT_RELAY_FIELDS(X) \
+  STRUT_NETWORK_KEYS(X) \
   STRUT_MAXWELL_FIELDS(X) \
   STRUT_STARTS_FIELDS(X) \
   STRUT_CONFIGURATION_FIELDS(X) \
@@ -367,6 +376,7 @@
   X(OSCILLATOR, "oscillator", OSCILLATOR_FREQUENCY, "`oscillators: {NAME: {...}}`. The name is the phase, an angle, in expressions: `2 mm * sin(NAME)`. `strut write` shows oscillators as states.") \
   X(CONTROLLER, "controller", CONTROLLER_SENSOR, "`controllers: {NAME: {...}}`. The integral is the state `NAME_integral`. `strut write` shows PID controllers as signals and states.") \
   X(RELAY, "relay", RELAY_KIND, "`controllers: {NAME: {kind: relay, ...}}`: a signal with two values. Either `on_above` and `off_below`, or `on_below` and `off_above`.") \
+  X(NETWORK, "network", NETWORK_FILE, "`controllers: {NAME: {network: FILE, ...}}`: a signal from a neural network. Its neurons are signals `NAME_1_1` and so on; `strut write` shows them.") \
   X(MAXWELL, "maxwell", MAXWELL_STIFFNESS, "`members: {NAME: {maxwell: {...}}}`: the force of the branch follows F' = k (u' - F/c), with the rate u' of the elongation. In statics it has relaxed to 0.") \
   X(STARTS, "starts", STARTS_CONTACT, "`{sine: {...}, starts: {...}}` of any signal: the touchdown of a node, or a sensor that passes a level.") \
   X(CONFIGURATION, "configuration", CONFIGURATION_CONTACTS, "`configurations: {NAME: {NODE: [x, y], ...}}`, or `configurations: {NAME: {...}}` with these keys. `{}` is the drawn shape. If a node is called `contacts`, that key followed by two plain values is its position.") \

@@ -4,48 +4,8 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "parser/read/program_builder.h"
 #include "parser/read/reader.h"
-
-/* A program under construction. */
-typedef struct builder {
-  strut_reader *reader;
-  strut_instruction *code; /* in the scene's memory */
-  size_t length, room, stacked, most;
-} builder;
-
-static bool begin_program(strut_reader *reader, size_t room, builder *b) {
-  *b = (builder){.reader = reader, .room = room};
-  b->code = strut_reader_allocate(reader, &reader->scene->arena, room, sizeof *b->code);
-  return b->code != NULL;
-}
-
-static void put(builder *b, strut_instruction p) {
-  if (b->length == b->room) return;
-  b->code[b->length++] = p;
-  b->stacked += 1 - (size_t)strut_operation_operands(p.operation);
-  if (b->stacked > b->most) b->most = b->stacked;
-}
-
-static void put_number(builder *b, double number, strut_dimension dimension) {
-  char unit[STRUT_SUFFIX_TEXT];
-  strut_dimension_suffix(dimension, unit, sizeof unit);
-  put(b, (strut_instruction){.operation = STRUT_OPERATION_NUMBER,
-                             .number = number,
-                             .unit = *unit ? strut_keep_text(b->reader, unit) : NULL});
-}
-
-static void put_column(builder *b, strut_column_kind kind, int32_t item) {
-  put(b, (strut_instruction){.operation = STRUT_OPERATION_COLUMN,
-                             .column = {.kind = kind, .item = item, .other = -1}});
-}
-
-static void put_operation(builder *b, strut_operation operation) {
-  put(b, (strut_instruction){.operation = operation});
-}
-
-static strut_program end_program(const builder *b) {
-  return (strut_program){.length = b->length, .depth = b->most, .instruction = b->code};
-}
 
 /* ---- oscillators ---- */
 
@@ -380,5 +340,8 @@ static int32_t read_relay(strut_reader *reader, const strut_tree *key) {
 
 /* Without a known `kind` it is read as a PID controller, which reports the kind. */
 int32_t strut_read_controller(strut_reader *reader, const strut_tree *key) {
-  return strut_is_relay(key->next) ? read_relay(reader, key) : read_pid(reader, key);
+  const strut_tree *map = key->next;
+  if (map->kind == STRUT_TREE_MAP && strut_tree_find(map, "network", NULL))
+    return strut_read_network(reader, key);
+  return strut_is_relay(map) ? read_relay(reader, key) : read_pid(reader, key);
 }

@@ -485,6 +485,7 @@ int32_t strut_add_controller_signal(strut_reader *reader, const strut_tree *key,
 int32_t strut_read_controller(strut_reader *reader, const strut_tree *key);
 /** Is the controller a relay? */
 bool strut_is_relay(const strut_tree *map);
+int32_t strut_read_network(strut_reader *reader, const strut_tree *key);
 /** An expression of the time, sensors and signals; in the scene's memory. */
 bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
                                strut_owner owner, strut_program *program, strut_quantity *q);

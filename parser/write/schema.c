@@ -225,7 +225,16 @@ static void put_controller(schema *s) {
   put_section(s, STRUT_SECTION_RELAY);
   close_object(s);
   open_object(s, "else");
+  open_object(s, "if");
+  put_member(s, "type", "\"object\"");
+  put_member(s, "required", "[\"network\"]");
+  close_object(s);
+  open_object(s, "then");
+  put_section(s, STRUT_SECTION_NETWORK);
+  close_object(s);
+  open_object(s, "else");
   put_section(s, STRUT_SECTION_CONTROLLER);
+  close_object(s);
   close_object(s);
 }
 
@@ -283,6 +292,8 @@ static void put_free(schema *s, const strut_key *key) {
     put_either(s, "array", put_two_next, put_next);
   else if (strcmp(key->name, "closed") == 0)
     put_either(s, "object", put_names_of_things, put_switch);
+  else if (strcmp(key->name, "inputs") == 0)
+    put_list(s, 1, 0, put_scalar);
   else if (strcmp(key->name, "lattice") == 0) {
     put_member(s, "type", "\"array\"");
     open_object(s, "items");

@@ -645,8 +645,66 @@ END
 expect 0 run half.yaml --json
 near .measured.n.value 10 1e-6
 
+# A network is its formula.
+cat >brain.csv <<'END'
+# two inputs, two neurons with their biases
+0.5, -1.2, 0.1
+0.8, 0.3 ,-0.4
+
+# two outputs
+1.5, -0.7, 0
+-0.3,0.9,0.2
+END
+cat >brain.yaml <<'END'
+strut: 1
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
+members: {m: {nodes: [a, b], kind: spring, stiffness: 40 N/m, damping: 0.1 N s/m}}
+sensors: {l: {length: m}, v: {velocity: b, along: x}}
+signals:
+  one: {expression: "tanh(0.5*l/(1 m) - 1.2*v/(1 m/s) + 0.1)"}
+  two: {expression: "tanh(0.8*l/(1 m) + 0.3*v/(1 m/s) - 0.4)"}
+controllers:
+  push: {network: brain.csv, inputs: [l/(1 m), v/(1 m/s)], scale: 3 N}
+  pull: {network: brain.csv, inputs: [l/(1 m), v/(1 m/s)], output: 2, last: linear, scale: 2 N}
+actuators: {push: {member: m, force: push}, pull: {member: m, force: pull}}
+initial: {velocities: {b: [1, 0]}}
+solver: {integrator: rk4, step: 1 ms}
+run:
+  duration: 2 s
+  measure:
+    quantities:
+      push: {of: "abs(push/(1 N) - 3*tanh(1.5*one - 0.7*two))", take: max}
+      pull: {of: "abs(pull/(2 N) - (0.9*two - 0.3*one + 0.2))", take: max}
+      x: {of: b.x, take: final}
+END
+expect 0 run brain.yaml --json
+near .measured.push.value 0 1e-12
+near .measured.pull.value 0 1e-12
+x=$(jq .measured.x.value out)
+for method in rk4-events adaptive verlet; do
+  expect 0 run brain.yaml --integrator $method --json
+  near .measured.x.value "$x" 1e-4
+done
+broken() { # CSV of the first layer, message
+  printf '%s\n' "$1" >brain.csv
+  expect 2 check brain.yaml
+  err_has "$2"
+}
+cp brain.csv whole.csv
+broken '0.5, -1.2' "line 1: 2 numbers, expected 3: a weight for each of 2 values, and a bias"
+broken '0.5, -1.2, x' "line 1: expected a number, found x"
+broken '' "there is no neuron in this file"
+broken '1, 2, 3' "controller 'pull' is output 2 of a network that has 1"
+rm brain.csv
+expect 2 check brain.yaml
+err_has "brain.csv"
+cp whole.csv brain.csv
+sed 's/inputs: .l.(1 m), /inputs: [l, /' brain.yaml >units.yaml
+expect 2 check units.yaml
+err_has "expected a number without unit for 'inputs' of controller 'push', found a length"
+
 # What is written reads back to the same run; statics, figures, sweeps and pages know such scenes.
-for scene in pd length force all lag oscillators sampled held pi free maxwell shaken starts sensed half; do
+for scene in pd length force all lag oscillators sampled held pi free maxwell shaken starts sensed half brain; do
   expect 0 run $scene.yaml --json
   jq 'del(.wall_time, .scene, .source)' out >first
   expect 0 write $scene.yaml

@@ -188,7 +188,8 @@ def keys_of(node):
             yield from keys_of(item)
     elif isinstance(node, yaml.MappingNode):
         for key, value in node.value:
-            yield key
+            if value.value != "remove":  # whether there is such a thing the schema cannot know
+                yield key
             yield from keys_of(value)
 
 

@@ -43,9 +43,9 @@ static long double call(const char *name, const long double *x, int count) {
   static const struct {
     const char *name;
     long double (*of)(long double);
-  } one[] = {{"sin", sinl},   {"cos", cosl},     {"tan", tanl}, {"asin", asinl},
-             {"acos", acosl}, {"atan", atanl},   {"exp", expl}, {"log", logl},
-             {"sqrt", sqrtl}, {"log10", log10l}, {"abs", fabsl}};
+  } one[] = {{"sin", sinl},   {"cos", cosl},     {"tan", tanl},   {"asin", asinl},
+             {"acos", acosl}, {"atan", atanl},   {"exp", expl},   {"log", logl},
+             {"sqrt", sqrtl}, {"log10", log10l}, {"tanh", tanhl}, {"abs", fabsl}};
   for (size_t i = 0; i < sizeof one / sizeof one[0] && count == 1; i++)
     if (!strcmp(name, one[i].name)) return one[i].of(x[0]);
   if (!strcmp(name, "min") && count == 2) return x[0] < x[1] ? x[0] : x[1];

@@ -66,6 +66,7 @@ static const struct exception {
     {STRUT_SECTION_QUANTITY, "target", "in the expression's unit"},
     {STRUT_SECTION_STUDY, "model", "a path, from the study's folder"},
     {STRUT_SECTION_STATE, "start", "its unit is that of the state"},
+    {STRUT_SECTION_NETWORK, "scale", "gives the signal its unit"},
     {STRUT_SECTION_RELAY, "every", "of the signal that the relay is"},
     {STRUT_SECTION_POINTS, "file", "a path, from the study's folder"},
     {STRUT_SECTION_RANGE, "count", "chooses the kind of range"},

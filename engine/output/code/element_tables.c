@@ -428,6 +428,7 @@ static operation_name name_of(strut_operation operation) {
     case STRUT_OPERATION_EXP: return (operation_name){"exp", "dual_exp", true};
     case STRUT_OPERATION_LOG: return (operation_name){"log", "dual_log", true};
     case STRUT_OPERATION_LOG10: return (operation_name){"log10", "dual_log10", true};
+    case STRUT_OPERATION_TANH: return (operation_name){"tanh", "dual_tanh", true};
     case STRUT_OPERATION_ABS: return (operation_name){"abs", "dual_abs", false};
     case STRUT_OPERATION_MIN: return (operation_name){"min", "least", false};
     case STRUT_OPERATION_MAX: return (operation_name){"max", "most", false};

@@ -27,6 +27,7 @@ static double apply_operation(strut_operation operation, double a, double b) {
     case STRUT_OPERATION_EXP: return exp(a);
     case STRUT_OPERATION_LOG: return log(a);
     case STRUT_OPERATION_LOG10: return log10(a);
+    case STRUT_OPERATION_TANH: return tanh(a);
     case STRUT_OPERATION_ABS: return fabs(a);
     case STRUT_OPERATION_MIN: return b < a ? b : a;
     case STRUT_OPERATION_MAX: return b > a ? b : a;
