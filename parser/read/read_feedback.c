@@ -134,7 +134,8 @@ int strut_find_sensor_rate(strut_reader *reader, strut_piece piece, strut_column
   }
   if (i >= 0)
     snprintf(refusal->text, sizeof refusal->text,
-             "the rate of sensor '%s' is not known, only those of lengths, angles and positions",
+             "the rate of sensor '%s' is not known, only those of lengths, angles, positions, "
+             "areas and distances",
              name);
   else
     snprintf(refusal->text, sizeof refusal->text, "unknown sensor '%.*s'%s",

@@ -389,8 +389,7 @@ bool strut_read_cell(strut_reader *reader, strut_fields *fields, strut_owner own
                             STRUT_KEY_CELL_REST_AREA};
   const strut_slot *elastic = NULL;
   for (size_t k = 0; k < sizeof own / sizeof own[0] && !elastic; k++)
-    if (strut_slot_of(fields, own[k])->state != STRUT_ABSENT)
-      elastic = strut_slot_of(fields, own[k]);
+    if (strut_slot_of(fields, own[k])->key) elastic = strut_slot_of(fields, own[k]);
   bool other = gas->state != STRUT_ABSENT || pressure->state != STRUT_ABSENT;
   if (elastic && other) {
     strut_report_error(reader, elastic->key->place,
