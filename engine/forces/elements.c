@@ -10,27 +10,27 @@
 #include "engine/forces/strains/along.h"
 #include "engine/forces/strains/angle.h"
 #include "engine/forces/strains/area.h"
+#include "engine/forces/strains/foot.h"
 #include "engine/forces/strains/path.h"
 #include "engine/forces/strains/reach.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/pose.h"
 
-/* The number that the function of a strain takes beside the positions. */
-#define STRUT_REFERENCE_TURN (void)e, turn
-#define STRUT_REFERENCE_AXIS (void)turn, e->axis
-#define STRUT_REFERENCE_ROW(NAME, name, unit, reference, ...)                                      \
-  static inline double reference_##name(const strut_element *e, double turn) {                     \
-    return STRUT_REFERENCE_##reference;                                                            \
-  }
-STRUT_STRAINS(STRUT_REFERENCE_ROW, )
+/* The numbers that the function of a strain takes beside the positions, and those of its second derivative. */
+#define STRUT_REFERENCE_TURN(e, turn) turn
+#define STRUT_REFERENCE_AXIS(e, turn) (e)->axis
+#define STRUT_REFERENCE_ARC(e, turn) (e)->axis, (e)->radius
+#define STRUT_BEND_TURN(e)
+#define STRUT_BEND_AXIS(e)
+#define STRUT_BEND_ARC(e) (e)->axis, (e)->radius,
 
 /* Strain and gradient. */
 static double strain_of(const strut_element *e, const uint32_t *at, const double *q, double turn,
                         double *b) {
   switch (e->strain) {
-#define STRUT_CASE(NAME, name, ...)                                                                \
+#define STRUT_CASE(NAME, name, unit, reference, ...)                                               \
   case STRUT_STRAIN_##NAME:                                                                        \
-    return strut_strain_##name(at, e->nodes, q, reference_##name(e, turn), b);
+    return strut_strain_##name(at, e->nodes, q, STRUT_REFERENCE_##reference(e, turn), b);
     STRUT_STRAINS(STRUT_CASE, )
 #undef STRUT_CASE
     case STRUT_STRAIN_COUNT: break;
@@ -50,8 +50,10 @@ void strut_element_bend(const strut_model *model, int32_t element, const double 
   const strut_element *e = &model->elements.element[element];
   const uint32_t *at = model->elements.at + e->first;
   switch (e->strain) {
-#define STRUT_CASE(NAME, name, ...)                                                                \
-  case STRUT_STRAIN_##NAME: strut_strain_##name##_bend(at, e->nodes, q, t, h); return;
+#define STRUT_CASE(NAME, name, unit, reference, ...)                                               \
+  case STRUT_STRAIN_##NAME:                                                                        \
+    strut_strain_##name##_bend(at, e->nodes, q, STRUT_BEND_##reference(e) t, h);                   \
+    return;
     STRUT_STRAINS(STRUT_CASE, )
 #undef STRUT_CASE
     case STRUT_STRAIN_COUNT: break;
@@ -132,7 +134,7 @@ void strut_elements_visit(const strut_model *model, const double *rest, const do
     const strut_element *e = &model->elements.element[i];
     strut_element_evaluate(model, i, rest, q, (double)NAN, &pose);
     bool stop = e->role == STRUT_ELEMENT_LONGEST || e->role == STRUT_ELEMENT_SHORTEST ||
-                e->role == STRUT_ELEMENT_COLLISION;
+                e->role == STRUT_ELEMENT_COLLISION || e->role == STRUT_ELEMENT_FOOT;
     if (stops && stop && !pose.acts) {
       pose.acts = true;
       pose.slope = e->numbers.stiffness;
@@ -198,7 +200,7 @@ static inline void add_powers(strut_state *state, const exertion *x, double rest
 }
 
 /* One element; `strain` and `law` are inlined, so that a block's loop tests neither. */
-#define STRUT_ADD_ELEMENT(strain_name, law_name)                                                   \
+#define STRUT_ADD_ELEMENT(strain_name, law_name, reference)                                        \
   static void add_##strain_name##_##law_name(const strut_model *model, strut_state *state,         \
                                              const strut_element_block *block, const double *q,    \
                                              const double *v, double *force) {                     \
@@ -208,7 +210,7 @@ static inline void add_powers(strut_state *state, const exertion *x, double rest
       const uint32_t *at = t->at + e->first;                                                       \
       double b[STRUT_MOST_GRADIENT], rate = 0.0;                                                   \
       double strain = strut_strain_##strain_name(                                                  \
-          at, e->nodes, q, reference_##strain_name(e, state->latest.element_turn[i]), b);          \
+          at, e->nodes, q, STRUT_REFERENCE_##reference(e, state->latest.element_turn[i]), b);      \
       double natural = strut_element_natural(e, state->latest.rest);                               \
       double rest_rate = e->slot >= 0 ? state->latest.rest_rate[e->slot] : 0.0;                    \
       state->latest.element_turn[i] = strain;                                                      \
@@ -226,8 +228,13 @@ static inline void add_powers(strut_state *state, const exertion *x, double rest
     }                                                                                              \
   }
 
-#define STRUT_ADD_CELL(LAW, law, word, needs, strain) STRUT_ADD_ELEMENT(strain, law)
-#define STRUT_ADD_ROW(NAME, name, ...) STRUT_ALL_LAWS(STRUT_ADD_CELL, name)
+#define STRUT_ADD_CELL(LAW, law, word, needs, context) STRUT_ADD_ELEMENT_OF(context, law)
+#define STRUT_ADD_ELEMENT_OF(context, law) STRUT_ADD_ELEMENT_WITH(STRUT_UNPACK context, law)
+#define STRUT_ADD_ELEMENT_WITH(...) STRUT_ADD_ELEMENT_IN_ORDER(__VA_ARGS__)
+#define STRUT_ADD_ELEMENT_IN_ORDER(strain, reference, law) STRUT_ADD_ELEMENT(strain, law, reference)
+#define STRUT_UNPACK(...) __VA_ARGS__
+#define STRUT_ADD_ROW(NAME, name, unit, reference, ...)                                            \
+  STRUT_ALL_LAWS(STRUT_ADD_CELL, (name, reference))
 STRUT_STRAINS(STRUT_ADD_ROW, )
 
 STRUT_CLONES

@@ -3,6 +3,7 @@
 #include <assert.h>
 
 #include "engine/forces/drives.h"
+#include "engine/forces/feet.h"
 #include "engine/forces/forces_kernel.h"
 #include "engine/forces/history.h"
 #include "engine/forces/mass_damping.h"
@@ -18,6 +19,7 @@ void strut_forces_add_rare(const strut_model *model, strut_state *state, double 
   if (terms & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);
   if (terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_apply(model, state, t, q, v);
   if (terms & STRUT_TERM_SUPPORT_MOTION) strut_support_motion_apply(model, state, t, v);
+  if (terms & STRUT_TERM_FEET) strut_feet_add_forces(model, state, q, v);
 }
 
 STRUT_CLONES
@@ -35,6 +37,7 @@ void strut_forces_evaluate(const strut_model *model, strut_state *state, double 
     state->latest.normal[i] = state->latest.friction[i] =
         0.0; /* the sum fills those that touch, and only them */
   sum_once(model, state, t, q, v);
+  if (model->feet.count) strut_feet_show(model, state, q, v);
   if (state->rigid) strut_rigid_constrain(model, state, q, v);
 }
 
@@ -44,6 +47,7 @@ bool strut_forces_show_held(const strut_model *model, strut_state *state) {
     state->latest.normal[i] = state->modes.held_normal[i];
     state->latest.friction[i] = state->modes.held_friction[i];
   }
+  if (model->feet.count) strut_feet_show(model, state, state->q, state->v);
   return true;
 }
 

@@ -2,6 +2,7 @@
 #include "engine/forces/tangent.h"
 
 #include "engine/forces/capstan.h"
+#include "engine/forces/feet.h"
 
 #include <assert.h>
 
@@ -202,6 +203,17 @@ static void add_maxwell(assembly *a, const double *rest) {
   }
 }
 
+/* Friction of feet that rest, as far as it is a damper. */
+static void add_feet(assembly *a) {
+  for (int32_t i = 0; i < a->model->feet.count; i++) {
+    const strut_foot_entry *f = &a->model->feet.item[i];
+    double b[4], k[16], slide = strut_friction_slope(&f->friction, resting_force(a->model));
+    strut_foot_slide(a->model, i, a->q, b);
+    for (int r = 0; r < 16; r++) k[r] = slide * b[r / 4] * b[r % 4];
+    strut_element_add(a->model, f->element, k, a->row_of, &a->damping);
+  }
+}
+
 /*
  * Contributions that are in memory at once: they take three times as much as the matrix that they add up to.
  * More are visited again for each stretch of columns.
@@ -217,6 +229,7 @@ static void collect_columns(assembly *a, const double *rest, strut_closed closed
   strut_tangent_visit(a->model, a->q, rest, -HUGE_VAL, closed, a, add_member, add_element,
                       add_contact);
   if (a->stiffest) add_maxwell(a, rest);
+  if (a->stiffest) add_feet(a);
   strut_mass_damping_add(a->model, a->row_of, &a->damping);
 }
 
@@ -254,7 +267,8 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
   bool resting = closed == STRUT_CLOSED_ALL || closed == STRUT_CLOSED_UNDAMPED;
   size_t both = (size_t)model->length;
   size_t most = strut_tangent_entries(model, true) + strut_mass_damping_entries(model) +
-                STRUT_MEMBER_ENTRIES * (size_t)model->feedback.maxwell_count;
+                STRUT_MEMBER_ENTRIES * (size_t)model->feedback.maxwell_count +
+                STRUT_MEMBER_ENTRIES * (size_t)model->feet.count;
   int32_t *row_of = strut_arena_allocate(&scratch, both, sizeof *row_of);
   assembly a = {
       .model = model, .q = q, .row_of = row_of, .undamped = closed == STRUT_CLOSED_UNDAMPED};

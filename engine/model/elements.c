@@ -94,6 +94,8 @@ static void count_elements(const strut_scene *scene, const uint8_t *reeled, size
   *nodes = 3 * scene->hinge_count;
   for (size_t i = 0; i < scene->cell_count; i++) *nodes += scene->cells[i].node_count;
   *elements += MOST_PAIRS * scene->collision_count + scene->distance_count;
+  for (size_t i = 0; i < scene->contact_count && scene->foot_count; i++)
+    if (strut_foot_of_contact(scene, i) >= 0) ++*elements, *nodes += 2;
   *nodes += 3 * (MOST_PAIRS * scene->collision_count + scene->distance_count);
   for (size_t j = 0; j < scene->member_count; j++) {
     size_t own = elements_of_member(&scene->members[j], reeled && reeled[j]);
@@ -408,6 +410,30 @@ static void add_distance(compilation *c, size_t i) {
   if (yields(&d->law)) remember(c, e);
 }
 
+/* A foot presses as its node's contacts say; strut_feet_compile places it on their grounds. */
+static void add_feet(compilation *c) {
+  const strut_scene *scene = c->model->scene;
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    int32_t k = strut_foot_of_contact(scene, i);
+    if (k < 0) continue;
+    const strut_foot *foot = &scene->feet[k];
+    const strut_member *m = &scene->members[foot->member];
+    strut_element *e =
+        add_element(c, (strut_element){.strain = STRUT_STRAIN_FOOT,
+                                       .law = STRUT_LAW_LINEAR,
+                                       .role = STRUT_ELEMENT_FOOT,
+                                       .item = k,
+                                       .slot = -1,
+                                       .carries = -1,
+                                       .contact = (int32_t)i,
+                                       .radius = foot->radius,
+                                       .damping = scene->contacts[i].damping,
+                                       .numbers.stiffness = scene->contacts[i].stiffness});
+    add_node(c, e, foot->node);
+    add_node(c, e, m->node[m->node[0] == foot->node]);
+  }
+}
+
 /* Blocks of one strain and one law, in the tables' order; in a block the scene's order. */
 static bool sort_elements(compilation *c, strut_element_table *t) {
   strut_arena *arena = &c->model->arena;
@@ -540,6 +566,7 @@ static bool compile(strut_model *model, const uint8_t *reeled) {
   for (size_t i = 0; i < scene->cell_count; i++) add_cell(&c, i);
   for (size_t i = 0; i < scene->collision_count; i++) add_collision(&c, i);
   for (size_t i = 0; i < scene->distance_count; i++) add_distance(&c, i);
+  if (scene->foot_count) add_feet(&c);
   assert(c.count <= (int32_t)elements && c.nodes <= (int32_t)nodes);
   model->elements.at = c.at;
   model->terms |= STRUT_TERM_ELEMENTS;

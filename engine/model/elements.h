@@ -18,8 +18,9 @@
 #include "engine/scene/things.h"
 
 /**
- * The strains: X(NAME, name, unit, reference, context); context is passed on. reference: the number that its
- * function takes beside the positions: TURN, the strain before, or AXIS, the element's direction.
+ * The strains: X(NAME, name, unit, reference, context); context is passed on. reference: the numbers that its
+ * function takes beside the positions: TURN, the strain before, AXIS, the element's direction, or ARC, that and
+ * its radius.
  */
 #define STRUT_STRAINS(X, context)                                                                  \
   X(LENGTH, length, "m", TURN, context)                                                            \
@@ -28,7 +29,8 @@
   X(AREA, area, "m^2", TURN, context)                                                              \
   X(REACH, reach, "m", TURN, context)                                                              \
   X(ALONG, along, "m", AXIS, context)                                                              \
-  X(OFFSET, offset, "m", TURN, context)
+  X(OFFSET, offset, "m", TURN, context)                                                            \
+  X(FOOT, foot, "m", ARC, context)
 
 typedef enum strut_strain_kind {
 #define STRUT_STRAIN_ROW(NAME, ...) STRUT_STRAIN_##NAME,
@@ -55,7 +57,8 @@ typedef enum strut_element_role {
   STRUT_ELEMENT_HINGE,    /* the moment of a hinge */
   STRUT_ELEMENT_CELL,     /* the pressure in a cell */
   STRUT_ELEMENT_COLLISION, /* what two bodies exert on each other; of two members it has four elements */
-  STRUT_ELEMENT_DISTANCE /* the force of a distance */
+  STRUT_ELEMENT_DISTANCE, /* the force of a distance */
+  STRUT_ELEMENT_FOOT      /* what a ground presses a foot with */
 } strut_element_role;
 
 typedef struct strut_element {
@@ -67,6 +70,8 @@ typedef struct strut_element {
   int32_t slot;         /* index of its natural strain in arrays of rest lengths; -1: fixed */
   double natural;       /* natural strain where there is no slot */
   double axis;          /* of the strain `along`: tangent of half the angle of its direction */
+  double radius;        /* of the strain `foot` [m] */
+  int32_t contact;      /* of a foot: that of its node with the ground */
   int32_t place;        /* of its (2 nodes) (2 nodes + 1) / 2 entries among those of all elements */
   int32_t sibling;      /* the next element of the same member, or -1 */
   int8_t carries;       /* 1 tension only, -1 compression only, 0 both; only beyond e0 */
@@ -166,6 +171,7 @@ static inline strut_thing strut_element_thing(strut_element_role role) {
     case STRUT_ELEMENT_CELL: return STRUT_THING_CELL;
     case STRUT_ELEMENT_COLLISION: return STRUT_THING_COLLISION;
     case STRUT_ELEMENT_DISTANCE: return STRUT_THING_DISTANCE;
+    case STRUT_ELEMENT_FOOT: return STRUT_THING_FOOT;
     case STRUT_ELEMENT_MEMBER:
     case STRUT_ELEMENT_LONGEST:
     case STRUT_ELEMENT_SHORTEST: break;

@@ -13,7 +13,7 @@ typedef struct strut_cost_term {
   bool in;
 } strut_cost_term;
 
-enum { STRUT_COST_TERMS = 25 };
+enum { STRUT_COST_TERMS = 26 };
 
 typedef struct strut_cost_estimate {
   struct {

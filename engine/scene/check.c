@@ -390,14 +390,11 @@ void strut_check_use(strut_checker *checker) {
 strut_status strut_setup_check(const strut_setup *setup, strut_purpose purpose,
                                strut_findings *findings) {
   static void (*const rules[])(strut_checker *) = {
-      strut_check_names,     strut_check_nodes,
-      strut_check_members,   strut_check_hinges,
-      strut_check_cells,     strut_check_collisions,
-      strut_check_distances, strut_check_use,
-      strut_check_sensors,   strut_check_states,
-      strut_check_signals,   strut_check_ground,
-      strut_check_drives,    strut_check_sliding_masses,
-      strut_check_shapes,    strut_check_experiment};
+      strut_check_names,     strut_check_nodes,      strut_check_members,        strut_check_hinges,
+      strut_check_cells,     strut_check_collisions, strut_check_distances,      strut_check_use,
+      strut_check_sensors,   strut_check_states,     strut_check_signals,        strut_check_ground,
+      strut_check_feet,      strut_check_drives,     strut_check_sliding_masses, strut_check_shapes,
+      strut_check_experiment};
   const strut_scene *scene = &setup->scene;
   const strut_experiment *e = &setup->experiment;
   bool runs = e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0;

@@ -212,6 +212,87 @@ void strut_check_ground(strut_checker *checker) {
   strut_release(pieces);
 }
 
+/* ---- feet ---- */
+
+/* What keeps contact i of a foot from rolling, or NULL. */
+static const char *fault_of_ground(const strut_scene *scene, const strut_contact *c) {
+  const strut_ground *g = scene->ground_count ? &scene->grounds[c->ground] : &scene->ground;
+  const strut_friction *f = &c->friction;
+  return g->shape != STRUT_GROUND_LINE ? "rolls on straight grounds only, and '%s' is none"
+         : g->moves[0] || g->moves[1]  ? "rolls on grounds at rest only, and '%s' is shaken"
+         : g->damping_law != STRUT_DAMPING_APPROACH
+             ? "has no dissipation of Hunt and Crossley, as ground '%s' wants it"
+         : f->law == STRUT_FRICTION_COULOMB
+             ? "has no friction that sticks exactly, as ground '%s' wants it; use karnopp or smooth"
+         : f->law != STRUT_FRICTION_NONE && f->directional
+             ? "has the same friction in both directions, unlike ground '%s'"
+             : NULL;
+}
+
+static bool check_foot(strut_checker *checker, size_t index, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const strut_foot *f = &scene->feet[index];
+  if (!strut_exists(f->member, scene->member_count) || !strut_exists(f->node, scene->node_count)) {
+    strut_report_finding(checker, STRUT_ON_FOOT, index, "member",
+                         "%s is at a member or a node that does not exist", owner);
+    return false;
+  }
+  const strut_member *m = &scene->members[f->member];
+  const char *member = m->name, *node = scene->nodes[f->node].name;
+  double length =
+      strut_distance(scene->nodes[m->node[0]].position, scene->nodes[m->node[1]].position);
+  if (m->node[0] != f->node && m->node[1] != f->node)
+    strut_report_finding(checker, STRUT_ON_FOOT, index, "node",
+                         "%s is at node '%s', which is no end of member '%s'", owner, node, member);
+  else if (m->guide_count)
+    strut_report_finding(checker, STRUT_ON_FOOT, index, "member",
+                         "%s is at a running cable; a foot needs a straight member", owner);
+  else if (!(f->radius < length))
+    strut_report_finding(checker, STRUT_ON_FOOT, index, "radius",
+                         "%s has a radius of %g m, more than member '%s' is long (%g m)", owner,
+                         f->radius, member, length);
+  else
+    return true;
+  return false;
+}
+
+void strut_check_feet(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  for (size_t i = 0; i < scene->foot_count; i++) {
+    const strut_foot *f = &scene->feet[i];
+    bool touches = false;
+    char owner[200];
+    strut_format_name(owner, "foot", f->name, i);
+    const strut_checked whose = {STRUT_ON_FOOT, i, owner, NULL};
+    if (!strut_check_fields(checker, &whose, STRUT_FIELDS_FOOT, f, NULL) ||
+        !check_foot(checker, i, owner))
+      continue;
+    for (size_t k = 0; k < i; k++)
+      if (scene->feet[k].node == f->node)
+        strut_report_finding(checker, STRUT_ON_FOOT, i, "node",
+                             "node '%s' has a foot already, '%s'", scene->nodes[f->node].name,
+                             scene->feet[k].name);
+    for (size_t k = 0; k < scene->contact_count; k++) {
+      const strut_contact *c = &scene->contacts[k];
+      if (c->node != f->node) continue;
+      const char *fault = fault_of_ground(scene, c);
+      touches = true;
+      if (!fault) continue;
+      const char *name = scene->ground_count ? scene->grounds[c->ground].name : "ground";
+      char what[240];
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+      snprintf(what, sizeof what, fault, name);
+#pragma GCC diagnostic pop
+      strut_report_finding(checker, STRUT_ON_FOOT, i, NULL, "%s %s", owner, what);
+    }
+    if (!touches)
+      strut_report_finding(checker, STRUT_ON_FOOT, i, "node",
+                           "%s is at node '%s', which may touch no ground", owner,
+                           scene->nodes[f->node].name);
+  }
+}
+
 /* ---- configurations and the search for equilibria ---- */
 
 /* State for checking sets of contact nodes. */

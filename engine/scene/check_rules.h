@@ -63,6 +63,7 @@ void strut_check_hinges(strut_checker *checker);
 void strut_check_cells(strut_checker *checker);
 void strut_check_collisions(strut_checker *checker);
 void strut_check_distances(strut_checker *checker);
+void strut_check_feet(strut_checker *checker);
 void strut_warn_of_overlaps(strut_checker *checker);
 /** After the signals. */
 void strut_check_sliding_masses(strut_checker *checker);

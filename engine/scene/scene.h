@@ -263,6 +263,16 @@ typedef struct strut_configuration {
   strut_node_set *sets;  /* (set_count) */
 } strut_configuration;
 
+/**
+ * A circular arc at an end of a member: it stands on the node there, square to the member, on whose line its
+ * middle lies. It rolls on every ground that the node may touch, as a whole circle.
+ */
+typedef struct strut_foot {
+  const char *name;
+  int32_t member, node; /* the node is one of the member's ends */
+  double radius;        /* [m], > 0 */
+} strut_foot;
+
 typedef struct strut_scene {
   const char *name, *description, *source; /* never NULL */
   strut_mass_model mass_model;
@@ -295,6 +305,8 @@ typedef struct strut_scene {
   strut_collision *collisions;
   size_t distance_count;
   strut_distance_spring *distances;
+  size_t foot_count;
+  strut_foot *feet;
   size_t unbalance_count;
   strut_unbalance *unbalances;
   size_t ground_count;   /* 0 without a ground, and with `ground` */

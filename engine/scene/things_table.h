@@ -49,6 +49,7 @@
   X(CELL, "cell", "cells", strut_cell, cells, cell_count, AT_REST, .name = "", .law = STRUT_LAW_PRESSURE, .exponent = 1.4, .rest_area = (double)NAN) \
   X(COLLISION, "collision", "collisions", strut_collision, collisions, collision_count, AT_REST, .name = "", .node = {-1, -1}, .member = {-1, -1}) \
   X(DISTANCE, "distance", "distances", strut_distance_spring, distances, distance_count, AT_REST, .name = "", .node = {-1, -1}, .line = {-1, -1}, .rest_distance = (double)NAN) \
+  X(FOOT, "foot", "feet", strut_foot, feet, foot_count, AT_REST, .name = "", .member = -1, .node = -1) \
   X(ACTUATOR, "actuator", "actuators", strut_actuator, actuators, actuator_count, OF_RUNS, .name = "", .member = -1, .signal = -1, .hinge = -1, .cell = -1) \
   X(LOAD, "load", "loads", strut_load, loads, load_count, BY_HAND, .name = "", .node = -1, .signal = -1) \
   X(UNBALANCE, "unbalance", "unbalances", strut_unbalance, unbalances, unbalance_count, AT_REST, .name = "", .node = -1, .signal = -1) \
@@ -92,6 +93,7 @@
   X(SCENE, CELLS, "cells", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a cell", THINGS(CELL), "Polygons of nodes under pressure.") \
   X(SCENE, COLLISIONS, "collisions", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a collision", THINGS(COLLISION), "Pairs of nodes and members that do not pass through each other.") \
   X(SCENE, DISTANCES, "distances", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a distance", THINGS(DISTANCE), "Springs of the distance of two nodes along a direction, or of a node from a line.") \
+  X(SCENE, FEET, "feet", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a foot", THINGS(FOOT), "Circular arcs at ends of members, which roll on the ground.") \
   X(SCENE, BEAMS, "beams", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a beam", THINGS(BEAM), "Chains of bars and hinges that bend.") \
   X(SCENE, RAYLEIGH, "rayleigh", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(RAYLEIGH), "Damping of the whole structure by mass and by stiffness.") \
   X(SCENE, MASS_MODEL, "mass_model", WORD, NONE, ANY, "consistent", WRITTEN, 0, "consistent|lumped", FIELD(strut_scene, mass_model), "How a member's mass acts: `consistent` as that of a uniform rod (the paper's model), `lumped` as half of it at each end.") \
@@ -198,6 +200,11 @@
   X(DISTANCE, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_distance_spring, damping), "Force per rate of the distance.") \
   X(DISTANCE, REST_DISTANCE, "rest_distance", NUMBER, LENGTH, ANY, "as drawn", OPTIONAL, 0, "", FIELD(strut_distance_spring, rest_distance), "Distance without force, of either sign.") \
   X(DISTANCE, LAW, "law", LAW, FORCE, ANY, "linear", OPTIONAL, 0, "", NESTED(strut_distance_spring, law, LAW), "Law of the force over distance - rest distance; with `compression_only` the node is kept ahead of the other, or on the left of the line, as by a wall.")
+
+#define STRUT_FOOT_FIELDS(X) \
+  X(FOOT, MEMBER, "member", NAME, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_foot, member, MEMBER), "The member that the arc is fixed to: its middle lies on the member's line, `radius` from the node.") \
+  X(FOOT, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_foot, node, NODE), "The end of the member through which the arc passes, square to it. The node's contact with each ground says how the foot touches it.") \
+  X(FOOT, RADIUS, "radius", NUMBER, LENGTH, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_foot, radius), "Radius of the arc.")
 
 #define STRUT_LAW_FIELDS(X) \
   X(LAW, KIND, "kind", WORD, NONE, ANY, "linear", WRITTEN, 0, STRUT_LAW_WORDS, FIELD(strut_law, kind), "With the stiffness k and x the elongation: `linear`, k x. `bilinear`, k x up to the knee on either side, then with the slope `second_stiffness`. `play`, no force within the gap on either side, beyond it k times the excess. `elastic_plastic`, k x until the force reaches the yield, then with the slope `second_stiffness`, and back along k: what has yielded stays. `polynomial`, c1 x + c2 x^2 + ... `logarithmic`, k L ln(length / L) with the rest length L. `exponential`, k s (exp(x / s) - 1) with the scale s. `table`, through points.") \

@@ -27,6 +27,7 @@
   X(PART, CELLS, "cells", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a cell", THINGS(CELL), "As in a scene.") \
   X(PART, COLLISIONS, "collisions", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a collision", THINGS(COLLISION), "As in a scene.") \
   X(PART, DISTANCES, "distances", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a distance", THINGS(DISTANCE), "As in a scene.") \
+  X(PART, FEET, "feet", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a foot", THINGS(FOOT), "As in a scene.") \
   X(PART, BEAMS, "beams", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a beam", THINGS(BEAM), "As in a scene.") \
   X(PART, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", THINGS(ACTUATOR), "As in a scene.") \
   X(PART, LOADS, "loads", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a load", THINGS(LOAD), "As in a scene; forces turn with the part.") \
@@ -71,6 +72,7 @@
   X(NEXT, CELLS, "cells", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a cell", THINGS(CELL), "Likewise.") \
   X(NEXT, COLLISIONS, "collisions", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a collision", THINGS(COLLISION), "Likewise.") \
   X(NEXT, DISTANCES, "distances", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a distance", THINGS(DISTANCE), "Likewise.") \
+  X(NEXT, FEET, "feet", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a foot", THINGS(FOOT), "Likewise.") \
   X(NEXT, BEAMS, "beams", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a beam", THINGS(BEAM), "Likewise.") \
   X(NEXT, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", THINGS(ACTUATOR), "Likewise.") \
   X(NEXT, SLIDERS, "sliders", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a slider", THINGS(SLIDER), "Likewise.") \
@@ -284,6 +286,7 @@
   STRUT_GAS_FIELDS(X) \
   STRUT_COLLISION_FIELDS(X) \
   STRUT_DISTANCE_FIELDS(X) \
+  STRUT_FOOT_FIELDS(X) \
   STRUT_BEAM_KEYS(X) \
   STRUT_CLAMPED_TO_KEYS(X) \
   STRUT_LAW_FIELDS(X) \
@@ -353,6 +356,7 @@
   X(GAS, "gas", GAS_KIND, "`cells: {NAME: {gas: {...}}}`.") \
   X(COLLISION, "collision", COLLISION_NODE, "`collisions: {NAME: {...}}`: `node` and `member`, or `nodes`, or `members`. Things pass through each other unless a collision names them.") \
   X(DISTANCE, "distance", DISTANCE_NODES, "`distances: {NAME: {...}}`: `nodes` and `along`, or `node` and `line`. A distance is measured between nodes that move; it needs a stiffness, a damping, or a law that brings its own stiffness.") \
+  X(FOOT, "foot", FOOT_MEMBER, "`feet: {NAME: {member, node, radius}}`: the end of a member as a circular arc, which rolls with friction at the point of contact and its moment on the member. Friction that sticks becomes smooth within its stick band, so that a foot creeps under load.") \
   X(BEAM, "beam", BEAM_NODES, "`beams: {NAME: {...}}`. A beam is short for nodes `NAME.1`, `NAME.2`, ... between its ends, bars `NAME.1`, ... and hinges `NAME.1`, ... at these nodes; at a clamp also the fixed node and the hinge `NAME.start` or `NAME.end`. `strut write` writes these.") \
   X(CLAMPED_TO, "clamped_to", CLAMPED_TO_START, "`clamped_to: {start: NAME, end: NAME}` of a beam: the end keeps its drawn angle to a member or to another beam that has the node, too, by the hinge `NAME.start` or `NAME.end`. Several beams at one node also get hinges between each other, such as `NAME.start.OTHER`.") \
   X(LAW, "law", LAW_KIND, "`law: {...}` of a member, a hinge or a distance, or only its kind, such as `law: logarithmic`; `law: tension_only` and `law: compression_only` are linear and carry one sign. For a hinge read angle for length and moment for force. `polynomial` and `table` bring their own stiffness, so that the member must not give one.") \

@@ -70,6 +70,7 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
       THINGS(CELL),
       THINGS(COLLISION),
       THINGS(DISTANCE),
+      THINGS(FOOT),
       STEP(strut_read_rayleigh),
       STEP(strut_read_lattice),
       STEP(strut_list_signals),

@@ -577,6 +577,7 @@ char *strut_setup_write(const strut_setup *setup) {
   strut_put_things(&writer, STRUT_THING_COLLISION, STRUT_SECTION_COLLISION, NULL, NULL);
   strut_put_things(&writer, STRUT_THING_DISTANCE, STRUT_SECTION_DISTANCE, NULL,
                    put_distance_by_hand);
+  strut_put_things(&writer, STRUT_THING_FOOT, STRUT_SECTION_FOOT, NULL, NULL);
   put_rayleigh(&writer);
   put_ground(&writer);
   strut_put_drives(&writer);

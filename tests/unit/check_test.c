@@ -450,7 +450,8 @@ TEST(cells_and_collisions) {
   SPOILT(node[1] = 7, STRUT_ON_CELL, "nodes", "does not exist");
   SPOILT(node[1] = node[0], STRUT_ON_CELL, "nodes", "twice");
   SPOILT(cell.pressure = (double)NAN, STRUT_ON_CELL, "pressure", "finite");
-  SPOILT(cell.law = STRUT_LAW_LINEAR, STRUT_ON_CELL, "gas", "not for cells");
+  SPOILT(cell.law = STRUT_LAW_PLAY, STRUT_ON_CELL, "gas", "not for cells");
+  SPOILT(cell.law = STRUT_LAW_LINEAR, STRUT_ON_CELL, NULL, "neither stiffness nor damping");
   SPOILT((cell.law = STRUT_LAW_ISOTHERMAL, cell.pressure = 0), STRUT_ON_CELL, "pressure", "above");
   SPOILT((cell.law = STRUT_LAW_ISENTROPIC, cell.exponent = 1), STRUT_ON_CELL, "exponent",
          "above 1");

@@ -14,6 +14,7 @@
 #include "engine/forces/strains/along.h"
 #include "engine/forces/strains/angle.h"
 #include "engine/forces/strains/area.h"
+#include "engine/forces/strains/foot.h"
 #include "engine/forces/strains/path.h"
 #include "engine/forces/strains/reach.h"
 #include "engine/statics/potential.h"
@@ -40,6 +41,15 @@ typedef struct strain {
   int least, most; /* nodes */
 } strain;
 
+/* An arc of 0.3 m on a slope, as other strains are called. */
+static double foot_value(const uint32_t *at, int n, const double *q, double reference, double *b) {
+  (void)reference;
+  return strut_strain_foot(at, n, q, 0.7, 0.3, b);
+}
+static void foot_bend(const uint32_t *at, int n, const double *q, double t, double *h) {
+  strut_strain_foot_bend(at, n, q, 0.7, 0.3, t, h);
+}
+
 static const strain strains[] = {
 #define NODES_length 2, 2
 #define NODES_path 2, MOST_NODES
@@ -48,8 +58,11 @@ static const strain strains[] = {
 #define NODES_reach 3, 3
 #define NODES_along 2, 2
 #define NODES_offset 3, 3
-#define STRAIN(NAME, name, ...)                                                                    \
-  {#name, strut_strain_##name, strut_strain_##name##_bend, NODES_##name},
+#define NODES_foot 2, 2
+#define VALUES_TURN(name) strut_strain_##name, strut_strain_##name##_bend
+#define VALUES_AXIS(name) strut_strain_##name, strut_strain_##name##_bend
+#define VALUES_ARC(name) name##_value, name##_bend
+#define STRAIN(NAME, name, unit, reference, ...) {#name, VALUES_##reference(name), NODES_##name},
     STRUT_STRAINS(STRAIN, )};
 enum { STRAINS = sizeof strains / sizeof strains[0] };
 
@@ -120,12 +133,14 @@ TEST(gradients_and_second_derivatives_of_strains) {
     }
 }
 
-/* A gradient has no part along a shift, nor along a turn, but for a distance along a direction in space. */
+/* A gradient has no part along a shift, nor along a turn, but for a distance along a direction in space; that of a
+   foot is one of a line in space. */
 TEST(strains_do_not_feel_a_shift_or_a_turn) {
   uint64_t r = 12;
   for (int k = 0; k < STRAINS; k++)
     for (int pass = 0; pass < 100; pass++) {
       const strain *s = &strains[k];
+      if (s->value == foot_value) continue;
       double q[MOST_PLACES], b[MOST_PLACES], x = 0, y = 0, turn = 0;
       int n = s->least + random_below(&r, s->most - s->least + 1);
       place_nodes(q, &r);
@@ -168,7 +183,7 @@ TEST(strains_without_a_direction_are_finite) {
     int n = strains[k].most;
     assert_near(strains[k].value(places, n, q, 0, b), 0, 0);
     strains[k].bend(places, n, q, 1, h);
-    bool directed = strains[k].value == strut_strain_along; /* in space */
+    bool directed = strains[k].value == strut_strain_along || strains[k].value == foot_value;
     for (int i = 0; i < 2 * n && !directed; i++) assert_near(b[i], 0, 0);
     for (int i = 0; i < 4 * n * n; i++) assert_true(isfinite(h[i]));
   }

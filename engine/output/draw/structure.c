@@ -615,6 +615,25 @@ static void draw_distance(strut_canvas *canvas, const drawing *d, int32_t elemen
   strut_draw_line(canvas, (const double(*)[2])way, 3, pen);
 }
 
+/* The arc of a foot, as far as it may meet the ground while its member stands. */
+static void draw_foot(strut_canvas *canvas, const drawing *d, int32_t element, strut_pen pen) {
+  enum { POINTS = 33 };
+  const strut_element *e = &d->model->elements.element[element];
+  const uint32_t *at = d->model->elements.at + e->first;
+  const double *from = d->q + at[0], *to = d->q + at[1];
+  double length = strut_distance(from, to), way[POINTS][2];
+  if (!(length > 0.0)) return;
+  double ux = (to[0] - from[0]) / length, uy = (to[1] - from[1]) / length;
+  for (int k = 0; k < POINTS; k++) {
+    double angle = STRUT_PI * (0.8 * k / (POINTS - 1) - 0.4), c = cos(angle), s = sin(angle);
+    const double point[2] = {from[0] + e->radius * (ux - (c * ux - s * uy)),
+                             from[1] + e->radius * (uy - (s * ux + c * uy))};
+    strut_window_point(d->window, point, way[k]);
+    if (!isfinite(way[k][0] + way[k][1])) return;
+  }
+  strut_draw_line(canvas, (const double(*)[2])way, POINTS, pen);
+}
+
 static void draw_elements(strut_canvas *canvas, const drawing *d) {
   bool one = d->style->colouring == STRUT_COLOUR_ONE;
   strut_pen pen = {.colour =
@@ -631,6 +650,8 @@ static void draw_elements(strut_canvas *canvas, const drawing *d) {
     pen.width = (thin ? 1.0 : 1.6) * d->thin / (1 + d->style->thinness);
     if (e->role == STRUT_ELEMENT_DISTANCE)
       draw_distance(canvas, d, i, &pose, pen);
+    else if (e->role == STRUT_ELEMENT_FOOT)
+      draw_foot(canvas, d, i, pen);
     else if (e->role == STRUT_ELEMENT_HINGE)
       draw_hinge(canvas, d, &d->model->scene->hinges[e->item], pose.strain, pen);
     else if (pose.acts)

@@ -197,8 +197,8 @@ static double stretch_energy(const strut_vibration *v, int32_t j, const double *
 }
 
 /* Things that store energy: items, in this order. */
-static const strut_thing kinds[] = {STRUT_THING_MEMBER, STRUT_THING_HINGE, STRUT_THING_CELL,
-                                    STRUT_THING_COLLISION, STRUT_THING_DISTANCE};
+static const strut_thing kinds[] = {STRUT_THING_MEMBER,    STRUT_THING_HINGE,    STRUT_THING_CELL,
+                                    STRUT_THING_COLLISION, STRUT_THING_DISTANCE, STRUT_THING_FOOT};
 enum { KIND_COUNT = sizeof kinds / sizeof kinds[0] };
 
 static int32_t count_items(const strut_model *model) {

@@ -97,7 +97,8 @@ bool strut_vibration_element_is_borderline(const strut_vibration *vibration, int
  */
 bool strut_vibration_pose(const strut_vibration *vibration, int32_t element,
                           strut_element_pose *pose);
-/** How the motion x (n) of its coordinate k (2 nodes) differs from that of an element's last node. */
+/** How the motion x (n) of its coordinate k (2 nodes) differs from that of an element's last node, or, of a foot, from
+    rest. */
 double strut_vibration_relative(const strut_vibration *vibration, int32_t element, int32_t k,
                                 const double *x);
 /** How the strain of an element changes in the motion x (n). */

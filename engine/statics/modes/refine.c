@@ -151,10 +151,12 @@ static double element_noise(const strut_vibration *v, int32_t i, double noise, c
     const double *place = v->rounded + at[k];
     blur += 2.0 * hypot(pose.b[2 * k], pose.b[2 * k + 1]) * strut_coordinate_rounding(place, place);
   }
-  for (int32_t r = 0; r < n - 2; r++) { /* of the last node nothing: it moves by 0 against itself */
+  /* of the last node nothing: it moves by 0 against itself */
+  int32_t moving = e->strain == STRUT_STRAIN_FOOT ? n : n - 2;
+  for (int32_t r = 0; r < moving; r++) {
     double own = strut_vibration_relative(v, i, r, x);
     far += fabs(pose.b[r] * own);
-    for (int32_t c = 0; c < n - 2; c++) {
+    for (int32_t c = 0; c < moving; c++) {
       double part = own * bend[r * n + c] * strut_vibration_relative(v, i, c, x);
       sum += part, size += fabs(part);
     }

@@ -95,14 +95,16 @@ bool strut_vibration_element_is_borderline(const strut_vibration *v, int32_t i) 
   return e->carries && is_at_edge(pose.strain - pose.natural, pose.strain, pose.natural);
 }
 
+/* Do the nodes of a strain alone decide it, so that it feels no shift? A foot's is one above the ground. */
+static bool is_relative(const strut_element *e) { return e->strain != STRUT_STRAIN_FOOT; }
+
 /* The gradient with a last node that makes its sum vanish to all digits: a shift costs nothing. */
-static void balance_gradient(const strut_element_pose *pose, int32_t nodes, strut_dd *b) {
-  for (int32_t c = 0; c < 2; c++) {
+static void balance_gradient(const strut_element *e, const strut_element_pose *pose, strut_dd *b) {
+  int32_t nodes = e->nodes;
+  for (int32_t k = 0; k < 2 * nodes; k++) b[k] = dd_of(pose->b[k]);
+  for (int32_t c = 0; c < 2 && is_relative(e); c++) {
     strut_dd sum = dd_of(0.0);
-    for (int32_t k = 0; k + 1 < nodes; k++) {
-      b[2 * k + c] = dd_of(pose->b[2 * k + c]);
-      sum = dd_add(sum, b[2 * k + c]);
-    }
+    for (int32_t k = 0; k + 1 < nodes; k++) sum = dd_add(sum, b[2 * k + c]);
     b[2 * (nodes - 1) + c] = dd_negative(sum);
   }
 }
@@ -129,7 +131,7 @@ static void add_element(void *context, int32_t i, const strut_element_pose *roun
   strut_element_bend(v->model, i, v->rounded, pose->force, k);
   const int32_t *own = place + e->place;
   strut_dd b[STRUT_MOST_GRADIENT];
-  balance_gradient(pose, e->nodes, b);
+  balance_gradient(e, pose, b);
   const uint32_t *at = v->model->elements.at + e->first;
   for (int32_t r = 0; r < n;
        r++) /* a sum of squares to all digits, so that soft motions stay soft */
@@ -153,7 +155,7 @@ static void add_element_force(void *context, int32_t i, const strut_element_pose
   const strut_element_table *t = &s->vibration->model->elements;
   const strut_element *e = &t->element[i];
   strut_dd b[STRUT_MOST_GRADIENT];
-  balance_gradient(pose, e->nodes, b);
+  balance_gradient(e, pose, b);
   for (int32_t k = 0; k < 2 * e->nodes; k++) {
     int32_t row = s->vibration->shape->row_of[t->at[e->first + k / 2] + (uint32_t)(k % 2)];
     if (row >= 0) s->force[row] = dd_sub(s->force[row], dd_scale(b[k], pose->force));
@@ -407,7 +409,7 @@ double strut_vibration_relative(const strut_vibration *v, int32_t element, int32
   const uint32_t *at = v->model->elements.at + e->first;
   uint32_t axis = (uint32_t)(k % 2);
   int32_t own = v->shape->row_of[at[k / 2] + axis];
-  int32_t last = v->shape->row_of[at[e->nodes - 1] + axis];
+  int32_t last = is_relative(e) ? v->shape->row_of[at[e->nodes - 1] + axis] : -1;
   return (own >= 0 ? x[own] : 0.0) - (last >= 0 ? x[last] : 0.0);
 }
 
@@ -415,7 +417,8 @@ double strut_vibration_strain(const strut_vibration *v, int32_t element,
                               const strut_element_pose *pose, const double *x) {
   const strut_element *e = &v->model->elements.element[element];
   double sum = 0.0;
-  for (int32_t k = 0; k < 2 * (e->nodes - 1); k++)
+  int32_t nodes = is_relative(e) ? e->nodes - 1 : e->nodes;
+  for (int32_t k = 0; k < 2 * nodes; k++)
     sum += pose->b[k] * strut_vibration_relative(v, element, k, x);
   return sum;
 }
