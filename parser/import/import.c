@@ -12,28 +12,33 @@
 #include "parser/read/csv.h"
 #include "parser/read/read_scene.h"
 
+static const char *format_text(strut_import_scene *s, const char *format, va_list values) {
+  va_list again;
+  va_copy(again, values);
+  int length = vsnprintf(NULL, 0, format, again);
+  va_end(again);
+  char *text = length < 0 ? NULL : strut_arena_allocate(&s->arena, (size_t)length + 1, 1);
+  if (!text) s->out_of_memory = true;
+  if (!text) return "";
+  vsnprintf(text, (size_t)length + 1, format, values);
+  return text;
+}
+
 void strut_import_line(strut_import_scene *s, strut_writer *to, const char *format, ...) {
-  char text[4000];
   va_list values;
   va_start(values, format);
-  int length = vsnprintf(text, sizeof text, format, values);
+  strut_put(to, format_text(s, format, values));
   va_end(values);
-  if (length < 0 || (size_t)length >= sizeof text) s->out_of_memory = true;
-  strut_put(to, text);
   strut_put(to, "\n");
   s->out_of_memory = s->out_of_memory || to->failed;
 }
 
 const char *strut_import_text(strut_import_scene *s, const char *format, ...) {
-  char text[2000];
   va_list values;
   va_start(values, format);
-  int length = vsnprintf(text, sizeof text, format, values);
+  const char *text = format_text(s, format, values);
   va_end(values);
-  if (length < 0 || (size_t)length >= sizeof text) s->out_of_memory = true;
-  const char *kept = strut_arena_text(&s->arena, text, strlen(text));
-  if (!kept) s->out_of_memory = true;
-  return kept ? kept : "";
+  return text;
 }
 
 const char *strut_import_name(strut_import_scene *s, const char *name) {
@@ -234,7 +239,7 @@ strut_status strut_import(strut_import_format format, strut_import_file *files, 
     if (files[i].diagnostics.out_of_memory) s.out_of_memory = true;
   }
   bool any = s.section[STRUT_IMPORT_MEMBERS].length || s.section[STRUT_IMPORT_HINGES].length ||
-             s.section[STRUT_IMPORT_DISTANCES].length;
+             s.section[STRUT_IMPORT_CELLS].length || s.section[STRUT_IMPORT_DISTANCES].length;
   if (!status && !any && !s.out_of_memory)
     status = strut_fail(error, STRUT_BAD_SCENE, "'%s' has no member that a scene could have",
                         files[0].name);

@@ -17,6 +17,7 @@
   X(NODES, "nodes") /* by strut_import_node_add */                                                 \
   X(MEMBERS, "members")                                                                            \
   X(HINGES, "hinges")                                                                              \
+  X(CELLS, "cells")                                                                                \
   X(DISTANCES, "distances")                                                                        \
   X(LOADS, "loads")
 

@@ -146,7 +146,7 @@ LOADING
     scene, said = imported("distances.csv")
     check("d1: {nodes: [n0, n1], along: x, stiffness: 20, rest_distance: 1.5}" in scene, scene)
     check("d3: {node: n1, line: [n0, n2], stiffness: 1e-9}" in scene, scene)
-    check("14:1: note: not imported: an element on an area or a midpoint" in said, said)
+    check("14:1: note: not imported: an element on a midpoint" in said, said)
     end = json.loads(run("path", "scene.yaml", "--load", "load1", "--json").stdout)["points"][-1]
     same_numbers(end["nodes"]["n1"], [1.5, 0.9 - 0.05 * (2 / 3) ** (1 / 3)], 1e-6, "a node on distances")
     # cables that are written as two pieces, a running one, an angle beyond half a turn
@@ -174,8 +174,48 @@ SPRINGS
           "ANGULAR SPRINGS\n0-1-2, 1, 1.5*PI\nAREA SPRINGS\n0-1-2, 3\n")
     scene, said = imported("path.csv")
     check("law: {kind: bilinear, knee: 0.1, second_stiffness: 5}" in scene, scene)
-    check("path.csv:10:1: note: not imported: an element on an area" in said, said)
+    check("area1: {nodes: [n0, n1, n2], stiffness: 3}" in scene, scene)
     check(f"rest_angle: {-0.5 * math.pi!r}" in scene, f"an angle within half a turn: {scene}")
+    # curves that do not fold back are tables: pieces, corners, and points of a Bezier curve; gases are gases
+    write("curves.csv", """NODES
+0,0,0,1,1
+1,1,0,0,1
+2,0,1,1,0
+3,0,2,1,1
+4,3,0,1,1
+5,4,0,0,1
+6,3,1,1,1
+SPRINGS
+0-1, PIECEWISE(k_i=[2; -1; 4]; u_i=[0.1; 0.2]; us=0.01)
+0-2, BEZIER(u_i=[0.1; 0.2; 0.6]; f_i=[3; -2; 4])
+4-5, ZIGZAG(u_i=[0.1; 0.3]; f_i=[1; 0.5]; epsilon=0.1; mode=-1)
+AREA SPRINGS
+4-5-6, ISENTROPIC(n=2; R=3; T0=0.5; gamma=1.5), 0.7
+LOADING
+1, X, 1
+2, Y, 1
+""")
+    scene, said = imported("curves.csv")
+    numbers = [float(x) for x in re.findall(r"-?[\d.]+", re.search(r"s1: .*points: (.*)", scene).group(1))]
+    same_numbers(numbers, [-0.4, -0.9, -0.2, -0.1, -0.1, -0.2, 0, 0, 0.1, 0.2, 0.2, 0.1, 0.4, 0.9], 1e-12, "pieces")
+    check("points: [[-0.3, -0.5], [-0.1, -1], [0, 0], [0.1, 1]]" in scene, scene)
+    check("a Bezier curve becomes a table" in said, said)
+
+    def bezier(control, t):
+        control = [0.0, *control]
+        while len(control) > 1:
+            control = [a + t * (b - a) for a, b in zip(control, control[1:])]
+        return control[0]
+    with open(os.path.join(work, "scene.yaml"), encoding="utf-8") as file:
+        table = [tuple(float(x) for x in point.split(", ")) for point in
+                 re.findall(r"\[([^][]*, [^][]*)\]", re.search(r"smooth: yes, points: \[(.*)\]\}", file.read()).group(1))]
+    check(len(table) == 401 and table[0] == (-0.6, -4.0) and table[-1] == (0.6, 4.0), f"{len(table)} {table[0]}")
+    for k in (1, 60, 200):
+        same_numbers(table[200 + k], (bezier((0.1, 0.2, 0.6), k / 200), bezier((3, -2, 4), k / 200)), 1e-12,
+                     "a point of a Bezier curve")
+    pressure = 3 / 0.7 * (0.7 / 0.5) ** 1.5
+    gas = re.search(r"gas: \{kind: isentropic, pressure: (\S+), outside: (\S+), exponent: 1.5\}", scene)
+    same_numbers([float(x) for x in gas.groups()], [pressure, 3 / 0.7], 1e-12, "a gas")
 
 
 RODS = """nodes: {a: [-5, 0, 2], b: [5, 0, 2], c: [5, 10, 2], d: [-5, 10, 2]}
