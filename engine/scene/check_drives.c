@@ -108,11 +108,14 @@ void strut_check_drives(strut_checker *checker) {
     strut_format_name(owner, "actuator", a->name, i);
     bool hinge = a->member < 0 && strut_exists(a->hinge, scene->hinge_count);
     bool cell = a->member < 0 && a->hinge < 0 && strut_exists(a->cell, scene->cell_count);
-    if (cell && scene->cells[a->cell].law != STRUT_LAW_PRESSURE)
-      strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "cell",
-                           "%s drives the pressure of cell '%s', but the pressure of a gas follows "
-                           "from its area; give the cell a pressure instead of a gas",
-                           owner, scene->cells[a->cell].name);
+    strut_law_kind law = cell ? scene->cells[a->cell].law : STRUT_LAW_PRESSURE;
+    if (law != STRUT_LAW_PRESSURE && law != STRUT_LAW_ISOTHERMAL)
+      strut_report_finding(
+          checker, STRUT_ON_ACTUATOR, i, "cell",
+          "%s drives the pressure of cell '%s', but that of an isentropic gas or an "
+          "elastic cell follows from its area; give the cell a pressure or an "
+          "isothermal gas",
+          owner, scene->cells[a->cell].name);
     else if (cell && a->force)
       strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "cell",
                            "%s gives a force to a cell, whose pressure a signal drives", owner);

@@ -91,6 +91,7 @@
   X(SCENE, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", THINGS(MEMBER), "The bars, springs and cables between the nodes.") \
   X(SCENE, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", THINGS(HINGE), "Springs of the angle between two arms that meet in a node.") \
   X(SCENE, CELLS, "cells", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a cell", THINGS(CELL), "Polygons of nodes under pressure.") \
+  X(SCENE, PIPES, "pipes", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a pipe", THINGS(PIPE), "Flow of gas between cells.") \
   X(SCENE, COLLISIONS, "collisions", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a collision", THINGS(COLLISION), "Pairs of nodes and members that do not pass through each other.") \
   X(SCENE, DISTANCES, "distances", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a distance", THINGS(DISTANCE), "Springs of the distance of two nodes along a direction, or of a node from a line.") \
   X(SCENE, FEET, "feet", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a foot", THINGS(FOOT), "Circular arcs at ends of members, which roll on the ground.") \
@@ -271,7 +272,7 @@
 #define STRUT_ACTUATOR_FIELDS(X) \
   X(ACTUATOR, MEMBER, "member", NAME, NONE, ANY, "", OPTIONAL, 6, "", REFERENCE(strut_actuator, member, MEMBER), "The member whose rest length it changes, or to which it adds a force.") \
   X(ACTUATOR, HINGE, "hinge", NAME, NONE, ANY, "", OPTIONAL, 6, "", REFERENCE(strut_actuator, hinge, HINGE), "The hinge whose rest angle it changes, or to which it adds a moment.") \
-  X(ACTUATOR, CELL, "cell", NAME, NONE, ANY, "", OPTIONAL, 6, "", REFERENCE(strut_actuator, cell, CELL), "The cell whose given pressure it changes.") \
+  X(ACTUATOR, CELL, "cell", NAME, NONE, ANY, "", OPTIONAL, 6, "", REFERENCE(strut_actuator, cell, CELL), "The cell whose given pressure it changes, or that of an isothermal gas at the area as drawn, by letting gas in or out.") \
   X(ACTUATOR, SIGNAL, "signal", SIGNAL, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "Added to the rest length of the member, to the rest angle of the hinge, or to the pressure of the cell.") \
   X(ACTUATOR, FORCE, "force", SIGNAL, FORCE, ANY, "", OPTIONAL, 7, "", BY_HAND, "Instead of `signal`: a force added to the member's own, tension positive. Statics leave it out.") \
   X(ACTUATOR, MOMENT, "moment", SIGNAL, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "Instead of `signal`: a moment added to the hinge's own, which closes its angle where positive. Statics leave it out.")

@@ -298,6 +298,7 @@ static const struct dimension_words {
     {POWER, "a power", "1 W", "W"},
     {PRESSURE, "a pressure", "1 MPa", "Pa"},
     {{0, 0, -1, 1}, "an angular velocity", "10 rad/s", "rad/s"},
+    {{0, 2, -1, 0}, "a conductance", "1 cm^2/s", "m^2/s"},
     {{1, -2, -2, 0}, "a value in N/m^3", "5 N/m^3", "N/m^3"},
     {{1, -2, -1, 0}, "a value in N s/m^3", "0.1 N s/m^3", "N s/m^3"},
     {{1, 3, -2, 0}, "a bending stiffness", "2 N m^2", "N m^2"},

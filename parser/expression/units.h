@@ -31,6 +31,7 @@ typedef struct strut_dimension {
 #define STRUT_DIM_ANGULAR_DAMPING ((strut_dimension){1, 2, -1, -1})
 #define STRUT_DIM_BENDING_STIFFNESS ((strut_dimension){1, 3, -2, 0})
 #define STRUT_DIM_AREA ((strut_dimension){0, 2, 0, 0})
+#define STRUT_DIM_CONDUCTANCE ((strut_dimension){0, 2, -1, 0})
 #define STRUT_DIM_AREA_STIFFNESS ((strut_dimension){1, -2, -2, 0})
 #define STRUT_DIM_AREA_DAMPING ((strut_dimension){1, -2, -1, 0})
 #define STRUT_DIM_DISSIPATION ((strut_dimension){0, -1, 1, 0})

@@ -79,6 +79,7 @@ typedef enum strut_measure {
   STRUT_MEASURE_BENDING_STIFFNESS,
   STRUT_MEASURE_AREA,
   STRUT_MEASURE_PRESSURE, /* in the plane: force per length, which acts on an area */
+  STRUT_MEASURE_CONDUCTANCE,
   STRUT_MEASURE_AREA_STIFFNESS,
   STRUT_MEASURE_AREA_DAMPING
 } strut_measure;
@@ -122,6 +123,12 @@ typedef struct strut_controller {
   double limit[2]; /* least, most */
   bool limited[2];
 } strut_controller;
+
+/** The object of the section `pipe`. */
+typedef struct strut_pipe {
+  int32_t cell[2];
+  double conductance; /* [m^2/s] */
+} strut_pipe;
 
 /** The object of the section `network`. */
 typedef struct strut_network {

@@ -25,6 +25,7 @@
   X(PART, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", THINGS(MEMBER), "As in a scene.") \
   X(PART, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", THINGS(HINGE), "As in a scene.") \
   X(PART, CELLS, "cells", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a cell", THINGS(CELL), "As in a scene.") \
+  X(PART, PIPES, "pipes", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a pipe", THINGS(PIPE), "As in a scene.") \
   X(PART, COLLISIONS, "collisions", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a collision", THINGS(COLLISION), "As in a scene.") \
   X(PART, DISTANCES, "distances", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a distance", THINGS(DISTANCE), "As in a scene.") \
   X(PART, FEET, "feet", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a foot", THINGS(FOOT), "As in a scene.") \
@@ -109,6 +110,10 @@
   X(CONTROLLER, MOST, "most", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", CHOICE(strut_controller, limited[1], true, FIELD(strut_controller, limit[1])), "Largest value. Between limits the integral follows what the limits leave (no windup).") \
   X(CONTROLLER, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_controller, every), "Time between samples; 0: the controller is continuous.") \
   X(CONTROLLER, KIND, "kind", WORD, NONE, ANY, "pid", OPTIONAL, 0, "pid|relay", NONE, "`relay`: the controller has the keys of a [relay](#relay) instead.")
+
+#define STRUT_PIPE_KEYS(X) \
+  X(PIPE, CELLS, "cells", NAME_PAIR, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_pipe, cell, CELL), "Two cells with isothermal gas, between which it flows.") \
+  X(PIPE, CONDUCTANCE, "conductance", NUMBER, CONDUCTANCE, NOT_NEGATIVE, "", REQUIRED, 0, "", FIELD(strut_pipe, conductance), "C: of the gas, whose amount is pressure times area, C (p_a - p_b) flows from the first cell to the second.")
 
 #define STRUT_NETWORK_KEYS(X) \
   X(NETWORK, FILE, "network", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_network, file), "File of weights, in the folder of the scene or below: a line for each neuron, its weights for the values before it and last its bias, separated by commas; an empty line between layers.") \
@@ -310,6 +315,7 @@
   STRUT_OSCILLATOR_KEYS(X) \
   STRUT_CONTROLLER_KEYS(X) \
   STRUT_RELAY_FIELDS(X) \
+  STRUT_PIPE_KEYS(X) \
   STRUT_NETWORK_KEYS(X) \
   STRUT_MAXWELL_FIELDS(X) \
   STRUT_STARTS_FIELDS(X) \
@@ -380,6 +386,7 @@
   X(OSCILLATOR, "oscillator", OSCILLATOR_FREQUENCY, "`oscillators: {NAME: {...}}`. The name is the phase, an angle, in expressions: `2 mm * sin(NAME)`. `strut write` shows oscillators as states.") \
   X(CONTROLLER, "controller", CONTROLLER_SENSOR, "`controllers: {NAME: {...}}`. The integral is the state `NAME_integral`. `strut write` shows PID controllers as signals and states.") \
   X(RELAY, "relay", RELAY_KIND, "`controllers: {NAME: {kind: relay, ...}}`: a signal with two values. Either `on_above` and `off_below`, or `on_below` and `off_above`.") \
+  X(PIPE, "pipe", PIPE_CELLS, "`pipes: {NAME: {cells: [a, b], conductance}}`: gas that flows between two cells. The name is the amount that has flowed, pressure times area, a state. `strut write` shows the sensors, signals and actuators that a pipe stands for.") \
   X(NETWORK, "network", NETWORK_FILE, "`controllers: {NAME: {network: FILE, ...}}`: a signal from a neural network. Its neurons are signals `NAME_1_1` and so on; `strut write` shows them.") \
   X(MAXWELL, "maxwell", MAXWELL_STIFFNESS, "`members: {NAME: {maxwell: {...}}}`: the force of the branch follows F' = k (u' - F/c), with the rate u' of the elongation. In statics it has relaxed to 0.") \
   X(STARTS, "starts", STARTS_CONTACT, "`{sine: {...}, starts: {...}}` of any signal: the touchdown of a node, or a sensor that passes a level.") \

@@ -288,7 +288,8 @@ void strut_list_states(strut_reader *reader) {
   const strut_tree *oscillators = strut_entries(reader, STRUT_KEY_SCENE_OSCILLATORS);
   size_t most = entries_of(reader, STRUT_KEY_SCENE_STATES) +
                 entries_of(reader, STRUT_KEY_SCENE_OSCILLATORS) +
-                entries_of(reader, STRUT_KEY_SCENE_CONTROLLERS) + 1;
+                entries_of(reader, STRUT_KEY_SCENE_CONTROLLERS) +
+                entries_of(reader, STRUT_KEY_SCENE_PIPES) + 1;
   strut_arena *scratch = &reader->scratch;
   scene->states = strut_reader_allocate(reader, &scene->arena, most, sizeof *scene->states);
   reader->things[STRUT_THING_STATE].source = strut_reader_allocate(

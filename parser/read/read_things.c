@@ -100,12 +100,13 @@ void strut_read_things(strut_reader *reader, strut_thing thing) {
   bool broken = strut_slot_of(&reader->top, k->key)->state == STRUT_BROKEN;
   if (broken && k->joins) reader->ends_unknown = true;
   if (broken && k->heavy) reader->masses_unknown = true;
-  if (!map) return;
-  char *array = strut_reader_allocate(reader, &scene->arena, map->count, row->size);
-  things->source =
-      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *things->source);
+  bool of_pipes = thing == STRUT_THING_SENSOR || thing == STRUT_THING_ACTUATOR;
+  size_t most = (map ? map->count : 0) + (of_pipes ? strut_pipes_most(reader) : 0);
+  if (!most) return;
+  char *array = strut_reader_allocate(reader, &scene->arena, most, row->size);
+  things->source = strut_reader_allocate(reader, &reader->scratch, most, sizeof *things->source);
   memcpy((char *)scene + row->array, &array, sizeof array);
-  if (!array || !things->source) return;
+  if (!array || !things->source || !map) return;
   strut_reserve_names(reader, &things->names, map->count);
   for (const strut_tree *key = strut_first_entry(reader, map); key;
        key = strut_following_entry(reader, key)) {

@@ -120,6 +120,13 @@ typedef struct strut_named_signal {
 /** Longest chains of parameters and of signals that refer to each other. */
 enum { STRUT_DEEPEST_PARAMETER = 200, STRUT_DEEPEST_SIGNAL = 64 };
 
+/** An actuator that stands for an end of a pipe: it drives the cell by the signal. */
+typedef struct strut_pipe_drive {
+  const strut_tree *key; /* of the pipe */
+  const char *end;       /* "in" or "out" */
+  int32_t cell, signal;
+} strut_pipe_drive;
+
 typedef struct strut_reader {
   strut_setup *setup; /* what is read, in its two parts: */
   strut_scene *scene;
@@ -137,7 +144,9 @@ typedef struct strut_reader {
   size_t parameter_count, parameter_depth;
   strut_parameter_state *parameter_stack[STRUT_DEEPEST_PARAMETER]; /* being read */
   strut_dimension *state_dimension;                                /* (states) */
-  const strut_tree **velocity_source; /* (node_count) or NULL: where single velocities stand */
+  size_t pipe_drive_count;
+  struct strut_pipe_drive *pipe_drives; /* actuators that pipes stand for */
+  const strut_tree **velocity_source;   /* (node_count) or NULL: where single velocities stand */
   strut_named_signal *named;
   size_t named_count, signal_depth, signal_capacity;
   strut_named_signal *signal_stack[STRUT_DEEPEST_SIGNAL]; /* being read */
@@ -486,6 +495,11 @@ int32_t strut_read_controller(strut_reader *reader, const strut_tree *key);
 /** Is the controller a relay? */
 bool strut_is_relay(const strut_tree *map);
 int32_t strut_read_network(strut_reader *reader, const strut_tree *key);
+/** Most sensors, and most actuators, that pipes stand for. */
+size_t strut_pipes_most(strut_reader *reader);
+/** Their sensors, states and signals; and after actuators those that they stand for. */
+void strut_read_pipes(strut_reader *reader);
+void strut_add_pipe_drives(strut_reader *reader);
 /** An expression of the time, sensors and signals; in the scene's memory. */
 bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
                                strut_owner owner, strut_program *program, strut_quantity *q);

@@ -174,6 +174,54 @@ near '.points[0].nodes["small.top"][1]' 1 1e-9
 near '.points[0].nodes["large.top"][1]' '(6 - (pow(0.5 / 8; 1 / 3))) / 2' 1e-9
 near '.points[0].pressures["small.air"]' 10 1e-9
 
+# Gas flows through a pipe until pressures are alike: by exp(-C (1/A + 1/B) t) where areas stay, and none is lost.
+cat >pipe.yaml <<'YAML'
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: both}
+  c: {position: [1, 1], fixed: both}
+  d: {position: [0, 1], fixed: both}
+  e: {position: [3, 0], fixed: both}
+  f: {position: [3, 1], fixed: both}
+  w: {position: [9, 0], mass: 1}
+cells:
+  small: {nodes: [a, b, c, d], gas: {kind: isothermal, pressure: 5 N/m, outside: 1 N/m}}
+  large: {nodes: [b, e, f, c], gas: {kind: isothermal, pressure: 2 N/m, outside: 1 N/m}}
+pipes: {p: {cells: [small, large], conductance: 0.4 m^2/s}}
+solver: {integrator: rk4, step: 1 ms}
+run:
+  duration: 2 s
+  measure: {quantities: {small: {of: small.pressure, take: final}, large: {of: large.pressure, take: final}, flowed: {of: p, take: final},
+    all: {of: 1 m^2 * small.pressure + 2 m^2 * large.pressure, take: range}}}
+YAML
+for method in rk4 rk4-events adaptive verlet midpoint; do
+  tolerance=1e-6
+  [ $method = rk4 ] && tolerance=1e-10
+  expect 0 run pipe.yaml --integrator $method --json
+  near '.measured.small.value' '3 + 2 * (-0.4 * 1.5 * 2 | exp)' $tolerance
+  near '.measured.large.value' '3 - (-0.4 * 1.5 * 2 | exp)' $tolerance
+  near '.measured.flowed.value' '2 - 2 * (-0.4 * 1.5 * 2 | exp)' $tolerance
+  near .measured.all.value 0 1e-12
+done
+expect 0 write pipe.yaml
+cp out written.yaml
+expect 0 run written.yaml --json
+near '.measured.small.value' '3 + 2 * (-0.4 * 1.5 * 2 | exp)' 1e-10
+expect 0 export pipe.yaml --code code
+# a piston that is pushed in presses gas into the other cell until both press alike; the balance closes with what the pipe takes
+sed -e 's/  e: {position: .3, 0., fixed: both}/  e: {position: [3, 0], fixed: y, mass: 1}/' \
+  -e 's/  f: {position: .3, 1., fixed: both}/  f: {position: [3, 1], fixed: y, mass: 1}/' \
+  -e 's/^cells:/members: {lid: {kind: bar, nodes: [e, f], stiffness: 1000}}\nrayleigh: {mass: 2 s^-1}\ncells:/' \
+  -e 's/duration: 2 s/duration: 300 s/' pipe.yaml >piston2.yaml
+for method in rk4 adaptive midpoint; do
+  expect 0 run piston2.yaml --integrator $method --json
+  near '.measured.small.value' 1 1e-3
+  near '.measured.large.value' 1 1e-3
+  near '.measured.flowed.value' 4 1e-3
+  near '.energy.residual / .energy.exchanged' 0 1e-4
+done
+
 # Everything else knows cells.
 expect 0 check piston.yaml
 out_has "isentropic gas"
