@@ -36,6 +36,14 @@ static inline double strut_distance(const double *a, const double *b) {
   return strut_vec2_length(strut_vec2_between(a, b));
 }
 
+/** Distance of the point p from the segment from a to b. */
+static inline double strut_distance_to_segment(const double *p, const double *a, const double *b) {
+  double wx = b[0] - a[0], wy = b[1] - a[1], w2 = wx * wx + wy * wy;
+  double s = w2 > 0.0 ? ((p[0] - a[0]) * wx + (p[1] - a[1]) * wy) / w2 : 0.0;
+  s = fmin(fmax(s, 0.0), 1.0);
+  return hypot(p[0] - a[0] - s * wx, p[1] - a[1] - s * wy);
+}
+
 /** Sum of x[i] y[i], i < n, in this order. */
 static inline double strut_dot(const double *x, const double *y, ptrdiff_t n) {
   double sum = 0.0;

@@ -484,13 +484,6 @@ void strut_check_distances(strut_checker *checker) {
 
 /* ---- collisions that overlap ---- */
 
-static double distance_to_segment(const double p[2], const double a[2], const double b[2]) {
-  double wx = b[0] - a[0], wy = b[1] - a[1], w2 = wx * wx + wy * wy;
-  double s = w2 > 0.0 ? ((p[0] - a[0]) * wx + (p[1] - a[1]) * wy) / w2 : 0.0;
-  s = fmin(fmax(s, 0.0), 1.0);
-  return hypot(p[0] - a[0] - s * wx, p[1] - a[1] - s * wy);
-}
-
 /* Least distance of the two axes at the start. */
 static double start_distance(const strut_scene *scene, const strut_collision *c) {
   const double *node[2] = {NULL, NULL};
@@ -501,11 +494,11 @@ static double start_distance(const strut_scene *scene, const strut_collision *c)
       end[k][e] = scene->nodes[scene->members[c->member[k]].node[e]].start;
   }
   if (node[1]) return strut_distance(node[0], node[1]);
-  if (node[0]) return distance_to_segment(node[0], end[0][0], end[0][1]);
+  if (node[0]) return strut_distance_to_segment(node[0], end[0][0], end[0][1]);
   double least = HUGE_VAL;
   for (int k = 0; k < 2; k++)
     for (int e = 0; e < 2; e++)
-      least = fmin(least, distance_to_segment(end[k][e], end[1 - k][0], end[1 - k][1]));
+      least = fmin(least, strut_distance_to_segment(end[k][e], end[1 - k][0], end[1 - k][1]));
   return least;
 }
 

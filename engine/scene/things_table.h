@@ -188,6 +188,7 @@
   X(COLLISION, MEMBER, "member", NAME, NONE, ANY, "", OPTIONAL, 8, "", CHOICE(strut_collision, member[1], UINT32_MAX, REFERENCE(strut_collision, member[0], MEMBER)), "The member that the `node` may touch; a straight line between its ends, which are round.") \
   X(COLLISION, NODES, "nodes", NAME_PAIR, NONE, ANY, "", OPTIONAL, 8, "", REFERENCE(strut_collision, node, NODE), "Two nodes that may touch each other as discs.") \
   X(COLLISION, MEMBERS, "members", NAME_PAIR, NONE, ANY, "", OPTIONAL, 8, "", REFERENCE(strut_collision, member, MEMBER), "Two members that may touch each other: each end of one with the other.") \
+  X(COLLISION, BETWEEN, "between", FREE, NONE, ANY, "", OPTIONAL, 8, "all, a group of members, or two of these", BY_HAND, "Every two straight members of these: of all, of a group, or one of each group. Left out are members that share a node, and those that cross or are nearer than the thickness as drawn.") \
   X(COLLISION, THICKNESS, "thickness", NUMBER, LENGTH, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_collision, thickness), "Distance of the two axes or centres at which they touch.") \
   X(COLLISION, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_collision, stiffness), "Force per depth.") \
   X(COLLISION, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_collision, damping), "Force per speed of approach while they touch; a collision never pulls.")

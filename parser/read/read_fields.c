@@ -264,6 +264,8 @@ void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
                      const strut_tree *value, strut_owner owner, strut_slot *slot) {
   const strut_key *k = strut_key_at(key);
   *slot = (strut_slot){.key = key_tree, .value = value};
+  bool bodies = key == STRUT_KEY_SCENE_COLLISIONS && value->kind == STRUT_TREE_SCALAR;
+  if (bodies && strcmp(value->text, "all") == 0) return; /* strut_read_bodies takes it */
   bool fine = shape_fits(k->type, value) ? read_typed(reader, k, value, owner, slot)
                                          : refuse_value(reader, key, value, owner);
   slot->state = fine ? STRUT_GIVEN : STRUT_BROKEN;

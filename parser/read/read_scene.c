@@ -69,6 +69,7 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
       STEP(strut_add_beam_hinges),
       THINGS(CELL),
       THINGS(COLLISION),
+      STEP(strut_read_bodies),
       THINGS(DISTANCE),
       THINGS(FOOT),
       STEP(strut_read_rayleigh),

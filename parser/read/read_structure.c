@@ -419,14 +419,15 @@ bool strut_read_collision(strut_reader *reader, strut_fields *fields, strut_owne
   const strut_slot *node = strut_slot_of(fields, STRUT_KEY_COLLISION_NODE);
   bool member = strut_slot_of(fields, STRUT_KEY_COLLISION_MEMBER)->state != STRUT_ABSENT;
   bool pair = strut_slot_of(fields, STRUT_KEY_COLLISION_NODES)->state != STRUT_ABSENT ||
-              strut_slot_of(fields, STRUT_KEY_COLLISION_MEMBERS)->state != STRUT_ABSENT;
+              strut_slot_of(fields, STRUT_KEY_COLLISION_MEMBERS)->state != STRUT_ABSENT ||
+              strut_slot_of(fields, STRUT_KEY_COLLISION_BETWEEN)->state != STRUT_ABSENT;
   bool alone = node->state != STRUT_ABSENT;
   (void)object;
   if (fields->broken) fields->unresolved = true;
   if (fields->broken || (pair && !alone) || (member && alone && !pair)) return true;
   strut_report_error(reader, alone && pair ? node->key->place : fields->key->place,
                      "%s %s, expected 'node' and 'member', or 'nodes' with two nodes, or 'members' "
-                     "with two members",
+                     "with two members, or 'between'",
                      strut_owner_text(reader, owner),
                      alone && pair ? "names a node beside a pair" : "does not name two things");
   fields->unresolved = true;

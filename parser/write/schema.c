@@ -292,6 +292,8 @@ static void put_free(schema *s, const strut_key *key) {
     put_either(s, "array", put_two_next, put_next);
   else if (strcmp(key->name, "closed") == 0)
     put_either(s, "object", put_names_of_things, put_switch);
+  else if (strcmp(key->name, "between") == 0)
+    put_either(s, "array", put_two_texts, put_scalar);
   else if (strcmp(key->name, "inputs") == 0)
     put_list(s, 1, 0, put_scalar);
   else if (strcmp(key->name, "lattice") == 0) {
@@ -369,9 +371,14 @@ static void put_things(schema *s, const strut_key *key) {
 
 /* ---- keys ---- */
 
+static void put_collisions(schema *s) { put_things(s, strut_key_at(STRUT_KEY_SCENE_COLLISIONS)); }
 static void put_shape(schema *s) { put_things(s, strut_key_at(STRUT_KEY_CONFIGURATION_SHAPE)); }
 
 static void put_value(schema *s, const strut_key *key) {
+  if (key == strut_key_at(STRUT_KEY_SCENE_COLLISIONS)) {
+    put_either(s, "object", put_collisions, put_all);
+    return;
+  }
   if (key == strut_key_at(STRUT_KEY_CONFIGURATION_SHAPE)) { /* it may be a node of that name */
     put_either(s, "array", put_pair, put_shape);
     return;

@@ -214,6 +214,55 @@ holds '[.equilibria[] | select((.nodes.p[1] < 0) != (.nodes.q[1] < 0) and .label
 holds '[.equilibria[] | select(.nodes.p[1] < 0 and .nodes.q[1] < 0 and .label == "stable")] | length > 0 and all(.through == "k")'
 holds '[.equilibria[] | select(.overlap or .through) | .name] as $out | [.barriers[] | .from, .to] | length > 0 and all(. as $n | $out | index($n) == null)'
 
+# Collisions of all members, or of groups: every two that are apart as drawn, the same bits as one by one.
+cat >many.yaml <<'YAML'
+strut: 1
+groups: {rod: {kind: bar, stiffness: 1000, damping: 1}, tie: {kind: spring, stiffness: 10}}
+nodes:
+  a: {position: [0, 0], mass: 1}
+  b: {position: [1, 0], mass: 1}
+  c: {position: [0, 1], mass: 1}
+  d: {position: [1, 1], mass: 1}
+  e: {position: [0.5, 2], mass: 1}
+  f: {position: [0.5, 1.5], mass: 1}
+members:
+  low: {group: rod, nodes: [a, b]}
+  high: {group: rod, nodes: [c, d]}
+  up: {group: [rod], nodes: [e, f]}
+  cross: {group: tie, nodes: [a, d]}
+  side: {group: tie, nodes: [b, d]}
+COLLISIONS
+initial: {velocities: {e: [0.1, -2], f: [0, -2], a: [0, 1], b: [0, 1]}}
+solver: {integrator: rk4, step: 1 ms}
+run: {duration: 1 s, measure: {quantities: {y: {of: e.y, take: final}}}}
+YAML
+pairs() { # collisions, names that are expected
+  sed "s/^COLLISIONS/$1/" many.yaml >some.yaml
+  expect 0 check some.yaml --json
+  jq -r '.collisions | keys | join(" ")' out >names
+  [ "$(cat names)" = "$2" ] || fail "$1: $(cat names), expected $2"
+}
+pairs 'collisions: {hit: {between: all, thickness: 0.1, stiffness: 500}}' \
+  'hit_high_up hit_low_high hit_low_up hit_up_cross hit_up_side'
+expect 0 run some.yaml --json
+y=$(jq .measured.y.value out)
+jq -e '.measured.y.value > 0.5' out >/dev/null || fail "the rods passed through each other"
+pairs 'collisions: {hit: {between: rod, thickness: 0.1, stiffness: 500}}' 'hit_high_up hit_low_high hit_low_up'
+pairs 'collisions: {hit: {between: [rod, tie], thickness: 0.1, stiffness: 500}}' 'hit_up_cross hit_up_side'
+one='thickness: 0.1, stiffness: 500'
+pairs "collisions: {one: {members: [low, high], $one}, two: {members: [low, up], $one}, three: {members: [high, up], $one}, four: {members: [up, cross], $one}, five: {members: [up, side], $one}}" 'five four one three two'
+expect 0 run some.yaml --json
+near .measured.y.value "$y" 1e-12
+pairs 'collisions: all' 'all_high_up all_low_high all_low_up all_up_cross all_up_side'
+expect 0 check some.yaml --json
+near .collisions.all_low_high.thickness 0.02 1e-12
+near .collisions.all_low_high.stiffness 10000 1e-12
+sed 's/^COLLISIONS/collisions: {hit: {between: ropes, thickness: 0.1, stiffness: 5}}/' many.yaml >some.yaml
+expect 2 check some.yaml
+err_has "no straight member is of group 'ropes', which collision 'hit' names"
+sed 's/^COLLISIONS/collisions: some/' many.yaml >some.yaml
+expect 2 check some.yaml
+
 # Everything else knows collisions.
 expect 0 check hinged.yaml
 out_has "drawn gap"

@@ -244,13 +244,6 @@ typedef struct obstacles {
   double surface[2][2];
 } obstacles;
 
-double strut_distance_to_segment(const double p[2], const double a[2], const double b[2]) {
-  double along[2] = {b[0] - a[0], b[1] - a[1]}, square = along[0] * along[0] + along[1] * along[1];
-  double t = square > 0 ? ((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / square : 0;
-  t = fmax(0, fmin(1, t));
-  return hypot(p[0] - a[0] - t * along[0], p[1] - a[1] - t * along[1]);
-}
-
 /* True if a point is on the hatching below the ground's line. */
 static bool is_on_hatching(const obstacles *o, const double p[2]) {
   const double *a = o->surface[0], *b = o->surface[1];

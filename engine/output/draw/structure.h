@@ -100,7 +100,5 @@ STRUT_API void strut_draw_trail(strut_canvas *canvas, const strut_window *window
                                 const double (*positions)[2], size_t count, double width);
 /** A scale bar with its length, such as "20 mm", in the lower left corner of the window's box. */
 STRUT_API void strut_draw_yardstick(strut_canvas *canvas, const strut_window *window);
-/** Distance of a point from the segment from a to b. */
-STRUT_API double strut_distance_to_segment(const double p[2], const double a[2], const double b[2]);
 
 #endif
