@@ -303,8 +303,34 @@ expect 0 write right.yaml
 cp "$work/out" again.yaml
 expect 0 write again.yaml
 same "$work/out" again.yaml
-expect 1 path v.yaml --until 2
-err_has "paths need a ground that is one straight line at rest"
+# A path between a wall, a ceiling and a floor: each is touched where it is, and takes what springs leave of the load.
+cat >walls.yaml <<'END'
+strut: 1
+nodes:
+  left: {position: [-1, 0], fixed: both}
+  right: {position: [1, 0], fixed: both}
+  pin: [0, 0]
+members:
+  a: {kind: spring, nodes: [left, pin], stiffness: 10, pretension: 5}
+  b: {kind: spring, nodes: [right, pin], stiffness: 10, pretension: 5}
+grounds:
+  ceiling: {normal: [0, -1], through: [0, 0.2], stiffness: 1000, nodes: [pin]}
+  wall: {normal: [-1, 0], through: [0.1, 0], stiffness: 1000, nodes: [pin]}
+  floor: {height: -0.3, stiffness: 1000, nodes: [pin]}
+loads: {push: {node: pin, force: [4, 4]}}
+END
+expect 0 path walls.yaml --until 2 --json
+near '.events[0].nodes.pin[0]' 0.1 1e-9
+near '.events[1].nodes.pin[1]' 0.2 1e-9
+jq -e '[.events[].detail] | (.[0] | test("pin touches wall")) and (.[1] | test("pin touches ceiling"))' "$work/out" >/dev/null || fail 'walls: which is touched'
+pull='def pull($x): (($x + 1) * ($x + 1) + .[1] * .[1] | sqrt) as $l | 10 * ($l - 0.5) / $l;'
+near ".points[-1] | .contacts[\"pin.wall\"] as \$n | .nodes.pin | \$n - 1000 * (.[0] - 0.1)" 0 1e-9
+near ".points[-1] | .contacts[\"pin.wall\"] as \$n | .nodes.pin | $pull 8 - \$n - pull(.[0]) * (1 + .[0]) + pull(-.[0]) * (1 - .[0])" 0 1e-8
+expect 0 path walls.yaml --until -2 --json
+jq -e '[.events[].detail] | any(test("pin touches floor"))' "$work/out" >/dev/null || fail 'walls: which is touched'
+sed 's/  floor: .*/  round: {circle: {centre: [0, -2], radius: 1}, stiffness: 10, nodes: [pin]}/' walls.yaml >round.yaml
+expect 1 path round.yaml
+err_has "paths need grounds that are straight lines at rest"
 expect 1 form v.yaml
 err_has "form finding needs a ground that is one straight line at rest"
 sed -e 's/^gravity/bars: rigid\ngravity/' -e 's/, friction: [^}]*}//' right.yaml >rigid.yaml

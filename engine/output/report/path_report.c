@@ -77,7 +77,7 @@ static const char *name_of(const strut_scene *scene, carrier kind, size_t i) {
     case CELLS: return scene->cells[i].name;
     case DISTANCES: return scene->distances[i].name;
     case SUPPORTS: return scene->nodes[i / 2].name;
-    case CONTACTS: return scene->nodes[scene->contacts[i].node].name;
+    case CONTACTS: return strut_contact_name(scene, i);
     case CARRIERS: break;
   }
   return "";

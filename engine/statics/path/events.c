@@ -309,10 +309,12 @@ static void report_switch(strut_path_walk *w, int32_t which, int32_t before, int
     snprintf(what, sizeof what, "%s %s", scene->members[which].name,
              on ? "begins to pull" : "goes slack");
   } else {
-    index = s->model->contacts.entry[which - members].node;
+    int32_t contact = which - members;
+    index = s->model->contacts.entry[contact].node;
     kind = on ? STRUT_PATH_TOUCHDOWN : STRUT_PATH_LIFT_OFF;
-    snprintf(what, sizeof what, "%s %s", scene->nodes[index].name,
-             on ? "touches the ground" : "leaves the ground");
+    bool several = scene->ground_count > 1;
+    snprintf(what, sizeof what, "%s %s %s", scene->nodes[index].name, on ? "touches" : "leaves",
+             several ? scene->grounds[scene->contacts[contact].ground].name : "the ground");
   }
   snprintf(detail, sizeof detail, "%s%s", what, stable);
   strut_path_add_event(w, kind, w->y, index, before, after, detail);
@@ -382,8 +384,8 @@ static double contact_motion(const strut_path_system *s, int32_t i, size_t mode)
   double sum = 0;
   for (int c = 0; c < 2; c++)
     if (row[c] >= 0)
-      sum +=
-          s->equations.terms.normal[c] * gsl_matrix_get(s->algebra.vectors, (size_t)row[c], mode);
+      sum += s->equations.terms.normal[i][c] *
+             gsl_matrix_get(s->algebra.vectors, (size_t)row[c], mode);
   return sum;
 }
 

@@ -21,16 +21,21 @@ bool strut_path_terms_create(const strut_model *model, strut_arena *arena, strut
   t->position = strut_arena_allocate(arena, length, sizeof(double));
   t->position_low = strut_arena_allocate(arena, length, sizeof(double));
   t->force = strut_arena_allocate(arena, length, sizeof(double));
-  t->ground = strut_arena_allocate(arena, (size_t)model->contacts.count, sizeof(double));
+  size_t contacts = (size_t)model->contacts.count;
+  t->ground = strut_arena_allocate(arena, contacts, sizeof(double));
+  t->normal = strut_arena_allocate(arena, contacts, sizeof *t->normal);
+  t->point = strut_arena_allocate(arena, contacts, sizeof *t->point);
   return t->stiffness && t->rest && t->rest_low && t->position && t->position_low && t->force &&
-         t->ground;
+         t->ground && t->normal && t->point;
 }
 
-bool strut_path_has_line(const strut_model *model) {
-  const strut_scene *scene = model->scene;
-  const strut_surface *surface = model->contacts.surface;
-  return !surface || (scene->ground_count == 1 && scene->grounds->shape == STRUT_GROUND_LINE &&
-                      !surface->moves);
+bool strut_path_has_lines(const strut_model *model) {
+  const strut_contact_table *c = &model->contacts;
+  for (int32_t k = 0; k < c->surfaces; k++)
+    if (c->surface[k].moves ||
+        model->scene->grounds[c->surface[k].ground].shape != STRUT_GROUND_LINE)
+      return false;
+  return true;
 }
 
 /* A scene at a value with its model, kept as long as laws of its elements are used. */
@@ -68,8 +73,8 @@ static void copy_terms(const strut_model *model, const strut_path_terms *from,
   memcpy(to->position_low, from->position_low, length);
   memcpy(to->force, from->force, length);
   memcpy(to->ground, from->ground, (size_t)model->contacts.count * sizeof(double));
-  memcpy(to->normal, from->normal, sizeof to->normal);
-  memcpy(to->point, from->point, sizeof to->point);
+  memcpy(to->normal, from->normal, (size_t)model->contacts.count * sizeof *to->normal);
+  memcpy(to->point, from->point, (size_t)model->contacts.count * sizeof *to->point);
   to->laws = from->laws;
 }
 
@@ -86,10 +91,13 @@ static void read_terms(const strut_model *model, strut_path_terms *t) {
     memcpy(t->force, model->constant_force, length);
   else
     memset(t->force, 0, length);
-  for (int32_t i = 0; i < c->count; i++) t->ground[i] = c->entry[i].stiffness;
   const double level[2] = {0.0, c->height};
-  memcpy(t->normal, c->surface ? c->surface->facet->axes.normal : c->normal, sizeof t->normal);
-  memcpy(t->point, c->surface ? c->surface->facet->point : level, sizeof t->point);
+  for (int32_t i = 0; i < c->count; i++) {
+    const strut_facet *line = c->surface ? c->surface[c->surface_of[i]].facet : NULL;
+    t->ground[i] = c->entry[i].stiffness;
+    memcpy(t->normal[i], line ? line->axes.normal : c->normal, sizeof t->normal[i]);
+    memcpy(t->point[i], line ? line->point : level, sizeof t->point[i]);
+  }
   t->laws = model;
 }
 
@@ -111,8 +119,8 @@ static bool are_elements_alike(const strut_element_table *a, const strut_element
 static bool is_same_structure(const strut_model *a, const strut_model *b) {
   const strut_member_table *s = &a->members, *t = &b->members;
   if (a->node_count != b->node_count || a->length != b->length || s->count != t->count ||
-      s->slots != t->slots || a->contacts.count != b->contacts.count || !strut_path_has_line(a) ||
-      !strut_path_has_line(b))
+      s->slots != t->slots || a->contacts.count != b->contacts.count || !strut_path_has_lines(a) ||
+      !strut_path_has_lines(b))
     return false;
   for (int32_t j = 0; j < s->count; j++)
     if (s->from[j] != t->from[j] || s->to[j] != t->to[j] || s->slack[j] != t->slack[j])
@@ -214,8 +222,9 @@ static bool difference_scenes(strut_path_parameter *p, double value, strut_path_
   divide_difference(a->position, b->position, apart, length, rates->position);
   divide_difference(a->force, b->force, apart, length, rates->force);
   divide_difference(a->ground, b->ground, apart, (size_t)p->model->contacts.count, rates->ground);
-  divide_difference(a->normal, b->normal, apart, 2, rates->normal);
-  divide_difference(a->point, b->point, apart, 2, rates->point);
+  size_t places = 2 * (size_t)p->model->contacts.count;
+  divide_difference(*a->normal, *b->normal, apart, places, *rates->normal);
+  divide_difference(*a->point, *b->point, apart, places, *rates->point);
   return true;
 }
 
@@ -270,7 +279,8 @@ static bool is_different(const strut_model *model, const strut_path_terms *a,
   return are_laws_different(&a->laws->elements, &b->laws->elements) ||
          !is_equal(a->stiffness, b->stiffness, slots) || !is_equal(a->rest, b->rest, slots) ||
          !is_equal(a->ground, b->ground, (size_t)model->contacts.count) ||
-         !is_equal(a->normal, b->normal, 2) || !is_equal(a->point, b->point, 2);
+         !is_equal(*a->normal, *b->normal, 2 * (size_t)model->contacts.count) ||
+         !is_equal(*a->point, *b->point, 2 * (size_t)model->contacts.count);
 }
 
 /* Checks that a scene's number has an effect and does not change the structure. */

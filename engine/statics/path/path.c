@@ -339,9 +339,8 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   int32_t steps = options->steps > 0 ? options->steps : STRUT_PATH_USUAL_STEPS;
   path_start b = {.options = options, .drawn = model, .setup.experiment = *experiment};
   *path = (strut_path){0};
-  if (!strut_path_has_line(model))
-    return strut_fail(error, STRUT_USAGE,
-                      "paths need a ground that is one straight line at rest, or none");
+  if (!strut_path_has_lines(model))
+    return strut_fail(error, STRUT_USAGE, "paths need grounds that are straight lines at rest");
   if (!(fabs(until - options->from) > 0))
     return strut_fail(error, STRUT_USAGE, "the path ends where it starts, at %.6g", until);
   b.load = strut_arena_allocate(&b.arena, length, sizeof *b.load);

@@ -22,7 +22,8 @@ typedef struct strut_path_terms {
   double *position, *position_low; /* (length) of held coordinates, likewise [m] */
   double *force;                   /* (length) gravity and loads [N] */
   double *ground;                  /* (contacts) stiffness [N/m] */
-  double normal[2], point[2];      /* of the ground's line */
+  double (*normal)[2];             /* (contacts) out of the straight ground of each */
+  double (*point)[2];              /* (contacts) on it [m] */
   const strut_model *laws;         /* whose elements have laws and natural strains of these terms */
   struct strut_path_scene *scene; /* that `laws` is of if it is not the path's own model, or NULL */
 } strut_path_terms;
@@ -39,8 +40,8 @@ typedef struct strut_path_parameter {
   strut_error refusal; /* STRUT_OK: none was */
 } strut_path_parameter;
 
-/** Is the ground of the model, if it has one, one straight line at rest? */
-bool strut_path_has_line(const strut_model *model);
+/** Are all grounds of the model, if it has some, straight lines at rest? */
+bool strut_path_has_lines(const strut_model *model);
 /** Terms of zeros in the arena; false: out of memory. */
 bool strut_path_terms_create(const strut_model *model, strut_arena *arena, strut_path_terms *terms);
 /** Releases the scene that terms were read from; what lies in the arena stays. */

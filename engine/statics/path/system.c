@@ -139,7 +139,7 @@ static double measure_member(const strut_path_system *s, int32_t j, strut_path_m
 
 static double gap_of(const strut_path_system *s, int32_t i) {
   uint32_t at = s->model->contacts.at[i];
-  const double *point = s->equations.terms.point, *normal = s->equations.terms.normal;
+  const double *point = s->equations.terms.point[i], *normal = s->equations.terms.normal[i];
   strut_dd x = dd_sub(coordinate(s, at), dd_of(point[0]));
   strut_dd y = dd_sub(coordinate(s, at + 1), dd_of(point[1]));
   return dd_double(dd_add(dd_scale(x, normal[0]), dd_scale(y, normal[1])));
@@ -199,16 +199,16 @@ static void add_members(strut_path_system *s) {
 
 /* The ground as a spring that is there or not, whatever the sign of the gap. */
 static void add_contacts(strut_path_system *s) {
-  const double *normal = s->equations.terms.normal, *turn = s->equations.rates.normal,
-               *point = s->equations.terms.point;
   for (int32_t i = 0; i < s->model->contacts.count; i++) {
+    const double *normal = s->equations.terms.normal[i], *turn = s->equations.rates.normal[i];
+    const double *point = s->equations.terms.point[i], *moved = s->equations.rates.point[i];
     uint32_t at = s->model->contacts.at[i];
     const int32_t *row = s->potential->row_of + at;
     double gap = gap_of(s, i), k = s->equations.terms.ground[i], block[4][4] = {{0}};
     if (!s->latest.touching[i]) continue;
-    double rate =
-        (s->latest.q[at] - point[0]) * turn[0] + (s->latest.q[at + 1] - point[1]) * turn[1] -
-        (s->equations.rates.point[0] * normal[0] + s->equations.rates.point[1] * normal[1]);
+    double rate = (s->latest.q[at] - point[0]) * turn[0] +
+                  (s->latest.q[at + 1] - point[1]) * turn[1] -
+                  (moved[0] * normal[0] + moved[1] * normal[1]);
     for (int a = 0; a < 2; a++) { /* a support on the ground that is moved */
       if (row[a] < 0) rate += normal[a] * s->equations.rates.position[at + (uint32_t)a];
       for (int b = 0; b < 2; b++) block[a][b] = k * normal[a] * normal[b];
@@ -228,7 +228,7 @@ static void add_contacts(strut_path_system *s) {
 static bool rigid_motion(const strut_path_system *s, int which, double *motion) {
   const double axis[2][2] = {{1, 0}, {0, 1}};
   bool sloped = s->model->contacts.count > 0;
-  const double *out = sloped ? s->equations.terms.normal : axis[1];
+  const double *out = sloped ? s->equations.terms.normal[0] : axis[1];
   const double tangent[2] = {out[1], -out[0]}, *along = sloped ? tangent : axis[0];
   double centre[2] = {0, 0}, sum = 0;
   int32_t nodes = s->model->node_count, pins = 0;
@@ -323,7 +323,7 @@ void strut_path_reactions(const strut_path_system *s, double *reaction, double *
   for (int32_t i = 0; i < s->model->contacts.count; i++) {
     contact[i] = s->latest.touching[i] ? 0.0 - s->equations.terms.ground[i] * gap_of(s, i) : 0.0;
     for (uint32_t c = 0; c < 2; c++)
-      reaction[s->model->contacts.at[i] + c] -= contact[i] * s->equations.terms.normal[c];
+      reaction[s->model->contacts.at[i] + c] -= contact[i] * s->equations.terms.normal[i][c];
   }
   for (int32_t at = 0; at < s->model->length; at++)
     reaction[at] =
