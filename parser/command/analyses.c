@@ -136,7 +136,7 @@ strut_status strut_named_shape_find(const strut_arguments *arguments, const stru
   return STRUT_OK;
 }
 
-enum { MOST_STEPS = 1000000 };
+enum { MOST_STEPS = 1000000, DEEPEST = 10 };
 
 /* Everything that --over may name: candidates for suggestions. */
 typedef struct candidates {
@@ -207,11 +207,14 @@ static strut_status choose_followed(const strut_command *command, const strut_ar
 static strut_status read_path_options(const strut_command *command,
                                       const strut_arguments *arguments,
                                       strut_path_options *wanted) {
-  int64_t steps = 0;
+  int64_t steps = 0, branches = 0;
   strut_status status =
       strut_option_integer(command, arguments, STRUT_OPTION_STEPS, 1, MOST_STEPS, &steps);
+  if (status == STRUT_OK)
+    status = strut_option_integer(command, arguments, STRUT_OPTION_BRANCHES, 1, DEEPEST, &branches);
   *wanted = (strut_path_options){.at = strut_option_text(arguments, STRUT_OPTION_AT),
-                                 .steps = (int32_t)steps};
+                                 .steps = (int32_t)steps,
+                                 .branches = (int32_t)branches};
   return status;
 }
 

@@ -60,7 +60,10 @@
       {STRUT_OPTION_UNTIL, "until", "VALUE", "end value, likewise (default: load factor 1)"},      \
       {STRUT_OPTION_STOP, "stop", "NODE.x=VALUE",                                                  \
        "or end earlier, where a node has moved so far along x or y"},                              \
-      {STRUT_OPTION_AT, "at", "NAME", "equilibrium to start from (default: that of the start)"}, { \
+      {STRUT_OPTION_AT, "at", "NAME", "equilibrium to start from (default: that of the start)"},   \
+      {STRUT_OPTION_BRANCHES, "branches", "DEPTH",                                                 \
+       "follow paths that leave at bifurcations: 1 of this path, 2 of its branches too, ..."},     \
+  {                                                                                                \
     STRUT_OPTION_STEPS, "steps", "N",                                                              \
         "maximum number of steps (default " STRUT_TEXT_OF(STRUT_PATH_USUAL_STEPS) ")"              \
   }

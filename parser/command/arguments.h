@@ -53,6 +53,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_UNTIL,
   STRUT_OPTION_STOP, /* of a path: the displacement at which it ends */
   STRUT_OPTION_STEPS,
+  STRUT_OPTION_BRANCHES,
   STRUT_OPTION_FROM,
   STRUT_OPTION_LEAST_TENSION,
   STRUT_OPTION_LEAST_DENSITY,

@@ -174,6 +174,40 @@ expect 0 path over.yaml --set load=0 --over k --until "-10 N/m" --json
 jq -e '.end == "invalid" and (.points[-1].value | fabs) < 1e-3 and
   (.remark | contains("over.yaml:") and contains("stiffness"))' "$work/out" >jq.out ||
   fail "the end of what is valid"
+# Branches: two links of length l, each turned by t, stand under the load 2 stiffness t/(l sin t).
+column="$here/../../models/parts/link-column.yaml"
+expect 0 path "$column" --set links=2 --until 20 --branches 1 --json
+jq -e '(.branches | length) == 2 and
+  ([.branches[] | .end == "until" and .from_branch == 0 and (.events | length) == 0] | all) and
+  [.branches[].twin] == [2, 1] and
+  ([.branches[].points[1:][] | .nodes."link.0.head" as [$x, $y] |
+    (($x * $x + $y * $y) | sqrt) as $l | ($y / $l | fabs) as $sine |
+    (if $x > 0 then ($sine | asin) else 3.141592653589793 - ($sine | asin) end) as $t |
+    .stable and (.factor * $l * $sine / (2 * $t) - 1 | fabs) < 1e-9] | all)' "$work/out" >jq.out ||
+  fail "two links that buckle"
+# Von Mises' truss, steep: off the middle each bar with its force leaves no residual, and both halves of
+# the branch meet on the other side.
+expect 0 path "$here/../../models/gallery/von-mises.yaml" --set load=1 --set span=0.15 --until 1 \
+  --branches 2 --json
+jq -e 'def pull($dx; $dy): (($dx * $dx + $dy * $dy) | sqrt) as $l |
+    ((0.2725 | sqrt) / $l - 1) as $s | [$s * $dx, $s * $dy];
+  (.branches | length) == 6 and
+  ([.branches[0:2][] | .end == "joined" and (.points[0].factor + .points[-1].factor | fabs) < 1e-9] | all)
+  and ([.branches[].points[] | .nodes.apex as $p | .factor as $f |
+    pull($p[0] + 0.15; $p[1]) as $a | pull($p[0] - 0.15; $p[1]) as $b |
+    ($a[0] + $b[0] | fabs) < 1e-7 and ($a[1] + $b[1] - $f | fabs) < 1e-7] | all)' "$work/out" >jq.out ||
+  fail "a steep truss that gives way sideways"
+# Branches of branches; a table, a CSV with a column for them, a picture.
+expect 0 path "$column" --set links=4 --until 40 --branches 2 -o branches --plot branches.svg
+head -1 branches/path.csv | grep -q '^branch,factor,' || fail "the column for branches"
+[ "$(cut -d, -f1 branches/path.csv | sort -un | tail -1)" = 20 ] || fail "20 branches"
+out_has "twin of branch 2"
+expect 0 path "$column" --set links=4 --until 40 --plot alone.svg
+[ "$(grep -c '<path' branches.svg)" -gt "$(($(grep -c '<path' alone.svg) + 100))" ] ||
+  fail "branches in the picture"
+expect 1 path "$column" --branches 0
+err_has "--branches expects a whole number from 1 to 10"
+
 # What cannot be followed.
 expect 1 path over.yaml --over kk --until 3
 err_has "did you mean 'k'?"

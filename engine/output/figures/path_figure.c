@@ -155,6 +155,19 @@ static void name_height(path_picture *p, double width, char label[LABEL]) {
     snprintf(label, LABEL, "%.100s", fit_name(p, path->name, width - 40, fitted));
 }
 
+/* The drawn ordinate: a load, the reaction to a displacement, or the parameter itself. */
+static double curve_height(const strut_path *path, double value, const double *reaction) {
+  if (path->coordinate >= 0) return reaction[path->coordinate];
+  return path->reference > 0 ? value * path->reference : value;
+}
+
+/* Where a point of a branch lies on the curve's axes. */
+static void branch_vertex(const path_picture *p, const strut_path_point *point, double *motion,
+                          double *height) {
+  *motion = p->sign * (point->q[p->coordinate] - p->path->points[0].q[p->coordinate]);
+  *height = curve_height(p->path, point->factor, point->reaction);
+}
+
 static strut_axes place_axes(path_picture *p, strut_box box, char labels[2][LABEL]) {
   static const char *const directions[] = {"to the left", "to the right", "downwards", "upwards"};
   char fitted[STRUT_FITTED_TEXT];
@@ -173,12 +186,38 @@ static strut_axes place_axes(path_picture *p, strut_box box, char labels[2][LABE
     strut_axis_include(&motion, p->vertices[k].motion);
     strut_axis_include(&height, p->vertices[k].height);
   }
+  for (size_t i = 0; i < p->path->branch_count; i++)
+    for (size_t k = 0; k < p->path->branches[i].point_count; k++) {
+      double along, upwards;
+      branch_vertex(p, &p->path->branches[i].points[k], &along, &upwards);
+      strut_axis_include(&motion, along);
+      strut_axis_include(&height, upwards);
+    }
   strut_axis_settle(&motion, 0.05);
   strut_axis_settle(&height, 0.05);
   strut_axis x = p->upright ? height : motion, y = p->upright ? motion : height;
   strut_axis_choose(&x, &p->plot->x);
   strut_axis_choose(&y, &p->plot->y);
   return strut_axes_place(p->canvas, box, x, y, NULL, NULL);
+}
+
+/* Branches, faint where they are unstable. */
+static void draw_branches(const path_picture *p, const strut_axes *axes) {
+  for (size_t i = 0; i < p->path->branch_count; i++) {
+    const strut_path *branch = &p->path->branches[i];
+    double ends[2][2];
+    for (size_t k = 0; k < branch->point_count; k++) {
+      double motion, height;
+      branch_vertex(p, &branch->points[k], &motion, &height);
+      memcpy(ends[0], ends[1], sizeof ends[0]);
+      strut_axes_point(axes, p->upright ? height : motion, p->upright ? motion : height, ends[1]);
+      if (k == 0) continue;
+      strut_pen pen = {.colour = strut_palette_thing(0), .width = 1.2};
+      if (branch->points[k - 1].negative > 0)
+        pen.colour = strut_faded(pen.colour, 0.45), pen.butt = true;
+      strut_draw_segment(p->canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], pen);
+    }
+  }
 }
 
 static void draw_curve(path_picture *p, strut_box box) {
@@ -196,6 +235,7 @@ static void draw_curve(path_picture *p, strut_box box) {
     strut_axes_point(&axes, axes.x.low, 0.0, at);
     strut_draw_segment(p->canvas, at[0], at[1], at[0] + axes.frame.width, at[1], zero);
   }
+  draw_branches(p, &axes);
   for (size_t first = 0, k = 1; k < p->count; k++) {
     bool ends = k + 1 == p->count || p->vertices[k].unstable != p->vertices[first].unstable;
     if (!ends) continue;
@@ -401,12 +441,6 @@ static void choose_coordinate(path_picture *p) {
     }
 }
 
-/* The drawn ordinate: a load, the reaction to a displacement, or the parameter itself. */
-static double curve_height(const strut_path *path, double value, const double *reaction) {
-  if (path->coordinate >= 0) return reaction[path->coordinate];
-  return path->reference > 0 ? value * path->reference : value;
-}
-
 static void add_vertex(path_picture *p, double value, const double *q, const double *force,
                        const double *reaction, bool unstable) {
   assert(p->count < p->path->point_count + p->path->event_count);
@@ -527,7 +561,7 @@ static bool prepare_picture(path_picture *p, strut_arena *arena) {
   return true;
 }
 
-enum { ITEMS = MOST_STOPS + 4, NOTE = 80 };
+enum { ITEMS = MOST_STOPS + 5, NOTE = 80 };
 
 static size_t make_key(const path_picture *p, char notes[2][NOTE], strut_key_item items[ITEMS]) {
   size_t count = 0;
@@ -548,6 +582,10 @@ static size_t make_key(const path_picture *p, char notes[2][NOTE], strut_key_ite
         .sign = STRUT_KEY_LINE,
         .pen = {.colour = strut_grey(0.15), .width = 1.2, .dash = {3, 2}, .butt = true},
         .text = "unstable"};
+  if (p->path->branch_count)
+    items[count++] = (strut_key_item){.sign = STRUT_KEY_LINE,
+                                      .pen = {.colour = strut_palette_thing(0), .width = 1.2},
+                                      .text = "branches, faint where unstable"};
   if (p->larger > 1) {
     snprintf(notes[1], NOTE, "shapes: displacements enlarged %.0f times", p->larger);
     items[count++] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = notes[1]};

@@ -143,8 +143,9 @@ static void add_value(strut_json *json, struct cJSON *to, const strut_path *path
   if (path->reference > 0) strut_json_number(json, to, "force", value * path->reference);
 }
 
-static void add_points(strut_json *json, const strut_path *path, const strut_scene *scene) {
-  struct cJSON *points = strut_json_array(json, json->root, "points");
+static void add_points(strut_json *json, struct cJSON *to, const strut_path *path,
+                       const strut_scene *scene) {
+  struct cJSON *points = strut_json_array(json, to, "points");
   for (size_t i = 0; i < path->point_count; i++) {
     const strut_path_point *point = &path->points[i];
     struct cJSON *row = strut_json_object(json, points, NULL);
@@ -158,8 +159,9 @@ static void add_points(strut_json *json, const strut_path *path, const strut_sce
   }
 }
 
-static void add_events(strut_json *json, const strut_path *path, const strut_scene *scene) {
-  struct cJSON *events = strut_json_array(json, json->root, "events");
+static void add_events(strut_json *json, struct cJSON *to, const strut_path *path,
+                       const strut_scene *scene) {
+  struct cJSON *events = strut_json_array(json, to, "events");
   for (size_t i = 0; i < path->event_count; i++) {
     const strut_path_event *event = &path->events[i];
     struct cJSON *row = strut_json_object(json, events, NULL);
@@ -177,8 +179,30 @@ static void add_events(strut_json *json, const strut_path *path, const strut_sce
   }
 }
 
+/* Why it ended, points and events. */
+static void add_walk(strut_json *json, struct cJSON *to, const strut_path *path,
+                     const strut_scene *scene) {
+  strut_json_text(json, to, "end", strut_path_end_word(path->end));
+  strut_json_text(json, to, "remark", path->remark[0] ? path->remark : NULL);
+  add_points(json, to, path, scene);
+  add_events(json, to, path, scene);
+}
+
+static void add_branches(strut_json *json, const strut_path *path, const strut_scene *scene) {
+  if (!path->branches) return;
+  struct cJSON *branches = strut_json_array(json, json->root, "branches");
+  for (size_t i = 0; i < path->branch_count; i++) {
+    const strut_path *branch = &path->branches[i];
+    struct cJSON *row = strut_json_object(json, branches, NULL);
+    strut_json_integer(json, row, "from_branch", branch->from.path);
+    add_value(json, row, path, branch->from.factor);
+    strut_json_number(json, row, "arc", branch->from.arc);
+    strut_json_integer(json, row, "twin", branch->from.twin);
+    add_walk(json, row, branch, scene);
+  }
+}
+
 char *strut_path_json(const strut_path *path, const strut_scene *scene) {
-  static const char *const ends[] = {"until", "stop", "steps", "away", "lost", "invalid"};
   bool loads = path->over == STRUT_PATH_OVER_LOAD;
   strut_json json = strut_json_begin();
   strut_json_text(&json, json.root, "name", scene->name);
@@ -186,10 +210,8 @@ char *strut_path_json(const strut_path *path, const strut_scene *scene) {
   strut_json_text(&json, json.root, "load", path->load);
   strut_json_text(&json, json.root, "over", loads ? NULL : path->name);
   strut_json_text(&json, json.root, "unit", path->unit);
-  strut_json_text(&json, json.root, "end", ends[path->end]);
-  strut_json_text(&json, json.root, "remark", path->remark[0] ? path->remark : NULL);
-  add_points(&json, path, scene);
-  add_events(&json, path, scene);
+  add_walk(&json, json.root, path, scene);
+  add_branches(&json, path, scene);
   return strut_json_end(&json);
 }
 
@@ -334,6 +356,46 @@ static void add_force_table(strut_buffer *table, const strut_path *path, const s
   if (left) strut_buffer_add(table, "  and %zu more; -o DIR writes all of them\n", left);
 }
 
+static bool was_stable(const strut_path *path) {
+  for (size_t k = 0; k < path->point_count; k++)
+    if (path->points[k].negative == 0) return true;
+  return false;
+}
+
+static bool is_always_stable(const strut_path *path) {
+  for (size_t k = 0; k < path->point_count; k++)
+    if (path->points[k].negative > 0) return false;
+  return true;
+}
+
+/* One row for each branch: where it leaves, how far it leads, stability, what it resembles. */
+static void add_branch_table(strut_buffer *table, const strut_path *path) {
+  char from[STRUT_QUANTITY_TEXT], to[STRUT_QUANTITY_TEXT];
+  if (!path->branches) return;
+  if (!path->branch_count) {
+    strut_buffer_add(table,
+                     "\n  no branches: the path has no bifurcation that one was followed from\n");
+    return;
+  }
+  strut_buffer_add(table,
+                   "\n  branch  leaves branch              at              to  points  events\n");
+  for (size_t i = 0; i < path->branch_count; i++) {
+    const strut_path *b = &path->branches[i];
+    const char *stability = is_always_stable(b) ? "stable"
+                            : was_stable(b)     ? "stable in part"
+                                                : "unstable";
+    char number[16] = "path";
+    if (b->from.path) snprintf(number, sizeof number, "%d", (int)b->from.path);
+    strut_buffer_add(table, "  %6zu  %13s  %14s  %14s  %6zu  %6zu  %s", i + 1, number,
+                     value_text(path, b->from.factor, from),
+                     value_text(path, b->points[b->point_count - 1].factor, to), b->point_count,
+                     b->event_count, stability);
+    if (b->from.twin) strut_buffer_add(table, ", twin of branch %d", (int)b->from.twin);
+    if (b->remark[0]) strut_buffer_add(table, "; %s", b->remark);
+    strut_buffer_add(table, "\n");
+  }
+}
+
 char *strut_path_table(const strut_path *path, const strut_scene *scene) {
   strut_buffer table = {0};
   size_t node = farthest_node(path, scene), at = 0;
@@ -358,6 +420,7 @@ char *strut_path_table(const strut_path *path, const strut_scene *scene) {
       add_row(&table, path, &here, node, point->negative ? "unstable" : "stable", largest);
   }
   add_force_table(&table, path, scene);
+  add_branch_table(&table, path);
   if (path->remark[0]) strut_buffer_add(&table, "\n%s\n", path->remark);
   strut_c_locale_leave(locale);
   return strut_buffer_take(&table);
@@ -402,20 +465,33 @@ static void add_numbers(strut_buffer *csv, const strut_path *path, const strut_s
   strut_buffer_add(csv, "\n");
 }
 
-char *strut_path_csv(const strut_path *path, const strut_scene *scene) {
-  strut_buffer csv = {0};
+/* The rows of a path; `branch`: its number as a column, or negative: none. */
+static void add_rows(strut_buffer *csv, const strut_path *path, const strut_scene *scene,
+                     int branch) {
+  char number[16] = "";
   size_t at = 0;
-  add_header(&csv, path, scene);
+  if (branch >= 0) snprintf(number, sizeof number, "%d,", branch);
   for (size_t k = 0; k < path->point_count; k++) {
     const strut_path_point *point = &path->points[k];
     char negative[16];
     state here = state_of_point(point);
     for (; at < path->event_count && path->events[at].arc <= point->arc; at++) {
       state there = state_of_event(&path->events[at]);
-      add_numbers(&csv, path, scene, &there, "", strut_path_event_name(path->events[at].kind));
+      strut_buffer_add(csv, "%s", number);
+      add_numbers(csv, path, scene, &there, "", strut_path_event_name(path->events[at].kind));
     }
     snprintf(negative, sizeof negative, "%d", (int)point->negative);
-    add_numbers(&csv, path, scene, &here, negative, "");
+    strut_buffer_add(csv, "%s", number);
+    add_numbers(csv, path, scene, &here, negative, "");
   }
+}
+
+char *strut_path_csv(const strut_path *path, const strut_scene *scene) {
+  strut_buffer csv = {0};
+  if (path->branches) strut_buffer_add(&csv, "branch,");
+  add_header(&csv, path, scene);
+  add_rows(&csv, path, scene, path->branches ? 0 : -1);
+  for (size_t i = 0; i < path->branch_count; i++)
+    add_rows(&csv, &path->branches[i], scene, (int)i + 1);
   return strut_buffer_take(&csv);
 }

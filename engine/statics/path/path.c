@@ -32,6 +32,27 @@ const char *strut_path_event_name(strut_path_event_kind kind) {
   return names[kind];
 }
 
+const char *strut_path_end_word(strut_path_end end) {
+  switch (end) {
+    case STRUT_PATH_UNTIL: return "until";
+    case STRUT_PATH_STOP: return "stop";
+    case STRUT_PATH_STEPS: return "steps";
+    case STRUT_PATH_AWAY: return "away";
+    case STRUT_PATH_LOST: return "lost";
+    case STRUT_PATH_INVALID: return "invalid";
+    case STRUT_PATH_JOINED: return "joined";
+  }
+  return "";
+}
+
+void strut_path_remark_steps(strut_path_walk *w, int32_t steps) {
+  const strut_path *path = w->path;
+  if (path->end != STRUT_PATH_STEPS || path->point_count == 0) return;
+  snprintf(w->path->remark, sizeof path->remark, "%d steps led to %s %.6g%s%s; --steps allows more",
+           (int)steps, strut_path_subject(w), path->points[path->point_count - 1].factor,
+           *path->unit ? " " : "", path->unit);
+}
+
 static strut_status no_such_load(const strut_scene *scene, const char *name, strut_error *error) {
   char list[NAMES] = "";
   size_t used = 0;
@@ -254,6 +275,14 @@ static bool allocate_walk(strut_path_walk *w) {
   return true;
 }
 
+/* Room for bifurcations and the paths that leave them. */
+static bool allocate_branches(strut_path_walk *w) {
+  w->forks.fork =
+      strut_arena_allocate(&w->system.arena, STRUT_PATH_BRANCHES, sizeof *w->forks.fork);
+  w->path->branches = strut_allocate(STRUT_PATH_BRANCHES, sizeof *w->path->branches);
+  return w->forks.fork && w->path->branches;
+}
+
 static strut_status create_walk(path_start *b, double until, strut_path_walk *w,
                                 strut_error *error) {
   strut_path_system *s = &w->system;
@@ -263,7 +292,8 @@ static strut_status create_walk(path_start *b, double until, strut_path_walk *w,
     return strut_fail(error, STRUT_USAGE,
                       "the structure has %d free coordinates; paths are followed with up to %d",
                       (int)s->n, STRUT_PATH_COORDINATES);
-  if (!allocate_walk(w)) return strut_no_memory(error, "");
+  if (!allocate_walk(w) || (b->options->branches > 0 && !allocate_branches(w)))
+    return strut_no_memory(error, "");
   s->parameter = (strut_path_parameter){.options = b->options,
                                         .model = b->model,
                                         .load = b->load,
@@ -282,6 +312,9 @@ static strut_status walk_from(path_start *b, double until, int32_t steps, strut_
     bool on = strut_path_walk_begin(&w);
     for (int32_t i = 0; i < steps && on && !strut_experiment_interrupted(&b->setup.experiment); i++)
       on = strut_path_walk_step(&w);
+    strut_path_remark_steps(&w, steps);
+    if (w.forks.fork && path->point_count > 0)
+      strut_path_walk_branches(&w, path, &b->setup.experiment);
     if (w.system.drifts && path->point_count == 0)
       status = strut_fail(error, STRUT_NOT_SETTLED,
                           "nothing holds the structure against %s: it moves as a whole",
@@ -355,10 +388,6 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
     status = strut_fail(error, STRUT_USAGE, "%s changes how many nodes there are", path->name);
   if (status == STRUT_OK) status = find_start(&b, error);
   if (status == STRUT_OK) status = walk_from(&b, until, steps, path, error);
-  if (status == STRUT_OK && path->end == STRUT_PATH_STEPS)
-    snprintf(path->remark, sizeof path->remark, "%d steps led to %s %.6g%s%s; --steps allows more",
-             (int)steps, over_load ? "the factor" : path->name,
-             path->points[path->point_count - 1].factor, *path->unit ? " " : "", path->unit);
   strut_model_free(b.model);
   if (b.owned) strut_setup_free(&b.setup);
   strut_arena_free(&b.arena);
@@ -366,6 +395,8 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
 }
 
 void strut_path_free(strut_path *path) {
+  for (size_t i = 0; i < path->branch_count; i++) strut_path_free(&path->branches[i]);
+  strut_release(path->branches);
   strut_release(path->points);
   strut_release(path->events);
   strut_arena_free(&path->arena);

@@ -69,13 +69,20 @@ typedef struct strut_path_event {
 } strut_path_event;
 
 typedef enum strut_path_end {
-  STRUT_PATH_UNTIL,  /* the value asked for */
-  STRUT_PATH_STOP,   /* the displacement asked for */
-  STRUT_PATH_STEPS,  /* the maximum number of steps */
-  STRUT_PATH_AWAY,   /* a node left all bounds, or the parameter went ten ranges the other way */
-  STRUT_PATH_LOST,   /* no equilibrium nearby; the remark says where */
-  STRUT_PATH_INVALID /* the scene is invalid beyond this value; the remark says why */
+  STRUT_PATH_UNTIL,   /* the value asked for */
+  STRUT_PATH_STOP,    /* the displacement asked for */
+  STRUT_PATH_STEPS,   /* the maximum number of steps */
+  STRUT_PATH_AWAY,    /* a node left all bounds, or the parameter went ten ranges the other way */
+  STRUT_PATH_LOST,    /* no equilibrium nearby; the remark says where */
+  STRUT_PATH_INVALID, /* the scene is invalid beyond this value; the remark says why */
+  STRUT_PATH_JOINED   /* of a branch: at a bifurcation found before; the remark says where */
 } strut_path_end;
+
+/** The word for it in files: "until", "stop", "steps", "away", "lost", "invalid", "joined". */
+STRUT_API const char *strut_path_end_word(strut_path_end end);
+
+/** Branches that are followed from one path at most, those of its branches included. */
+#define STRUT_PATH_BRANCHES 64
 
 /** The parameter of the continuation. */
 typedef enum strut_path_over {
@@ -99,6 +106,14 @@ typedef struct strut_path {
   strut_path_event *events;
   strut_path_end end;
   char remark[1000]; /* why it ended before `until`; else empty */
+  size_t branch_count;
+  struct strut_path *branches; /* those of branches follow theirs; each has none of its own */
+  /** Of a branch: where it leaves, and what it resembles. Branches are numbered from 1. */
+  struct {
+    int32_t path;       /* the branch that it leaves, 0: the path itself */
+    double factor, arc; /* of the bifurcation there */
+    int32_t twin; /* the branch to the other side, if the parameter does the same on it; or 0 */
+  } from;
   strut_arena arena;
 } strut_path;
 
@@ -126,7 +141,9 @@ typedef struct strut_path_options {
                         comes to rest */
   double from;  /* where the path begins: in SI, or the factor */
   double until; /* where it ends; a load's factor from 0 to 0 ends at 1 */
-  int32_t steps;        /* maximum number of steps; 0: the usual ones */
+  int32_t steps;        /* maximum number of steps; 0: the usual ones; of each branch, too */
+  int32_t branches;     /* bifurcations are left for other paths: 1 on this path, 2 on its branches
+                           too, ... */
   strut_path_stop stop; /* or earlier, here */
 } strut_path_options;
 

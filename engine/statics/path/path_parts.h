@@ -262,7 +262,17 @@ double strut_path_measure_eigenvalue(strut_path_system *system, const double *y,
 double strut_path_locate(strut_path_system *system, const strut_path_piece *piece,
                          strut_path_measure measure, int32_t which, double *y);
 
-/* The walk along a path: what its steps share. For path.c, walk.c and events.c. */
+/* The walk along a path: what its steps share. For path.c, walk.c, events.c and branches.c. */
+
+/** A bifurcation that a branch may leave: all that a walk needs to begin there. */
+typedef struct strut_path_fork {
+  double *y, *direction; /* (2 n + 2), (n + 1) off the path that it was found on */
+  uint8_t *pulling, *touching;
+  strut_path_element *element; /* (elements) */
+  double factor, arc;
+  int32_t path, depth;
+  bool done[2]; /* the branch along -direction, along direction was walked */
+} strut_path_fork;
 
 typedef struct strut_path_walk {
   strut_path_system system;
@@ -274,12 +284,28 @@ typedef struct strut_path_walk {
   int32_t negative; /* eigenvalues below zero beyond y */
   size_t point_room, event_room;
   bool failed; /* memory was out */
+  /** Bifurcations found, where branches are asked for. */
+  struct {
+    strut_path_fork *fork; /* (STRUT_PATH_BRANCHES), or NULL: not asked for */
+    size_t count;
+    int32_t path, depth; /* of the path that is walked */
+    int32_t left;        /* bifurcations for which there was no room */
+  } forks;
 } strut_path_walk;
 
 /** From y: what pulls and touches there, the tangent along which the load does work, a point. */
 bool strut_path_walk_begin(strut_path_walk *walk);
 /** One step, with all events on it; false: the path ends here, path->end says why. */
 bool strut_path_walk_step(strut_path_walk *walk);
+
+/** Notes why a path ended that took all its steps. */
+void strut_path_remark_steps(strut_path_walk *walk, int32_t steps);
+
+/** Keeps the bifurcation at y, where the stiffness does not resist the null vector (n). */
+void strut_path_keep_fork(strut_path_walk *walk, const double *y, const gsl_vector *null);
+/** After the walk along a path: the branches of the bifurcations kept, into path->branches. */
+void strut_path_walk_branches(strut_path_walk *walk, strut_path *path,
+                              const strut_experiment *experiment);
 
 /** Switches this close to zero change together, in units of the structure's size. */
 #define STRUT_PATH_EVEN 1e-9
@@ -303,6 +329,8 @@ const char *strut_path_subject(const strut_path_walk *walk);
  */
 const char *strut_path_turn(const strut_path_walk *walk, double turn);
 
+/** a . b over the first n + 1 numbers. */
+double strut_path_dot(const strut_path_walk *walk, const double *a, const double *b);
 /** Distance of two points of the path in y. */
 double strut_path_distance(const strut_path_walk *walk, const double *a, const double *b);
 /** Keeps walk->y; `negative` beyond it. */

@@ -124,7 +124,7 @@ static size_t bytes_of(const strut_path_walk *w) {
   return 2 * ((size_t)w->system.n + 1) * sizeof(double);
 }
 
-static double dot_product(const strut_path_walk *w, const double *a, const double *b) {
+double strut_path_dot(const strut_path_walk *w, const double *a, const double *b) {
   double sum = 0;
   for (int32_t i = 0; i <= w->system.n; i++) sum += a[i] * b[i];
   return sum;
@@ -186,6 +186,7 @@ static void find_critical(strut_path_walk *w, const strut_path_piece *piece, int
   } else {
     snprintf(detail, sizeof detail, "another path branches off: %s moves most on it%s", name,
              stable);
+    strut_path_keep_fork(w, w->trial, &null.vector);
     strut_path_add_event(w, STRUT_PATH_BIFURCATION, w->trial, node, before, after, detail);
   }
 }
@@ -221,14 +222,14 @@ void strut_path_count_negative(strut_path_walk *w) {
 /* Predictor and corrector, shorter until they succeed: the next point and its tangent. */
 static bool find_next(strut_path_walk *w) {
   strut_path_system *s = &w->system;
-  double here = dot_product(w, w->tangent, w->y);
+  double here = strut_path_dot(w, w->tangent, w->y);
   for (; w->step >= SHORTEST; w->step *= 0.5) {
     memcpy(w->next, w->y, bytes_of(w));
     for (int32_t i = 0; i <= s->n; i++) w->next[i] += w->step * w->tangent[i];
     int used = strut_path_correct(s, w->tangent, here + w->step, w->next);
     if (used < 0 || used > SLOW || strut_path_distance(w, w->next, w->y) > 1.5 * w->step) continue;
     if (!strut_path_tangent(s, w->next, w->tangent, w->next_tangent)) continue;
-    if (dot_product(w, w->tangent, w->next_tangent) < BEND) continue;
+    if (strut_path_dot(w, w->tangent, w->next_tangent) < BEND) continue;
     return true;
   }
   w->step = SHORTEST;
@@ -242,15 +243,15 @@ static bool bends_away(strut_path_walk *w, double *y, double *tangent) {
   memcpy(y, w->y, bytes_of(w));
   memcpy(tangent, w->tangent, tangent_bytes);
   for (int k = 0; k < SUBSTEPS; k++) {
-    double here = dot_product(w, tangent, y), step = w->step / SUBSTEPS;
+    double here = strut_path_dot(w, tangent, y), step = w->step / SUBSTEPS;
     for (int32_t i = 0; i <= s->n; i++) y[i] += step * tangent[i];
     if (strut_path_correct(s, tangent, here + step, y) < 0) return true;
     if (!strut_path_tangent(s, y, tangent, w->next_tangent)) return true;
-    if (dot_product(w, tangent, w->next_tangent) < BEND) return true;
+    if (strut_path_dot(w, tangent, w->next_tangent) < BEND) return true;
     memcpy(tangent, w->next_tangent, tangent_bytes);
   }
   return !strut_path_tangent(s, w->next, w->tangent, w->next_tangent) ||
-         dot_product(w, tangent, w->next_tangent) < BEND;
+         strut_path_dot(w, tangent, w->next_tangent) < BEND;
 }
 
 /*
@@ -309,7 +310,6 @@ static bool land_on_stop(strut_path_walk *w, const strut_path_piece *piece) {
   strut_path_system *s = &w->system;
   const strut_path_stop *stop = &s->parameter.options->stop;
   if (!stop->given) return false;
-  s->stop_at = w->path->points[0].q[stop->coordinate] + stop->displacement;
   double from = measure_stop(s, piece->from, piece, 0), to = measure_stop(s, piece->to, piece, 0);
   if (!(from * to <= 0.0) || from == 0.0) return false;
   if (strut_path_locate(s, piece, measure_stop, 0, w->trial) < 0) return false;
@@ -413,10 +413,10 @@ bool strut_path_walk_step(strut_path_walk *w) {
   strut_path_piece piece = {w->y, w->tangent, w->next, 0};
   int32_t which;
   if (!find_next_on_branch(w)) return end_path(w, find_reason(w));
-  piece.length = dot_product(w, w->tangent, w->next) - dot_product(w, w->tangent, w->y);
+  piece.length = strut_path_dot(w, w->tangent, w->next) - strut_path_dot(w, w->tangent, w->y);
   bool landed = land_on_end(w), stopped = land_on_stop(w, &piece);
   if (landed || stopped)
-    piece.length = dot_product(w, w->tangent, w->next) - dot_product(w, w->tangent, w->y);
+    piece.length = strut_path_dot(w, w->tangent, w->next) - strut_path_dot(w, w->tangent, w->y);
   double place = first_switch(w, &piece, &which);
   if (which >= 0) {
     piece.length = place;
@@ -487,5 +487,8 @@ bool strut_path_walk_begin(strut_path_walk *w) {
   if (!first_tangent(w) || s->drifts) return end_path(w, STRUT_PATH_LOST);
   strut_path_count_negative(w);
   strut_path_add_point(w, w->negative);
+  const strut_path_stop *stop = &s->parameter.options->stop;
+  if (!w->failed && stop->given)
+    s->stop_at = w->path->points[0].q[stop->coordinate] + stop->displacement;
   return !w->failed;
 }

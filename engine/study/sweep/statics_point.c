@@ -115,18 +115,6 @@ static double super_stability(const strut_rigidity *r) {
   return known ? (double)r->stress.super_stable : (double)NAN;
 }
 
-static const char *end_word(strut_path_end end) {
-  switch (end) {
-    case STRUT_PATH_UNTIL: return "until";
-    case STRUT_PATH_STOP: return "stop";
-    case STRUT_PATH_STEPS: return "steps";
-    case STRUT_PATH_AWAY: return "away";
-    case STRUT_PATH_LOST: return "lost";
-    case STRUT_PATH_INVALID: return "invalid";
-  }
-  return "";
-}
-
 /* ---- the columns ---- */
 
 typedef enum column_shape {
@@ -239,7 +227,7 @@ static const char *word_of(const rest_result *r, strut_keep keep, size_t i,
     return i < r->stable_count ? r->equilibria.list[r->stable[i]].name : "";
   if (keep == STRUT_KEEP_AT) return r->modes.at;
   if (keep == STRUT_KEEP_LABEL) return short_label(r->rigidity.tensegrity.label, word);
-  return end_word(r->path.end);
+  return strut_path_end_word(r->path.end);
 }
 
 /* Columns that only a study which asks for them has. */
