@@ -45,6 +45,22 @@ typedef struct strut_search {
   uint64_t seed; /* up to STRUT_MOST_SEED */
 } strut_search;
 
+/**
+ * A stage of a path: one of a load's factor, an actuator or a coordinate is followed from where it is to
+ * `until`, or a held coordinate is let go, by taking its reaction away.
+ */
+typedef struct strut_path_stage {
+  const char *load, *over,
+      *release; /* load; actuator or NODE.x; NODE.x that a stage before or a support holds, and not in
+                                        the first stage: one of them, else NULL */
+  double until; /* factor, or in SI; of a release 0 */
+  size_t hold_count;
+  int32_t *hold;        /* (hold_count) coordinates held from its beginning, 2 node + 1 for y */
+  int32_t stop;         /* coordinate at which it ends earlier, or -1 */
+  double stop_distance; /* once it has moved so far in the stage [m] */
+  int32_t steps;        /* maximum number of steps; 0: the usual ones */
+} strut_path_stage;
+
 /** Stops a run by periods when the motion repeats itself. */
 typedef struct strut_steady {
   bool wanted;
@@ -92,12 +108,14 @@ typedef struct strut_experiment {
       accuracy; /* wanted relative error of the measured quantity [1], by which method and step are chosen; 0: they are as given */
   double budget; /* work allowed for it, in fine runs with a fixed step */
   strut_steady steady;
-  strut_settle settle;   /* before t = 0 */
-  strut_search search;   /* of equilibria */
-  double duration;       /* [s]; 0 when given in periods */
-  double periods;        /* number of periods of signal `period_signal`; 0 when in seconds */
-  int32_t period_signal; /* or -1 */
-  const char *period_of; /* the name the file used for it, or NULL */
+  strut_settle settle; /* before t = 0 */
+  strut_search search; /* of equilibria */
+  size_t stage_count;
+  strut_path_stage *stages; /* (stage_count) of a path */
+  double duration;          /* [s]; 0 when given in periods */
+  double periods;           /* number of periods of signal `period_signal`; 0 when in seconds */
+  int32_t period_signal;    /* or -1 */
+  const char *period_of;    /* the name the file used for it, or NULL */
   double measure_last;  /* window: the last periods (if periods > 0) or seconds; 0: the whole run */
   int32_t measure_node; /* whose velocity (14) is measured; -1: the centre of mass */
   size_t quantity_count;

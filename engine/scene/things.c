@@ -58,6 +58,16 @@ int32_t strut_thing_find(const strut_scene *scene, strut_thing kind, const char 
   return -1;
 }
 
+int32_t strut_coordinate_find(const strut_scene *scene, const char *name) {
+  const char *dot = strrchr(name, '.');
+  if (!dot || (strcmp(dot, ".x") != 0 && strcmp(dot, ".y") != 0)) return -1;
+  size_t length = (size_t)(dot - name);
+  for (size_t i = 0; i < scene->node_count; i++)
+    if (strlen(scene->nodes[i].name) == length && strncmp(scene->nodes[i].name, name, length) == 0)
+      return (int32_t)(2 * i) + (dot[1] == 'y');
+  return -1;
+}
+
 strut_thing strut_thing_of_column(strut_column_owner owner) {
   switch (owner) {
     case STRUT_COLUMN_OF_NODE:

@@ -35,6 +35,8 @@ STRUT_API const void *strut_thing_object(const strut_scene *scene, strut_thing k
 STRUT_API const char *strut_thing_name(const strut_scene *scene, strut_thing kind, size_t i);
 /** Index of the thing of that name, -1: none. */
 STRUT_API int32_t strut_thing_find(const strut_scene *scene, strut_thing kind, const char *name);
+/** Index of a coordinate: "node.x" is 2 node, "node.y" 2 node + 1; -1: none. */
+STRUT_API int32_t strut_coordinate_find(const strut_scene *scene, const char *name);
 /** The configuration of that name, NULL: none. */
 STRUT_API const strut_configuration *strut_configuration_named(const strut_scene *scene,
                                                                const char *name);

@@ -109,6 +109,7 @@
   X(SCENE, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, "", OPTIONAL, 0, "`{NODE: [x, y], ...}` or the keys of a [configuration](#configuration)", THINGS(CONFIGURATION), "Named shapes: to start from, and to name equilibria. Nodes that are not listed stay as drawn.") \
   X(SCENE, INITIAL, "initial", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(INITIAL), "The state at t = 0; by default the drawn shape at rest.") \
   X(SCENE, EQUILIBRIA, "equilibria", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(EQUILIBRIA), "Settings of the search for equilibria.") \
+  X(SCENE, PATH, "path", FREE, NONE, ANY, "", OPTIONAL, 0, "the keys of a [path in stages](#path-in-stages)", BY_HAND, "What `strut path` follows, in stages, unless it is told otherwise.") \
   X(SCENE, SOLVER, "solver", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(SOLVER), "Method, time step and accuracy. Required for a run.") \
   X(SCENE, RUN, "run", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(RUN), "Duration and measurement. Required for a run.") \
   X(SCENE, OUTPUT, "output", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(OUTPUT), "What is recorded.") \

@@ -200,7 +200,7 @@ static strut_status choose_followed(const strut_command *command, const strut_ar
     return STRUT_OK;
   }
   wanted->over = STRUT_PATH_OVER_COORDINATE;
-  wanted->index = strut_path_coordinate(scene, name);
+  wanted->index = strut_coordinate_find(scene, name);
   return wanted->index >= 0 ? STRUT_OK : reject_name(command, arguments, scene, name);
 }
 
@@ -226,7 +226,7 @@ static strut_status read_stop(const strut_command *command, const strut_argument
   if (!text) return STRUT_OK;
   const char *equal = strrchr(text, '=');
   const char *name = equal ? strut_arena_text(&arena, text, (size_t)(equal - text)) : NULL;
-  stop->coordinate = name ? strut_path_coordinate(scene, name) : -1;
+  stop->coordinate = name ? strut_coordinate_find(scene, name) : -1;
   stop->given = true;
   bool number = equal &&
                 strut_option_numbers(equal + 1, STRUT_DIM_LENGTH, &stop->displacement, 1) == 1 &&
@@ -456,9 +456,21 @@ const strut_analysis_kind strut_form_analysis = {.uncompiled = true,
 
 /* ---- path ---- */
 
+/* The file's stages are followed unless the command says what to follow. */
+static bool has_stages(const strut_analysis *a) {
+  static const strut_option_id others[] = {STRUT_OPTION_LOAD, STRUT_OPTION_OVER, STRUT_OPTION_FROM,
+                                           STRUT_OPTION_UNTIL, STRUT_OPTION_STOP};
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    if (strut_option_text(a->arguments, others[i])) return false;
+  return a->setup->experiment.stage_count > 0;
+}
+
 static strut_status compute_path(strut_analysis *a, strut_error *error) {
   strut_path_options wanted;
   strut_status status = read_path_options(a->command, a->arguments, &wanted);
+  if (status == STRUT_OK && has_stages(a))
+    return strut_path_follow_stages(a->model, &a->setup->experiment, &wanted, &a->result.path,
+                                    error);
   if (status == STRUT_OK)
     status = read_followed(a->command, a->arguments, &a->setup->scene, &a->scenes, &wanted);
   if (status != STRUT_OK) return status;

@@ -19,7 +19,8 @@
   X(HINGES, "hinges")                                                                              \
   X(CELLS, "cells")                                                                                \
   X(DISTANCES, "distances")                                                                        \
-  X(LOADS, "loads")
+  X(LOADS, "loads")                                                                                \
+  X(PATH, "path")
 
 typedef enum strut_import_section {
 #define STRUT_IMPORT_SECTION_ENUM(name, key) STRUT_IMPORT_##name,

@@ -413,20 +413,62 @@ static void read_area(strut_springable *r) {
                     nodes, gas ? gas : law);
 }
 
-static void read_load(strut_springable *r) {
+/* Ends a stage of the loading, of a single load; the first is written only if it must be. */
+static void end_stage(strut_springable *r) {
+  strut_import_scene *s = r->scene;
+  strut_writer *path = &s->section[STRUT_IMPORT_PATH];
+  const char *hold = r->hold ? strut_import_text(s, ", hold: [%s]", r->hold) : "";
+  if (r->stage_loads == 1 && !r->later && (r->staged || r->stop)) {
+    if (!path->length) strut_import_line(s, path, "  stages:");
+    strut_import_line(s, path, "    - {load: load%zu%s%s}", r->loads, hold ? hold : "",
+                      r->stop ? r->stop : "");
+  }
+  r->stage_loads = 0;
+  r->hold = r->stop = NULL;
+  r->blocking = false;
+}
+
+/* "then", and "block" with the coordinates that a stage holds; false: it is none of them. */
+static bool read_stage(strut_springable *r) {
   strut_import_scene *s = r->scene;
   const char *at = strut_springable_text(r, 0), *axis = strut_springable_text(r, 1);
   if (r->field_count == 1 && strcmp(at, "then") == 0) {
-    r->later = true;
-    strut_note(r->said, strut_springable_place(r, 0),
-               "not imported: the later steps of the loading");
-    return;
+    if (r->stage_loads > 1 && !r->staged) {
+      r->later = true;
+      strut_note(r->said, strut_springable_place(r, 0),
+                 "not imported: the later steps of a loading that begins with several loads");
+    }
+    r->staged = true;
+    end_stage(r);
+    return true;
   }
-  if (r->later) return;
+  if (r->field_count == 1 && strcmp(at, "block") == 0) {
+    r->blocking = true;
+    return true;
+  }
+  if (!r->blocking || r->field_count != 2) return false;
+  long index = strut_springable_index(&at);
+  bool x = strcmp(axis, "X") == 0;
+  if (index < 0 || *at || !strut_springable_node(r, index) || (!x && strcmp(axis, "Y") != 0))
+    return false;
+  r->hold = strut_import_text(s, "%s%sn%ld.%c", r->hold ? r->hold : "", r->hold ? ", " : "", index,
+                              x ? 'x' : 'y');
+  return true;
+}
+
+static void read_load(strut_springable *r) {
+  strut_import_scene *s = r->scene;
+  const char *at = strut_springable_text(r, 0), *axis = strut_springable_text(r, 1);
+  if (read_stage(r) || r->later) return;
   long index = strut_springable_index(&at);
   bool x = strcmp(axis, "X") == 0, y = strcmp(axis, "Y") == 0;
   if (index < 0 || *at || !strut_springable_node(r, index) || (!x && !y) || r->field_count < 3) {
     strut_diagnose(r->said, strut_springable_place(r, 0), "expected a load: NODE, X or Y, FORCE");
+    return;
+  }
+  if (r->staged && r->stage_loads) {
+    strut_note(r->said, strut_springable_place(r, 0),
+               "not imported: one more load of a later step of the loading");
     return;
   }
   const char *force = strut_springable_expression(r, strut_springable_text(r, 2),
@@ -435,13 +477,11 @@ static void read_load(strut_springable *r) {
   if (*strut_springable_text(r, 3) &&
       strut_springable_expression(r, strut_springable_text(r, 3), strut_springable_place(r, 3),
                                   &end))
-    strut_note(
-        r->said, strut_springable_place(r, 3),
-        "not imported: the displacement at which the loading ends; give it to strut path, as "
-        "--stop n%ld.%c=%.10g",
-        index, x ? 'x' : 'y', end);
+    r->stop = strut_import_text(s, ", stop: {n%ld.%c: %s}", index, x ? 'x' : 'y',
+                                strut_import_number(s, end));
   if (!force) return;
   use_nodes(r);
+  r->stage_loads++;
   strut_import_line(s, &s->section[STRUT_IMPORT_LOADS], "  load%zu: {node: n%ld, force: [%s, %s]}",
                     ++r->loads, index, x ? force : "0", y ? force : "0");
 }
@@ -524,6 +564,11 @@ strut_status strut_import_springable(strut_import_scene *s) {
     read_line(&r, &in, line, (size_t)(stop - line));
     line = stop + 1;
   }
+  if (r.stop && r.stage_loads > 1)
+    strut_note(r.said, strut_place_at(r.line, 1, 1),
+               "not imported: the displacement at which the loading ends, as it has several loads; "
+               "give it to strut path with --stop");
+  end_stage(&r);
   for (size_t i = 0; i < r.parameter_count; i++)
     strut_import_line(s, &s->section[STRUT_IMPORT_PARAMETERS], "  %s: %s", r.parameters[i].own,
                       strut_import_number(s, r.parameters[i].value));

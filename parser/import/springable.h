@@ -33,7 +33,10 @@ typedef struct strut_springable {
   strut_springable_parameter *parameters;
   strut_springable_point *nodes;
   size_t springs, angles, paths, distances, areas, loads; /* so far */
-  bool later;                                             /* of LOADING: after "then" */
+  size_t stage_loads;      /* of the stage of LOADING that is being read */
+  bool staged, blocking;   /* stages are written; after "block" */
+  bool later;              /* steps that are left out */
+  const char *hold, *stop; /* of the stage: its coordinates, or "" */
 } strut_springable;
 
 /* What a spring's line says behind its nodes. */

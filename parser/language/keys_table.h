@@ -246,6 +246,18 @@
   X(STIFFNESS_AT, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, goal.stiffness_node), "A node of the model.") \
   X(STIFFNESS_AT, DIRECTION, "direction", NUMBER, ANGLE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, goal.stiffness_direction), "From the x axis: 90 deg is upwards.")
 
+#define STRUT_SCENE_PATH_KEYS(X) \
+  X(SCENE_PATH, STAGES, "stages", FREE, NONE, ANY, "", REQUIRED, 0, "a list of stages such as [{load: NAME}]", BY_HAND, "One after the other, each from the end of the one before.")
+
+#define STRUT_STAGE_KEYS(X) \
+  X(STAGE, LOAD, "load", TEXT, NONE, ANY, "", OPTIONAL, 7, "", FIELD(strut_path_stage, load), "The load whose factor grows. Loads that some stage names begin with the factor 0; all others act from the beginning.") \
+  X(STAGE, OVER, "over", TEXT, NONE, ANY, "", OPTIONAL, 7, "", FIELD(strut_path_stage, over), "Or an actuator, or the displacement `NODE.x` or `NODE.y`, which stays held afterwards.") \
+  X(STAGE, RELEASE, "release", TEXT, NONE, ANY, "", OPTIONAL, 7, "", FIELD(strut_path_stage, release), "Or `NODE.x` or `NODE.y`, held so far: its reaction is taken away by and by.") \
+  X(STAGE, UNTIL, "until", NUMBER, CONTEXT, ANY, "load factor 1", OPTIONAL, 0, "", FIELD(strut_path_stage, until), "Value at which the stage ends, from where it is: a factor, or in the unit of `over`, where it is required.") \
+  X(STAGE, HOLD, "hold", NAMES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Coordinates `[NODE.x, NODE.y, ...]` that are held where they are from the beginning of the stage.") \
+  X(STAGE, STOP, "stop", FREE, NONE, ANY, "", OPTIONAL, 0, "`{NODE.x: LENGTH}`", BY_HAND, "Or the stage ends where a node has moved so far in it.") \
+  X(STAGE, STEPS, "steps", NUMBER, NONE, WHOLE(1, 1000000), "400", OPTIONAL, 0, "", FIELD(strut_path_stage, steps), "Maximum number of steps.")
+
 #define STRUT_SEARCH_KEYS(X) \
   X(SEARCH, MAXIMISE, "maximise", FREE, NONE, ANY, "", OPTIONAL, 12, "an expression of columns, or a list of two", BY_HAND, "What is to be as large as possible: a column of the table, or an expression of columns such as `velocity/frequency`. Two of them, `[velocity, -cost_of_transport]`: the points that no other one beats in both.") \
   X(SEARCH, MINIMISE, "minimise", FREE, NONE, ANY, "", OPTIONAL, 12, "an expression of columns, or a list of two", BY_HAND, "What is to be as small as possible, likewise: `abs(velocity - 10 mm/s)`.") \
@@ -323,6 +335,8 @@
   STRUT_INITIAL_FIELDS(X) \
   STRUT_SETTLE_FIELDS(X) \
   STRUT_EQUILIBRIA_FIELDS(X) \
+  STRUT_SCENE_PATH_KEYS(X) \
+  STRUT_STAGE_KEYS(X) \
   STRUT_SOLVER_FIELDS(X) \
   STRUT_RUN_FIELDS(X) \
   STRUT_MEASURE_FIELDS(X) \
@@ -394,6 +408,8 @@
   X(INITIAL, "initial", INITIAL_CONFIGURATION, "`initial: {...}`.") \
   X(SETTLE, "settle", SETTLE_SPEED, "`initial: {settle: {...}}`.") \
   X(EQUILIBRIA, "equilibria", EQUILIBRIA_SUPPORTS, "`equilibria: {...}`: the search of `strut equilibria` and of `initial: {equilibrium: NAME}`.") \
+  X(SCENE_PATH, "path in stages", SCENE_PATH_STAGES, "`path: {stages: [{...}, ...]}` of a model. [Stages](statics.md#stages) has an example.") \
+  X(STAGE, "stage", STAGE_LOAD, "`path: {stages: [{...}]}`, each with one of `load`, `over`, `release`.") \
   X(SOLVER, "solver", SOLVER_INTEGRATOR, "`solver: {...}`.") \
   X(RUN, "run", RUN_DURATION, "`run: {...}`: either `duration`, or `periods` and `of`.") \
   X(MEASURE, "measure", MEASURE_LAST, "`run: {measure: {...}}`.") \

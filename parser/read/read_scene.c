@@ -92,6 +92,7 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
       STEP(strut_read_configurations),
       STEP(strut_read_search),
       STEP(strut_read_initial),
+      STEP(strut_read_stages),
       STEP(strut_read_experiment)
 #undef STEP
 #undef THINGS

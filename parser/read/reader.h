@@ -450,6 +450,8 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
                     strut_dimension strain, strut_dimension force, strut_law *law);
 void strut_read_rayleigh(strut_reader *reader);
 void strut_read_lattice(strut_reader *reader);
+/** Stages of a path: read_stages.c. */
+void strut_read_stages(strut_reader *reader);
 /** Collisions of all members or of groups become those of pairs. */
 void strut_read_bodies(strut_reader *reader);
 

@@ -204,6 +204,7 @@ static void put_quantity_keys(schema *s) { put_section(s, STRUT_SECTION_QUANTITY
 static void put_quantity(schema *s) { put_either(s, "object", put_quantity_keys, put_number); }
 static void put_repeat(schema *s) { put_section(s, STRUT_SECTION_REPEAT); }
 static void put_next(schema *s) { put_section(s, STRUT_SECTION_NEXT); }
+static void put_stage(schema *s) { put_section(s, STRUT_SECTION_STAGE); }
 static void put_two_next(schema *s) { put_list(s, 2, 2, put_next); }
 static void put_two_texts(schema *s) { put_list(s, 2, 2, put_scalar); }
 static void put_two_numbers(schema *s) { put_list(s, 2, 2, put_number); }
@@ -296,7 +297,14 @@ static void put_free(schema *s, const strut_key *key) {
     put_either(s, "array", put_two_texts, put_scalar);
   else if (strcmp(key->name, "inputs") == 0)
     put_list(s, 1, 0, put_scalar);
-  else if (strcmp(key->name, "lattice") == 0) {
+  else if (strcmp(key->name, "path") == 0)
+    put_section(s, STRUT_SECTION_SCENE_PATH);
+  else if (strcmp(key->name, "stages") == 0)
+    put_list(s, 1, 0, put_stage);
+  else if (strcmp(key->name, "stop") == 0) {
+    put_member(s, "type", "\"object\"");
+    put_member(s, "maxProperties", "1");
+  } else if (strcmp(key->name, "lattice") == 0) {
     put_member(s, "type", "\"array\"");
     open_object(s, "items");
     put_pair(s);

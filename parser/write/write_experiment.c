@@ -156,9 +156,58 @@ static void put_initial(strut_writer *writer) {
   put_settle(writer, &writer->experiment->settle);
 }
 
+/* "n1.x" */
+static void put_coordinate(strut_writer *writer, int32_t at) {
+  strut_arena arena = {0};
+  const char *node = writer->scene->nodes[at / 2].name;
+  const char *name = strut_arena_format(&arena, "%s.%c", node, at % 2 ? 'y' : 'x');
+  strut_put_name(writer, name ? name : node);
+  strut_arena_free(&arena);
+}
+
+static void put_stage_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                              const void *object) {
+  const strut_path_stage *stage = object;
+  if (key == STRUT_KEY_STAGE_UNTIL && !*stage->release) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put_number(writer, stage->until);
+  } else if (key == STRUT_KEY_STAGE_HOLD && stage->hold_count) {
+    strut_put_key_name(writer, mapping, key);
+    for (size_t i = 0; i < stage->hold_count; i++) {
+      strut_put(writer, i ? ", " : "[");
+      put_coordinate(writer, stage->hold[i]);
+    }
+    strut_put(writer, "]");
+  } else if (key == STRUT_KEY_STAGE_STOP && stage->stop >= 0) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put(writer, "{");
+    put_coordinate(writer, stage->stop);
+    strut_put(writer, ": ");
+    strut_put_number(writer, stage->stop_distance);
+    strut_put(writer, "}");
+  }
+}
+
+static void put_stages(strut_writer *writer) {
+  static const strut_path_stage none = {.load = "", .over = "", .release = ""};
+  const strut_experiment *e = writer->experiment;
+  if (e->stage_count) strut_put(writer, "path:\n  stages:\n");
+  for (size_t i = 0; i < e->stage_count; i++) {
+    strut_mapping mapping = STRUT_MAPPING_INLINE;
+    strut_path_stage stage = e->stages[i];
+    if (!stage.load) stage.load = none.load;
+    if (!stage.over) stage.over = none.over;
+    if (!stage.release) stage.release = none.release;
+    strut_put(writer, "    - {");
+    strut_put_fields(writer, &mapping, STRUT_SECTION_STAGE, &stage, &none, put_stage_by_hand);
+    strut_put(writer, "}\n");
+  }
+}
+
 void strut_put_shapes(strut_writer *writer) {
   put_configurations(writer);
   put_search(writer);
+  put_stages(writer);
   put_initial(writer);
 }
 

@@ -104,7 +104,7 @@ ANGULAR SPRINGS
 LOADING
 3, Y, -10, -3.0
 then
-1, X, 2
+1, Y, 2
 """
 
 
@@ -113,11 +113,22 @@ def springable():
     scene, said = imported("arch.csv")
     for place in ("6:13: note: not imported: a range", "7:8: note: not imported: a parameter that is a text",
                   "19:6: note: not imported: an element with the behaviour 'BEZIER",
-                  "13:1: note: not imported: node n4", "23:12: note: not imported: the displacement",
-                  "24:1: note: not imported: the later steps"):
+                  "13:1: note: not imported: node n4"):
         check(f"arch.csv:{place}" in said, f"not listed: {place}: {said}")
     check("h_value: 3" in scene, "the name of a unit")
     check("n2: {position: [8, 0]" in scene and "n1: {position: [w/2, h_value]" in scene, scene)
+
+    check("""path:
+  stages:
+    - {load: load1, stop: {n3.y: -3}}
+    - {load: load2}""" in scene, "stages of the loading")
+    stages = json.loads(run("path", "scene.yaml", "--json").stdout)
+    first = stages["earlier_stages"][0]
+    check(first["end"] == "stop" and stages["points"][0]["nodes"] == first["points"][-1]["nodes"], "stages")
+    write("blocked.csv", ARCH + "then\nblock\n1, Y\n3, Y, 5\n")
+    check("    - {load: load3, hold: [n1.y]}" in imported("blocked.csv")[0], "a node that is held")
+    write("arch.csv", ARCH.split("then")[0].replace(", -3.0", ""))
+    imported("arch.csv")
 
     def limits(model):
         path = json.loads(run("path", model, "--load", "load1" if model == "scene.yaml" else "down",

@@ -100,13 +100,9 @@ static double shown_force(double value, double largest) {
   return fabs(value) > ROUNDING * largest ? value : 0.0;
 }
 
-/* True if the coordinate is supported or displaced, and so has a reaction. */
-static bool is_held(const strut_path *path, const strut_scene *scene, size_t node, int axis) {
-  return scene->nodes[node].fixed[axis] || path->coordinate == (int32_t)(2 * node) + axis;
-}
-
-static bool has_value(const strut_path *path, const strut_scene *scene, carrier kind, size_t i) {
-  return kind != SUPPORTS || is_held(path, scene, i / 2, (int)(i % 2));
+/* Of coordinates only those have a reaction that are held. */
+static bool has_value(const strut_path *path, carrier kind, size_t i) {
+  return kind != SUPPORTS || path->held[i];
 }
 
 static void add_nodes(strut_json *json, struct cJSON *to, const strut_scene *scene,
@@ -127,7 +123,7 @@ static void add_forces(strut_json *json, struct cJSON *to, const strut_path *pat
       const double *value = values_of(at, kind) + i;
       if (kind != SUPPORTS)
         strut_json_number(json, values, name_of(scene, kind, i), *value);
-      else if (has_value(path, scene, kind, i) || has_value(path, scene, kind, i + 1))
+      else if (has_value(path, kind, i) || has_value(path, kind, i + 1))
         strut_json_numbers(json, values, name_of(scene, kind, i), value, 2);
     }
   }
@@ -179,9 +175,12 @@ static void add_events(strut_json *json, struct cJSON *to, const strut_path *pat
   }
 }
 
-/* Why it ended, points and events. */
+/* What is followed, why it ended, points and events. */
 static void add_walk(strut_json *json, struct cJSON *to, const strut_path *path,
                      const strut_scene *scene) {
+  strut_json_text(json, to, "load", path->load);
+  strut_json_text(json, to, "over", path->over == STRUT_PATH_OVER_LOAD ? NULL : path->name);
+  strut_json_text(json, to, "unit", path->unit);
   strut_json_text(json, to, "end", strut_path_end_word(path->end));
   strut_json_text(json, to, "remark", path->remark[0] ? path->remark : NULL);
   add_points(json, to, path, scene);
@@ -203,15 +202,14 @@ static void add_branches(strut_json *json, const strut_path *path, const strut_s
 }
 
 char *strut_path_json(const strut_path *path, const strut_scene *scene) {
-  bool loads = path->over == STRUT_PATH_OVER_LOAD;
   strut_json json = strut_json_begin();
   strut_json_text(&json, json.root, "name", scene->name);
   strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
-  strut_json_text(&json, json.root, "load", path->load);
-  strut_json_text(&json, json.root, "over", loads ? NULL : path->name);
-  strut_json_text(&json, json.root, "unit", path->unit);
   add_walk(&json, json.root, path, scene);
   add_branches(&json, path, scene);
+  struct cJSON *stages = path->stages ? strut_json_array(&json, json.root, "earlier_stages") : NULL;
+  for (size_t i = 0; i < path->stage_count; i++)
+    add_walk(&json, strut_json_object(&json, stages, NULL), &path->stages[i], scene);
   return strut_json_end(&json);
 }
 
@@ -345,7 +343,7 @@ static void add_force_table(strut_buffer *table, const strut_path *path, const s
   for (carrier kind = MEMBERS; kind < CARRIERS; kind++) {
     for (size_t k = 0; k < count; k++) largest[k] = largest_value(path, scene, kind);
     for (size_t i = 0; i < count_values(scene, kind); i++) {
-      if (!has_value(path, scene, kind, i) || rows++ >= MOST_FORCES) continue;
+      if (!has_value(path, kind, i) || rows++ >= MOST_FORCES) continue;
       for (size_t k = 0; k < count; k++) values[k] = values_of(&stops[k], kind)[i];
       add_force_row(table, name_of(scene, kind, i),
                     carriers[kind].words[kind == SUPPORTS ? i % 2 : 0], carriers[kind].unit, count,
@@ -368,6 +366,25 @@ static bool is_always_stable(const strut_path *path) {
   return true;
 }
 
+static const char *stability_of(const strut_path *path) {
+  return is_always_stable(path) ? "stable" : was_stable(path) ? "stable in part" : "unstable";
+}
+
+/* One row for each stage before this one. */
+static void add_stage_table(strut_buffer *table, const strut_path *path) {
+  char from[STRUT_QUANTITY_TEXT], to[STRUT_QUANTITY_TEXT];
+  if (!path->stage_count) return;
+  strut_buffer_add(table,
+                   "\n  stages before           from              to  points  events  over\n");
+  for (size_t i = 0; i < path->stage_count; i++) {
+    const strut_path *stage = &path->stages[i];
+    strut_buffer_add(table, "  %13zu  %14s  %14s  %6zu  %6zu  %s, %s\n", i + 1,
+                     value_text(stage, stage->points[0].factor, from),
+                     value_text(stage, stage->points[stage->point_count - 1].factor, to),
+                     stage->point_count, stage->event_count, stage->name, stability_of(stage));
+  }
+}
+
 /* One row for each branch: where it leaves, how far it leads, stability, what it resembles. */
 static void add_branch_table(strut_buffer *table, const strut_path *path) {
   char from[STRUT_QUANTITY_TEXT], to[STRUT_QUANTITY_TEXT];
@@ -381,15 +398,12 @@ static void add_branch_table(strut_buffer *table, const strut_path *path) {
                    "\n  branch  leaves branch              at              to  points  events\n");
   for (size_t i = 0; i < path->branch_count; i++) {
     const strut_path *b = &path->branches[i];
-    const char *stability = is_always_stable(b) ? "stable"
-                            : was_stable(b)     ? "stable in part"
-                                                : "unstable";
     char number[16] = "path";
     if (b->from.path) snprintf(number, sizeof number, "%d", (int)b->from.path);
     strut_buffer_add(table, "  %6zu  %13s  %14s  %14s  %6zu  %6zu  %s", i + 1, number,
                      value_text(path, b->from.factor, from),
                      value_text(path, b->points[b->point_count - 1].factor, to), b->point_count,
-                     b->event_count, stability);
+                     b->event_count, stability_of(b));
     if (b->from.twin) strut_buffer_add(table, ", twin of branch %d", (int)b->from.twin);
     if (b->remark[0]) strut_buffer_add(table, "; %s", b->remark);
     strut_buffer_add(table, "\n");
@@ -421,6 +435,7 @@ char *strut_path_table(const strut_path *path, const strut_scene *scene) {
   }
   add_force_table(&table, path, scene);
   add_branch_table(&table, path);
+  add_stage_table(&table, path);
   if (path->remark[0]) strut_buffer_add(&table, "\n%s\n", path->remark);
   strut_c_locale_leave(locale);
   return strut_buffer_take(&table);
@@ -438,60 +453,77 @@ static void add_number(strut_buffer *csv, double value) {
 
 static void add_header(strut_buffer *csv, const strut_path *path, const strut_scene *scene) {
   static const char *const axes[] = {"x [m]", "y [m]"};
-  bool loads = path->over == STRUT_PATH_OVER_LOAD;
-  strut_buffer_add(csv, loads ? "factor" : *path->unit ? "value [%s]" : "value", path->unit);
-  if (loads && path->reference > 0) strut_buffer_add(csv, ",force [N]");
+  bool loads = path->over == STRUT_PATH_OVER_LOAD, staged = path->stages;
+  strut_buffer_add(csv, staged ? "stage,over,unit," : "");
+  strut_buffer_add(csv, path->branches ? "branch," : "");
+  strut_buffer_add(csv,
+                   staged        ? "value"
+                   : loads       ? "factor"
+                   : *path->unit ? "value [%s]"
+                                 : "value",
+                   path->unit);
+  if (loads && path->reference > 0 && !staged) strut_buffer_add(csv, ",force [N]");
   strut_buffer_add(csv, ",arc,negative_eigenvalues,event");
   for (size_t i = 0; i < 2 * scene->node_count; i++)
     add_cell(csv, scene->nodes[i / 2].name, axes[i % 2]);
   for (carrier kind = MEMBERS; kind < CARRIERS; kind++)
     for (size_t i = 0; i < count_values(scene, kind); i++)
-      if (has_value(path, scene, kind, i))
+      if (has_value(path, kind, i))
         add_cell(csv, name_of(scene, kind, i), carriers[kind].column[kind == SUPPORTS ? i % 2 : 0]);
   strut_buffer_add(csv, "\n");
 }
 
-static void add_numbers(strut_buffer *csv, const strut_path *path, const strut_scene *scene,
+/* Whose rows are written, and the columns that they begin with. */
+typedef struct rows {
+  const strut_path *path; /* the whole, of which they are a stage or a branch */
+  const strut_path *part;
+  int stage, branch;
+} rows;
+
+static void add_numbers(strut_buffer *csv, const rows *of, const strut_scene *scene,
                         const state *at, const char *negative, const char *event) {
+  const strut_path *path = of->path;
+  if (path->stages) {
+    strut_buffer_add(csv, "%d,", of->stage);
+    strut_csv_add_text(csv, "%s", of->part->name);
+    strut_buffer_add(csv, ",%s,", of->part->unit);
+  }
+  if (path->branches) strut_buffer_add(csv, "%d,", of->branch);
   strut_csv_add_number(csv, at->factor);
-  if (path->over == STRUT_PATH_OVER_LOAD && path->reference > 0)
+  if (path->over == STRUT_PATH_OVER_LOAD && path->reference > 0 && !path->stages)
     add_number(csv, at->factor * path->reference);
   add_number(csv, at->arc);
   strut_buffer_add(csv, ",%s,%s", negative, event);
   for (size_t i = 0; i < 2 * scene->node_count; i++) add_number(csv, at->q[i]);
   for (carrier kind = MEMBERS; kind < CARRIERS; kind++)
     for (size_t i = 0; i < count_values(scene, kind); i++)
-      if (has_value(path, scene, kind, i)) add_number(csv, values_of(at, kind)[i]);
+      if (has_value(path, kind, i)) add_number(csv, values_of(at, kind)[i]);
   strut_buffer_add(csv, "\n");
 }
 
-/* The rows of a path; `branch`: its number as a column, or negative: none. */
-static void add_rows(strut_buffer *csv, const strut_path *path, const strut_scene *scene,
-                     int branch) {
-  char number[16] = "";
+static void add_rows(strut_buffer *csv, const rows *of, const strut_scene *scene) {
+  const strut_path *path = of->part;
   size_t at = 0;
-  if (branch >= 0) snprintf(number, sizeof number, "%d,", branch);
   for (size_t k = 0; k < path->point_count; k++) {
     const strut_path_point *point = &path->points[k];
     char negative[16];
     state here = state_of_point(point);
     for (; at < path->event_count && path->events[at].arc <= point->arc; at++) {
       state there = state_of_event(&path->events[at]);
-      strut_buffer_add(csv, "%s", number);
-      add_numbers(csv, path, scene, &there, "", strut_path_event_name(path->events[at].kind));
+      add_numbers(csv, of, scene, &there, "", strut_path_event_name(path->events[at].kind));
     }
     snprintf(negative, sizeof negative, "%d", (int)point->negative);
-    strut_buffer_add(csv, "%s", number);
-    add_numbers(csv, path, scene, &here, negative, "");
+    add_numbers(csv, of, scene, &here, negative, "");
   }
 }
 
 char *strut_path_csv(const strut_path *path, const strut_scene *scene) {
   strut_buffer csv = {0};
-  if (path->branches) strut_buffer_add(&csv, "branch,");
+  int last = (int)path->stage_count + 1;
   add_header(&csv, path, scene);
-  add_rows(&csv, path, scene, path->branches ? 0 : -1);
-  for (size_t i = 0; i < path->branch_count; i++)
-    add_rows(&csv, &path->branches[i], scene, (int)i + 1);
+  for (int i = 1; i < last; i++) add_rows(&csv, &(rows){path, &path->stages[i - 1], i, 0}, scene);
+  add_rows(&csv, &(rows){path, path, last, 0}, scene);
+  for (int i = 1; i <= (int)path->branch_count; i++)
+    add_rows(&csv, &(rows){path, &path->branches[i - 1], last, i}, scene);
   return strut_buffer_take(&csv);
 }

@@ -196,6 +196,7 @@ static void walk_side(strut_path_walk *w, size_t k, int side, strut_path *path,
                          .reference = path->reference,
                          .several = path->several,
                          .coordinate = path->coordinate,
+                         .held = path->held,
                          .from = {.path = f->path, .factor = f->factor, .arc = f->arc}};
   w->path = branch;
   w->point_room = w->event_room = 0;

@@ -132,48 +132,41 @@ static bool scale_loads(path_start *b) {
   return true;
 }
 
-/* The driven hinge with the rest angle that the path begins with. */
-static strut_status turn_hinge(path_start *b, strut_error *error) {
-  const strut_scene *drawn = b->drawn->scene;
-  int32_t slot = strut_actuator_slot(b->drawn, (size_t)b->options->index);
-  strut_hinge *hinges = strut_arena_allocate(&b->arena, drawn->hinge_count, sizeof *hinges);
-  if (!hinges) return strut_no_memory(error, "");
-  memcpy(hinges, drawn->hinges, drawn->hinge_count * sizeof *hinges);
-  b->setup.scene.hinges = hinges;
-  hinges[drawn->actuators[b->options->index].hinge].rest_angle =
-      b->drawn->members.rest[slot] + b->options->from;
-  return STRUT_OK;
+/* A copy of an array of the scene, which may be changed; NULL: out of memory. */
+static void *copy_things(strut_arena *arena, const void *things, size_t count, size_t size) {
+  void *copy = strut_arena_allocate(arena, count, size);
+  if (copy) memcpy(copy, things, count * size);
+  return copy;
 }
 
-/* The driven cell with the pressure that the path begins with. */
-static strut_status fill_cell(path_start *b, strut_error *error) {
-  const strut_scene *drawn = b->drawn->scene;
-  int32_t slot = strut_actuator_slot(b->drawn, (size_t)b->options->index);
-  strut_cell *cells = strut_arena_allocate(&b->arena, drawn->cell_count, sizeof *cells);
-  if (!cells) return strut_no_memory(error, "");
-  memcpy(cells, drawn->cells, drawn->cell_count * sizeof *cells);
-  b->setup.scene.cells = cells;
-  cells[drawn->actuators[b->options->index].cell].pressure =
-      b->drawn->members.rest[slot] + b->options->from;
-  return STRUT_OK;
-}
-
-/* The driven member with the rest length that the path begins with. */
-static strut_status lengthen_member(path_start *b, strut_error *error) {
-  const strut_scene *drawn = b->drawn->scene;
-  int32_t driven = drawn->actuators[b->options->index].member;
-  if (driven < 0 && drawn->actuators[b->options->index].hinge < 0) return fill_cell(b, error);
-  if (driven < 0) return turn_hinge(b, error);
-  strut_member *members = strut_arena_allocate(&b->arena, drawn->member_count, sizeof *members);
+strut_status strut_path_set_actuator(const strut_model *drawn, int32_t actuator, double value,
+                                     strut_arena *arena, strut_scene *scene, strut_error *error) {
+  const strut_actuator *a = &scene->actuators[actuator];
+  double rest = drawn->members.rest[strut_actuator_slot(drawn, (size_t)actuator)] + value;
+  if (a->member < 0 && a->hinge < 0) {
+    strut_cell *cells = copy_things(arena, scene->cells, scene->cell_count, sizeof *cells);
+    if (!cells) return strut_no_memory(error, "");
+    cells[a->cell].pressure = rest;
+    scene->cells = cells;
+    return STRUT_OK;
+  }
+  if (a->member < 0) {
+    strut_hinge *hinges = copy_things(arena, scene->hinges, scene->hinge_count, sizeof *hinges);
+    if (!hinges) return strut_no_memory(error, "");
+    hinges[a->hinge].rest_angle = rest;
+    scene->hinges = hinges;
+    return STRUT_OK;
+  }
+  strut_member *members = copy_things(arena, scene->members, scene->member_count, sizeof *members);
   if (!members) return strut_no_memory(error, "");
-  memcpy(members, drawn->members, drawn->member_count * sizeof *members);
-  b->setup.scene.members = members;
-  members[driven].rest_kind = STRUT_REST_LENGTH;
-  members[driven].rest_value = b->drawn->members.rest[driven] + b->options->from;
-  bool axial = members[driven].axial_stiffness > 0;
-  if (axial ? members[driven].rest_value > 0 : members[driven].rest_value >= 0) return STRUT_OK;
+  strut_member *driven = &members[a->member];
+  scene->members = members;
+  driven->rest_kind = STRUT_REST_LENGTH;
+  driven->rest_value = rest;
+  bool axial = driven->axial_stiffness > 0;
+  if (axial ? rest > 0 : rest >= 0) return STRUT_OK;
   return strut_fail(error, STRUT_USAGE, "the rest length of %s would be %s at the start",
-                    members[driven].name, axial ? "zero or less" : "negative");
+                    driven->name, axial ? "zero or less" : "negative");
 }
 
 /* A support where the path begins. */
@@ -196,7 +189,9 @@ static strut_status make_model(path_start *b, strut_error *error) {
   b->setup.scene = *b->drawn->scene;
   if (o->over == STRUT_PATH_OVER_LOAD) made = scale_loads(b);
   if (o->over == STRUT_PATH_OVER_COORDINATE) made = move_support(b);
-  if (o->over == STRUT_PATH_OVER_ACTUATOR) status = lengthen_member(b, error);
+  if (o->over == STRUT_PATH_OVER_ACTUATOR)
+    status =
+        strut_path_set_actuator(b->drawn, o->index, o->from, &b->arena, &b->setup.scene, error);
   if (!made) return strut_no_memory(error, "");
   if (o->over == STRUT_PATH_OVER_SCENE) {
     status = o->scene_at(o->context, o->from, &b->setup, error);
@@ -251,15 +246,26 @@ static strut_status find_start(path_start *b, strut_error *error) {
   const strut_path_options *o = b->options;
   size_t length = (size_t)b->model->length;
   bool without = o->over == STRUT_PATH_OVER_LOAD && o->from == 0;
-  memcpy(b->q, b->model->start, length * sizeof *b->q);
-  strut_status status = o->at ? start_at_name(b, error) : descend_to_rest(b, NULL, without, error);
+  memcpy(b->q, o->start ? o->start : b->model->start, length * sizeof *b->q);
+  strut_status status = o->start ? STRUT_OK
+                        : o->at  ? start_at_name(b, error)
+                                 : descend_to_rest(b, NULL, without, error);
   if (status || o->over != STRUT_PATH_OVER_COORDINATE || b->model->fixed[o->index]) return status;
   b->held = strut_arena_allocate(&b->arena, length, sizeof *b->held);
   if (!b->held) return strut_no_memory(error, "");
   b->held[o->index] = 1;
-  if (o->from == 0) return STRUT_OK;
+  if (o->from == 0 || o->start) return STRUT_OK;
   b->q[o->index] += o->from;
   return descend_to_rest(b, b->held, false, error);
+}
+
+static strut_status list_held(const path_start *b, strut_path *path, strut_error *error) {
+  size_t length = (size_t)b->model->length;
+  uint8_t *held = strut_arena_allocate(&path->arena, length, sizeof *held);
+  if (!held) return strut_no_memory(error, "");
+  for (size_t i = 0; i < length; i++) held[i] = b->model->fixed[i] || (b->held && b->held[i]);
+  path->held = held;
+  return STRUT_OK;
 }
 
 static bool allocate_walk(strut_path_walk *w) {
@@ -387,6 +393,7 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   if (status == STRUT_OK && b.model->length != model->length)
     status = strut_fail(error, STRUT_USAGE, "%s changes how many nodes there are", path->name);
   if (status == STRUT_OK) status = find_start(&b, error);
+  if (status == STRUT_OK) status = list_held(&b, path, error);
   if (status == STRUT_OK) status = walk_from(&b, until, steps, path, error);
   strut_model_free(b.model);
   if (b.owned) strut_setup_free(&b.setup);
@@ -395,20 +402,12 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
 }
 
 void strut_path_free(strut_path *path) {
+  for (size_t i = 0; i < path->stage_count; i++) strut_path_free(&path->stages[i]);
+  strut_release(path->stages);
   for (size_t i = 0; i < path->branch_count; i++) strut_path_free(&path->branches[i]);
   strut_release(path->branches);
   strut_release(path->points);
   strut_release(path->events);
   strut_arena_free(&path->arena);
   *path = (strut_path){0};
-}
-
-int32_t strut_path_coordinate(const strut_scene *scene, const char *name) {
-  const char *dot = strrchr(name, '.');
-  if (!dot || (strcmp(dot, ".x") != 0 && strcmp(dot, ".y") != 0)) return -1;
-  size_t length = (size_t)(dot - name);
-  for (size_t i = 0; i < scene->node_count; i++)
-    if (strlen(scene->nodes[i].name) == length && strncmp(scene->nodes[i].name, name, length) == 0)
-      return (int32_t)(2 * i) + (dot[1] == 'y');
-  return -1;
 }

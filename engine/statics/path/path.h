@@ -105,7 +105,10 @@ typedef struct strut_path {
   strut_path_point *points;
   strut_path_event *events;
   strut_path_end end;
-  char remark[1000]; /* why it ended before `until`; else empty */
+  char remark[1000];   /* why it ended before `until`; else empty */
+  const uint8_t *held; /* (length) 1 where a coordinate has a reaction, in some stage */
+  size_t stage_count;
+  struct strut_path *stages; /* (stage_count) of a path in stages, those before this one */
   size_t branch_count;
   struct strut_path *branches; /* those of branches follow theirs; each has none of its own */
   /** Of a branch: where it leaves, and what it resembles. Branches are numbered from 1. */
@@ -137,18 +140,18 @@ typedef struct strut_path_options {
   strut_path_scene_at scene_at;
   void *context;
   const char
-      *at;      /* equilibrium to begin at, as strut_rest_state_find knows it; NULL: where the start
+      *at; /* equilibrium to begin at, as strut_rest_state_find knows it; NULL: where the start
                         comes to rest */
-  double from;  /* where the path begins: in SI, or the factor */
-  double until; /* where it ends; a load's factor from 0 to 0 ends at 1 */
+  const double *start;  /* (length) or, before `at`, the equilibrium itself, with the parameter at
+                          `from`; a coordinate that is displaced has its value there */
+  double from;          /* where the path begins: in SI, or the factor */
+  double until;         /* where it ends; a load's factor from 0 to 0 ends at 1 */
   int32_t steps;        /* maximum number of steps; 0: the usual ones; of each branch, too */
   int32_t branches;     /* bifurcations are left for other paths: 1 on this path, 2 on its branches
                            too, ... */
   strut_path_stop stop; /* or earlier, here */
 } strut_path_options;
 
-/** The coordinate that a path may be driven by: "node.x" is 2 node, "node.y" 2 node + 1; -1: none. */
-STRUT_API int32_t strut_path_coordinate(const strut_scene *scene, const char *name);
 /**
  * Begins at an equilibrium of the structure where the parameter is `from`: of loads, that without
  * them unless from says more. Everything else stays as it is. A free coordinate that is displaced
@@ -164,5 +167,17 @@ STRUT_API strut_status strut_path_follow(const strut_model *model,
                                          const strut_path_options *options, strut_path *path,
                                          strut_error *error);
 STRUT_API void strut_path_free(strut_path *path);
+/**
+ * Follows the stages of the experiment one after the other, each from the end of the one before: loads
+ * that a stage names begin with the factor 0, and keep what their last stage gave them, as do actuators
+ * and displaced coordinates until they are released. `path` is that of the last stage that was begun,
+ * with those before it in path->stages; its remark says which stages were not begun, and why.
+ * Of `usual` count `at`, of the first stage; `branches`, of the last; and `steps`, where a stage gives
+ * none. Errors as strut_path_follow.
+ */
+STRUT_API strut_status strut_path_follow_stages(const strut_model *model,
+                                                const strut_experiment *experiment,
+                                                const strut_path_options *usual, strut_path *path,
+                                                strut_error *error);
 
 #endif

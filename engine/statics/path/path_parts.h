@@ -298,6 +298,14 @@ bool strut_path_walk_begin(strut_path_walk *walk);
 /** One step, with all events on it; false: the path ends here, path->end says why. */
 bool strut_path_walk_step(strut_path_walk *walk);
 
+/**
+ * The scene with the actuator at a value: rest length, angle or pressure of what it drives are those of
+ * the drawn model and the value. What changes is copied into the arena. STRUT_USAGE where there is no
+ * such rest length, STRUT_NO_MEMORY.
+ */
+strut_status strut_path_set_actuator(const strut_model *drawn, int32_t actuator, double value,
+                                     strut_arena *arena, strut_scene *scene, strut_error *error);
+
 /** Notes why a path ended that took all its steps. */
 void strut_path_remark_steps(strut_path_walk *walk, int32_t steps);
 

@@ -274,7 +274,7 @@ static strut_status choose_path(const strut_study *study, const strut_scene *sce
     if (to->index >= 0) *unit = unit_of_actuator(&scene->actuators[to->index]);
     if (to->index < 0) {
       to->over = STRUT_PATH_OVER_COORDINATE;
-      to->index = strut_path_coordinate(scene, study->path.over);
+      to->index = strut_coordinate_find(scene, study->path.over);
       *unit = "m";
     }
     if (to->index < 0)

@@ -1,0 +1,81 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Paths in stages: what each leaves to the next, by the equilibrium of forces and by closed forms.
+. "$(dirname "$0")/lib.sh"
+
+# A truss under two loads, pressed down, driven, and let go again: after each stage the forces of its
+# two springs by Hooke's law balance all loads and the reactions.
+cp "$here/../language/good/stages.yaml" truss.yaml
+expect 0 path truss.yaml --json
+jq -e 'def pull($dx; $dy; $rest): (($dx * $dx + $dy * $dy) | sqrt) as $l |
+    [$dx * (1 - $rest / $l), $dy * (1 - $rest / $l)];
+  def residual($p; $drive; $x; $y): $p.nodes.apex as [$u, $v] | (1.25 | sqrt) as $rest |
+    pull($u + 1; $v; $rest + $drive) as $a | pull($u - 1; $v; $rest) as $b | ($p.reactions.apex // [0, 0]) as $r |
+    ([($x + $r[0] - $a[0] - $b[0]), ($y + $r[1] - $a[1] - $b[1])] | map(fabs) | max);
+  [.earlier_stages[], .] | length == 6 and
+  [residual(.[0].points[-1]; 0; 0; -0.02), residual(.[1].points[-1]; 0; 0.05; -0.02),
+   residual(.[2].points[-1]; 0; 0.05; -0.02), residual(.[3].points[-1]; 0.01; 0.05; -0.02),
+   residual(.[4].points[-1]; 0.01; 0.05; -0.02), residual(.[5].points[-1]; 0.01; 0.05; -0.02)] as $left |
+  ($left | max) < 1e-12 and
+  (.[2].points[-1].nodes.apex[1] - .[2].points[0].nodes.apex[1] + 0.2 | fabs) < 1e-14 and
+  (.[4].points[-1].nodes.apex[0] == .[2].points[0].nodes.apex[0]) and
+  (.[5].points[-1].reactions.apex | map(fabs) | max) < 1e-15 and
+  [.[] | .over] == [null, null, "apex.y", "drive", null, null] and
+  [.[] | .load] == ["push", "side", null, null, "reaction of apex.y", "reaction of apex.x"]' \
+  "$work/out" >jq.out || fail "forces at the ends of stages"
+
+# The order of loads is no matter where the path does not fold; one stage is the path of its load.
+sed '/^path:/,$d' truss.yaml >plain.yaml
+{ cat plain.yaml; echo 'path: {stages: [{load: push}, {load: side}]}'; } >one.yaml
+{ cat plain.yaml; echo 'path: {stages: [{load: side}, {load: push}]}'; } >two.yaml
+expect 0 path one.yaml --json
+end=$(jq -c '.points[-1].nodes.apex' "$work/out")
+expect 0 path two.yaml --json
+jq -e --argjson was "$end" '.points[-1].nodes.apex as [$x, $y] |
+  (($x - $was[0]) | fabs) < 1e-13 and (($y - $was[1]) | fabs) < 1e-13' "$work/out" >jq.out ||
+  fail "the order of loads"
+{ sed 's/, side: .*}}$/}/' plain.yaml; echo 'path: {stages: [{load: push}]}'; } >single.yaml
+expect 0 path single.yaml --json
+jq -S 'del(.earlier_stages)' "$work/out" >staged.json
+expect 0 path single.yaml --load push --json
+jq -S . "$work/out" | cmp -s - staged.json || fail "one stage is a path of its own"
+
+# Pressed through and let go, it rests upside down; pressed less far, it comes back.
+for end in "-1.2 -0.5" "-0.15 0.5"; do
+  set -- $end
+  { sed '/^loads:/d; /^actuators:/d' plain.yaml
+    echo "path: {stages: [{over: apex.y, until: $1 m}, {release: apex.y}]}"; } >through.yaml
+  expect 0 path through.yaml --json
+  jq -e --argjson y "$2" '(.points[-1].nodes.apex[1] - $y | fabs) < 1e-12 and .end == "until"' \
+    "$work/out" >jq.out || fail "let go at $1"
+done
+# Back where it was held: the value of a displacement goes on from where a stage left it.
+{ cat plain.yaml; echo 'path: {stages: [{over: apex.y, until: -100 mm}, {load: side}, {over: apex.y, until: 0}]}'; } >back.yaml
+expect 0 path back.yaml --json
+jq -e '.points[0].value == -0.1 and (.points[-1].nodes.apex[1] -
+  .earlier_stages[0].points[0].nodes.apex[1] | fabs) < 1e-14' "$work/out" \
+  >jq.out || fail "back where it was held"
+# A load beyond the truss's snaps; the stage ends where the apex has moved so far.
+{ cat plain.yaml; echo 'path: {stages: [{load: push, until: 20, stop: {apex.y: -0.6 m}}, {load: side}]}'; } >stop.yaml
+expect 0 path stop.yaml --json
+jq -e '.earlier_stages[0].end == "stop" and (.points[0].nodes.apex[1] + 0.1 | fabs) < 1e-12' \
+  "$work/out" >jq.out || fail "a stage that stops"
+
+# Files, the table, branches of the last stage, and what the command says itself.
+expect 0 path truss.yaml -o stages --plot stages.svg
+head -1 stages/path.csv | grep -q '^stage,over,unit,value,arc,' || fail "columns of stages"
+[ "$(cut -d, -f1 stages/path.csv | sort -un | tail -1)" = 6 ] || fail "six stages"
+out_has "1               0               1"
+expect 0 path truss.yaml --load push --json
+jq -e '.load == "push" and (has("earlier_stages") | not)' "$work/out" >jq.out || fail "--load"
+# A stage that leads nowhere ends the path, which says so.
+{ cat plain.yaml; echo 'path: {stages: [{load: push, until: 1, steps: 2}, {load: side}]}'; } >short.yaml
+expect 0 path short.yaml
+out_has "stage 1 of 2 is the last: the next would not begin where this was to end"
+{ cat plain.yaml; echo 'path: {stages: [{release: left.x}]}'; } >early.yaml
+expect 2 path early.yaml
+err_has "stage 1 releases 'left.x', which must have been held in a stage before"
+{ cat plain.yaml; echo 'path: {stages: [{load: push}, {release: apex.x}]}'; } >free.yaml
+expect 2 path free.yaml
+err_has "stage 2 releases 'apex.x', which nothing holds"
+done_testing
