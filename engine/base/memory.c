@@ -86,6 +86,12 @@ void *strut_arena_allocate(strut_arena *arena, size_t count, size_t size) {
   return take(arena, count * size, ALIGNMENT);
 }
 
+void *strut_arena_copy(strut_arena *arena, const void *from, size_t count, size_t size) {
+  void *copy = strut_arena_allocate(arena, count, size);
+  if (copy && count) memcpy(copy, from, count * size);
+  return copy;
+}
+
 char *strut_arena_text(strut_arena *arena, const char *text, size_t length) {
   char *copy = take(arena, length + 1, 1);
   if (!copy) return NULL;

@@ -33,6 +33,8 @@ typedef struct strut_arena {
 
 /** count * size zeroed bytes aligned to 64, owned by the arena; NULL when memory is out. */
 STRUT_API void *strut_arena_allocate(strut_arena *arena, size_t count, size_t size);
+/** A copy of count * size bytes, likewise. */
+STRUT_API void *strut_arena_copy(strut_arena *arena, const void *from, size_t count, size_t size);
 /** A copy of the first length bytes of text with a terminating NUL; aligned to 1. */
 STRUT_API char *strut_arena_text(strut_arena *arena, const char *text, size_t length);
 /** printf into the arena; NULL when memory is out. */

@@ -44,8 +44,9 @@ static const char *overloaded_at(const strut_scene *scene, const strut_path_poin
   return NULL;
 }
 
-void strut_warn_of_path(const strut_listener *listener, const strut_scene *scene,
-                        const strut_path *path) {
+/* Warns of the first point where something carries more than it can; false: there is none. */
+static bool warn_of_points(const strut_listener *listener, const strut_scene *scene,
+                           const strut_path *path) {
   for (size_t i = 0; i < path->point_count; i++) {
     const char *name = overloaded_at(scene, &path->points[i]);
     if (!name) continue;
@@ -53,6 +54,17 @@ void strut_warn_of_path(const strut_listener *listener, const strut_scene *scene
                "from the factor %.4g on '%s' carries more than it can; paths take what "
                "breaks as whole and what yields as elastic",
                path->points[i].factor, name);
-    return;
+    return true;
   }
+  return false;
+}
+
+void strut_warn_of_path(const strut_listener *listener, const strut_scene *scene,
+                        const strut_path *path) {
+  bool warned = false;
+  for (size_t i = 0; i < path->stage_count && !warned; i++)
+    warned = warn_of_points(listener, scene, &path->stages[i]);
+  warned = warned || warn_of_points(listener, scene, path);
+  for (size_t i = 0; i < path->branch_count && !warned; i++)
+    warned = warn_of_points(listener, scene, &path->branches[i]);
 }

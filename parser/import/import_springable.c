@@ -428,7 +428,7 @@ static void end_stage(strut_springable *r) {
   r->blocking = false;
 }
 
-/* "then", and "block" with the coordinates that a stage holds; false: it is none of them. */
+/* "then", or "block" and the coordinates that a stage holds; false: the line is a load. */
 static bool read_stage(strut_springable *r) {
   strut_import_scene *s = r->scene;
   const char *at = strut_springable_text(r, 0), *axis = strut_springable_text(r, 1);

@@ -202,7 +202,7 @@ static int32_t add_output(network *n, const strut_slot *slot, strut_owner owner)
                                      scale.bare && slot->state == STRUT_GIVEN ? slot->value : NULL);
 }
 
-/* The text of the file that `value` names, from the folder of the file that it stands in. */
+/* The text of the file that `value` names, relative to the file that says so. */
 static bool open_network(network *n, const strut_tree *value, strut_safe_text *text) {
   const strut_diagnostics *d = n->reader->diagnostics;
   const char *from = value->place.file ? d->used[value->place.file - 1].file : d->file;

@@ -61,6 +61,15 @@ expect 0 path stop.yaml --json
 jq -e '.earlier_stages[0].end == "stop" and (.points[0].nodes.apex[1] + 0.1 | fabs) < 1e-12' \
   "$work/out" >jq.out || fail "a stage that stops"
 
+# What breaks in an earlier stage, or on a branch alone, is warned of.
+{ sed 's/  a: {/  a: {breaks_at: 0.1 N, /' plain.yaml
+  echo 'path: {stages: [{over: apex.y, until: 0.3 m}, {release: apex.y}]}'; } >broken.yaml
+expect 0 path broken.yaml
+err_has "on 'a' carries more than it can"
+sed 's/until: 0.3 m/until: 0.1 m/' broken.yaml >whole.yaml
+expect 0 path whole.yaml
+! grep -q 'carries more' "$work/err" || fail "a warning without a reason"
+
 # Files, the table, branches of the last stage, and what the command says itself.
 expect 0 path truss.yaml -o stages --plot stages.svg
 head -1 stages/path.csv | grep -q '^stage,over,unit,value,arc,' || fail "columns of stages"

@@ -14,17 +14,6 @@ static const double SAME_FORK = 1e-4; /* two bifurcations so near are one [units
 static const double PASSING = 0.02;   /* of a step: a branch so near a bifurcation passes it */
 static const double ALIKE = 1e-6;     /* of the range: values of the parameter on twins */
 
-static size_t bytes_of(const strut_path_walk *w) {
-  return 2 * ((size_t)w->system.n + 1) * sizeof(double);
-}
-
-static void *copy(strut_path_walk *w, const void *from, size_t count, size_t size) {
-  void *to = strut_arena_allocate(&w->system.arena, count, size);
-  if (to && count) memcpy(to, from, count * size);
-  if (!to) w->failed = true;
-  return to;
-}
-
 void strut_path_keep_fork(strut_path_walk *w, const double *y, const gsl_vector *null) {
   strut_path_system *s = &w->system;
   double along = 0, square = 0;
@@ -39,17 +28,18 @@ void strut_path_keep_fork(strut_path_walk *w, const double *y, const gsl_vector 
   }
   strut_path_fork *f = &w->forks.fork[w->forks.count];
   *f = (strut_path_fork){
-      .y = copy(w, y, 1, bytes_of(w)),
+      .y = strut_arena_copy(&s->arena, y, 1, strut_path_bytes(w)),
       .direction = strut_arena_allocate(&s->arena, (size_t)s->n + 1, sizeof(double)),
-      .pulling = copy(w, s->latest.pulling, (size_t)s->model->members.count, 1),
-      .touching = copy(w, s->latest.touching, (size_t)s->model->contacts.count, 1),
-      .element = copy(w, s->elements.element, (size_t)s->model->elements.count,
-                      sizeof *s->elements.element),
+      .pulling = strut_arena_copy(&s->arena, s->latest.pulling, (size_t)s->model->members.count, 1),
+      .touching =
+          strut_arena_copy(&s->arena, s->latest.touching, (size_t)s->model->contacts.count, 1),
+      .element = strut_arena_copy(&s->arena, s->elements.element, (size_t)s->model->elements.count,
+                                  sizeof *s->elements.element),
       .factor = strut_path_value(s, y),
       .arc = w->arc + strut_path_distance(w, w->y, y),
       .path = w->forks.path,
       .depth = w->forks.depth};
-  if (!f->direction) w->failed = true;
+  w->failed = w->failed || !f->y || !f->direction || !f->pulling || !f->touching || !f->element;
   if (w->failed) return;
   /* normal to the path: what is left of the null vector leads off it */
   for (int32_t i = 0; i < s->n; i++) f->direction[i] = gsl_vector_get(null, (size_t)i);
@@ -83,10 +73,10 @@ static bool leave_fork(strut_path_walk *w, const strut_path_fork *f, double side
   memcpy(s->latest.touching, f->touching, (size_t)s->model->contacts.count);
   memcpy(s->elements.element, f->element,
          (size_t)s->model->elements.count * sizeof *s->elements.element);
-  memcpy(w->y, f->y, bytes_of(w));
+  memcpy(w->y, f->y, strut_path_bytes(w));
   for (int32_t i = 0; i <= s->n; i++) w->tangent[i] = side * f->direction[i];
   for (int k = 0; k < SHORTER && !found; k++, step *= 0.25) {
-    memcpy(w->next, w->y, bytes_of(w));
+    memcpy(w->next, w->y, strut_path_bytes(w));
     for (int32_t i = 0; i <= s->n; i++) w->next[i] += step * w->tangent[i];
     double value = strut_path_dot(w, w->tangent, w->y) + step;
     found = strut_path_correct(s, w->tangent, value, w->next) >= 0 &&
@@ -100,7 +90,7 @@ static bool leave_fork(strut_path_walk *w, const strut_path_fork *f, double side
   w->step = USUAL;
   strut_path_add_point(w, w->negative);
   w->arc = strut_path_distance(w, w->next, w->y);
-  memcpy(w->y, w->next, bytes_of(w));
+  memcpy(w->y, w->next, strut_path_bytes(w));
   memcpy(w->tangent, w->next_tangent, ((size_t)s->n + 1) * sizeof *w->tangent);
   strut_path_add_point(w, w->negative);
   return !w->failed;
@@ -137,7 +127,7 @@ static bool join_fork(strut_path_walk *w, const strut_path_fork *origin, const d
     w->arc = p->points[p->point_count - 2].arc + strut_path_distance(w, from, f->y);
     p->point_count--;
     while (p->event_count > 0 && p->events[p->event_count - 1].arc > w->arc) p->event_count--;
-    memcpy(w->y, f->y, bytes_of(w));
+    memcpy(w->y, f->y, strut_path_bytes(w));
     strut_path_add_point(w, p->points[p->point_count - 1].negative);
     p->end = STRUT_PATH_JOINED;
     char joined[40] = "the path";
@@ -154,11 +144,12 @@ static void walk_branch(strut_path_walk *w, const strut_path_fork *origin,
                         const strut_experiment *experiment) {
   const strut_path_options *o = w->system.parameter.options;
   int32_t steps = o->steps > 0 ? o->steps : STRUT_PATH_USUAL_STEPS;
-  double *from = strut_allocate(1, bytes_of(w)), *tangent = strut_allocate(1, bytes_of(w));
+  double *from = strut_allocate(1, strut_path_bytes(w)),
+         *tangent = strut_allocate(1, strut_path_bytes(w));
   w->failed = w->failed || !from || !tangent;
   w->path->end = STRUT_PATH_STEPS;
   for (int32_t i = 0; i < steps && !w->failed && !strut_experiment_interrupted(experiment); i++) {
-    memcpy(from, w->y, bytes_of(w));
+    memcpy(from, w->y, strut_path_bytes(w));
     memcpy(tangent, w->tangent, ((size_t)w->system.n + 1) * sizeof *tangent);
     bool on = strut_path_walk_step(w);
     if (w->failed || join_fork(w, origin, from, tangent) || !on) break;

@@ -132,32 +132,27 @@ static bool scale_loads(path_start *b) {
   return true;
 }
 
-/* A copy of an array of the scene, which may be changed; NULL: out of memory. */
-static void *copy_things(strut_arena *arena, const void *things, size_t count, size_t size) {
-  void *copy = strut_arena_allocate(arena, count, size);
-  if (copy) memcpy(copy, things, count * size);
-  return copy;
-}
-
 strut_status strut_path_set_actuator(const strut_model *drawn, int32_t actuator, double value,
                                      strut_arena *arena, strut_scene *scene, strut_error *error) {
   const strut_actuator *a = &scene->actuators[actuator];
   double rest = drawn->members.rest[strut_actuator_slot(drawn, (size_t)actuator)] + value;
   if (a->member < 0 && a->hinge < 0) {
-    strut_cell *cells = copy_things(arena, scene->cells, scene->cell_count, sizeof *cells);
+    strut_cell *cells = strut_arena_copy(arena, scene->cells, scene->cell_count, sizeof *cells);
     if (!cells) return strut_no_memory(error, "");
     cells[a->cell].pressure = rest;
     scene->cells = cells;
     return STRUT_OK;
   }
   if (a->member < 0) {
-    strut_hinge *hinges = copy_things(arena, scene->hinges, scene->hinge_count, sizeof *hinges);
+    strut_hinge *hinges =
+        strut_arena_copy(arena, scene->hinges, scene->hinge_count, sizeof *hinges);
     if (!hinges) return strut_no_memory(error, "");
     hinges[a->hinge].rest_angle = rest;
     scene->hinges = hinges;
     return STRUT_OK;
   }
-  strut_member *members = copy_things(arena, scene->members, scene->member_count, sizeof *members);
+  strut_member *members =
+      strut_arena_copy(arena, scene->members, scene->member_count, sizeof *members);
   if (!members) return strut_no_memory(error, "");
   strut_member *driven = &members[a->member];
   scene->members = members;
@@ -173,9 +168,8 @@ strut_status strut_path_set_actuator(const strut_model *drawn, int32_t actuator,
 static bool move_support(path_start *b) {
   const strut_scene *drawn = b->drawn->scene;
   int32_t at = b->options->index;
-  strut_node *nodes = strut_arena_allocate(&b->arena, drawn->node_count, sizeof *nodes);
+  strut_node *nodes = strut_arena_copy(&b->arena, drawn->nodes, drawn->node_count, sizeof *nodes);
   if (!nodes) return false;
-  memcpy(nodes, drawn->nodes, drawn->node_count * sizeof *nodes);
   b->setup.scene.nodes = nodes;
   if (nodes[at / 2].fixed[at % 2]) nodes[at / 2].start[at % 2] += b->options->from;
   return true;

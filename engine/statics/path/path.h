@@ -110,7 +110,7 @@ typedef struct strut_path {
   size_t stage_count;
   struct strut_path *stages; /* (stage_count) of a path in stages, those before this one */
   size_t branch_count;
-  struct strut_path *branches; /* those of branches follow theirs; each has none of its own */
+  struct strut_path *branches; /* (branch_count) of branches, too: all are listed here */
   /** Of a branch: where it leaves, and what it resembles. Branches are numbered from 1. */
   struct {
     int32_t path;       /* the branch that it leaves, 0: the path itself */

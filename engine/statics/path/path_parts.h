@@ -293,6 +293,11 @@ typedef struct strut_path_walk {
   } forks;
 } strut_path_walk;
 
+/** Of a point y. */
+static inline size_t strut_path_bytes(const strut_path_walk *walk) {
+  return 2 * ((size_t)walk->system.n + 1) * sizeof(double);
+}
+
 /** From y: what pulls and touches there, the tangent along which the load does work, a point. */
 bool strut_path_walk_begin(strut_path_walk *walk);
 /** One step, with all events on it; false: the path ends here, path->end says why. */

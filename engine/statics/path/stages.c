@@ -101,9 +101,8 @@ static bool set_loads(stages *s, const strut_path_stage *stage, const strut_path
 
 /* Coordinates that are held where they are. */
 static bool set_supports(stages *s, strut_scene *scene) {
-  strut_node *nodes = strut_arena_allocate(&s->single, scene->node_count, sizeof *nodes);
+  strut_node *nodes = strut_arena_copy(&s->single, scene->nodes, scene->node_count, sizeof *nodes);
   if (!nodes) return false;
-  memcpy(nodes, scene->nodes, scene->node_count * sizeof *nodes);
   for (size_t i = 0; i < 2 * scene->node_count; i++) {
     nodes[i / 2].fixed[i % 2] = s->held[i];
     if (s->held[i]) nodes[i / 2].start[i % 2] = s->q[i];

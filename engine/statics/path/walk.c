@@ -120,10 +120,6 @@ static const double HANGING = 1e-15;
 static const double CLOSE = 1e-6;  /* of the range: a value refused so near ends the path */
 static const double NEARBY = 1e-6; /* largest correction of the start */
 
-static size_t bytes_of(const strut_path_walk *w) {
-  return 2 * ((size_t)w->system.n + 1) * sizeof(double);
-}
-
 double strut_path_dot(const strut_path_walk *w, const double *a, const double *b) {
   double sum = 0;
   for (int32_t i = 0; i <= w->system.n; i++) sum += a[i] * b[i];
@@ -204,11 +200,11 @@ static double first_switch(strut_path_walk *w, const strut_path_piece *piece, in
     double place = strut_path_locate(s, piece, strut_path_measure_switch, k, w->spare);
     if (place < 0) { /* it should have been thrown where the piece begins */
       place = 0;
-      memcpy(w->spare, piece->from, bytes_of(w));
+      memcpy(w->spare, piece->from, strut_path_bytes(w));
     }
     if (first >= 0 && place >= first) continue;
     first = place, *which = k;
-    memcpy(w->trial, w->spare, bytes_of(w));
+    memcpy(w->trial, w->spare, strut_path_bytes(w));
   }
   return first;
 }
@@ -224,7 +220,7 @@ static bool find_next(strut_path_walk *w) {
   strut_path_system *s = &w->system;
   double here = strut_path_dot(w, w->tangent, w->y);
   for (; w->step >= SHORTEST; w->step *= 0.5) {
-    memcpy(w->next, w->y, bytes_of(w));
+    memcpy(w->next, w->y, strut_path_bytes(w));
     for (int32_t i = 0; i <= s->n; i++) w->next[i] += w->step * w->tangent[i];
     int used = strut_path_correct(s, w->tangent, here + w->step, w->next);
     if (used < 0 || used > SLOW || strut_path_distance(w, w->next, w->y) > 1.5 * w->step) continue;
@@ -240,7 +236,7 @@ static bool find_next(strut_path_walk *w) {
 static bool bends_away(strut_path_walk *w, double *y, double *tangent) {
   strut_path_system *s = &w->system;
   size_t tangent_bytes = ((size_t)s->n + 1) * sizeof *tangent;
-  memcpy(y, w->y, bytes_of(w));
+  memcpy(y, w->y, strut_path_bytes(w));
   memcpy(tangent, w->tangent, tangent_bytes);
   for (int k = 0; k < SUBSTEPS; k++) {
     double here = strut_path_dot(w, tangent, y), step = w->step / SUBSTEPS;
@@ -267,7 +263,8 @@ static bool find_next_on_branch(strut_path_walk *w) {
              strut_path_spectrum(s, w->next, STRUT_PATH_SIGNS) &&
              s->spectrum.negative != w->negative;
     if (!jumped) break;
-    if (!y) y = strut_allocate(1, bytes_of(w)), tangent = strut_allocate(1, bytes_of(w));
+    if (!y)
+      y = strut_allocate(1, strut_path_bytes(w)), tangent = strut_allocate(1, strut_path_bytes(w));
     w->failed = w->failed || !y || !tangent;
     jumped = !w->failed && bends_away(w, y, tangent);
     if (!jumped) break;
@@ -293,7 +290,7 @@ static bool land_on_end(strut_path_walk *w) {
     w->trial[i] = w->y[i] + share * (w->next[i] - w->y[i]);
   if (strut_path_correct(s, w->upward, 1.0, w->trial) < 0) return false;
   w->trial[s->n] = 1.0, w->trial[2 * s->n + 1] = 0.0;
-  memcpy(w->next, w->trial, bytes_of(w));
+  memcpy(w->next, w->trial, strut_path_bytes(w));
   return true;
 }
 
@@ -313,9 +310,9 @@ static bool land_on_stop(strut_path_walk *w, const strut_path_piece *piece) {
   double from = measure_stop(s, piece->from, piece, 0), to = measure_stop(s, piece->to, piece, 0);
   if (!(from * to <= 0.0) || from == 0.0) return false;
   if (strut_path_locate(s, piece, measure_stop, 0, w->trial) < 0) return false;
-  memcpy(w->next, w->trial, bytes_of(w));
+  memcpy(w->next, w->trial, strut_path_bytes(w));
   if (!strut_path_tangent(s, w->next, w->tangent, w->next_tangent))
-    memcpy(w->next_tangent, w->tangent, bytes_of(w));
+    memcpy(w->next_tangent, w->tangent, strut_path_bytes(w));
   return true;
 }
 
@@ -396,14 +393,14 @@ static bool end_path(strut_path_walk *w, strut_path_end end) {
 /* Ends the piece where a switch is thrown and continues from there. */
 static bool end_at_switch(strut_path_walk *w, strut_path_piece *piece, int32_t which,
                           double *beyond) {
-  memcpy(beyond, w->next, bytes_of(w));
-  memcpy(w->next, w->trial, bytes_of(w));
+  memcpy(beyond, w->next, strut_path_bytes(w));
+  memcpy(w->next, w->trial, strut_path_bytes(w));
   if (!strut_path_tangent(&w->system, w->next, w->tangent, w->next_tangent))
-    memcpy(w->next_tangent, w->tangent, bytes_of(w));
+    memcpy(w->next_tangent, w->tangent, strut_path_bytes(w));
   find_criticals(w, piece);
   w->arc += strut_path_distance(w, w->next, w->y);
-  memcpy(w->y, w->next, bytes_of(w));
-  memcpy(w->tangent, w->next_tangent, bytes_of(w));
+  memcpy(w->y, w->next, strut_path_bytes(w));
+  memcpy(w->tangent, w->next_tangent, strut_path_bytes(w));
   bool on = strut_path_pass_kink(w, which, beyond);
   strut_path_add_point(w, w->negative);
   return on || end_path(w, STRUT_PATH_LOST);
@@ -420,7 +417,7 @@ bool strut_path_walk_step(strut_path_walk *w) {
   double place = first_switch(w, &piece, &which);
   if (which >= 0) {
     piece.length = place;
-    double *beyond = strut_allocate(1, bytes_of(w));
+    double *beyond = strut_allocate(1, strut_path_bytes(w));
     w->failed = w->failed || !beyond;
     bool on = beyond && end_at_switch(w, &piece, which, beyond);
     strut_release(beyond);
@@ -428,8 +425,8 @@ bool strut_path_walk_step(strut_path_walk *w) {
   }
   find_criticals(w, &piece);
   w->arc += strut_path_distance(w, w->next, w->y);
-  memcpy(w->y, w->next, bytes_of(w));
-  memcpy(w->tangent, w->next_tangent, bytes_of(w));
+  memcpy(w->y, w->next, strut_path_bytes(w));
+  memcpy(w->tangent, w->next_tangent, strut_path_bytes(w));
   strut_path_add_point(w, w->negative);
   if (w->failed) return false;
   if (landed || stopped) {
@@ -455,10 +452,10 @@ static bool first_tangent(strut_path_walk *w) {
 
 /* Corrects the start to all digits: the descent that found y used doubles. */
 static void sharpen_start(strut_path_walk *w) {
-  memcpy(w->next, w->y, bytes_of(w));
+  memcpy(w->next, w->y, strut_path_bytes(w));
   if (strut_path_correct(&w->system, w->upward, 0.0, w->next) < 0) return;
   if (strut_path_distance(w, w->next, w->y) > NEARBY) return;
-  memcpy(w->y, w->next, bytes_of(w));
+  memcpy(w->y, w->next, strut_path_bytes(w));
   w->y[w->system.n] = w->y[2 * w->system.n + 1] = 0;
 }
 
@@ -473,7 +470,7 @@ bool strut_path_walk_begin(strut_path_walk *w) {
   for (int round = 0; round < ROUNDS; round++) { /* switches at zero follow the path */
     bool changed = false;
     if (!first_tangent(w)) continue;
-    memcpy(w->next, w->y, bytes_of(w));
+    memcpy(w->next, w->y, strut_path_bytes(w));
     for (int32_t i = 0; i <= s->n; i++) w->next[i] += h * w->tangent[i];
     for (int32_t k = 0; k < strut_path_switch_count(s); k++) {
       double here = strut_path_switch_value(s, k, w->y);
