@@ -138,13 +138,49 @@ static void put_point(strut_writer *to, double u, double f) {
 }
 
 /*
+ * The law of a BEZIER2 or ZIGZAG2 behaviour, which may fold back, as a curve: mirrored, or with `mode` on one side
+ * only and straight on on the other. NULL: it is another.
+ */
+static const char *read_folding(strut_springable *r) {
+  const char *text = strut_springable_text(r, 1), *mode = strstr(text, "mode=");
+  bool bezier = strncmp(text, "BEZIER2(", 8) == 0;
+  double u[MOST_POINTS + 1] = {0.0}, f[MOST_POINTS + 1] = {0.0}, rounding = 0.0;
+  char argument[LONGEST_FIELD + 1];
+  if (!bezier && strncmp(text, "ZIGZAG2(", 8) != 0) return NULL;
+  int count = read_list(r, "u_i=[", u + 1), side = mode ? (int)strtol(mode + 5, NULL, 10) : 0;
+  if (count < 1 || read_list(r, "f_i=[", f + 1) != count) return NULL;
+  if (!bezier &&
+      (!find_argument(text, "epsilon=", argument) ||
+       !strut_springable_expression(r, argument, strut_springable_place(r, 1), &rounding)))
+    return NULL;
+  strut_writer points = {.text = NULL}, end = {.text = NULL};
+  for (int i = 0; i <= count; i++) {
+    int k = side < 0 ? count - i : i, sign = side < 0 ? -1 : 1;
+    put_point(&points, sign * u[k] + 0.0, sign * f[k] + 0.0);
+  }
+  if (rounding > 0.0) strut_put(&end, ", rounding: "), strut_put_number(&end, rounding);
+  if (!side) strut_put(&end, ", mirrored: yes");
+  bool failed = points.failed || end.failed;
+  if (failed) r->scene->out_of_memory = true;
+  const char *law = failed ? NULL
+                           : strut_import_text(r->scene, ", law: {kind: curve, %s: [%s]%s}",
+                                               bezier ? "control_points" : "points", points.text,
+                                               end.text ? end.text : "");
+  strut_release(points.text);
+  strut_release(end.text);
+  return law;
+}
+
+/*
  * The law of a PIECEWISE, BEZIER or ZIGZAG behaviour as a table: odd, or with `mode` on one side only and straight on
- * on the other. NULL: it is another.
+ * on the other; of those that may fold, see read_folding. NULL: it is another.
  */
 const char *strut_springable_curve(strut_springable *r) {
   const char *text = strut_springable_text(r, 1), *mode = strstr(text, "mode=");
   bool bezier = strncmp(text, "BEZIER(", 7) == 0, pieces = strncmp(text, "PIECEWISE(", 10) == 0;
   curve c = {.count = 0};
+  const char *folding = read_folding(r);
+  if (folding) return folding;
   if (!bezier && !pieces && strncmp(text, "ZIGZAG(", 7) != 0) return NULL;
   if (!(pieces ? read_piecewise(r, &c) : read_points(r, bezier, &c))) return NULL;
   for (size_t i = 1; i < c.count; i++)
