@@ -72,8 +72,9 @@ void strut_element_evaluate(const strut_model *model, int32_t element, const dou
     pose->force = pose->energy = pose->slope = 0.0;
     return;
   }
-  strut_law_response r = strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural, -1);
   double x = pose->strain - pose->natural;
+  strut_law_response r = strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural,
+                                           strut_element_piece(e, rest, x));
   bool beyond = !e->carries || e->carries * x > 0.0;
   pose->acts = beyond && (!e->carries || e->carries * r.force > 0.0);
   pose->force = pose->acts ? r.force : 0.0;
@@ -366,8 +367,9 @@ strut_element_motion strut_element_move(const strut_model *model, const strut_st
   for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
   int32_t slot = e->remembers ? e->base : e->slot;
   if (slot >= 0) rate -= state->latest.rest_rate[slot];
-  strut_law_response r =
-      strut_law_respond(e->law, &e->numbers, strain, natural, state->modes.element_piece[element]);
+  int piece = state->modes.element_piece[element];
+  if (piece < 0) piece = strut_element_piece(e, state->latest.rest, strain - natural);
+  strut_law_response r = strut_law_respond(e->law, &e->numbers, strain, natural, piece);
   return (strut_element_motion){strain - natural, rate, r.force + e->damping * rate};
 }
 
@@ -387,7 +389,9 @@ double strut_element_measure_at(const strut_model *model, const strut_state *sta
     return strut_capstan_tensions(model, state, element, state->q, state->v).first;
   int32_t slot = e->remembers ? e->base : e->slot;
   double rest_rate = slot >= 0 ? state->latest.rest_rate[slot] : 0.0;
-  strut_law_response r = strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural, -1);
+  strut_law_response r =
+      strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural,
+                        strut_element_piece(e, state->latest.rest, pose->strain - pose->natural));
   double own = strut_element_rate(model, element, pose, v) - rest_rate;
   double force = exert(e, state, element, &r, pose->strain - pose->natural, own).force;
   /* where a step ends a little beyond the end of a frozen mode */

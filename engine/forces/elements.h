@@ -29,6 +29,12 @@ static inline double strut_element_natural(const strut_element *e, const double 
   return e->slot >= 0 ? rest[e->slot] : e->natural;
 }
 
+/** The piece of a curve on which an element is at x, by what `rest` remembers; -1: by x alone. */
+static inline int strut_element_piece(const strut_element *e, const double *rest, double x) {
+  if (e->law != STRUT_LAW_FOLDING) return -1;
+  return strut_folding_follow(e->numbers.curve, (int)rest[e->slot + STRUT_CURVE_PIECE], x, NULL);
+}
+
 /**
  * The element at positions q, without dampers. turn: the value near which an angle is taken; NAN: its
  * natural one.

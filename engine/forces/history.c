@@ -107,6 +107,40 @@ void strut_slider_return(const strut_model *model, strut_state *state, int32_t i
   state->latest.rest[e->slot] = base_of(e, state->latest.rest) + shift_of(e, *p);
 }
 
+/* Notes that element i has jumped over folds at time t, and loses the energy that this set free. */
+static void note_jump(strut_state *state, const strut_element *e, double freed, double t) {
+  double *own = &state->latest.rest[e->slot];
+  if (isnan(t)) return; /* on the way to the start */
+  own[STRUT_CURVE_JUMPS] += 1.0;
+  own[STRUT_CURVE_LAST] = t + state->time_offset;
+  own[STRUT_CURVE_FREED] += freed;
+  accumulate_loss(state, freed);
+}
+
+void strut_curve_renew(const strut_model *model, strut_state *state, int32_t i, const double *q,
+                       double t) {
+  assert(i >= 0 && i < model->elements.count);
+  const strut_element *e = &model->elements.element[i];
+  double b[STRUT_MOST_GRADIENT], freed = 0.0;
+  double *piece = &state->latest.rest[e->slot + STRUT_CURVE_PIECE];
+  double strain = strut_element_strain(model, i, q, state->latest.element_turn[i], b);
+  double x = strain - base_of(e, state->latest.rest);
+  *piece = strut_folding_follow(e->numbers.curve, (int)*piece, x, &freed);
+  if (freed != 0.0) note_jump(state, e, freed, t);
+}
+
+int strut_curve_pass(const strut_model *model, strut_state *state, int32_t i, strut_crossing at) {
+  assert(i >= 0 && i < model->elements.count);
+  const strut_element *e = &model->elements.element[i];
+  const strut_law_curve *c = e->numbers.curve;
+  int from = state->modes.element_piece[i], to = strut_folding_pass(c, from, at.way, at.x);
+  double freed = strut_law_curve_piece(c, (size_t)from, at.x).energy -
+                 strut_law_curve_piece(c, (size_t)to, at.x).energy;
+  if (to != from + at.way) note_jump(state, e, freed, at.time);
+  state->latest.rest[e->slot + STRUT_CURVE_PIECE] = to;
+  return to;
+}
+
 /* What an element with its damper does: how its sign is frozen or follows is as with all elements. */
 static bool element_acts(const strut_element *e, const strut_state *state, int32_t i, double x,
                          double force) {
@@ -153,8 +187,9 @@ static void add_element(const strut_model *model, strut_state *state, int32_t i,
         (natural - base_of(e, state->latest.rest)) * e->numbers.stiffness / strut_slider_spring(e);
   for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
   rate -= base_rate_of(e, state); /* last, as of other elements: with their bits before it breaks */
-  strut_law_response r =
-      strut_law_respond(e->law, &e->numbers, strain, natural, state->modes.element_piece[i]);
+  int piece = state->modes.element_piece[i];
+  if (piece < 0) piece = strut_element_piece(e, state->latest.rest, x);
+  strut_law_response r = strut_law_respond(e->law, &e->numbers, strain, natural, piece);
   double whole = r.force + e->damping * rate;
   if (!element_acts(e, state, i, x, whole)) {
     /* a damper may outweigh the spring: that relaxes then, and the damper takes its energy */
@@ -273,9 +308,10 @@ static bool renew(const strut_model *model, strut_state *state, double t, bool j
       strut_capstan_begin(model, state, i, state->q);
       strut_capstan_renew(model, state, i, state->q);
     }
-    if (yields(&table->element[i]) &&
-        !strut_element_is_gone(state->latest.rest[table->element[i].slot]))
-      strut_slider_return(model, state, i, state->q, jumped);
+    if (strut_element_is_gone(state->latest.rest[table->element[i].slot])) continue;
+    if (yields(&table->element[i])) strut_slider_return(model, state, i, state->q, jumped);
+    if (table->element[i].law == STRUT_LAW_FOLDING)
+      strut_curve_renew(model, state, i, state->q, jumped ? (double)NAN : t);
   }
   for (int32_t i = 0; i < table->breakable_count; i++)
     if (state->history.broken_at[i] == HUGE_VAL && table->breakable[i].force < HUGE_VAL &&

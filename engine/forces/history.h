@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** What members remember: breaks, yields, releases, and the forces of Maxwell's branches. */
+/** What members remember: breaks, yields, releases, folds, and the forces of Maxwell's branches. */
 #ifndef STRUT_ENGINE_FORCES_HISTORY_H
 #define STRUT_ENGINE_FORCES_HISTORY_H
 
@@ -15,6 +15,8 @@
  *   force = k_1 (x - p) + k_2 x,  |k_1 (x - p)| <= F_1,  k_1 = k - k_2,  F_1 = yield (1 - k_2/k),
  * which is k x about a natural strain that is k_1/k p larger, and the energy stored in k_1 against k_2.
  * That shift, x - force/k, is the plastic strain: what remains when the force is taken away.
+ *
+ * An element on a curve that folds keeps the piece on which it is, and its jumps, in slots behind its own.
  *
  * Methods with events freeze whether the slider holds or gives way (state->modes.element_piece); p is then
  * constant, or follows from x. With others the slider gives way within a step as its force says, and p
@@ -57,6 +59,20 @@ void strut_slider_set(const strut_model *model, strut_state *state, int32_t i, i
  */
 void strut_slider_return(const strut_model *model, strut_state *state, int32_t i, const double *q,
                          bool jumped);
+
+/**
+ * Keeps the piece of its curve on which element i is at q, for one that no method with events has frozen.
+ * The energy that jumps at folds set free is lost. t: when, or NAN before a run begins, where no jump counts.
+ */
+void strut_curve_renew(const strut_model *model, strut_state *state, int32_t i, const double *q,
+                       double t);
+/** Where and when an element leaves its piece, over its end (way 1) or its begin (-1). */
+typedef struct strut_crossing {
+  int way;
+  double x, time;
+} strut_crossing;
+/** The piece that element i, frozen on one, goes to; likewise. */
+int strut_curve_pass(const strut_model *model, strut_state *state, int32_t i, strut_crossing at);
 
 /** The natural strain of element i, with memory, at strain e, with the state's base slots and modes. */
 double strut_history_natural(const strut_model *model, const strut_state *state, int32_t i,

@@ -70,7 +70,7 @@ strut_status strut_integrator_check(const strut_model *model, const strut_experi
                       name, scene->nodes[model->contacts.entry[0].node].name);
   if (method->no_memory && model->terms & STRUT_TERM_MEMORY)
     return strut_fail(error, STRUT_USAGE,
-                      "%s cannot step over what breaks, is released or yields; use "
+                      "%s cannot step over what breaks, is released, yields or folds; use "
                       "solver.integrator rk4-events, verlet-events or adaptive",
                       name);
   if (method->no_sliding_masses && model->terms & STRUT_TERM_SLIDING_MASS)

@@ -8,6 +8,7 @@
 #include "engine/base/vec.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/model.h"
+#include "engine/scene/curve.h"
 
 /* A stop is this many times stiffer than its member where the scene does not say. */
 static const double USUAL_STOP = 100.0;
@@ -18,26 +19,32 @@ static size_t elements_of_member(const strut_member *m, bool reeled) {
          (size_t)(m->shortest > 0.0);
 }
 
-static bool yields(const strut_law *law) { return law->kind == STRUT_LAW_ELASTIC_PLASTIC; }
+/* Slots that a law with memory has: that of its natural strain, and those of a curve. */
+static size_t memory_of_law(const strut_law *law) {
+  return law->kind == STRUT_LAW_FOLDING           ? STRUT_CURVE_SLOTS
+         : law->kind == STRUT_LAW_ELASTIC_PLASTIC ? 1
+                                                  : 0;
+}
 
 static bool rubs(const strut_member *m) { return m->guide_friction > 0.0; }
 
 /*
- * Slots of elements with memory: all of a member that breaks or is released, otherwise those that yield
- * or rub at guides; these have one more for each segment.
+ * Slots of elements with memory: all of a member that breaks or is released, otherwise those whose law has
+ * one or that rub at guides; these have one more for each segment.
  */
 static size_t count_history_slots(const strut_scene *scene) {
   size_t count = 0;
   for (size_t j = 0; j < scene->member_count; j++) {
     const strut_member *m = &scene->members[j];
-    count +=
-        strut_member_ends(m) ? elements_of_member(m, false) : (size_t)(yields(&m->law) || rubs(m));
-    if (rubs(m)) count += m->guide_count + 1;
+    count += memory_of_law(&m->law);
+    if (strut_member_ends(m)) count += elements_of_member(m, false);
+    if (rubs(m)) count += m->guide_count + 2;
   }
   for (size_t i = 0; i < scene->hinge_count; i++)
-    count += strut_hinge_ends(&scene->hinges[i]) || yields(&scene->hinges[i].law);
-  for (size_t i = 0; i < scene->distance_count; i++) count += yields(&scene->distances[i].law);
-  for (size_t i = 0; i < scene->cell_count; i++) count += yields(&scene->cells[i].elastic);
+    count += strut_hinge_ends(&scene->hinges[i]) + memory_of_law(&scene->hinges[i].law);
+  for (size_t i = 0; i < scene->distance_count; i++)
+    count += memory_of_law(&scene->distances[i].law);
+  for (size_t i = 0; i < scene->cell_count; i++) count += memory_of_law(&scene->cells[i].elastic);
   return count;
 }
 
@@ -130,22 +137,53 @@ static void fill_piece(const strut_law *law, const double *slope, size_t i, doub
   piece[3] = straight ? 0.0 : (slope[i] + slope[i + 1] - 2.0 * rise) / (h * h);
 }
 
-static const strut_law_curve *make_curve(strut_model *model, const strut_law *law) {
-  size_t n = law->count;
+/* The law with its points as scene/curve.h makes them of those given; false: out of memory. */
+static bool take_points(strut_arena *arena, strut_law *law) {
+  size_t n = strut_curve_points(law);
+  if (n == law->count) return true;
+  double *x = strut_arena_allocate(arena, n, sizeof *x), point[2];
+  double *force = strut_arena_allocate(arena, n, sizeof *force);
+  for (size_t i = 0; i < n && x && force; i++) {
+    strut_curve_point(law, i, point);
+    x[i] = point[0], force[i] = point[1];
+  }
+  law->x = x, law->force = force, law->count = n;
+  return x && force;
+}
+
+/* The stable piece of a curve at x = 0 whose force is least. */
+static int find_start(const strut_law_curve *c) {
+  double least = HUGE_VAL;
+  int start = 0;
+  for (int i = 0; i + 1 < (int)c->count; i++) {
+    if (strut_folding_way(c, i) < 0 || strut_folding_beyond(c, i, 0.0)) continue;
+    double force = fabs(strut_law_curve_piece(c, (size_t)i, 0.0).force);
+    if (force < least) least = force, start = i;
+  }
+  return start;
+}
+
+static const strut_law_curve *make_curve(strut_model *model, const strut_law *given) {
   strut_arena *arena = &model->arena;
+  strut_law points = *given;
+  const strut_law *law = &points;
+  if (!take_points(arena, &points)) return NULL;
+  size_t n = law->count;
   strut_law_curve *curve = strut_arena_allocate(arena, 1, sizeof *curve);
   double(*piece)[4] = strut_arena_allocate(arena, n, sizeof *piece);
   double *slope = strut_arena_allocate(arena, n, sizeof *slope);
   double *energy = strut_arena_allocate(arena, n, sizeof *energy);
   if (!curve || !piece || !slope || !energy || !find_slopes(law, slope)) return NULL;
-  *curve = (strut_law_curve){n, law->x, (const double(*)[4])piece, energy, law->smooth};
+  bool folds = law->kind == STRUT_LAW_FOLDING;
+  *curve = (strut_law_curve){n, law->x, (const double(*)[4])piece, energy, law->smooth, 0};
   for (size_t i = 0; i + 1 < n; i++) {
     double h = law->x[i + 1] - law->x[i], *p = piece[i];
     fill_piece(law, slope, i, p);
     energy[i + 1] = energy[i] + h * (p[0] + h * (p[1] / 2.0 + h * (p[2] / 3.0 + h * p[3] / 4.0)));
   }
   strut_law_numbers numbers = {.curve = curve};
-  double origin = strut_law_table(&numbers, 0.0, 0.0, -1).energy;
+  if (folds) curve->start = find_start(curve), curve->smooth = law->bezier || law->rounding > 0.0;
+  double origin = strut_law_respond(law->kind, &numbers, 0.0, 0.0, -1).energy;
   for (size_t i = 0; i < n; i++) energy[i] -= origin;
   return curve;
 }
@@ -158,7 +196,7 @@ static bool set_numbers(strut_model *model, const strut_law *law, double stiffne
 #undef STRUT_LAW_ROW
   if (strut_law_needs(law->kind, STRUT_LAW_PARAMETER_COEFFICIENTS))
     numbers->coefficient = law->force, numbers->count = law->count;
-  if (strut_law_needs(law->kind, STRUT_LAW_PARAMETER_POINTS) &&
+  if (strut_law_allows(law->kind, STRUT_LAW_PARAMETER_POINTS) &&
       !(numbers->curve = make_curve(model, law)))
     return false;
   if (strut_law_at(law->kind)->own)
@@ -221,7 +259,8 @@ static void take_over(compilation *c, size_t j) {
     }
 }
 
-/* Gives an element a slot of its own, in which what it remembers shifts its natural strain. */
+/* Gives an element a slot of its own, in which what it remembers shifts its natural strain, and a curve one
+ * for the piece that it is on. */
 static void remember(compilation *c, strut_element *e) {
   strut_model *model = c->model;
   e->remembers = true;
@@ -233,6 +272,10 @@ static void remember(compilation *c, strut_element *e) {
   e->slot = t->history_slot + t->history_slots++;
   double *rest = (double *)model->members.rest;
   rest[e->slot] = e->base >= 0 ? rest[e->base] : e->natural;
+  if (e->law == STRUT_LAW_FOLDING) {
+    rest[e->slot + STRUT_CURVE_PIECE] = e->numbers.curve->start;
+    t->history_slots += STRUT_CURVE_SLOTS - 1;
+  }
   for (int32_t k = 0; k + 1 < e->nodes && e->guide_friction > 0.0; k++)
     rest[t->history_slot + t->history_slots++] = -1.0; /* nothing is remembered yet */
 }
@@ -274,7 +317,7 @@ static void add_member(compilation *c, size_t j) {
     stiffness = e->numbers.stiffness;
     if (reeled) e->numbers.axial = m->axial_stiffness, e->numbers.material = (int)m->law.kind;
     e->guide_friction = m->guide_friction;
-    if (strut_member_ends(m) || yields(&m->law) || rubs(m)) remember(c, e);
+    if (strut_member_ends(m) || memory_of_law(&m->law) || rubs(m)) remember(c, e);
     take_over(c, j);
   }
   double stop = m->stop_stiffness > 0.0 ? m->stop_stiffness : USUAL_STOP * stiffness;
@@ -297,7 +340,7 @@ static void add_hinge(compilation *c, size_t i) {
   for (int k = 0; k < 3; k++) add_node(c, e, h->node[k]);
   ((double *)model->members.rest)[slot] = strut_hinge_rest(model->scene, i);
   if (!set_numbers(model, &h->law, h->stiffness, &e->numbers)) c->failed = true;
-  if (strut_hinge_ends(h) || yields(&h->law)) remember(c, e);
+  if (strut_hinge_ends(h) || memory_of_law(&h->law)) remember(c, e);
 }
 
 /* The block of an element: by strain, law and memory. */
@@ -325,7 +368,7 @@ static void add_elastic_cell(compilation *c, size_t i, double area) {
   add_corners(c, e, cell, area);
   if (!set_numbers(c->model, &cell->elastic, cell->stiffness, &e->numbers)) c->failed = true;
   e->numbers.area = fabs(area);
-  if (yields(&cell->elastic)) remember(c, e);
+  if (memory_of_law(&cell->elastic)) remember(c, e);
 }
 
 static void add_cell(compilation *c, size_t i) {
@@ -407,7 +450,7 @@ static void add_distance(compilation *c, size_t i) {
   add_node(c, e, line ? d->line[0] : d->node[!back]);
   if (line) add_node(c, e, d->line[1]);
   if (!set_numbers(c->model, &d->law, d->stiffness, &e->numbers)) c->failed = true;
-  if (yields(&d->law)) remember(c, e);
+  if (memory_of_law(&d->law)) remember(c, e);
 }
 
 /* A foot presses as its node's contacts say; strut_feet_compile places it on their grounds. */

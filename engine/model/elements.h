@@ -86,6 +86,15 @@ typedef struct strut_element {
       guide_friction; /* of a running cable whose materials stand behind its slot, see capstan.h */
 } strut_element;
 
+/** What an element on a curve that folds remembers, in the slots from its own on. */
+enum {
+  STRUT_CURVE_PIECE = 1, /* the piece on which it is */
+  STRUT_CURVE_JUMPS,     /* how often it has jumped over a fold in a run */
+  STRUT_CURVE_LAST,      /* when it did so last [s] */
+  STRUT_CURVE_FREED,     /* energy that this set free in all [J] */
+  STRUT_CURVE_SLOTS      /* with the one of its natural strain */
+};
+
 /** Elements begin .. end - 1, of one strain with one law. */
 typedef struct strut_element_block {
   strut_strain_kind strain;

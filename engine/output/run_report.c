@@ -137,6 +137,17 @@ static void put_breaks(strut_json *json, cJSON *to, const strut_summary *s) {
   }
 }
 
+/* The key exists only if a law that folds jumped. */
+static void put_jumps(strut_json *json, cJSON *to, const strut_summary *s) {
+  cJSON *jumps = s->end.jump_count ? strut_json_object(json, to, "jumps") : NULL;
+  for (size_t i = 0; i < s->end.jump_count; i++) {
+    cJSON *one = strut_json_object(json, jumps, s->end.jumps[i].name);
+    strut_json_number(json, one, "count", (double)s->end.jumps[i].count);
+    strut_json_number(json, one, "last", s->end.jumps[i].last);
+    strut_json_number(json, one, "energy", s->end.jumps[i].freed);
+  }
+}
+
 static void put_contacts(strut_json *json, cJSON *to, const strut_summary *s) {
   cJSON *contacts = strut_json_object(json, to, "contacts");
   for (size_t i = 0; i < s->end.contact_count; i++) {
@@ -180,6 +191,7 @@ char *strut_summary_json(const strut_summary *summary, const strut_scene *scene,
   put_hinges(&json, json.root, summary);
   put_cells(&json, json.root, summary);
   put_breaks(&json, json.root, summary);
+  put_jumps(&json, json.root, summary);
   put_contacts(&json, json.root, summary);
   put_results(&json, json.root, summary, STRUT_RESULT_energy_kinetic, STRUT_RESULT_energy_balance);
   return strut_json_end(&json);
@@ -353,6 +365,17 @@ static void add_breaks(strut_buffer *table, const strut_summary *s) {
   add_more(table, s->end.break_count);
 }
 
+static void add_jumps(strut_buffer *table, const strut_summary *s) {
+  if (s->end.jump_count)
+    strut_buffer_add(table, "\n  %-16s %14s %14s %14s\n", "jumps at folds", "times", "last at",
+                     "set free");
+  for (size_t i = 0; i < s->end.jump_count && i < MOST_ROWS; i++)
+    strut_buffer_add(table, "  %-16s %14lld %14s %14s\n", s->end.jumps[i].name,
+                     (long long)s->end.jumps[i].count, in(s->end.jumps[i].last, "s").text,
+                     in(s->end.jumps[i].freed, "J").text);
+  add_more(table, s->end.jump_count);
+}
+
 static void add_contacts(strut_buffer *table, const strut_summary *s) {
   if (s->end.contact_count) {
     strut_buffer_add(table, "\n  %-16s %14s %14s\n", "contact", "contact time", "max. height");
@@ -419,6 +442,7 @@ char *strut_summary_table(const strut_summary *summary, const strut_scene *scene
   add_hinges(&table, summary);
   add_cells(&table, summary);
   add_breaks(&table, summary);
+  add_jumps(&table, summary);
   add_contacts(&table, summary);
   add_energy(&table, summary);
   add_balance(&table, summary);

@@ -343,7 +343,7 @@ static const char *describe_missed_events(const strut_run *r) {
   if (bounces) return "touchdowns";
   if (friction) return "changes between sticking and slipping";
   if (cables) return "cables that become taut";
-  if (r->model->terms & STRUT_TERM_MEMORY) return "what breaks, is released or yields";
+  if (r->model->terms & STRUT_TERM_MEMORY) return "what breaks, is released, yields or folds";
   return has_switches(r->model) ? "stops, cables or kinks of laws" : NULL;
 }
 

@@ -66,9 +66,10 @@ static strut_status allocate_summary(strut_run *r) {
   s->end.hinges = strut_allocate(scene->hinge_count, sizeof *s->end.hinges);
   s->end.cells = strut_allocate(scene->cell_count, sizeof *s->end.cells);
   s->end.breaks = strut_allocate((size_t)r->model->elements.breakable_count, sizeof *s->end.breaks);
+  s->end.jumps = strut_allocate((size_t)r->model->elements.history_count, sizeof *s->end.jumps);
   if (e->quantity_count) s->measured = strut_allocate(e->quantity_count, sizeof *s->measured);
   if (!s->end.node_names || !s->end.positions || !s->end.contacts || !s->end.hinges ||
-      !s->end.cells || !s->end.breaks || (e->quantity_count && !s->measured))
+      !s->end.cells || !s->end.breaks || !s->end.jumps || (e->quantity_count && !s->measured))
     return strut_memory_fail_model(r->model->scene, r->error);
   s->end.node_count = scene->node_count;
   s->end.contact_count = contacts;
@@ -319,7 +320,7 @@ static strut_status detect_steady_motion(strut_run *r) {
         internal
             ? "internal states, samples, starts and relays are a memory that shooting does not "
               "correct"
-            : "what breaks, is released or yields has a memory that shooting does not "
+            : "what breaks, is released, yields or folds has a memory that shooting does not "
               "correct");
   bool shoot =
       r->experiment->steady.shooting && r->steady.detector.result.kind == STRUT_MOTION_PERIODIC;
@@ -423,6 +424,23 @@ void strut_run_step(strut_run *r, int64_t stop) {
   else
     step_to(r, stop);
   strut_subnormals_restore(before);
+}
+
+static void list_jumps(const strut_run *r) {
+  const strut_element_table *t = &r->model->elements;
+  strut_summary *s = r->summary;
+  s->end.jump_count = 0;
+  for (int32_t i = 0; i < t->count; i++) {
+    const strut_element *e = &t->element[i];
+    if (e->law != STRUT_LAW_FOLDING) continue;
+    const double *own = &r->state->latest.rest[e->slot];
+    if (own[STRUT_CURVE_JUMPS] > 0.0)
+      s->end.jumps[s->end.jump_count++] =
+          (strut_jump_summary){.name = strut_element_name(r->model->scene, e),
+                               .count = (int64_t)own[STRUT_CURVE_JUMPS],
+                               .last = own[STRUT_CURVE_LAST],
+                               .freed = own[STRUT_CURVE_FREED]};
+  }
 }
 
 static void fill_summary(strut_run *r, strut_status status);
@@ -567,6 +585,7 @@ static void fill_summary(strut_run *r, strut_status status) {
   for (size_t i = 0; i < 2 * s->end.node_count; i++) s->end.positions[i] = r->state->q[i];
   measure_elements(r);
   list_breaks(r);
+  list_jumps(r);
   if (r->state->balance) {
     (void)sample_balance(r);
     s->balance = strut_balance_judge(&s->energy, s->spent.steps);

@@ -5,6 +5,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/scene/check_rules.h"
+#include "engine/scene/curve.h"
 
 /* ---- laws, stops and hinges ---- */
 
@@ -13,20 +14,20 @@ enum { MOST_POINTS = 30000 };
 
 /* What is wrong with the lists of a law, or NULL. */
 static const char *fault_of_lists(const strut_law *law) {
-  bool points = strut_law_needs(law->kind, STRUT_LAW_PARAMETER_POINTS);
+  bool points = strut_law_allows(law->kind, STRUT_LAW_PARAMETER_POINTS);
   for (size_t i = 0; i < law->count; i++)
     if (!isfinite(law->force[i]) || (points && !isfinite(law->x[i])))
       return "has a number that is not finite";
-  if (law->count > MOST_POINTS) return "has more than 30000 points";
   if (strut_law_needs(law->kind, STRUT_LAW_PARAMETER_COEFFICIENTS) && !law->count)
     return "needs at least one coefficient";
   if (points && law->count < 2) return "needs at least two points";
   bool zero = law->count > 0;
   for (size_t i = 0; i < law->count; i++) zero = zero && law->force[i] == 0.0;
   if (zero) return "gives no force anywhere; leave it out, or give it a number that is not 0";
-  for (size_t i = 1; i < law->count && points; i++)
-    if (!(law->x[i] > law->x[i - 1])) return "needs points with increasing x";
-  return NULL;
+  const char *fault = points ? strut_curve_fault(law) : NULL;
+  if (!fault && points && strut_curve_points(law) > MOST_POINTS)
+    return "has more than 30000 points, those of its rounded corners included";
+  return fault;
 }
 
 /* The law of `owner` by itself. */

@@ -15,6 +15,7 @@
 #include "engine/scene/laws/cell_laws.h"
 #include "engine/scene/laws/elastic_plastic.h"
 #include "engine/scene/laws/exponential.h"
+#include "engine/scene/laws/folding.h"
 #include "engine/scene/laws/linear.h"
 #include "engine/scene/laws/logarithmic.h"
 #include "engine/scene/laws/play.h"
@@ -35,7 +36,8 @@
   X(POLYNOMIAL, polynomial, "polynomial", COEFFICIENTS_BIT | OWN, context)                         \
   X(LOGARITHMIC, logarithmic, "logarithmic", 0, context)                                           \
   X(EXPONENTIAL, exponential, "exponential", SCALE_BIT, context)                                   \
-  X(TABLE, table, "table", POINTS_BIT | OWN, context)
+  X(TABLE, table, "table", POINTS_BIT | OWN, context)                                              \
+  X(FOLDING, folding, "curve", POINTS_MAY | CONTROL_POINTS_MAY | OWN, context)
 
 /**
  * Those of members and hinges come first, then the one that a model gives to members with an axial_stiffness
@@ -78,6 +80,9 @@ typedef struct strut_law {
   size_t count;
   const double *x, *force; /* (count) points of a table; of a polynomial coefficients, in `force` */
   bool smooth;             /* of a table: a monotone spline instead of straight lines */
+  bool bezier;             /* of a curve: the points are control points of one Bezier curve */
+  bool mirrored;           /* of both: x and force count with both signs */
+  double rounding;         /* of a curve: share of each piece that its rounded corners take */
 } strut_law;
 
 typedef struct strut_law_row {
@@ -272,14 +277,20 @@ static inline double strut_law_kink(strut_law_kind kind, const strut_law_numbers
   return 0.0;
 }
 
-/** Distances of x from the lower and the upper end of a piece; INFINITY where it has none. */
-static inline void strut_law_margins(strut_law_kind kind, const strut_law_numbers *n, int piece,
-                                     double x, double *low, double *high) {
-  *low = piece > 0 ? x - strut_law_kink(kind, n, piece - 1) : HUGE_VAL;
-  *high = piece < strut_law_kinks(kind, n) ? strut_law_kink(kind, n, piece) - x : HUGE_VAL;
+/** Does x grow (1) or fall (-1) along a piece, from the one before it to the one after it? */
+static inline int strut_law_way(strut_law_kind kind, const strut_law_numbers *n, int piece) {
+  return kind == STRUT_LAW_FOLDING ? strut_folding_way(n->curve, piece) : 1;
 }
 
-/** The smooth piece in which x lies: the number of kinks below it. */
+/** Distances of x from the begin and the end of a piece; INFINITY where it has none. */
+static inline void strut_law_margins(strut_law_kind kind, const strut_law_numbers *n, int piece,
+                                     double x, double *low, double *high) {
+  double way = strut_law_way(kind, n, piece);
+  *low = piece > 0 ? way * (x - strut_law_kink(kind, n, piece - 1)) : HUGE_VAL;
+  *high = piece < strut_law_kinks(kind, n) ? way * (strut_law_kink(kind, n, piece) - x) : HUGE_VAL;
+}
+
+/** The smooth piece in which x lies: the number of kinks below it. Of a curve see history.h. */
 static inline int strut_law_piece(strut_law_kind kind, const strut_law_numbers *n, double x) {
   int kinks = strut_law_kinks(kind, n), piece = 0;
   while (piece < kinks && strut_law_kink(kind, n, piece) < x) piece++;

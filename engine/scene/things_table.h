@@ -210,7 +210,7 @@
   X(FOOT, RADIUS, "radius", NUMBER, LENGTH, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_foot, radius), "Radius of the arc.")
 
 #define STRUT_LAW_FIELDS(X) \
-  X(LAW, KIND, "kind", WORD, NONE, ANY, "linear", WRITTEN, 0, STRUT_LAW_WORDS, FIELD(strut_law, kind), "With the stiffness k and x the elongation: `linear`, k x. `bilinear`, k x up to the knee on either side, then with the slope `second_stiffness`. `play`, no force within the gap on either side, beyond it k times the excess. `elastic_plastic`, k x until the force reaches the yield, then with the slope `second_stiffness`, and back along k: what has yielded stays. `polynomial`, c1 x + c2 x^2 + ... `logarithmic`, k L ln(length / L) with the rest length L. `exponential`, k s (exp(x / s) - 1) with the scale s. `table`, through points.") \
+  X(LAW, KIND, "kind", WORD, NONE, ANY, "linear", WRITTEN, 0, STRUT_LAW_WORDS, FIELD(strut_law, kind), "With the stiffness k and x the elongation: `linear`, k x. `bilinear`, k x up to the knee on either side, then with the slope `second_stiffness`. `play`, no force within the gap on either side, beyond it k times the excess. `elastic_plastic`, k x until the force reaches the yield, then with the slope `second_stiffness`, and back along k: what has yielded stays. `polynomial`, c1 x + c2 x^2 + ... `logarithmic`, k L ln(length / L) with the rest length L. `exponential`, k s (exp(x / s) - 1) with the scale s. `table`, through points. `curve`, along points in any order of x: it may fold back, where statics follow it and a motion jumps.") \
   X(LAW, CARRIES, "carries", WORD, NONE, ANY, "both", OPTIONAL, 0, "both|tension|compression", FIELD(strut_law, carries), "Forces that are carried: with `tension` the element acts beyond its rest length only, with `compression` below it.") \
   X(LAW, KNEE, "knee", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, knee), "Elongation at which a bilinear law changes its slope.") \
   X(LAW, SECOND_STIFFNESS, "second_stiffness", NUMBER, CONTEXT, ANY, "", OPTIONAL, 0, "", FIELD(strut_law, second_stiffness), "Slope of a bilinear law beyond its knee, and of an elastic-plastic law beyond its yield, where 0 is the default.") \
@@ -218,7 +218,10 @@
   X(LAW, SCALE, "scale", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, scale), "Elongation over which the slope of an exponential law grows by the factor e.") \
   X(LAW, YIELD, "yield", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, yield), "Force, or moment of a hinge, at which an elastic-plastic law gives way.") \
   X(LAW, COEFFICIENTS, "coefficients", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Coefficients of x, x^2, ... of a polynomial, such as `[10 N/m, 0, 1e5 N/m^3]`.") \
-  X(LAW, POINTS, "points", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Points `[[x, force], ...]` of a table, such as `[[-1 mm, -5 N], [0, 0], [2 mm, 3 N]]`, with increasing x; beyond the ends it continues straight.") \
+  X(LAW, POINTS, "points", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Points `[[x, force], ...]` of a table, such as `[[-1 mm, -5 N], [0, 0], [2 mm, 3 N]]`, with increasing x, or of a curve, whose x may fall; beyond the ends it continues straight.") \
+  X(LAW, CONTROL_POINTS, "control_points", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Control points `[[x, force], ...]` of one Bezier curve, at most 64, instead of the `points` of a curve.") \
+  X(LAW, ROUNDING, "rounding", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_law, rounding), "Rounds the corners of a curve: this share of each piece, below 1, goes to the parabolas at its two ends.") \
+  X(LAW, MIRRORED, "mirrored", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_law, mirrored), "The points of a table or a curve, from `[0, 0]` on, hold for negative x too, with the opposite force.") \
   X(LAW, SMOOTH, "smooth", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_law, smooth), "A table by a monotone spline through its points (Steffen) instead of straight lines.")
 
 #define STRUT_RAYLEIGH_FIELDS(X) \

@@ -17,8 +17,23 @@ void strut_warn_of_overload(const strut_listener *listener, const strut_model *m
              worst.breaks ? "breaks" : "yields", worst.breaks ? "whole" : "elastic");
 }
 
+/* Says what a search has left out: on a curve that folds one branch is taken at each elongation. */
+static void warn_of_folds(const strut_listener *listener, const strut_model *model) {
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    if (e->law != STRUT_LAW_FOLDING) continue;
+    strut_tell(
+        listener, STRUT_MESSAGE_WARNING, NULL,
+        "the law of '%s' may fold back: a search takes it as it is when it comes from the rest "
+        "length, and finds no state on another branch; strut path follows them",
+        strut_element_name(model->scene, e));
+    return;
+  }
+}
+
 void strut_warn_of_equilibria(const strut_listener *listener, const strut_model *model,
                               const strut_equilibria *all) {
+  warn_of_folds(listener, model);
   for (size_t i = 0; i < all->count; i++) {
     const strut_equilibrium *e = &all->list[i];
     char where[200];

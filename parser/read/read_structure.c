@@ -185,8 +185,10 @@ static bool read_coefficients(strut_reader *reader, const strut_tree *list, stru
   return fine;
 }
 
-static bool read_points(strut_reader *reader, const strut_tree *list, strut_owner owner,
+static bool read_points(strut_reader *reader, const strut_slot *slot, strut_owner owner,
                         strut_dimension strain, strut_dimension force, strut_law *law) {
+  const strut_tree *list = slot->value;
+  const char *key = slot->key->text;
   double *x = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *x);
   double *y = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *y);
   bool fine = x && y;
@@ -194,20 +196,20 @@ static bool read_points(strut_reader *reader, const strut_tree *list, strut_owne
     size_t i = law->count++;
     if (point->kind != STRUT_TREE_LIST || point->count != 2) {
       strut_report_error(reader, point->place,
-                         "expected a point such as [2 mm, 3 N] for 'points' of %s, found %s",
+                         "expected a point such as [2 mm, 3 N] for '%s' of %s, found %s", key,
                          strut_owner_text(reader, owner), strut_found(reader, point));
       fine = false;
       continue;
     }
     fine =
-        strut_read_number(reader, point->first, "points", owner, strain, STRUT_RANGE_ANY, &x[i]) &&
+        strut_read_number(reader, point->first, key, owner, strain, STRUT_RANGE_ANY, &x[i]) && fine;
+    fine =
+        strut_read_number(reader, point->first->next, key, owner, force, STRUT_RANGE_ANY, &y[i]) &&
         fine;
-    fine = strut_read_number(reader, point->first->next, "points", owner, force, STRUT_RANGE_ANY,
-                             &y[i]) &&
-           fine;
-    if (!fine || i == 0 || x[i] > x[i - 1]) continue;
+    if (!fine || i == 0 || x[i] > x[i - 1] || law->kind == STRUT_LAW_FOLDING) continue;
     strut_report_error(reader, point->place,
-                       "expected points with increasing x for 'points' of %s, found %g after %g",
+                       "expected points with increasing x for 'points' of %s, found %g after %g; "
+                       "a law that folds back is of the kind curve",
                        strut_owner_text(reader, owner), x[i], x[i - 1]);
     fine = false;
   }
@@ -234,11 +236,32 @@ static bool check_needs(strut_reader *reader, strut_fields *fields, strut_owner 
                          strut_owner_text(reader, owner), strut_law_key(p),
                          strut_law_at(law->kind)->word);
   }
-  const strut_slot *smooth = strut_slot_of(fields, STRUT_KEY_LAW_SMOOTH);
-  if (smooth->state == STRUT_ABSENT || law->kind == STRUT_LAW_TABLE) return fine;
-  strut_report_error(reader, smooth->key->place, "%s gives 'smooth', which only a table has",
-                     strut_owner_text(reader, owner));
-  return false;
+  bool points = strut_slot_of(fields, STRUT_KEY_LAW_POINTS)->state != STRUT_ABSENT;
+  bool control = strut_slot_of(fields, STRUT_KEY_LAW_CONTROL_POINTS)->state != STRUT_ABSENT;
+  if (law->kind == STRUT_LAW_FOLDING && points == control) {
+    strut_report_error(reader, fields->map->place, "%s needs 'points' or 'control_points', %s",
+                       strut_owner_text(reader, owner), points ? "not both" : "and has neither");
+    fine = false;
+  }
+  static const struct {
+    int key;
+    bool table, curve; /* that have it */
+  } forms[] = {{STRUT_KEY_LAW_SMOOTH, true, false},
+               {STRUT_KEY_LAW_MIRRORED, true, true},
+               {STRUT_KEY_LAW_ROUNDING, false, true}};
+  for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+    const strut_slot *slot = strut_slot_of(fields, forms[i].key);
+    if (slot->state == STRUT_ABSENT || (law->kind == STRUT_LAW_TABLE && forms[i].table) ||
+        (law->kind == STRUT_LAW_FOLDING && forms[i].curve))
+      continue;
+    strut_report_error(reader, slot->key->place, "%s gives '%s', which only a %s has",
+                       strut_owner_text(reader, owner), slot->key->text,
+                       !forms[i].curve   ? "table"
+                       : !forms[i].table ? "curve"
+                                         : "table or a curve");
+    fine = false;
+  }
+  return fine;
 }
 
 /* `law: bilinear` lacks its numbers and is refused; the others are complete. */
@@ -254,7 +277,7 @@ static bool read_word(strut_reader *reader, const strut_tree *value, strut_owner
     return true;
   }
   law->kind = (strut_law_kind)(word - 2);
-  if (!strut_law_at(law->kind)->needs) return true;
+  if (!strut_law_at(law->kind)->needs && law->kind != STRUT_LAW_FOLDING) return true;
   strut_report_error(reader, value->place,
                      "the law %s of %s needs numbers: write a mapping {kind: %s, ...}", value->text,
                      strut_owner_text(reader, owner), value->text);
@@ -272,6 +295,7 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
   strut_owner within = {text, NULL};
   strut_read_fields(reader, STRUT_SECTION_LAW, slot->value, within, &fields);
   const strut_slot *coefficients = strut_slot_of(&fields, STRUT_KEY_LAW_COEFFICIENTS);
+  const strut_slot *control = strut_slot_of(&fields, STRUT_KEY_LAW_CONTROL_POINTS);
   const strut_slot *points = strut_slot_of(&fields, STRUT_KEY_LAW_POINTS);
   strut_store_fields(reader, &fields, within, &reader->scene->arena, law, sizeof *law);
   bool fine = !fields.broken && check_needs(reader, &fields, within, law);
@@ -279,8 +303,9 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
   if (!fine) return false;
   if (coefficients->state == STRUT_GIVEN)
     return read_coefficients(reader, coefficients->value, within, strain, force, law);
-  if (points->state == STRUT_GIVEN)
-    return read_points(reader, points->value, within, strain, force, law);
+  law->bezier = control->state == STRUT_GIVEN;
+  if (law->bezier || points->state == STRUT_GIVEN)
+    return read_points(reader, law->bezier ? control : points, within, strain, force, law);
   return true;
 }
 

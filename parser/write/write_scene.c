@@ -336,9 +336,10 @@ static void put_nodes(strut_writer *writer) {
 static void put_law_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                             const void *object) {
   const strut_law *law = object;
-  bool points = key == STRUT_KEY_LAW_POINTS;
+  bool control = key == STRUT_KEY_LAW_CONTROL_POINTS,
+       points = control || key == STRUT_KEY_LAW_POINTS;
   int list = points ? STRUT_LAW_PARAMETER_POINTS : STRUT_LAW_PARAMETER_COEFFICIENTS;
-  if (!strut_law_allows(law->kind, list)) return;
+  if (!strut_law_allows(law->kind, list) || (points && law->bezier != control)) return;
   strut_put_key_name(writer, mapping, key);
   for (size_t i = 0; i < law->count; i++) {
     strut_put(writer, i ? ", " : "[");

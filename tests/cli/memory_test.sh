@@ -43,7 +43,7 @@ expect 0 run latch.yaml --set at='10 s' --json # not within the run
 near '.broken | if . then 1 else 0 end' 0 0
 sed 's/rk4-events/midpoint/' latch.yaml >other.yaml
 expect 1 run other.yaml
-err_has 'midpoint cannot step over what breaks, is released or yields; use solver.integrator rk4-events'
+err_has 'midpoint cannot step over what breaks, is released, yields or folds; use solver.integrator rk4-events'
 
 # A mass at the end of a string at speed u: it breaks at the force F, F^2 / 2k is lost.
 cat >string.yaml <<'YAML'

@@ -45,6 +45,10 @@ strut_law random_law(strut_scene *scene, strut_law_kind kind, double size, doubl
       break;
     }
     case STRUT_LAW_TABLE: make_table(scene, &law, size, force, r); break;
+    case STRUT_LAW_FOLDING: /* without folds it is the table, without a spline */
+      make_table(scene, &law, size, force, r);
+      law.smooth = false;
+      break;
     case STRUT_LAW_LINEAR:
     case STRUT_LAW_AXIAL:
     case STRUT_LAW_LOGARITHMIC:
@@ -58,7 +62,7 @@ strut_law random_law(strut_scene *scene, strut_law_kind kind, double size, doubl
 
 /* A law without memory, which statics and every method know. */
 static strut_law_kind random_kind(uint64_t *r) {
-  strut_law_kind kind = (strut_law_kind)random_below(r, STRUT_MEMBER_LAW_COUNT - 1);
+  strut_law_kind kind = (strut_law_kind)random_below(r, STRUT_LAW_FOLDING - 1);
   return kind < STRUT_LAW_ELASTIC_PLASTIC ? kind : (strut_law_kind)(kind + 1);
 }
 

@@ -22,6 +22,7 @@ EXCEPTIONS = {
     'contact.friction': 'of runs',
     'unbalance.speed': 'of runs',
     'load.signal': 'loads with a signal are off at rest',
+    'law.bezier': 'which of the two lists of points is given',
     'sliding_mass.travel': 'a tag of its signal, whose value at t = 0 counts',
 }
 
@@ -61,7 +62,8 @@ def main():
                 missing.append('strut_%s.%s' % (struct, name))
     for name in parameters:
         seen += 1
-        if not re.search(r'FIELD\(strut_law, %s\)' % name, table) and name not in ('coefficients', 'points'):
+        if not re.search(r'FIELD\(strut_law, %s\)' % name, table) and name not in ('coefficients', 'points',
+                                                                            'control_points'):
             missing.append('strut_law.%s' % name)
     if missing:
         sys.exit('no row in engine/scene/things_table.h: ' + ', '.join(missing))

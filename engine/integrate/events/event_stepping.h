@@ -367,9 +367,9 @@ void strut_contact_close(const strut_model *model, strut_event_stepper *l, int32
                          int32_t facet);
 /** Sets the speed of contact i along the ground exactly. */
 void strut_contact_snap(const strut_model *model, strut_event_stepper *l, int32_t i, double slip);
-/** Law k passes the nearer kink of its piece. */
+/** Law k passes the nearer kink of its piece at time t. */
 void strut_law_pass_kink(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                         int32_t k);
+                         int32_t k, double t);
 /** Evaluates l->now at time t, letting go of one overloaded stuck contact after the other. */
 void strut_modes_derive(const strut_model *model, strut_state *state, strut_event_stepper *l,
                         double t);

@@ -74,6 +74,8 @@ bool strut_code_has_law(const strut_code_writer *w, const char *word, size_t len
 
 bool strut_code_knows_element_law(strut_law_kind law) {
   char name[64];
+  if (law == STRUT_LAW_FOLDING)
+    return false; /* which piece of it holds is a memory that is not written */
   snprintf(name, sizeof name, "law_%s", law_names[law]);
   return strut_code_knows_law(name);
 }
@@ -263,8 +265,8 @@ static void add_curves(strut_code_writer *w) {
     }
     strut_buffer_add(&w->text,
                      "};\nstatic const law_curve curve_%d = {%zu, curve_x_%d, curve_piece_%d, "
-                     "curve_energy_%d, %d};\n",
-                     i, c->count, i, i, i, c->smooth);
+                     "curve_energy_%d, %d, %d};\n",
+                     i, c->count, i, i, i, c->smooth, c->start);
   }
 }
 

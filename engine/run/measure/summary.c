@@ -45,6 +45,9 @@ void strut_summary_free(strut_summary *summary) {
   strut_release(summary->end.breaks);
   summary->end.breaks = NULL;
   summary->end.break_count = 0;
+  strut_release(summary->end.jumps);
+  summary->end.jumps = NULL;
+  summary->end.jump_count = 0;
   strut_release(summary->measured);
   summary->end.node_names = NULL;
   summary->end.positions = NULL;

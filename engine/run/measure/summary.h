@@ -56,6 +56,13 @@ typedef struct strut_break_summary {
   double time;   /* [s] */
 } strut_break_summary;
 
+/** An element whose law folds and that jumped. */
+typedef struct strut_jump_summary {
+  const char *name;   /* of its member, hinge, ...; owned by the scene */
+  int64_t count;      /* of jumps since the run began */
+  double last, freed; /* time of the last one [s], energy that they set free [J] */
+} strut_jump_summary;
+
 /** A quantity of `measure` in the scene, over the window. */
 typedef struct strut_measured {
   const char *name, *unit; /* owned by the scene */
@@ -161,13 +168,14 @@ typedef struct strut_summary {
   strut_step_limit_violation limit_fell;
   bool feedback; /* signals follow sensors, which the step limit leaves out */
   struct {
-    size_t node_count, contact_count, hinge_count, cell_count, break_count;
+    size_t node_count, contact_count, hinge_count, cell_count, break_count, jump_count;
     const char **node_names;         /* (node_count) names owned by the scene */
     double *positions;               /* (node_count, 2) [m] */
     strut_contact_summary *contacts; /* (contact_count) */
     strut_hinge_summary *hinges;     /* (hinge_count) */
     strut_cell_summary *cells;       /* (cell_count) */
     strut_break_summary *breaks;     /* (break_count) in the scene's order, members first */
+    strut_jump_summary *jumps;       /* (jump_count) */
   } end;                             /* where and how things are at the end, or were on the way */
   const char *measured_node;         /* node of the measured velocity; NULL: centre of mass */
   size_t measured_count;

@@ -12,14 +12,15 @@
 
 /**
  * A piecewise cubic force: between x[i] and x[i+1] it is c0 + c1 d + c2 d^2 + c3 d^3 with d = x - x[i];
- * beyond the ends it is straight on with the slope at the end.
+ * beyond the ends it is straight on with the slope at the end. Of a curve that folds x need not increase.
  */
 typedef struct strut_law_curve {
   size_t count;             /* points */
-  const double *x;          /* (count) increasing */
+  const double *x;          /* (count) increasing, or of a curve that folds not */
   const double (*piece)[4]; /* (count - 1) */
   const double *energy;     /* (count) integral of the force from x = 0 to x[i] */
-  bool smooth;              /* the slope is continuous: no kinks */
+  bool smooth; /* the slope is continuous: no kinks; of a curve: its kinks stand for a bend */
+  int start;   /* of a curve that folds: the stable piece at x = 0 with the least force */
 } strut_law_curve;
 
 /** A law with its numbers, as functions of it take it. */

@@ -16,7 +16,8 @@
 
 /** Lists that laws may need: X(NAME, key, LIST). */
 #define STRUT_LAW_LISTS(X)                                                                         \
-  X(COEFFICIENTS, coefficients, LIST) /* of x, x^2, ... of a polynomial */                         \
-  X(POINTS, points, LIST)             /* of a table */
+  X(COEFFICIENTS, coefficients, LIST)     /* of x, x^2, ... of a polynomial */                     \
+  X(POINTS, points, LIST)                 /* of a table or a curve */                              \
+  X(CONTROL_POINTS, control_points, LIST) /* of a curve */
 
 #endif

@@ -271,7 +271,11 @@ static strut_path_event_kind describe_element(const strut_path_system *s, int32_
   const char *name = strut_element_name(scene, e);
   strut_path_event_kind kind = on ? STRUT_PATH_ENGAGE : STRUT_PATH_RELEASE;
   const char *what = on ? "begins to act" : "ceases to act";
-  if (w->kink >= 0) kind = STRUT_PATH_LAW, what = "passes a kink of its law";
+  if (w->kink >= 0) {
+    bool fold = strut_law_way(e->law, &e->numbers, w->kink) !=
+                strut_law_way(e->law, &e->numbers, w->kink + 1);
+    kind = STRUT_PATH_LAW, what = fold ? "reaches a fold of its law" : "passes a kink of its law";
+  }
   if (e->role == STRUT_ELEMENT_LONGEST)
     what = on ? "reaches its longest length" : "leaves its longest length";
   if (e->role == STRUT_ELEMENT_SHORTEST)
@@ -288,8 +292,18 @@ static strut_path_event_kind describe_element(const strut_path_system *s, int32_
   return kind;
 }
 
+bool strut_path_is_bend(const strut_path_system *s, int32_t which) {
+  int32_t k = which - strut_path_first_element_switch(s);
+  if (k < 0 || s->elements.switches[k].kink < 0) return false;
+  const strut_element *e = &s->model->elements.element[s->elements.switches[k].element];
+  int kink = s->elements.switches[k].kink;
+  return e->law == STRUT_LAW_FOLDING && e->numbers.curve->smooth &&
+         strut_folding_way(e->numbers.curve, kink) == strut_folding_way(e->numbers.curve, kink + 1);
+}
+
 static void report_switch(strut_path_walk *w, int32_t which, int32_t before, int32_t after) {
   const strut_path_system *s = &w->system;
+  if (strut_path_is_bend(s, which)) return;
   const strut_scene *scene = s->model->scene;
   int32_t members = s->model->members.count, elements = strut_path_first_element_switch(s);
   bool on = strut_path_switch_is_on(s, which);
@@ -524,7 +538,7 @@ static size_t find_soft(const strut_path_system *s, double below, size_t *first)
 bool strut_path_spectrum(strut_path_system *s, const double *y, strut_path_spectrum_detail wanted) {
   size_t first;
   if (!strut_path_evaluate(s, y)) return false;
-  s->spectrum.negative = 0;
+  s->spectrum.negative = s->spectrum.folded = strut_path_count_folded(s);
   if (s->n == 0) return true;
   if (wanted == STRUT_PATH_VECTORS) {
     find_vectors(s);

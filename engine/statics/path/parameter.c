@@ -169,6 +169,14 @@ static bool read_scene_terms(strut_path_parameter *p, double value, strut_path_t
   return status == STRUT_OK || refuse_value(p, value, &error);
 }
 
+/* Elements with memory have slots of their own, which follow that of what is driven. */
+static void follow_slot(const strut_model *model, int32_t slot, double *rest) {
+  for (int32_t m = 0; m < model->elements.history_count; m++) {
+    const strut_element *e = &model->elements.element[model->elements.memory[m]];
+    if (e->base == slot) rest[e->slot] = rest[slot];
+  }
+}
+
 bool strut_path_parameter_terms(strut_path_parameter *p, strut_dd value, strut_path_terms *t) {
   strut_dd change = dd_sub(value, dd_of(p->from));
   int32_t at = p->options->index;
@@ -182,6 +190,7 @@ bool strut_path_parameter_terms(strut_path_parameter *p, strut_dd value, strut_p
     int32_t slot = strut_actuator_slot(p->model, (size_t)at);
     strut_dd rest = dd_add(dd_of(p->base.rest[slot]), change);
     t->rest[slot] = rest.hi, t->rest_low[slot] = rest.lo;
+    follow_slot(p->model, slot, t->rest);
     bool axial = member >= 0 && p->model->scene->members[member].axial_stiffness > 0.0;
     double least = axial ? STRUT_AXIAL_LEAST * p->model->members.rest[slot] : 0.0;
     if (member >= 0 && rest.hi < least) {
@@ -238,6 +247,7 @@ bool strut_path_parameter_rates(strut_path_parameter *p, double value, strut_pat
       return true;
     case STRUT_PATH_OVER_ACTUATOR:
       rates->rest[strut_actuator_slot(p->model, (size_t)at)] = 1;
+      follow_slot(p->model, strut_actuator_slot(p->model, (size_t)at), rates->rest);
       return true;
     case STRUT_PATH_OVER_COORDINATE: rates->position[at] = 1; return true;
   }
@@ -346,11 +356,33 @@ bool strut_path_elements_create(const strut_model *model, strut_arena *arena,
     if (e->carries) p->switches[p->switch_count++] = (strut_path_element_switch){i, -1};
     for (int k = 0; k < kinks; k++) {
       double kink = strut_law_kink(e->law, &e->numbers, k);
+      bool folds = e->law == STRUT_LAW_FOLDING;
       p->switches[p->switch_count++] = (strut_path_element_switch){i, k};
-      p->element[i].piece += !is_kink_felt(e, kink) && kink <= 0.0; /* above it wherever it acts */
+      p->element[i].piece += !folds && !is_kink_felt(e, kink) && kink <= 0.0; /* always above it */
     }
   }
   return true;
+}
+
+void strut_path_find_pieces(strut_path_system *s) {
+  const double *rest = s->equations.terms.rest;
+  strut_element_pose pose;
+  for (int32_t i = 0; i < s->model->elements.count; i++) {
+    const strut_element *e = &s->model->elements.element[i];
+    if (e->law != STRUT_LAW_FOLDING) continue;
+    strut_element_evaluate(s->model, i, rest, s->latest.q, s->elements.element[i].turn, &pose);
+    s->elements.element[i].piece = strut_element_piece(e, rest, pose.strain - pose.natural);
+  }
+}
+
+int32_t strut_path_count_folded(const strut_path_system *s) {
+  int32_t count = 0;
+  for (int32_t i = 0; i < s->model->elements.count; i++) {
+    const strut_element *e = &s->model->elements.element[i];
+    const strut_path_element *own = &s->elements.element[i];
+    count += own->acts && strut_law_way(e->law, &e->numbers, own->piece) < 0;
+  }
+  return count;
 }
 
 /* Natural strain where the parameter has its present value, or in other terms. */
@@ -489,10 +521,14 @@ double strut_path_element_switch_value(const strut_path_system *s, int32_t which
   double unit = e->strain == STRUT_STRAIN_ANGLE ? s->size : 1.0;
   if (w->kink >= 0) {
     double kink = strut_law_kink(e->law, &e->numbers, w->kink);
+    bool near = w->kink == own->piece || w->kink == own->piece - 1;
+    if (e->law == STRUT_LAW_FOLDING)
+      return near ? unit * strut_law_way(e->law, &e->numbers, own->piece) * (x - kink) : -HUGE_VAL;
     return is_kink_felt(e, kink) ? unit * (x - kink) : -HUGE_VAL;
   }
   double beyond = e->carries * x;
-  strut_law_response r = respond(&s->equations.terms, w->element, pose.strain, natural, -1);
+  int piece = e->law == STRUT_LAW_FOLDING ? own->piece : -1;
+  strut_law_response r = respond(&s->equations.terms, w->element, pose.strain, natural, piece);
   double slope = fmax(fabs(r.slope), e->numbers.stiffness);
   if (beyond > 0.0 && r.force != 0.0 && slope > 0.0)
     beyond = fmin(beyond, e->carries * r.force / slope);

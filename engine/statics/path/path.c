@@ -302,6 +302,15 @@ static strut_status create_walk(path_start *b, double until, strut_path_walk *w,
   return strut_path_parameter_create(&s->parameter, b->q, &s->arena, error);
 }
 
+/* Keeps on which piece of its law each element is; false: out of memory. */
+static bool keep_pieces(const strut_path_system *s, strut_path *path) {
+  size_t count = (size_t)s->model->elements.count;
+  int *piece = strut_arena_allocate(&path->arena, count + 1, sizeof *piece);
+  for (size_t i = 0; i < count && piece; i++) piece[i] = s->elements.element[i].piece;
+  path->piece = piece;
+  return piece;
+}
+
 static strut_status walk_from(path_start *b, double until, int32_t steps, strut_path *path,
                               strut_error *error) {
   strut_path_walk w = {.path = path};
@@ -313,6 +322,7 @@ static strut_status walk_from(path_start *b, double until, int32_t steps, strut_
     for (int32_t i = 0; i < steps && on && !strut_experiment_interrupted(&b->setup.experiment); i++)
       on = strut_path_walk_step(&w);
     strut_path_remark_steps(&w, steps);
+    w.failed = w.failed || !keep_pieces(&w.system, path);
     if (w.forks.fork && path->point_count > 0)
       strut_path_walk_branches(&w, path, &b->setup.experiment);
     if (w.system.drifts && path->point_count == 0)

@@ -106,6 +106,7 @@ typedef struct strut_path {
   strut_path_event *events;
   strut_path_end end;
   char remark[1000];   /* why it ended before `until`; else empty */
+  const int *piece;    /* (elements) of the law of each at the end, as elements.h counts them */
   const uint8_t *held; /* (length) 1 where a coordinate has a reaction, in some stage */
   size_t stage_count;
   struct strut_path *stages; /* (stage_count) of a path in stages, those before this one */

@@ -93,6 +93,13 @@ typedef struct strut_path_elements {
   strut_path_element_switch *switches; /* (switch_count) kinks of one element ascending */
 } strut_path_elements;
 
+/**
+ * Pieces of laws that fold, at system->latest.q, as they follow from what the model remembers.
+ */
+void strut_path_find_pieces(struct strut_path_system *system);
+/** Elements on a piece of their law that goes back: each is unstable by itself, whatever holds its ends. */
+int32_t strut_path_count_folded(const struct strut_path_system *system);
+
 /** False: out of memory. */
 bool strut_path_elements_create(const strut_model *model, strut_arena *arena,
                                 strut_path_elements *elements);
@@ -172,7 +179,9 @@ typedef struct strut_path_system {
   } algebra;
   /** After strut_path_spectrum. */
   struct {
-    int32_t negative;  /* eigenvalues below zero */
+    int32_t
+        negative; /* eigenvalues below zero, and elements folded back, each of which has one inside */
+    int32_t folded;    /* these */
     double noise;      /* rounding of the stiffness's entries [N/m] */
     double soft_parts; /* the largest part that an element has in a soft eigenvalue [N/m] */
   } spectrum;
@@ -282,6 +291,7 @@ typedef struct strut_path_walk {
   double *trial, *spare, *upward; /* (2 n + 2) scratch; (0, ..., 0, 1) */
   double arc, step;
   int32_t negative; /* eigenvalues below zero beyond y */
+  int32_t bends;    /* kinks that stand for a smooth bend since the last point */
   size_t point_room, event_room;
   bool failed; /* memory was out */
   /** Bifurcations found, where branches are asked for. */
@@ -330,6 +340,9 @@ void strut_path_walk_branches(strut_path_walk *walk, strut_path *path,
  * there is none.
  */
 bool strut_path_pass_kink(strut_path_walk *walk, int32_t which, const double *beyond);
+
+/** Is this switch one of the many kinks that stand for the bend of a smooth law? */
+bool strut_path_is_bend(const strut_path_system *system, int32_t which);
 
 /** Eigenvalues below zero at walk->y, into walk->negative. */
 void strut_path_count_negative(strut_path_walk *walk);

@@ -106,7 +106,7 @@ void strut_path_add_event(strut_path_walk *w, strut_path_event_kind kind, const 
 
 /* Predictor, corrector, and the events between them. */
 
-enum { SLOW = 8, ROUNDS = 4, SUBSTEPS = 16 };
+enum { SLOW = 8, ROUNDS = 4, SUBSTEPS = 16, MOST_BENDS = 1000 };
 
 static const double LONGEST = 0.05, SHORTEST = 1e-9; /* steps [units of y] */
 static const double SHORTEST_CHECKED = 1e-5;         /* likewise, for jumps between branches */
@@ -321,11 +321,11 @@ static void find_criticals(strut_path_walk *w, const strut_path_piece *piece) {
   strut_path_system *s = &w->system;
   double turn = w->next_tangent[s->n];
   if (!strut_path_spectrum(s, piece->to, STRUT_PATH_SIGNS)) return;
-  int32_t before = w->negative, after = s->spectrum.negative;
+  int32_t before = w->negative, after = s->spectrum.negative, folded = s->spectrum.folded;
   for (int32_t k = before; k < after && piece->length > 0; k++)
-    find_critical(w, piece, k, turn, k, k + 1);
+    find_critical(w, piece, k - folded, turn, k, k + 1);
   for (int32_t k = before; k > after && piece->length > 0; k--)
-    find_critical(w, piece, k - 1, turn, k, k - 1);
+    find_critical(w, piece, k - 1 - folded, turn, k, k - 1);
   w->negative = after;
 }
 
@@ -401,12 +401,18 @@ static bool end_at_switch(strut_path_walk *w, strut_path_piece *piece, int32_t w
   w->arc += strut_path_distance(w, w->next, w->y);
   memcpy(w->y, w->next, strut_path_bytes(w));
   memcpy(w->tangent, w->next_tangent, strut_path_bytes(w));
+  int32_t negative = w->negative;
   bool on = strut_path_pass_kink(w, which, beyond);
+  double since = w->arc - w->path->points[w->path->point_count - 1].arc;
+  bool bends = on && negative == w->negative && strut_path_is_bend(&w->system, which);
+  if (bends && since < w->step && ++w->bends < MOST_BENDS) return true;
   strut_path_add_point(w, w->negative);
+  w->bends = 0;
   return on || end_path(w, STRUT_PATH_LOST);
 }
 
-bool strut_path_walk_step(strut_path_walk *w) {
+/* A step, or a part of it up to a kink. */
+static bool take_step(strut_path_walk *w) {
   strut_path_piece piece = {w->y, w->tangent, w->next, 0};
   int32_t which;
   if (!find_next_on_branch(w)) return end_path(w, find_reason(w));
@@ -423,6 +429,7 @@ bool strut_path_walk_step(strut_path_walk *w) {
     strut_release(beyond);
     return on && !w->failed;
   }
+  w->bends = 0;
   find_criticals(w, &piece);
   w->arc += strut_path_distance(w, w->next, w->y);
   memcpy(w->y, w->next, strut_path_bytes(w));
@@ -436,6 +443,12 @@ bool strut_path_walk_step(strut_path_walk *w) {
   if (is_away(w)) return end_path(w, STRUT_PATH_AWAY);
   w->step = fmin(1.4 * w->step, w->path->coordinate >= 0 ? LONGEST_HELD : LONGEST);
   return true;
+}
+
+bool strut_path_walk_step(strut_path_walk *w) {
+  bool on = take_step(w);
+  while (on && w->bends) on = take_step(w);
+  return on;
 }
 
 /*
@@ -462,6 +475,7 @@ static void sharpen_start(strut_path_walk *w) {
 bool strut_path_walk_begin(strut_path_walk *w) {
   strut_path_system *s = &w->system;
   const double h = 1e-6;
+  if (strut_path_evaluate(s, w->y)) strut_path_find_pieces(s);
   for (int32_t k = 0; k < strut_path_switch_count(s); k++) {
     double value = strut_path_switch_value(s, k, w->y);
     if (isfinite(value)) strut_path_switch_set(s, k, value > -STRUT_PATH_EVEN * s->size);

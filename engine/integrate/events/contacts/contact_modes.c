@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "engine/forces/drives.h"
+#include "engine/forces/history.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/regions/local_events.h"
 
@@ -165,20 +166,29 @@ static void set_piece(strut_state *state, strut_event_stepper *l, int32_t k, int
 
 /* On the piece on which the strain is; it has been measured. */
 static void find_piece(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       int32_t k) {
+                       int32_t k, double t) {
   assert(k >= 0 && k < l->law_count);
-  const strut_element *e = &model->elements.element[l->laws[k].element];
-  set_piece(state, l, k, strut_law_piece(e->law, &e->numbers, l->now->stretch[k]));
+  int32_t i = l->laws[k].element;
+  const strut_element *e = &model->elements.element[i];
+  bool folds = e->law == STRUT_LAW_FOLDING;
+  if (folds) strut_curve_renew(model, state, i, l->now->q, t);
+  set_piece(state, l, k,
+            folds ? (int)state->latest.rest[e->slot + STRUT_CURVE_PIECE]
+                  : strut_law_piece(e->law, &e->numbers, l->now->stretch[k]));
 }
 
 void strut_law_pass_kink(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                         int32_t k) {
+                         int32_t k, double t) {
   assert(k >= 0 && k < l->law_count);
-  const strut_element *e = &model->elements.element[l->laws[k].element];
-  int piece = state->modes.element_piece[l->laws[k].element];
-  double low, high;
-  strut_law_margins(e->law, &e->numbers, piece, l->now->stretch[k], &low, &high);
-  set_piece(state, l, k, low < high ? piece - 1 : piece + 1);
+  int32_t i = l->laws[k].element;
+  const strut_element *e = &model->elements.element[i];
+  int piece = state->modes.element_piece[i];
+  double low, high, x = l->now->stretch[k];
+  strut_law_margins(e->law, &e->numbers, piece, x, &low, &high);
+  int way = low < high ? -1 : 1;
+  bool folds = e->law == STRUT_LAW_FOLDING;
+  set_piece(state, l, k,
+            folds ? strut_curve_pass(model, state, i, (strut_crossing){way, x, t}) : piece + way);
 }
 
 /* Which laws act, and on which piece, as positions, velocities and drives are. */
@@ -200,7 +210,7 @@ static void start_laws(const strut_model *model, strut_state *state, strut_event
   for (int32_t n = 0; n < laws; n++) {
     int32_t k = strut_law_of(l, n);
     if (l->laws[k].event == STRUT_EVENT_KINK) {
-      find_piece(model, state, l, k);
+      find_piece(model, state, l, k, t);
       changed = true;
     } else if (l->laws[k].event == STRUT_EVENT_RELAY) {
       continue;

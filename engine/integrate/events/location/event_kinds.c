@@ -152,7 +152,7 @@ EFFECT(act) {
   strut_cable_set_acting(state, l, i, !l->acting[i]);
   if (l->laws[i].whole) strut_history_apply(model, state, l, i, t);
 }
-EFFECT(pass_kink) { strut_law_pass_kink(model, state, l, i); }
+EFFECT(pass_kink) { strut_law_pass_kink(model, state, l, i, t); }
 EFFECT(remember) { strut_history_apply(model, state, l, i, t); }
 EFFECT(change_facet) {
   int32_t nearest;

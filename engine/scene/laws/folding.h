@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Force over elongation along a curve of straight pieces that may fold back: where x goes back along it, an
+ * element of its kind is unstable inside, and one that comes to a fold jumps to the next piece that goes on.
+ *
+ * Which of several pieces holds at an x is a memory. Alone, this header starts from the piece at x = 0; runs
+ * and paths give the piece, see engine/forces/history.h. The rule that folds turn with falling force is that
+ * of a potential over x and a place t on the curve, which is stable in t where x grows with t:
+ * U = int F dx + F (x - x(t)) + k(t)/2 (x - x(t))^2 with k x' > F', which needs F' < 0 where x' = 0.
+ */
+#ifndef STRUT_ENGINE_SCENE_LAWS_FOLDING_H
+#define STRUT_ENGINE_SCENE_LAWS_FOLDING_H
+
+#include "engine/scene/laws/table.h"
+
+/** Does x grow (1) or fall (-1) along piece i, 0 <= i < count - 1? */
+static inline int strut_folding_way(const strut_law_curve *c, int i) {
+  return c->x[i + 1] > c->x[i] ? 1 : -1;
+}
+
+/** Is x beyond the end (1) or the begin (-1) of piece i? 0: it lies on it. */
+static inline int strut_folding_beyond(const strut_law_curve *c, int i, double x) {
+  double way = strut_folding_way(c, i);
+  if (i > 0 && way * (x - c->x[i]) < 0.0) return -1;
+  return i + 2 < (int)c->count && way * (x - c->x[i + 1]) > 0.0 ? 1 : 0;
+}
+
+/**
+ * The piece that one goes to from piece i over its end (way 1) or its begin (way -1) at x: the next one or,
+ * where that folds back, the next stable one with this x. The first and the last piece have no end.
+ */
+static inline int strut_folding_pass(const strut_law_curve *c, int i, int way, double x) {
+  int to = i + way;
+  if (strut_folding_way(c, to) > 0) return to;
+  while (strut_folding_way(c, to) < 0 || strut_folding_beyond(c, to, x) == way) to += way;
+  return to;
+}
+
+/**
+ * The stable piece on which x lies for one who comes from piece i; `freed` grows by the energy that jumps at
+ * folds set free on the way, unless it is NULL.
+ */
+static inline int strut_folding_follow(const strut_law_curve *c, int i, double x, double *freed) {
+  for (int way; (way = strut_folding_beyond(c, i, x)) != 0;) {
+    double end = c->x[way > 0 ? i + 1 : i];
+    int to = strut_folding_pass(c, i, way, end);
+    if (freed && to != i + way)
+      *freed += strut_law_curve_piece(c, (size_t)i, end).energy -
+                strut_law_curve_piece(c, (size_t)to, end).energy;
+    i = to;
+  }
+  return i;
+}
+
+static inline strut_law_response strut_law_folding(const strut_law_numbers *n, double e, double e0,
+                                                   int piece) {
+  const strut_law_curve *c = n->curve;
+  if (piece < 0) piece = strut_folding_follow(c, c->start, e - e0, NULL);
+  return strut_law_curve_piece(c, (size_t)piece, e - e0);
+}
+static inline int strut_law_folding_kinks(const strut_law_numbers *n) {
+  return (int)n->curve->count - 2;
+}
+static inline double strut_law_folding_kink(const strut_law_numbers *n, int k) {
+  return n->curve->x[k + 1];
+}
+
+#endif
