@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <gsl/gsl_interp.h>
+#include <math.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
@@ -111,13 +112,9 @@ static void count_elements(const strut_scene *scene, const uint8_t *reeled, size
   }
 }
 
-/* Slopes at the points: of the straight piece to the right, or of Steffen's monotone spline. */
+/* Slopes at the points of a smooth table, of Steffen's monotone spline. */
 static bool find_slopes(const strut_law *law, double *slope) {
-  if (!law->smooth || law->count < 3) {
-    for (size_t i = 0; i + 1 < law->count; i++)
-      slope[i] = (law->force[i + 1] - law->force[i]) / (law->x[i + 1] - law->x[i]);
-    return true;
-  }
+  if (!law->smooth || law->count < 3) return true;
   gsl_interp *spline = gsl_interp_alloc(gsl_interp_steffen, law->count);
   if (!spline) return false;
   bool good = gsl_interp_init(spline, law->x, law->force, law->count) == 0;
@@ -127,28 +124,33 @@ static bool find_slopes(const strut_law *law, double *slope) {
   return good;
 }
 
-/* Coefficients of a cubic from values and slopes at its two ends, h apart. */
+/* Coefficients of a cubic from values and slopes at its two ends, h apart; straight where one has no slope. */
 static void fill_piece(const strut_law *law, const double *slope, size_t i, double piece[4]) {
   double h = law->x[i + 1] - law->x[i], rise = (law->force[i + 1] - law->force[i]) / h;
-  bool straight = !law->smooth || law->count < 3;
+  bool straight = isnan(slope[i]) || isnan(slope[i + 1]);
   piece[0] = law->force[i];
   piece[1] = straight ? rise : slope[i];
   piece[2] = straight ? 0.0 : (3.0 * rise - 2.0 * slope[i] - slope[i + 1]) / h;
   piece[3] = straight ? 0.0 : (slope[i] + slope[i + 1] - 2.0 * rise) / (h * h);
 }
 
-/* The law with its points as scene/curve.h makes them of those given; false: out of memory. */
-static bool take_points(strut_arena *arena, strut_law *law) {
-  size_t n = strut_curve_points(law);
-  if (n == law->count) return true;
-  double *x = strut_arena_allocate(arena, n, sizeof *x), point[2];
-  double *force = strut_arena_allocate(arena, n, sizeof *force);
-  for (size_t i = 0; i < n && x && force; i++) {
-    strut_curve_point(law, i, point);
-    x[i] = point[0], force[i] = point[1];
-  }
-  law->x = x, law->force = force, law->count = n;
-  return x && force;
+/*
+ * The law with its points as scene/curve.h makes them of those given, and their slopes, where they have some;
+ * false: out of memory.
+ */
+static bool take_points(strut_arena *arena, strut_law *law, double **slope) {
+  size_t room = strut_curve_room(law);
+  strut_curve_point *point = strut_allocate(room, sizeof *point);
+  double *x = strut_arena_allocate(arena, room, sizeof *x);
+  double *force = strut_arena_allocate(arena, room, sizeof *force);
+  *slope = strut_arena_allocate(arena, room, sizeof **slope);
+  bool made = point && x && force && *slope;
+  if (made) law->count = strut_curve_trace(law, point);
+  for (size_t i = 0; i < law->count && made; i++)
+    x[i] = point[i].x, force[i] = point[i].force, (*slope)[i] = point[i].slope;
+  law->x = x, law->force = force;
+  strut_release(point);
+  return made;
 }
 
 /* The stable piece of a curve at x = 0 whose force is least. */
@@ -167,13 +169,13 @@ static const strut_law_curve *make_curve(strut_model *model, const strut_law *gi
   strut_arena *arena = &model->arena;
   strut_law points = *given;
   const strut_law *law = &points;
-  if (!take_points(arena, &points)) return NULL;
+  double *slope;
+  if (!take_points(arena, &points, &slope)) return NULL;
   size_t n = law->count;
   strut_law_curve *curve = strut_arena_allocate(arena, 1, sizeof *curve);
   double(*piece)[4] = strut_arena_allocate(arena, n, sizeof *piece);
-  double *slope = strut_arena_allocate(arena, n, sizeof *slope);
   double *energy = strut_arena_allocate(arena, n, sizeof *energy);
-  if (!curve || !piece || !slope || !energy || !find_slopes(law, slope)) return NULL;
+  if (!curve || !piece || !energy || !find_slopes(law, slope)) return NULL;
   bool folds = law->kind == STRUT_LAW_FOLDING;
   *curve = (strut_law_curve){n, law->x, (const double(*)[4])piece, energy, law->smooth, 0};
   for (size_t i = 0; i + 1 < n; i++) {

@@ -25,7 +25,7 @@ static const char *fault_of_lists(const strut_law *law) {
   for (size_t i = 0; i < law->count; i++) zero = zero && law->force[i] == 0.0;
   if (zero) return "gives no force anywhere; leave it out, or give it a number that is not 0";
   const char *fault = points ? strut_curve_fault(law) : NULL;
-  if (!fault && points && strut_curve_points(law) > MOST_POINTS)
+  if (!fault && points && strut_curve_room(law) > 2 * MOST_POINTS)
     return "has more than 30000 points, those of its rounded corners included";
   return fault;
 }

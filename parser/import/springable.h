@@ -5,7 +5,7 @@
 
 #include "parser/import/import_parts.h"
 
-enum { MOST_FIELDS = 8, MOST_CHAIN = 32, LONGEST_FIELD = 400, MOST_POINTS = 32, SAMPLES = 200 };
+enum { MOST_FIELDS = 8, MOST_CHAIN = 32, LONGEST_FIELD = 400, MOST_POINTS = 32 };
 
 typedef struct strut_springable_parameter {
   const char *name, *own; /* in the file and in the scene */
@@ -64,7 +64,7 @@ long strut_springable_index(const char **at);
 const char *strut_springable_stiffness(strut_springable *r);
 /** Says that the line's element is left out for its behaviour. */
 void strut_springable_note(strut_springable *r);
-/** A PIECEWISE, BEZIER or ZIGZAG behaviour as ", law: {...}", a table; BEZIER2 or ZIGZAG2 as a curve. */
+/** A PIECEWISE or ZIGZAG behaviour as ", law: {...}", a table; BEZIER, BEZIER2 or ZIGZAG2 as a curve. */
 const char *strut_springable_curve(strut_springable *r);
 /** Two straight pieces of a spring as a cable; `running`: over several nodes; length: its rest length, or NULL. */
 bool strut_springable_two_pieces(strut_springable *r, bool running, const char *length,

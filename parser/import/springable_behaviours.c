@@ -75,7 +75,7 @@ static bool read_pieces(strut_springable *r, two_pieces *p) {
 /* Points of a curve from the origin outwards, the first of them (0, 0). */
 typedef struct curve {
   size_t count;
-  double u[SAMPLES + 1], f[SAMPLES + 1];
+  double u[MOST_POINTS + 2], f[MOST_POINTS + 2];
 } curve;
 
 /* The numbers behind "KEY=[", separated by semicolons; -1: there are none, or what is wrong was reported. */
@@ -112,21 +112,11 @@ static bool read_piecewise(strut_springable *r, curve *c) {
   return true;
 }
 
-/* Corners of a zigzag, or control points of a Bezier curve, as points of the curve. */
-static bool read_points(strut_springable *r, bool bezier, curve *c) {
-  double u[MOST_POINTS + 1] = {0.0}, f[MOST_POINTS + 1] = {0.0};
-  int count = read_list(r, "u_i=[", u + 1);
-  if (count < 1 || read_list(r, "f_i=[", f + 1) != count) return false;
-  c->count = bezier ? SAMPLES + 1 : (size_t)count + 1;
-  for (size_t i = 0; i < c->count; i++) {
-    double x[MOST_POINTS + 1], y[MOST_POINTS + 1], t = (double)i / SAMPLES;
-    memcpy(x, u, sizeof x), memcpy(y, f, sizeof y);
-    for (int left = count; left > 0 && bezier; left--)
-      for (int k = 0; k < left; k++) x[k] += t * (x[k + 1] - x[k]), y[k] += t * (y[k + 1] - y[k]);
-    c->u[i] = bezier ? x[0] : u[i];
-    c->f[i] = bezier ? y[0] : f[i];
-  }
-  return true;
+/* Corners of a zigzag. */
+static bool read_corners(strut_springable *r, curve *c) {
+  int count = read_list(r, "u_i=[", c->u + 1);
+  c->count = (size_t)count + 1;
+  return count >= 1 && read_list(r, "f_i=[", c->f + 1) == count;
 }
 
 static void put_point(strut_writer *to, double u, double f) {
@@ -138,12 +128,12 @@ static void put_point(strut_writer *to, double u, double f) {
 }
 
 /*
- * The law of a BEZIER2 or ZIGZAG2 behaviour, which may fold back, as a curve: mirrored, or with `mode` on one side
+ * The law of a BEZIER behaviour, or of BEZIER2 or ZIGZAG2, which may fold back, as a curve: mirrored, or with `mode` on one side
  * only and straight on on the other. NULL: it is another.
  */
-static const char *read_folding(strut_springable *r) {
+static const char *read_curve(strut_springable *r) {
   const char *text = strut_springable_text(r, 1), *mode = strstr(text, "mode=");
-  bool bezier = strncmp(text, "BEZIER2(", 8) == 0;
+  bool bezier = strncmp(text, "BEZIER2(", 8) == 0 || strncmp(text, "BEZIER(", 7) == 0;
   double u[MOST_POINTS + 1] = {0.0}, f[MOST_POINTS + 1] = {0.0}, rounding = 0.0;
   char argument[LONGEST_FIELD + 1];
   if (!bezier && strncmp(text, "ZIGZAG2(", 8) != 0) return NULL;
@@ -172,17 +162,17 @@ static const char *read_folding(strut_springable *r) {
 }
 
 /*
- * The law of a PIECEWISE, BEZIER or ZIGZAG behaviour as a table: odd, or with `mode` on one side only and straight on
- * on the other; of those that may fold, see read_folding. NULL: it is another.
+ * The law of a PIECEWISE or ZIGZAG behaviour as a table: odd, or with `mode` on one side only and straight on on the
+ * other; of curves, see read_curve. NULL: it is another.
  */
 const char *strut_springable_curve(strut_springable *r) {
   const char *text = strut_springable_text(r, 1), *mode = strstr(text, "mode=");
-  bool bezier = strncmp(text, "BEZIER(", 7) == 0, pieces = strncmp(text, "PIECEWISE(", 10) == 0;
+  bool pieces = strncmp(text, "PIECEWISE(", 10) == 0;
   curve c = {.count = 0};
-  const char *folding = read_folding(r);
-  if (folding) return folding;
-  if (!bezier && !pieces && strncmp(text, "ZIGZAG(", 7) != 0) return NULL;
-  if (!(pieces ? read_piecewise(r, &c) : read_points(r, bezier, &c))) return NULL;
+  const char *smooth = read_curve(r);
+  if (smooth) return smooth;
+  if (!pieces && strncmp(text, "ZIGZAG(", 7) != 0) return NULL;
+  if (!(pieces ? read_piecewise(r, &c) : read_corners(r, &c))) return NULL;
   for (size_t i = 1; i < c.count; i++)
     if (!(c.u[i] > c.u[i - 1])) return NULL; /* it folds back */
   int side = mode ? (int)strtol(mode + 5, NULL, 10) : 0;
@@ -191,14 +181,13 @@ const char *strut_springable_curve(strut_springable *r) {
   for (size_t i = below; i > 0; i--) put_point(&points, -c.u[i], -c.f[i]);
   for (size_t i = 0; i <= above; i++) put_point(&points, c.u[i], c.f[i]);
   if (points.failed) r->scene->out_of_memory = true;
-  const char *law = points.failed
-                        ? NULL
-                        : strut_import_text(r->scene, ", law: {kind: table%s, points: [%s]}",
-                                            bezier ? ", smooth: yes" : "", points.text);
+  const char *law =
+      points.failed
+          ? NULL
+          : strut_import_text(r->scene, ", law: {kind: table, points: [%s]}", points.text);
   strut_release(points.text);
   strut_note(r->said, strut_springable_place(r, 1),
-             bezier ? "a Bezier curve becomes a table of points on it"
-                    : "rounded corners of a behaviour become sharp ones of a table");
+             "rounded corners of a behaviour become sharp ones of a table");
   return law;
 }
 
