@@ -123,7 +123,7 @@ strut: 1
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [5, 0], fixed: y, mass: 1}}
 members:
   s: {kind: spring, nodes: [a, b], law: {kind: curve, control_points: [[0, 0], [3, 4], [-2, -4], [1, 0]]}}
-loads: {f: {node: b, force: [1, 0]}}
+loads: {f: {node: b, force: [3, 0]}}
 YAML
 # x(t) = 9 t (1-t)^2 - 6 t^2 (1-t) + t^3 = 16 t^3 - 24 t^2 + 9 t: x' = 0 at t = 1/4 and 3/4, where x = 1 and 0.
 expect 0 path turning.yaml --json

@@ -200,8 +200,8 @@ SPRINGS
 0-1, PIECEWISE(k_i=[2; -1; 4]; u_i=[0.1; 0.2]; us=0.01)
 0-2, BEZIER(u_i=[0.1; 0.2; 0.6]; f_i=[3; -2; 4])
 4-5, ZIGZAG(u_i=[0.1; 0.3]; f_i=[1; 0.5]; epsilon=0.1; mode=-1)
-5-6, BEZIER2(u_i=[3; 2]; f_i=[2; -1]; mode=-1)
-4-6, ZIGZAG2(u_i=[1; 0.5; 2]; f_i=[2; 1; 3]; epsilon=0.25)
+5-6, BEZIER2(u_i=[3; -2; 1]; f_i=[4; -4; 0]; mode=-1)
+4-6, ZIGZAG2(u_i=[1; 0.5; 2]; f_i=[2; 0.5; 3]; epsilon=0.25)
 AREA SPRINGS
 4-5-6, ISENTROPIC(n=2; R=3; T0=0.5; gamma=1.5), 0.7
 LOADING
@@ -213,8 +213,8 @@ LOADING
     same_numbers(numbers, [-0.4, -0.9, -0.2, -0.1, -0.1, -0.2, 0, 0, 0.1, 0.2, 0.2, 0.1, 0.4, 0.9], 1e-12, "pieces")
     check("points: [[-0.3, -0.5], [-0.1, -1], [0, 0], [0.1, 1]]" in scene, scene)
     check("law: {kind: curve, control_points: [[0, 0], [0.1, 3], [0.2, -2], [0.6, 4]], mirrored: yes}" in scene, scene)
-    check("law: {kind: curve, control_points: [[-2, 1], [-3, -2], [0, 0]]}" in scene, scene)
-    check("law: {kind: curve, points: [[0, 0], [1, 2], [0.5, 1], [2, 3]], rounding: 0.25, mirrored: yes}" in scene,
+    check("law: {kind: curve, control_points: [[-1, 0], [2, 4], [-3, -4], [0, 0]]}" in scene, scene)
+    check("law: {kind: curve, points: [[0, 0], [1, 2], [0.5, 0.5], [2, 3]], rounding: 0.25, mirrored: yes}" in scene,
           scene)
     pressure = 3 / 0.7 * (0.7 / 0.5) ** 1.5
     gas = re.search(r"gas: \{kind: isentropic, pressure: (\S+), outside: (\S+), exponent: 1.5\}", scene)
