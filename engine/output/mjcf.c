@@ -25,7 +25,7 @@ static void note(mjcf_writer *w, const char *text) {
 /* ---- what MJCF cannot express ---- */
 
 static void refuse_members(strut_unsupported *r, const strut_scene *scene) {
-  size_t laws = 0, stops = 0, ends = 0, maxwell = 0, rub = 0, ratios = 0;
+  size_t laws = 0, pushing = 0, stops = 0, ends = 0, maxwell = 0, rub = 0, ratios = 0;
   for (size_t i = 0; i < scene->member_count; i++) {
     const strut_member *m = &scene->members[i];
     bool one_sided = m->law.carries != STRUT_CARRIES_BOTH && m->kind != STRUT_CABLE;
@@ -34,9 +34,11 @@ static void refuse_members(strut_unsupported *r, const strut_scene *scene) {
     ends += strut_member_ends(m);
     maxwell += m->maxwell.stiffness > 0.0;
     rub += m->guide_friction > 0.0;
+    pushing += m->guide_count && m->kind != STRUT_CABLE;
     ratios += m->guide_count && m->damping_ratio > 0.0;
   }
   strut_unsupported_add(r, laws, "laws of members");
+  strut_unsupported_add(r, pushing, "springs over guides");
   strut_unsupported_add(r, stops, "stops");
   strut_unsupported_add(r, ends, "members that break or are released");
   strut_unsupported_add(r, maxwell, "Maxwell branches");

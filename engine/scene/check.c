@@ -203,9 +203,9 @@ static bool check_ends(strut_checker *checker, size_t index, const char *owner) 
                          owner, checker->scene->nodes[node].name);
     return false;
   }
-  if (!m->guide_count || m->kind == STRUT_CABLE) return true;
+  if (!m->guide_count || m->kind != STRUT_BAR) return true;
   strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
-                       "%s runs over guides, which only a cable can", owner);
+                       "%s runs over guides, which a bar cannot", owner);
   return false;
 }
 

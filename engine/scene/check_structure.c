@@ -104,8 +104,8 @@ static bool check_guide_friction(strut_checker *checker, size_t index, const cha
   const strut_member *m = &checker->scene->members[index];
   const char *fault = m->guide_friction == 0.0 ? NULL
                       : !m->guide_count        ? "has guide_friction, but runs over no guides"
-                      : m->law.kind != STRUT_LAW_LINEAR
-                          ? "has guide_friction and a law; only linear cables may rub"
+                      : m->law.kind != STRUT_LAW_LINEAR || m->kind != STRUT_CABLE
+                          ? "has guide_friction; only linear cables may rub"
                       : !(length > 0.0) ? "has guide_friction, which needs a rest length above zero"
                                         : NULL;
   if (fault)

@@ -318,7 +318,7 @@ static void read_spring(strut_springable *r, bool path) {
                                          strut_springable_place(r, 2), NULL);
   if (!nodes || (*strut_springable_text(r, 2) && !length)) return;
   bool running = path && strchr(nodes, ',') != strrchr(nodes, ',');
-  strut_spring_values v = {.kind = running ? "cable" : "spring", .rest = "", .law = ""};
+  strut_spring_values v = {.kind = "spring", .rest = "", .law = ""};
   if (length) v.rest = strut_import_text(s, ", rest_length: %s", length);
   size_t before = r->said->count;
   v.stiffness = strut_springable_stiffness(r);
@@ -327,9 +327,6 @@ static void read_spring(strut_springable *r, bool path) {
     if (!v.law && r->said->count == before) strut_springable_note(r);
     if (!v.law) return;
   }
-  if (running)
-    strut_note(r->said, strut_springable_place(r, 0),
-               "a path of several nodes becomes a running cable, which carries no compression");
   use_nodes(r);
   strut_import_line(
       s, &s->section[STRUT_IMPORT_MEMBERS], "  %s%zu: {kind: %s, nodes: [%s]%s%s%s%s}",

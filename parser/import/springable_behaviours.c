@@ -192,7 +192,7 @@ const char *strut_springable_curve(strut_springable *r) {
 }
 
 /*
- * Two pieces are a cable where the first is as good as none: it is slack below the knee. On a running cable
+ * Two pieces are a cable where the first is as good as none: it is slack below the knee. Along a path
  * they are a bilinear law.
  */
 bool strut_springable_two_pieces(strut_springable *r, bool running, const char *length,
@@ -202,7 +202,7 @@ bool strut_springable_two_pieces(strut_springable *r, bool running, const char *
   if (!read_pieces(r, &p)) return false;
   bool slack = p.values[0] <= NOTHING * p.values[1];
   if (!slack && !running) return false;
-  v->kind = "cable";
+  if (slack) v->kind = "cable";
   v->stiffness = slack ? p.second : p.first;
   if (slack && length)
     v->rest = strut_import_text(r->scene, ", rest_length: %s + %s", length, p.knee);

@@ -87,4 +87,24 @@ err_has "stage 1 releases 'left.x', which must have been held in a stage before"
 { cat plain.yaml; echo 'path: {stages: [{load: push}, {release: apex.x}]}'; } >free.yaml
 expect 2 path free.yaml
 err_has "stage 2 releases 'apex.x', which nothing holds"
+
+# A wire in a sheath that is pushed bends a beam of two links: it turns by the angle t where the length that the
+# wire loses is that the beam gains, 2 (1/cos t - 1), and balances the hinge and the load on it.
+cat >sheath.yaml <<'YAML'
+strut: 1
+nodes:
+  far: {position: [-2, 0], fixed: y}
+  base: {position: [0, 0], fixed: both}
+  middle: {position: [1, 0]}
+  end: {position: [2, 0], fixed: both}
+members: {wire: {kind: spring, nodes: [far, base, middle, end], stiffness: 1e6}}
+hinges: {h: {nodes: [base, middle, end], stiffness: 2 N m/rad}}
+loads: {aside: {node: middle, force: [0, -1e-3]}, push: {node: far, force: [100, 0]}}
+path: {stages: [{load: aside}, {load: push, stop: {far.x: 100 mm}}]}
+YAML
+expect 0 path sheath.yaml --json # straight, the middle has no stiffness along the beam, and needs none
+jq -e '(.points[-1].nodes.middle[1] | -.) as $y | ($y | atan) as $t | ((1 + $y * $y) | sqrt) as $l |
+  (2 * ($l - 1) - 0.1 | fabs) < 1e-4 and
+  (.points[-1].forces.wire + (8 * $t / ($l * $l) - 1e-3) / (2 * $y / $l) | fabs) < 1e-9' "$work/out" >jq.out ||
+  fail "a wire in a sheath"
 done_testing

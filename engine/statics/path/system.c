@@ -17,6 +17,8 @@ static const double BALANCED = 1e-15;  /* of the largest force: what equilibrium
 static const double FAR = 2.0;         /* a step longer than this leads nowhere */
 static const double NEAR = 1e-8;       /* from here on a step that shrinks no more is rounding */
 static const double RIGID = 1e-10;     /* of the stiffness: what a rigid motion may meet */
+static const double TOUCHED = 1e-14;   /* of the stiffness: what is lent to a motion without any */
+static const double LOOSE = 1e-8;      /* of the forces: what a motion without stiffness may meet */
 static const double FRESH = 1e-3;      /* of the range: rates from so near by do for a correction */
 
 static bool make_matrices(strut_path_system *s) {
@@ -330,14 +332,15 @@ void strut_path_reactions(const strut_path_system *s, double *reaction, double *
         at < 2 * s->model->node_count && s->potential->row_of[at] < 0 ? 0.0 + reaction[at] : 0.0;
 }
 
-/* Solves [K slope; row] x = (top, bottom), rows brought to one size; false: singular. */
-static bool solve(strut_path_system *s, const double *row, const double *top, double bottom) {
+/* Solves [K + by slope; row] x = (top, bottom), rows brought to one size; false: singular. */
+static bool solve_with(strut_path_system *s, const double *row, const double *top, double bottom,
+                       double by) {
   size_t n = (size_t)s->n;
   for (size_t i = 0; i <= n; i++) {
     double most = 0;
     for (size_t j = 0; j <= n; j++) {
       double entry = i == n  ? row[j]
-                     : j < n ? s->size * gsl_matrix_get(s->algebra.hessian, i, j)
+                     : j < n ? s->size * (gsl_matrix_get(s->algebra.hessian, i, j) + (i == j) * by)
                              : s->latest.slope[i];
       gsl_matrix_set(s->algebra.bordered, i, j, entry);
       most = fmax(most, fabs(entry));
@@ -351,6 +354,32 @@ static bool solve(strut_path_system *s, const double *row, const double *top, do
     if (gsl_matrix_get(s->algebra.bordered, i, i) == 0.0) return false;
   return gsl_linalg_LU_solve(s->algebra.bordered, s->algebra.order, s->algebra.right,
                              s->algebra.solution) == 0;
+}
+
+/* Do [K slope] x and `top` agree? */
+static bool is_solution(strut_path_system *s, const double *top) {
+  double change = gsl_vector_get(s->algebra.solution, (size_t)s->n), left = 0, size = 0;
+  for (size_t i = 0; i < (size_t)s->n; i++) {
+    double sum = s->latest.slope[i] * change - (top ? top[i] : 0.0);
+    size = fmax(size, fmax(fabs(s->latest.slope[i]), top ? fabs(top[i]) : 0.0));
+    for (size_t j = 0; j < (size_t)s->n; j++)
+      sum += s->size * gsl_matrix_get(s->algebra.hessian, i, j) *
+             gsl_vector_get(s->algebra.solution, j);
+    left = fmax(left, fabs(sum));
+  }
+  return left <= LOOSE * size;
+}
+
+/*
+ * Solves [K slope; row] x = (top, bottom). A mechanism without stiffness that no force works on, as in a cable
+ * or a beam that lies straight, stays where it is; false: singular otherwise.
+ */
+static bool solve(strut_path_system *s, const double *row, const double *top, double bottom) {
+  double low, high;
+  if (solve_with(s, row, top, bottom, 0.0)) return true;
+  if (s->n == 0) return false;
+  gsl_matrix_minmax(s->algebra.hessian, &low, &high);
+  return solve_with(s, row, top, bottom, TOUCHED * fmax(-low, high)) && is_solution(s, top);
 }
 
 int strut_path_correct(strut_path_system *s, const double *row, double value, double *y) {
