@@ -73,12 +73,23 @@ void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
   }
 }
 
+/* Friction as the signals ask. */
+static void drive_grips(const strut_model *model, strut_state *state, double t, const double *v) {
+  for (int32_t i = 0; i < model->contacts.count; i++) {
+    strut_friction *f = &state->latest.grip[i].friction;
+    if (f->driven)
+      strut_friction_drive(f,
+                           strut_drive_signal(model, state, v, f->signal, t + state->time_offset));
+  }
+}
+
 void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t,
                               const double *v) {
   state->latest.drive_time = t;
   if (model->terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
   if (state->latest.ground_motion)
     strut_grounds_move(model, t + state->time_offset, state->latest.ground_motion);
+  if (state->latest.grip) drive_grips(model, state, t, v);
   drive_rest_lengths(model, state, t, v, true);
   if (model->terms & STRUT_TERM_MEMORY) strut_history_follow(model, state);
 }
@@ -136,6 +147,12 @@ double strut_drive_next_break(const strut_model *model, const strut_state *state
       if (model->scene->grounds[g].moves[c])
         first =
             fmin(first, strut_signal_next_break(signals, model->scene->grounds[g].motion[c], t));
+  for (int32_t i = 0; i < model->contacts.count && model->contacts.grips; i++) {
+    const strut_friction *f = &model->contacts.entry[i].friction;
+    if (f->driven)
+      first =
+          fmin(first, strut_signal_next_break_since(signals, state->signals.started, f->signal, t));
+  }
   for (int32_t i = 0; i < model->elements.breakable_count; i++)
     if (model->elements.breakable[i].time > t)
       first = fmin(first, model->elements.breakable[i].time);

@@ -49,7 +49,7 @@ static double slip_of(const strut_model *model, const strut_state *state, const 
 static double rub(const strut_model *model, strut_state *state, const double *v, int32_t i) {
   assert(i >= 0 && i < model->contacts.count);
   const strut_contact_table *c = &model->contacts;
-  const strut_contact_entry *e = &c->entry[i];
+  const strut_contact_entry *e = strut_contact_entry_now(model, state, i);
   const double *t = state->latest.pose[i].axes.tangent;
   double *f = state->latest.force + c->at[i], before = state->latest.friction[i];
   if (e->friction.law == STRUT_FRICTION_NONE) return 0.0;
@@ -63,14 +63,14 @@ static double rub(const strut_model *model, strut_state *state, const double *v,
 static bool can_hold(const strut_model *model, const strut_state *state, int32_t i,
                      double friction) {
   assert(i >= 0 && i < model->contacts.count);
-  const strut_friction *f = &model->contacts.entry[i].friction;
+  const strut_friction *f = &strut_contact_entry_now(model, state, i)->friction;
   return fabs(friction) < strut_friction_static(f, -friction) * state->latest.normal[i];
 }
 
 /* Is contact i within its band, and does it hold against the other forces as they are now? */
 static bool sticks(const strut_model *model, const strut_state *state, const double *v, int32_t i) {
   assert(i >= 0 && i < model->contacts.count);
-  const strut_friction *law = &model->contacts.entry[i].friction;
+  const strut_friction *law = &strut_contact_entry_now(model, state, i)->friction;
   const double *t = state->latest.pose[i].axes.tangent,
                *f = state->latest.force + model->contacts.at[i];
   bool has_band = strut_friction_has_band(law->law);
@@ -92,7 +92,7 @@ static double way_to_break(const strut_model *model, const strut_state *state, i
                            double friction) {
   assert(i >= 0 && i < model->contacts.count);
   double change = friction - state->latest.friction[i], side = change < 0.0 ? -1.0 : 1.0;
-  double bound = strut_friction_static(&model->contacts.entry[i].friction, -side);
+  double bound = strut_friction_static(&strut_contact_entry_now(model, state, i)->friction, -side);
   double way = side * bound * state->latest.normal[i] - state->latest.friction[i];
   return change != 0.0 ? way / change : HUGE_VAL;
 }
@@ -120,7 +120,8 @@ static void hold_together(const strut_model *model, strut_state *state, const do
   bool first = way_to_break(model, state, a, by_a) <= way_to_break(model, state, b, by_b);
   int32_t loose = first ? a : b;
   double side = (first ? by_a : by_b) < state->latest.friction[loose] ? -1.0 : 1.0;
-  double kinetic = strut_friction_kinetic(&model->contacts.entry[loose].friction, -side);
+  double kinetic =
+      strut_friction_kinetic(&strut_contact_entry_now(model, state, loose)->friction, -side);
   set_friction(model, state, loose, side * kinetic * state->latest.normal[loose]);
   rub(model, state, v, first ? b : a);
 }

@@ -245,6 +245,24 @@ static void set_damping(strut_model *model, strut_contact_entry *entry, strut_gr
   assert(false && "the scene was checked");
 }
 
+/* Times at which a signal is looked at. */
+enum { MOST_TIMES = 4096 };
+
+/* The largest value of a signal at the times where it may turn or jump; 1 of one that follows a sensor. */
+static double largest_value(const strut_scene *scene, int32_t signal) {
+  static const double LONG = 1e4; /* [s] */
+  double time[MOST_TIMES], value, rate, most = 0.0;
+  strut_signal_evaluate(scene->signals, signal, 0.0, &value, &rate);
+  if (isnan(value)) return 1.0;
+  most = fmax(most, value);
+  size_t count = strut_signal_times(scene->signals, signal, 0.0, LONG, time, MOST_TIMES);
+  for (size_t i = 0; i < count; i++) {
+    strut_signal_evaluate(scene->signals, signal, time[i], &value, &rate);
+    most = fmax(most, value);
+  }
+  return most;
+}
+
 static void compile_contacts(strut_model *model, bool *failed) {
   const strut_scene *scene = model->scene;
   size_t count = scene->contact_count;
@@ -252,6 +270,7 @@ static void compile_contacts(strut_model *model, bool *failed) {
   uint32_t *at = strut_arena_allocate(&model->arena, count, sizeof *at);
   strut_contact_entry *entry = strut_arena_allocate(&model->arena, count, sizeof *entry);
   if (!at || !entry) *failed = true;
+  bool grips = false;
   if (*failed || !strut_scene_has_ground(scene) || !count) return;
   for (size_t i = 0; i < count; i++) {
     const strut_contact *contact = &scene->contacts[i];
@@ -264,6 +283,9 @@ static void compile_contacts(strut_model *model, bool *failed) {
     model->laws.friction |= UINT32_C(1) << contact->friction.law;
     if (contact->friction.law == STRUT_FRICTION_NONE) continue;
     entry[i].friction = contact->friction;
+    grips = grips || contact->friction.driven;
+    if (contact->friction.driven)
+      strut_friction_drive(&entry[i].friction, largest_value(scene, contact->friction.signal));
     model->terms |= STRUT_TERM_FRICTION;
     if (contact->friction.law != STRUT_FRICTION_KARNOPP) model->terms |= STRUT_TERM_LAWS;
     if (contact->friction.directional) model->terms |= STRUT_TERM_LAWS | STRUT_TERM_DIRECTION;
@@ -273,7 +295,9 @@ static void compile_contacts(strut_model *model, bool *failed) {
                              .entry = entry,
                              .tangent = {1, 0},
                              .normal = {0, 1},
-                             .axes = {{1, 0}, {0, 1}}};
+                             .axes = {{1, 0}, {0, 1}},
+                             .grips = grips};
+  if (grips) model->terms |= STRUT_TERM_DRIVE; /* a function of time, too */
   if (scene->ground_count) {
     if (!strut_surfaces_compile(model)) *failed = true;
     return;

@@ -108,6 +108,7 @@ typedef struct strut_contact_table {
   const int32_t *surface_of;    /* (count) */
   int32_t surfaces;
   bool moves; /* some surface is shaken */
+  bool grips; /* some friction follows a signal; then a state has the entries as they are now */
   bool
       parallel; /* all of them are lines along `tangent`: then a displacement along it changes nothing */
   strut_contact_axes axes; /* tangent and normal once more */

@@ -17,7 +17,10 @@ static bool make_surfaces(const strut_model *model, strut_state *state) {
   if (c->moves)
     state->latest.ground_motion =
         strut_arena_allocate(&state->arena, grounds, sizeof *state->latest.ground_motion);
-  return state->latest.pose && state->buffers.near && (state->latest.ground_motion || !c->moves);
+  if (c->grips)
+    state->latest.grip = strut_arena_copy(&state->arena, c->entry, contacts, sizeof *c->entry);
+  return state->latest.pose && state->buffers.near && (state->latest.ground_motion || !c->moves) &&
+         (state->latest.grip || !c->grips);
 }
 
 /* The arrays of a state and how long they are. */

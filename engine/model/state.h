@@ -105,8 +105,10 @@ typedef struct strut_latest {
   double *rest;      /* (slots) rest lengths [m]; equal to the model's where not driven */
   double *rest_rate; /* (slots) [m/s] */
   strut_ground_motion
-      *ground_motion;           /* (grounds) that are shaken, at drive_time; NULL where none is */
-  strut_contact_pose *pose;     /* (contacts) with STRUT_TERM_SURFACES */
+      *ground_motion;       /* (grounds) that are shaken, at drive_time; NULL where none is */
+  strut_contact_pose *pose; /* (contacts) with STRUT_TERM_SURFACES */
+  strut_contact_entry
+      *grip; /* (contacts) the model's with the friction of drive_time; NULL: that rests */
   double *element_turn;         /* (elements) strain, near which an angle is taken */
   double *actuator_force;       /* (actuator forces) [N], [N m] */
   double *sensor, *sensor_rate; /* (sensors) in SI units */
@@ -167,6 +169,13 @@ typedef struct strut_state {
   strut_state_watched watched;
   strut_arena arena;
 } strut_state;
+
+/** What a contact is at the time of the drives. */
+static inline const strut_contact_entry *strut_contact_entry_now(const strut_model *model,
+                                                                 const strut_state *state,
+                                                                 int32_t i) {
+  return state->latest.grip ? &state->latest.grip[i] : &model->contacts.entry[i];
+}
 
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */
 STRUT_API strut_status strut_state_create(const strut_model *model, strut_state **state,

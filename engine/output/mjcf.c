@@ -54,6 +54,7 @@ static strut_status check(const strut_model *model, strut_error *error) {
   strut_unsupported_add(&r, s->collision_count, "collisions");
   strut_unsupported_add(&r, s->distance_count, "distances");
   strut_unsupported_add(&r, s->foot_count, "feet");
+  strut_unsupported_add(&r, model->contacts.grips, "friction that follows a signal");
   strut_unsupported_add(&r, s->ground_count, "grounds other than one line at rest");
   strut_unsupported_add(&r, s->ground.present && s->ground.belt_speed != 0.0, "belts");
   strut_unsupported_add(&r, s->support_motion_count, "supports that move");

@@ -43,6 +43,7 @@ static strut_status copy_passive_scene(const strut_scene *scene, bool friction,
     if (scene->loads[i].signal < 0) passive->loads[passive->load_count++] = scene->loads[i];
   for (size_t i = 0; i < scene->contact_count; i++) {
     passive->contacts[i] = scene->contacts[i];
+    strut_scene_stop_grip(scene, &passive->contacts[i].friction);
     if (!friction) passive->contacts[i].friction.law = STRUT_FRICTION_NONE;
   }
   if (!strut_scene_remove_feedback(passive, arena)) return STRUT_NO_MEMORY;

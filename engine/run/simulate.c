@@ -313,13 +313,15 @@ static strut_status detect_steady_motion(strut_run *r) {
   strut_measure_tracked_point(r->model, r->state, &r->measure, &x, &v);
   if (!strut_steady_detector_period(r->state, x, &r->steady.detector) || before) return STRUT_OK;
   bool internal = strut_feedback_remembers(&r->model->feedback);
-  bool memory = internal || (r->model->terms & STRUT_TERM_MEMORY);
+  bool memory = internal || (r->model->terms & STRUT_TERM_MEMORY) || r->model->contacts.grips;
   if (memory && r->experiment->steady.shooting)
     snprintf(
         r->steady.detector.result.reason, sizeof r->steady.detector.result.reason,
         internal
             ? "internal states, samples, starts and relays are a memory that shooting does not "
               "correct"
+        : r->model->contacts.grips
+            ? "shooting knows no derivatives of friction that follows a signal"
             : "what breaks, is released, yields or folds has a memory that shooting does not "
               "correct");
   bool shoot =

@@ -21,6 +21,16 @@ static void check_friction(strut_checker *checker, size_t index, const char *own
   }
   const strut_checked whose = {STRUT_ON_CONTACT, index, owner, NULL};
   const strut_friction none = {0};
+  const strut_scene *scene = checker->scene;
+  const char *fault = !f->driven                                      ? NULL
+                      : !strut_exists(f->signal, scene->signal_count) ? "which does not exist"
+                      : f->directional       ? "which cannot depend on the direction, too"
+                      : scene->foot_count    ? "which feet that roll do not know"
+                      : !scene->ground_count ? "which needs its ground in the list of grounds"
+                                             : NULL;
+  if (fault)
+    strut_report_finding(checker, STRUT_ON_CONTACT, index, "mu",
+                         "the friction of %s follows a signal, %s", owner, fault);
   strut_check_fields(checker, &whose, STRUT_FIELDS_FRICTION, f, &none);
   for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++)
     if (strut_friction_needs(f->law, p) && strut_friction_value(f, p) == 0.0)

@@ -8,6 +8,8 @@
 #ifndef STRUT_ENGINE_SCENE_FRICTION_H
 #define STRUT_ENGINE_SCENE_FRICTION_H
 
+#include <stdint.h>
+
 #include "engine/scene/laws/friction.h"
 
 /** Contact states under a law. */
@@ -41,7 +43,14 @@ typedef struct strut_friction {
   bool
       directional; /* motion towards -x along the ground has coefficients of its own, the next two: */
   double mu_static_backward, mu_kinetic_backward; /* [1] */
+  bool driven;    /* all coefficients are those of a signal, 0 where that is negative: */
+  int32_t signal; /* where driven */
 } strut_friction;
+
+/** The friction with this coefficient, the value of its signal. */
+static inline void strut_friction_drive(strut_friction *f, double mu) {
+  f->mu_static = f->mu_kinetic = mu > 0.0 ? mu : 0.0;
+}
 
 /** Coefficient of static friction against a push along the ground in this direction. */
 static inline double strut_friction_static(const strut_friction *f, double direction) {

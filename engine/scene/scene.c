@@ -211,6 +211,14 @@ static bool shift_ground(strut_ground *g, const double place[2], strut_arena *ar
   return points;
 }
 
+void strut_scene_stop_grip(const strut_scene *scene, strut_friction *friction) {
+  double mu, rate;
+  if (!friction->driven) return;
+  strut_signal_evaluate(scene->signals, friction->signal, 0.0, &mu, &rate);
+  strut_friction_drive(friction, isnan(mu) ? 1.0 : mu);
+  friction->driven = false;
+}
+
 bool strut_scene_stop_grounds(strut_scene *scene, strut_arena *arena) {
   if (!scene->ground_count) return true;
   strut_ground *grounds = strut_arena_allocate(arena, scene->ground_count, sizeof *grounds);

@@ -28,23 +28,58 @@ static bool is_given(strut_fields *fields, int key, double *number) {
   return slot->state == STRUT_GIVEN;
 }
 
+/* What the slot of mu holds in number[1]: a number that was read, or from DRIVEN on a signal. */
+enum { UNREAD, PLAIN, DRIVEN };
+
+/* `mu` of a layer, a number or a signal, read once although a group's holds for many contacts. */
+static bool read_mu(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                    strut_friction *f, double *mu) {
+  strut_slot *slot = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
+  if (slot->state != STRUT_GIVEN) return false;
+  bool signal = slot->value->kind == STRUT_TREE_MAP ||
+                (slot->value->kind == STRUT_TREE_SCALAR &&
+                 strut_name_map_find(&reader->signal_names, slot->value->text) >= 0);
+  if (slot->number[1] == UNREAD && signal) {
+    const strut_dimension plain = STRUT_DIM_NONE;
+    int32_t index = strut_read_signal(reader, slot->value, "mu", owner, &plain);
+    slot->number[1] = index < 0 ? UNREAD : DRIVEN + index;
+  } else if (slot->number[1] == UNREAD) {
+    bool fine = strut_read_number(reader, slot->value, "mu", owner, STRUT_DIM_NONE,
+                                  STRUT_RANGE_NOT_NEGATIVE, &slot->number[0]);
+    slot->number[1] = fine ? PLAIN : UNREAD;
+  }
+  if (slot->number[1] == UNREAD) {
+    slot->state = STRUT_BROKEN;
+    fields->broken = true;
+    return false;
+  }
+  f->driven = slot->number[1] >= DRIVEN;
+  f->signal = f->driven ? (int32_t)slot->number[1] - DRIVEN : 0;
+  *mu = f->driven ? 1.0 : slot->number[0];
+  return true;
+}
+
 /*
  * Coefficients of a layer beside mu_static and mu_kinetic. Those without a direction replace both
  * directions of the layers below.
  */
-static void set_coefficients(friction_layers *f, strut_fields *fields) {
+static void set_coefficients(strut_reader *reader, friction_layers *f, strut_fields *fields,
+                             strut_owner owner) {
   strut_friction *all = &f->friction;
   const unsigned directions =
       key_bit(STRUT_KEY_FRICTION_MU_FORWARD) | key_bit(STRUT_KEY_FRICTION_MU_FORWARD_STATIC) |
       key_bit(STRUT_KEY_FRICTION_MU_BACKWARD) | key_bit(STRUT_KEY_FRICTION_MU_BACKWARD_STATIC);
   double mu;
-  bool both = is_given(fields, STRUT_KEY_FRICTION_MU, &mu);
+  bool both = read_mu(reader, fields, owner, all, &mu);
   if (both || is_given(fields, STRUT_KEY_FRICTION_MU_STATIC, &all->mu_static) ||
       is_given(fields, STRUT_KEY_FRICTION_MU_KINETIC, &all->mu_kinetic)) {
     all->directional = false, f->given &= ~directions;
+    if (!both) all->driven = false, all->signal = 0;
     all->mu_static_backward = all->mu_kinetic_backward = 0.0;
   }
-  if (both || is_given(fields, STRUT_KEY_FRICTION_MU_FORWARD, &mu)) {
+  if (!both && is_given(fields, STRUT_KEY_FRICTION_MU_FORWARD, &mu))
+    all->driven = false, all->signal = 0, both = true;
+  if (both) {
     all->mu_static = all->mu_kinetic = mu;
     f->given |= key_bit(STRUT_KEY_FRICTION_MU_STATIC) | key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
   }
@@ -66,7 +101,8 @@ static void add_layer(strut_reader *reader, friction_layers *f, strut_fields *fi
                      sizeof f->friction);
   for (int i = 0; i < strut_section_size(STRUT_SECTION_FRICTION); i++)
     if (fields->slot[i].state == STRUT_GIVEN) f->given |= 1u << i;
-  set_coefficients(f, fields);
+  set_coefficients(reader, f, fields, owner);
+  f->broken = f->broken || fields->broken;
 }
 
 /* Reports a key that the law needs and no layer gives, at the top layer. */
@@ -390,7 +426,9 @@ static bool read_normal(strut_reader *reader, strut_fields *fields, strut_owner 
 }
 
 /* Is it the straight line at rest that `ground` was at first? A point of the line gives its height. */
-static bool is_plain(strut_ground *ground) {
+static bool is_plain(strut_ground *ground, const contact_list *list) {
+  for (size_t i = 0; i < list->count; i++)
+    if (list->contact[i].friction.driven) return false;
   if (ground->shape != STRUT_GROUND_LINE || ground->moves[0] || ground->moves[1]) return false;
   if (!ground->placed) return true;
   if (!(fabs(ground->slope) < 0.25 * STRUT_TAU)) return false;
@@ -481,7 +519,7 @@ static void read_single(strut_reader *reader) {
     return;
   read_one(reader, fields, owner, strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key->place,
            &ground, &list);
-  if (is_plain(&ground)) {
+  if (is_plain(&ground, &list)) {
     scene->ground = ground;
     scene->contacts = list.contact, scene->contact_count = list.count;
     reader->things[STRUT_THING_CONTACT].source = list.source;

@@ -283,6 +283,8 @@ static void put_kept(schema *s) {
 static void put_free(schema *s, const strut_key *key) {
   if (key->section == STRUT_SECTION_SEARCH)
     put_either(s, "array", put_two_texts, put_scalar);
+  else if (strcmp(key->name, "mu") == 0)
+    put_either(s, "object", put_signal_keys, put_scalar);
   else if (strcmp(key->name, "merge") == 0)
     put_either(s, "object", put_names_of_things, put_touching);
   else if (strcmp(key->name, "repeat") == 0)

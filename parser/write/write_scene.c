@@ -413,15 +413,17 @@ static void put_rayleigh(strut_writer *writer) {
   strut_put(writer, "}\n");
 }
 
-/* With these a friction is compared: of one with a direction, all its coefficients are written. */
+/* With these a friction is written: all its coefficients, of one with a signal none. */
 static strut_friction usual_friction(const strut_friction *f) {
   strut_friction usual = {STRUT_FRICTION_NONE};
+  usual.mu_static = usual.mu_kinetic = f->driven ? f->mu_static : (double)NAN;
   if (f->directional) usual.mu_static_backward = usual.mu_kinetic_backward = (double)NAN;
   return usual;
 }
 
 static bool frictions_differ(const strut_friction *a, const strut_friction *b) {
-  return strut_fields_differ(STRUT_SECTION_FRICTION, a, b) || a->directional != b->directional;
+  return strut_fields_differ(STRUT_SECTION_FRICTION, a, b) || a->directional != b->directional ||
+         a->driven != b->driven || a->signal != b->signal;
 }
 
 static bool has_friction(const strut_friction *f) {
@@ -429,11 +431,20 @@ static bool has_friction(const strut_friction *f) {
   return frictions_differ(f, &none);
 }
 
+/* A coefficient that follows a signal. */
+static void put_friction_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                                 const void *object) {
+  const strut_friction *f = object;
+  if (key != STRUT_KEY_FRICTION_MU || !f->driven) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_signal_reference(writer, f->signal);
+}
+
 static void put_friction(strut_writer *writer, const strut_friction *f) {
   strut_mapping mapping = STRUT_MAPPING_INLINE;
   const strut_friction usual = usual_friction(f);
   strut_put(writer, "{");
-  strut_put_fields(writer, &mapping, STRUT_SECTION_FRICTION, f, &usual, NULL);
+  strut_put_fields(writer, &mapping, STRUT_SECTION_FRICTION, f, &usual, put_friction_by_hand);
   strut_put(writer, "}");
 }
 

@@ -110,7 +110,7 @@ static double dip(double g0, double d0, double g1, double d1, double faint) {
 static bool contradicts_at_stage(const strut_model *model, const strut_event_stepper *l,
                                  int32_t i) {
   assert(i >= 0 && i < model->contacts.count);
-  const strut_contact_entry *e = &model->contacts.entry[i];
+  const strut_contact_entry *e = &l->entry[i];
   const strut_touch *o = &l->next->touch[i];
   double more = 1.0 + STRUT_STAGE_ERROR, fewer = 1.0 - STRUT_STAGE_ERROR, s = l->side[i];
   double holding = holding_limit(e, o->normal, o->applied);
@@ -181,7 +181,7 @@ STRUT_INLINE double earliest_dip(const strut_model *model, const strut_state *st
     if (side * to.gap > 0.0)
       at = dip(side * from.gap, side * h * from.into, side * to.gap, side * h * to.into, faint[0]);
     if (l->mode[i] == STRUT_MODE_SLIP && at == 0.0) {
-      const strut_contact_entry *e = &c->entry[i];
+      const strut_contact_entry *e = &l->entry[i];
       double s = l->side[i], edge = stick_band_edge(e);
       double end = s * to.slip - edge;
       if (end > 0.0)

@@ -51,6 +51,7 @@ bool strut_step_end_create(const strut_model *model, strut_arena *arena, strut_s
 static bool make_arrays(const strut_model *model, strut_state *state, strut_event_stepper *l) {
   strut_arena *arena = &state->arena;
   size_t contacts = (size_t)model->contacts.count, length = (size_t)model->length;
+  l->entry = state->latest.grip ? state->latest.grip : model->contacts.entry;
   l->mode = strut_arena_allocate(arena, contacts, 1);
   l->side = strut_arena_allocate(arena, contacts, 1);
   l->damper = strut_arena_allocate(arena, contacts, 1);

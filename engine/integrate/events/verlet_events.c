@@ -106,8 +106,7 @@ STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state
   }
   for (int32_t k = 0; k < l->closed_count && !l->all_sliding; k++) {
     int32_t i = l->closed[k];
-    if (contradicting_event(&model->contacts.entry[i], &l->next->touch[i], l->mode[i], l->side[i]))
-      return true;
+    if (contradicting_event(&l->entry[i], &l->next->touch[i], l->mode[i], l->side[i])) return true;
   }
   return l->law_count && strut_event_first(model, state, l, h).kind;
 }

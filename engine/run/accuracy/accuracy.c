@@ -122,7 +122,7 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
   bool velocity =
       experiment->quantity_count == 0; /* the only quantity that these two strategies check */
   /* states that they know nothing of */
-  if (model->terms & STRUT_TERM_MEMORY) velocity = false;
+  if (model->terms & STRUT_TERM_MEMORY || model->contacts.grips) velocity = false;
   if (strut_feedback_remembers(&model->feedback)) velocity = false;
   if (!status && velocity) status = strut_accuracy_try_midpoint(&a, &done);
   if (!status && !done && velocity && experiment->periods > 0.0 && !a.single_method)

@@ -54,11 +54,13 @@ static strut_status check_scene(const strut_follow_system *s, strut_error *error
                       "has no derivative; use adaptive, rk4-events or verlet-events",
                       s->how.method);
   if ((m->terms & STRUT_TERM_MEMORY) || strut_feedback_remembers(&m->feedback) ||
-      (m->terms & STRUT_TERM_SLIDING_MASS))
+      (m->terms & STRUT_TERM_SLIDING_MASS) || m->contacts.grips)
     return strut_fail(
         error, STRUT_USAGE,
-        "positions and velocities are not the whole state here: what breaks, yields or "
-        "slides along members, and internal states of controllers, cannot be followed");
+        "positions and velocities are not the whole state here, or their derivatives are not "
+        "known: "
+        "what breaks, yields or slides along members, friction that follows a signal, and internal "
+        "states of controllers, cannot be followed");
   strut_experiment e = s->setup.experiment;
   e.integrator = s->how.method;
   return strut_integrator_check(m, &e, error);

@@ -175,7 +175,7 @@ static void sweep_dampers(const strut_model *model, strut_event_stepper *l, doub
     double changed = 0.0, largest = 0.0;
     for (int32_t k = 0; k < l->closed_count; k++) {
       int32_t i = l->closed[k];
-      const strut_contact_entry *e = &c->entry[i];
+      const strut_contact_entry *e = &l->entry[i];
       double half = 0.5 * h * l->response[i].normal;
       double speed = before[i].into + 0.5 * h * (before[i].into_rate + p->into[i]);
       double damped =
@@ -196,10 +196,10 @@ static void renew_friction(const strut_model *model, strut_event_stepper *l) {
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
     strut_touch *o = &l->next->touch[i];
-    o->normal = -c->entry[i].stiffness * o->gap + l->damped[i];
+    o->normal = -l->entry[i].stiffness * o->gap + l->damped[i];
     if (l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP) continue;
     double friction =
-        friction_in_mode(&c->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);
+        friction_in_mode(&l->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);
     if (friction != o->friction) push_contact(c, l->coupling, i, 0.0, friction - o->friction);
     o->friction = friction;
   }

@@ -91,7 +91,7 @@ static bool is_free_along(const strut_model *model, const strut_event_stepper *l
 void strut_contact_close(const strut_model *model, strut_event_stepper *l, int32_t i,
                          int32_t facet) {
   assert(i >= 0 && i < model->contacts.count);
-  const strut_contact_entry *e = &model->contacts.entry[i];
+  const strut_contact_entry *e = &l->entry[i];
   strut_touch o;
   l->mode[i] = STRUT_MODE_SLIDE;
   if (model->contacts.surface && facet < 0)
@@ -134,8 +134,7 @@ static int32_t overloaded(const strut_model *model, const strut_event_stepper *l
     int32_t i = l->closed[k];
     if (l->mode[i] != STRUT_MODE_STICK) continue;
     const strut_touch *o = &l->now->touch[i];
-    double most =
-        strut_friction_static(&model->contacts.entry[i].friction, -o->friction) * o->normal;
+    double most = strut_friction_static(&l->entry[i].friction, -o->friction) * o->normal;
     double over = fabs(o->friction) - most;
     if (!(over > worst * fabs(o->friction))) continue;
     /* without a normal force yet, no friction is too little: rounding must not set the node in motion */

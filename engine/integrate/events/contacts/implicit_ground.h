@@ -35,7 +35,7 @@ STRUT_INLINE double solve_damper(const strut_model *model, strut_event_stepper *
                                  double h, const double *a1, double gap,
                                  const strut_contact_frame *frame) {
   const strut_contact_table *c = &model->contacts;
-  const strut_contact_entry *e = &c->entry[i];
+  const strut_contact_entry *e = &l->entry[i];
   double answer =
       frame ? strut_compliance_along(&l->response[i], frame[i].axes.normal) : l->response[i].normal;
   double half = 0.5 * h * answer, now = l->damped[i];
@@ -67,10 +67,10 @@ STRUT_INLINE void solve_friction(const strut_model *model, strut_event_stepper *
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
     strut_touch *o = &touch[i];
-    o->normal = -model->contacts.entry[i].stiffness * o->gap + l->damped[i];
+    o->normal = -l->entry[i].stiffness * o->gap + l->damped[i];
     if (frame) o->applied = strut_surface_applied(model, l, k, l->next);
-    double friction = friction_in_mode(&model->contacts.entry[i], l->mode[i], l->side[i], o->normal,
-                                       o->slip, o->applied);
+    double friction =
+        friction_in_mode(&l->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);
     bool held = l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP;
     if (held || friction == o->friction) continue;
     strut_apply_contact_impulse(l, i, strut_axes_of_contact(&model->contacts, frame, i), 0.0,
@@ -143,7 +143,7 @@ STRUT_INLINE void implicit_ground_decoupled(const strut_model *model, const stru
     o->gap = q[at + 1] - c->height;
     o->slip = v[at] - c->belt_speed;
     o->applied = force[at];
-    implicit_ground_touch(&c->entry[i], r, &before[i], o, mode, l->side[i], h, a[at], a[at + 1]);
+    implicit_ground_touch(&l->entry[i], r, &before[i], o, mode, l->side[i], h, a[at], a[at + 1]);
     const strut_pair reaction = {o->friction, o->normal};
     const double *restrict xy = r->xy;
     for (int32_t j = 0, nodes = r->count; j < nodes; j++) {
@@ -194,7 +194,7 @@ STRUT_INLINE void implicit_ground_leave(const strut_model *model, strut_state *s
     o->into_rate = a[at + 1];
     o->slip_rate = a[at];
     if (!balance) continue;
-    double damped = -(o->normal + c->entry[i].stiffness * o->gap) * o->into;
+    double damped = -(o->normal + l->entry[i].stiffness * o->gap) * o->into;
     double rubbed = -o->friction * o->slip, carried = o->friction * c->belt_speed;
     contact += damped, friction += rubbed, belt += carried;
     exchanged += fabs(damped) + fabs(rubbed) + fabs(carried);

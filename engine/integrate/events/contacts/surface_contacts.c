@@ -69,7 +69,7 @@ static void find_friction(const strut_model *model, const strut_event_stepper *l
       double before = o->friction;
       o->applied = strut_surface_applied(model, l, k, end);
       o->friction =
-          friction_in_mode(&c->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);
+          friction_in_mode(&l->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);
       if (!shares_node(c, l, k)) continue;
       changed = fmax(changed, fabs(o->friction - before));
       largest = fmax(largest, fabs(o->friction));
@@ -88,7 +88,7 @@ void strut_surface_add_forces(const strut_model *model, const strut_event_steppe
     strut_contact_frame *frame = &end->frame[i];
     strut_surface_measure(c, l, end->motion, i, q, v, o, frame);
     frame->alone = strut_component(frame->axes.tangent, force[c->at[i]], force[c->at[i] + 1]);
-    o->normal = contact_normal_force(&c->entry[i], l->damper[i], o->gap, o->into, damped);
+    o->normal = contact_normal_force(&l->entry[i], l->damper[i], o->gap, o->into, damped);
     o->friction = 0.0;
   }
   find_friction(model, l, end);

@@ -21,8 +21,7 @@ VALUE(gap) { return gap_at_end(&model->contacts, l, i, end, STRUT_TERMS_ALL); }
 VALUE(depth) { return -gap_at_end(&model->contacts, l, i, end, STRUT_TERMS_ALL); }
 RATE(depth_rate) { return -end->touch[i].into; }
 VALUE(slip_left) {
-  return strut_law_margin_of_slip(l->side[i], end->touch[i].slip,
-                                  stick_band_edge(&model->contacts.entry[i]));
+  return strut_law_margin_of_slip(l->side[i], end->touch[i].slip, stick_band_edge(&l->entry[i]));
 }
 RATE(slip_rate) { return l->side[i] * end->touch[i].slip_rate; }
 
@@ -38,24 +37,17 @@ static double way_out(const strut_event_stepper *l, const strut_touch *o, int32_
 
 VALUE(band_left) {
   const strut_touch *o = &end->touch[i];
-  return strut_law_margin_of_band(way_out(l, o, i) * o->slip,
-                                  stick_band_edge(&model->contacts.entry[i]));
+  return strut_law_margin_of_band(way_out(l, o, i) * o->slip, stick_band_edge(&l->entry[i]));
 }
 RATE(band_rate) {
   const strut_touch *o = &end->touch[i];
   return -way_out(l, o, i) * o->slip_rate;
 }
-VALUE(stick_left) { return margin_of_stick(&model->contacts.entry[i], &end->touch[i]); }
-VALUE(creep_out_left) {
-  return margin_of_creep_out(&model->contacts.entry[i], &end->touch[i], l->side[i]);
-}
-VALUE(creep_in_left) {
-  return margin_of_creep_in(&model->contacts.entry[i], &end->touch[i], l->side[i]);
-}
-VALUE(push_left) {
-  return margin_of_push(&model->contacts.entry[i], &end->touch[i], l->mode[i], l->side[i]);
-}
-VALUE(yield_left) { return margin_of_yield(&model->contacts.entry[i], &end->touch[i]); }
+VALUE(stick_left) { return margin_of_stick(&l->entry[i], &end->touch[i]); }
+VALUE(creep_out_left) { return margin_of_creep_out(&l->entry[i], &end->touch[i], l->side[i]); }
+VALUE(creep_in_left) { return margin_of_creep_in(&l->entry[i], &end->touch[i], l->side[i]); }
+VALUE(push_left) { return margin_of_push(&l->entry[i], &end->touch[i], l->mode[i], l->side[i]); }
+VALUE(yield_left) { return margin_of_yield(&l->entry[i], &end->touch[i]); }
 VALUE(speed_left) { return l->damper[i] > 0 ? -end->touch[i].into : end->touch[i].into; }
 RATE(speed_rate) { return l->damper[i] > 0 ? -end->touch[i].into_rate : end->touch[i].into_rate; }
 VALUE(facet_left) {
@@ -76,7 +68,7 @@ VALUE(of_law) { return law_value(l, end, i); }
  */
 static void decide_at_edge(const strut_model *model, strut_state *state, strut_event_stepper *l,
                            int32_t i, bool from_inside, double t) {
-  const strut_contact_entry *e = &model->contacts.entry[i];
+  const strut_contact_entry *e = &l->entry[i];
   double s = l->side[i];
   strut_contact_snap(model, l, i, s * e->friction.stick_velocity);
   l->mode[i] = STRUT_MODE_SLIP;
@@ -114,7 +106,7 @@ EFFECT(close_nearest) {
 }
 EFFECT(open) { l->mode[i] = STRUT_MODE_OPEN; }
 EFFECT(end_slip) {
-  if (stick_band_edge(&model->contacts.entry[i]) > 0.0) {
+  if (stick_band_edge(&l->entry[i]) > 0.0) {
     decide_at_edge(model, state, l, i, false, t);
   } else {
     strut_contact_snap(model, l, i, 0.0);
@@ -142,7 +134,7 @@ EFFECT(push) {
 }
 EFFECT(end_yield) {
   const strut_touch *o = &l->now->touch[i];
-  const strut_friction *f = &model->contacts.entry[i].friction;
+  const strut_friction *f = &l->entry[i].friction;
   bool over = fabs(o->applied) > strut_friction_static(f, o->applied) * o->normal;
   l->mode[i] = over ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
   l->side[i] = side_of_push(l, i);

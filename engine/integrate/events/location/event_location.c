@@ -34,7 +34,7 @@ static double cubic_root(double g0, double d0, double g1, double d1) {
 static double room_to_leave(const strut_model *model, const strut_event_stepper *l, int32_t i,
                             double room) {
   assert(i >= 0 && i < model->contacts.count);
-  const strut_contact_entry *e = &model->contacts.entry[i];
+  const strut_contact_entry *e = &l->entry[i];
   if (!l->stepper->exact && !strut_friction_drops(&e->friction)) return room;
   double faint = 1e-9 * stick_band_edge(e), rate = 0.0;
   double balanced = STRUT_TIED * l->now->touch[i].normal * l->response[i].tangent;
@@ -49,7 +49,7 @@ static double room_to_leave(const strut_model *model, const strut_event_stepper 
 static double room_to_slip(const strut_model *model, const strut_event_stepper *l, int32_t i,
                            double room, double after) {
   assert(i >= 0 && i < model->contacts.count);
-  double edge = stick_band_edge(&model->contacts.entry[i]), least = 1e-9 * edge, rate = 0.0;
+  double edge = stick_band_edge(&l->entry[i]), least = 1e-9 * edge, rate = 0.0;
   if (edge > 0.0 && !l->stepper->exact) return room;
   strut_event_rate(l, l->now, STRUT_EVENT_SLIP_ENDS, i, &rate);
   return room <= least && rate > 0.0 ? fmax(least, -1e-12 * after) : room;
@@ -216,7 +216,7 @@ STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_step
     return;
   }
   const strut_touch *o = &l->next->touch[i];
-  strut_event_kind kind = contradicting_event(&c->entry[i], o, l->mode[i], l->side[i]);
+  strut_event_kind kind = contradicting_event(&l->entry[i], o, l->mode[i], l->side[i]);
   if (kind) keep_first(model, l, kind, i, h, first);
   int32_t nearest;
   if (frames_of(l->next, terms) && strut_surface_facet_margin(c, l, l->next, i, &nearest) < 0.0)
@@ -225,7 +225,7 @@ STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_step
   /* a gap that rounding left above 0 at touchdown is closing: only one that grows has opened */
   if (o->gap > 0.0 && o->into > 0.0) keep_first(model, l, STRUT_EVENT_OPEN, i, h, first);
   if (l->damper[i] && (l->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
-      c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
+      l->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
     keep_first(model, l, STRUT_EVENT_DAMPER, i, h, first);
 }
 

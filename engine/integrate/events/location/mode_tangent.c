@@ -271,7 +271,7 @@ static void add_contact(const strut_model *model, const strut_state *state,
                         strut_mode_tangent *t) {
   assert(i >= 0 && i < model->contacts.count);
   const strut_contact_table *c = &model->contacts;
-  const strut_contact_entry *e = &c->entry[i];
+  const strut_contact_entry *e = &l->entry[i];
   const int32_t *row = t->row_of + c->at[i];
   double gap, into, *pull = t->pull, *x[2] = {NULL, NULL};
   strut_touch o;
