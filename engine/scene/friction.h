@@ -41,10 +41,10 @@ typedef struct strut_friction {
   STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
 #undef STRUT_FRICTION_ROW
   bool
-      directional; /* motion towards -x along the ground has coefficients of its own, the next two: */
+      directional; /* motion towards -x along the ground has coefficients of its own, the last two */
+  bool driven;     /* all coefficients are those of a signal, 0 where that is negative */
+  int32_t signal;  /* where driven */
   double mu_static_backward, mu_kinetic_backward; /* [1] */
-  bool driven;    /* all coefficients are those of a signal, 0 where that is negative: */
-  int32_t signal; /* where driven */
 } strut_friction;
 
 /** The friction with this coefficient, the value of its signal. */

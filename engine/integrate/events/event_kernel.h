@@ -111,9 +111,9 @@ STRUT_INLINE void add_contact_forces(const strut_model *model, const strut_event
     strut_touch *o = &touch[i];
     measure_on_line(c, i, q, v, o);
     o->applied = strut_contact_along_ground(c, i, force);
-    o->normal = contact_normal_force(&l->entry[i], l->damper[i], o->gap, o->into, damped);
+    o->normal = contact_normal_force(&c->entry[i], l->damper[i], o->gap, o->into, damped);
     o->friction =
-        friction_in_mode(&l->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);
+        friction_in_mode(&c->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);
     force[at] += o->friction * c->tangent[0] + o->normal * c->normal[0];
     force[at + 1] += o->friction * c->tangent[1] + o->normal * c->normal[1];
   }
@@ -144,7 +144,7 @@ STRUT_INLINE void add_contact_powers(const strut_model *model, strut_state *stat
   const strut_contact_frame *frame = frames_of(end, terms);
   for (int32_t k = 0; k < l->closed_count; k++) {
     const strut_touch *o = &touch[l->closed[k]];
-    double damper = o->normal + l->entry[l->closed[k]].stiffness * o->gap;
+    double damper = o->normal + c->entry[l->closed[k]].stiffness * o->gap;
     double damped = -damper * o->into, rubbed = -o->friction * o->slip;
     double belt = o->friction * c->belt_speed;
     if (frame)

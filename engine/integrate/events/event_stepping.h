@@ -253,7 +253,7 @@ struct strut_event_stepper {
   strut_event_view *view;    /* NULL: nothing is observed */
   strut_drives_ahead drives; /* of methods with one evaluation a step, during a call */
   const strut_contact_entry
-      *entry;     /* (contacts) the model's, or of a state whose friction is driven */
+      *entry;     /* (contacts) the model's, or a state's with STRUT_TERM_SURFACES */
   int32_t *facet; /* (contacts) of closed contacts of surfaces; NULL without STRUT_TERM_SURFACES */
   struct strut_small_modes *small; /* see small_modes.h; NULL where the model is not small */
   struct strut_contact_coupling *coupling; /* contact_coupling.h; NULL where contacts are few */

@@ -144,6 +144,7 @@ typedef struct strut_path_system {
   const strut_model *model;
   strut_potential *potential; /* for the numbers of its free coordinates */
   int32_t n;
+  bool lends;     /* no system of equations has been regular yet */
   bool drifts;    /* the parameter works on a motion of the whole that meets no stiffness */
   double stop_at; /* position of the coordinate at which the path stops [m] */
   double size;    /* [m] */

@@ -371,13 +371,16 @@ static bool is_solution(strut_path_system *s, const double *top) {
 }
 
 /*
- * Solves [K slope; row] x = (top, bottom). A mechanism without stiffness that no force works on, as in a cable
- * or a beam that lies straight, stays where it is; false: singular otherwise.
+ * Solves [K slope; row] x = (top, bottom). A mechanism without stiffness that no force works on stays where it
+ * is as long as the path has had one from its begin, as in a beam that lies straight; false: singular otherwise.
  */
 static bool solve(strut_path_system *s, const double *row, const double *top, double bottom) {
   double low, high;
-  if (solve_with(s, row, top, bottom, 0.0)) return true;
-  if (s->n == 0) return false;
+  if (solve_with(s, row, top, bottom, 0.0)) {
+    s->lends = false;
+    return true;
+  }
+  if (s->n == 0 || !s->lends) return false;
   gsl_matrix_minmax(s->algebra.hessian, &low, &high);
   return solve_with(s, row, top, bottom, TOUCHED * fmax(-low, high)) && is_solution(s, top);
 }

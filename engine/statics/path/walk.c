@@ -476,6 +476,7 @@ bool strut_path_walk_begin(strut_path_walk *w) {
   strut_path_system *s = &w->system;
   const double h = 1e-6;
   if (strut_path_evaluate(s, w->y)) strut_path_find_pieces(s);
+  s->lends = true;
   for (int32_t k = 0; k < strut_path_switch_count(s); k++) {
     double value = strut_path_switch_value(s, k, w->y);
     if (isfinite(value)) strut_path_switch_set(s, k, value > -STRUT_PATH_EVEN * s->size);

@@ -180,9 +180,9 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
     strut_status status = make_response(model, state, i, x, y, answers, &l->response[i]);
     if (status) return status;
     if (model->terms & STRUT_TERM_SLIDING_MASS) refresh_compliance(model, state, l, i);
-    l->settling_time[i] = settling_time(&l->entry[i], l->response[i].normal);
-    fastest = fmax(fastest, l->entry[i].damping * l->response[i].normal);
-    fastest = fmax(fastest, sqrt(l->entry[i].stiffness * l->response[i].normal));
+    l->settling_time[i] = settling_time(&c->entry[i], l->response[i].normal);
+    fastest = fmax(fastest, c->entry[i].damping * l->response[i].normal);
+    fastest = fmax(fastest, sqrt(c->entry[i].stiffness * l->response[i].normal));
   }
   double wanted = ceil(fastest * e->step / e->refine_rate);
   l->wanted_step = e->step;

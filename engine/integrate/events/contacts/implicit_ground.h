@@ -67,7 +67,7 @@ STRUT_INLINE void solve_friction(const strut_model *model, strut_event_stepper *
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
     strut_touch *o = &touch[i];
-    o->normal = -l->entry[i].stiffness * o->gap + l->damped[i];
+    o->normal = -model->contacts.entry[i].stiffness * o->gap + l->damped[i];
     if (frame) o->applied = strut_surface_applied(model, l, k, l->next);
     double friction =
         friction_in_mode(&l->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);

@@ -216,7 +216,8 @@ STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_step
     return;
   }
   const strut_touch *o = &l->next->touch[i];
-  strut_event_kind kind = contradicting_event(&l->entry[i], o, l->mode[i], l->side[i]);
+  const strut_contact_entry *entry = terms & STRUT_TERM_SURFACES ? l->entry : c->entry;
+  strut_event_kind kind = contradicting_event(&entry[i], o, l->mode[i], l->side[i]);
   if (kind) keep_first(model, l, kind, i, h, first);
   int32_t nearest;
   if (frames_of(l->next, terms) && strut_surface_facet_margin(c, l, l->next, i, &nearest) < 0.0)
@@ -225,7 +226,7 @@ STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_step
   /* a gap that rounding left above 0 at touchdown is closing: only one that grows has opened */
   if (o->gap > 0.0 && o->into > 0.0) keep_first(model, l, STRUT_EVENT_OPEN, i, h, first);
   if (l->damper[i] && (l->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
-      l->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
+      c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
     keep_first(model, l, STRUT_EVENT_DAMPER, i, h, first);
 }
 
