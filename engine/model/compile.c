@@ -284,8 +284,13 @@ static void compile_contacts(strut_model *model, bool *failed) {
     if (contact->friction.law == STRUT_FRICTION_NONE) continue;
     entry[i].friction = contact->friction;
     grips = grips || contact->friction.driven;
-    if (contact->friction.driven)
-      strut_friction_drive(&entry[i].friction, largest_value(scene, contact->friction.signal));
+    if (contact->friction.driven) {
+      bool again = i > 0 && entry[i - 1].friction.driven &&
+                   entry[i - 1].friction.signal == contact->friction.signal;
+      strut_friction_drive(&entry[i].friction,
+                           again ? entry[i - 1].friction.mu_kinetic
+                                 : largest_value(scene, contact->friction.signal));
+    }
     model->terms |= STRUT_TERM_FRICTION;
     if (contact->friction.law != STRUT_FRICTION_KARNOPP) model->terms |= STRUT_TERM_LAWS;
     if (contact->friction.directional) model->terms |= STRUT_TERM_LAWS | STRUT_TERM_DIRECTION;
