@@ -400,7 +400,8 @@ static inline bool strut_scene_has_ground(const strut_scene *scene) {
 }
 
 /** Friction that follows a signal becomes that of t = 0; 1 of a signal that follows a sensor. */
-void strut_scene_stop_grip(const strut_scene *scene, strut_friction *friction);
+STRUT_API void strut_scene_stop_grip(const strut_scene *scene, strut_friction *friction);
+
 /**
  * Replaces the grounds of a copy of a scene by grounds at rest where they are at t = 0, without belts;
  * false: out of memory of the arena.
