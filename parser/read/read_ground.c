@@ -59,6 +59,15 @@ static bool read_mu(strut_reader *reader, strut_fields *fields, strut_owner owne
   return true;
 }
 
+/* A layer gives a coefficient over a signal of those below, which leaves none of its own for the other. */
+static void stop_driving(friction_layers *f, strut_fields *fields) {
+  static const int keys[] = {STRUT_KEY_FRICTION_MU_STATIC, STRUT_KEY_FRICTION_MU_KINETIC};
+  for (size_t k = 0; k < sizeof keys / sizeof keys[0] && f->friction.driven; k++)
+    if (strut_slot_of(fields, keys[k])->state != STRUT_GIVEN) f->given &= ~key_bit(keys[k]);
+  f->friction.driven = false;
+  f->friction.signal = 0;
+}
+
 /*
  * Coefficients of a layer beside mu_static and mu_kinetic. Those without a direction replace both
  * directions of the layers below.
@@ -74,11 +83,13 @@ static void set_coefficients(strut_reader *reader, friction_layers *f, strut_fie
   if (both || is_given(fields, STRUT_KEY_FRICTION_MU_STATIC, &all->mu_static) ||
       is_given(fields, STRUT_KEY_FRICTION_MU_KINETIC, &all->mu_kinetic)) {
     all->directional = false, f->given &= ~directions;
-    if (!both) all->driven = false, all->signal = 0;
+    if (!both) stop_driving(f, fields);
     all->mu_static_backward = all->mu_kinetic_backward = 0.0;
   }
-  if (!both && is_given(fields, STRUT_KEY_FRICTION_MU_FORWARD, &mu))
-    all->driven = false, all->signal = 0, both = true;
+  if (!both && is_given(fields, STRUT_KEY_FRICTION_MU_FORWARD, &mu)) {
+    stop_driving(f, fields);
+    both = true;
+  }
   if (both) {
     all->mu_static = all->mu_kinetic = mu;
     f->given |= key_bit(STRUT_KEY_FRICTION_MU_STATIC) | key_bit(STRUT_KEY_FRICTION_MU_KINETIC);

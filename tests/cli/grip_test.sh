@@ -78,8 +78,6 @@ expect 0 run walk.yaml --json
 near .velocity '2 * 0.02 * 0.2 * 2 / 2' 1e-4
 
 # What it cannot be combined with is refused by name; a scene is written as it was read.
-expect 1 run walk.yaml --integrator midpoint
-expect 1 run smooth.yaml --integrator midpoint
 expect 2 export smooth.yaml --code code
 err_has 'friction that follows a signal'
 "$strut" write walk.yaml >written.yaml
