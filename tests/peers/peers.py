@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Examples of other programs, each with a number: runs them, and checks the table of docs/comparison.md.
+"""Numbers of examples of other programs: runs these, and checks the table of docs/comparison.md.
 
     python3 peers.py STRUT            fails where a number is not met, or the table is not what it prints
     python3 peers.py STRUT --write    writes the table
@@ -80,7 +80,7 @@ def main():
     elif found.group(1) != made:
         wrong.append("the table")
         print("FAILED: the table of docs/comparison.md is another; run tests/peers/peers.py STRUT --write")
-    print(f"{len(lines) - 2} examples")
+    print(f"{len(lines) - 2} numbers")
     sys.exit(bool(wrong))
 
 
