@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/vec.h"
 
 /* Cubic pieces between two folds of a Bezier curve and of a rounded corner, and points at which folds are sought. */
 enum {
@@ -15,7 +16,6 @@ enum {
 };
 /* A fold's place on the curve is good to this. */
 static const double FOUND = 1e-15;
-static const double PI = 3.14159265358979323846;
 
 /* A Bezier curve: a whole law, or the parabola at a rounded corner. */
 typedef struct bezier {
@@ -79,7 +79,7 @@ static size_t trace(const bezier *b, int pieces, strut_curve_point *point) {
   point[count++] = point_at(b, 0.0, false);
   for (size_t f = 0; f <= folds; from = fold[f++])
     for (int i = 1; i <= pieces; i++) {
-      double share = 0.5 * (1.0 - cos(PI * i / pieces)), end = fold[f];
+      double share = 0.5 * (1.0 - cos(STRUT_PI * i / pieces)), end = fold[f];
       double t = i == pieces ? end : from + share * (end - from);
       point[count++] = point_at(b, t, i == pieces && f < folds);
     }

@@ -57,10 +57,10 @@ static strut_status check_scene(const strut_follow_system *s, strut_error *error
       (m->terms & STRUT_TERM_SLIDING_MASS) || m->contacts.grips)
     return strut_fail(
         error, STRUT_USAGE,
-        "positions and velocities are not the whole state here, or their derivatives are not "
-        "known: "
-        "what breaks, yields or slides along members, friction that follows a signal, and internal "
-        "states of controllers, cannot be followed");
+        "what breaks, yields, folds or slides along members, friction that follows a signal, and "
+        "internal states of controllers cannot be followed: positions and velocities are not all "
+        "of "
+        "the state, or their derivatives are not known");
   strut_experiment e = s->setup.experiment;
   e.integrator = s->how.method;
   return strut_integrator_check(m, &e, error);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Force over elongation along a curve of straight pieces that may fold back: where x goes back along it, an
- * element of its kind is unstable inside, and one that comes to a fold jumps to the next piece that goes on.
+ * Force over elongation along a curve of pieces that may fold back. Where x falls along it, nothing holds an
+ * element in place; one that reaches a fold jumps to the next piece along which x grows.
  *
  * Which of several pieces holds at an x is a memory. Alone, this header starts from the piece at x = 0; runs
  * and paths give the piece, see engine/forces/history.h. The rule that folds turn with falling force is that
