@@ -17,15 +17,21 @@
 
 static const double TOUCH = 1e-6; /* of the size: nearer to the ground is drawn on it */
 
-double strut_form_depth(const strut_former *f, int32_t contact) {
+strut_contact_pose strut_form_contact(const strut_former *f, int32_t contact, const double *point) {
   assert(contact >= 0 && contact < f->model->contacts.count);
   const strut_contact_table *c = &f->model->contacts;
-  const double *at = f->scene->nodes[c->entry[contact].node].position;
-  return -strut_ground_gap(c, at);
+  strut_contact_pose pose = {.axes = c->axes, .gap = strut_ground_gap(c, point)};
+  if (c->surface) strut_surface_find(&c->surface[c->surface_of[contact]], point, -1, &pose);
+  return pose;
+}
+
+strut_contact_pose strut_form_contact_as_drawn(const strut_former *f, int32_t contact) {
+  int32_t node = f->model->contacts.entry[contact].node;
+  return strut_form_contact(f, contact, f->scene->nodes[node].position);
 }
 
 bool strut_form_touches(const strut_former *f, int32_t contact) {
-  return strut_form_depth(f, contact) >= -TOUCH * f->size;
+  return strut_form_contact_as_drawn(f, contact).gap <= TOUCH * f->size;
 }
 
 strut_status strut_form_out_of_range(strut_error *error) {
@@ -110,7 +116,7 @@ static strut_status read_densities(density_problem *p, strut_error *error) {
                     "no member has a force density: give some with force_density or pretension");
 }
 
-/* Marks coordinates held by supports or level ground; returns their number. */
+/* Marks coordinates held by supports, level ground or walls; returns their number. */
 static int32_t mark_held(density_problem *p) {
   const strut_former *f = p->f;
   const strut_contact_table *c = &f->model->contacts;
@@ -120,8 +126,11 @@ static int32_t mark_held(density_problem *p) {
       p->held[2 * i + k] = f->scene->nodes[i].fixed[k];
       p->x[2 * i + k] = f->scene->nodes[i].position[k];
     }
-  for (int32_t i = 0; i < c->count; i++)
-    if (strut_form_touches(f, i) && c->normal[0] == 0) p->held[c->at[i] + 1] = 1;
+  for (int32_t i = 0; i < c->count; i++) {
+    const strut_contact_pose pose = strut_form_contact_as_drawn(f, i);
+    for (uint32_t k = 0; k < 2 && pose.curvature == 0 && strut_form_touches(f, i); k++)
+      if (pose.axes.normal[1 - k] == 0) p->held[c->at[i] + k] = 1;
+  }
   for (size_t i = 0; i < 2 * f->scene->node_count; i++) count += p->held[i];
   return count;
 }
@@ -305,7 +314,7 @@ static void fix_lengths(strut_scene *scene) {
 /* Finds whether the structure is free to shift along x, and to turn and shift in the plane. */
 static void find_freedom(const strut_former *f, bool *shift, bool *turn) {
   const strut_contact_table *c = &f->model->contacts;
-  *shift = c->count == 0 || c->normal[0] == 0;
+  *shift = c->count == 0 || strut_contacts_are_level(c);
   *turn = c->count == 0;
   for (size_t i = 0; i < f->scene->node_count; i++) {
     if (f->scene->nodes[i].fixed[0]) *shift = *turn = false;
@@ -511,10 +520,6 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
       .scene = scene, .experiment = &setup->experiment, .options = options, .form = form};
   double *drawn = strut_arena_allocate(&f.arena, 2 * scene->node_count, sizeof *drawn);
   status = drawn ? strut_model_compile(scene, &model, error) : strut_no_memory(error, "");
-  if (status == STRUT_OK && model->contacts.surface)
-    status = strut_fail(error, STRUT_USAGE,
-                        "form finding needs a ground that is one straight line at rest; give "
-                        "'ground' with height and slope, or none");
   if (status == STRUT_OK) status = strut_potential_create(model, NULL, true, &potential, error);
   if (status == STRUT_OK) {
     for (size_t i = 0; i < 2 * scene->node_count; i++)

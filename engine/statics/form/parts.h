@@ -18,11 +18,11 @@ typedef struct strut_former {
   strut_arena arena;
 } strut_former;
 
-/**
- * Depth below the ground at which contact i's node is drawn [m]; >= 0 where it touches, within
- * rounding.
- */
-double strut_form_depth(const strut_former *former, int32_t contact);
+/** Contact i with its node at some point, or where that is drawn. */
+strut_contact_pose strut_form_contact(const strut_former *former, int32_t contact,
+                                      const double *point);
+strut_contact_pose strut_form_contact_as_drawn(const strut_former *former, int32_t contact);
+/** Is its node drawn in the ground or on it, within rounding? */
 bool strut_form_touches(const strut_former *former, int32_t contact);
 
 /** Gives member j the rest length with which it carries `force` at the length it starts with. */

@@ -240,11 +240,13 @@ static void fill_rows(prestress *p) {
     p->program.row_low[at->n + j] = -HUGE_VAL;
   }
   const strut_contact_table *c = &f->model->contacts;
-  for (int32_t i = 0; i < at->contacts; i++)
+  for (int32_t i = 0; i < at->contacts; i++) {
+    const strut_contact_pose pose = strut_form_contact_as_drawn(f, i);
     for (int k = 0; k < 2; k++) {
       int32_t row = row_of[c->at[i] + (uint32_t)k];
-      if (row >= 0) strut_linear_program_add(&p->program, row, at->ground + i, c->normal[k]);
+      if (row >= 0) strut_linear_program_add(&p->program, row, at->ground + i, pose.axes.normal[k]);
     }
+  }
   for (int32_t i = 0; i < at->n; i++) {
     double force = f->potential->force[f->potential->coordinate[i]] / p->scale;
     strut_linear_program_add(&p->program, i, at->up + i, 1);
@@ -390,9 +392,10 @@ static double sink_nodes(prestress *p) {
   for (int32_t i = 0; i < p->at.contacts; i++) {
     strut_node *node = &p->f->scene->nodes[c->entry[i].node];
     double push = p->scale * p->x[p->at.ground + i];
-    double sinks = push / c->entry[i].stiffness - strut_form_depth(p->f, i);
+    const strut_contact_pose pose = strut_form_contact(p->f, i, node->start);
+    double sinks = push / c->entry[i].stiffness + pose.gap;
     for (int k = 0; k < 2 && push > 0; k++) {
-      double start = node->position[k] - sinks * c->normal[k];
+      double start = node->start[k] - sinks * pose.axes.normal[k];
       if (node->fixed[k]) continue;
       moved = fmax(moved, fabs(start - node->start[k]));
       node->start[k] = start;

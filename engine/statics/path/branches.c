@@ -31,15 +31,15 @@ void strut_path_keep_fork(strut_path_walk *w, const double *y, const gsl_vector 
       .y = strut_arena_copy(&s->arena, y, 1, strut_path_bytes(w)),
       .direction = strut_arena_allocate(&s->arena, (size_t)s->n + 1, sizeof(double)),
       .pulling = strut_arena_copy(&s->arena, s->latest.pulling, (size_t)s->model->members.count, 1),
-      .touching =
-          strut_arena_copy(&s->arena, s->latest.touching, (size_t)s->model->contacts.count, 1),
+      .contact = strut_arena_copy(&s->arena, s->contacts.contact, (size_t)s->model->contacts.count,
+                                  sizeof *s->contacts.contact),
       .element = strut_arena_copy(&s->arena, s->elements.element, (size_t)s->model->elements.count,
                                   sizeof *s->elements.element),
       .factor = strut_path_value(s, y),
       .arc = w->arc + strut_path_distance(w, w->y, y),
       .path = w->forks.path,
       .depth = w->forks.depth};
-  w->failed = w->failed || !f->y || !f->direction || !f->pulling || !f->touching || !f->element;
+  w->failed = w->failed || !f->y || !f->direction || !f->pulling || !f->contact || !f->element;
   if (w->failed) return;
   /* normal to the path: what is left of the null vector leads off it */
   for (int32_t i = 0; i < s->n; i++) f->direction[i] = gsl_vector_get(null, (size_t)i);
@@ -70,7 +70,8 @@ static bool leave_fork(strut_path_walk *w, const strut_path_fork *f, double side
   double step = LEAVING;
   bool found = false;
   memcpy(s->latest.pulling, f->pulling, (size_t)s->model->members.count);
-  memcpy(s->latest.touching, f->touching, (size_t)s->model->contacts.count);
+  memcpy(s->contacts.contact, f->contact,
+         (size_t)s->model->contacts.count * sizeof *s->contacts.contact);
   memcpy(s->elements.element, f->element,
          (size_t)s->model->elements.count * sizeof *s->elements.element);
   memcpy(w->y, f->y, strut_path_bytes(w));

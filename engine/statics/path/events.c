@@ -191,6 +191,7 @@ static switch_group collect_switches(strut_path_walk *w, int32_t which) {
   switch_group g = {0};
   for (int32_t k = 0; k < strut_path_switch_count(s); k++) {
     double here = strut_path_switch_value(s, k, w->y);
+    if (k >= strut_path_first_corner_switch(s) && k < strut_path_first_element_switch(s)) continue;
     if (k == which) g.first = g.count;
     if (k != which &&
         !(fabs(here) <= STRUT_PATH_EVEN * s->size && g.count + (k < which) < MOST_TOGETHER))
@@ -326,9 +327,8 @@ static void report_switch(strut_path_walk *w, int32_t which, int32_t before, int
     int32_t contact = which - members;
     index = s->model->contacts.entry[contact].node;
     kind = on ? STRUT_PATH_TOUCHDOWN : STRUT_PATH_LIFT_OFF;
-    bool several = scene->ground_count > 1;
     snprintf(what, sizeof what, "%s %s %s", scene->nodes[index].name, on ? "touches" : "leaves",
-             several ? scene->grounds[scene->contacts[contact].ground].name : "the ground");
+             strut_path_ground_name(s, contact));
   }
   snprintf(detail, sizeof detail, "%s%s", what, stable);
   strut_path_add_event(w, kind, w->y, index, before, after, detail);
@@ -393,16 +393,6 @@ static void relative_motion(const strut_path_system *s, int32_t j, size_t mode, 
   }
 }
 
-static double contact_motion(const strut_path_system *s, int32_t i, size_t mode) {
-  const int32_t *row = s->potential->row_of + s->model->contacts.at[i];
-  double sum = 0;
-  for (int c = 0; c < 2; c++)
-    if (row[c] >= 0)
-      sum += s->equations.terms.normal[i][c] *
-             gsl_matrix_get(s->algebra.vectors, (size_t)row[c], mode);
-  return sum;
-}
-
 static double held_motion(const strut_path_system *s, int32_t k, size_t mode) {
   double sum = 0;
   for (int32_t i = 0; i < s->n; i++)
@@ -415,6 +405,26 @@ static void add_square(gsl_matrix *ritz, const double *part, double factor) {
   for (size_t k = 0; k < ritz->size1; k++)
     for (size_t l = 0; l < ritz->size1; l++)
       *gsl_matrix_ptr(ritz, k, l) += factor * part[k] * part[l];
+}
+
+/* Displacement of a contact's node along a unit vector in a mode. */
+static double contact_motion(const strut_path_system *s, int32_t i, const double *unit,
+                             size_t mode) {
+  const int32_t *row = s->potential->row_of + s->model->contacts.at[i];
+  double sum = 0;
+  for (int c = 0; c < 2; c++)
+    if (row[c] >= 0) sum += unit[c] * gsl_matrix_get(s->algebra.vectors, (size_t)row[c], mode);
+  return sum;
+}
+
+static void project_contact(const strut_path_system *s, int32_t i, size_t first, gsl_matrix *ritz) {
+  const strut_contact_axes *axes = &s->contacts.contact[i].pose.axes;
+  double part[MOST_SOFT], along, across;
+  strut_path_contact_stiffness(s, i, &along, &across);
+  for (size_t k = 0; k < ritz->size1; k++) part[k] = contact_motion(s, i, axes->normal, first + k);
+  add_square(ritz, part, along);
+  for (size_t k = 0; k < ritz->size1; k++) part[k] = contact_motion(s, i, axes->tangent, first + k);
+  add_square(ritz, part, across);
 }
 
 /* slope b b' + t d2e/dq2 of an element, and the largest of its parts. */
@@ -468,10 +478,8 @@ static void project(strut_path_system *s, size_t first, gsl_matrix *ritz) {
   s->spectrum.soft_parts = 0.0;
   for (int32_t i = 0; i < s->model->elements.count; i++)
     if (s->elements.element[i].acts) project_element(s, i, first, ritz);
-  for (int32_t i = 0; i < s->model->contacts.count; i++) {
-    for (size_t k = 0; k < count; k++) along[k] = contact_motion(s, i, first + k);
-    if (s->latest.touching[i]) add_square(ritz, along, s->equations.terms.ground[i]);
-  }
+  for (int32_t i = 0; i < s->model->contacts.count; i++)
+    if (s->contacts.contact[i].touches) project_contact(s, i, first, ritz);
   for (int32_t i = 0; i < s->held.count; i++) {
     for (size_t k = 0; k < count; k++) along[k] = held_motion(s, i, first + k);
     add_square(ritz, along, s->held.by);

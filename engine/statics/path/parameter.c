@@ -21,21 +21,7 @@ bool strut_path_terms_create(const strut_model *model, strut_arena *arena, strut
   t->position = strut_arena_allocate(arena, length, sizeof(double));
   t->position_low = strut_arena_allocate(arena, length, sizeof(double));
   t->force = strut_arena_allocate(arena, length, sizeof(double));
-  size_t contacts = (size_t)model->contacts.count;
-  t->ground = strut_arena_allocate(arena, contacts, sizeof(double));
-  t->normal = strut_arena_allocate(arena, contacts, sizeof *t->normal);
-  t->point = strut_arena_allocate(arena, contacts, sizeof *t->point);
-  return t->stiffness && t->rest && t->rest_low && t->position && t->position_low && t->force &&
-         t->ground && t->normal && t->point;
-}
-
-bool strut_path_has_lines(const strut_model *model) {
-  const strut_contact_table *c = &model->contacts;
-  for (int32_t k = 0; k < c->surfaces; k++)
-    if (c->surface[k].moves ||
-        model->scene->grounds[c->surface[k].ground].shape != STRUT_GROUND_LINE)
-      return false;
-  return true;
+  return t->stiffness && t->rest && t->rest_low && t->position && t->position_low && t->force;
 }
 
 /* A scene at a value with its model, kept as long as laws of its elements are used. */
@@ -72,14 +58,10 @@ static void copy_terms(const strut_model *model, const strut_path_terms *from,
   memcpy(to->position, from->position, length);
   memcpy(to->position_low, from->position_low, length);
   memcpy(to->force, from->force, length);
-  memcpy(to->ground, from->ground, (size_t)model->contacts.count * sizeof(double));
-  memcpy(to->normal, from->normal, (size_t)model->contacts.count * sizeof *to->normal);
-  memcpy(to->point, from->point, (size_t)model->contacts.count * sizeof *to->point);
   to->laws = from->laws;
 }
 
 static void read_terms(const strut_model *model, strut_path_terms *t) {
-  const strut_contact_table *c = &model->contacts;
   size_t length = (size_t)model->length * sizeof(double);
   size_t slots = (size_t)model->members.slots * sizeof(double);
   memcpy(t->stiffness, model->members.stiffness, slots);
@@ -91,13 +73,6 @@ static void read_terms(const strut_model *model, strut_path_terms *t) {
     memcpy(t->force, model->constant_force, length);
   else
     memset(t->force, 0, length);
-  const double level[2] = {0.0, c->height};
-  for (int32_t i = 0; i < c->count; i++) {
-    const strut_facet *line = c->surface ? c->surface[c->surface_of[i]].facet : NULL;
-    t->ground[i] = c->entry[i].stiffness;
-    memcpy(t->normal[i], line ? line->axes.normal : c->normal, sizeof t->normal[i]);
-    memcpy(t->point[i], line ? line->point : level, sizeof t->point[i]);
-  }
   t->laws = model;
 }
 
@@ -115,18 +90,26 @@ static bool are_elements_alike(const strut_element_table *a, const strut_element
   return true;
 }
 
+/* The same contacts, with surfaces of as many facets. */
+static bool are_grounds_alike(const strut_contact_table *a, const strut_contact_table *b) {
+  if (a->count != b->count || a->surfaces != b->surfaces || !a->surface != !b->surface)
+    return false;
+  for (int32_t k = 0; k < a->surfaces; k++)
+    if (a->surface[k].facets != b->surface[k].facets) return false;
+  for (int32_t i = 0; i < a->count; i++)
+    if (a->at[i] != b->at[i] || (a->surface && a->surface_of[i] != b->surface_of[i])) return false;
+  return true;
+}
+
 /* Two models of one structure: the same members, elements, supports and contacts. */
 static bool is_same_structure(const strut_model *a, const strut_model *b) {
   const strut_member_table *s = &a->members, *t = &b->members;
   if (a->node_count != b->node_count || a->length != b->length || s->count != t->count ||
-      s->slots != t->slots || a->contacts.count != b->contacts.count || !strut_path_has_lines(a) ||
-      !strut_path_has_lines(b))
+      s->slots != t->slots || !are_grounds_alike(&a->contacts, &b->contacts))
     return false;
   for (int32_t j = 0; j < s->count; j++)
     if (s->from[j] != t->from[j] || s->to[j] != t->to[j] || s->slack[j] != t->slack[j])
       return false;
-  for (int32_t i = 0; i < a->contacts.count; i++)
-    if (a->contacts.at[i] != b->contacts.at[i]) return false;
   return memcmp(a->fixed, b->fixed, (size_t)a->length * sizeof *a->fixed) == 0 &&
          are_elements_alike(&a->elements, &b->elements);
 }
@@ -159,14 +142,11 @@ static bool read_scene_terms(strut_path_parameter *p, double value, strut_path_t
   if (status == STRUT_OK) {
     read_terms(scene->model, terms);
     strut_path_terms_release(terms);
-    if (scene->model->elements.count) {
-      terms->scene = scene;
-      return true;
-    }
-    terms->laws = p->model;
+    terms->scene = scene;
+    return true;
   }
   free_scene(scene);
-  return status == STRUT_OK || refuse_value(p, value, &error);
+  return refuse_value(p, value, &error);
 }
 
 /* Elements with memory have slots of their own, which follow that of what is driven. */
@@ -230,10 +210,6 @@ static bool difference_scenes(strut_path_parameter *p, double value, strut_path_
   divide_difference(a->rest, b->rest, apart, slots, rates->rest);
   divide_difference(a->position, b->position, apart, length, rates->position);
   divide_difference(a->force, b->force, apart, length, rates->force);
-  divide_difference(a->ground, b->ground, apart, (size_t)p->model->contacts.count, rates->ground);
-  size_t places = 2 * (size_t)p->model->contacts.count;
-  divide_difference(*a->normal, *b->normal, apart, places, *rates->normal);
-  divide_difference(*a->point, *b->point, apart, places, *rates->point);
   return true;
 }
 
@@ -279,6 +255,22 @@ static bool are_laws_different(const strut_element_table *a, const strut_element
   return false;
 }
 
+/* Do alike grounds have other places or stiffness? */
+static bool are_grounds_different(const strut_contact_table *a, const strut_contact_table *b) {
+  if (!is_equal(a->normal, b->normal, 2) || a->height != b->height) return true;
+  for (int32_t i = 0; i < a->count; i++)
+    if (a->entry[i].stiffness != b->entry[i].stiffness) return true;
+  for (int32_t k = 0; k < a->surfaces; k++) {
+    const strut_surface *s = &a->surface[k], *t = &b->surface[k];
+    if (!is_equal(s->centre, t->centre, 2) || s->radius != t->radius) return true;
+    for (int32_t f = 0; f < s->facets; f++)
+      if (!is_equal(s->facet[f].point, t->facet[f].point, 2) ||
+          !is_equal(s->facet[f].axes.normal, t->facet[f].axes.normal, 2))
+        return true;
+  }
+  return false;
+}
+
 /* True if the terms differ in equilibrium; positions matter only where they are held. */
 static bool is_different(const strut_model *model, const strut_path_terms *a,
                          const strut_path_terms *b) {
@@ -287,10 +279,8 @@ static bool is_different(const strut_model *model, const strut_path_terms *a,
     if (model->fixed[i] ? a->position[i] != b->position[i] : a->force[i] != b->force[i])
       return true;
   return are_laws_different(&a->laws->elements, &b->laws->elements) ||
-         !is_equal(a->stiffness, b->stiffness, slots) || !is_equal(a->rest, b->rest, slots) ||
-         !is_equal(a->ground, b->ground, (size_t)model->contacts.count) ||
-         !is_equal(*a->normal, *b->normal, 2 * (size_t)model->contacts.count) ||
-         !is_equal(*a->point, *b->point, 2 * (size_t)model->contacts.count);
+         are_grounds_different(&a->laws->contacts, &b->laws->contacts) ||
+         !is_equal(a->stiffness, b->stiffness, slots) || !is_equal(a->rest, b->rest, slots);
 }
 
 /* Checks that a scene's number has an effect and does not change the structure. */

@@ -28,7 +28,8 @@ const char *strut_path_event_name(strut_path_event_kind kind) {
                                       "bifurcation at a kink",
                                       "engages",
                                       "releases",
-                                      "kink of a law"};
+                                      "kink of a law",
+                                      "corner"};
   return names[kind];
 }
 
@@ -382,8 +383,6 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   int32_t steps = options->steps > 0 ? options->steps : STRUT_PATH_USUAL_STEPS;
   path_start b = {.options = options, .drawn = model, .setup.experiment = *experiment};
   *path = (strut_path){0};
-  if (!strut_path_has_lines(model))
-    return strut_fail(error, STRUT_USAGE, "paths need grounds that are straight lines at rest");
   if (!(fabs(until - options->from) > 0))
     return strut_fail(error, STRUT_USAGE, "the path ends where it starts, at %.6g", until);
   b.load = strut_arena_allocate(&b.arena, length, sizeof *b.load);

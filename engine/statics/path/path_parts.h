@@ -21,10 +21,8 @@ typedef struct strut_path_terms {
   double *rest, *rest_low;         /* (slots) rest length as a sum of two [m] */
   double *position, *position_low; /* (length) of held coordinates, likewise [m] */
   double *force;                   /* (length) gravity and loads [N] */
-  double *ground;                  /* (contacts) stiffness [N/m] */
-  double (*normal)[2];             /* (contacts) out of the straight ground of each */
-  double (*point)[2];              /* (contacts) on it [m] */
-  const strut_model *laws;         /* whose elements have laws and natural strains of these terms */
+  const strut_model
+      *laws; /* whose elements, contacts and grounds have the numbers of these terms */
   struct strut_path_scene *scene; /* that `laws` is of if it is not the path's own model, or NULL */
 } strut_path_terms;
 
@@ -40,8 +38,6 @@ typedef struct strut_path_parameter {
   strut_error refusal; /* STRUT_OK: none was */
 } strut_path_parameter;
 
-/** Are all grounds of the model, if it has some, straight lines at rest? */
-bool strut_path_has_lines(const strut_model *model);
 /** Terms of zeros in the arena; false: out of memory. */
 bool strut_path_terms_create(const strut_model *model, strut_arena *arena, strut_path_terms *terms);
 /** Releases the scene that terms were read from; what lies in the arena stays. */
@@ -124,6 +120,39 @@ double strut_path_element_switch_value(const struct strut_path_system *system, i
 bool strut_path_element_switch_is_on(const struct strut_path_system *system, int32_t which);
 void strut_path_element_switch_set(struct strut_path_system *system, int32_t which, bool on);
 
+/* Contacts in the equations of a path: nodes on lines, circles and profiles. For system.c. */
+
+/** A contact at the point that was evaluated last. */
+typedef struct strut_path_contact {
+  strut_contact_pose pose; /* against the facet that it lies on */
+  bool touches;            /* the ground acts, whatever the sign of the gap */
+  int32_t facet;           /* on which it lies as long as it touches */
+} strut_path_contact;
+
+typedef struct strut_path_contacts {
+  strut_path_contact *contact; /* (contacts) */
+  bool has_corners;            /* some surface has several facets: then a switch more for each */
+} strut_path_contacts;
+
+/** False: out of memory. */
+bool strut_path_contacts_create(const strut_model *model, strut_arena *arena,
+                                strut_path_contacts *contacts);
+/** Adds forces, stiffness and the parameter's slope of all contacts at system->latest.q. */
+void strut_path_add_contacts(struct strut_path_system *system);
+/** The normal forces, and what they take from the reactions (length). */
+void strut_path_contact_reactions(const struct strut_path_system *system, double *reaction,
+                                  double *contact);
+/** Stiffness of contact i along its normal and its tangent [N/m]. */
+void strut_path_contact_stiffness(const struct strut_path_system *system, int32_t contact,
+                                  double *along, double *across);
+/** Name of its ground, "the ground" where there is only one. */
+const char *strut_path_ground_name(const struct strut_path_system *system, int32_t contact);
+
+/** As strut_path_switch_value: of touching, and of staying on its facet. */
+double strut_path_contact_switch_value(const struct strut_path_system *system, int32_t contact);
+double strut_path_corner_value(const struct strut_path_system *system, int32_t contact);
+void strut_path_contact_switch_set(struct strut_path_system *system, int32_t contact, bool on);
+
 /* The equations of a path: equilibrium for a parameter, with what is taut and touching held fixed.
  *
  * Unknown is y: the free coordinates in units of the structure's size, then the parameter from
@@ -151,6 +180,7 @@ typedef struct strut_path_system {
   strut_path_parameter parameter;
   strut_path_member *member; /* (members) */
   strut_path_elements elements;
+  strut_path_contacts contacts;
   /** The numbers of the equations, and their rates with the parameter. */
   struct {
     strut_path_terms terms, rates; /* at terms_at; about rates_at */
@@ -160,7 +190,7 @@ typedef struct strut_path_system {
   } equations;
   /** The latest place. */
   struct {
-    uint8_t *pulling, *touching; /* (members), (contacts) 1 where forces act, of whatever sign */
+    uint8_t *pulling;                    /* (members) 1 where forces act, of whatever sign */
     double *q, *q_low, *g, *slope, *row; /* (length), (length), (n), (n) dg/dy_n, (n + 1) scratch */
     double forces;                       /* the largest force: what g is compared with [N] */
   } latest;
@@ -232,8 +262,10 @@ typedef enum strut_path_spectrum_detail {
 bool strut_path_spectrum(strut_path_system *system, const double *y,
                          strut_path_spectrum_detail wanted);
 
-/** Cables first, then contacts, then elements: what may change along the path. */
+/** Cables first, then contacts, then corners of their surfaces, then elements: what may change along the path. */
 int32_t strut_path_switch_count(const strut_path_system *system);
+/** Index of the first switch of corners; there are none where this is that of elements. */
+int32_t strut_path_first_corner_switch(const strut_path_system *system);
 /** Index of the first switch of elements. */
 int32_t strut_path_first_element_switch(const strut_path_system *system);
 /**
@@ -277,7 +309,8 @@ double strut_path_locate(strut_path_system *system, const strut_path_piece *piec
 /** A bifurcation that a branch may leave: all that a walk needs to begin there. */
 typedef struct strut_path_fork {
   double *y, *direction; /* (2 n + 2), (n + 1) off the path that it was found on */
-  uint8_t *pulling, *touching;
+  uint8_t *pulling;
+  strut_path_contact *contact; /* (contacts) */
   strut_path_element *element; /* (elements) */
   double factor, arc;
   int32_t path, depth;
@@ -341,6 +374,9 @@ void strut_path_walk_branches(strut_path_walk *walk, strut_path *path,
  * there is none.
  */
 bool strut_path_pass_kink(strut_path_walk *walk, int32_t which, const double *beyond);
+
+/** The same where a node leaves its facet over a corner, along which the parameter changes at once. */
+bool strut_path_pass_corner(strut_path_walk *walk, int32_t which);
 
 /** Is this switch one of the many kinks that stand for the bend of a smooth law? */
 bool strut_path_is_bend(const strut_path_system *system, int32_t which);

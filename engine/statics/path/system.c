@@ -46,12 +46,12 @@ static bool make_arrays(strut_path_system *s) {
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
     if (!(*arrays[i] = strut_arena_allocate(&s->arena, length + 1, sizeof(double)))) return false;
   s->latest.pulling = strut_arena_allocate(&s->arena, members, 1);
-  s->latest.touching = strut_arena_allocate(&s->arena, (size_t)s->model->contacts.count, 1);
   s->member = strut_arena_allocate(&s->arena, members, sizeof *s->member);
-  if (!s->latest.pulling || !s->latest.touching || !s->member) return false;
+  if (!s->latest.pulling || !s->member) return false;
   memset(s->latest.pulling, 1, members);
-  if (!strut_path_elements_create(s->model, &s->arena, &s->elements)) return false;
-  return strut_path_terms_create(s->model, &s->arena, &s->equations.terms) &&
+  return strut_path_elements_create(s->model, &s->arena, &s->elements) &&
+         strut_path_contacts_create(s->model, &s->arena, &s->contacts) &&
+         strut_path_terms_create(s->model, &s->arena, &s->equations.terms) &&
          strut_path_terms_create(s->model, &s->arena, &s->equations.rates);
 }
 
@@ -139,14 +139,6 @@ static double measure_member(const strut_path_system *s, int32_t j, strut_path_m
   return dd_double(dd_sub(length, rest));
 }
 
-static double gap_of(const strut_path_system *s, int32_t i) {
-  uint32_t at = s->model->contacts.at[i];
-  const double *point = s->equations.terms.point[i], *normal = s->equations.terms.normal[i];
-  strut_dd x = dd_sub(coordinate(s, at), dd_of(point[0]));
-  strut_dd y = dd_sub(coordinate(s, at + 1), dd_of(point[1]));
-  return dd_double(dd_add(dd_scale(x, normal[0]), dd_scale(y, normal[1])));
-}
-
 static void add_stiffness(strut_path_system *s, const int32_t *row, int count, double (*block)[4]) {
   for (int a = 0; a < count; a++)
     for (int b = 0; b < count; b++)
@@ -199,39 +191,12 @@ static void add_members(strut_path_system *s) {
   }
 }
 
-/* The ground as a spring that is there or not, whatever the sign of the gap. */
-static void add_contacts(strut_path_system *s) {
-  for (int32_t i = 0; i < s->model->contacts.count; i++) {
-    const double *normal = s->equations.terms.normal[i], *turn = s->equations.rates.normal[i];
-    const double *point = s->equations.terms.point[i], *moved = s->equations.rates.point[i];
-    uint32_t at = s->model->contacts.at[i];
-    const int32_t *row = s->potential->row_of + at;
-    double gap = gap_of(s, i), k = s->equations.terms.ground[i], block[4][4] = {{0}};
-    if (!s->latest.touching[i]) continue;
-    double rate = (s->latest.q[at] - point[0]) * turn[0] +
-                  (s->latest.q[at + 1] - point[1]) * turn[1] -
-                  (moved[0] * normal[0] + moved[1] * normal[1]);
-    for (int a = 0; a < 2; a++) { /* a support on the ground that is moved */
-      if (row[a] < 0) rate += normal[a] * s->equations.rates.position[at + (uint32_t)a];
-      for (int b = 0; b < 2; b++) block[a][b] = k * normal[a] * normal[b];
-    }
-    s->latest.forces = fmax(s->latest.forces, fabs(k * gap));
-    for (int a = 0; a < 2; a++) {
-      if (row[a] < 0) continue;
-      s->latest.g[row[a]] += k * gap * normal[a];
-      s->latest.slope[row[a]] +=
-          (s->equations.rates.ground[i] * gap + k * rate) * normal[a] + k * gap * turn[a];
-    }
-    add_stiffness(s, row, 2, block);
-  }
-}
-
 /* A unit motion of the whole: along the ground, out of it, or a turn. False: supports forbid it. */
 static bool rigid_motion(const strut_path_system *s, int which, double *motion) {
   const double axis[2][2] = {{1, 0}, {0, 1}};
-  bool sloped = s->model->contacts.count > 0;
-  const double *out = sloped ? s->equations.terms.normal[0] : axis[1];
-  const double tangent[2] = {out[1], -out[0]}, *along = sloped ? tangent : axis[0];
+  const strut_contact_table *grounds = &s->equations.terms.laws->contacts;
+  const double *out = grounds->count ? grounds->normal : axis[1];
+  const double *along = grounds->count ? grounds->tangent : axis[0];
   double centre[2] = {0, 0}, sum = 0;
   int32_t nodes = s->model->node_count, pins = 0;
   const int32_t *row_of = s->potential->row_of;
@@ -304,7 +269,7 @@ static bool evaluate(strut_path_system *s, const double *y, bool exactly) {
   gsl_matrix_set_zero(s->algebra.hessian);
   add_members(s);
   strut_path_add_elements(s);
-  add_contacts(s);
+  strut_path_add_contacts(s);
   for (int32_t i = 0; i < s->n; i++) s->latest.slope[i] *= s->parameter.range;
   hold_rigid_motions(s);
   return true;
@@ -322,11 +287,7 @@ void strut_path_reactions(const strut_path_system *s, double *reaction, double *
     reaction[t->to[j]] += fx, reaction[t->to[j] + 1] += fy;
   }
   strut_path_element_reactions(s, reaction);
-  for (int32_t i = 0; i < s->model->contacts.count; i++) {
-    contact[i] = s->latest.touching[i] ? 0.0 - s->equations.terms.ground[i] * gap_of(s, i) : 0.0;
-    for (uint32_t c = 0; c < 2; c++)
-      reaction[s->model->contacts.at[i] + c] -= contact[i] * s->equations.terms.normal[i][c];
-  }
+  strut_path_contact_reactions(s, reaction, contact);
   for (int32_t at = 0; at < s->model->length; at++)
     reaction[at] =
         at < 2 * s->model->node_count && s->potential->row_of[at] < 0 ? 0.0 + reaction[at] : 0.0;
@@ -427,8 +388,13 @@ bool strut_path_tangent(strut_path_system *s, const double *y, const double *row
   return true;
 }
 
-int32_t strut_path_first_element_switch(const strut_path_system *s) {
+int32_t strut_path_first_corner_switch(const strut_path_system *s) {
   return s->model->members.count + s->model->contacts.count;
+}
+
+int32_t strut_path_first_element_switch(const strut_path_system *s) {
+  int32_t corners = s->contacts.has_corners ? s->model->contacts.count : 0;
+  return strut_path_first_corner_switch(s) + corners;
 }
 
 int32_t strut_path_switch_count(const strut_path_system *s) {
@@ -443,26 +409,31 @@ static bool is_plain_cable(const strut_model *model, int32_t j) {
 
 double strut_path_switch_value(strut_path_system *s, int32_t which, const double *y) {
   int32_t members = s->model->members.count, elements = strut_path_first_element_switch(s);
+  int32_t corners = strut_path_first_corner_switch(s);
   strut_path_member m;
   if (which < members && !is_plain_cable(s->model, which)) return -HUGE_VAL;
   if (!place(s, y)) return (double)NAN;
   if (which >= elements) return strut_path_element_switch_value(s, which - elements);
-  return which < members ? measure_member(s, which, &m) : -gap_of(s, which - members);
+  if (which >= corners) return strut_path_corner_value(s, which - corners);
+  return which < members ? measure_member(s, which, &m)
+                         : strut_path_contact_switch_value(s, which - members);
 }
 
 bool strut_path_switch_is_on(const strut_path_system *s, int32_t which) {
   int32_t members = s->model->members.count, elements = strut_path_first_element_switch(s);
   if (which >= elements) return strut_path_element_switch_is_on(s, which - elements);
-  return which < members ? s->latest.pulling[which] : s->latest.touching[which - members] != 0;
+  if (which >= strut_path_first_corner_switch(s)) return true; /* it changes its facet instead */
+  return which < members ? s->latest.pulling[which] : s->contacts.contact[which - members].touches;
 }
 
 void strut_path_switch_set(strut_path_system *s, int32_t which, bool on) {
   assert(which >= 0 && which < strut_path_switch_count(s));
-  int32_t members = s->model->members.count, elements = strut_path_first_element_switch(s);
+  int32_t members = s->model->members.count, corners = strut_path_first_corner_switch(s);
+  int32_t elements = strut_path_first_element_switch(s);
   if (which >= elements)
     strut_path_element_switch_set(s, which - elements, on);
   else if (which < members)
     s->latest.pulling[which] = on;
-  else
-    s->latest.touching[which - members] = on;
+  else if (which < corners)
+    strut_path_contact_switch_set(s, which - members, on);
 }

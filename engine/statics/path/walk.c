@@ -402,7 +402,9 @@ static bool end_at_switch(strut_path_walk *w, strut_path_piece *piece, int32_t w
   memcpy(w->y, w->next, strut_path_bytes(w));
   memcpy(w->tangent, w->next_tangent, strut_path_bytes(w));
   int32_t negative = w->negative;
-  bool on = strut_path_pass_kink(w, which, beyond);
+  int32_t corner = strut_path_first_corner_switch(&w->system);
+  bool passes = which >= corner && which < strut_path_first_element_switch(&w->system);
+  bool on = passes ? strut_path_pass_corner(w, which) : strut_path_pass_kink(w, which, beyond);
   double since = w->arc - w->path->points[w->path->point_count - 1].arc;
   bool bends = on && negative == w->negative && strut_path_is_bend(&w->system, which);
   if (bends && since < w->step && ++w->bends < MOST_BENDS) return true;

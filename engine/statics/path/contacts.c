@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Contacts in the equations of a path: which touch, and on which facet of its surface each lies, is
+ * frozen between events, as for cables.
+ */
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/model/pose.h"
+#include "engine/statics/path/path_parts.h"
+
+bool strut_path_contacts_create(const strut_model *model, strut_arena *arena,
+                                strut_path_contacts *p) {
+  const strut_contact_table *t = &model->contacts;
+  p->contact = strut_arena_allocate(arena, (size_t)t->count, sizeof *p->contact);
+  for (int32_t k = 0; k < t->surfaces; k++) p->has_corners |= t->surface[k].facets > 1;
+  return p->contact;
+}
+
+/* Position of a contact's node against a point [m]. */
+static void span_from(const strut_path_system *s, uint32_t at, const double *point, strut_dd d[2]) {
+  for (uint32_t c = 0; c < 2; c++) {
+    const strut_dd place = {s->latest.q[at + c], s->latest.q_low[at + c]};
+    d[c] = dd_sub(place, dd_of(point[c]));
+  }
+}
+
+/* Against the line of a facet, to all digits. */
+static void find_on_line(const strut_path_system *s, uint32_t at, const double *point,
+                         const strut_contact_axes *axes, strut_contact_pose *pose) {
+  strut_dd d[2];
+  span_from(s, at, point, d);
+  pose->axes = *axes;
+  pose->gap = dd_double(dd_add(dd_scale(d[0], axes->normal[0]), dd_scale(d[1], axes->normal[1])));
+}
+
+/* The same of a circle. */
+static void find_on_circle(const strut_path_system *s, uint32_t at, const strut_surface *circle,
+                           strut_contact_pose *pose) {
+  strut_dd d[2], distance, gap;
+  double sign = circle->inside ? -1.0 : 1.0;
+  span_from(s, at, circle->centre, d);
+  distance = dd_length(d[0], d[1]);
+  if (!(distance.hi > 0.0)) return;
+  gap = dd_scale(dd_sub(distance, dd_of(circle->radius)), sign);
+  const double normal[2] = {sign * dd_double(dd_div(d[0], distance)),
+                            sign * dd_double(dd_div(d[1], distance))};
+  pose->axes = (strut_contact_axes){{normal[1], -normal[0]}, {normal[0], normal[1]}};
+  pose->gap = dd_double(gap), pose->curvature = sign / dd_double(distance);
+}
+
+const char *strut_path_ground_name(const strut_path_system *s, int32_t i) {
+  const strut_scene *scene = s->model->scene;
+  return scene->ground_count > 1 ? scene->grounds[scene->contacts[i].ground].name : "the ground";
+}
+
+/* Contact i at the latest positions against a ground of some terms: its facet if it touches, else the nearest. */
+static strut_contact_pose pose_in(const strut_path_system *s, const strut_path_terms *terms,
+                                  int32_t i) {
+  const strut_contact_table *c = &terms->laws->contacts;
+  const strut_path_contact *own = &s->contacts.contact[i];
+  strut_contact_pose pose = {.axes = c->axes};
+  const double level[2] = {0.0, c->height};
+  uint32_t at = c->at[i];
+  if (!c->surface) {
+    find_on_line(s, at, level, &c->axes, &pose);
+    return pose;
+  }
+  const strut_surface *surface = &c->surface[c->surface_of[i]];
+  bool line = surface->before == HUGE_VAL && surface->beyond == HUGE_VAL && surface->facets == 1;
+  if (surface->facets && (own->touches || line)) {
+    const strut_facet *facet = &surface->facet[own->touches ? own->facet : 0];
+    find_on_line(s, at, facet->point, &facet->axes, &pose);
+    pose.facet = own->touches ? own->facet : 0;
+    return pose;
+  }
+  pose = strut_contact_pose_at(c, i, s->latest.q, NULL, -1);
+  if (!surface->facets) find_on_circle(s, at, surface, &pose);
+  return pose;
+}
+
+/* How the force of a contact changes with the parameter where its node stays [N]. */
+static void find_rate(const strut_path_system *s, int32_t i, double rate[2]) {
+  const strut_path_parameter *p = &s->parameter;
+  rate[0] = rate[1] = 0.0;
+  if (p->options->over != STRUT_PATH_OVER_SCENE) return;
+  const strut_contact_pose low = pose_in(s, &p->low, i), high = pose_in(s, &p->high, i);
+  double below = p->low.laws->contacts.entry[i].stiffness * low.gap;
+  double above = p->high.laws->contacts.entry[i].stiffness * high.gap;
+  for (int c = 0; c < 2; c++)
+    rate[c] = (above * high.axes.normal[c] - below * low.axes.normal[c]) / p->apart;
+}
+
+static double stiffness_of(const strut_path_system *s, int32_t i) {
+  return s->equations.terms.laws->contacts.entry[i].stiffness;
+}
+
+/* The ground as a spring that is there or not, whatever the sign of the gap. */
+static void add_contact(strut_path_system *s, int32_t i) {
+  uint32_t at = s->model->contacts.at[i];
+  const int32_t *row = s->potential->row_of + at;
+  const strut_contact_pose *pose = &s->contacts.contact[i].pose;
+  const double *n = pose->axes.normal, *t = pose->axes.tangent;
+  double k = stiffness_of(s, i), force = k * pose->gap, across = force * pose->curvature, rate[2];
+  find_rate(s, i, rate);
+  s->latest.forces = fmax(s->latest.forces, fabs(force));
+  for (uint32_t a = 0; a < 2; a++) {
+    if (row[a] < 0) continue;
+    s->latest.g[row[a]] += force * n[a];
+    for (uint32_t b = 0; b < 2; b++) {
+      double entry = k * n[a] * n[b] + across * t[a] * t[b];
+      if (row[b] >= 0)
+        *gsl_matrix_ptr(s->algebra.hessian, (size_t)row[a], (size_t)row[b]) += entry;
+      else
+        rate[a] += entry * s->equations.rates.position[at + b]; /* it is moved on the ground */
+    }
+    s->latest.slope[row[a]] += rate[a];
+  }
+}
+
+void strut_path_add_contacts(strut_path_system *s) {
+  for (int32_t i = 0; i < s->model->contacts.count; i++) {
+    s->contacts.contact[i].pose = pose_in(s, &s->equations.terms, i);
+    if (s->contacts.contact[i].touches) add_contact(s, i);
+  }
+}
+
+void strut_path_contact_reactions(const strut_path_system *s, double *reaction, double *contact) {
+  for (int32_t i = 0; i < s->model->contacts.count; i++) {
+    const strut_path_contact *own = &s->contacts.contact[i];
+    contact[i] = own->touches ? 0.0 - stiffness_of(s, i) * own->pose.gap : 0.0;
+    for (uint32_t c = 0; c < 2; c++)
+      reaction[s->model->contacts.at[i] + c] -= contact[i] * own->pose.axes.normal[c];
+  }
+}
+
+void strut_path_contact_stiffness(const strut_path_system *s, int32_t i, double *along,
+                                  double *across) {
+  const strut_contact_pose *pose = &s->contacts.contact[i].pose;
+  *along = stiffness_of(s, i);
+  *across = *along * pose->gap * pose->curvature;
+}
+
+double strut_path_contact_switch_value(const strut_path_system *s, int32_t i) {
+  return -pose_in(s, &s->equations.terms, i).gap;
+}
+
+void strut_path_contact_switch_set(strut_path_system *s, int32_t i, bool on) {
+  strut_path_contact *own = &s->contacts.contact[i];
+  if (on && !own->touches) own->facet = pose_in(s, &s->equations.terms, i).facet;
+  own->touches = on;
+}
+
+/* The surface of contact i where it has corners that the contact may pass, or NULL. */
+static const strut_surface *cornered(const strut_path_system *s, int32_t i) {
+  const strut_contact_table *c = &s->equations.terms.laws->contacts;
+  const strut_surface *surface = c->surface ? &c->surface[c->surface_of[i]] : NULL;
+  return surface && surface->facets > 1 && s->contacts.contact[i].touches ? surface : NULL;
+}
+
+double strut_path_corner_value(const strut_path_system *s, int32_t i) {
+  const strut_surface *surface = cornered(s, i);
+  int32_t other;
+  if (!surface) return -HUGE_VAL;
+  return strut_surface_margin(surface, s->latest.q + s->model->contacts.at[i],
+                              s->contacts.contact[i].facet, &other);
+}
+
+/* Moves contact i to the facet beside its own; `row` (n + 1) becomes the direction that leads onto it. */
+static void change_facet(strut_path_system *s, int32_t i, double *row) {
+  const strut_surface *surface = cornered(s, i);
+  strut_path_contact *own = &s->contacts.contact[i];
+  uint32_t at = s->model->contacts.at[i];
+  int32_t other;
+  strut_surface_margin(surface, s->latest.q + at, own->facet, &other);
+  memset(row, 0, ((size_t)s->n + 1) * sizeof *row);
+  for (uint32_t c = 0; c < 2; c++) {
+    double turn = surface->facet[other].axes.normal[c] - surface->facet[own->facet].axes.normal[c];
+    int32_t at_row = s->potential->row_of[at + c];
+    row[at_row >= 0 ? at_row : s->n] +=
+        at_row >= 0 ? turn
+                    : turn * s->equations.rates.position[at + c] * s->parameter.range / s->size;
+  }
+  own->facet = other;
+}
+
+/*
+ * The force of a contact turns at once where its node passes a corner of the solid. At the corner each force in
+ * between is in equilibrium for some value of the parameter, with the node held by nothing else: the path leads
+ * along the corner to the value that the facet beyond wants, and that piece is unstable but for a displacement.
+ */
+bool strut_path_pass_corner(strut_path_walk *w, int32_t which) {
+  strut_path_system *s = &w->system;
+  const strut_scene *scene = s->model->scene;
+  int32_t i = which - strut_path_first_corner_switch(s), before = w->negative;
+  int32_t node = s->model->contacts.entry[i].node;
+  double *row = w->trial, value = strut_path_value(s, w->y);
+  char detail[300];
+  strut_path_evaluate(s, w->y);
+  strut_path_add_point(w, before);
+  change_facet(s, i, row);
+  memcpy(w->spare, w->y, strut_path_bytes(w));
+  double place = strut_path_dot(w, row, w->y);
+  bool held = !(strut_path_dot(w, row, row) > 0.0); /* the ground moves under a support */
+  for (int32_t k = 0; k <= s->n; k++) place += row[k] * w->y[s->n + 1 + k];
+  if (!held && strut_path_correct(s, row, place, w->y) < 0) return false;
+  if (!strut_path_tangent(s, w->y, held ? w->tangent : row, w->next_tangent)) return false;
+  w->arc += strut_path_distance(w, w->spare, w->y);
+  memcpy(w->tangent, w->next_tangent, ((size_t)s->n + 1) * sizeof *w->tangent);
+  strut_path_count_negative(w);
+  snprintf(detail, sizeof detail, "%s passes a corner of %s: %s jumps from %.6g to %.6g there",
+           scene->nodes[node].name, strut_path_ground_name(s, i), strut_path_subject(w), value,
+           strut_path_value(s, w->y));
+  strut_path_add_event(w, STRUT_PATH_CORNER, w->y, node, before, w->negative, detail);
+  return true;
+}

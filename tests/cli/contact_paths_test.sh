@@ -1,0 +1,105 @@
+#!/bin/sh
+# Statics on circles and profiles: paths and form finding, against closed forms.
+. "$(dirname "$0")/lib.sh"
+
+# ---- inside of a circle: the ground pushes against weight and load, so that both set the angle ----
+cat >pipe.yaml <<'END'
+strut: 1
+parameters: {radius: 1 m}
+nodes: {a: {position: [0, -1 m], mass: 1 kg}}
+ground: {circle: {centre: [0, 0], radius: radius, inside: yes}, stiffness: 10 kN/m, nodes: [a]}
+gravity: [0, -10 m/s^2]
+loads: {p: {node: a, force: [1 N, 0]}}
+END
+expect 0 path pipe.yaml --until 20 --json
+jq -e '[.points[] | (.factor * .factor + 100 | sqrt) as $n | (1 + $n / 10000) as $r |
+  .contacts.a - $n, .nodes.a[0] - $r * .factor / $n, .nodes.a[1] + $r * 10 / $n | fabs] | max < 1e-12' \
+  "$work/out" >/dev/null || fail "a node in a pipe"
+expect 0 path pipe.yaml --over radius --until '2 m' --json
+jq -e '[.points[] | (101 | sqrt) as $n | .contacts.a - $n, .nodes.a[0] - (.value / $n + 1e-4) | fabs] | max < 1e-11' \
+  "$work/out" >/dev/null || fail "a pipe that widens"
+
+# ---- on top of a circle: springs of 20 N/m sideways hold until the normal force by the radius is as much ----
+cat >ball.yaml <<'END'
+strut: 1
+nodes:
+  l: {position: [-3 m, 1 m], fixed: both}
+  r: {position: [3 m, 1 m], fixed: both}
+  a: [0, 1.2 m]
+members:
+  sl: {kind: spring, nodes: [l, a], stiffness: 10 N/m, rest_length: 2.5 m}
+  sr: {kind: spring, nodes: [r, a], stiffness: 10 N/m, rest_length: 2.5 m}
+ground: {circle: {centre: [0, 0], radius: 1 m}, stiffness: 100 kN/m, nodes: [a]}
+loads: {w: {node: a, force: [0, -10 N]}}
+END
+expect 0 path ball.yaml --until 3 --json
+jq -e '.events | length == 1 and .[0].kind == "bifurcation" and
+  (.[0] | (1 - .nodes.a[1]) as $d | (9 + $d * $d | sqrt) as $l |
+   20 * (9 + (1 - 2.5 / $l) * $d * $d) / ($l * $l) - 1e5 * $d / .nodes.a[1] | fabs < 1e-7)' "$work/out" >/dev/null || fail "a node on a ball: $(jq -c .events "$work/out")"
+
+# ---- over a convex corner: on each of its sides the forces along the facet balance ----
+cat >hill.yaml <<'END'
+strut: 1
+nodes:
+  l: {position: [-3 m, 1 m], fixed: both}
+  r: {position: [3 m, 1 m], fixed: both}
+  a: {position: [0, 1.2 m], mass: 1 kg}
+members:
+  sl: {kind: spring, nodes: [l, a], stiffness: 10 N/m, rest_length: 2 m}
+  sr: {kind: spring, nodes: [r, a], stiffness: 10 N/m, rest_length: 2 m}
+ground:
+  profile: [[-3, 0], [-1, 0.5], [0.5, 1], [1, 0.5], [1.5, 0.4], [3, 1]]
+  stiffness: 100 kN/m
+  nodes: [a]
+gravity: [0, -10 m/s^2]
+loads: {p: {node: a, force: [1 N, 0]}}
+END
+expect 0 path hill.yaml --until 30 --json
+jq -e '
+  def pull($x): . as $p | [$x - $p[0], 1 - $p[1]] | (.[0] * .[0] + .[1] * .[1] | sqrt) as $l |
+    map(. * 10 * ($l - 2) / $l);
+  def along($t; $load): (pull(-3) as $u | pull(3) as $v | ($u[0] + $v[0] + $load) * $t[0] + ($u[1] + $v[1] - 10) * $t[1]) | fabs;
+  [.events[] | .kind] == ["corner", "touchdown", "lift-off", "touchdown"] and
+  (.events[0].factor as $f | [.points[] | select(.nodes.a[0] < 0.7 and .factor > 10)] | last |
+    .factor as $before | .nodes.a | along([3, 1]; $before) < 1e-9) and
+  (.events[0] | .factor as $after | .nodes.a | along([1, -1]; $after) < 1e-9) and
+  (.events[1] | .factor as $f | .nodes.a | along([1, -1]; $f) < 1e-9) and
+  (.events[2] | .factor as $f | .nodes.a | along([5, -1]; $f) < 1e-9)' "$work/out" >/dev/null ||
+  fail "over a corner: $(jq -c '[.events[] | .kind, .detail]' "$work/out")"
+out_has "passes a corner of the ground: the factor jumps from"
+# carried over the same corner by its displacement, the node stays at it
+expect 0 path hill.yaml --over a.x --until '1.5 m' --json
+jq -e '[.events[] | .kind] == ["corner", "touchdown", "lift-off"]' "$work/out" >/dev/null || fail "over a corner, carried"
+# a corner at the same place, whether the profile is drawn or moved there by a parameter
+sed -e 's/^nodes:/parameters: {at: 0 m}\nnodes:/' -e 's/\[-3, 0\].*/[at - 3, 0], [at - 1, 0.5], [at + 0.5, 1], [at + 1, 0.5], [at + 1.5, 0.4], [at + 3, 1]]/' \
+  hill.yaml >moved.yaml
+expect 0 path moved.yaml --over at --until '-0.3 m' --json
+jq -c '.points[-1].nodes.a' "$work/out" >moved.last
+expect 0 path moved.yaml --set 'at=-0.3 m' --from 1 --until 1.001 --json
+jq -e --slurpfile m moved.last '(.points[0].nodes.a | .[0] - $m[0][0], .[1] - $m[0][1] | fabs) < 1e-8' "$work/out" >/dev/null ||
+  fail "a hill that moves"
+
+# ---- form finding in a pipe and between a floor and walls: the forces drawn for hold the shape ----
+cat >hung.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [-0.6, -0.8], mass: 1}
+  b: {position: [0.6, -0.8], mass: 1}
+  c: {position: [0, -0.4], mass: 1}
+members:
+  ab: {kind: bar, nodes: [a, b], stiffness: 10 kN/m}
+  ac: {kind: bar, nodes: [a, c], stiffness: 10 kN/m}
+  bc: {kind: bar, nodes: [b, c], stiffness: 10 kN/m}
+ground: {circle: {centre: [0, 0], radius: 1, inside: yes}, stiffness: 100 kN/m, nodes: [a, b]}
+gravity: [0, -10]
+END
+expect 0 form hung.yaml --from prestress --json
+# the pipe carries 30 N on two normals whose y is 0.8; c hangs on two bars
+jq -e '[.forces.ac + 5 * (0.6 * 0.6 + 0.4 * 0.4 | sqrt) / 0.4, .forces.ab + 15 / 0.8 * 0.6 - 7.5 | fabs] | max < 0.002' \
+  "$work/out" >/dev/null || fail "form in a pipe: $(cat "$work/out")"
+sed -e 's/^ground:.*/grounds:\n  floor: {height: -0.8, stiffness: 100 kN\/m, nodes: [a, b]}\n  wall: {through: [0.6, 0], normal: [-1, 0], stiffness: 100 kN\/m, nodes: [b]}\n  other: {through: [-0.6, 0], normal: [1, 0.2], stiffness: 100 kN\/m, nodes: [a]}/' \
+  hung.yaml >between.yaml
+expect 0 form between.yaml --from prestress --json
+jq -e '.residual < 1e-6' "$work/out" >/dev/null || fail "form between walls: $(cat "$work/out")"
+
+done_testing
