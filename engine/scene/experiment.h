@@ -112,6 +112,7 @@ typedef struct strut_experiment {
   strut_search search; /* of equilibria */
   size_t stage_count;
   strut_path_stage *stages; /* (stage_count) of a path */
+  bool path_friction;       /* paths keep friction */
   double duration;          /* [s]; 0 when given in periods */
   double periods;           /* number of periods of signal `period_signal`; 0 when in seconds */
   int32_t period_signal;    /* or -1 */

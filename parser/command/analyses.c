@@ -204,8 +204,19 @@ static strut_status choose_followed(const strut_command *command, const strut_ar
   return wanted->index >= 0 ? STRUT_OK : reject_name(command, arguments, scene, name);
 }
 
+/* --friction, or what the file says. */
+static strut_status read_friction(const strut_command *command, const strut_arguments *arguments,
+                                  bool *kept) {
+  const char *word = strut_option_text(arguments, STRUT_OPTION_FRICTION);
+  if (!word) return STRUT_OK;
+  *kept = strcmp(word, "kept") == 0;
+  if (*kept || strcmp(word, "none") == 0) return STRUT_OK;
+  return strut_usage_error(command, arguments, "--friction expects 'none' or 'kept', not '%s'",
+                           word);
+}
+
 static strut_status read_path_options(const strut_command *command,
-                                      const strut_arguments *arguments,
+                                      const strut_arguments *arguments, bool friction,
                                       strut_path_options *wanted) {
   int64_t steps = 0, branches = 0;
   strut_status status =
@@ -214,8 +225,9 @@ static strut_status read_path_options(const strut_command *command,
     status = strut_option_integer(command, arguments, STRUT_OPTION_BRANCHES, 1, DEEPEST, &branches);
   *wanted = (strut_path_options){.at = strut_option_text(arguments, STRUT_OPTION_AT),
                                  .steps = (int32_t)steps,
-                                 .branches = (int32_t)branches};
-  return status;
+                                 .branches = (int32_t)branches,
+                                 .friction = friction};
+  return status ? status : read_friction(command, arguments, &wanted->friction);
 }
 
 /* NODE.x=VALUE */
@@ -467,7 +479,8 @@ static bool has_stages(const strut_analysis *a) {
 
 static strut_status compute_path(strut_analysis *a, strut_error *error) {
   strut_path_options wanted;
-  strut_status status = read_path_options(a->command, a->arguments, &wanted);
+  strut_status status =
+      read_path_options(a->command, a->arguments, a->setup->experiment.path_friction, &wanted);
   if (status == STRUT_OK && has_stages(a))
     return strut_path_follow_stages(a->model, &a->setup->experiment, &wanted, &a->result.path,
                                     error);

@@ -61,6 +61,8 @@
       {STRUT_OPTION_STOP, "stop", "NODE.x=VALUE",                                                  \
        "or end earlier, where a node has moved so far along x or y"},                              \
       {STRUT_OPTION_AT, "at", "NAME", "equilibrium to start from (default: that of the start)"},   \
+      {STRUT_OPTION_FRICTION, "friction", "none|kept",                                             \
+       "kept: contacts stick and slide as the path goes (default: as the file says)"},             \
       {STRUT_OPTION_BRANCHES, "branches", "DEPTH",                                                 \
        "follow paths that leave at bifurcations: 1 of this path, 2 of its branches too, ..."},     \
   {                                                                                                \

@@ -54,6 +54,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_STOP, /* of a path: the displacement at which it ends */
   STRUT_OPTION_STEPS,
   STRUT_OPTION_BRANCHES,
+  STRUT_OPTION_FRICTION,
   STRUT_OPTION_FROM,
   STRUT_OPTION_LEAST_TENSION,
   STRUT_OPTION_LEAST_DENSITY,

@@ -77,6 +77,10 @@ static bool warn_of_points(const strut_listener *listener, const strut_scene *sc
 void strut_warn_of_path(const strut_listener *listener, const strut_scene *scene,
                         const strut_path *path) {
   bool warned = false;
+  if (path->friction && !path->grips)
+    strut_tell(listener, STRUT_MESSAGE_WARNING, NULL,
+               "friction is kept, but no contact has a static coefficient: laws 'smooth' "
+               "and 'stribeck' vanish at rest");
   for (size_t i = 0; i < path->stage_count && !warned; i++)
     warned = warn_of_points(listener, scene, &path->stages[i]);
   warned = warned || warn_of_points(listener, scene, path);

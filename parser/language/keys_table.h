@@ -247,7 +247,8 @@
   X(STIFFNESS_AT, DIRECTION, "direction", NUMBER, ANGLE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, goal.stiffness_direction), "From the x axis: 90 deg is upwards.")
 
 #define STRUT_SCENE_PATH_KEYS(X) \
-  X(SCENE_PATH, STAGES, "stages", FREE, NONE, ANY, "", REQUIRED, 0, "a list of stages such as [{load: NAME}]", BY_HAND, "One after the other, each from the end of the one before.")
+  X(SCENE_PATH, STAGES, "stages", FREE, NONE, ANY, "", OPTIONAL, 0, "a list of stages such as [{load: NAME}]", BY_HAND, "One after the other, each from the end of the one before.") \
+  X(SCENE_PATH, FRICTION, "friction", WORD, NONE, ANY, "none", OPTIONAL, 0, "none|kept", FIELD(strut_experiment, path_friction), "`kept`: contacts stick and slide by static and kinetic friction, as the path goes; every path of the model keeps it.")
 
 #define STRUT_STAGE_KEYS(X) \
   X(STAGE, LOAD, "load", TEXT, NONE, ANY, "", OPTIONAL, 7, "", FIELD(strut_path_stage, load), "The load whose factor grows. Loads that some stage names begin with the factor 0; all others act from the beginning.") \

@@ -172,9 +172,14 @@ void strut_read_stages(strut_reader *reader) {
     return;
   }
   strut_read_fields(reader, STRUT_SECTION_SCENE_PATH, slot->value, owner, &path);
-  if (!path.broken) strut_require(reader, &path, owner, slot->value->place);
+  if (path.broken) return;
+  strut_store_fields(reader, &path, owner, &reader->scene->arena, e, sizeof *e);
   const strut_slot *stages = strut_slot_of(&path, STRUT_KEY_SCENE_PATH_STAGES);
-  if (path.broken || stages->state != STRUT_GIVEN) return;
+  if (stages->state == STRUT_ABSENT &&
+      strut_slot_of(&path, STRUT_KEY_SCENE_PATH_FRICTION)->state == STRUT_ABSENT)
+    strut_report_error(reader, slot->value->place,
+                       "the path lacks 'stages', expected a list of stages such as [{load: NAME}]");
+  if (stages->state != STRUT_GIVEN) return;
   if (stages->value->kind != STRUT_TREE_LIST || !stages->value->count) {
     strut_report_error(reader, stages->value->place,
                        "expected a list of stages such as [{load: NAME}, {over: NODE.x, until: 1 "

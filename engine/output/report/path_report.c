@@ -24,22 +24,31 @@ static const double ROUNDING = 1e-12; /* of the largest force */
 /* One line of a path, a point or an event. */
 typedef struct state {
   double factor, arc;
-  const double *q, *force, *moment, *reaction, *contact, *pressure, *distance;
+  const double *q, *force, *moment, *reaction, *contact, *friction, *pressure, *distance;
 } state;
 
 static state state_of_point(const strut_path_point *p) {
-  return (state){p->factor,   p->arc,     p->q,        p->force,   p->moment,
-                 p->reaction, p->contact, p->pressure, p->distance};
+  return (state){p->factor,   p->arc,     p->q,        p->force,    p->moment,
+                 p->reaction, p->contact, p->friction, p->pressure, p->distance};
 }
 
 static state state_of_event(const strut_path_event *e) {
-  return (state){e->factor,   e->arc,     e->q,        e->force,   e->moment,
-                 e->reaction, e->contact, e->pressure, e->distance};
+  return (state){e->factor,   e->arc,     e->q,        e->force,    e->moment,
+                 e->reaction, e->contact, e->friction, e->pressure, e->distance};
 }
 
 /* ---- what carries load: one row for JSON, CSV and the table each ---- */
 
-typedef enum carrier { MEMBERS, HINGES, CELLS, DISTANCES, SUPPORTS, CONTACTS, CARRIERS } carrier;
+typedef enum carrier {
+  MEMBERS,
+  HINGES,
+  CELLS,
+  DISTANCES,
+  SUPPORTS,
+  CONTACTS,
+  FRICTION,
+  CARRIERS
+} carrier;
 
 /* Key in JSON; column of the CSV and words in the table, of supports along x and y; unit. */
 static const struct {
@@ -54,19 +63,20 @@ static const struct {
                   {" support x", " support y"},
                   "N"},
     [CONTACTS] = {"contacts", {"ground [N]"}, {" ground"}, "N"},
+    [FRICTION] = {"friction", {"friction [N]"}, {" friction"}, "N"},
 };
 
 /* Number of values of a kind at a state; of supports two for each node. */
 static size_t count_values(const strut_scene *scene, carrier kind) {
-  const size_t counts[CARRIERS] = {scene->member_count,   scene->hinge_count,
-                                   scene->cell_count,     scene->distance_count,
-                                   2 * scene->node_count, scene->contact_count};
+  const size_t counts[CARRIERS] = {
+      scene->member_count,   scene->hinge_count,   scene->cell_count,   scene->distance_count,
+      2 * scene->node_count, scene->contact_count, scene->contact_count};
   return counts[kind];
 }
 
 static const double *values_of(const state *at, carrier kind) {
-  const double *const values[CARRIERS] = {at->force,    at->moment,   at->pressure,
-                                          at->distance, at->reaction, at->contact};
+  const double *const values[CARRIERS] = {at->force,    at->moment,  at->pressure, at->distance,
+                                          at->reaction, at->contact, at->friction};
   return values[kind];
 }
 
@@ -77,7 +87,8 @@ static const char *name_of(const strut_scene *scene, carrier kind, size_t i) {
     case CELLS: return scene->cells[i].name;
     case DISTANCES: return scene->distances[i].name;
     case SUPPORTS: return scene->nodes[i / 2].name;
-    case CONTACTS: return strut_contact_name(scene, i);
+    case CONTACTS:
+    case FRICTION: return strut_contact_name(scene, i);
     case CARRIERS: break;
   }
   return "";
@@ -100,9 +111,9 @@ static double shown_force(double value, double largest) {
   return fabs(value) > ROUNDING * largest ? value : 0.0;
 }
 
-/* Of coordinates only those have a reaction that are held. */
+/* Of coordinates only those have a reaction that are held; there is friction only where it was kept. */
 static bool has_value(const strut_path *path, carrier kind, size_t i) {
-  return kind != SUPPORTS || path->held[i];
+  return kind == FRICTION ? path->friction : kind != SUPPORTS || path->held[i];
 }
 
 static void add_nodes(strut_json *json, struct cJSON *to, const strut_scene *scene,
@@ -118,6 +129,7 @@ static void add_forces(strut_json *json, struct cJSON *to, const strut_path *pat
   for (carrier kind = MEMBERS; kind < CARRIERS; kind++) {
     size_t count = count_values(scene, kind);
     if (!count && (kind == HINGES || kind == CELLS || kind == DISTANCES)) continue;
+    if (kind == FRICTION && !path->friction) continue;
     struct cJSON *values = strut_json_object(json, to, carriers[kind].key);
     for (size_t i = 0; i < count; i += kind == SUPPORTS ? 2 : 1) {
       const double *value = values_of(at, kind) + i;

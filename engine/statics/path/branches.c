@@ -188,6 +188,8 @@ static void walk_side(strut_path_walk *w, size_t k, int side, strut_path *path,
                          .reference = path->reference,
                          .several = path->several,
                          .coordinate = path->coordinate,
+                         .friction = path->friction,
+                         .grips = path->grips,
                          .held = path->held,
                          .from = {.path = f->path, .factor = f->factor, .arc = f->arc}};
   w->path = branch;

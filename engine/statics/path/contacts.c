@@ -81,16 +81,26 @@ static strut_contact_pose pose_in(const strut_path_system *s, const strut_path_t
   return pose;
 }
 
-/* How the force of a contact changes with the parameter where its node stays [N]. */
+/* Derivative of its energy, with friction, by its node's coordinates: minus the force on the node [N]. */
+static void gradient_in(const strut_path_system *s, const strut_path_terms *terms, int32_t i,
+                        const strut_contact_pose *pose, double gradient[2]) {
+  const strut_path_contact *own = &s->contacts.contact[i];
+  const double *along = own->sticks ? own->tangent : pose->axes.tangent;
+  double normal = terms->laws->contacts.entry[i].stiffness * pose->gap;
+  double friction = strut_path_friction_force(s, terms, i, pose->gap);
+  for (int c = 0; c < 2; c++) gradient[c] = normal * pose->axes.normal[c] - friction * along[c];
+}
+
+/* How that changes with the parameter where its node stays. */
 static void find_rate(const strut_path_system *s, int32_t i, double rate[2]) {
   const strut_path_parameter *p = &s->parameter;
+  double below[2], above[2];
   rate[0] = rate[1] = 0.0;
   if (p->options->over != STRUT_PATH_OVER_SCENE) return;
   const strut_contact_pose low = pose_in(s, &p->low, i), high = pose_in(s, &p->high, i);
-  double below = p->low.laws->contacts.entry[i].stiffness * low.gap;
-  double above = p->high.laws->contacts.entry[i].stiffness * high.gap;
-  for (int c = 0; c < 2; c++)
-    rate[c] = (above * high.axes.normal[c] - below * low.axes.normal[c]) / p->apart;
+  gradient_in(s, &p->low, i, &low, below);
+  gradient_in(s, &p->high, i, &high, above);
+  for (int c = 0; c < 2; c++) rate[c] = (above[c] - below[c]) / p->apart;
 }
 
 static double stiffness_of(const strut_path_system *s, int32_t i) {
@@ -103,19 +113,23 @@ static void add_contact(strut_path_system *s, int32_t i) {
   const int32_t *row = s->potential->row_of + at;
   const strut_contact_pose *pose = &s->contacts.contact[i].pose;
   const double *n = pose->axes.normal, *t = pose->axes.tangent;
-  double k = stiffness_of(s, i), force = k * pose->gap, across = force * pose->curvature, rate[2];
+  double k = stiffness_of(s, i), force = k * pose->gap, across = force * pose->curvature;
+  double gradient[2], rate[2], block[2][2];
+  for (int a = 0; a < 2; a++)
+    for (int b = 0; b < 2; b++) block[a][b] = k * n[a] * n[b] + across * t[a] * t[b];
+  strut_path_friction_block(s, i, block);
+  gradient_in(s, &s->equations.terms, i, pose, gradient);
   find_rate(s, i, rate);
   s->latest.forces = fmax(s->latest.forces, fabs(force));
   for (uint32_t a = 0; a < 2; a++) {
     if (row[a] < 0) continue;
-    s->latest.g[row[a]] += force * n[a];
-    for (uint32_t b = 0; b < 2; b++) {
-      double entry = k * n[a] * n[b] + across * t[a] * t[b];
+    s->latest.g[row[a]] += gradient[a];
+    for (uint32_t b = 0; b < 2; b++)
       if (row[b] >= 0)
-        *gsl_matrix_ptr(s->algebra.hessian, (size_t)row[a], (size_t)row[b]) += entry;
+        *gsl_matrix_ptr(s->algebra.hessian, (size_t)row[a], (size_t)row[b]) += block[a][b];
       else
-        rate[a] += entry * s->equations.rates.position[at + b]; /* it is moved on the ground */
-    }
+        rate[a] +=
+            block[a][b] * s->equations.rates.position[at + b]; /* it is moved on the ground */
     s->latest.slope[row[a]] += rate[a];
   }
 }
@@ -127,20 +141,24 @@ void strut_path_add_contacts(strut_path_system *s) {
   }
 }
 
-void strut_path_contact_reactions(const strut_path_system *s, double *reaction, double *contact) {
+void strut_path_contact_reactions(const strut_path_system *s, double *reaction, double *contact,
+                                  double *friction) {
   for (int32_t i = 0; i < s->model->contacts.count; i++) {
     const strut_path_contact *own = &s->contacts.contact[i];
+    double gradient[2] = {0.0, 0.0};
+    if (own->touches) gradient_in(s, &s->equations.terms, i, &own->pose, gradient);
     contact[i] = own->touches ? 0.0 - stiffness_of(s, i) * own->pose.gap : 0.0;
-    for (uint32_t c = 0; c < 2; c++)
-      reaction[s->model->contacts.at[i] + c] -= contact[i] * own->pose.axes.normal[c];
+    friction[i] = 0.0 + strut_path_friction_force(s, &s->equations.terms, i, own->pose.gap);
+    for (uint32_t c = 0; c < 2; c++) reaction[s->model->contacts.at[i] + c] += gradient[c];
   }
 }
 
 void strut_path_contact_stiffness(const strut_path_system *s, int32_t i, double *along,
                                   double *across) {
   const strut_contact_pose *pose = &s->contacts.contact[i].pose;
+  const strut_path_contact *own = &s->contacts.contact[i];
   *along = stiffness_of(s, i);
-  *across = *along * pose->gap * pose->curvature;
+  *across = *along * pose->gap * pose->curvature + (own->sticks ? s->contacts.grip : 0.0);
 }
 
 double strut_path_contact_switch_value(const strut_path_system *s, int32_t i) {
@@ -149,8 +167,17 @@ double strut_path_contact_switch_value(const strut_path_system *s, int32_t i) {
 
 void strut_path_contact_switch_set(strut_path_system *s, int32_t i, bool on) {
   strut_path_contact *own = &s->contacts.contact[i];
-  if (on && !own->touches) own->facet = pose_in(s, &s->equations.terms, i).facet;
+  if (on && !own->touches) {
+    own->pose = pose_in(s, &s->equations.terms, i);
+    own->facet = own->pose.facet;
+    strut_path_friction_touch(s, i);
+  }
   own->touches = on;
+  if (!on) own->sticks = false, own->direction = 0.0;
+}
+
+double strut_path_grip_switch_value(const strut_path_system *s, int32_t i) {
+  return strut_path_grip_value(s, i, pose_in(s, &s->equations.terms, i).gap);
 }
 
 /* The surface of contact i where it has corners that the contact may pass, or NULL. */
@@ -168,6 +195,29 @@ double strut_path_corner_value(const strut_path_system *s, int32_t i) {
                               s->contacts.contact[i].facet, &other);
 }
 
+void strut_path_add_to_row(const strut_path_system *s, uint32_t at, double entry, double *row) {
+  int32_t free = s->potential->row_of[at];
+  double moved = s->equations.rates.position[at] * s->parameter.range / s->size;
+  row[free >= 0 ? free : s->n] += free >= 0 ? entry : entry * moved;
+}
+
+double strut_path_rate_of(const strut_path_system *s, uint32_t at, const double *tangent) {
+  int32_t free = s->potential->row_of[at];
+  double moved = s->equations.rates.position[at] * s->parameter.range / s->size;
+  return free >= 0 ? tangent[free] : tangent[s->n] * moved;
+}
+
+bool strut_path_jump(strut_path_walk *w, const double *row) {
+  int32_t count = w->system.n + 1;
+  double place = strut_path_dot(w, row, w->y);
+  if (!(strut_path_dot(w, row, row) > 0.0)) return true;
+  for (int32_t k = 0; k < count; k++) place += row[k] * w->y[count + k];
+  memcpy(w->spare, w->y, strut_path_bytes(w));
+  if (strut_path_correct(&w->system, row, place, w->y) < 0) return false;
+  w->arc += strut_path_distance(w, w->spare, w->y);
+  return true;
+}
+
 /* Moves contact i to the facet beside its own; `row` (n + 1) becomes the direction that leads onto it. */
 static void change_facet(strut_path_system *s, int32_t i, double *row) {
   const strut_surface *surface = cornered(s, i);
@@ -176,13 +226,10 @@ static void change_facet(strut_path_system *s, int32_t i, double *row) {
   int32_t other;
   strut_surface_margin(surface, s->latest.q + at, own->facet, &other);
   memset(row, 0, ((size_t)s->n + 1) * sizeof *row);
-  for (uint32_t c = 0; c < 2; c++) {
-    double turn = surface->facet[other].axes.normal[c] - surface->facet[own->facet].axes.normal[c];
-    int32_t at_row = s->potential->row_of[at + c];
-    row[at_row >= 0 ? at_row : s->n] +=
-        at_row >= 0 ? turn
-                    : turn * s->equations.rates.position[at + c] * s->parameter.range / s->size;
-  }
+  for (uint32_t c = 0; c < 2; c++)
+    strut_path_add_to_row(
+        s, at + c, surface->facet[other].axes.normal[c] - surface->facet[own->facet].axes.normal[c],
+        row);
   own->facet = other;
 }
 
@@ -196,23 +243,20 @@ bool strut_path_pass_corner(strut_path_walk *w, int32_t which) {
   const strut_scene *scene = s->model->scene;
   int32_t i = which - strut_path_first_corner_switch(s), before = w->negative;
   int32_t node = s->model->contacts.entry[i].node;
-  double *row = w->trial, value = strut_path_value(s, w->y);
+  double *row = w->trial, value = strut_path_value(s, w->y), turn = w->tangent[s->n];
   char detail[300];
   strut_path_evaluate(s, w->y);
   strut_path_add_point(w, before);
   change_facet(s, i, row);
-  memcpy(w->spare, w->y, strut_path_bytes(w));
-  double place = strut_path_dot(w, row, w->y);
   bool held = !(strut_path_dot(w, row, row) > 0.0); /* the ground moves under a support */
-  for (int32_t k = 0; k <= s->n; k++) place += row[k] * w->y[s->n + 1 + k];
-  if (!held && strut_path_correct(s, row, place, w->y) < 0) return false;
+  if (!strut_path_jump(w, row)) return false;
   if (!strut_path_tangent(s, w->y, held ? w->tangent : row, w->next_tangent)) return false;
-  w->arc += strut_path_distance(w, w->spare, w->y);
   memcpy(w->tangent, w->next_tangent, ((size_t)s->n + 1) * sizeof *w->tangent);
   strut_path_count_negative(w);
   snprintf(detail, sizeof detail, "%s passes a corner of %s: %s jumps from %.6g to %.6g there",
            scene->nodes[node].name, strut_path_ground_name(s, i), strut_path_subject(w), value,
            strut_path_value(s, w->y));
   strut_path_add_event(w, STRUT_PATH_CORNER, w->y, node, before, w->negative, detail);
+  strut_path_report_exchange(w, turn, before);
   return true;
 }

@@ -22,8 +22,9 @@ static const double BLURRED = 100; /* and this many roundings of the stiffness *
 
 double strut_path_measure_switch(strut_path_system *s, const double *y,
                                  const strut_path_piece *piece, int32_t which) {
-  (void)piece;
-  return strut_path_switch_value(s, which, y);
+  bool grip =
+      which >= strut_path_first_grip_switch(s) && which < strut_path_first_element_switch(s);
+  return grip ? strut_path_measure_grip(s, y, piece, which) : strut_path_switch_value(s, which, y);
 }
 
 double strut_path_measure_eigenvalue(strut_path_system *s, const double *y,
@@ -191,7 +192,8 @@ static switch_group collect_switches(strut_path_walk *w, int32_t which) {
   switch_group g = {0};
   for (int32_t k = 0; k < strut_path_switch_count(s); k++) {
     double here = strut_path_switch_value(s, k, w->y);
-    if (k >= strut_path_first_corner_switch(s) && k < strut_path_first_element_switch(s)) continue;
+    if (k >= strut_path_first_corner_switch(s) && k < strut_path_first_element_switch(s))
+      continue; /* they are passed one by one */
     if (k == which) g.first = g.count;
     if (k != which &&
         !(fabs(here) <= STRUT_PATH_EVEN * s->size && g.count + (k < which) < MOST_TOGETHER))
@@ -203,7 +205,9 @@ static switch_group collect_switches(strut_path_walk *w, int32_t which) {
   return g;
 }
 
-static void set_switches(strut_path_system *s, const switch_group *g, unsigned thrown) {
+static void set_switches(strut_path_walk *w, const switch_group *g, unsigned thrown) {
+  strut_path_system *s = &w->system;
+  strut_path_evaluate(s, w->y); /* what touches does so here */
   for (int32_t i = 0; i < g->count; i++)
     strut_path_switch_set(s, g->which[i], g->was_on[i] != (thrown >> i & 1));
 }
@@ -225,7 +229,7 @@ static bool find_tangent(strut_path_walk *w, const switch_group *g, unsigned thr
                          const double *beyond) {
   strut_path_system *s = &w->system;
   double sense = 0;
-  set_switches(s, g, thrown);
+  set_switches(w, g, thrown);
   for (int32_t i = 0; i <= s->n; i++) w->trial[i] = beyond[i] - w->y[i];
   if (!strut_path_tangent(s, w->y, w->tangent, w->next_tangent) &&
       !strut_path_tangent(s, w->y, w->trial, w->next_tangent))
@@ -258,7 +262,7 @@ static bool choose_switches(strut_path_walk *w, const switch_group *g, const dou
   if (find_tangent(w, g, first, beyond)) return true;
   for (*thrown = 1; *thrown < 1u << g->count; ++*thrown)
     if (*thrown != first && find_tangent(w, g, *thrown, beyond)) return true;
-  set_switches(&w->system, g, first);
+  set_switches(w, g, first);
   *thrown = first;
   return false;
 }
@@ -334,8 +338,7 @@ static void report_switch(strut_path_walk *w, int32_t which, int32_t before, int
   strut_path_add_event(w, kind, w->y, index, before, after, detail);
 }
 
-/* Reports a parameter that turns back at the kink, or a change of stability if it continues. */
-static void report_exchange(strut_path_walk *w, double turn, int32_t before) {
+void strut_path_report_exchange(strut_path_walk *w, double turn, int32_t before) {
   strut_path_system *s = &w->system;
   char detail[300];
   if (turn * w->tangent[s->n] < 0) {
@@ -363,7 +366,7 @@ bool strut_path_pass_kink(strut_path_walk *w, int32_t which, const double *beyon
   while (!(thrown >> last & 1)) last--;
   for (int32_t i = 0; i <= last; i++)
     if (thrown >> i & 1) report_switch(w, g.which[i], before, i == last ? w->negative : before);
-  if (found) report_exchange(w, turn, before);
+  if (found) strut_path_report_exchange(w, turn, before);
   return found;
 }
 
@@ -543,11 +546,45 @@ static size_t find_soft(const strut_path_system *s, double below, size_t *first)
   return count;
 }
 
+/* Where a contact slides: eigenvalues by their real parts, which are those that pass through zero. */
+static bool find_unsymmetric(strut_path_system *s) {
+  size_t n = (size_t)s->n;
+  gsl_vector_complex *values = gsl_vector_complex_alloc(n);
+  gsl_matrix_complex *vectors = gsl_matrix_complex_alloc(n, n);
+  gsl_eigen_nonsymmv_workspace *eigen = gsl_eigen_nonsymmv_alloc(n);
+  gsl_permutation *order = gsl_permutation_alloc(n);
+  bool found = values && vectors && eigen && order;
+  gsl_matrix_memcpy(s->algebra.work, s->algebra.hessian);
+  found = found && gsl_eigen_nonsymmv(s->algebra.work, values, vectors, eigen) == 0;
+  if (found) {
+    const gsl_vector_view real = gsl_vector_complex_real(values);
+    gsl_sort_vector_index(order, &real.vector);
+    for (size_t k = 0; k < n; k++) {
+      size_t from = gsl_permutation_get(order, k);
+      gsl_vector_complex_view column = gsl_matrix_complex_column(vectors, from);
+      const gsl_vector_view vector = gsl_vector_complex_real(&column.vector);
+      gsl_vector_set(s->algebra.values, k, gsl_vector_get(&real.vector, from));
+      gsl_matrix_set_col(s->algebra.vectors, k, &vector.vector);
+    }
+    double largest = fmax(fabs(gsl_vector_get(s->algebra.values, 0)),
+                          fabs(gsl_vector_get(s->algebra.values, n - 1)));
+    s->spectrum.noise = ROUNDING * largest;
+    for (size_t k = 0; k < n; k++)
+      s->spectrum.negative += gsl_vector_get(s->algebra.values, k) < -s->spectrum.noise;
+  }
+  gsl_vector_complex_free(values);
+  gsl_matrix_complex_free(vectors);
+  gsl_eigen_nonsymmv_free(eigen);
+  gsl_permutation_free(order);
+  return found;
+}
+
 bool strut_path_spectrum(strut_path_system *s, const double *y, strut_path_spectrum_detail wanted) {
   size_t first;
   if (!strut_path_evaluate(s, y)) return false;
   s->spectrum.negative = s->spectrum.folded = strut_path_count_folded(s);
   if (s->n == 0) return true;
+  if (strut_path_slides(s)) return find_unsymmetric(s);
   if (wanted == STRUT_PATH_VECTORS) {
     find_vectors(s);
   } else {

@@ -90,6 +90,10 @@ static bool are_elements_alike(const strut_element_table *a, const strut_element
   return true;
 }
 
+static bool is_equal(const double *a, const double *b, size_t count) {
+  return memcmp(a, b, count * sizeof *a) == 0;
+}
+
 /* The same contacts, with surfaces of as many facets. */
 static bool are_grounds_alike(const strut_contact_table *a, const strut_contact_table *b) {
   if (a->count != b->count || a->surfaces != b->surfaces || !a->surface != !b->surface)
@@ -99,6 +103,33 @@ static bool are_grounds_alike(const strut_contact_table *a, const strut_contact_
   for (int32_t i = 0; i < a->count; i++)
     if (a->at[i] != b->at[i] || (a->surface && a->surface_of[i] != b->surface_of[i])) return false;
   return true;
+}
+
+/* Do alike grounds lie elsewhere? */
+static bool are_grounds_moved(const strut_contact_table *a, const strut_contact_table *b) {
+  if (!is_equal(a->normal, b->normal, 2) || a->height != b->height) return true;
+  for (int32_t k = 0; k < a->surfaces; k++) {
+    const strut_surface *s = &a->surface[k], *t = &b->surface[k];
+    if (!is_equal(s->centre, t->centre, 2) || s->radius != t->radius) return true;
+    for (int32_t f = 0; f < s->facets; f++)
+      if (!is_equal(s->facet[f].point, t->facet[f].point, 2) ||
+          !is_equal(s->facet[f].axes.normal, t->facet[f].axes.normal, 2))
+        return true;
+  }
+  return false;
+}
+
+/* Have alike contacts another stiffness, or, where it is kept, another friction? */
+static bool are_contacts_different(const strut_contact_table *a, const strut_contact_table *b,
+                                   bool friction) {
+  for (int32_t i = 0; i < a->count; i++) {
+    const strut_friction *s = &a->entry[i].friction, *t = &b->entry[i].friction;
+    bool other = s->mu_static != t->mu_static || s->mu_kinetic != t->mu_kinetic ||
+                 s->mu_static_backward != t->mu_static_backward ||
+                 s->mu_kinetic_backward != t->mu_kinetic_backward;
+    if (a->entry[i].stiffness != b->entry[i].stiffness || (friction && other)) return true;
+  }
+  return false;
 }
 
 /* Two models of one structure: the same members, elements, supports and contacts. */
@@ -138,6 +169,12 @@ static bool read_scene_terms(strut_path_parameter *p, double value, strut_path_t
     status = strut_fail(&error, STRUT_USAGE,
                         "%s changes what the structure is made of (nodes, members, hinges, laws, "
                         "supports or contacts); a path needs the same structure throughout",
+                        p->options->name);
+  if (status == STRUT_OK && p->options->friction &&
+      are_grounds_moved(&p->model->contacts, &scene->model->contacts))
+    status = strut_fail(&error, STRUT_USAGE,
+                        "%s moves the ground, and friction is kept, which needs a ground at rest; "
+                        "move the structure or turn its loads, or leave friction out",
                         p->options->name);
   if (status == STRUT_OK) {
     read_terms(scene->model, terms);
@@ -230,10 +267,6 @@ bool strut_path_parameter_rates(strut_path_parameter *p, double value, strut_pat
   return false;
 }
 
-static bool is_equal(const double *a, const double *b, size_t count) {
-  return memcmp(a, b, count * sizeof *a) == 0;
-}
-
 /* Do the elements' laws have other numbers? */
 static bool are_laws_different(const strut_element_table *a, const strut_element_table *b) {
   for (int32_t i = 0; i < a->count; i++) {
@@ -255,31 +288,16 @@ static bool are_laws_different(const strut_element_table *a, const strut_element
   return false;
 }
 
-/* Do alike grounds have other places or stiffness? */
-static bool are_grounds_different(const strut_contact_table *a, const strut_contact_table *b) {
-  if (!is_equal(a->normal, b->normal, 2) || a->height != b->height) return true;
-  for (int32_t i = 0; i < a->count; i++)
-    if (a->entry[i].stiffness != b->entry[i].stiffness) return true;
-  for (int32_t k = 0; k < a->surfaces; k++) {
-    const strut_surface *s = &a->surface[k], *t = &b->surface[k];
-    if (!is_equal(s->centre, t->centre, 2) || s->radius != t->radius) return true;
-    for (int32_t f = 0; f < s->facets; f++)
-      if (!is_equal(s->facet[f].point, t->facet[f].point, 2) ||
-          !is_equal(s->facet[f].axes.normal, t->facet[f].axes.normal, 2))
-        return true;
-  }
-  return false;
-}
-
 /* True if the terms differ in equilibrium; positions matter only where they are held. */
 static bool is_different(const strut_model *model, const strut_path_terms *a,
-                         const strut_path_terms *b) {
+                         const strut_path_terms *b, bool friction) {
   size_t slots = (size_t)model->members.slots;
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     if (model->fixed[i] ? a->position[i] != b->position[i] : a->force[i] != b->force[i])
       return true;
   return are_laws_different(&a->laws->elements, &b->laws->elements) ||
-         are_grounds_different(&a->laws->contacts, &b->laws->contacts) ||
+         are_grounds_moved(&a->laws->contacts, &b->laws->contacts) ||
+         are_contacts_different(&a->laws->contacts, &b->laws->contacts, friction) ||
          !is_equal(a->stiffness, b->stiffness, slots) || !is_equal(a->rest, b->rest, slots);
 }
 
@@ -295,7 +313,7 @@ static strut_status check_effect(strut_path_parameter *p, strut_error *error) {
     p->refusal = (strut_error){0};
     if (!valid && (why.status == STRUT_USAGE || why.status == STRUT_NO_MEMORY))
       return strut_fail(error, why.status, "%s", why.message);
-    if (!valid || is_different(p->model, &p->base, &p->low)) return STRUT_OK;
+    if (!valid || is_different(p->model, &p->base, &p->low, p->options->friction)) return STRUT_OK;
   }
   return strut_fail(error, STRUT_USAGE,
                     "%s changes nothing that matters at rest: no stiffness, rest length, support, "

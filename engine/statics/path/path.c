@@ -29,7 +29,9 @@ const char *strut_path_event_name(strut_path_event_kind kind) {
                                       "engages",
                                       "releases",
                                       "kink of a law",
-                                      "corner"};
+                                      "corner",
+                                      "slips",
+                                      "sticks"};
   return names[kind];
 }
 
@@ -222,13 +224,13 @@ static strut_status descend_to_rest(const path_start *b, const uint8_t *held, bo
   return status;
 }
 
-/* The equilibrium of that name. */
-static strut_status start_at_name(path_start *b, strut_error *error) {
+/* The equilibrium of that name; friction, where it is kept, holds what is none without. */
+static strut_status start_at_name(path_start *b, const char *name, strut_error *error) {
   strut_rest_state rest;
-  strut_status status = strut_rest_state_find(b->model, &b->setup.experiment, b->options->at,
-                                              &b->arena, &rest, error);
+  strut_status status =
+      strut_rest_state_find(b->model, &b->setup.experiment, name, &b->arena, &rest, error);
   if (status) return status;
-  if (!rest.at_rest)
+  if (!rest.at_rest && !b->options->friction)
     return strut_fail(error, STRUT_NOT_SETTLED,
                       "'%.100s' is no equilibrium where the path starts: the residual is %.3g N",
                       rest.name, rest.residual);
@@ -241,9 +243,13 @@ static strut_status find_start(path_start *b, strut_error *error) {
   const strut_path_options *o = b->options;
   size_t length = (size_t)b->model->length;
   bool without = o->over == STRUT_PATH_OVER_LOAD && o->from == 0;
+  const strut_settle *settle = &b->setup.experiment.settle;
+  const char *at = o->at                                               ? o->at
+                   : o->friction && settle->wanted && settle->friction ? "start"
+                                                                       : NULL;
   memcpy(b->q, o->start ? o->start : b->model->start, length * sizeof *b->q);
   strut_status status = o->start ? STRUT_OK
-                        : o->at  ? start_at_name(b, error)
+                        : at     ? start_at_name(b, at, error)
                                  : descend_to_rest(b, NULL, without, error);
   if (status || o->over != STRUT_PATH_OVER_COORDINATE || b->model->fixed[o->index]) return status;
   b->held = strut_arena_allocate(&b->arena, length, sizeof *b->held);
@@ -300,6 +306,7 @@ static strut_status create_walk(path_start *b, double until, strut_path_walk *w,
                                         .load = b->load,
                                         .from = b->options->from,
                                         .range = until - b->options->from};
+  if (b->options->friction) w->path->grips = strut_path_friction_create(s);
   return strut_path_parameter_create(&s->parameter, b->q, &s->arena, error);
 }
 
@@ -351,6 +358,7 @@ static strut_status name_parameter(const strut_model *model, const strut_path_op
                                    strut_path *path, strut_error *error) {
   const strut_scene *scene = model->scene;
   path->over = o->over;
+  path->friction = o->friction;
   /* The names may be those of a call's options, which do not stay. */
   if (o->load) path->load = strut_arena_text(&path->arena, o->load, strlen(o->load));
   path->coordinate = o->over == STRUT_PATH_OVER_COORDINATE ? o->index : -1;

@@ -35,12 +35,14 @@ typedef enum strut_path_event_kind {
   STRUT_PATH_ENGAGE,           /* a stop is reached, or another element of one sign begins to act */
   STRUT_PATH_RELEASE,          /* it ceases to act */
   STRUT_PATH_LAW,              /* a law passes a kink */
-  STRUT_PATH_CORNER /* a node passes a corner of a profile, where the force on it turns */
+  STRUT_PATH_CORNER, /* a node passes a corner of a profile, where the force on it turns */
+  STRUT_PATH_SLIP,   /* a contact begins to slide */
+  STRUT_PATH_STICK   /* it sticks again */
 } strut_path_event_kind;
 
 /**
  * "limit point", "bifurcation", "slack", "taut", "touchdown", "lift-off", "limit point at a kink",
- * "bifurcation at a kink", "engages", "releases", "kink of a law", "corner".
+ * "bifurcation at a kink", "engages", "releases", "kink of a law", "corner", "slips", "sticks".
  */
 STRUT_API const char *strut_path_event_name(strut_path_event_kind kind);
 
@@ -54,6 +56,8 @@ typedef struct strut_path_point {
   double *moment;   /* (hinges) [N m] */
   double *reaction; /* (length) force of supports on held coordinates, else 0 [N] */
   double *contact;  /* (contacts) normal force of the ground [N] */
+  double *
+      friction; /* (contacts) its force on the node along the tangent; 0 unless friction is kept [N] */
   double *pressure; /* (cells) inside [N/m] */
   double *distance; /* (distances) force [N] */
 } strut_path_point;
@@ -66,7 +70,8 @@ typedef struct strut_path_event {
                          kink */
   int32_t before, after; /* eigenvalues of the stiffness below zero on its two sides */
   const char *detail;    /* in words */
-  double *q, *force, *moment, *reaction, *contact, *pressure, *distance; /* as of a point */
+  double *q, *force, *moment, *reaction, *contact, *friction, *pressure,
+      *distance; /* as of a point */
 } strut_path_event;
 
 typedef enum strut_path_end {
@@ -102,6 +107,8 @@ typedef struct strut_path {
   double reference;   /* [N] that a load's factor 1 stands for where all loads are alike; else 0 */
   bool several;       /* it is so for each of several loads */
   int32_t coordinate; /* that is displaced, 2 node + 1 for y; else -1 */
+  bool friction;      /* it was kept */
+  bool grips;         /* and some contact has static friction */
   size_t point_count, event_count;
   strut_path_point *points;
   strut_path_event *events;
@@ -146,6 +153,7 @@ typedef struct strut_path_options {
                         comes to rest */
   const double *start;  /* (length) or, before `at`, the equilibrium itself, with the parameter at
                           `from`; a coordinate that is displaced has its value there */
+  bool friction;        /* static and kinetic friction act, by the history of the path */
   double from;          /* where the path begins: in SI, or the factor */
   double until;         /* where it ends; a load's factor from 0 to 0 ends at 1 */
   int32_t steps;        /* maximum number of steps; 0: the usual ones; of each branch, too */

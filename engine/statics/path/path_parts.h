@@ -127,10 +127,17 @@ typedef struct strut_path_contact {
   strut_contact_pose pose; /* against the facet that it lies on */
   bool touches;            /* the ground acts, whatever the sign of the gap */
   int32_t facet;           /* on which it lies as long as it touches */
+  /* with friction: */
+  bool grips;        /* it has a static coefficient */
+  bool sticks;       /* while it touches: it sticks; else it slides */
+  double direction;  /* of sliding along its tangent, 1 or -1; 0: none was found yet */
+  double tangent[2]; /* where it sticks, along which */
+  strut_dd anchor;   /* and where along it nothing would hold it back [m] */
 } strut_path_contact;
 
 typedef struct strut_path_contacts {
   strut_path_contact *contact; /* (contacts) */
+  double grip;                 /* stiffness of contacts that stick [N/m]; 0 without friction */
   bool has_corners;            /* some surface has several facets: then a switch more for each */
 } strut_path_contacts;
 
@@ -139,9 +146,9 @@ bool strut_path_contacts_create(const strut_model *model, strut_arena *arena,
                                 strut_path_contacts *contacts);
 /** Adds forces, stiffness and the parameter's slope of all contacts at system->latest.q. */
 void strut_path_add_contacts(struct strut_path_system *system);
-/** The normal forces, and what they take from the reactions (length). */
+/** The normal forces, friction along the tangents, and what they take from the reactions (length). */
 void strut_path_contact_reactions(const struct strut_path_system *system, double *reaction,
-                                  double *contact);
+                                  double *contact, double *friction);
 /** Stiffness of contact i along its normal and its tangent [N/m]. */
 void strut_path_contact_stiffness(const struct strut_path_system *system, int32_t contact,
                                   double *along, double *across);
@@ -151,7 +158,30 @@ const char *strut_path_ground_name(const struct strut_path_system *system, int32
 /** As strut_path_switch_value: of touching, and of staying on its facet. */
 double strut_path_contact_switch_value(const struct strut_path_system *system, int32_t contact);
 double strut_path_corner_value(const struct strut_path_system *system, int32_t contact);
+double strut_path_grip_switch_value(const struct strut_path_system *system, int32_t contact);
 void strut_path_contact_switch_set(struct strut_path_system *system, int32_t contact, bool on);
+
+/* Friction of contacts in the equations of a path. For contacts.c; only where the path keeps friction. */
+
+/** Finds which contacts have static friction; false: none. */
+bool strut_path_friction_create(struct strut_path_system *system);
+/** All that touch stick, with the forces that equilibrium needs; after strut_path_evaluate. */
+void strut_path_friction_begin(struct strut_path_system *system);
+/** A contact that has just touched sticks. */
+void strut_path_friction_touch(struct strut_path_system *system, int32_t contact);
+/** Force on the node along the tangent for some terms and gap [N]; 0 where there is no friction. */
+double strut_path_friction_force(const struct strut_path_system *system,
+                                 const strut_path_terms *terms, int32_t contact, double gap);
+/** Adds the stiffness; where the contact slides it has no symmetry. */
+void strut_path_friction_block(const struct strut_path_system *system, int32_t contact,
+                               double block[2][2]);
+/** Does some contact slide? */
+bool strut_path_slides(const struct strut_path_system *system);
+/** Is the kinetic coefficient of a contact another than the static one? */
+bool strut_path_friction_drops(const struct strut_path_system *system, int32_t contact);
+/** As strut_path_switch_value, of a contact that sticks, with the gap there; of another one -INFINITY. */
+double strut_path_grip_value(const struct strut_path_system *system, int32_t contact, double gap);
+void strut_path_grip_set(struct strut_path_system *system, int32_t contact, bool on);
 
 /* The equations of a path: equilibrium for a parameter, with what is taut and touching held fixed.
  *
@@ -235,8 +265,9 @@ double strut_path_value(const strut_path_system *system, const double *y);
 
 /** Everything at y, which need be no equilibrium; false: no scene has this value. */
 bool strut_path_evaluate(strut_path_system *system, const double *y);
-/** After strut_path_evaluate: reactions (length) and normal forces of contacts. */
-void strut_path_reactions(const strut_path_system *system, double *reaction, double *contact);
+/** After strut_path_evaluate: reactions (length), normal forces and friction of contacts. */
+void strut_path_reactions(const strut_path_system *system, double *reaction, double *contact,
+                          double *friction);
 
 /**
  * Newton's method to equilibrium on the plane row . y = value. Iterations used, or -1: it does not
@@ -262,10 +293,12 @@ typedef enum strut_path_spectrum_detail {
 bool strut_path_spectrum(strut_path_system *system, const double *y,
                          strut_path_spectrum_detail wanted);
 
-/** Cables first, then contacts, then corners of their surfaces, then elements: what may change along the path. */
+/** Cables first, then contacts, corners of their surfaces, and their grips, then elements: what may change along
+    the path. */
 int32_t strut_path_switch_count(const strut_path_system *system);
-/** Index of the first switch of corners; there are none where this is that of elements. */
+/** Index of the first switch of corners, and of grips; there are none where this is the next one's. */
 int32_t strut_path_first_corner_switch(const strut_path_system *system);
+int32_t strut_path_first_grip_switch(const strut_path_system *system);
 /** Index of the first switch of elements. */
 int32_t strut_path_first_element_switch(const strut_path_system *system);
 /**
@@ -293,6 +326,9 @@ typedef double (*strut_path_measure)(strut_path_system *system, const double *y,
 /** The value of a switch, strut_path_switch_value. */
 double strut_path_measure_switch(strut_path_system *system, const double *y,
                                  const strut_path_piece *piece, int32_t which);
+/** The same of the grip of a contact; where it slides, how fast the path leads it back. */
+double strut_path_measure_grip(strut_path_system *system, const double *y,
+                               const strut_path_piece *piece, int32_t which);
 /** An eigenvalue of the stiffness, counted from the lowest. */
 double strut_path_measure_eigenvalue(strut_path_system *system, const double *y,
                                      const strut_path_piece *piece, int32_t which);
@@ -377,6 +413,16 @@ bool strut_path_pass_kink(strut_path_walk *walk, int32_t which, const double *be
 
 /** The same where a node leaves its facet over a corner, along which the parameter changes at once. */
 bool strut_path_pass_corner(strut_path_walk *walk, int32_t which);
+/** The same where a contact begins to slide, with the same jump, or to stick. */
+bool strut_path_pass_grip(strut_path_walk *walk, int32_t which, const double *beyond);
+/** Adds the derivative by coordinate `at` [1] to a row (n + 1) over the unknowns. */
+void strut_path_add_to_row(const strut_path_system *system, uint32_t at, double entry, double *row);
+/** Rate of coordinate `at` along a tangent (n + 1), in units of y. */
+double strut_path_rate_of(const strut_path_system *system, uint32_t at, const double *tangent);
+/** Corrects walk->y, with row . y as it is; false: it does not converge. A row of zeros changes nothing. */
+bool strut_path_jump(strut_path_walk *walk, const double *row);
+/** Reports a parameter that turns back at walk->y, or a change of stability if it continues. */
+void strut_path_report_exchange(strut_path_walk *walk, double turn, int32_t before);
 
 /** Is this switch one of the many kinks that stand for the bend of a smooth law? */
 bool strut_path_is_bend(const strut_path_system *system, int32_t which);

@@ -57,6 +57,7 @@ static strut_path_options options_of(stages *s, size_t k) {
                           .start = k ? s->q : NULL,
                           .at = k ? NULL : s->usual->at,
                           .branches = last ? s->usual->branches : 0,
+                          .friction = s->usual->friction,
                           .steps = stage->steps ? stage->steps : s->usual->steps};
   if (stage->load) {
     int32_t load = strut_thing_find(scene, STRUT_THING_LOAD, stage->load);

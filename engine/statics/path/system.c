@@ -236,7 +236,7 @@ static void hold_rigid_motions(strut_path_system *s) {
     work = load = 0;
     for (int32_t i = 0; i < s->n; i++)
       work += s->latest.slope[i] * row[i], load += s->latest.slope[i] * s->latest.slope[i];
-    gsl_blas_dsymv(CblasLower, 1.0, s->algebra.hessian, &motion.vector, 0.0, &product.vector);
+    gsl_blas_dgemv(CblasNoTrans, 1.0, s->algebra.hessian, &motion.vector, 0.0, &product.vector);
     if (gsl_blas_dnrm2(&product.vector) > RIGID * stiff) continue;
     if (fabs(work) > RIGID * sqrt(load)) {
       s->drifts = true;
@@ -277,7 +277,8 @@ static bool evaluate(strut_path_system *s, const double *y, bool exactly) {
 
 bool strut_path_evaluate(strut_path_system *s, const double *y) { return evaluate(s, y, true); }
 
-void strut_path_reactions(const strut_path_system *s, double *reaction, double *contact) {
+void strut_path_reactions(const strut_path_system *s, double *reaction, double *contact,
+                          double *friction) {
   const strut_member_table *t = &s->model->members;
   for (int32_t at = 0; at < s->model->length; at++) reaction[at] = -s->equations.terms.force[at];
   for (int32_t j = 0; j < t->count; j++) {
@@ -287,7 +288,7 @@ void strut_path_reactions(const strut_path_system *s, double *reaction, double *
     reaction[t->to[j]] += fx, reaction[t->to[j] + 1] += fy;
   }
   strut_path_element_reactions(s, reaction);
-  strut_path_contact_reactions(s, reaction, contact);
+  strut_path_contact_reactions(s, reaction, contact, friction);
   for (int32_t at = 0; at < s->model->length; at++)
     reaction[at] =
         at < 2 * s->model->node_count && s->potential->row_of[at] < 0 ? 0.0 + reaction[at] : 0.0;
@@ -392,9 +393,14 @@ int32_t strut_path_first_corner_switch(const strut_path_system *s) {
   return s->model->members.count + s->model->contacts.count;
 }
 
-int32_t strut_path_first_element_switch(const strut_path_system *s) {
+int32_t strut_path_first_grip_switch(const strut_path_system *s) {
   int32_t corners = s->contacts.has_corners ? s->model->contacts.count : 0;
   return strut_path_first_corner_switch(s) + corners;
+}
+
+int32_t strut_path_first_element_switch(const strut_path_system *s) {
+  int32_t grips = s->contacts.grip > 0.0 ? s->model->contacts.count : 0;
+  return strut_path_first_grip_switch(s) + grips;
 }
 
 int32_t strut_path_switch_count(const strut_path_system *s) {
@@ -409,11 +415,12 @@ static bool is_plain_cable(const strut_model *model, int32_t j) {
 
 double strut_path_switch_value(strut_path_system *s, int32_t which, const double *y) {
   int32_t members = s->model->members.count, elements = strut_path_first_element_switch(s);
-  int32_t corners = strut_path_first_corner_switch(s);
+  int32_t corners = strut_path_first_corner_switch(s), grips = strut_path_first_grip_switch(s);
   strut_path_member m;
   if (which < members && !is_plain_cable(s->model, which)) return -HUGE_VAL;
   if (!place(s, y)) return (double)NAN;
   if (which >= elements) return strut_path_element_switch_value(s, which - elements);
+  if (which >= grips) return strut_path_grip_switch_value(s, which - grips);
   if (which >= corners) return strut_path_corner_value(s, which - corners);
   return which < members ? measure_member(s, which, &m)
                          : strut_path_contact_switch_value(s, which - members);
@@ -422,6 +429,8 @@ double strut_path_switch_value(strut_path_system *s, int32_t which, const double
 bool strut_path_switch_is_on(const strut_path_system *s, int32_t which) {
   int32_t members = s->model->members.count, elements = strut_path_first_element_switch(s);
   if (which >= elements) return strut_path_element_switch_is_on(s, which - elements);
+  int32_t grips = strut_path_first_grip_switch(s);
+  if (which >= grips) return s->contacts.contact[which - grips].sticks;
   if (which >= strut_path_first_corner_switch(s)) return true; /* it changes its facet instead */
   return which < members ? s->latest.pulling[which] : s->contacts.contact[which - members].touches;
 }
@@ -429,9 +438,11 @@ bool strut_path_switch_is_on(const strut_path_system *s, int32_t which) {
 void strut_path_switch_set(strut_path_system *s, int32_t which, bool on) {
   assert(which >= 0 && which < strut_path_switch_count(s));
   int32_t members = s->model->members.count, corners = strut_path_first_corner_switch(s);
-  int32_t elements = strut_path_first_element_switch(s);
+  int32_t elements = strut_path_first_element_switch(s), grips = strut_path_first_grip_switch(s);
   if (which >= elements)
     strut_path_element_switch_set(s, which - elements, on);
+  else if (which >= grips)
+    strut_path_grip_set(s, which - grips, on);
   else if (which < members)
     s->latest.pulling[which] = on;
   else if (which < corners)

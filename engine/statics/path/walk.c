@@ -41,8 +41,10 @@ static bool keep_state(strut_path_walk *w, const double *y, strut_path_point *po
   point->reaction = strut_arena_allocate(&w->path->arena, length, sizeof(double));
   point->contact =
       strut_arena_allocate(&w->path->arena, (size_t)model->contacts.count, sizeof(double));
+  point->friction =
+      strut_arena_allocate(&w->path->arena, (size_t)model->contacts.count, sizeof(double));
   if (!point->q || !point->force || !point->moment || !point->reaction || !point->contact ||
-      !point->pressure || !point->distance) {
+      !point->friction || !point->pressure || !point->distance) {
     w->failed = true;
     return false;
   }
@@ -57,7 +59,7 @@ static bool keep_state(strut_path_walk *w, const double *y, strut_path_point *po
   strut_path_element_forces(s, STRUT_ELEMENT_HINGE, point->moment);
   strut_path_element_forces(s, STRUT_ELEMENT_DISTANCE, point->distance);
   strut_path_pressures(s, point->pressure);
-  strut_path_reactions(s, point->reaction, point->contact);
+  strut_path_reactions(s, point->reaction, point->contact, point->friction);
   return true;
 }
 
@@ -97,6 +99,7 @@ void strut_path_add_event(strut_path_walk *w, strut_path_event_kind kind, const 
                             .moment = state.moment,
                             .reaction = state.reaction,
                             .contact = state.contact,
+                            .friction = state.friction,
                             .pressure = state.pressure,
                             .distance = state.distance};
   size_t at = p->event_count++; /* in the order of the path */
@@ -390,6 +393,14 @@ static bool end_path(strut_path_walk *w, strut_path_end end) {
   return false;
 }
 
+static bool pass_switch(strut_path_walk *w, int32_t which, const double *beyond) {
+  const strut_path_system *s = &w->system;
+  if (which < strut_path_first_corner_switch(s) || which >= strut_path_first_element_switch(s))
+    return strut_path_pass_kink(w, which, beyond);
+  return which < strut_path_first_grip_switch(s) ? strut_path_pass_corner(w, which)
+                                                 : strut_path_pass_grip(w, which, beyond);
+}
+
 /* Ends the piece where a switch is thrown and continues from there. */
 static bool end_at_switch(strut_path_walk *w, strut_path_piece *piece, int32_t which,
                           double *beyond) {
@@ -402,9 +413,7 @@ static bool end_at_switch(strut_path_walk *w, strut_path_piece *piece, int32_t w
   memcpy(w->y, w->next, strut_path_bytes(w));
   memcpy(w->tangent, w->next_tangent, strut_path_bytes(w));
   int32_t negative = w->negative;
-  int32_t corner = strut_path_first_corner_switch(&w->system);
-  bool passes = which >= corner && which < strut_path_first_element_switch(&w->system);
-  bool on = passes ? strut_path_pass_corner(w, which) : strut_path_pass_kink(w, which, beyond);
+  bool on = pass_switch(w, which, beyond);
   double since = w->arc - w->path->points[w->path->point_count - 1].arc;
   bool bends = on && negative == w->negative && strut_path_is_bend(&w->system, which);
   if (bends && since < w->step && ++w->bends < MOST_BENDS) return true;
@@ -474,6 +483,13 @@ static void sharpen_start(strut_path_walk *w) {
   w->y[w->system.n] = w->y[2 * w->system.n + 1] = 0;
 }
 
+/* A contact that slides at once with another coefficient does so in a first step, which jumps. */
+static bool is_about_to_drop(const strut_path_system *s, int32_t which) {
+  int32_t grip = which - strut_path_first_grip_switch(s);
+  return grip >= 0 && which < strut_path_first_element_switch(s) &&
+         strut_path_friction_drops(s, grip);
+}
+
 bool strut_path_walk_begin(strut_path_walk *w) {
   strut_path_system *s = &w->system;
   const double h = 1e-6;
@@ -483,6 +499,7 @@ bool strut_path_walk_begin(strut_path_walk *w) {
     double value = strut_path_switch_value(s, k, w->y);
     if (isfinite(value)) strut_path_switch_set(s, k, value > -STRUT_PATH_EVEN * s->size);
   }
+  if (strut_path_evaluate(s, w->y)) strut_path_friction_begin(s);
   sharpen_start(w);
   for (int round = 0; round < ROUNDS; round++) { /* switches at zero follow the path */
     bool changed = false;
@@ -492,6 +509,7 @@ bool strut_path_walk_begin(strut_path_walk *w) {
     for (int32_t k = 0; k < strut_path_switch_count(s); k++) {
       double here = strut_path_switch_value(s, k, w->y);
       if (!isfinite(here) || fabs(here) > STRUT_PATH_EVEN * s->size) continue;
+      if (is_about_to_drop(s, k)) continue;
       bool on = strut_path_switch_value(s, k, w->next) >= here;
       changed = changed || on != strut_path_switch_is_on(s, k);
       strut_path_switch_set(s, k, on);

@@ -408,6 +408,7 @@ static strut_status follow_path(const strut_study *study, strut_sweep_job *job, 
   strut_path_options options;
   const char *unit;
   strut_status status = choose_path(study, &job->setup.scene, &options, &unit, &job->error);
+  options.friction = job->setup.experiment.path_friction;
   if (!status)
     status = strut_path_follow(r->model, &job->setup.experiment, &options, &r->path, &job->error);
   if (!status && r->path.remark[0]) /* why it ended early */
