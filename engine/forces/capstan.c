@@ -469,6 +469,22 @@ strut_capstan_ends strut_capstan_tensions(const strut_model *model, const strut_
   return ends;
 }
 
+void strut_capstan_find_rest(const strut_model *model, int32_t i, const double *rest,
+                             const double *q, strut_capstan_rest *found) {
+  cable c;
+  measure(model, rest, i, q, &c);
+  if (c.material[0] < 0.0) share_evenly(&c);
+  settle(&c);
+  memset(found->force, 0, sizeof found->force);
+  for (int k = 0; k < c.n; k++) {
+    const double pull[2] = {c.tension[k] * c.x[k], c.tension[k] * c.y[k]};
+    for (int a = 0; a < 2; a++)
+      found->force[2 * k + a] += pull[a], found->force[2 * k + 2 + a] -= pull[a];
+    found->tension[k] = c.tension[k], found->material[k] = c.material[k];
+    found->mode[k] = c.mode[k];
+  }
+}
+
 double strut_capstan_energy(const strut_model *model, int32_t i, const double *rest,
                             const double *q) {
   cable c;

@@ -68,6 +68,17 @@ typedef struct strut_capstan_ends {
 } strut_capstan_ends;
 strut_capstan_ends strut_capstan_tensions(const strut_model *model, const strut_state *state,
                                           int32_t i, const double *q, const double *v);
+/** A cable at rest. */
+typedef struct strut_capstan_rest {
+  double force[STRUT_MOST_GRADIENT];         /* (2 nodes) on its nodes [N] */
+  double tension[STRUT_MOST_ELEMENT_NODES];  /* (segments) [N] */
+  double material[STRUT_MOST_ELEMENT_NODES]; /* (segments) after slipping [m] */
+  int mode[STRUT_MOST_ELEMENT_NODES];        /* (guides) what slipped to get there */
+} strut_capstan_rest;
+/** The same at q, where the materials were those in `rest`: guides that hold too much slip. Equal tensions where
+    none are remembered. */
+void strut_capstan_find_rest(const strut_model *model, int32_t i, const double *rest,
+                             const double *q, strut_capstan_rest *found);
 /** Elastic energy at q with the materials in `rest` [J]. */
 double strut_capstan_energy(const strut_model *model, int32_t i, const double *rest,
                             const double *q);

@@ -157,7 +157,7 @@
   X(MEMBER, MAXWELL, "maxwell", MAP, NONE, ANY, "", OPTIONAL, 0, "Maxwell branch", OF_RUNS(NESTED(strut_member, maxwell, MAXWELL)), "A spring and a dashpot in a row, beside the member.") \
   X(MEMBER, BREAKS_AT, "breaks_at", NUMBER, FORCE, ABOVE_ZERO, "never", OPTIONAL, 0, "", OF_RUNS(FIELD(strut_member, breaks_at)), "Tension at which the member breaks: from then on it carries nothing for the rest of the run. What it stored is lost. Statics and settling take it as whole.") \
   X(MEMBER, RELEASED_AT, "released_at", NUMBER, TIME, ABOVE_ZERO, "never", OPTIONAL, 0, "", OF_RUNS(FIELD(strut_member, released_at)), "Time from which on the member carries nothing, as a latch that is released.") \
-  X(MEMBER, GUIDE_FRICTION, "guide_friction", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", OF_RUNS(FIELD(strut_member, guide_friction)), "Friction coefficient mu of a running cable at its guides: over a guide at which it turns by theta, the tensions differ by the factor exp(mu theta) at most. Statics and settling take the guides without friction.")
+  X(MEMBER, GUIDE_FRICTION, "guide_friction", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", OF_RUNS(FIELD(strut_member, guide_friction)), "Friction coefficient mu of a running cable at its guides: over a guide at which it turns by theta, the tensions differ by the factor exp(mu theta) at most. Statics takes the guides without friction unless a path keeps it; so does settling.")
 
 #define STRUT_HINGE_FIELDS(X) \
   X(HINGE, NODES, "nodes", NODE_TRIPLE, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_hinge, node, NODE), "Three nodes `[a, b, c]`: the hinge is at b, and its angle is that from the arm b-a to the arm b-c, counter-clockwise.") \

@@ -79,8 +79,8 @@ void strut_warn_of_path(const strut_listener *listener, const strut_scene *scene
   bool warned = false;
   if (path->friction && !path->grips)
     strut_tell(listener, STRUT_MESSAGE_WARNING, NULL,
-               "friction is kept, but no contact has a static coefficient: laws 'smooth' "
-               "and 'stribeck' vanish at rest");
+               "friction is kept, but no contact has a static coefficient, and no cable rubs: "
+               "the laws 'smooth' and 'stribeck' vanish at rest");
   for (size_t i = 0; i < path->stage_count && !warned; i++)
     warned = warn_of_points(listener, scene, &path->stages[i]);
   warned = warned || warn_of_points(listener, scene, path);

@@ -113,10 +113,39 @@ jq -e '(20 * 3.141592653589793 / 180) as $s | (($s | sin) / ($s | cos)) as $t |
   .events[0].kind == "slips" and .events[1].kind == "limit point at a kink" and
   (.events[0].factor - 9.81 * ($t - 0.37) / (1 + 0.37 * $t) | fabs < 1e-6)' "$work/out" >/dev/null || fail "on a slope: $(jq -c .events "$work/out")"
 
+# ---- a rope over a post, turning by a right angle: its tensions differ by exp(0.3 pi/2) at most, there and back ----
+cat >rope.yaml <<'END'
+strut: 1
+nodes:
+  weight: {position: [0, -1], fixed: x, mass: 1}
+  post: {position: [0, 0], fixed: both}
+  hand: {position: [0.5, 0], fixed: both}
+members:
+  rope: {kind: cable, nodes: [weight, post, hand], stiffness: 1000, rest_length: 1.48, guide_friction: 0.3}
+gravity: [0, -10]
+path:
+  friction: kept
+  stages:
+    - {over: hand.x, until: 1.5 mm}
+    - {over: hand.x, until: 30 mm}
+    - {over: hand.x, until: 29 mm}
+    - {over: hand.x, until: -10 mm}
+END
+expect 0 path rope.yaml --json
+# while it sticks at the post, the part beyond stretches alone, from the 10 N that the weight asks for
+jq -e 'def is($x): . - $x | fabs < 1e-8;
+  (0.3 * 3.141592653589793 / 2 | exp) as $more | (0.5 / (1 + 10 / 1480)) as $part |
+  (.earlier_stages[0].points[-1] | (.reactions.hand[0] | is(1480 * (0.5015 / $part - 1))) and (.nodes.weight[1] - -1.0 | fabs < 0.1)) and
+  (.earlier_stages[0].events == []) and
+  (.earlier_stages[1] | ([.events[] | .detail] == ["rope slips over post"]) and (.points[-1].reactions.hand[0] | is(10 * $more))) and
+  ((0.53 / (1 + 10 * $more / 1480)) as $now | .earlier_stages[2].points[-1].reactions.hand[0] | is(1480 * (0.529 / $now - 1))) and
+  (.points[-1] | (.reactions.hand[0] | is(10 / $more)) and (.forces.rope | is(10)))' "$work/out" >/dev/null ||
+  fail "a rope over a post: $(jq -c '[.earlier_stages[], .] | map([.points[-1].reactions.hand[0], .events[].detail])' "$work/out")"
+
 # ---- what cannot be ----
 sed 's/friction: {[^}]*}/friction: {law: smooth, mu: 0.3, width: 1 mm\/s}/' pipe.yaml >smooth.yaml
 expect 0 path smooth.yaml --json
-err_has "no contact has a static coefficient"
+err_has "no contact has a static coefficient, and no cable rubs"
 sed -e 's/^nodes:/parameters: {high: 0 m}\nnodes:/' -e 's/centre: \[0, 0\]/centre: [0, high]/' pipe.yaml >moves.yaml
 expect 1 path moves.yaml --over high --until '0.1 m'
 err_has "high moves the ground, and friction is kept"

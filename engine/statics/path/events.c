@@ -584,7 +584,7 @@ bool strut_path_spectrum(strut_path_system *s, const double *y, strut_path_spect
   if (!strut_path_evaluate(s, y)) return false;
   s->spectrum.negative = s->spectrum.folded = strut_path_count_folded(s);
   if (s->n == 0) return true;
-  if (strut_path_slides(s)) return find_unsymmetric(s);
+  if (strut_path_slides(s) || strut_path_has_rubbing(s)) return find_unsymmetric(s);
   if (wanted == STRUT_PATH_VECTORS) {
     find_vectors(s);
   } else {

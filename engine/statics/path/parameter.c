@@ -469,7 +469,11 @@ static void add_element(strut_path_system *s, int32_t i) {
 void strut_path_add_elements(strut_path_system *s) {
   for (int32_t i = 0; i < s->model->elements.count; i++) {
     evaluate_element(s, i);
-    if (s->elements.element[i].acts) add_element(s, i);
+    if (!s->elements.element[i].acts) continue;
+    if (strut_path_rubs(s, i))
+      strut_path_add_rubbing(s, i);
+    else
+      add_element(s, i);
   }
 }
 
@@ -477,7 +481,9 @@ void strut_path_element_reactions(const strut_path_system *s, double *reaction) 
   for (int32_t i = 0; i < s->model->elements.count; i++) {
     const strut_element *e = &s->model->elements.element[i];
     const strut_element_pose *pose = &s->elements.element[i].pose;
-    for (int32_t k = 0; k < 2 * e->nodes; k++)
+    bool rubs = strut_path_rubs(s, i) && s->elements.element[i].acts;
+    if (rubs) strut_path_rubbing_reactions(s, i, reaction);
+    for (int32_t k = 0; k < 2 * e->nodes && !rubs; k++)
       reaction[place_of(s, e, k)] += pose->force * pose->b[k];
   }
 }

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/forces/capstan.h"
 #include "engine/model/compile_parts.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/minimise.h"
@@ -197,6 +198,19 @@ static strut_status make_model(path_start *b, strut_error *error) {
   return status ? status : strut_model_compile(&b->setup.scene, &b->model, error);
 }
 
+/* Laws that fold go on from the piece, and cables that rub with the materials, that the path before left. */
+static void recall(path_start *b) {
+  const strut_path *after = b->options->after;
+  const strut_element_table *t = &b->model->elements;
+  double *rest = (double *)b->model->members.rest; /* of this path alone */
+  for (int32_t i = 0; i < t->count && after; i++) {
+    const strut_element *e = &t->element[i];
+    if (e->law == STRUT_LAW_FOLDING) rest[e->slot + STRUT_CURVE_PIECE] = after->piece[i];
+    for (int32_t k = 0; k + 1 < e->nodes && after->material && strut_has_capstan(e); k++)
+      rest[e->slot + 1 + k] = after->material[e->slot + 1 + k];
+  }
+}
+
 /* Descends from b->q to an equilibrium, with the `held` coordinates fixed. */
 static strut_status descend_to_rest(const path_start *b, const uint8_t *held, bool without,
                                     strut_error *error) {
@@ -306,17 +320,24 @@ static strut_status create_walk(path_start *b, double until, strut_path_walk *w,
                                         .load = b->load,
                                         .from = b->options->from,
                                         .range = until - b->options->from};
-  if (b->options->friction) w->path->grips = strut_path_friction_create(s);
+  if (b->options->friction) {
+    bool grips = strut_path_friction_create(s);
+    if (!strut_path_guides_create(s)) return strut_no_memory(error, "");
+    w->path->grips = grips || strut_path_has_rubbing(s);
+  }
   return strut_path_parameter_create(&s->parameter, b->q, &s->arena, error);
 }
 
-/* Keeps on which piece of its law each element is; false: out of memory. */
+/* Keeps on which piece of its law each element is, and materials between guides; false: out of memory. */
 static bool keep_pieces(const strut_path_system *s, strut_path *path) {
   size_t count = (size_t)s->model->elements.count;
   int *piece = strut_arena_allocate(&path->arena, count + 1, sizeof *piece);
   for (size_t i = 0; i < count && piece; i++) piece[i] = s->elements.element[i].piece;
   path->piece = piece;
-  return piece;
+  if (s->elements.material)
+    path->material = strut_arena_copy(&path->arena, s->elements.material,
+                                      (size_t)s->model->members.slots, sizeof(double));
+  return piece && (path->material || !s->elements.material);
 }
 
 static strut_status walk_from(path_start *b, double until, int32_t steps, strut_path *path,
@@ -403,6 +424,7 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   b.setup.experiment.interrupt = experiment->interrupt;
   if (status == STRUT_OK && b.model->length != model->length)
     status = strut_fail(error, STRUT_USAGE, "%s changes how many nodes there are", path->name);
+  if (status == STRUT_OK) recall(&b);
   if (status == STRUT_OK) status = find_start(&b, error);
   if (status == STRUT_OK) status = list_held(&b, path, error);
   if (status == STRUT_OK) status = walk_from(&b, until, steps, path, error);

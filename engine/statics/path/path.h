@@ -113,7 +113,9 @@ typedef struct strut_path {
   strut_path_point *points;
   strut_path_event *events;
   strut_path_end end;
-  char remark[1000];   /* why it ended before `until`; else empty */
+  char remark[1000]; /* why it ended before `until`; else empty */
+  const double *
+      material; /* (slots) of cables that rub at their guides at the end, as capstan.h has them; or NULL */
   const int *piece;    /* (elements) of the law of each at the end, as elements.h counts them */
   const uint8_t *held; /* (length) 1 where a coordinate has a reaction, in some stage */
   size_t stage_count;
@@ -151,13 +153,15 @@ typedef struct strut_path_options {
   const char
       *at; /* equilibrium to begin at, as strut_rest_state_find knows it; NULL: where the start
                         comes to rest */
-  const double *start;  /* (length) or, before `at`, the equilibrium itself, with the parameter at
+  const double *start; /* (length) or, before `at`, the equilibrium itself, with the parameter at
                           `from`; a coordinate that is displaced has its value there */
-  bool friction;        /* static and kinetic friction act, by the history of the path */
-  double from;          /* where the path begins: in SI, or the factor */
-  double until;         /* where it ends; a load's factor from 0 to 0 ends at 1 */
-  int32_t steps;        /* maximum number of steps; 0: the usual ones; of each branch, too */
-  int32_t branches;     /* bifurcations are left for other paths: 1 on this path, 2 on its branches
+  bool friction;       /* static and kinetic friction act, by the history of the path */
+  const strut_path
+      *after;       /* with `start`: the path that ended there, whose elements' memory goes on */
+  double from;      /* where the path begins: in SI, or the factor */
+  double until;     /* where it ends; a load's factor from 0 to 0 ends at 1 */
+  int32_t steps;    /* maximum number of steps; 0: the usual ones; of each branch, too */
+  int32_t branches; /* bifurcations are left for other paths: 1 on this path, 2 on its branches
                            too, ... */
   strut_path_stop stop; /* or earlier, here */
 } strut_path_options;

@@ -87,6 +87,9 @@ typedef struct strut_path_elements {
   int32_t switch_count;
   strut_path_element *element;         /* (elements) */
   strut_path_element_switch *switches; /* (switch_count) kinks of one element ascending */
+  double *
+      material; /* (slots) of cables that rub at their guides, at the last point; NULL: none does */
+  int *guide_mode; /* (slots) STRUT_GUIDE_*, by the same places */
 } strut_path_elements;
 
 /**
@@ -119,6 +122,19 @@ void strut_path_pressures(const struct strut_path_system *system, double *pressu
 double strut_path_element_switch_value(const struct strut_path_system *system, int32_t which);
 bool strut_path_element_switch_is_on(const struct strut_path_system *system, int32_t which);
 void strut_path_element_switch_set(struct strut_path_system *system, int32_t which, bool on);
+
+/* Cables that rub at their guides, in a path that keeps friction. For parameter.c and walk.c. */
+
+/** Takes the materials that the model remembers, if some cable rubs; false: out of memory. */
+bool strut_path_guides_create(struct strut_path_system *system);
+/** Is this element such a cable? */
+bool strut_path_rubs(const struct strut_path_system *system, int32_t element);
+/** Is there one? Then the stiffness has no symmetry. */
+bool strut_path_has_rubbing(const struct strut_path_system *system);
+/** In place of its forces, stiffness and slope as an element. */
+void strut_path_add_rubbing(struct strut_path_system *system, int32_t element);
+void strut_path_rubbing_reactions(const struct strut_path_system *system, int32_t element,
+                                  double *reaction);
 
 /* Contacts in the equations of a path: nodes on lines, circles and profiles. For system.c. */
 
@@ -415,6 +431,8 @@ bool strut_path_pass_kink(strut_path_walk *walk, int32_t which, const double *be
 bool strut_path_pass_corner(strut_path_walk *walk, int32_t which);
 /** The same where a contact begins to slide, with the same jump, or to stick. */
 bool strut_path_pass_grip(strut_path_walk *walk, int32_t which, const double *beyond);
+/** At a point that is kept: materials are renewed, and guides that began to slip or stick since the last one reported. */
+void strut_path_keep_guides(strut_path_walk *walk);
 /** Adds the derivative by coordinate `at` [1] to a row (n + 1) over the unknowns. */
 void strut_path_add_to_row(const strut_path_system *system, uint32_t at, double entry, double *row);
 /** Rate of coordinate `at` along a tangent (n + 1), in units of y. */

@@ -19,7 +19,6 @@ typedef struct stages {
   double *moved;             /* (length) displacement that a stage gave to a coordinate */
   uint8_t *held;             /* (length) 1 where it is held, by supports or a stage */
   const double *reaction;    /* (length) of the last stage, or NULL */
-  const int *piece;          /* (elements) of the last stage, or NULL */
   strut_path *path;          /* (experiment->stage_count) */
   strut_arena arena, single; /* for all stages; for one */
 } stages;
@@ -55,6 +54,7 @@ static strut_path_options options_of(stages *s, size_t k) {
   strut_path_options o = {.over = STRUT_PATH_OVER_LOAD,
                           .until = stage->until,
                           .start = k ? s->q : NULL,
+                          .after = k ? &s->path[k - 1] : NULL,
                           .at = k ? NULL : s->usual->at,
                           .branches = last ? s->usual->branches : 0,
                           .friction = s->usual->friction,
@@ -131,21 +131,11 @@ static void keep_end(stages *s, const strut_path_stage *stage, const strut_path_
   const strut_path_point *end = &path->points[path->point_count - 1];
   memcpy(s->q, end->q, (size_t)s->model->length * sizeof *s->q);
   s->reaction = end->reaction;
-  s->piece = path->piece;
   if (stage->load)
     s->factor[strut_thing_find(s->model->scene, STRUT_THING_LOAD, stage->load)] = end->factor;
   if (o->over == STRUT_PATH_OVER_ACTUATOR) s->drive[o->index] = end->factor;
   if (o->over == STRUT_PATH_OVER_COORDINATE)
     s->held[o->index] = 1, s->moved[o->index] = end->factor;
-}
-
-/* Laws that fold go on from the piece on which the stage before left them. */
-static void set_pieces(const stages *s, strut_model *model) {
-  const strut_element_table *t = &model->elements;
-  double *rest = (double *)model->members.rest;
-  for (int32_t i = 0; i < t->count && s->piece; i++)
-    if (t->element[i].law == STRUT_LAW_FOLDING)
-      rest[t->element[i].slot + STRUT_CURVE_PIECE] = s->piece[i];
 }
 
 /* Follows stage k into s->path[k]. */
@@ -163,7 +153,6 @@ static strut_status follow_stage(stages *s, size_t k, strut_path_options *o, str
       status =
           strut_path_set_actuator(s->model, (int32_t)i, s->drive[i], &s->single, &scene, error);
   if (status == STRUT_OK) status = strut_model_compile(&scene, &model, error);
-  if (status == STRUT_OK) set_pieces(s, model);
   if (status == STRUT_OK) status = strut_path_follow(model, s->experiment, o, &s->path[k], error);
   if (status == STRUT_OK) keep_end(s, stage, o, &s->path[k]);
   strut_model_free(model);

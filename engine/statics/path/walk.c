@@ -65,6 +65,7 @@ static bool keep_state(strut_path_walk *w, const double *y, strut_path_point *po
 
 void strut_path_add_point(strut_path_walk *w, int32_t negative) {
   strut_path *p = w->path;
+  strut_path_keep_guides(w);
   void *items = p->points;
   strut_path_point point = {
       .factor = strut_path_value(&w->system, w->y), .arc = w->arc, .negative = negative};
