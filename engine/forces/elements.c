@@ -13,6 +13,7 @@
 #include "engine/forces/strains/foot.h"
 #include "engine/forces/strains/path.h"
 #include "engine/forces/strains/reach.h"
+#include "engine/forces/strains/wrap.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/pose.h"
 

@@ -231,8 +231,16 @@ static void add_node(compilation *c, strut_element *element, int32_t node) {
   element->nodes++;
 }
 
+static strut_strain_kind strain_of_member(const strut_member *m) {
+  return !m->guide_count         ? STRUT_STRAIN_LENGTH
+         : m->guide_radius > 0.0 ? STRUT_STRAIN_WRAP
+                                 : STRUT_STRAIN_PATH;
+}
+
 static void add_way(compilation *c, strut_element *element, const strut_member *m) {
   for (size_t k = 0; k < m->guide_count + 2; k++) add_node(c, element, strut_member_node(m, k));
+  element->radius = m->guide_radius;
+  element->axis = (double)strut_member_right_guides(c->model->scene, m);
 }
 
 /* Its slot keeps ends and rest length, but has no force; the mass of a running cable is lumped. */
@@ -285,16 +293,16 @@ static void remember(compilation *c, strut_element *e) {
 static void add_stop(compilation *c, size_t j, strut_element_role role, double at,
                      double stiffness) {
   const strut_member *m = &c->model->scene->members[j];
-  strut_element *e = add_element(
-      c, (strut_element){.strain = m->guide_count ? STRUT_STRAIN_PATH : STRUT_STRAIN_LENGTH,
-                         .law = STRUT_LAW_LINEAR,
-                         .role = role,
-                         .item = (int32_t)j,
-                         .slot = -1,
-                         .carries = role == STRUT_ELEMENT_LONGEST ? 1 : -1,
-                         .natural = at,
-                         .damping = m->stop_damping,
-                         .numbers = {.stiffness = stiffness}});
+  strut_element *e =
+      add_element(c, (strut_element){.strain = strain_of_member(m),
+                                     .law = STRUT_LAW_LINEAR,
+                                     .role = role,
+                                     .item = (int32_t)j,
+                                     .slot = -1,
+                                     .carries = role == STRUT_ELEMENT_LONGEST ? 1 : -1,
+                                     .natural = at,
+                                     .damping = m->stop_damping,
+                                     .numbers = {.stiffness = stiffness}});
   add_way(c, e, m);
   if (strut_member_ends(m)) remember(c, e);
 }
@@ -306,14 +314,14 @@ static void add_member(compilation *c, size_t j) {
   bool reeled = c->reeled && c->reeled[j];
   if (strut_member_is_special(m) || reeled) {
     bool cable = m->kind == STRUT_CABLE;
-    strut_element *e = add_element(
-        c, (strut_element){.strain = m->guide_count ? STRUT_STRAIN_PATH : STRUT_STRAIN_LENGTH,
-                           .law = reeled ? STRUT_LAW_AXIAL : m->law.kind,
-                           .role = STRUT_ELEMENT_MEMBER,
-                           .item = (int32_t)j,
-                           .slot = (int32_t)j,
-                           .carries = cable ? 1 : sign_of(m->law.carries),
-                           .damping = m->damping});
+    strut_element *e =
+        add_element(c, (strut_element){.strain = strain_of_member(m),
+                                       .law = reeled ? STRUT_LAW_AXIAL : m->law.kind,
+                                       .role = STRUT_ELEMENT_MEMBER,
+                                       .item = (int32_t)j,
+                                       .slot = (int32_t)j,
+                                       .carries = cable ? 1 : sign_of(m->law.carries),
+                                       .damping = m->damping});
     add_way(c, e, m);
     if (!set_numbers(c->model, &m->law, stiffness, &e->numbers)) c->failed = true;
     stiffness = e->numbers.stiffness;

@@ -25,6 +25,7 @@
 #define STRUT_STRAINS(X, context)                                                                  \
   X(LENGTH, length, "m", TURN, context)                                                            \
   X(PATH, path, "m", TURN, context)                                                                \
+  X(WRAP, wrap, "m", ARC, context)                                                                 \
   X(ANGLE, angle, "rad", TURN, context)                                                            \
   X(AREA, area, "m^2", TURN, context)                                                              \
   X(REACH, reach, "m", TURN, context)                                                              \
@@ -69,13 +70,15 @@ typedef struct strut_element {
   int32_t first, nodes; /* its nodes: `nodes` entries of the table's `at`, from `first` on */
   int32_t slot;         /* index of its natural strain in arrays of rest lengths; -1: fixed */
   double natural;       /* natural strain where there is no slot */
-  double axis;          /* of the strain `along`: tangent of half the angle of its direction */
-  double radius;        /* of the strain `foot` [m] */
-  int32_t contact;      /* of a foot: that of its node with the ground */
-  int32_t place;        /* of its (2 nodes) (2 nodes + 1) / 2 entries among those of all elements */
-  int32_t sibling;      /* the next element of the same member, or -1 */
-  int8_t carries;       /* 1 tension only, -1 compression only, 0 both; only beyond e0 */
-  double damping;       /* force per rate of e */
+  double
+      axis; /* of `along` and `foot`: tangent of half the angle of a direction; of `wrap`: bit k where
+                           guide k is to the right */
+  double radius;   /* of `foot` and `wrap` [m] */
+  int32_t contact; /* of a foot: that of its node with the ground */
+  int32_t place;   /* of its (2 nodes) (2 nodes + 1) / 2 entries among those of all elements */
+  int32_t sibling; /* the next element of the same member, or -1 */
+  int8_t carries;  /* 1 tension only, -1 compression only, 0 both; only beyond e0 */
+  double damping;  /* force per rate of e */
   strut_law_numbers numbers;
   /* an element with memory has a slot of its own, which follows that of its member or hinge */
   bool remembers;

@@ -25,7 +25,7 @@ static void note(mjcf_writer *w, const char *text) {
 /* ---- what MJCF cannot express ---- */
 
 static void refuse_members(strut_unsupported *r, const strut_scene *scene) {
-  size_t laws = 0, pushing = 0, stops = 0, ends = 0, maxwell = 0, rub = 0, ratios = 0;
+  size_t laws = 0, pushing = 0, stops = 0, ends = 0, maxwell = 0, rub = 0, ratios = 0, wraps = 0;
   for (size_t i = 0; i < scene->member_count; i++) {
     const strut_member *m = &scene->members[i];
     bool one_sided = m->law.carries != STRUT_CARRIES_BOTH && m->kind != STRUT_CABLE;
@@ -34,6 +34,7 @@ static void refuse_members(strut_unsupported *r, const strut_scene *scene) {
     ends += strut_member_ends(m);
     maxwell += m->maxwell.stiffness > 0.0;
     rub += m->guide_friction > 0.0;
+    wraps += m->guide_radius > 0.0;
     pushing += m->guide_count && m->kind != STRUT_CABLE;
     ratios += m->guide_count && m->damping_ratio > 0.0;
   }
@@ -43,6 +44,7 @@ static void refuse_members(strut_unsupported *r, const strut_scene *scene) {
   strut_unsupported_add(r, ends, "members that break or are released");
   strut_unsupported_add(r, maxwell, "Maxwell branches");
   strut_unsupported_add(r, rub, "friction at guides");
+  strut_unsupported_add(r, wraps, "guides with a radius");
   strut_unsupported_add(r, ratios, "damping ratios of running cables");
 }
 

@@ -191,6 +191,12 @@ static const char *rest_key(strut_rest_kind kind) {
 /* Does the member join nodes that exist, each to a different one? */
 static bool check_ends(strut_checker *checker, size_t index, const char *owner) {
   const strut_member *m = &checker->scene->members[index];
+  if (m->guide_count + 2 > STRUT_MOST_ELEMENT_NODES) {
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
+                         "%s runs over %zu nodes, more than %d", owner, m->guide_count + 2,
+                         (int)STRUT_MOST_ELEMENT_NODES);
+    return false;
+  }
   for (size_t k = 0; k < m->guide_count + 2; k++) {
     int32_t node = strut_member_node(m, k), before = k ? strut_member_node(m, k - 1) : -1;
     if (node < 0 || (size_t)node >= checker->scene->node_count) {

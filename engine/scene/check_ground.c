@@ -247,6 +247,7 @@ static bool check_foot(strut_checker *checker, size_t index, const char *owner) 
                          "%s is at a member or a node that does not exist", owner);
     return false;
   }
+  if (checker->loose[f->member]) return false; /* it is reported there */
   const strut_member *m = &scene->members[f->member];
   const char *member = m->name, *node = scene->nodes[f->node].name;
   double length =

@@ -113,6 +113,43 @@ static bool check_guide_friction(strut_checker *checker, size_t index, const cha
   return !fault;
 }
 
+/* Circles about guides: each on a side of the cable, away from the points before and behind it. */
+static bool check_guide_radius(strut_checker *checker, size_t index, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const strut_member *m = &scene->members[index];
+  const char *fault = m->guide_radius == 0.0 ? NULL
+                      : !m->guide_count      ? "has guide_radius, but runs over no guides"
+                      : m->guide_friction > 0.0
+                          ? "has guide_radius and guide_friction; only guides "
+                            "that are points rub"
+                          : NULL;
+  if (fault)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "guide_radius", "%s %s", owner, fault);
+  bool circles = m->guide_radius > 0.0 && !fault && !checker->loose[index];
+  for (size_t k = 1; k <= m->guide_count && circles; k++) {
+    if (m->guide_side != STRUT_GUIDE_AS_DRAWN || !strut_member_is_straight_at(scene, m, k))
+      continue;
+    strut_report_finding(
+        checker, STRUT_ON_MEMBER, index, "guide_radius",
+        "%s is drawn straight over '%s': say by guide_side on which side of it its "
+        "guides are",
+        owner, scene->nodes[strut_member_node(m, k)].name);
+    return false;
+  }
+  for (size_t k = 0; k <= m->guide_count && circles; k++) {
+    int32_t a = strut_member_node(m, k), b = strut_member_node(m, k + 1);
+    double across = (k > 0) + (k < m->guide_count) == 2 && m->guide_side == STRUT_GUIDE_AS_DRAWN
+                        ? 2.0 * m->guide_radius
+                        : m->guide_radius;
+    if (strut_distance(scene->nodes[a].position, scene->nodes[b].position) > across) continue;
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "guide_radius",
+                         "nodes '%s' and '%s' of %s are too close for guides with this radius",
+                         scene->nodes[a].name, scene->nodes[b].name, owner);
+    return false;
+  }
+  return !fault;
+}
+
 static bool check_stops(strut_checker *checker, size_t index, const char *owner) {
   const strut_member *m = &checker->scene->members[index];
   bool stops = m->shortest > 0.0 || m->longest > 0.0;
@@ -151,7 +188,9 @@ bool strut_check_member_law(strut_checker *checker, size_t index, const char *ow
   strut_rest rest;
   bool known = !checker->loose[index] && strut_member_rest(checker->scene, index, &rest);
   double slope = known ? rest.stiffness : HUGE_VAL;
-  if (!check_guide_friction(checker, index, owner, known ? rest.length : 1.0)) return false;
+  if (!check_guide_friction(checker, index, owner, known ? rest.length : 1.0) ||
+      !check_guide_radius(checker, index, owner))
+    return false;
   return check_hardening(checker, STRUT_ON_MEMBER, index, owner, &m->law, slope) &&
          check_end_of_member(checker, index, owner) && check_stops(checker, index, owner);
 }

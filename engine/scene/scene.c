@@ -8,6 +8,7 @@
 #include "engine/base/vec.h"
 #include "engine/scene/experiment.h"
 #include "engine/scene/things.h"
+#include "engine/scene/wrap.h"
 
 void strut_scene_init(strut_scene *scene) {
   memset(scene, 0, sizeof *scene);
@@ -61,8 +62,45 @@ void strut_scene_stop_unbalances(strut_scene *scene) {
   scene->unbalance_count = 0;
 }
 
+/* Twice the area of a triangle, counted counter-clockwise: its last corner is to the left of the first two. */
+static double turn_over(const double *a, const double *b, const double *c) {
+  return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
+}
+
+static double turn_at(const strut_scene *scene, const strut_member *m, size_t k) {
+  return turn_over(scene->nodes[strut_member_node(m, k - 1)].position,
+                   scene->nodes[strut_member_node(m, k)].position,
+                   scene->nodes[strut_member_node(m, k + 1)].position);
+}
+
+bool strut_member_is_straight_at(const strut_scene *scene, const strut_member *m, size_t k) {
+  return turn_at(scene, m, k) == 0.0;
+}
+
+uint32_t strut_member_right_guides(const strut_scene *scene, const strut_member *m) {
+  uint32_t right = 0;
+  for (size_t k = 1; k <= m->guide_count; k++) {
+    double turn = turn_at(scene, m, k);
+    bool to_right =
+        m->guide_side == STRUT_GUIDE_RIGHT || (m->guide_side == STRUT_GUIDE_AS_DRAWN && turn < 0.0);
+    right |= (uint32_t)to_right << k;
+  }
+  return right;
+}
+
+static double wrapped_length(const strut_scene *scene, const strut_member *m) {
+  double p[STRUT_MOST_WRAPPED][2];
+  int n = (int)m->guide_count + 2;
+  strut_wrap way;
+  for (int k = 0; k < n; k++)
+    memcpy(p[k], scene->nodes[strut_member_node(m, (size_t)k)].position, sizeof p[k]);
+  return strut_wrap_find((const double(*)[2])p, n, strut_member_right_guides(scene, m),
+                         m->guide_radius, &way);
+}
+
 static double drawn_length(const strut_scene *scene, const strut_member *member) {
   double sum = 0.0;
+  if (member->guide_count && member->guide_radius > 0.0) return wrapped_length(scene, member);
   for (size_t k = 0; k <= member->guide_count; k++)
     sum += strut_distance(scene->nodes[strut_member_node(member, k)].position,
                           scene->nodes[strut_member_node(member, k + 1)].position);

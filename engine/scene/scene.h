@@ -59,6 +59,13 @@ typedef struct strut_maxwell {
   double force;     /* at t = 0 [N] */
 } strut_maxwell;
 
+/** Side of a cable, followed from its first node to its last, on which the circles of its guides are. */
+typedef enum strut_guide_side {
+  STRUT_GUIDE_AS_DRAWN, /* each as the cable turns over it */
+  STRUT_GUIDE_LEFT,
+  STRUT_GUIDE_RIGHT
+} strut_guide_side;
+
 typedef struct strut_member {
   const char *name;
   int32_t node[2]; /* i1, i2 of the paper; of a running cable its ends */
@@ -78,7 +85,9 @@ typedef struct strut_member {
   double breaks_at;         /* tension from which on the member carries nothing [N]; 0: never */
   double released_at;       /* time from which on it carries nothing [s]; 0: never */
   double guide_friction;    /* of a running cable at its guides [1] */
-  double damping_ratio;     /* instead of damping, or 0: of the critical one, see theory.md */
+  double guide_radius;      /* of circles about its guides [m]; 0: points */
+  strut_guide_side guide_side; /* on which side of it they are */
+  double damping_ratio;        /* instead of damping, or 0: of the critical one, see theory.md */
   strut_maxwell maxwell;
 } strut_member;
 
@@ -350,6 +359,11 @@ typedef struct strut_rest {
  */
 STRUT_API bool strut_member_rest(const strut_scene *scene, size_t member, strut_rest *rest);
 
+/** Does a member not turn at guide k (1 is the first) in the drawn shape? */
+STRUT_API bool strut_member_is_straight_at(const strut_scene *scene, const strut_member *member,
+                                           size_t k);
+/** Bit k: guide k (1 is the first) of a member is to its right (wrap.h). */
+STRUT_API uint32_t strut_member_right_guides(const strut_scene *scene, const strut_member *member);
 /** Node k of a member's way: its first node, its guides, its second node; k < guide_count + 2. */
 static inline int32_t strut_member_node(const strut_member *member, size_t k) {
   return k == 0                    ? member->node[0]

@@ -431,6 +431,7 @@ static void add_extras(strut_json *json, struct cJSON *row, const strut_model *m
     strut_json_text(json, row, "carries", carries_name(m));
   }
   if (m->guide_friction > 0.0) strut_json_number(json, row, "guide_friction", m->guide_friction);
+  if (m->guide_radius > 0.0) strut_json_number(json, row, "guide_radius", m->guide_radius);
   if (m->breaks_at > 0.0) strut_json_number(json, row, "breaks_at", m->breaks_at);
   if (m->released_at > 0.0) strut_json_number(json, row, "released_at", m->released_at);
   if (m->shortest > 0.0) strut_json_number(json, row, "shortest", m->shortest);

@@ -188,10 +188,12 @@ static void put_stage_by_hand(strut_writer *writer, strut_mapping *mapping, int 
   }
 }
 
-static void put_stages(strut_writer *writer) {
+static void put_path(strut_writer *writer) {
   static const strut_path_stage none = {.load = "", .over = "", .release = ""};
   const strut_experiment *e = writer->experiment;
-  if (e->stage_count) strut_put(writer, "path:\n  stages:\n");
+  if (e->stage_count || e->path_friction) strut_put(writer, "path:\n");
+  if (e->path_friction) strut_put(writer, "  friction: kept\n");
+  if (e->stage_count) strut_put(writer, "  stages:\n");
   for (size_t i = 0; i < e->stage_count; i++) {
     strut_mapping mapping = STRUT_MAPPING_INLINE;
     strut_path_stage stage = e->stages[i];
@@ -207,7 +209,7 @@ static void put_stages(strut_writer *writer) {
 void strut_put_shapes(strut_writer *writer) {
   put_configurations(writer);
   put_search(writer);
-  put_stages(writer);
+  put_path(writer);
   put_initial(writer);
 }
 

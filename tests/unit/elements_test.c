@@ -17,6 +17,7 @@
 #include "engine/forces/strains/foot.h"
 #include "engine/forces/strains/path.h"
 #include "engine/forces/strains/reach.h"
+#include "engine/forces/strains/wrap.h"
 #include "engine/statics/potential.h"
 #include "tests/physics/random_elements.h"
 #include "tests/support/build.h"
@@ -50,6 +51,15 @@ static void foot_bend(const uint32_t *at, int n, const double *q, double t, doub
   strut_strain_foot_bend(at, n, q, 0.7, 0.3, t, h);
 }
 
+/* Guides of 0.05 m, the second to the right. */
+static double wrap_value(const uint32_t *at, int n, const double *q, double reference, double *b) {
+  (void)reference;
+  return strut_strain_wrap(at, n, q, 4, 0.05, b);
+}
+static void wrap_bend(const uint32_t *at, int n, const double *q, double t, double *h) {
+  strut_strain_wrap_bend(at, n, q, 4, 0.05, t, h);
+}
+
 static const strain strains[] = {
 #define NODES_length 2, 2
 #define NODES_path 2, MOST_NODES
@@ -59,6 +69,7 @@ static const strain strains[] = {
 #define NODES_along 2, 2
 #define NODES_offset 3, 3
 #define NODES_foot 2, 2
+#define NODES_wrap 3, MOST_NODES
 #define VALUES_TURN(name) strut_strain_##name, strut_strain_##name##_bend
 #define VALUES_AXIS(name) strut_strain_##name, strut_strain_##name##_bend
 #define VALUES_ARC(name) name##_value, name##_bend
@@ -77,8 +88,25 @@ static void place_nodes(double *q, uint64_t *r) {
   }
 }
 
+/* Would some guide be touched or left if a node moved a little? */
+static bool near_unwrapping(int n, double *q) {
+  strut_wrap here, there;
+  strut_strain_wrap_find(places, n, q, 4, 0.05, &here);
+  for (int j = 0; j < 4 * n; j++) {
+    double *x = &q[places[j / 4] + (uint32_t)(j / 2 % 2)], keep = *x;
+    *x += j % 2 ? 4e-3 : -4e-3;
+    strut_strain_wrap_find(places, n, q, 4, 0.05, &there);
+    *x = keep;
+    if (here.count != there.count ||
+        memcmp(here.node, there.node, sizeof(int) * (size_t)here.count))
+      return true;
+  }
+  return false;
+}
+
 /* Would the nearest point of the segment change from beside it to one of its ends? */
-static bool near_end(const strain *s, const double *q) {
+static bool near_end(const strain *s, int n, double *q) {
+  if (s->value == wrap_value) return near_unwrapping(n, q);
   if (s->value != strut_strain_reach) return false;
   strut_reach to = strut_reach_of(places, q);
   double w2 = to.length * to.length;
@@ -128,7 +156,7 @@ TEST(gradients_and_second_derivatives_of_strains) {
       double q[MOST_PLACES];
       int n = s->least + random_below(&r, s->most - s->least + 1);
       place_nodes(q, &r);
-      if (near_end(s, q)) continue;
+      if (near_end(s, n, q)) continue;
       check_strain(s, n, q, &r);
     }
 }
@@ -173,6 +201,23 @@ TEST(strains_of_known_figures) {
   assert_near(strut_strain_along(beyond, 2, q, 0, b), -4, 0);           /* along x */
   assert_near(strut_strain_along(beyond, 2, q, 1, b), -3, 0);           /* along y */
   assert_near(strut_strain_along(beyond, 2, q, 1.0 / 3, b), -5, 1e-15); /* along (4, 3) / 5 */
+}
+
+/* Half round a circle, as over Atwood's pulley; from below one to above another; and past one that it does not touch. */
+TEST(cables_over_circles_of_known_figures) {
+  const double pulley[] = {-1, -3, 0, 0, 1, -5}, cross[] = {0, 1, 0, 0, 4, 0, 4, -1};
+  const double past[] = {-2, 0, 0, -1.5, 2, 0};
+  const uint32_t way[] = {0, 2, 4, 6};
+  double b[8];
+  assert_near(strut_strain_wrap(way, 3, pulley, 2, 1, b), 3 + 5 + STRUT_PI, 1e-14);
+  assert_near(b[1], -1, 1e-15); /* up to the pulley */
+  assert_near(b[3], 2, 1e-15);
+  assert_near(strut_strain_wrap(way, 4, cross, 4, 0.5, b),
+              2 * sqrt(0.75) + sqrt(15) + STRUT_TAU / 3 + asin(0.25), 1e-14);
+  assert_near(strut_strain_wrap(way, 3, past, 2, 1, b), 4, 1e-15);
+  assert_near(b[2], 0, 0);
+  assert_near(strut_strain_wrap(way, 3, past, 2, 2, b), 2 * (1.5 + 2 * (atan(2 / 1.5) - acos(0.8))),
+              1e-14);
 }
 
 /* Nodes in one place: no direction, but numbers. */

@@ -63,6 +63,7 @@ strut_status strut_code_check(const strut_model *model, strut_error *error) {
   strut_unsupported_add(&r, s->foot_count, "feet");
   strut_unsupported_add(&r, model->contacts.grips, "friction that follows a signal");
   strut_unsupported_add(&r, count_rubbing(s), "friction at guides");
+  strut_unsupported_add(&r, model->laws.strain >> STRUT_STRAIN_WRAP & 1u, "guides with a radius");
   add_unwritten_laws(&r, model->laws);
   strut_unsupported_add(&r, s->support_motion_count, "moves of nodes");
   strut_unsupported_add(&r, s->unbalance_count, "unbalances");

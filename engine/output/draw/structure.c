@@ -12,6 +12,8 @@
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
 #include "engine/output/draw/legend.h"
+#include "engine/output/draw/structure_parts.h"
+#include "engine/scene/wrap.h"
 
 /* The window, members and nodes. */
 
@@ -30,6 +32,15 @@ void strut_bounds_add(strut_bounds *b, const strut_model *model, const double *q
     if (!isfinite(q[i])) continue;
     b->low[i % 2] = fmin(b->low[i % 2], q[i]);
     b->high[i % 2] = fmax(b->high[i % 2], q[i]);
+  }
+  for (size_t m = 0; m < model->scene->member_count; m++) { /* circles of guides */
+    const strut_member *member = &model->scene->members[m];
+    for (size_t k = 1; k <= member->guide_count && member->guide_radius > 0.0; k++)
+      for (int c = 0; c < 2; c++) {
+        double at = q[2 * strut_member_node(member, k) + c];
+        b->low[c] = fmin(b->low[c], at - member->guide_radius);
+        b->high[c] = fmax(b->high[c], at + member->guide_radius);
+      }
   }
 }
 
@@ -56,16 +67,43 @@ size_t strut_member_segments(const strut_model *model, size_t member) {
   return model->scene->members[member].guide_count + 1;
 }
 
+/*
+ * The straight part of a wrapped member that leads over its way from node k to the next: from where it leaves one
+ * circle to where it meets the other. Where a guide is left aside, the parts are divided beside its centre.
+ */
+static void find_tangent(const strut_scene *scene, const strut_member *m, const double *q, int k,
+                         double places[2][2]) {
+  double p[STRUT_MOST_WRAPPED][2];
+  int n = (int)m->guide_count + 2, at = 0;
+  uint32_t right = strut_member_right_guides(scene, m);
+  strut_wrap way;
+  for (int i = 0; i < n; i++) memcpy(p[i], q + 2 * strut_member_node(m, (size_t)i), sizeof p[i]);
+  strut_wrap_find((const double(*)[2])p, n, right, m->guide_radius, &way);
+  while (at + 2 < way.count && way.node[at + 1] <= k) at++;
+  int from = way.node[at];
+  double off = from > 0 ? m->guide_radius * strut_wrap_side(right, from) : 0.0;
+  const double ux = way.ux[at], uy = way.uy[at];
+  const double start[2] = {p[from][0] + off * uy, p[from][1] - off * ux};
+  for (int end = 0; end < 2; end++) {
+    double along = (p[k + end][0] - start[0]) * ux + (p[k + end][1] - start[1]) * uy;
+    along = fmax(0.0, fmin(along, way.free[at]));
+    places[end][0] = start[0] + along * ux, places[end][1] = start[1] + along * uy;
+  }
+}
+
 void strut_window_segment(const strut_window *w, const strut_model *model, const double *q,
                           size_t member, size_t k, double ends[2][2]) {
   const strut_member *m = &model->scene->members[member];
+  double places[2][2];
   for (size_t end = 0; end < 2; end++)
-    strut_window_point(w, q + 2 * strut_member_node(m, k + end), ends[end]);
+    memcpy(places[end], q + 2 * strut_member_node(m, k + end), sizeof places[end]);
+  if (m->guide_count && m->guide_radius > 0.0) find_tangent(model->scene, m, q, (int)k, places);
+  for (int end = 0; end < 2; end++) strut_window_point(w, places[end], ends[end]);
 }
 
 /* The longest segment of a member, where its name and its stop stand. */
-static void find_longest_segment(const strut_window *w, const strut_model *model, const double *q,
-                                 size_t member, double longest[2][2]) {
+void strut_longest_segment(const strut_window *w, const strut_model *model, const double *q,
+                           size_t member, double longest[2][2]) {
   strut_window_segment(w, model, q, member, 0, longest);
   for (size_t k = 1; k < strut_member_segments(model, member); k++) {
     double ends[2][2], x = longest[1][0] - longest[0][0], y = longest[1][1] - longest[0][1];
@@ -341,7 +379,7 @@ static bool collect_obstacles(const strut_window *w, const strut_model *model, c
   o->inside = w->box;
   if (!o->ends || !o->labels) return false;
   for (size_t j = 0; j < members; j++)
-    find_longest_segment(w, model, q, j, o->ends + 2 * o->segment_count++);
+    strut_longest_segment(w, model, q, j, o->ends + 2 * o->segment_count++);
   for (size_t j = 0; j < members; j++)
     for (size_t k = 0; model->scene->members[j].guide_count && k < strut_member_segments(model, j);
          k++)
@@ -382,10 +420,7 @@ void strut_draw_names(strut_canvas *canvas, const strut_window *w, const strut_m
   strut_arena_free(&arena);
 }
 
-/* Members, hinges, stops and nodes. */
-
-enum { ARC = 24 };                           /* pieces of a hinge's arc */
-static const double HINGE = 7.0, STOP = 4.0; /* radius of the arc, half a stop's bar [pt] */
+/* Members and nodes. */
 
 /* Factor for line widths, from the mean length of the members on the page. */
 static double thinning(const strut_window *w, const strut_model *model, const double *q) {
@@ -420,36 +455,29 @@ static void add_segment(batch *b, double ends[2][2]) {
   if (++b->count == BATCH) draw_batch(b);
 }
 
-typedef struct drawing {
-  const strut_window *window;
-  const strut_model *model;
-  const double *q;
-  const strut_structure_style *style;
-  double thin, opacity;
-} drawing;
-
-static bool is_slack(const drawing *d, size_t j) {
+static bool is_slack(const strut_drawing *d, size_t j) {
   if (d->model->scene->members[j].kind != STRUT_CABLE) return false;
   if (d->style->slack_forces) return !(fabs(d->style->slack_forces[j]) > 0);
   return strut_member_path_length(d->model, (int32_t)j, d->q) <
          d->model->members.rest[j] * (1 - 1e-12);
 }
 
-static double width_of(const drawing *d, size_t j) {
+static double width_of(const strut_drawing *d, size_t j) {
   strut_member_kind kind = d->model->scene->members[j].kind;
   double width = kind == STRUT_BAR ? BAR : kind == STRUT_SPRING ? SPRING : CABLE;
   return width * d->thin / (1.0 + d->style->thinness);
 }
 
 /* Index of a member's force colour; -1 where members are not coloured by force. */
-static int shade_of(const drawing *d, size_t j) {
+static int shade_of(const strut_drawing *d, size_t j) {
   if (d->style->colouring != STRUT_COLOUR_FORCE || !d->style->values) return -1;
   double limit = d->style->limit, value = d->style->values[j];
   double part = limit > 0 && isfinite(value) ? fmax(-1.0, fmin(1.0, value / limit)) : 0;
   return (int)lround(0.5 * (part + 1.0) * (SHADES - 1));
 }
 
-static strut_colour colour_of(const drawing *d, strut_member_kind kind, bool slack, int shade) {
+static strut_colour colour_of(const strut_drawing *d, strut_member_kind kind, bool slack,
+                              int shade) {
   if (d->style->colouring == STRUT_COLOUR_ONE) return d->style->colour;
   if (slack) return strut_grey(0.55);
   if (shade >= 0) return strut_palette_signed(2.0 * shade / (SHADES - 1) - 1.0);
@@ -459,7 +487,7 @@ static strut_colour colour_of(const drawing *d, strut_member_kind kind, bool sla
 }
 
 /* Adds all segments of a member. */
-static void add_member(batch *b, const drawing *d, size_t j) {
+static void add_member(batch *b, const strut_drawing *d, size_t j) {
   double ends[2][2];
   for (size_t k = 0; k < strut_member_segments(d->model, j); k++) {
     strut_window_segment(d->window, d->model, d->q, j, k, ends);
@@ -468,7 +496,7 @@ static void add_member(batch *b, const drawing *d, size_t j) {
 }
 
 /* A dark edge separates light colours from the paper. */
-static void draw_casings(strut_canvas *canvas, const drawing *d, strut_member_kind kind) {
+static void draw_casings(strut_canvas *canvas, const strut_drawing *d, strut_member_kind kind) {
   batch b = {.canvas = canvas};
   b.pen.colour = strut_faded(strut_grey(0.1), d->opacity);
   for (size_t j = 0; j < d->model->scene->member_count; j++) {
@@ -480,8 +508,8 @@ static void draw_casings(strut_canvas *canvas, const drawing *d, strut_member_ki
 }
 
 /* Draws all members of one kind, slackness and shade. */
-static void draw_alike(strut_canvas *canvas, const drawing *d, strut_member_kind kind, bool slack,
-                       int shade) {
+static void draw_alike(strut_canvas *canvas, const strut_drawing *d, strut_member_kind kind,
+                       bool slack, int shade) {
   batch b = {.canvas = canvas};
   b.pen.colour = strut_faded(colour_of(d, kind, slack, shade), d->opacity);
   if (slack) {
@@ -499,7 +527,7 @@ static void draw_alike(strut_canvas *canvas, const drawing *d, strut_member_kind
 }
 
 /* Thin members are drawn above thick ones, so that a cable along a bar is visible. */
-static void draw_members(strut_canvas *canvas, const drawing *d) {
+static void draw_members(strut_canvas *canvas, const strut_drawing *d) {
   static const strut_member_kind order[] = {STRUT_BAR, STRUT_SPRING, STRUT_CABLE};
   bool shaded = d->style->colouring == STRUT_COLOUR_FORCE && d->style->values;
   for (int k = 0; k < 3; k++) {
@@ -511,149 +539,8 @@ static void draw_members(strut_canvas *canvas, const drawing *d) {
   }
 }
 
-/* A hinge: an arc around its node, from the first arm to the second by its angle. */
-static void draw_hinge(strut_canvas *canvas, const drawing *d, const strut_hinge *h, double angle,
-                       strut_pen pen) {
-  double at[3][2], arc[ARC + 1][2], arm = HUGE_VAL;
-  for (int k = 0; k < 3; k++) strut_window_point(d->window, d->q + 2 * h->node[k], at[k]);
-  for (int k = 0; k < 3; k += 2) arm = fmin(arm, hypot(at[k][0] - at[1][0], at[k][1] - at[1][1]));
-  double radius = fmin(HINGE * d->thin, 0.4 * arm);
-  double first = atan2(at[1][1] - at[0][1], at[0][0] - at[1][0]);
-  angle = fmax(-STRUT_TAU, fmin(STRUT_TAU, angle));
-  if (!isfinite(first + radius + angle)) return;
-  for (int i = 0; i <= ARC; i++) {
-    arc[i][0] = at[1][0] + radius * cos(first + angle * i / ARC);
-    arc[i][1] = at[1][1] - radius * sin(first + angle * i / ARC);
-  }
-  strut_draw_line(canvas, (const double(*)[2])arc, ARC + 1, pen);
-}
-
-/* A stop that acts: a bar across the middle of its member. */
-static void draw_stop(strut_canvas *canvas, const drawing *d, size_t member, strut_pen pen) {
-  double ends[2][2] = {{0}};
-  find_longest_segment(d->window, d->model, d->q, member, ends);
-  double x = ends[1][0] - ends[0][0], y = ends[1][1] - ends[0][1], length = hypot(x, y);
-  if (!(length > 0) || !isfinite(length)) return;
-  double half = STOP * d->thin / length, middle[2];
-  for (int k = 0; k < 2; k++) middle[k] = 0.5 * (ends[0][k] + ends[1][k]);
-  strut_draw_segment(canvas, middle[0] - half * y, middle[1] + half * x, middle[0] + half * y,
-                     middle[1] - half * x, pen);
-}
-
-/* Cells: filled polygons below all else. */
-static void draw_cells(strut_canvas *canvas, const drawing *d) {
-  const strut_scene *scene = d->model->scene;
-  bool one = d->style->colouring == STRUT_COLOUR_ONE;
-  strut_colour colour = one ? d->style->colour : strut_palette_thing(2);
-  const strut_fill fill = {.colour = strut_faded(colour, 0.15 * d->opacity)};
-  const strut_pen pen = {.colour = strut_faded(colour, 0.5 * d->opacity), .width = 0.5 * d->thin};
-  double corner[STRUT_MOST_ELEMENT_NODES][2];
-  for (size_t i = 0; i < scene->cell_count; i++) {
-    const strut_cell *cell = &scene->cells[i];
-    bool finite = true;
-    for (size_t k = 0; k < cell->node_count; k++) {
-      strut_window_point(d->window, d->q + 2 * cell->node[k], corner[k]);
-      finite = finite && isfinite(corner[k][0]) && isfinite(corner[k][1]);
-    }
-    if (finite)
-      strut_draw_polygon(canvas, (const double(*)[2])corner, cell->node_count, &fill, &pen);
-  }
-}
-
-/* A body that may collide: a disc or a rod with round ends, as thick as it is. */
-static void draw_body(strut_canvas *canvas, const drawing *d, int32_t node, int32_t member,
-                      double width, strut_colour colour) {
-  double ends[2][2];
-  const strut_fill fill = {.colour = colour};
-  const strut_pen pen = {.colour = colour, .width = width};
-  if (member >= 0) {
-    strut_window_segment(d->window, d->model, d->q, (size_t)member, 0, ends);
-    strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], pen);
-    return;
-  }
-  strut_window_point(d->window, d->q + 2 * node, ends[0]);
-  strut_draw_circle(canvas, ends[0][0], ends[0][1], 0.5 * width, &fill, NULL);
-}
-
-static void draw_collisions(strut_canvas *canvas, const drawing *d) {
-  const strut_scene *scene = d->model->scene;
-  bool one = d->style->colouring == STRUT_COLOUR_ONE;
-  strut_colour colour =
-      strut_faded(one ? d->style->colour : strut_palette_thing(2), 0.15 * d->opacity);
-  for (size_t i = 0; i < scene->collision_count; i++) {
-    const strut_collision *c = &scene->collisions[i];
-    double width = c->thickness * d->window->scale;
-    for (int k = 0; k < 2; k++) {
-      if (c->node[k] >= 0) draw_body(canvas, d, c->node[k], -1, width, colour);
-      if (c->member[k] >= 0) draw_body(canvas, d, -1, c->member[k], width, colour);
-    }
-  }
-}
-
-/* A dashed line along which the distance is measured: to the first node's foot, then to the second. */
-static void draw_distance(strut_canvas *canvas, const drawing *d, int32_t element,
-                          const strut_element_pose *pose, strut_pen pen) {
-  const strut_element_table *t = &d->model->elements;
-  const strut_element *e = &t->element[element];
-  const uint32_t *at = t->at + e->first;
-  bool line = e->strain == STRUT_STRAIN_OFFSET;
-  const double *from = d->q + at[0];
-  double side = line ? -pose->strain : pose->strain, foot[2], way[3][2];
-  for (int c = 0; c < 2; c++) foot[c] = from[c] + side * pose->b[line ? c : 2 + c];
-  strut_window_point(d->window, from, way[0]);
-  strut_window_point(d->window, foot, way[1]);
-  strut_window_point(d->window, line ? foot : d->q + at[1], way[2]);
-  pen.dash[0] = pen.dash[1] = 2.0 * pen.width;
-  if (!isfinite(way[0][0] + way[0][1] + way[1][0] + way[1][1] + way[2][0] + way[2][1])) return;
-  strut_draw_line(canvas, (const double(*)[2])way, 3, pen);
-}
-
-/* The arc of a foot, as far as it may meet the ground while its member stands. */
-static void draw_foot(strut_canvas *canvas, const drawing *d, int32_t element, strut_pen pen) {
-  enum { POINTS = 33 };
-  const strut_element *e = &d->model->elements.element[element];
-  const uint32_t *at = d->model->elements.at + e->first;
-  const double *from = d->q + at[0], *to = d->q + at[1];
-  double length = strut_distance(from, to), way[POINTS][2];
-  if (!(length > 0.0)) return;
-  double ux = (to[0] - from[0]) / length, uy = (to[1] - from[1]) / length;
-  for (int k = 0; k < POINTS; k++) {
-    double angle = STRUT_PI * (0.8 * k / (POINTS - 1) - 0.4), c = cos(angle), s = sin(angle);
-    const double point[2] = {from[0] + e->radius * (ux - (c * ux - s * uy)),
-                             from[1] + e->radius * (uy - (s * ux + c * uy))};
-    strut_window_point(d->window, point, way[k]);
-    if (!isfinite(way[k][0] + way[k][1])) return;
-  }
-  strut_draw_line(canvas, (const double(*)[2])way, POINTS, pen);
-}
-
-static void draw_elements(strut_canvas *canvas, const drawing *d) {
-  bool one = d->style->colouring == STRUT_COLOUR_ONE;
-  strut_pen pen = {.colour =
-                       strut_faded(one ? d->style->colour : strut_palette_thing(2), d->opacity)};
-  strut_element_pose pose;
-  if (d->thin < 0.3) return; /* too small to be drawn */
-  for (int32_t i = 0; i < d->model->elements.count; i++) {
-    const strut_element *e = &d->model->elements.element[i];
-    if (e->role == STRUT_ELEMENT_MEMBER || e->role == STRUT_ELEMENT_CELL ||
-        e->role == STRUT_ELEMENT_COLLISION)
-      continue;
-    strut_element_evaluate(d->model, i, d->model->members.rest, d->q, (double)NAN, &pose);
-    bool thin = e->role == STRUT_ELEMENT_HINGE || e->role == STRUT_ELEMENT_DISTANCE;
-    pen.width = (thin ? 1.0 : 1.6) * d->thin / (1 + d->style->thinness);
-    if (e->role == STRUT_ELEMENT_DISTANCE)
-      draw_distance(canvas, d, i, &pose, pen);
-    else if (e->role == STRUT_ELEMENT_FOOT)
-      draw_foot(canvas, d, i, pen);
-    else if (e->role == STRUT_ELEMENT_HINGE)
-      draw_hinge(canvas, d, &d->model->scene->hinges[e->item], pose.strain, pen);
-    else if (pose.acts)
-      draw_stop(canvas, d, (size_t)e->item, pen);
-  }
-}
-
 /* Masses that slide along members: filled circles on them. */
-static void draw_sliding_masses(strut_canvas *canvas, const drawing *d) {
+static void draw_sliding_masses(strut_canvas *canvas, const strut_drawing *d) {
   const strut_scene *scene = d->model->scene;
   double thin = d->thin / (1.0 + d->style->thinness), point[2], at[2];
   bool one = d->style->colouring == STRUT_COLOUR_ONE;
@@ -672,7 +559,7 @@ static void draw_sliding_masses(strut_canvas *canvas, const drawing *d) {
   }
 }
 
-static void draw_nodes(strut_canvas *canvas, const drawing *d) {
+static void draw_nodes(strut_canvas *canvas, const strut_drawing *d) {
   double thin = d->thin / (1.0 + d->style->thinness), point[2];
   const strut_fill white = {.colour = strut_faded(strut_grey(1), d->opacity)};
   strut_colour edge = d->style->colouring == STRUT_COLOUR_ONE ? d->style->colour : strut_grey(0.1);
@@ -687,17 +574,17 @@ static void draw_nodes(strut_canvas *canvas, const drawing *d) {
 void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                           const strut_model *model, const double *q,
                           const strut_structure_style *style) {
-  const drawing d = {.window = window,
-                     .model = model,
-                     .q = q,
-                     .style = style,
-                     .thin = thinning(window, model, q),
-                     .opacity = style->opacity > 0 ? style->opacity : 1.0};
+  const strut_drawing d = {.window = window,
+                           .model = model,
+                           .q = q,
+                           .style = style,
+                           .thin = thinning(window, model, q),
+                           .opacity = style->opacity > 0 ? style->opacity : 1.0};
   if (!style->no_supports) draw_supports(canvas, window, model, q, fmax(d.thin, 0.3), d.opacity);
-  draw_cells(canvas, &d);
-  draw_collisions(canvas, &d);
+  strut_draw_cells(canvas, &d);
+  strut_draw_collisions(canvas, &d);
   draw_members(canvas, &d);
-  draw_elements(canvas, &d);
+  strut_draw_elements(canvas, &d);
   if (!style->no_nodes) draw_nodes(canvas, &d);
   draw_sliding_masses(canvas, &d);
   if (style->node_names || style->member_names)

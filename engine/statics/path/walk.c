@@ -116,6 +116,7 @@ static const double LONGEST = 0.05, SHORTEST = 1e-9; /* steps [units of y] */
 static const double SHORTEST_CHECKED = 1e-5;         /* likewise, for jumps between branches */
 static const double LONGEST_HELD =
     0.02;                           /* where the curve is a reaction, which bends as it likes */
+static const double BLUNT = 1e-6;   /* step over a kink that is not located */
 static const double BEND = 0.97;    /* cosine that tangents of neighbouring points keep */
 static const double COUPLED = 1e-6; /* of the load: what a null vector feels at a limit point */
 static const double BOUND = 1e3, DEEP = -10; /* sizes away; ranges the other way */
@@ -219,19 +220,29 @@ void strut_path_count_negative(strut_path_walk *w) {
   w->negative = w->system.spectrum.negative;
 }
 
-/* Predictor and corrector, shorter until they succeed: the next point and its tangent. */
-static bool find_next(strut_path_walk *w) {
+/* A step of the present length: the next point and its tangent, which may differ from this one as `bend` says. */
+static bool try_step(strut_path_walk *w, double bend) {
   strut_path_system *s = &w->system;
   double here = strut_path_dot(w, w->tangent, w->y);
-  for (; w->step >= SHORTEST; w->step *= 0.5) {
-    memcpy(w->next, w->y, strut_path_bytes(w));
-    for (int32_t i = 0; i <= s->n; i++) w->next[i] += w->step * w->tangent[i];
-    int used = strut_path_correct(s, w->tangent, here + w->step, w->next);
-    if (used < 0 || used > SLOW || strut_path_distance(w, w->next, w->y) > 1.5 * w->step) continue;
-    if (!strut_path_tangent(s, w->next, w->tangent, w->next_tangent)) continue;
-    if (strut_path_dot(w, w->tangent, w->next_tangent) < BEND) continue;
-    return true;
-  }
+  memcpy(w->next, w->y, strut_path_bytes(w));
+  for (int32_t i = 0; i <= s->n; i++) w->next[i] += w->step * w->tangent[i];
+  int used = strut_path_correct(s, w->tangent, here + w->step, w->next);
+  return used >= 0 && used <= SLOW && strut_path_distance(w, w->next, w->y) <= 1.5 * w->step &&
+         strut_path_tangent(s, w->next, w->tangent, w->next_tangent) &&
+         strut_path_dot(w, w->tangent, w->next_tangent) >= bend;
+}
+
+/* Cables that meet or leave a circle, or begin to rub, bend a path at once with no switch that says where. */
+static bool has_hidden_kinks(const strut_path_system *s) {
+  return strut_path_has_rubbing(s) || s->model->laws.strain >> STRUT_STRAIN_WRAP & 1u;
+}
+
+/* Predictor and corrector, shorter until they succeed: the next point and its tangent. */
+static bool find_next(strut_path_walk *w) {
+  for (; w->step >= SHORTEST; w->step *= 0.5)
+    if (try_step(w, BEND)) return true;
+  for (w->step = BLUNT; has_hidden_kinks(&w->system) && w->step >= SHORTEST; w->step *= 0.1)
+    if (try_step(w, 0.0)) return true;
   w->step = SHORTEST;
   return false;
 }
