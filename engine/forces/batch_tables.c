@@ -21,7 +21,7 @@ bool strut_batch_takes_model(const strut_model *model) {
   const unsigned one_by_one = STRUT_TERM_RIGID | STRUT_TERM_ACTUATOR_FORCES |
                               STRUT_TERM_MASS_DAMPING | STRUT_TERM_SUPPORT_MOTION |
                               STRUT_TERM_UNBALANCE | STRUT_TERM_MEMORY | STRUT_TERM_SURFACES |
-                              STRUT_TERM_FEEDBACK | STRUT_TERM_SLIDING_MASS | STRUT_TERM_FEET;
+                              STRUT_TERM_FEEDBACK | STRUT_TERM_SLIDING_MASS | STRUT_TERM_RUBBING;
   if (!mass || (model->terms & one_by_one) || !strut_laws_within(model->laws, known)) return false;
   /* the energy balance of one run adds up so many members in parts */
   bool powers = model->terms & (STRUT_TERM_DAMPING | STRUT_TERM_DRIVE);

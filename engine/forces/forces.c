@@ -3,12 +3,12 @@
 #include <assert.h>
 
 #include "engine/forces/drives.h"
-#include "engine/forces/feet.h"
 #include "engine/forces/forces_kernel.h"
 #include "engine/forces/history.h"
 #include "engine/forces/mass_damping.h"
 #include "engine/forces/moving_masses.h"
 #include "engine/forces/rigid.h"
+#include "engine/forces/rubbing.h"
 
 void strut_forces_add_rare(const strut_model *model, strut_state *state, double t, const double *q,
                            const double *v) {
@@ -19,7 +19,7 @@ void strut_forces_add_rare(const strut_model *model, strut_state *state, double 
   if (terms & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);
   if (terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_apply(model, state, t, q, v);
   if (terms & STRUT_TERM_SUPPORT_MOTION) strut_support_motion_apply(model, state, t, v);
-  if (terms & STRUT_TERM_FEET) strut_feet_add_forces(model, state, q, v);
+  if (terms & STRUT_TERM_RUBBING) strut_rubbing_add_forces(model, state, q, v);
 }
 
 STRUT_CLONES
@@ -37,7 +37,7 @@ void strut_forces_evaluate(const strut_model *model, strut_state *state, double 
     state->latest.normal[i] = state->latest.friction[i] =
         0.0; /* the sum fills those that touch, and only them */
   sum_once(model, state, t, q, v);
-  if (model->feet.count) strut_feet_show(model, state, q, v);
+  if (model->rubbing.count) strut_rubbing_show_feet(model, state, q, v);
   if (state->rigid) strut_rigid_constrain(model, state, q, v);
 }
 
@@ -47,7 +47,7 @@ bool strut_forces_show_held(const strut_model *model, strut_state *state) {
     state->latest.normal[i] = state->modes.held_normal[i];
     state->latest.friction[i] = state->modes.held_friction[i];
   }
-  if (model->feet.count) strut_feet_show(model, state, state->q, state->v);
+  if (model->rubbing.count) strut_rubbing_show_feet(model, state, state->q, state->v);
   return true;
 }
 

@@ -2,7 +2,7 @@
 #include "engine/forces/tangent.h"
 
 #include "engine/forces/capstan.h"
-#include "engine/forces/feet.h"
+#include "engine/forces/rubbing.h"
 
 #include <assert.h>
 
@@ -203,13 +203,17 @@ static void add_maxwell(assembly *a, const double *rest) {
   }
 }
 
-/* Friction of feet that rest, as far as it is a damper. */
-static void add_feet(assembly *a) {
-  for (int32_t i = 0; i < a->model->feet.count; i++) {
-    const strut_foot_entry *f = &a->model->feet.item[i];
-    double b[4], k[16], slide = strut_friction_slope(&f->friction, resting_force(a->model));
-    strut_foot_slide(a->model, i, a->q, b);
-    for (int r = 0; r < 16; r++) k[r] = slide * b[r / 4] * b[r % 4];
+/* Of the lower triangle of an element that rubs. */
+enum { RUBBING_ENTRIES = STRUT_MOST_RUBBING * (STRUT_MOST_RUBBING + 1) / 2 };
+
+/* Friction of feet and collisions that rest, as far as it is a damper. */
+static void add_rubbing(assembly *a) {
+  for (int32_t i = 0; i < a->model->rubbing.count; i++) {
+    const strut_rubbing_entry *f = &a->model->rubbing.item[i];
+    double b[STRUT_MOST_RUBBING], k[STRUT_MOST_RUBBING * STRUT_MOST_RUBBING];
+    double slide = strut_friction_slope(&f->friction, resting_force(a->model));
+    int32_t side = 2 * strut_rubbing_slide(a->model, i, a->q, b);
+    for (int32_t r = 0; r < side * side; r++) k[r] = slide * b[r / side] * b[r % side];
     strut_element_add(a->model, f->element, k, a->row_of, &a->damping);
   }
 }
@@ -229,7 +233,7 @@ static void collect_columns(assembly *a, const double *rest, strut_closed closed
   strut_tangent_visit(a->model, a->q, rest, -HUGE_VAL, closed, a, add_member, add_element,
                       add_contact);
   if (a->stiffest) add_maxwell(a, rest);
-  if (a->stiffest) add_feet(a);
+  if (a->stiffest) add_rubbing(a);
   strut_mass_damping_add(a->model, a->row_of, &a->damping);
 }
 
@@ -268,7 +272,7 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
   size_t both = (size_t)model->length;
   size_t most = strut_tangent_entries(model, true) + strut_mass_damping_entries(model) +
                 STRUT_MEMBER_ENTRIES * (size_t)model->feedback.maxwell_count +
-                STRUT_MEMBER_ENTRIES * (size_t)model->feet.count;
+                RUBBING_ENTRIES * (size_t)model->rubbing.count;
   int32_t *row_of = strut_arena_allocate(&scratch, both, sizeof *row_of);
   assembly a = {
       .model = model, .q = q, .row_of = row_of, .undamped = closed == STRUT_CLOSED_UNDAMPED};

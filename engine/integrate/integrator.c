@@ -68,6 +68,11 @@ strut_status strut_integrator_check(const strut_model *model, const strut_experi
                       "%s cannot step over contacts, and node '%s' may touch the ground; use "
                       "solver.integrator verlet-events, rk4-events or adaptive",
                       name, scene->nodes[model->contacts.entry[0].node].name);
+  if (method->no_ground && model->terms & STRUT_TERM_RUBBING)
+    return strut_fail(error, STRUT_USAGE,
+                      "%s does not know the friction of collisions; use solver.integrator verlet, "
+                      "rk4-events or adaptive",
+                      name);
   if (method->no_memory && model->terms & STRUT_TERM_MEMORY)
     return strut_fail(error, STRUT_USAGE,
                       "%s cannot step over what breaks, is released, yields or folds; use "

@@ -142,8 +142,9 @@ static void compile_drives(strut_model *model, bool *failed) {
   model->drives = (strut_drive_table){(int32_t)count, member, signal, first};
 }
 
-static void compile_feet(strut_model *model, bool *failed) {
-  if (model->scene->foot_count && !strut_feet_compile(model)) *failed = true;
+static void compile_rubbing(strut_model *model, bool *failed) {
+  bool rubs = model->scene->foot_count || strut_collisions_rub(model->scene);
+  if (rubs && !strut_rubbing_compile(model)) *failed = true;
 }
 
 static void compile_feedback(strut_model *model, bool *failed) {
@@ -329,7 +330,7 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
       compile_nodes,           compile_members, compile_elements,       compile_drives,
       compile_sliding_masses,  compile_weights, compile_loads,          compile_contacts,
       compile_actuator_forces, compile_damping, compile_support_motion, compile_unbalances,
-      compile_feedback,        compile_feet};
+      compile_feedback,        compile_rubbing};
   for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
     passes[i](model, &failed);
   strut_status status = failed ? strut_memory_fail_model(scene, error)

@@ -17,7 +17,7 @@ size_t strut_element_slots(const strut_scene *scene);
 bool strut_elements_compile(strut_model *model);
 
 /** Gives the elements of feet their places on the grounds, after contacts were compiled; false: out of memory. */
-bool strut_feet_compile(strut_model *model);
+bool strut_rubbing_compile(strut_model *model);
 
 /** Fills model->actuator_forces from the scene. False: out of memory. */
 bool strut_actuator_forces_compile(strut_model *model);

@@ -463,7 +463,7 @@ static void add_distance(compilation *c, size_t i) {
   if (memory_of_law(&d->law)) remember(c, e);
 }
 
-/* A foot presses as its node's contacts say; strut_feet_compile places it on their grounds. */
+/* A foot presses as its node's contacts say; strut_rubbing_compile places it on their grounds. */
 static void add_feet(compilation *c) {
   const strut_scene *scene = c->model->scene;
   for (size_t i = 0; i < scene->contact_count; i++) {

@@ -18,9 +18,9 @@
 #include "engine/base/status.h"
 #include "engine/model/elements.h"
 #include "engine/model/feedback.h"
-#include "engine/model/feet.h"
 #include "engine/model/law_set.h"
 #include "engine/model/pull_rows.h"
+#include "engine/model/rubbing.h"
 #include "engine/model/sliding_masses.h"
 #include "engine/model/support_motion.h"
 #include "engine/model/surfaces.h"
@@ -46,7 +46,7 @@ typedef enum strut_term {
   STRUT_TERM_MASS_DAMPING = 1 << 15,    /* Rayleigh's damping by mass */
   STRUT_TERM_SUPPORT_MOTION = 1 << 16,  /* supports that move */
   STRUT_TERM_UNBALANCE = 1 << 17,       /* rotating masses */
-  STRUT_TERM_FEET = 1 << 18,            /* feet that roll */
+  STRUT_TERM_RUBBING = 1 << 18,         /* friction of feet and of collisions */
   STRUT_TERM_MEMORY = 1 << 20,          /* elements that break, are released, yield or rub */
   STRUT_TERM_FEEDBACK = 1 << 22,        /* sensors, internal states, and signals that follow them */
   STRUT_TERM_SLIDING_MASS = 1 << 25,    /* masses that slide along members */
@@ -61,7 +61,7 @@ typedef enum strut_term {
 #define STRUT_TERMS_RARE                                                                           \
   ((unsigned)(STRUT_TERM_FEEDBACK | STRUT_TERM_ACTUATOR_FORCES | STRUT_TERM_UNBALANCE |            \
               STRUT_TERM_MASS_DAMPING | STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_MEMORY |            \
-              STRUT_TERM_SURFACES | STRUT_TERM_SLIDING_MASS | STRUT_TERM_FEET))
+              STRUT_TERM_SURFACES | STRUT_TERM_SLIDING_MASS | STRUT_TERM_RUBBING))
 #define STRUT_TERMS_COMMON (~STRUT_TERMS_RARE)
 #define STRUT_TERMS_ALL (~0u)
 
@@ -143,7 +143,7 @@ typedef struct strut_model {
   const double *point_mass; /* (node_count) [kg] */
   strut_member_table members;
   strut_element_table elements;
-  strut_feet_table feet;
+  strut_rubbing_table rubbing;
   strut_contact_table contacts;
   strut_drive_table drives;
   strut_load_table loads;

@@ -34,7 +34,7 @@ static const strut_cost_term terms[] = {
     {STRUT_TERM_SUPPORT_MOTION, "moving supports", "a node that moves", false},
     {STRUT_TERM_UNBALANCE, "unbalances", "a rotating mass", false},
     {STRUT_TERM_SLIDING_MASS, "sliding masses", "a slider that moves", false},
-    {STRUT_TERM_FEET, "rolling feet", "a foot", false},
+    {STRUT_TERM_RUBBING, "feet and collisions that rub", "a foot", false},
 };
 _Static_assert(sizeof terms / sizeof terms[0] == STRUT_COST_TERMS, "one for each term");
 

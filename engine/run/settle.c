@@ -46,6 +46,12 @@ static strut_status copy_passive_scene(const strut_scene *scene, bool friction,
     strut_scene_stop_grip(scene, &passive->contacts[i].friction);
     if (!friction) passive->contacts[i].friction.law = STRUT_FRICTION_NONE;
   }
+  strut_collision *bodies =
+      strut_arena_copy(arena, scene->collisions, scene->collision_count, sizeof *bodies);
+  if (!bodies) return STRUT_NO_MEMORY;
+  for (size_t i = 0; i < scene->collision_count && !friction; i++)
+    bodies[i].friction.mu_kinetic = 0.0;
+  passive->collisions = bodies;
   if (!strut_scene_remove_feedback(passive, arena)) return STRUT_NO_MEMORY;
   return STRUT_OK;
 }

@@ -435,6 +435,20 @@ static int32_t shared_node(const strut_scene *scene, const strut_collision *c) {
   return -1;
 }
 
+/* Friction of a collision: smooth, or Stribeck's with both further numbers. */
+static void check_rubbing(strut_checker *checker, size_t index, const char *owner) {
+  const strut_friction *f = &checker->scene->collisions[index].friction;
+  const strut_friction none = {STRUT_FRICTION_NONE};
+  const strut_checked whose = {STRUT_ON_COLLISION, index, owner, "friction"};
+  if (f->mu_kinetic == 0.0 && f->width == 0.0 && f->mu_static == 0.0) return;
+  if (!strut_check_fields(checker, &whose, STRUT_FIELDS_RUBBING, f, &none)) return;
+  if ((f->decay_velocity > 0.0) == (f->mu_static > 0.0)) return;
+  strut_report_finding(checker, STRUT_ON_COLLISION, index, "friction",
+                       "the friction of %s has '%s', but no '%s'", owner,
+                       f->mu_static > 0.0 ? "mu_static" : "decay_velocity",
+                       f->mu_static > 0.0 ? "decay_velocity" : "mu_static");
+}
+
 void strut_check_collisions(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   for (size_t i = 0; i < scene->collision_count; i++) {
@@ -443,6 +457,7 @@ void strut_check_collisions(strut_checker *checker) {
     strut_format_name(owner, "collision", c->name, i);
     const strut_checked whose = {STRUT_ON_COLLISION, i, owner, NULL};
     strut_check_fields(checker, &whose, STRUT_FIELDS_COLLISION, c, NULL);
+    check_rubbing(checker, i, owner);
     if (!check_bodies(checker, i, owner)) continue;
     int32_t shared = shared_node(scene, c);
     bool ends = c->member[0] < 0 ||

@@ -133,6 +133,8 @@ typedef struct strut_collision {
   double thickness;           /* distance of their axes at which they touch [m], > 0 */
   double stiffness;           /* [N/m], > 0 */
   double damping;             /* [N s/m] while they push */
+  strut_friction
+      friction; /* smooth, or with a decay_velocity Stribeck's; none where mu_kinetic is 0 */
 } strut_collision;
 
 /**

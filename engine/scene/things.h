@@ -174,7 +174,7 @@ typedef struct strut_field_row {
 /* clang-format off */
 #define STRUT_FURTHER_SECTIONS(X) \
   X(SCENE, ) X(GAS, ) X(LAW, ) X(RAYLEIGH, ) X(CIRCLE, ) X(FRICTION, ) X(SINE, ) X(HALF_SINE, ) X(SQUARE, ) X(RAMP, ) \
-  X(MAXWELL, ) X(SETTLE, ) X(EQUILIBRIA, ) X(SOLVER, ) X(RUN, ) X(MEASURE, ) X(OUTPUT, )
+  X(MAXWELL, ) X(RUBBING, ) X(SETTLE, ) X(EQUILIBRIA, ) X(SOLVER, ) X(RUN, ) X(MEASURE, ) X(OUTPUT, )
 /* clang-format on */
 
 typedef enum strut_thing_section {

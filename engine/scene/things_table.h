@@ -194,7 +194,8 @@
   X(COLLISION, BETWEEN, "between", FREE, NONE, ANY, "", OPTIONAL, 8, "all, a group of members, or two of these", BY_HAND, "Every two straight members of these: of all, of a group, or one of each group. Left out are members that share a node, and those that cross or are nearer than the thickness as drawn.") \
   X(COLLISION, THICKNESS, "thickness", NUMBER, LENGTH, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_collision, thickness), "Distance of the two axes or centres at which they touch.") \
   X(COLLISION, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_collision, stiffness), "Force per depth.") \
-  X(COLLISION, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_collision, damping), "Force per speed of approach while they touch; a collision never pulls.")
+  X(COLLISION, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_collision, damping), "Force per speed of approach while they touch; a collision never pulls.") \
+  X(COLLISION, FRICTION, "friction", MAP, NONE, ANY, "", OPTIONAL, 0, "friction", OF_RUNS(NESTED(strut_collision, friction, RUBBING)), "Friction of the two on each other.")
 
 #define STRUT_DISTANCE_FIELDS(X) \
   X(DISTANCE, NODES, "nodes", NAME_PAIR, NONE, ANY, "", OPTIONAL, 8, "", REFERENCE(strut_distance_spring, node, NODE), "Two nodes `[a, b]`: the distance is how far b is ahead of a in the direction `along`; it may be negative.") \
@@ -377,6 +378,12 @@
   X(MAXWELL, DAMPING, "damping", NUMBER, DAMPING, ABOVE_ZERO, "", OPTIONAL, 7, "", FIELD(strut_maxwell, damping), "Damping c of the dashpot.") \
   X(MAXWELL, TIME, "time", NUMBER, TIME, ABOVE_ZERO, "", OPTIONAL, 7, "", FIELD(strut_maxwell, time), "Instead of the damping: the time c/k in which the force relaxes.") \
   X(MAXWELL, FORCE, "force", NUMBER, FORCE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_maxwell, force), "Force of the branch at t = 0; tension is positive.")
+
+#define STRUT_RUBBING_FIELDS(X) \
+  X(RUBBING, MU, "mu", NUMBER, NONE, NOT_NEGATIVE, "", REQUIRED, 0, "", FIELD(strut_friction, mu_kinetic), "Coefficient of friction, of fast sliding where there is a `decay_velocity`.") \
+  X(RUBBING, WIDTH, "width", NUMBER, VELOCITY, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_friction, width), "Sliding speed at which friction reaches 0.71 of its full value.") \
+  X(RUBBING, MU_STATIC, "mu_static", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", FIELD(strut_friction, mu_static), "Coefficient of slow sliding, with a `decay_velocity`.") \
+  X(RUBBING, DECAY_VELOCITY, "decay_velocity", NUMBER, VELOCITY, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_friction, decay_velocity), "Sliding speed at which the coefficient is half way from `mu_static` to `mu` (Stribeck's curve).")
 
 #define STRUT_STARTS_FIELDS(X) \
   X(STARTS, CONTACT, "contact", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_trigger, kind, STRUT_TRIGGER_CONTACT, REFERENCE(strut_trigger, item, NODE)), "The node whose touchdown starts the signal.") \

@@ -330,6 +330,7 @@
   STRUT_RELAY_FIELDS(X) \
   STRUT_PIPE_KEYS(X) \
   STRUT_NETWORK_KEYS(X) \
+  STRUT_RUBBING_FIELDS(X) \
   STRUT_MAXWELL_FIELDS(X) \
   STRUT_STARTS_FIELDS(X) \
   STRUT_CONFIGURATION_FIELDS(X) \
@@ -403,6 +404,7 @@
   X(RELAY, "relay", RELAY_KIND, "`controllers: {NAME: {kind: relay, ...}}`: a signal with two values. Either `on_above` and `off_below`, or `on_below` and `off_above`.") \
   X(PIPE, "pipe", PIPE_CELLS, "`pipes: {NAME: {cells: [a, b], conductance}}`: gas that flows between two cells. The name is the amount that has flowed, pressure times area, a state. `strut write` shows the sensors, signals and actuators that a pipe stands for.") \
   X(NETWORK, "network", NETWORK_FILE, "`controllers: {NAME: {network: FILE, ...}}`: a signal from a neural network. Its neurons are signals `NAME_1_1` and so on; `strut write` shows them.") \
+  X(RUBBING, "friction of a collision", RUBBING_MU, "`collisions: {NAME: {friction: {...}}}`: of two bodies that touch, smooth in the speed, so that nothing sticks for good. It acts on nodes and axes, without a moment by the thickness.") \
   X(MAXWELL, "maxwell", MAXWELL_STIFFNESS, "`members: {NAME: {maxwell: {...}}}`: the force of the branch follows F' = k (u' - F/c), with the rate u' of the elongation. In statics it has relaxed to 0.") \
   X(STARTS, "starts", STARTS_CONTACT, "`{sine: {...}, starts: {...}}` of any signal: the touchdown of a node, or a sensor that passes a level.") \
   X(CONFIGURATION, "configuration", CONFIGURATION_CONTACTS, "`configurations: {NAME: {NODE: [x, y], ...}}`, or `configurations: {NAME: {...}}` with these keys. `{}` is the drawn shape. If a node is called `contacts`, that key followed by two plain values is its position.") \

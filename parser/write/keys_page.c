@@ -29,6 +29,17 @@ static void put_unit(strut_writer *writer, const strut_key *key) {
   strut_put(writer, "]");
 }
 
+/* A link to the heading of a section. */
+static void put_section_link(strut_writer *writer, const char *name) {
+  char letter[2] = "";
+  strut_put(writer, "[mapping](#");
+  for (; *name; name++) {
+    letter[0] = *name == ' ' ? '-' : *name;
+    strut_put(writer, letter);
+  }
+  strut_put(writer, ")");
+}
+
 static void put_limits(strut_writer *writer, strut_key_limits limits) {
   switch (limits.range) {
     case STRUT_RANGE_NOT_NEGATIVE: strut_put(writer, ", not negative"); break;
@@ -78,9 +89,7 @@ void strut_put_key_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_THINGS] = "names, each with ",
       [STRUT_TYPE_FREE] = ""};
   if (key->type == STRUT_TYPE_MAP) {
-    strut_put(writer, "[mapping](#");
-    strut_put(writer, key->name);
-    strut_put(writer, ")");
+    put_section_link(writer, strut_section_name(strut_section_below(key)));
     return;
   }
   if (key->type == STRUT_TYPE_EXPRESSION) put_expression_type(writer, key);

@@ -168,10 +168,7 @@ static void put_coordinate(strut_writer *writer, int32_t at) {
 static void put_stage_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                               const void *object) {
   const strut_path_stage *stage = object;
-  if (key == STRUT_KEY_STAGE_UNTIL && !*stage->release) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_number(writer, stage->until);
-  } else if (key == STRUT_KEY_STAGE_HOLD && stage->hold_count) {
+  if (key == STRUT_KEY_STAGE_HOLD && stage->hold_count) {
     strut_put_key_name(writer, mapping, key);
     for (size_t i = 0; i < stage->hold_count; i++) {
       strut_put(writer, i ? ", " : "[");
@@ -189,7 +186,7 @@ static void put_stage_by_hand(strut_writer *writer, strut_mapping *mapping, int 
 }
 
 static void put_path(strut_writer *writer) {
-  static const strut_path_stage none = {.load = "", .over = "", .release = ""};
+  strut_path_stage none = {.load = "", .over = "", .release = ""};
   const strut_experiment *e = writer->experiment;
   if (e->stage_count || e->path_friction) strut_put(writer, "path:\n");
   if (e->path_friction) strut_put(writer, "  friction: kept\n");
@@ -200,6 +197,8 @@ static void put_path(strut_writer *writer) {
     if (!stage.load) stage.load = none.load;
     if (!stage.over) stage.over = none.over;
     if (!stage.release) stage.release = none.release;
+    /* always written but of a release: its default is another for each kind of stage */
+    none.until = *stage.release ? stage.until : (double)NAN;
     strut_put(writer, "    - {");
     strut_put_fields(writer, &mapping, STRUT_SECTION_STAGE, &stage, &none, put_stage_by_hand);
     strut_put(writer, "}\n");

@@ -280,4 +280,35 @@ expect 0 run hinged.yaml -o pictures --quiet --plot hinged.svg
 expect 0 view pictures -o page.html
 grep -q '"name":"hit","thickness":0.05,"nodes":\[2\],"members":\[0\]' page.html || fail "no collision on the page"
 
+# ---- a disc that slides along a rod on which it lies: mu g takes its speed, in every method ----
+cat >slides.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [-5, 0], fixed: both}
+  b: {position: [5, 0], fixed: both}
+  d: {position: [-2, 0.099], mass: 2}
+members: {rod: {kind: bar, nodes: [a, b], stiffness: 1000}}
+collisions:
+  k: {node: d, member: rod, thickness: 0.1, stiffness: 10000, damping: 200, friction: {mu: 0.3, width: 0.1 mm/s}}
+gravity: [0, -5]
+initial: {velocity: [2, 0]}
+solver: {step: 0.1 ms}
+run: {duration: 1 s}
+END
+for method in rk4 rk4-events verlet adaptive euler; do
+  expect 0 run slides.yaml --integrator $method --json
+  jq -e '(if .method == "euler" then 1e-3 else 1e-8 end) as $e |
+    (.nodes.d.position[0] + 0.75 | fabs < $e) and (.energy.residual | fabs < $e)' "$work/out" >/dev/null ||
+    fail "a disc that rubs, by $method: $(jq -c '.method, .nodes.d.position, .energy.residual' "$work/out")"
+done
+expect 1 run slides.yaml --integrator midpoint
+err_has "midpoint does not know the friction of collisions"
+# two discs side by side: what one loses along the other, the other gains
+sed -e '/^members/d; /^  a:/d; /^gravity/d; /^initial/d' -e 's/^  b:.*/  b: {position: [0, 0], mass: 1}/' \
+  -e 's/^  d:.*/  d: {position: [0.099, 0], mass: 2}/' -e 's/node: d, member: rod/nodes: [b, d]/' -e 's/damping: 200/damping: 50/' slides.yaml >side.yaml
+echo 'initial: {velocities: {b: [0.5, 1], d: [0, 0]}}' >>side.yaml
+expect 0 run side.yaml --integrator adaptive --json -o side
+jq -e '(.energy.residual | fabs < 1e-6) and (.energy.dissipated_friction > 0.1)' "$work/out" >/dev/null ||
+  fail "two discs: $(jq -c .energy "$work/out")"
+
 done_testing

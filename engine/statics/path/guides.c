@@ -20,7 +20,7 @@ bool strut_path_rubs(const strut_path_system *s, int32_t i) {
   return s->elements.material && strut_has_capstan(&s->model->elements.element[i]);
 }
 
-bool strut_path_guides_create(strut_path_system *s) {
+bool strut_path_guides_create(strut_path_system *s, const strut_path *after) {
   const strut_element_table *t = &s->model->elements;
   size_t slots = (size_t)s->model->members.slots;
   bool some = false;
@@ -28,6 +28,8 @@ bool strut_path_guides_create(strut_path_system *s) {
   if (!some) return true;
   s->elements.material = strut_arena_copy(&s->arena, s->model->members.rest, slots, sizeof(double));
   s->elements.guide_mode = strut_arena_allocate(&s->arena, slots, sizeof *s->elements.guide_mode);
+  if (s->elements.guide_mode && after && after->guide_mode)
+    memcpy(s->elements.guide_mode, after->guide_mode, slots * sizeof *after->guide_mode);
   return s->elements.material && s->elements.guide_mode;
 }
 
@@ -133,7 +135,8 @@ void strut_path_keep_guides(strut_path_walk *w) {
     find_in(s, &s->equations.terms, i, s->latest.q, &now);
     for (int32_t k = 0; k + 2 < e->nodes; k++) {
       int *mode = &s->elements.guide_mode[e->slot + 1 + k];
-      if (*mode != now.mode[k] && w->path->point_count > 0) report_guide(w, i, k, now.mode[k]);
+      if (w->path->point_count == 0) continue; /* nothing has moved yet */
+      if (*mode != now.mode[k]) report_guide(w, i, k, now.mode[k]);
       *mode = now.mode[k];
     }
     memcpy(s->elements.material + e->slot + 1, now.material,

@@ -322,7 +322,7 @@ static strut_status create_walk(path_start *b, double until, strut_path_walk *w,
                                         .range = until - b->options->from};
   if (b->options->friction) {
     bool grips = strut_path_friction_create(s);
-    if (!strut_path_guides_create(s)) return strut_no_memory(error, "");
+    if (!strut_path_guides_create(s, b->options->after)) return strut_no_memory(error, "");
     w->path->grips = grips || strut_path_has_rubbing(s);
   }
   return strut_path_parameter_create(&s->parameter, b->q, &s->arena, error);
@@ -337,7 +337,10 @@ static bool keep_pieces(const strut_path_system *s, strut_path *path) {
   if (s->elements.material)
     path->material = strut_arena_copy(&path->arena, s->elements.material,
                                       (size_t)s->model->members.slots, sizeof(double));
-  return piece && (path->material || !s->elements.material);
+  if (s->elements.material)
+    path->guide_mode = strut_arena_copy(&path->arena, s->elements.guide_mode,
+                                        (size_t)s->model->members.slots, sizeof(int));
+  return piece && ((path->material && path->guide_mode) || !s->elements.material);
 }
 
 static strut_status walk_from(path_start *b, double until, int32_t steps, strut_path *path,

@@ -116,8 +116,9 @@ typedef struct strut_path {
   char remark[1000]; /* why it ended before `until`; else empty */
   const double *
       material; /* (slots) of cables that rub at their guides at the end, as capstan.h has them; or NULL */
-  const int *piece;    /* (elements) of the law of each at the end, as elements.h counts them */
-  const uint8_t *held; /* (length) 1 where a coordinate has a reaction, in some stage */
+  const int *guide_mode; /* (slots) what slipped last at their guides; or NULL */
+  const int *piece;      /* (elements) of the law of each at the end, as elements.h counts them */
+  const uint8_t *held;   /* (length) 1 where a coordinate has a reaction, in some stage */
   size_t stage_count;
   struct strut_path *stages; /* (stage_count) of a path in stages, those before this one */
   size_t branch_count;

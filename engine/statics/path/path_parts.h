@@ -125,8 +125,9 @@ void strut_path_element_switch_set(struct strut_path_system *system, int32_t whi
 
 /* Cables that rub at their guides, in a path that keeps friction. For parameter.c and walk.c. */
 
-/** Takes the materials that the model remembers, if some cable rubs; false: out of memory. */
-bool strut_path_guides_create(struct strut_path_system *system);
+/** Takes the materials that the model remembers, if some cable rubs, and what slipped at the end of the path before,
+    or NULL; false: out of memory. */
+bool strut_path_guides_create(struct strut_path_system *system, const strut_path *after);
 /** Is this element such a cable? */
 bool strut_path_rubs(const struct strut_path_system *system, int32_t element);
 /** Is there one? Then the stiffness has no symmetry. */

@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/rubbing.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "engine/forces/elements.h"
+#include "engine/forces/strains/foot.h"
+#include "engine/scene/friction.h"
+
+static void slide_foot(const strut_element *e, const uint32_t *at, const double *q, double *b) {
+  const strut_foot_pose pose = strut_foot_pose_of(at, q, e->axis, e->radius);
+  /* the tangent is to the right of the normal; rolling, the middle moves as the member turns */
+  double tx = pose.ny, ty = -pose.nx, roll = pose.turn * (1.0 - pose.along);
+  b[2] = -roll * pose.uy, b[3] = roll * pose.ux;
+  b[0] = tx - b[2], b[1] = ty - b[3];
+}
+
+int32_t strut_rubbing_slide(const strut_model *model, int32_t item, const double *q,
+                            double b[STRUT_MOST_RUBBING]) {
+  assert(item >= 0 && item < model->rubbing.count);
+  int32_t element = model->rubbing.item[item].element;
+  const strut_element *e = &model->elements.element[element];
+  double across[STRUT_MOST_GRADIENT];
+  if (e->role == STRUT_ELEMENT_FOOT) {
+    slide_foot(e, model->elements.at + e->first, q, b);
+    return e->nodes;
+  }
+  /* along the surfaces the nodes have the shares that they have across them */
+  strut_element_strain(model, element, q, 0.0, across);
+  for (int32_t k = 0; k < e->nodes; k++)
+    b[2 * k] = across[2 * k + 1], b[2 * k + 1] = -across[2 * k];
+  return e->nodes;
+}
+
+/* An entry at q and v: how it slides, and the forces normal to the surfaces and along them. */
+typedef struct rubbing_forces {
+  int32_t nodes; /* 0: it does not touch */
+  double slide[STRUT_MOST_RUBBING], slip, normal, friction;
+} rubbing_forces;
+
+static rubbing_forces forces_of(const strut_model *model, const strut_state *state, int32_t item,
+                                const double *q, const double *v) {
+  const strut_rubbing_entry *f = &model->rubbing.item[item];
+  const uint32_t *at = model->elements.at + model->elements.element[f->element].first;
+  strut_element_pose pose;
+  rubbing_forces r = {.normal = -strut_element_measure_at(model, state, f->element, q, v, &pose)};
+  if (!(r.normal > 0.0)) return (rubbing_forces){.nodes = 0};
+  r.nodes = strut_rubbing_slide(model, item, q, r.slide);
+  for (int32_t k = 0; k < 2 * r.nodes; k++) r.slip += r.slide[k] * v[at[k / 2] + (uint32_t)(k % 2)];
+  r.slip -= f->belt_speed;
+  r.friction = strut_friction_force(&f->friction, r.normal, r.slip, 0.0);
+  return r;
+}
+
+void strut_rubbing_add_forces(const strut_model *model, strut_state *state, const double *q,
+                              const double *v) {
+  for (int32_t i = 0; i < model->rubbing.count; i++) {
+    const strut_rubbing_entry *f = &model->rubbing.item[i];
+    const uint32_t *at = model->elements.at + model->elements.element[f->element].first;
+    if (f->friction.law == STRUT_FRICTION_NONE) continue;
+    rubbing_forces r = forces_of(model, state, i, q, v);
+    for (int32_t k = 0; k < 2 * r.nodes; k++)
+      state->latest.force[at[k / 2] + (uint32_t)(k % 2)] += r.friction * r.slide[k];
+    if (!state->balance) continue;
+    double lost = -r.friction * r.slip, belt = r.friction * f->belt_speed;
+    state->latest.power[STRUT_POWER_FRICTION] += lost;
+    state->latest.power[STRUT_POWER_BELT] += belt;
+    state->latest.power[STRUT_POWER_EXCHANGED] += fabs(lost) + fabs(belt);
+  }
+}
+
+void strut_rubbing_show_feet(const strut_model *model, strut_state *state, const double *q,
+                             const double *v) {
+  for (int32_t i = 0; i < model->rubbing.count; i++) {
+    int32_t contact = model->rubbing.item[i].contact;
+    if (contact < 0) continue;
+    rubbing_forces r = forces_of(model, state, i, q, v);
+    state->latest.normal[contact] = r.normal;
+    state->latest.friction[contact] = r.friction;
+  }
+}

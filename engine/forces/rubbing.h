@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Friction of elements that press (engine/model/rubbing.h), where they touch.
+ *
+ * The surfaces slide on each other by b v, b over the coordinates of the element's nodes: friction F there is F b
+ * on them, of a foot with its moment on the member. Its law is one without stick, under the force by which the
+ * element presses. Bodies of collisions are as their nodes and axes lie: friction has no moment by their thickness.
+ */
+#ifndef STRUT_ENGINE_FORCES_RUBBING_H
+#define STRUT_ENGINE_FORCES_RUBBING_H
+
+#include "engine/model/state.h"
+
+enum { STRUT_MOST_RUBBING = 6 }; /* coordinates of an element that rubs */
+
+/** How entry `item` slides with its nodes. b: (2 nodes); returns how many these are. */
+int32_t strut_rubbing_slide(const strut_model *model, int32_t item, const double *q,
+                            double b[STRUT_MOST_RUBBING]);
+/** Adds all this friction to the state's force, and its power; after the elements. */
+void strut_rubbing_add_forces(const strut_model *model, strut_state *state, const double *q,
+                              const double *v);
+/** Writes the forces of feet over those of their nodes' contacts, which touch nothing themselves. */
+void strut_rubbing_show_feet(const strut_model *model, strut_state *state, const double *q,
+                             const double *v);
+
+#endif

@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/model/rubbing.h"
+
+#include <math.h>
+
+#include "engine/model/compile_parts.h"
+#include "engine/model/model.h"
+
+int32_t strut_foot_of_contact(const strut_scene *scene, size_t i) {
+  for (size_t f = 0; f < scene->foot_count; f++)
+    if (scene->feet[f].node == scene->contacts[i].node) return (int32_t)f;
+  return -1;
+}
+
+/* Friction that sticks has no stick here: within its band it grows with the speed. */
+static strut_friction friction_of(const strut_friction *f) {
+  strut_friction own = *f;
+  if (f->law != STRUT_FRICTION_KARNOPP) return own;
+  own.law = STRUT_FRICTION_SMOOTH;
+  own.width = f->stick_velocity;
+  return own;
+}
+
+/* The place of a foot on the straight ground of contact i. */
+static void place_element(const strut_contact_table *t, int32_t i, strut_element *e) {
+  strut_contact_axes axes = t->axes;
+  double point[2] = {0.0, t->height};
+  if (t->surface) {
+    const strut_facet *line = t->surface[t->surface_of[i]].facet;
+    axes = line->axes;
+    point[0] = line->point[0], point[1] = line->point[1];
+  }
+  double nx = axes.normal[0], ny = axes.normal[1];
+  e->axis = tan(0.5 * atan2(ny, nx));
+  e->natural = nx * point[0] + ny * point[1] + e->radius;
+}
+
+/* Friction of element k, a foot whose node itself touches nothing any more. */
+static strut_rubbing_entry take_foot(strut_model *model, int32_t k) {
+  strut_contact_table *t = &model->contacts;
+  strut_element *e = (strut_element *)&model->elements.element[k];
+  int32_t i = e->contact;
+  strut_contact_entry *entry = (strut_contact_entry *)&t->entry[i];
+  place_element(t, i, e);
+  const strut_rubbing_entry item = {
+      k, i, t->surface ? t->surface[t->surface_of[i]].belt_speed : t->belt_speed,
+      friction_of(&entry->friction)};
+  entry->stiffness = entry->damping = entry->dissipation = 0.0;
+  entry->friction = (strut_friction){STRUT_FRICTION_NONE};
+  return item;
+}
+
+bool strut_collisions_rub(const strut_scene *scene) {
+  for (size_t i = 0; i < scene->collision_count; i++)
+    if (scene->collisions[i].friction.mu_kinetic > 0.0) return true;
+  return false;
+}
+
+/* Smooth friction, or with a coefficient that falls from the static one, Stribeck's. */
+static strut_friction friction_of_collision(const strut_collision *c) {
+  strut_friction own = c->friction;
+  own.law = own.decay_velocity > 0.0 ? STRUT_FRICTION_STRIBECK : STRUT_FRICTION_SMOOTH;
+  return own;
+}
+
+bool strut_rubbing_compile(strut_model *model) {
+  const strut_scene *scene = model->scene;
+  strut_rubbing_entry *item =
+      strut_arena_allocate(&model->arena, (size_t)model->elements.count, sizeof *item);
+  if (!item) return false;
+  for (int32_t k = 0; k < model->elements.count; k++) {
+    const strut_element *e = &model->elements.element[k];
+    const strut_collision *c =
+        e->role == STRUT_ELEMENT_COLLISION ? &scene->collisions[e->item] : NULL;
+    if (e->role == STRUT_ELEMENT_FOOT) item[model->rubbing.count++] = take_foot(model, k);
+    if (c && c->friction.mu_kinetic > 0.0)
+      item[model->rubbing.count++] = (strut_rubbing_entry){k, -1, 0.0, friction_of_collision(c)};
+  }
+  model->rubbing.item = item;
+  if (model->rubbing.count) model->terms |= STRUT_TERM_RUBBING;
+  return true;
+}
