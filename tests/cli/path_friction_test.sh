@@ -56,7 +56,7 @@ END
 expect 0 path worm.yaml --json
 jq -e '[.earlier_stages[1], .] | map(.points[-1].nodes.rear[0]) | (.[0] - 0.06 | fabs < 1e-6) and (.[1] - 0.12 | fabs < 1e-6)' \
   "$work/out" >/dev/null || fail "a worm: $(jq -c '.points[-1].nodes' "$work/out")"
-expect 0 path worm.yaml -o made --quiet
+expect 0 path worm.yaml -o made --quiet --plot made.svg
 grep -q 'rear.friction \[N\]' made/path.csv || fail "friction in the CSV"
 
 # ---- in a pipe: sliding begins where load and weight lie on the cone of friction, there and back ----

@@ -460,20 +460,33 @@ static path_stop *add_stop(path_picture *p, size_t vertex) {
   return stop;
 }
 
+/* The name of what an event happens to; "" where that is the whole structure. */
+static const char *subject_of(const strut_model *model, const strut_path_event *event) {
+  const strut_scene *scene = model->scene;
+  switch (event->kind) {
+    case STRUT_PATH_SLACK:
+    case STRUT_PATH_TAUT: return scene->members[event->index].name;
+    case STRUT_PATH_TOUCHDOWN:
+    case STRUT_PATH_LIFT_OFF:
+    case STRUT_PATH_CORNER:
+    case STRUT_PATH_SLIP:
+    case STRUT_PATH_STICK: return scene->nodes[event->index].name;
+    case STRUT_PATH_ENGAGE:
+    case STRUT_PATH_RELEASE:
+    case STRUT_PATH_LAW: return strut_element_name(scene, &model->elements.element[event->index]);
+    case STRUT_PATH_LIMIT:
+    case STRUT_PATH_BIFURCATION:
+    case STRUT_PATH_KINK_LIMIT:
+    case STRUT_PATH_KINK_BIFURCATION: break;
+  }
+  return "";
+}
+
 /* "slack: left" or, for events at the same place, "slack: left, right". */
 static void describe_event(const path_picture *p, const strut_path_event *event,
                            const strut_path_event *before, char text[STOP_TEXT]) {
-  const strut_scene *scene = p->model->scene;
   size_t used = strlen(text), room = STOP_TEXT - used;
-  const char *name = "";
-  if (event->kind == STRUT_PATH_SLACK || event->kind == STRUT_PATH_TAUT)
-    name = scene->members[event->index].name;
-  if (event->kind == STRUT_PATH_TOUCHDOWN || event->kind == STRUT_PATH_LIFT_OFF)
-    name = scene->nodes[event->index].name;
-  if (event->kind >= STRUT_PATH_ENGAGE) {
-    const strut_element *e = &p->model->elements.element[event->index];
-    name = strut_element_name(scene, e);
-  }
+  const char *name = subject_of(p->model, event);
   int length = strut_text_bytes(name, NAME);
   if (used + NAME + 60 > STOP_TEXT) return; /* no room: the rest of the events here is not named */
   if (before && before->kind == event->kind)

@@ -65,9 +65,9 @@ typedef struct strut_path_point {
 typedef struct strut_path_event {
   strut_path_event_kind kind;
   double factor, arc;
-  int32_t index; /* of the member or node that changes; of the node that moves most at a limit
-                         point or bifurcation; of the element that engages, releases or passes a
-                         kink */
+  int32_t index; /* of the member or node that changes, of a guide's node; of the node that moves
+                         most at a limit point or bifurcation; of the element that engages, releases or
+                         passes a kink */
   int32_t before, after; /* eigenvalues of the stiffness below zero on its two sides */
   const char *detail;    /* in words */
   double *q, *force, *moment, *reaction, *contact, *friction, *pressure,
