@@ -107,4 +107,28 @@ jq -e '(.points[-1].nodes.middle[1] | -.) as $y | ($y | atan) as $t | ((1 + $y *
   (2 * ($l - 1) - 0.1 | fabs) < 1e-4 and
   (.points[-1].forces.wire + (8 * $t / ($l * $l) - 1e-3) / (2 * $y / $l) | fabs) < 1e-9' "$work/out" >jq.out ||
   fail "a wire in a sheath"
+# A study follows the stages of its model, unless it says what to follow.
+cat >varied.yaml <<'END'
+strut: 1
+parameters: {k: 10 N/m}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1 m, 0], fixed: y, mass: 1}}
+members: {s: {kind: spring, nodes: [a, b], stiffness: k}}
+loads: {p: {node: b, force: [1 N, 0]}}
+path: {stages: [{load: p, until: 2}, {over: b.x, until: 50 mm}]}
+END
+cat >study.yaml <<'END'
+strut: 1
+study: Stages
+model: varied.yaml
+compute: path
+axes: [{k: [10 N/m, 20 N/m]}]
+keep: [last_factor, end]
+END
+expect 0 sweep study.yaml -o staged --quiet
+grep -q 'last_factor \[m\]' staged/table.csv || fail "unit of the last stage: $(head -1 staged/table.csv)"
+[ "$(grep -c ',0.05,until' staged/table.csv)" = 2 ] || fail "a study of stages: $(cat staged/table.csv)"
+echo 'path: {load: p, until: 3}' >>study.yaml
+expect 0 sweep study.yaml -o told --quiet
+[ "$(grep -c ',3,until' told/table.csv)" = 2 ] || fail "a study that says what to follow: $(cat told/table.csv)"
+
 done_testing

@@ -258,16 +258,36 @@ static const char *unit_of_actuator(const strut_actuator *a) {
   return a->member >= 0 ? "m" : a->hinge >= 0 ? "rad" : "N/m";
 }
 
+/* Does it follow the stages of the model's file? */
+static bool follows_stages(const strut_study *study, const strut_setup *setup) {
+  bool told =
+      study->path.load || study->path.over || study->path.from_given || study->path.until_given;
+  return setup->experiment.stage_count && !told;
+}
+
+/* Unit of the parameter of the last stage, of which events and factors are told. */
+static const char *unit_of_stages(const strut_setup *setup) {
+  const char *over = setup->experiment.stages[setup->experiment.stage_count - 1].over;
+  int32_t actuator = over ? strut_thing_find(&setup->scene, STRUT_THING_ACTUATOR, over) : -1;
+  return !over ? "1" : actuator < 0 ? "m" : unit_of_actuator(&setup->scene.actuators[actuator]);
+}
+
 /* The path's options, and the unit of its parameter ("1": none). */
-static strut_status choose_path(const strut_study *study, const strut_scene *scene,
+static strut_status choose_path(const strut_study *study, const strut_setup *setup,
                                 strut_path_options *to, const char **unit, strut_error *error) {
+  const strut_scene *scene = &setup->scene;
   *to = (strut_path_options){.over = STRUT_PATH_OVER_LOAD,
                              .load = study->path.load,
                              .at = study->at,
                              .from = study->path.from,
                              .until = study->path.until_given ? study->path.until : 1.0,
-                             .steps = study->path.steps};
+                             .steps = study->path.steps,
+                             .friction = setup->experiment.path_friction};
   *unit = "1";
+  if (follows_stages(study, setup)) {
+    *unit = unit_of_stages(setup);
+    return STRUT_OK;
+  }
   if (study->path.over) {
     to->over = STRUT_PATH_OVER_ACTUATOR;
     to->index = strut_thing_find(scene, STRUT_THING_ACTUATOR, study->path.over);
@@ -293,22 +313,22 @@ static strut_status choose_path(const strut_study *study, const strut_scene *sce
   return STRUT_OK;
 }
 
-strut_status strut_statics_check(const strut_study *study, const strut_scene *scene,
+strut_status strut_statics_check(const strut_study *study, const strut_setup *setup,
                                  strut_error *error) {
   strut_path_options options;
   const char *unit;
-  strut_status status = strut_goals_check(study, scene, error);
+  strut_status status = strut_goals_check(study, &setup->scene, error);
   if (status || study->compute != STRUT_COMPUTE_PATH) return status;
-  return choose_path(study, scene, &options, &unit, error);
+  return choose_path(study, setup, &options, &unit, error);
 }
 
-bool strut_statics_columns(strut_sweep_plan *plan, const strut_scene *scene) {
+bool strut_statics_columns(strut_sweep_plan *plan, const strut_setup *setup) {
   strut_path_options options;
   strut_error error = {0};
   const char *factor = "1";
   bool fine = true;
   if (plan->study->compute == STRUT_COMPUTE_PATH)
-    choose_path(plan->study, scene, &options, &factor, &error);
+    choose_path(plan->study, setup, &options, &factor, &error);
   for (size_t k = 0; k < COLUMNS && fine; k++) {
     const column *c = &columns[k];
     bool word = c->shape == WORD || c->shape == WORDS;
@@ -407,10 +427,12 @@ static strut_status find_rigidity(const strut_study *study, strut_sweep_job *job
 static strut_status follow_path(const strut_study *study, strut_sweep_job *job, rest_result *r) {
   strut_path_options options;
   const char *unit;
-  strut_status status = choose_path(study, &job->setup.scene, &options, &unit, &job->error);
-  options.friction = job->setup.experiment.path_friction;
+  const strut_experiment *experiment = &job->setup.experiment;
+  strut_status status = choose_path(study, &job->setup, &options, &unit, &job->error);
   if (!status)
-    status = strut_path_follow(r->model, &job->setup.experiment, &options, &r->path, &job->error);
+    status = follows_stages(study, &job->setup)
+                 ? strut_path_follow_stages(r->model, experiment, &options, &r->path, &job->error)
+                 : strut_path_follow(r->model, experiment, &options, &r->path, &job->error);
   if (!status && r->path.remark[0]) /* why it ended early */
     snprintf(job->cells.message, sizeof job->cells.message, "%.*s",
              (int)sizeof job->cells.message - 1, r->path.remark);

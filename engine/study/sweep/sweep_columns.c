@@ -206,8 +206,7 @@ static bool add_columns(strut_sweep_plan *plan, const strut_setup *setup) {
   for (size_t i = 0; i < COUNTS && fine; i++)
     if (keeps(plan, counts[i].keep))
       fine = strut_sweep_add_column(plan, "", counts[i].name, counts[i].unit, false);
-  fine = fine && (run ? add_entries(plan) : strut_statics_columns(plan, &setup->scene)) &&
-         add_things(plan);
+  fine = fine && (run ? add_entries(plan) : strut_statics_columns(plan, setup)) && add_things(plan);
   if (!fine || !run) return fine;
   fine = add_quantities(plan, &setup->experiment);
   if (fine && keeps(plan, STRUT_KEEP_OUTCOME))
@@ -250,7 +249,7 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
     if (status) return status;
   } else {
     plan->keep = usual ? strut_statics_usual((strut_compute)study->compute) : study->keep;
-    strut_status status = strut_statics_check(study, scene, error);
+    strut_status status = strut_statics_check(study, setup, error);
     if (status) return status;
   }
   size_t quantities = setup->experiment.quantity_count;

@@ -104,9 +104,9 @@ enum { STRUT_STATICS_COLUMNS = 16 + 3 * STRUT_STUDY_MOST_LOWEST };
 /** What is usual to keep of a computation that is no run. */
 strut_keep_set strut_statics_usual(strut_compute compute);
 /** Adds the columns of what is computed at rest. False: no memory. */
-bool strut_statics_columns(strut_sweep_plan *plan, const strut_scene *scene);
+bool strut_statics_columns(strut_sweep_plan *plan, const strut_setup *setup);
 /** STRUT_BAD_SCENE where the study asks for what the scene does not have. */
-strut_status strut_statics_check(const strut_study *study, const strut_scene *scene,
+strut_status strut_statics_check(const strut_study *study, const strut_setup *setup,
                                  strut_error *error);
 /** Computes what the study wants of a point at rest and appends its cells. */
 strut_status strut_statics_point(const strut_sweep_worker *worker, strut_sweep_job *job);
