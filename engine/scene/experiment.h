@@ -51,7 +51,7 @@ typedef struct strut_search {
  */
 typedef struct strut_path_stage {
   const char *load, *over,
-      *release; /* load; actuator or NODE.x; NODE.x that a stage before or a support holds, and not in
+      *release; /* load, or several such as "p, q"; actuator or NODE.x; NODE.x that a stage before or a support holds, and not in
                                         the first stage: one of them, else NULL */
   double until; /* factor, or in SI; of a release 0 */
   size_t hold_count;
@@ -60,6 +60,9 @@ typedef struct strut_path_stage {
   double stop_distance; /* once it has moved so far in the stage [m] */
   int32_t steps;        /* maximum number of steps; 0: the usual ones */
 } strut_path_stage;
+
+/** Is the load among those that a stage or a path names, such as "p, q"? */
+STRUT_API bool strut_path_names_load(const char *names, const char *load);
 
 /** Stops a run by periods when the motion repeats itself. */
 typedef struct strut_steady {

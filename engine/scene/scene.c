@@ -329,3 +329,12 @@ bool strut_scene_remove_feedback(strut_scene *scene, strut_arena *arena) {
   scene->members = members;
   return true;
 }
+
+bool strut_path_names_load(const char *names, const char *load) {
+  size_t length = strlen(load);
+  for (const char *at = names; (at = strstr(at, load)); at++) {
+    bool begins = at == names || at[-1] == ' ' || at[-1] == ',';
+    if (begins && (at[length] == '\0' || at[length] == ',')) return true;
+  }
+  return false;
+}

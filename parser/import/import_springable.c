@@ -410,15 +410,19 @@ static void read_area(strut_springable *r) {
                     nodes, gas ? gas : law);
 }
 
-/* Ends a stage of the loading, of a single load; the first is written only if it must be. */
+/* Ends a stage of the loading; the first is written only if it must be. */
 static void end_stage(strut_springable *r) {
   strut_import_scene *s = r->scene;
   strut_writer *path = &s->section[STRUT_IMPORT_PATH];
   const char *hold = r->hold ? strut_import_text(s, ", hold: [%s]", r->hold) : "";
-  if (r->stage_loads == 1 && !r->later && (r->staged || r->stop)) {
+  if (r->stage_loads && (r->staged || r->stop)) {
+    const char *names = strut_import_text(s, "load%zu", r->loads - r->stage_loads + 1);
+    for (size_t i = r->loads - r->stage_loads + 2; i <= r->loads; i++)
+      names = strut_import_text(s, "%s, load%zu", names, i);
     if (!path->length) strut_import_line(s, path, "  stages:");
-    strut_import_line(s, path, "    - {load: load%zu%s%s}", r->loads, hold ? hold : "",
-                      r->stop ? r->stop : "");
+    strut_import_line(s, path,
+                      r->stage_loads > 1 ? "    - {load: [%s]%s%s}" : "    - {load: %s%s%s}", names,
+                      hold ? hold : "", r->stop ? r->stop : "");
   }
   r->stage_loads = 0;
   r->hold = r->stop = NULL;
@@ -430,11 +434,6 @@ static bool read_stage(strut_springable *r) {
   strut_import_scene *s = r->scene;
   const char *at = strut_springable_text(r, 0), *axis = strut_springable_text(r, 1);
   if (r->field_count == 1 && strcmp(at, "then") == 0) {
-    if (r->stage_loads > 1 && !r->staged) {
-      r->later = true;
-      strut_note(r->said, strut_springable_place(r, 0),
-                 "not imported: the later steps of a loading that begins with several loads");
-    }
     r->staged = true;
     end_stage(r);
     return true;
@@ -456,16 +455,11 @@ static bool read_stage(strut_springable *r) {
 static void read_load(strut_springable *r) {
   strut_import_scene *s = r->scene;
   const char *at = strut_springable_text(r, 0), *axis = strut_springable_text(r, 1);
-  if (read_stage(r) || r->later) return;
+  if (read_stage(r)) return;
   long index = strut_springable_index(&at);
   bool x = strcmp(axis, "X") == 0, y = strcmp(axis, "Y") == 0;
   if (index < 0 || *at || !strut_springable_node(r, index) || (!x && !y) || r->field_count < 3) {
     strut_diagnose(r->said, strut_springable_place(r, 0), "expected a load: NODE, X or Y, FORCE");
-    return;
-  }
-  if (r->staged && r->stage_loads) {
-    strut_note(r->said, strut_springable_place(r, 0),
-               "not imported: one more load of a later step of the loading");
     return;
   }
   const char *force = strut_springable_expression(r, strut_springable_text(r, 2),
@@ -561,10 +555,6 @@ strut_status strut_import_springable(strut_import_scene *s) {
     read_line(&r, &in, line, (size_t)(stop - line));
     line = stop + 1;
   }
-  if (r.stop && r.stage_loads > 1)
-    strut_note(r.said, strut_place_at(r.line, 1, 1),
-               "not imported: the displacement at which the loading ends, as it has several loads; "
-               "give it to strut path with --stop");
   end_stage(&r);
   for (size_t i = 0; i < r.parameter_count; i++)
     strut_import_line(s, &s->section[STRUT_IMPORT_PARAMETERS], "  %s: %s", r.parameters[i].own,

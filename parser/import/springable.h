@@ -35,7 +35,6 @@ typedef struct strut_springable {
   size_t springs, angles, paths, distances, areas, loads; /* so far */
   size_t stage_loads;      /* of the stage of LOADING that is being read */
   bool staged, blocking;   /* stages are written; after "block" */
-  bool later;              /* steps that are left out */
   const char *hold, *stop; /* of the stage: its coordinates, or "" */
 } strut_springable;
 

@@ -251,7 +251,7 @@
   X(SCENE_PATH, FRICTION, "friction", WORD, NONE, ANY, "none", OPTIONAL, 0, "none|kept", FIELD(strut_experiment, path_friction), "`kept`: contacts stick and slide by static and kinetic friction, as the path goes; every path of the model keeps it.")
 
 #define STRUT_STAGE_KEYS(X) \
-  X(STAGE, LOAD, "load", TEXT, NONE, ANY, "", OPTIONAL, 7, "", FIELD(strut_path_stage, load), "The load whose factor grows. Loads that some stage names begin with the factor 0; all others act from the beginning.") \
+  X(STAGE, LOAD, "load", FREE, NONE, ANY, "", OPTIONAL, 7, "the name of a load, or a list of them", BY_HAND, "The load whose factor grows, or loads that grow together. Loads that some stage names begin with the factor 0; all others act from the beginning.") \
   X(STAGE, OVER, "over", TEXT, NONE, ANY, "", OPTIONAL, 7, "", FIELD(strut_path_stage, over), "Or an actuator, or the displacement `NODE.x` or `NODE.y`, which stays held afterwards.") \
   X(STAGE, RELEASE, "release", TEXT, NONE, ANY, "", OPTIONAL, 7, "", FIELD(strut_path_stage, release), "Or `NODE.x` or `NODE.y`, held so far: its reaction is taken away by and by.") \
   X(STAGE, UNTIL, "until", NUMBER, CONTEXT, ANY, "load factor 1", OPTIONAL, 0, "", FIELD(strut_path_stage, until), "Value at which the stage ends, from where it is: a factor, or in the unit of `over`, where it is required.") \

@@ -25,15 +25,34 @@ static int32_t read_coordinate(strut_reader *reader, const strut_tree *value, co
   return at;
 }
 
+/* A load, or a list of loads as one text, "p, q"; NULL: reported. */
+static const char *read_loads(strut_reader *reader, const strut_tree *value, strut_owner owner) {
+  bool list = value->kind == STRUT_TREE_LIST && value->count;
+  const char *names = NULL;
+  for (const strut_tree *item = list ? value->first : value; item; item = item->next) {
+    int32_t load = strut_read_reference(reader, item, "load", owner, STRUT_THING_LOAD);
+    if (load < 0) return NULL;
+    const char *name = reader->scene->loads[load].name;
+    if (names && strut_path_names_load(names, name)) {
+      strut_report_error(reader, item->place, "%s names load '%s' twice",
+                         strut_owner_text(reader, owner), name);
+      return NULL;
+    }
+    names = names ? strut_arena_format(&reader->scene->arena, "%s, %s", names, name)
+                  : strut_arena_text(&reader->scene->arena, name, strlen(name));
+    if (!names || !list) break;
+  }
+  return names;
+}
+
 /* What the stage follows, and the dimension of its value; false: reported. */
 static bool read_followed(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                          strut_dimension *dimension) {
+                          strut_path_stage *stage, strut_dimension *dimension) {
   const strut_slot *load = strut_slot_of(fields, STRUT_KEY_STAGE_LOAD);
   const strut_slot *over = strut_slot_of(fields, STRUT_KEY_STAGE_OVER);
   const strut_slot *release = strut_slot_of(fields, STRUT_KEY_STAGE_RELEASE);
   *dimension = STRUT_DIM_NONE;
-  if (load->state == STRUT_GIVEN)
-    return strut_read_reference(reader, load->value, "load", owner, STRUT_THING_LOAD) >= 0;
+  if (load->state == STRUT_GIVEN) return (stage->load = read_loads(reader, load->value, owner));
   if (release->state == STRUT_GIVEN)
     return read_coordinate(reader, release->value, "release", owner) >= 0;
   *dimension = STRUT_DIM_LENGTH;
@@ -122,11 +141,12 @@ static bool read_stage(strut_reader *reader, const strut_tree *item, int number,
   strut_read_fields(reader, STRUT_SECTION_STAGE, item, owner, &fields);
   strut_store_fields(reader, &fields, owner, &reader->scene->arena, stage, sizeof *stage);
   if (fields.broken) return false;
-  if (!stage->load && !stage->over && !stage->release) {
+  bool loads = strut_slot_of(&fields, STRUT_KEY_STAGE_LOAD)->state == STRUT_GIVEN;
+  if (!loads && !stage->over && !stage->release) {
     strut_report_error(reader, item->place, "%s lacks 'load', 'over' or 'release'", owner.kind);
     return false;
   }
-  bool fine = read_followed(reader, &fields, owner, &dimension) &&
+  bool fine = read_followed(reader, &fields, owner, stage, &dimension) &&
               read_until(reader, &fields, owner, dimension, stage);
   fine = read_hold(reader, strut_slot_of(&fields, STRUT_KEY_STAGE_HOLD), owner, stage) && fine;
   return read_stop(reader, strut_slot_of(&fields, STRUT_KEY_STAGE_STOP), owner, stage) && fine;

@@ -168,7 +168,13 @@ static void put_coordinate(strut_writer *writer, int32_t at) {
 static void put_stage_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                               const void *object) {
   const strut_path_stage *stage = object;
-  if (key == STRUT_KEY_STAGE_HOLD && stage->hold_count) {
+  if (key == STRUT_KEY_STAGE_LOAD && *stage->load) {
+    bool several = strchr(stage->load, ',');
+    strut_put_key_name(writer, mapping, key);
+    strut_put(writer, several ? "[" : "");
+    strut_put(writer, stage->load);
+    strut_put(writer, several ? "]" : "");
+  } else if (key == STRUT_KEY_STAGE_HOLD && stage->hold_count) {
     strut_put_key_name(writer, mapping, key);
     for (size_t i = 0; i < stage->hold_count; i++) {
       strut_put(writer, i ? ", " : "[");

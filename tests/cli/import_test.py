@@ -127,6 +127,8 @@ def springable():
     check(first["end"] == "stop" and stages["points"][0]["nodes"] == first["points"][-1]["nodes"], "stages")
     write("blocked.csv", ARCH + "then\nblock\n1, Y\n3, Y, 5\n")
     check("    - {load: load3, hold: [n1.y]}" in imported("blocked.csv")[0], "a node that is held")
+    write("together.csv", ARCH + "3, Y, 5\n")
+    check("    - {load: [load2, load3]}" in imported("together.csv")[0], "loads of one step")
     write("arch.csv", ARCH.split("then")[0].replace(", -3.0", ""))
     imported("arch.csv")
 

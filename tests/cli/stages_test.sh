@@ -107,6 +107,16 @@ jq -e '(.points[-1].nodes.middle[1] | -.) as $y | ($y | atan) as $t | ((1 + $y *
   (2 * ($l - 1) - 0.1 | fabs) < 1e-4 and
   (.points[-1].forces.wire + (8 * $t / ($l * $l) - 1e-3) / (2 * $y / $l) | fabs) < 1e-9' "$work/out" >jq.out ||
   fail "a wire in a sheath"
+# Loads that grow together: what their forces are in sum, at each end, and back to none.
+cp "$here/../language/good/stages-together.yaml" together.yaml
+expect 0 path together.yaml --json
+jq -e 'def pull($o; $k): [$o[0] - .[0], $o[1] - .[1]] as $d | ($d[0] * $d[0] + $d[1] * $d[1] | sqrt) as $l |
+    [$d[] * $k * (1 - 1 / $l)];
+  def left($x; $y): .nodes.b | pull([0, 0]; 10) as $s | pull([1, -1]; 20) as $t |
+    [$s[0] + $t[0] + $x, $s[1] + $t[1] + $y] | map(fabs) | max;
+  [(.earlier_stages[0].points[-1] | left(0.5; 1)), (.earlier_stages[1].points[-1] | left(1; 1)),
+   (.points[-1] | left(0.5; 0))] | max < 1e-13' "$work/out" >jq.out || fail "loads together: $(jq -c '.points[-1].nodes' "$work/out")"
+
 # A study follows the stages of its model, unless it says what to follow.
 cat >varied.yaml <<'END'
 strut: 1

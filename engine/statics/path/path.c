@@ -73,7 +73,7 @@ static strut_status no_such_load(const strut_scene *scene, const char *name, str
 
 /* Is it one of the loads that the factor multiplies? */
 static bool is_followed(const strut_load *load, const char *name) {
-  return name ? strcmp(load->name, name) == 0 : load->signal < 0;
+  return name ? strut_path_names_load(name, load->name) : load->signal < 0;
 }
 
 /*

@@ -40,7 +40,7 @@ static bool create_stages(stages *s) {
   for (size_t i = 0; i < scene->load_count; i++) {
     s->factor[i] = 1.0;
     for (size_t k = 0; k < e->stage_count; k++)
-      if (e->stages[k].load && strcmp(e->stages[k].load, scene->loads[i].name) == 0)
+      if (e->stages[k].load && strut_path_names_load(e->stages[k].load, scene->loads[i].name))
         s->factor[i] = 0.0, s->staged[i] = 1;
   }
   return true;
@@ -60,9 +60,9 @@ static strut_path_options options_of(stages *s, size_t k) {
                           .friction = s->usual->friction,
                           .steps = stage->steps ? stage->steps : s->usual->steps};
   if (stage->load) {
-    int32_t load = strut_thing_find(scene, STRUT_THING_LOAD, stage->load);
     o.load = stage->load;
-    o.from = s->factor[load];
+    for (size_t i = 0; i < scene->load_count; i++)
+      if (strut_path_names_load(stage->load, scene->loads[i].name)) o.from = s->factor[i];
   } else if (stage->release) {
     o.load = strut_arena_format(&s->single, "reaction of %s", stage->release);
     o.from = 1.0;
@@ -88,7 +88,7 @@ static bool set_loads(stages *s, const strut_path_stage *stage, const strut_path
   if (!loads) return false;
   for (size_t i = 0; i < scene->load_count; i++) {
     loads[i] = scene->loads[i];
-    if (stage->load && strcmp(stage->load, loads[i].name) == 0) continue;
+    if (stage->load && strut_path_names_load(stage->load, loads[i].name)) continue;
     if (s->staged[i]) loads[i].signal = -1;
     for (int c = 0; c < 2; c++) loads[i].force[c] *= s->factor[i];
   }
@@ -131,8 +131,9 @@ static void keep_end(stages *s, const strut_path_stage *stage, const strut_path_
   const strut_path_point *end = &path->points[path->point_count - 1];
   memcpy(s->q, end->q, (size_t)s->model->length * sizeof *s->q);
   s->reaction = end->reaction;
-  if (stage->load)
-    s->factor[strut_thing_find(s->model->scene, STRUT_THING_LOAD, stage->load)] = end->factor;
+  for (size_t i = 0; i < s->model->scene->load_count && stage->load; i++)
+    if (strut_path_names_load(stage->load, s->model->scene->loads[i].name))
+      s->factor[i] = end->factor;
   if (o->over == STRUT_PATH_OVER_ACTUATOR) s->drive[o->index] = end->factor;
   if (o->over == STRUT_PATH_OVER_COORDINATE)
     s->held[o->index] = 1, s->moved[o->index] = end->factor;
