@@ -53,7 +53,8 @@
   { STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (default), start, or an equilibrium" }
 
 #define STRUT_PATH_OPTIONS                                                                         \
-  {STRUT_OPTION_LOAD, "load", "NAME", "load to scale (default: all loads without a signal)"},      \
+  {STRUT_OPTION_LOAD, "load", "NAME",                                                              \
+   "load to scale, or several: P,Q (default: all without a signal)"},                              \
       {STRUT_OPTION_OVER, "over", "WHAT",                                                          \
        "vary a parameter, an actuator, or a displacement NODE.x or NODE.y"},                       \
       {STRUT_OPTION_FROM, "from", "VALUE", "start value: a load factor, or in the unit of WHAT"},  \

@@ -117,6 +117,11 @@ jq -e 'def pull($o; $k): [$o[0] - .[0], $o[1] - .[1]] as $d | ($d[0] * $d[0] + $
   [(.earlier_stages[0].points[-1] | left(0.5; 1)), (.earlier_stages[1].points[-1] | left(1; 1)),
    (.points[-1] | left(0.5; 0))] | max < 1e-13' "$work/out" >jq.out || fail "loads together: $(jq -c '.points[-1].nodes' "$work/out")"
 
+expect 1 path together.yaml --load p,qq
+err_has "unknown load 'p,qq'"
+expect 0 path together.yaml --load q,p --json
+jq -e '.load == "q,p"' "$work/out" >jq.out || fail "two loads of an option"
+
 # A study follows the stages of its model, unless it says what to follow.
 cat >varied.yaml <<'END'
 strut: 1

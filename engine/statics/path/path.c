@@ -76,20 +76,27 @@ static bool is_followed(const strut_load *load, const char *name) {
   return name ? strut_path_names_load(name, load->name) : load->signal < 0;
 }
 
+static size_t count_names(const char *names) {
+  size_t count = 1;
+  for (; *names; names++) count += *names == ',';
+  return count;
+}
+
 /*
  * Adds the loads that the factor multiplies to `load`, and what they are at factor 1 to the path.
  */
 static strut_status choose_loads(const strut_scene *scene, const char *name, double *load,
                                  strut_path *path, strut_error *error) {
-  bool found = false, acts = false, alike = true;
+  bool acts = false, alike = true;
+  size_t count = 0;
   for (size_t i = 0; i < scene->load_count; i++) {
     const strut_load *l = &scene->loads[i];
     if (!is_followed(l, name)) continue;
     double size = hypot(l->force[0], l->force[1]);
-    path->several = found;
-    alike = alike && (!found || fabs(size - path->reference) <= ALIKE * size);
+    path->several = count > 0;
+    alike = alike && (!count || fabs(size - path->reference) <= ALIKE * size);
     path->reference = size;
-    found = true;
+    count++;
     for (int c = 0; c < 2; c++) {
       int32_t at = 2 * l->node + c;
       load[at] += l->force[c];
@@ -97,9 +104,10 @@ static strut_status choose_loads(const strut_scene *scene, const char *name, dou
     }
   }
   if (!alike) path->reference = 0;
-  if (found && acts) return STRUT_OK;
-  if (name && scene->load_count && !found) return no_such_load(scene, name, error);
-  if (!found)
+  if (name && scene->load_count && count != count_names(name))
+    return no_such_load(scene, name, error);
+  if (count && acts) return STRUT_OK;
+  if (!count)
     return strut_fail(
         error, STRUT_USAGE,
         "the scene has no constant load to follow; give it one under 'loads', or follow "
