@@ -297,6 +297,8 @@ static void put_free(schema *s, const strut_key *key) {
     put_either(s, "object", put_names_of_things, put_switch);
   else if (strcmp(key->name, "between") == 0)
     put_either(s, "array", put_two_texts, put_scalar);
+  else if (strcmp(key->name, "load") == 0)
+    put_name_or_names(s);
   else if (strcmp(key->name, "inputs") == 0)
     put_list(s, 1, 0, put_scalar);
   else if (strcmp(key->name, "path") == 0)

@@ -197,7 +197,7 @@ MUTANTS = [
     Mutant("decay-of-faster-root", "engine/statics/modes/eigenpairs.c",
            "mode->decay_rate = -fmax(re, other);", "mode->decay_rate = -fmin(re, other);",
            "an overdamped mode is said to decay at its faster rate", "modes|natural_modes|cli_modes"),
-    Mutant("path-small-negative", "engine/statics/path/events.c",
+    Mutant("path-small-negative", "engine/statics/path/stability.c",
            "static const double ZERO_VALUE = 1e-13;", "static const double ZERO_VALUE = 1e-2;",
            "slightly negative eigenvalues of a path count as none: beyond a limit it seems stable",
            "path|cli_path|path_figure"),
