@@ -16,7 +16,7 @@ size_t strut_element_slots(const strut_scene *scene);
  */
 bool strut_elements_compile(strut_model *model);
 
-/** Gives the elements of feet their places on the grounds, after contacts were compiled; false: out of memory. */
+/** Lists what rubs, and places the elements of feet on their grounds, after contacts were compiled; false: out of memory. */
 bool strut_rubbing_compile(strut_model *model);
 
 /** Fills model->actuator_forces from the scene. False: out of memory. */

@@ -127,6 +127,12 @@ void strut_check_drives(strut_checker *checker) {
       strut_report_finding(
           checker, STRUT_ON_ACTUATOR, i, "member",
           "%s drives a bar, but bars are rigid; make the member a spring, or bars: elastic", owner);
+    else if (!hinge && !cell && a->force && scene->members[a->member].guide_radius > 0.0)
+      strut_report_finding(
+          checker, STRUT_ON_ACTUATOR, i, "member",
+          "%s gives a force along '%s', whose guides have a radius; drive its rest "
+          "length instead",
+          owner, scene->members[a->member].name);
     else if (!hinge && !cell && !a->force && scene->members[a->member].axial_stiffness > 0.0 &&
              scene->members[a->member].law.kind == STRUT_LAW_ELASTIC_PLASTIC)
       strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "member",

@@ -169,11 +169,16 @@ static void put_stage_by_hand(strut_writer *writer, strut_mapping *mapping, int 
                               const void *object) {
   const strut_path_stage *stage = object;
   if (key == STRUT_KEY_STAGE_LOAD && *stage->load) {
-    bool several = strchr(stage->load, ',');
+    const strut_scene *scene = writer->scene;
+    const char *before = "[";
     strut_put_key_name(writer, mapping, key);
-    strut_put(writer, several ? "[" : "");
-    strut_put(writer, stage->load);
-    strut_put(writer, several ? "]" : "");
+    for (size_t i = 0; i < scene->load_count; i++) {
+      if (!strut_path_names_load(stage->load, scene->loads[i].name)) continue;
+      strut_put(writer, before);
+      strut_put_name(writer, scene->loads[i].name);
+      before = ", ";
+    }
+    strut_put(writer, "]");
   } else if (key == STRUT_KEY_STAGE_HOLD && stage->hold_count) {
     strut_put_key_name(writer, mapping, key);
     for (size_t i = 0; i < stage->hold_count; i++) {

@@ -63,6 +63,9 @@ err_has "has guide_radius, but runs over no guides"
 sed 's/, guide_side: right//; s/\[0, -1.5\]/[0, 0]/' disc.yaml >straight.yaml
 expect 2 check straight.yaml
 err_has "is drawn straight over 'disc': say by guide_side"
+{ cat atwood.yaml; echo 'actuators: {pull: {member: rope, force: {constant: 1 N}}}'; } >forced.yaml
+expect 2 check forced.yaml
+err_has "whose guides have a radius"
 expect 2 export --format mjcf -o a.xml atwood.yaml
 err_has "guides with a radius"
 

@@ -51,6 +51,8 @@ static void find_rate(strut_path_system *s, int32_t i, double *rate) {
   strut_path_terms *terms = &s->equations.terms;
   strut_capstan_rest low, high;
   double apart = p->apart, by = s->equations.rates.rest[e->base];
+  memset(rate, 0, 2 * (size_t)e->nodes * sizeof *rate);
+  if (p->options->over != STRUT_PATH_OVER_SCENE && by == 0.0) return;
   if (p->options->over == STRUT_PATH_OVER_SCENE) {
     find_in(s, &p->low, i, s->latest.q, &low);
     find_in(s, &p->high, i, s->latest.q, &high);
@@ -64,8 +66,7 @@ static void find_rate(strut_path_system *s, int32_t i, double *rate) {
     find_in(s, terms, i, s->latest.q, &high);
     terms->rest[e->base] = whole;
   }
-  for (int32_t k = 0; k < 2 * e->nodes; k++)
-    rate[k] = by == 0.0 ? 0.0 : by * (high.force[k] - low.force[k]) / apart;
+  for (int32_t k = 0; k < 2 * e->nodes; k++) rate[k] = by * (high.force[k] - low.force[k]) / apart;
 }
 
 static uint32_t place_of(const strut_path_system *s, const strut_element *e, int32_t k) {

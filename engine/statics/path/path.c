@@ -246,7 +246,7 @@ static strut_status descend_to_rest(const path_start *b, const uint8_t *held, bo
   return status;
 }
 
-/* The equilibrium of that name; friction, where it is kept, holds what is none without. */
+/* The equilibrium of that name. Where friction is kept it may hold a shape that is none without it. */
 static strut_status start_at_name(path_start *b, const char *name, strut_error *error) {
   strut_rest_state rest;
   strut_status status =
