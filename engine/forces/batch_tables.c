@@ -23,6 +23,7 @@ bool strut_batch_takes_model(const strut_model *model) {
                               STRUT_TERM_UNBALANCE | STRUT_TERM_MEMORY | STRUT_TERM_SURFACES |
                               STRUT_TERM_FEEDBACK | STRUT_TERM_SLIDING_MASS | STRUT_TERM_RUBBING;
   if (!mass || (model->terms & one_by_one) || !strut_laws_within(model->laws, known)) return false;
+  if (model->elements.scattered) return false;
   /* the energy balance of one run adds up so many members in parts */
   bool powers = model->terms & (STRUT_TERM_DAMPING | STRUT_TERM_DRIVE);
   if (powers && model->members.blocks > STRUT_BALANCE_BLOCKS) return false;

@@ -7,6 +7,7 @@
 #include "engine/forces/capstan.h"
 #include "engine/forces/elements_kernel.h"
 #include "engine/forces/history.h"
+#include "engine/forces/nearby.h"
 #include "engine/forces/strains/along.h"
 #include "engine/forces/strains/angle.h"
 #include "engine/forces/strains/area.h"
@@ -134,6 +135,8 @@ void strut_elements_visit(const strut_model *model, const double *rest, const do
   strut_element_pose pose;
   for (int32_t i = 0; i < model->elements.count; i++) {
     const strut_element *e = &model->elements.element[i];
+    if (model->elements.scattered && !(stops && e->crowds) && strut_nearby_is_far(model, i, q))
+      continue;
     strut_element_evaluate(model, i, rest, q, (double)NAN, &pose);
     bool stop = e->role == STRUT_ELEMENT_LONGEST || e->role == STRUT_ELEMENT_SHORTEST ||
                 e->role == STRUT_ELEMENT_COLLISION || e->role == STRUT_ELEMENT_FOOT;
@@ -165,10 +168,12 @@ double strut_element_stiffest(const strut_model *model, int32_t element) {
 }
 
 double strut_elements_energy(const strut_model *model, const double *rest, const double *turn,
-                             const double *q) {
+                             const double *q, const strut_nearby *near) {
   double sum = 0.0;
   strut_element_pose pose;
-  for (int32_t i = 0; i < model->elements.count; i++) {
+  int32_t count = near ? near->count : model->elements.count;
+  for (int32_t k = 0; k < count; k++) {
+    int32_t i = near ? near->element[k] : k;
     strut_element_evaluate(model, i, rest, q, turn ? turn[i] : (double)NAN, &pose);
     sum += pose.energy;
   }
@@ -288,13 +293,29 @@ typedef void add_block(const strut_model *model, strut_state *state,
 static add_block *const adders[STRUT_STRAIN_COUNT][STRUT_LAW_COUNT] = {
     STRUT_STRAINS(STRUT_NAME_ROW, )};
 
+/* Of a block with collisions, those that may act. */
+static void add_nearby(const strut_model *model, strut_state *state,
+                       const strut_element_block *block, const double *q, const double *v,
+                       double *force) {
+  const strut_nearby *near = strut_nearby_at(model, state, q);
+  add_block *add = adders[block->strain][block->law];
+  strut_element_block one = *block;
+  for (int32_t k = strut_nearby_find(near, block->begin); k < near->count; k++) {
+    one.begin = near->element[k], one.end = one.begin + 1;
+    if (one.begin >= block->end) return;
+    add(model, state, &one, q, v, force);
+  }
+}
+
 void strut_elements_add_forces(const strut_model *model, strut_state *state, const double *q,
                                const double *v, double *force) {
   for (int32_t b = 0; b < model->elements.block_count; b++) {
     const strut_element_block *block = &model->elements.block[b];
     bool hinges = block->strain == STRUT_STRAIN_ANGLE && block->law == STRUT_LAW_LINEAR;
     bool cables = block->strain == STRUT_STRAIN_PATH && block->law == STRUT_LAW_LINEAR;
-    if (block->remembers)
+    if (block->collides && model->elements.scattered)
+      add_nearby(model, state, block, q, v, force);
+    else if (block->remembers)
       strut_history_add_forces(model, state, block, q, v, force);
     else if (hinges && block->both_signs)
       add_hinges(model, state, block, q, v, force);

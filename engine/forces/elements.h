@@ -66,9 +66,9 @@ void strut_elements_add_forces(const strut_model *model, strut_state *state, con
  */
 double strut_element_stiffest(const strut_model *model, int32_t element);
 
-/** Elastic energy of all elements [J]; turn (elements): see strut_element_evaluate, or NULL. */
+/** Elastic energy of all elements [J], or those `near`; turn (elements): see strut_element_evaluate, or NULL. */
 double strut_elements_energy(const strut_model *model, const double *rest, const double *turn,
-                             const double *q);
+                             const double *q, const strut_nearby *near);
 
 /** Elastic force of member j at q, of its spring or of its elements, tension positive [N]. */
 STRUT_API double strut_member_elastic_tension(const strut_model *model, const double *rest,

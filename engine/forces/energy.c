@@ -7,6 +7,7 @@
 #include "engine/forces/elements.h"
 #include "engine/forces/history.h"
 #include "engine/forces/moving_masses.h"
+#include "engine/forces/nearby.h"
 #include "engine/forces/support_motion.h"
 #include "engine/model/mass.h"
 #include "engine/model/pose.h"
@@ -53,7 +54,8 @@ static double elastic(const strut_model *model, const strut_state *state, const 
     sum += strut_member_elastic_energy(t, j, &pose);
   }
   if (model->elements.count)
-    sum += strut_elements_energy(model, state->latest.rest, state->latest.element_turn, q);
+    sum += strut_elements_energy(model, state->latest.rest, state->latest.element_turn, q,
+                                 strut_nearby_serving(model, state, q));
   return sum;
 }
 

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "engine/forces/elements.h"
+#include "engine/forces/nearby.h"
 #include "engine/forces/strains/foot.h"
 #include "engine/scene/friction.h"
 
@@ -53,20 +54,32 @@ static rubbing_forces forces_of(const strut_model *model, const strut_state *sta
   return r;
 }
 
+static void add_entry(const strut_model *model, strut_state *state, int32_t item, const double *q,
+                      const double *v) {
+  const strut_rubbing_entry *f = &model->rubbing.item[item];
+  const uint32_t *at = model->elements.at + model->elements.element[f->element].first;
+  if (f->friction.law == STRUT_FRICTION_NONE) return;
+  rubbing_forces r = forces_of(model, state, item, q, v);
+  for (int32_t k = 0; k < 2 * r.nodes; k++)
+    state->latest.force[at[k / 2] + (uint32_t)(k % 2)] += r.friction * r.slide[k];
+  if (!state->balance) return;
+  double lost = -r.friction * r.slip, belt = r.friction * f->belt_speed;
+  state->latest.power[STRUT_POWER_FRICTION] += lost;
+  state->latest.power[STRUT_POWER_BELT] += belt;
+  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(lost) + fabs(belt);
+}
+
 void strut_rubbing_add_forces(const strut_model *model, strut_state *state, const double *q,
                               const double *v) {
-  for (int32_t i = 0; i < model->rubbing.count; i++) {
-    const strut_rubbing_entry *f = &model->rubbing.item[i];
-    const uint32_t *at = model->elements.at + model->elements.element[f->element].first;
-    if (f->friction.law == STRUT_FRICTION_NONE) continue;
-    rubbing_forces r = forces_of(model, state, i, q, v);
-    for (int32_t k = 0; k < 2 * r.nodes; k++)
-      state->latest.force[at[k / 2] + (uint32_t)(k % 2)] += r.friction * r.slide[k];
-    if (!state->balance) continue;
-    double lost = -r.friction * r.slip, belt = r.friction * f->belt_speed;
-    state->latest.power[STRUT_POWER_FRICTION] += lost;
-    state->latest.power[STRUT_POWER_BELT] += belt;
-    state->latest.power[STRUT_POWER_EXCHANGED] += fabs(lost) + fabs(belt);
+  const strut_rubbing_table *t = &model->rubbing;
+  if (!model->elements.scattered) {
+    for (int32_t i = 0; i < t->count; i++) add_entry(model, state, i, q, v);
+    return;
+  }
+  const strut_nearby *near = strut_nearby_at(model, state, q);
+  for (int32_t k = 0; k < near->count; k++) {
+    int32_t i = t->of_element[near->element[k]];
+    if (i >= 0) add_entry(model, state, i, q, v);
   }
 }
 

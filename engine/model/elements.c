@@ -487,6 +487,9 @@ static void add_feet(compilation *c) {
   }
 }
 
+/* So many elements of collisions, and so many times as many as nodes, that few act at a time. */
+enum { MANY_COLLISIONS = 64, FAR_MORE = 4 };
+
 /* Blocks of one strain and one law, in the tables' order; in a block the scene's order. */
 static bool sort_elements(compilation *c, strut_element_table *t) {
   strut_arena *arena = &c->model->arena;
@@ -494,16 +497,23 @@ static bool sort_elements(compilation *c, strut_element_table *t) {
   strut_element_block *block =
       strut_arena_allocate(arena, 2 * (size_t)STRUT_STRAIN_COUNT * STRUT_LAW_COUNT, sizeof *block);
   if (!sorted || !block) return false;
+  int32_t all = 0, of_kind[2 * STRUT_STRAIN_COUNT * STRUT_LAW_COUNT] = {0};
+  for (int32_t i = 0; i < c->count; i++) of_kind[kind_of(&c->element[i])]++;
   for (int kind = 0; kind < 2 * STRUT_STRAIN_COUNT * STRUT_LAW_COUNT; kind++) {
     int32_t begin = t->count;
+    if (!of_kind[kind]) continue;
     for (int32_t i = 0; i < c->count; i++)
       if (kind_of(&c->element[i]) == kind) sorted[t->count++] = c->element[i];
-    if (t->count == begin) continue;
     bool both = true;
-    for (int32_t i = begin; i < t->count; i++) both = both && !sorted[i].carries;
+    int32_t collisions = 0;
+    for (int32_t i = begin; i < t->count; i++) {
+      both = both && !sorted[i].carries;
+      collisions += sorted[i].role == STRUT_ELEMENT_COLLISION;
+    }
     const strut_element *e = &sorted[begin];
-    block[t->block_count++] =
-        (strut_element_block){e->strain, e->law, begin, t->count, both, e->remembers};
+    block[t->block_count++] = (strut_element_block){
+        e->strain, e->law, begin, t->count, both, e->remembers, collisions > 0};
+    all += collisions;
     c->model->laws.law |= UINT32_C(1) << e->law;
     c->model->laws.strain |= UINT32_C(1) << e->strain;
   }
@@ -516,7 +526,39 @@ static bool sort_elements(compilation *c, strut_element_table *t) {
     if (sorted[i].nodes > t->most_nodes) t->most_nodes = sorted[i].nodes;
   }
   t->element = sorted, t->block = block;
+  t->scattered = all >= MANY_COLLISIONS + FAR_MORE * (int32_t)c->model->node_count;
   return true;
+}
+
+/*
+ * Not all of many collisions act at once, which would make the largest stable step smaller than it can ever be. Marks
+ * the stiffest of each node, and as many more as bodies that are packed together have: CROWD at each node.
+ */
+static bool mark_crowd(strut_model *model) {
+  enum { CROWD = 4 };
+  strut_element_table *t = &model->elements;
+  if (!t->scattered) return true;
+  uint8_t *at_node = strut_allocate((size_t)model->node_count, sizeof *at_node);
+  double *stiffest = strut_allocate((size_t)model->node_count, sizeof *stiffest);
+  bool done = at_node && stiffest;
+  for (int32_t n = 0; n < 2 * t->count && done;
+       n++) { /* where there is room, then what is stiffer */
+    strut_element *e = (strut_element *)&t->element[n % t->count];
+    if (e->role != STRUT_ELEMENT_COLLISION || e->crowds) continue;
+    const uint32_t *at = t->at + e->first;
+    bool room = true;
+    for (int32_t k = 0; k < e->nodes; k++) room = room && at_node[at[k] / 2] < CROWD;
+    e->crowds = n < t->count ? room : e->numbers.stiffness > stiffest[at[0] / 2];
+    if (!e->crowds) continue;
+    for (int32_t k = 0; k < e->nodes; k++) {
+      uint32_t node = at[k] / 2;
+      stiffest[node] = fmax(stiffest[node], e->numbers.stiffness);
+      if (at_node[node] < CROWD) at_node[node]++;
+    }
+  }
+  strut_release(at_node);
+  strut_release(stiffest);
+  return done;
 }
 
 /* Node lists in the elements' order, and numbers side by side, so that vector loops read on. */
@@ -624,7 +666,7 @@ static bool compile(strut_model *model, const uint8_t *reeled) {
   model->elements.at = c.at;
   model->terms |= STRUT_TERM_ELEMENTS;
   return !c.failed && sort_elements(&c, &model->elements) && lay_out(model, c.nodes) &&
-         link_members(model) && list_memories(model);
+         mark_crowd(model) && link_members(model) && list_memories(model);
 }
 
 bool strut_elements_compile(strut_model *model) {

@@ -82,6 +82,7 @@ typedef struct strut_element {
   strut_law_numbers numbers;
   /* an element with memory has a slot of its own, which follows that of its member or hinge */
   bool remembers;
+  bool crowds; /* of so many collisions, one of those that may act at once; see mark_crowd */
   int32_t
       base; /* the slot that it follows; -1: its natural strain is `natural` before it has yielded */
   int32_t memory; /* place among the elements with memory */
@@ -105,6 +106,7 @@ typedef struct strut_element_block {
   int32_t begin, end;
   bool both_signs; /* all of them carry both */
   bool remembers;  /* all of them have memory; otherwise none */
+  bool collides;   /* some of them are of collisions */
 } strut_element_block;
 
 /** Elements of one member or hinge that from some force or time on carry nothing. */
@@ -117,8 +119,9 @@ typedef struct strut_breakable {
 
 typedef struct strut_element_table {
   int32_t count, block_count;
-  int32_t most_nodes;               /* of one element */
-  int32_t entries;                  /* of the lower triangles of all elements' matrices */
+  int32_t most_nodes; /* of one element */
+  bool scattered;     /* collisions are so many that few act at a time: see forces/nearby.h */
+  int32_t entries;    /* of the lower triangles of all elements' matrices */
   const strut_element *element;     /* (count) by blocks, in a block in the scene's order */
   const strut_element_block *block; /* (block_count) */
   const uint32_t *at;               /* where the nodes' x stand in coordinate arrays: 2 * node */

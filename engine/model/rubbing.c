@@ -67,16 +67,19 @@ bool strut_rubbing_compile(strut_model *model) {
   const strut_scene *scene = model->scene;
   strut_rubbing_entry *item =
       strut_arena_allocate(&model->arena, (size_t)model->elements.count, sizeof *item);
-  if (!item) return false;
+  int32_t *of = strut_arena_allocate(&model->arena, (size_t)model->elements.count, sizeof *of);
+  if (!item || !of) return false;
   for (int32_t k = 0; k < model->elements.count; k++) {
+    int32_t before = model->rubbing.count;
     const strut_element *e = &model->elements.element[k];
     const strut_collision *c =
         e->role == STRUT_ELEMENT_COLLISION ? &scene->collisions[e->item] : NULL;
     if (e->role == STRUT_ELEMENT_FOOT) item[model->rubbing.count++] = take_foot(model, k);
     if (c && c->friction.mu_kinetic > 0.0)
       item[model->rubbing.count++] = (strut_rubbing_entry){k, -1, 0.0, friction_of_collision(c)};
+    of[k] = model->rubbing.count > before ? before : -1;
   }
-  model->rubbing.item = item;
+  model->rubbing.item = item, model->rubbing.of_element = of;
   if (model->rubbing.count) model->terms |= STRUT_TERM_RUBBING;
   return true;
 }

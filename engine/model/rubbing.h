@@ -25,6 +25,7 @@ typedef struct strut_rubbing_entry {
 typedef struct strut_rubbing_table {
   int32_t count;
   const strut_rubbing_entry *item; /* (count) */
+  const int32_t *of_element;       /* (elements) its entry, or -1 */
 } strut_rubbing_table;
 
 /** The foot at contact i of the scene, or -1. */

@@ -121,6 +121,14 @@ typedef struct strut_latest {
   strut_power_lanes *accumulated; /* which of them the next evaluation adds to */
 } strut_latest;
 
+/** Elements that may act near some positions; see forces/nearby.h. */
+typedef struct strut_nearby {
+  int32_t *element, count; /* ascending */
+  double *q;               /* (length) where it was made */
+  int64_t made;            /* how often; 0: not since the reset */
+} strut_nearby;
+enum { STRUT_NEARBY_LISTS = 2 };
+
 /** Room that evaluations use and leave without meaning. */
 typedef struct strut_state_buffers {
   double *mass_solve;     /* (length) */
@@ -166,6 +174,7 @@ typedef struct strut_state {
   strut_latest latest;
   struct strut_rigid *rigid; /* forces of rigid bars, see rigid.h; NULL where bars are elastic */
   strut_state_buffers buffers;
+  strut_nearby nearby[STRUT_NEARBY_LISTS]; /* the nearest first; only with elements.scattered */
   strut_state_watched watched;
   strut_arena arena;
 } strut_state;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/forces/elements.h"
+#include "engine/forces/nearby.h"
 #include "engine/run/simulate_parts.h"
 
 /* A run beyond this multiple of the scene's size counts as diverged. */
@@ -52,7 +53,10 @@ static double speed_of(const strut_run *r, uint32_t at) {
 
 void strut_run_watch_collisions(strut_run *r) {
   const strut_element_table *t = &r->model->elements;
-  for (int32_t i = 0; i < t->count && !r->tunnel.element; i++) {
+  const strut_nearby *near = t->scattered ? strut_nearby_at(r->model, r->state, r->state->q) : NULL;
+  int32_t count = near ? near->count : t->count;
+  for (int32_t k = 0; k < count && !r->tunnel.element; k++) {
+    int32_t i = near ? near->element[k] : k;
     const strut_element *e = &t->element[i];
     const uint32_t *at = t->at + e->first;
     if (e->role != STRUT_ELEMENT_COLLISION) continue;

@@ -69,7 +69,7 @@ static double elastic_energy(const strut_potential *p, const double *q) {
     strut_member_pose m = strut_member_pose_at(t, t->rest, j, q);
     sum += strut_member_elastic_energy(t, j, &m);
   }
-  if (p->model->elements.count) sum += strut_elements_energy(p->model, t->rest, NULL, q);
+  if (p->model->elements.count) sum += strut_elements_energy(p->model, t->rest, NULL, q, NULL);
   return sum;
 }
 

@@ -619,8 +619,8 @@ TEST(a_hinge_counts_its_turns) {
       strut_forces_evaluate(model, state, 0, state->q, state->v);
       assert_near(state->latest.force[4], moment / arm * sin(angle), 1e-11);
       assert_near(state->latest.force[5], -moment / arm * cos(angle), 1e-11);
-      double energy =
-          strut_elements_energy(model, state->latest.rest, state->latest.element_turn, state->q);
+      double energy = strut_elements_energy(model, state->latest.rest, state->latest.element_turn,
+                                            state->q, NULL);
       assert_near(energy, 0.5 * kappa * (angle - 0.25) * (angle - 0.25), 1e-10);
     }
   }
@@ -706,11 +706,12 @@ static void compare_maps(uint64_t seed, const map *m) {
     assert_near(g.state->latest.force[i], expected[0], 1e-10 * scale);
     assert_near(g.state->latest.force[i + 1], expected[1], 1e-10 * scale);
   }
-  assert_relative(
-      strut_elements_energy(g.model, g.state->latest.rest, g.state->latest.element_turn, there),
-      m->scale * m->scale *
-          strut_elements_energy(f.model, f.state->latest.rest, f.state->latest.element_turn, f.q),
-      1e-10);
+  assert_relative(strut_elements_energy(g.model, g.state->latest.rest, g.state->latest.element_turn,
+                                        there, NULL),
+                  m->scale * m->scale *
+                      strut_elements_energy(f.model, f.state->latest.rest,
+                                            f.state->latest.element_turn, f.q, NULL),
+                  1e-10);
   strut_state_free(g.state);
   strut_model_free(g.model);
   strut_scene_free(&g.scene);

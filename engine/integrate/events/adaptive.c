@@ -144,7 +144,7 @@ static bool any_contradicts_at_stage(const strut_model *model, const strut_event
 
 /* Earliest point, within the step, where a law that acts at both ends does not, or the other way; 0: none. */
 static double earliest_slack_dip(const strut_model *model, strut_state *state,
-                                 const strut_event_stepper *l, double h) {
+                                 strut_event_stepper *l, double h) {
   double first = 0.0, faint = 0.01 * fmax(0.1 * l->tolerance, 1e-12) * model->size;
   strut_event_measure(model, state, l, l->next);
   int32_t count = strut_laws_of(l);

@@ -106,6 +106,9 @@ static bool list_laws(const strut_model *model, strut_state *state, strut_event_
     l->laws[l->law_count++].event = STRUT_EVENT_KINK;
   }
   strut_history_list(model, state, l);
+  if (model->elements.scattered)
+    l->law_list = l->nearby_laws = strut_arena_allocate(&state->arena, most, sizeof(int32_t));
+  if (model->elements.scattered && !l->law_list) return false;
   for (int32_t i = 0; i < model->feedback.relay_count; i++)
     l->laws[l->law_count++] = (strut_law_switch){.event = STRUT_EVENT_RELAY,
                                                  .member = -1,

@@ -262,6 +262,9 @@ struct strut_event_stepper {
   struct strut_local_events *within;
   const int32_t *contact_list, *law_list;
   int32_t contact_list_count, law_list_count;
+  /* where collisions are many, the list of laws is of those that may switch: of state->nearby, made so often */
+  int32_t *nearby_laws;
+  int64_t nearby_made;
 };
 
 /** Contacts and laws that a stepper looks at: `count` of them, each by its place in a list. */
@@ -345,8 +348,8 @@ typedef struct strut_event {
 /** Does the event end the mode of a law, not of a contact? */
 bool strut_event_is_of_law(strut_event_kind kind);
 /** The earliest event between now and next, a step h apart; kind NONE if every mode holds. */
-strut_event strut_event_first(const strut_model *model, const strut_state *state,
-                              const strut_event_stepper *l, double h);
+strut_event strut_event_first(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                              double h);
 /** The earliest one of contact i alone. */
 strut_event strut_event_of_contact(const strut_model *model, const strut_event_stepper *l,
                                    int32_t i, double h);
@@ -354,8 +357,10 @@ strut_event strut_event_of_contact(const strut_model *model, const strut_event_s
 double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t index);
 /** Forces and strains of the laws that switch, at an end that has just been evaluated. */
-void strut_event_measure(const strut_model *model, const strut_state *state,
-                         const strut_event_stepper *l, const strut_step_end *end);
+void strut_event_measure(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                         const strut_step_end *end);
+/** Where collisions are many: all of them apart, and those listed that may touch at now. */
+void strut_event_part_all(const strut_model *model, strut_state *state, strut_event_stepper *l);
 /** Time derivative of that value where it is known; false where a secant must do. */
 bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
                       strut_event_kind kind, int32_t index, double *rate);

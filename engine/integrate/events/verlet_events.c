@@ -97,8 +97,8 @@ STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_event_steppe
 }
 
 /* Does what l->next says contradict a mode? */
-STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state,
-                              const strut_event_stepper *l, double h) {
+STRUT_INLINE bool contradicts(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                              double h) {
   if (l->all_sliding) {
     const strut_sliding_contact *s = l->sliding;
     for (const strut_sliding_contact *end = s + l->closed_count; s < end; s++)

@@ -196,6 +196,7 @@ static void start_laws(const strut_model *model, strut_state *state, strut_event
   bool changed = false, memory = model->terms & STRUT_TERM_MEMORY;
   if (memory) strut_drive_apply(model, state, t);
   if (memory) strut_history_thaw(model, state, l);
+  if (l->nearby_laws) strut_event_part_all(model, state, l);
   int32_t laws = strut_laws_of(l);
   for (int32_t n = 0; n < laws; n++) {
     int32_t k = strut_law_of(l, n);

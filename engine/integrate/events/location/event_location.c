@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "engine/forces/feedback.h"
+#include "engine/forces/nearby.h"
 #include "engine/integrate/events/event_kernel.h"
 
 /* A ground damper this much weaker than the whole reaction is rounding, whatever its sign. */
@@ -177,12 +178,13 @@ static void measure_relay(const strut_model *model, const strut_state *state,
   end->tension[k] = strut_relay_margin(model, state, law->relay - 1, now, end->v);
 }
 
-/* The rest lengths are those of the end. Laws of a list are cables, and of all laws the first ones. */
+/* The rest lengths are those of the end. Laws of a list are all cables, or begin with all of them. */
 static void measure_laws(const strut_model *model, const strut_state *state,
                          const strut_event_stepper *l, const strut_step_end *end) {
-  int32_t cables = l->law_list ? l->law_list_count : l->cable_count;
+  int32_t laws = strut_laws_of(l), cables = laws < l->cable_count ? laws : l->cable_count;
   measure_cables(model, state, l, end, l->law_list, cables);
-  for (int32_t k = cables; k < l->law_count && !l->law_list; k++) {
+  for (int32_t n = cables; n < laws; n++) {
+    int32_t k = strut_law_of(l, n);
     if (l->laws[k].event == STRUT_EVENT_RELAY)
       measure_relay(model, state, &l->laws[k], end, k);
     else if (l->laws[k].event >= STRUT_EVENT_SLIDER || l->laws[k].whole)
@@ -192,9 +194,43 @@ static void measure_laws(const strut_model *model, const strut_state *state,
   }
 }
 
-void strut_event_measure(const strut_model *model, const strut_state *state,
-                         const strut_event_stepper *l, const strut_step_end *end) {
-  if (l->law_count) measure_laws(model, state, l, end);
+/* Do bodies of a collision exert what the law says? Only laws of collisions may be left out of a list. */
+static bool is_of_collision(const strut_model *model, const strut_law_switch *law) {
+  return law->element >= 0 && model->elements.element[law->element].role == STRUT_ELEMENT_COLLISION;
+}
+
+/* Laws that may switch at `end`, in l->law_list; those that have come near are measured at both ends. */
+static void list_nearby(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                        const strut_step_end *end) {
+  const strut_nearby *near = strut_nearby_at(model, state, end->q);
+  if (l->nearby_made == near->made) return;
+  l->nearby_made = near->made;
+  l->law_list_count = 0;
+  int32_t next = 0;
+  for (int32_t k = 0; k < l->law_count; k++) {
+    const strut_law_switch *law = &l->laws[k];
+    if (is_of_collision(model, law)) {
+      while (next < near->count && near->element[next] < law->element) next++;
+      if (next == near->count || near->element[next] != law->element) continue;
+      measure_element(model, state, law, l->now, k);
+      measure_element(model, state, law, l->next, k);
+    }
+    l->nearby_laws[l->law_list_count++] = k;
+  }
+}
+
+void strut_event_measure(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                         const strut_step_end *end) {
+  if (!l->law_count) return;
+  if (l->nearby_laws) list_nearby(model, state, l, end);
+  measure_laws(model, state, l, end);
+}
+
+void strut_event_part_all(const strut_model *model, strut_state *state, strut_event_stepper *l) {
+  for (int32_t k = 0; k < l->law_count; k++)
+    if (is_of_collision(model, &l->laws[k])) strut_cable_set_acting(state, l, k, false);
+  l->nearby_made = 0;
+  list_nearby(model, state, l, l->now);
 }
 
 /* Whether an open contact whose gap is below 0 at the step's end has come down to it. One that has just
@@ -231,16 +267,17 @@ STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_step
 }
 
 /* Of `contacts` in a list and the laws of the stepper's list; NULL: of all contacts and laws. */
-STRUT_INLINE strut_event first_event(const strut_model *model, const strut_state *state,
-                                     const strut_event_stepper *l, double h, const int32_t *list,
+STRUT_INLINE strut_event first_event(const strut_model *model, strut_state *state,
+                                     strut_event_stepper *l, double h, const int32_t *list,
                                      int32_t contacts, unsigned terms) {
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
-  int32_t laws = list ? strut_laws_of(l) : l->law_count;
   for (int32_t k = 0; k < contacts; k++)
     keep_first_of(model, l, list ? list[k] : k, h, terms, &first);
+  if (!l->law_count) return first;
   strut_event_measure(model, state, l, l->next);
+  int32_t laws = strut_laws_of(l);
   for (int32_t k = 0; k < laws; k++) {
-    int32_t j = list ? strut_law_of(l, k) : k;
+    int32_t j = strut_law_of(l, k);
     if (law_value(l, l->next, j) < 0.0) keep_first(model, l, l->laws[j].event, j, h, &first);
   }
   return first;
@@ -253,8 +290,8 @@ strut_event strut_event_of_contact(const strut_model *model, const strut_event_s
   return first;
 }
 
-strut_event strut_event_first(const strut_model *model, const strut_state *state,
-                              const strut_event_stepper *l, double h) {
+strut_event strut_event_first(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                              double h) {
   int32_t count = strut_contacts_of(model, l);
   if (model->contacts.surface && !l->contact_list)
     return first_event(model, state, l, h, state->buffers.near,

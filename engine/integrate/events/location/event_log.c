@@ -44,7 +44,9 @@ void strut_event_log_note(const strut_model *model, const strut_state *state,
                           const strut_event_stepper *l, double t) {
   strut_event_log *log = state->watched.event_log;
   for (int32_t i = 0; i < model->contacts.count; i++) set_mode(log, i, contact_mode(l, i), t);
-  for (int32_t k = 0; k < l->law_count; k++) {
+  int32_t laws = strut_laws_of(l);
+  for (int32_t n = 0; n < laws; n++) {
+    int32_t k = strut_law_of(l, n);
     const strut_law_switch *s = &l->laws[k];
     if (s->event == STRUT_EVENT_ACTS && s->member >= 0)
       set_mode(log, log->contacts + s->member, (int8_t)l->acting[k], t);

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/nearby.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "engine/base/vec.h"
+#include "engine/forces/elements.h"
+
+/* How far nodes may go while a list serves, in parts of the mean distance between nodes. */
+static const double WAYS[STRUT_NEARBY_LISTS] = {0.1, 0.8};
+
+static double way_of(const strut_model *model, int level) {
+  return WAYS[level] * model->size / sqrt((double)model->node_count);
+}
+
+/* Does the list serve until nodes have gone `more` from q? */
+static bool serves(const strut_model *model, const strut_nearby *near, const double *q, double way,
+                   double more) {
+  double most = 0.0;
+  if (!near->made) return false;
+  for (int32_t i = 0; i < model->length; i += 2) {
+    double x = q[i] - near->q[i], y = q[i + 1] - near->q[i + 1], square = x * x + y * y;
+    most = square <= most ? most : square; /* NAN stays */
+  }
+  return sqrt(most) + more <= way;
+}
+
+/* Is the first node further than `reach` from the box around the others? */
+static bool is_outside(const uint32_t *at, int32_t nodes, const double *q, double reach) {
+  for (uint32_t c = 0; c < 2; c++) {
+    double p = q[at[0] + c], a = q[at[1] + c], b = q[at[nodes - 1] + c];
+    double low = a < b ? a : b, high = a < b ? b : a;
+    if (p < low - reach || p > high + reach) return true;
+  }
+  return false;
+}
+
+/* Are the bodies further apart than two ways? Other elements than collisions may act anywhere. */
+static bool is_beyond(const strut_model *model, int32_t element, const double *q, double way) {
+  const strut_element *e = &model->elements.element[element];
+  double b[STRUT_MOST_GRADIENT], reach = e->natural + 2.0 * way;
+  if (e->role != STRUT_ELEMENT_COLLISION) return false;
+  return is_outside(model->elements.at + e->first, e->nodes, q, reach) ||
+         strut_element_strain(model, element, q, 0.0, b) > reach;
+}
+
+bool strut_nearby_is_far(const strut_model *model, int32_t element, const double *q) {
+  return is_beyond(model, element, q, way_of(model, 0));
+}
+
+static void make(const strut_model *model, strut_state *state, const double *q, int level) {
+  strut_nearby *near = &state->nearby[level];
+  const strut_nearby *from = level + 1 < STRUT_NEARBY_LISTS ? near + 1 : NULL;
+  double way = way_of(model, level);
+  int32_t count = from ? from->count : model->elements.count;
+  near->count = 0;
+  for (int32_t k = 0; k < count; k++) {
+    int32_t i = from ? from->element[k] : k;
+    if (!is_beyond(model, i, q, way)) near->element[near->count++] = i;
+  }
+  memcpy(near->q, q, (size_t)model->length * sizeof *q);
+  near->made++;
+}
+
+const strut_nearby *strut_nearby_serving(const strut_model *model, const strut_state *state,
+                                         const double *q) {
+  if (!model->elements.scattered) return NULL;
+  return serves(model, state->nearby, q, way_of(model, 0), 0.0) ? state->nearby : NULL;
+}
+
+const strut_nearby *strut_nearby_at(const strut_model *model, strut_state *state, const double *q) {
+  strut_nearby *near = state->nearby;
+  if (serves(model, near, q, way_of(model, 0), 0.0)) return near;
+  int level = 1; /* the first list that serves for as long as the one below will */
+  while (level < STRUT_NEARBY_LISTS &&
+         !serves(model, &near[level], q, way_of(model, level), way_of(model, level - 1)))
+    level++;
+  while (level-- > 0) make(model, state, q, level);
+  return near;
+}
+
+int32_t strut_nearby_find(const strut_nearby *near, int32_t element) {
+  int32_t low = 0, high = near->count;
+  while (low < high) {
+    int32_t middle = low + (high - low) / 2;
+    if (near->element[middle] < element)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Which elements may act: of many collisions, those whose bodies are near (Verlet's lists).
+ *
+ * Two bodies that are apart come nearer by at most twice the longest way that a node goes. So a list of all that
+ * are within reach serves until a node has gone half of that, and is then made from a longer list, which serves for
+ * longer, and that from all elements. Elements that are not listed exert nothing, so the forces are the same, bit by
+ * bit, whichever list is in use.
+ */
+#ifndef STRUT_ENGINE_FORCES_NEARBY_H
+#define STRUT_ENGINE_FORCES_NEARBY_H
+
+#include "engine/model/state.h"
+
+/** The elements that may act at q, for a model with elements.scattered. Until the next call with the same state. */
+const strut_nearby *strut_nearby_at(const strut_model *model, strut_state *state, const double *q);
+/** The list that serves at q already; or NULL, which stands for all elements. */
+const strut_nearby *strut_nearby_serving(const strut_model *model, const strut_state *state,
+                                         const double *q);
+/** Is the element of a collision whose bodies are not near at q? */
+bool strut_nearby_is_far(const strut_model *model, int32_t element, const double *q);
+/** The place in the list of the first element that is not below `element`. */
+int32_t strut_nearby_find(const strut_nearby *near, int32_t element);
+
+#endif
