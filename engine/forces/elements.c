@@ -139,7 +139,7 @@ void strut_elements_visit(const strut_model *model, const double *rest, const do
       continue;
     strut_element_evaluate(model, i, rest, q, (double)NAN, &pose);
     bool stop = e->role == STRUT_ELEMENT_LONGEST || e->role == STRUT_ELEMENT_SHORTEST ||
-                e->role == STRUT_ELEMENT_COLLISION || e->role == STRUT_ELEMENT_FOOT;
+                e->role == STRUT_ELEMENT_COLLISION || e->strain == STRUT_STRAIN_FOOT;
     if (stops && stop && !pose.acts) {
       pose.acts = true;
       pose.slope = e->numbers.stiffness;

@@ -48,13 +48,27 @@ static double sense_energy(const strut_model *model, const strut_state *state, i
                                          : e.kinetic + e.elastic + e.gravity + e.contact;
 }
 
+/* The element that contact i has become, or -1. */
+static int32_t element_of(const strut_model *model, int32_t i) {
+  int32_t item = model->rubbing.of_contact ? model->rubbing.of_contact[i] : -1;
+  return item < 0 ? -1 : model->rubbing.item[item].element;
+}
+
 /* Does the node of contact `first`, or -1, touch any of its grounds? A node's contacts are side by side. */
 static bool touches(const strut_model *model, const strut_state *state, int32_t first,
                     const double *q) {
   assert(first >= 0 && first < model->contacts.count);
   const strut_contact_table *c = &model->contacts;
-  for (int32_t i = first; i >= 0 && i < c->count && c->at[i] == c->at[first]; i++)
+  for (int32_t i = first; i >= 0 && i < c->count && c->at[i] == c->at[first]; i++) {
+    int32_t element = element_of(model, i);
+    double b[STRUT_MOST_GRADIENT];
+    if (element >= 0) {
+      double natural = model->elements.element[element].natural;
+      if (strut_element_strain(model, element, q, 0.0, b) < natural) return true;
+      continue;
+    }
     if (strut_contact_gap_at(c, i, q, state->latest.ground_motion) < 0.0) return true;
+  }
   return false;
 }
 
@@ -64,6 +78,12 @@ static double sense_contact_force(const strut_model *model, const strut_state *s
   const strut_contact_table *c = &model->contacts;
   double sum = 0.0;
   for (int32_t i = first; i >= 0 && i < c->count && c->at[i] == c->at[first]; i++) {
+    int32_t element = element_of(model, i);
+    strut_element_pose pressed;
+    if (element >= 0) {
+      sum -= strut_element_measure_at(model, state, element, q, v, &pressed);
+      continue;
+    }
     const strut_contact_pose pose = strut_contact_pose_at(c, i, q, state->latest.ground_motion, -1);
     if (!(pose.gap < 0.0)) continue;
     strut_vec2 u = strut_contact_velocity(c, i, v, state->latest.ground_motion);
@@ -173,7 +193,7 @@ void strut_feedback_add_rates(const strut_model *model, strut_state *state, doub
   strut_signal_inputs in = strut_drive_inputs(model, state, v);
   double now = t + state->time_offset, value, unused;
   in.values_only = true;
-  for (int32_t i = 0; i < f->state_count - f->lag_count - f->maxwell_count; i++) {
+  for (int32_t i = 0; i < (int32_t)scene->state_count; i++) {
     strut_program_evaluate(&scene->states[i].rate, scene->signals, &in, now, &value, &unused);
     force[f->base + i] = value;
   }

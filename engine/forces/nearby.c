@@ -20,7 +20,7 @@ static bool serves(const strut_model *model, const strut_nearby *near, const dou
                    double more) {
   double most = 0.0;
   if (!near->made) return false;
-  for (int32_t i = 0; i < model->length; i += 2) {
+  for (int32_t i = 0; i < 2 * model->node_count; i += 2) {
     double x = q[i] - near->q[i], y = q[i + 1] - near->q[i + 1], square = x * x + y * y;
     most = square <= most ? most : square; /* NAN stays */
   }

@@ -10,7 +10,7 @@
 #include "engine/scene/friction.h"
 
 static void slide_foot(const strut_element *e, const uint32_t *at, const double *q, double *b) {
-  const strut_foot_pose pose = strut_foot_pose_of(at, q, e->axis, e->radius);
+  const strut_foot_pose pose = strut_foot_pose_of(at, e->nodes, q, e->axis, e->radius);
   /* the tangent is to the right of the normal; rolling, the middle moves as the member turns */
   double tx = pose.ny, ty = -pose.nx, roll = pose.turn * (1.0 - pose.along);
   b[2] = -roll * pose.uy, b[3] = roll * pose.ux;
@@ -23,7 +23,7 @@ int32_t strut_rubbing_slide(const strut_model *model, int32_t item, const double
   int32_t element = model->rubbing.item[item].element;
   const strut_element *e = &model->elements.element[element];
   double across[STRUT_MOST_GRADIENT];
-  if (e->role == STRUT_ELEMENT_FOOT) {
+  if (e->strain == STRUT_STRAIN_FOOT) {
     slide_foot(e, model->elements.at + e->first, q, b);
     return e->nodes;
   }
@@ -38,7 +38,16 @@ int32_t strut_rubbing_slide(const strut_model *model, int32_t item, const double
 typedef struct rubbing_forces {
   int32_t nodes; /* 0: it does not touch */
   double slide[STRUT_MOST_RUBBING], slip, normal, friction;
+  double bend_rate; /* of bristles [1/s] */
 } rubbing_forces;
+
+/* Bristles at the bend y that slip; where nothing presses, their own damper straightens them. */
+static void bend_bristles(const strut_friction *f, double y, rubbing_forces *r) {
+  const strut_law_friction_numbers numbers = strut_friction_numbers(f);
+  r->bend_rate =
+      r->nodes ? strut_law_friction_bristle_rate(&numbers, r->slip, y) : -y / f->relaxation;
+  r->friction = r->nodes ? -r->normal * (y + f->relaxation * r->bend_rate) : 0.0;
+}
 
 static rubbing_forces forces_of(const strut_model *model, const strut_state *state, int32_t item,
                                 const double *q, const double *v) {
@@ -46,11 +55,18 @@ static rubbing_forces forces_of(const strut_model *model, const strut_state *sta
   const uint32_t *at = model->elements.at + model->elements.element[f->element].first;
   strut_element_pose pose;
   rubbing_forces r = {.normal = -strut_element_measure_at(model, state, f->element, q, v, &pose)};
-  if (!(r.normal > 0.0)) return (rubbing_forces){.nodes = 0};
+  if (!(r.normal > 0.0)) {
+    r = (rubbing_forces){.nodes = 0};
+    if (f->bend >= 0) bend_bristles(&f->friction, v[f->bend], &r);
+    return r;
+  }
   r.nodes = strut_rubbing_slide(model, item, q, r.slide);
   for (int32_t k = 0; k < 2 * r.nodes; k++) r.slip += r.slide[k] * v[at[k / 2] + (uint32_t)(k % 2)];
   r.slip -= f->belt_speed;
-  r.friction = strut_friction_force(&f->friction, r.normal, r.slip, 0.0);
+  if (f->bend >= 0)
+    bend_bristles(&f->friction, v[f->bend], &r);
+  else
+    r.friction = strut_friction_force(&f->friction, r.normal, r.slip, 0.0);
   return r;
 }
 
@@ -60,6 +76,7 @@ static void add_entry(const strut_model *model, strut_state *state, int32_t item
   const uint32_t *at = model->elements.at + model->elements.element[f->element].first;
   if (f->friction.law == STRUT_FRICTION_NONE) return;
   rubbing_forces r = forces_of(model, state, item, q, v);
+  if (f->bend >= 0) state->latest.force[f->bend] = r.bend_rate;
   for (int32_t k = 0; k < 2 * r.nodes; k++)
     state->latest.force[at[k / 2] + (uint32_t)(k % 2)] += r.friction * r.slide[k];
   if (!state->balance) return;

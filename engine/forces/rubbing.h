@@ -3,8 +3,8 @@
  * Friction of elements that press (engine/model/rubbing.h), where they touch.
  *
  * The surfaces slide on each other by b v, b over the coordinates of the element's nodes: friction F there is F b
- * on them, of a foot with its moment on the member. Its law is one without stick, under the force by which the
- * element presses. Bodies of collisions are as their nodes and axes lie: friction has no moment by their thickness.
+ * on them, of a foot with its moment on the member. Its law is one without stick, or of bristles, under the force by
+ * which the element presses. Bodies of collisions are as their nodes and axes lie: friction has no moment by their thickness.
  */
 #ifndef STRUT_ENGINE_FORCES_RUBBING_H
 #define STRUT_ENGINE_FORCES_RUBBING_H

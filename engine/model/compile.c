@@ -143,7 +143,9 @@ static void compile_drives(strut_model *model, bool *failed) {
 }
 
 static void compile_rubbing(strut_model *model, bool *failed) {
-  bool rubs = model->scene->foot_count || strut_collisions_rub(model->scene);
+  bool rubs = strut_collisions_rub(model->scene);
+  for (size_t i = 0; i < model->scene->contact_count && !rubs; i++)
+    rubs = strut_contact_is_element(model->scene, i);
   if (rubs && !strut_rubbing_compile(model)) *failed = true;
 }
 

@@ -102,8 +102,8 @@ static void count_elements(const strut_scene *scene, const uint8_t *reeled, size
   *nodes = 3 * scene->hinge_count;
   for (size_t i = 0; i < scene->cell_count; i++) *nodes += scene->cells[i].node_count;
   *elements += MOST_PAIRS * scene->collision_count + scene->distance_count;
-  for (size_t i = 0; i < scene->contact_count && scene->foot_count; i++)
-    if (strut_foot_of_contact(scene, i) >= 0) ++*elements, *nodes += 2;
+  for (size_t i = 0; i < scene->contact_count; i++)
+    if (strut_contact_is_element(scene, i)) ++*elements, *nodes += 2;
   *nodes += 3 * (MOST_PAIRS * scene->collision_count + scene->distance_count);
   for (size_t j = 0; j < scene->member_count; j++) {
     size_t own = elements_of_member(&scene->members[j], reeled && reeled[j]);
@@ -463,27 +463,30 @@ static void add_distance(compilation *c, size_t i) {
   if (memory_of_law(&d->law)) remember(c, e);
 }
 
-/* A foot presses as its node's contacts say; strut_rubbing_compile places it on their grounds. */
+/*
+ * Contacts that are elements press as the scene says: a foot, or a node alone, which is one without an arc.
+ * strut_rubbing_compile places them on their grounds.
+ */
 static void add_feet(compilation *c) {
   const strut_scene *scene = c->model->scene;
   for (size_t i = 0; i < scene->contact_count; i++) {
     int32_t k = strut_foot_of_contact(scene, i);
-    if (k < 0) continue;
-    const strut_foot *foot = &scene->feet[k];
-    const strut_member *m = &scene->members[foot->member];
+    if (!strut_contact_is_element(scene, i)) continue;
     strut_element *e =
         add_element(c, (strut_element){.strain = STRUT_STRAIN_FOOT,
                                        .law = STRUT_LAW_LINEAR,
-                                       .role = STRUT_ELEMENT_FOOT,
-                                       .item = k,
+                                       .role = k < 0 ? STRUT_ELEMENT_CONTACT : STRUT_ELEMENT_FOOT,
+                                       .item = k < 0 ? (int32_t)i : k,
                                        .slot = -1,
                                        .carries = -1,
                                        .contact = (int32_t)i,
-                                       .radius = foot->radius,
+                                       .radius = k < 0 ? 0.0 : scene->feet[k].radius,
                                        .damping = scene->contacts[i].damping,
                                        .numbers.stiffness = scene->contacts[i].stiffness});
-    add_node(c, e, foot->node);
-    add_node(c, e, m->node[m->node[0] == foot->node]);
+    add_node(c, e, scene->contacts[i].node);
+    if (k < 0) continue;
+    const strut_member *m = &scene->members[scene->feet[k].member];
+    add_node(c, e, m->node[m->node[0] == scene->feet[k].node]);
   }
 }
 
@@ -661,7 +664,7 @@ static bool compile(strut_model *model, const uint8_t *reeled) {
   for (size_t i = 0; i < scene->cell_count; i++) add_cell(&c, i);
   for (size_t i = 0; i < scene->collision_count; i++) add_collision(&c, i);
   for (size_t i = 0; i < scene->distance_count; i++) add_distance(&c, i);
-  if (scene->foot_count) add_feet(&c);
+  add_feet(&c);
   assert(c.count <= (int32_t)elements && c.nodes <= (int32_t)nodes);
   model->elements.at = c.at;
   model->terms |= STRUT_TERM_ELEMENTS;

@@ -59,7 +59,8 @@ typedef enum strut_element_role {
   STRUT_ELEMENT_CELL,     /* the pressure in a cell */
   STRUT_ELEMENT_COLLISION, /* what two bodies exert on each other; of two members it has four elements */
   STRUT_ELEMENT_DISTANCE, /* the force of a distance */
-  STRUT_ELEMENT_FOOT      /* what a ground presses a foot with */
+  STRUT_ELEMENT_FOOT,     /* what a ground presses a foot with */
+  STRUT_ELEMENT_CONTACT /* what it presses a node with that it holds by bristles: a foot without an arc */
 } strut_element_role;
 
 typedef struct strut_element {
@@ -74,7 +75,7 @@ typedef struct strut_element {
       axis; /* of `along` and `foot`: tangent of half the angle of a direction; of `wrap`: bit k where
                            guide k is to the right */
   double radius;   /* of `foot` and `wrap` [m] */
-  int32_t contact; /* of a foot: that of its node with the ground */
+  int32_t contact; /* of a foot, or a node with bristles: that of the node with the ground */
   int32_t place;   /* of its (2 nodes) (2 nodes + 1) / 2 entries among those of all elements */
   int32_t sibling; /* the next element of the same member, or -1 */
   int8_t carries;  /* 1 tension only, -1 compression only, 0 both; only beyond e0 */
@@ -187,6 +188,7 @@ static inline strut_thing strut_element_thing(strut_element_role role) {
     case STRUT_ELEMENT_COLLISION: return STRUT_THING_COLLISION;
     case STRUT_ELEMENT_DISTANCE: return STRUT_THING_DISTANCE;
     case STRUT_ELEMENT_FOOT: return STRUT_THING_FOOT;
+    case STRUT_ELEMENT_CONTACT: return STRUT_THING_CONTACT;
     case STRUT_ELEMENT_MEMBER:
     case STRUT_ELEMENT_LONGEST:
     case STRUT_ELEMENT_SHORTEST: break;
@@ -196,6 +198,7 @@ static inline strut_thing strut_element_thing(strut_element_role role) {
 
 /** The name of the thing that the element belongs to. */
 static inline const char *strut_element_name(const strut_scene *scene, const strut_element *e) {
+  if (e->role == STRUT_ELEMENT_CONTACT) return scene->nodes[scene->contacts[e->item].node].name;
   return strut_thing_name(scene, strut_element_thing(e->role), (size_t)e->item);
 }
 

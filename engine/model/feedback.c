@@ -36,7 +36,7 @@ size_t strut_feedback_states(const strut_scene *scene) {
   for (size_t i = 0; i < scene->signal_count; i++) count += scene->signals[i].lag > 0.0;
   for (size_t i = 0; i < scene->member_count; i++)
     count += scene->members[i].maxwell.stiffness > 0.0;
-  return count;
+  return count + strut_bristle_count(scene);
 }
 
 static bool compile_maxwell(strut_model *model) {
@@ -99,6 +99,7 @@ bool strut_feedback_compile(strut_model *model) {
   f->lagged = lagged, f->lag_of = lag_of, f->sampled = sampled, f->triggered = triggered;
   f->relay = relay;
   f->state_count = (int32_t)strut_feedback_states(scene);
+  f->bristle_count = (int32_t)strut_bristle_count(scene);
   f->base = 2 * model->node_count + 2;
   if (!compile_maxwell(model)) return false;
   double *velocity = (double *)model->velocity;

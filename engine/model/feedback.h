@@ -35,7 +35,8 @@ typedef struct strut_feedback_table {
       *lagged; /* (lag_count) signals with a lag; their states follow those of the scene */
   const int32_t *lag_of; /* (signals) state of a signal's lag, or -1 */
   int32_t maxwell_count;
-  const strut_maxwell_entry *maxwell; /* (maxwell_count); their states are the last */
+  const strut_maxwell_entry *maxwell; /* (maxwell_count); their states follow */
+  int32_t bristle_count;              /* bends of bristles, the last states */
   int32_t sampled_count;
   int32_t trigger_count;
   const int32_t *triggered; /* (trigger_count) signals with a trigger */

@@ -12,6 +12,18 @@ int32_t strut_foot_of_contact(const strut_scene *scene, size_t i) {
   return -1;
 }
 
+bool strut_contact_is_element(const strut_scene *scene, size_t i) {
+  return strut_friction_has_bristles(scene->contacts[i].friction.law) ||
+         strut_foot_of_contact(scene, i) >= 0;
+}
+
+size_t strut_bristle_count(const strut_scene *scene) {
+  size_t count = 0;
+  for (size_t i = 0; i < scene->contact_count; i++)
+    count += strut_friction_has_bristles(scene->contacts[i].friction.law);
+  return count;
+}
+
 /* Friction that sticks has no stick here: within its band it grows with the speed. */
 static strut_friction friction_of(const strut_friction *f) {
   strut_friction own = *f;
@@ -35,15 +47,20 @@ static void place_element(const strut_contact_table *t, int32_t i, strut_element
   e->natural = nx * point[0] + ny * point[1] + e->radius;
 }
 
-/* Friction of element k, a foot whose node itself touches nothing any more. */
-static strut_rubbing_entry take_foot(strut_model *model, int32_t k) {
+/* Friction of element k, instead of the contact of its node, which touches nothing any more. */
+static strut_rubbing_entry take_contact(strut_model *model, int32_t k) {
   strut_contact_table *t = &model->contacts;
   strut_element *e = (strut_element *)&model->elements.element[k];
   int32_t i = e->contact;
   strut_contact_entry *entry = (strut_contact_entry *)&t->entry[i];
   place_element(t, i, e);
+  bool bristles = strut_friction_has_bristles(entry->friction.law);
+  const strut_feedback_table *f = &model->feedback;
+  int32_t bend = f->base + f->state_count - f->bristle_count + model->rubbing.bristles;
+  model->rubbing.bristles += bristles;
   const strut_rubbing_entry item = {
-      k, i, t->surface ? t->surface[t->surface_of[i]].belt_speed : t->belt_speed,
+      k, i, bristles ? bend : -1,
+      t->surface ? t->surface[t->surface_of[i]].belt_speed : t->belt_speed,
       friction_of(&entry->friction)};
   entry->stiffness = entry->damping = entry->dissipation = 0.0;
   entry->friction = (strut_friction){STRUT_FRICTION_NONE};
@@ -68,18 +85,24 @@ bool strut_rubbing_compile(strut_model *model) {
   strut_rubbing_entry *item =
       strut_arena_allocate(&model->arena, (size_t)model->elements.count, sizeof *item);
   int32_t *of = strut_arena_allocate(&model->arena, (size_t)model->elements.count, sizeof *of);
-  if (!item || !of) return false;
+  int32_t *at_contact =
+      strut_arena_allocate(&model->arena, (size_t)model->contacts.count, sizeof *at_contact);
+  if (!item || !of || !at_contact) return false;
+  for (int32_t i = 0; i < model->contacts.count; i++) at_contact[i] = -1;
   for (int32_t k = 0; k < model->elements.count; k++) {
     int32_t before = model->rubbing.count;
     const strut_element *e = &model->elements.element[k];
     const strut_collision *c =
         e->role == STRUT_ELEMENT_COLLISION ? &scene->collisions[e->item] : NULL;
-    if (e->role == STRUT_ELEMENT_FOOT) item[model->rubbing.count++] = take_foot(model, k);
+    if (e->strain == STRUT_STRAIN_FOOT) item[model->rubbing.count++] = take_contact(model, k);
     if (c && c->friction.mu_kinetic > 0.0)
-      item[model->rubbing.count++] = (strut_rubbing_entry){k, -1, 0.0, friction_of_collision(c)};
+      item[model->rubbing.count++] =
+          (strut_rubbing_entry){k, -1, -1, 0.0, friction_of_collision(c)};
     of[k] = model->rubbing.count > before ? before : -1;
+    if (of[k] >= 0 && item[before].contact >= 0) at_contact[item[before].contact] = before;
   }
   model->rubbing.item = item, model->rubbing.of_element = of;
+  model->rubbing.of_contact = at_contact;
   if (model->rubbing.count) model->terms |= STRUT_TERM_RUBBING;
   return true;
 }

@@ -12,6 +12,37 @@
 
 static const double QUARTER_TURN = 1.57079632679489661923;
 
+/* What keeps a contact from being an element that rubs, with the name of its ground; or NULL. */
+static const char *fault_of_ground(const strut_scene *scene, const strut_contact *c) {
+  const strut_ground *g = scene->ground_count ? &scene->grounds[c->ground] : &scene->ground;
+  const strut_friction *f = &c->friction;
+  return g->shape != STRUT_GROUND_LINE ? "needs a straight ground, and '%s' is none"
+         : g->moves[0] || g->moves[1]  ? "needs a ground at rest, and '%s' is shaken"
+         : g->damping_law != STRUT_DAMPING_APPROACH
+             ? "has no dissipation of Hunt and Crossley, as ground '%s' wants it"
+         : f->law == STRUT_FRICTION_COULOMB
+             ? "cannot stick exactly, as ground '%s' wants it; use karnopp or smooth"
+         : f->law != STRUT_FRICTION_NONE && f->directional
+             ? "rubs in both directions alike, unlike ground '%s'"
+             : NULL;
+}
+
+/* Reports it of a subject that rubs there. */
+static void report_ground(strut_checker *checker, strut_subject subject, size_t index,
+                          const strut_contact *c, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const char *fault = fault_of_ground(scene, c);
+  const char *name = scene->ground_count ? scene->grounds[c->ground].name : NULL;
+  if (!name || !*name) name = "ground";
+  char what[240];
+  if (!fault) return;
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+  snprintf(what, sizeof what, fault, name);
+#pragma GCC diagnostic pop
+  strut_report_finding(checker, subject, index, NULL, "%s %s", owner, what);
+}
+
 static void check_friction(strut_checker *checker, size_t index, const char *owner) {
   const strut_friction *f = &checker->scene->contacts[index].friction;
   if ((unsigned)f->law >= STRUT_FRICTION_LAW_COUNT) {
@@ -24,8 +55,9 @@ static void check_friction(strut_checker *checker, size_t index, const char *own
   const strut_scene *scene = checker->scene;
   const char *fault = !f->driven                                      ? NULL
                       : !strut_exists(f->signal, scene->signal_count) ? "which does not exist"
-                      : f->directional       ? "which cannot depend on the direction, too"
-                      : scene->foot_count    ? "which feet that roll do not know"
+                      : f->directional    ? "which cannot depend on the direction, too"
+                      : scene->foot_count ? "which feet that roll do not know"
+                      : strut_friction_has_bristles(f->law) ? "which bristles do not know"
                       : !scene->ground_count ? "which needs its ground in the list of grounds"
                                              : NULL;
   if (fault)
@@ -188,9 +220,13 @@ static void check_contacts(strut_checker *checker, const size_t *pieces) {
       strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
                            "%s is out of order: contacts follow their nodes, one for each at most",
                            owner);
+    bool again =
+        i && scene->contacts[i - 1].node == c->node && scene->contacts[i - 1].ground == c->ground;
     if (!has_surface(scene, c, pieces))
       strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
                            "%s is with a ground, or a piece of one, that does not exist", owner);
+    else if (strut_friction_has_bristles(c->friction.law) && !again)
+      report_ground(checker, STRUT_ON_CONTACT, i, c, owner);
     const strut_checked whose = {STRUT_ON_CONTACT, i, owner, NULL};
     strut_check_fields(checker, &whose, STRUT_FIELDS_CONTACT, c, NULL);
     check_friction(checker, i, owner);
@@ -223,21 +259,6 @@ void strut_check_ground(strut_checker *checker) {
 }
 
 /* ---- feet ---- */
-
-/* What keeps contact i of a foot from rolling, or NULL. */
-static const char *fault_of_ground(const strut_scene *scene, const strut_contact *c) {
-  const strut_ground *g = scene->ground_count ? &scene->grounds[c->ground] : &scene->ground;
-  const strut_friction *f = &c->friction;
-  return g->shape != STRUT_GROUND_LINE ? "rolls on straight grounds only, and '%s' is none"
-         : g->moves[0] || g->moves[1]  ? "rolls on grounds at rest only, and '%s' is shaken"
-         : g->damping_law != STRUT_DAMPING_APPROACH
-             ? "has no dissipation of Hunt and Crossley, as ground '%s' wants it"
-         : f->law == STRUT_FRICTION_COULOMB
-             ? "has no friction that sticks exactly, as ground '%s' wants it; use karnopp or smooth"
-         : f->law != STRUT_FRICTION_NONE && f->directional
-             ? "has the same friction in both directions, unlike ground '%s'"
-             : NULL;
-}
 
 static bool check_foot(strut_checker *checker, size_t index, const char *owner) {
   const strut_scene *scene = checker->scene;
@@ -286,16 +307,8 @@ void strut_check_feet(strut_checker *checker) {
     for (size_t k = 0; k < scene->contact_count; k++) {
       const strut_contact *c = &scene->contacts[k];
       if (c->node != f->node) continue;
-      const char *fault = fault_of_ground(scene, c);
       touches = true;
-      if (!fault) continue;
-      const char *name = scene->ground_count ? scene->grounds[c->ground].name : "ground";
-      char what[240];
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wformat-nonliteral"
-      snprintf(what, sizeof what, fault, name);
-#pragma GCC diagnostic pop
-      strut_report_finding(checker, STRUT_ON_FOOT, i, NULL, "%s %s", owner, what);
+      report_ground(checker, STRUT_ON_FOOT, i, c, owner);
     }
     if (!touches)
       strut_report_finding(checker, STRUT_ON_FOOT, i, "node",

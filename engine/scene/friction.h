@@ -17,7 +17,8 @@ typedef enum strut_friction_class {
   STRUT_FRICTION_ABSENT,      /* no force */
   STRUT_FRICTION_STICK_BAND,  /* balances the other forces below the speed stick_velocity */
   STRUT_FRICTION_EXACT_STICK, /* sticks without moving; needs a method with events */
-  STRUT_FRICTION_CONTINUOUS   /* a force that depends on the speed without a jump: no states */
+  STRUT_FRICTION_CONTINUOUS,  /* a force that depends on the speed without a jump: no states */
+  STRUT_FRICTION_BRISTLES     /* continuous too, with an internal state; see model/rubbing.h */
 } strut_friction_class;
 
 typedef enum strut_friction_law {
@@ -158,7 +159,8 @@ static inline bool strut_friction_has_band(strut_friction_law law) {
     case STRUT_FRICTION_STICK_BAND: return true;
     case STRUT_FRICTION_ABSENT:
     case STRUT_FRICTION_EXACT_STICK:
-    case STRUT_FRICTION_CONTINUOUS: break;
+    case STRUT_FRICTION_CONTINUOUS:
+    case STRUT_FRICTION_BRISTLES: break;
   }
   return false;
 }
@@ -169,15 +171,22 @@ static inline bool strut_friction_is_exact(strut_friction_law law) {
     case STRUT_FRICTION_EXACT_STICK: return true;
     case STRUT_FRICTION_ABSENT:
     case STRUT_FRICTION_STICK_BAND:
-    case STRUT_FRICTION_CONTINUOUS: break;
+    case STRUT_FRICTION_CONTINUOUS:
+    case STRUT_FRICTION_BRISTLES: break;
   }
   return false;
+}
+
+/** Has it an internal state? */
+static inline bool strut_friction_has_bristles(strut_friction_law law) {
+  return strut_friction_states(law) == STRUT_FRICTION_BRISTLES;
 }
 
 /** Is it a force that follows from the speed alone? */
 static inline bool strut_friction_is_continuous(strut_friction_law law) {
   switch (strut_friction_states(law)) {
     case STRUT_FRICTION_CONTINUOUS: return true;
+    case STRUT_FRICTION_BRISTLES:
     case STRUT_FRICTION_ABSENT:
     case STRUT_FRICTION_STICK_BAND:
     case STRUT_FRICTION_EXACT_STICK: break;

@@ -258,7 +258,7 @@
   X(MOTION, IN_Y, "y", SIGNAL, LENGTH, ANY, "", OPTIONAL, 0, "", OF_RUNS(CHOICE(strut_ground, moves[1], true, FIELD(strut_ground, motion[1]))), "Displacement in y.")
 
 #define STRUT_FRICTION_FIELDS(X) \
-  X(FRICTION, LAW, "law", WORD, NONE, ANY, "karnopp", WRITTEN, 0, STRUT_FRICTION_WORDS, FIELD(strut_friction, law), "`karnopp`: Coulomb friction with a stick band (the paper's law). `coulomb`: exact sticking; needs a method with events. `smooth`: the regularised law -mu_kinetic N u / sqrt(u^2 + width^2), under which contacts creep. `stribeck`: the same with a coefficient that falls from mu_static to mu_kinetic.") \
+  X(FRICTION, LAW, "law", WORD, NONE, ANY, "karnopp", WRITTEN, 0, STRUT_FRICTION_WORDS, FIELD(strut_friction, law), "`karnopp`: Coulomb friction with a stick band (the paper's law). `coulomb`: exact sticking; needs a method with events. `smooth`: the regularised law -mu_kinetic N u / sqrt(u^2 + width^2), under which contacts creep. `stribeck`: the same with a coefficient that falls from mu_static to mu_kinetic. `lugre`: bristles that bend before they slide, with the same coefficients; on straight grounds at rest.") \
   X(FRICTION, MU, "mu", FREE, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "a number, a signal or the name of one", BY_HAND, "Both friction coefficients. Those of a signal change with time, and are 0 where it is negative; settling takes that of t = 0.") \
   X(FRICTION, MU_STATIC, "mu_static", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", FIELD(strut_friction, mu_static), "Coefficient of static friction.") \
   X(FRICTION, MU_KINETIC, "mu_kinetic", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", FIELD(strut_friction, mu_kinetic), "Coefficient of kinetic friction.") \
@@ -268,7 +268,9 @@
   X(FRICTION, MU_BACKWARD_STATIC, "mu_backward_static", NUMBER, NONE, NOT_NEGATIVE, "`mu_backward`", OPTIONAL, 0, "", FIELD(strut_friction, mu_static_backward), "Coefficient of static friction against motion towards -x.") \
   X(FRICTION, STICK_VELOCITY, "stick_velocity", NUMBER, VELOCITY, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_friction, stick_velocity), "Half the width of the stick band; Karnopp's law needs it.") \
   X(FRICTION, WIDTH, "width", NUMBER, VELOCITY, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_friction, width), "Sliding speed at which the smooth law reaches 0.71 of the full friction; that law and Stribeck's need it.") \
-  X(FRICTION, DECAY_VELOCITY, "decay_velocity", NUMBER, VELOCITY, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_friction, decay_velocity), "Sliding speed at which Stribeck's coefficient is half way from mu_static to mu_kinetic; that law needs it.")
+  X(FRICTION, DECAY_VELOCITY, "decay_velocity", NUMBER, VELOCITY, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_friction, decay_velocity), "Sliding speed at which Stribeck's coefficient is half way from mu_static to mu_kinetic; that law and `lugre` need it.") \
+  X(FRICTION, PRESLIDING, "presliding", NUMBER, LENGTH, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_friction, presliding), "Slip that bends bristles until they hold mu_static; `lugre` needs it.") \
+  X(FRICTION, RELAXATION, "relaxation", NUMBER, TIME, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_friction, relaxation), "Time in which free bristles straighten; `lugre` needs it.")
 
 #define STRUT_CONTACT_FIELDS(X) \
   X(CONTACT, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", NONE, "Groups that provide defaults; later groups take precedence.") \

@@ -61,6 +61,7 @@ strut_status strut_code_check(const strut_model *model, strut_error *error) {
     pushed += s->sensors[i].kind == STRUT_SENSOR_CONTACT_FORCE;
   strut_unsupported_add(&r, pushed, "sensors of contact forces");
   strut_unsupported_add(&r, s->foot_count, "feet");
+  strut_unsupported_add(&r, strut_bristle_count(s), "friction with bristles");
   strut_unsupported_add(&r, strut_collisions_rub(s), "friction of collisions");
   strut_unsupported_add(&r, model->contacts.grips, "friction that follows a signal");
   strut_unsupported_add(&r, count_rubbing(s), "friction at guides");

@@ -114,6 +114,7 @@ static void watch_losses(const strut_model *model, const strut_energy *e, int64_
     monitor->lost[k] = now;
     if (!(over > allowed) || monitor->given > 0.0) continue;
     if (k == STRUT_LOSS_MEMBERS && members_may_give(model)) continue;
+    if (rubs && model->rubbing.bristles) continue; /* they spring back */
     monitor->giver = (strut_loss)k, monitor->given = fmax(since, -now);
   }
 }

@@ -16,7 +16,9 @@
   X(MU_KINETIC, mu_kinetic, NOT_NEGATIVE)       /* mu [1] */                                       \
   X(STICK_VELOCITY, stick_velocity, ABOVE_ZERO) /* delta [m/s] */                                  \
   X(WIDTH, width, ABOVE_ZERO)                   /* of a continuous law [m/s] */                    \
-  X(DECAY_VELOCITY, decay_velocity, ABOVE_ZERO) /* half way from mu_0 to mu [m/s] */
+  X(DECAY_VELOCITY, decay_velocity, ABOVE_ZERO) /* half way from mu_0 to mu [m/s] */               \
+  X(PRESLIDING, presliding, ABOVE_ZERO)         /* slip that bends bristles up to mu_0 [m] */      \
+  X(RELAXATION, relaxation, ABOVE_ZERO)         /* time in which free bristles straighten [s] */
 
 /**
  * X(NAME, name, word, class, needs): the laws, in the order of the key's words. class: its contact states, see
@@ -29,7 +31,9 @@
   X(COULOMB, coulomb, "coulomb", EXACT_STICK, MU_STATIC_BIT | MU_KINETIC_BIT)                      \
   X(SMOOTH, smooth, "smooth", CONTINUOUS, MU_KINETIC_BIT | WIDTH_BIT)                              \
   X(STRIBECK, stribeck, "stribeck", CONTINUOUS,                                                    \
-    MU_STATIC_BIT | MU_KINETIC_BIT | WIDTH_BIT | DECAY_VELOCITY_BIT)
+    MU_STATIC_BIT | MU_KINETIC_BIT | WIDTH_BIT | DECAY_VELOCITY_BIT)                               \
+  X(LUGRE, lugre, "lugre", BRISTLES,                                                               \
+    MU_STATIC_BIT | MU_KINETIC_BIT | DECAY_VELOCITY_BIT | PRESLIDING_BIT | RELAXATION_BIT)
 
 #endif
 
@@ -102,19 +106,44 @@ LAW_INLINE real LAW(friction_smooth_slope)(const LAW(friction_numbers) * f, real
   return normal * f->mu_kinetic / f->width;
 }
 
+/* Coefficient of steady sliding by Stribeck's curve, mu + (mu_0 - mu) / (1 + (u/v)^2). */
+LAW_INLINE real LAW(friction_curve)(const LAW(friction_numbers) * f, real slip) {
+  real u = slip / f->decay_velocity;
+  return f->mu_kinetic + (f->mu_static - f->mu_kinetic) / (1.0 + u * u);
+}
+
 /*
  * As smooth, with the coefficient mu + (mu_0 - mu) / (1 + (u/v)^2) of Stribeck's curve, which falls from static
  * to kinetic friction; in this form, of Hess and Soom (1990), it is algebraic.
  */
 LAW_INLINE real LAW(friction_stribeck)(const LAW(friction_numbers) * f, real normal, real slip,
                                        real applied) {
-  real u = slip / f->decay_velocity;
-  real mu = f->mu_kinetic + (f->mu_static - f->mu_kinetic) / (1.0 + u * u);
+  real mu = LAW(friction_curve)(f, slip);
   (void)applied;
   return -mu * normal * slip / root(slip * slip + f->width * f->width);
 }
 LAW_INLINE real LAW(friction_stribeck_slope)(const LAW(friction_numbers) * f, real normal) {
   return normal * f->mu_static / f->width;
+}
+
+/*
+ * LuGre: bristles between the surfaces bend with the slip, up to the coefficient of steady sliding. Their bend y is an
+ * internal state, as the part of the normal force that they carry: y' = mu_0/d (u - |u| y / mu(u)), force
+ * -N (y + tau y'), with the presliding d and the relaxation tau (C. Canudas de Wit, H. Olsson, K. J. Astrom,
+ * P. Lischinsky, IEEE Trans. Automatic Control 40 (1995) 419). These two are those of steady sliding and of bristles
+ * at rest; forces with the state are in engine/forces/rubbing.c.
+ */
+LAW_INLINE real LAW(friction_lugre)(const LAW(friction_numbers) * f, real normal, real slip,
+                                    real applied) {
+  (void)applied;
+  return against(LAW(friction_curve)(f, slip) * normal, slip);
+}
+LAW_INLINE real LAW(friction_lugre_slope)(const LAW(friction_numbers) * f, real normal) {
+  return normal * f->mu_static * f->relaxation / f->presliding;
+}
+LAW_INLINE real LAW(friction_bristle_rate)(const LAW(friction_numbers) * f, real slip, real bend) {
+  real held = slip - magnitude(slip) * bend / LAW(friction_curve)(f, slip);
+  return f->mu_static / f->presliding * held;
 }
 
 /** The numbers for contacts that move, or are pushed, towards -x along the ground where `back` holds. */

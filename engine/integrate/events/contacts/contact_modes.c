@@ -104,7 +104,8 @@ void strut_contact_close(const strut_model *model, strut_event_stepper *l, int32
   if (!is_free_along(model, l, i)) return;
   switch (strut_friction_states(e->friction.law)) {
     case STRUT_FRICTION_ABSENT:
-    case STRUT_FRICTION_CONTINUOUS: break;
+    case STRUT_FRICTION_CONTINUOUS:
+    case STRUT_FRICTION_BRISTLES: break;
     case STRUT_FRICTION_STICK_BAND: { /* inside, or at the edge by rounding */
       bool inside = fabs(o.slip) < e->friction.stick_velocity * (1.0 + STRUT_TIED);
       l->mode[i] = inside ? STRUT_MODE_BAND : STRUT_MODE_SLIP;

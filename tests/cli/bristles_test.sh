@@ -1,0 +1,126 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Friction by bristles (LuGre), against a closed form and its equations integrated apart.
+. "$(dirname "$0")/lib.sh"
+
+# A block on a belt sticks and slips against a spring.
+cat >belt.yaml <<'YAML'
+strut: 1
+gravity: [0, -9.81]
+nodes:
+  wall: {position: [-1, -98.1 um], fixed: both}
+  block: {position: [0, -98.1 um], mass: 1 kg}
+members:
+  spring: {kind: spring, nodes: [wall, block], stiffness: 200 N/m}
+ground:
+  belt_speed: 10 mm/s
+  stiffness: 1e5 N/m
+  damping: 300 N s/m
+  nodes: [block]
+  friction: {law: lugre, mu_static: 0.15, mu_kinetic: 0.1, decay_velocity: 1 mm/s, presliding: 15 um, relaxation: 3 ms}
+sensors: {push: {contact_force: block}, down: {contact: block}}
+solver: {integrator: rk4, step: 20 us}
+run:
+  duration: 3 s
+  measure:
+    quantities:
+      x: {of: block.x, take: final}
+      way: {of: block.x, take: max}
+      friction: {of: block.friction, take: final}
+      push: {of: push, take: final}
+      down: {of: down, take: min}
+YAML
+cat >apart.py <<'PY'
+m, k, V, N, mu0, mu, v0, d, tau = 1.0, 200.0, 0.01, 9.81, 0.15, 0.1, 1e-3, 15e-6, 3e-3
+s0 = mu0 / d
+
+
+def rates(y):  # position, speed, bristles' deflection in metres, as in the paper
+    u = y[1] - V
+    g = (mu + (mu0 - mu) / (1 + (u / v0) ** 2)) / s0
+    z = u - abs(u) * y[2] / g
+    return y[1], (-k * y[0] - N * s0 * (y[2] + tau * z)) / m, z
+
+
+y, h, most = (0.0, 0.0, 0.0), 2e-5, 0.0
+for _ in range(150000):
+    a = rates(y)
+    b = rates([p + h / 2 * q for p, q in zip(y, a)])
+    c = rates([p + h / 2 * q for p, q in zip(y, b)])
+    e = rates([p + h * q for p, q in zip(y, c)])
+    y = [p + h / 6 * (q + 2 * r + 2 * s + t) for p, q, r, s, t in zip(y, a, b, c, e)]
+    most = max(most, y[0])
+print(y[0], most, -N * s0 * (y[2] + tau * rates(y)[2]))
+PY
+python3 apart.py >apart
+read -r x way friction <apart
+for method in rk4 rk4-events adaptive verlet; do
+  within=1e-8
+  [ $method = verlet ] && within=3e-5
+  expect 0 run belt.yaml --integrator $method --json
+  near .measured.x.value "$x" $within
+  near .measured.way.value "$way" $within
+  near .measured.friction.value "$friction" 3e-4
+  near .measured.push.value 9.81 1e-9
+  near .measured.down.value 1 0
+done
+near '.energy.residual / .energy.exchanged' 0 1e-6
+expect 0 run belt.yaml --accuracy 0.1% --json
+near .measured.way.value "$way" 1e-3
+expect 0 write belt.yaml
+cp out written.yaml
+expect 0 run written.yaml --json
+near .measured.x.value "$x" 1e-8
+
+# Pushed slowly, bristles give way like Dahl's law: x = -d ln(1 - F / (mu_0 N)).
+cat >push.yaml <<'YAML'
+strut: 1
+gravity: [0, -10]
+nodes: {block: {position: [0, -0.1 mm], mass: 1 kg}, far: {position: [1, 0], fixed: both}}
+members: {none: {kind: cable, nodes: [block, far], stiffness: 1e-6, rest_length: 2}}
+ground:
+  stiffness: 1e5 N/m
+  nodes: [block]
+  friction: {law: lugre, mu_static: 0.2, mu_kinetic: 0.2, decay_velocity: 1, presliding: 20 um, relaxation: 1 ms}
+loads: {push: {node: block, force: [1, 0], signal: {ramp: {amplitude: 1, stop: 20 s}}}}
+solver: {integrator: adaptive, step: 10 ms, tolerance: 1e-9}
+run: {duration: 20 s, measure: {quantities: {x: {of: block.x, take: final}}}}
+YAML
+expect 0 run push.yaml --json
+near .measured.x.value '20e-6 * (2 | log)' 2e-4
+
+# A foot with bristles holds its member where smooth friction creeps.
+cat >foot.yaml <<'YAML'
+strut: 1
+gravity: [1, -10]
+nodes: {n: {position: [0, -0.2 mm], mass: 1}, o: {position: [0, 0.5], mass: 1}}
+members: {body: {kind: bar, nodes: [n, o], stiffness: 1e5, damping: 100}}
+feet: {f: {member: body, node: n, radius: 0.3 m}}
+ground:
+  stiffness: 1e5
+  damping: 100
+  nodes: [n]
+  friction: {law: lugre, mu_static: 0.5, mu_kinetic: 0.4, decay_velocity: 10 mm/s, presliding: 50 um, relaxation: 1 ms}
+sensors: {push: {contact_force: n}}
+solver: {integrator: adaptive, step: 1 ms}
+run: {duration: 0.2 s, measure: {quantities: {push: {of: push, take: mean}, rub: {of: n.friction, take: mean}}}}
+YAML
+expect 0 run foot.yaml --json
+near .measured.push.value 20 0.05
+
+# What has no bristles says so.
+sed 's/  belt_speed.*/  profile: [[-2, 0], [2, 0]]/' belt.yaml >bad.yaml
+expect 2 check bad.yaml
+err_has "the contact of node 'block' needs a straight ground, and 'ground' is none"
+sed 's/mu_static: 0.15, mu_kinetic: 0.1/mu_forward: 0.1, mu_backward: 0.2/' belt.yaml >bad.yaml
+expect 2 check bad.yaml
+err_has "rubs in both directions alike"
+sed 's/, relaxation: 3 ms//' belt.yaml >bad.yaml
+expect 2 check bad.yaml
+err_has "relaxation"
+sed 's/presliding: 15 um/presliding: 0/' belt.yaml >bad.yaml
+expect 2 check bad.yaml
+expect 2 export belt.yaml --code belt
+err_has "friction with bristles"
+
+done_testing
