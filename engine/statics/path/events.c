@@ -126,6 +126,7 @@ static bool interpolate_fork(strut_path_system *s, const strut_path_piece *piece
 double strut_path_locate(strut_path_system *s, const strut_path_piece *piece,
                          strut_path_measure measure, int32_t which, double *y) {
   assert(piece->length >= 0);
+  s->strayed = false;
   size_t bytes = 2 * ((size_t)s->n + 1) * sizeof *y;
   double at[2] = {0, piece->length}, place = -1;
   double value[2] = {measure(s, piece->from, piece, which), measure(s, piece->to, piece, which)};
@@ -145,6 +146,7 @@ double strut_path_locate(strut_path_system *s, const strut_path_piece *piece,
       bool found = point_at(s, piece, place, share, end[0], end[1], y);
       double now = found ? measure(s, y, piece, which) : (double)NAN;
       if (!found || !(fabs(now) <= 2 * scale)) { /* it left the path: the last point before */
+        s->strayed = !fork;
         if (!fork) place = at[0];
         interpolate_linearly(s, fork ? share : 0.0, end[0], end[1], y);
         break;

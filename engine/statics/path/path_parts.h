@@ -222,6 +222,7 @@ typedef struct strut_path_system {
   int32_t n;
   bool lends;     /* no system of equations has been regular yet */
   bool drifts;    /* the parameter works on a motion of the whole that meets no stiffness */
+  bool strayed;   /* the last search for a switch left the path, see strut_path_locate */
   double stop_at; /* position of the coordinate at which the path stops [m] */
   double size;    /* [m] */
   strut_path_parameter parameter;
@@ -352,7 +353,8 @@ double strut_path_measure_eigenvalue(strut_path_system *system, const double *y,
 
 /**
  * The point y (2 n + 2) of the piece where the measure is 0; it must have different signs at the
- * ends. Returns the place along the tangent, 0 to piece->length, or -1: no such change of sign.
+ * ends. Returns the place along the tangent, 0 to piece->length, or -1: no such change of sign. Where the search for a
+ * switch leaves the path system->strayed is set, and y is the last point before.
  */
 double strut_path_locate(strut_path_system *system, const strut_path_piece *piece,
                          strut_path_measure measure, int32_t which, double *y);

@@ -192,17 +192,22 @@ static void find_critical(strut_path_walk *w, const strut_path_piece *piece, int
   }
 }
 
-/* The first switch that the piece throws: its place, and the point in w->trial; -1: none. */
-static double first_switch(strut_path_walk *w, const strut_path_piece *piece, int32_t *which) {
+/*
+ * The first switch that the piece throws: its place, and the point in w->trial; -1: none. *strayed: a search has left
+ * the path, as where the piece is a jump onto another branch.
+ */
+static double first_switch(strut_path_walk *w, const strut_path_piece *piece, int32_t *which,
+                           bool *strayed) {
   strut_path_system *s = &w->system;
   double first = -1;
-  *which = -1;
+  *which = -1, *strayed = false;
   for (int32_t k = 0; k < strut_path_switch_count(s); k++) {
     bool on = strut_path_switch_is_on(s, k);
     double value = strut_path_measure_switch(s, piece->to, piece, k);
     if (!isfinite(value) || (on ? value >= 0 : value <= 0)) continue;
     if (fabs(value) <= HANGING * s->size) continue;
     double place = strut_path_locate(s, piece, strut_path_measure_switch, k, w->spare);
+    *strayed = *strayed || s->strayed;
     if (place < 0) { /* it should have been thrown where the piece begins */
       place = 0;
       memcpy(w->spare, piece->from, strut_path_bytes(w));
@@ -438,12 +443,18 @@ static bool end_at_switch(strut_path_walk *w, strut_path_piece *piece, int32_t w
 static bool take_step(strut_path_walk *w) {
   strut_path_piece piece = {w->y, w->tangent, w->next, 0};
   int32_t which;
-  if (!find_next_on_branch(w)) return end_path(w, find_reason(w));
-  piece.length = strut_path_dot(w, w->tangent, w->next) - strut_path_dot(w, w->tangent, w->y);
-  bool landed = land_on_end(w), stopped = land_on_stop(w, &piece);
-  if (landed || stopped)
+  bool landed, stopped, strayed;
+  double place;
+  do {
+    if (!find_next_on_branch(w)) return end_path(w, find_reason(w));
     piece.length = strut_path_dot(w, w->tangent, w->next) - strut_path_dot(w, w->tangent, w->y);
-  double place = first_switch(w, &piece, &which);
+    landed = land_on_end(w), stopped = land_on_stop(w, &piece);
+    if (landed || stopped)
+      piece.length = strut_path_dot(w, w->tangent, w->next) - strut_path_dot(w, w->tangent, w->y);
+    place = first_switch(w, &piece, &which, &strayed);
+    strayed = strayed && w->step > SHORTEST_CHECKED;
+    if (strayed) w->step *= 0.25;
+  } while (strayed && !w->failed);
   if (which >= 0) {
     piece.length = place;
     double *beyond = strut_allocate(1, strut_path_bytes(w));
