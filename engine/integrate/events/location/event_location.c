@@ -266,6 +266,18 @@ STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_step
     keep_first(model, l, STRUT_EVENT_DAMPER, i, h, first);
 }
 
+/*
+ * Has law k, whose value at the end of the step is `after`, been switched a rounding too early, and comes to where it
+ * belongs? Of two laws that switch at once it would otherwise be switched back while the other one is located.
+ */
+static bool is_settling(const strut_model *model, const strut_event_stepper *l, int32_t k,
+                        double after) {
+  const strut_law_switch *law = &l->laws[k];
+  double before = law_value(l, l->now, k);
+  return law->event == STRUT_EVENT_ACTS && before < 0.0 && after >= before &&
+         before > -FAINT * law->stiffness * model->size;
+}
+
 /* Of `contacts` in a list and the laws of the stepper's list; NULL: of all contacts and laws. */
 STRUT_INLINE strut_event first_event(const strut_model *model, strut_state *state,
                                      strut_event_stepper *l, double h, const int32_t *list,
@@ -278,7 +290,9 @@ STRUT_INLINE strut_event first_event(const strut_model *model, strut_state *stat
   int32_t laws = strut_laws_of(l);
   for (int32_t k = 0; k < laws; k++) {
     int32_t j = strut_law_of(l, k);
-    if (law_value(l, l->next, j) < 0.0) keep_first(model, l, l->laws[j].event, j, h, &first);
+    double after = law_value(l, l->next, j);
+    if (after < 0.0 && !is_settling(model, l, j, after))
+      keep_first(model, l, l->laws[j].event, j, h, &first);
   }
   return first;
 }
