@@ -15,16 +15,21 @@ static double way_of(const strut_model *model, int level) {
   return WAYS[level] * model->size / sqrt((double)model->node_count);
 }
 
-/* Does the list serve until nodes have gone `more` from q? */
-static bool serves(const strut_model *model, const strut_nearby *near, const double *q, double way,
-                   double more) {
+/* The longest way of a node since the list was made [m]. */
+static double way_since(const strut_model *model, const strut_nearby *near, const double *q) {
   double most = 0.0;
-  if (!near->made) return false;
+  if (!near->made) return HUGE_VAL;
   for (int32_t i = 0; i < 2 * model->node_count; i += 2) {
     double x = q[i] - near->q[i], y = q[i + 1] - near->q[i + 1], square = x * x + y * y;
     most = square <= most ? most : square; /* NAN stays */
   }
-  return sqrt(most) + more <= way;
+  return sqrt(most);
+}
+
+/* Does the list serve until nodes have gone `more` from q? */
+static bool serves(const strut_model *model, const strut_nearby *near, const double *q, double way,
+                   double more) {
+  return way_since(model, near, q) + more <= way;
 }
 
 /* Is the first node further than `reach` from the box around the others? */
@@ -91,4 +96,27 @@ int32_t strut_nearby_find(const strut_nearby *near, int32_t element) {
       high = middle;
   }
   return low;
+}
+
+/* The least of the listed elements; NULL: of all. */
+static double least_of(const strut_model *model, const strut_nearby *list, const double *q) {
+  int32_t count = list ? list->count : model->elements.count;
+  double least = HUGE_VAL, b[STRUT_MOST_GRADIENT];
+  for (int32_t k = 0; k < count; k++) {
+    int32_t i = list ? list->element[k] : k;
+    const strut_element *e = &model->elements.element[i];
+    if (e->role != STRUT_ELEMENT_COLLISION) continue;
+    least = fmin(least, strut_element_strain(model, i, q, 0.0, b) - e->natural);
+  }
+  return least;
+}
+
+double strut_nearby_least_gap(const strut_model *model, const strut_state *state, const double *q) {
+  for (int k = 0; k < STRUT_NEARBY_LISTS && model->elements.scattered; k++) {
+    const strut_nearby *list = &state->nearby[k];
+    double others = 2.0 * (way_of(model, k) - way_since(model, list, q));
+    double least = others > 0.0 ? least_of(model, list, q) : HUGE_VAL;
+    if (least <= others) return least;
+  }
+  return least_of(model, NULL, q);
 }

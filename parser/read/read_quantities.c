@@ -202,7 +202,10 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
     if (columns[k].owner == STRUT_COLUMN_OF_RUN && is(word, columns[k].word)) {
       column->kind = (strut_column_kind)k;
       *dimension = columns[k].dimension;
-      return 1;
+      if (k != STRUT_COLUMN_LEAST_GAP || reader->setup->scene.collision_count) return 1;
+      snprintf(refusal->text, sizeof refusal->text, "'%s' is of collisions, and the scene has none",
+               columns[k].word);
+      return -1;
     }
   if (strut_find_variable(reader, word, column, dimension)) return column->item >= 0 ? 1 : -1;
   found_owner found = find_owner(reader, NULL, word);

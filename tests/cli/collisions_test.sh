@@ -263,6 +263,89 @@ err_has "no straight member is of group 'ropes', which collision 'hit' names"
 sed 's/^COLLISIONS/collisions: some/' many.yaml >some.yaml
 expect 2 check some.yaml
 
+# Two rods meet end to end, by two elements that switch at one moment: neither is switched back for the other.
+cat >ends.yaml <<'YAML'
+strut: 1
+gravity: [0, 0]
+nodes:
+  a: {position: [0, 0], mass: 10 g}
+  b: {position: [0.1, 0.013], mass: 10 g}
+  c: {position: [0.13, 0.02], mass: 10 g}
+  d: {position: [0.23, 0.011], mass: 10 g}
+members:
+  m: {kind: spring, nodes: [a, b], stiffness: 1000}
+  n: {kind: spring, nodes: [c, d], stiffness: 1000}
+collisions: {hit: {members: [m, n], thickness: 0.0115, stiffness: 1e4}}
+initial: {velocities: {c: [-0.3, -0.05], d: [-0.31, -0.02]}}
+solver: {integrator: adaptive, step: 0.1 ms}
+run: {duration: 0.3 s, measure: {quantities: {least: {of: least_gap, take: min}, gap: {of: hit.gap, take: min}}}}
+YAML
+for method in adaptive rk4-events; do
+  expect 0 run ends.yaml --integrator $method --json
+  near .energy.dissipated_members 0 1e-15
+  near '.energy.residual / .energy.exchanged' 0 1e-5
+  near .events 8 0
+  near .measured.least.value "$(jq .measured.gap.value out)" 0
+done
+
+# "Without collision" as a condition of a search: the best arm stays clear of the post, which it would cross otherwise.
+cat >arm.yaml <<'YAML'
+strut: 1
+gravity: [0, 0]
+parameters: {bend_1: 0, bend_2: 0, bend_3: 0}
+nodes:
+  wall: {position: [-0.1, 0], fixed: both}
+  base: {position: [0, 0], fixed: both}
+  k1: {position: [0.1, 0], mass: 10 g}
+  k2: {position: [0.2, 0], mass: 10 g}
+  tip: {position: [0.3, 0], mass: 10 g}
+  low: {position: [0.2, 0.17], fixed: both}
+  high: {position: [0.2, 0.3], fixed: both}
+groups: {arm: {kind: bar, stiffness: 1e4, damping: 5}, post: {kind: bar, stiffness: 1e4}}
+members:
+  a1: {group: arm, nodes: [base, k1]}
+  a2: {group: arm, nodes: [k1, k2]}
+  a3: {group: arm, nodes: [k2, tip]}
+  bar: {group: post, nodes: [low, high]}
+hinges:
+  h1: {nodes: [wall, base, k1], stiffness: 5, damping: 0.05}
+  h2: {nodes: [base, k1, k2], stiffness: 5, damping: 0.05}
+  h3: {nodes: [k1, k2, tip], stiffness: 5, damping: 0.05}
+actuators:
+  turn_1: {hinge: h1, signal: {ramp: {amplitude: bend_1, stop: 1 s}}}
+  turn_2: {hinge: h2, signal: {ramp: {amplitude: bend_2, stop: 1 s}}}
+  turn_3: {hinge: h3, signal: {ramp: {amplitude: bend_3, stop: 1 s}}}
+collisions: {hit: {between: [arm, post], thickness: 10 mm, stiffness: 0.1 N/m}}
+solver: {integrator: verlet, step: 0.1 ms}
+run:
+  duration: 1.5 s
+  measure: {quantities: {miss: {of: "sqrt((tip.x - 0.15 m)^2 + (tip.y - 0.18 m)^2)", take: final}, clear: {of: least_gap, take: min}}}
+YAML
+cat >reach.yaml <<'YAML'
+strut: 1
+study: An arm reaches around a post
+model: arm.yaml
+search:
+  minimise: miss
+  subject_to: ["clear >= 0 mm"]
+  over:
+    bend_1: {from: -2, to: 2}
+    bend_2: {from: -2.5, to: 2.5}
+    bend_3: {from: -2.5, to: 2.5}
+  method: cma
+  evaluations: 240
+keep: [miss, clear]
+YAML
+sed '/subject_to/d' reach.yaml >free.yaml
+expect 0 sweep reach.yaml -o reach --quiet
+expect 0 sweep free.yaml -o free --quiet
+best() { sed -n 2p "$1/best.csv" | cut -d, -f"$2"; }
+awk "BEGIN { exit !($(best reach 8) >= 0 && $(best reach 7) < 0.03) }" || fail "the arm: $(cat reach/best.csv)"
+awk "BEGIN { exit !($(best free 8) < 0 && $(best free 7) < 0.002) }" || fail "the free arm: $(cat free/best.csv)"
+sed 's/^collisions:.*//; s/^  measure: .*miss/  measure: {quantities: {miss/' arm.yaml >bad.yaml
+expect 2 check bad.yaml
+err_has "'least_gap' is of collisions, and the scene has none"
+
 # Everything else knows collisions.
 expect 0 check hinged.yaml
 out_has "drawn gap"

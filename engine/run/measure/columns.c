@@ -9,6 +9,7 @@
 #include "engine/forces/forces.h"
 #include "engine/forces/history.h"
 #include "engine/forces/moving_masses.h"
+#include "engine/forces/nearby.h"
 #include "engine/forces/support_motion.h"
 #include "engine/model/pose.h"
 #include "engine/model/surface_search.h"
@@ -296,6 +297,7 @@ static double evaluate_column(strut_columns *c, const strut_state *state, strut_
     case STRUT_COLUMN_SLIDER_VY: return evaluate_slider(c, state, column);
     case STRUT_COLUMN_SLIDER_SHARE:
       return strut_sliding_mass_share(c->model->scene, (size_t)column.item, column_time(c, state));
+    case STRUT_COLUMN_LEAST_GAP: return strut_nearby_least_gap(c->model, state, state->q);
     case STRUT_COLUMN_LARGEST_FORCE: return largest_force(c, state, &c->loaded_now);
     case STRUT_COLUMN_COUNT: break;
   }
