@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/command/analyses.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -106,12 +107,15 @@ static strut_status read_form_options(const strut_command *command,
   static const char *const sources[] = {"densities", "lengths", "prestress", NULL};
   static const char *const objectives[] = {"largest", "sum", "squares", NULL};
   int source = -1, objective = 0;
+  double least = NAN;
   strut_status status = strut_option_word(command, arguments, STRUT_OPTION_FROM, sources, &source);
   if (status == STRUT_OK)
     status = strut_option_word(command, arguments, STRUT_OPTION_OBJECTIVE, objectives, &objective);
   if (status == STRUT_OK)
     status = strut_option_number(command, arguments, STRUT_OPTION_LEAST_TENSION, STRUT_DIM_FORCE,
-                                 &wanted->least_tension);
+                                 &least);
+  /* 0 asks for none, while without the option a part of the forces is taken */
+  wanted->least_tension = isnan(least) ? 0.0 : least == 0.0 ? DBL_MIN : least;
   if (status == STRUT_OK)
     status = strut_option_number(command, arguments, STRUT_OPTION_LEAST_DENSITY,
                                  STRUT_DIM_STIFFNESS, &wanted->least_density);

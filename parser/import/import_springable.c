@@ -18,6 +18,10 @@ typedef enum section {
   X_DISTANCES,
   Y_DISTANCES,
   LINE_DISTANCES,
+  X_TO_MIDDLE, /* from the middle of two nodes to one */
+  Y_TO_MIDDLE,
+  X_FROM_MIDDLE,
+  Y_FROM_MIDDLE,
   AREAS,
   LOADING,
   OTHERS /* that a scene has no words for */
@@ -227,7 +231,7 @@ long strut_springable_index(const char **at) {
   return index < 1000000000 ? index : -1;
 }
 
-static bool add_node(strut_springable *r, long index, const double position[2]) {
+static bool add_node(strut_springable *r, strut_springable_point node) {
   if (r->node_count == r->node_room) {
     r->node_room = 2 * r->node_room + 64;
     strut_springable_point *more =
@@ -237,7 +241,7 @@ static bool add_node(strut_springable *r, long index, const double position[2]) 
     if (r->node_count) memcpy(more, r->nodes, r->node_count * sizeof *more);
     r->nodes = more;
   }
-  r->nodes[r->node_count++] = (strut_springable_point){index, {position[0], position[1]}};
+  r->nodes[r->node_count++] = node;
   return true;
 }
 
@@ -269,7 +273,9 @@ static void read_node(strut_springable *r) {
                                   &position[0]);
   y = strut_springable_expression(r, strut_springable_text(r, 2), strut_springable_place(r, 2),
                                   &position[1]);
-  if (!x || !y || !add_node(r, index, position)) return;
+  if (!x || !y ||
+      !add_node(r, (strut_springable_point){index, {position[0], position[1]}, fixed == 3}))
+    return;
   strut_import_node_add(s, r->said, strut_springable_place(r, 0),
                         strut_import_text(s, "n%ld", index),
                         strut_import_text(s, "{position: [%s, %s]%s}", x, y, held[fixed]));
@@ -357,30 +363,73 @@ static void read_angle(strut_springable *r) {
 }
 
 /* Along x or y, the first node seen from the second; or of the first node from the line of the others. */
+/* A fixed node in the middle of two fixed nodes; NULL: one of them is not, or it was reported. */
+static const char *add_middle(strut_springable *r, const char *chain) {
+  strut_import_scene *s = r->scene;
+  const strut_springable_point *end[2];
+  strut_springable_index(&chain);
+  for (int k = 0; k < 2; k++) {
+    chain++;
+    end[k] = strut_springable_node(r, strut_springable_index(&chain));
+    if (!end[k] || !end[k]->held) return NULL;
+  }
+  const char *name = strut_import_text(s, "m%zu", ++r->middles), *place[2];
+  for (int c = 0; c < 2; c++)
+    place[c] = strut_import_number(s, 0.5 * (end[0]->position[c] + end[1]->position[c]));
+  strut_import_node_add(
+      s, r->said, strut_springable_place(r, 0), name,
+      strut_import_text(s, "{position: [%s, %s], fixed: both}", place[0], place[1]));
+  strut_import_node_use(s, name);
+  return name;
+}
+
+/* How a distance is written between "FIRST, SECOND" or "NODE, LINE, LINE"; NULL: it is left out. */
+static const char *written_distance(strut_springable *r, section in, const char *nodes) {
+  strut_import_scene *s = r->scene;
+  const char *second = strchr(nodes, ',') + 2;
+  int first = (int)(second - nodes) - 2;
+  bool to_middle = in >= X_TO_MIDDLE && in <= Y_FROM_MIDDLE;
+  if (in == LINE_DISTANCES)
+    return strut_import_text(s, "node: %.*s, line: [%s]", first, nodes, second);
+  if (to_middle) {
+    const char *middle = add_middle(r, strut_springable_text(r, 0));
+    if (!middle)
+      strut_note(r->said, strut_springable_place(r, 0),
+                 "not imported: a distance from the middle of nodes that move");
+    if (!middle) return NULL;
+    bool from = in == X_FROM_MIDDLE || in == Y_FROM_MIDDLE;
+    const char *point = strut_import_text(s, "%.*s", first, nodes);
+    return strut_import_text(s, "nodes: [%s, %s], along: %s", from ? point : middle,
+                             from ? middle : point,
+                             in == X_TO_MIDDLE || in == X_FROM_MIDDLE ? "x" : "y");
+  }
+  return strut_import_text(s, "nodes: [%s, %.*s], along: %s", second, first, nodes,
+                           in == X_DISTANCES ? "x" : "y");
+}
+
 static void read_distance(strut_springable *r, section in) {
   strut_import_scene *s = r->scene;
-  size_t count = in == LINE_DISTANCES ? 3 : 2, before = r->said->count;
+  size_t count = in == X_DISTANCES || in == Y_DISTANCES ? 2 : 3, before = r->said->count;
   const char *nodes = read_chain(r, count, count), *rest = strut_springable_text(r, 2);
   strut_spring_values v = {.rest = "", .law = ""};
   if (!nodes) return;
   v.stiffness = strut_springable_stiffness(r);
+  if (*rest) rest = strut_springable_expression(r, rest, strut_springable_place(r, 2), NULL);
+  if (!rest) return;
+  if (*rest) v.rest = strut_import_text(s, ", rest_distance: %s", rest);
   if (v.stiffness) {
     v.stiffness = strut_import_text(s, ", stiffness: %s", v.stiffness);
-    if (*rest) rest = strut_springable_expression(r, rest, strut_springable_place(r, 2), NULL);
-    if (!rest) return;
-    if (*rest) v.rest = strut_import_text(s, ", rest_distance: %s", rest);
   } else if (!strut_springable_contact(r, &v)) {
     v.law = strut_springable_curve(r);
     if (!v.law && r->said->count == before) strut_springable_note(r);
     if (!v.law) return;
   }
-  use_nodes(r);
-  const char *second = strchr(nodes, ',') + 2;
-  int first = (int)(second - nodes) - 2;
-  const char *which = in == LINE_DISTANCES
-                          ? strut_import_text(s, "node: %.*s, line: [%s]", first, nodes, second)
-                          : strut_import_text(s, "nodes: [%s, %.*s], along: %s", second, first,
-                                              nodes, in == X_DISTANCES ? "x" : "y");
+  const char *which = written_distance(r, in, nodes);
+  if (!which) return;
+  if (in >= X_TO_MIDDLE && in <= Y_FROM_MIDDLE)
+    strut_import_node_use(s, strut_import_text(s, "%.*s", (int)strcspn(nodes, ","), nodes));
+  else
+    use_nodes(r);
   strut_import_line(s, &s->section[STRUT_IMPORT_DISTANCES], "  d%zu: {%s%s%s%s}", ++r->distances,
                     which, v.stiffness ? v.stiffness : "", v.rest, v.law);
 }
@@ -495,6 +544,14 @@ static section section_of(const char *text) {
                {"X DISTANCE FLEXELS", X_DISTANCES},
                {"Y DISTANCE SPRINGS", Y_DISTANCES},
                {"Y DISTANCE FLEXELS", Y_DISTANCES},
+               {"POINT2MID X DISTANCE SPRINGS", X_TO_MIDDLE},
+               {"POINT2MID X DISTANCE FLEXELS", X_TO_MIDDLE},
+               {"POINT2MID Y DISTANCE SPRINGS", Y_TO_MIDDLE},
+               {"POINT2MID Y DISTANCE FLEXELS", Y_TO_MIDDLE},
+               {"MID2POINT X DISTANCE SPRINGS", X_FROM_MIDDLE},
+               {"MID2POINT X DISTANCE FLEXELS", X_FROM_MIDDLE},
+               {"MID2POINT Y DISTANCE SPRINGS", Y_FROM_MIDDLE},
+               {"MID2POINT Y DISTANCE FLEXELS", Y_FROM_MIDDLE},
                {"DISTANCE SPRINGS", LINE_DISTANCES},
                {"DISTANCE FLEXELS", LINE_DISTANCES},
                {"AREA SPRINGS", AREAS},
@@ -530,11 +587,16 @@ static void read_line(strut_springable *r, section *in, const char *line, size_t
     case PATHS: read_spring(r, true); break;
     case X_DISTANCES:
     case Y_DISTANCES:
-    case LINE_DISTANCES: read_distance(r, *in); break;
+    case LINE_DISTANCES:
+    case X_TO_MIDDLE:
+    case Y_TO_MIDDLE:
+    case X_FROM_MIDDLE:
+    case Y_FROM_MIDDLE: read_distance(r, *in); break;
     case AREAS: read_area(r); break;
     case LOADING: read_load(r); break;
     case OTHERS:
-      strut_note(r->said, strut_springable_place(r, 0), "not imported: an element on a midpoint");
+      strut_note(r->said, strut_springable_place(r, 0),
+                 "not imported: an element of a kind that is not known");
       break;
   }
 }

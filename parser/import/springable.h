@@ -15,6 +15,7 @@ typedef struct strut_springable_parameter {
 typedef struct strut_springable_point {
   long index;
   double position[2];
+  bool held; /* in x and y */
 } strut_springable_point;
 
 /* One field of a line: its text without blanks at the ends. */
@@ -32,7 +33,7 @@ typedef struct strut_springable {
   size_t parameter_count, node_count, node_room;
   strut_springable_parameter *parameters;
   strut_springable_point *nodes;
-  size_t springs, angles, paths, distances, areas, loads; /* so far */
+  size_t springs, angles, paths, distances, middles, areas, loads; /* so far */
   size_t stage_loads;      /* of the stage of LOADING that is being read */
   bool staged, blocking;   /* stages are written; after "block" */
   const char *hold, *stop; /* of the stage: its coordinates, or "" */

@@ -201,7 +201,8 @@ bool strut_springable_two_pieces(strut_springable *r, bool running, const char *
   two_pieces p;
   if (!read_pieces(r, &p)) return false;
   bool slack = p.values[0] <= NOTHING * p.values[1];
-  if (!slack && !running) return false;
+  bool sided = strstr(strut_springable_text(r, 1), "mode="); /* a table says what it does there */
+  if (!running && (!slack || sided)) return false;
   if (slack) v->kind = "cable";
   v->stiffness = slack ? p.second : p.first;
   if (slack && length)

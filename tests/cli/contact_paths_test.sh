@@ -1,5 +1,6 @@
 #!/bin/sh
 # Statics on circles and profiles: paths and form finding, against closed forms.
+peers=$(cd "$(dirname "$0")/../peers" && pwd)
 . "$(dirname "$0")/lib.sh"
 
 # ---- inside of a circle: the ground pushes against weight and load, so that both set the angle ----
@@ -101,5 +102,14 @@ sed -e 's/^ground:.*/grounds:\n  floor: {height: -0.8, stiffness: 100 kN\/m, nod
   hung.yaml >between.yaml
 expect 0 form between.yaml --from prestress --json
 jq -e '.residual < 1e-6' "$work/out" >/dev/null || fail "form between walls: $(cat "$work/out")"
+
+# A path does not depend on how long its steps are: none of them ends at a switch of another branch.
+for until in 0.9 1 1.1 3; do
+  expect 0 path "$peers/beam-between-walls.yaml" --stop link.14.head.x=-4.51 --until $until --json
+  near '.points[-1].factor' 0.61767117038817 1e-12
+  near '.events | length' 22 0
+done
+expect 0 path "$peers/gripper.yaml" --stop n22.x=0.39954 --steps 3000 --json
+near '.points[-1].factor' 0.5110687 2e-6
 
 done_testing

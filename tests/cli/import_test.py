@@ -159,9 +159,10 @@ LOADING
     scene, said = imported("distances.csv")
     check("d1: {nodes: [n0, n1], along: x, stiffness: 20, rest_distance: 1.5}" in scene, scene)
     check("d3: {node: n1, line: [n0, n2], stiffness: 1e-9}" in scene, scene)
-    check("14:1: note: not imported: an element on a midpoint" in said, said)
+    check("d4: {nodes: [m1, n1], along: y, stiffness: 5}" in scene, scene)
     end = json.loads(run("path", "scene.yaml", "--load", "load1", "--json").stdout)["points"][-1]
-    same_numbers(end["nodes"]["n1"], [1.5, 0.9 - 0.05 * (2 / 3) ** (1 / 3)], 1e-6, "a node on distances")
+    x, y = end["nodes"]["n1"]
+    same_numbers([x, 3 * ((0.9 - y) / 0.05) ** 3 + 5 * (1 - y)], [1.5, 2], 1e-6, "a node on distances")
     # cables that are written as two pieces, a running one, an angle beyond half a turn
     write("cables.csv", """PARAMETERS
 k, 100
@@ -189,6 +190,15 @@ SPRINGS
     check("law: {kind: bilinear, knee: 0.1, second_stiffness: 5}" in scene, scene)
     check("area1: {nodes: [n0, n1, n2], stiffness: 3}" in scene, scene)
     check(f"rest_angle: {-0.5 * math.pi!r}" in scene, f"an angle within half a turn: {scene}")
+    # nearly slack on one side only: a table says what it does there; a middle of fixed nodes is a fixed node
+    write("middle.csv", "NODES\n0,0,0,1,1\n1,1,1,1,1\n2,0,1.5,1,1\n3,0.75,1.5,0,0\n4,2,0,0,0\nSPRINGS\n"
+          "2-3, PIECEWISE(k_i=[1e-6; 1]; u_i=[0.01]; us=0.005; mode=1), 0.5\n3-4, 2\nPOINT2MID Y DISTANCE SPRINGS\n"
+          "3-0-1, CONTACT(f0=0.5;uc=0.1;delta=0)\nMID2POINT X DISTANCE FLEXELS\n3-0-2, 4, -0.25\n4-3-0, 1\n")
+    scene, said = imported("middle.csv")
+    check("points: [[-0.01, -1e-8], [0, 0], [0.01, 1e-8], [0.02, 0.01000001]]" in scene, scene)
+    check("m1: {position: [0.5, 0.5], fixed: both}" in scene and "d1: {nodes: [m1, n3], along: y" in scene, scene)
+    check("d2: {nodes: [n3, m2], along: x, stiffness: 4, rest_distance: -0.25}" in scene, scene)
+    check("a distance from the middle of nodes that move" in said and "d3" not in scene, said)
     # curves that do not fold back are tables, or curves by their control points, as those that do; gases are gases
     write("curves.csv", """NODES
 0,0,0,1,1
