@@ -236,7 +236,7 @@ bool strut_feedback_touch(const strut_model *model, strut_state *state, int32_t 
   bool any = false;
   for (int32_t i = 0; i < f->trigger_count; i++) {
     const strut_trigger *trigger = &model->scene->signals[f->triggered[i]].trigger;
-    bool mine = trigger->kind == STRUT_TRIGGER_CONTACT &&
+    bool mine = trigger->kind == STRUT_TRIGGER_CONTACT && element_of(model, contact) < 0 &&
                 trigger->item == model->contacts.entry[contact].node;
     if (mine && start_signal(model, state, f->triggered[i], t)) any = true;
   }
@@ -261,7 +261,7 @@ bool strut_feedback_watch(const strut_model *model, strut_state *state, double t
   for (int32_t i = 0; i < f->trigger_count; i++) {
     int32_t signal = f->triggered[i];
     const strut_trigger *trigger = &model->scene->signals[signal].trigger;
-    if (trigger->kind == STRUT_TRIGGER_CONTACT && !contacts) continue;
+    if (!contacts && !strut_trigger_is_watched(model->scene, trigger)) continue;
     bool holds = condition_holds(model, state, trigger);
     if (holds && state->signals.trigger_was[signal] == 0 && start_signal(model, state, signal, t))
       any = true;

@@ -18,10 +18,10 @@ static double way_of(const strut_model *model, int level) {
 /* The longest way of a node since the list was made [m]. */
 static double way_since(const strut_model *model, const strut_nearby *near, const double *q) {
   double most = 0.0;
-  if (!near->made) return HUGE_VAL;
+  if (!near->known) return HUGE_VAL;
   for (int32_t i = 0; i < 2 * model->node_count; i += 2) {
-    double x = q[i] - near->q[i], y = q[i + 1] - near->q[i + 1], square = x * x + y * y;
-    most = square <= most ? most : square; /* NAN stays */
+    double x = q[i] - near->q[i], y = q[i + 1] - near->q[i + 1];
+    most = fmax(most, x * x + y * y);
   }
   return sqrt(most);
 }
@@ -66,6 +66,7 @@ static void make(const strut_model *model, strut_state *state, const double *q, 
     if (!is_beyond(model, i, q, way)) near->element[near->count++] = i;
   }
   memcpy(near->q, q, (size_t)model->length * sizeof *q);
+  near->known = true;
   near->made++;
 }
 

@@ -100,6 +100,17 @@ void strut_rubbing_add_forces(const strut_model *model, strut_state *state, cons
   }
 }
 
+double strut_rubbing_bristle_decay(const strut_model *model, const strut_state *state,
+                                   int32_t item) {
+  assert(item >= 0 && item < model->rubbing.count);
+  const strut_rubbing_entry *f = &model->rubbing.item[item];
+  if (f->bend < 0) return 0.0;
+  const strut_law_friction_numbers numbers = strut_friction_numbers(&f->friction);
+  rubbing_forces r = forces_of(model, state, item, state->q, state->v);
+  return r.nodes ? strut_law_friction_bristle_decay(&numbers, r.slip)
+                 : 1.0 / f->friction.relaxation;
+}
+
 void strut_rubbing_show_feet(const strut_model *model, strut_state *state, const double *q,
                              const double *v) {
   for (int32_t i = 0; i < model->rubbing.count; i++) {

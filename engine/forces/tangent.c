@@ -206,7 +206,7 @@ static void add_maxwell(assembly *a, const double *rest) {
 /* Of the lower triangle of an element that rubs. */
 enum { RUBBING_ENTRIES = STRUT_MOST_RUBBING * (STRUT_MOST_RUBBING + 1) / 2 };
 
-/* Friction of feet and collisions that rest, as far as it is a damper. */
+/* Friction of feet, nodes and collisions that rest, as far as it is a damper or bristles. */
 static void add_rubbing(assembly *a) {
   for (int32_t i = 0; i < a->model->rubbing.count; i++) {
     const strut_rubbing_entry *f = &a->model->rubbing.item[i];
@@ -215,6 +215,9 @@ static void add_rubbing(assembly *a) {
     int32_t side = 2 * strut_rubbing_slide(a->model, i, a->q, b);
     for (int32_t r = 0; r < side * side; r++) k[r] = slide * b[r / side] * b[r % side];
     strut_element_add(a->model, f->element, k, a->row_of, &a->damping);
+    double bend = strut_friction_stiffness(&f->friction, resting_force(a->model));
+    for (int32_t r = 0; r < side * side; r++) k[r] = bend * b[r / side] * b[r % side];
+    if (bend > 0.0) strut_element_add(a->model, f->element, k, a->row_of, &a->stiffness);
   }
 }
 

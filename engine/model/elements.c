@@ -544,8 +544,8 @@ static bool mark_crowd(strut_model *model) {
   uint8_t *at_node = strut_allocate((size_t)model->node_count, sizeof *at_node);
   double *stiffest = strut_allocate((size_t)model->node_count, sizeof *stiffest);
   bool done = at_node && stiffest;
-  for (int32_t n = 0; n < 2 * t->count && done;
-       n++) { /* where there is room, then what is stiffer */
+  /* where there is room, then what is stiffer */
+  for (int32_t n = 0; n < 2 * t->count && done; n++) {
     strut_element *e = (strut_element *)&t->element[n % t->count];
     if (e->role != STRUT_ELEMENT_COLLISION || e->crowds) continue;
     const uint32_t *at = t->at + e->first;

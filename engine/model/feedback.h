@@ -46,6 +46,9 @@ typedef struct strut_feedback_table {
   const int32_t *relay; /* (relay_count) relays that are not sampled: they switch at any time */
 } strut_feedback_table;
 
+/** Is the trigger watched on the grid by every method, being of a sensor, or of a contact that is an element? */
+bool strut_trigger_is_watched(const strut_scene *scene, const strut_trigger *trigger);
+
 /** Does the motion depend on more of the past than positions and velocities hold? */
 static inline bool strut_feedback_remembers(const strut_feedback_table *f) {
   return f->state_count || f->sampled_count || f->trigger_count || f->relay_count;

@@ -102,7 +102,7 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
   state->trouble = STRUT_FAILURE_NONE;
   state->latest.drive_time = (double)NAN;
   state->time_offset = 0.0;
-  for (int k = 0; k < STRUT_NEARBY_LISTS; k++) state->nearby[k].made = 0;
+  for (int k = 0; k < STRUT_NEARBY_LISTS; k++) state->nearby[k].known = false;
   state->refined_until = -HUGE_VAL;
   memcpy(state->q, model->start, both);
   memcpy(state->v, model->velocity, both);

@@ -125,7 +125,8 @@ typedef struct strut_latest {
 typedef struct strut_nearby {
   int32_t *element, count; /* ascending */
   double *q;               /* (length) where it was made */
-  int64_t made;            /* how often; 0: not since the reset */
+  bool known;              /* made since the reset */
+  int64_t made;            /* how often, ever */
 } strut_nearby;
 enum { STRUT_NEARBY_LISTS = 2 };
 

@@ -6,6 +6,7 @@
 
 #include "engine/forces/elements.h"
 #include "engine/forces/nearby.h"
+#include "engine/forces/rubbing.h"
 #include "engine/run/simulate_parts.h"
 
 /* A run beyond this multiple of the scene's size counts as diverged. */
@@ -70,6 +71,27 @@ void strut_run_watch_collisions(strut_run *r) {
     r->tunnel.element = i + 1;
     r->tunnel.speed = fast ? speed : 0.0;
   }
+}
+
+void strut_run_watch_bristles(strut_run *r) {
+  for (int32_t i = 0; i < r->model->rubbing.count; i++) {
+    double decay = strut_rubbing_bristle_decay(r->model, r->state, i);
+    if (decay > r->bristles.decay) r->bristles.item = i, r->bristles.decay = decay;
+  }
+}
+
+/* What fixed steps can follow of a decay: as far as each method is stable on the real axis. */
+static void warn_of_bristles(const strut_run *r) {
+  static const double most[STRUT_REGIONS] = {HUGE_VAL, 2.7, 2.0, 2.0};
+  double step = most[r->method->region] / r->bristles.decay;
+  if (!(r->dt > step)) return;
+  int32_t contact = r->model->rubbing.item[r->bristles.item].contact;
+  strut_summary_warn(
+      r->summary, "bristles",
+      "the bristles that hold '%s' straighten within %.3g s as they slide, too fast for a step of "
+      "%g s; use one below %.2g s, or adaptive",
+      r->model->scene->nodes[r->model->contacts.entry[contact].node].name, 1.0 / r->bristles.decay,
+      r->dt, step);
 }
 
 static void warn_of_tunnelling(const strut_run *r) {
@@ -406,4 +428,5 @@ void strut_run_warn(const strut_run *r) {
   warn_of_limit(r);
   warn_of_coarse_steps(r);
   warn_of_tunnelling(r);
+  if (r->bristles.decay > 0.0) warn_of_bristles(r);
 }

@@ -478,6 +478,7 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   if (states_status) return states_status;
   if (lost >= 0 && due) return strut_run_fail_lost_node(r, lost);
   if (r->model->scene->collision_count) strut_run_watch_collisions(r);
+  if (r->model->rubbing.bristles) strut_run_watch_bristles(r);
   strut_status collapse_status = strut_run_check_collapse(r);
   if (collapse_status) return collapse_status;
   bool balance_due = n == r->answer.step || (n >= r->watch.balance.next && n < r->answer.step);

@@ -61,6 +61,11 @@ typedef struct strut_run {
     int32_t element; /* + 1; or 0 */
     double speed;    /* at which its two sides moved [m/s]; 0: they were pressed together instead */
   } tunnel;
+  /** The bristles that straighten fastest at a sample. */
+  struct {
+    int32_t item;
+    double decay; /* [1/s] */
+  } bristles;
 } strut_run;
 
 /**
@@ -95,6 +100,8 @@ int32_t strut_run_find_lost_node(const strut_model *model, const strut_state *st
 strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node);
 /** Notes collisions whose sides move by more than their thickness in a step, or are deeper than half. */
 void strut_run_watch_collisions(strut_run *run);
+/** Notes how fast bristles straighten. */
+void strut_run_watch_bristles(strut_run *run);
 /** STRUT_DIVERGED with the name of a cell without area, or of a member that is wound in. */
 strut_status strut_run_check_collapse(const strut_run *run);
 /** STRUT_DIVERGED with the place where a loss has given energy. */

@@ -21,7 +21,7 @@ static const char *fault_of_ground(const strut_scene *scene, const strut_contact
          : g->damping_law != STRUT_DAMPING_APPROACH
              ? "has no dissipation of Hunt and Crossley, as ground '%s' wants it"
          : f->law == STRUT_FRICTION_COULOMB
-             ? "cannot stick exactly, as ground '%s' wants it; use karnopp or smooth"
+             ? "has no friction that sticks exactly, as ground '%s' wants it; use karnopp or smooth"
          : f->law != STRUT_FRICTION_NONE && f->directional
              ? "rubs in both directions alike, unlike ground '%s'"
              : NULL;

@@ -216,6 +216,11 @@ static inline double strut_friction_force(const strut_friction *f, double normal
   return strut_law_friction(&numbers, &has, normal, slip, applied);
 }
 
+/** Stiffness along the ground of bristles at rest under the normal force [N/m]; 0 of laws without. */
+static inline double strut_friction_stiffness(const strut_friction *f, double normal) {
+  return strut_friction_has_bristles(f->law) ? normal * f->mu_static / f->presliding : 0.0;
+}
+
 /** Slope of the law at rest under the normal force [N s/m], of the direction in which it is steepest. */
 static inline double strut_friction_slope(const strut_friction *f, double normal) {
   strut_law_friction_numbers numbers = strut_friction_numbers(f);

@@ -72,6 +72,13 @@ cp out written.yaml
 expect 0 run written.yaml --json
 near .measured.x.value "$x" 1e-8
 
+# Steps that are too long for sliding bristles are told.
+expect 0 run belt.yaml --step 1.5ms --json
+jq -e '[.warnings[] | select(.code == "bristles")] | length == 1' "$work/out" >/dev/null ||
+  fail "long steps over bristles: $(jq -c .warnings "$work/out")"
+expect 0 run belt.yaml --json
+jq -e '[.warnings[] | select(.code == "bristles")] | length == 0' "$work/out" >/dev/null || fail "short steps are fine"
+
 # Pushed slowly, bristles give way like Dahl's law: x = -d ln(1 - F / (mu_0 N)).
 cat >push.yaml <<'YAML'
 strut: 1
@@ -107,6 +114,23 @@ run: {duration: 0.2 s, measure: {quantities: {push: {of: push, take: mean}, rub:
 YAML
 expect 0 run foot.yaml --json
 near .measured.push.value 20 0.05
+
+# A foot that comes down starts a signal, by methods with events and without.
+cat >fall.yaml <<'YAML'
+strut: 1
+gravity: [0, -10]
+nodes: {n: {position: [0, 0.05], mass: 1}, o: {position: [0.3, 0.45], mass: 1}}
+members: {body: {kind: bar, nodes: [n, o], stiffness: 1e4, damping: 20}}
+feet: {f: {member: body, node: n, radius: 0.1 m}}
+ground: {stiffness: 1e4, damping: 50, nodes: [n]}
+loads: {lift: {node: o, force: [0, 1], signal: {ramp: {amplitude: 1, stop: 1 ms}, starts: {contact: n}}}}
+solver: {integrator: rk4, step: 0.1 ms}
+run: {duration: 0.095 s, measure: {quantities: {lifted: {of: work.loads, take: final}}}}
+YAML
+for method in rk4 rk4-events adaptive; do
+  expect 0 run fall.yaml --integrator $method --json
+  jq -e '.measured.lifted.value < -1e-3' "$work/out" >/dev/null || fail "$method: the foot started nothing: $(jq -c .measured "$work/out")"
+done
 
 # What has no bristles says so.
 sed 's/  belt_speed.*/  profile: [[-2, 0], [2, 0]]/' belt.yaml >bad.yaml

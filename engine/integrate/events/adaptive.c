@@ -113,7 +113,6 @@ static bool contradicts_at_stage(const strut_model *model, const strut_event_ste
   const strut_contact_entry *e = &l->entry[i];
   const strut_touch *o = &l->next->touch[i];
   double more = 1.0 + STRUT_STAGE_ERROR, fewer = 1.0 - STRUT_STAGE_ERROR, s = l->side[i];
-  double holding = holding_limit(e, o->normal, o->applied);
   if (!(o->normal > 0.0)) return false;
   switch ((strut_contact_mode)l->mode[i]) {
     case STRUT_MODE_STICK: {
@@ -122,8 +121,12 @@ static bool contradicts_at_stage(const strut_model *model, const strut_event_ste
     }
     case STRUT_MODE_BAND:
       return strut_friction_drops(&e->friction) &&
-             strut_law_margin_of_holding(holding * more, o->applied) < 0.0;
-    case STRUT_MODE_PUSH: return strut_law_margin_of_push(s, holding * fewer, o->applied) < 0.0;
+             strut_law_margin_of_holding(holding_limit(e, o->normal, o->applied) * more,
+                                         o->applied) < 0.0;
+    case STRUT_MODE_PUSH: {
+      double holding = holding_limit(e, o->normal, o->applied);
+      return strut_law_margin_of_push(s, holding * fewer, o->applied) < 0.0;
+    }
     case STRUT_MODE_CREEP: {
       double sliding = sliding_limit(e, o->normal, s) * more;
       return strut_law_margin_of_creep_out(s, sliding, o->friction) < 0.0;

@@ -463,7 +463,8 @@ static void digest_model(const strut_model *m, uint64_t key[2]) {
   const double ground[] = {c->normal[0], c->normal[1], c->height, c->belt_speed, m->mass_damping};
   digest(key, ground, sizeof ground);
   for (int32_t i = 0; i < m->rubbing.count; i++)
-    digest_number(key, strut_friction_slope(&m->rubbing.item[i].friction, 1.0));
+    digest_number(key, strut_friction_slope(&m->rubbing.item[i].friction, 1.0) +
+                           strut_friction_stiffness(&m->rubbing.item[i].friction, 1.0));
   digest_number(key, fastest_relaxation(m));
   for (int32_t i = 0; i < m->feedback.maxwell_count; i++) {
     digest_number(key, m->feedback.maxwell[i].member);

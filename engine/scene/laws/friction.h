@@ -141,9 +141,12 @@ LAW_INLINE real LAW(friction_lugre)(const LAW(friction_numbers) * f, real normal
 LAW_INLINE real LAW(friction_lugre_slope)(const LAW(friction_numbers) * f, real normal) {
   return normal * f->mu_static * f->relaxation / f->presliding;
 }
+/* How fast sliding straightens them [1/s], and y'. */
+LAW_INLINE real LAW(friction_bristle_decay)(const LAW(friction_numbers) * f, real slip) {
+  return f->mu_static / f->presliding * magnitude(slip) / LAW(friction_curve)(f, slip);
+}
 LAW_INLINE real LAW(friction_bristle_rate)(const LAW(friction_numbers) * f, real slip, real bend) {
-  real held = slip - magnitude(slip) * bend / LAW(friction_curve)(f, slip);
-  return f->mu_static / f->presliding * held;
+  return f->mu_static / f->presliding * slip - LAW(friction_bristle_decay)(f, slip) * bend;
 }
 
 /** The numbers for contacts that move, or are pushed, towards -x along the ground where `back` holds. */
@@ -177,11 +180,23 @@ LAW_INLINE real LAW(friction)(const LAW(friction_numbers) * f, const LAW(frictio
   mask moves = both(at_least(speed, f->stick_velocity), less(zero, speed));
   LAW(friction_numbers)
   towards = LAW(friction_towards)(f, less(choose(moves, slip, applied), zero));
-#define STRUT_FRICTION_ROW(NAME, name, ...)                                                        \
+#define STRUT_FRICTION_FORCE(name)                                                                 \
   if (some(has->name))                                                                             \
     force = choose(has->name, LAW(friction_##name)(&towards, normal, slip, applied), force);
+#define STRUT_FRICTION_FORCE_OF_ABSENT(name) STRUT_FRICTION_FORCE(name)
+#define STRUT_FRICTION_FORCE_OF_STICK_BAND(name) STRUT_FRICTION_FORCE(name)
+#define STRUT_FRICTION_FORCE_OF_EXACT_STICK(name) STRUT_FRICTION_FORCE(name)
+#define STRUT_FRICTION_FORCE_OF_CONTINUOUS(name) STRUT_FRICTION_FORCE(name)
+#define STRUT_FRICTION_FORCE_OF_BRISTLES(name) /* no contact of a kernel has it: model/rubbing.h */
+#define STRUT_FRICTION_ROW(NAME, name, word, states, needs) STRUT_FRICTION_FORCE_OF_##states(name)
   STRUT_FRICTION_LAWS(STRUT_FRICTION_ROW)
 #undef STRUT_FRICTION_ROW
+#undef STRUT_FRICTION_FORCE_OF_BRISTLES
+#undef STRUT_FRICTION_FORCE_OF_CONTINUOUS
+#undef STRUT_FRICTION_FORCE_OF_EXACT_STICK
+#undef STRUT_FRICTION_FORCE_OF_STICK_BAND
+#undef STRUT_FRICTION_FORCE_OF_ABSENT
+#undef STRUT_FRICTION_FORCE
   return force;
 }
 

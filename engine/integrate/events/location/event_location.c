@@ -278,6 +278,19 @@ static bool is_settling(const strut_model *model, const strut_event_stepper *l, 
          before > -FAINT * law->stiffness * model->size;
 }
 
+/* What switches a law, if it comes before `first`. */
+static void keep_first_of_laws(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                               double h, strut_event *first) {
+  strut_event_measure(model, state, l, l->next);
+  int32_t laws = strut_laws_of(l);
+  for (int32_t k = 0; k < laws; k++) {
+    int32_t j = strut_law_of(l, k);
+    double after = law_value(l, l->next, j);
+    if (after < 0.0 && !is_settling(model, l, j, after))
+      keep_first(model, l, l->laws[j].event, j, h, first);
+  }
+}
+
 /* Of `contacts` in a list and the laws of the stepper's list; NULL: of all contacts and laws. */
 STRUT_INLINE strut_event first_event(const strut_model *model, strut_state *state,
                                      strut_event_stepper *l, double h, const int32_t *list,
@@ -285,15 +298,7 @@ STRUT_INLINE strut_event first_event(const strut_model *model, strut_state *stat
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
   for (int32_t k = 0; k < contacts; k++)
     keep_first_of(model, l, list ? list[k] : k, h, terms, &first);
-  if (!l->law_count) return first;
-  strut_event_measure(model, state, l, l->next);
-  int32_t laws = strut_laws_of(l);
-  for (int32_t k = 0; k < laws; k++) {
-    int32_t j = strut_law_of(l, k);
-    double after = law_value(l, l->next, j);
-    if (after < 0.0 && !is_settling(model, l, j, after))
-      keep_first(model, l, l->laws[j].event, j, h, &first);
-  }
+  if (l->law_count) keep_first_of_laws(model, state, l, h, &first);
   return first;
 }
 
