@@ -143,6 +143,7 @@ int strut_import_guess(const char *text, size_t length) {
     if (strut_tree_find(root, "connections", NULL))
       found = STRUT_IMPORT_TENSEGRITYSIM;
     else if (strut_tree_find(root, "pair_groups", NULL) ||
+             strut_tree_find(root, "substructures", NULL) ||
              strut_tree_find(root, "bond_groups", NULL))
       found = STRUT_IMPORT_NTRT;
   } else {
@@ -225,10 +226,13 @@ strut_status strut_import(strut_import_format format, strut_import_file *files, 
   strut_import_scene s = {.files = files, .file_count = count, .unit = unit};
   *scene = NULL;
   if (unit <= 0.0) s.unit = format == STRUT_IMPORT_NTRT ? 0.1 : 1.0;
-  if (count != (format == STRUT_IMPORT_TABLES ? 2u : 1u))
-    return strut_fail(
-        error, STRUT_USAGE, "expected %s, found %zu files",
-        format == STRUT_IMPORT_TABLES ? "a table of nodes and one of members" : "one file", count);
+  bool many = format == STRUT_IMPORT_NTRT, tables = format == STRUT_IMPORT_TABLES;
+  if (many ? count < 1 : count != (tables ? 2u : 1u))
+    return strut_fail(error, STRUT_USAGE, "expected %s, found %zu files",
+                      tables ? "a table of nodes and one of members"
+                      : many ? "a file, and those of the structures in it"
+                             : "one file",
+                      count);
   for (size_t i = 0; i < count; i++)
     strut_diagnostics_source(&files[i].diagnostics, files[i].name, files[i].text, files[i].length);
   strut_c_locale locale = strut_c_locale_enter();

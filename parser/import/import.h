@@ -35,7 +35,8 @@ typedef struct strut_import_file {
 /** What the text looks like, or -1. */
 STRUT_API int strut_import_guess(const char *text, size_t length);
 /**
- * Makes the scene: one file, or of tables those of nodes and of members in either order. unit: metres in
+ * Makes the scene: one file, of NTRT's those of the structures in it behind it, or of tables
+ * those of nodes and of members in either order. unit: metres in
  * the file's unit of length; 0: a decimetre in NTRT's files, otherwise a metre. *scene is a block of
  * strut_allocate. STRUT_BAD_SCENE with the findings of the files, and what the scene's own text gives in
  * `result`, whose source it becomes.

@@ -9,7 +9,7 @@
 #include "parser/program/streams.h"
 #include "parser/read/read_scene.h"
 
-enum { MOST_MESSAGES = 50, MOST_FILES = 2 };
+enum { MOST_MESSAGES = 50, MOST_FILES = 16 };
 
 static const strut_option options[] = {
     {STRUT_OPTION_FORMAT, "format", "FORMAT",
@@ -83,7 +83,8 @@ static strut_status run_import(const strut_arguments *arguments) {
   strut_import_file files[MOST_FILES] = {{0}};
   double unit = 0.0;
   if (arguments->model_count > MOST_FILES)
-    return strut_print_usage_error(command, "unexpected argument '%s'", arguments->models[2]);
+    return strut_print_usage_error(command, "unexpected argument '%s'",
+                                   arguments->models[MOST_FILES]);
   strut_status status =
       strut_option_number(command, arguments, STRUT_OPTION_UNIT, STRUT_DIM_LENGTH, &unit);
   if (!status && strut_option_text(arguments, STRUT_OPTION_UNIT) && !(unit > 0.0))
@@ -96,7 +97,7 @@ static strut_status run_import(const strut_arguments *arguments) {
 
 const strut_command strut_command_import = {
     .name = "import",
-    .model = "FILE [FILE]",
+    .model = "FILE [FILE]...",
     .many = true,
     .summary = "makes a scene of another program's file",
     .details =

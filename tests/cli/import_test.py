@@ -267,6 +267,57 @@ def ntrt():
     write("upright.yaml", RODS.replace("-5, ", "7, ").replace("[5, 0, 2]", "[7, 0, 12]")
           .replace("[5, 10, 2]", "[7, 10, 12]"))
     check("c: {position: [1.2, 1]}" in imported("upright.yaml")[0], "the plane z y")
+    # structures in others: turned about their middle, scaled, moved on from each other, bonds between neighbours
+    os.makedirs(os.path.join(work, "base"), exist_ok=True)
+    write("base/rods.yaml", RODS.replace("  box: [[a, b]]\n", "").replace("  box: {class: tgBoxInfo}\n", ""))
+    write("row.yaml", """substructures:
+  t1/t2/t3: {path: ../base/rods.yaml, offset: [20, 0, 0]}
+  top:
+    path: ./base/rods.yaml
+    translation: [20, 15, 0]
+    scale: 0.5
+    rotation: {axis: [0, 0, 3], angle: 90}
+bond_groups:
+  string:
+    t1/t2/t3/node_node: [[b, a], [c, d]]
+  t2/top/node_node:
+    stiff string: [[d, a]]
+builders:
+  stiff: {class: tgBasicActuatorInfo, parameters: {stiffness: 7}}
+  rod: {class: tgRodInfo, parameters: {density: 2, radius: 0.5}}
+""")
+    scene, said = imported("row.yaml", "base/rods.yaml")
+    places = {"t1.a": [-0.5, 0], "t2.a": [1.5, 0], "t3.c": [4.5, 1]}
+    # turned by 90 degrees about (0, 5), a comes to (5, 0), halved to (2.5, 2.5), and moved to (22.5, 17.5)
+    places["top.a"] = [2.25, 1.75]
+    for node, place in places.items():
+        found = re.search(rf"  {node}: \{{position: \[(.*), (.*)\]\}}", scene)
+        same_numbers([float(x) for x in found.groups()], place, 1e-12, f"place of {node}")
+    check(scene.count("kind: bar") == 8 and scene.count("kind: cable") == 25, scene)
+    check("t1_t2_string-1: {kind: cable, nodes: [t1.b, t2.a]" in scene, scene)
+    check("t2_t3_string-2: {kind: cable, nodes: [t2.c, t3.d]" in scene, scene)
+    check("t2_top_stiff_string-1: {kind: cable, nodes: [t2.d, top.a], stiffness: 7 N/m" in scene, scene)
+    mass = float(re.search(r"top.cross_rod-1: .*mass: ([\d.e-]+) kg", scene).group(1))
+    same_numbers([mass], [2 * math.pi * 0.25 * math.hypot(5, 5)], 1e-12, "a rod of an outer builder, halved")
+    write("outer.yaml", "substructures: {left/right: {path: row.yaml, offset: [100, 0, 0]}}\nbond_groups:\n"
+          "  string: {left/right/node_node: [[t3.b, t1.a], [top.a, top.a]]}\n")
+    scene, said = imported("outer.yaml", "row.yaml", "base/rods.yaml")
+    check("left_right_string-1: {kind: cable, nodes: [left.t3.b, right.t1.a]" in scene, scene)
+    for change, words in (("t1/t2/t3/node_node: [[b, a], [c, d]]", "t1/t2/node_edge: [[b, a/d]]"),
+                          ("[[b, a], [c, d]]", "[[b, e]]"), ("t2/top/node_node", "t2/nowhere/node_node"),
+                          ("axis: [0, 0, 3]", "axis: [0, 0, 0]"), ("axis: [0, 0, 3]", "axis: [0, 1, 0]"),
+                          ("scale: 0.5", "size: 0.5"), ("t2/top/node_node", "t2/node_node"), ("path: ./base/rods.yaml", "path: [1]"),
+                           ("../base/rods.yaml", "../base/sticks.yaml")):
+        with open(os.path.join(work, "row.yaml"), encoding="utf-8") as file:
+            text = file.read()
+        write("bad.yaml", text.replace(change, words))
+        message = run("import", "bad.yaml", "base/rods.yaml", "-o", "none.yaml", code=2).stderr.decode()
+        check("bad.yaml:" in message or "rods.yaml:1:" in message, message)
+    write("deep.yaml", "substructures: {x: {path: deep.yaml}}\n")
+    check("more than 16 deep" in run("import", "deep.yaml", "-o", "none.yaml", code=2).stderr.decode(), "a circle")
+    write("twice.yaml", "substructures: {x: {path: row.yaml}}\nbond_groups: {string: {x/x/node_node: [[a, a]]}}\n")
+    check("nodes are called 'a'" in
+          run("import", "twice.yaml", "row.yaml", "base/rods.yaml", "-o", "none.yaml", code=2).stderr.decode(), "which a")
 
 
 def tables():
@@ -313,7 +364,7 @@ def bad_input():
                            ("A: [0, 0]", "A: [0, .nan]", "expected a number")):
         refused("bad.yaml", BOX.replace(old, new, 1), part)
     for old, new, part in (("[5, 0, 2]", "[5, 0, 3]", "strut is planar"), ("[d, a]", "[d, x]", "8:11: error"),
-                           ("builders:", "substructures:", "import the structures one by one"),
+                           ("builders:", "substructures:", "expected path, rotation, translation, scale or offset"),
                            ("class: tgRodInfo, ", "", "'class'"), ("radius: 0.31", "radius: r", "a number"),
                            ("[-5, 10, 2]", "[-5, 10]", "three coordinates"), ("nodes:", "knots:", "'knots'")):
         refused("bad.yaml", RODS.replace(old, new, 1), part)
@@ -358,7 +409,7 @@ def files():
     run("import", "box.yaml", "-o", "scene.yaml")
     with open(os.path.join(work, "scene.yaml"), "rb") as file:
         check(file.read() == printed, "the same scene on standard output")
-    for words, code, text in ((("box.yaml", "box.yaml", "box.yaml"), 1, "unexpected"),
+    for words, code, text in ((("box.yaml",) * 3, 1, "one file"), (("box.yaml",) * 17, 1, "unexpected"),
                               (("box.yaml", "--unit", "3 kg"), 1, "unit"), (("box.yaml", "--unit", "0 m"), 1, "above 0"),
                               (("box.yaml", "box.yaml"), 1, "one file"), (("none.yaml",), 4, "none.yaml"),
                               (("box.yaml", "--format", "urdf"), 1, "ntrt")):
