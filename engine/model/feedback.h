@@ -47,7 +47,7 @@ typedef struct strut_feedback_table {
 } strut_feedback_table;
 
 /** Is the trigger watched on the grid by every method, being of a sensor, or of a contact that is an element? */
-bool strut_trigger_is_watched(const strut_scene *scene, const strut_trigger *trigger);
+STRUT_API bool strut_trigger_is_watched(const strut_scene *scene, const strut_trigger *trigger);
 
 /** Does the motion depend on more of the past than positions and velocities hold? */
 static inline bool strut_feedback_remembers(const strut_feedback_table *f) {

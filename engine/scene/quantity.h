@@ -88,7 +88,7 @@ typedef enum strut_column_owner {
   X(SLIDER_VX, SLIDER, "vx", 0, 1, -1, 0)                                                          \
   X(SLIDER_VY, SLIDER, "vy", 0, 1, -1, 0)                                                          \
   X(SLIDER_SHARE, SLIDER, "share", 0, 0, 0, 0)        /* of its member, from the first node */     \
-  X(LARGEST_FORCE, RUN, "largest_force", 1, 1, -2, 0) /* of all members' absolute ones */            \
+  X(LARGEST_FORCE, RUN, "largest_force", 1, 1, -2, 0) /* of all members' absolute ones */          \
   X(LEAST_GAP, RUN, "least_gap", 0, 1, 0, 0)          /* of all collisions */
 
 typedef enum strut_column_kind {

@@ -36,7 +36,7 @@ strut_status strut_run_settings_apply(const strut_command *command,
       {STRUT_OPTION_MASS_MODEL, "mass-model", "MODEL",                                             \
        "consistent or lumped, instead of the file's"},                                             \
       {STRUT_OPTION_FRICTION_LAW, "friction-law", "LAW",                                           \
-       "none, karnopp, coulomb or smooth, instead of the file's"},                                 \
+       "none, karnopp, coulomb, smooth, stribeck or lugre, instead of the file's"},                \
   {                                                                                                \
     STRUT_OPTION_DAMPING_LAW, "damping-law", "LAW",                                                \
         "of the ground: approach_only or hunt_crossley, instead of the file's"                     \

@@ -60,7 +60,7 @@ offers "n1,n2 :" equilibria "$crawler" --supports n1,n2
 offers "n1.x n1.y :" path "$crawler" --over n1
 offers "rk4 rk4-events :" run --integrator rk
 offers "rk4,verlet rk4,verlet-events :" tradeoff --methods rk4,ver
-offers "none karnopp coulomb smooth stribeck :" run --friction-law ""
+offers "none karnopp coulomb smooth stribeck lugre :" run --friction-law ""
 grep -q "	0.1$" out && fail "words have no values"
 expect 0 complete run "$crawler" --set fri
 grep -q "^friction=	0.1$" out || fail "the value of a parameter is not shown"
