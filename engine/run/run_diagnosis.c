@@ -359,11 +359,19 @@ static bool has_switches(const strut_model *model) {
   return false;
 }
 
+/* Does some contact stick? */
+static bool has_stick(const strut_model *model) {
+  for (int32_t i = 0; i < model->contacts.count; i++) {
+    strut_friction_law law = model->contacts.entry[i].friction.law;
+    if (strut_friction_has_band(law) || strut_friction_is_exact(law)) return true;
+  }
+  return false;
+}
+
 /* Events that fixed steps pass over, or NULL. */
 static const char *describe_missed_events(const strut_run *r) {
   if (r->method->events || r->method->region == STRUT_REGION_ALL) return NULL;
-  bool friction = r->model->terms & STRUT_TERM_FRICTION,
-       cables = r->model->terms & STRUT_TERM_SLACK;
+  bool friction = has_stick(r->model), cables = r->model->terms & STRUT_TERM_SLACK;
   bool bounces = has_touchdowns(r);
   if (bounces && friction) return "touchdowns and changes between sticking and slipping";
   if (bounces) return "touchdowns";

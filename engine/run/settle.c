@@ -185,6 +185,11 @@ strut_status strut_relaxation_create(const strut_model *model, const strut_exper
                                      strut_relaxation *r, strut_error *error) {
   const strut_settle *settle = &experiment->settle;
   *r = (strut_relaxation){.experiment = experiment};
+  if (settle->friction && strut_bristle_count(model->scene))
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      "initial.settle.friction: kept is for friction that sticks by itself, not by "
+                      "bristles (lugre), which settling would straighten again and again; use "
+                      "settle: true, or another law");
   strut_status status = copy_passive_scene(model->scene, settle->friction, &r->scene, &r->arena);
   r->step = settle->step > 0.0 ? settle->step : experiment->step;
   r->acceleration = strut_arena_allocate(&r->arena, (size_t)model->length, sizeof(double));

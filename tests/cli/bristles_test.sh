@@ -71,6 +71,7 @@ expect 0 write belt.yaml
 cp out written.yaml
 expect 0 run written.yaml --json
 near .measured.x.value "$x" 1e-8
+jq -e '.caveat == null or (.caveat | contains("sticking") | not)' "$work/out" >/dev/null || fail "bristles do not stick"
 
 # Steps that are too long for sliding bristles are told.
 expect 0 run belt.yaml --step 1.5ms --json
@@ -144,6 +145,9 @@ expect 2 check bad.yaml
 err_has "relaxation"
 sed 's/presliding: 15 um/presliding: 0/' belt.yaml >bad.yaml
 expect 2 check bad.yaml
+sed 's/^run:/initial: {settle: {friction: kept}}\nrun:/' belt.yaml >bad.yaml
+expect 2 run bad.yaml
+err_has "not by bristles (lugre)"
 expect 2 export belt.yaml --code belt
 err_has "friction with bristles"
 
