@@ -41,12 +41,12 @@ typedef struct rubbing_forces {
   double bend_rate; /* of bristles [1/s] */
 } rubbing_forces;
 
-/* Bristles at the bend y that slip; where nothing presses, their own damper straightens them. */
+/* Bristles at the bend y that slip; where nothing presses, or nothing rubs, their own damper straightens them. */
 static void bend_bristles(const strut_friction *f, double y, rubbing_forces *r) {
   const strut_law_friction_numbers numbers = strut_friction_numbers(f);
-  r->bend_rate =
-      r->nodes ? strut_law_friction_bristle_rate(&numbers, r->slip, y) : -y / f->relaxation;
-  r->friction = r->nodes ? -r->normal * (y + f->relaxation * r->bend_rate) : 0.0;
+  bool bends = r->nodes && f->mu_static > 0.0;
+  r->bend_rate = bends ? strut_law_friction_bristle_rate(&numbers, r->slip, y) : -y / f->relaxation;
+  r->friction = bends ? -r->normal * (y + f->relaxation * r->bend_rate) : 0.0;
 }
 
 static rubbing_forces forces_of(const strut_model *model, const strut_state *state, int32_t item,

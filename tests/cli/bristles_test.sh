@@ -133,6 +133,14 @@ for method in rk4 rk4-events adaptive; do
   jq -e '.measured.lifted.value < -1e-3' "$work/out" >/dev/null || fail "$method: the foot started nothing: $(jq -c .measured "$work/out")"
 done
 
+# Without friction bristles hold nothing.
+sed 's/mu_static: 0.15, mu_kinetic: 0.1/mu: 0/' belt.yaml >smooth.yaml
+expect 0 run smooth.yaml --json
+near .measured.x.value 0 1e-12
+sed 's/mu_static: 0.15/mu_static: 0/' belt.yaml >bad.yaml
+expect 2 check bad.yaml
+err_has "bristles that hold nothing"
+
 # What has no bristles says so.
 sed 's/  belt_speed.*/  profile: [[-2, 0], [2, 0]]/' belt.yaml >bad.yaml
 expect 2 check bad.yaml
