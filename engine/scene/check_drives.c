@@ -208,7 +208,8 @@ static void check_step(strut_checker *checker, bool length_known) {
     strut_report_finding(checker, STRUT_ON_SOLVER, 0, "integrator",
                          "the solver names no integrator");
   if (e->step == 0.0) {
-    if (checker->purpose == STRUT_FOR_RUN && !checker->step_given_later && !(e->accuracy > 0.0))
+    if (checker->purpose == STRUT_FOR_RUN && !checker->step_given_later && !(e->accuracy > 0.0) &&
+        !strut_experiment_is_adaptive(e->integrator))
       strut_report_finding(checker, STRUT_ON_SOLVER, 0, "step",
                            "the solver has no step, expected a time such as '0.1 ms'");
     return;

@@ -236,6 +236,17 @@ strut_span strut_experiment_span(const strut_experiment *e, const strut_scene *s
   return span;
 }
 
+bool strut_experiment_is_adaptive(const char *integrator) {
+  return integrator && strcmp(integrator, "adaptive") == 0;
+}
+
+void strut_experiment_choose_step(strut_experiment *e, const strut_scene *scene) {
+  const double parts = 100.0;
+  if (e->step != 0.0 || e->accuracy > 0.0 || !strut_experiment_is_adaptive(e->integrator)) return;
+  strut_span span = strut_experiment_span(e, scene);
+  e->step = (span.period > 0.0 ? span.period : span.duration) / parts;
+}
+
 /* Moves the shape of a ground. */
 static bool shift_ground(strut_ground *g, const double place[2], strut_arena *arena) {
   if (!g->placed) g->through[0] = 0.0, g->through[1] = g->height;

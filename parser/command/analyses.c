@@ -108,7 +108,7 @@ static strut_status read_form_options(const strut_command *command,
   static const char *const objectives[] = {"largest", "sum", "squares", NULL};
   int source = -1, objective = 0;
   double least = NAN;
-  strut_status status = strut_option_word(command, arguments, STRUT_OPTION_FROM, sources, &source);
+  strut_status status = strut_option_word(command, arguments, STRUT_OPTION_GIVEN, sources, &source);
   if (status == STRUT_OK)
     status = strut_option_word(command, arguments, STRUT_OPTION_OBJECTIVE, objectives, &objective);
   if (status == STRUT_OK)
@@ -255,10 +255,40 @@ static strut_status read_stop(const strut_command *command, const strut_argument
                            scene->node_count ? scene->nodes[0].name : "node", text);
 }
 
+/* --over WHAT, or WHAT=FROM..UNTIL taken apart; texts in the arena, NULL where none is given. */
+typedef struct over_text {
+  const char *name, *from, *until;
+} over_text;
+
+static bool split_over(const strut_arguments *arguments, strut_arena *arena, over_text *over) {
+  const char *text = strut_option_text(arguments, STRUT_OPTION_OVER);
+  const char *equals = text ? strchr(text, '=') : NULL;
+  const char *dots = equals ? strstr(equals, "..") : NULL;
+  *over = (over_text){.name = text};
+  if (!equals) return true;
+  if (!dots || dots == equals + 1 || !dots[2]) return false;
+  over->name = strut_arena_text(arena, text, (size_t)(equals - text));
+  over->from = strut_arena_text(arena, equals + 1, (size_t)(dots - equals - 1));
+  over->until = dots + 2;
+  return over->name && over->from;
+}
+
+/* A value of --over WHAT=FROM..UNTIL. */
+static strut_status read_over_end(const strut_command *command, const strut_arguments *arguments,
+                                  strut_dimension dimension, const char *text, double *value) {
+  const char *example = strut_dimension_example(dimension);
+  if (!text || strut_option_numbers(text, dimension, value, 1) == 1) return STRUT_OK;
+  return strut_usage_error(command, arguments, "--over: expected a value%s%s%s, not '%s'",
+                           example ? " such as " : "", example ? example : "", "", text);
+}
+
 static strut_status read_followed(const strut_command *command, const strut_arguments *arguments,
-                                  const strut_scene *scene, strut_varied_scenes *scenes,
+                                  strut_scene *scene, strut_varied_scenes *scenes,
                                   strut_path_options *wanted) {
-  const char *name = strut_option_text(arguments, STRUT_OPTION_OVER);
+  over_text over;
+  if (!split_over(arguments, &scene->arena, &over))
+    return strut_usage_error(command, arguments, "--over expects WHAT or WHAT=FROM..UNTIL");
+  const char *name = over.name;
   strut_dimension dimension = STRUT_DIM_NONE;
   strut_status status = STRUT_OK;
   wanted->load = strut_option_text(arguments, STRUT_OPTION_LOAD);
@@ -266,7 +296,8 @@ static strut_status read_followed(const strut_command *command, const strut_argu
   if (name && wanted->load)
     return strut_usage_error(command, arguments, "give either --load or --over, not both");
   if (name) status = choose_followed(command, arguments, scene, name, scenes, wanted, &dimension);
-  if (status == STRUT_OK && name && !strut_option_text(arguments, STRUT_OPTION_UNTIL)) {
+  if (status == STRUT_OK && name && !over.until &&
+      !strut_option_text(arguments, STRUT_OPTION_UNTIL)) {
     const char *example = strut_dimension_example(dimension);
     return strut_usage_error(command, arguments, "missing --until VALUE, the end value of %s%s%s%s",
                              name, example ? ": such as --until \"" : "", example ? example : "",
@@ -276,6 +307,10 @@ static strut_status read_followed(const strut_command *command, const strut_argu
     status = strut_option_number(command, arguments, STRUT_OPTION_FROM, dimension, &wanted->from);
   if (status == STRUT_OK)
     status = strut_option_number(command, arguments, STRUT_OPTION_UNTIL, dimension, &wanted->until);
+  if (status == STRUT_OK)
+    status = read_over_end(command, arguments, dimension, over.from, &wanted->from);
+  if (status == STRUT_OK)
+    status = read_over_end(command, arguments, dimension, over.until, &wanted->until);
   if (status == STRUT_OK &&
       !(isfinite(wanted->from) && isfinite(wanted->until) && wanted->from != wanted->until))
     return strut_usage_error(command, arguments, "--from and --until are equal");

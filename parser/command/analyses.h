@@ -38,7 +38,7 @@
   }
 
 #define STRUT_FORM_OPTIONS                                                                         \
-  {STRUT_OPTION_FROM, "from", "WHAT",                                                              \
+  {STRUT_OPTION_GIVEN, "given", "WHAT",                                                            \
    "densities, lengths or prestress (default: by what the model gives)"},                          \
       {STRUT_OPTION_LEAST_TENSION, "least-tension", "FORCE",                                       \
        "lower bound on the tension of every cable"},                                               \
@@ -56,7 +56,8 @@
   {STRUT_OPTION_LOAD, "load", "NAME",                                                              \
    "load to scale, or several: P,Q (default: all without a signal)"},                              \
       {STRUT_OPTION_OVER, "over", "WHAT",                                                          \
-       "vary a parameter, an actuator, or a displacement NODE.x or NODE.y"},                       \
+       "vary a parameter, an actuator, or a displacement NODE.x or NODE.y; also "                  \
+       "WHAT=FROM..UNTIL"},                                                                        \
       {STRUT_OPTION_FROM, "from", "VALUE", "start value: a load factor, or in the unit of WHAT"},  \
       {STRUT_OPTION_UNTIL, "until", "VALUE", "end value, likewise (default: load factor 1)"},      \
       {STRUT_OPTION_STOP, "stop", "NODE.x=VALUE",                                                  \

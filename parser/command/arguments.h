@@ -34,12 +34,14 @@ typedef enum strut_option_id {
   STRUT_OPTION_COUNT_POINTS,
   STRUT_OPTION_STATUS,
   STRUT_OPTION_RETRY,
-  STRUT_OPTION_PARTS,  /* of write: the short scene */
-  STRUT_OPTION_STUDY,  /* of schema: that of a study */
-  STRUT_OPTION_MAN,    /* of help: the manual page */
-  STRUT_OPTION_CHECK,  /* of fmt: change nothing */
-  STRUT_OPTION_DAKOTA, /* of evaluate: the files of DAKOTA */
-  STRUT_OPTION_BASINS, /* of follow */
+  STRUT_OPTION_PARTS,    /* of exported scenes: the short one */
+  STRUT_OPTION_STUDY,    /* of keys --schema: that of a study */
+  STRUT_OPTION_MAN,      /* of help: the manual page */
+  STRUT_OPTION_FIX,      /* of check --layout: rewrite the files */
+  STRUT_OPTION_VERBOSE,  /* of check: what is omitted, too */
+  STRUT_OPTION_DAKOTA,   /* of requests: the files of DAKOTA */
+  STRUT_OPTION_BASINS,   /* of periodic motions */
+  STRUT_OPTION_SELECTOR, /* only selects a form of the command */
   /* kept as text: strut_option_text, and arguments.h for numbers */
   STRUT_OPTION_TEXTS,
   STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
@@ -47,7 +49,6 @@ typedef enum strut_option_id {
   STRUT_OPTION_SUPPORTS,
   STRUT_OPTION_STARTS,
   STRUT_OPTION_SEED,
-  STRUT_OPTION_MATRICES,
   STRUT_OPTION_LOAD,
   STRUT_OPTION_OVER, /* the parameter of a path */
   STRUT_OPTION_UNTIL,
@@ -56,6 +57,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_BRANCHES,
   STRUT_OPTION_FRICTION,
   STRUT_OPTION_FROM,
+  STRUT_OPTION_GIVEN, /* of form: what determines it */
   STRUT_OPTION_LEAST_TENSION,
   STRUT_OPTION_LEAST_DENSITY,
   STRUT_OPTION_OBJECTIVE,
@@ -96,7 +98,8 @@ typedef enum strut_option_id {
   STRUT_OPTION_LOG,
   STRUT_OPTION_EQUILIBRIA,
   STRUT_OPTION_MEASURE, /* of a tradeoff */
-  STRUT_OPTION_METHODS,
+  STRUT_OPTION_STEP_SIZES,
+  STRUT_OPTION_CPU_TIME,
   STRUT_OPTION_PERIODS,
   STRUT_OPTION_POINTS,
   STRUT_OPTION_BUDGET,
@@ -110,19 +113,22 @@ typedef enum strut_option_id {
   STRUT_OPTION_SHARD,
   STRUT_OPTION_CHANNELS, /* of the library's run, and whether it records */
   STRUT_OPTION_RECORD,
-  STRUT_OPTION_COMPUTE, /* of evaluate and the library's sweep: what, and which results */
+  STRUT_OPTION_COMPUTE, /* of requests and the library's sweep: what, and which results */
   STRUT_OPTION_KEEP,
-  STRUT_OPTION_IN,
-  STRUT_OPTION_OUT,
+  STRUT_OPTION_REQUESTS,
+  STRUT_OPTION_ANSWERS,
   STRUT_OPTION_ALLOWANCE, /* of export: for the ends of cables */
-  STRUT_OPTION_UNIT,      /* of import */
+  STRUT_OPTION_INPUT, /* of export: the format of another program's file, and its unit of length */
+  STRUT_OPTION_UNIT,
   STRUT_OPTION_LOWEST,
   STRUT_OPTION_LIMIT_EVALUATIONS,
   STRUT_OPTION_LIMIT_TIME,
-  STRUT_OPTION_CODE, /* of export: C for other programs, its numbers and names */
-  STRUT_OPTION_REAL,
+  STRUT_OPTION_REAL, /* of exported C: its numbers and names */
   STRUT_OPTION_PREFIX,
-  STRUT_OPTION_AND, /* the second parameter of curves */
+  STRUT_OPTION_AND, /* of periodic motions: the second parameter, and where branches start */
+  STRUT_OPTION_VALUES,
+  STRUT_OPTION_NEW,        /* of examples: the scene to start from */
+  STRUT_OPTION_COMPLETION, /* of help: the shell */
   STRUT_OPTION_TEXTS_END
 } strut_option_id;
 
@@ -149,7 +155,7 @@ typedef struct strut_arguments {
   strut_override *varied; /* (varied_count) of --vary */
   size_t varied_count;
   bool parts, study, man, dakota;
-  bool check;
+  bool fix, verbose;
   const strut_listener *listener; /* hears what is wrong with an option, warnings and notes */
   bool basins;
 } strut_arguments;
@@ -157,9 +163,20 @@ typedef struct strut_arguments {
 /** What a command computes of one model: analyses.h. */
 typedef struct strut_analysis_kind strut_analysis_kind;
 
-/** A command: how it is called, explained and run. */
+/** An option of other commands that a command has no use for, and why. */
+typedef struct strut_refused_option {
+  const char *name, *reason;
+} strut_refused_option;
+
+/** What a command does instead where an option is given. */
+typedef struct strut_command_variant {
+  const char *selector; /* the option's name; NULL ends a list of forms */
+  const struct strut_command *command;
+} strut_command_variant;
+
+/** A command, or a form of one: how it is called, explained and run. */
 typedef struct strut_command {
-  const char *name;
+  const char *name;            /* of a form "COMMAND --SELECTOR" */
   const char *model;           /* its one argument, such as "MODEL", or NULL */
   bool model_optional, many;   /* many: one or more models */
   const char *summary;         /* half a sentence for the list of commands */
@@ -167,7 +184,9 @@ typedef struct strut_command {
   const strut_option *options; /* besides --quiet and --help, which every command has; or NULL */
   const strut_analysis_kind *analysis; /* what it computes and reports, where `run` is NULL */
   strut_status (*run)(const strut_arguments *arguments);
-  bool timed; /* print the elapsed time below the report */
+  bool timed;                          /* print the elapsed time below the report */
+  const strut_command_variant *forms;  /* NULL: none */
+  const strut_refused_option *refused; /* ended by a row of NULL; NULL: none */
 } strut_command;
 
 /** The value given for an option that is kept as text, or NULL. */

@@ -21,25 +21,35 @@ static const char *parameter_at(const void *context, size_t i) {
 
 /* NAME=LOW..HIGH of an option, taken apart. */
 typedef struct range_text {
-  const char *option; /* "--over" */
-  char *name;         /* [STRUT_FOLLOW_NAME] */
+  const char *option;       /* "--over" */
+  const char *from, *until; /* of --from and --until, where these may give the range */
+  char *name;               /* [STRUT_FOLLOW_NAME] */
   char low[200];
   const char *high;
 } range_text;
 
+/* False where the text, or the options, give no name and range. */
+static bool take_range_apart(const char *text, range_text *r) {
+  const char *equals = text ? strchr(text, '=') : NULL;
+  const char *dots = equals ? strstr(equals, "..") : NULL;
+  size_t length = equals ? (size_t)(equals - text) : text ? strlen(text) : 0;
+  if (!length || length >= STRUT_FOLLOW_NAME) return false;
+  memcpy(r->name, text, length);
+  r->name[length] = '\0';
+  const char *low = equals ? equals + 1 : r->from;
+  r->high = dots ? dots + 2 : equals ? NULL : r->until;
+  if (!low || !r->high) return false;
+  int used = dots ? (int)(dots - low) : (int)strlen(low);
+  return snprintf(r->low, sizeof r->low, "%.*s", used, low) < (int)sizeof r->low;
+}
+
 /* The name must be that of a number of the scene. */
 static strut_status split_range(const strut_command *command, const strut_arguments *arguments,
                                 const strut_scene *scene, const char *text, range_text *r) {
-  const char *equals = text ? strchr(text, '=') : NULL;
-  const char *dots = equals ? strstr(equals, "..") : NULL;
-  if (!dots || equals == text || (size_t)(equals - text) >= STRUT_FOLLOW_NAME ||
-      (size_t)(dots - equals) >= sizeof r->low)
+  if (!take_range_apart(text, r))
     return strut_usage_error(command, arguments,
                              "missing %s NAME=LOW..HIGH, such as %s frequency=8Hz..12Hz", r->option,
                              r->option);
-  snprintf(r->name, STRUT_FOLLOW_NAME, "%.*s", (int)(equals - text), text);
-  snprintf(r->low, sizeof r->low, "%.*s", (int)(dots - equals - 1), equals + 1);
-  r->high = dots + 2;
   const strut_parameter *parameter = strut_find_parameter(scene, r->name);
   const char *near = parameter ? NULL : strut_did_you_mean(r->name, parameter_at, scene);
   if (!parameter)
@@ -89,7 +99,10 @@ static strut_status read_ranges(const strut_command *command, const strut_argume
                                 const strut_scene *scene, strut_follow_source *source,
                                 strut_follow_options *wanted, strut_dimension *dimension) {
   const char *and = strut_option_text(arguments, STRUT_OPTION_AND);
-  range_text first = {.option = "--over", .name = source->name};
+  range_text first = {.option = "--over",
+                      .from = strut_option_text(arguments, STRUT_OPTION_FROM),
+                      .until = strut_option_text(arguments, STRUT_OPTION_UNTIL),
+                      .name = source->name};
   range_text other = {.option = "--and", .name = source->second};
   strut_dimension dimensions[STRUT_MOST_VARIED] = {STRUT_DIM_NONE};
   strut_follow_second *second = &wanted->second;
@@ -121,12 +134,12 @@ static strut_status read_ranges(const strut_command *command, const strut_argume
   return STRUT_OK;
 }
 
-/* Values of --at, or the scene's own where it is within the range, or the middle. */
+/* Values of --values, or the scene's own where it is within the range, or the middle. */
 static strut_status read_values(const strut_command *command, const strut_arguments *arguments,
                                 const strut_scene *scene, strut_dimension dimension,
                                 const strut_follow_options *wanted, double values[MOST_AT],
                                 size_t *count) {
-  const char *at = strut_option_text(arguments, STRUT_OPTION_AT);
+  const char *at = strut_option_text(arguments, STRUT_OPTION_VALUES);
   *count = 1;
   values[0] = own_value(scene, wanted->name, wanted->low, wanted->high);
   if (!at) return STRUT_OK;
@@ -136,14 +149,14 @@ static strut_status read_values(const strut_command *command, const strut_argume
     good = good && values[i] >= wanted->low && values[i] <= wanted->high;
   if (good) return STRUT_OK;
   return strut_usage_error(command, arguments,
-                           "--at expects values of %s within the range, with commas between",
+                           "--values expects values of %s within the range, with commas between",
                            wanted->name);
 }
 
-/* Names of --from into source->from; returns how many, 0 where there are none. */
+/* Names of --at into source->from; returns how many, 0 where there are none. */
 static size_t read_names(const strut_arguments *arguments, strut_follow_source *source,
                          const char *names[STRUT_FOLLOW_MOST_STARTS]) {
-  const char *from = strut_option_text(arguments, STRUT_OPTION_FROM);
+  const char *from = strut_option_text(arguments, STRUT_OPTION_AT);
   size_t count = 0, used = 0;
   while (from && *from && count < STRUT_FOLLOW_MOST_STARTS / MOST_AT) {
     while (*from == ' ') from++;
@@ -163,7 +176,7 @@ static strut_status check_names(const strut_command *command, const strut_argume
                                 const strut_scene *scene, const char *const *names, size_t count) {
   for (size_t i = 0; i < count; i++)
     if (strut_thing_find(scene, STRUT_THING_CONFIGURATION, names[i]) < 0)
-      return strut_usage_error(command, arguments, "--from: the model has no configuration '%s'",
+      return strut_usage_error(command, arguments, "--at: the model has no configuration '%s'",
                                names[i]);
   return STRUT_OK;
 }

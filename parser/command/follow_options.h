@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * What `strut follow` follows: a number under `parameters`, its range, and where branches start.
+ * What `strut path --periodic` follows: a number under `parameters`, its range, and where branches start.
  */
 #ifndef STRUT_PARSER_COMMAND_FOLLOW_OPTIONS_H
 #define STRUT_PARSER_COMMAND_FOLLOW_OPTIONS_H
@@ -21,7 +21,7 @@ typedef struct strut_follow_source {
 } strut_follow_source;
 
 /**
- * Reads --over, --and, --at, --from, --steps, --accuracy and --integrator for the scene as it was read.
+ * Reads --over, --and, --values, --at, --steps, --accuracy and --integrator for the scene as it was read.
  * STRUT_USAGE; the listener hears why. Free `source` in any case.
  */
 strut_status strut_follow_options_read(const strut_command *command,

@@ -24,8 +24,8 @@ static strut_status set_method(const strut_command *command, const strut_argumen
   return status;
 }
 
-strut_status strut_run_settings_apply(const strut_command *command,
-                                      const strut_arguments *arguments, strut_experiment *e) {
+static strut_status apply_settings(const strut_command *command, const strut_arguments *arguments,
+                                   strut_experiment *e) {
   double steady = 0.0;
   const struct {
     strut_option_id id;
@@ -133,8 +133,8 @@ static strut_status set_damping(const strut_arguments *arguments, strut_scene *s
   return STRUT_OK;
 }
 
-strut_status strut_model_options_apply(const strut_command *command,
-                                       const strut_arguments *arguments, strut_scene *scene) {
+static strut_status apply_fidelity(const strut_command *command, const strut_arguments *arguments,
+                                   strut_scene *scene) {
   int bars = -1, mass = -1, friction = -1, damping = -1;
   const struct {
     strut_option_id id;
@@ -152,5 +152,28 @@ strut_status strut_model_options_apply(const strut_command *command,
   if (friction >= 0) status = set_friction(arguments, scene, (strut_friction_law)friction);
   if (status == STRUT_OK && damping >= 0)
     status = set_damping(arguments, scene, (strut_ground_damping)damping);
+  return status;
+}
+
+const strut_option *strut_run_option_given(const strut_arguments *arguments, size_t i) {
+  static const strut_option rows[] = {STRUT_RUN_SETTING_OPTIONS, STRUT_FIDELITY_OPTIONS};
+  for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++)
+    if (strut_option_text(arguments, rows[k].id) && !i--) return &rows[k];
+  return NULL;
+}
+
+strut_purpose strut_run_options_purpose(const strut_arguments *arguments) {
+  const char *method = strut_option_text(arguments, STRUT_OPTION_INTEGRATOR);
+  bool later = strut_option_text(arguments, STRUT_OPTION_ACCURACY) ||
+               strut_option_text(arguments, STRUT_OPTION_STEP) ||
+               (method && strut_experiment_is_adaptive(method));
+  return later ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
+}
+
+strut_status strut_run_options_apply(const strut_command *command, const strut_arguments *arguments,
+                                     strut_setup *setup) {
+  strut_status status = apply_settings(command, arguments, &setup->experiment);
+  if (status == STRUT_OK) status = apply_fidelity(command, arguments, &setup->scene);
+  if (status == STRUT_OK) strut_experiment_choose_step(&setup->experiment, &setup->scene);
   return status;
 }

@@ -24,10 +24,6 @@
         "stop once the motion repeats within TOLERANCE, such as 0.5%"                              \
   }
 
-/** Applies the options to the scene. STRUT_USAGE; the listener hears why. */
-strut_status strut_run_settings_apply(const strut_command *command,
-                                      const strut_arguments *arguments, strut_experiment *e);
-
 /* Options that run a scene as another model of itself: rigid bars, lumped masses, other laws. */
 
 /** Rows of a command's table of options. */
@@ -42,8 +38,12 @@ strut_status strut_run_settings_apply(const strut_command *command,
         "of the ground: approach_only or hunt_crossley, instead of the file's"                     \
   }
 
-/** Puts the options into the experiment. STRUT_USAGE; the listener hears why. */
-strut_status strut_model_options_apply(const strut_command *command,
-                                       const strut_arguments *arguments, strut_scene *scene);
+/** The i-th of all these options that is given, or NULL. */
+const strut_option *strut_run_option_given(const strut_arguments *arguments, size_t i);
+/** What a scene is read for that is then run with them: its step may be given by them. */
+strut_purpose strut_run_options_purpose(const strut_arguments *arguments);
+/** Applies them to the scene and its experiment. STRUT_USAGE; the listener hears why. */
+strut_status strut_run_options_apply(const strut_command *command, const strut_arguments *arguments,
+                                     strut_setup *setup);
 
 #endif

@@ -23,10 +23,11 @@
 enum { MOST_MEMBERS = 40, DIGITS = 5, SKETCH_COLUMNS = 72, SKETCH_ROWS = 16 };
 
 static const strut_option options[] = {
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    STRUT_SET_OPTION,
     STRUT_RUN_SETTING_OPTIONS,
     STRUT_FIDELITY_OPTIONS,
-    {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    STRUT_JSON_OPTION,
+    {STRUT_OPTION_VERBOSE, "verbose", NULL, "list also what a step does not evaluate"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -585,9 +586,7 @@ static strut_status check_model(const strut_arguments *arguments, strut_open_rep
   strut_error error = {0};
   strut_status status = open_checked(arguments, &setup, report);
   if (status != STRUT_OK) return status;
-  status = strut_run_settings_apply(&strut_command_check, arguments, &setup.experiment);
-  if (status == STRUT_OK)
-    status = strut_model_options_apply(&strut_command_check, arguments, &setup.scene);
+  status = strut_run_options_apply(&strut_command_check, arguments, &setup);
   if (status != STRUT_OK) {
     strut_setup_free(&setup);
     return status;
@@ -622,6 +621,15 @@ static strut_status run_check(const strut_arguments *arguments) {
   return status;
 }
 
+static const strut_refused_option refused[] = {
+    {"plot", "'strut view' and 'strut run --plot' draw a model"},
+    {"output", "it only prints; --json prints everything"},
+    {"threads", "nothing takes long enough"},
+    {NULL, NULL}};
+
+static const strut_command_variant forms[] = {
+    {"layout", &strut_command_layout}, {"fix", &strut_command_layout}, {NULL, NULL}};
+
 const strut_command strut_command_check = {
     .name = "check",
     .model = "MODEL",
@@ -636,4 +644,6 @@ const strut_command strut_command_check = {
         "--json lists all messages with their places, for editors; a study is checked, too.\n",
     .options = options,
     .run = run_check,
+    .forms = forms,
+    .refused = refused,
 };

@@ -267,7 +267,8 @@ static const strut_option options[] = {
     {STRUT_OPTION_NO_STATES, "no-states", NULL, "skip the search for stable states"},
     {STRUT_OPTION_OUTPUT, "output", "DIR",
      "write compare.csv, .json, .svg and model-1.svg, ... into DIR"},
-    {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    STRUT_JSON_OPTION,
+    STRUT_THREADS_OPTION,
     {STRUT_OPTION_CSV, "csv", NULL, "print CSV, one row per model"},
     STRUT_PLOT_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
@@ -415,6 +416,11 @@ static strut_status run_compare(const strut_arguments *arguments) {
   return status;
 }
 
+static const strut_refused_option refused[] = {
+    {"integrator", "every model is run to --accuracy, by the method that this takes"},
+    {"step", "every model is run to --accuracy, with the step that this takes"},
+    {NULL, NULL}};
+
 const strut_command strut_command_compare = {
     .name = "compare",
     .model = "MODEL...",
@@ -435,5 +441,6 @@ const strut_command strut_command_compare = {
         "'strut compare m.yaml m.yaml --set mu=0.2' compares a model with a variant of itself.\n",
     .options = options,
     .run = run_compare,
+    .refused = refused,
     .timed = true,
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `strut examples` and `strut new`: models that come with strut. */
+/* `strut examples`, and `strut examples --new`: models that come with strut. */
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
@@ -293,6 +293,8 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
+static const strut_command_variant forms[] = {{"new", &strut_command_new}, {NULL, NULL}};
+
 const strut_command strut_command_examples = {
     .name = "examples",
     .model = "EXAMPLE",
@@ -306,6 +308,7 @@ const strut_command strut_command_examples = {
         "such as gallery. A file that exists is left as it is, and then nothing is copied.\n",
     .options = options,
     .run = run_examples,
+    .forms = forms,
 };
 
 static bool ends_with(const char *text, const char *end) {
@@ -341,7 +344,7 @@ static void put_scene(strut_writer *writer, const char *file, const char *name) 
 }
 
 static strut_status run_new(const strut_arguments *arguments) {
-  const char *given = arguments->model;
+  const char *given = strut_option_text(arguments, STRUT_OPTION_NEW);
   strut_writer path = {.text = NULL}, name = {.text = NULL}, scene = {.text = NULL};
   strut_error error = {0};
   if (!is_fine(given))
@@ -367,9 +370,13 @@ static strut_status run_new(const strut_arguments *arguments) {
   return status;
 }
 
+static const strut_option new_options[] = {
+    {STRUT_OPTION_NEW, "new", "NAME", "write NAME.yaml"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
 const strut_command strut_command_new = {
-    .name = "new",
-    .model = "NAME",
+    .name = "examples --new",
     .summary = "writes a small scene to start from",
     .details =
         "\nNAME.yaml is a frame with a muscle that crawls, with comments. A file that exists is "
@@ -377,5 +384,6 @@ const strut_command strut_command_new = {
         "it is. Where the schema of the language is installed, the first line names it, so that "
         "editors\n"
         "complete and check the file.\n",
+    .options = new_options,
     .run = run_new,
 };

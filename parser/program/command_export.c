@@ -112,18 +112,18 @@ static strut_status write_code(exported *x, strut_error *error) {
   if (!status) status = strut_settle_model(x->model, &x->setup.experiment, NULL, &start, error);
   if (!status) {
     strut_code_options options = {prefix, real == 1, "strut " STRUT_VERSION};
-    status = strut_code_write(strut_option_text(x->arguments, STRUT_OPTION_CODE), start.model,
-                              &x->setup.experiment, &options, error);
+    status =
+        strut_code_write(x->arguments->output, start.model, &x->setup.experiment, &options, error);
   }
   strut_settled_start_free(&start);
   return status;
 }
 
-/* --code DIR: the model as C that steps itself. */
+/* --format code: the model as C that steps itself. */
 static strut_status strut_export_code(const strut_arguments *arguments) {
   if (strut_option_text(arguments, STRUT_OPTION_AT))
     return strut_print_usage_error(&strut_command_export,
-                                   "--at is not for --code, which starts where a run does");
+                                   "--at is not for code, which starts where a run does");
   return export_model(arguments, STRUT_OPEN_AS_RUN, write_code);
 }
 
@@ -192,23 +192,7 @@ static strut_status export_vtk(const strut_command *command, const strut_argumen
   return status;
 }
 
-static const strut_option options[] = {
-    {STRUT_OPTION_MATRICES, "matrices", "DIR", "write the matrices into DIR"},
-    {STRUT_OPTION_FORMAT, "format", "FORMAT",
-     "vtk: a motion or a shape, for ParaView; build: lengths to cut; mjcf: for MuJoCo"},
-    {STRUT_OPTION_OUTPUT, "output", "DIR", "where --format writes: a directory, for mjcf a file"},
-    {STRUT_OPTION_ALLOWANCE, "allowance", "LENGTH",
-     "build: what a cable needs at each end, such as 20 mm"},
-    {STRUT_OPTION_CODE, "code", "DIR", "write C99 that steps the model by itself into DIR"},
-    {STRUT_OPTION_REAL, "real", "TYPE", "of --code: double (default) or float"},
-    {STRUT_OPTION_PREFIX, "prefix", "NAME",
-     "of --code: begins all names; default: the file's name"},
-    {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (default), start, or an equilibrium"},
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
-    {STRUT_OPTION_END, NULL, NULL, NULL},
-};
-
-static strut_status export_matrices(const strut_arguments *arguments, const char *directory) {
+static strut_status export_matrices(const strut_arguments *arguments) {
   strut_setup setup;
   strut_model *model = NULL;
   strut_arena arena = {0};
@@ -220,7 +204,7 @@ static strut_status export_matrices(const strut_arguments *arguments, const char
   if (status == STRUT_OK)
     status = strut_named_shape_find(arguments, model, &setup.experiment, &arena, &shape, &error);
   if (status == STRUT_OK)
-    status = strut_matrices_write(directory, model, shape.q, shape.name, &error);
+    status = strut_matrices_write(arguments->output, model, shape.q, shape.name, &error);
   if (status != STRUT_OK && error.message[0]) strut_print_error(&error);
   strut_arena_free(&arena);
   strut_model_free(model);
@@ -228,76 +212,101 @@ static strut_status export_matrices(const strut_arguments *arguments, const char
   return status;
 }
 
-static strut_status export_format(const strut_arguments *arguments, const char *matrices) {
-  static const char *const formats[] = {"vtk", "build", "mjcf", NULL};
-  const strut_command *command = &strut_command_export;
-  int format = 0;
-  strut_status status =
-      strut_option_word(command, arguments, STRUT_OPTION_FORMAT, formats, &format);
-  if (status != STRUT_OK) return status;
-  if (matrices)
-    return strut_print_usage_error(command, "give either --matrices or --format, not both");
-  if (format != 1 && strut_option_text(arguments, STRUT_OPTION_ALLOWANCE))
-    return strut_print_usage_error(command, "--allowance is for --format build");
-  if (!arguments->output || !*arguments->output)
-    return strut_print_usage_error(command, "missing -o %s", format == 2 ? "FILE.xml" : "DIR");
-  if (format == 0) return export_vtk(command, arguments);
-  return format == 1 ? strut_export_build(arguments) : strut_export_mjcf(arguments);
-}
+/* The formats, in the order of their words. */
+typedef enum export_format { SCENE, MATRICES, CODE, VTK, BUILD, MJCF } export_format;
+static const char *const formats[] = {"scene", "matrices", "code", "vtk", "build", "mjcf", NULL};
 
-/* Options of --code without it, and --code with those of others. */
-static strut_status check_code_options(const strut_arguments *arguments) {
-  const char *code = strut_option_text(arguments, STRUT_OPTION_CODE);
+/* Options of one format only. */
+static strut_status check_options(const strut_arguments *arguments, export_format format) {
   const strut_command *command = &strut_command_export;
-  if (!code && strut_option_text(arguments, STRUT_OPTION_REAL))
-    return strut_print_usage_error(command, "--real is for --code DIR");
-  if (!code && strut_option_text(arguments, STRUT_OPTION_PREFIX))
-    return strut_print_usage_error(command, "--prefix is for --code DIR");
-  if (!code) return STRUT_OK;
-  if (!*code) return strut_print_usage_error(command, "--code expects a directory");
-  if (strut_option_text(arguments, STRUT_OPTION_FORMAT) ||
-      strut_option_text(arguments, STRUT_OPTION_MATRICES) || arguments->output)
-    return strut_print_usage_error(
-        command, "--code DIR stands alone: leave out --format, --matrices and -o");
+  static const struct {
+    strut_option_id id;
+    export_format format;
+    const char *name;
+  } rows[] = {{STRUT_OPTION_ALLOWANCE, BUILD, "allowance"},
+              {STRUT_OPTION_REAL, CODE, "real"},
+              {STRUT_OPTION_PREFIX, CODE, "prefix"},
+              {STRUT_OPTION_INPUT, SCENE, "input"},
+              {STRUT_OPTION_UNIT, SCENE, "unit"}};
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+    if (rows[i].format != format && strut_option_text(arguments, rows[i].id))
+      return strut_print_usage_error(command, "--%s is for --format %s", rows[i].name,
+                                     formats[rows[i].format]);
+  if (format != SCENE && arguments->parts)
+    return strut_print_usage_error(command, "--parts is for --format scene");
+  if (format == SCENE && strut_option_text(arguments, STRUT_OPTION_AT))
+    return strut_print_usage_error(command, "--at is not for scenes, which start where a run does");
+  if (format == SCENE) return STRUT_OK;
+  if (arguments->model_count > 1)
+    return strut_print_usage_error(command, "unexpected argument '%s'", arguments->models[1]);
+  if (!arguments->output || !*arguments->output)
+    return strut_print_usage_error(command, "missing -o %s", format == MJCF ? "FILE.xml" : "DIR");
   return STRUT_OK;
 }
 
 static strut_status run_export(const strut_arguments *arguments) {
-  const char *directory = strut_option_text(arguments, STRUT_OPTION_MATRICES);
-  strut_status status = check_code_options(arguments);
-  if (status) return status;
-  if (strut_option_text(arguments, STRUT_OPTION_CODE)) return strut_export_code(arguments);
-  if (strut_option_text(arguments, STRUT_OPTION_FORMAT)) return export_format(arguments, directory);
-  if (!directory || !*directory || arguments->output) {
-    fprintf(stderr, "strut export: %s\n",
-            arguments->output
-                ? "-o DIR needs --format"
-                : "missing --matrices DIR, --code DIR, or --format vtk, build or mjcf with -o");
-    return STRUT_USAGE;
+  const strut_command *command = &strut_command_export;
+  int word = SCENE;
+  strut_status status = strut_option_word(command, arguments, STRUT_OPTION_FORMAT, formats, &word);
+  if (status == STRUT_OK) status = check_options(arguments, (export_format)word);
+  if (status != STRUT_OK) return status;
+  switch ((export_format)word) {
+    case SCENE: return strut_export_scene(arguments);
+    case MATRICES: return export_matrices(arguments);
+    case CODE: return strut_export_code(arguments);
+    case VTK: return export_vtk(command, arguments);
+    case BUILD: return strut_export_build(arguments);
+    case MJCF: return strut_export_mjcf(arguments);
   }
-  return export_matrices(arguments, directory);
+  return STRUT_OK;
 }
+
+static const strut_option options[] = {
+    {STRUT_OPTION_FORMAT, "format", "FORMAT",
+     "scene (default), matrices, code, vtk, build or mjcf; see above"},
+    {STRUT_OPTION_OUTPUT, "output", "PATH",
+     "directory to write into; a file for mjcf and scene (default: print the scene)"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    {STRUT_OPTION_AT, "at", "NAME",
+     "shape for matrices, vtk and build: drawn (default), start, or an equilibrium"},
+    {STRUT_OPTION_PARTS, "parts", NULL, "scene: keep parameters, groups and parts"},
+    {STRUT_OPTION_INPUT, "input", "FORMAT",
+     "scene: MODEL is a file of ntrt, tensegritysim, springable or tables (default: recognised)"},
+    {STRUT_OPTION_UNIT, "unit", "LENGTH",
+     "scene: unit of length of such a file (default: 1 dm of ntrt, otherwise 1 m)"},
+    {STRUT_OPTION_ALLOWANCE, "allowance", "LENGTH",
+     "build: what a cable needs at each end, such as 20 mm"},
+    {STRUT_OPTION_REAL, "real", "TYPE", "code: double (default) or float"},
+    {STRUT_OPTION_PREFIX, "prefix", "NAME", "code: begins all names (default: the file's name)"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
 
 const strut_command strut_command_export = {
     .name = "export",
-    .model = "RUN|MODEL",
-    .summary = "writes matrices, C code, a motion for ParaView, lengths to cut, or MuJoCo's format",
+    .model = "RUN|MODEL [FILE]...",
+    .many = true,
+    .summary = "writes a model or a run in another format, and reads other programs' files",
     .details =
-        "\nWith --matrices, for MATLAB, Octave or Python: Matrix Market files:\n"
-        "connectivity, equilibrium, mass, stiffness_elastic,\n"
-        "stiffness_geometric, damping and, where nodes touch the ground, stiffness_contact;\n"
-        "node_names.csv, rows.csv (free coordinates) and columns.csv (members) name their rows\n"
-        "and columns. The tangent stiffness is the sum of the three.\n"
-        "With --format vtk, for ParaView: structure.pvd, a .vtp file for every frame of RUN (a\n"
-        "directory that 'strut run -o' made) or one for the shape of MODEL, and ground.vtp.\n"
-        "With --format build, to build it: members.csv and nodes.csv, with lengths to cut and "
-        "holes,\n"
-        "and drawing.svg and drawing.dxf at true scale.\n"
-        "With --format mjcf, FILE.xml for MuJoCo; what it cannot say is refused or listed.\n"
-        "With --code, for microcontrollers, controllers and other simulators: PREFIX.h and "
-        "PREFIX.c,\n"
-        "which start and step the model by rk4 or verlet with strut's bits, and PREFIX_example.c.\n"
-        "Either all files are written or none.\n",
+        "\n"
+        "  scene     one file without parts and parameters, every value in SI units; a run of it\n"
+        "            gives bit-identical results. With --parts as short as the original, with its\n"
+        "            base and parts written out. MODEL may be a file of NTRT or TensegritySim\n"
+        "            (YAML), of springable (CSV), or two tables: of nodes (node,x [m],y "
+        "[m],fixed,\n"
+        "            mass [kg]) and members (member,kind,from,to,stiffness [N/m],rest length "
+        "[m]).\n"
+        "            Features that a scene cannot express are listed with their places.\n"
+        "  matrices  for MATLAB, Octave or Python: connectivity, equilibrium, mass, damping,\n"
+        "            stiffness_elastic, stiffness_geometric and stiffness_contact (their sum is "
+        "the\n"
+        "            tangent stiffness) as Matrix Market files, with the names of rows and "
+        "columns\n"
+        "  code      C99 that steps the model by rk4 or verlet with strut's bits, for controllers\n"
+        "            and other simulators: PREFIX.h, PREFIX.c and PREFIX_example.c\n"
+        "  vtk       for ParaView: every frame of RUN, a directory of 'strut run -o', or a shape\n"
+        "  build     to build it: lengths to cut, holes, and drawings (SVG, DXF) at true scale\n"
+        "  mjcf      for MuJoCo; what it cannot express is refused or listed\n"
+        "\nEither all files are written or none.\n",
     .options = options,
     .run = run_export,
 };

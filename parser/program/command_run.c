@@ -18,12 +18,13 @@
 #include "parser/write/write_scene.h"
 
 static const strut_option options[] = {
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    STRUT_SET_OPTION,
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write summary, scene and trajectories into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print the summary as one JSON object"},
     {STRUT_OPTION_FORCE, "force", NULL, "run even if the step exceeds the stability limit"},
     STRUT_RUN_SETTING_OPTIONS,
     STRUT_FIDELITY_OPTIONS,
+    STRUT_THREADS_OPTION,
     STRUT_RUN_PICTURE_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
@@ -160,9 +161,7 @@ static strut_status run_run(const strut_arguments *arguments) {
   strut_status status = strut_run_pictures_read(&strut_command_run, arguments, &pictures);
   if (status == STRUT_OK) status = strut_open_model(arguments, STRUT_OPEN_FOR_RUN, &setup);
   if (status != STRUT_OK) return status;
-  status = strut_run_settings_apply(&strut_command_run, arguments, &setup.experiment);
-  if (status == STRUT_OK)
-    status = strut_model_options_apply(&strut_command_run, arguments, &setup.scene);
+  status = strut_run_options_apply(&strut_command_run, arguments, &setup);
   if (status != STRUT_OK) {
     strut_run_pictures_free(&pictures);
     strut_setup_free(&setup);

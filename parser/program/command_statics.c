@@ -75,19 +75,17 @@ strut_status strut_analysis_run(const strut_command *command, const strut_argume
   return status;
 }
 
-/* Options of all of them. */
-#define SET                                                                                        \
-  { STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated" }
-#define JSON                                                                                       \
-  { STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object" }
+static const strut_refused_option refused[] = {STRUT_REFUSE_RUN_SETTINGS};
+
 #define END                                                                                        \
   { STRUT_OPTION_END, NULL, NULL, NULL }
 
 static const strut_option equilibria_options[] = {
-    SET,
+    STRUT_SET_OPTION,
+    STRUT_THREADS_OPTION,
     STRUT_EQUILIBRIA_OPTIONS,
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write equilibria.json into DIR"},
-    JSON,
+    STRUT_JSON_OPTION,
     STRUT_PLOT_OPTIONS,
     END,
 };
@@ -106,14 +104,16 @@ const strut_command strut_command_equilibria = {
         "Exit code 3 if nothing ever comes to rest.\n",
     .options = equilibria_options,
     .analysis = &strut_equilibria_analysis,
+    .refused = refused,
     .timed = true,
 };
 
 static const strut_option modes_options[] = {
-    SET,
+    STRUT_SET_OPTION,
+    STRUT_THREADS_OPTION,
     STRUT_MODES_OPTIONS,
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write modes.json and modes.csv into DIR"},
-    JSON,
+    STRUT_JSON_OPTION,
     STRUT_PLOT_OPTIONS,
     END,
 };
@@ -128,14 +128,16 @@ const strut_command strut_command_modes = {
         "computed up to 400 coordinates, beyond that the ten lowest.\n",
     .options = modes_options,
     .analysis = &strut_modes_analysis,
+    .refused = refused,
     .timed = true,
 };
 
 static const strut_option rigidity_options[] = {
     STRUT_SHAPE_OPTIONS,
-    SET,
+    STRUT_SET_OPTION,
+    STRUT_THREADS_OPTION,
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write rigidity.json into DIR"},
-    JSON,
+    STRUT_JSON_OPTION,
     STRUT_PLOT_OPTIONS,
     END,
 };
@@ -151,18 +153,23 @@ const strut_command strut_command_rigidity = {
         "count as one.\n",
     .options = rigidity_options,
     .analysis = &strut_rigidity_analysis,
+    .refused = refused,
     .timed = true,
 };
 
 static const strut_option path_options[] = {
     STRUT_PATH_OPTIONS,
-    SET,
+    STRUT_SET_OPTION,
+    STRUT_THREADS_OPTION,
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write path.json and path.csv into DIR"},
-    JSON,
+    STRUT_JSON_OPTION,
     STRUT_PLOT_OPTIONS,
     STRUT_AXIS_OPTIONS,
     END,
 };
+
+static const strut_command_variant path_forms[] = {{"periodic", &strut_command_periodic},
+                                                   {NULL, NULL}};
 
 const strut_command strut_command_path = {
     .name = "path",
@@ -180,13 +187,16 @@ const strut_command strut_command_path = {
         "rest\n"
         "angle or its cell's pressure), or the prescribed displacement of a node along x or y.\n",
     .options = path_options,
+    .forms = path_forms,
     .analysis = &strut_path_analysis,
+    .refused = refused,
     .timed = true,
 };
 
 static const strut_option form_options[] = {
     STRUT_FORM_OPTIONS,
-    SET,
+    STRUT_SET_OPTION,
+    STRUT_THREADS_OPTION,
     {STRUT_OPTION_OUTPUT, "output", "FILE", "write the new model to FILE and print a report"},
     {STRUT_OPTION_JSON, "json", NULL, "print the report as one JSON object instead of the model"},
     STRUT_PLOT_OPTIONS,
@@ -255,10 +265,10 @@ const strut_command strut_command_form = {
     .model = "MODEL",
     .summary = "finds an equilibrium shape or prestress, and writes that model",
     .details =
-        "\n--from densities: the shape given by the force densities of the members, or the "
+        "\n--given densities: the shape given by the force densities of the members, or the "
         "nearest\n"
-        "densities for which one exists. --from lengths: the shape given by the rest lengths.\n"
-        "--from prestress: the drawn shape, with rest lengths that hold it under gravity, loads "
+        "densities for which one exists. --given lengths: the shape given by the rest lengths.\n"
+        "--given prestress: the drawn shape, with rest lengths that hold it under gravity, loads "
         "and\n"
         "ground forces, every cable in tension. By default, densities if the model gives force\n"
         "densities, lengths if it gives rest lengths, otherwise prestress.\n"
@@ -267,4 +277,5 @@ const strut_command strut_command_form = {
         "old one where these can say it; it stays at rest when run without drives.\n",
     .options = form_options,
     .run = run_form,
+    .refused = refused,
 };

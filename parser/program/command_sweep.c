@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,14 +9,18 @@
 #include "engine/output/file.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
+#include "parser/command/run_settings.h"
 #include "parser/program/commands.h"
+#include "parser/program/open_model.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
 #include "parser/program/sweep.h"
 
 static const strut_option options[] = {
-    {STRUT_OPTION_OUTPUT, "output", "DIR", "results directory; an unfinished sweep is resumed"},
-    {STRUT_OPTION_THREADS, "threads", "N", "number of threads (default: one per processor)"},
+    {STRUT_OPTION_OUTPUT, "output", "DIR",
+     "results directory (default: named after STUDY); an unfinished sweep is resumed"},
+    STRUT_RUN_SETTING_OPTIONS,
+    STRUT_THREADS_OPTION,
     {STRUT_OPTION_BATCH, "batch", "N",
      "points per thread in lockstep: 1, 2, 4 or 8 (default automatic)"},
     {STRUT_OPTION_RETRY, "retry", NULL, "recompute points that failed"},
@@ -29,22 +34,19 @@ static const strut_option options[] = {
     {STRUT_OPTION_TIME, "time", "TIME", "with --emit slurm: time limit per task, such as 12:00:00"},
     {STRUT_OPTION_MEMORY, "memory", "SIZE",
      "with --emit slurm or htcondor: memory per task, such as 2G"},
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    STRUT_SET_OPTION,
+    {STRUT_OPTION_PLOT, "plot", "FILE",
+     "draw the first result over the first axis, or as a map of two (.svg, .pdf or .png)"},
     {STRUT_OPTION_COUNT_POINTS, "count", NULL, "only print the number of points and the columns"},
     {STRUT_OPTION_STATUS, "status", NULL, "only print what is done, missing and failed in DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print one JSON object"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-enum { MOST_THREADS = 4096, MOST_RUNS = 8 };
+enum { MOST_RUNS = 8 };
 static const char table_name[] = "table.csv", partial_name[] = "table-partial.csv";
 /* The table of a sweep that is running is written anew after these times, ever less often [s]. */
 static const double FIRST_PARTIAL = 2.0, RAREST_PARTIAL = 60.0;
-
-/* Concurrency; 0: automatic. */
-typedef struct concurrency {
-  int64_t threads, batch;
-} concurrency;
 
 /* DIR/name in the study's arena, or NULL. */
 static const char *inside(strut_sweep_study *study, const char *directory, const char *name) {
@@ -138,7 +140,7 @@ static void write_partial(const char *directory, strut_slots *slots) {
 typedef struct sweep_run {
   const strut_arguments *arguments;
   strut_sweep_study *study;
-  concurrency at_a_time;
+  int64_t batch;     /* runs per thread at a time; 0: automatic */
   strut_shard shard; /* count 0: none */
   strut_slots *slots;
 } sweep_run;
@@ -154,8 +156,7 @@ static strut_status run_points(const sweep_run *r, const strut_refinement *refin
                    .directory = partial ? arguments->output : NULL,
                    .next = FIRST_PARTIAL,
                    .interval = FIRST_PARTIAL};
-  strut_sweep_options how = {.threads = (int)r->at_a_time.threads,
-                             .batch = (int)r->at_a_time.batch,
+  strut_sweep_options how = {.batch = (int)r->batch,
                              .interrupt = strut_interrupt_watch(),
                              .directory = arguments->output,
                              .progress = show,
@@ -227,7 +228,7 @@ static strut_status complete_sweep(const strut_arguments *arguments, strut_sweep
                                    const strut_sweep_state *state) {
   strut_error error = {0};
   strut_slots *const sources[] = {slots};
-  const char *table = shard.count ? "one shard: 'strut merge' writes the table of all"
+  const char *table = shard.count ? "one shard: 'strut sweep --merge' writes the table of all"
                                   : inside(study, arguments->output, table_name);
   if (!table) return strut_print_out_of_memory();
   strut_status status = STRUT_OK;
@@ -251,7 +252,7 @@ static strut_status complete_sweep(const strut_arguments *arguments, strut_sweep
 }
 
 static strut_status compute_points(const strut_arguments *arguments, strut_sweep_study *study,
-                                   concurrency at_a_time) {
+                                   int64_t batch) {
   strut_slots *slots = NULL;
   strut_sweep_state state = {0};
   strut_error error = {0};
@@ -272,7 +273,7 @@ static strut_status compute_points(const strut_arguments *arguments, strut_sweep
     strut_file_remove(arguments->output, table_name); /* outdated */
   if (!status && study->plan.study->refine.depth)
     status = strut_refinement_create(&study->plan, &refinement, &error);
-  const sweep_run run = {arguments, study, at_a_time, shard, slots};
+  const sweep_run run = {arguments, study, batch, shard, slots};
   if (!status && refinement)
     status = run_refined(&run, refinement, &others, &state, &error);
   else if (!status)
@@ -330,22 +331,60 @@ static strut_status check_follow(const strut_arguments *arguments) {
   return STRUT_USAGE;
 }
 
-static strut_status run_sweep(const strut_arguments *arguments) {
+/* "gait" of "studies/gait.yaml": the usual directory of results; false if there is none. */
+static bool name_results(const char *study, char name[PATH_MAX]) {
+  const char *base = strrchr(study, '/') ? strrchr(study, '/') + 1 : study;
+  const char *dot = strrchr(base, '.');
+  int length = dot ? (int)(dot - base) : (int)strlen(base);
+  return strcmp(study, "-") != 0 && length > 0 &&
+         snprintf(name, PATH_MAX, "%.*s%s", length, base, dot ? "" : ".results") < PATH_MAX;
+}
+
+/* --plot: the first result over the first axis, as `strut plot` draws it. */
+static strut_status plot_table(const strut_arguments *arguments, const strut_sweep_study *study) {
+  const strut_sweep_plan *plan = &study->plan;
+  strut_arguments own = {.listener = arguments->listener, .quiet = arguments->quiet};
+  char path[PATH_MAX];
+  size_t y = plan->axis_columns;
+  bool map = plan->axis_columns == 2 && !plan->columns[0].word && !plan->columns[1].word;
+  while (y < plan->column_count && plan->columns[y].word) y++;
+  if (y == plan->column_count || plan->axis_columns == 0)
+    return strut_print_usage_error(&strut_command_sweep,
+                                   "--plot needs a number among the results, and an axis");
+  if (snprintf(path, sizeof path, "%s/%s", arguments->output, table_name) >= (int)sizeof path)
+    return strut_print_usage_error(&strut_command_sweep, "the path of the table is too long");
+  own.model = path;
+  own.texts[STRUT_OPTION_PLOT - STRUT_OPTION_TEXTS] =
+      strut_option_text(arguments, STRUT_OPTION_PLOT);
+  own.texts[STRUT_OPTION_KIND - STRUT_OPTION_TEXTS] = map ? "map" : NULL;
+  own.texts[STRUT_OPTION_X - STRUT_OPTION_TEXTS] = plan->columns[0].name;
+  own.texts[STRUT_OPTION_Y - STRUT_OPTION_TEXTS] = plan->columns[map ? 1 : y].name;
+  own.texts[STRUT_OPTION_LABEL - STRUT_OPTION_TEXTS] = map ? plan->columns[y].name : NULL;
+  if (!map && plan->axis_columns > 1)
+    own.texts[STRUT_OPTION_BY - STRUT_OPTION_TEXTS] = plan->columns[1].name;
+  return strut_command_plot.run(&own);
+}
+
+static strut_status run_sweep(const strut_arguments *given) {
+  strut_arguments own = *given, *arguments = &own;
+  char results[PATH_MAX];
   strut_sweep_study study = {0};
-  concurrency at_a_time = {0};
-  strut_status status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_THREADS,
-                                             1, MOST_THREADS, &at_a_time.threads);
-  if (!status)
-    status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_BATCH, 1, MOST_RUNS,
-                                  &at_a_time.batch);
+  int64_t batch = 0;
+  strut_status status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_BATCH, 1,
+                                             MOST_RUNS, &batch);
+  if (!status && strut_option_text(arguments, STRUT_OPTION_PLOT) &&
+      (arguments->count_points || arguments->status ||
+       strut_option_text(arguments, STRUT_OPTION_EMIT) ||
+       strut_option_text(arguments, STRUT_OPTION_SHARD)))
+    status = strut_print_usage_error(&strut_command_sweep, "--plot needs the table of all points");
+  if (!status) status = strut_try_file(strut_option_text(arguments, STRUT_OPTION_PLOT));
   if (status) return status;
+  if (!arguments->output && name_results(arguments->model, results)) own.output = results;
+  if (!arguments->output && !arguments->count_points)
+    return strut_print_usage_error(&strut_command_sweep, "missing -o DIR, the results directory");
   if (arguments->retry && (arguments->count_points || arguments->status ||
                            strut_option_text(arguments, STRUT_OPTION_EMIT))) {
     fputs("strut sweep: --retry cannot be combined with --count, --status or --emit\n", stderr);
-    return STRUT_USAGE;
-  }
-  if (!arguments->output && !arguments->count_points) {
-    fputs("strut sweep: missing -o DIR, the results directory\n", stderr);
     return STRUT_USAGE;
   }
   status = strut_sweep_study_open(arguments, &study);
@@ -367,19 +406,30 @@ static strut_status run_sweep(const strut_arguments *arguments) {
   else if (!status && arguments->status)
     status = show_status(arguments, &study);
   else if (!status && study.plan.study->search)
-    status = strut_sweep_search(arguments, &study, (int)at_a_time.threads, (int)at_a_time.batch);
+    status = strut_sweep_search(arguments, &study, (int)batch);
   else if (!status && study.plan.study->follow)
-    status = strut_sweep_follow(arguments, &study, (int)at_a_time.threads);
+    status = strut_sweep_follow(arguments, &study);
   else if (!status)
-    status = compute_points(arguments, &study, at_a_time);
+    status = compute_points(arguments, &study, batch);
+  bool table = !study.plan.study || (!study.plan.study->search && !study.plan.study->follow);
+  if (strut_option_text(arguments, STRUT_OPTION_PLOT) && table &&
+      (status == STRUT_OK || status == STRUT_DIVERGED || status == STRUT_INACCURATE)) {
+    strut_status plotted = plot_table(arguments, &study);
+    if (plotted) status = plotted;
+  }
   strut_sweep_study_close(&study);
   return status;
 }
 
+static const strut_command_variant forms[] = {{"merge", &strut_command_merge},
+                                              {"requests", &strut_command_requests},
+                                              {"dakota", &strut_command_requests},
+                                              {NULL, NULL}};
+
 const strut_command strut_command_sweep = {
     .name = "sweep",
     .model = "STUDY",
-    .summary = "simulates a model at many parameter values",
+    .summary = "computes a model at many parameter values, or searches for the best ones",
     .details =
         "\nSTUDY is a file that names a model, axes over its parameters and what to keep of each "
         "run\n"
@@ -396,6 +446,7 @@ const strut_command strut_command_sweep = {
         "moment.\n",
     .options = options,
     .run = run_sweep,
+    .forms = forms,
 };
 
 /* All shards are open at once, which may exceed the usual limit of open files. */
@@ -426,8 +477,13 @@ static strut_status run_merge(const strut_arguments *arguments) {
   return strut_sweep_judge(merged.points, merged.failed, merged.inaccurate);
 }
 
+static const strut_option merge_options[] = {
+    {STRUT_OPTION_SELECTOR, "merge", NULL, "merge the shards in DIR"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
 const strut_command strut_command_merge = {
-    .name = "merge",
+    .name = "sweep --merge",
     .model = "DIR",
     .summary = "merges the shards of a sweep into one table",
     .details =
@@ -438,5 +494,6 @@ const strut_command strut_command_merge = {
         "\nExit code: 3 if points of the study failed, 4 if shards or points are missing, else 5 "
         "if\n"
         "points are less accurate than requested.\n",
+    .options = merge_options,
     .run = run_merge,
 };

@@ -140,8 +140,9 @@ static const double LEAST_BUDGET = 1e-3, MOST_BUDGET = 1e7, MOST_PERIODS = 1e7;
 static const strut_option options[] = {
     {STRUT_OPTION_MEASURE, "measure", "WHAT",
      "measured quantity: velocity, position or energy (default automatic)"},
-    {STRUT_OPTION_METHODS, "methods", "LIST", "only these methods, such as rk4,verlet-events"},
-    {STRUT_OPTION_STEPS, "steps", "N",
+    {STRUT_OPTION_INTEGRATOR, "integrator", "NAME,...",
+     "only these methods, such as rk4,verlet-events"},
+    {STRUT_OPTION_STEP_SIZES, "step-sizes", "N",
      "steps per method, five per decade (default " STRUT_TEXT_OF(STRUT_TRADEOFF_USUAL_STEPS) ")"},
     {STRUT_OPTION_PERIODS, "periods", "N",
      "maximum number of periods of a run (default " STRUT_TEXT_OF(
@@ -152,12 +153,16 @@ static const strut_option options[] = {
      "number of points drawn with --vary (default " STRUT_TEXT_OF(USUAL_POINTS) ")"},
     {STRUT_OPTION_SEED, "seed", "N",
      "seed of the random points (default " STRUT_TEXT_OF(USUAL_SEED) ")"},
-    {STRUT_OPTION_BUDGET, "budget", "TIME",
+    {STRUT_OPTION_CPU_TIME, "cpu-time", "TIME",
      "approximate CPU time to spend (default " STRUT_TEXT_OF(STRUT_TRADEOFF_USUAL_BUDGET) " s)"},
     {STRUT_OPTION_OWN_MODEL, "own-model", NULL, "skip variants of the model"},
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    STRUT_SET_OPTION,
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write tradeoff.csv, .json and .svg into DIR"},
-    {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    STRUT_JSON_OPTION,
+    STRUT_THREADS_OPTION,
+    {STRUT_OPTION_PLOT, "plot", "FILE", "draw error against cost into FILE (.svg, .pdf or .png)"},
+    {STRUT_OPTION_WIDTH, "width", "WIDTH",
+     "width of the figure: page (180 mm, default), column (88 mm) or a length"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -180,7 +185,7 @@ static strut_status bad_method(const char *name, int length) {
 }
 
 static strut_status read_methods(const strut_arguments *arguments, tradeoff_request *w) {
-  const char *text = strut_option_text(arguments, STRUT_OPTION_METHODS);
+  const char *text = strut_option_text(arguments, STRUT_OPTION_INTEGRATOR);
   while (text) {
     size_t length = strcspn(text, ",");
     const strut_integrator *found = NULL;
@@ -211,7 +216,7 @@ static strut_status read_numbers(const strut_arguments *arguments, tradeoff_requ
   strut_status status =
       strut_option_word(command, arguments, STRUT_OPTION_MEASURE, measures, &measure);
   if (status == STRUT_OK)
-    status = strut_option_integer(command, arguments, STRUT_OPTION_STEPS, 1,
+    status = strut_option_integer(command, arguments, STRUT_OPTION_STEP_SIZES, 1,
                                   STRUT_TRADEOFF_MOST_STEPS, &steps);
   if (status == STRUT_OK)
     status = strut_option_integer(command, arguments, STRUT_OPTION_SEED, 0, INT64_MAX / 10, &seed);
@@ -221,11 +226,11 @@ static strut_status read_numbers(const strut_arguments *arguments, tradeoff_requ
     status = strut_option_number(command, arguments, STRUT_OPTION_PERIODS, STRUT_DIM_NONE,
                                  &w->study.periods);
   if (status == STRUT_OK)
-    status = strut_option_number(command, arguments, STRUT_OPTION_BUDGET, STRUT_DIM_TIME,
+    status = strut_option_number(command, arguments, STRUT_OPTION_CPU_TIME, STRUT_DIM_TIME,
                                  &w->study.budget);
   if (status == STRUT_OK) status = check_positive("periods", w->study.periods, 1, MOST_PERIODS);
   if (status == STRUT_OK)
-    status = check_positive("budget", w->study.budget, LEAST_BUDGET, MOST_BUDGET);
+    status = check_positive("cpu-time", w->study.budget, LEAST_BUDGET, MOST_BUDGET);
   w->study.steps = (int)steps;
   w->study.measure = (strut_tradeoff_measure)(measure + 1);
   w->points = (size_t)points;
@@ -268,7 +273,8 @@ static strut_status print_study(const strut_arguments *arguments, const strut_tr
 }
 
 static strut_status report_study(const strut_arguments *arguments, strut_results *files,
-                                 const strut_tradeoff *result, const operating_points *points) {
+                                 const strut_plot *plot, const strut_tradeoff *result,
+                                 const operating_points *points) {
   strut_error error = {0};
   char *json = strut_tradeoff_json(result, points->list);
   if (!json) return strut_print_out_of_memory();
@@ -278,13 +284,17 @@ static strut_status report_study(const strut_arguments *arguments, strut_results
     if (status == STRUT_OK) status = strut_results_commit(files, &error);
     if (status != STRUT_OK) strut_print_error(&error);
   }
+  if (status == STRUT_OK && plot->path) {
+    status = strut_tradeoff_figure(plot->path, plot->width, result, &error);
+    if (status != STRUT_OK) strut_print_error(&error);
+  }
   if (status == STRUT_OK) status = print_study(arguments, result, json);
   strut_release(json);
   return status;
 }
 
-static strut_status run_study(const strut_arguments *arguments, tradeoff_request *w,
-                              const operating_points *points) {
+static strut_status run_study(const strut_arguments *arguments, const strut_plot *plot,
+                              tradeoff_request *w, const operating_points *points) {
   strut_results files = {0};
   strut_tradeoff result = {.name = ""};
   strut_error error = {0};
@@ -300,7 +310,7 @@ static strut_status run_study(const strut_arguments *arguments, tradeoff_request
     strut_progress_end(&progress);
   }
   if (status == STRUT_OK)
-    status = report_study(arguments, &files, &result, points);
+    status = report_study(arguments, &files, plot, &result, points);
   else
     strut_print_error(&error);
   strut_tradeoff_free(&result);
@@ -311,14 +321,21 @@ static strut_status run_study(const strut_arguments *arguments, tradeoff_request
 static strut_status run_tradeoff(const strut_arguments *arguments) {
   tradeoff_request w = {.points = 1};
   operating_points points = {0};
+  strut_plot plot;
   strut_status status = read_options(arguments, &w);
+  if (status == STRUT_OK) status = strut_plot_read(&strut_command_tradeoff, arguments, PAGE, &plot);
   if (status == STRUT_OK)
     status = open_points(&strut_command_tradeoff, arguments, w.points, w.seed, &points);
   if (status != STRUT_OK) return status;
-  status = run_study(arguments, &w, &points);
+  status = run_study(arguments, &plot, &w, &points);
   free_points(&points);
   return status;
 }
+
+static const strut_refused_option refused[] = {
+    {"accuracy", "the table gives the cheapest settings for each accuracy"},
+    {"step", "it runs each method with many steps; --step-sizes says how many"},
+    {NULL, NULL}};
 
 const strut_command strut_command_tradeoff = {
     .name = "tradeoff",
@@ -337,5 +354,6 @@ const strut_command strut_command_tradeoff = {
         "single small error at a large step may be luck.\n",
     .options = options,
     .run = run_tradeoff,
+    .refused = refused,
     .timed = true,
 };

@@ -14,61 +14,61 @@ static const strut_option help_options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
+static const strut_command_variant help_forms[] = {{"completion", &strut_command_completion},
+                                                   {NULL, NULL}};
+
 static const strut_command help_command = {
     .name = "help",
-    .model = "COMMAND",
+    .model = "COMMAND|KEY",
     .model_optional = true,
-    .summary = "explains the program, or one of its commands",
+    .summary = "explains the program, a command, or a key of the language",
     .details =
         "\nWith --man, COMMAND may also be 'model', for the page strut-model(5) of the language.\n",
     .options = help_options,
     .run = print_help,
+    .forms = help_forms,
 };
 
-/* clang-format off */
-static const strut_command *const commands[] = {
-    &strut_command_run,
-    &strut_command_check,
-    &strut_command_equilibria,
-    &strut_command_modes,
-    &strut_command_form,
-    &strut_command_path,
-    &strut_command_rigidity,
-    &strut_command_compare,
-    &strut_command_merge,
-    &strut_command_sweep,
-    &strut_command_tradeoff,
-    &strut_command_view,
-    &strut_command_export,
-    &strut_command_plot,
-    &strut_command_write,
-    &strut_command_keys,
-    &strut_command_schema,
-    &strut_command_completion,
-    &strut_command_fmt,
-    &strut_command_new,
-    &strut_command_examples,
-    &strut_command_evaluate,
-    &strut_command_import,
-    &strut_command_follow,
-    &help_command,
-    NULL,
+/* In the order of the help; each begins with the group that it belongs to. */
+static const struct {
+  const char *group;
+  const strut_command *command;
+} rows[] = {
+    {"Simulate", &strut_command_run},
+    {"Simulate", &strut_command_sweep},
+    {"Simulate", &strut_command_compare},
+    {"Simulate", &strut_command_tradeoff},
+    {"Analyse equilibria", &strut_command_equilibria},
+    {"Analyse equilibria", &strut_command_path},
+    {"Analyse equilibria", &strut_command_modes},
+    {"Analyse equilibria", &strut_command_rigidity},
+    {"Analyse equilibria", &strut_command_form},
+    {"Inspect, draw and convert", &strut_command_check},
+    {"Inspect, draw and convert", &strut_command_view},
+    {"Inspect, draw and convert", &strut_command_plot},
+    {"Inspect, draw and convert", &strut_command_export},
+    {"Learn", &strut_command_examples},
+    {"Learn", &strut_command_keys},
+    {"Learn", &help_command},
 };
-/* clang-format on */
+enum { COMMANDS = sizeof rows / sizeof rows[0] };
 
-const strut_command *strut_command_at(size_t i) {
-  return i < sizeof commands / sizeof commands[0] ? commands[i] : NULL;
-}
+const strut_command *strut_command_at(size_t i) { return i < COMMANDS ? rows[i].command : NULL; }
 
 static const char *command_name_at(const void *context, size_t i) {
   (void)context;
-  return commands[i] ? commands[i]->name : NULL;
+  return i < COMMANDS ? rows[i].command->name : NULL;
+}
+
+const strut_command *strut_command_named(const char *name) {
+  for (size_t i = 0; i < COMMANDS; i++)
+    if (strcmp(rows[i].command->name, name) == 0) return rows[i].command;
+  return NULL;
 }
 
 const strut_command *strut_command_find(const char *name) {
-  for (size_t i = 0; commands[i]; i++) {
-    if (strcmp(commands[i]->name, name) == 0) return commands[i];
-  }
+  const strut_command *found = strut_command_named(name);
+  if (found) return found;
   const char *near = strut_did_you_mean(name, command_name_at, NULL);
   fprintf(stderr, "strut: unknown command '%s'", name);
   if (near) fprintf(stderr, "; did you mean '%s'?", near);
@@ -78,21 +78,33 @@ const strut_command *strut_command_find(const char *name) {
 
 void strut_program_help(void) {
   int width = 0;
-  for (size_t i = 0; commands[i]; i++) {
-    int length = (int)strlen(commands[i]->name);
+  const char *group = "";
+  for (size_t i = 0; i < COMMANDS; i++) {
+    int length = (int)strlen(rows[i].command->name);
     if (length > width) width = length;
   }
   printf(
       "strut %s: planar structures of bars, springs and cables, described in YAML\n\n"
-      "usage: strut COMMAND [OPTION]... [MODEL]\n\nCommands:\n",
+      "usage: strut COMMAND [OPTION]... [MODEL]\n       strut MODEL [OPTION]...\n",
       STRUT_VERSION);
-  for (size_t i = 0; commands[i]; i++)
-    printf("  %-*s  %s\n", width, commands[i]->name, commands[i]->summary);
+  for (size_t i = 0; i < COMMANDS; i++) {
+    if (strcmp(rows[i].group, group) != 0) printf("\n%s:\n", rows[i].group);
+    group = rows[i].group;
+    printf("  %-*s  %s\n", width, rows[i].command->name, rows[i].command->summary);
+  }
   printf(
-      "\n'strut help COMMAND' explains a command; 'strut --version' prints the version.\n"
-      "MODEL is a file in strut's language (see 'strut keys'), or - for standard input.\n\n"
+      "\n'strut help COMMAND' explains a command, 'strut keys KEY' a key of the language.\n"
+      "MODEL is a YAML file, or - for standard input. Without COMMAND, strut runs a model that\n"
+      "describes a run, finds the equilibria of another, and computes the points of a study.\n\n"
       "Exit codes: 0 success, 1 wrong usage, 2 invalid scene, 3 computation failed,\n"
       "4 file or memory trouble, 5 less accurate than requested, 130 interrupted.\n");
+}
+
+/* The help of a word that is no command: a key or section of the language, or none. */
+static strut_status print_other_help(const strut_arguments *arguments) {
+  if (!arguments->man && strut_keys_know(arguments->model))
+    return strut_command_keys.run(arguments);
+  return strut_command_find(arguments->model) ? STRUT_OK : STRUT_USAGE;
 }
 
 static strut_status print_help(const strut_arguments *arguments) {
@@ -100,8 +112,8 @@ static strut_status print_help(const strut_arguments *arguments) {
     strut_manual_of_language();
     return STRUT_OK;
   }
-  const strut_command *command = arguments->model ? strut_command_find(arguments->model) : NULL;
-  if (arguments->model && !command) return STRUT_USAGE;
+  const strut_command *command = arguments->model ? strut_command_named(arguments->model) : NULL;
+  if (arguments->model && !command) return print_other_help(arguments);
   if (arguments->man && command)
     strut_manual_of_command(command);
   else if (arguments->man)

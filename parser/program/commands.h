@@ -10,12 +10,10 @@
 extern const strut_command strut_command_check;
 extern const strut_command strut_command_compare;
 extern const strut_command strut_command_equilibria;
-extern const strut_command strut_command_evaluate;
+extern const strut_command strut_command_examples;
 extern const strut_command strut_command_export;
 extern const strut_command strut_command_form;
-extern const strut_command strut_command_import;
 extern const strut_command strut_command_keys;
-extern const strut_command strut_command_merge;
 extern const strut_command strut_command_modes;
 extern const strut_command strut_command_path;
 extern const strut_command strut_command_plot;
@@ -24,18 +22,29 @@ extern const strut_command strut_command_run;
 extern const strut_command strut_command_sweep;
 extern const strut_command strut_command_tradeoff;
 extern const strut_command strut_command_view;
-extern const strut_command strut_command_write;
-extern const strut_command strut_command_schema;
-extern const strut_command strut_command_fmt;
-extern const strut_command strut_command_new;
-extern const strut_command strut_command_examples;
+
+/* Forms of commands. */
+
 extern const strut_command strut_command_completion;
-extern const strut_command strut_command_follow;
+extern const strut_command strut_command_layout;
+extern const strut_command strut_command_merge;
+extern const strut_command strut_command_new;
+extern const strut_command strut_command_periodic;
+extern const strut_command strut_command_requests;
+extern const strut_command strut_command_schema;
 
 /** The i-th command, or NULL after the last. */
 const strut_command *strut_command_at(size_t i);
-/** The command of that name, or NULL with the reason and a suggestion on stderr. */
+/** The command of that name, or NULL. */
+const strut_command *strut_command_named(const char *name);
+/** The same, with the reason and a suggestion on stderr. */
 const strut_command *strut_command_find(const char *name);
+
+/** Is it the name of a section or a key of the language, which `strut keys` explains? */
+bool strut_keys_know(const char *name);
+
+/** Writes a model that the arguments name as a scene, or makes a scene of another program's file. */
+strut_status strut_export_scene(const strut_arguments *arguments);
 
 /** Prints the help of the whole program on stdout. */
 void strut_program_help(void);

@@ -44,6 +44,10 @@ static void offer_options(const strut_completion *c, const strut_command *comman
     snprintf(name, sizeof name, "--%s", strut_option_at(command, i)->name);
     strut_offer(c, name, "", strut_option_at(command, i)->help);
   }
+  for (const strut_command_variant *f = command->forms; f && f->selector; f++) {
+    snprintf(name, sizeof name, "--%s", f->selector);
+    strut_offer(c, name, "", f->command->summary);
+  }
 }
 
 static void offer_methods(const strut_completion *c) {
@@ -58,7 +62,7 @@ static const struct word_option {
   const char *command; /* NULL: every one */
   strut_option_id id;
   const char *words;
-} word_options[] = {{"form", STRUT_OPTION_FROM, "densities|lengths|prestress"},
+} word_options[] = {{"form", STRUT_OPTION_GIVEN, "densities|lengths|prestress"},
                     {"form", STRUT_OPTION_OBJECTIVE, "largest|sum|squares"},
                     {"tradeoff", STRUT_OPTION_MEASURE, "velocity|position|energy"},
                     {"plot", STRUT_OPTION_KIND, "curves|map|work-precision"},
@@ -67,8 +71,10 @@ static const struct word_option {
                     {NULL, STRUT_OPTION_DRAW, "overview|period|snapshots|curves"},
                     {NULL, STRUT_OPTION_EQUILIBRIA, "all|none"},
                     {NULL, STRUT_OPTION_EMIT, "slurm|parallel|htcondor"},
-                    {"export", STRUT_OPTION_FORMAT, "vtk|build|mjcf"},
-                    {"import", STRUT_OPTION_FORMAT, "ntrt|tensegritysim|springable|tables"},
+                    {"export", STRUT_OPTION_FORMAT, "scene|matrices|code|vtk|build|mjcf"},
+                    {NULL, STRUT_OPTION_INPUT, "ntrt|tensegritysim|springable|tables"},
+                    {NULL, STRUT_OPTION_REAL, "double|float"},
+                    {NULL, STRUT_OPTION_COMPLETION, "bash|zsh|fish"},
                     {NULL, STRUT_OPTION_WIDTH, "page|column"}};
 
 /* Options that take the words of a key. */
@@ -119,11 +125,10 @@ static const char *complete_value(const strut_command *command, const strut_opti
         strut_offer_parameters(c);
       return ":";
     case STRUT_OPTION_AT: strut_offer_shapes(c); return ":";
-    case STRUT_OPTION_INTEGRATOR: offer_methods(c); return ":";
+    case STRUT_OPTION_INTEGRATOR: keep_list(c), offer_methods(c); return ":";
     case STRUT_OPTION_KEEP:
       keep_list(c), offer_words(c, strut_key_at(STRUT_KEY_STUDY_KEEP)->words);
       return ":";
-    case STRUT_OPTION_METHODS: keep_list(c), offer_methods(c); return ":";
     case STRUT_OPTION_SUPPORTS: keep_list(c), strut_offer_nodes(c); return ":";
     case STRUT_OPTION_LOAD: strut_offer_loads(c); return ":";
     case STRUT_OPTION_OVER: strut_offer_path_parameters(c); return ":";
@@ -172,8 +177,6 @@ static const char *find_model(const strut_command *command, int count, char **wo
 static const char *complete_argument(const strut_command *command, const strut_completion *c) {
   const char *model = command->model ? command->model : "";
   if (strcmp(command->name, "help") == 0) offer_commands(c);
-  for (size_t i = 0; strut_shells[i] && strcmp(model, "SHELL") == 0; i++)
-    strut_offer(c, strut_shells[i], "", NULL);
   for (int i = 0; i < STRUT_SECTION_COUNT && strncmp(model, "SECTION", 7) == 0; i++)
     strut_offer(c, strut_section_name((strut_section)i), "", NULL);
   if (strcmp(model, "EXAMPLE") == 0) strut_offer_examples(c);
@@ -210,6 +213,7 @@ strut_status strut_complete(int count, char **words) {
   }
   for (size_t i = 0; count > 1 && !command && strut_command_at(i); i++)
     if (strcmp(strut_command_at(i)->name, words[0]) == 0) command = strut_command_at(i);
+  if (command) command = strut_command_variant_of(command, count - 2, words + 1);
   if (command) directive = complete_in(command, count - 1, words + 1);
   puts(directive);
   return STRUT_OK;
@@ -418,6 +422,11 @@ void strut_offer_columns(const strut_completion *c, const char *end) {
 
 const char *const strut_shells[] = {"bash", "zsh", "fish", NULL};
 
+static const strut_option completion_options[] = {
+    {STRUT_OPTION_COMPLETION, "completion", "SHELL", "bash, zsh or fish"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
 static const char *shell_at(const void *context, size_t i) {
   (void)context;
   return strut_shells[i];
@@ -426,17 +435,17 @@ static const char *shell_at(const void *context, size_t i) {
 static strut_status run_completion(const strut_arguments *arguments) {
   static const strut_embedded *const scripts[] = {strut_bash_script, strut_zsh_script,
                                                   strut_fish_script};
+  const char *shell = strut_option_text(arguments, STRUT_OPTION_COMPLETION);
   for (size_t i = 0; strut_shells[i]; i++)
-    if (strcmp(strut_shells[i], arguments->model) == 0) return strut_print(scripts[i]->text);
-  const char *near = strut_did_you_mean(arguments->model, shell_at, NULL);
+    if (strcmp(strut_shells[i], shell) == 0) return strut_print(scripts[i]->text);
+  const char *near = strut_did_you_mean(shell, shell_at, NULL);
   return strut_print_usage_error(
-      &strut_command_completion, "expected bash, zsh or fish, not '%s'%s%s%s", arguments->model,
+      &strut_command_completion, "expected bash, zsh or fish, not '%s'%s%s%s", shell,
       near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
 const strut_command strut_command_completion = {
-    .name = "completion",
-    .model = "SHELL",
+    .name = "help --completion",
     .summary = "prints the completion script of a shell: bash, zsh or fish",
     .details =
         "\nThe script completes commands, options and their values: a model's own parameters "
@@ -444,8 +453,9 @@ const strut_command strut_command_completion = {
         "--set, its configurations after --at, methods after --integrator. An installed strut has "
         "it\n"
         "in place. Otherwise, for the running shell:\n\n"
-        "  bash  source <(strut completion bash)\n"
-        "  zsh   source <(strut completion zsh)\n"
-        "  fish  strut completion fish | source\n",
+        "  bash  source <(strut help --completion bash)\n"
+        "  zsh   source <(strut help --completion zsh)\n"
+        "  fish  strut help --completion fish | source\n",
+    .options = completion_options,
     .run = run_completion,
 };

@@ -4,18 +4,26 @@
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <time.h>
 
+#include "engine/base/memory.h"
 #include "engine/output/buffer.h"
+#include "engine/output/file.h"
 #include "engine/output/record_files.h"
 #include "parser/program/commands.h"
 #include "parser/program/complete.h"
 #include "parser/program/open_model.h"
 #include "parser/program/streams.h"
+#include "parser/read/reader.h"
+#include "parser/yaml/document.h"
 
 static double now(void) {
   struct timespec t;
@@ -28,10 +36,29 @@ static void print_time(double taken) {
   printf("\n  took %s\n", strut_quantity_of(taken, 3, "s").text);
 }
 
+enum { MOST_THREADS = 4096 };
+
+/* --threads, for all that computes on several. */
+static strut_status limit_threads(const strut_command *command, const strut_arguments *arguments) {
+  int64_t threads = 0;
+  char text[32];
+  strut_status status =
+      strut_option_integer(command, arguments, STRUT_OPTION_THREADS, 1, MOST_THREADS, &threads);
+  if (status != STRUT_OK || !threads) return status;
+  snprintf(text, sizeof text, "%d", (int)threads);
+  setenv("OMP_NUM_THREADS", text, 1);
+#ifdef _OPENMP
+  omp_set_num_threads((int)threads);
+#endif
+  return STRUT_OK;
+}
+
 static strut_status run_command(const strut_command *command, int argc, char **argv) {
   strut_arguments arguments;
   double begin = now();
+  command = strut_command_variant_of(command, argc - 1, argv + 1);
   strut_status status = strut_arguments_read(command, argc, argv, &arguments);
+  if (status == STRUT_OK) status = limit_threads(command, &arguments);
   if (status == STRUT_OK && arguments.help) {
     strut_command_help(command);
   } else if (status == STRUT_OK) {
@@ -41,6 +68,39 @@ static strut_status run_command(const strut_command *command, int argc, char **a
   }
   strut_arguments_free(&arguments);
   return status;
+}
+
+/* What `strut MODEL` does: runs what describes a run, computes a study, finds the equilibria of the rest. */
+static const strut_command *natural_command(const char *path) {
+  strut_diagnostics diagnostics = {0};
+  strut_document document = {.root = NULL};
+  strut_setup setup;
+  strut_error error = {0};
+  char *text = NULL;
+  size_t length;
+  const strut_command *command = &strut_command_run; /* which says what is wrong with the file */
+  if (strut_file_read(path, &text, &length, &error) != STRUT_OK) return command;
+  strut_diagnostics_source(&diagnostics, path, text, length);
+  if (strut_document_read(&document, &diagnostics) == STRUT_OK && document.root &&
+      strut_tree_is_study(document.root)) {
+    command = &strut_command_sweep;
+  } else if (strut_setup_read(&setup, path, text, length, NULL, 0, STRUT_FOR_ANY, &diagnostics) ==
+             STRUT_OK) {
+    bool runs = setup.experiment.duration > 0.0 || setup.experiment.periods > 0.0;
+    if (!runs) command = &strut_command_equilibria;
+    strut_setup_free(&setup);
+  }
+  strut_document_free(&document);
+  strut_diagnostics_free(&diagnostics);
+  strut_release(text);
+  return command;
+}
+
+static bool names_file(const char *word) {
+  const char *end = strrchr(word, '.');
+  struct stat found;
+  return (end && (strcmp(end, ".yaml") == 0 || strcmp(end, ".yml") == 0)) ||
+         (strchr(word, '/') && stat(word, &found) == 0 && S_ISREG(found.st_mode));
 }
 
 static strut_status run_program(int argc, char **argv) {
@@ -55,6 +115,8 @@ static strut_status run_program(int argc, char **argv) {
   }
   if (strcmp(first, "complete") == 0) return strut_complete(argc - 2, argv + 2);
   if (strcmp(first, "--help") == 0 || strcmp(first, "-h") == 0) first = "help";
+  if (!strut_command_named(first) && names_file(first))
+    return run_command(natural_command(first), argc, argv);
   const strut_command *command = strut_command_find(first);
   return command ? run_command(command, argc - 1, argv + 1) : STRUT_USAGE;
 }

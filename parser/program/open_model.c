@@ -9,6 +9,7 @@
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/statics/equilibria/equilibria.h"
+#include "parser/command/run_settings.h"
 #include "parser/program/streams.h"
 #include "parser/read/read_scene.h"
 #include "parser/write/write_scene.h"
@@ -80,10 +81,7 @@ static strut_status open_text(const strut_arguments *arguments, strut_purpose pu
 }
 
 static strut_purpose scene_purpose(const strut_arguments *arguments, strut_open_purpose purpose) {
-  bool later = strut_option_text(arguments, STRUT_OPTION_ACCURACY) ||
-               strut_option_text(arguments, STRUT_OPTION_STEP);
-  if (purpose != STRUT_OPEN_FOR_RUN) return STRUT_FOR_ANY;
-  return later ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
+  return purpose == STRUT_OPEN_FOR_RUN ? strut_run_options_purpose(arguments) : STRUT_FOR_ANY;
 }
 
 strut_status strut_open_model_reported(const strut_arguments *arguments, strut_open_purpose purpose,

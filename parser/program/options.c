@@ -38,12 +38,24 @@ static strut_status usage_error(const strut_command *command) {
   return STRUT_USAGE;
 }
 
+/* Why the command cannot use an option that others have, or NULL. */
+static const char *reason_to_refuse(const strut_command *command, const char *name) {
+  const strut_refused_option *row = command->refused;
+  while (row && row->name && strcmp(row->name, name) != 0) row++;
+  return row ? row->reason : NULL;
+}
+
 /* `word` starts with its dashes. `meant`: the option it abbreviates, or NULL to look for one. */
 static strut_status unknown_option(const strut_command *command, const char *word,
                                    const char *meant) {
   int length = (int)strcspn(word, "=");
   char name[64];
   snprintf(name, sizeof name, "%.*s", length > 2 ? length - 2 : 0, word + 2);
+  const char *reason = reason_to_refuse(command, name);
+  if (reason) {
+    fprintf(stderr, "strut %s: --%s cannot be used here: %s\n", command->name, name, reason);
+    return STRUT_USAGE;
+  }
   if (!meant) meant = strut_did_you_mean(name, option_name_at, command);
   fprintf(stderr, "strut %s: unknown option '%.*s'", command->name, length, word);
   if (meant) fprintf(stderr, "; did you mean '--%s'?", meant);
@@ -127,7 +139,8 @@ static strut_status store_option(const strut_command *command, int id, strut_arg
     case STRUT_OPTION_PARTS: to->parts = true; break;
     case STRUT_OPTION_STUDY: to->study = true; break;
     case STRUT_OPTION_MAN: to->man = true; break;
-    case STRUT_OPTION_CHECK: to->check = true; break;
+    case STRUT_OPTION_FIX: to->fix = true; break;
+    case STRUT_OPTION_VERBOSE: to->verbose = true; break;
     case STRUT_OPTION_BASINS: to->basins = true; break;
     case STRUT_OPTION_DAKOTA: to->dakota = true; break;
     case STRUT_OPTION_HELP: to->help = true; break;
@@ -229,6 +242,23 @@ void strut_command_help(const strut_command *command) {
   if (command->details) printf("%s", command->details);
   printf("\nOptions:\n");
   for (size_t i = 0; strut_option_at(command, i); i++) print_option(strut_option_at(command, i));
+  for (const strut_command_variant *f = command->forms; f && f->selector; f++) {
+    if (f > command->forms && f->command == f[-1].command) continue;
+    printf("\n'strut %s' %s; see 'strut %s --help'.\n", f->command->name, f->command->summary,
+           f->command->name);
+  }
+}
+
+const strut_command *strut_command_variant_of(const strut_command *command, int count,
+                                              char **words) {
+  for (const strut_command_variant *f = command->forms; f && f->selector; f++) {
+    size_t length = strlen(f->selector);
+    for (int i = 0; i < count && strcmp(words[i], "--") != 0; i++)
+      if (strncmp(words[i], "--", 2) == 0 && strncmp(words[i] + 2, f->selector, length) == 0 &&
+          (!words[i][2 + length] || words[i][2 + length] == '='))
+        return f->command;
+  }
+  return command;
 }
 
 /* Checks that the file can be created. */

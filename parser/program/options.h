@@ -19,8 +19,29 @@ void strut_arguments_free(strut_arguments *arguments);
 /** The i-th option of a command, those of every command last; NULL after them. */
 const strut_option *strut_option_at(const strut_command *command, size_t i);
 
+/** The form of the command that one of its arguments words[0..count) selects, or the command itself. */
+const strut_command *strut_command_variant_of(const strut_command *command, int count,
+                                              char **words);
+
 /** Prints the help of a command on stdout. */
 void strut_command_help(const strut_command *command);
+
+/* Rows that tables of several commands have. */
+
+#define STRUT_SET_OPTION                                                                           \
+  { STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated" }
+#define STRUT_JSON_OPTION                                                                          \
+  { STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object" }
+#define STRUT_THREADS_OPTION                                                                       \
+  { STRUT_OPTION_THREADS, "threads", "N", "most threads (default: one per processor)" }
+
+/** Rows of refused options for commands that integrate nothing. */
+#define STRUT_REFUSE_RUN_SETTINGS                                                                  \
+  {"accuracy", "equilibria are computed to rounding errors"},                                      \
+      {"integrator", "nothing is integrated over time"},                                           \
+      {"step", "nothing is integrated over time"}, {                                               \
+    NULL, NULL                                                                                     \
+  }
 
 /* Options of figures: file, width, title, axes. */
 

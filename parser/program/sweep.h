@@ -30,6 +30,9 @@ strut_status strut_sweep_study_open(const strut_arguments *arguments, strut_swee
 /** The same without messages: those about a place are in the file's diagnostics, others in `error`. */
 strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep_study *study,
                                    strut_error *error);
+/** Makes the scenes of the open study those that options such as --accuracy ask for; STRUT_USAGE. */
+strut_status strut_sweep_adjust(const strut_command *command, const strut_arguments *arguments,
+                                strut_study_file *file);
 /** Prints the messages of a failure; returns `status`. */
 strut_status strut_sweep_study_report(strut_sweep_study *study, strut_status status,
                                       strut_error *error);
@@ -100,14 +103,13 @@ strut_status strut_sweep_judge(int64_t points, int64_t failed, int64_t inaccurat
 
 /** Does what the command does with a study that searches, once it is open. */
 strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
-                                int threads, int batch);
+                                int batch);
 /** Prints how far the searches in a directory are. */
 strut_status strut_sweep_search_status(strut_slots *slots, const char *directory, bool json);
 /** Adds the columns of a study that follows motions, and checks that its first point has some. */
 strut_status strut_sweep_follow_check(strut_sweep_study *study, strut_error *error);
 /** Does what the command does with a study that follows motions, once it is open. */
-strut_status strut_sweep_follow(const strut_arguments *arguments, strut_sweep_study *study,
-                                int threads);
+strut_status strut_sweep_follow(const strut_arguments *arguments, strut_sweep_study *study);
 
 /** Prints the script for the study of that name. */
 strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name);

@@ -200,13 +200,11 @@ static void write_partial(const strut_arguments *arguments, const strut_sweep_pl
 }
 
 static strut_status run_points(const strut_arguments *arguments, strut_sweep_study *study,
-                               int threads, strut_slots *slots, strut_sweep_state *state,
-                               strut_error *error) {
+                               strut_slots *slots, strut_sweep_state *state, strut_error *error) {
   strut_sweep_progress shown = strut_sweep_progress_begin(&study->plan, arguments->quiet);
   const strut_follow_points_options how = {.setup = setup_at,
                                            .context = &study->file,
                                            .directory = arguments->output,
-                                           .threads = threads,
                                            .interrupt = strut_interrupt_watch(),
                                            .progress = strut_sweep_progress_show,
                                            .progress_context = &shown};
@@ -284,8 +282,7 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
                                     strut_slots_inaccurate(slots));
 }
 
-strut_status strut_sweep_follow(const strut_arguments *arguments, strut_sweep_study *study,
-                                int threads) {
+strut_status strut_sweep_follow(const strut_arguments *arguments, strut_sweep_study *study) {
   strut_slots *slots = NULL;
   strut_sweep_state state = {0};
   strut_error error = {0};
@@ -299,7 +296,7 @@ strut_status strut_sweep_follow(const strut_arguments *arguments, strut_sweep_st
   if (!status && arguments->retry) status = strut_slots_retry(slots, &error);
   if (!status && strut_slots_missing(slots) > 0)
     strut_file_remove(arguments->output, table_name); /* outdated */
-  if (!status) status = run_points(arguments, study, threads, slots, &state, &error);
+  if (!status) status = run_points(arguments, study, slots, &state, &error);
   strut_print_failure(status, &error);
   if (!status) status = complete(arguments, study, slots);
   strut_slots_close(slots);

@@ -49,15 +49,14 @@ static void write_partial(const char *directory, strut_slots *slots) {
 }
 
 static strut_status run_search(const strut_arguments *arguments, strut_sweep_study *study,
-                               int threads, int batch, strut_slots *slots, strut_sweep_state *state,
+                               int batch, strut_slots *slots, strut_sweep_state *state,
                                strut_search_result *result, strut_error *error) {
   display shown = {.progress = strut_sweep_progress_begin(&study->plan, arguments->quiet),
                    .slots = slots,
                    .directory = arguments->output,
                    .next = FIRST_PARTIAL,
                    .interval = FIRST_PARTIAL};
-  const strut_sweep_options how = {.threads = threads,
-                                   .batch = batch,
+  const strut_sweep_options how = {.batch = batch,
                                    .interrupt = strut_interrupt_watch(),
                                    .progress = show,
                                    .progress_context = &shown};
@@ -241,7 +240,7 @@ strut_status strut_sweep_search_status(strut_slots *slots, const char *directory
 }
 
 strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
-                                int threads, int batch) {
+                                int batch) {
   strut_slots *slots = NULL;
   strut_sweep_state state = {0};
   strut_search_result result = {0};
@@ -255,8 +254,7 @@ strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_st
   if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
   if (!status && strut_slots_missing(slots) == strut_slots_description_of(slots)->count)
     strut_file_remove(arguments->output, table_name); /* of another search */
-  if (!status)
-    status = run_search(arguments, study, threads, batch, slots, &state, &result, &error);
+  if (!status) status = run_search(arguments, study, batch, slots, &state, &result, &error);
   strut_sweep_print_warnings(&state);
   strut_print_failure(status, &error);
   if (!status) status = complete(arguments, study, slots, &state, &result);

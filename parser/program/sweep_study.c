@@ -16,6 +16,7 @@
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
 #include "engine/study/sweep/grid.h"
+#include "parser/command/run_settings.h"
 #include "parser/program/commands.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
@@ -72,14 +73,59 @@ static strut_status setup_of(void *context, const strut_study_value *values, str
   return strut_study_setup(context, values, setup, error);
 }
 
-/* Hashes everything that decides the results: the study, its model and the version. */
-static bool identify(const strut_study_file *file, uint8_t hash[STRUT_STUDY_HASH]) {
+static strut_status apply_options(const void *context, strut_setup *setup) {
+  return strut_run_options_apply(&strut_command_sweep, context, setup);
+}
+
+strut_status strut_sweep_adjust(const strut_command *command, const strut_arguments *arguments,
+                                strut_study_file *file) {
+  const strut_option *first = strut_run_option_given(arguments, 0);
+  if (!first) return STRUT_OK;
+  if (file->study.compute != STRUT_COMPUTE_RUN || file->study.follow)
+    return strut_print_usage_error(command, "--%s is for studies of runs", first->name);
+  file->adjustment =
+      (strut_study_adjustment){apply_options, arguments, strut_run_options_purpose(arguments)};
+  return STRUT_OK;
+}
+
+/* The settings and options of the command line, each before its value. */
+static const char *const *list_words(const strut_arguments *arguments, strut_arena *arena,
+                                     size_t *count) {
+  size_t options = 0, n = 0;
+  while (strut_run_option_given(arguments, options)) options++;
+  const char **words =
+      strut_arena_allocate(arena, 2 * (arguments->override_count + options) + 1, sizeof *words);
+  for (size_t i = 0; words && i < arguments->override_count; i++) {
+    const strut_override *override = &arguments->overrides[i];
+    words[n++] = "--set";
+    words[n++] = strut_arena_format(arena, "%s=%s", override->name, override->value);
+    if (!words[n - 1]) return NULL;
+  }
+  for (size_t i = 0; words && i < options; i++) {
+    const strut_option *o = strut_run_option_given(arguments, i);
+    words[n++] = strut_arena_format(arena, "--%s", o->name);
+    words[n++] = strut_option_text(arguments, o->id);
+    if (!words[n - 2]) return NULL;
+  }
+  *count = n;
+  return words;
+}
+
+/* Hashes everything that decides the results: the study, its model, the options and the version. */
+static bool identify(const strut_arguments *arguments, const strut_study_file *file,
+                     uint8_t hash[STRUT_STUDY_HASH]) {
   char *text = strut_study_identity(file);
   if (!text) return false;
   size_t length = strlen(text);
   for (uint64_t i = 0; i < 2; i++) {
     uint64_t seed = strut_checksum(STRUT_VERSION, strlen(STRUT_VERSION), i);
     uint64_t sum = strut_checksum(text, length, seed);
+    for (size_t k = 0; strut_run_option_given(arguments, k); k++) {
+      const strut_option *o = strut_run_option_given(arguments, k);
+      const char *value = strut_option_text(arguments, o->id);
+      sum = strut_checksum(o->name, strlen(o->name), sum);
+      sum = strut_checksum(value, strlen(value), sum);
+    }
     for (size_t k = 0; k < 8; k++) hash[8 * i + k] = (uint8_t)(sum >> 8 * k);
   }
   strut_release(text);
@@ -104,6 +150,7 @@ strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep
   const strut_sweep_scenes scenes = {setup_of, strut_setup_write, file};
   strut_status status = strut_study_open(arguments->model, arguments->overrides,
                                          arguments->override_count, file, error);
+  if (!status) status = strut_sweep_adjust(&strut_command_sweep, arguments, file);
   if (!status) status = try_ends(file);
   if (!status) status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, error);
   if (!status && file->study.search) status = bind_search(study, error);
@@ -117,7 +164,7 @@ strut_status strut_sweep_study_open(const strut_arguments *arguments, strut_swee
   strut_error error = {0};
   strut_study_file *file = &study->file;
   strut_status status = strut_sweep_study_try(arguments, study, &error);
-  if (!status && !identify(file, study->slots.hash)) status = STRUT_NO_MEMORY;
+  if (!status && !identify(arguments, file, study->slots.hash)) status = STRUT_NO_MEMORY;
   if (status) return strut_sweep_study_report(study, status, &error);
   const char *notes = strut_study_notes(file);
   if (!notes) return strut_print_out_of_memory();
@@ -201,7 +248,9 @@ static strut_status for_each(const strut_arguments *arguments, const strut_sweep
                              strut_error *error) {
   strut_arena arena = {0};
   const strut_study_file *file = &study->file;
-  char *text = strut_study_copy(file, model_name, arguments->overrides, arguments->override_count);
+  size_t word_count = 0;
+  const char *const *words = list_words(arguments, &arena, &word_count);
+  char *text = words ? strut_study_copy(file, model_name, words, word_count) : NULL;
   const char *study_path = file->path, *model_path = file->model_path;
   const char *model = file->model_copy ? file->model_copy : file->model_text;
   const copy copies[COPIES] = {{"study.yaml", study_path, text, study_path, model_path},
@@ -231,21 +280,6 @@ strut_status strut_sweep_texts_write(const strut_arguments *arguments,
 
 enum { MOST_CPUS = 4096 };
 
-/* The settings of the command line, for every shard. */
-static const char *const *words_of(const strut_arguments *arguments, strut_arena *arena,
-                                   size_t *count) {
-  const char **words =
-      strut_arena_allocate(arena, 2 * arguments->override_count + 1, sizeof *words);
-  *count = 2 * arguments->override_count;
-  for (size_t i = 0; words && i < arguments->override_count; i++) {
-    const strut_override *override = &arguments->overrides[i];
-    words[2 * i] = "--set";
-    words[2 * i + 1] = strut_arena_format(arena, "%s=%s", override->name, override->value);
-    if (!words[2 * i + 1]) return NULL;
-  }
-  return words;
-}
-
 /* The paths of this program and of the current directory. */
 static strut_status find_places(char program[PATH_MAX], char folder[PATH_MAX]) {
   ssize_t length = readlink("/proc/self/exe", program, PATH_MAX - 1);
@@ -268,7 +302,7 @@ static strut_status print_script(const strut_arguments *arguments, strut_cluster
   if (status != STRUT_OK) return status;
   script->program = program;
   script->folder = folder;
-  script->words = words_of(arguments, arena, &script->word_count);
+  script->words = list_words(arguments, arena, &script->word_count);
   if (!script->words) return strut_print_out_of_memory();
   status = strut_cluster_script_write(cluster, script, &text, &error);
   if (status == STRUT_USAGE) fprintf(stderr, "strut sweep: --emit: %s\n", error.message);

@@ -475,6 +475,20 @@ static strut_purpose purpose_of(const strut_study *study) {
   return study->compute == STRUT_COMPUTE_RUN ? STRUT_FOR_RUN : STRUT_FOR_ANY;
 }
 
+/* Reads a scene, and adjusts it. */
+static strut_status read_scene(const strut_study_file *file, const strut_study_value *values,
+                               const strut_setting *settings, size_t count,
+                               strut_diagnostics *diagnostics, strut_setup *setup) {
+  const strut_study_adjustment *a = &file->adjustment;
+  strut_purpose purpose = a->adjust ? a->purpose : purpose_of(&file->study);
+  strut_status status = strut_scene_source_read(source_of(file, values), settings, count, purpose,
+                                                diagnostics, setup);
+  if (status != STRUT_OK || !a->adjust) return status;
+  status = a->adjust(a->context, setup);
+  if (status != STRUT_OK) strut_setup_free(setup);
+  return status;
+}
+
 /*
  * Reads a point's scene; its messages go to `diagnostics`, of the model's text. `followed`: the value of
  * the followed parameter, or NULL.
@@ -505,8 +519,7 @@ static strut_status read_point(const strut_study_file *file, const strut_study_v
     s->text = texts[most - 1];
     strut_number_text(*followed, texts[most - 1]);
   }
-  strut_status status = strut_scene_source_read(source_of(file, values), settings, count,
-                                                purpose_of(&file->study), diagnostics, setup);
+  strut_status status = read_scene(file, values, settings, count, diagnostics, setup);
   strut_release(settings);
   return status;
 }
@@ -524,6 +537,8 @@ static strut_status make_setup(const strut_study_file *file, const strut_study_v
     const char *model = used ? diagnostics.used[used - 1].file : file->model_path;
     strut_fail(error, status, "%s:%u: %s", own ? file->path : model,
                first->place.line & ~STRUT_OVERLAY_LINE, first->message);
+  } else if (status == STRUT_USAGE) {
+    strut_fail(error, status, "the options do not fit the scene of this point");
   } else if (status != STRUT_OK) {
     strut_fail(error, status, "out of memory");
   }

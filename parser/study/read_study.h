@@ -20,6 +20,13 @@ typedef struct strut_study_points {
   strut_diagnostics diagnostics; /* about it */
 } strut_study_points;
 
+/** What is done to each scene of an open study once it was read, by several threads at a time. */
+typedef struct strut_study_adjustment {
+  strut_status (*adjust)(const void *context, strut_setup *setup); /* NULL: nothing */
+  const void *context;
+  strut_purpose purpose; /* of the scenes of runs */
+} strut_study_adjustment;
+
 /** A study as read. Zero-initialise; strut_study_close releases it. Constant once it is open. */
 typedef struct strut_study_file {
   strut_study study;
@@ -41,6 +48,7 @@ typedef struct strut_study_file {
   strut_study_points *tables; /* (table_count) files of points */
   char *model_copy;           /* a model that uses files, in one text; NULL: model_text is that */
   strut_setting followed;     /* the parameter that is followed, its value to be filled in */
+  strut_study_adjustment adjustment;
 } strut_study_file;
 
 /**
@@ -78,10 +86,10 @@ STRUT_API char *strut_study_identity(const strut_study_file *file);
 /**
  * The study's text as it was written, but naming `model` as its model and files of points by the names of
  * their copies, so that it may stand beside copies of them; comments at its end say what the model was, and
- * what --set gave. A block of strut_allocate, or NULL.
+ * which options, each before its value in `words`, it was run with. A block of strut_allocate, or NULL.
  */
 STRUT_API char *strut_study_copy(const strut_study_file *file, const char *model,
-                                 const strut_override *overrides, size_t override_count);
+                                 const char *const *words, size_t word_count);
 STRUT_API void strut_study_close(strut_study_file *file);
 
 /* ---- expressions of columns ---- */

@@ -376,7 +376,10 @@ strut_status strut_request_setup(const strut_study_file *file, strut_request *r,
                                  strut_request_findings *f) {
   strut_diagnostics diagnostics = {0};
   size_t count = 0;
-  strut_purpose purpose = r->study.compute == STRUT_COMPUTE_RUN ? STRUT_FOR_RUN : STRUT_FOR_ANY;
+  const strut_study_adjustment *a = &file->adjustment;
+  strut_purpose purpose = r->study.compute != STRUT_COMPUTE_RUN ? STRUT_FOR_ANY
+                          : a->adjust                           ? a->purpose
+                                                                : STRUT_FOR_RUN;
   strut_c_locale locale = strut_c_locale_enter();
   strut_setting *settings = list_settings(file, r, &count, f);
   strut_c_locale_leave(locale);
@@ -387,6 +390,11 @@ strut_status strut_request_setup(const strut_study_file *file, strut_request *r,
   if (status == STRUT_BAD_SCENE) list_messages(file, r, &diagnostics, f);
   strut_diagnostics_free(&diagnostics);
   if (status) return status;
+  if (a->adjust && r->study.compute == STRUT_COMPUTE_RUN &&
+      (status = a->adjust(a->context, setup)) != STRUT_OK) {
+    strut_setup_free(setup);
+    return status;
+  }
   check_quantities(r, setup, f);
   if (!f->count) return STRUT_OK;
   strut_setup_free(setup);

@@ -232,8 +232,8 @@ static void replace_node(const strut_study_file *file, const strut_tree *node, c
   list[at] = new;
 }
 
-char *strut_study_copy(const strut_study_file *file, const char *model,
-                       const strut_override *overrides, size_t override_count) {
+char *strut_study_copy(const strut_study_file *file, const char *model, const char *const *words,
+                       size_t word_count) {
   strut_writer w = {.text = NULL};
   const strut_tree *node = strut_tree_find(file->document.root, "model", NULL);
   replacement *list = strut_allocate(file->table_count + 1, sizeof *list);
@@ -249,14 +249,17 @@ char *strut_study_copy(const strut_study_file *file, const char *model,
   }
   strut_put_part(&w, file->text + done, file->length - done);
   strut_release(list);
-  if (count || override_count) strut_put(&w, "\n");
+  if (count || word_count) strut_put(&w, "\n");
   if (node && strcmp(node->text, model) != 0)
     put_note(&w, "A copy; its model was ", node->text, NULL);
   for (size_t i = 0; i < file->table_count; i++)
     if (strcmp(file->tables[i].node->text, file->tables[i].copy) != 0)
       put_note(&w, "A copy; a file of points was ", file->tables[i].node->text, NULL);
-  for (size_t i = 0; i < override_count; i++)
-    put_note(&w, "It was run with --set ", overrides[i].name, overrides[i].value);
+  for (size_t i = 0; i + 1 < word_count; i += 2) {
+    bool set = strcmp(words[i], "--set") == 0;
+    put_note(&w, set ? "It was run with --set " : "It was run with ", words[i + set],
+             set ? NULL : words[i + 1]);
+  }
   if (!w.failed) return w.text;
   strut_release(w.text);
   return NULL;

@@ -208,3 +208,18 @@ char *strut_keys_text(strut_section section) {
   strut_release(result.text);
   return NULL;
 }
+
+char *strut_keys_named(const char *name) {
+  strut_writer result = {.text = NULL};
+  for (int i = 0; i < STRUT_SECTION_COUNT; i++) {
+    int key = strut_key_find((strut_section)i, name);
+    if (key < 0) continue;
+    strut_put(&result, result.length ? "\nin " : "in ");
+    strut_put(&result, strut_section_name((strut_section)i));
+    strut_put(&result, ":\n");
+    put_key(&result, strut_key_at(key));
+  }
+  if (!result.failed) return result.text;
+  strut_release(result.text);
+  return NULL;
+}

@@ -92,6 +92,8 @@ STRUT_API char *strut_keys_page(void);
 
 /** A section in a block of strut_allocate (release it); NULL: no memory. */
 STRUT_API char *strut_keys_text(strut_section section);
+/** The same for every key of that name, each below the name of its section. */
+STRUT_API char *strut_keys_named(const char *name);
 
 /* ---- parts of both, and of the schema ---- */
 

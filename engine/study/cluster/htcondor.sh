@@ -31,7 +31,7 @@ case ${1:-} in
     [ "$code" -ne 3 ] || code=0 # points that failed are rows of the table; the merge tells
     exit "$code"
     ;;
-  --merge) exec "$strut" merge "$results" ;;
+  --merge) exec "$strut" sweep --merge "$results" ;;
 esac
 
 mkdir -p "$results/condor" || exit 4

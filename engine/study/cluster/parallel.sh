@@ -38,4 +38,4 @@ fi
 # shellcheck disable=SC2046,SC2086  # several words are meant
 parallel --will-cite --quote --jobs "$jobs" "$@" \
   $step sh "$script" --this-shard {} ::: $(seq 0 "$last") </dev/null
-exec "$strut" merge "$results" # reports missing shards and points
+exec "$strut" sweep --merge "$results" # reports missing shards and points

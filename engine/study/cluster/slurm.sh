@@ -33,7 +33,7 @@ if [ -z "${SLURM_ARRAY_TASK_ID:-}" ]; then # not in the queue yet
     --time=@time@ \
     <<'END'
 #!/bin/sh
-exec @strut@ merge @results@
+exec @strut@ sweep --merge @results@
 END
   ) || exit
   echo "the shards are job ${shards%%;*}, their table is job ${table%%;*}"

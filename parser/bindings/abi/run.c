@@ -85,18 +85,14 @@ static strut_status choose_channels(const strut_arguments *arguments, const stru
 static strut_status open_setup(abi_call *call, const strutlib_scene *scene,
                                strutlib_result *result) {
   const strut_arguments *arguments = &call->arguments;
-  bool later = strut_option_text(arguments, STRUT_OPTION_ACCURACY) ||
-               strut_option_text(arguments, STRUT_OPTION_STEP);
   strut_error what = {0};
-  strut_status status = abi_setup(scene, later ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN,
-                                  &result->setup, call->error);
+  strut_status status =
+      abi_setup(scene, strut_run_options_purpose(arguments), &result->setup, call->error);
   if (status != STRUT_OK) return status;
   result->opened = true;
   status = strut_resolve_start_equilibrium(&result->setup, &what);
   if (status == STRUT_OK)
-    status = strut_run_settings_apply(&abi_run_command, arguments, &result->setup.experiment);
-  if (status == STRUT_OK)
-    status = strut_model_options_apply(&abi_run_command, arguments, &result->setup.scene);
+    status = strut_run_options_apply(&abi_run_command, arguments, &result->setup);
   if (status == STRUT_OK) status = strut_model_compile(&result->setup.scene, &result->model, &what);
   if (status != STRUT_OK) abi_call_fail(call, status, &what);
   return status;
@@ -229,16 +225,12 @@ static strut_status open_simulation(abi_call *call, const strutlib_scene *scene,
   const strut_arguments *arguments = &call->arguments;
   strut_setup *setup = &simulation->setup;
   strut_error what = {0};
-  bool later = strut_option_text(arguments, STRUT_OPTION_STEP) != NULL;
-  strut_status status =
-      abi_setup(scene, later ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN, setup, call->error);
+  strut_status status = abi_setup(scene, strut_run_options_purpose(arguments), setup, call->error);
   if (status != STRUT_OK) return status;
   simulation->opened = true;
   status = strut_resolve_start_equilibrium(setup, &what);
   if (status == STRUT_OK)
-    status = strut_run_settings_apply(&abi_simulation_command, arguments, &setup->experiment);
-  if (status == STRUT_OK)
-    status = strut_model_options_apply(&abi_simulation_command, arguments, &setup->scene);
+    status = strut_run_options_apply(&abi_simulation_command, arguments, setup);
   if (status == STRUT_OK)
     status = strut_stepping_create(setup, arguments->force, abi_interrupt_of(call->control),
                                    &simulation->stepping, &what);

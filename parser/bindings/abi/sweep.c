@@ -177,38 +177,19 @@ static strut_status read_options(abi_call *call, sweep *s, strut_error *what) {
   return status;
 }
 
-/* Applies the options of method and model. */
-static strut_status apply_options(const strut_arguments *options, strut_setup *setup) {
-  strut_status status = strut_run_settings_apply(&abi_sweep_command, options, &setup->experiment);
-  return status ? status : strut_model_options_apply(&abi_sweep_command, options, &setup->scene);
-}
-
-static bool gives_options(const strut_arguments *a) {
-  static const strut_option_id ids[] = {STRUT_OPTION_ACCURACY,     STRUT_OPTION_BUDGET,
-                                        STRUT_OPTION_INTEGRATOR,   STRUT_OPTION_STEP,
-                                        STRUT_OPTION_TOLERANCE,    STRUT_OPTION_STEADY,
-                                        STRUT_OPTION_BARS,         STRUT_OPTION_MASS_MODEL,
-                                        STRUT_OPTION_FRICTION_LAW, STRUT_OPTION_DAMPING_LAW};
-  for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++)
-    if (strut_option_text(a, ids[i])) return true;
-  return false;
-}
-
-/* The same to the scene itself, so that what is wrong with them is said once. */
+/* Applies the options of method and model to the scene itself, so that what is wrong with them is said once. */
 static strut_status check_options(abi_call *call, sweep *s) {
   const strut_arguments *a = &call->arguments;
-  bool later =
-      strut_option_text(a, STRUT_OPTION_ACCURACY) || strut_option_text(a, STRUT_OPTION_STEP);
   bool run = s->study.compute == STRUT_COMPUTE_RUN;
   strut_setup setup;
-  s->purpose = !run ? STRUT_FOR_ANY : later ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
+  s->purpose = run ? strut_run_options_purpose(a) : STRUT_FOR_ANY;
   s->options = *a;
   s->options.listener = NULL;
-  if (!gives_options(a)) return STRUT_OK;
+  if (!strut_run_option_given(a, 0)) return STRUT_OK;
   strut_status status = abi_setup(s->scene, s->purpose, &setup, call->error);
   s->located = status != STRUT_OK;
   if (status != STRUT_OK) return status;
-  status = apply_options(a, &setup);
+  status = strut_run_options_apply(&abi_sweep_command, a, &setup);
   strut_setup_free(&setup);
   return status;
 }
@@ -261,7 +242,8 @@ static strut_status setup_of(void *context, const strut_study_value *values, str
   }
   strut_diagnostics_free(&found);
   strut_release(settings);
-  if (status == STRUT_OK && (status = apply_options(&s->options, setup)) != STRUT_OK) {
+  if (status == STRUT_OK &&
+      (status = strut_run_options_apply(&abi_sweep_command, &s->options, setup)) != STRUT_OK) {
     strut_fail(error, status, "the options do not fit the scene of this point");
     strut_setup_free(setup);
   }

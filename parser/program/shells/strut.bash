@@ -1,4 +1,4 @@
-# bash completion for strut. `strut completion bash` prints it; strut itself finds the words.
+# bash completion for strut. `strut help --completion bash` prints it; strut itself finds the words.
 _strut() {
     # bash takes words apart at '=', so they are put together again
     local words=() word line directive=: glued=

@@ -1,4 +1,4 @@
-# fish completion for strut. `strut completion fish` prints it; strut itself finds the words.
+# fish completion for strut. `strut help --completion fish` prints it; strut itself finds the words.
 function __strut_complete
     set -l words (commandline -opc)
     set -l current (commandline -ct)

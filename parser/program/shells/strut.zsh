@@ -1,5 +1,5 @@
 #compdef strut
-# zsh completion for strut. `strut completion zsh` prints it; strut itself finds the words.
+# zsh completion for strut. `strut help --completion zsh` prints it; strut itself finds the words.
 _strut() {
     local line directive=: word
     local -a found unfinished arguments

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `strut keys` and `strut schema`: the language as a page and as a schema. */
+/* `strut keys`: the language as a page and as a schema. */
 #include <stdio.h>
 #include <string.h>
 
@@ -15,26 +15,16 @@ static const char *section_at(const void *context, size_t i) {
   return i < STRUT_SECTION_COUNT ? strut_section_name((strut_section)i) : NULL;
 }
 
-/* "; it is a key of node, member and beam", or what the name may have meant. */
-static void print_hint(const char *name) {
-  int found = 0, last = 0;
-  for (int i = 0; i < STRUT_SECTION_COUNT; i++)
-    if (strut_key_find((strut_section)i, name) >= 0) found++, last = i;
-  const char *near = found ? NULL : strut_did_you_mean(name, section_at, NULL);
-  if (near) fprintf(stderr, "; did you mean '%s'?", near);
-  if (!found) return;
-  const char *separator = "; it is a key of ";
-  for (int i = 0; i < STRUT_SECTION_COUNT; i++) {
-    if (strut_key_find((strut_section)i, name) < 0) continue;
-    if (i == last && found > 1) separator = " and ";
-    fprintf(stderr, "%s%s", separator, section_at(NULL, (size_t)i));
-    separator = ", ";
-  }
+static const char *key_at(const void *context, size_t i) {
+  (void)context;
+  return i < STRUT_KEY_COUNT ? strut_key_at((int)i)->name : NULL;
 }
 
-static strut_status refuse_section(const char *name) {
-  fprintf(stderr, "strut keys: there is no section '%s'", name);
-  print_hint(name);
+static strut_status refuse_name(const char *name) {
+  const char *near = strut_did_you_mean(name, section_at, NULL);
+  if (!near) near = strut_did_you_mean(name, key_at, NULL);
+  fprintf(stderr, "strut keys: there is no section or key '%s'", name);
+  if (near) fprintf(stderr, "; did you mean '%s'?", near);
   fprintf(stderr, "\nSections:");
   for (int i = 0, column = LINE; i < STRUT_SECTION_COUNT; i++) {
     const char *section = section_at(NULL, (size_t)i);
@@ -45,34 +35,49 @@ static strut_status refuse_section(const char *name) {
   return STRUT_USAGE;
 }
 
+bool strut_keys_know(const char *name) {
+  for (int i = 0; i < STRUT_SECTION_COUNT; i++)
+    if (strut_key_find((strut_section)i, name) >= 0) return true;
+  return strut_section_find(name) != STRUT_SECTION_COUNT;
+}
+
+/* The section of that name, or the key of that name in every section that has one. */
+static strut_status print_keys(const char *name) {
+  strut_section section = strut_section_find(name);
+  if (section != STRUT_SECTION_COUNT) return strut_print_block(strut_keys_text(section));
+  return strut_print_block(strut_keys_named(name));
+}
+
 static strut_status run_keys(const strut_arguments *arguments) {
   strut_status status = STRUT_OK;
   if (!arguments->model_count) return strut_print_block(strut_keys_page());
   for (size_t i = 0; i < arguments->model_count; i++)
-    if (strut_section_find(arguments->models[i]) == STRUT_SECTION_COUNT)
-      return refuse_section(arguments->models[i]);
+    if (!strut_keys_know(arguments->models[i])) return refuse_name(arguments->models[i]);
   for (size_t i = 0; i < arguments->model_count && status == STRUT_OK; i++) {
     if (i) status = strut_print("\n");
-    if (status == STRUT_OK)
-      status = strut_print_block(strut_keys_text(strut_section_find(arguments->models[i])));
+    if (status == STRUT_OK) status = print_keys(arguments->models[i]);
   }
   return status;
 }
 
+static const strut_command_variant forms[] = {{"schema", &strut_command_schema}, {NULL, NULL}};
+
 const strut_command strut_command_keys = {
     .name = "keys",
-    .model = "SECTION",
+    .model = "SECTION|KEY",
     .model_optional = true,
     .many = true,
     .summary = "explains the keys of the modelling language",
     .details =
         "\nPrints the keys of each SECTION, which is a mapping of the language such as member, "
         "ground or\n"
-        "solver; without SECTION the reference page of all, as Markdown.\n",
+        "solver, or a KEY wherever it occurs; without both the reference page, as Markdown.\n",
     .run = run_keys,
+    .forms = forms,
 };
 
 static const strut_option options[] = {
+    {STRUT_OPTION_SELECTOR, "schema", NULL, "print the language as a JSON Schema"},
     {STRUT_OPTION_STUDY, "study", NULL, "the schema of a study instead of a scene"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
@@ -82,7 +87,7 @@ static strut_status run_schema(const strut_arguments *arguments) {
 }
 
 const strut_command strut_command_schema = {
-    .name = "schema",
+    .name = "keys --schema",
     .summary = "prints the language as a JSON Schema, for editors",
     .details =
         "\nWith it an editor completes keys and words, explains them, and marks unknown keys, "

@@ -19,12 +19,15 @@ static const char *const file_names[] = {"branches.csv", "branches.json", "branc
                                          "curves.csv",   "curves.svg",    NULL};
 
 static const strut_option options[] = {
+    {STRUT_OPTION_SELECTOR, "periodic", NULL, "follow periodic motions instead of equilibria"},
     {STRUT_OPTION_OVER, "over", "NAME=LOW..HIGH", "the parameter and its range"},
+    {STRUT_OPTION_FROM, "from", "VALUE", "low end of the range, if --over gives none"},
+    {STRUT_OPTION_UNTIL, "until", "VALUE", "high end, likewise"},
     {STRUT_OPTION_AND, "and", "NAME=LOW..HIGH",
      "a second parameter, over which curves of folds, doublings and grazings are followed"},
-    {STRUT_OPTION_AT, "at", "VALUE,...",
+    {STRUT_OPTION_VALUES, "values", "VALUE,...",
      "values at which branches start (default: the model's own, or the middle)"},
-    {STRUT_OPTION_FROM, "from", "NAME,...", "configurations to start from (default: the start)"},
+    {STRUT_OPTION_AT, "at", "NAME,...", "configurations to start from (default: the start)"},
     {STRUT_OPTION_ACCURACY, "accuracy", "E",
      "relative error of velocities (default " STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %)"},
     {STRUT_OPTION_INTEGRATOR, "integrator", "NAME",
@@ -32,10 +35,11 @@ static const strut_option options[] = {
     {STRUT_OPTION_STEPS, "steps", "N",
      "maximum number of steps each way (default " STRUT_TEXT_OF(
          STRUT_FOLLOW_USUAL_STEPS) ", of curves " STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_CURVE_STEPS) ")"},
-    {STRUT_OPTION_BASINS, "basins", NULL, "kick the stable motions at the values of --at"},
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    {STRUT_OPTION_BASINS, "basins", NULL, "kick the stable motions at the values of --values"},
+    STRUT_SET_OPTION,
+    STRUT_THREADS_OPTION,
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write branches.csv, .json and .svg into DIR"},
-    {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    STRUT_JSON_OPTION,
     STRUT_PLOT_OPTIONS,
     STRUT_AXIS_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
@@ -123,13 +127,13 @@ static strut_status run_follow(const strut_arguments *arguments) {
   strut_follow_source source = {.scenes = {.file = strut_model_name(arguments)}};
   strut_follow_options wanted = {0};
   char *text = NULL;
-  strut_status status = strut_plot_read(&strut_command_follow, arguments, 0, &plot);
+  strut_status status = strut_plot_read(&strut_command_periodic, arguments, 0, &plot);
   if (!status) status = strut_check_output_writable(arguments, file_names);
   if (!status) status = strut_open_model_text(arguments, &text, &source.scenes.length, &setup);
   if (status) return status;
   source.scenes.text = text;
   status =
-      strut_follow_options_read(&strut_command_follow, arguments, &setup.scene, &source, &wanted);
+      strut_follow_options_read(&strut_command_periodic, arguments, &setup.scene, &source, &wanted);
   strut_setup_free(&setup);
   if (!status) status = follow(arguments, &plot, &wanted);
   strut_follow_source_free(&source);
@@ -137,8 +141,13 @@ static strut_status run_follow(const strut_arguments *arguments) {
   return status;
 }
 
-const strut_command strut_command_follow = {
-    .name = "follow",
+static const strut_refused_option refused[] = {
+    {"step", "it follows from --accuracy and the method's stability limit"},
+    {"load", "periodic motions are followed over parameters: --over NAME=LOW..HIGH"},
+    {NULL, NULL}};
+
+const strut_command strut_command_periodic = {
+    .name = "path --periodic",
     .model = "MODEL",
     .summary = "follows periodic motions, stable or not, as a parameter changes",
     .details =
@@ -156,5 +165,6 @@ const strut_command strut_command_follow = {
         "lift-offs, with their cusps.\n",
     .options = options,
     .run = run_follow,
+    .refused = refused,
     .timed = true,
 };

@@ -13,9 +13,11 @@
 #include "engine/output/json_value.h"
 #include "engine/study/sweep/evaluation.h"
 #include "parser/command/arguments.h"
+#include "parser/command/run_settings.h"
 #include "parser/program/commands.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
+#include "parser/program/sweep.h"
 #include "parser/study/study_request.h"
 #include "parser/yaml/text.h"
 
@@ -349,8 +351,8 @@ static void answer(exchange *x, const char *line, size_t length) {
 
 static strut_status open_streams(exchange *x) {
   const strut_arguments *a = x->task->arguments;
-  const char *in = strut_option_text(a, STRUT_OPTION_IN);
-  const char *out = strut_option_text(a, STRUT_OPTION_OUT);
+  const char *in = strut_option_text(a, STRUT_OPTION_REQUESTS);
+  const char *out = strut_option_text(a, STRUT_OPTION_ANSWERS);
   bool standard = !in || strcmp(in, "-") == 0;
   x->name = standard ? "<stdin>" : in;
   x->from = standard ? STDIN_FILENO : open(in, O_RDONLY | O_CLOEXEC);
@@ -398,31 +400,33 @@ static strut_status strut_evaluate_lines(const strut_evaluate_task *task) {
 enum { EVALUATE_MOST_MESSAGES = 50, MOST_THREADS = 4096 };
 
 static const strut_option options[] = {
+    {STRUT_OPTION_REQUESTS, "requests", "FILE", "read requests from FILE, - for standard input"},
     {STRUT_OPTION_COMPUTE, "compute", "WHAT",
      "run (default), equilibria, modes, rigidity, path or form"},
     {STRUT_OPTION_KEEP, "keep", "WORD,...", "which results, as 'keep' of a study"},
     {STRUT_OPTION_AT, "at", "NAME", "the equilibrium of modes, rigidity or path"},
-    {STRUT_OPTION_IN, "in", "FILE", "read requests from FILE (default: standard input)"},
-    {STRUT_OPTION_OUT, "out", "FILE", "write answers to FILE (default: standard output)"},
+    {STRUT_OPTION_ANSWERS, "answers", "FILE", "write answers to FILE (default: standard output)"},
     {STRUT_OPTION_DAKOTA, "dakota", NULL,
      "read DAKOTA's PARAMETERS file and write its RESULTS file"},
     {STRUT_OPTION_THREADS, "threads", "N", "number of threads of a search (default 1)"},
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    STRUT_RUN_SETTING_OPTIONS,
+    STRUT_SET_OPTION,
     {STRUT_OPTION_COUNT_POINTS, "count", NULL, "only print the names and units of the results"},
     {STRUT_OPTION_JSON, "json", NULL, "with --count: print one JSON object"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
 static strut_status check_arguments(const strut_arguments *a) {
-  const strut_command *command = &strut_command_evaluate;
-  const char *in = strut_option_text(a, STRUT_OPTION_IN);
-  bool files = in || strut_option_text(a, STRUT_OPTION_OUT);
+  const strut_command *command = &strut_command_requests;
+  const char *in = strut_option_text(a, STRUT_OPTION_REQUESTS);
+  bool files = in || strut_option_text(a, STRUT_OPTION_ANSWERS);
   if (a->json && !a->count_points)
     return strut_print_usage_error(command, "--json is for --count: answers are JSON anyway");
   if (a->count_points && (a->dakota || files || a->model_count > 1))
     return strut_print_usage_error(command, "--count computes nothing: it goes with a model alone");
   if (a->dakota && files)
-    return strut_print_usage_error(command, "--dakota names its files itself: omit --in and --out");
+    return strut_print_usage_error(
+        command, "--dakota names its files itself: omit --requests and --answers");
   if (a->dakota && a->model_count != 3)
     return strut_print_usage_error(
         command, "--dakota expects MODEL PARAMETERS RESULTS, found %zu arguments", a->model_count);
@@ -457,7 +461,7 @@ static strut_status try_model(const strut_evaluate_task *task, strut_study_file 
   strut_request_begin(file, &request);
   strut_status status = strut_request_choose(&request, &task->choice, &error);
   if (status) {
-    strut_print_usage_error(&strut_command_evaluate, "%s", error.message);
+    strut_print_usage_error(&strut_command_requests, "%s", error.message);
     strut_request_free(&request);
     return STRUT_USAGE;
   }
@@ -521,7 +525,7 @@ static strut_status print_columns(strut_evaluate_task *task) {
 static strut_status evaluate(strut_evaluate_task *task) {
   const strut_arguments *a = task->arguments;
   int64_t threads = 1;
-  strut_status early = strut_option_integer(&strut_command_evaluate, a, STRUT_OPTION_THREADS, 1,
+  strut_status early = strut_option_integer(&strut_command_requests, a, STRUT_OPTION_THREADS, 1,
                                             MOST_THREADS, &threads);
   if (early) return early;
   if (a->count_points) return print_columns(task);
@@ -548,19 +552,20 @@ static strut_status run_evaluate(const strut_arguments *arguments) {
   status = strut_study_open_either(arguments->model, arguments->overrides,
                                    arguments->override_count, &file, &error);
   report(&file, status, &error);
+  if (!status) status = strut_sweep_adjust(&strut_command_requests, arguments, &file);
   if (!status) status = try_model(&task, &file);
   if (!status) status = evaluate(&task);
   strut_study_close(&file);
   return status;
 }
 
-const strut_command strut_command_evaluate = {
-    .name = "evaluate",
+const strut_command strut_command_requests = {
+    .name = "sweep --requests",
     .model = "MODEL|STUDY",
     .many = true,
     .summary = "answers requests, each a set of parameters, in one process",
     .details =
-        "\nEach line of standard input is a request in JSON, such as {\"friction\": 0.2}, or\n"
+        "\nEach line is a request in JSON, such as {\"friction\": 0.2}, or\n"
         "{\"id\": 7, \"set\": {\"friction\": 0.2, \"frequency\": \"12 Hz\"}, \"keep\": "
         "[\"velocity\"]} with\n"
         "compute, keep, at and variant as choices. Numbers are in SI. Each gets one line with "
