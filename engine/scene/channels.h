@@ -24,15 +24,15 @@ struct strut_scene;
   X(POSITION, position, "m", NODE, POSITIONS, WITHOUT_TOTAL, "of nodes")                           \
   X(VELOCITY, velocity, "m/s", NODE, VELOCITIES, WITHOUT_TOTAL, "of nodes")                        \
   X(LENGTH, length, "m", MEMBER, SINGLE, WITHOUT_TOTAL, "of members")                              \
-  X(FORCE, force, "N", MEMBER, SINGLE, WITHOUT_TOTAL, "in members, tension positive")              \
-  X(CONTACT, contact, "N", CONTACT, REACTIONS, WITHOUT_TOTAL, "forces, normal and friction")       \
+  X(FORCE, force, "N", MEMBER, SINGLE, WITHOUT_TOTAL, "of members, tension positive")              \
+  X(CONTACT, contact, "N", CONTACT, REACTIONS, WITHOUT_TOTAL, "forces")                            \
   X(ENERGY, energy, "J", SYSTEM, ENERGIES, WITHOUT_TOTAL, "with works and losses")                 \
   X(ANGLE, angle, "rad", HINGE, SINGLE, WITHOUT_TOTAL, "of hinges")                                \
   X(MOMENT, moment, "N m", HINGE, SINGLE, WITHOUT_TOTAL, "of hinges")                              \
   X(AREA, area, "m^2", CELL, SINGLE, WITHOUT_TOTAL, "of cells")                                    \
   X(PRESSURE, pressure, "N/m", CELL, SINGLE, WITHOUT_TOTAL, "of cells")                            \
   X(ANGULAR_MOMENTUM, angular_momentum, "kg m^2/s", NODE, SINGLE, WITH_TOTAL,                      \
-    "of nodes about the centre of mass, and its total")
+    "about the centre of mass")
 
 /** X(OWNER, things, axis, file): their name in the plural, that of their axis in HDF5, and their CSV file. */
 #define STRUT_CHANNEL_OWNERS(X)                                                                    \
@@ -84,8 +84,7 @@ typedef enum strut_channel {
 #define STRUT_CHANNEL_SENTENCE(NAME, name, unit, OWNER, COMPONENTS, TOTAL, text)                   \
   " `" #name "` " text " [" unit "];"
 #define STRUT_CHANNEL_DESCRIPTION                                                                  \
-  "The channels to record:" STRUT_CHANNEL_TABLE(                                                   \
-      STRUT_CHANNEL_SENTENCE) " channels of things that the scene lacks are left out."
+  "Channels to record:" STRUT_CHANNEL_TABLE(STRUT_CHANNEL_SENTENCE) " absent things are left out."
 
 typedef enum strut_channel_owner {
 #define STRUT_CHANNEL_OWNER(OWNER, ...) STRUT_OWNER_##OWNER,

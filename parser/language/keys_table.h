@@ -7,7 +7,7 @@
  * X(section, id, name, type, measure, range, default, need, set, words, field, description)
  *
  * range: ANY, NOT_NEGATIVE, ABOVE_ZERO, or WHOLE(least, most) for whole numbers. need: REQUIRED keys must
- * be given; `strut write` always writes REQUIRED and WRITTEN keys, OPTIONAL ones only where they differ
+ * be given; `strut export` always writes REQUIRED and WRITTEN keys, OPTIONAL ones only where they differ
  * from the default. set: a mapping may give only one of the keys of a set (not 0). Words are separated
  * by '|'; those of a nested mapping are what messages call it, if not by its key.
  */
@@ -18,9 +18,9 @@
 
 /* clang-format off */
 #define STRUT_PART_KEYS(X) \
-  X(PART, USE, "use", TEXT, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A file whose structure is the part, relative to this one; its own keys lie over it.") \
-  X(PART, PARAMETERS, "parameters", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Values that `set` of a placement may change.") \
-  X(PART, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node or a contact", BY_HAND, "As in a scene; those of the scene are known too.") \
+  X(PART, USE, "use", TEXT, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "File of a scene whose structure is the part, relative to this file. The part's own keys override it.") \
+  X(PART, PARAMETERS, "parameters", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Default values, which `set` of a placement changes.") \
+  X(PART, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node or a contact", BY_HAND, "As in a scene, in addition to those of the scene.") \
   X(PART, NODES, "nodes", THINGS, NONE, ANY, "", OPTIONAL, 0, "`[x, y]` or the keys of a node", THINGS(NODE), "As in a scene, in the part's own coordinates.") \
   X(PART, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", THINGS(MEMBER), "As in a scene.") \
   X(PART, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", THINGS(HINGE), "As in a scene.") \
@@ -34,130 +34,130 @@
   X(PART, LOADS, "loads", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a load", THINGS(LOAD), "As in a scene; forces turn with the part.") \
   X(PART, UNBALANCES, "unbalances", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an unbalance", THINGS(UNBALANCE), "As in a scene.") \
   X(PART, SLIDERS, "sliders", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a slider", THINGS(SLIDER), "As in a scene.") \
-  X(PART, SIGNALS, "signals", THINGS, NONE, ANY, "", OPTIONAL, 0, "a signal", THINGS(SIGNAL), "As in a scene; those of the scene are known too.") \
-  X(PART, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, "", OPTIONAL, 0, "`{NODE: [x, y], ...}` or the keys of a [configuration](#configuration)", THINGS(CONFIGURATION), "Shapes of the part; what is not in the copy stays as drawn.") \
+  X(PART, SIGNALS, "signals", THINGS, NONE, ANY, "", OPTIONAL, 0, "a signal", THINGS(SIGNAL), "As in a scene, in addition to those of the scene.") \
+  X(PART, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, "", OPTIONAL, 0, "`{NODE: [x, y], ...}` or the keys of a [configuration](#configuration)", THINGS(CONFIGURATION), "Shapes of the part; all else stays as drawn.") \
   X(PART, SENSORS, "sensors", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a sensor", THINGS(SENSOR), "As in a scene.") \
   X(PART, STATES, "states", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a state", THINGS(STATE), "As in a scene.") \
   X(PART, OSCILLATORS, "oscillators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an oscillator", THINGS(OSCILLATOR), "As in a scene.") \
   X(PART, CONTROLLERS, "controllers", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a controller", THINGS(CONTROLLER), "As in a scene.") \
-  X(PART, CONTACTS, "contacts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a contact", THINGS(CONTACT), "Nodes that may touch the ground, by name, and settings of their contacts; `{}` for none.") \
-  X(PART, PARTS, "parts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a part", THINGS(PART), "Parts that only this one knows.") \
+  X(PART, CONTACTS, "contacts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a contact", THINGS(CONTACT), "Nodes that may touch the ground, each with settings of its contact, or `{}`.") \
+  X(PART, PARTS, "parts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a part", THINGS(PART), "Parts for use within this one.") \
   X(PART, PLACE, "place", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [place](#place)", THINGS(PLACE), "Copies of other parts within this one.") \
-  X(PART, MERGE, "merge", FREE, NONE, ANY, "", OPTIONAL, 0, "touching, or {node: other node, ...}", BY_HAND, "As in a scene, among the nodes of the part.") \
-  X(PART, PORTS, "ports", THINGS, NONE, ANY, "all nodes", OPTIONAL, 0, "the name of a node", BY_HAND, "Names by which nodes are seen from outside; then no other nodes are.") \
-  X(PART, ISOLATED, "isolated", WORD, NONE, ANY, "no, `yes` with `use`", OPTIONAL, 0, "no|yes", BY_HAND, "Whether the part sees only its own parameters, groups, signals and parts, and none of those around it.")
+  X(PART, MERGE, "merge", FREE, NONE, ANY, "", OPTIONAL, 0, "touching, or {node: other node, ...}", BY_HAND, "As in a scene, for nodes of the part.") \
+  X(PART, PORTS, "ports", THINGS, NONE, ANY, "all nodes", OPTIONAL, 0, "the name of a node", BY_HAND, "Names under which nodes are visible from outside; all other nodes are then hidden.") \
+  X(PART, ISOLATED, "isolated", WORD, NONE, ANY, "no, `yes` with `use`", OPTIONAL, 0, "no|yes", BY_HAND, "`yes`: the part sees only its own parameters, groups, signals and parts.")
 
 #define STRUT_PLACE_KEYS(X) \
   X(PLACE, PART, "part", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The part to copy.") \
-  X(PLACE, FLIP, "flip", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|x|y|both", FIELD(strut_place_keys, flip), "Changes the sign of coordinates. The order is always: flip, scale, turn, move.") \
-  X(PLACE, SCALE, "scale", FREE, NONE, ANY, "1", OPTIONAL, 0, "a number above zero, or fit", BY_HAND, "Multiplies all lengths of the copy; masses, forces and stiffnesses stay. `fit`: what `onto` needs.") \
-  X(PLACE, TURN, "turn", NUMBER, ANGLE, ANY, "0", OPTIONAL, 1, "", FIELD(strut_place_keys, turn), "Turns the copy about its origin, counter-clockwise.") \
-  X(PLACE, AT, "at", PAIR, LENGTH, ANY, "[0, 0]", OPTIONAL, 2, "", FIELD(strut_place_keys, at), "Where its origin comes to lie.") \
-  X(PLACE, ONTO, "onto", THINGS, NONE, ANY, "", OPTIONAL, 2, "the name of a node outside", BY_HAND, "Instead of `at`: nodes of the copy and those on which they come to lie, which are merged. Two pairs turn it too.") \
-  X(PLACE, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Parameters of the part; `i` and `j` are the numbers of the copy.") \
+  X(PLACE, FLIP, "flip", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|x|y|both", FIELD(strut_place_keys, flip), "Changes the sign of coordinates. The order is always flip, scale, turn, move.") \
+  X(PLACE, SCALE, "scale", FREE, NONE, ANY, "1", OPTIONAL, 0, "a number above zero, or fit", BY_HAND, "Factor of all lengths of the copy, but not of masses, forces and stiffnesses. `fit`: as `onto` requires.") \
+  X(PLACE, TURN, "turn", NUMBER, ANGLE, ANY, "0", OPTIONAL, 1, "", FIELD(strut_place_keys, turn), "Rotation of the copy about its origin, counter-clockwise.") \
+  X(PLACE, AT, "at", PAIR, LENGTH, ANY, "[0, 0]", OPTIONAL, 2, "", FIELD(strut_place_keys, at), "Position of the copy's origin.") \
+  X(PLACE, ONTO, "onto", THINGS, NONE, ANY, "", OPTIONAL, 2, "the name of a node outside", BY_HAND, "Instead of `at`: one or two nodes of the copy and the placed nodes with which they merge. Two pairs also turn the copy, with `scale: fit` if their distances differ.") \
+  X(PLACE, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Parameters of the part. Expressions may use the copy's numbers `i` and, in a lattice, `j`.") \
   X(PLACE, REPEAT, "repeat", FREE, NONE, ANY, "once", OPTIONAL, 0, "a number of copies, or the keys of repeat", BY_HAND, "Several copies.")
 
 #define STRUT_REPEAT_KEYS(X) \
-  X(REPEAT, COUNT, "count", FREE, NONE, ANY, "", REQUIRED, 0, "a whole number, or [n, m] for a lattice", BY_HAND, "How many; numbered from 0.") \
-  X(REPEAT, STEP, "step", FREE, NONE, ANY, "[0, 0]", OPTIONAL, 0, "a displacement such as [1 m, 0], or two of a lattice", BY_HAND, "From each copy to the next, in the copy's own frame.") \
-  X(REPEAT, TURN, "turn", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_repeat_keys, turn), "Turns each copy against the one before.") \
-  X(REPEAT, SCALE, "scale", NUMBER, NONE, ABOVE_ZERO, "1", OPTIONAL, 0, "", FIELD(strut_repeat_keys, scale), "Size of each copy over that of the one before.") \
-  X(REPEAT, ABOUT, "about", PAIR, LENGTH, ANY, "[0, 0]", OPTIONAL, 0, "", FIELD(strut_repeat_keys, about), "The point about which it is turned and scaled.") \
-  X(REPEAT, NEXT, "next", FREE, NONE, ANY, "", OPTIONAL, 0, "the keys of next, or two such mappings for a lattice", BY_HAND, "What ties a copy to the next one.") \
-  X(REPEAT, CLOSED, "closed", FREE, NONE, ANY, "no", OPTIONAL, 0, "yes, no, or {node: node of the first copy, ...}", BY_HAND, "The first copy is the next of the last one; a mapping says under which other names, as in a ring with a twist.")
+  X(REPEAT, COUNT, "count", FREE, NONE, ANY, "", REQUIRED, 0, "a whole number, or [n, m] for a lattice", BY_HAND, "Number of copies, numbered from 0.") \
+  X(REPEAT, STEP, "step", FREE, NONE, ANY, "[0, 0]", OPTIONAL, 0, "a displacement such as [1 m, 0], or two of a lattice", BY_HAND, "Displacement from each copy to the next, in the copy's own frame.") \
+  X(REPEAT, TURN, "turn", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_repeat_keys, turn), "Rotation of each copy against the one before.") \
+  X(REPEAT, SCALE, "scale", NUMBER, NONE, ABOVE_ZERO, "1", OPTIONAL, 0, "", FIELD(strut_repeat_keys, scale), "Size of each copy divided by that of the one before.") \
+  X(REPEAT, ABOUT, "about", PAIR, LENGTH, ANY, "[0, 0]", OPTIONAL, 0, "", FIELD(strut_repeat_keys, about), "The centre of `turn` and `scale`.") \
+  X(REPEAT, NEXT, "next", FREE, NONE, ANY, "", OPTIONAL, 0, "the keys of next, or two such mappings for a lattice", BY_HAND, "What a copy shares with the next one.") \
+  X(REPEAT, CLOSED, "closed", FREE, NONE, ANY, "no", OPTIONAL, 0, "yes, no, or {node: node of the first copy, ...}", BY_HAND, "`yes`: the first copy follows the last one. A mapping names other nodes of the first copy, as in a ring with a twist.")
 
 #define STRUT_NEXT_KEYS(X) \
-  X(NEXT, MERGE, "merge", THINGS, NONE, ANY, "", OPTIONAL, 0, "the name of a node of the next copy", BY_HAND, "Nodes of a copy that are nodes of the next one: `{b: a}`.") \
-  X(NEXT, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", THINGS(MEMBER), "Members between them; `next.NAME` is a node of the next copy.") \
-  X(NEXT, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", THINGS(HINGE), "Likewise.") \
-  X(NEXT, CELLS, "cells", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a cell", THINGS(CELL), "Likewise.") \
-  X(NEXT, COLLISIONS, "collisions", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a collision", THINGS(COLLISION), "Likewise.") \
-  X(NEXT, DISTANCES, "distances", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a distance", THINGS(DISTANCE), "Likewise.") \
-  X(NEXT, FEET, "feet", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a foot", THINGS(FOOT), "Likewise.") \
-  X(NEXT, BEAMS, "beams", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a beam", THINGS(BEAM), "Likewise.") \
-  X(NEXT, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", THINGS(ACTUATOR), "Likewise.") \
-  X(NEXT, SLIDERS, "sliders", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a slider", THINGS(SLIDER), "Likewise.") \
-  X(NEXT, SENSORS, "sensors", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a sensor", THINGS(SENSOR), "Likewise.")
+  X(NEXT, MERGE, "merge", THINGS, NONE, ANY, "", OPTIONAL, 0, "the name of a node of the next copy", BY_HAND, "Nodes of a copy and those of the next copy with which they merge: `{b: a}`.") \
+  X(NEXT, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", THINGS(MEMBER), "Members between the two copies; `next.NAME` is a node of the next one.") \
+  X(NEXT, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", THINGS(HINGE), "Likewise, between the two copies.") \
+  X(NEXT, CELLS, "cells", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a cell", THINGS(CELL), "Likewise, between the two copies.") \
+  X(NEXT, COLLISIONS, "collisions", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a collision", THINGS(COLLISION), "Likewise, between the two copies.") \
+  X(NEXT, DISTANCES, "distances", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a distance", THINGS(DISTANCE), "Likewise, between the two copies.") \
+  X(NEXT, FEET, "feet", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a foot", THINGS(FOOT), "Likewise, between the two copies.") \
+  X(NEXT, BEAMS, "beams", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a beam", THINGS(BEAM), "Likewise, between the two copies.") \
+  X(NEXT, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", THINGS(ACTUATOR), "Likewise, between the two copies.") \
+  X(NEXT, SLIDERS, "sliders", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a slider", THINGS(SLIDER), "Likewise, between the two copies.") \
+  X(NEXT, SENSORS, "sensors", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a sensor", THINGS(SENSOR), "Likewise, between the two copies.")
 
 #define STRUT_BEAM_KEYS(X) \
-  X(BEAM, NODES, "nodes", NAME_PAIR, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_beam, node, NODE), "The nodes at its ends; it is straight at rest.") \
-  X(BEAM, BENDING_STIFFNESS, "bending_stiffness", NUMBER, BENDING_STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_beam, bending_stiffness), "EI; a hinge between two parts of the length h has the stiffness EI / h, one at a clamp 2 EI / h.") \
-  X(BEAM, AXIAL_STIFFNESS, "axial_stiffness", NUMBER, FORCE, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_beam, axial_stiffness), "EA of its parts.") \
+  X(BEAM, NODES, "nodes", NAME_PAIR, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_beam, node, NODE), "The nodes at its ends. A beam is straight at rest.") \
+  X(BEAM, BENDING_STIFFNESS, "bending_stiffness", NUMBER, BENDING_STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_beam, bending_stiffness), "EI. With parts of length h a hinge has the stiffness EI / h, at a clamp 2 EI / h.") \
+  X(BEAM, AXIAL_STIFFNESS, "axial_stiffness", NUMBER, FORCE, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_beam, axial_stiffness), "EA.") \
   X(BEAM, PARTS, "parts", NUMBER, NONE, WHOLE(1, 10000), "10", OPTIONAL, 0, "", FIELD(strut_beam, parts), "Number of bars.") \
   X(BEAM, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_beam, mass), "Mass of the whole beam.") \
-  X(BEAM, DAMPING, "damping", NUMBER, TIME, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_beam, damping), "Damping / stiffness of the material, of bars and hinges alike (Kelvin-Voigt).") \
-  X(BEAM, CLAMPED, "clamped", WORD, NONE, ANY, "none", OPTIONAL, 0, "none|start|end|both", FIELD(strut_beam, clamped), "Ends whose direction is held, at a fixed node.") \
-  X(BEAM, CLAMPED_TO, "clamped_to", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(CLAMPED_TO), "Members and other beams whose direction its ends follow.")
+  X(BEAM, DAMPING, "damping", NUMBER, TIME, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_beam, damping), "Ratio of damping to stiffness of the material (Kelvin-Voigt), of bars and hinges alike.") \
+  X(BEAM, CLAMPED, "clamped", WORD, NONE, ANY, "none", OPTIONAL, 0, "none|start|end|both", FIELD(strut_beam, clamped), "Ends at which a fixed node holds the direction; they move with a node that `moves`.") \
+  X(BEAM, CLAMPED_TO, "clamped_to", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(CLAMPED_TO), "Members and other beams to which its ends keep their drawn angle.")
 
 #define STRUT_CLAMPED_TO_KEYS(X) \
-  X(CLAMPED_TO, START, "start", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A bar, a spring or a beam that ends at the first node.") \
-  X(CLAMPED_TO, END, "end", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The same at the second node.")
+  X(CLAMPED_TO, START, "start", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A bar, spring or beam that ends at the first node.") \
+  X(CLAMPED_TO, END, "end", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A bar, spring or beam that ends at the second node.")
 
 #define STRUT_OSCILLATOR_KEYS(X) \
-  X(OSCILLATOR, FREQUENCY, "frequency", NUMBER, FREQUENCY, ANY, "", REQUIRED, 0, "", FIELD(strut_oscillator, frequency), "Its own frequency.") \
+  X(OSCILLATOR, FREQUENCY, "frequency", NUMBER, FREQUENCY, ANY, "", REQUIRED, 0, "", FIELD(strut_oscillator, frequency), "Natural frequency.") \
   X(OSCILLATOR, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_oscillator, phase), "Phase at t = 0.") \
   X(OSCILLATOR, COUPLING, "coupling", THINGS, NONE, ANY, "", OPTIONAL, 0, "the strength K of the coupling to that oscillator [1/s]", BY_HAND, "Adds K sin(phase of the other - own phase - bias) to the rate of the phase.") \
-  X(OSCILLATOR, BIAS, "bias", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_oscillator, bias), "Phase by which the others are to be ahead.") \
-  X(OSCILLATOR, FEEDBACK, "feedback", EXPRESSION, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Added to the rate of the phase: an expression as that of a signal.")
+  X(OSCILLATOR, BIAS, "bias", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_oscillator, bias), "Phase by which the others should be ahead.") \
+  X(OSCILLATOR, FEEDBACK, "feedback", EXPRESSION, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "An expression, as of a signal, that is added to the rate of the phase.")
 
 #define STRUT_CONTROLLER_KEYS(X) \
-  X(CONTROLLER, SENSOR, "sensor", NAME, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_controller, sensor, SENSOR), "The sensor s that it controls.") \
-  X(CONTROLLER, TARGET, "target", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_controller, target), "Wanted value of the sensor. The error is e = target - s.") \
-  X(CONTROLLER, GAIN, "gain", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_controller, gain), "The signal is gain e + integral times the integral of e - derivative ds/dt.") \
-  X(CONTROLLER, INTEGRAL, "integral", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", FIELD(strut_controller, integral), "In the unit of the gain per second.") \
-  X(CONTROLLER, DERIVATIVE, "derivative", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", FIELD(strut_controller, derivative), "In the unit of the gain times a second. A rest length needs `every` with it.") \
-  X(CONTROLLER, LEAST, "least", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", CHOICE(strut_controller, limited[0], true, FIELD(strut_controller, limit[0])), "Least value of the signal.") \
-  X(CONTROLLER, MOST, "most", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", CHOICE(strut_controller, limited[1], true, FIELD(strut_controller, limit[1])), "Largest value. Between limits the integral follows what the limits leave (no windup).") \
-  X(CONTROLLER, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_controller, every), "Time between samples; 0: the controller is continuous.") \
-  X(CONTROLLER, KIND, "kind", WORD, NONE, ANY, "pid", OPTIONAL, 0, "pid|relay", NONE, "`relay`: the controller has the keys of a [relay](#relay) instead.")
+  X(CONTROLLER, SENSOR, "sensor", NAME, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_controller, sensor, SENSOR), "The controlled sensor, s.") \
+  X(CONTROLLER, TARGET, "target", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_controller, target), "Desired value of the sensor. The error is e = target - s.") \
+  X(CONTROLLER, GAIN, "gain", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_controller, gain), "The signal is gain * e + integral * (integral of e) - derivative * ds/dt.") \
+  X(CONTROLLER, INTEGRAL, "integral", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", FIELD(strut_controller, integral), "Gain of the integral of e, in the unit of `gain` per second.") \
+  X(CONTROLLER, DERIVATIVE, "derivative", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", FIELD(strut_controller, derivative), "Gain of -ds/dt, in the unit of `gain` times a second. If the signal drives a rest length, `every` is required.") \
+  X(CONTROLLER, LEAST, "least", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", CHOICE(strut_controller, limited[0], true, FIELD(strut_controller, limit[0])), "Lower limit of the signal.") \
+  X(CONTROLLER, MOST, "most", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", CHOICE(strut_controller, limited[1], true, FIELD(strut_controller, limit[1])), "Upper limit of the signal. At a limit the integral does not wind up.") \
+  X(CONTROLLER, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_controller, every), "Sampling interval; 0: the controller is continuous.") \
+  X(CONTROLLER, KIND, "kind", WORD, NONE, ANY, "pid", OPTIONAL, 0, "pid|relay", NONE, "`relay`: the controller has the keys of a [relay](#relay).")
 
 #define STRUT_PIPE_KEYS(X) \
-  X(PIPE, CELLS, "cells", NAME_PAIR, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_pipe, cell, CELL), "Two cells with isothermal gas, between which it flows.") \
-  X(PIPE, CONDUCTANCE, "conductance", NUMBER, CONDUCTANCE, NOT_NEGATIVE, "", REQUIRED, 0, "", FIELD(strut_pipe, conductance), "C: of the gas, whose amount is pressure times area, C (p_a - p_b) flows from the first cell to the second.")
+  X(PIPE, CELLS, "cells", NAME_PAIR, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_pipe, cell, CELL), "The two cells, with isothermal gas.") \
+  X(PIPE, CONDUCTANCE, "conductance", NUMBER, CONDUCTANCE, NOT_NEGATIVE, "", REQUIRED, 0, "", FIELD(strut_pipe, conductance), "C: the flow from the first cell to the second is C (p_a - p_b), measured as pressure times area per time. The energy it sets free counts as work of drives.")
 
 #define STRUT_NETWORK_KEYS(X) \
-  X(NETWORK, FILE, "network", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_network, file), "File of weights, in the folder of the scene or below: a line for each neuron, its weights for the values before it and last its bias, separated by commas; an empty line between layers.") \
-  X(NETWORK, INPUTS, "inputs", FREE, NONE, ANY, "", REQUIRED, 0, "a list of expressions without unit", BY_HAND, "What the first layer sees, such as `[l/(1 mm), touch]`.") \
-  X(NETWORK, OUTPUT, "output", NUMBER, NONE, WHOLE(1, 1000), "1", OPTIONAL, 0, "", FIELD(strut_network, output), "Which neuron of the last layer is the signal.") \
-  X(NETWORK, LAST, "last", WORD, NONE, ANY, "tanh", OPTIONAL, 0, "tanh|linear", FIELD(strut_network, last), "Function of the last layer; the others have tanh.") \
-  X(NETWORK, SCALE, "scale", NUMBER, CONTEXT, ANY, "1", OPTIONAL, 0, "", BY_HAND, "Factor of the signal, which gives it its unit.") \
-  X(NETWORK, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_network, every), "Time between samples; 0: the controller is continuous.")
+  X(NETWORK, FILE, "network", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_network, file), "File of weights, in the folder of the scene or below. Each line is a neuron: weights of the values of the layer before, then the bias, separated by commas. An empty line separates layers.") \
+  X(NETWORK, INPUTS, "inputs", FREE, NONE, ANY, "", REQUIRED, 0, "a list of expressions without unit", BY_HAND, "Inputs of the first layer, such as `[l/(1 mm), touch]`.") \
+  X(NETWORK, OUTPUT, "output", NUMBER, NONE, WHOLE(1, 1000), "1", OPTIONAL, 0, "", FIELD(strut_network, output), "Number of the neuron of the last layer that is the signal.") \
+  X(NETWORK, LAST, "last", WORD, NONE, ANY, "tanh", OPTIONAL, 0, "tanh|linear", FIELD(strut_network, last), "Activation of the last layer; the others use tanh.") \
+  X(NETWORK, SCALE, "scale", NUMBER, CONTEXT, ANY, "1", OPTIONAL, 0, "", BY_HAND, "Factor and unit of the signal.") \
+  X(NETWORK, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_network, every), "Sampling interval; 0: the controller is continuous.")
 
 #define STRUT_STUDY_KEYS(X) \
   X(STUDY, VERSION, "strut", VERSION, NONE, ANY, "", REQUIRED, 0, "1", NONE, "Version of the language.") \
   X(STUDY, NAME, "study", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, name), "Name of the study.") \
-  X(STUDY, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, description), "What the study is for.") \
+  X(STUDY, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, description), "Purpose of the study.") \
   X(STUDY, MODEL, "model", TEXT, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "File of the model, in the folder of the study or below.") \
   X(STUDY, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression or a text", BY_HAND, "Values of the model's parameters at all points; `--set` takes precedence.") \
-  X(STUDY, AXES, "axes", AXES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Each axis gives one parameter its values, `{NAME: [...]}` or `{NAME: {...}}` with the keys of a [range](#range), or several parameters together, `{zip: {NAME: ..., NAME: ...}}`. Several parameters go together in `{points: FILE}`, with a row for each value, or the keys of [points](#points), and in `{sample: {...}}`, with the keys of a [sample](#sample). The points are all combinations of the axes; the last axis varies fastest. Required without a `search` or a `sensitivity` analysis; beside one, there is one for each of these points.") \
-  X(STUDY, DERIVE, "derive", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Parameters computed from others at each point, such as `{step: 1/(1000*frequency)}`.") \
-  X(STUDY, VARIANTS, "variants", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [variant](#variant)", THINGS(VARIANT), "Variants of the model, for example with other numerics; they form the first axis, the column `variant`.") \
+  X(STUDY, AXES, "axes", AXES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The points are all combinations of the axes; the last varies fastest. An axis is `{NAME: [...]}`, `{NAME: {...}}` (a [range](#range)), `{zip: {NAME: ..., NAME: ...}}`, `{points: FILE}` ([points](#points)) or `{sample: {...}}` ([sample](#sample)). Required without `search` or `sensitivity`; with one of these, each point has its own.") \
+  X(STUDY, DERIVE, "derive", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Parameters that follow from others at each point, such as `{step: 1/(1000*frequency)}`.") \
+  X(STUDY, VARIANTS, "variants", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [variant](#variant)", THINGS(VARIANT), "Variants of the model, for example with other numerics. They form the first axis, column `variant`.") \
   X(STUDY, SOLVER, "solver", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(SOLVER), "Keys that replace those of the model.") \
   X(STUDY, RUN, "run", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(RUN), "Keys that replace those of the model.") \
   X(STUDY, INITIAL, "initial", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(INITIAL), "Keys that replace those of the model.") \
   X(STUDY, OUTPUT, "output", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(OUTPUT), "Keys that replace those of the model.") \
-  X(STUDY, KEEP, "keep", KEEP, NONE, ANY, "[velocity, velocity_spread, motion, periods, force_evaluations, outcome, quantities]", OPTIONAL, 0, "velocity|velocity_spread|velocity_interval|motion|repeats|periods|distance|duration|settle_time|steps|force_evaluations|check_evaluations|events|method|step|step_limit|expected_error|energy|work|losses|residual|contacts|positions|outcome|quantities|accuracy_kept|node_count|member_count|degrees_of_freedom|total_mass|stable_count|equilibrium_count|states|energies|barriers|starts|missed_probability|at|frequencies|damping_ratios|mode_counts|condition|rank|self_stress_count|mechanism_count|mechanism_kinds|super_stable|label|limit_factor|bifurcation_factor|critical_factor|last_factor|event_count|end|moved|density_change|least_tension|largest_force|lengths|cost_of_transport|lowest_barrier|stiffness|shape_distance|curve_distance", BY_HAND, "Columns of the table: `velocity` [m/s] and its spread over the window; `velocity_interval`, `motion` (periodic, irregular, creeping, transient), `repeats` and `periods` of runs that stop when steady; `distance` travelled per drive period; `energy` (at the end), `work` (of drives, loads, belt), `losses` and `residual` of the energy balance over the `duration`; `cost_of_transport` (net work of the drives over weight and distance in the window, and `work_per_distance` [N]); `contacts` (duty factor and height of each), `positions` (of each node at the end); `accuracy_kept` (1 if the wanted accuracy was reached, otherwise 0; always there where one is wanted); `outcome` (the nearest configuration); `quantities` (all that the model measures), or single ones by name; and further entries of the summary. Of every `compute`: `node_count`, `member_count`, `degrees_of_freedom`, `total_mass`. Of equilibria: `stable_count`, `equilibrium_count` (all that were found, saddles too), and of the stable states that are lowest in energy, `states` (names), `energies`, `barriers` (the lowest escape barrier of each); `lowest_barrier` (out of any stable state); `starts`, `missed_probability`. Of modes: `at`, `frequencies` and `damping_ratios` of the lowest elastic modes, `mode_counts` (rigid-body, mechanisms, unstable), `condition`. Of rigidity: `rank`, `self_stress_count`, `mechanism_count`, `mechanism_kinds`, `super_stable`, `label`, `residual`. Of a path: `limit_factor` (the first limit point), `bifurcation_factor`, `critical_factor` (where stability is lost first), `last_factor`, `event_count`, `end`. Of a form: `moved`, `residual`, `density_change`, `least_tension`, `largest_force`, `lengths` (of members), `positions`. By default, of what is at rest: all but the first four, `lowest_barrier`, `lengths`, `positions`, and what compares with a goal: `stiffness` (at `stiffness_at`), `shape_distance` (root mean square over nodes, after the best rigid motion: at the end of a run, of the nearest stable state, of the equilibrium of modes), `curve_distance` (root mean square of forces).") \
+  X(STUDY, KEEP, "keep", KEEP, NONE, ANY, "[velocity, velocity_spread, motion, periods, force_evaluations, outcome, quantities]", OPTIONAL, 0, "velocity|velocity_spread|velocity_interval|motion|repeats|periods|distance|duration|settle_time|steps|force_evaluations|check_evaluations|events|method|step|step_limit|expected_error|energy|work|losses|residual|contacts|positions|outcome|quantities|accuracy_kept|node_count|member_count|degrees_of_freedom|total_mass|stable_count|equilibrium_count|states|energies|barriers|starts|missed_probability|at|frequencies|damping_ratios|mode_counts|condition|rank|self_stress_count|mechanism_count|mechanism_kinds|super_stable|label|limit_factor|bifurcation_factor|critical_factor|last_factor|event_count|end|moved|density_change|least_tension|largest_force|lengths|cost_of_transport|lowest_barrier|stiffness|shape_distance|curve_distance", BY_HAND, "Columns of the table. `distance` is per drive period; `work`, `losses`, `residual` belong to the energy balance; `cost_of_transport` is net drive work / (weight * distance); `contacts` gives duty factors and heights; `equilibrium_count` includes saddles; `critical_factor` is the first loss of stability, `limit_factor` the first limit point; `quantities` are all measured ones, each also available by name.") \
   X(STUDY, TRAJECTORIES, "trajectories", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_study, trajectories), "Write the results of each run to a folder `runs/POINT`, as `strut run -o` does.") \
-  X(STUDY, CHECK, "check", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(CHECK), "Repeat each point more accurately and mark the points whose outcome changes.") \
+  X(STUDY, CHECK, "check", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(CHECK), "Repeats each point more accurately and marks the points whose outcome changes.") \
   X(STUDY, FIGURES, "figures", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [figure](#figure)", THINGS(FIGURE), "Figures of the table or of the recorded motions, each written to NAME.svg.") \
-  X(STUDY, COMPUTE, "compute", WORD, NONE, ANY, "run", OPTIONAL, 0, "run|equilibria|modes|rigidity|path|form", FIELD(strut_study, compute), "What is computed at each point: a run, or what the command of that name finds at rest.") \
-  X(STUDY, LOWEST, "lowest", NUMBER, NONE, WHOLE(1, 20), "3", OPTIONAL, 0, "", FIELD(strut_study, lowest), "How many `energies`, `states`, `barriers`, `frequencies` and `damping_ratios` a row lists, the lowest first.") \
-  X(STUDY, AT, "at", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, at), "The equilibrium of modes, rigidity and path, as `--at` of these commands.") \
+  X(STUDY, COMPUTE, "compute", WORD, NONE, ANY, "run", OPTIONAL, 0, "run|equilibria|modes|rigidity|path|form", FIELD(strut_study, compute), "What is computed at each point: a run, or the results of the command of that name. By default the table keeps all columns of an analysis except `node_count`, `member_count`, `degrees_of_freedom`, `total_mass`, `lowest_barrier`, `lengths`, `positions`, `stiffness`, `shape_distance` and `curve_distance`.") \
+  X(STUDY, LOWEST, "lowest", NUMBER, NONE, WHOLE(1, 20), "3", OPTIONAL, 0, "", FIELD(strut_study, lowest), "Number of lowest `states`, `energies`, `barriers` (the lowest escape barrier of each state), `frequencies` and `damping_ratios` that a row lists. `lowest_barrier` is the lowest out of any stable state.") \
+  X(STUDY, AT, "at", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, at), "The equilibrium for modes, rigidity and path, as option `--at` of these commands.") \
   X(STUDY, PATH, "path", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(PATH), "What `compute: path` follows.") \
-  X(STUDY, REFINE, "refine", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(REFINE), "Divide the cells of a map where a column changes, instead of computing all points of a fine grid.") \
-  X(STUDY, SENSITIVITY, "sensitivity", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(SENSITIVITY), "How much each parameter contributes to each column: derivatives, and first-order and total indices from samples, at every point of the axes.") \
-  X(STUDY, STIFFNESS_AT, "stiffness_at", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(STIFFNESS_AT), "Of `compute: modes`: the node and the direction of the column `stiffness`.") \
-  X(STUDY, SHAPE, "shape", THINGS, NONE, ANY, "", OPTIONAL, 0, "positions `[x, y]` of nodes", BY_HAND, "The shape that `shape_distance` compares with: places of some nodes or of all.") \
-  X(STUDY, LIKE, "like", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, goal.like), "Instead of `shape`: a configuration of the model that has positions.") \
-  X(STUDY, CURVE, "curve", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Of `compute: path` with `over: NODE.x` or `NODE.y`: displacements and forces `[[-1 mm, 2 N], ...]` that `curve_distance` compares with.") \
-  X(STUDY, LIMIT, "limit", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(LIMIT), "What a point may cost. One that needs more fails, and its row says so.") \
-  X(STUDY, FORM, "form", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(FORM), "How `compute: form` finds the form.") \
-  X(STUDY, SEARCH, "search", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(SEARCH), "Search for the parameters at which a column is best, instead of computing the points of a grid.") \
-  X(STUDY, FOLLOW, "follow", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(FOLLOW), "Follow periodic motions, stable or not, over a parameter at every point of the axes, as `strut follow` does, instead of running the points.")
+  X(STUDY, REFINE, "refine", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(REFINE), "Divides the cells of a map where a column changes, instead of computing a fine grid.") \
+  X(STUDY, SENSITIVITY, "sensitivity", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(SENSITIVITY), "Computes how much each parameter contributes to each column: derivatives, and first-order and total indices from samples.") \
+  X(STUDY, STIFFNESS_AT, "stiffness_at", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(STIFFNESS_AT), "With `compute: modes`: node and direction of the column `stiffness`.") \
+  X(STUDY, SHAPE, "shape", THINGS, NONE, ANY, "", OPTIONAL, 0, "positions `[x, y]` of nodes", BY_HAND, "Positions of some or all nodes for the column `shape_distance`: the root mean square over nodes, after the best rigid motion, of the end of a run, the nearest stable state or the equilibrium of modes.") \
+  X(STUDY, LIKE, "like", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, goal.like), "A configuration of the model with positions, instead of `shape`.") \
+  X(STUDY, CURVE, "curve", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "With `compute: path` and `over: NODE.x` or `NODE.y`: displacements and forces `[[-1 mm, 2 N], ...]` for the column `curve_distance`, the root mean square of the force differences.") \
+  X(STUDY, LIMIT, "limit", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(LIMIT), "Largest cost of a point. A point that needs more fails, and its row says so.") \
+  X(STUDY, FORM, "form", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(FORM), "Settings of `compute: form`.") \
+  X(STUDY, SEARCH, "search", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(SEARCH), "Searches for the parameters with the best value of a column, instead of computing a grid.") \
+  X(STUDY, FOLLOW, "follow", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(FOLLOW), "Follows periodic motions, stable or not, over a parameter, as `strut path --periodic` does, instead of running the points.")
 
 #define STRUT_RANGE_KEYS(X) \
   X(RANGE, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_column, from), "First value.") \
-  X(RANGE, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_column, to), "Last value, if the steps meet it.") \
+  X(RANGE, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_column, to), "Last value, if a whole number of steps leads to it.") \
   X(RANGE, STEP, "step", NUMBER, CONTEXT, ANY, "", OPTIONAL, 4, "", FIELD(strut_study_column, step), "Difference between successive values.") \
   X(RANGE, COUNT, "count", NUMBER, NONE, ABOVE_ZERO, "", OPTIONAL, 4, "", BY_HAND, "Number of values, including both ends.") \
   X(RANGE, SCALE, "scale", WORD, NONE, ANY, "linear", OPTIONAL, 0, "linear|log", BY_HAND, "`log`: equal ratios instead of equal differences; needs `count`.")
@@ -169,50 +169,50 @@
   X(VARIANT, OUTPUT, "output", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(OUTPUT), "Keys that replace those of the study and of the model.")
 
 #define STRUT_CHECK_KEYS(X) \
-  X(CHECK, HALF_STEP, "half_step", WORD, NONE, ANY, "no", OPTIONAL, 5, "no|yes", FIELD(strut_study, half_step), "Repeat with half the step, or with half the `accuracy` if the model gives one.") \
-  X(CHECK, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, "", OPTIONAL, 5, "", FIELD(strut_study, check_accuracy), "Repeat with this accuracy.")
+  X(CHECK, HALF_STEP, "half_step", WORD, NONE, ANY, "no", OPTIONAL, 5, "no|yes", FIELD(strut_study, half_step), "Repeats with half the step, or with half the `accuracy` if the model gives one.") \
+  X(CHECK, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, "", OPTIONAL, 5, "", FIELD(strut_study, check_accuracy), "Repeats with this accuracy.")
 
 #define STRUT_FIGURE_KEYS(X) \
-  X(FIGURE, KIND, "kind", WORD, NONE, ANY, "lines", OPTIONAL, 0, "lines|map|motion|period|snapshots|best|points|winner", FIELD(strut_study_figure, kind), "Figures of the table: `lines`, or a `map` in which colour shows the value at each point. Figures of recorded motions, which need `trajectories: yes`: `motion`, lines from a table with one row per node and sample (columns: the axes, `node`, `time`, `elapsed` since the record began, `x`, `y`, and the displacements `dx`, `dy` since then); `period` and `snapshots`, one picture per run, as by `strut run --draw`. Figures of a [search](#search): `best`, the best objective so far over evaluations, `points` over `x` and `y`, the best of each search in a ring, and `winner`, the best of all beside the start, as `strut compare` draws them.") \
-  X(FIGURE, AT_X, "x", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x), "Column on the x axis; required for lines, maps and motion.") \
-  X(FIGURE, AT_Y, "y", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y), "Column on the y axis; required as `x` is.") \
-  X(FIGURE, SERIES, "series", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, series), "Lines: the column that distinguishes the lines.") \
-  X(FIGURE, COLOR, "color", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, color), "Map: the column shown by colour; hatched where `flips` is 1.") \
+  X(FIGURE, KIND, "kind", WORD, NONE, ANY, "lines", OPTIONAL, 0, "lines|map|motion|period|snapshots|best|points|winner", FIELD(strut_study_figure, kind), "Of the table: `lines`, or a `map` whose colour shows a value. Of recorded motions, which need `trajectories: yes`: `motion` (lines), `period` and `snapshots` (a picture of each run, as by `strut run --draw`). Of a [search](#search): `best` (best objective over evaluations), `points` (over `x` and `y`) and `winner` (the best model beside the start).") \
+  X(FIGURE, AT_X, "x", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x), "Column on the x axis; required for lines, maps and motion. Columns of a motion: the axes, `node`, `time`, `elapsed` since the start of the record, `x`, `y`, and displacements `dx`, `dy` since then.") \
+  X(FIGURE, AT_Y, "y", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y), "Column on the y axis; required for lines, maps and motion.") \
+  X(FIGURE, SERIES, "series", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, series), "Lines: the column with one line for each of its values.") \
+  X(FIGURE, COLOR, "color", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, color), "Map: the column that colour shows; hatched where `flips` is 1.") \
   X(FIGURE, PANELS, "panels", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, panels), "The column with one panel for each of its values.") \
-  X(FIGURE, BAND, "band", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, band), "Lines: `COLUMN=TEXT`, a grey band where the column has that text, up to halfway to the neighbouring points.") \
-  X(FIGURE, ONLY, "only", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, only), "`COLUMN=TEXT`: draw only the rows in which the column has that text, such as `variant=coarse`.") \
-  X(FIGURE, DIFFERENCE, "difference", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, difference), "A column with two different texts. Lines: `y` of the second minus `y` of the first; map: the second, hatched where the first differs; picture: the second, with the first dashed.") \
+  X(FIGURE, BAND, "band", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, band), "Lines: `COLUMN=TEXT`, a grey band where the column has that text, halfway to the neighbouring points.") \
+  X(FIGURE, ONLY, "only", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, only), "`COLUMN=TEXT`: draws only rows with that text in the column, such as `variant=coarse`.") \
+  X(FIGURE, DIFFERENCE, "difference", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, difference), "A column with two texts. Lines show `y` of the second minus `y` of the first; maps the second, hatched where they differ; pictures the second, with the first dashed.") \
   X(FIGURE, FROM, "from", NUMBER, TIME, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, from), "Motion: start of the time range.") \
   X(FIGURE, TO, "to", NUMBER, TIME, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, to), "Motion: end of the time range.") \
   X(FIGURE, SCALE, "scale", PAIR, NONE, ANY, "[1, 1]", OPTIONAL, 0, "", FIELD(strut_study_figure, scale), "Period: magnification of the motion along x and y.") \
-  X(FIGURE, TIMES, "times", TIMES, NONE, ANY, "six", OPTIONAL, 0, "", LIST(strut_study_figure, times, time_count), "Snapshots: the times to draw.") \
+  X(FIGURE, TIMES, "times", TIMES, NONE, ANY, "six", OPTIONAL, 0, "", LIST(strut_study_figure, times, time_count), "Snapshots: instants to draw.") \
   X(FIGURE, TITLE, "title", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, title), "Title of the figure.") \
-  X(FIGURE, X_LABEL, "x_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_label), "Lines, map and motion: label of the x axis instead of the column's name; the unit is added.") \
-  X(FIGURE, Y_LABEL, "y_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_label), "Likewise of the y axis.") \
-  X(FIGURE, X_LIMITS, "x_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_limits), "Lines, map and motion: ends of the x axis in the column's SI unit, ascending.") \
-  X(FIGURE, Y_LIMITS, "y_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_limits), "Likewise of the y axis.") \
+  X(FIGURE, X_LABEL, "x_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_label), "Lines, map and motion: label of the x axis, by default the column's name. The unit is added.") \
+  X(FIGURE, Y_LABEL, "y_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_label), "Likewise for the y axis.") \
+  X(FIGURE, X_LIMITS, "x_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_limits), "Lines, map and motion: ends of the x axis, ascending, in the column's SI unit.") \
+  X(FIGURE, Y_LIMITS, "y_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_limits), "Likewise for the y axis.") \
   X(FIGURE, COLORS, "colors", WORD, NONE, ANY, "auto", OPTIONAL, 0, "auto|sequential|diverging|grey", FIELD(strut_study_figure, colours), "Map: the colour scale of numbers.")
 
 #define STRUT_PATH_KEYS(X) \
   X(PATH, LOAD, "load", TEXT, NONE, ANY, "all without a signal", OPTIONAL, 6, "", FIELD(strut_study, path.load), "The load to scale.") \
-  X(PATH, OVER, "over", TEXT, NONE, ANY, "", OPTIONAL, 6, "", FIELD(strut_study, path.over), "Instead of loads, an actuator, or a displacement `NODE.x` or `NODE.y`.") \
+  X(PATH, OVER, "over", TEXT, NONE, ANY, "", OPTIONAL, 6, "", FIELD(strut_study, path.over), "Instead of a load: an actuator, or a displacement `NODE.x` or `NODE.y`.") \
   X(PATH, FROM, "from", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", CHOICE(strut_study, path.from_given, true, FIELD(strut_study, path.from)), "Start value: a load factor, or in the unit of `over`.") \
-  X(PATH, UNTIL, "until", NUMBER, CONTEXT, ANY, "load factor 1", OPTIONAL, 0, "", CHOICE(strut_study, path.until_given, true, FIELD(strut_study, path.until)), "End value, likewise; required with `over`.") \
+  X(PATH, UNTIL, "until", NUMBER, CONTEXT, ANY, "load factor 1", OPTIONAL, 0, "", CHOICE(strut_study, path.until_given, true, FIELD(strut_study, path.until)), "End value, likewise. Required with `over`.") \
   X(PATH, STEPS, "steps", NUMBER, NONE, WHOLE(1, 1000000), "400", OPTIONAL, 0, "", FIELD(strut_study, path.steps), "Maximum number of steps.")
 
 #define STRUT_FORM_KEYS(X) \
-  X(FORM, FROM, "from", WORD, NONE, ANY, "scene", OPTIONAL, 0, "scene|densities|lengths|prestress", FIELD(strut_study, form.from), "What gives the shape; `scene`: as the model's keys say.") \
+  X(FORM, FROM, "from", WORD, NONE, ANY, "scene", OPTIONAL, 0, "scene|densities|lengths|prestress", FIELD(strut_study, form.from), "What determines the shape; `scene`: as the model's keys say.") \
   X(FORM, LEAST_TENSION, "least_tension", NUMBER, FORCE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, form.least_tension), "Lower bound on the tension of every cable.") \
   X(FORM, LEAST_DENSITY, "least_density", NUMBER, STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, form.least_density), "Lower bound on the force density of every cable.") \
-  X(FORM, OBJECTIVE, "objective", WORD, NONE, ANY, "largest", OPTIONAL, 0, "largest|sum|squares", FIELD(strut_study, form.objective), "Which prestress: that whose minimum this is.")
+  X(FORM, OBJECTIVE, "objective", WORD, NONE, ANY, "largest", OPTIONAL, 0, "largest|sum|squares", FIELD(strut_study, form.objective), "What the prestress minimises: the largest force, the sum of the forces (both as magnitudes), or the sum of squares of the cables' force densities.")
 
 #define STRUT_POINTS_KEYS(X) \
-  X(POINTS, FILE, "file", TEXT, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "A CSV file with a header, below the folder of the study. `NAME [UNIT]` heads the values of a parameter; without a unit they are in SI.") \
+  X(POINTS, FILE, "file", TEXT, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "A CSV file with a header, below the folder of the study. `NAME [UNIT]` is the heading of a parameter; without a unit, values are in SI.") \
   X(POINTS, COLUMNS, "columns", NAMES, NONE, ANY, "all but `point`, `status` and `message`", OPTIONAL, 0, "", BY_HAND, "The columns to use; others are skipped.")
 
 #define STRUT_SAMPLE_KEYS(X) \
   X(SAMPLE, COUNT, "count", NUMBER, NONE, WHOLE(1, 1000000), "", REQUIRED, 0, "", FIELD(strut_sample_keys, count), "Number of points.") \
-  X(SAMPLE, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_sample_keys, seed), "Another seed gives other points, the same seed the same.") \
+  X(SAMPLE, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_sample_keys, seed), "Seed of the points; the same seed gives the same points.") \
   X(SAMPLE, SCHEME, "scheme", WORD, NONE, ANY, "sobol", OPTIONAL, 0, "sobol|lhs|random", FIELD(strut_sample_keys, scheme), "`sobol`: Sobol's sequence, shifted by the seed; `lhs`: Latin hypercube; `random`: independent points.") \
   X(SAMPLE, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "a [distribution](#distribution)", THINGS(DISTRIBUTION), "The parameters, up to 40, and their distributions.")
 
@@ -224,70 +224,70 @@
   X(DISTRIBUTION, TRIANGULAR, "triangular", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", CHOICE(strut_distribution, kind, STRUT_DISTRIBUTION_TRIANGULAR, NUMBERS(strut_distribution, number)), "`[LEAST, MODE, MOST]`.")
 
 #define STRUT_LIMIT_KEYS(X) \
-  X(LIMIT, EVALUATIONS, "evaluations", NUMBER, NONE, WHOLE(1, 1000000000000000), "none", OPTIONAL, 0, "", FIELD(strut_study, limit.evaluations), "Force evaluations of each run, the check's too. The same points fail on every machine.") \
-  X(LIMIT, TIME, "time", NUMBER, TIME, ABOVE_ZERO, "none", OPTIONAL, 0, "", FIELD(strut_study, limit.time), "Time of a point by the clock. Which points fail depends on the machine and its load; `--retry` computes them again.")
+  X(LIMIT, EVALUATIONS, "evaluations", NUMBER, NONE, WHOLE(1, 1000000000000000), "none", OPTIONAL, 0, "", FIELD(strut_study, limit.evaluations), "Force evaluations of each run, including its check. The same points fail on every machine.") \
+  X(LIMIT, TIME, "time", NUMBER, TIME, ABOVE_ZERO, "none", OPTIONAL, 0, "", FIELD(strut_study, limit.time), "Elapsed time of a point. Which points fail depends on the machine and its load; `--retry` computes them again.")
 
 #define STRUT_REFINE_KEYS(X) \
-  X(REFINE, WHERE, "where", NAME, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, refine.where), "A column of the table, such as `outcome`. Cells whose points differ in it are divided; a point that failed differs from others.") \
-  X(REFINE, DEPTH, "depth", NUMBER, NONE, WHOLE(1, 10), "", REQUIRED, 0, "", FIELD(strut_study, refine.depth), "How often: the finest cells have 2^depth of the width of those of the axes.") \
-  X(REFINE, BY, "by", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, refine.by), "Numbers must differ by more than this, in the SI unit of the column.") \
+  X(REFINE, WHERE, "where", NAME, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, refine.where), "A column of the table, such as `outcome`. Cells whose points differ in it are divided; a failed point differs from all others.") \
+  X(REFINE, DEPTH, "depth", NUMBER, NONE, WHOLE(1, 10), "", REQUIRED, 0, "", FIELD(strut_study, refine.depth), "Number of divisions: the finest cells are 2^depth times narrower than those of the axes.") \
+  X(REFINE, BY, "by", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, refine.by), "Numbers count as different if they differ by more than this, in the SI unit of the column.") \
   X(REFINE, AXES, "axes", NAMES, NONE, ANY, "the axes with ranges", OPTIONAL, 0, "", BY_HAND, "The parameters of the two axes to divide.")
 
 #define STRUT_SENSITIVITY_KEYS(X) \
   X(SENSITIVITY, OF, "of", NAMES, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "Columns of the table: numbers, or texts such as `outcome`.") \
   X(SENSITIVITY, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "a [distribution](#distribution)", THINGS(DISTRIBUTION), "The parameters, up to 20, and their distributions.") \
-  X(SENSITIVITY, SAMPLES, "samples", NUMBER, NONE, WHOLE(0, 100000), "256", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, samples), "Base samples of Saltelli's design, each of as many points as there are parameters, and two; 0: derivatives only.") \
-  X(SENSITIVITY, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, seed), "Another seed gives other points, the same seed the same.") \
-  X(SENSITIVITY, SCHEME, "scheme", WORD, NONE, ANY, "sobol", OPTIONAL, 0, "sobol|lhs|random", FIELD(strut_study_sensitivity, scheme), "As that of a [sample](#sample).") \
-  X(SENSITIVITY, DERIVATIVES, "derivatives", WORD, NONE, ANY, "yes", OPTIONAL, 0, "no|yes", FIELD(strut_study_sensitivity, derivatives), "Central differences about the medians, with two steps, four points for each parameter.") \
-  X(SENSITIVITY, THRESHOLD, "threshold", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, threshold), "Shares of the samples above it, within it in both directions, and below minus it, in the SI unit of the columns; 0: the share above 0.")
+  X(SENSITIVITY, SAMPLES, "samples", NUMBER, NONE, WHOLE(0, 100000), "256", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, samples), "Base samples of Saltelli's design; n parameters need n + 2 points each. 0: derivatives only.") \
+  X(SENSITIVITY, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, seed), "Seed of the points; the same seed gives the same points.") \
+  X(SENSITIVITY, SCHEME, "scheme", WORD, NONE, ANY, "sobol", OPTIONAL, 0, "sobol|lhs|random", FIELD(strut_study_sensitivity, scheme), "As of a [sample](#sample).") \
+  X(SENSITIVITY, DERIVATIVES, "derivatives", WORD, NONE, ANY, "yes", OPTIONAL, 0, "no|yes", FIELD(strut_study_sensitivity, derivatives), "Central differences about the medians with two steps: four points for each parameter.") \
+  X(SENSITIVITY, THRESHOLD, "threshold", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, threshold), "Reports the shares of samples above it, within it in size, and below its negative, in the SI unit of the columns. 0: only the share above 0.")
 
 #define STRUT_STIFFNESS_AT_KEYS(X) \
   X(STIFFNESS_AT, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, goal.stiffness_node), "A node of the model.") \
-  X(STIFFNESS_AT, DIRECTION, "direction", NUMBER, ANGLE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, goal.stiffness_direction), "From the x axis: 90 deg is upwards.")
+  X(STIFFNESS_AT, DIRECTION, "direction", NUMBER, ANGLE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, goal.stiffness_direction), "Angle from the x axis; 90 deg is upwards.")
 
 #define STRUT_SCENE_PATH_KEYS(X) \
-  X(SCENE_PATH, STAGES, "stages", FREE, NONE, ANY, "", OPTIONAL, 0, "a list of stages such as [{load: NAME}]", BY_HAND, "One after the other, each from the end of the one before.") \
-  X(SCENE_PATH, FRICTION, "friction", WORD, NONE, ANY, "none", OPTIONAL, 0, "none|kept", FIELD(strut_experiment, path_friction), "`kept`: contacts stick and slide by static and kinetic friction, as the path goes; every path of the model keeps it.")
+  X(SCENE_PATH, STAGES, "stages", FREE, NONE, ANY, "", OPTIONAL, 0, "a list of stages such as [{load: NAME}]", BY_HAND, "Stages in order; each starts at the end of the one before.") \
+  X(SCENE_PATH, FRICTION, "friction", WORD, NONE, ANY, "none", OPTIONAL, 0, "none|kept", FIELD(strut_experiment, path_friction), "`kept`: contacts stick and slide along the path by static and kinetic friction. This holds for every path of the model.")
 
 #define STRUT_STAGE_KEYS(X) \
-  X(STAGE, LOAD, "load", FREE, NONE, ANY, "", OPTIONAL, 7, "the name of a load, or a list of them", BY_HAND, "The load whose factor grows, or loads that grow together. Loads that some stage names begin with the factor 0; all others act from the beginning.") \
-  X(STAGE, OVER, "over", TEXT, NONE, ANY, "", OPTIONAL, 7, "", FIELD(strut_path_stage, over), "Or an actuator, or the displacement `NODE.x` or `NODE.y`, which stays held afterwards.") \
-  X(STAGE, RELEASE, "release", TEXT, NONE, ANY, "", OPTIONAL, 7, "", FIELD(strut_path_stage, release), "Or `NODE.x` or `NODE.y`, held so far: its reaction is taken away by and by.") \
-  X(STAGE, UNTIL, "until", NUMBER, CONTEXT, ANY, "load factor 1", OPTIONAL, 0, "", FIELD(strut_path_stage, until), "Value at which the stage ends, from where it is: a factor, or in the unit of `over`, where it is required.") \
-  X(STAGE, HOLD, "hold", NAMES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Coordinates `[NODE.x, NODE.y, ...]` that are held where they are from the beginning of the stage.") \
-  X(STAGE, STOP, "stop", FREE, NONE, ANY, "", OPTIONAL, 0, "`{NODE.x: LENGTH}`", BY_HAND, "Or the stage ends where a node has moved so far in it.") \
+  X(STAGE, LOAD, "load", FREE, NONE, ANY, "", OPTIONAL, 7, "the name of a load, or a list of them", BY_HAND, "The load, or loads, whose factor grows. Loads named by any stage begin with the factor 0; all others act from the start.") \
+  X(STAGE, OVER, "over", TEXT, NONE, ANY, "", OPTIONAL, 7, "", FIELD(strut_path_stage, over), "Instead: an actuator, or a displacement `NODE.x` or `NODE.y`, which stays held afterwards.") \
+  X(STAGE, RELEASE, "release", TEXT, NONE, ANY, "", OPTIONAL, 7, "", FIELD(strut_path_stage, release), "Instead: a held `NODE.x` or `NODE.y`, whose reaction is reduced to zero.") \
+  X(STAGE, UNTIL, "until", NUMBER, CONTEXT, ANY, "load factor 1", OPTIONAL, 0, "", FIELD(strut_path_stage, until), "Value at the end of the stage: a load factor, or in the unit of `over`, where it is required.") \
+  X(STAGE, HOLD, "hold", NAMES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Coordinates `[NODE.x, NODE.y, ...]` that stay fixed from the start of the stage.") \
+  X(STAGE, STOP, "stop", FREE, NONE, ANY, "", OPTIONAL, 0, "`{NODE.x: LENGTH}`", BY_HAND, "Ends the stage when a node has moved this far in it.") \
   X(STAGE, STEPS, "steps", NUMBER, NONE, WHOLE(1, 1000000), "400", OPTIONAL, 0, "", FIELD(strut_path_stage, steps), "Maximum number of steps.")
 
 #define STRUT_SEARCH_KEYS(X) \
-  X(SEARCH, MAXIMISE, "maximise", FREE, NONE, ANY, "", OPTIONAL, 12, "an expression of columns, or a list of two", BY_HAND, "What is to be as large as possible: a column of the table, or an expression of columns such as `velocity/frequency`. Two of them, `[velocity, -cost_of_transport]`: the points that no other one beats in both.") \
-  X(SEARCH, MINIMISE, "minimise", FREE, NONE, ANY, "", OPTIONAL, 12, "an expression of columns, or a list of two", BY_HAND, "What is to be as small as possible, likewise: `abs(velocity - 10 mm/s)`.") \
-  X(SEARCH, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "the keys of a [variable](#variable), or a list of choices", THINGS(VARIABLE), "The parameters to be found.") \
-  X(SEARCH, METHOD, "method", WORD, NONE, ANY, "multistart", OPTIONAL, 0, "multistart|crs2|direct|isres|cobyla|bobyqa|sbplx|neldermead|cma|nsga2", FIELD(strut_study_search, method), "Of the whole range: `multistart` (points spread evenly, then `sbplx` from the two best points that lie apart), `crs2` (points spread evenly, controlled random search, then `sbplx` from the best point), `direct` (dividing rectangles; has no seed), `isres` (evolution), `cma` (evolution by CMA-ES, a generation at a time). From a start: `cobyla`, `bobyqa`, `sbplx`, `neldermead`. Of two goals always `nsga2`.") \
-  X(SEARCH, EVALUATIONS, "evaluations", NUMBER, NONE, WHOLE(1, 100000), "200", OPTIONAL, 0, "", FIELD(strut_study_search, evaluations), "How many different points each search may compute.") \
-  X(SEARCH, STARTS, "starts", NUMBER, NONE, WHOLE(1, 1000), "1", OPTIONAL, 0, "", FIELD(strut_study_search, starts), "Searches side by side; the first begins at `start`, the others anywhere.") \
-  X(SEARCH, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294960000), "1", OPTIONAL, 0, "", FIELD(strut_study_search, seed), "Of the random numbers of the first search; the next has the next seed. The same seed gives the same points.") \
-  X(SEARCH, SUBJECT_TO, "subject_to", NAMES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What must hold at the best point, a list of texts: `work < 2 mJ`, `outcome = I`; with `<`, `<=`, `>`, `>=` between expressions of columns, `=` and `!=` between a column of texts and a word.") \
-  X(SEARCH, WORST_OVER, "worst_over", THINGS, NONE, ANY, "", OPTIONAL, 0, "a list of values, or the keys of a [range](#range)", BY_HAND, "Scenarios: each evaluation computes all combinations of these values, and the worst of them counts; what `subject_to` says must hold in all.")
+  X(SEARCH, MAXIMISE, "maximise", FREE, NONE, ANY, "", OPTIONAL, 12, "an expression of columns, or a list of two", BY_HAND, "The goal to maximise: a column of the table, or an expression of columns such as `velocity/frequency`. With two, `[velocity, -cost_of_transport]`, the search finds the points that no other beats in both.") \
+  X(SEARCH, MINIMISE, "minimise", FREE, NONE, ANY, "", OPTIONAL, 12, "an expression of columns, or a list of two", BY_HAND, "The goal to minimise, likewise: `abs(velocity - 10 mm/s)`.") \
+  X(SEARCH, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "the keys of a [variable](#variable), or a list of choices", THINGS(VARIABLE), "The parameters to find.") \
+  X(SEARCH, METHOD, "method", WORD, NONE, ANY, "multistart", OPTIONAL, 0, "multistart|crs2|direct|isres|cobyla|bobyqa|sbplx|neldermead|cma|nsga2", FIELD(strut_study_search, method), "Global: `multistart` (even points, then `sbplx` from the best two that lie apart), `crs2` (controlled random search, then `sbplx`), `direct` (dividing rectangles, no seed), `isres` (evolution), `cma` (CMA-ES). Local, from a start: `cobyla`, `bobyqa`, `sbplx`, `neldermead`. Two goals always use `nsga2`.") \
+  X(SEARCH, EVALUATIONS, "evaluations", NUMBER, NONE, WHOLE(1, 100000), "200", OPTIONAL, 0, "", FIELD(strut_study_search, evaluations), "Number of different points that each search may compute.") \
+  X(SEARCH, STARTS, "starts", NUMBER, NONE, WHOLE(1, 1000), "1", OPTIONAL, 0, "", FIELD(strut_study_search, starts), "Number of searches side by side. The first begins at `start`, the others elsewhere.") \
+  X(SEARCH, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294960000), "1", OPTIONAL, 0, "", FIELD(strut_study_search, seed), "Seed of the first search; the next search has the next seed. The same seed gives the same points.") \
+  X(SEARCH, SUBJECT_TO, "subject_to", NAMES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Conditions on the best point, such as `work < 2 mJ` or `outcome = I`: `<`, `<=`, `>`, `>=` between expressions of columns, `=` and `!=` between a column of texts and a word.") \
+  X(SEARCH, WORST_OVER, "worst_over", THINGS, NONE, ANY, "", OPTIONAL, 0, "a list of values, or the keys of a [range](#range)", BY_HAND, "Scenarios: each evaluation computes all combinations of these values, of which the worst counts. `subject_to` must hold in all.")
 
 #define STRUT_VARIABLE_KEYS(X) \
   X(VARIABLE, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_search_variable, from), "Lower bound.") \
   X(VARIABLE, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_search_variable, to), "Upper bound.") \
   X(VARIABLE, START, "start", NUMBER, CONTEXT, ANY, "the middle", OPTIONAL, 0, "", FIELD(strut_search_variable, start), "Where the first search begins.") \
-  X(VARIABLE, SCALE, "scale", WORD, NONE, ANY, "linear", OPTIONAL, 0, "linear|log", FIELD(strut_search_variable, logarithmic), "`log`: steps are ratios.") \
-  X(VARIABLE, WRAPS, "wraps", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_search_variable, wraps), "`yes`: both bounds are the same, as 0 deg and 360 deg of a phase.") \
-  X(VARIABLE, INTEGER, "integer", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_search_variable, integer), "`yes`: only whole numbers, of the SI unit.")
+  X(VARIABLE, SCALE, "scale", WORD, NONE, ANY, "linear", OPTIONAL, 0, "linear|log", FIELD(strut_search_variable, logarithmic), "`log`: the search works with the logarithm.") \
+  X(VARIABLE, WRAPS, "wraps", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_search_variable, wraps), "`yes`: both bounds are the same point, such as 0 deg and 360 deg of a phase.") \
+  X(VARIABLE, INTEGER, "integer", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_search_variable, integer), "`yes`: whole numbers only, in the SI unit.")
 
 #define STRUT_FOLLOW_KEYS(X) \
-  X(FOLLOW, OVER, "over", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The parameter over which motions are followed.") \
-  X(FOLLOW, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_follow, from), "The lower end of its range.") \
-  X(FOLLOW, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_follow, to), "The upper end.") \
-  X(FOLLOW, AT, "at", NUMBERS, CONTEXT, ANY, "the model's own value, or the middle", OPTIONAL, 0, "", BY_HAND, "Values at which runs start branches.") \
-  X(FOLLOW, START_FROM, "start_from", NAMES, NONE, ANY, "as the model says", OPTIONAL, 0, "", BY_HAND, "Configurations from whose equilibria these runs start.") \
+  X(FOLLOW, OVER, "over", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The parameter that varies.") \
+  X(FOLLOW, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_follow, from), "Lower end of its range.") \
+  X(FOLLOW, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_follow, to), "Upper end of its range.") \
+  X(FOLLOW, AT, "at", NUMBERS, CONTEXT, ANY, "the model's own value, or the middle", OPTIONAL, 0, "", BY_HAND, "Values at which runs find the first motions.") \
+  X(FOLLOW, START_FROM, "start_from", NAMES, NONE, ANY, "as the model says", OPTIONAL, 0, "", BY_HAND, "Configurations in whose equilibria these runs start.") \
   X(FOLLOW, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %", OPTIONAL, 0, "", FIELD(strut_study_follow, accuracy), "Relative error of velocities, at most 10 %.") \
-  X(FOLLOW, INTEGRATOR, "integrator", WORD, NONE, ANY, "`rk4-events`, or `adaptive` where that cannot", OPTIONAL, 0, STRUT_INTEGRATOR_WORDS, FIELD(strut_study_follow, integrator), "A method that locates events where there are contacts or cables.") \
-  X(FOLLOW, STEPS, "steps", NUMBER, NONE, WHOLE(1, 100000), STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_STEPS), OPTIONAL, 0, "", FIELD(strut_study_follow, steps), "Maximum number of steps of a branch each way.") \
-  X(FOLLOW, BASINS, "basins", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_study_follow, basins), "Kick the stable motions at the values of `at`, to find how far they may be pushed.")
+  X(FOLLOW, INTEGRATOR, "integrator", WORD, NONE, ANY, "`rk4-events`, or `adaptive` where that cannot", OPTIONAL, 0, STRUT_INTEGRATOR_WORDS, FIELD(strut_study_follow, integrator), "Integration method; it must locate events if there are contacts or cables.") \
+  X(FOLLOW, STEPS, "steps", NUMBER, NONE, WHOLE(1, 100000), STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_STEPS), OPTIONAL, 0, "", FIELD(strut_study_follow, steps), "Maximum number of steps of a branch in each direction.") \
+  X(FOLLOW, BASINS, "basins", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_study_follow, basins), "Kicks the stable motions at the values of `at`, to find how far they may be pushed.")
 
 /** All rows, in the order of the sections. */
 #define STRUT_KEY_TABLE(X) \
@@ -366,48 +366,48 @@
 /** The sections: X(NAME, name, its first key, the text above their table in the reference). */
 #define STRUT_SECTIONS(X) \
   X(SCENE, "scene", SCENE_VERSION, "The keys at the top level of a model.") \
-  X(PART, "part", PART_USE, "`parts: {NAME: {...}}`: a piece of structure, which `place` copies. It sees the parameters, groups and signals of the scene, and no nodes but its own.") \
-  X(PLACE, "place", PLACE_PART, "`place: {NAME: {...}}`: a copy of a part, or several, under names such as `NAME.node` or `NAME.3.node`.") \
-  X(REPEAT, "repeat", REPEAT_COUNT, "`repeat: {...}` of a placement. Copy k is moved k times against copy 0: scaled and turned about `about`, then by `step`, in its own frame.") \
-  X(NEXT, "next", NEXT_MERGE, "`next: {...}` of `repeat`: what a copy has in common with the next one. Names are those of the copy; `next.NAME` is one of the next copy.") \
+  X(PART, "part", PART_USE, "`parts: {NAME: {...}}`: a piece of structure, which `place` copies. It sees the scene's parameters, groups and signals, but only its own nodes.") \
+  X(PLACE, "place", PLACE_PART, "`place: {NAME: {...}}`: one or several copies of a part, with names such as `NAME.node` or `NAME.3.node`.") \
+  X(REPEAT, "repeat", REPEAT_COUNT, "`repeat: {...}` of a placement. Copy k results from copy 0 by k motions, each a scaling and rotation about `about`, then a displacement by `step` in its own frame.") \
+  X(NEXT, "next", NEXT_MERGE, "`next: {...}` of `repeat`: what a copy shares with the next one. Names are those of the copy; `next.NAME` belongs to the next copy.") \
   X(NODE, "node", NODE_POSITION, "`nodes: {NAME: [x, y]}`, or `nodes: {NAME: {position: [x, y], ...}}` with these keys.") \
-  X(MOVES, "moves", MOVES_ALONG_X, "`nodes: {NAME: {moves: {...}}}`: from its position, plus the signal at t = 0, the node moves by the signal, whose value must not jump. Statics keep it where it is at t = 0.") \
-  X(MEMBER, "member", MEMBER_GROUP, "`members: {NAME: {...}}`. A member needs a stiffness, a damping, or both. Of the four keys for the rest length, the member's own replaces that of its group; the same holds for the two keys for the stiffness.") \
+  X(MOVES, "moves", MOVES_ALONG_X, "`nodes: {NAME: {moves: {...}}}`: the node's position is the drawn one plus the signal, which must not jump. Statics and settling keep it where it is at t = 0.") \
+  X(MEMBER, "member", MEMBER_GROUP, "`members: {NAME: {...}}`. A member needs a stiffness, a damping, or both. An own rest length, in whichever of its four keys, replaces that of the group; so does an own stiffness.") \
   X(HINGE, "hinge", HINGE_NODES, "`hinges: {NAME: {...}}`. A hinge needs a stiffness, a damping, or a law that brings its own stiffness.") \
-  X(CELL, "cell", CELL_NODES, "`cells: {NAME: {...}}`: either `pressure` or `gas`. In the plane a pressure is a force per length.") \
+  X(CELL, "cell", CELL_NODES, "`cells: {NAME: {...}}` with `pressure`, `gas` or `stiffness`. In the plane a pressure is a force per length.") \
   X(GAS, "gas", GAS_KIND, "`cells: {NAME: {gas: {...}}}`.") \
-  X(COLLISION, "collision", COLLISION_NODE, "`collisions: {NAME: {...}}`: `node` and `member`, or `nodes`, or `members`. Things pass through each other unless a collision names them.") \
-  X(DISTANCE, "distance", DISTANCE_NODES, "`distances: {NAME: {...}}`: `nodes` and `along`, or `node` and `line`. A distance is measured between nodes that move; it needs a stiffness, a damping, or a law that brings its own stiffness.") \
-  X(FOOT, "foot", FOOT_MEMBER, "`feet: {NAME: {member, node, radius}}`: the end of a member as a circular arc, which rolls with friction at the point of contact and its moment on the member. Friction that sticks becomes smooth within its stick band, so that a foot creeps under load.") \
-  X(BEAM, "beam", BEAM_NODES, "`beams: {NAME: {...}}`. A beam is short for nodes `NAME.1`, `NAME.2`, ... between its ends, bars `NAME.1`, ... and hinges `NAME.1`, ... at these nodes; at a clamp also the fixed node and the hinge `NAME.start` or `NAME.end`. `strut write` writes these.") \
+  X(COLLISION, "collision", COLLISION_NODE, "`collisions: {NAME: {...}}` with `node` and `member`, `nodes`, `members`, or `between`. Things pass through each other unless a collision names them.") \
+  X(DISTANCE, "distance", DISTANCE_NODES, "`distances: {NAME: {...}}` with `nodes` and `along`, or `node` and `line`. A distance needs a stiffness, a damping, or a law that brings its own stiffness.") \
+  X(FOOT, "foot", FOOT_MEMBER, "`feet: {NAME: {member, node, radius}}`: a circular arc at the end of a member, which rolls on straight grounds at rest. Friction acts at the point of contact, with its moment on the member. Karnopp's law becomes smooth within its stick band, so that a loaded foot creeps. Statics ignore the friction.") \
+  X(BEAM, "beam", BEAM_NODES, "`beams: {NAME: {...}}`. A beam is short for nodes `NAME.1`, `NAME.2`, ... between its ends, bars `NAME.1`, ..., and hinges `NAME.1`, ... at these nodes; at a clamp also for a fixed node and the hinge `NAME.start` or `NAME.end`. `strut export` writes these.") \
   X(CLAMPED_TO, "clamped_to", CLAMPED_TO_START, "`clamped_to: {start: NAME, end: NAME}` of a beam: the end keeps its drawn angle to a member or to another beam that has the node, too, by the hinge `NAME.start` or `NAME.end`. Several beams at one node also get hinges between each other, such as `NAME.start.OTHER`.") \
   X(LAW, "law", LAW_KIND, "`law: {...}` of a member, a hinge or a distance, or only its kind, such as `law: logarithmic`; `law: tension_only` and `law: compression_only` are linear and carry one sign. For a hinge read angle for length and moment for force. `polynomial`, `table` and `curve` bring their own stiffness, so that the member must not give one.") \
-  X(RAYLEIGH, "rayleigh", RAYLEIGH_MASS, "`rayleigh: {...}`: a mode of angular frequency w gets the damping ratio alpha / (2 w) + beta w / 2, beside what members' own dampers give.") \
-  X(GROUND, "ground", GROUND_HEIGHT, "`ground: {...}`: the line, profile or circle that nodes may touch; or several of them, `grounds: {NAME: {...}}`.") \
+  X(RAYLEIGH, "rayleigh", RAYLEIGH_MASS, "`rayleigh: {...}`: adds the damping ratio alpha / (2 w) + beta w / 2 to a mode of angular frequency w.") \
+  X(GROUND, "ground", GROUND_HEIGHT, "`ground: {...}`: the line, profile or circle that nodes may touch; or several, `grounds: {NAME: {...}}`.") \
   X(CIRCLE, "circle", CIRCLE_CENTRE, "`circle: {...}` of a ground.") \
-  X(MOTION, "motion", MOTION_IN_X, "`motion: {x: SIGNAL, y: SIGNAL}` of a ground: its displacement, in lengths. Its work on the structure is in the energy balance. A displacement must not jump.") \
-  X(FRICTION, "friction", FRICTION_LAW, "`friction: {...}` of the ground, of a group, or of a contact; keys of a contact take precedence over those of its groups, and these over those of the ground. Karnopp's law and `coulomb` need `mu`, or `mu_static` and `mu_kinetic`; Karnopp's law also needs `stick_velocity`. The smooth law needs `mu` or `mu_kinetic`, and `width`; Stribeck's needs `mu_static`, `mu_kinetic`, `width` and `decay_velocity`, `lugre` instead of `width` `presliding` and `relaxation`. Where friction depends on the direction, `mu_forward` and `mu_backward` replace `mu`, in every law.") \
+  X(MOTION, "motion", MOTION_IN_X, "`motion: {x: SIGNAL, y: SIGNAL}` of a ground: its displacement, which must not jump. The energy balance includes its work on the structure.") \
+  X(FRICTION, "friction", FRICTION_LAW, "`friction: {...}` of the ground, a group or a contact. A contact's keys override those of its groups, and these those of the ground. Every law needs `mu`, or `mu_static` and `mu_kinetic`; for `smooth` `mu_kinetic` is enough. If friction depends on the direction, `mu_forward` and `mu_backward` replace `mu`.") \
   X(CONTACT, "contact", CONTACT_GROUP, "`ground: {contacts: {NODE: {...}}}`: settings of a single contact.") \
-  X(ACTUATOR, "actuator", ACTUATOR_MEMBER, "`actuators: {NAME: {...}}`, with a `signal`, a `force` of a member or a `moment` of a hinge.") \
+  X(ACTUATOR, "actuator", ACTUATOR_MEMBER, "`actuators: {NAME: {...}}` with a `signal`, a `force` of a member or a `moment` of a hinge.") \
   X(LOAD, "load", LOAD_NODE, "`loads: {NAME: {...}}`.") \
-  X(UNBALANCE, "unbalance", UNBALANCE_NODE, "`unbalances: {NAME: {...}}`, each with a `speed` or an `angle`. Statics and settling have its mass at the node.") \
-  X(SLIDER, "slider", SLIDER_MEMBER, "`sliders: {NAME: {...}}`. Statics and settling have them where they are at t = 0.") \
-  X(SIGNAL, "signal", SIGNAL_CONSTANT, "A signal is a mapping with one of these keys, or the name of an entry of `signals`. The unit of its values follows from its use: a length, an angle or a pressure, or a force or a moment, for an actuator, a length for the motion of a ground, a number without unit for a load.") \
+  X(UNBALANCE, "unbalance", UNBALANCE_NODE, "`unbalances: {NAME: {...}}` with a `speed` or an `angle`. An unbalance exerts m r w^2 outwards, plus the effect of a changing speed. In statics and settling its mass is at the node.") \
+  X(SLIDER, "slider", SLIDER_MEMBER, "`sliders: {NAME: {...}}`. In statics and settling a slider stays where it is at t = 0.") \
+  X(SIGNAL, "signal", SIGNAL_CONSTANT, "A signal is a mapping with one of these keys, or the name of an entry of `signals`. Its use determines its unit: a length, angle, pressure, force or moment for an actuator, a length for the motion of a ground or node, no unit for a load.") \
   X(SINE, "sine", SINE_AMPLITUDE, "`{sine: {...}}`.") \
   X(HALF_SINE, "half_sine", HALF_SINE_AMPLITUDE, "`{half_sine: {...}}`: a single pulse.") \
   X(SQUARE, "square", SQUARE_AMPLITUDE, "`{square: {...}}`.") \
   X(RAMP, "ramp", RAMP_AMPLITUDE, "`{ramp: {...}}`.") \
-  X(SENSOR, "sensor", SENSOR_LENGTH, "`sensors: {NAME: {...}}` with one thing to sense. Expressions of signals, and measured quantities, use the name. In an expression `rate(NAME)` is the rate of a length, an angle or a position.") \
+  X(SENSOR, "sensor", SENSOR_LENGTH, "`sensors: {NAME: {...}}` with one of these keys. Expressions of signals and measured quantities use the name. In an expression, `rate(NAME)` is the rate of a length, angle, position, area or distance.") \
   X(STATE, "state", STATE_RATE, "`states: {NAME: {...}}`.") \
-  X(OSCILLATOR, "oscillator", OSCILLATOR_FREQUENCY, "`oscillators: {NAME: {...}}`. The name is the phase, an angle, in expressions: `2 mm * sin(NAME)`. `strut write` shows oscillators as states.") \
-  X(CONTROLLER, "controller", CONTROLLER_SENSOR, "`controllers: {NAME: {...}}`. The integral is the state `NAME_integral`. `strut write` shows PID controllers as signals and states.") \
-  X(RELAY, "relay", RELAY_KIND, "`controllers: {NAME: {kind: relay, ...}}`: a signal with two values. Either `on_above` and `off_below`, or `on_below` and `off_above`.") \
-  X(PIPE, "pipe", PIPE_CELLS, "`pipes: {NAME: {cells: [a, b], conductance}}`: gas that flows between two cells. The name is the amount that has flowed, pressure times area, a state. `strut write` shows the sensors, signals and actuators that a pipe stands for.") \
-  X(NETWORK, "network", NETWORK_FILE, "`controllers: {NAME: {network: FILE, ...}}`: a signal from a neural network. Its neurons are signals `NAME_1_1` and so on; `strut write` shows them.") \
-  X(RUBBING, "friction of a collision", RUBBING_MU, "`collisions: {NAME: {friction: {...}}}`: of two bodies that touch, smooth in the speed, so that nothing sticks for good. It acts on nodes and axes, without a moment by the thickness.") \
-  X(MAXWELL, "maxwell", MAXWELL_STIFFNESS, "`members: {NAME: {maxwell: {...}}}`: the force of the branch follows F' = k (u' - F/c), with the rate u' of the elongation. In statics it has relaxed to 0.") \
-  X(STARTS, "starts", STARTS_CONTACT, "`{sine: {...}, starts: {...}}` of any signal: the touchdown of a node, or a sensor that passes a level.") \
-  X(CONFIGURATION, "configuration", CONFIGURATION_CONTACTS, "`configurations: {NAME: {NODE: [x, y], ...}}`, or `configurations: {NAME: {...}}` with these keys. `{}` is the drawn shape. If a node is called `contacts`, that key followed by two plain values is its position.") \
+  X(OSCILLATOR, "oscillator", OSCILLATOR_FREQUENCY, "`oscillators: {NAME: {...}}`. In expressions the name is the phase, an angle: `2 mm * sin(NAME)`. `strut export` writes oscillators as states.") \
+  X(CONTROLLER, "controller", CONTROLLER_SENSOR, "`controllers: {NAME: {...}}`. The integral is the state `NAME_integral`. `strut export` writes PID controllers as signals and states.") \
+  X(RELAY, "relay", RELAY_KIND, "`controllers: {NAME: {kind: relay, ...}}`: a signal with two values, with `on_above` and `off_below`, or `on_below` and `off_above`.") \
+  X(PIPE, "pipe", PIPE_CELLS, "`pipes: {NAME: {cells: [a, b], conductance}}`: gas that flows between two cells. The name is a state: the amount that has flowed, pressure times area. `strut export` writes a pipe as sensors, signals and actuators.") \
+  X(NETWORK, "network", NETWORK_FILE, "`controllers: {NAME: {network: FILE, ...}}`: a signal from a neural network. `strut export` writes its neurons as signals `NAME_1_1` and so on.") \
+  X(RUBBING, "friction of a collision", RUBBING_MU, "`collisions: {NAME: {friction: {...}}}`: friction of two bodies in contact, smooth in the speed, so that loaded contacts creep. It acts on nodes and axes, without a moment due to the thickness.") \
+  X(MAXWELL, "maxwell", MAXWELL_STIFFNESS, "`members: {NAME: {maxwell: {...}}}`: the force of the branch follows F' = k (u' - F/c), with the elongation u. In statics it is 0.") \
+  X(STARTS, "starts", STARTS_CONTACT, "`{sine: {...}, starts: {...}}` of any signal: begins its time at the touchdown of a node, which methods with events locate, or when a sensor passes a level.") \
+  X(CONFIGURATION, "configuration", CONFIGURATION_CONTACTS, "`configurations: {NAME: {NODE: [x, y], ...}}`, or `configurations: {NAME: {...}}` with these keys. `{}` is the drawn shape. If a node is called `contacts`, write contacts as a list of lists; if one is called `shape`, a mapping under that key is the shape.") \
   X(INITIAL, "initial", INITIAL_CONFIGURATION, "`initial: {...}`.") \
   X(SETTLE, "settle", SETTLE_SPEED, "`initial: {settle: {...}}`.") \
   X(EQUILIBRIA, "equilibria", EQUILIBRIA_SUPPORTS, "`equilibria: {...}`: the search of `strut equilibria` and of `initial: {equilibrium: NAME}`.") \
@@ -419,23 +419,23 @@
   X(QUANTITY, "quantity", QUANTITY_OF, "`run: {measure: {quantities: {NAME: {...}}}}`.") \
   X(STEADY, "steady", STEADY_TOLERANCE, "`run: {measure: {steady: {...}}}`.") \
   X(OUTPUT, "output", OUTPUT_EVERY, "`output: {...}`.") \
-  X(STUDY, "study", STUDY_VERSION, "The keys at the top level of a study, the file that `strut sweep` runs. Expressions in `set` and `derive` may use the model's parameters.") \
-  X(RANGE, "range", RANGE_FROM, "`axes: [{NAME: {...}}]`: values of a parameter; either `step` or `count`.") \
+  X(STUDY, "study", STUDY_VERSION, "The keys at the top level of a study, a file for `strut sweep`. Expressions in `set` and `derive` may use the model's parameters.") \
+  X(RANGE, "range", RANGE_FROM, "`axes: [{NAME: {...}}]`: values of a parameter, by `step` or `count`.") \
   X(VARIANT, "variant", VARIANT_SOLVER, "`variants: {NAME: {...}}` of a study.") \
   X(CHECK, "check", CHECK_HALF_STEP, "`check: {...}` of a study.") \
   X(FIGURE, "figure", FIGURE_KIND, "`figures: {NAME: {...}}` of a study.") \
   X(PATH, "path", PATH_LOAD, "`path: {...}` of a study with `compute: path`, as the options of `strut path`.") \
-  X(FORM, "form", FORM_FROM, "`form: {...}` of a study with `compute: form`, as the options of `strut form`.") \
-  X(POINTS, "points", POINTS_FILE, "`axes: [{points: {...}}]` of a study; `{points: FILE}` is short for it.") \
+  X(FORM, "form", FORM_FROM, "`form: {...}` of a study with `compute: form`, as the options of `strut form` (`from` is `--given`).") \
+  X(POINTS, "points", POINTS_FILE, "`axes: [{points: {...}}]` of a study, or short `{points: FILE}`.") \
   X(SAMPLE, "sample", SAMPLE_COUNT, "`axes: [{sample: {...}}]` of a study: parameters from distributions.") \
   X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM, "`over: {NAME: {...}}` of a sample or a sensitivity analysis, with one of these keys.") \
   X(LIMIT, "limit", LIMIT_EVALUATIONS, "`limit: {...}` of a study.") \
   X(REFINE, "refine", REFINE_WHERE, "`refine: {...}` of a study.") \
-  X(SENSITIVITY, "sensitivity", SENSITIVITY_OF, "`sensitivity: {...}` of a study; results are in `sensitivity.csv` beside the table.") \
+  X(SENSITIVITY, "sensitivity", SENSITIVITY_OF, "`sensitivity: {...}` of a study. The results are in `sensitivity.csv` beside the table.") \
   X(STIFFNESS_AT, "stiffness_at", STIFFNESS_AT_NODE, "`stiffness_at: {...}` of a study.") \
-  X(SEARCH, "search", SEARCH_MAXIMISE, "`search: {...}` of a study; either `maximise` or `minimise`. [Searches](search.md) has examples.") \
+  X(SEARCH, "search", SEARCH_MAXIMISE, "`search: {...}` of a study, with `maximise` or `minimise`. [Searches](search.md) has examples.") \
   X(VARIABLE, "variable", VARIABLE_FROM, "`over: {NAME: {...}}` of a search. `{NAME: [...]}` is a list of choices, numbers or texts.") \
-  X(FOLLOW, "follow", FOLLOW_OVER, "`follow: {...}` of a study, as the options of `strut follow`. [Branches of motions](follow.md#studies-of-branches) has an example.")
+  X(FOLLOW, "follow", FOLLOW_OVER, "`follow: {...}` of a study, as the options of `strut path --periodic`. [Branches of motions](follow.md#studies-of-branches) has an example.")
 /* clang-format on */
 
 #endif
