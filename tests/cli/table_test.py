@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The table of a sweep in other programs: the lines of docs/how-to/results.md for pandas, Octave and LibreOffice
+# The table of a sweep in other programs: the lines of docs/output.md for pandas, Octave and LibreOffice
 # are run as they stand there, and what these programs then hold is the table.
 #
 #   python3 table_test.py STRUT
@@ -22,10 +22,10 @@ root = os.getcwd()
 
 
 def lines_of(program):
-    """The block behind "<!-- run: PROGRAM -->" in docs/how-to/results.md."""
-    with open(f"{root}/docs/how-to/results.md", encoding="utf-8") as file:
+    """The block behind "<!-- run: PROGRAM -->" in docs/output.md."""
+    with open(f"{root}/docs/output.md", encoding="utf-8") as file:
         found = re.findall(f"<!-- run: {program} -->\n```text\n(.*?)```\n", file.read(), re.S)
-    check(len(found) == 1, f"docs/how-to/results.md has {len(found)} blocks for {program}")
+    check(len(found) == 1, f"docs/output.md has {len(found)} blocks for {program}")
     return found[0]
 
 
@@ -57,9 +57,9 @@ TEXTS = ("start", "motion", "outcome", "status", "message")
 
 
 def make_tables():
-    """That of the document's first commands, and one with points that fail."""
-    with open(f"{root}/docs/how-to/results.md", encoding="utf-8") as file:
-        block = re.search("```sh\n(.*?)```\n", file.read(), re.S).group(1)
+    """That of the document's section on other programs, and one with points that fail."""
+    with open(f"{root}/docs/output.md", encoding="utf-8") as file:
+        block = re.search("\n## Other programs\n.*?```sh\n(.*?)```\n", file.read(), re.S).group(1)
     shutil.copytree(f"{root}/models", f"{work}/models")
     os.environ["PATH"] = os.path.dirname(strut) + os.pathsep + os.environ["PATH"]
     run(["sh", "-eu"], block)
