@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Draws into DIRECTORY crawler.svg, the crawler of README.md, run to 0.5 %; page.png, the page of that run; and
+# Draws into DIRECTORY the pictures of README.md, crawler.svg, run to 0.5 %, and page.png, the page of a run; and
 # compare/five.svg of docs/how-to/compare-designs.md. docs/paper.sh draws the paper's figure 8.
 #
 #   sh docs/pictures.sh build/release/strut docs
@@ -26,7 +26,7 @@ mkdir -p "$output/compare"
 awk -f "$here/smaller.awk" "$work/five/compare.svg" >"$output/compare/five.svg"
 # The page as a browser shows it; without Chromium the old picture stays.
 if command -v chromium >/dev/null; then
-  "$strut" run "$work/settled.yaml" --accuracy 0.5% --quiet -o "$work/run"
+  "$strut" run "$work/settled.yaml" --quiet -o "$work/run"
   "$strut" view "$work/run" --quiet -o "$work/page.html"
   chromium --headless=new --no-sandbox --disable-gpu --no-first-run --hide-scrollbars \
     --disable-background-networking --disable-component-update --disable-sync --disable-quic \
