@@ -115,6 +115,7 @@ def compare_run(model):
 
 
 print(run_octave(f"source ('{here}/octave_test.m')"), end="")
+run_octave(f"source ('{here}/tsgfem.m')")
 count = 0
 runs = ["crawler/crawler.yaml", "gallery/t-bar.yaml", "gallery/d-bar.yaml", "gallery/sliding-mass-crawler.yaml",
         "gallery/double-pendulum.yaml"]
