@@ -12,7 +12,7 @@ page() {
 # The library
 
 `libstrut.so.0` does what the program does, for programs in any language that can call C: opaque handles, texts,
-arrays of doubles. It stays compatible; the [C tree](architecture.md#libraries-and-program) beside it changes with
+arrays of doubles. It stays compatible; the [C tree](dev/architecture.md#libraries-and-program) beside it changes with
 every release. This page is made of the comments in `parser/bindings/abi/abi.h` by `tests/abi/api_page.sh`.
 
 TEXT
