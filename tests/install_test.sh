@@ -104,7 +104,7 @@ cmake --build build >build.log 2>&1 || { cat build.log; exit 1; }
 grep -q 'velocity 0.01003 m/s, motion periodic' by-cmake || { cat by-cmake; exit 1; }
 # The command that docs/api.md gives, with the compiler of this build as cc.
 # shellcheck disable=SC2016  # backticks of the document
-command=$(sed -n 's/^Built by `\(cc .*\)`, or in CMake by$/\1/p' "$source/docs/api.md")
+command=$(sed -n 's/^Build it with `\(cc .*\)`, or in CMake with$/\1/p' "$source/docs/api.md")
 printf '#!/bin/sh\nexec "%s" %s "$@"\n' "$compiler" "$sanitizers" >cc
 chmod +x cc
 (PATH=$scratch/abi:$PATH && eval "$command")

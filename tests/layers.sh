@@ -181,8 +181,8 @@ mkdir -p "$scratch/twins/engine"
 printf 'STRUT_CLONES\nstatic void same(int a) {\n' | tee "$scratch/twins/engine/a.c" >"$scratch/twins/engine/b.c"
 [ -n "$(twins "$scratch/twins")" ] || { echo "twins are not seen"; failures=$((failures + 1)); }
 
-# What docs/architecture.md says of the tree: who uses CHOLMOD, GLPK and NLopt, and the files that it and
-# docs/recipes.md name by the end of their paths. Those in strut/ are installed.
+# What docs/dev/architecture.md says of the tree: who uses CHOLMOD, GLPK and NLopt, and the files that it and
+# docs/dev/recipes.md name by the end of their paths. Those in strut/ are installed.
 strangers() {
   for pair in 'cholmod_:(model/cholmod_factor|statics/sparse_algebra)' \
     'ds[ae]upd_:statics/sparse_algebra' 'glp_:statics/linear_program' 'nlopt_:study/search/nlopt_optimiser' \
@@ -192,7 +192,7 @@ strangers() {
   done
 }
 unknown_files() {
-  for page in "$1/docs/architecture.md" "$1/docs/recipes.md"; do
+  for page in "$1/docs/dev/architecture.md" "$1/docs/dev/recipes.md"; do
     grep -v '^[-+]' "$page" | grep -oE '`[a-z0-9_/]+[.](c|h|sh|py|cmake)(\.in)?`' | tr -d '`' | sort -u |
       grep -v '^strut/' | while read -r name; do
         find "$1" -path "$1/build" -prune -o -path "*/$name" -print | grep -q . ||
@@ -200,9 +200,10 @@ unknown_files() {
       done
   done
 }
-mkdir -p "$scratch/claims/engine/a" "$scratch/claims/parser" "$scratch/claims/docs"
+mkdir -p "$scratch/claims/engine/a" "$scratch/claims/parser" "$scratch/claims/docs/dev"
 echo 'cholmod_start(x);' >"$scratch/claims/engine/a/b.c"
-echo 'in `engine/a/c.c` and `b.c`' | tee "$scratch/claims/docs/architecture.md" >"$scratch/claims/docs/recipes.md"
+echo 'in `engine/a/c.c` and `b.c`' |
+  tee "$scratch/claims/docs/dev/architecture.md" >"$scratch/claims/docs/dev/recipes.md"
 [ "$(strangers "$scratch/claims" | wc -l) $(unknown_files "$scratch/claims" | wc -l)" = "1 2" ] ||
   { echo "false claims of the pages are not seen"; failures=$((failures + 1)); }
 

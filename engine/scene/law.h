@@ -6,7 +6,7 @@
  * only: e is any strain (a length [m], an angle [rad], an area [m^2]), e0 its natural value, x = e - e0,
  * and the force is the one that does work on e. Laws of cells are in laws/cell_laws.h.
  * Reader, checks, forces, energies, stiffness, statics and located events loop over this table, so that a
- * law is added only here; see docs/recipes.md.
+ * law is added only here; see docs/dev/recipes.md.
  */
 #ifndef STRUT_ENGINE_SCENE_LAW_H
 #define STRUT_ENGINE_SCENE_LAW_H

@@ -4,7 +4,7 @@
 never a signal; and so it is under limits of memory (ulimit -v) that grow in small steps.
 
 Left out are allocations that HDF5, GLib, Pango, Fontconfig and libgfortran make themselves, and with HDF5 the C
-library's, which it calls: these end the process from inside, whatever their caller does. docs/testing.md
+library's, which it calls: these end the process from inside, whatever their caller does. docs/dev/testing.md
 says what guards against that.
 
   python3 library_memory_test.py STRUT FAILING_MALLOC COUNT

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * Faulty scenes and studies, of documents that hold many: a base, and cases that change lines of it.
- * docs/testing.md describes the format.
+ * docs/dev/testing.md describes the format.
  */
 #ifndef STRUT_TESTS_LANGUAGE_CASES_H
 #define STRUT_TESTS_LANGUAGE_CASES_H

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * What docs/recipes.md adds works: its friction law, its law of members and its strain in every method, by
+ * What docs/dev/recipes.md adds works: its friction law, its law of members and its strain in every method, by
  * every kernel, alone and in lanes, in subdomains, at rest, in the step limit and in exported code; its method of integration on a smooth scene; and all through the language and back.
  */
 #include <math.h>

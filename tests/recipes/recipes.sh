@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The recipes for a friction law, a law of members, a strain, a number, a kind of thing and a method do what they promise:
-# copies the sources, applies the ```diff blocks of docs/recipes.md, compiles what recipes.c runs, and runs it.
+# copies the sources, applies the ```diff blocks of docs/dev/recipes.md, compiles what recipes.c runs, and runs it.
 # Usage: recipes.sh ROOT SCRATCH CC INCLUDES LIBRARIES
 set -eu
 root=$1 scratch=$2 cc=$3 includes=$4 libraries=$5
@@ -12,7 +12,7 @@ cp -R "$root/engine" "$root/parser" "$scratch/"
 cp -R "$root/tests/recipes" "$scratch/tests/"
 cp "$root/.cmake/EmbedFiles.cmake" "$scratch/"
 awk '/^```diff/ { inside = 1; blocks++; next } /^```/ { inside = 0 } inside { print }
-  END { exit blocks == 0 }' "$root/docs/recipes.md" >"$scratch/recipes.diff"
+  END { exit blocks == 0 }' "$root/docs/dev/recipes.md" >"$scratch/recipes.diff"
 cd "$scratch"
 touched=$(sed -n 's/^+++ b\///p' recipes.diff | sort -u | tr '\n' ' ')
 expected="engine/forces/elements.c engine/forces/strains/span.h engine/integrate/euler_forward.c \

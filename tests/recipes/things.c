@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * What docs/recipes.md adds to a scene by rows. The number of a hinge: read, with its unit and its range, from
+ * What docs/dev/recipes.md adds to a scene by rows. The number of a hinge: read, with its unit and its range, from
  * a group, from a parameter and from a part, checked in scenes without a file, written, and part of what
  * identifies an equilibrium. A kind of thing: read from a scene and from copies of a part, its references
  * resolved, its mistakes located, and written.
