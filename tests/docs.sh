@@ -19,6 +19,9 @@ trap 'rm -rf "$scratch"' EXIT
 failures=0
 fail() { echo "$*"; failures=$((failures + 1)); }
 
+# folder FILE: the scratch folder of a document, named after its path.
+folder() { echo "$scratch/$(echo "${1#"$root"/}" | sed 's/\.md$//; s|/|-|g')"; }
+
 # blocks FILE FOLDER: the sh blocks of FILE as FOLDER/LINE.sh, those behind a marker
 # "<!-- command: NAME -->" as FOLDER/NAME.command. A fence that would hide commands is reported.
 blocks() {
@@ -142,7 +145,7 @@ document 'See `engine/base/nowhere.c`.\n'
 ran=0
 for document in "$root"/README.md "$root"/docs/*.md "$root"/docs/*/*.md; do
   [ -e "$document" ] || continue
-  commands_work "$document" "$scratch/$(basename "$document" .md)" ||
+  commands_work "$document" "$(folder "$document")" ||
     fail "${document#"$root"/}: a command fails"
   lost=$(dead_links "$document"; lost_files "$document")
   [ -z "$lost" ] || fail "$lost"
@@ -168,6 +171,6 @@ log=$scratch/README/blocks/$(awk '/^<!-- command: build -->/ { printf "%05d", NR
 
 for document in "$root"/README.md "$root"/docs/*.md "$root"/docs/*/*.md; do
   [ -e "$document" ] || continue
-  wrong_numbers "$document" "$scratch/$(basename "$document" .md)" || failures=$((failures + 1))
+  wrong_numbers "$document" "$(folder "$document")" || failures=$((failures + 1))
 done
 exit "$((failures > 0))"

@@ -5,7 +5,7 @@ A topology is a connected graph of 3 to 6 nodes and at most 9 members, each a ba
 driven. All have the paper's mass, size at rest, ground, drive and kinds of members, and no mechanism. A shape
 is drawn at random so that it rests as drawn: the forces follow from the equilibrium and the states of
 self-stress, the rest lengths from the forces. Its lowest frequency must lie near the drive's; that needs no
-run. Then runs on three grounds decide. docs/how-to/design-a-crawler.md tells what came out.
+run. Then runs on three grounds decide. docs/articles/design-a-crawler.md tells what came out.
 
     python3 crawlers.py [PICTURE] [--topologies N] [--shapes N] [--finalists N] [--evaluations N]
                         [--robust N] [--robust-evaluations N] [--seed N] [-o FILE]

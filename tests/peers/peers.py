@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers of examples of other programs: runs these, and checks the table of docs/comparison.md.
+"""Numbers of examples of other programs: runs these, and checks the tables of docs/comparison.md.
 
-    python3 peers.py STRUT            fails where a number is not met, or the table is not what it prints
-    python3 peers.py STRUT --write    writes the table
+    python3 peers.py STRUT            fails if a number is not met, or if the tables of the page differ
+    python3 peers.py STRUT --write    writes the tables
 
 A section of examples.ini asks a model a question (ask: a command and its options; filter: jq, which may use
 tests/gallery/gallery.jq) and gives the number, who made it, and how far strut's may be from it, as a part of it.
@@ -13,11 +13,15 @@ import os
 import re
 import subprocess
 import sys
+import textwrap
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 PAGE = os.path.join(ROOT, "docs", "comparison.md")
 BEGIN, END = "<!-- peers -->\n", "<!-- /peers -->\n"
+SAME = "<2e-8"
+TITLES = {"closed form": "Closed forms", "computed apart": "Independent computations",
+          "stored results": "Results that the program stores"}
 
 
 def answer(strut, row):
@@ -37,18 +41,17 @@ def answer(strut, row):
 
 
 def difference(got, want):
-    """Of strut's number from theirs, as a part of it, to one digit."""
+    """Relative difference of strut's number from theirs, to one digit."""
     share = abs(got - want) / abs(want)
-    return "below 2e-8" if share < 2e-8 else f"{share:.0e}"
+    return SAME if share < 2e-8 else f"{share:.0e}"
 
 
-def table(strut):
-    """The table's lines, and what is wrong."""
+def tables(strut):
+    """The lines of the tables, one for each origin of numbers, how many numbers these have, and errors."""
     rows = configparser.ConfigParser(interpolation=None, delimiters=("=",), comment_prefixes=("#",))
     rows.optionxform = str
     rows.read(os.path.join(HERE, "examples.ini"), encoding="utf-8")
-    lines = ["| example | what | number | made by | strut differs by |", "|---|---|---|---|---|"]
-    wrong = []
+    origins, wrong = {}, []
     for name in rows.sections():
         row, want = rows[name], float(rows[name]["number"])
         got = answer(strut, row)
@@ -57,30 +60,40 @@ def table(strut):
             continue
         if abs(got - want) > float(row["within"]) * abs(want):
             wrong.append(f"{name}: {got!r}, expected {want!r} within {row['within']}")
-        link = row["example"]  # tests are not installed beside the pages
+        link = row["example"].removeprefix(row["by"].split()[0] + ", ")
+        found, alike = origins.setdefault(row["by"], ([], []))
         if row["model"].startswith("models/"):
             link = f"[{link}](../{row['model']})"
-        lines.append(f"| {link} | {row['what']} | {want:.9g} | {row['by']} | {difference(got, want)} |")
-    return lines, wrong
+        elif difference(got, want) == SAME:  # a model of the tests, which are not installed beside the pages
+            alike.append(link)
+            continue
+        found.append(f"| {link}: {row['what']} | {want:.9g} | {difference(got, want)} |")
+    lines = []
+    for origin, (found, alike) in origins.items():
+        lines += [f"### {TITLES.get(origin, origin)}", "", "| example | number | difference |", "|---|---|---|", *found, ""]
+        if alike:
+            names = ", ".join(f"`{name}`" for name in dict.fromkeys(alike))
+            lines += textwrap.wrap(f"The difference is {SAME} for {names}, too.", 120, break_on_hyphens=False) + [""]
+    return lines, sum(len(found) + len(alike) for found, alike in origins.values()), wrong
 
 
 def main():
-    lines, wrong = table(os.path.abspath(sys.argv[1]))
+    lines, numbers, wrong = tables(os.path.abspath(sys.argv[1]))
     for text in wrong:
         print("FAILED:", text)
     with open(PAGE, encoding="utf-8") as file:
         page = file.read()
     found = re.search(re.escape(BEGIN) + "(.*?)" + re.escape(END), page, re.S)
     if not found:
-        sys.exit(f"{PAGE} has no place for the table")
+        sys.exit(f"{PAGE} has no place for the tables")
     made = "\n".join(lines) + "\n"
     if "--write" in sys.argv:
         with open(PAGE, "w", encoding="utf-8") as file:
             file.write(page[:found.start(1)] + made + page[found.end(1):])
     elif found.group(1) != made:
-        wrong.append("the table")
-        print("FAILED: the table of docs/comparison.md is another; run tests/peers/peers.py STRUT --write")
-    print(f"{len(lines) - 2} numbers")
+        wrong.append("the tables")
+        print("FAILED: docs/comparison.md has other tables; run tests/peers/peers.py STRUT --write")
+    print(f"{numbers} numbers")
     sys.exit(bool(wrong))
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """docs/gallery.md: every model is there, and every picture is the one that strut draws today. The models
-of its table have a command but no picture: it is drawn here, and thrown away. Studies are no models.
+of its tables have a command but no picture: it is drawn here, and thrown away. Studies are no models.
 
 usage: gallery_test.py STRUT
 """
@@ -20,7 +20,7 @@ PAIRED = ("parts-michell-wheel.svg", "parts-michell-wheel-12.svg")
 
 
 page = open("docs/gallery.md", encoding="utf-8").read()
-ROW = re.compile(r"^\| \[([\w-]+)\]\(\.\./(models/[\w/-]+\.yaml)\) \| .* \| `strut (\w+) ?(.*)` \|$", re.M)
+ROW = re.compile(r"^\| \[([\w-]+)\]\(\.\./(models/[\w/-]+\.yaml)\).* \| `strut (\w+) ?(.*)` \|$", re.M)
 tabled = {row[1]: row for row in ROW.findall(page)}
 for model in sorted(glob.glob("models/**/*.yaml", recursive=True)):
     if re.search(r"^study:", open(model, encoding="utf-8").read(), re.M):
