@@ -115,22 +115,22 @@ ldd example | grep -q 'libstrut.so.0' || { echo "the example is not linked to li
 cd "$scratch/user"
 
 "$prefix/bin/strut" --version
-"$prefix/bin/strut" schema >schema
+"$prefix/bin/strut" keys --schema >schema
 cmp schema "$prefix/share/strut/strut-1.schema.json"
-"$prefix/bin/strut" schema --study >schema
+"$prefix/bin/strut" keys --schema --study >schema
 cmp schema "$prefix/share/strut/strut-1.study.schema.json"
 "$prefix/bin/strut" examples crawler
 cmp crawler.yaml "$source/models/crawler/crawler.yaml"
-"$prefix/bin/strut" new robot
+"$prefix/bin/strut" examples --new robot
 "$prefix/bin/strut" check robot.yaml >/dev/null
 grep -q "schema=.*/share/strut/strut-1.schema.json" robot.yaml
-for page in man1/strut.1 man1/strut-run.1 man1/strut-completion.1 man5/strut-model.5; do
+for page in man1/strut.1 man1/strut-run.1 man1/strut-export.1 man5/strut-model.5; do
   test -s "$prefix/share/man/$page"
 done
-[ "$(find "$prefix/share/man" -name 'strut*' | wc -l)" -ge 19 ]
+[ "$(find "$prefix/share/man" -name 'strut*' | wc -l)" -ge 17 ]
 for script in bash:bash-completion/completions/strut zsh:zsh/vendor-completions/_strut \
   fish:fish/vendor_completions.d/strut.fish; do
-  "$prefix/bin/strut" completion "${script%%:*}" >script
+  "$prefix/bin/strut" help --completion "${script%%:*}" >script
   cmp script "$prefix/share/${script#*:}"
 done
 "$prefix/bin/strut" check "$source/models/crawler/crawler.yaml" >/dev/null

@@ -177,7 +177,7 @@ typedef struct tradeoff_request {
 } tradeoff_request;
 
 static strut_status bad_method(const char *name, int length) {
-  fprintf(stderr, "strut tradeoff: --methods: unknown method '%.*s'; expected", length, name);
+  fprintf(stderr, "strut tradeoff: --integrator: unknown method '%.*s'; expected", length, name);
   for (size_t i = 0; strut_integrator_at(i); i++)
     fprintf(stderr, "%s %s", i ? "," : "", strut_integrator_at(i)->name);
   fputc('\n', stderr);

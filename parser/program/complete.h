@@ -45,7 +45,7 @@ extern const char *const strut_shells[]; /* bash, zsh, fish, NULL */
 /* The scripts of the folder shells, embedded at build time: each followed by a row of NULL. */
 
 extern const strut_embedded strut_bash_script[], strut_zsh_script[], strut_fish_script[];
-/** The scene of `strut new`, with @FILE@ and @NAME@ for its names. */
+/** The scene of `strut examples --new`, with @FILE@ and @NAME@ for its names. */
 extern const strut_embedded strut_new_scene[];
 
 #endif

@@ -162,6 +162,15 @@ static void print_option(const strut_option *option) {
   strut_manual_text(option->help);
 }
 
+/* What a command does with one of its selecting options, as a part of its page. */
+static void print_form(const strut_command *form) {
+  char heading[80];
+  snprintf(heading, sizeof heading, "strut %s", form->name);
+  strut_manual_heading("SH", heading);
+  if (form->details) print_details(form->details);
+  for (size_t i = 0; strut_option_at(form, i); i++) print_option(strut_option_at(form, i));
+}
+
 void strut_manual_of_command(const strut_command *command) {
   char name[64];
   const char *model = command->model;
@@ -180,6 +189,8 @@ void strut_manual_of_command(const strut_command *command) {
     printf("\\fBstrut %s\\fR %s.\n", command->name, command->summary);
   strut_manual_heading("SH", "OPTIONS");
   for (size_t i = 0; strut_option_at(command, i); i++) print_option(strut_option_at(command, i));
+  for (const strut_command_variant *f = command->forms; f && f->selector; f++)
+    if (f == command->forms || f->command != f[-1].command) print_form(f->command);
   print_exit_codes();
   print_page_names(name);
 }

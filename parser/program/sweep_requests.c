@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `strut evaluate`: requests by the files of DAKOTA, or line by line, and the command. */
+/* `strut sweep --requests`: requests by the files of DAKOTA, or line by line, and the command. */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -422,7 +422,8 @@ static strut_status check_arguments(const strut_arguments *a) {
   bool files = in || strut_option_text(a, STRUT_OPTION_ANSWERS);
   if (a->json && !a->count_points)
     return strut_print_usage_error(command, "--json is for --count: answers are JSON anyway");
-  if (a->count_points && (a->dakota || files || a->model_count > 1))
+  bool answers = strut_option_text(a, STRUT_OPTION_ANSWERS);
+  if (a->count_points && (a->dakota || answers || a->model_count > 1))
     return strut_print_usage_error(command, "--count computes nothing: it goes with a model alone");
   if (a->dakota && files)
     return strut_print_usage_error(

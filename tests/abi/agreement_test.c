@@ -196,7 +196,7 @@ TEST(the_library_agrees_with_the_program) {
     if (!scene) print_message("%s", strutlib_error_report(error));
     assert_non_null(scene);
     print_message("%s\n", models[i]);
-    assert_int_equal(run_program("write", models[i]), 0);
+    assert_int_equal(run_program("export", models[i]), 0);
     char *out = read_file("out"), *yaml = strutlib_scene_yaml(scene, 0, &error);
     assert_string_equal(out, yaml);
     free(out);

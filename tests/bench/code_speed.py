@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a step of the C costs that `strut export --code` writes of the crawler.
+"""What a step of the C costs that `strut export --format code` writes of the crawler.
 
 usage: code_speed.py STRUT [REPEATS]
 
@@ -67,7 +67,7 @@ work = tempfile.mkdtemp()
 print(f"{'':40} {'rk4, by hand = 1':>25} {'verlet, the same':>25}")
 for real in ("double", "float"):
     folder = os.path.join(work, real)
-    subprocess.run([strut, "export", model, "--code", folder, "--real", real], check=True, capture_output=True)
+    subprocess.run([strut, "export", model, "--format", "code", "-o", folder, "--real", real], check=True, capture_output=True)
     with open(os.path.join(work, "main.c"), "w", encoding="utf-8") as file:
         file.write(MAIN)
     for compiler in filter(shutil.which, ("gcc", "clang")):

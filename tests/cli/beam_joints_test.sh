@@ -31,7 +31,7 @@ expect 0 path oblique.yaml --set n=40 --load tip --until 1 --json
 near '(.points[-1].nodes.tip | (.[0] - 1.2) * 0.8 - (.[1] - 2.6) * 0.6) * 1e5' \
   '8/18 + (7.84 - 2.24 + 0.64 / 3) / 3' 1e-3
 # Its hinges, with the halves in a row, as they are written; a run keeps the balance of energy.
-expect 0 write corner.yaml
+expect 0 export corner.yaml
 grep -q '  arm.start: {nodes: \[post.9, corner, arm.1\], stiffness: 40, damping: 0.0933' out ||
   fail "no hinge at the corner in the written scene"
 sed 's/10 MN/10 kN/' corner.yaml >run.yaml
@@ -67,7 +67,7 @@ for n in 5 10 20; do
 done
 jq -en "$(cat error.5) / $(cat error.10) | . > 3.6 and . < 4.4" >/dev/null || fail "not of second order"
 jq -en "$(cat error.10) / $(cat error.20) | . > 3.6 and . < 4.4" >/dev/null || fail "not of second order"
-expect 0 write tee.yaml
+expect 0 export tee.yaml
 for hinge in 'two.start: {nodes: \[one.9, joint, two.1\]' 'three.start: {nodes: \[two.1, joint, three.1\]' \
   'one.end.three: {nodes: \[three.1, joint, one.9\]'; do
   grep -q "  $hinge" out || fail "no hinge $hinge in the written scene"
@@ -91,7 +91,7 @@ for n in 10 20; do
   expect 0 modes bar.yaml --set n=$n --json
   near '.modes[0].angular_frequency' '3 * 6 / 2 / (4 * 0.25) | sqrt' "2 / ($n * $n)"
 done
-expect 0 write bar.yaml
+expect 0 export bar.yaml
 grep -q '  arm.start: {nodes: \[pin, corner, arm.1\], stiffness: 120}' out || fail "no hinge at the bar"
 
 # At a fixed clamp of the other beam an end is held in that direction.

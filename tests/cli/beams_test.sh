@@ -122,7 +122,7 @@ near .measured.shaken.value 0.01 1e-6
 near '.energy.residual / .energy.exchanged' 0 1e-6
 
 # The scene as written names the parts, and runs with the same bits.
-expect 0 write frame.yaml
+expect 0 export frame.yaml
 cp out flat.yaml
 grep -q '  post.start: {nodes: \[post.start, a, post.1\], stiffness: 40, damping: 0.04, rest_angle: 3.14159' flat.yaml ||
   fail "no hinge at the clamp in the written scene"

@@ -67,7 +67,7 @@ done
 near '.energy.residual / .energy.exchanged' 0 1e-6
 expect 0 run belt.yaml --accuracy 0.1% --json
 near .measured.way.value "$way" 1e-3
-expect 0 write belt.yaml
+expect 0 export belt.yaml
 cp out written.yaml
 expect 0 run written.yaml --json
 near .measured.x.value "$x" 1e-8
@@ -156,7 +156,7 @@ expect 2 check bad.yaml
 sed 's/^run:/initial: {settle: {friction: kept}}\nrun:/' belt.yaml >bad.yaml
 expect 2 run bad.yaml
 err_has "not by bristles (lugre)"
-expect 2 export belt.yaml --code belt
+expect 2 export belt.yaml --format code -o belt
 err_has "friction with bristles"
 
 done_testing

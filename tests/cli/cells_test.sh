@@ -153,9 +153,9 @@ expect 0 equilibria tent.yaml --json
 near '[.equilibria[].energy] | min' 0 1e-12
 expect 0 check tent.yaml
 out_has "elastic"
-expect 0 write tent.yaml
+expect 0 export tent.yaml
 cp out written.yaml
-expect 0 write written.yaml
+expect 0 export written.yaml
 same out written.yaml
 expect 0 run written.yaml --json
 near .measured.y.value 1 1e-4
@@ -204,11 +204,11 @@ for method in rk4 rk4-events adaptive verlet midpoint; do
   near '.measured.flowed.value' '2 - 2 * (-0.4 * 1.5 * 2 | exp)' $tolerance
   near .measured.all.value 0 1e-12
 done
-expect 0 write pipe.yaml
+expect 0 export pipe.yaml
 cp out written.yaml
 expect 0 run written.yaml --json
 near '.measured.small.value' '3 + 2 * (-0.4 * 1.5 * 2 | exp)' 1e-10
-expect 0 export pipe.yaml --code code
+expect 0 export pipe.yaml --format code -o code
 # a piston that is pushed in presses gas into the other cell until both press alike; the balance closes with what the pipe takes
 sed -e 's/  e: {position: .3, 0., fixed: both}/  e: {position: [3, 0], fixed: y, mass: 1}/' \
   -e 's/  f: {position: .3, 1., fixed: both}/  f: {position: [3, 1], fixed: y, mass: 1}/' \
@@ -227,15 +227,15 @@ expect 0 check piston.yaml
 out_has "isentropic gas"
 expect 0 check piston.yaml --json
 near '.cells.air.drawn_area' 2 1e-12
-expect 0 write piston.yaml
+expect 0 export piston.yaml
 cp out written.yaml
-expect 0 write written.yaml
+expect 0 export written.yaml
 cp out again.yaml
 same written.yaml again.yaml
 expect 0 run piston.yaml -o pictures --quiet --plot piston.svg
 expect 0 view pictures -o page.html
 grep -q "\"name\":\"air\",\"nodes\":\[0, 3, 2, 1\]" page.html || fail "no cell on the page"
-expect 0 export piston.yaml --matrices matrices
+expect 0 export piston.yaml --format matrices -o matrices
 grep -q 'air,cell,a,b,d c' matrices/columns.csv || fail "no column of the cell"
 expect 2 form bulge.yaml
 err_has "bag is a cell"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# strut export --code of what only some scenes have: several grounds, what breaks or yields, what follows the
+# strut export --format code of what only some scenes have: several grounds, what breaks or yields, what follows the
 # motion, and sliders. The C has strut's bits, by rk4 and verlet, and compiles without a warning.
 #
 #   python3 code_features_test.py STRUT
@@ -31,7 +31,7 @@ def floats_near(name, step, steps, far):
     """Floats stay near doubles, and compile without a warning, too."""
     rows = {}
     for real in ("double", "float"):
-        run("export", name, "--code", real, "--real", real, "--prefix", "x")
+        run("export", name, "--format", "code", "-o", real, "--real", real, "--prefix", "x")
         rows[real] = code_rows(build(compilers[-1], "x", f"-DSTEP={step!r}", f"-DSTEPS={steps}",
                                      f"-DEVERY={steps}", directory=real))
     error = max(abs(float(a) - float(b)) for a, b in zip(rows["float"][-1], rows["double"][-1]))
@@ -169,7 +169,7 @@ def test_memory():
     floats_near("memory.yaml", 2e-4, 2000, 1e-3)
     scene("memory.yaml", MEMORY, "rk4", 2e-4, 10000, 10000, "position, energy, force")
     done = run("run", "memory.yaml", "-o", "run", "--force")
-    run("export", "memory.yaml", "--code", "asked")
+    run("export", "memory.yaml", "--format", "code", "-o", "asked")
     with open(path("asked", "memory_example.c"), "w", encoding="utf-8") as main:
         main.write(BROKEN)
     lines = subprocess.run([build(compilers[0], "memory", directory="asked")], capture_output=True,
@@ -251,7 +251,7 @@ def test_feedback():
     floats_near("feedback.yaml", 2e-4, 500, 1e-3)
     compare_scene("switches.yaml", SWITCHES, 1e-4, 20000, 100)
     floats_near("switches.yaml", 1e-4, 500, 1e-3)
-    run("export", "switches.yaml", "--code", "asked")
+    run("export", "switches.yaml", "--format", "code", "-o", "asked")
     with open(path("asked", "switches_example.c"), "w", encoding="utf-8") as main:
         main.write('#include <stdio.h>\n#include "switches.h"\nstatic switches_state s;\nint main(void) {\n'
                    "  switches_init(&s);\n  for (int n = 0; n < 20000; n++) {\n"

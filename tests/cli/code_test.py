@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# strut export --code: the C that it writes compiles without a warning, and steps with strut's bits: on this
+# strut export --format code: the C that it writes compiles without a warning, and steps with strut's bits: on this
 # machine, and on a Cortex-M4 under QEMU where arm-none-eabi-gcc, newlib and qemu-system-arm are here (Debian's
 # gcc-arm-none-eabi, libnewlib-arm-none-eabi, qemu-system-arm). Floats stay near; what there is no code for is
 # refused by the name of its key.
@@ -173,7 +173,7 @@ def test_elements():
     check(abs(float(lines[-1]) - elastic) < 1e-9 * abs(elastic), f"elastic energy {lines[-1]}, strut says {elastic}")
     rows = {}
     for real in ("double", "float"):
-        run("export", "elements.yaml", "--code", real, "--real", real)
+        run("export", "elements.yaml", "--format", "code", "-o", real, "--real", real)
         rows[real] = code_rows(build(compilers[-1], "elements", "-DSTEP=2e-4", "-DSTEPS=1000", "-DEVERY=1000",
                                      directory=real))
     error = max(abs(float(a) - float(b)) for a, b in zip(rows["float"][-1], rows["double"][-1]))
@@ -209,7 +209,7 @@ def test_inputs():
     want = strut_rows(file)
     with open(path("run", "energy.csv"), encoding="utf-8") as table:
         energies = list(csv.reader(table))[-1][1:5]
-    run("export", os.path.join(models, "crawler", "crawler.yaml"), "--code", "held")
+    run("export", os.path.join(models, "crawler", "crawler.yaml"), "--format", "code", "-o", "held")
     with open(path("held", "crawler_example.c"), "w", encoding="utf-8") as main:
         main.write(HELD)
     lines = subprocess.run([build(compilers[0], "crawler", directory="held")], capture_output=True,
@@ -250,7 +250,7 @@ def test_floats():
     write("damped.yaml", DAMPED)
     rows = {}
     for real in ("double", "float"):
-        run("export", "damped.yaml", "--code", real, "--real", real, "--prefix", "d")
+        run("export", "damped.yaml", "--format", "code", "-o", real, "--real", real, "--prefix", "d")
         rows[real] = code_rows(build(compilers[0], "d", "-DSTEP=2e-4", "-DSTEPS=10000", "-DEVERY=500",
                                      directory=real))
     errors = [max(abs(float(a) - float(b)) for a, b in zip(x, y)) for x, y in zip(*rows.values())]
@@ -267,7 +267,7 @@ def test_arm():
     core = ["-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"]
     folder = path("arm")
     for real in ("float", "double"):
-        run("export", os.path.join(models, "crawler", "crawler.yaml"), "--code", "arm", "--real", real)
+        run("export", os.path.join(models, "crawler", "crawler.yaml"), "--format", "code", "-o", "arm", "--real", real)
         done = subprocess.run([tools[0], *core, *STRICT, "-O2", "-c", "crawler.c", "-o", "crawler.o"], cwd=folder,
                               capture_output=True, text=True)
         check(done.returncode == 0, f"{tools[0]}: {done.stderr[:2000]}")
@@ -287,29 +287,29 @@ def test_arm():
 
 def test_words():
     crawler = os.path.join(models, "crawler", "crawler.yaml")
-    refused = run("export", os.path.join(models, "gallery", "wave-crawler.yaml"), "--code", "no", code=2)
+    refused = run("export", os.path.join(models, "gallery", "wave-crawler.yaml"), "--format", "code", "-o", "no", code=2)
     check("friction law coulomb (its stops and starts are located within steps; use karnopp or smooth)"
           in refused.stderr, f"Coulomb's law is refused by: {refused.stderr}")
-    refused = run("export", os.path.join(models, "gallery", "x-with-ring.yaml"), "--code", "no", code=2)
+    refused = run("export", os.path.join(models, "gallery", "x-with-ring.yaml"), "--format", "code", "-o", "no", code=2)
     check("bars: rigid (" in refused.stderr and "use bars: elastic)" in refused.stderr,
           f"rigid bars are refused by: {refused.stderr}")
     check(not os.path.exists(path("no")), "a scene that is refused leaves a folder")
-    for words, text in ((("--code", "no", "--real", "half"), "double"),
-                        (("--code", "no", "--prefix", "9x"), "--prefix expects a letter"),
-                        (("--code", "no", "--format", "vtk"), "--code DIR stands alone"),
-                        (("--code", "no", "--at", "I"), "--at is not for --code"),
-                        (("--prefix", "x"), "--prefix is for --code"), (("--real", "float"), "--real is for --code")):
+    for words, text in ((("--format", "code", "-o", "no", "--real", "half"), "double"),
+                        (("--format", "code", "-o", "no", "--prefix", "9x"), "--prefix expects a letter"),
+                        (("--format", "code"), "missing -o DIR"),
+                        (("--format", "code", "-o", "no", "--at", "I"), "--at is not for code"),
+                        (("--prefix", "x"), "--prefix is for --format code"), (("--real", "float"), "--real is for --format code")):
         done = run("export", crawler, *words, code=1)
         check(text in done.stderr, f"{words}: {done.stderr}")
     write("2 legs.v2.yaml", open(crawler, encoding="utf-8").read())
-    run("export", "2 legs.v2.yaml", "--code", "odd")
+    run("export", "2 legs.v2.yaml", "--format", "code", "-o", "odd")
     check(os.path.exists(path("odd", "model_2_legs.h")), f"odd names: {os.listdir(path('odd'))}")
 
 
 def test_page():
     """The C of the page about it compiles."""
     page = open(os.path.join(models, "..", "docs", "how-to", "embed.md"), encoding="utf-8").read()
-    run("export", os.path.join(models, "crawler", "crawler.yaml"), "--code", "page")
+    run("export", os.path.join(models, "crawler", "crawler.yaml"), "--format", "code", "-o", "page")
     with open(path("page", "crawler_example.c"), "w", encoding="utf-8") as main:
         main.write(re.search(r"```c\n(.*?)```", page, re.S).group(1))
     build(compilers[0], "crawler", directory="page")

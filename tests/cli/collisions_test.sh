@@ -351,9 +351,9 @@ expect 0 check hinged.yaml
 out_has "drawn gap"
 out_has "for a collision"
 for file in cradle rods hinged; do
-  expect 0 write $file.yaml
+  expect 0 export $file.yaml
   cp out written.yaml
-  expect 0 write written.yaml
+  expect 0 export written.yaml
   same out written.yaml
 done
 expect 0 modes peg.yaml --at equilibrium-2

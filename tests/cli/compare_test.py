@@ -160,7 +160,7 @@ def stiffness(scene, at):
 
 
 def check_stiffness(path, model):
-    scene = yaml.safe_load(run("write", path).stdout)
+    scene = yaml.safe_load(run("export", path).stdout)
     wanted = stiffness(scene, model["nodes"])
     for node, reported in model["nodes"].items():
         for d in range(2):

@@ -18,7 +18,7 @@ offers() {
 }
 
 expect 0 help
-sed -n '/^Commands:/,/^$/p' out | sed '1d;$d' | awk '{print $1}' >commands
+grep '^  [a-z]' out | awk '{print $1}' >commands
 offers "$(tr '\n' ' ' <commands):" ""
 offers "run rigidity :" r
 offers ":" rum ""
@@ -29,7 +29,9 @@ offers "--quiet :" keys --q
 # Every option of every command is offered.
 while read -r command; do
   expect 0 $command --help
-  sed -n '1,/^Options:/d; s/^ *\(-., \)\{0,1\}\(--[a-z-]*\).*/\2/p' out | sort >listed
+  sed -n '1,/^Options:/d; s/^ *\(-., \)\{0,1\}\(--[a-z-]*\).*/\2/p' out >listed
+  sed -n "s/^'strut $command \(--[a-z]*\)' .*/\1/p" out >>listed
+  sort listed -o listed
   expect 0 complete $command --
   cut -f1 out | grep -v '^:' | sort >offered
   same listed offered
@@ -39,7 +41,7 @@ done <commands
 offers ":files yaml yml" run ""
 offers ":files yaml yml" sweep ""
 offers ":files csv" plot ""
-offers ":folders" merge ""
+offers ":folders" sweep --merge ""
 offers ":files" view ""
 offers ":folders" run "$crawler" -o ""
 offers ":files" run "$crawler" --plot ""
@@ -59,7 +61,7 @@ offers "drawn start :" modes --at ""
 offers "n1,n2 :" equilibria "$crawler" --supports n1,n2
 offers "n1.x n1.y :" path "$crawler" --over n1
 offers "rk4 rk4-events :" run --integrator rk
-offers "rk4,verlet rk4,verlet-events :" tradeoff --methods rk4,ver
+offers "rk4,verlet rk4,verlet-events :" tradeoff --integrator rk4,ver
 offers "none karnopp coulomb smooth stribeck lugre :" run --friction-law ""
 grep -q "	0.1$" out && fail "words have no values"
 expect 0 complete run "$crawler" --set fri
@@ -92,7 +94,7 @@ while read -r command option; do
   expect 1 $command $crawler $option no-such-word
   while read -r word; do err_has "$word"; done <offered
 done <<'END'
-form --from
+form --given
 form --objective
 tradeoff --measure
 run --bars
@@ -100,18 +102,20 @@ run --mass-model
 run --friction-law
 run --damping-law
 run --integrator
-import --format
+export --format
+export --input
+export --real
 END
 
-expect 1 completion tcsh
+expect 1 help --completion tcsh
 err_has "expected bash, zsh or fish, not 'tcsh'"
-expect 1 completion bsah
+expect 1 help --completion bsah
 err_has "did you mean 'bash'?"
-expect 1 completion
-err_has "missing SHELL"
-offers "bash zsh fish :" completion ""
+expect 1 help --completion
+err_has "option '--completion' needs a value"
+offers "bash zsh fish :" help --completion ""
 for shell in bash zsh fish; do
-  expect 0 completion $shell
+  expect 0 help --completion $shell
   err_empty
   cp out strut.$shell
 done
@@ -180,7 +184,7 @@ if command -v fish >/dev/null; then
   in_fish "strut run $crawler --integrator=rk4-" --integrator=rk4-events
   in_fish "strut modes $crawler --at I" "I II III"
   in_fish "strut run models/crawler/crawl" "$crawler"
-  in_fish "strut merge stu" studies/
+  in_fish "strut sweep --merge stu" studies/
 else
   echo "no fish"
 fi

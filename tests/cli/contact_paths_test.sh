@@ -94,13 +94,13 @@ members:
 ground: {circle: {centre: [0, 0], radius: 1, inside: yes}, stiffness: 100 kN/m, nodes: [a, b]}
 gravity: [0, -10]
 END
-expect 0 form hung.yaml --from prestress --json
+expect 0 form hung.yaml --given prestress --json
 # the pipe carries 30 N on two normals whose y is 0.8; c hangs on two bars
 jq -e '[.forces.ac + 5 * (0.6 * 0.6 + 0.4 * 0.4 | sqrt) / 0.4, .forces.ab + 15 / 0.8 * 0.6 - 7.5 | fabs] | max < 0.002' \
   "$work/out" >/dev/null || fail "form in a pipe: $(cat "$work/out")"
 sed -e 's/^ground:.*/grounds:\n  floor: {height: -0.8, stiffness: 100 kN\/m, nodes: [a, b]}\n  wall: {through: [0.6, 0], normal: [-1, 0], stiffness: 100 kN\/m, nodes: [b]}\n  other: {through: [-0.6, 0], normal: [1, 0.2], stiffness: 100 kN\/m, nodes: [a]}/' \
   hung.yaml >between.yaml
-expect 0 form between.yaml --from prestress --json
+expect 0 form between.yaml --given prestress --json
 jq -e '.residual < 1e-6' "$work/out" >/dev/null || fail "form between walls: $(cat "$work/out")"
 
 # A path does not depend on how long its steps are: none of them ends at a switch of another branch.

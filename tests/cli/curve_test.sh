@@ -58,7 +58,7 @@ done
 expect 0 run run.yaml --accuracy 0.1% --json
 expect 1 run run.yaml --integrator midpoint
 err_has 'yields or folds'
-expect 2 export run.yaml --code code
+expect 2 export run.yaml --format code -o code
 err_has 'law curve'
 expect 0 run run.yaml
 out_has 'jumps at folds'
@@ -134,6 +134,6 @@ jq -e '[.points[] | .nodes.b[0] - 5] | max >= 1 and min >= -1e-12' "$work/out" >
 # A search says that it takes one branch; scenes are written as they were read.
 expect 0 equilibria single.yaml
 err_has "may fold back"
-expect 0 write "$here/../language/good/elements.yaml"
+expect 0 export "$here/../language/good/elements.yaml"
 out_has 'mirrored: yes'
 done_testing

@@ -46,12 +46,12 @@ near '.distances["two.d"].drawn' 2 1e-15
 near '.distances["two.d"].rest' 1.6 1e-15
 near '.distances["one.o"].drawn' 0.5 0
 near '.distances["two.o"].drawn' 1 1e-15
-expect 0 write parts.yaml
+expect 0 export parts.yaml
 out_has 'one.d: {nodes: [one.a, one.b], along: x, stiffness: 5, rest_distance: 0.8}'
 out_has 'two.d: {nodes: [two.a, two.b], along: y, stiffness: 5, rest_distance: 1.6}'
 out_has 'two.o: {node: two.b, line: [two.t, two.a], stiffness: 5, rest_distance: 0.4}'
 cp out written.yaml
-expect 0 write written.yaml
+expect 0 export written.yaml
 cmp -s out written.yaml || fail 'a written scene is written differently'
 expect 0 modes parts.yaml --json # each node by itself: 2 and 2 frequencies
 near '.modes[3].frequency' '(5 | sqrt) / 2 / 3.141592653589793' 1e-9
@@ -129,7 +129,7 @@ for stop in b.x b.z=1 c.x=1 b.x=0 b.x=1N b.x= =1; do
 done
 expect 0 equilibria crossed.yaml --json
 near '.equilibria | length' 1 0
-expect 2 form held.yaml --from densities
+expect 2 form held.yaml --given densities
 err_has 'x is a distance'
 
 # What a distance cannot be.

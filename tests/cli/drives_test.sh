@@ -289,10 +289,10 @@ near "$(value at)" 1 1e-12
 closes 1e-6
 expect 0 modes lifted.yaml --json
 near '.modes[0].angular_frequency' 10 1e-9
-expect 0 write lifted.yaml
+expect 0 export lifted.yaml
 out_has 'a: {position: [0, 1], fixed: x, moves: {y: {sine: {amplitude: 0.2, frequency: 1, phase: '
 cp out again.yaml
-expect 0 write again.yaml
+expect 0 export again.yaml
 tail -n +3 out >one && tail -n +3 again.yaml >two && same one two
 
 # An unbalance on a spring and a damper: the amplitude is m r w^2 / sqrt((k - M w^2)^2 + (c w)^2).
@@ -317,7 +317,7 @@ expect 0 run unbalance.yaml --json
 near "$(value rms) * (2 | sqrt)" '(12.566370614359172 as $w | (200 - 2 * $w * $w) as $a | 8 * $w | . as $b |
   0.1 * 0.02 * $w * $w / ($a * $a + $b * $b | sqrt))' 1e-11
 closes 1e-8
-expect 0 write unbalance.yaml
+expect 0 export unbalance.yaml
 out_has 'u: {node: b, mass: 0.1, radius: 0.02, speed: 12.566370614359172, phase: 0.5235987755982988'
 
 # A free node with a mass that is spun up from rest, with a corner of the angle: the centre of mass of both

@@ -183,7 +183,7 @@ holds '.rank == 5 and .self_stress.count == 2 and .mechanisms.count == 3 and
   (.super_stability | startswith("not judged: elements"))'
 expect 0 rigidity triangle.yaml
 out_has "7 members and hinges - 8 free coordinates"
-expect 0 export triangle.yaml --matrices matrices
+expect 0 export triangle.yaml --format matrices -o matrices
 tail -n 1 matrices/columns.csv | grep -q '^7,hd,hinge,d,c,b$' || fail "columns of hinges in the matrices"
 
 # A weight on a ring: the cable's tension lends T / sqrt(2) to the motion along the ellipse.
@@ -248,7 +248,7 @@ expect 2 form square.yaml
 err_has "knows straight members with a linear law only: string_1_2_3 runs over guides"
 expect 2 form triangle.yaml
 err_has "ha is a hinge"
-expect 2 form kinked.yaml --from prestress
+expect 2 form kinked.yaml --given prestress
 err_has "m has another law"
 expect 0 form ring.yaml --json
 near_number "$(value .residual)" 0 1e-9 "residual of a form with a running cable"

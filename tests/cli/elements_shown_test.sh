@@ -75,9 +75,9 @@ $last
 END
 
 # The effective scene is the scene.
-expect 0 write all.yaml
+expect 0 export all.yaml
 mv out written.yaml
-expect 0 write run/scene.yaml
+expect 0 export run/scene.yaml
 same out written.yaml
 expect 0 run run/scene.yaml --quiet -o again
 same run/hinges.csv again/hinges.csv
@@ -91,7 +91,7 @@ expect 0 export run --format vtk -o vtk --quiet
 grep -q '<Lines>' vtk/structure_00000.vtp || fail "no lines"
 sed -n 's/.*Name="offsets"[^>]*>\([^<]*\)<.*/\1/p' vtk/structure_00000.vtp | base64 -d 2>/dev/null |
   od -An -v -t d4 -j 8 | tr -s ' \n' '  ' | grep -q '^ 3 5 7 9 $' || fail "offsets of the lines"
-expect 0 export all.yaml --matrices m
+expect 0 export all.yaml --format matrices -o m
 grep -qx '1,rope,cable,a,b,p' m/columns.csv || fail "columns.csv lacks the guide"
 grep -qx '5,elbow,hinge,a,d,p' m/columns.csv || fail "columns.csv lacks the hinge"
 for draw in snapshots curves; do expect 0 run all.yaml --quiet --draw $draw --plot $draw.svg; done

@@ -54,7 +54,7 @@ err_empty
 # A run may start at an equilibrium; the scene written has it as positions.
 sed 's/^initial: .*/initial: {equilibrium: start}/' "$crawler" >start.yaml
 for state in I II III; do
-  expect 0 write start.yaml --set "start=$state"
+  expect 0 export start.yaml --set "start=$state"
   out_has "positions:"
   grep -q "equilibrium:" out && fail "the effective scene still wants an equilibrium"
   cp out "$state.yaml"

@@ -27,7 +27,7 @@ def run(*words, code=0, lines=None, timeout=60):
 
 
 def answers(*words, code=0, lines):
-    out = run("evaluate", *words, code=code, lines=lines).stdout.decode()
+    out = run("sweep", "--requests", "-", *words, code=code, lines=lines).stdout.decode()
     return [json.loads(line) for line in out.splitlines()]
 
 
@@ -91,7 +91,7 @@ def every_computation():
     exact = math.sqrt(2 * 500 * slope ** 2) / (2 * math.pi)
     check(got["id"] == 1.5 and abs(got["results"]["frequency_1"] / exact - 1) < 1e-9,
           f"{got}, expected {exact}")
-    count = json.loads(run("evaluate", truss, "--compute", "modes", "--count", "--json").stdout)
+    count = json.loads(run("sweep", truss, "--requests", "-", "--compute", "modes", "--count", "--json").stdout)
     check({"name": "frequency_1", "unit": "Hz", "text": False} in count["results"],
           f"the columns: {count}")
 
@@ -169,26 +169,27 @@ def wrong_use():
             ((truss, "more"), 1, "unexpected argument 'more'"),
             (("-",), 1, "standard input"),
             ((truss, "--dakota", "a"), 1, "PARAMETERS RESULTS"),
-            ((truss, "--compute", "modes", "--in", "nothing"), 4, "nothing"),
+            ((truss, "--compute", "modes", "--requests", "nothing"), 4, "nothing"),
             ((truss, "--set", "hight=1"), 2, "did you mean 'height'"),
             (("block.yaml", "--keep", "reich"), 2, "reich"),
             (("block.yaml", "--at", "x"), 1, "at")):
-        done = run("evaluate", *words, code=code, lines=[])
+        how = () if "--dakota" in words or "--requests" in words else ("--requests", "-")
+        done = run("sweep", *words, *how, code=code, lines=[])
         check(text in done.stderr.decode(), f"{words}: {done.stderr.decode()}")
 
 
 def files():
     write("requests.jsonl", '{"height": 0.3}\n{"height": "x"}')
-    run("evaluate", truss, "--compute", "form", "--in", "requests.jsonl", "--out", "answers.jsonl", code=2)
+    run("sweep", truss, "--compute", "form", "--requests", "requests.jsonl", "--answers", "answers.jsonl", code=2)
     got = [json.loads(line) for line in read("answers.jsonl").splitlines()]
     check(len(got) == 2 and "requests.jsonl:2:12: " in got[1]["message"], f"{got}")
     write("mine.jsonl", "precious")
-    run("evaluate", truss, "--compute", "form", "--in", "requests.jsonl", "--out", "mine.jsonl", code=4)
+    run("sweep", truss, "--compute", "form", "--requests", "requests.jsonl", "--answers", "mine.jsonl", code=4)
     check(read("mine.jsonl") == "precious", "somebody else's file")
 
 
 def a_worker_answers_at_once_and_can_be_stopped():
-    worker = subprocess.Popen([strut, "evaluate", "block.yaml", "--keep", "steps"], cwd=work,
+    worker = subprocess.Popen([strut, "sweep", "block.yaml", "--requests", "-", "--keep", "steps"], cwd=work,
                               stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     worker.stdin.write(b'{"seconds": 0.05}\n')
     worker.stdin.flush()
@@ -196,7 +197,7 @@ def a_worker_answers_at_once_and_can_be_stopped():
     worker.send_signal(signal.SIGINT)  # while it waits for a request
     check(worker.wait(10) == 130, f"stopped with {worker.returncode}")
     check(worker.stderr.read() == b"", "nothing to say")
-    worker = subprocess.Popen([strut, "evaluate", "block.yaml", "--out", "part.jsonl"], cwd=work,
+    worker = subprocess.Popen([strut, "sweep", "block.yaml", "--requests", "-", "--answers", "part.jsonl"], cwd=work,
                               stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     worker.stdin.write(b'{"seconds": 0.05}\n{"seconds": 1e6}\n')
     worker.stdin.flush()
@@ -233,7 +234,7 @@ def dakota(form, functions, code=0, stiffness="1.500000000000000e+02", place="fa
     write("params.in", form.format(stiffness=stiffness, place=place, count=len(functions), functions=text))
     if os.path.exists(os.path.join(work, "results.out")):
         os.remove(os.path.join(work, "results.out"))
-    return run("evaluate", "block.yaml", "--keep", keep, "--dakota", "params.in", "results.out",
+    return run("sweep", "block.yaml", "--keep", keep, "--dakota", "params.in", "results.out",
                code=code).stderr.decode()
 
 
@@ -267,7 +268,7 @@ def dakota_files():
             ("1 variables\n1 stiffness\n1 variables\n", "once"), ("1 apples\n", "expected one of"),
             ("1 variables\n1 stiffness\n1 functions\n1 ASV_1:steps\n1 metadata\ns MD_1\n", "metadata")):
         write("params.in", text)
-        done = run("evaluate", "block.yaml", "--keep", "steps", "--dakota", "params.in", "none.out", code=2)
+        done = run("sweep", "block.yaml", "--keep", "steps", "--dakota", "params.in", "none.out", code=2)
         check(words in done.stderr.decode(), f"{text!r}: {done.stderr.decode()}")
 
 

@@ -5,7 +5,7 @@ models=$(realpath "$2")
 . "$(dirname "$0")/lib.sh"
 
 # new
-expect 0 new robot
+expect 0 examples --new robot
 err_empty
 out_has "robot.yaml is written"
 files . err out robot.yaml
@@ -13,11 +13,11 @@ grep -q '^name: "robot"$' robot.yaml || fail "the name of the scene"
 grep -q 'strut run robot.yaml' robot.yaml || fail "the name of the file"
 grep -q '@' robot.yaml && fail "a mark is left"
 cp robot.yaml first
-expect 4 new robot
+expect 4 examples --new robot
 out_empty
 err_has "'robot.yaml' exists already, and is left as it is"
 same first robot.yaml
-expect 4 new robot.yaml
+expect 4 examples --new robot.yaml
 same first robot.yaml
 expect 0 check robot.yaml
 err_empty
@@ -30,23 +30,23 @@ err_empty
 jq -e '.status == "completed"' out >/dev/null || fail "a comment of the scene is wrong"
 expect 0 equilibria robot.yaml -q
 expect 0 modes robot.yaml -q
-expect 0 new other.yml --quiet
+expect 0 examples --new other.yml --quiet
 out_empty
 [ -s other.yml ] || fail "other.yml"
 mkdir folder
-expect 0 new "folder/a \"b\""
+expect 0 examples --new "folder/a \"b\""
 expect 0 check "folder/a \"b\".yaml"
 out_has 'a "b": valid'
-expect 4 new missing/a
+expect 4 examples --new missing/a
 err_has "cannot write 'missing/a.yaml': No such file or directory"
 for name in folder/ . "" "$(printf 'a\nb')"; do
-  expect 1 new "$name"
+  expect 1 examples --new "$name"
   err_has "expected a name for the scene's file"
 done
-expect 1 new
+expect 1 examples --new
 err_has "missing NAME"
 ln -s nowhere dangling.yaml
-expect 4 new dangling
+expect 4 examples --new dangling
 [ ! -e nowhere ] || fail "written through a link"
 
 # examples
@@ -89,7 +89,7 @@ cp "$strut" moved/bin/strut
 moved/bin/strut examples >out 2>err </dev/null
 [ $? -eq 4 ] || fail "models that are not there"
 err_has "the models are not installed with this program"
-moved/bin/strut new -q plain || fail "new needs nothing that is installed"
+moved/bin/strut examples --new -q plain || fail "new needs nothing that is installed"
 [ "$(head -c 20 plain.yaml)" = "# A frame of two leg" ] || fail "a schema that is not there"
 mkdir -p "moved/share/strut"
 cp -R "$models" moved/share/strut/models
@@ -97,7 +97,7 @@ echo '{}' >moved/share/strut/strut-1.schema.json
 moved/bin/strut examples >out 2>err </dev/null || fail "the models of an installed program"
 cut -d' ' -f1 out >got
 same wanted got
-moved/bin/strut new -q schema || fail "new with a schema"
+moved/bin/strut examples --new -q schema || fail "new with a schema"
 head -n 1 schema.yaml | grep -qxF "# yaml-language-server: \$schema=$(realpath moved)/share/strut/strut-1.schema.json" ||
   fail "the schema is not named"
 done_testing

@@ -129,7 +129,7 @@ def built_or_refused():
             (("--format", "build"), 1, "missing -o DIR"),
             (("--format", "build", "-o", "y", "--allowance", "1 kg"), 1, "allowance"),
             (("--format", "build", "-o", "y", "--allowance", "-1 mm"), 1, "0 or more"),
-            (("--format", "build", "-o", "y", "--matrices", "z"), 1, "either"),
+            (("--format", "build", "-o", "y", "--prefix", "z"), 1, "--prefix is for --format code"),
             (("--format", "mjcf", "-o", "y.xml", "--allowance", "1 mm"), 1, "for --format build"),
             (("--format", "mjcf", "-o", "y.xml", "--at", "x"), 1, "--at is not for mjcf"),
             (("--format", "mjcf"), 1, "missing -o FILE.xml"),
@@ -227,7 +227,7 @@ def moves_alike(simulate, text, seconds, tolerance, name):
     write(name, text)
     run("export", name, "--format", "mjcf", "-o", "motion.xml")
     names, rows = simulate("motion.xml", 1e-4, seconds)
-    answer = json.loads(run("evaluate", name, "--keep", "positions", lines=b"{}\n").stdout)["results"]
+    answer = json.loads(run("sweep", name, "--requests", "-", "--keep", "positions", lines=b"{}\n").stdout)["results"]
     for joint, value in zip(names[1:], rows[-1][1:]):
         node, axis = joint.rsplit(".", 1)
         moved = answer[f"{axis}_{node}"] - START[name][node]["xy".index(axis)]

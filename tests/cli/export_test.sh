@@ -13,7 +13,7 @@ nodes:
 members:
   one: {kind: spring, nodes: [left, right], stiffness: 8, damping: 11, pretension: 1}
 YAML
-expect 0 export pair.yaml --matrices m
+expect 0 export pair.yaml --format matrices -o m
 out_empty
 err_empty
 files m node_names.csv rows.csv columns.csv connectivity.mtx equilibrium.mtx mass.mtx \
@@ -46,30 +46,30 @@ parameters: {depth: 1 mm}
 nodes: {ball: {position: [0, -depth], mass: 1}}
 ground: {nodes: [ball], stiffness: 500, damping: 3}
 YAML
-expect 0 export ball.yaml --matrices m
+expect 0 export ball.yaml --format matrices -o m
 is stiffness_contact.mtx "2 2 1" "2 2 500"
 is damping.mtx "2 2 1" "2 2 3"
-expect 0 export ball.yaml --matrices m --set depth='-1 mm'
+expect 0 export ball.yaml --format matrices -o m --set depth='-1 mm'
 absent m/stiffness_contact.mtx
 
 # All or none.
 cp -r m before
 mkdir m/blocked
-expect 1 export ball.yaml
-err_has "--matrices DIR"
-expect 1 export ball.yaml --matrices m --at nowhere
-expect 4 export missing.yaml --matrices m
+expect 1 export ball.yaml --format matrices
+err_has "missing -o DIR"
+expect 1 export ball.yaml --format matrices -o m --at nowhere
+expect 4 export missing.yaml --format matrices -o m
 rmdir m/blocked
 same_directory before m
 mkdir -p n/mass.mtx
-expect 4 export ball.yaml --matrices n
+expect 4 export ball.yaml --format matrices -o n
 err_has "mass.mtx"
 files n mass.mtx
 
 command -v octave-cli >/dev/null 2>&1 || { [ $failures -eq 0 ]; exit; }
 cp "$here/mm.m" .
 crawler=$here/../../models/crawler/crawler.yaml
-expect 0 export "$crawler" --matrices c
+expect 0 export "$crawler" --format matrices -o c
 expect 0 modes "$crawler" --at drawn --json
 grep -o '"angular_frequency":[^,]*' out | tail -n 6 | cut -d: -f2 >own
 octave-cli -q --no-gui --eval '

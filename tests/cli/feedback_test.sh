@@ -707,9 +707,9 @@ err_has "expected a number without unit for 'inputs' of controller 'push', found
 for scene in pd length force all lag oscillators sampled held pi free maxwell shaken starts sensed half brain; do
   expect 0 run $scene.yaml --json
   jq 'del(.wall_time, .scene, .source)' out >first
-  expect 0 write $scene.yaml
+  expect 0 export $scene.yaml
   cp out written.yaml
-  expect 0 write written.yaml
+  expect 0 export written.yaml
   sed 1d out >twice
   sed 1d written.yaml | cmp -s - twice || fail "$scene written twice differs"
   expect 0 check $scene.yaml

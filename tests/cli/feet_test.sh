@@ -63,9 +63,9 @@ near .measured.x.value '0.5 * 10 * 0.17364817766693033 / (1 + 2 / 4)' 5e-3
 # Pictures, writing, parts, and what cannot be.
 expect 0 run rocker.yaml -o out-rocker --quiet --plot rocker.svg
 expect 0 view out-rocker -o page.html
-expect 0 write rocker.yaml
+expect 0 export rocker.yaml
 cp out written.yaml
-expect 0 write written.yaml
+expect 0 export written.yaml
 same out written.yaml
 grep -q "f: {member: body, node: n, radius: 1}" written.yaml || fail "the foot was not written"
 expect 1 run rocker.yaml --integrator midpoint
@@ -79,7 +79,7 @@ refused 's/node: n, radius/node: x, radius/' "unknown node 'x'"
 refused 's/law: smooth, mu: mu, width: 1 mm.s/law: coulomb, mu: 1/' "no friction that sticks exactly"
 refused 's/nodes: .n..$/nodes: [o]}/' "may touch no ground"
 refused 's/radius: 1 m/radius: -1 m/' "'radius' of foot 'f' must be above zero"
-expect 2 export rocker.yaml --code code
+expect 2 export rocker.yaml --format code -o code
 err_has "feet"
 
 done_testing

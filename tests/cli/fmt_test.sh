@@ -10,9 +10,9 @@ language=$(realpath "$(dirname "$0")/../language")
 laid_out() {
   printf '%b' "$1" >before.yaml
   printf '%b' "$2" >wanted
-  "$strut" fmt - <before.yaml >got 2>err || fail "no layout of: $1"
+  "$strut" check --layout - <before.yaml >got 2>err || fail "no layout of: $1"
   cmp -s wanted got || fail "layout of: $1"
-  "$strut" fmt - <got >again 2>err
+  "$strut" check --layout - <got >again 2>err
   same got again
 }
 laid_out 'strut:   1\n' 'strut: 1\n'
@@ -44,7 +44,7 @@ laid_out 'a: 1\r\nb:\r\n    c: "x\r\n      y"\r\n# z\r\n' 'a: 1\nb:\n  c: "x\n  
 refused() { # TEXT MESSAGE
   printf '%b' "$1" >bad.yaml
   cp bad.yaml saved
-  expect 2 fmt bad.yaml
+  expect 2 check --fix bad.yaml
   out_empty
   err_has "$2"
   same saved bad.yaml
@@ -58,7 +58,7 @@ refused 'a: 1\na: 2\n' "duplicate key 'a'"
 refused 'a: !x 1\n' "bad.yaml"
 printf 'a: |+\n  x\n\n' >kept.yaml
 printf 'a:  1\n' >changed.yaml
-expect 2 fmt kept.yaml changed.yaml
+expect 2 check --fix kept.yaml changed.yaml
 out_has changed.yaml
 [ "$(cat changed.yaml)" = "a: 1" ] || fail "a file beside a refused one"
 
@@ -69,33 +69,33 @@ chmod 640 own.yaml
 ln -s own.yaml link.yaml
 touch -d '2001-01-01' fine.yaml own.yaml
 cp own.yaml saved
-expect 2 fmt --check own.yaml fine.yaml
-[ "$(cat out)" = own.yaml ] || fail "what --check lists"
+expect 2 check --layout own.yaml fine.yaml
+[ "$(cat out)" = own.yaml ] || fail "what --layout lists"
 same saved own.yaml
-expect 2 fmt --check own.yaml -q
+expect 2 check --layout own.yaml -q
 out_empty
-expect 0 fmt link.yaml fine.yaml
+expect 0 check --fix link.yaml fine.yaml
 [ "$(cat out)" = link.yaml ] || fail "what was changed"
 [ -h link.yaml ] || fail "a link was replaced"
 [ "$(stat -c %a own.yaml)" = 640 ] || fail "other permissions"
 [ "$(stat -c %Y fine.yaml)" = "$(date -d '2001-01-01' +%s)" ] || fail "a file was replaced by itself"
 printf 'strut: 1\nnodes: {a: [0, 0]}\n' >wanted
 same wanted own.yaml
-expect 0 fmt --check own.yaml fine.yaml
+expect 0 check --layout own.yaml fine.yaml
 out_empty
-expect 0 fmt own.yaml
+expect 0 check --fix own.yaml
 out_empty
-expect 4 fmt missing.yaml
+expect 4 check --fix missing.yaml
 err_has "No such file"
-expect 1 fmt
+expect 1 check --fix
 err_has "missing MODEL"
-expect 1 fmt own.yaml --chekc
-err_has "did you mean '--check'?"
+expect 1 check --fix own.yaml --layuot
+err_has "did you mean '--layout'?"
 if small_disk 64; then
   printf 'a:  1\n' >disk/a.yaml
   head -c 70000 /dev/zero >disk/full 2>/dev/null
   cp disk/a.yaml saved
-  expect 4 fmt disk/a.yaml
+  expect 4 check --fix disk/a.yaml
   same saved disk/a.yaml
   [ "$(ls disk | wc -l)" -eq 2 ] || fail "left on the disk: $(ls disk)"
   no_disk
@@ -112,24 +112,24 @@ count=0
 while read -r file; do
   count=$((count + 1))
   [ $((count % 4)) -eq 0 ] || continue
-  "$strut" write "$file" >"$file.before" 2>/dev/null
+  "$strut" export "$file" >"$file.before" 2>/dev/null
 done <files
-expect 0 fmt --quiet $(cat files)
+expect 0 check --fix --quiet $(cat files)
 err_empty
-expect 0 fmt --check $(cat files)
+expect 0 check --layout $(cat files)
 while read -r file; do
   [ -e "$file.before" ] || continue
-  "$strut" write "$file" >"$file.after" 2>/dev/null
+  "$strut" export "$file" >"$file.after" 2>/dev/null
   same "$file.before" "$file.after"
 done <files
 sed -i -E ':a; s/^(\t*)  /\1\t/; ta; s/\t/    /g' $(sed 's/^all/twice/' files)
-expect 0 fmt -q $(sed 's/^all/twice/' files)
+expect 0 check --fix -q $(sed 's/^all/twice/' files)
 err_empty
 while read -r file; do same "$file" "twice/${file#all/}"; done <files
 
 # Nothing makes it fall over.
 mkdir bad
 "$unpack" "$language/bad" bad || fail "no bad scenes"
-"$strut" fmt --check bad/*.yaml >out 2>err
+"$strut" check --layout bad/*.yaml >out 2>err
 [ $? -eq 2 ] || fail "bad files"
 done_testing

@@ -37,7 +37,7 @@ loads:
 solver: {{integrator: rk4, step: 1 ms}}
 run: {{periods: 300, of: push, measure: {{node: mass}}}}
 """)
-done = subprocess.run([strut, "follow", "duffing.yaml", "--over", f"frequency={FROM}Hz..{TO}Hz", "--and",
+done = subprocess.run([strut, "path", "--periodic", "duffing.yaml", "--over", f"frequency={FROM}Hz..{TO}Hz", "--and",
                        "force=0.05N..0.2N", "--json"],
                       capture_output=True, text=True, cwd=work, timeout=100, check=True)
 result = json.loads(done.stdout)

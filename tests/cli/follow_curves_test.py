@@ -15,7 +15,7 @@ duffing = os.path.join(models, "basics", "duffing.yaml")
 
 
 def run(*words, code=0):
-    done = subprocess.run([strut, "follow", *words], capture_output=True, text=True, cwd=work, timeout=120, check=False)
+    done = subprocess.run([strut, "path", "--periodic", *words], capture_output=True, text=True, cwd=work, timeout=120, check=False)
     check(done.returncode == code,
           f"strut follow {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
     return done
@@ -114,11 +114,11 @@ loads:
 solver: {integrator: rk4, step: 1 ms}
 run: {periods: 200, of: push, measure: {node: mass}}
 """)
-doublings = json.loads(run("wells.yaml", "--over", "force=0.178N..0.186N", "--at", "0.179N", "--and", "damping=0.24 N s/m..0.26 N s/m",
+doublings = json.loads(run("wells.yaml", "--over", "force=0.178N..0.186N", "--values", "0.179N", "--and", "damping=0.24 N s/m..0.26 N s/m",
                            "--json").stdout)["curves"]
 check([(c["kind"], c["period_multiple"]) for c in doublings] == [("period-doubling", 1)], "curves of doublings")
 force, damping = doublings[0]["points"][3]["values"]
-alone = json.loads(run("wells.yaml", "--over", "force=0.176N..0.182N", "--at", "0.176N", "--set", f"damping={damping}",
+alone = json.loads(run("wells.yaml", "--over", "force=0.176N..0.182N", "--values", "0.176N", "--set", f"damping={damping}",
                        "--json").stdout)
 near([p["value"] for p in alone["branches"][0]["special"] if p["point"] == "period-doubling"][0], force, 1e-6,
      "a doubling alone")

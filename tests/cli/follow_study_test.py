@@ -84,7 +84,7 @@ check("3 done" in run("sweep", "study.yaml", "-o", "out", "--status").stdout, "s
 
 # ---- one point alone is what `strut follow` finds
 
-run("follow", "duffing.yaml", "--over", "frequency=0.14Hz..0.24Hz", "--set", "force=0.15", "-o", "alone", "-q")
+run("path", "--periodic", "duffing.yaml", "--over", "frequency=0.14Hz..0.24Hz", "--set", "force=0.15", "-o", "alone", "-q")
 alone = rows("alone", "branches.csv")
 check([{"force [N]": "0.15", **p} for p in alone] == [p for p in points if p["force [N]"] == "0.15"], "the command alone")
 

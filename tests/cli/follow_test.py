@@ -29,7 +29,7 @@ def rows(directory):
 
 
 def follow(model, over, *words):
-    return json.loads(run("follow", model, "--over", over, "--json", *words).stdout)
+    return json.loads(run("path", "--periodic", model, "--over", over, "--json", *words).stdout)
 
 
 def special(result, kind, branch=0):
@@ -65,7 +65,7 @@ run: {{periods: 200, of: push, measure: {{node: mass}}}}
 
 write("linear.yaml", OSCILLATOR.format(name="Linear oscillator", at=10, law="stiffness: 100, damping: 0.5",
                                        parameters="frequency: 1 Hz, force: 1 N"))
-run("follow", "linear.yaml", "--over", "frequency=1Hz..3Hz", "-o", "linear")
+run("path", "--periodic", "linear.yaml", "--over", "frequency=1Hz..3Hz", "-o", "linear")
 table = rows("linear")
 check(len(table) > 30, f"{len(table)} points")
 near(float(table[0]["frequency [Hz]"]), 1, 1e-12, "the lower end")
@@ -207,7 +207,7 @@ for ratio in (0.8, 1.2):
 
 crawler = os.path.join(models, "gallery", "two-mass-crawler.yaml")
 for friction, velocity in ((0.1, -3.6798), (0.3, -4.4777), (0.5, -2.6839)):
-    two = follow(crawler, f"friction={friction - 0.01}..{friction + 0.01}", "--at", str(friction),
+    two = follow(crawler, f"friction={friction - 0.01}..{friction + 0.01}", "--values", str(friction),
                  "--set", "periods=300", "--steps", "1")
     points = two["branches"][0]["points"]
     start = [p for p in points if p.get("point") == "start"]
@@ -216,7 +216,7 @@ for friction, velocity in ((0.1, -3.6798), (0.3, -4.4777), (0.5, -2.6839)):
 # ---- the same for any number of threads, and twice
 
 for threads in ("1", "3"):
-    run("follow", "bilinear.yaml", "--over", "frequency=1.2Hz..1.4Hz", "-o", f"threads-{threads}", "-q",
+    run("path", "--periodic", "bilinear.yaml", "--over", "frequency=1.2Hz..1.4Hz", "-o", f"threads-{threads}", "-q",
         env={"OMP_NUM_THREADS": threads})
 with open(os.path.join(work, "threads-1", "branches.csv"), encoding="utf-8") as a, \
         open(os.path.join(work, "threads-3", "branches.csv"), encoding="utf-8") as b:
@@ -224,14 +224,14 @@ with open(os.path.join(work, "threads-1", "branches.csv"), encoding="utf-8") as 
 
 # ---- two starts on one branch are reported
 
-both = follow("bilinear.yaml", "frequency=1Hz..1.4Hz", "--at", "1.1Hz,1.2Hz")
+both = follow("bilinear.yaml", "frequency=1Hz..1.4Hz", "--values", "1.1Hz,1.2Hz")
 check(len(both["branches"]) == 1 and "on branch 1" in both["notes"][0], f"notes {both['notes']}")
 
 # ---- an interrupted branch is kept, and marked; the first waits may end within the run that starts it
 
 for wait in (1.5, 4, 12, 30):
-    partial = subprocess.Popen([strut, "follow", os.path.join(models, "crawler", "crawler.yaml"), "--set", "friction=0.2",
-                                "--from", "I", "--over", "frequency=9Hz..13Hz", "--at", "10Hz", "-o", "partial", "--json",
+    partial = subprocess.Popen([strut, "path", "--periodic", os.path.join(models, "crawler", "crawler.yaml"), "--set", "friction=0.2",
+                                "--at", "I", "--over", "frequency=9Hz..13Hz", "--values", "10Hz", "-o", "partial", "--json",
                                 "-q"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=work)
     time.sleep(wait)
     partial.send_signal(signal.SIGINT)
@@ -245,11 +245,11 @@ check(len(rows("partial")) == len(got["branches"][0]["points"]) >= 2, "points of
 
 # ---- kicks: a linear motion always comes back, the larger of two stable ones does not
 
-kicked = json.loads(run("follow", "linear.yaml", "--over", "frequency=1Hz..1.1Hz", "--at", "1.05Hz", "--basins",
+kicked = json.loads(run("path", "--periodic", "linear.yaml", "--over", "frequency=1Hz..1.1Hz", "--values", "1.05Hz", "--basins",
                         "--json").stdout)
 check(kicked["basins"][0]["forwards"] is None, f"kicks {kicked['basins']}")
 between = round((low + high) / 2 / (2 * math.pi), 4)
-kicked = json.loads(run("follow", "duffing.yaml", "--over", "frequency=0.14Hz..0.22Hz", "--at",
+kicked = json.loads(run("path", "--periodic", "duffing.yaml", "--over", "frequency=0.14Hz..0.22Hz", "--values",
                         f"{between}Hz,0.14Hz", "--basins", "--json").stdout)
 pushed = [b for b in kicked["basins"] if b["value"] == between]
 check(len(pushed) == 2, f"two stable motions at {between} Hz: {kicked['basins']}")
@@ -259,15 +259,15 @@ check(all(b["backwards"] is not None and 0 < b["backwards"] < 20 for b in pushed
 
 
 def refused(model, over, text, *words, code=1):
-    done = run("follow", model, *(("--over", over) if over else ()), *words, code=code)
+    done = run("path", "--periodic", model, *(("--over", over) if over else ()), *words, code=code)
     check(text in done.stderr, f"stderr lacks '{text}': {done.stderr}")
 
 
 refused("linear.yaml", None, "missing --over NAME=LOW..HIGH")
 refused("linear.yaml", "frequenzy=1Hz..2Hz", "did you mean 'frequency'?")
 refused("linear.yaml", "frequency=2Hz..1Hz", "the lower one first")
-refused("linear.yaml", "frequency=1Hz..2Hz", "within the range", "--at", "3Hz")
-refused("linear.yaml", "frequency=1Hz..2Hz", "no configuration 'I'", "--from", "I")
+refused("linear.yaml", "frequency=1Hz..2Hz", "within the range", "--values", "3Hz")
+refused("linear.yaml", "frequency=1Hz..2Hz", "no configuration 'I'", "--at", "I")
 refused("bilinear.yaml", "frequency=1Hz..2Hz", "locates no events", "--integrator", "rk4")
 with open(os.path.join(work, "linear.yaml"), encoding="utf-8") as file:
     text = file.read()

@@ -55,11 +55,11 @@ holds frame.yaml 1.2 --least-tension "3 N"
 holds frame.yaml 1.2 --objective sum
 holds frame.yaml 1.2 --objective squares
 holds "$models/gallery/arm.yaml" 4
-holds "$models/gallery/spine.yaml" 0.3 --from prestress --objective squares
-holds "$models/gallery/hexagon-two-struts.yaml" 2.3 --from prestress
-holds "$models/gallery/hexagon-two-struts.yaml" 2.3 --from lengths
-holds "$models/gallery/x-frame.yaml" 1 --from lengths
-holds "$models/gallery/cauchy-hexagon.yaml" 2 --from densities
+holds "$models/gallery/spine.yaml" 0.3 --given prestress --objective squares
+holds "$models/gallery/hexagon-two-struts.yaml" 2.3 --given prestress
+holds "$models/gallery/hexagon-two-struts.yaml" 2.3 --given lengths
+holds "$models/gallery/x-frame.yaml" 1 --given lengths
+holds "$models/gallery/cauchy-hexagon.yaml" 2 --given densities
 
 # The same bytes again; without -o the model alone is on stdout.
 expect 0 form frame.yaml -o once.yaml --quiet
@@ -69,11 +69,11 @@ same once.yaml "$work/out"
 err_empty
 expect 0 check once.yaml
 # What it found it finds again: the shape is in equilibrium, to the last bits of its forces.
-expect 0 form once.yaml --from lengths -o again.yaml
+expect 0 form once.yaml --given lengths -o again.yaml
 out_has "displacement"
 
 # The same as JSON: tiso's spine, least squares of densities of at least 0.5 N/m.
-expect 0 form "$models/gallery/spine.yaml" --from prestress --objective squares \
+expect 0 form "$models/gallery/spine.yaml" --given prestress --objective squares \
   --least-density "0.5 N/m" --json
 jq -e '.from == "prestress" and .moved == 0 and (.densities.lower - 4.149565 | fabs) < 5e-7 and
   .densities.front_upper >= 0.4999999 and (.forces | length) == 16 and (.nodes | length) == 8 and
@@ -81,17 +81,17 @@ jq -e '.from == "prestress" and .moved == 0 and (.densities.lower - 4.149565 | f
 
 # GLPK's own choice of scaling calls this one infeasible.
 for objective in sum largest squares; do
-  holds "$here/pentagon.yaml" 2 --from prestress --objective "$objective"
+  holds "$here/pentagon.yaml" 2 --given prestress --objective "$objective"
 done
 
 # Refusals.
-expect 1 form frame.yaml --from densitis
+expect 1 form frame.yaml --given densitis
 err_has "expects densities, lengths or prestress, not 'densitis'; did you mean 'densities'?"
 expect 1 form frame.yaml --least-tension "3 m"
 err_has "--least-tension expects a force, such as"
 expect 1 form frame.yaml --least-tension -3
 err_has "must not be negative"
-expect 3 form frame.yaml --from densities
+expect 3 form frame.yaml --given densities
 err_has "no member has a force density"
 expect 3 form frame.yaml --least-tension 1e6
 err_has "stiffness does not allow"
@@ -101,7 +101,7 @@ err_has "no forces with every cable at"
 err_has "are missing"
 out_empty
 sed '/^ground/d' frame.yaml >falling.yaml
-expect 3 form falling.yaml --from lengths
+expect 3 form falling.yaml --given lengths
 err_has "nothing holds the structure"
 expect 4 form frame.yaml -o "$work/nowhere/form.yaml"
 err_has "nowhere"

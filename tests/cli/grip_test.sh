@@ -78,8 +78,8 @@ expect 0 run walk.yaml --json
 near .velocity '2 * 0.02 * 0.2 * 2 / 2' 1e-4
 
 # What it cannot be combined with is refused by name; a scene is written as it was read.
-expect 2 export smooth.yaml --code code
+expect 2 export smooth.yaml --format code -o code
 err_has 'friction that follows a signal'
-"$strut" write walk.yaml >written.yaml
-"$strut" write written.yaml | cmp -s - written.yaml || fail "writing friction that follows a signal"
+"$strut" export walk.yaml >written.yaml
+"$strut" export written.yaml | cmp -s - written.yaml || fail "writing friction that follows a signal"
 done_testing

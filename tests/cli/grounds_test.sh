@@ -209,7 +209,7 @@ go incline.yaml rk4-events
 near_number "$(last nodes m.vx)" -1.6 1e-3 "(6 - 4) m/s^2 down the incline"
 go incline.yaml rk4-events --set mu=0.8
 near_number "$(last nodes m.vx)" 0 1e-6 "held on the incline"
-expect 0 write incline.yaml
+expect 0 export incline.yaml
 out_has "slope: 0.6435011087932844"
 sed 's/^ground: {\(.*\)}$/grounds: {incline: {\1}}/' incline.yaml >named.yaml
 go named.yaml rk4-events
@@ -299,9 +299,9 @@ grep -q surfaces seen/run.html || fail "outlines on the page"
 expect 0 check right.yaml
 out_has "ground surfaces"
 out_has "several grounds, or one that is no line at rest"
-expect 0 write right.yaml
+expect 0 export right.yaml
 cp "$work/out" again.yaml
-expect 0 write again.yaml
+expect 0 export again.yaml
 same "$work/out" again.yaml
 # A path between a wall, a ceiling and a floor: each is touched where it is, and takes what springs leave of the load.
 cat >walls.yaml <<'END'

@@ -128,7 +128,7 @@ expect 0 rigidity slack.yaml
 expect 0 equilibria slack.yaml
 expect 0 path slack.yaml --over b.y --until 10mm
 expect 0 check slack.yaml
-expect 0 write slack.yaml
+expect 0 export slack.yaml
 out_has 'guide_friction: 0.2'
 cp out written.yaml
 expect 0 run written.yaml --quiet --plot slack.svg -o slack

@@ -33,7 +33,7 @@ def exists(name):
 
 def imported(name, *words):
     """The scene of what was written as that file, and what was said."""
-    said = run("import", name, *words, "-o", "scene.yaml").stderr.decode()
+    said = run("export", name, *words, "-o", "scene.yaml").stderr.decode()
     with open(os.path.join(work, "scene.yaml"), encoding="utf-8") as file:
         return file.read(), said
 
@@ -311,13 +311,13 @@ builders:
         with open(os.path.join(work, "row.yaml"), encoding="utf-8") as file:
             text = file.read()
         write("bad.yaml", text.replace(change, words))
-        message = run("import", "bad.yaml", "base/rods.yaml", "-o", "none.yaml", code=2).stderr.decode()
+        message = run("export", "bad.yaml", "base/rods.yaml", "-o", "none.yaml", code=2).stderr.decode()
         check("bad.yaml:" in message or "rods.yaml:1:" in message, message)
     write("deep.yaml", "substructures: {x: {path: deep.yaml}}\n")
-    check("more than 16 deep" in run("import", "deep.yaml", "-o", "none.yaml", code=2).stderr.decode(), "a circle")
+    check("more than 16 deep" in run("export", "deep.yaml", "-o", "none.yaml", code=2).stderr.decode(), "a circle")
     write("twice.yaml", "substructures: {x: {path: row.yaml}}\nbond_groups: {string: {x/x/node_node: [[a, a]]}}\n")
     check("nodes are called 'a'" in
-          run("import", "twice.yaml", "row.yaml", "base/rods.yaml", "-o", "none.yaml", code=2).stderr.decode(), "which a")
+          run("export", "twice.yaml", "row.yaml", "base/rods.yaml", "-o", "none.yaml", code=2).stderr.decode(), "which a")
 
 
 def tables():
@@ -335,7 +335,7 @@ def tables():
                  for m in ("scene.yaml", f"{gallery}/x-frame.yaml")]
         same_numbers([m["frequency"] for m in modes[0]], [m["frequency"] for m in modes[1]], 1e-9, "modes")
     # what strut itself lists can be read again, but for the stiffness
-    run("export", f"{gallery}/x-frame.yaml", "--format", "build", "-o", "build", "--quiet")
+    run("export", f"{gallery}/x-frame.yaml", "--input", "build", "-o", "build", "--quiet")
     with open(os.path.join(work, "build/members.csv"), encoding="utf-8") as file:
         rows = file.read().splitlines()
     write("listed.csv", "\n".join([rows[0] + ",stiffness [N/m]"] + [
@@ -347,7 +347,7 @@ def tables():
 
 def refused(name, text, *expected, words=()):
     write(name, text)
-    message = run("import", name, *words, "-o", "none.yaml", code=2).stderr.decode("utf-8", "replace")
+    message = run("export", name, *words, "-o", "none.yaml", code=2).stderr.decode("utf-8", "replace")
     for part in expected:
         check(part in message, f"{name}: {part!r} is not said of {text[:60]!r}: {message}")
     check(not exists("none.yaml"), f"{name}: a scene is written")
@@ -394,26 +394,26 @@ def bad_input():
     for text, part in (("[" * 5000, "none of the formats"), (b"\x00\xff\x00", "none of the formats"),
                        ("a: 1\n", "none of the formats"), ("", "none of the formats")):
         refused("odd", text, part)
-    refused("odd", "- a\n", "expected a mapping", words=("--format", "ntrt"))
-    refused("odd", b"\xff\xfe", "odd", words=("--format", "tensegritysim"))
-    refused("odd", b"NODES\n\xff,0,0,1,1\n", "odd:2:1", words=("--format", "springable"))
+    refused("odd", "- a\n", "expected a mapping", words=("--input", "ntrt"))
+    refused("odd", b"\xff\xfe", "odd", words=("--input", "tensegritysim"))
+    refused("odd", b"NODES\n\xff,0,0,1,1\n", "odd:2:1", words=("--input", "springable"))
 
 
 def files():
     write("box.yaml", BOX)
     write("mine.yaml", "precious")
-    run("import", "box.yaml", "-o", "mine.yaml", code=4)
+    run("export", "box.yaml", "-o", "mine.yaml", code=4)
     with open(os.path.join(work, "mine.yaml"), encoding="utf-8") as file:
         check(file.read() == "precious", "somebody else's file")
-    printed = run("import", "box.yaml").stdout
-    run("import", "box.yaml", "-o", "scene.yaml")
+    printed = run("export", "box.yaml").stdout
+    run("export", "box.yaml", "-o", "scene.yaml")
     with open(os.path.join(work, "scene.yaml"), "rb") as file:
         check(file.read() == printed, "the same scene on standard output")
     for words, code, text in ((("box.yaml",) * 3, 1, "one file"), (("box.yaml",) * 17, 1, "unexpected"),
                               (("box.yaml", "--unit", "3 kg"), 1, "unit"), (("box.yaml", "--unit", "0 m"), 1, "above 0"),
                               (("box.yaml", "box.yaml"), 1, "one file"), (("none.yaml",), 4, "none.yaml"),
-                              (("box.yaml", "--format", "urdf"), 1, "ntrt")):
-        done = run("import", *words, code=code)
+                              (("box.yaml", "--input", "urdf"), 1, "ntrt")):
+        done = run("export", *words, code=code)
         check(text in done.stderr.decode(), f"{words}: {done.stderr.decode()}")
 
 

@@ -33,7 +33,7 @@ COMMANDS = {  # name: (words, folders and files to remove before, libraries that
     "view": (["view", "kept", "-o", "out.html", "--quiet"], WITH_HDF5),
     "path": (["path", f"{MODELS}/basics/von-mises-truss.yaml", "--set", "load=12", "-o", "out"],
              ABORTING),
-    "matrices": (["export", PENTAGON, "--matrices", "out"], ABORTING),
+    "matrices": (["export", PENTAGON, "--format", "matrices", "-o", "out"], ABORTING),
     "modes": (["modes", PENTAGON, "-o", "out"], ABORTING),
     "rigidity": (["rigidity", PENTAGON, "-o", "out"], ABORTING),
     "form": (["form", PENTAGON, "-o", "out.html", "--quiet"], ABORTING),
@@ -42,7 +42,7 @@ COMMANDS = {  # name: (words, folders and files to remove before, libraries that
     "evolution": (["sweep", "evolution.yaml", "-o", "out", "--threads", "1", "--quiet"], WITH_HDF5),
     "front": (["sweep", "front.yaml", "-o", "out", "--threads", "1", "--quiet"], WITH_HDF5),
     "sensitivity": (["sweep", "sensitivity.yaml", "-o", "out", "--threads", "1", "--quiet"], WITH_HDF5),
-    "follow": (["follow", f"{MODELS}/gallery/two-mass-crawler.yaml", "--over", "friction=0.09..0.13",
+    "follow": (["path", "--periodic", f"{MODELS}/gallery/two-mass-crawler.yaml", "--over", "friction=0.09..0.13",
                 "--set", "periods=60", "--steps", "2", "-o", "out"], CRASHING),
 }
 GOOD = os.path.abspath("tests/language/good")

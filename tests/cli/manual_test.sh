@@ -4,7 +4,7 @@
 . "$(dirname "$0")/lib.sh"
 
 expect 0 help
-sed -n '/^Commands:/,/^$/p' out | sed '1d;$d' | awk '{print $1}' >commands
+grep '^  [a-z]' out | awk '{print $1}' >commands
 
 # The manual: every command, option and section is in it, and the typesetters find nothing wrong.
 mkdir pages
@@ -69,9 +69,15 @@ out_has "amplitude: number"
 out_has "integrator: rk4"
 expect 1 keys membre
 out_empty
-err_has "there is no section 'membre'; did you mean 'member'?"
-expect 1 keys stiffness
-err_has "'stiffness'; it is a key of member, hinge, "
+err_has "there is no section or key 'membre'; did you mean 'member'?"
+expect 0 keys mu
+[ "$(grep -c '^in ' out)" -eq 2 ] || fail "the sections of a key: $(cat out)"
+out_has "Both friction coefficients"
+cp out named
+expect 0 help mu
+same named out
+expect 1 help membre
+err_has "unknown command 'membre'"
 expect 1 keys member nothing_like_it
 out_empty
 err_has "Sections:"

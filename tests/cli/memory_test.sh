@@ -73,7 +73,7 @@ for method in adaptive verlet-events euler-events rk4 verlet euler; do
 done
 expect 0 run string.yaml --quiet --plot string.svg -o out-string
 expect 0 view out-string -o string.html
-expect 0 write string.yaml
+expect 0 export string.yaml
 cp out written.yaml
 out_has 'breaks_at: 5'
 expect 0 run written.yaml --json

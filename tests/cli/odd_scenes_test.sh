@@ -7,7 +7,7 @@ models=$here/../../models
 # whole NAME: every command answers or refuses, in words and as JSON, and no number is missing.
 whole() {
   for words in "equilibria --starts 1" modes "modes --at drawn" rigidity "rigidity --at start" \
-    "form --from densities" "form --from lengths" "form --from prestress"; do
+    "form --given densities" "form --given lengths" "form --given prestress"; do
     for json in "" --json; do
       [ "$json" ] || [ "$words" != "equilibria --starts 1" ] || continue # one search will do
       # shellcheck disable=SC2086
@@ -75,13 +75,13 @@ expect 3 modes pressed_sideways.yaml
 err_has "because nothing presses it down"
 expect 3 equilibria pushed.yaml --starts 40
 err_has "leave the range of numbers"
-expect 3 form pushed.yaml --from lengths
+expect 3 form pushed.yaml --given lengths
 err_has "the residual is 1e+300 N"
 expect 2 modes stiff.yaml
 err_has "check their units"
 expect 3 modes under.yaml
 err_has "moves away without end, n"
-expect 3 form "$models/gallery/d-bar.yaml" --from densities
+expect 3 form "$models/gallery/d-bar.yaml" --given densities
 err_has "nodes 'n1' and 'n3', the ends of 'taut', coincide"
 out_empty
 done_testing

@@ -245,13 +245,13 @@ check("1 of 2 points are less accurate than requested" in done.stderr and "NOT k
 check(run("sweep", "study.yaml", "-o", "points", "--quiet", code=5).stdout == "", "a sweep that is done already")
 check(column("points/table.csv", "accuracy_kept") == ["0", "1"], str(column("points/table.csv", "accuracy_kept")))
 check(column("points/table.csv", "status") == ["completed", "completed"], "a point that failed")
-done = run("merge", "points", "--quiet", code=5)
+done = run("sweep", "--merge", "points", "--quiet", code=5)
 write("search.yaml", "strut: 1\nstudy: best\nmodel: chaos.yaml\nsearch:\n  maximise: velocity\n"
       "  over: {push: {from: 0.0369, to: 0.037}}\n  evaluations: 3\nkeep: [velocity]\n")
 done = run("sweep", "search.yaml", "-o", "best", "--quiet", code=5)
 check("the best point is less accurate than requested" in done.stderr, done.stderr)
 requests = '{"id": 1, "set": {"push": 0.0369}, "keep": ["velocity"]}\n{"id": 2, "set": {"push": 0.001}}\n'
-found = [json.loads(line) for line in run("evaluate", "chaos.yaml", stdin=requests, code=5).stdout.splitlines()]
+found = [json.loads(line) for line in run("sweep", "chaos.yaml", "--requests", "-", stdin=requests, code=5).stdout.splitlines()]
 check([answer["code"] for answer in found] == [5, 0], str(found))
 check([answer["results"]["accuracy_kept"] for answer in found] == [0, 1], str(found))
 check(found[0]["results"]["velocity"] is not None and "NOT kept" in found[0]["warnings"][0], str(found[0]))

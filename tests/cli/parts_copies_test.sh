@@ -166,7 +166,7 @@ jq -nr '"strut: 1", "groups: {bar: {kind: bar, stiffness: 1 kN/m, mass: 0.1 kg}}
   (range(3) | (if . == 0 then "cell.0.d" else "cell.\(. - 1).c" end) as $d
     | "  cell.\(.).wind: {node: \($d), force: [1, 0]}")' >hand.yaml
 for way in next touching hand; do
-  expect 0 write $way.yaml
+  expect 0 export $way.yaml
   sort out >$way.sorted
 done
 cmp next.sorted touching.sorted || fail "by next and by touching"
@@ -175,7 +175,7 @@ cmp next.sorted hand.sorted || fail "by next and by hand: $(diff next.sorted han
 # Turning by 360 degrees is none, also where a copy is moved and scaled.
 for repeat in 'turn: 360 deg' 'turn: 0 deg' 'turn: 720 deg'; do
   sed "s/step: \[1, 0\], next: {merge: {b: a, c: d}}/step: [2, 1], scale: 2, $repeat/" next.yaml >turned.yaml
-  expect 0 write turned.yaml
+  expect 0 export turned.yaml
   sort out >turned.sorted
   [ -e first.sorted ] || cp turned.sorted first.sorted
   cmp turned.sorted first.sorted || fail "$repeat: $(diff turned.sorted first.sorted)"

@@ -52,24 +52,24 @@ nodes: {v.0.middle: {fixed: both}, v.0.lower: {fixed: x}}
 END
 
 # 1. A file as a part: its structure, with the part's keys over it, and nothing of its experiment.
-expect 0 write spine.yaml
+expect 0 export spine.yaml
 out_has 'v.3.front: {position: [0.75, 0], mass: 0.005}'
 out_has 'v.2.lower: [0.3, -0.1]'
 out_has 'v.3.b1: {nodes: [v.3.middle, v.3.lower], kind: bar, stiffness: 10000'
 out_has 'gravity: [0, 0]'
 out_has_not 'ground'
 out_has_not 'duration'
-expect 0 write spine.yaml --set vertebrae=2
+expect 0 export spine.yaml --set vertebrae=2
 out_has_not 'v.2'
 # By hand the same: the part's text in place of the file's, but for the names around it.
 sed -n '/^groups/,/b6/p' cells/vertebra.yaml | sed 's/^/    /' >inside
 sed -e '/use:/{s/{.*//' -e 'r inside' -e 'a\    parameters: {height: 0.1 m, k: 1 kN/m}' -e '}' spine.yaml >byhand.yaml
-"$strut" write spine.yaml >flat
-expect 0 write byhand.yaml
+"$strut" export spine.yaml >flat
+expect 0 export byhand.yaml
 same flat out
 # The contacts of a ground's list come with the part.
 printf 'ground: {stiffness: 3 kN/m, height: -1 m, nodes: []}\n' | cat spine.yaml - >grounded.yaml
-expect 0 write grounded.yaml
+expect 0 export grounded.yaml
 out_has 'nodes: [v.0.lower, v.1.lower, v.2.lower, v.3.lower]'
 out_has '  stiffness: 2000'
 # It sees no names of the scene around it, and may have names that this has too.
@@ -85,10 +85,10 @@ expect 0 check named.yaml
 # A file within a file, from the folder of that one.
 printf 'strut: 1\nparts: {p: {use: vertebra.yaml}}\nplace: {a: {part: p}, b: {part: p, flip: x}}\n' >cells/two.yaml
 printf 'strut: 1\nparts: {q: {use: cells/two.yaml}}\nplace: {x: {part: q}, y: {part: q, at: [2 m, 0]}}\n' >four.yaml
-expect 0 write four.yaml
+expect 0 export four.yaml
 out_has 'y.b.front: {position: [1.7, 0], mass: 0.005}'
 # From the standard input, the folder is the current one.
-"$strut" write - <spine.yaml >again
+"$strut" export - <spine.yaml >again
 same flat again
 
 # 2. A base: mappings key by key, lists replaced, things removed, keys that say the same replaced.
@@ -102,7 +102,7 @@ place: {v: {repeat: {step: [0.2 m, 0]}}}
 nodes: {v.last.upper: {mass: 3 g}, v.0.lower: {fixed: both}, wall: {position: [2 m, 0], fixed: both}}
 members: {v.1.b3: remove, tie: {group: cable, nodes: [v.last.front, wall], rest_length_ratio: 0.5}}
 END
-expect 0 write longer.yaml
+expect 0 export longer.yaml
 out_has 'name: "longer"'
 out_has 'v.4.upper: {position: [0.8, 0.1], mass: 0.003}'
 out_has 'v.0.lower: {position: [0, -0.1], fixed: both}'
@@ -112,7 +112,7 @@ out_has 'tie: {nodes: [v.4.front, wall], kind: cable, stiffness: 500, rest_lengt
 out_has_not 'spacing'
 expect 0 compare cells/vertebra.yaml cells/two.yaml
 printf 'strut: 1\nbase: longer.yaml\nname: third\nnodes: {wall: [2.5 m, 0]}\n' >third.yaml
-expect 0 write third.yaml
+expect 0 export third.yaml
 out_has 'wall: {position: [2.5, 0], fixed: both}'
 printf 'strut: 1\nbase: cells/vertebra.yaml\nnodes: {middle: {mass: 1 g}, front: [0.4 m, 0]}\nmembers: {b7: remove}\n' >wrong.yaml
 expect 2 check wrong.yaml
@@ -124,7 +124,7 @@ sed -i 's/^members.*/groups: {bone: {stiffness: remove}}/' wrong.yaml
 expect 2 check wrong.yaml
 err_has "cells/vertebra.yaml:12:3: error: member 'b1'"
 printf 'strut: 1\nbase: cells/vertebra.yaml\nnodes: {middle: {mass: 1 g}, front: [0.4 m, 0]}\nmembers: {b6: remove}\n' >plain.yaml
-expect 0 write plain.yaml
+expect 0 export plain.yaml
 out_has 'middle: {position: [0, 0], mass: 0.001}'
 out_has 'front: {position: [0.4, 0], mass: 0.005}'
 sed '/^strut/d' plain.yaml >unversioned.yaml
@@ -258,16 +258,16 @@ END
 # 4. The short scene again: reading it gives the same bits.
 # short FILE OPTION...: what write --parts prints stands alone, and says the same.
 short() {
-  "$strut" write "$@" >flat || fail "write $*"
-  expect 0 write --parts "$@"
+  "$strut" export "$@" >flat || fail "write $*"
+  expect 0 export --parts "$@"
   err_empty
   mkdir -p alone
   cp out alone/short.yaml
-  expect 0 write alone/short.yaml
+  expect 0 export alone/short.yaml
   sed '/^parameters/,/^mass_model/d' flat >flat.bare
   sed '/^parameters/,/^mass_model/d' out >out.bare
   same flat.bare out.bare
-  expect 0 write --parts alone/short.yaml
+  expect 0 export --parts alone/short.yaml
   same alone/short.yaml out
 }
 for file in spine longer third named four plain grounded; do short $file.yaml; done
@@ -296,7 +296,7 @@ place:
 members:
   left: {group: cable, nodes: [cell.0.a, cell.0.d]}
 END
-expect 0 form chain.yaml --from prestress -o form.yaml
+expect 0 form chain.yaml --given prestress -o form.yaml
 err_empty
 grep -qF 'cell: {part: frame, repeat: {count: cells' form.yaml || fail "the form has lost its parts"
 grep -qF 'cell.3.right: {rest_length: 0.99}' form.yaml || fail "the form's rest lengths"
@@ -304,7 +304,7 @@ expect 0 rigidity form.yaml --json
 jq -e '.self_stress.count == 4' out >jq.out || fail "the self-stress of the form"
 expect 0 check form.yaml --set cells=4
 sed 's/rising: {group: bar/rising: {group: bar, rest_length: 1.6 m/' chain.yaml >moved.yaml
-expect 0 form moved.yaml --from lengths -o form.yaml
+expect 0 form moved.yaml --given lengths -o form.yaml
 err_has "strut: the scene is written without parameters, groups and parts"
 expect 0 check form.yaml
 
@@ -322,12 +322,12 @@ solver: {step: 1e-4 s}
 run: {duration: 1e-3 s, measure: {}}
 END
 expect 0 run runs.yaml -o run --quiet
-"$strut" write runs.yaml >flat
+"$strut" export runs.yaml >flat
 same flat run/scene.yaml
 expect 0 sweep study.yaml -o results --quiet
 grep -q 'use:' results/model.yaml && fail "the copy of the model uses files"
-"$strut" write results/model.yaml >copied
-"$strut" write runs.yaml >original
+"$strut" export results/model.yaml >copied
+"$strut" export runs.yaml >original
 same copied original
 cp -r results copy
 (cd copy && "$strut" sweep study.yaml -o . --quiet >/dev/null 2>"$work/err") || fail "the copy cannot be resumed"

@@ -99,11 +99,11 @@ sed 's/on_value: -d, off_value: d/on_value: k*d, off_value: -k*d/; s/signal: kic
 expect 0 run force.yaml --json
 near .energy.residual 0 1e-10
 # As written it is the same scene.
-expect 0 write swing.yaml
+expect 0 export swing.yaml
 cp out written.yaml
 expect 0 run written.yaml --json
 near .measured.e.value '0.648 + 8 * 0.16' 1e-10
-expect 0 write written.yaml
+expect 0 export written.yaml
 sed '/^parameters/,/^mass_model/{/^mass_model/!d}' written.yaml >once.yaml
 sed '/^parameters/,/^mass_model/{/^mass_model/!d}' out >twice.yaml
 same once.yaml twice.yaml

@@ -41,8 +41,8 @@ same printed out
 expect 1 rigidity x.yaml --at nowhere
 err_has "nowhere"
 out_empty
-expect 1 rigidity x.yaml --matrices m
-err_has "unknown option '--matrices'"
+expect 1 rigidity x.yaml --accuracy 1%
+err_has "--accuracy cannot be used here: equilibria are computed to rounding errors"
 sed 's/kind: bar/kind: rod/' x.yaml >wrong.yaml
 expect 2 rigidity wrong.yaml
 err_has "rod"

@@ -249,7 +249,7 @@ for word in (["--shard", "0/2"], ["--retry"], ["--emit", "slurm"]):
     done = run("sweep", "fine.yaml", "-o", "fine", *word, code=1)
     check("depends on those before" in done.stderr, f"{word}: {done.stderr}")
 check(run("sweep", "fine.yaml", "--count").stdout.startswith("at most 203 points"), "--count")
-check("never in shards" in run("merge", "one", code=1).stderr, "searches were merged")
+check("never in shards" in run("sweep", "--merge", "one", code=1).stderr, "searches were merged")
 done = json.loads(run("sweep", "one.yaml", "-o", "one", "--status", "--json").stdout)
 check(done["finished"] and 0 < done["done"] <= done["points"] == 303, f"the status is {done}")
 text = run("sweep", "one.yaml", "-o", "one").stdout

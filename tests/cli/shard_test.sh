@@ -27,12 +27,12 @@ for count in 1 2 5 20; do
   expect 0 sweep study.yaml -o "in-$count" --shard "0/$count"
   out_has "0 computed in"
   absent "in-$count/table.csv"
-  expect 0 merge "in-$count"
+  expect 0 sweep --merge "in-$count"
   out_has "in-$count/table.csv: 18 points of $count shards"
   same "in-$count/table.csv" whole/table.csv
 done
 rm whole/table.csv
-expect 0 merge whole --quiet
+expect 0 sweep --merge whole --quiet
 out_empty
 same in-5/table.csv whole/table.csv
 
@@ -50,7 +50,7 @@ err_has "not a task of a Slurm job array"
 absent new
 rm in-5/shards/shard-0001-of-0005.slots in-5/shards/shard-0003-of-0005.slots
 rm in-5/table.csv
-expect 4 merge in-5
+expect 4 sweep --merge in-5
 err_has "2 of 5 shards are missing (1, 3)"
 absent in-5/table.csv
 expect 0 sweep study.yaml -o in-5 --status
@@ -59,10 +59,10 @@ out_has "shard 1: not started"
 expect 0 sweep study.yaml -o in-5 --status --json
 out_has '{"shard": 4, "points": 3, "done": 3, "missing": 0, "failed": 0}]}'
 expect 0 sweep study.yaml -o in-5 --shard 1/5 --quiet --set seconds=0.02
-expect 1 merge in-5
+expect 1 sweep --merge in-5
 err_has "shards 0 and 1 belong to different studies, which differ in the model"
-expect 4 merge nowhere
-expect 1 merge
+expect 4 sweep --merge nowhere
+expect 1 sweep --merge
 
 # A task of an array.
 SLURM_ARRAY_TASK_ID=3 "$strut" sweep study.yaml -o in-5 --shard slurm/5 --quiet >out 2>err ||

@@ -281,9 +281,9 @@ for method in rk4 verlet euler rk4-events; do
 done
 
 # The file that strut writes runs to the same bits.
-expect 0 write swing.yaml
+expect 0 export swing.yaml
 cp out written.yaml
-expect 0 write written.yaml
+expect 0 export written.yaml
 same out written.yaml
 expect 0 run written.yaml --json
 jq .measured out >first.json

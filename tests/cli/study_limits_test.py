@@ -50,7 +50,7 @@ def evaluations():
         shutil.rmtree(path("other"))
     for k in range(3):
         run("sweep", "budget.yaml", "-o", "parts", "--shard", f"{k}/3", code=(3, 3, 0)[k])
-    run("merge", "parts", code=3)
+    run("sweep", "--merge", "parts", code=3)
     check(lines("parts/table.csv") == lines("one/table.csv"), "shards: another table")
     # An accuracy has its own budget, which this one bounds.
     write("accurate.yaml", f"""strut: 1

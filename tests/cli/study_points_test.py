@@ -135,7 +135,7 @@ def same_bytes():
         check(read("whole/table.csv") == table, f"{words}: another table")
     for k in (2, 0, 1):
         run("sweep", "whole.yaml", "-o", "parts", "--quiet", "--shard", f"{k}/3")
-    run("merge", "parts")
+    run("sweep", "--merge", "parts")
     check(read("parts/table.csv") == table, "shards: another table")
 
 

@@ -91,8 +91,8 @@ def same_bytes():
             break
         if os.path.exists(path("parts/shards")) and len(os.listdir(path("parts/shards"))) == 3 and \
                 waits[-1]:
-            check("run all shards again" in run("merge", "parts", code=4).stderr, "an early merge")
-    run("merge", "parts", "--quiet")
+            check("run all shards again" in run("sweep", "--merge", "parts", code=4).stderr, "an early merge")
+    run("sweep", "--merge", "parts", "--quiet")
     check(read("parts/table.csv") == table, "shards: another table")
 
 

@@ -130,7 +130,7 @@ def equilibria():
         check(read("two/table.csv") == table, f"{words}: another table")
     for k in range(2):
         run("sweep", "two-study.yaml", "-o", "apart", "--quiet", "--shard", f"{k}/2")
-    run("merge", "apart")
+    run("sweep", "--merge", "apart")
     check(read("apart/table.csv") == table, "shards: another table")
 
 

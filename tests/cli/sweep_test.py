@@ -157,7 +157,7 @@ def the_same_bytes():
               f"{threads} threads: slots")
     for shard in ("0/2", "1/2"):
         run("sweep", "crawler.yaml", "-o", "shards", "--shard", shard, "--quiet")
-    run("merge", "shards")
+    run("sweep", "--merge", "shards")
     check(read("shards/table.csv") == read("one/table.csv"), "shards: table")
 
 
@@ -332,7 +332,7 @@ def failed_points_once_more():
     run("sweep", "fails.yaml", "-o", "shards2", "--shard", "1/2", "--quiet", code=3)
     run("sweep", "fails.yaml", "-o", "shards2", "--shard", "0/2", "--retry", "--quiet", code=3)
     run("sweep", "fails.yaml", "-o", "shards2", "--shard", "1/2", "--retry", "--quiet", code=3)
-    run("merge", "shards2", code=3)
+    run("sweep", "--merge", "shards2", code=3)
     check(read("shards2/table.csv") == table, "--retry of shards: table")
     for word in ("--status", "--count"):
         run("sweep", "fails.yaml", "-o", "fails", "--retry", word, code=1)

@@ -20,10 +20,10 @@ HOPPER = "tests/cli/hopper.yaml"
 
 
 def budgeted(words):
-    """The words, with times after --budget as much longer as this build is slower (sanitizers)."""
+    """The words, with times after --cpu-time as much longer as this build is slower (sanitizers)."""
     words = list(words)
     for i, word in enumerate(words[1:], 1):
-        if words[i - 1] == "--budget" and re.fullmatch(r"\d+ s", word):
+        if words[i - 1] == "--cpu-time" and re.fullmatch(r"\d+ s", word):
             words[i] = f"{slower * int(word[:-2])} s"
     return words
 
@@ -161,7 +161,7 @@ if answer:
         fail("methods with events in a scene without any")
 
 # ---- The energy of the same: R R* to the n-th, no reference needed.
-answer = read(OSCILLATOR, "--measure", "energy", "--methods", "rk4")
+answer = read(OSCILLATOR, "--measure", "energy", "--integrator", "rk4")
 if answer:
     for row in answer["settings"]:
         n = round(answer["duration"] / row["step"])
@@ -173,7 +173,7 @@ if answer:
 
 # ---- Contact, drawn at random: everything once more from the values. Twice the same bits.
 words = (HOPPER, "--vary", "stiffness=(300 N/m)..(0.5 kN/m)", "--points", "11",
-         "--seed", "7", "--steps", "3", "--own-model")
+         "--seed", "7", "--step-sizes", "3", "--own-model")
 answer = read(*words)
 if answer:
     check_spreads("ball", answer)
@@ -203,7 +203,7 @@ if answer:
         fail("another seed gives the same points")
 
 # ---- Words are drawn too; other models of a block that slides.
-answer = read("models/basics/sliding-block.yaml", "--steps", "3", "--vary", "mu=0.2,0.3",
+answer = read("models/basics/sliding-block.yaml", "--step-sizes", "3", "--vary", "mu=0.2,0.3",
               "--points", "6")
 if answer:
     if {round(p["mu"], 9) for p in answer["points"]} != {0.2, 0.3}:
@@ -220,7 +220,7 @@ if answer:
 # ---- Files: all of them or none; the same numbers as in the answer.
 with tempfile.TemporaryDirectory() as here:
     out = os.path.join(here, "deep", "out")
-    done = run(BALL, "--steps", "4", "-o", out, "--own-model")
+    done = run(BALL, "--step-sizes", "4", "-o", out, "--own-model")
     if sorted(files_in(out)) != ["tradeoff.csv", "tradeoff.json", "tradeoff.svg"]:
         fail(f"files: {files_in(out)}")
     if "Recommendations" not in done.stdout or "0.5 %:" not in done.stdout:
@@ -240,17 +240,17 @@ with tempfile.TemporaryDirectory() as here:
     before = {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}
     os.mkdir(os.path.join(here, "blocked"))
     os.mkdir(os.path.join(here, "blocked", "tradeoff.svg"))
-    done = run(BALL, "--steps", "1", "-o", os.path.join(here, "blocked"), code=4)
+    done = run(BALL, "--step-sizes", "1", "-o", os.path.join(here, "blocked"), code=4)
     if done.stdout or files_in(os.path.join(here, "blocked")) != ["tradeoff.svg"]:
         fail(f"a blocked file: {done.stdout} {files_in(os.path.join(here, 'blocked'))}")
-    run(BALL, "--methods", "rk5", "-o", out, code=1)
+    run(BALL, "--integrator", "rk5", "-o", out, code=1)
     if before != {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}:
         fail("a refusal changed files")
-    done = run(BALL, "--steps", "1", "-o", "/dev/full/x", code=4)
+    done = run(BALL, "--step-sizes", "1", "-o", "/dev/full/x", code=4)
 
 # ---- Rigid bars of a pendulum vibrate nowhere: no limit says how long a step makes sense, and the
 # answer is still that of the stiff ones, nearly. They are a bargain: steps of a tenth of a second.
-found = read("models/basics/pendulum.yaml", "--methods", "rk4", "--steps", "3", "--budget", "6 s")
+found = read("models/basics/pendulum.yaml", "--integrator", "rk4", "--step-sizes", "3", "--cpu-time", "6 s")
 rigid = [model for model in found["models"] if model["name"] == "rigid bars"]
 if len(rigid) != 1 or not rigid[0]["model_error"]["worst"] < 1e-3:
     fail(f"rigid bars of a pendulum change the answer: {rigid}")
@@ -260,8 +260,8 @@ if longest < 0.02 * found["duration"]:
 
 # ---- A method that no step is too long for begins at a hundred times the explicit limit, here
 # sqrt(8) / sqrt(3 k / m), and comes down to it.
-found = read("models/basics/pendulum.yaml", "--set", "stiffness=1e8 N/m", "--methods", "rk4,midpoint",
-             "--steps", "8", "--budget", "6 s", "--own-model")
+found = read("models/basics/pendulum.yaml", "--set", "stiffness=1e8 N/m", "--integrator", "rk4,midpoint",
+             "--step-sizes", "8", "--cpu-time", "6 s", "--own-model")
 limit = math.sqrt(8) / math.sqrt(3 * 1e8)
 steps = [r["step"] / limit for r in found["settings"] if r["method"] == "midpoint"]
 if not steps or not 80 < max(steps) < 100 or not 0.8 < min(steps) < 2:
@@ -274,7 +274,7 @@ for row in found["settings"]:
 # ---- Other models are offered where a scene has what they change, and bars that are driven cannot be
 # rigid. What one costs does not take it from the others: every one of them is run.
 def offered(file, *words):
-    found = read(file, "--steps", "1", "--periods", "3", *words)
+    found = read(file, "--step-sizes", "1", "--periods", "3", *words)
     for model in found["models"]:
         if not model["run"]:
             fail(f"{file}: {model['name']} is not run: {model['remark']}")
@@ -283,11 +283,11 @@ def offered(file, *words):
 
 for file, wanted, *words in (
         ("models/crawler/crawler.yaml", ["lumped masses", "rigid bars", "Hunt-Crossley ground",
-                                         "Coulomb friction", "smooth friction"], "--budget", "5 s"),
-        (BALL, ["Hunt-Crossley ground"], "--budget", "1 s"),
+                                         "Coulomb friction", "smooth friction"], "--cpu-time", "5 s"),
+        (BALL, ["Hunt-Crossley ground"], "--cpu-time", "1 s"),
         ("models/gallery/two-mass-crawler.yaml", ["Coulomb friction", "smooth friction"],
-         "--budget", "3 s", "--set", "step=50 us", "--set", "band=1 mm/s"),
-        (OSCILLATOR, [], "--budget", "1 s")):
+         "--cpu-time", "3 s", "--set", "step=50 us", "--set", "band=1 mm/s"),
+        (OSCILLATOR, [], "--cpu-time", "1 s")):
     names = offered(file, *words)
     if names != wanted:
         fail(f"{file}: other models are {names}, not {wanted}")
@@ -295,7 +295,7 @@ for file, wanted, *words in (
 # ---- At the first of these points nothing touches down; refined steps make a difference at others.
 found = read("models/crawler/crawler.yaml", "--vary", "frequency=9.8..15", "--vary",
              "friction=0.05..0.5", "--vary", "start=I,II", "--points", "3", "--seed", "1", "--periods", "3",
-             "--steps", "1", "--own-model", "--budget", "1 s", "--methods", "verlet-events")
+             "--step-sizes", "1", "--own-model", "--cpu-time", "1 s", "--integrator", "verlet-events")
 groups = {row["group"] for row in found["settings"]}
 if "verlet-events, refined" not in groups or "verlet-events, refined 8" not in groups:
     fail(f"no refined steps over several points: {groups}")
@@ -303,12 +303,12 @@ if "verlet-events, refined" not in groups or "verlet-events, refined 8" not in g
 # ---- Wrong use: one sentence, nothing on stdout.
 for words, text in (
         (("--measure", "speed"), "--measure expects velocity, position or energy"),
-        (("--methods", "rk4,rk5"), "unknown method 'rk5'"),
-        (("--methods", ""), "unknown method ''"),
-        (("--steps", "0"), "a whole number from 1 to 40"),
+        (("--integrator", "rk4,rk5"), "unknown method 'rk5'"),
+        (("--integrator", ""), "unknown method ''"),
+        (("--step-sizes", "0"), "a whole number from 1 to 40"),
         (("--periods", "-1"), "--periods expects"),
-        (("--budget", "3 m"), "--budget expects"),
-        (("--budget", "-3 s"), "--budget expects"),
+        (("--cpu-time", "3 m"), "--cpu-time expects"),
+        (("--cpu-time", "-3 s"), "--cpu-time expects"),
         (("--points", "3"), "need --vary"),
         (("--seed", "3"), "need --vary"),
         (("--vary", "height"), "--vary expects NAME=RANGE"),

@@ -19,7 +19,8 @@ expect 0 -V
 same version out
 # Commands and their summaries stand in two columns, whatever the longest name.
 expect 0 help
-sed -n '/^Commands:/,/^$/p' out | sed '1d;$d' >list
+grep '^  [a-z]' out >list
+[ "$(wc -l <list)" -le 16 ] || fail "more than 16 commands"
 [ "$(sed -E 's/^(  [a-z]+ +).*/\1/' list | awk '{print length($0)}' | sort -u | wc -l)" -eq 1 ] ||
   fail "the list of commands is not aligned"
 expect 0 help help
@@ -28,9 +29,9 @@ expect 0 help --help
 for words in help --help -h; do
   expect 0 $words
   err_empty
-  for command in run check write keys; do out_has "  $command "; done
+  for command in run check export keys; do out_has "  $command "; done
 done
-for command in run check write keys; do
+for command in run check export keys; do
   expect 0 $command --help
   out_has "usage: strut $command"
   out_has "--help"
@@ -80,10 +81,10 @@ expect 1 run "$hopper" other.yaml
 err_has "unexpected argument 'other.yaml'"
 expect 1 keys "$hopper"
 out_empty
-err_has "there is no section"
-expect 1 schema "$hopper"
+err_has "there is no section or key"
+expect 1 keys --schema "$hopper"
 out_empty
-err_has "'strut schema --help' lists the options"
+err_has "'strut keys --schema --help' lists the options"
 expect 1 run --
 err_has "missing MODEL"
 expect 0 run -q -- "$hopper"
@@ -113,7 +114,7 @@ err_has "No such file or directory"
 expect 4 run "$work"
 err_has "Is a directory"
 printf 'strut: 1\nnodez: {}\n' >bad.yaml
-for command in run check write; do
+for command in run check export; do
   expect 2 $command bad.yaml
   out_empty
   err_has "bad.yaml:2:1: error: "
@@ -157,23 +158,23 @@ for words in "run $hopper -o run" "view run -o p.html" "export run --format vtk 
 done
 
 # The other commands.
-expect 0 schema
+expect 0 keys --schema
 out_has '"rest_length_ratio"'
 err_empty
 cp out scene.json
-expect 0 schema --study
+expect 0 keys --schema --study
 out_has '"variants"'
 cmp -s out scene.json && fail "both schemas are the same"
-expect 1 schema --studi
+expect 1 keys --schema --studi
 err_has "did you mean '--study'?"
-expect 1 schema scene
+expect 1 keys --schema scene
 err_has "unexpected argument 'scene'"
 expect 0 keys
 out_has rest_length_ratio
 err_empty
-expect 0 write "$hopper"
+expect 0 export "$hopper"
 cp out written.yaml
-expect 0 write written.yaml
+expect 0 export written.yaml
 sed '/^#/d' written.yaml >first
 sed '/^#/d' out >second
 same first second

@@ -98,6 +98,6 @@ sweep("two", variants, "--threads", "1")
 check(open("two/table.csv").read() == open("all/table.csv").read(), "one thread: table")
 for shard in ("0/4", "1/4", "2/4", "3/4"):
     sweep("shards", variants, "--shard", shard)
-subprocess.run([strut, "merge", "shards"], check=True, capture_output=True)
+subprocess.run([strut, "sweep", "--merge", "shards"], check=True, capture_output=True)
 check(open("shards/table.csv").read() == open("all/table.csv").read(), "shards: table")
 finish()

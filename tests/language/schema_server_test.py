@@ -82,7 +82,7 @@ class Server:
 
 schema = os.path.join(work, "strut-1.schema.json")
 with open(schema, "w", encoding="utf-8") as file:
-    subprocess.run([strut, "schema"], check=True, stdout=file)
+    subprocess.run([strut, "keys", "--schema"], check=True, stdout=file)
 head = "# yaml-language-server: $schema=strut-1.schema.json\n"
 server = Server()
 number = 0

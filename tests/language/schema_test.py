@@ -26,7 +26,7 @@ top = os.path.dirname(os.path.dirname(here))
 
 
 def schema(*options):
-    return json.loads(subprocess.run([strut, "schema", *options], check=True, stdout=subprocess.PIPE).stdout)
+    return json.loads(subprocess.run([strut, "keys", "--schema", *options], check=True, stdout=subprocess.PIPE).stdout)
 
 
 # ---- YAML 1.2 with the line of every value and key ----

@@ -17,7 +17,7 @@ fail() { echo "$*"; failures=$((failures + 1)); }
 
 # still FILE: the same for one that has no run, after its check.
 still() {
-  "$strut" write "$1" >"$scratch/scene.yaml" || { echo "write fails"; return 1; }
+  "$strut" export "$1" >"$scratch/scene.yaml" || { echo "write fails"; return 1; }
   "$strut" check "$scratch/scene.yaml" --json >"$scratch/again" ||
     { echo "its effective scene is not valid"; return 1; }
   diff "$scratch/check" "$scratch/again" || { echo "its effective scene differs"; return 1; }

@@ -21,7 +21,7 @@ REST, ARROW = (0.8, 0.8, 0.8), (0, 0x9E / 255, 0x73 / 255)
 
 def members_of(model):
     """Name to the names of both nodes, of the gallery's simple names."""
-    text = subprocess.run([strut, "write", model], capture_output=True, text=True).stdout
+    text = subprocess.run([strut, "export", model], capture_output=True, text=True).stdout
     found = re.findall(r"^  (\w+): \{nodes: \[(\w+), (\w+)\]", text, re.M)
     return {name: (a, b) for name, a, b in found}
 

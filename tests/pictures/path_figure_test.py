@@ -19,7 +19,7 @@ CURVE, CURVE_WIDTH = (0.15, 0.15, 0.15), 1.2
 
 
 def members_of(model):
-    text = subprocess.run([strut, "write", model], capture_output=True, text=True).stdout
+    text = subprocess.run([strut, "export", model], capture_output=True, text=True).stdout
     return [(a, b) for a, b in re.findall(r"^  \w+: \{nodes: \[(\w+), (\w+)\]", text, re.M)]
 
 

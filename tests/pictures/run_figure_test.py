@@ -35,7 +35,7 @@ def rows_of(directory):
 
 
 def members_of(model):
-    text = subprocess.run([strut, "write", model], capture_output=True, text=True).stdout
+    text = subprocess.run([strut, "export", model], capture_output=True, text=True).stdout
     pairs = re.findall(r"^  \w+: \{.*nodes: \[n(\d), n(\d)\]", text, re.M)
     return [(int(a) - 1, int(b) - 1) for a, b in pairs]
 

@@ -55,7 +55,7 @@ def check_shape(what, places, drawn):
 
 
 def members_of(model):
-    text = run("write", model)
+    text = run("export", model)
     nodes = text[text.index("\nnodes:"):text.index("\nmembers:")]
     block = text[text.index("\nmembers:"):]
     found = re.findall(r"^  (\w+): \{nodes: \[(\w+), (\w+)\], kind: (\w+)", block, re.M)

@@ -119,7 +119,7 @@ class Statics(unittest.TestCase):
     def test_matrices_are_those_of_the_exported_files(self):
         model = MODELS / "crawler/crawler.yaml"
         with tempfile.TemporaryDirectory() as folder:
-            program("export", model, "--quiet", "--matrices", f"{folder}/m", "--at", "II")
+            program("export", model, "--quiet", "--format", "matrices", "-o", f"{folder}/m", "--at", "II")
             matrices = strut.load(model).matrices(at="II")
             for path in pathlib.Path(folder, "m").glob("*.mtx"):
                 lines = [x for x in path.read_text().splitlines()]

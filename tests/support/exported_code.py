@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the tests of strut export --code share: they are called as TEST.py STRUT MODELS.
+# What the tests of strut export --format code share: they are called as TEST.py STRUT MODELS.
 import csv
 import os
 import re
@@ -68,7 +68,7 @@ def same_rows(what, got, want):
 
 def compare(file, method, step, steps, every, using=compilers):
     stem, want = stem_of(file), strut_rows(file)
-    run("export", file, "--code", "code")
+    run("export", file, "--format", "code", "-o", "code")
     for compiler in using:
         program = build(compiler, stem, f"-DSTEP={step!r}", f"-DSTEPS={steps}", f"-DEVERY={every}",
                         f"-DMETHOD={stem}_step_{method}")

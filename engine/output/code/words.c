@@ -158,7 +158,7 @@ static void add_title(strut_code_writer *w) {
     strut_code_add_comment(w, w->scene->source);
     strut_buffer_add(&w->text, "\n");
   }
-  strut_buffer_add(&w->text, " *\n * Written by %s export --code", w->options->program);
+  strut_buffer_add(&w->text, " *\n * Written by %s export --format code", w->options->program);
   const strut_scene *scene = w->scene;
   for (size_t i = 0; i < scene->parameter_count; i++) {
     strut_buffer_add(&w->text, i ? ", " : "\n * with ");
@@ -166,7 +166,12 @@ static void add_title(strut_code_writer *w) {
     strut_buffer_add(&w->text, " = ");
     strut_code_add_comment(w, scene->parameters[i].text);
   }
-  strut_buffer_add(&w->text, ".\n");
+  strut_buffer_add(
+      &w->text,
+      ".\n *\n"
+      " * Permission under section 7 of the GNU General Public License, version 3: whoever\n"
+      " * has this file may use, change and distribute it under any terms. It belongs to\n"
+      " * those who described the model, although parts of it are copied from strut.\n");
 }
 
 static void add_limits(strut_code_writer *w) {

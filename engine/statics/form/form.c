@@ -214,7 +214,7 @@ static strut_status apply_solution(density_problem *p, strut_error *error) {
     if (scene->members[j].kind == STRUT_CABLE && force < 0)
       return strut_fail(error, STRUT_NOT_SETTLED,
                         "the nearest densities in equilibrium make cable %s push (%.4g N/m); "
-                        "--from prestress keeps the drawn shape instead",
+                        "--given prestress keeps the drawn shape instead",
                         scene->members[j].name, p->q[j]);
     status = strut_form_set_force(p->f, j, force, error);
   }

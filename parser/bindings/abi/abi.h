@@ -256,7 +256,7 @@ STRUTLIB_API int strutlib_scene_array(const strutlib_scene *scene, const char *n
 STRUTLIB_API const char *strutlib_scene_warning(const strutlib_scene *scene, size_t i);
 
 /**
- * The scene with every value resolved, in SI units, as `strut write` prints it; short: with its
+ * The scene with every value resolved, in SI units, as `strut export` prints it; short: with its
  * parameters, groups and parts, as --parts.
  */
 STRUTLIB_API char *strutlib_scene_yaml(const strutlib_scene *scene, int parts,
@@ -334,7 +334,7 @@ STRUTLIB_API strutlib_result *strutlib_path(const strutlib_scene *scene, size_t 
                                             const char *const *names, const char *const *values,
                                             strutlib_control *control, strutlib_error **error);
 /**
- * The matrices of `strut export --matrices`, in the shape that the option "at" names. Arrays of
+ * The matrices of `strut export --format matrices`, in the shape that the option "at" names. Arrays of
  * each: "mass.row", "mass.column", "mass.value" (entries; indices from 0; symmetric ones in
  * full), "mass.size" (2: rows, columns); likewise "connectivity", "equilibrium",
  * "stiffness_elastic", "stiffness_geometric", "damping" and "stiffness_contact"; and

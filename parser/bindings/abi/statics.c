@@ -65,7 +65,7 @@ static strut_status compute_and_report(abi_call *call, const strutlib_scene *sce
   return complete ? STRUT_OK : strut_no_memory(what, "");
 }
 
-/* ---- matrices: what `strut export --matrices` writes, as arrays ---- */
+/* ---- matrices: what `strut export --format matrices` writes, as arrays ---- */
 
 /* Entries of a matrix, one after the other. */
 typedef struct entries {
