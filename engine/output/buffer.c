@@ -138,9 +138,9 @@ void strut_base64_add(strut_buffer *buffer, const void *bytes, size_t count) {
 
 /* ---- quantities ---- */
 
-enum { FIRST = -5, LAST = 3 }; /* femto to giga */
+enum { FIRST = -3, LAST = 3 }; /* nano to giga; smaller values have an exponent */
 
-static const char *const prefixes[] = {"f", "p", "n", "u", "m", "", "k", "M", "G"};
+static const char *const prefixes[] = {"n", "u", "m", "", "k", "M", "G"};
 
 const char *strut_quantity_text(double value, int digits, const char *unit,
                                 char text[STRUT_QUANTITY_TEXT]) {
@@ -157,7 +157,7 @@ const char *strut_quantity_text(double value, int digits, const char *unit,
   snprintf(text, STRUT_QUANTITY_TEXT, "%.*e", digits - 1, value);
   double rounded = strtod(text, NULL);
   int thousands = rounded != 0.0 ? (int)floor(log10(fabs(rounded)) / 3.0 + 1e-12) : 0;
-  if (thousands < FIRST) thousands = FIRST;
+  if (thousands < FIRST) thousands = 0;
   if (thousands > LAST) thousands = LAST;
   double scaled = rounded;
   for (int i = thousands; i < 0; i++) scaled *= 1000.0;

@@ -205,17 +205,13 @@ static strut_rounded_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, DIGITS, unit);
 }
 
-/* What the numbers are worth in one line, then why. */
+/* What the numbers are worth, in one line; then why, where that is not what was asked for. */
 static void add_worth(strut_buffer *table, const strut_summary *s) {
   const strut_accuracy_summary *a = &s->accuracy;
   char worth[200];
   strut_summary_worth(s, worth, sizeof worth);
   if (*worth) strut_buffer_add(table, "  accuracy    %s\n", worth);
-  if (a->wanted > 0.0)
-    strut_buffer_add(table, "              %s; checked with %" PRId64 " more force evaluations\n",
-                     a->why, a->check_evaluations);
-  else if (s->caveat[0])
-    strut_buffer_add(table, "              %s\n", s->caveat);
+  if (a->wanted > 0.0 && !a->kept) strut_buffer_add(table, "              %s\n", a->why);
 }
 
 /* Steady motion, and what is known of it. */
@@ -260,7 +256,8 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
   strut_buffer_add(table, "%s%s%s", scene->name, *scene->name ? ": " : "",
                    strut_status_text(s->status));
   if (s->reason[0]) strut_buffer_add(table, ": %s", s->reason);
-  strut_buffer_add(table, "\n  velocity    %s of %s", in(s->velocity, "m/s").text,
+  strut_buffer_add(table, "\n  velocity    %s%s along x, of %s", s->velocity > 0.0 ? "+" : "",
+                   in(s->velocity, "m/s").text,
                    s->measured_node ? s->measured_node : "the centre of mass");
   if (isfinite(s->velocity_spread)) {
     strut_buffer_add(table, ", spread %s", in(s->velocity_spread, "m/s").text);

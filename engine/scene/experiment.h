@@ -130,6 +130,9 @@ typedef struct strut_experiment {
   /* Ends statics on this experiment with STRUT_INTERRUPTED, soon after it is set; NULL: nothing does.
      Not part of what a file describes; runs and searches for all equilibria have options for it. */
   const volatile sig_atomic_t *interrupt;
+  /* Hears which part of a search for equilibria or of a path is done, 0 to 1; NULL: nobody does. */
+  void (*progress)(void *context, double fraction);
+  void *progress_context;
 } strut_experiment;
 
 /** A scene and the experiment on it: what a file of the language describes. */
@@ -137,6 +140,11 @@ typedef struct strut_setup {
   strut_scene scene; /* its arena also owns the experiment's texts and arrays */
   strut_experiment experiment;
 } strut_setup;
+
+/** Tells who waits for statics on this experiment that this part is done. */
+static inline void strut_experiment_advance(const strut_experiment *experiment, double fraction) {
+  if (experiment->progress) experiment->progress(experiment->progress_context, fraction);
+}
 
 /** Shall statics on this experiment end? */
 static inline bool strut_experiment_interrupted(const strut_experiment *experiment) {

@@ -82,7 +82,7 @@
 #define STRUT_BEAM_KEYS(X) \
   X(BEAM, NODES, "nodes", NAME_PAIR, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_beam, node, NODE), "The nodes at its ends. A beam is straight at rest.") \
   X(BEAM, BENDING_STIFFNESS, "bending_stiffness", NUMBER, BENDING_STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_beam, bending_stiffness), "EI. With parts of length h a hinge has the stiffness EI / h, at a clamp 2 EI / h.") \
-  X(BEAM, AXIAL_STIFFNESS, "axial_stiffness", NUMBER, FORCE, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_beam, axial_stiffness), "EA.") \
+  X(BEAM, AXIAL_STIFFNESS, "axial_stiffness", NUMBER, FORCE, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_beam, axial_stiffness), "EA of the beam.") \
   X(BEAM, PARTS, "parts", NUMBER, NONE, WHOLE(1, 10000), "10", OPTIONAL, 0, "", FIELD(strut_beam, parts), "Number of bars.") \
   X(BEAM, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_beam, mass), "Mass of the whole beam.") \
   X(BEAM, DAMPING, "damping", NUMBER, TIME, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_beam, damping), "Ratio of damping to stiffness of the material (Kelvin-Voigt), of bars and hinges alike.") \

@@ -156,17 +156,40 @@ static bool describe_member(const strut_model *model, const double *q, size_t j,
   return true;
 }
 
+/* The width of the columns of names: of the longest, from 12 to 40. */
+static int name_width(const strut_scene *scene) {
+  size_t longest = 12;
+  const struct {
+    const void *first;
+    size_t count, size, offset;
+  } things[] = {
+      {scene->members, scene->member_count, sizeof *scene->members, offsetof(strut_member, name)},
+      {scene->hinges, scene->hinge_count, sizeof *scene->hinges, offsetof(strut_hinge, name)},
+      {scene->cells, scene->cell_count, sizeof *scene->cells, offsetof(strut_cell, name)},
+      {scene->collisions, scene->collision_count, sizeof *scene->collisions,
+       offsetof(strut_collision, name)},
+      {scene->distances, scene->distance_count, sizeof *scene->distances,
+       offsetof(strut_distance_spring, name)}};
+  for (size_t t = 0; t < sizeof things / sizeof things[0]; t++)
+    for (size_t i = 0; i < things[t].count && i < MOST_MEMBERS; i++) {
+      const char *thing = (const char *)things[t].first + i * things[t].size;
+      size_t length = strlen(*(const char *const *)(const void *)(thing + things[t].offset));
+      if (length > longest) longest = length;
+    }
+  return longest > 40 ? 40 : (int)longest;
+}
+
 /* Every member's rest length in the four forms that the language accepts. */
-static void print_members(const strut_model *model, const double *q) {
+static void print_members(const strut_model *model, const double *q, int names) {
   const strut_scene *scene = model->scene;
   if (scene->member_count == 0) return;
-  printf("\n  %-12s %-6s %12s %12s %10s %12s %13s %12s\n", "member", "kind", "drawn", "rest length",
-         "ratio", "pretension", "force density", "stiffness");
+  printf("\n  %-*s %-6s %12s %12s %10s %12s %13s %12s\n", names, "member", "kind", "drawn",
+         "rest length", "ratio", "pretension", "force density", "stiffness");
   for (size_t i = 0; i < scene->member_count && i < MOST_MEMBERS; i++) {
     strut_rest rest;
     const strut_member *member = &scene->members[i];
     if (!describe_member(model, q, i, &rest)) continue;
-    printf("  %-12s %-6s %12s %12s %10.5g %12s %13s %12s\n", member->name,
+    printf("  %-*s %-6s %12s %12s %10.5g %12s %13s %12s\n", names, member->name,
            strut_member_kind_name(member->kind), in(rest.drawn_length, "m").text,
            in(rest.length, "m").text, rest.ratio, in(rest.pretension, "N").text,
            in(rest.force_density, "N/m").text, in(rest.stiffness, "N/m").text);
@@ -176,13 +199,13 @@ static void print_members(const strut_model *model, const double *q) {
   }
 }
 
-static void print_running_cables(const strut_scene *scene) {
+static void print_running_cables(const strut_scene *scene, int names) {
   size_t printed = 0;
   for (size_t i = 0; i < scene->member_count && printed < MOST_MEMBERS; i++) {
     const strut_member *m = &scene->members[i];
     if (!m->guide_count) continue;
-    if (!printed++) printf("\n  %-12s over\n", "running");
-    printf("  %-12s ", m->name);
+    if (!printed++) printf("\n  %-*s over\n", names, "running");
+    printf("  %-*s ", names, m->name);
     for (size_t k = 0; k < m->guide_count + 2; k++)
       printf("%s%s", k ? ", " : "", scene->nodes[strut_member_node(m, k)].name);
     printf("\n");
@@ -194,13 +217,13 @@ static const char *carries_name(const strut_member *m) {
   return names[m->kind == STRUT_CABLE ? STRUT_CARRIES_TENSION : m->law.carries];
 }
 
-static void print_laws(const strut_scene *scene) {
+static void print_laws(const strut_scene *scene, int names) {
   size_t printed = 0;
   for (size_t i = 0; i < scene->member_count && printed < MOST_MEMBERS; i++) {
     const strut_member *m = &scene->members[i];
     if (m->law.kind == STRUT_LAW_LINEAR && m->law.carries == STRUT_CARRIES_BOTH) continue;
-    if (!printed++) printf("\n  %-12s %-12s carries\n", "law of", "kind");
-    printf("  %-12s %-12s %s\n", m->name, strut_law_at(m->law.kind)->word, carries_name(m));
+    if (!printed++) printf("\n  %-*s %-12s carries\n", names, "law of", "kind");
+    printf("  %-*s %-12s %s\n", names, m->name, strut_law_at(m->law.kind)->word, carries_name(m));
   }
 }
 
@@ -212,7 +235,7 @@ static double stop_stiffness(const strut_model *model, size_t j) {
   return e ? e->numbers.stiffness : 0.0;
 }
 
-static void print_stops(const strut_model *model) {
+static void print_stops(const strut_model *model, int names) {
   const strut_scene *scene = model->scene;
   size_t printed = 0;
   for (size_t i = 0; i < scene->member_count && printed < MOST_MEMBERS; i++) {
@@ -220,31 +243,31 @@ static void print_stops(const strut_model *model) {
     bool shortest = m->shortest > 0.0, longest = m->longest > 0.0;
     if (!shortest && !longest) continue;
     if (!printed++)
-      printf("\n  %-12s %12s %12s %12s %12s\n", "stops of", "shortest", "longest", "stiffness",
-             "damping");
-    printf("  %-12s %12s %12s %12s %12s\n", m->name, shortest ? in(m->shortest, "m").text : "-",
-           longest ? in(m->longest, "m").text : "-", in(stop_stiffness(model, i), "N/m").text,
-           in(m->stop_damping, "N s/m").text);
+      printf("\n  %-*s %12s %12s %12s %12s\n", names, "stops of", "shortest", "longest",
+             "stiffness", "damping");
+    printf("  %-*s %12s %12s %12s %12s\n", names, m->name,
+           shortest ? in(m->shortest, "m").text : "-", longest ? in(m->longest, "m").text : "-",
+           in(stop_stiffness(model, i), "N/m").text, in(m->stop_damping, "N s/m").text);
   }
 }
 
-static void print_end(const char *name, double force, double time, const char *unit,
+static void print_end(int names, const char *name, double force, double time, const char *unit,
                       size_t *printed) {
   if (!(force > 0.0) && !(time > 0.0)) return;
-  if (!(*printed)++) printf("\n  %-12s %12s %12s\n", "end of", "breaks_at", "released_at");
-  printf("  %-12s %12s %12s\n", name, force > 0.0 ? in(force, unit).text : "-",
+  if (!(*printed)++) printf("\n  %-*s %12s %12s\n", names, "end of", "breaks_at", "released_at");
+  printf("  %-*s %12s %12s\n", names, name, force > 0.0 ? in(force, unit).text : "-",
          time > 0.0 ? in(time, "s").text : "-");
 }
 
-static void print_ends(const strut_scene *scene) {
+static void print_ends(const strut_scene *scene, int names) {
   size_t printed = 0;
   for (size_t i = 0; i < scene->member_count && printed < MOST_MEMBERS; i++) {
     const strut_member *m = &scene->members[i];
-    print_end(m->name, m->breaks_at, m->released_at, "N", &printed);
+    print_end(names, m->name, m->breaks_at, m->released_at, "N", &printed);
   }
   for (size_t i = 0; i < scene->hinge_count && printed < MOST_MEMBERS; i++) {
     const strut_hinge *h = &scene->hinges[i];
-    print_end(h->name, h->breaks_at, h->released_at, "N m", &printed);
+    print_end(names, h->name, h->breaks_at, h->released_at, "N m", &printed);
   }
 }
 
@@ -258,16 +281,17 @@ static strut_element_pose describe_hinge(const strut_model *model, const double 
   return pose;
 }
 
-static void print_hinges(const strut_model *model, const double *q) {
+static void print_hinges(const strut_model *model, const double *q, int names) {
   const strut_scene *scene = model->scene;
   for (size_t i = 0; i < scene->hinge_count && i < MOST_MEMBERS; i++) {
     double stiffness, degree = STRUT_PI / 180.0;
     strut_element_pose pose = describe_hinge(model, q, i, &stiffness);
     if (!i)
-      printf("\n  %-12s %12s %12s %12s %14s\n", "hinge", "drawn", "rest angle", "moment",
+      printf("\n  %-*s %12s %12s %12s %14s\n", names, "hinge", "drawn", "rest angle", "moment",
              "stiffness");
-    printf("  %-12s %8.5g deg %8.5g deg %12s %14s\n", scene->hinges[i].name, pose.strain / degree,
-           pose.natural / degree, in(pose.force, "N m").text, in(stiffness, "N m/rad").text);
+    printf("  %-*s %8.5g deg %8.5g deg %12s %14s\n", names, scene->hinges[i].name,
+           pose.strain / degree, pose.natural / degree, in(pose.force, "N m").text,
+           in(stiffness, "N m/rad").text);
   }
   if (scene->hinge_count > MOST_MEMBERS)
     printf("  ... and %zu more; --json lists all\n", scene->hinge_count - MOST_MEMBERS);
@@ -280,11 +304,12 @@ static const char *cell_content(const strut_cell *cell) {
                                              : "isentropic gas";
 }
 
-static void print_cells(const strut_scene *scene) {
+static void print_cells(const strut_scene *scene, int names) {
   for (size_t i = 0; i < scene->cell_count && i < MOST_MEMBERS; i++) {
     const strut_cell *cell = &scene->cells[i];
-    if (!i) printf("\n  %-12s %12s %12s %12s  content\n", "cell", "drawn", "pressure", "outside");
-    printf("  %-12s %8.4g m^2 %12s %12s  %s\n", cell->name, fabs(strut_cell_drawn(scene, i)),
+    if (!i)
+      printf("\n  %-*s %12s %12s %12s  content\n", names, "cell", "drawn", "pressure", "outside");
+    printf("  %-*s %8.4g m^2 %12s %12s  %s\n", names, cell->name, fabs(strut_cell_drawn(scene, i)),
            in(cell->pressure, "N/m").text, in(cell->outside, "N/m").text, cell_content(cell));
   }
   if (scene->cell_count > MOST_MEMBERS)
@@ -304,14 +329,14 @@ static double drawn_gap(const strut_model *model, const double *q, size_t i) {
   return gap;
 }
 
-static void print_collisions(const strut_model *model, const double *q) {
+static void print_collisions(const strut_model *model, const double *q, int names) {
   const strut_scene *scene = model->scene;
   for (size_t i = 0; i < scene->collision_count && i < MOST_MEMBERS; i++) {
     const strut_collision *c = &scene->collisions[i];
     if (!i)
-      printf("\n  %-12s %12s %12s %12s %14s\n", "collision", "thickness", "drawn gap", "stiffness",
-             "damping");
-    printf("  %-12s %12s %12s %12s %14s\n", c->name, in(c->thickness, "m").text,
+      printf("\n  %-*s %12s %12s %12s %14s\n", names, "collision", "thickness", "drawn gap",
+             "stiffness", "damping");
+    printf("  %-*s %12s %12s %12s %14s\n", names, c->name, in(c->thickness, "m").text,
            in(drawn_gap(model, q, i), "m").text, in(c->stiffness, "N/m").text,
            in(c->damping, "N s/m").text);
   }
@@ -325,14 +350,15 @@ static double distance_stiffness(const strut_model *model, size_t i) {
   return model->elements.element[element].numbers.stiffness;
 }
 
-static void print_distances(const strut_model *model) {
+static void print_distances(const strut_model *model, int names) {
   const strut_scene *scene = model->scene;
   for (size_t i = 0; i < scene->distance_count && i < MOST_MEMBERS; i++) {
     const strut_distance_spring *d = &scene->distances[i];
     if (!i)
-      printf("\n  %-12s %12s %12s %14s %14s\n", "distance", "drawn", "rest", "stiffness",
+      printf("\n  %-*s %12s %12s %14s %14s\n", names, "distance", "drawn", "rest", "stiffness",
              "damping");
-    printf("  %-12s %12s %12s %14s %14s\n", d->name, in(strut_distance_drawn(scene, i), "m").text,
+    printf("  %-*s %12s %12s %14s %14s\n", names, d->name,
+           in(strut_distance_drawn(scene, i), "m").text,
            in(strut_distance_rest(scene, i), "m").text,
            in(distance_stiffness(model, i), "N/m").text, in(d->damping, "N s/m").text);
   }
@@ -352,8 +378,9 @@ static strut_status print_sketch(const strut_model *model, const double *q) {
 }
 
 static strut_status print_estimate(const strut_cost_estimate *estimate, const strut_model *model,
-                                   const strut_experiment *experiment) {
+                                   const strut_experiment *experiment, bool verbose) {
   const strut_scene *scene = model->scene;
+  int names = name_width(scene);
   double *q = drawn_shape(model);
   if (!q) return strut_print_out_of_memory();
   printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
@@ -361,16 +388,16 @@ static strut_status print_estimate(const strut_cost_estimate *estimate, const st
   print_counts(estimate);
   print_run(estimate, experiment);
   print_terms(estimate, true, "each step evaluates");
-  print_terms(estimate, false, "omitted, as the scene does not need it");
-  print_members(model, q);
-  print_running_cables(scene);
-  print_laws(scene);
-  print_stops(model);
-  print_ends(scene);
-  print_hinges(model, q);
-  print_cells(scene);
-  print_collisions(model, q);
-  print_distances(model);
+  if (verbose) print_terms(estimate, false, "omitted, as the scene does not need it");
+  print_members(model, q, names);
+  print_running_cables(scene, names);
+  print_laws(scene, names);
+  print_stops(model, names);
+  print_ends(scene, names);
+  print_hinges(model, q, names);
+  print_cells(scene, names);
+  print_collisions(model, q, names);
+  print_distances(model, names);
   strut_release(q);
   return status;
 }
@@ -606,7 +633,7 @@ static strut_status check_model(const strut_arguments *arguments, strut_open_rep
   } else if (arguments->json) {
     status = print_json(&estimate, model, &setup, report);
   } else if (!arguments->quiet) {
-    status = print_estimate(&estimate, model, &setup.experiment);
+    status = print_estimate(&estimate, model, &setup.experiment, arguments->verbose);
   }
   strut_model_free(model);
   strut_setup_free(&setup);

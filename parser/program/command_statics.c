@@ -7,6 +7,7 @@
 #include "parser/command/analyses.h"
 #include "parser/program/commands.h"
 #include "parser/program/options.h"
+#include "parser/program/progress.h"
 #include "parser/program/streams.h"
 #include "parser/write/write_scene.h"
 
@@ -38,7 +39,10 @@ static strut_status report(const strut_arguments *arguments, const strut_analysi
 static strut_status compute_and_report(const strut_arguments *arguments, const strut_plot *plot,
                                        strut_analysis *a, strut_error *error) {
   const strut_analysis_kind *kind = a->kind;
+  strut_progress *progress = a->setup->experiment.progress_context;
   strut_status status = strut_analysis_compute(a, error);
+  strut_progress_end(progress);
+  a->setup->experiment.progress = NULL;
   if (status == STRUT_OK) status = report(arguments, a, error);
   if (status == STRUT_OK && kind->warn) kind->warn(a, arguments->listener);
   if (status == STRUT_OK && plot->path) status = kind->draw(a, plot, error);
@@ -64,6 +68,9 @@ strut_status strut_analysis_run(const strut_command *command, const strut_argume
   if (status != STRUT_OK) return status;
   a.scenes.text = text;
   if (a.kind->asks) setup.experiment.interrupt = strut_interrupt_watch();
+  strut_progress progress = strut_progress_begin(arguments->quiet);
+  setup.experiment.progress = progress.wanted ? strut_progress_show : NULL;
+  setup.experiment.progress_context = &progress;
   status = strut_model_compile(&setup.scene, &model, &error);
   a.model = model;
   if (status == STRUT_OK) status = compute_and_report(arguments, &plot, &a, &error);

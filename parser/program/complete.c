@@ -45,6 +45,7 @@ static void offer_options(const strut_completion *c, const strut_command *comman
     strut_offer(c, name, "", strut_option_at(command, i)->help);
   }
   for (const strut_command_variant *f = command->forms; f && f->selector; f++) {
+    if (f > command->forms && f->command == f[-1].command) continue; /* offered once it is chosen */
     snprintf(name, sizeof name, "--%s", f->selector);
     strut_offer(c, name, "", f->command->summary);
   }

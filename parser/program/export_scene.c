@@ -60,7 +60,7 @@ static strut_status read_files(const strut_arguments *a, strut_import_file *file
   return STRUT_OK;
 }
 
-/* The format that is given, or that the first file has. */
+/* The format that is given, or else that of the first file, which has one. */
 static strut_status find_format(const strut_arguments *a, const strut_import_file *file,
                                 int *format) {
   static const char *const words[] = {
@@ -71,12 +71,7 @@ static strut_status find_format(const strut_arguments *a, const strut_import_fil
   if (strut_option_text(a, STRUT_OPTION_INPUT))
     return strut_option_word(&strut_command_export, a, STRUT_OPTION_INPUT, words, format);
   *format = strut_import_guess(file->text, file->length);
-  if (*format >= 0) return STRUT_OK;
-  fprintf(stderr,
-          "strut: error: '%s' has none of the known formats: give --input ntrt, tensegritysim, "
-          "springable or tables\n",
-          file->name);
-  return STRUT_BAD_SCENE;
+  return STRUT_OK;
 }
 
 static void print_messages(strut_diagnostics *d) {
@@ -129,7 +124,8 @@ static bool is_foreign(const char *path) {
   size_t length;
   if (strcmp(path, "-") == 0 || strut_file_read(path, &text, &length, &error) != STRUT_OK)
     return false;
-  int format = strut_import_guess(text, length);
+  bool own = strncmp(text, "strut:", 6) == 0 || strstr(text, "\nstrut:");
+  int format = own ? -1 : strut_import_guess(text, length);
   strut_release(text);
   return format >= 0;
 }

@@ -104,7 +104,6 @@ run --damping-law
 run --integrator
 export --format
 export --input
-export --real
 END
 
 expect 1 help --completion tcsh

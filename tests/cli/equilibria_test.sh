@@ -7,7 +7,7 @@ crawler=$here/../../models/crawler/crawler.yaml
 # First what stands and its barriers, then counts; --all has every row. Shapes are told apart.
 expect 0 equilibria "$crawler"
 err_empty
-for text in "I                  n1,n4        stable      22.706131 J" "stands" "III" "collapsed" \
+for text in "I                  n1,n4        stable        22.7061 J" "equilibrium  " "III" "collapsed" \
   "1 crossing" "from               to                        barrier         direct  over" \
   "not shown: 4 that tip over" "unstable (saddles and maxima); --all lists them"; do
   out_has "$text"

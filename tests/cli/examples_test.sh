@@ -44,7 +44,7 @@ for name in folder/ . "" "$(printf 'a\nb')"; do
   err_has "expected a name for the scene's file"
 done
 expect 1 examples --new
-err_has "missing NAME"
+err_has "option '--new' needs a value"
 ln -s nowhere dangling.yaml
 expect 4 examples --new dangling
 [ ! -e nowhere ] || fail "written through a link"
@@ -89,7 +89,7 @@ cp "$strut" moved/bin/strut
 moved/bin/strut examples >out 2>err </dev/null
 [ $? -eq 4 ] || fail "models that are not there"
 err_has "the models are not installed with this program"
-moved/bin/strut examples --new -q plain || fail "new needs nothing that is installed"
+moved/bin/strut examples -q --new plain || fail "new needs nothing that is installed"
 [ "$(head -c 20 plain.yaml)" = "# A frame of two leg" ] || fail "a schema that is not there"
 mkdir -p "moved/share/strut"
 cp -R "$models" moved/share/strut/models
@@ -97,7 +97,7 @@ echo '{}' >moved/share/strut/strut-1.schema.json
 moved/bin/strut examples >out 2>err </dev/null || fail "the models of an installed program"
 cut -d' ' -f1 out >got
 same wanted got
-moved/bin/strut examples --new -q schema || fail "new with a schema"
+moved/bin/strut examples -q --new schema || fail "new with a schema"
 head -n 1 schema.yaml | grep -qxF "# yaml-language-server: \$schema=$(realpath moved)/share/strut/strut-1.schema.json" ||
   fail "the schema is not named"
 done_testing

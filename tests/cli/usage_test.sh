@@ -179,6 +179,8 @@ sed '/^#/d' written.yaml >first
 sed '/^#/d' out >second
 same first second
 expect 0 check "$hopper"
+grep -q omitted out && fail "check lists what is absent"
+expect 0 check "$hopper" --verbose
 err_empty
 for text in "Hopper: valid" "nodes              3, with 6 degrees of freedom" \
   "bars 1, springs 1, cables 1" "slack test" "omitted" "inclined ground" "largest step" \

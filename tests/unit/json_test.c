@@ -198,7 +198,7 @@ TEST(the_table) {
   char *text = strut_summary_table(&summary, &scene);
   static const char *const expected[] = {
       "Cr\xc3\xa4wler: completed\n",
-      "  velocity    9.781 mm/s of the centre of mass, spread 2 um/s, from 100 s\n",
+      "  velocity    +9.781 mm/s along x, of the centre of mass, spread 2 um/s, from 100 s\n",
       "  duration    110 s, 1100000 steps, after 700 ms of settling\n",
       "  step        100 us, stable up to 512.3 us\n",
       "  computed    4400000 force evaluations in 250 ms, 227.3 ns per step\n",
@@ -252,7 +252,8 @@ TEST(quantities) {
       {6.8e-4, 2, "s/s", "680 us/s"},
       {0.12345, 1, "s", "100 ms"},
       {6.14e-3, 2, "s", "6.1 ms"},
-      {3e-20, 4, "J", "3e-05 fJ"},
+      {3e-20, 4, "J", "3e-20 J"},
+      {2e-10, 4, "m", "2e-10 m"},
       {5e12, 4, "J", "5000 GJ"},
       {(double)NAN, 4, "m", "none"},
       {(double)INFINITY, 4, "s", "no limit"},

@@ -411,7 +411,7 @@ static void add_row(strut_buffer *table, const strut_equilibria *all, const stru
   double lowest = first < e->point.eigenvalue_count ? e->point.eigenvalues[first] : (double)NAN;
   strut_buffer_add(table, "  %-18s %-12s %-8s %14s %13s %7" PRId64 "  %-*s", e->name, names,
                    strut_stability_name(e->point.label),
-                   strut_quantity_of(shown_energy(e->energy, largest), 8, "J").text,
+                   strut_quantity_of(shown_energy(e->energy, largest), 6, "J").text,
                    strut_quantity_of(lowest, 5, "N/m").text, e->point.found,
                    e->outcome == STRUT_OUTCOME_STANDS ? 0 : FLAWS, flaws);
   add_end(table, all, e);
@@ -460,8 +460,8 @@ static void add_shape(strut_buffer *table, const strut_scene *scene, const strut
   strut_buffer_add(table, e->contact_count ? " %14s\n" : "\n", "presses with");
   for (size_t i = 0; i < scene->node_count && i < MOST_NODES; i++) {
     strut_buffer_add(table, "  %-12s %14s %14s", scene->nodes[i].name,
-                     strut_quantity_of(e->rest[2 * i], 7, "m").text,
-                     strut_quantity_of(e->rest[2 * i + 1], 7, "m").text);
+                     strut_quantity_of(e->rest[2 * i], 6, "m").text,
+                     strut_quantity_of(e->rest[2 * i + 1], 6, "m").text);
     for (int32_t k = 0; k < e->contact_count; k++)
       if (e->contacts[k] == (int32_t)i)
         strut_buffer_add(table, " %14s", strut_quantity_of(e->normal[k], 6, "N").text);
@@ -539,7 +539,7 @@ char *strut_equilibria_table(const strut_equilibria *all, const strut_model *mod
     strut_buffer_add(&table, "  %s\n", warning);
   if (all->remark[0]) strut_buffer_add(&table, "  %s\n", all->remark);
   size_t most = everything ? SIZE_MAX : MOST_ROWS;
-  add_section(&table, all, model, STANDING, model->contacts.count ? "stands" : "at rest", most);
+  add_section(&table, all, model, STANDING, "equilibrium", most);
   add_barriers(&table, all, everything);
   if (everything) {
     add_section(&table, all, model, HELD, "only while held", most);

@@ -396,6 +396,24 @@ static void add_idle(strut_buffer *table, const strut_rigidity *r, const strut_s
                    "");
 }
 
+/* "; has self-stress, cables in tension": what the kind is judged by. */
+static void add_features(strut_buffer *table, const strut_tensegrity *t) {
+  const struct {
+    bool has;
+    const char *text;
+  } features[] = {{t->self_stress, "self-stress"},
+                  {t->cables, "cables in tension"},
+                  {t->mechanism, "a stiffened mechanism"},
+                  {t->struts_apart, "bars apart"},
+                  {t->struts_inside, "bars inside the net"}};
+  const char *between = ": ";
+  for (size_t i = 0; t->judged && i < sizeof features / sizeof features[0]; i++) {
+    if (!features[i].has) continue;
+    strut_buffer_add(table, "%s%s", between, features[i].text);
+    between = ", ";
+  }
+}
+
 static void add_verdicts(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
   char words[STRUT_RIGIDITY_WORDS];
   const strut_tensegrity *t = &r->tensegrity;
@@ -410,10 +428,7 @@ static void add_verdicts(strut_buffer *table, const strut_rigidity *r, const str
                          ? "one self-stress state tensions every cable that any state loads"
                          : "no self-stress state tensions every cable that some state loads");
   strut_buffer_add(table, "  kind               %s", t->label);
-  if (t->judged)
-    strut_buffer_add(table, " (%s%s%s%s%s)", t->self_stress ? "S" : "", t->cables ? "C" : "",
-                     t->mechanism ? "M" : "", t->struts_apart ? "D" : "",
-                     t->struts_inside ? "I" : "");
+  add_features(table, t);
   strut_buffer_add(table, "\n  equilibrium        %s: net force on a free coordinate up to %s\n",
                    r->equilibrium ? "yes" : "no", in(r->residual, "N").text);
   add_idle(table, r, scene);

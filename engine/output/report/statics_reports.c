@@ -173,7 +173,7 @@ char *strut_modes_csv(const strut_modes *modes) {
   return strut_buffer_take(&csv);
 }
 
-enum { MOST_MEMBERS = 40, FORM_REPORT_DIGITS = 7 };
+enum { MOST_MEMBERS = 40, FORM_REPORT_DIGITS = 6 };
 
 static strut_rounded_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, FORM_REPORT_DIGITS, unit);

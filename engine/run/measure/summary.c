@@ -90,7 +90,8 @@ void strut_summary_worth(const strut_summary *s, char *text, size_t size) {
   if (s->accuracy.wanted > 0.0)
     describe_error(s, text, size);
   else
-    snprintf(text, size, "not known: no error was estimated; --accuracy 1%% does that");
+    snprintf(text, size, "not known: %s; --accuracy 1%% estimates the error",
+             s->caveat[0] ? s->caveat : "no error was estimated");
 }
 
 void strut_summary_warn_of_accuracy(strut_summary *s) {

@@ -115,6 +115,8 @@ static strut_status search_all_sets(strut_equilibrium_search *h) {
     status = interrupt && *interrupt
                  ? strut_fail(h->error, STRUT_INTERRUPTED, "interrupted while searching")
                  : search_on_supports(h, (int32_t)i);
+    /* what follows, on the real ground, counts as one more set */
+    strut_experiment_advance(h->experiment, (double)(i + 1) / (double)(h->supports.count + 1));
   }
   return status;
 }

@@ -351,6 +351,14 @@ static bool keep_pieces(const strut_path_system *s, strut_path *path) {
   return piece && ((path->material && path->guide_mode) || !s->elements.material);
 }
 
+/* How much of the path, or of its steps, is done. */
+static double part_done(const strut_path *path, double until, int32_t step, int32_t steps) {
+  double done = ((double)step + 1.0) / (double)steps;
+  if (path->point_count < 2) return done;
+  double from = path->points[0].factor, at = path->points[path->point_count - 1].factor;
+  return fmin(1.0, fmax(done, (at - from) / (until - from)));
+}
+
 static strut_status walk_from(path_start *b, double until, int32_t steps, strut_path *path,
                               strut_error *error) {
   strut_path_walk w = {.path = path};
@@ -359,8 +367,11 @@ static strut_status walk_from(path_start *b, double until, int32_t steps, strut_
     strut_path_unplace(&w.system, b->q, w.y);
     path->end = STRUT_PATH_STEPS;
     bool on = strut_path_walk_begin(&w);
-    for (int32_t i = 0; i < steps && on && !strut_experiment_interrupted(&b->setup.experiment); i++)
+    for (int32_t i = 0; i < steps && on && !strut_experiment_interrupted(&b->setup.experiment);
+         i++) {
       on = strut_path_walk_step(&w);
+      strut_experiment_advance(&b->setup.experiment, part_done(path, until, i, steps));
+    }
     strut_path_remark_steps(&w, steps);
     w.failed = w.failed || !keep_pieces(&w.system, path);
     if (w.forks.fork && path->point_count > 0)

@@ -129,7 +129,7 @@ static const char *unit_of(const strut_follow_result *r) { return *r->unit ? r->
 static void add_special(strut_buffer *t, const strut_follow_result *r, const strut_follow_branch *b,
                         const strut_follow_point *p) {
   strut_buffer_add(t, "  %-14s %-16s at %s, %s: %s",
-                   strut_quantity_of_any(p->value, 7, unit_of(r)).text,
+                   strut_quantity_of_any(p->value, 6, unit_of(r)).text,
                    strut_follow_kind_word(p->kind),
                    (b->travels ? strut_quantity_of(p->velocity, 4, "m/s")
                                : strut_quantity_of(p->amplitude, 4, "m"))

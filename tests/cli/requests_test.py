@@ -2,7 +2,7 @@
 # Single evaluations: the bits of a sweep, answers in order whatever fails, hostile requests, interrupts,
 # and the files of DAKOTA.
 #
-#   python3 evaluate_test.py STRUT
+#   python3 requests_test.py STRUT
 import csv
 import json
 import math

@@ -1,0 +1,107 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# One way to ask: options that all commands know, those that one refuses with its reason, `strut MODEL` alone, and
+# studies whose runs the command line changes.
+. "$(dirname "$0")/lib.sh"
+
+cat >hop.yaml <<'YAML'
+strut: 1
+parameters: {seconds: 50 ms, mass: 1 kg}
+nodes: {ball: {position: [0, 0], mass: mass}, top: {position: [0, 1 m], fixed: both}}
+members: {spring: {kind: spring, nodes: [ball, top], stiffness: 400 N/m, damping: 1 N s/m}}
+gravity: [0, -9.81]
+solver: {step: 1 ms}
+run: {duration: seconds}
+YAML
+cat >truss.yaml <<'YAML'
+strut: 1
+parameters: {load: 1 N}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0.3], mass: 1}, c: {position: [2, 0], fixed: both}}
+members:
+  ab: {nodes: [a, b], kind: bar, stiffness: 1000}
+  bc: {nodes: [b, c], kind: bar, stiffness: 1000}
+loads: {push: {node: b, force: [0, -load]}}
+YAML
+cat >masses.yaml <<'YAML'
+strut: 1
+study: Mass and time
+model: hop.yaml
+axes: [{mass: [1 kg, 2 kg]}]
+keep: [steps, method, final_height]
+YAML
+sed -i 's/, final_height//' masses.yaml
+
+# Every command that computes knows these options: it takes them, or says why not.
+for command in run sweep compare tradeoff equilibria path modes rigidity form check; do
+  expect 0 $command --help
+  cp out help
+  for option in accuracy integrator step threads set json plot output quiet; do
+    grep -q -- "--$option" help && continue
+    expect 1 $command truss.yaml --$option
+    err_has "strut $command: --$option cannot be used here: "
+  done
+done
+expect 1 equilibria truss.yaml --accuracy 1%
+err_has "--accuracy cannot be used here: equilibria are computed to rounding errors"
+expect 1 tradeoff hop.yaml --step=1ms
+err_has "--step-sizes says how many"
+expect 1 run hop.yaml --threads 0
+err_has "--threads expects a whole number from 1 to 4096"
+
+# A model alone: what it is for.
+expect 0 hop.yaml
+out_has "velocity"
+expect 0 hop.yaml --set seconds=20ms --json
+out_has '"steps":	20,'
+expect 0 truss.yaml --quiet --json
+out_has '"barriers"'
+expect 0 masses.yaml --quiet
+[ -s masses/table.csv ] || fail "a study alone has no table"
+expect 4 missing.yaml
+err_has "missing.yaml"
+expect 1 missing
+err_has "unknown command 'missing'"
+
+# Studies whose runs the command line changes; the results say so, and others are not mixed with them.
+expect 0 sweep masses.yaml -o fine --step 0.5ms --quiet
+[ "$(cut -d, -f3 fine/table.csv | tail -n 1)" = 100 ] || fail "steps of a study: $(cat fine/table.csv)"
+grep -qx '# It was run with --step=0.5ms' fine/study.yaml || fail "the study's copy lacks the option"
+expect 1 sweep masses.yaml -o fine --quiet
+expect 0 sweep masses.yaml -o asked --accuracy 0.5% --quiet
+grep -q 'accuracy_kept' asked/table.csv || fail "no accuracy: $(head -n 1 asked/table.csv)"
+expect 0 sweep masses.yaml -o adapted --integrator adaptive --quiet
+grep -q ',adaptive,' adapted/table.csv || fail "another method: $(cat adapted/table.csv)"
+expect 0 sweep masses.yaml -o scripts --emit slurm --shards 2 --accuracy 0.5%
+out_has "--accuracy"
+sed 's/^keep: .*/compute: modes/' masses.yaml >modes.yaml
+expect 1 sweep modes.yaml -o modes --accuracy 1%
+err_has "--accuracy is for studies of runs"
+expect 0 sweep masses.yaml -o drawn --plot drawn.svg --quiet
+grep -q '<svg' drawn.svg || fail "no figure of a study"
+expect 1 sweep masses.yaml -o drawn --plot drawn.svg --count
+err_has "--plot needs the table of all points"
+printf '{"mass": 2}\n' >requests
+"$strut" sweep hop.yaml --requests requests --keep steps --step 0.5ms >out 2>err || fail "requests with another step"
+out_has '"steps":100'
+
+# A method that chooses its steps needs none.
+sed 's/^solver: .*/solver: {integrator: adaptive}/' hop.yaml >free.yaml
+expect 0 run free.yaml --json
+out_has '"method":	"adaptive"'
+sed '/^solver/d' hop.yaml >none.yaml
+expect 0 run none.yaml --integrator adaptive --quiet
+expect 2 run none.yaml
+err_has "the solver has no step"
+
+# The same range of a path in two ways; the same words with other values elsewhere.
+expect 0 path truss.yaml --over load=1..3N --json
+cp out one
+expect 0 path truss.yaml --over load --from 1 --until 3N --json
+same one out
+expect 1 path truss.yaml --over load=1..
+err_has "--over expects WHAT or WHAT=FROM..UNTIL"
+expect 1 path truss.yaml --over load=1..3kg
+err_has "--over: expected a value such as "
+expect 0 tradeoff hop.yaml --cpu-time 1s --step-sizes 2 --own-model --quiet --plot trade.svg
+grep -q '<svg' trade.svg || fail "no figure of a tradeoff"
+done_testing
