@@ -392,7 +392,7 @@ def bad_input():
                        (good.replace("[N/m]", "[N]"), "stiffness"), (good.replace("kind", "sort"), "'kind'")):
         refused("bad.csv", text, part, words=("good.csv",))
     for text in ("[" * 5000, b"\x00\xff\x00", "a: 1\n", ""):  # none of the formats, so a scene of strut
-        refused("odd", text, "odd:1:")
+        refused("odd", text, "odd:")
     refused("odd", "- a\n", "expected a mapping", words=("--input", "ntrt"))
     refused("odd", b"\xff\xfe", "odd", words=("--input", "tensegritysim"))
     refused("odd", b"NODES\n\xff,0,0,1,1\n", "odd:2:1", words=("--input", "springable"))
