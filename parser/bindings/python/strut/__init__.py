@@ -10,7 +10,16 @@ Names are those of the scene's file and of the program's JSON, numbers are in SI
 docs/python.md has more.
 """
 
-from ._errors import Error, FileError, MemoryError, Message, RunError, SceneError, UsageError
+from ._errors import (
+    Error,
+    FileError,
+    MemoryError,
+    Message,
+    MissingFileError,
+    RunError,
+    SceneError,
+    UsageError,
+)
 from ._results import (
     Equilibria,
     Equilibrium,
@@ -26,7 +35,7 @@ from ._scene import Scene, load, loads
 from ._simulation import Simulation
 from ._strut import options, version as __version__
 from ._sweep import Table
-from ._values import Named
+from ._values import Named, Words
 
 __all__ = [
     "Equilibria",
@@ -37,6 +46,7 @@ __all__ = [
     "Matrices",
     "MemoryError",
     "Message",
+    "MissingFileError",
     "Modes",
     "Named",
     "Path",
@@ -49,6 +59,7 @@ __all__ = [
     "Simulation",
     "Table",
     "UsageError",
+    "Words",
     "load",
     "loads",
     "options",

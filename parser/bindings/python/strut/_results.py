@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
-import html
 import json
-from typing import TYPE_CHECKING, Any, ClassVar, Iterator, Protocol
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Iterator, Protocol, Sequence
 
-from . import _strut
-from ._values import Named, UnknownName, Words, from_words, numpy, options, unknown
+from . import _plots, _strut, _views
+from ._errors import in_python
+from ._values import COMPONENTS, Frozen, Named, UnknownName, Value, Words
+from ._values import fixed, from_words, numpy, options, unknown, words
 
 if TYPE_CHECKING:
     import numpy as np
@@ -45,7 +47,7 @@ class _Stored:
             raw.array_names(),
             raw.columns(),
         )
-        self._arrays = {name: numpy().array(raw.array(name)) for name in self._names}
+        self._arrays = {name: fixed(raw.array(name)) for name in self._names}
         self._units = {name: raw.unit(name) for name in self._names}
         rows = max((len(array) for array in self._arrays.values() if array.ndim), default=0)
         self._words = {
@@ -100,33 +102,24 @@ class _Stored:
         raise ValueError("a result out of a pickle has no page")
 
 
-def frame(page: str) -> str:
-    """A page within a notebook's."""
-    return (
-        f'<iframe srcdoc="{html.escape(page)}" '
-        'style="width: 100%; height: 640px; border: 0"></iframe>'
-    )
+class Result(Frozen):
+    """What a computation returned; it does not change.
 
-
-class Result:
-    """What a computation returned. Attributes are the words of the program's JSON, items arrays by name."""
+    Attributes are the words of the program's JSON, items arrays by name, all in SI units.
+    """
 
     _command: ClassVar[str] = ""
     _list: ClassVar[str] = ""  #: the JSON's list that it is about
+    _raw: _Raw
+    _scene: Scene | None
 
     def __init__(self, raw: _Raw, scene: Scene | None) -> None:
-        self._raw = raw
-        self._scene = scene
-        self._words: Words | None = None
+        self.__dict__.update(_raw=raw, _scene=scene)
 
-    @property
+    @cached_property
     def summary(self) -> Words:
         """The program's JSON as a dictionary."""
-        words = self._words
-        if words is None:
-            words = self._words = json.loads(self._raw.json(), object_hook=Words)
-        assert words is not None
-        return words
+        return words(self._raw.json())
 
     @property
     def json(self) -> str:
@@ -139,29 +132,49 @@ class Result:
         return self._raw.table()
 
     @property
-    def warnings(self) -> list[str]:
-        """What the program would warn of."""
-        return self._raw.warnings()
+    def warnings(self) -> tuple[str, ...]:
+        """What may be wrong with the model or with these numbers."""
+        return tuple(map(in_python, self._raw.warnings()))
 
     @property
-    def array_names(self) -> list[str]:
+    def array_names(self) -> tuple[str, ...]:
         """Names of the arrays that are not in the summary."""
-        return self._raw.array_names()
+        return tuple(self._raw.array_names())
 
     def unit(self, name: str) -> str | None:
-        """The unit of such an array, such as "m/s"."""
+        """The unit of such an array, such as "m/s"; None where there is no such array."""
         return self._raw.unit(name)
 
     def array(self, name: str) -> Array:
-        """An array by its dotted name, such as "position.n1.x" or "equilibria.energy"."""
+        """An array by its dotted name, such as "position.n1.x" (samples) or "equilibria.energy" (equilibria).
+
+        Lists of the summary are dimensions: "modes.shape" is (modes, nodes, 2). It is read-only.
+        """
         found = self._raw.array(name)
         if found is None:
-            raise UnknownName(unknown(name, self._raw.array_names(), "array"))
+            raise UnknownName(unknown(name, self.array_names, "array"))
         return numpy().asarray(found)  # type: ignore[no-any-return]
 
-    def svg(self, **more: object) -> str:
-        """The figure that --plot draws: svg(draw="period", width="column")."""
-        return self._raw.svg(*options(more))
+    def svg(
+        self,
+        *,
+        title: str | None = None,
+        width: Value | None = None,
+        draw: str | None = None,
+        scale: str | Sequence[float] | None = None,
+        times: str | Sequence[Value] | None = None,
+        x_label: str | None = None,
+        y_label: str | None = None,
+        x_limits: str | Sequence[Value] | None = None,
+        y_limits: str | Sequence[Value] | None = None,
+    ) -> str:
+        """The program's figure of it, as the text of an SVG file.
+
+        `width` is "page", "column" or a length [m]. Of a run `draw` is "overview", "period", "snapshots" or
+        "curves"; `scale` the magnification of the motion (x, y) in the figure "period", `times` the instants
+        of the snapshots [s]. Labels and limits (low, high) [SI] are those of the axes.
+        """
+        return self._raw.svg(*options({n: v for n, v in locals().items() if n != "self"}))
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
@@ -180,9 +193,24 @@ class Result:
     def __repr__(self) -> str:
         return f"<strut.{type(self).__name__} of '{self.summary.get('name', '')}'>"
 
+    def _figure(self) -> str:
+        """What notebooks show below the summary."""
+        return self.svg()
+
+    def _repr_html_(self) -> str:
+        try:
+            figure = self._figure()
+        except ValueError:  # nothing recorded, out of a pickle, or without a figure
+            figure = ""
+        return figure + _views.summary(self.summary)
+
+    def _of(self) -> Scene:
+        assert self._scene is not None
+        return self._scene
+
     def __getstate__(self) -> dict[str, Any]:
         raw = self._raw if isinstance(self._raw, _Stored) else _Stored(self._raw)
-        return {"_raw": raw, "_scene": self._scene, "_words": None}
+        return {"_raw": raw, "_scene": self._scene}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
@@ -192,9 +220,12 @@ class _List(Result):
     """A result that is a list of things: they are items, and arrays over them attributes."""
 
     @property
-    def _things(self) -> list[Words]:
-        things: list[Words] = self.summary[self._list]
+    def _things(self) -> tuple[Words, ...]:
+        things: tuple[Words, ...] = self.summary[self._list]
         return things
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *(self._things[0] if self._things else ())]
 
     def __len__(self) -> int:
         return len(self._things)
@@ -205,9 +236,11 @@ class _List(Result):
     def __getitem__(self, key: Any) -> Any:
         return self._things[key]
 
+    def __repr__(self) -> str:
+        return f"<strut.{type(self).__name__} of '{self.summary['name']}': {len(self)} {self._list}>"
 
-#: the components of each channel: ("x", "y") of "position"
-_COMPONENTS = {name: components for name, _, components, _ in _strut.channels()}
+    def _repr_html_(self) -> str:
+        return super()._repr_html_() + _views.things(self._things, len(self))
 
 
 def _recorded(kind: str) -> dict[str, tuple[str, int | None]]:
@@ -220,28 +253,35 @@ def _recorded(kind: str) -> dict[str, tuple[str, int | None]]:
     }
 
 
-class _Trajectories:
+class _Trajectories(Frozen):
     """What was recorded of one thing: run.nodes["n1"].x, and the summary's words of it."""
 
-    def __init__(self, run: Run, name: str, words: Words, arrays: dict[str, tuple[str, int | None]]):
-        self._run, self._name, self._words, self._arrays = run, name, words, arrays
+    _run: Run
+    _name: str
+    _words: Words
+    _columns: dict[str, tuple[str, int | None]]
+
+    def __init__(self, run: Run, name: str, there: Words, of_kind: dict[str, tuple[str, int | None]]):
+        recorded = run.channels
+        columns = {column: at for column, at in of_kind.items() if at[0] in recorded}
+        self.__dict__.update(_run=run, _name=name, _words=there, _columns=columns)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
             raise AttributeError(name)
         if name in self._words:
             return self._words[name]
-        if name not in self._arrays:
-            raise AttributeError(unknown(name, [*self._words, *self._arrays]))
-        channel, component = self._arrays[name]
+        if name not in self._columns:
+            raise AttributeError(unknown(name, [*self._words, *self._columns]))
+        channel, component = self._columns[name]
         array = self._run[channel][self._name]
         return array if component is None else array[:, component]
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self._words, *self._arrays]
+        return [*super().__dir__(), *self._words, *self._columns]
 
     def __repr__(self) -> str:
-        return f"<{self._name}: {', '.join([*self._words, *self._arrays])}>"
+        return f"<{self._name}: {', '.join([*self._words, *self._columns])}>"
 
 
 _NODE = _recorded("nodes")
@@ -270,10 +310,10 @@ class Run(Result):
         found = self._raw.array("time")
         return numpy().asarray(found if found is not None else ())  # type: ignore[no-any-return]
 
-    @property
-    def channels(self) -> list[str]:
+    @cached_property
+    def channels(self) -> tuple[str, ...]:
         """What was recorded: "position", "force", ..."""
-        return [*dict.fromkeys(name.split(".")[0] for name in self.array_names if name != "time")]
+        return (*dict.fromkeys(name.split(".")[0] for name in self.array_names if name != "time"),)
 
     def __getitem__(self, name: str) -> Any:
         array = self._raw.array(name)
@@ -291,7 +331,7 @@ class Run(Result):
         if rest in named.names:
             return named[rest]
         thing, _, component = rest.rpartition(".")
-        components = _COMPONENTS.get(channel, ())
+        components = COMPONENTS.get(channel, ())
         if thing not in named.names or component not in components:
             raise UnknownName(unknown(rest, named.names))
         return named[thing][:, components.index(component)]
@@ -300,22 +340,19 @@ class Run(Result):
         """Names of a channel's things, in the order of its columns."""
         if channel not in self.channels:
             return None
-        assert self._scene is not None
-        return self._scene.names(channel)
+        return self._of().names(channel)
 
     @property
     def nodes(self) -> Words:
         """Each node: x, y, vx, vy, ... over time as recorded, and the summary's `position` at the end."""
         there = self.summary.get("nodes", {})
-        assert self._scene is not None
-        names = self._scene.names("nodes")
+        names = self._of().names("nodes")
         return Words({n: _Trajectories(self, n, there.get(n, Words()), _NODE) for n in names})
 
     @property
     def members(self) -> Words:
         """Each member: length and force over time as recorded."""
-        assert self._scene is not None
-        names = self._scene.names("members")
+        names = self._of().names("members")
         return Words({n: _Trajectories(self, n, Words(), _MEMBER) for n in names})
 
     def to_yaml(self) -> str:
@@ -329,7 +366,7 @@ class Run(Result):
         columns = {}
         for channel in self.channels:
             for name, part in self[channel].items():
-                components = _COMPONENTS.get(channel, ())
+                components = COMPONENTS.get(channel, ())
                 for i, component in enumerate(components):
                     columns[f"{channel}.{name}.{component}"] = part[:, i]
                 if not components:
@@ -337,20 +374,25 @@ class Run(Result):
         return pandas.DataFrame(columns, index=pandas.Index(self.time, name="time"))
 
     def html(self) -> str:
-        """The page that `strut view` writes."""
+        """A page for any browser, which plays the motion."""
         return self._raw.html()
 
-    def __repr__(self) -> str:
-        words = self.summary
-        velocity = words.get("velocity")
-        shown = "" if velocity is None else f", {velocity:.5g} m/s"
-        return f"<strut.Run of '{words.get('name', '')}': {words.get('status')}{shown}>"
+    def plot(self, name: str = "position", *, ax: Any = None) -> Any:
+        """Draws what was recorded over time by matplotlib, and returns the axes.
 
-    def _repr_html_(self) -> str | None:
-        try:
-            return frame(self.html())
-        except ValueError:  # nothing recorded, or out of a pickle
-            return None
+        `name` is a channel, such as "force", with a line for each thing (of positions and other vectors the
+        first component), or an item such as "position.n1.y". `ax`: axes to draw into.
+        """
+        return _plots.run(self, name, ax)
+
+    def __repr__(self) -> str:
+        said = self.summary
+        velocity = said.get("velocity")
+        shown = "" if velocity is None else f", {velocity:.5g} m/s"
+        return f"<strut.Run of '{said.get('name', '')}': {said.get('status')}{shown}>"
+
+    def _figure(self) -> str:
+        return _views.frame(self.html())
 
 
 class Equilibrium(Words):
@@ -359,14 +401,14 @@ class Equilibrium(Words):
     __slots__ = ("_scene",)
     _scene: Any
 
-    def modes(self, **more: object) -> Modes:
-        """Vibration about it."""
-        found: Modes = self._scene.modes(at=self["name"], **more)
+    def modes(self, *, count: int | None = None, wave: bool = False, stuck: bool = False) -> Modes:
+        """Vibration about it, as of Scene.modes."""
+        found: Modes = self._scene.modes(at=self["name"], count=count, wave=wave, stuck=stuck)
         return found
 
-    def rigidity(self, **more: object) -> Rigidity:
+    def rigidity(self) -> Rigidity:
         """Self-stress and mechanisms in it."""
-        found: Rigidity = self._scene.rigidity(at=self["name"], **more)
+        found: Rigidity = self._scene.rigidity(at=self["name"])
         return found
 
     def __repr__(self) -> str:
@@ -378,7 +420,7 @@ class Equilibrium(Words):
 
 def _equilibrium(scene: Scene | None, words: dict[str, Any]) -> Equilibrium:
     found = Equilibrium(words)
-    found._scene = scene
+    object.__setattr__(found, "_scene", scene)
     return found
 
 
@@ -394,36 +436,34 @@ class Equilibria(_List):
 
     def __getitem__(self, key: Any) -> Any:
         if isinstance(key, slice):
-            return [_equilibrium(self._scene, words) for words in self._things[key]]
+            return [_equilibrium(self._scene, there) for there in self._things[key]]
         if not isinstance(key, str):
             return _equilibrium(self._scene, self._things[key])
-        for words in self._things:
-            if words["name"] == key:
-                return _equilibrium(self._scene, words)
+        for there in self._things:
+            if there["name"] == key:
+                return _equilibrium(self._scene, there)
         raise UnknownName(unknown(key, self.names, "equilibrium"))
 
     @property
-    def names(self) -> list[str]:
+    def names(self) -> tuple[str, ...]:
         """Names, in their order."""
-        return [words["name"] for words in self._things]
+        return tuple(there["name"] for there in self._things)
 
     @property
-    def standing(self) -> list[Equilibrium]:
+    def standing(self) -> tuple[Equilibrium, ...]:
         """Those in which it comes to rest on the ground."""
-        return [e for e in self if e["outcome"] == "stands"]
+        return tuple(each for each in self if each["outcome"] == "stands")
 
     def html(self) -> str:
-        """The page that `strut view` writes."""
+        """A page for any browser, with all of them."""
         return self._raw.html()
 
-    def _repr_html_(self) -> str | None:
-        try:
-            return frame(self.html())
-        except ValueError:
-            return None
+    def plot(self, *, ax: Any = None) -> Any:
+        """Draws the energies of those that stand and the barriers between them by matplotlib; returns the axes."""
+        return _plots.equilibria(self, ax)
 
-    def __repr__(self) -> str:
-        return f"<strut.Equilibria of '{self.summary['name']}': {len(self)}>"
+    def _figure(self) -> str:
+        return _views.frame(self.html())
 
 
 class Modes(_List):
@@ -436,8 +476,9 @@ class Modes(_List):
         frequency: Array
         shape: Array
 
-    def __repr__(self) -> str:
-        return f"<strut.Modes of '{self.summary['name']}': {len(self)}>"
+    def plot(self, *, ax: Any = None) -> Any:
+        """Draws the frequencies by matplotlib; returns the axes."""
+        return _plots.modes(self, ax)
 
 
 class Path(_List):
@@ -449,20 +490,54 @@ class Path(_List):
     if TYPE_CHECKING:
         factor: Array
 
-    def __repr__(self) -> str:
-        return f"<strut.Path of '{self.summary['name']}': {len(self)} points>"
+    def plot(self, *, ax: Any = None) -> Any:
+        """Draws load factor or varied value over the largest displacement by matplotlib; returns the axes.
+
+        Unstable parts are dashed, events are dots.
+        """
+        return _plots.path(self, ax)
 
 
 class Rigidity(Result):
-    """States of self-stress and mechanisms."""
+    """States of self-stress and mechanisms; their counts are in summary["self_stress"] and ["mechanisms"]."""
 
     _command = "rigidity"
+
+    @property
+    def self_stress(self) -> Named:
+        """A basis of the states of self-stress: relative forces, tension positive, (states, members).
+
+        self_stress[0] is a state, self_stress["m8"] a member's part in all of them.
+        """
+        return self._basis("self_stress", "states.forces", "members", ())
+
+    @property
+    def mechanisms(self) -> Named:
+        """Displacements of the mechanisms, largest 1, (mechanisms, nodes, 2)."""
+        return self._basis("mechanisms", "modes.nodes", "nodes", (2,))
+
+    def _basis(self, word: str, array: str, kind: str, rest: tuple[int, ...]) -> Named:
+        names, found = self._of().names(kind), self._raw.array(f"{word}.{array}")
+        if found is None and self.summary[word]["count"]:
+            raise ValueError(f"the {self.summary[word]['count']} of {word} are too many to be listed")
+        empty = numpy().empty((0, len(names), *rest))
+        return Named(fixed(empty if found is None else found), names, 1)
+
+    def plot(self, state: int = 0, *, ax: Any = None) -> Any:
+        """Draws a state of self-stress by matplotlib, tension red, compression blue; returns the axes."""
+        states, scene = self.self_stress.array, self._of()
+        force = states[state] if len(states) else numpy().zeros(states.shape[1])
+        return _plots.forces(scene, scene.array("nodes.position"), force, ax)
 
 
 class Form(Result):
     """A shape or a prestress that was found."""
 
     _command = "form"
+
+    def plot(self, *, ax: Any = None) -> Any:
+        """Draws the shape with its forces by matplotlib, tension red, compression blue; returns the axes."""
+        return _plots.forces(self.scene(), self.array("nodes"), self.array("forces"), ax)
 
     def to_yaml(self) -> str:
         """The new model."""
@@ -475,25 +550,32 @@ class Form(Result):
         return loads(self.to_yaml(), name="<form>")
 
 
+_MATRICES = (
+    "mass",
+    "connectivity",
+    "equilibrium",
+    "stiffness_elastic",
+    "stiffness_geometric",
+    "damping",
+    "stiffness_contact",
+)
+
+
 class Matrices(Result):
     """Matrices by name: mass, connectivity, equilibrium, stiffness_elastic, stiffness_geometric, damping
-    and, where nodes touch the ground, stiffness_contact."""
+    and, where nodes touch the ground, stiffness_contact; `names` are those that there are."""
 
     _command = "matrices"
-    names = (
-        "mass",
-        "connectivity",
-        "equilibrium",
-        "stiffness_elastic",
-        "stiffness_geometric",
-        "damping",
-        "stiffness_contact",
-    )
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names of the matrices."""
+        return tuple(name for name in _MATRICES if self._raw.array(f"{name}.value") is not None)
 
     def coordinates(self, name: str) -> tuple[Array, Array, Array, tuple[int, int]]:
         """Rows, columns and values of the entries, and the size: what every sparse library takes."""
-        if self._raw.array(f"{name}.value") is None:
-            raise UnknownName(unknown(name, [n for n in self.names if n != name], "matrix"))
+        if name not in self.names:
+            raise UnknownName(unknown(name, self.names, "matrix"))
         rows, columns = (self.array(f"{name}.{word}").astype(int) for word in ("row", "column"))
         size = self.array(f"{name}.size")
         return rows, columns, self.array(f"{name}.value"), (int(size[0]), int(size[1]))
@@ -526,5 +608,9 @@ class Matrices(Result):
         return [*object.__dir__(self), *self.names]
 
     def __repr__(self) -> str:
-        there = [name for name in self.names if self._raw.array(f"{name}.value") is not None]
-        return f"<strut.Matrices: {', '.join(there)}>"
+        return f"<strut.Matrices: {', '.join(self.names)}>"
+
+    def _repr_html_(self) -> str:
+        sizes = {name: self.coordinates(name) for name in self.names}
+        rows = ({"matrix": n, "size": at[3], "entries": len(at[2])} for n, at in sizes.items())
+        return _views.things(rows, len(sizes))
