@@ -72,7 +72,7 @@ class Sweeps(unittest.TestCase):
                 np.testing.assert_array_equal(column, [float(row[i] or "nan") for row in rows[1:]])
         self.assertEqual(table.shape, (2, 2, 3))
         self.assertEqual(table.grid("velocity").shape, (2, 2, 3))
-        self.assertEqual(table["start"][:4], ["I", "I", "I", "II"])
+        self.assertEqual(table["start"][:4], ("I", "I", "I", "II"))
         np.testing.assert_array_equal(table["frequency"][:3], [9, 10, 11.3])
         self.assertEqual(set(table.status), {"completed"})
         self.assertEqual(table.array("frequency", "velocity").shape, (12, 2))

@@ -2,14 +2,15 @@
 """Planar tensegrity structures and robots: multistable statics, contact dynamics, sweeps.
 
     import strut
-    crawler = strut.load("crawler.yaml", start="II")
+    crawler = strut.load(strut.models / "crawler/crawler.yaml", start="II")
     run = crawler.run(accuracy="0.5 %")
     run.velocity, run["position.n1.x"]
 
 Names are those of the scene's file and of the program's JSON, numbers are in SI units, texts may have units.
-docs/python.md has more.
+Results and scenes do not change. `models` is the folder of the models that come with strut.
 """
 
+from ._files import models
 from ._errors import (
     Error,
     FileError,
@@ -62,9 +63,10 @@ __all__ = [
     "Words",
     "load",
     "loads",
+    "models",
     "options",
 ]
 
-for _name in __all__:  # messages say strut.SceneError, whichever file it is in
+for _name in set(__all__) - {"models"}:  # messages say strut.SceneError, whichever file it is in
     globals()[_name].__module__ = "strut"
 del _name
