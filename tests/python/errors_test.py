@@ -59,7 +59,7 @@ class Errors(unittest.TestCase):
             with self.assertRaisesRegex(TypeError, "not byte"):
                 scene.sweep(frequency=value)
         with self.assertRaisesRegex(TypeError, "not None"):
-            strut.options(None)
+            _strut.options(None)
         with self.assertRaises(ValueError):
             scene.with_(frequency="1\0")
         with self.assertRaises(AttributeError):

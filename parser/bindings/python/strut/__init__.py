@@ -34,7 +34,7 @@ from ._results import (
 )
 from ._scene import Scene, load, loads
 from ._simulation import Simulation
-from ._strut import options, version as __version__
+from ._strut import version as __version__
 from ._sweep import Table
 from ._values import Named, Words
 
@@ -64,7 +64,6 @@ __all__ = [
     "load",
     "loads",
     "models",
-    "options",
 ]
 
 for _name in set(__all__) - {"models"}:  # messages say strut.SceneError, whichever file it is in

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from ._values import COMPONENTS, numpy
+from ._values import COMPONENTS, UnknownName, numpy, unknown
 
 if TYPE_CHECKING:
     from ._results import Equilibria, Modes, Path, Run
@@ -59,7 +59,10 @@ def _legend(ax: Any, count: int) -> None:
 
 def run(result: Run, name: str, ax: Any) -> Any:
     """A recorded array over time, a line for each thing; of several components the first."""
-    whole, channel = result[name], name.split(".")[0]
+    channel = name.split(".")[0]
+    if channel not in result.channels:
+        raise UnknownName(unknown(channel, result.channels, "recorded channel"))
+    whole = result[name]
     shape = numpy().shape(whole)
     names = getattr(whole, "names", (name,))
     values = numpy().asarray(whole)

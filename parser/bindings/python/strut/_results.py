@@ -60,6 +60,11 @@ class _Stored:
         except Exception:  # of results that are no model
             self._yaml = None
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        for array in self._arrays.values():
+            array.flags.writeable = False
+
     def status(self) -> str:
         return self._status
 
@@ -133,7 +138,7 @@ class Result(Frozen):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What may be wrong with the model or with these numbers."""
+        """Warnings about the model and about these numbers."""
         return tuple(map(in_python, self._raw.warnings()))
 
     @property
@@ -185,7 +190,10 @@ class Result(Frozen):
             found = self._raw.array(f"{self._list}.{name}")
             if found is not None:
                 return numpy().asarray(found)
-        raise AttributeError(unknown(name, self.summary, "word in this result"))
+            things = self.summary[self._list]
+            if things and name in things[0]:
+                return tuple(thing.get(name) for thing in things)
+        raise AttributeError(unknown(name, dir(self), "word in this result"))
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self.summary]
@@ -289,8 +297,13 @@ _MEMBER = _recorded("members")
 
 
 class Run(Result):
-    """A run. Attributes are words of its summary (run.velocity, run.energy.residual), items what was
-    recorded: run["position"]["n1"] (samples, 2), run["position.n1.y"], run["energy.kinetic"]."""
+    """A run.
+
+    Attributes are words of its summary: velocity [m/s], velocity_spread [m/s], status, method, step [s],
+    duration [s], energy.kinetic and others [J], steady.kind, contacts["n1"].duty, ... Items are what was recorded:
+    run["position"] (samples, nodes, 2), run["position"]["n1"] (samples, 2), run["position.n1.y"] (samples),
+    run["energy.kinetic"].
+    """
 
     _command = "run"
 
@@ -306,13 +319,13 @@ class Run(Result):
 
     @property
     def time(self) -> Array:
-        """The instants at which was recorded [s]."""
+        """The instants of the samples (samples) [s]."""
         found = self._raw.array("time")
         return numpy().asarray(found if found is not None else ())  # type: ignore[no-any-return]
 
     @cached_property
     def channels(self) -> tuple[str, ...]:
-        """What was recorded: "position", "force", ..."""
+        """The channels that were recorded: "position", "force", ..."""
         return (*dict.fromkeys(name.split(".")[0] for name in self.array_names if name != "time"),)
 
     def __getitem__(self, name: str) -> Any:
@@ -344,14 +357,14 @@ class Run(Result):
 
     @property
     def nodes(self) -> Words:
-        """Each node: x, y, vx, vy, ... over time as recorded, and the summary's `position` at the end."""
+        """The nodes by name: nodes["n1"].x, .y [m], .vx, .vy [m/s], ... (samples), and .position at the end [m]."""
         there = self.summary.get("nodes", {})
         names = self._of().names("nodes")
         return Words({n: _Trajectories(self, n, there.get(n, Words()), _NODE) for n in names})
 
     @property
     def members(self) -> Words:
-        """Each member: length and force over time as recorded."""
+        """The members by name: members["m8"].length [m] and .force [N], tension positive, (samples)."""
         names = self._of().names("members")
         return Words({n: _Trajectories(self, n, Words(), _MEMBER) for n in names})
 
@@ -360,7 +373,7 @@ class Run(Result):
         return self._raw.yaml()
 
     def to_pandas(self) -> Any:
-        """What was recorded as a table over time, with columns such as "position.n1.x"."""
+        """What was recorded as a pandas DataFrame over time, with columns such as "position.n1.x"."""
         import pandas  # type: ignore[import]
 
         columns = {}
@@ -396,18 +409,18 @@ class Run(Result):
 
 
 class Equilibrium(Words):
-    """One shape at rest, with the words of the JSON: energy, nodes, forces, verdict, ..."""
+    """An equilibrium: name, energy [J], nodes [m], forces [N] by member, outcome, verdict, eigenvalues, ..."""
 
     __slots__ = ("_scene",)
     _scene: Any
 
     def modes(self, *, count: int | None = None, wave: bool = False, stuck: bool = False) -> Modes:
-        """Vibration about it, as of Scene.modes."""
+        """Vibration modes about this equilibrium; the arguments are those of Scene.modes."""
         found: Modes = self._scene.modes(at=self["name"], count=count, wave=wave, stuck=stuck)
         return found
 
     def rigidity(self) -> Rigidity:
-        """Self-stress and mechanisms in it."""
+        """Self-stress and mechanisms of this equilibrium."""
         found: Rigidity = self._scene.rigidity(at=self["name"])
         return found
 
@@ -425,7 +438,10 @@ def _equilibrium(scene: Scene | None, words: dict[str, Any]) -> Equilibrium:
 
 
 class Equilibria(_List):
-    """Equilibria by number or name: found["II"].energy; found.energy is the array over all."""
+    """All equilibria, by number or name: found["II"].energy [J]; found.energy is the array over all (equilibria).
+
+    `barriers` are the energy barriers between them: barriers[0].height [J].
+    """
 
     _command = "equilibria"
     _list = "equilibria"
@@ -446,12 +462,12 @@ class Equilibria(_List):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names, in their order."""
+        """The names of the equilibria, in their order."""
         return tuple(there["name"] for there in self._things)
 
     @property
     def standing(self) -> tuple[Equilibrium, ...]:
-        """Those in which it comes to rest on the ground."""
+        """The equilibria in which the structure comes to rest on the ground."""
         return tuple(each for each in self if each["outcome"] == "stands")
 
     def html(self) -> str:
@@ -467,7 +483,10 @@ class Equilibria(_List):
 
 
 class Modes(_List):
-    """Modes by number, lowest first: modes[0].frequency; modes.frequency is the array over all [Hz]."""
+    """Vibration modes by number, lowest first: modes[0].frequency [Hz].
+
+    Over all modes: modes.frequency (modes), modes.damping_ratio (modes), modes.shape (modes, nodes, 2).
+    """
 
     _command = "modes"
     _list = "modes"
@@ -482,7 +501,11 @@ class Modes(_List):
 
 
 class Path(_List):
-    """Points of a path: path[3].factor; path.factor is the array over all."""
+    """The points of a path, in their order: path[3].factor, path[3].nodes [m].
+
+    Over all points: path.factor (points), or path.value where a parameter, an actuator or a displacement was
+    varied; path.array("points.nodes") (points, nodes, 2). `events` are limit points, bifurcations and others.
+    """
 
     _command = "path"
     _list = "points"
@@ -531,7 +554,7 @@ class Rigidity(Result):
 
 
 class Form(Result):
-    """A shape or a prestress that was found."""
+    """A shape or a prestress: nodes [m]; lengths, rest_lengths [m], forces [N], densities [N/m] by member."""
 
     _command = "form"
 
@@ -540,11 +563,11 @@ class Form(Result):
         return _plots.forces(self.scene(), self.array("nodes"), self.array("forces"), ax)
 
     def to_yaml(self) -> str:
-        """The new model."""
+        """The new model as a file."""
         return self._raw.yaml()
 
     def scene(self) -> Scene:
-        """The new model."""
+        """The new model as a scene."""
         from ._scene import loads
 
         return loads(self.to_yaml(), name="<form>")
@@ -562,7 +585,9 @@ _MATRICES = (
 
 
 class Matrices(Result):
-    """Matrices by name: mass, connectivity, equilibrium, stiffness_elastic, stiffness_geometric, damping
+    """Matrices by name, such as matrices.mass: sparse ones of scipy, dense ones where it is not installed.
+
+    There are mass, connectivity, equilibrium, stiffness_elastic, stiffness_geometric, damping
     and, where nodes touch the ground, stiffness_contact; `names` are those that there are."""
 
     _command = "matrices"
@@ -573,7 +598,7 @@ class Matrices(Result):
         return tuple(name for name in _MATRICES if self._raw.array(f"{name}.value") is not None)
 
     def coordinates(self, name: str) -> tuple[Array, Array, Array, tuple[int, int]]:
-        """Rows, columns and values of the entries, and the size: what every sparse library takes."""
+        """Row indices, column indices and values, (entries) each, and the size (rows, columns)."""
         if name not in self.names:
             raise UnknownName(unknown(name, self.names, "matrix"))
         rows, columns = (self.array(f"{name}.{word}").astype(int) for word in ("row", "column"))
@@ -581,7 +606,7 @@ class Matrices(Result):
         return rows, columns, self.array(f"{name}.value"), (int(size[0]), int(size[1]))
 
     def dense(self, name: str) -> Array:
-        """The matrix with its zeros."""
+        """The matrix as a dense array (rows, columns)."""
         rows, columns, values, size = self.coordinates(name)
         matrix = numpy().zeros(size)
         numpy().add.at(matrix, (rows, columns), values)

@@ -71,7 +71,7 @@ class Scene(Frozen):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is valid but implausible."""
+        """Warnings about values that are valid but implausible."""
         return tuple(map(in_python, self._raw.warnings()))
 
     def names(self, kind: str) -> tuple[str, ...]:
@@ -94,7 +94,7 @@ class Scene(Frozen):
         return numpy().asarray(found)  # type: ignore[no-any-return]
 
     def to_dict(self) -> dict[str, Any]:
-        """The scene with every value resolved, in SI units."""
+        """The scene as a dictionary with every value resolved, in SI units; a copy that may be changed."""
         return json.loads(self._raw.json())  # type: ignore[no-any-return]
 
     def to_yaml(self, *, parts: bool = False) -> str:

@@ -17,6 +17,8 @@ _INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes"}
 class Simulation(Frozen):
     """A run that is advanced from outside, by one thread at a time.
 
+    `advance(steps)` makes steps; the bits do not depend on how steps are divided into calls. `snapshot()`
+    returns all of the state, inputs too, and `restore(snapshot)` goes back to it.
     Arrays are live: they follow every advance; copy() what shall stay. They are the channels that a scene
     can record: position and velocity (nodes, 2), length and force (members), contact (contacts, 2), energy, ...
     Inputs are written at any time, and hold from the next advance on: rest (members) [m], actuators (in

@@ -116,7 +116,7 @@ class Table(Frozen):
 
     @property
     def csv(self) -> str:
-        """table.csv of the program."""
+        """The table as CSV, with units."""
         return self._raw.table()
 
     def __getitem__(self, column: str) -> Any:
@@ -131,7 +131,7 @@ class Table(Frozen):
 
     @property
     def status(self) -> tuple[str, ...]:
-        """Of each point what table.csv says: "completed", or why it failed."""
+        """The status of each point: "completed", or why it failed."""
         return tuple(_strut.status_text(code) for code in self._codes)
 
     @property
@@ -156,7 +156,7 @@ class Table(Frozen):
         return ({name: column[i] for name, column in columns.items()} for i in range(len(self)))
 
     def to_pandas(self) -> Any:
-        """The same as a DataFrame."""
+        """The table as a pandas DataFrame."""
         import pandas  # type: ignore[import]
 
         return pandas.DataFrame({name: self[name] for name in self.columns})

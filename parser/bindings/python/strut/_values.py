@@ -199,7 +199,7 @@ class Named(Frozen):
         self.array[key] = value
 
     def items(self) -> Iterator[tuple[str, Any]]:
-        """Names and their parts."""
+        """Pairs of a name and its part of the array."""
         return ((name, self._part(name)) for name in self.names)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Any:
@@ -218,7 +218,7 @@ class Named(Frozen):
         return getattr(self.array, name)
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *dir(self.array)]
+        return [*super().__dir__(), *(name for name in dir(self.array) if not name.startswith("__"))]
 
     def __repr__(self) -> str:
         shown = ", ".join(self.names[:4]) + (", ..." if len(self.names) > 4 else "")
