@@ -13,7 +13,7 @@ skip_without("numpy")
 import numpy as np  # noqa: E402
 
 import strut  # noqa: E402
-from strut import _errors, _strut  # noqa: E402
+from strut import _errors, _strut, _values  # noqa: E402
 
 CRAWLER = strut.load(MODELS / "crawler/crawler.yaml")
 FRAME = strut.load(MODELS / "gallery/x-frame.yaml")
@@ -112,8 +112,7 @@ class Arguments(unittest.TestCase):
     def test_arguments_are_the_librarys_options(self):
         for command in ("run", "equilibria", "modes", "rigidity", "form", "path", "matrices", "sweep"):
             given = inspect.signature(getattr(strut.Scene, command)).parameters
-            spelled = {"given": "from", "from_": "from"}
-            names = {spelled.get(name, name.replace("_", "-")) for name in given}
+            names = {_values._SPELLED.get(name, name.replace("_", "-")) for name in given}
             there = {name.replace("_", "-") for name, _ in _strut.options(command)}
             extra = {"self", "progress", "axes", "points", "names", "keep", "parameters"}
             self.assertEqual(there, names - extra, command)

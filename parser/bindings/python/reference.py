@@ -16,7 +16,7 @@ HEAD = """# Python reference
 
 <!-- Written by parser/bindings/python/reference.py; do not edit. -->
 [strut from Python](python.md) shows by example how these are used. Numbers are in SI units. `Value` is a number or a
-text with a unit, such as `"10 Hz"`; arrays are numpy's, behind each its shape.
+text with a unit, such as `"10 Hz"`. Arrays are numpy arrays; their shapes are in parentheses, as in (samples, nodes, 2).
 """
 
 
@@ -77,7 +77,7 @@ def main() -> None:
         bases = [base.__name__ for base in kind.__bases__ if base in kinds]
         print(f"## {kind.__name__}\n")
         if bases:
-            print(f"Has all that {' and '.join(f'[{b}](#{b.lower()})' for b in bases)} has.\n")
+            print(f"Inherits from {' and '.join(f'[{b}](#{b.lower()})' for b in bases)}.\n")
         print(f"{inspect.getdoc(kind)}\n")
         fields = {n: a for n, a in vars(kind).get("__annotations__", {}).items() if not n.startswith("_")}
         if fields:

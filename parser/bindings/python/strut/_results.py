@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Iterator, Protocol, Sequence
 
 from . import _plots, _strut, _views
-from ._errors import in_python
+from ._errors import Error, in_python
 from ._values import COMPONENTS, Frozen, Named, UnknownName, Value, Words
 from ._values import fixed, from_words, numpy, options, unknown, words
 
@@ -208,7 +208,7 @@ class Result(Frozen):
     def _repr_html_(self) -> str:
         try:
             figure = self._figure()
-        except ValueError:  # nothing recorded, out of a pickle, or without a figure
+        except (ValueError, Error):  # nothing recorded, out of a pickle, or without a figure
             figure = ""
         return figure + _views.summary(self.summary)
 

@@ -27,15 +27,17 @@ Progress = Callable[[float], object]
 Bars = Literal["elastic", "rigid"]
 MassModel = Literal["consistent", "lumped"]
 
-_LABELS = ("name", "description", "source", "parameters")  #: what has no effect, or had it
+#: keys that do not act by themselves: texts, and parameters, whose values are in the numbers of the scene
+_LABELS = ("name", "description", "source", "parameters")
 
 
 class Scene(Frozen):
     """A structure with its experiment, as a file describes it. It never changes: `with_` makes another.
 
     Attributes are the words of the file in SI units (scene.members["m8"].stiffness); items are single values
-    by dotted name (scene["run.duration"]), None where the file says nothing. Two scenes are equal where
-    everything that has an effect is, however it was written: with parts, expressions, units or without.
+    by dotted name (scene["run.duration"]), None for keys that the file does not have. Two scenes are equal if they
+    describe the same structure and experiment, whether or not with parts, expressions or units; their names,
+    descriptions and parameters may differ.
     """
 
     _raw: _strut.Scene
@@ -198,14 +200,14 @@ class Scene(Frozen):
     ) -> Run:
         """Simulates it: run(accuracy="0.5 %"), or run(integrator="rk4-events", step="50 us").
 
-        With `accuracy` method and step are chosen for this relative error of the velocity, with work of up to
-        `budget` runs of a fine fixed step (20). Else `integrator` and `step` [s] are those of the scene unless
-        they are given; `tolerance` is that of the method "adaptive"; `force` allows a step above the stability
-        limit. `steady` ends the run where the motion repeats within this relative tolerance.
-        `bars`, `mass_model`, `friction_law` and `damping_law` replace those of the scene.
-        `channels` are recorded instead of those of the scene; with `record=False` none are.
-        `progress(fraction)` is called now and then; what it raises ends the run. A run that fails
-        raises RunError, whose `result` is the run up to there; so has KeyboardInterrupt.
+        `accuracy` chooses method and step for this relative error of the velocity; `budget` limits its work, in
+        units of one run with a fine fixed step (default 20). Without it `integrator` and `step` [s] replace those
+        of the scene, `tolerance` is the error tolerance of the method "adaptive", and `force=True` allows a step
+        above the stability limit. `steady` ends the run once the motion repeats within this relative tolerance.
+        `bars`, `mass_model`, `friction_law` and `damping_law` replace those of the scene. `channels` are
+        recorded instead of those of the scene; `record=False` records nothing.
+        `progress(fraction)` is called a few times per second; an exception that it raises ends the run. A run that
+        fails raises RunError, whose `result` is the run until then; an interrupted run's KeyboardInterrupt has it, too.
         """
         return self._call(Run, locals())  # type: ignore[no-any-return]
 
@@ -217,10 +219,11 @@ class Scene(Frozen):
         seed: int | None = None,
         all: bool = False,
     ) -> Equilibria:
-        """All shapes in which it can rest, and the barriers between: equilibria()["II"].energy.
+        """Finds all equilibria and the energy barriers between them: equilibria()["II"].energy.
 
-        `supports` are contact nodes, which alone are held; `starts` the number of random starts of each search
-        and `seed` that of their random numbers. `all` lists every equilibrium in the table.
+        `supports` are the only contact nodes that are held (default: all choices of them). `starts` is the number
+        of random starts of each search, `seed` the seed of their random numbers. `all=True` lists every
+        equilibrium in the text `table`.
         """
         return self._call(Equilibria, locals())  # type: ignore[no-any-return]
 
@@ -232,15 +235,19 @@ class Scene(Frozen):
         wave: bool = False,
         stuck: bool = False,
     ) -> Modes:
-        """Natural frequencies [Hz] and mode shapes about an equilibrium.
+        """Computes natural frequencies [Hz] and mode shapes about an equilibrium.
 
-        `at` is its name, or "drawn"; that of the start if not given. The lowest `count` modes; `stuck`: closed
-        contacts stick. `wave`: waves of the structure repeated by its lattice instead.
+        `at` is the name of the equilibrium, or "drawn" (default: the equilibrium of the start). `count` is the
+        number of modes, lowest first. `stuck=True` treats closed contacts as stuck. `wave=True` computes waves of
+        the structure repeated by its lattice instead.
         """
         return self._call(Modes, locals())  # type: ignore[no-any-return]
 
     def rigidity(self, *, at: str | None = None) -> Rigidity:
-        """States of self-stress and mechanisms of a shape: "drawn", "start", or an equilibrium's name."""
+        """Finds the states of self-stress and the mechanisms of a shape.
+
+        `at` is "drawn" (default), "start", or the name of an equilibrium.
+        """
         return self._call(Rigidity, locals())  # type: ignore[no-any-return]
 
     def form(
@@ -251,11 +258,11 @@ class Scene(Frozen):
         least_density: Value | None = None,
         objective: Literal["largest", "sum", "squares"] | None = None,
     ) -> Form:
-        """An equilibrium shape or a prestress; `scene()` of what it returns is that model.
+        """Finds an equilibrium shape or a prestress; `form().scene()` is the model that has it.
 
-        `given` says what the shape is found from; by what the scene has if it is not given. Every cable has
-        at least the tension `least_tension` [N] and the force density `least_density` [N/m]. Of all
-        prestresses the one whose `objective` is least: largest force, sum, or sum of squares.
+        `given` names what is prescribed (default: what the scene prescribes). `least_tension` [N] and
+        `least_density` [N/m] are lower bounds on tension and force density of every cable. `objective` is what
+        the prestress minimises: the largest force, the sum of all, or the sum of their squares.
         """
         return self._call(Form, locals())  # type: ignore[no-any-return]
 
@@ -274,16 +281,20 @@ class Scene(Frozen):
     ) -> Path:
         """Follows an equilibrium past limit points: path(load="push"), or path(over="n3.y", until="-20 mm").
 
-        Loads are scaled by a factor, or `over` names what changes: a parameter, an actuator, or the
-        displacement NODE.x or NODE.y of a node; `from_` and `until` are its values at start and end [SI].
-        `stop`, such as "n1.x=10 mm", ends the path earlier. It starts at the equilibrium `at`; `friction="kept"`
-        lets contacts stick and slide; `branches` is how deep paths that leave at bifurcations are followed;
-        `steps` the most steps (400).
+        `load` names the loads that a factor scales (default: all constant ones); `over` names a parameter, an
+        actuator, or the displacement NODE.x or NODE.y of a node that varies instead. `from_` and `until` are the
+        start and end values, a factor or a value in SI units; `stop`, such as "n1.x=10 mm", ends the path earlier.
+        `at` is the equilibrium to start from. `friction="kept"` lets contacts stick and slide along the path.
+        `branches` is the depth to which paths that leave at bifurcations are followed; `steps` is the maximum
+        number of steps (default 400).
         """
         return self._call(Path, locals())  # type: ignore[no-any-return]
 
     def matrices(self, *, at: str | None = None) -> Matrices:
-        """Mass, stiffness, equilibrium matrix and others in a shape: "drawn", "start", or an equilibrium's name."""
+        """Computes mass, stiffness, damping and equilibrium matrices of a shape.
+
+        `at` is "drawn" (default), "start", or the name of an equilibrium.
+        """
         return self._call(Matrices, locals())  # type: ignore[no-any-return]
 
     def simulation(
@@ -298,7 +309,7 @@ class Scene(Frozen):
         damping_law: str | None = None,
         force: bool = False,
     ) -> Simulation:
-        """A run that is advanced from outside, with live arrays; arguments are those of `run`."""
+        """Opens a run that the caller advances, with live arrays; the arguments are those of `run`."""
         given = {name: value for name, value in locals().items() if name not in _NO_OPTIONS}
         return Simulation(self._raw.simulation(*options(given)), self)
 
@@ -332,14 +343,14 @@ class Scene(Frozen):
     ) -> Table:
         """Computes many points on all processors: sweep(frequency=[8, 9, 10], friction=[0.1, 0.5]).
 
-        Other keywords are parameters of the scene with their values, of which every combination is a point;
-        the last one changes fastest; those of the dictionary `axes` come first, then those that have the name
-        of an argument, such as `step`. Or `points` are rows, whose columns are the parameters `names`.
-        `compute` is "run", "equilibria", "modes", "rigidity", "path" or "form"; `keep` are columns as of a
-        study; `at` is the equilibrium and `lowest` the number of frequencies, energies and barriers. Points end
-        in failure after `limit_evaluations` or `limit_time` [s]. `threads` and `batch`, the points in lockstep
-        in each, are automatic. All others are arguments of `run`. A point that fails is a row with its
-        status and message.
+        `parameters` of the scene get lists of values, and every combination is a point; the last parameter changes
+        fastest. Those of the dictionary `axes` come first, then those with the name of an argument, such as
+        `step`. Alternatively `points` (points, parameters) are rows of values of the parameters `names`.
+        `compute` is "run" (default), "equilibria", "modes", "rigidity", "path" or "form"; `keep` names the columns,
+        as in a study. `at` is the equilibrium of modes, rigidity and path, and `lowest` the number of
+        frequencies, energies and barriers in a row. A point fails after `limit_evaluations` force evaluations or
+        `limit_time` [s]. `threads` is the number of threads, `batch` that of points in lockstep in each (default
+        automatic). The others are arguments of `run`. A failed point is a row with its status and message.
         """
         given = {name: value for name, value in locals().items() if name not in _NO_OPTIONS}
         own = self.names("parameters")

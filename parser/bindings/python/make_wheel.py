@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Builds the wheel: the package of a build tree with every shared library that it needs inside.
 
-    python3 wheel.py SOURCE BUILD VERSION LIBRARY
+    python3 make_wheel.py SOURCE BUILD VERSION LIBRARY
 
 SOURCE is the repository, BUILD the build tree, which gets strut-VERSION-*.whl, LIBRARY libstrut.so.0. Needs
 Debian's python3-build, python3-setuptools, python3-wheel, patchelf and binutils; nothing is downloaded.
