@@ -48,6 +48,8 @@ class Plots(unittest.TestCase):
         self.assertIn(" in ", run.plot("energy").get_ylabel())
         with self.assertRaisesRegex(KeyError, "no recorded channel 'velocity'"):
             run.plot("velocity")
+        with self.assertRaisesRegex(ValueError, "recorded nothing"):
+            CRAWLER.run(record=False).plot()
 
     def test_equilibria_and_their_barriers(self):
         found = CRAWLER.equilibria()

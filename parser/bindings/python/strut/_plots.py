@@ -57,8 +57,11 @@ def _legend(ax: Any, count: int) -> None:
         ax.legend()
 
 
-def run(result: Run, name: str, ax: Any) -> Any:
+def run(result: Run, name: str | None, ax: Any) -> Any:
     """A recorded array over time, a line for each thing; of several components the first."""
+    if not result.channels:
+        raise ValueError("the run has recorded nothing to plot")
+    name = name or result.channels[0]
     channel = name.split(".")[0]
     if channel not in result.channels:
         raise UnknownName(unknown(channel, result.channels, "recorded channel"))

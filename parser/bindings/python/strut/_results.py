@@ -390,11 +390,12 @@ class Run(Result):
         """A page for any browser, which plays the motion."""
         return self._raw.html()
 
-    def plot(self, name: str = "position", *, ax: Any = None) -> Any:
-        """Draws what was recorded over time by matplotlib, and returns the axes.
+    def plot(self, name: str | None = None, *, ax: Any = None) -> Any:
+        """Draws a recorded array over time by matplotlib, and returns the axes.
 
-        `name` is a channel, such as "force", with a line for each thing (of positions and other vectors the
-        first component), or an item such as "position.n1.y". `ax`: axes to draw into.
+        `name` is a channel, such as "force" (default: the first one recorded), with a line for each thing (of
+        positions and other vectors the first component), or one item, such as "position.n1.y". `ax` are the axes
+        to draw into (default: new ones).
         """
         return _plots.run(self, name, ax)
 
