@@ -20,11 +20,9 @@ def frame(page: str) -> str:
 
 
 def _cell(value: object) -> str:
-    if isinstance(value, float):
-        return f"{value:.6g}"
-    if isinstance(value, tuple):  # of names
-        value = ", ".join(map(str, value))
-    return html.escape(in_python(str(value)))
+    if isinstance(value, tuple):
+        return ", ".join(map(_cell, value))
+    return f"{value:.6g}" if isinstance(value, float) else html.escape(in_python(str(value)))
 
 
 def _is_short(value: object) -> bool:
