@@ -4,6 +4,7 @@
     python3 tests/python/wheel_test.py WHEEL_FOLDER
 """
 
+import importlib.util
 import os
 import pathlib
 import re
@@ -34,6 +35,10 @@ run = strut.load(strut.models / "basics/x-frame.yaml").run()
 run.plot("force").figure.savefig("figure.png")
 print(run["position"].shape, numpy.linalg.inv(numpy.eye(3)).sum())
 """
+if importlib.util.find_spec("ensurepip") is None:
+    print("not installed: python3-venv")
+    sys.exit(77)
+
 OUTSIDE = re.compile(r"ld-linux|lib(c|m|dl|rt|pthread|resolv|util|gcc_s)\.so|libstdc\+\+\.so")
 CLEAN = {"PATH": os.environ["PATH"], "HOME": "/nonexistent", "LANG": "C.UTF-8"}
 FOLDER = pathlib.Path(sys.argv[1])
