@@ -8,12 +8,13 @@ set -eu
 
 packages="gcc libc6-dev make cmake pkg-config
   libyaml-dev libgsl-dev libsuitesparse-dev libcjson-dev libhdf5-dev libarpack2-dev libglpk-dev
-  libnlopt-dev libpango1.0-dev zlib1g-dev fonts-dejavu-core libjs-dygraphs"
+  libnlopt-dev libpango1.0-dev zlib1g-dev fonts-dejavu-core libjs-dygraphs python3-dev"
 case ${1:-} in
   '') ;;
   tests) packages="$packages g++ clang clang-format libcmocka-dev locales jq
   python3 python3-selenium chromium chromium-driver python3-vtk9 ffmpeg poppler-utils slurm-wlm munge parallel
-  python3-dev python3-pandas python3-matplotlib python3-jsonschema python3-yaml patch" ;;
+  python3-pandas python3-matplotlib python3-jsonschema python3-yaml patch
+  python3-build python3-setuptools python3-wheel python3-venv patchelf mypy" ;;
   *) echo "usage: sh tests/install.sh [tests]" >&2; exit 1 ;;
 esac
 

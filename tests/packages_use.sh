@@ -90,7 +90,7 @@ if has python3-strut; then
   find /usr/lib/python3/dist-packages/strut -name '*.pyc' | grep -q . || fail "Python's files are not compiled"
   python3 -c "
 import strut
-print(strut.__version__, strut.load('$model').run())" >said
+print(strut.__version__, strut.load(strut.models / 'crawler/crawler.yaml').run())" >said
   grep -q '^0\.1' said || { cat said; fail "Python says something else"; }
 fi
 

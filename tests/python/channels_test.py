@@ -95,7 +95,7 @@ class Channels(unittest.TestCase):
 
     def test_it_may_be_asked_for(self) -> None:
         only = self.scene.run(channels=NAME)
-        self.assertEqual(only.channels, [NAME])
+        self.assertEqual(only.channels, (NAME,))
         self.assertEqual(np.asarray(only[NAME]).tolist(), self.array.tolist())
 
     def test_a_simulation_has_it(self) -> None:

@@ -74,7 +74,7 @@ class Pickles(unittest.TestCase):
         self.assertEqual((again.json, again.table, again.to_yaml()), (run.json, run.table, run.to_yaml()))
         for name in ("position", "energy", "position.n2.y", "energy.kinetic", "force.top"):
             np.testing.assert_array_equal(again[name], run[name], name)
-        self.assertIsNone(again._repr_html_())
+        self.assertTrue(again._repr_html_().startswith("<table>"))
         modes = scene.modes()
         again = pickle.loads(pickle.dumps(modes))
         np.testing.assert_array_equal(again.shape, modes.shape)
@@ -98,7 +98,7 @@ def round_of_everything() -> None:
     scene.to_dict()
     pickle.loads(pickle.dumps(scene))
     pickle.loads(pickle.dumps(run))
-    for wrong in (lambda: strut.loads("strut: 2"), lambda: scene.run(steps=3), lambda: run["a.b"]):
+    for wrong in (lambda: strut.loads("strut: 2"), lambda: scene.run(step="3 kg"), lambda: run["a.b"]):
         try:
             wrong()
         except (strut.Error, KeyError):

@@ -21,11 +21,19 @@ energy: float = scene.equilibria()["II"].energy
 sim = scene.simulation(step="0.1 ms")
 sim.rest["m8"] = sim.rest0["m8"] + 1e-3
 sim.advance(10)
+stress = scene.rigidity(at="drawn").self_stress["m8"] * 2.0
+run.plot("force", ax=None)
+shape: strut.Scene = scene.form(given="prestress", least_tension="1 N").scene()
+same: bool = scene == shape
+x = scene.nodes["n1"].position[0] + table.array("velocity")[0]
+text: str = scene.path(over="n1.x", until=1).svg(width="column") + str(strut.models / "a.yaml")
 """
 WRONG = """
 import strut
 strut.load(3).run()
 strut.load("a.yaml").simulation().advance("ten")
+strut.load("a.yaml").run(acuracy=1)
+strut.load("a.yaml").form(given="nothing")
 """
 
 if shutil.which("mypy") is None:
@@ -58,7 +66,7 @@ class Types(unittest.TestCase):
         self.assertEqual(self.check(str(program)), (0, ""))
         program.write_text(WRONG)
         code, printed = self.check(str(program))
-        self.assertEqual((code, printed.count("error:")), (1, 2), printed)
+        self.assertEqual((code, printed.count("error:")), (1, 4), printed)
 
 
 main()

@@ -7,11 +7,19 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "engine/output/hdf5_library.h"
 #include "engine/output/results.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/command/analyses.h"
 #include "parser/command/run_settings.h"
 #include "parser/read/read_scene.h"
+
+/* No call of the library reads or writes trajectory.h5. With this definition neither HDF5 nor the libraries for
+   network files that it needs are linked. */
+strut_status strut_hdf5_load(const strut_hdf5_library **library, strut_error *error) {
+  *library = NULL;
+  return strut_fail(error, STRUT_FILE_TROUBLE, "this library has no HDF5; use the program strut");
+}
 
 enum { MOST_MESSAGES = 50 }; /* that a report shows */
 

@@ -2,15 +2,25 @@
 """Planar tensegrity structures and robots: multistable statics, contact dynamics, sweeps.
 
     import strut
-    crawler = strut.load("crawler.yaml", start="II")
+    crawler = strut.load(strut.models / "crawler/crawler.yaml", start="II")
     run = crawler.run(accuracy="0.5 %")
     run.velocity, run["position.n1.x"]
 
 Names are those of the scene's file and of the program's JSON, numbers are in SI units, texts may have units.
-docs/python.md has more.
+Results and scenes do not change. `models` is the folder of the models that come with strut.
 """
 
-from ._errors import Error, FileError, MemoryError, Message, RunError, SceneError, UsageError
+from ._files import models
+from ._errors import (
+    Error,
+    FileError,
+    MemoryError,
+    Message,
+    MissingFileError,
+    RunError,
+    SceneError,
+    UsageError,
+)
 from ._results import (
     Equilibria,
     Equilibrium,
@@ -24,9 +34,9 @@ from ._results import (
 )
 from ._scene import Scene, load, loads
 from ._simulation import Simulation
-from ._strut import options, version as __version__
+from ._strut import version as __version__
 from ._sweep import Table
-from ._values import Named
+from ._values import Named, Words
 
 __all__ = [
     "Equilibria",
@@ -37,6 +47,7 @@ __all__ = [
     "Matrices",
     "MemoryError",
     "Message",
+    "MissingFileError",
     "Modes",
     "Named",
     "Path",
@@ -49,11 +60,12 @@ __all__ = [
     "Simulation",
     "Table",
     "UsageError",
+    "Words",
     "load",
     "loads",
-    "options",
+    "models",
 ]
 
-for _name in __all__:  # messages say strut.SceneError, whichever file it is in
+for _name in set(__all__) - {"models"}:  # messages say strut.SceneError, whichever file it is in
     globals()[_name].__module__ = "strut"
 del _name

@@ -4,9 +4,39 @@
 from __future__ import annotations
 
 import builtins
+import os
+import re
+from errno import ENOENT
 from typing import Any, NamedTuple
 
-__all__ = ["Error", "FileError", "MemoryError", "Message", "RunError", "SceneError", "UsageError"]
+__all__ = [
+    "Error",
+    "FileError",
+    "MemoryError",
+    "Message",
+    "MissingFileError",
+    "RunError",
+    "SceneError",
+    "UsageError",
+]
+
+_OPTION = re.compile(r"""--([a-z][a-z-]*)(?:[ =](\d[\d.]*[ ]?%|[A-Z]+\b|'[^']*'|"[^"]*"))?""")
+_SWITCHES = {"all", "force", "stuck", "wave"}
+
+
+def in_python(text: str) -> str:
+    """A message of the library with the program's options as Python's arguments: --force is force=True."""
+
+    def argument(found: re.Match[str]) -> str:
+        name, value = found[1].replace("-", "_"), found[2]
+        name = "from_" if name == "from" else name
+        if name in _SWITCHES:
+            return f"{name}=True" + (f" {value}" if value else "")
+        if value is None or value == "VALUE":
+            return name
+        return f"{name}={value!r}" if value.endswith("%") else f"{name}={value}"
+
+    return _OPTION.sub(argument, re.sub(r"--set (?=\S+=)", "", text))
 
 
 class Message(NamedTuple):
@@ -27,10 +57,11 @@ class Message(NamedTuple):
 
 
 class Error(Exception):
-    """What strut refused or could not do.
+    """The base of strut's exceptions.
 
-    `status` is a word such as "bad_scene" or "diverged", `message` one sentence, `report` what the
-    program prints, `messages` every located mistake, and `result` what a failed call computed before.
+    `status` is a word such as "bad_scene" or "diverged", `message` one sentence, `report` all of it with
+    the lines of the file that are wrong, `messages` every mistake with its place, and `result` what a call
+    that failed or was interrupted has computed until then.
     """
 
     status: str = ""
@@ -48,31 +79,37 @@ class SceneError(Error, ValueError):
 
     @property
     def file(self) -> str | None:
+        """The file of the first mistake."""
         return self.messages[0].file if self.messages else None
 
     @property
     def line(self) -> int | None:
+        """Its line, from 1."""
         return self.messages[0].line if self.messages else None
 
     @property
     def column(self) -> int | None:
+        """Its column, from 1."""
         return self.messages[0].column if self.messages else None
 
     @property
     def length(self) -> int | None:
+        """Characters that are wrong."""
         return self.messages[0].length if self.messages else None
 
     @property
     def hint(self) -> str | None:
+        """The word that was probably meant."""
         return self.messages[0].hint if self.messages else None
 
     @property
     def key(self) -> str | None:
+        """The key there, such as "nodes.n3.mass"."""
         return self.messages[0].key if self.messages else None
 
 
 class UsageError(Error, ValueError):
-    """An option that a call does not have, or a value that it cannot take."""
+    """An argument has a value that the call cannot take."""
 
 
 class RunError(Error, RuntimeError):
@@ -81,6 +118,10 @@ class RunError(Error, RuntimeError):
 
 class FileError(Error, OSError):
     """A file could not be read or written."""
+
+
+class MissingFileError(FileError, FileNotFoundError):
+    """A file does not exist."""
 
 
 class MemoryError(Error, builtins.MemoryError):
@@ -98,10 +139,15 @@ _CLASSES: dict[str, type[Error]] = {
 def make(status: str, message: str, report: str, messages: list[tuple[Any, ...]]) -> Error:
     """The exception for an error of the library."""
     located = tuple(Message(*entry) for entry in messages)
+    located = tuple(each._replace(text=in_python(each.text)) for each in located)
+    message = in_python(message)
     text = message if len(located) < 2 else "\n".join(["", *map(str, located)])
-    error = _CLASSES.get(status, RunError)(text)
+    kind = _CLASSES.get(status, RunError)
+    if kind is FileError and message.endswith(os.strerror(ENOENT)):
+        kind = MissingFileError
+    error = kind(text)
     error.status = status
     error.message = message
-    error.report = report
+    error.report = in_python(report)
     error.messages = located
     return error

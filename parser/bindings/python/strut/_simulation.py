@@ -6,18 +6,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Callable
 
 from . import _strut
-from ._values import Named, numpy, unknown
+from ._values import COMPONENTS, Frozen, Named, numpy, unknown
 
 if TYPE_CHECKING:
     from ._scene import Scene
 
-_CHANNELS = [name for name, *_ in _strut.channels()]
 _INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes"}
 
 
-class Simulation:
+class Simulation(Frozen):
     """A run that is advanced from outside, by one thread at a time.
 
+    `advance(steps)` makes steps; the bits do not depend on how steps are divided into calls. `snapshot()`
+    returns all of the state, inputs too, and `restore(snapshot)` goes back to it.
     Arrays are live: they follow every advance; copy() what shall stay. They are the channels that a scene
     can record: position and velocity (nodes, 2), length and force (members), contact (contacts, 2), energy, ...
     Inputs are written at any time, and hold from the next advance on: rest (members) [m], actuators (in
@@ -31,15 +32,20 @@ class Simulation:
     advance: Callable[[int], None]  #: advance(steps): bits do not depend on how steps are divided
     snapshot: Callable[[], _strut.Snapshot]  #: all of the state, inputs too
     restore: Callable[[_strut.Snapshot], None]  #: back to a snapshot; what follows has the same bits
+    _raw: _strut.Simulation
+    _scene: Scene
+    _rest0: bytes | None
 
     def __init__(self, raw: _strut.Simulation, scene: Scene) -> None:
-        self._raw = raw
-        self._scene = scene
-        self.advance = raw.advance
-        self.snapshot = raw.snapshot
-        self.restore = raw.restore
         rest = raw.input("rest")
-        self._rest0 = None if rest is None else bytes(memoryview(rest))
+        self.__dict__.update(
+            _raw=raw,
+            _scene=scene,
+            _rest0=None if rest is None else bytes(memoryview(rest)),
+            advance=raw.advance,
+            snapshot=raw.snapshot,
+            restore=raw.restore,
+        )
 
     @property
     def time(self) -> float:
@@ -58,7 +64,7 @@ class Simulation:
 
     def __getattr__(self, name: str) -> Named:
         # Only for arrays that were not read yet: they become attributes.
-        if name in _CHANNELS:
+        if name in COMPONENTS:
             array, kind = self._raw.array(name), name
         elif name in _INPUTS:
             array, kind = self._raw.input(name), _INPUTS[name]
@@ -66,13 +72,17 @@ class Simulation:
             kind = "members"
             array = None if self._rest0 is None else numpy().frombuffer(self._rest0)
         else:
-            raise AttributeError(unknown(name, [*_CHANNELS, *_INPUTS, "rest0", "advance"]))
+            raise AttributeError(unknown(name, [*COMPONENTS, *_INPUTS, "rest0", "advance"]))
         if array is None:
             raise AttributeError(f"this simulation has no {name}")
         array = numpy().asarray(array)
         live = Named(array, self._scene.names(kind))
         self.__dict__[name] = live
         return live
+
+    def __dir__(self) -> list[str]:
+        arrays = [*COMPONENTS, *_INPUTS, "rest0"]
+        return [*super().__dir__(), *(name for name in arrays if hasattr(self, name))]
 
     def __repr__(self) -> str:
         return f"<strut.Simulation of '{self._scene.name}' at {self.time:.6g} s>"

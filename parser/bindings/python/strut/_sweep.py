@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import itertools
 from array import array
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, NamedTuple, Sequence
 
-from . import _strut
+from . import _plots, _strut, _views
 from ._results import _Raw, _Stored
-from ._values import UnknownName, numpy, refuse_bytes, unknown
+from ._values import Frozen, UnknownName, numpy, refuse_bytes, unknown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -87,27 +88,35 @@ def _value(scene: Scene, name: str, value: Any, is_word: bool) -> Any:
     return float(value)
 
 
-class Table:
-    """A sweep's results: a row per point, columns by name. table["velocity"] is an array, a column of
-    words such as table["status"] a list; table.grid("velocity") has the shape of the axes."""
+class Table(Frozen):
+    """A sweep's results: a row per point, columns by name. table["velocity"] is an array [SI], a column of
+    words such as table["status"] a tuple; table.grid("velocity") has the shape of the axes."""
+
+    axes: tuple[str, ...]  #: names of the parameters
+    shape: tuple[int, ...]  #: lengths of the axes, or the number of points
+    _raw: _Raw
+    _count: int
 
     def __init__(self, raw: _Raw, work: Plan) -> None:
-        self._raw = raw
-        self.axes = work.names
-        self.shape = work.shape  #: lengths of the axes
-        self._count = work.rows
+        self.__dict__.update(_raw=raw, axes=work.names, shape=work.shape, _count=work.rows)
 
     @property
-    def columns(self) -> list[str]:
+    def columns(self) -> tuple[str, ...]:
         """Names of the columns: axes, what was kept, "status" and "message"."""
-        return [*self._raw.columns(), "status", "message"]
+        return (*self._raw.columns(), "status", "message")
+
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """Units of the columns of numbers."""
+        units = {name: self._raw.unit(name) for name in self._raw.columns()}
+        return {name: unit for name, unit in units.items() if unit is not None}
 
     def __len__(self) -> int:
         return self._count
 
     @property
     def csv(self) -> str:
-        """table.csv of the program."""
+        """The table as CSV, with units."""
         return self._raw.table()
 
     def __getitem__(self, column: str) -> Any:
@@ -118,12 +127,12 @@ class Table:
         found = self._raw.array(column)
         if found is not None:
             return numpy().asarray(found)
-        return self._raw.words(column, self._count)
+        return tuple(self._raw.words(column, self._count))
 
     @property
-    def status(self) -> list[str]:
-        """Of each point what table.csv says: "completed", or why it failed."""
-        return [_strut.status_text(code) for code in self._codes]
+    def status(self) -> tuple[str, ...]:
+        """The status of each point: "completed", or why it failed."""
+        return tuple(_strut.status_text(code) for code in self._codes)
 
     @property
     def _codes(self) -> list[int]:
@@ -147,7 +156,7 @@ class Table:
         return ({name: column[i] for name, column in columns.items()} for i in range(len(self)))
 
     def to_pandas(self) -> Any:
-        """The same as a DataFrame."""
+        """The table as a pandas DataFrame."""
         import pandas  # type: ignore[import]
 
         return pandas.DataFrame({name: self[name] for name in self.columns})
@@ -157,12 +166,19 @@ class Table:
         shown = f", {failed} failed" if failed else ""
         return f"<strut.Table: {len(self)} points{shown}; {', '.join(self.columns)}>"
 
-    def _repr_html_(self) -> str | None:
-        try:
-            return self.to_pandas()._repr_html_()  # type: ignore[no-any-return]
-        except ImportError:
-            return None
+    def plot(self, column: str | None = None, *, ax: Any = None) -> Any:
+        """Draws a column, the first that was kept if not given, by matplotlib; returns the axes.
+
+        Over one parameter it is a curve, over two a map.
+        """
+        return _plots.sweep(self, column, ax)
+
+    def _repr_html_(self) -> str:
+        return _views.things(self, len(self))
 
     def __getstate__(self) -> dict[str, Any]:
         raw = self._raw if isinstance(self._raw, _Stored) else _Stored(self._raw)
         return {**self.__dict__, "_raw": raw}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)

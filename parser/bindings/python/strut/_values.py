@@ -3,13 +3,19 @@
 
 from __future__ import annotations
 
+import json
 import operator
 import os
 from typing import TYPE_CHECKING, Any, Callable, Container, Iterable, Iterator, Mapping, Sequence
 
+from . import _strut
+
 if TYPE_CHECKING:
     import numpy as np
 
+#: the components of each channel: ("x", "y") of "position"
+COMPONENTS = {name: components for name, _, components, _ in _strut.channels()}
+Value = float | str  #: a number [SI], or a text with a unit
 Pairs = tuple[tuple[str, ...], tuple[str, ...]]
 
 
@@ -45,10 +51,14 @@ def settings(mapping: Mapping[str, object] | None, more: Mapping[str, object]) -
     return tuple(merged), tuple(text(value) for value in merged.values())
 
 
+#: arguments whose names the library spells in another way
+_SPELLED = {"from_": "from"}
+
+
 def options(given: Mapping[str, object], spelled: Container[str] = ()) -> Pairs:
-    """Options as names and texts: mass_model is the program's --mass-model; None is not given."""
+    """Arguments as the library's options: mass_model is mass-model, those that are None are not given."""
     there = {
-        name if name in spelled else name.replace("_", "-"): value
+        name if name in spelled else _SPELLED.get(name, name.replace("_", "-")): value
         for name, value in given.items()
         if value is not None
     }
@@ -64,14 +74,36 @@ def numpy() -> Any:
     return numpy
 
 
+def fixed(array: Any) -> Any:
+    """A copy that is read-only, as all arrays of results."""
+    copy = numpy().array(array)
+    copy.flags.writeable = False
+    return copy
+
+
 class UnknownName(KeyError):
     """A KeyError whose text is a sentence, shown without quotes."""
 
     __str__ = Exception.__str__
 
 
-class Words(dict[str, Any]):
-    """A mapping whose items are attributes, too: run.energy.residual."""
+class Frozen:
+    """An object whose attributes cannot be set."""
+
+    __slots__ = ()
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"{type(self).__name__} objects do not change: cannot set '{name}'")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"{type(self).__name__} objects do not change: cannot delete '{name}'")
+
+
+class Words(Frozen, dict[str, Any]):
+    """A dictionary that does not change, whose items are attributes, too: run.energy.residual.
+
+    `dict(words)` is a copy that can be changed. Lists within are tuples.
+    """
 
     __slots__ = ()
 
@@ -83,6 +115,28 @@ class Words(dict[str, Any]):
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (dict(self),)
+
+    def _refuse(self, *_: object, **__: object) -> Any:
+        raise TypeError(f"{type(self).__name__} objects do not change; dict(...) makes a copy that can")
+
+    __setitem__ = __delitem__ = clear = pop = popitem = setdefault = update = _refuse  # type: ignore
+    __ior__ = _refuse  # type: ignore[assignment]
+
+
+def words(text: str) -> Words:
+    """The object that a JSON text is, as Words; lists are tuples."""
+
+    def fixed(value: Any) -> Any:
+        return tuple(map(fixed, value)) if isinstance(value, list) else value
+
+    def each(item: dict[str, Any]) -> Words:
+        return Words({name: fixed(value) for name, value in item.items()})
+
+    found: Words = json.loads(text, object_hook=each)
+    return found
 
 
 def unknown(name: str, known: Iterable[str], what: str = "name") -> str:
@@ -97,7 +151,7 @@ def unknown(name: str, known: Iterable[str], what: str = "name") -> str:
     return f"no {what} '{name}'" + (f"; there are {listed}" if names else "")
 
 
-class Named:
+class Named(Frozen):
     """A numpy array one axis of which has names: force["m8"], force[0], force.max().
 
     Whatever numpy's arrays can do it can, too; `array` is the array itself.
@@ -107,13 +161,17 @@ class Named:
 
     array: np.ndarray[Any, Any]
     names: tuple[str, ...]
+    _axis: int
+    _index: dict[str, int]
+    _parts: dict[str, Any]
 
     def __init__(self, array: Any, names: Sequence[str], axis: int = 0) -> None:
-        self.array = array
-        self.names = tuple(names)
-        self._axis = axis
-        self._index = {name: i for i, name in enumerate(self.names)}
-        self._parts: dict[str, Any] = {}  # views, so that a name costs one look-up
+        own = object.__setattr__
+        own(self, "array", array)
+        own(self, "names", tuple(names))
+        own(self, "_axis", axis)
+        own(self, "_index", {name: i for i, name in enumerate(self.names)})
+        own(self, "_parts", {})  # views, so that a name costs one look-up
 
     def _part(self, name: str) -> Any:
         """The view behind a name."""
@@ -141,7 +199,7 @@ class Named:
         self.array[key] = value
 
     def items(self) -> Iterator[tuple[str, Any]]:
-        """Names and their parts."""
+        """Pairs of a name and its part of the array."""
         return ((name, self._part(name)) for name in self.names)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Any:
@@ -158,6 +216,9 @@ class Named:
         if name.startswith("__") or name in Named.__slots__:
             raise AttributeError(name)
         return getattr(self.array, name)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *(name for name in dir(self.array) if not name.startswith("__"))]
 
     def __repr__(self) -> str:
         shown = ", ".join(self.names[:4]) + (", ..." if len(self.names) > 4 else "")
@@ -228,4 +289,4 @@ def from_words(value: Any, path: Sequence[str]) -> Any:
         return None
     array = numpy().full(shape(nested), float("nan"))
     fill(array, nested)
-    return array
+    return fixed(array)

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figures by matplotlib, of the results' own data."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from ._values import COMPONENTS, UnknownName, numpy, unknown
+
+if TYPE_CHECKING:
+    from ._results import Equilibria, Modes, Path, Run
+    from ._scene import Scene
+    from ._sweep import Table
+
+_PREFIXES = "fpnµm kMGTP"
+_PLAIN = ("", "1", "%", "kg", "deg", "°")  #: units without prefix
+
+
+def axes(ax: Any) -> Any:
+    """The axes to draw into: new ones unless they are given."""
+    if ax is not None:
+        return ax
+    try:
+        from matplotlib import pyplot  # type: ignore[import]
+    except ImportError as error:
+        raise ImportError(
+            "plot() needs matplotlib (Debian: python3-matplotlib; else: pip install matplotlib)"
+        ) from error
+    return pyplot.subplots(layout="constrained")[1]
+
+
+class Scale:
+    """Numbers in a unit with the prefix that suits the largest of them, as in the program's figures."""
+
+    def __init__(self, values: Any, unit: str | None) -> None:
+        finite = numpy().abs(values)[numpy().isfinite(values)]
+        largest = float(finite.max()) if finite.size else 0.0
+        self.unit, self.factor = unit or "", 1.0
+        if self.unit not in _PLAIN and largest > 0:
+            group = math.floor(math.log10(largest) / 3 + 1e-12)
+            if -5 <= group <= 5:
+                self.factor = 1000.0**group
+                self.unit = _PREFIXES[group + 5].strip() + self.unit
+
+    def __call__(self, values: Any) -> Any:
+        return values / self.factor
+
+    def label(self, name: str) -> str:
+        """The label of an axis: "velocity in mm/s"."""
+        name = name.replace("_", " ")
+        return name if self.unit in ("", "1") else f"{name} in {self.unit}"
+
+
+def _legend(ax: Any, count: int) -> None:
+    if 1 < count <= 12:
+        ax.legend()
+
+
+def run(result: Run, name: str | None, ax: Any) -> Any:
+    """A recorded array over time, a line for each thing; of several components the first."""
+    if not result.channels:
+        raise ValueError("the run has recorded nothing to plot")
+    name = name or result.channels[0]
+    channel = name.split(".")[0]
+    if channel not in result.channels:
+        raise UnknownName(unknown(channel, result.channels, "recorded channel"))
+    whole = result[name]
+    shape = numpy().shape(whole)
+    names = getattr(whole, "names", (name,))
+    values = numpy().asarray(whole)
+    if len(shape) == 3 or (len(shape) == 2 and "." in name):  # components: the first is x, or normal
+        values = values[..., 0]
+        name += f" {COMPONENTS[channel][0]}"
+    time, scale = Scale(result.time, "s"), Scale(values, result.unit(channel))
+    ax = axes(ax)
+    lines = ax.plot(time(result.time), scale(values))
+    for line, label in zip(lines, names):
+        line.set_label(label)
+    ax.set_xlabel(time.label("time"))
+    ax.set_ylabel(scale.label(name))
+    _legend(ax, len(lines))
+    return ax
+
+
+def equilibria(result: Equilibria, ax: Any) -> Any:
+    """Energies of the equilibria that stand, above the lowest, and the barriers between them."""
+    standing = result.standing or list(result)
+    lowest = min((each.energy for each in standing), default=0.0)
+    above = {each.name: each.energy - lowest for each in standing}
+    place = {name: i for i, name in enumerate(above)}
+    barriers = [
+        (b["from"], b["to"], above[b["from"]] + b["height"])
+        for b in result.barriers
+        if b["from"] in above and b["to"] in above and b["height"] is not None
+    ]
+    scale = Scale(numpy().array([*above.values(), *(top for *_, top in barriers)]), "J")
+    ax = axes(ax)
+    for start, end, top in barriers:
+        x = place[start], (place[start] + place[end]) / 2, place[end]
+        heights = numpy().array([above[start], top, above[end]])
+        ax.plot(x, scale(heights), color="0.8", linewidth=0.8, zorder=1)
+    ax.scatter(place.values(), scale(numpy().array([*above.values()])), marker="_", s=400, zorder=2)
+    ax.set_xticks([*place.values()], [*place], rotation=45, ha="right")
+    ax.set_ylabel(scale.label("energy above the lowest"))
+    return ax
+
+
+def modes(result: Modes, ax: Any) -> Any:
+    """The natural frequency of each mode."""
+    frequency = result.array("modes.frequency")
+    scale = Scale(frequency, "Hz")
+    ax = axes(ax)
+    ax.stem(range(1, len(frequency) + 1), scale(frequency))
+    ax.set_xlabel("mode")
+    ax.set_ylabel(scale.label("frequency"))
+    return ax
+
+
+def path(result: Path, ax: Any) -> Any:
+    """The load's factor, or what is varied, over the coordinate that moves most; unstable parts dashed."""
+    varied = result.summary["over"]
+    word = "value" if varied else "factor"
+    nodes, steps = result.array("points.nodes"), result.array(f"points.{word}")
+    moves = nodes - nodes[0]
+    node, along = numpy().unravel_index(numpy().abs(moves).max(axis=0).argmax(), nodes.shape[1:])
+    name = [*result[0]["nodes"]][node]
+    x = Scale(moves[:, node, along], "m")
+    y = Scale(steps, result.summary["unit"])
+    stable = [point["stable"] for point in result]
+    turns = [i for i in range(1, len(stable)) if stable[i] != stable[i - 1]]
+    ax = axes(ax)
+    for first, last in zip([0, *turns], [*turns, len(stable) - 1]):
+        part = slice(first, last + 1)
+        line = "-" if stable[first] else "--"
+        ax.plot(x(moves[part, node, along]), y(steps[part]), line, color="C0")
+    for event in result.events:
+        moved = event["nodes"][name][along] - nodes[0, node, along]
+        ax.plot(x(moved), y(event[word]), "o", color="C1")
+    ax.set_xlabel(x.label(f"displacement of {name} along {'xy'[along]}"))
+    ax.set_ylabel(y.label(varied or "load factor"))
+    return ax
+
+
+def forces(scene: Scene, nodes: Any, force: Any, ax: Any) -> Any:
+    """The structure, with tension red and compression blue, as wide as the forces are large."""
+    largest = float(numpy().abs(force).max(initial=0.0)) or 1.0
+    ax = axes(ax)
+    for (a, b), value in zip(scene.array("members.nodes").astype(int), force):
+        colour = "0.6" if abs(value) < 1e-9 * largest else "tab:red" if value > 0 else "tab:blue"
+        ax.plot(*nodes[[a, b]].T, color=colour, linewidth=0.5 + 3 * abs(value) / largest)
+    ax.plot(*nodes.T, "o", color="0.2", markersize=3)
+    ax.set_aspect("equal")
+    ax.set_xlabel("x in m")
+    ax.set_ylabel("y in m")
+    return ax
+
+
+def sweep(table: Table, column: str | None, ax: Any) -> Any:
+    """A column over the parameter, or as a map over the two parameters, that vary."""
+    if column is None:
+        kept = [name for name in table.columns[len(table.axes) :] if name in table.units]
+        if not kept:
+            raise ValueError("the table has no column of numbers to plot")
+        column = kept[0]
+    over = [name for name, count in zip(table.axes, table.shape) if count > 1] or [*table.axes[:1]]
+    if len(over) not in (1, 2) or len(table.shape) < len(table.axes):
+        raise ValueError("plot() shows a column over one or two axes; choose the points that vary in these")
+    scales = [Scale(table[name], table.units.get(name)) for name in (*over, column)]
+    ax = axes(ax)
+    ax.set_xlabel(scales[0].label(over[0]))
+    if len(over) == 1:
+        ax.plot(scales[0](table[over[0]]), scales[1](table[column]), "o-", markersize=3)
+        ax.set_ylabel(scales[1].label(column))
+        return ax
+    x, y, z = (
+        scale(table.grid(name).squeeze()) for scale, name in zip(scales, (*over, column))
+    )
+    colours = ax.pcolormesh(x, y, z, shading="nearest")
+    ax.figure.colorbar(colours, ax=ax, label=scales[2].label(column))
+    ax.set_ylabel(scales[1].label(over[1]))
+    return ax
