@@ -13,7 +13,8 @@ case ${1:-} in
   '') ;;
   tests) packages="$packages g++ clang clang-format libcmocka-dev locales jq
   python3 python3-selenium chromium chromium-driver python3-vtk9 ffmpeg poppler-utils slurm-wlm munge parallel
-  python3-dev python3-pandas python3-matplotlib python3-jsonschema python3-yaml patch" ;;
+  python3-dev python3-pandas python3-matplotlib python3-jsonschema python3-yaml patch
+  python3-myst-parser furo weasyprint" ;;
   *) echo "usage: sh tests/install.sh [tests]" >&2; exit 1 ;;
 esac
 

@@ -8,6 +8,7 @@ import re
 import sys
 
 here = pathlib.Path(__file__).resolve().parent
+sys.dont_write_bytecode = True  # this folder is not for what is built
 sys.path.insert(0, str(here))
 from strut_theme import dark_variables  # noqa: E402
 
@@ -16,7 +17,8 @@ author = "the strut developers"
 copyright = "the strut developers, GPL version 3 or later"
 version = re.search(r"project\(strut VERSION ([0-9.]+)", (here.parents[1] / "CMakeLists.txt").read_text())[1]
 
-extensions = ["myst_parser", "strut_navigation", "strut_sources", "strut_figures", "strut_paper", "strut_theme"]
+extensions = ["myst_parser", "strut_navigation", "strut_sources", "strut_layout", "strut_paper", "strut_theme",
+              "strut_cheat_sheet"]
 exclude_patterns = ["site"]
 # Pages are plain Markdown, as GitHub shows it: nothing of MyST's own syntax, no quotes or dashes replaced.
 myst_heading_anchors = 6

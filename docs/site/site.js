@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The button for the theme, and the section in view in the table of contents.
+// The button for the theme, the section in view in the table of contents, and figures by themselves.
 "use strict";
 
 function nextTheme(theme) {
@@ -26,6 +26,12 @@ addEventListener("DOMContentLoaded", () => {
       document.body.dataset.theme = theme;
       localStorage.setItem("theme", theme);
     });
+  }
+  for (const image of document.querySelectorAll(".figures img")) { // a tap shows it in full size
+    const link = document.createElement("a");
+    link.href = image.src;
+    image.replaceWith(link);
+    link.append(image);
   }
   let asked = false;
   addEventListener("scroll", () => {

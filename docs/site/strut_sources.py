@@ -69,6 +69,7 @@ def show_markdown(app, path, page, asked):
                     raise ValueError(f"{path}: no file for the link {href}")
                 token.attrs["href"] = app.builder.get_relative_uri(page, target) + (anchor and "#" + anchor)
     html = parser.renderer.render(tokens, parser.options, {})
+    html = html.replace("<code>", '<code class="docutils literal">')
     return html.replace("<table>", '<div class="table-wrapper"><table class="docutils">').replace(
         "</table>", "</table></div>")
 
