@@ -35,5 +35,5 @@ html_copy_source = False
 html_show_sourcelink = False
 html_use_index = False
 html_theme_options = {"navigation_with_keys": True, "dark_css_variables": dark_variables()}
-pygments_style = "friendly"
-pygments_dark_style = "monokai"
+pygments_style = "strut_layout.LightStyle"
+pygments_dark_style = "github-dark"
