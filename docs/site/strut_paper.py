@@ -17,7 +17,8 @@ def entries(text):
 
 
 def authors(entry):
-    return [name.strip() for name in entry.get("author", entry.get("title", "")).split(" and ")]
+    """Of a work without authors, a program, its name."""
+    return [name.strip() for name in entry.get("author", entry["title"].partition(":")[0]).split(" and ")]
 
 
 def short(entry):
@@ -30,7 +31,8 @@ def short(entry):
 def full(entry):
     names = "; ".join("et al." if name == "others" else name for name in authors(entry))
     where = entry.get("journal") or entry.get("booktitle") or entry.get("publisher") or entry.get("howpublished", "")
-    parts = [f"{names} ({entry['year']})" if "year" in entry else names, entry.get("title", "")]
+    parts = [f"{names} ({entry['year']})" if "year" in entry else names,
+             entry["title"] if "author" in entry else ""]
     parts.append(" ".join(filter(None, [where and f"*{where}*", entry.get("volume"), entry.get("pages")])))
     parts.append(entry.get("note", ""))
     if "doi" in entry:
