@@ -108,7 +108,8 @@ install(FILES "${PROJECT_SOURCE_DIR}/LICENSE"
         DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT license)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${CMAKE_INSTALL_DOCDIR}"
         COMPONENT documentation
-        PATTERN "*.sh" EXCLUDE PATTERN "*.awk" EXCLUDE PATTERN "*.def" EXCLUDE)
+        PATTERN "*.sh" EXCLUDE PATTERN "*.awk" EXCLUDE PATTERN "*.def" EXCLUDE
+        PATTERN "site" EXCLUDE)
 set(strut_data_dir "${CMAKE_INSTALL_DATADIR}/strut")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/models" DESTINATION "${strut_data_dir}"
         COMPONENT documentation)

@@ -14,7 +14,8 @@ case ${1:-} in
   tests) packages="$packages g++ clang clang-format libcmocka-dev locales jq
   python3 python3-selenium chromium chromium-driver python3-vtk9 ffmpeg poppler-utils slurm-wlm munge parallel
   python3-pandas python3-matplotlib python3-jsonschema python3-yaml patch
-  python3-build python3-setuptools python3-wheel python3-venv patchelf mypy" ;;
+  python3-build python3-setuptools python3-wheel python3-venv patchelf mypy
+  python3-myst-parser furo weasyprint" ;;
   *) echo "usage: sh tests/install.sh [tests]" >&2; exit 1 ;;
 esac
 
