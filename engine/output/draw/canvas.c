@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
 #include "engine/output/draw/cairo_page.h"
@@ -17,7 +18,8 @@ struct strut_canvas {
   strut_cairo_page *page;
   strut_box box;
   strut_file file;  /* zero for pixels in memory */
-  strut_buffer svg; /* gathered; its surfaces are renumbered at the end */
+  strut_buffer svg;   /* gathered; its surfaces are renumbered at the end */
+  strut_buffer texts; /* of an SVG: where its texts are, which are drawn as outlines */
   bool is_svg;
 };
 
@@ -171,11 +173,43 @@ const unsigned char *strut_canvas_pixels(strut_canvas *c, size_t *stride) {
   return c->cairo->pixels(c->page, stride);
 }
 
+/* Notes a text and the box of its ink for the SVG's metadata, where programs find it. */
+static void note_text(strut_canvas *c, const strut_drawn_text *drawn) {
+  const strut_box *ink = &drawn->ink;
+  strut_buffer *out = &c->texts;
+  if (!c->is_svg || !isfinite(ink->x + ink->y)) return;
+  strut_c_locale locale = strut_c_locale_enter();
+  strut_buffer_add(out, "<t box=\"%.1f %.1f %.1f %.1f\"%s>", ink->x, ink->y, ink->width,
+                   ink->height, drawn->whole ? "" : " cut=\"\"");
+  strut_c_locale_leave(locale);
+  for (const char *text = drawn->text; *text; text++) {
+    unsigned char letter = (unsigned char)*text;
+    if (*text == '<' || *text == '&' || *text == '>')
+      strut_buffer_add(out, "&#%d;", (int)letter);
+    else
+      strut_buffer_add(out, "%c", letter < ' ' ? ' ' : *text);
+  }
+  strut_buffer_add(out, "</t>\n");
+}
+
+/* The gathered SVG with its metadata before the last tag. */
 static strut_status write_svg(strut_canvas *c) {
-  char *text = strut_buffer_take(&c->svg);
-  strut_status status = STRUT_NO_MEMORY;
-  if (text && renumber_surfaces(text)) status = write_bytes(c, text, strlen(text));
-  strut_release(text);
+  static const char last[] = "</svg>", space[] = "urn:strut:texts";
+  char *svg = strut_buffer_take(&c->svg), *end = NULL;
+  if (svg && renumber_surfaces(svg)) end = strstr(svg, last);
+  if (end) {
+    strut_buffer whole = {0};
+    strut_buffer_add(&whole, "%.*s", (int)(end - svg), svg);
+    if (c->texts.length)
+      strut_buffer_add(&whole, "<metadata><texts xmlns=\"%s\">\n%s</texts></metadata>\n", space,
+                       c->texts.text);
+    strut_buffer_add(&whole, "%s", end);
+    whole.failed = whole.failed || c->texts.failed;
+    strut_release(svg);
+    svg = strut_buffer_take(&whole);
+  }
+  strut_status status = end && svg ? write_bytes(c, svg, strlen(svg)) : STRUT_NO_MEMORY;
+  strut_release(svg);
   return status;
 }
 
@@ -199,6 +233,7 @@ void strut_canvas_free(strut_canvas *c) {
   /* What an abandoned page still writes goes into the file that is removed next. */
   c->cairo->free(c->page);
   strut_release(strut_buffer_take(&c->svg));
+  strut_release(strut_buffer_take(&c->texts));
   strut_file_abandon(&c->file);
   strut_release(c);
 }
@@ -253,7 +288,9 @@ void strut_text_size(strut_canvas *c, const char *text, strut_font font, double 
 }
 
 void strut_draw_text(strut_canvas *c, double x, double y, const char *text, strut_font font) {
-  c->cairo->text(c->page, (const double[2]){x, y}, text, font);
+  if (!text || !*text) return;
+  const strut_drawn_text drawn = c->cairo->text(c->page, (const double[2]){x, y}, text, font);
+  note_text(c, &drawn);
 }
 
 void strut_draw_arrow(strut_canvas *c, double x1, double y1, double x2, double y2, double head,

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every text of every figure in docs can be read: no two overlap, none leaves its page or is cut.
+
+SVGs say in their metadata where their texts are, which are drawn as outlines: a line
+<t box="X Y WIDTH HEIGHT">TEXT</t> for each, with the attribute cut where the page or a clip hides
+part of it. Units are points.
+
+usage: overlap_test.py STRUT [DIRECTORY]
+"""
+import glob
+import html
+import os
+import re
+import sys
+
+from testing import fail, finish
+
+HAIR = 0.3  # boxes may share so much [pt]
+TEXT = re.compile(r'<t box="(\S+) (\S+) (\S+) (\S+)"( cut="")?>(.*?)</t>')
+
+
+def read_texts(path):
+    """[(box, cut?, text)] of a figure."""
+    with open(path, encoding="utf-8") as file:
+        return [(tuple(map(float, found[:4])), bool(found[4]), html.unescape(found[5]))
+                for found in TEXT.findall(file.read())]
+
+
+def share(a, b):
+    """Width and height of what two boxes have in common; negative where they are apart."""
+    return [min(a[i] + a[i + 2], b[i] + b[i + 2]) - max(a[i], b[i]) for i in range(2)]
+
+
+def find_faults(path):
+    texts = read_texts(path)
+    if not texts:
+        return ["has no texts in its metadata"]
+    faults = []
+    for i, (box, cut, text) in enumerate(texts):
+        if cut:
+            faults.append(f"'{text}' leaves the page or its panel")
+        if text.endswith("\u2026"):
+            faults.append(f"'{text}' is shortened")
+        for other, _, name in texts[:i]:
+            if min(share(box, other)) > HAIR:
+                faults.append(f"'{name}' and '{text}' overlap")
+    return faults
+
+
+directory = sys.argv[2] if len(sys.argv) > 2 else "docs"
+count = 0
+for figure in sorted(glob.glob(os.path.join(directory, "**/*.svg"), recursive=True)):
+    count += 1
+    for fault in find_faults(figure):
+        fail(f"{figure}: {fault}")
+if count < 80:
+    fail(f"only {count} figures in {directory}")
+finish()
