@@ -85,11 +85,8 @@ static void write_number(char *text, size_t size, const char *format, int decima
 
 strut_rounded_quantity strut_drawn_quantity(double value, int digits, const char *unit) {
   strut_rounded_quantity plain = strut_quantity_of(value, digits, unit), drawn = {{0}};
-  const char *space = strchr(plain.text, ' ');
-  bool micro = space && space[1] == 'u' && strcmp(space + 2, unit) == 0;
-  snprintf(drawn.text, sizeof drawn.text, "%s%.*s%s%s", plain.text[0] == '-' ? "\xe2\x88\x92" : "",
-           space ? (int)(space - plain.text) - (plain.text[0] == '-') : STRUT_QUANTITY_TEXT,
-           plain.text + (plain.text[0] == '-'), micro ? " µ" : "", space ? space + 2 * micro : "");
+  snprintf(drawn.text, sizeof drawn.text, "%s%s", plain.text[0] == '-' ? "\xe2\x88\x92" : "",
+           plain.text + (plain.text[0] == '-'));
   return drawn;
 }
 
@@ -418,6 +415,18 @@ static void draw_strip(strut_canvas *canvas, strut_box strip, bool upright,
   strut_draw_box(canvas, strip, NULL, &(strut_pen){.colour = strut_grey(0.3), .width = 0.4});
 }
 
+/* Arrowheads at the ends of the strip beyond which there are values. */
+static void point_beyond(strut_canvas *canvas, strut_box strip, bool upright,
+                         const strut_beyond *beyond) {
+  double x = strip.x + 0.5 * strip.width, y = strip.y + 0.5 * strip.height;
+  const double low[2] = {upright ? x : strip.x - STRUT_BEYOND_SIZE,
+                         upright ? strip.y + strip.height + STRUT_BEYOND_SIZE : y};
+  const double high[2] = {upright ? x : strip.x + strip.width + STRUT_BEYOND_SIZE,
+                          upright ? strip.y - STRUT_BEYOND_SIZE : y};
+  if (beyond->below) strut_draw_beyond(canvas, low, upright ? STRUT_SIDE_BOTTOM : STRUT_SIDE_LEFT);
+  if (beyond->above) strut_draw_beyond(canvas, high, upright ? STRUT_SIDE_TOP : STRUT_SIDE_RIGHT);
+}
+
 void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale) {
   bool upright = box.height > box.width;
   const strut_axis axis = {
@@ -431,6 +440,12 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_co
   strut_box strip = upright ? (strut_box){box.x, box.y + line + 6, BAR, box.height - line - 10}
                             : (strut_box){box.x + 8, box.y + line + 2, box.width - 16, BAR};
   draw_strip(canvas, strip, upright, scale);
+  point_beyond(canvas, strip, upright, &scale->beyond);
+  if (scale->beyond.below + scale->beyond.above) {
+    size_t used = strlen(set.label);
+    snprintf(set.label + used, sizeof set.label - used, ", up to %s",
+             strut_drawn_quantity(scale->beyond.farthest, 3, scale->unit).text);
+  }
   for (size_t i = 0; i < set.count; i++) {
     double part = (set.at[i] - scale->low) / (scale->high - scale->low);
     strut_font own = font;

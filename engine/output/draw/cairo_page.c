@@ -7,6 +7,7 @@
 #include <cairo.h>
 #include <math.h>
 #include <pango/pangocairo.h>
+#include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/base/vec.h"
@@ -60,6 +61,29 @@ static PangoLayout *create_layout(cairo_t *cairo) {
   return layout;
 }
 
+/* Length of the unit's name at `text` where a prefix u stands for micro, 0 if it is another word. */
+static size_t measure_unit(const char *text) {
+  static const char *const units[] = {"s", "m", "N", "J", "W", "Hz", "rad", "Pa"};
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+    size_t length = strlen(units[i]);
+    if (strncmp(text, units[i], length) == 0 && !g_ascii_isalnum(text[length])) return length;
+  }
+  return 0;
+}
+
+/* The text with "50 us", as terminals and tables write it, as "50 µs". To be freed. */
+static gchar *write_micro(const gchar *text) {
+  GString *written = g_string_new(NULL);
+  for (const gchar *at = text; *at; at++) {
+    bool quantity = at >= text + 2 && at[-1] == ' ' && g_ascii_isdigit(at[-2]);
+    if (*at == 'u' && quantity && measure_unit(at + 1))
+      g_string_append(written, "\xc2\xb5");
+    else
+      g_string_append_c(written, *at);
+  }
+  return g_string_free(written, FALSE);
+}
+
 static void set_text(strut_cairo_page *c, const char *text, const strut_font *font) {
   PangoFontDescription *wanted = pango_font_description_new();
   pango_font_description_set_family_static(wanted, FAMILY);
@@ -75,13 +99,12 @@ static void set_text(strut_cairo_page *c, const char *text, const strut_font *fo
                                               : PANGO_ALIGN_LEFT;
   pango_layout_set_alignment(c->layout, side);
   pango_layout_set_wrap(c->layout, PANGO_WRAP_WORD_CHAR);
-  if (g_utf8_validate(text, -1, NULL)) {
-    pango_layout_set_text(c->layout, text, -1);
-  } else { /* which Pango would complain of on the standard error stream */
-    gchar *mended = g_utf8_make_valid(text, -1);
-    pango_layout_set_text(c->layout, mended, -1);
-    g_free(mended);
-  }
+  gchar *valid =
+      g_utf8_make_valid(text, -1); /* Pango complains of other texts on the error stream */
+  gchar *written = write_micro(valid);
+  pango_layout_set_text(c->layout, written, -1);
+  g_free(written);
+  g_free(valid);
 }
 
 /* The layout's size [pt]. */
