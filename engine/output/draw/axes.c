@@ -10,6 +10,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/output/draw/canvas.h"
+#include "engine/output/draw/legend.h"
 
 /* Round numbers on axes, and how they are written. */
 
@@ -164,6 +165,7 @@ void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set) {
 }
 
 static const double TICK_SIZE = 7.5, LABEL_SIZE = 8, TITLE_SIZE = 8.5, TICK = 2.5, GAP = 2.5;
+static const double RIGHT = 10;      /* half of the last tick's text */
 static const double LEAST_LEFT = 26; /* so that frames one above the other line up more often */
 
 /* Part of the values that is rounding; lengths [m] and velocities [m/s] far below an atom's
@@ -260,7 +262,7 @@ strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, s
   double below = TICK + GAP + line + label;
   double height = fmax(box.height - above - below, 10);
   double left = fmax(widest_tick(canvas, &y, height) + TICK + GAP, LEAST_LEFT) + label + GAP;
-  double right = 10; /* half of the last tick's text */
+  double right = RIGHT;
   if (second)
     right = fmax(widest_tick(canvas, second, height) + TICK + GAP, LEAST_LEFT) + label + GAP;
   return (strut_axes){
@@ -288,6 +290,17 @@ void strut_axes_point(const strut_axes *axes, double x, double y, double point[2
   point[1] = axes->frame.y + axes->frame.height * (1.0 - axis_fraction(&axes->y, y));
 }
 
+/* The label below the middle of the frame; a long one ends where the axes do, and is shortened if need be. */
+static void label_x(strut_canvas *canvas, const strut_box *f, double y, const char *label) {
+  const strut_font font = {.size = LABEL_SIZE, .across = 0.5};
+  double right = f->x + f->width + RIGHT, left = fmax(f->x - LEAST_LEFT - LABEL_SIZE, 0.0);
+  double width, height;
+  char fitted[STRUT_FITTED_TEXT];
+  label = strut_text_fit(canvas, label, font, right - left, 0.0, fitted);
+  strut_text_size(canvas, label, font, &width, &height);
+  strut_draw_text(canvas, fmin(f->x + 0.5 * f->width, right - 0.5 * width), y, label, font);
+}
+
 static void draw_x(strut_canvas *canvas, const strut_axes *axes, const strut_tick_set *set) {
   const strut_box *f = &axes->frame;
   const strut_pen grid = {.colour = strut_grey(0.9), .width = 0.4, .butt = true};
@@ -306,8 +319,7 @@ static void draw_x(strut_canvas *canvas, const strut_axes *axes, const strut_tic
   }
   double width, line;
   strut_text_size(canvas, "0", (strut_font){.size = TICK_SIZE}, &width, &line);
-  strut_draw_text(canvas, f->x + 0.5 * f->width, bottom + TICK + 1 + line, set->label,
-                  (strut_font){.size = LABEL_SIZE, .across = 0.5});
+  label_x(canvas, f, bottom + TICK + 1 + line, set->label);
 }
 
 static void draw_y(strut_canvas *canvas, const strut_axes *axes, const strut_tick_set *set) {

@@ -12,6 +12,7 @@
 static const double RINGS[] = {0, 2, 5, 9, 14, 20, 27, 35, 45, 57, 72, 90, 115, 145};
 static const double LED = 9.0;
 enum { DIRECTIONS = 24 };
+static const double WORST = 14.0; /* a place that costs more helps nobody: the label is left out */
 
 /* What a place costs: for each pt^2 of ink below the text and around it, for each pt of distance, for a
    line, for a turn away from the preferred direction, and beside something else that is named. */
@@ -155,7 +156,7 @@ static bool find_place(search *s) {
     for (int k = 0; k < DIRECTIONS; k++) /* by turns to both sides of the preferred direction */
       try_place(s, RINGS[r], k % 2 ? (k + 1) / 2 : (DIRECTIONS - k / 2) % DIRECTIONS);
   }
-  return s->cost < HUGE_VAL;
+  return s->cost < WORST;
 }
 
 /* The thin line from what is named to a label that is far from it. */

@@ -26,8 +26,8 @@ static double drawn_energy(const strut_equilibria *all, size_t i) { return all->
 
 static const double COLLAPSED = 1.0 / 3.0; /* most of the cards with forces beyond the scale */
 static const double ARROW = 20;            /* the longest force of the ground [pt] */
-static const double EDGE = 5, LINES = 23, MARGIN = 17, NARROW = 110, SCALE = 34, LADDER = 150;
-enum { MOST_CARDS = 12, MOST_SMALL = 6, NOTE = 200 };
+static const double EDGE = 5, NAME_LINE = 12, MARGIN = 17, NARROW = 110, SCALE = 34, LADDER = 150;
+enum { MOST_CARDS = 12, MOST_SMALL = 6, NOTE = 300 };
 
 /* The equilibria that are drawn, and the sizes of their cards. */
 typedef struct plan {
@@ -43,6 +43,10 @@ typedef struct plan {
   bool ladder;
   strut_heading heading;
   double head; /* its height [pt] */
+  double card_head, small_foot,
+      aside_line; /* heights of texts: above cards, below small ones, between [pt] */
+  char aside_text[NOTE];
+  strut_canvas *ruler; /* to measure texts before there is a page */
   strut_arena arena;
 } plan;
 
@@ -83,6 +87,56 @@ static bool choose_equilibria(plan *p) {
   by_energy(p->all, p->standing, p->standing_count);
   by_energy(p->all, p->aside, p->aside_count);
   return true;
+}
+
+/* Texts of cards, which wrap. */
+static strut_font card_font(const plan *p) {
+  return (strut_font){.size = 7.5, .colour = strut_grey(0.3), .width = p->cell[0] - 8};
+}
+
+static strut_font small_font(const plan *p) {
+  return (strut_font){.size = 6.5, .colour = strut_grey(0.35), .width = p->small_cell[0] - 6};
+}
+
+static strut_font aside_font(const plan *p) {
+  return (strut_font){.size = 8, .colour = strut_grey(0.3), .width = p->width - 2 * EDGE};
+}
+
+static void describe_card(const plan *p, size_t i, char text[NOTE]) {
+  snprintf(text, NOTE, "%s, %s",
+           strut_drawn_quantity(drop_rounding(p, drawn_energy(p->all, i)), 6, "J").text,
+           p->all->list[i].verdict);
+}
+
+static void describe_small_card(const plan *p, size_t i, char text[NOTE]) {
+  snprintf(text, NOTE, "%s: %s",
+           strut_drawn_quantity(drop_rounding(p, drawn_energy(p->all, i)), 5, "J").text,
+           p->all->list[i].verdict);
+}
+
+static double measure_height(const plan *p, const char *text, strut_font font) {
+  double width, height;
+  strut_text_size(p->ruler, text, font, &width, &height);
+  return height;
+}
+
+/* Heights of the texts around the cards, whose widths are known. */
+static void measure_texts(plan *p) {
+  char text[NOTE];
+  p->card_head = p->small_foot = 0;
+  for (size_t k = 0; k < p->cards; k++) {
+    describe_card(p, p->standing[k], text);
+    p->card_head = fmax(p->card_head, NAME_LINE + measure_height(p, text, card_font(p)) + 2);
+  }
+  for (size_t k = 0; k < p->small; k++) {
+    describe_small_card(p, p->aside[k], text);
+    p->small_foot = fmax(p->small_foot, measure_height(p, text, small_font(p)) + 2);
+  }
+  snprintf(p->aside_text, NOTE,
+           "Stable on static supports, but not at rest on the ground%s%.0zu%s:",
+           p->small < p->aside_count ? " (the lowest of " : "",
+           p->small < p->aside_count ? p->aside_count : 0, p->small < p->aside_count ? ")" : "");
+  p->aside_line = measure_height(p, p->aside_text, aside_font(p)) + 6;
 }
 
 static strut_bounds bounds_of(const plan *p, size_t i) {
@@ -127,16 +181,18 @@ static void lay_out_cards(plan *p) {
   p->cell[0] = inner / (double)p->columns;
   double aspect = p->size[0] > 0 ? p->size[1] / p->size[0] : 1;
   double wanted = (p->cell[0] - 2 * MARGIN) * aspect + 2 * MARGIN + 6;
-  p->cell[1] = LINES + fmax(46, fmin(wanted, 1.2 * p->cell[0]));
   p->small_cell[0] = inner / (double)p->small_columns;
-  p->small_cell[1] = 26 + fmax(36, fmin(p->small_cell[0] * aspect + 14, p->small_cell[0]));
+  measure_texts(p);
+  p->cell[1] = p->card_head + fmax(46, fmin(wanted, 1.2 * p->cell[0]));
+  p->small_cell[1] =
+      p->small_foot + fmax(36, fmin(p->small_cell[0] * aspect + 14, p->small_cell[0]));
   p->ladder = p->cards > 1 && strut_ladder_wanted(p->all, p->standing, p->cards);
 }
 
 static double figure_height(const plan *p) {
   double rows = ceil((double)p->cards / (double)p->columns);
   return 2 * EDGE + p->head + rows * p->cell[1] + (p->cards ? SCALE : 0) +
-         (p->ladder ? LADDER : 0) + (p->small ? p->small_cell[1] + 16 : 0);
+         (p->ladder ? LADDER : 0) + (p->small ? p->small_cell[1] + p->aside_line : 0);
 }
 
 /* Forces of the ground as (contacts, 2), zero where it is not touched; NULL: no memory. */
@@ -161,10 +217,9 @@ static strut_window window_for(const plan *p, size_t i, strut_box box, double ma
 
 static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
   const strut_equilibrium *e = &p->all->list[i];
-  char text[300], fitted[STRUT_FITTED_TEXT];
+  char text[NOTE], fitted[STRUT_FITTED_TEXT];
   strut_font name = {.size = 8.5, .bold = true};
-  strut_font note = {.size = 7.5, .colour = strut_grey(0.3)};
-  strut_box box = {cell.x, cell.y + LINES, cell.width, cell.height - LINES};
+  strut_box box = {cell.x, cell.y + p->card_head, cell.width, cell.height - p->card_head};
   strut_window window = window_for(p, i, box, MARGIN);
   double(*force)[2] = contact_forces(p, e);
   if (!force) return false;
@@ -174,11 +229,8 @@ static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
                                        .limit = p->force_limit};
   strut_draw_text(canvas, cell.x + 4, cell.y,
                   strut_text_fit(canvas, e->name, name, cell.width - 8, 0, fitted), name);
-  snprintf(text, sizeof text, "%s, %s",
-           strut_drawn_quantity(drop_rounding(p, drawn_energy(p->all, i)), 6, "J").text,
-           e->verdict);
-  strut_draw_text(canvas, cell.x + 4, cell.y + 11,
-                  strut_text_fit(canvas, text, note, cell.width - 8, 0, fitted), note);
+  describe_card(p, i, text);
+  strut_draw_text(canvas, cell.x + 4, cell.y + NAME_LINE - 1, text, card_font(p));
   strut_canvas_clip(canvas, cell);
   strut_draw_ground(canvas, &window, p->model);
   strut_draw_structure(canvas, &window, p->model, drawn_shape(p->all, i), &style);
@@ -190,21 +242,18 @@ static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
 }
 
 static void draw_small_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
-  const strut_equilibrium *e = &p->all->list[i];
-  char text[300], fitted[STRUT_FITTED_TEXT];
-  strut_font note = {.size = 6.5, .colour = strut_grey(0.35), .width = cell.width - 6};
+  char text[NOTE];
   strut_window window =
-      window_for(p, i, (strut_box){cell.x, cell.y, cell.width, cell.height - 26}, 6);
+      window_for(p, i, (strut_box){cell.x, cell.y, cell.width, cell.height - p->small_foot}, 6);
   const strut_structure_style style = {
       .colouring = STRUT_COLOUR_ONE, .colour = strut_grey(0.45), .thinness = 0.4, .no_nodes = true};
   strut_canvas_clip(canvas, cell);
   strut_draw_ground(canvas, &window, p->model);
   strut_draw_structure(canvas, &window, p->model, drawn_shape(p->all, i), &style);
-  snprintf(text, sizeof text, "%s: %s",
-           strut_drawn_quantity(drop_rounding(p, e->energy), 5, "J").text, e->verdict);
-  strut_draw_text(canvas, cell.x + 3, cell.y + cell.height - 25,
-                  strut_text_fit(canvas, text, note, cell.width - 6, 24, fitted), note);
   strut_canvas_unclip(canvas);
+  describe_small_card(p, i, text);
+  strut_draw_text(canvas, cell.x + 3, cell.y + cell.height - p->small_foot + 1, text,
+                  small_font(p));
 }
 
 static double draw_cards(plan *p, strut_canvas *canvas, double y, bool *good) {
@@ -216,7 +265,8 @@ static double draw_cards(plan *p, strut_canvas *canvas, double y, bool *good) {
   if (!p->cards) return y;
   y += ceil((double)p->cards / (double)p->columns) * p->cell[1];
   strut_window foot = window_for(
-      p, p->standing[0], (strut_box){EDGE, y + LINES, p->cell[0], p->cell[1] - LINES}, MARGIN);
+      p, p->standing[0], (strut_box){EDGE, y + p->card_head, p->cell[0], p->cell[1] - p->card_head},
+      MARGIN);
   foot.box.y = y + SCALE - 8 - foot.box.height;
   strut_draw_yardstick(canvas, &foot);
   double wide = fmin(170, 0.5 * (p->width - 2 * EDGE));
@@ -244,10 +294,7 @@ static strut_status describe_all(plan *p, char text[NOTE], strut_error *error) {
 }
 
 static strut_status draw_figure(plan *p, strut_canvas *canvas) {
-  char text[400], fitted[STRUT_FITTED_TEXT];
   bool good = true;
-
-  strut_font note = {.size = 8, .colour = strut_grey(0.3)};
   double inner = p->width - 2 * EDGE, y = EDGE + p->head;
 
   strut_heading_draw(canvas, &p->heading);
@@ -261,14 +308,11 @@ static strut_status draw_figure(plan *p, strut_canvas *canvas) {
     y += LADDER;
   }
   if (!p->small) return STRUT_OK;
-  snprintf(text, sizeof text, "Stable on static supports, but not at rest on the ground%s%.0zu%s:",
-           p->small < p->aside_count ? " (the lowest of " : "",
-           p->small < p->aside_count ? p->aside_count : 0, p->small < p->aside_count ? ")" : "");
-  strut_draw_text(canvas, EDGE, y + 2, strut_text_fit(canvas, text, note, inner, 0, fitted), note);
+  strut_draw_text(canvas, EDGE, y + 2, p->aside_text, aside_font(p));
   for (size_t k = 0; k < p->small; k++)
     draw_small_card(p, canvas, p->aside[k],
-                    (strut_box){EDGE + (double)k * p->small_cell[0], y + 16, p->small_cell[0],
-                                p->small_cell[1]});
+                    (strut_box){EDGE + (double)k * p->small_cell[0], y + p->aside_line,
+                                p->small_cell[0], p->small_cell[1]});
   return STRUT_OK;
 }
 
@@ -280,7 +324,9 @@ strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *
             .title = strut_plot_title(plot, model->scene->name)};
   strut_canvas *canvas = NULL;
   char note[NOTE];
-  strut_status status = choose_equilibria(&p) ? STRUT_OK : strut_no_memory(error, "while drawing");
+  strut_status status = strut_canvas_open_pixels(1, 1, 1.0, &p.ruler, error);
+  if (status == STRUT_OK && !choose_equilibria(&p))
+    status = strut_no_memory(error, "while drawing");
   if (status == STRUT_OK) {
     lay_out_cards(&p);
     status = describe_all(&p, note, error);
@@ -293,6 +339,7 @@ strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *
   }
   if (status == STRUT_OK) status = strut_canvas_commit(canvas, error);
   strut_canvas_free(canvas);
+  strut_canvas_free(p.ruler);
   strut_arena_free(&p.arena);
   return status;
 }

@@ -258,7 +258,7 @@ strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, st
   if (!(kind == STRUT_RUN_DRIVE ? fill_drive(run, first, &p) : fill_panel(run, kind, first, &p)))
     return STRUT_NO_MEMORY;
   if (kind == STRUT_RUN_DISPLACEMENT && p.count == 1) p.name = "x displacement";
-  if (!fit_labels(run, 0.4 * box.width, &p)) return STRUT_NO_MEMORY;
+  if (!fit_labels(run, 0.8 * box.width, &p)) return STRUT_NO_MEMORY;
   strut_series series[MOST_CURVES];
   for (size_t i = 0; i < p.count; i++)
     series[i] = (strut_series){.label = p.labels[i],
