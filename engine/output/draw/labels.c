@@ -139,7 +139,7 @@ static void try_place(search *s, double ring, int direction) {
   double y = l->at[1] - (gap + 0.5 * s->height) * sin(angle);
   const strut_box box = {x - 0.5 * s->width, y - 0.5 * s->height, s->width, s->height};
   int turn = direction <= DIRECTIONS / 2 ? direction : DIRECTIONS - direction;
-  bool led = ring >= LED && !l->loose;
+  bool led = ring >= LED;
   double cost = DISTANCE * ring + TURN * l->steady * turn + (led ? LINE : 0.0);
   if (cost >= s->cost || !is_free(s, &box)) return;
   cost += INK * strut_page_ink_sum(s->ink, box) +
@@ -149,7 +149,26 @@ static void try_place(search *s, double ring, int direction) {
   s->best = box;
 }
 
+/* For what names nothing at its place: wherever least is covered, the nearer the better. */
+static bool find_empty_place(search *s) {
+  static const double STEP = 4.0, FAR = 0.01; /* [pt], cost of each pt */
+  const strut_box *in = &s->inside;
+  s->cost = HUGE_VAL;
+  for (double y = in->y; y + s->height <= in->y + in->height; y += STEP)
+    for (double x = in->x; x + s->width <= in->x + in->width; x += STEP) {
+      const strut_box box = {x, y, s->width, s->height};
+      double point[2], cost = FAR * nearest_point(&box, s->label->at, point);
+      if (cost >= s->cost || !is_free(s, &box)) continue;
+      cost += INK * strut_page_ink_sum(s->ink, box);
+      if (cost >= s->cost - 1e-9) continue;
+      s->cost = cost;
+      s->best = box;
+    }
+  return s->cost < HUGE_VAL;
+}
+
 static bool find_place(search *s) {
+  if (s->label->loose) return find_empty_place(s);
   s->cost = HUGE_VAL;
   for (size_t r = 0; r < sizeof RINGS / sizeof *RINGS; r++) {
     if (DISTANCE * RINGS[r] >= s->cost) break;
@@ -205,23 +224,16 @@ static bool place_label(const strut_labels *labels, const strut_label *label, st
 /* ---- all labels ---- */
 
 /* Says how many labels found no place, where the page is emptiest. */
-static void note_omitted(const strut_labels *labels, strut_canvas *canvas,
-                         const strut_page_ink *ink, size_t count) {
+static void note_omitted(strut_labels *labels, strut_canvas *canvas, const strut_page_ink *ink,
+                         size_t count) {
   char text[60];
-  const strut_font font = {.size = 7, .colour = strut_grey(0.3), .halo = strut_grey(1)};
-  search s = {.labels = labels, .ink = ink, .cost = HUGE_VAL};
-  s.inside = widened(strut_canvas_box(canvas), -1.0);
   snprintf(text, sizeof text, "%zu label%s left out", count, count > 1 ? "s" : "");
-  strut_text_size(canvas, text, font, &s.width, &s.height);
-  for (double y = s.inside.height - s.height; y > 0.0; y -= 4.0)
-    for (double x = s.inside.x; x + s.width < s.inside.width; x += 4.0) {
-      const strut_box box = {x, y, s.width, s.height};
-      double cost = strut_page_ink_sum(ink, box);
-      if (!is_free(&s, &box) || cost >= s.cost) continue;
-      s.cost = cost;
-      s.best = box;
-    }
-  if (s.cost < HUGE_VAL) draw_at(canvas, &s.best, text, font);
+  const strut_box page = strut_canvas_box(canvas);
+  const strut_label note = {.text = text,
+                            .font = {.size = 7, .colour = strut_grey(0.3), .halo = strut_grey(1)},
+                            .at = {page.x, page.y + page.height},
+                            .loose = true};
+  place_label(labels, &note, canvas, ink);
 }
 
 void strut_labels_place(strut_labels *l, strut_canvas *canvas, const strut_page_ink *ink) {

@@ -10,6 +10,7 @@
 /* Values that take more than this part of a scale are left out of it, if they are few: of all values. */
 static const double MOST_OF_RANGE = 0.75, FEW = 0.05;
 static const double NOTE_WIDTH = 0.6; /* of the frame; longer notes wrap */
+static const double INSET = 3.0;      /* of notes from the frame [pt] */
 
 static int ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
@@ -91,6 +92,8 @@ void strut_draw_beyond(strut_canvas *canvas, const double at[2], strut_side side
 
 void strut_draw_axis_note(strut_canvas *canvas, const strut_axes *axes, const char *text) {
   const strut_box *f = &axes->frame;
+  const strut_box inside = {f->x + INSET, f->y + INSET, f->width - 2 * INSET,
+                            f->height - 2 * INSET};
   strut_draw_label(canvas, &(strut_label){.text = text,
                                           .font = {.size = 7,
                                                    .colour = strut_grey(0.3),
@@ -99,7 +102,7 @@ void strut_draw_axis_note(strut_canvas *canvas, const strut_axes *axes, const ch
                                           .at = {f->x + f->width, f->y},
                                           .gap = 2,
                                           .angle = 1.25 * STRUT_PI,
-                                          .inside = *f,
+                                          .inside = inside,
                                           .priority = 3,
                                           .loose = true});
 }
