@@ -174,8 +174,12 @@ static void draw_strip(const diagram *d) {
   const strut_fill grey = {.colour = strut_grey(0.94)};
   const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
   strut_draw_box(d->canvas, d->strip, &grey, &frame);
-  strut_draw_text(d->canvas, d->strip.x + d->strip.width - 3, d->strip.y + 0.5 * STRIP, "diverged",
-                  (strut_font){.size = 7, .across = 1, .down = 0.5, .colour = strut_grey(0.35)});
+  strut_draw_label(d->canvas,
+                   &(strut_label){.text = "diverged",
+                                  .font = {.size = 7, .colour = strut_grey(0.35)},
+                                  .at = {d->strip.x + d->strip.width, d->strip.y + 0.5 * STRIP},
+                                  .inside = {d->strip.x + 3, d->strip.y + 5, d->strip.width - 6, 9},
+                                  .loose = true});
 }
 
 static void draw_diagram(diagram *d, strut_box box) {
