@@ -11,7 +11,7 @@ from svg_paths import near, read
 
 from testing import check, finish, strut, work, write
 
-FIRST, DASHED = (0, 0x60 / 255, 0xA8 / 255), (0.05, 0.05, 0.05)
+FIRST, DASHED = (0, 0x60 / 255, 0xA8 / 255), (0.25, 0.25, 0.25)
 
 
 def sweep(text, code=0):

@@ -57,6 +57,61 @@ static size_t read_all(const char *path, char *bytes, size_t room) {
   return count;
 }
 
+/* A quantity's ASCII u is drawn as micro, that of a word is not. */
+TEST(micro) {
+  static const struct {
+    const char *written, *drawn;
+    bool same;
+  } cases[] = {{"50 us", "50 \xc2\xb5s", true},
+               {"1 um/s, 2 uN", "1 \xc2\xb5m/s, 2 \xc2\xb5N", true},
+               {"3 users", "3 \xc2\xb5sers", false},
+               {"us", "\xc2\xb5s", false}};
+  strut_canvas *c;
+  strut_error error = {0};
+  assert_int_equal(strut_canvas_open_pixels(1, 1, 1, &c, &error), STRUT_OK);
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    double one[2], two[2];
+    strut_text_size(c, cases[i].written, (strut_font){.size = 100}, &one[0], &one[1]);
+    strut_text_size(c, cases[i].drawn, (strut_font){.size = 100}, &two[0], &two[1]);
+    assert_true((fabs(one[0] - two[0]) < 1e-3) == cases[i].same);
+  }
+  strut_canvas_free(c);
+}
+
+/* Labels that crowd around one point are all drawn, none over another, else a note counts the rest. */
+TEST(labels) {
+  char path[200], bytes[100000] = "";
+  double box[40][4];
+  size_t count = 0;
+  strut_canvas *c;
+  strut_error error = {0};
+  path_of("labels", "svg", path);
+  assert_int_equal(strut_canvas_open(path, 200, 160, "", &c, &error), STRUT_OK);
+  for (int i = 0; i < 20; i++) {
+    char text[20];
+    snprintf(text, sizeof text, "label %d", i);
+    strut_draw_label(c, &(strut_label){.text = text, .at = {100, 80}, .gap = 3, .angle = 0.1 * i});
+  }
+  assert_int_equal(strut_canvas_commit(c, &error), STRUT_OK);
+  strut_canvas_free(c);
+  size_t length = read_all(path, bytes, sizeof bytes - 1);
+  bytes[length < sizeof bytes - 1 ? length : sizeof bytes - 1] = '\0';
+  for (char *at = strstr(bytes, "<t box"); at; at = strstr(at + 1, "<t box")) {
+    double *b = box[count++];
+    assert_int_equal(sscanf(at, "<t box=\"%lf %lf %lf %lf\">", &b[0], &b[1], &b[2], &b[3]), 4);
+  }
+  char *note = strstr(bytes, " labels left out");
+  while (note && note[-1] != '>') note--;
+  assert_int_equal(note ? (int)count - 1 + atoi(note) : (int)count, 20);
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < i; k++) {
+      double wide = fmin(box[i][0] + box[i][2], box[k][0] + box[k][2]) - fmax(box[i][0], box[k][0]);
+      double high = fmin(box[i][1] + box[i][3], box[k][1] + box[k][3]) - fmax(box[i][1], box[k][1]);
+      assert_true(wide < 0.2 || high < 0.2);
+    }
+  unlink(path);
+}
+
 TEST(same_bytes) {
   enum { ROOM = 1 << 20 };
   char *first = malloc(ROOM), *second = malloc(ROOM), a[200], b[200];

@@ -59,9 +59,10 @@ TEST(prefixes) {
     assert_string_equal(strut_prefix(cases[i].largest, cases[i].unit, &factor), cases[i].prefix);
     assert_true(fabs(factor / cases[i].factor - 1) < 1e-12);
   }
+  /* The canvas draws the u as the Greek letter. */
   assert_string_equal(strut_drawn_quantity(-3.2e-6, 2, "J").text,
                       "\xe2\x88\x92"
-                      "3.2 µJ");
+                      "3.2 uJ");
   assert_string_equal(strut_drawn_quantity(20e-3, 3, "m").text, "20 mm");
 }
 
@@ -70,6 +71,28 @@ static strut_tick_set ticks_of(const char *unit, bool logarithmic, double low, d
   const strut_axis axis = {"error", unit, logarithmic, low, high};
   strut_axis_ticks(&axis, 5, &set);
   return set;
+}
+
+/* One value far above all others is left out of a scale, several are not. */
+TEST(outliers) {
+  double values[40], heights[] = {167e3, 64, 71, 87}, two[] = {1, 100};
+  double low = 0, high = 100;
+  strut_beyond beyond;
+  char text[STRUT_BEYOND_TEXT];
+  for (int i = 0; i < 40; i++) values[i] = i == 20 ? 100 : i % 10;
+  strut_range_without_outliers(values, 40, &low, &high, &beyond);
+  assert_true(low == 0 && high == 9 && beyond.above == 1 && beyond.below == 0);
+  assert_string_equal(strut_beyond_text(&beyond, "point", "J", text),
+                      "1 point beyond the scale, up to 100 J");
+  for (int i = 0; i < 40; i++) values[i] = i % 4 ? i % 10 : 100;
+  low = 0, high = 100;
+  strut_range_without_outliers(values, 40, &low, &high, &beyond);
+  assert_true(low == 0 && high == 100 && beyond.above == 0);
+  assert_true(strut_limit_without_outliers(heights, 4, 68, 1.0 / 3, &beyond) == 87);
+  assert_true(beyond.above == 1 && beyond.farthest == 167e3);
+  assert_true(strut_limit_without_outliers(two, 2, 0, 1.0 / 3, &beyond) == 100);
+  assert_true(beyond.above == 0);
+  assert_string_equal(strut_beyond_text(&beyond, "point", "J", text), "");
 }
 
 TEST(tick_texts) {

@@ -10,6 +10,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/output/draw/canvas.h"
+#include "engine/output/draw/legend.h"
 
 /* Round numbers on axes, and how they are written. */
 
@@ -85,11 +86,8 @@ static void write_number(char *text, size_t size, const char *format, int decima
 
 strut_rounded_quantity strut_drawn_quantity(double value, int digits, const char *unit) {
   strut_rounded_quantity plain = strut_quantity_of(value, digits, unit), drawn = {{0}};
-  const char *space = strchr(plain.text, ' ');
-  bool micro = space && space[1] == 'u' && strcmp(space + 2, unit) == 0;
-  snprintf(drawn.text, sizeof drawn.text, "%s%.*s%s%s", plain.text[0] == '-' ? "\xe2\x88\x92" : "",
-           space ? (int)(space - plain.text) - (plain.text[0] == '-') : STRUT_QUANTITY_TEXT,
-           plain.text + (plain.text[0] == '-'), micro ? " µ" : "", space ? space + 2 * micro : "");
+  snprintf(drawn.text, sizeof drawn.text, "%s%s", plain.text[0] == '-' ? "\xe2\x88\x92" : "",
+           plain.text + (plain.text[0] == '-'));
   return drawn;
 }
 
@@ -167,6 +165,7 @@ void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set) {
 }
 
 static const double TICK_SIZE = 7.5, LABEL_SIZE = 8, TITLE_SIZE = 8.5, TICK = 2.5, GAP = 2.5;
+static const double RIGHT = 10;      /* half of the last tick's text */
 static const double LEAST_LEFT = 26; /* so that frames one above the other line up more often */
 
 /* Part of the values that is rounding; lengths [m] and velocities [m/s] far below an atom's
@@ -263,7 +262,7 @@ strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, s
   double below = TICK + GAP + line + label;
   double height = fmax(box.height - above - below, 10);
   double left = fmax(widest_tick(canvas, &y, height) + TICK + GAP, LEAST_LEFT) + label + GAP;
-  double right = 10; /* half of the last tick's text */
+  double right = RIGHT;
   if (second)
     right = fmax(widest_tick(canvas, second, height) + TICK + GAP, LEAST_LEFT) + label + GAP;
   return (strut_axes){
@@ -291,6 +290,17 @@ void strut_axes_point(const strut_axes *axes, double x, double y, double point[2
   point[1] = axes->frame.y + axes->frame.height * (1.0 - axis_fraction(&axes->y, y));
 }
 
+/* The label below the middle of the frame; a long one ends where the axes do, and is shortened if need be. */
+static void label_x(strut_canvas *canvas, const strut_box *f, double y, const char *label) {
+  const strut_font font = {.size = LABEL_SIZE, .across = 0.5};
+  double right = f->x + f->width + RIGHT, left = fmax(f->x - LEAST_LEFT - LABEL_SIZE, 0.0);
+  double width, height;
+  char fitted[STRUT_FITTED_TEXT];
+  label = strut_text_fit(canvas, label, font, right - left, 0.0, fitted);
+  strut_text_size(canvas, label, font, &width, &height);
+  strut_draw_text(canvas, fmin(f->x + 0.5 * f->width, right - 0.5 * width), y, label, font);
+}
+
 static void draw_x(strut_canvas *canvas, const strut_axes *axes, const strut_tick_set *set) {
   const strut_box *f = &axes->frame;
   const strut_pen grid = {.colour = strut_grey(0.9), .width = 0.4, .butt = true};
@@ -309,8 +319,7 @@ static void draw_x(strut_canvas *canvas, const strut_axes *axes, const strut_tic
   }
   double width, line;
   strut_text_size(canvas, "0", (strut_font){.size = TICK_SIZE}, &width, &line);
-  strut_draw_text(canvas, f->x + 0.5 * f->width, bottom + TICK + 1 + line, set->label,
-                  (strut_font){.size = LABEL_SIZE, .across = 0.5});
+  label_x(canvas, f, bottom + TICK + 1 + line, set->label);
 }
 
 static void draw_y(strut_canvas *canvas, const strut_axes *axes, const strut_tick_set *set) {
@@ -418,6 +427,18 @@ static void draw_strip(strut_canvas *canvas, strut_box strip, bool upright,
   strut_draw_box(canvas, strip, NULL, &(strut_pen){.colour = strut_grey(0.3), .width = 0.4});
 }
 
+/* Arrowheads at the ends of the strip beyond which there are values. */
+static void point_beyond(strut_canvas *canvas, strut_box strip, bool upright,
+                         const strut_beyond *beyond) {
+  double x = strip.x + 0.5 * strip.width, y = strip.y + 0.5 * strip.height;
+  const double low[2] = {upright ? x : strip.x - STRUT_BEYOND_SIZE,
+                         upright ? strip.y + strip.height + STRUT_BEYOND_SIZE : y};
+  const double high[2] = {upright ? x : strip.x + strip.width + STRUT_BEYOND_SIZE,
+                          upright ? strip.y - STRUT_BEYOND_SIZE : y};
+  if (beyond->below) strut_draw_beyond(canvas, low, upright ? STRUT_SIDE_BOTTOM : STRUT_SIDE_LEFT);
+  if (beyond->above) strut_draw_beyond(canvas, high, upright ? STRUT_SIDE_TOP : STRUT_SIDE_RIGHT);
+}
+
 void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale) {
   bool upright = box.height > box.width;
   const strut_axis axis = {
@@ -431,6 +452,12 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_co
   strut_box strip = upright ? (strut_box){box.x, box.y + line + 6, BAR, box.height - line - 10}
                             : (strut_box){box.x + 8, box.y + line + 2, box.width - 16, BAR};
   draw_strip(canvas, strip, upright, scale);
+  point_beyond(canvas, strip, upright, &scale->beyond);
+  if (scale->beyond.below + scale->beyond.above) {
+    size_t used = strlen(set.label);
+    snprintf(set.label + used, sizeof set.label - used, ", up to %s",
+             strut_drawn_quantity(scale->beyond.farthest, 3, scale->unit).text);
+  }
   for (size_t i = 0; i < set.count; i++) {
     double part = (set.at[i] - scale->low) / (scale->high - scale->low);
     strut_font own = font;

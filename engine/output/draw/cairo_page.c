@@ -7,6 +7,7 @@
 #include <cairo.h>
 #include <math.h>
 #include <pango/pangocairo.h>
+#include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/base/vec.h"
@@ -60,6 +61,29 @@ static PangoLayout *create_layout(cairo_t *cairo) {
   return layout;
 }
 
+/* Length of the unit's name at `text` where a prefix u stands for micro, 0 if it is another word. */
+static size_t measure_unit(const char *text) {
+  static const char *const units[] = {"s", "m", "N", "J", "W", "Hz", "rad", "Pa"};
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+    size_t length = strlen(units[i]);
+    if (strncmp(text, units[i], length) == 0 && !g_ascii_isalnum(text[length])) return length;
+  }
+  return 0;
+}
+
+/* The text with "50 us", as terminals and tables write it, as "50 µs". To be freed. */
+static gchar *write_micro(const gchar *text) {
+  GString *written = g_string_new(NULL);
+  for (const gchar *at = text; *at; at++) {
+    bool quantity = at >= text + 2 && at[-1] == ' ' && g_ascii_isdigit(at[-2]);
+    if (*at == 'u' && quantity && measure_unit(at + 1))
+      g_string_append(written, "\xc2\xb5");
+    else
+      g_string_append_c(written, *at);
+  }
+  return g_string_free(written, FALSE);
+}
+
 static void set_text(strut_cairo_page *c, const char *text, const strut_font *font) {
   PangoFontDescription *wanted = pango_font_description_new();
   pango_font_description_set_family_static(wanted, FAMILY);
@@ -75,13 +99,12 @@ static void set_text(strut_cairo_page *c, const char *text, const strut_font *fo
                                               : PANGO_ALIGN_LEFT;
   pango_layout_set_alignment(c->layout, side);
   pango_layout_set_wrap(c->layout, PANGO_WRAP_WORD_CHAR);
-  if (g_utf8_validate(text, -1, NULL)) {
-    pango_layout_set_text(c->layout, text, -1);
-  } else { /* which Pango would complain of on the standard error stream */
-    gchar *mended = g_utf8_make_valid(text, -1);
-    pango_layout_set_text(c->layout, mended, -1);
-    g_free(mended);
-  }
+  gchar *valid =
+      g_utf8_make_valid(text, -1); /* Pango complains of other texts on the error stream */
+  gchar *written = write_micro(valid);
+  pango_layout_set_text(c->layout, written, -1);
+  g_free(written);
+  g_free(valid);
 }
 
 /* The layout's size [pt]. */
@@ -98,18 +121,41 @@ static void find_text_size(strut_cairo_page *c, const char *text, strut_font fon
   measure_layout(c, width, height);
 }
 
-static void draw_text(strut_cairo_page *c, const double at[2], const char *text, strut_font font) {
+/* The box of the layout's ink on the page; `corner` is where the layout's own origin is, before turning. */
+static strut_box find_ink(PangoLayout *layout, const double at[2], const double corner[2],
+                          bool upwards) {
+  PangoRectangle ink;
+  pango_layout_get_extents(layout, &ink, NULL);
+  double x = corner[0] + (double)ink.x / PANGO_SCALE, y = corner[1] + (double)ink.y / PANGO_SCALE;
+  double width = (double)ink.width / PANGO_SCALE, height = (double)ink.height / PANGO_SCALE;
+  if (upwards) return (strut_box){at[0] + y, at[1] - x - width, height, width};
+  return (strut_box){at[0] + x, at[1] + y, width, height};
+}
+
+/* True if the box is on the page and inside the clip, but for a hair. */
+static bool is_unclipped(strut_cairo_page *c, strut_box box) {
+  const double hair = 0.3; /* [pt] */
+  double x1, y1, x2, y2;
+  cairo_clip_extents(c->cairo, &x1, &y1, &x2, &y2);
+  return box.x >= x1 - hair && box.y >= y1 - hair && box.x + box.width <= x2 + hair &&
+         box.y + box.height <= y2 + hair;
+}
+
+static strut_drawn_text draw_text(strut_cairo_page *c, const double at[2], const char *text,
+                                  strut_font font) {
   double width, height;
-  if (!text || !*text) return;
   set_text(c, text, &font);
   measure_layout(c, &width, &height);
   PangoRectangle logical;
   pango_layout_get_extents(c->layout, NULL, &logical);
+  const double corner[2] = {-font.across * width - (double)logical.x / PANGO_SCALE,
+                            -font.down * height};
+  const strut_box ink = find_ink(c->layout, at, corner, font.upwards);
+  const strut_drawn_text drawn = {pango_layout_get_text(c->layout), ink, is_unclipped(c, ink)};
   cairo_save(c->cairo);
   cairo_translate(c->cairo, clamp_coordinate(at[0]), clamp_coordinate(at[1]));
   if (font.upwards) cairo_rotate(c->cairo, -0.5 * STRUT_PI);
-  cairo_move_to(c->cairo, -font.across * width - (double)logical.x / PANGO_SCALE,
-                -font.down * height);
+  cairo_move_to(c->cairo, corner[0], corner[1]);
   if (font.halo.alpha > 0) {
     cairo_save(c->cairo);
     set_ink(c, font.halo);
@@ -118,13 +164,13 @@ static void draw_text(strut_cairo_page *c, const double at[2], const char *text,
     cairo_set_line_width(c->cairo, HALO);
     cairo_stroke(c->cairo);
     cairo_restore(c->cairo);
-    cairo_move_to(c->cairo, -font.across * width - (double)logical.x / PANGO_SCALE,
-                  -font.down * height);
+    cairo_move_to(c->cairo, corner[0], corner[1]);
   }
   set_ink(c, font.colour.alpha > 0 ? font.colour : (strut_colour){0, 0, 0, 1});
   pango_cairo_show_layout(c->cairo, c->layout);
   cairo_new_path(c->cairo);
   cairo_restore(c->cairo);
+  return drawn;
 }
 
 /* ---- pages ---- */

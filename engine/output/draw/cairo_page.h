@@ -29,6 +29,13 @@ typedef struct strut_page_request {
   strut_status (*write)(void *context, const void *bytes, size_t count);
 } strut_page_request;
 
+/** A text as it was drawn. */
+typedef struct strut_drawn_text {
+  const char *text; /* valid UTF-8; until the next text is drawn or measured */
+  strut_box ink;
+  bool whole; /* all of it is on the page and inside the clip */
+} strut_drawn_text;
+
 typedef struct strut_cairo_library {
   strut_library_stamp stamp;
   /** A page; its context must live as long. NULL: out of memory. */
@@ -52,7 +59,8 @@ typedef struct strut_cairo_library {
                   const strut_fill *fill, const strut_pen *pen);
   void (*circle)(strut_cairo_page *page, const double centre[2], double radius,
                  const strut_fill *fill, const strut_pen *pen);
-  void (*text)(strut_cairo_page *page, const double at[2], const char *text, strut_font font);
+  strut_drawn_text (*text)(strut_cairo_page *page, const double at[2], const char *text,
+                           strut_font font);
   void (*text_size)(strut_cairo_page *page, const char *text, strut_font font, double *width,
                     double *height);
 } strut_cairo_library;

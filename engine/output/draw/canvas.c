@@ -1,24 +1,36 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/draw/canvas.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
+#include "engine/base/vec.h"
 #include "engine/output/buffer.h"
 #include "engine/output/draw/cairo_page.h"
+#include "engine/output/draw/labels.h"
+#include "engine/output/draw/page_ink.h"
 #include "engine/output/file.h"
+
+enum { MOST_CLIPS = 8, CIRCLE = 12 };
 
 struct strut_canvas {
   const strut_cairo_library *cairo;
   strut_cairo_page *page;
   strut_box box;
-  strut_file file;  /* zero for pixels in memory */
-  strut_buffer svg; /* gathered; its surfaces are renumbered at the end */
+  strut_file file;    /* zero for pixels in memory */
+  strut_buffer svg;   /* gathered; its surfaces are renumbered at the end */
+  strut_buffer texts; /* of an SVG: where its texts are, which are drawn as outlines */
   bool is_svg;
+  strut_page_ink ink;
+  strut_labels labels;
+  strut_box clips[MOST_CLIPS + 1]; /* the page, and the boxes inside which is drawn */
+  size_t clip_count;
 };
 
 /* ---- numbers in SVG files ---- */
@@ -134,7 +146,9 @@ static strut_status open_canvas(strut_page_request *request, const char *path,
                       .is_svg = request->format == STRUT_PAGE_SVG};
   request->context = c;
   if (path) status = strut_file_open_path(&c->file, path, error);
-  if (status == STRUT_OK && !(c->page = cairo->open(request)))
+  c->clips[0] = c->box;
+  if (status == STRUT_OK && (!strut_page_ink_create(&c->ink, c->box.width, c->box.height) ||
+                             !(c->page = cairo->open(request))))
     status = strut_fail(error, STRUT_NO_MEMORY, "out of memory for a picture of %g by %g points",
                         c->box.width, c->box.height);
   if (status == STRUT_OK) {
@@ -168,20 +182,55 @@ strut_status strut_canvas_open_pixels(int width, int height, double scale, strut
 }
 
 const unsigned char *strut_canvas_pixels(strut_canvas *c, size_t *stride) {
+  strut_labels_place(&c->labels, c, &c->ink);
   return c->cairo->pixels(c->page, stride);
 }
 
+/* Notes a text and the box of its ink for the SVG's metadata, where programs find it. */
+static void note_text(strut_canvas *c, const strut_drawn_text *drawn) {
+  const strut_box *ink = &drawn->ink;
+  strut_buffer *out = &c->texts;
+  if (!c->is_svg || !isfinite(ink->x + ink->y)) return;
+  strut_c_locale locale = strut_c_locale_enter();
+  strut_buffer_add(out, "<t box=\"%.1f %.1f %.1f %.1f\"%s>", ink->x, ink->y, ink->width,
+                   ink->height, drawn->whole ? "" : " cut=\"\"");
+  strut_c_locale_leave(locale);
+  for (const char *text = drawn->text; *text; text++) {
+    unsigned char letter = (unsigned char)*text;
+    if (*text == '<' || *text == '&' || *text == '>')
+      strut_buffer_add(out, "&#%d;", (int)letter);
+    else
+      strut_buffer_add(out, "%c", letter < ' ' ? ' ' : *text);
+  }
+  strut_buffer_add(out, "</t>\n");
+}
+
+/* The gathered SVG with its metadata before the last tag. */
 static strut_status write_svg(strut_canvas *c) {
-  char *text = strut_buffer_take(&c->svg);
-  strut_status status = STRUT_NO_MEMORY;
-  if (text && renumber_surfaces(text)) status = write_bytes(c, text, strlen(text));
-  strut_release(text);
+  static const char last[] = "</svg>", space[] = "urn:strut:texts";
+  char *svg = strut_buffer_take(&c->svg), *end = NULL;
+  if (svg && renumber_surfaces(svg)) end = strstr(svg, last);
+  if (end) {
+    strut_buffer whole = {0};
+    strut_buffer_add(&whole, "%.*s", (int)(end - svg), svg);
+    if (c->texts.length)
+      strut_buffer_add(&whole, "<metadata><texts xmlns=\"%s\">\n%s</texts></metadata>\n", space,
+                       c->texts.text);
+    strut_buffer_add(&whole, "%s", end);
+    whole.failed = whole.failed || c->texts.failed;
+    strut_release(svg);
+    svg = strut_buffer_take(&whole);
+  }
+  strut_status status = end && svg ? write_bytes(c, svg, strlen(svg)) : STRUT_NO_MEMORY;
+  strut_release(svg);
   return status;
 }
 
 strut_status strut_canvas_commit(strut_canvas *c, strut_error *error) {
   const char *reason = NULL;
+  strut_labels_place(&c->labels, c, &c->ink);
   strut_status status = c->cairo->finish(c->page, &reason);
+  if (status == STRUT_OK && c->labels.failed) status = STRUT_NO_MEMORY;
   if (status == STRUT_OK && c->is_svg) status = write_svg(c);
   if (status == STRUT_OK) return strut_file_commit(&c->file, error);
   if (status == STRUT_NO_MEMORY)
@@ -199,6 +248,9 @@ void strut_canvas_free(strut_canvas *c) {
   /* What an abandoned page still writes goes into the file that is removed next. */
   c->cairo->free(c->page);
   strut_release(strut_buffer_take(&c->svg));
+  strut_release(strut_buffer_take(&c->texts));
+  strut_labels_free(&c->labels);
+  strut_page_ink_free(&c->ink);
   strut_file_abandon(&c->file);
   strut_release(c);
 }
@@ -211,15 +263,33 @@ strut_box strut_canvas_box(const strut_canvas *c) { return c->box; }
 
 void strut_canvas_clear(strut_canvas *c, strut_colour colour) { c->cairo->clear(c->page, colour); }
 
-void strut_canvas_clip(strut_canvas *c, strut_box box) { c->cairo->clip(c->page, box); }
+void strut_canvas_clip(strut_canvas *c, strut_box box) {
+  const strut_box *outer = &c->clips[c->clip_count];
+  assert(c->clip_count < MOST_CLIPS);
+  strut_box both = {fmax(outer->x, box.x), fmax(outer->y, box.y), 0, 0};
+  both.width = fmin(outer->x + outer->width, box.x + box.width) - both.x;
+  both.height = fmin(outer->y + outer->height, box.y + box.height) - both.y;
+  c->clips[++c->clip_count] = both;
+  c->cairo->clip(c->page, box);
+}
 
-void strut_canvas_unclip(strut_canvas *c) { c->cairo->unclip(c->page); }
+void strut_canvas_unclip(strut_canvas *c) {
+  assert(c->clip_count > 0);
+  c->clip_count--;
+  c->cairo->unclip(c->page);
+}
+
+static void blacken_line(strut_canvas *c, const double (*points)[2], size_t count, strut_pen pen) {
+  strut_page_ink_line(&c->ink, c->clips[c->clip_count], points, count, pen);
+}
 
 void strut_draw_line(strut_canvas *c, const double (*points)[2], size_t count, strut_pen pen) {
+  blacken_line(c, points, count, pen);
   c->cairo->line(c->page, points, count, pen);
 }
 
 void strut_draw_segments(strut_canvas *c, const double (*ends)[2], size_t count, strut_pen pen) {
+  for (size_t i = 0; i < count; i++) blacken_line(c, ends + 2 * i, 2, pen);
   c->cairo->segments(c->page, ends, count, pen);
 }
 
@@ -229,8 +299,19 @@ void strut_draw_segment(strut_canvas *c, double x1, double y1, double x2, double
   strut_draw_line(c, ends, 2, pen);
 }
 
+static void blacken_polygon(strut_canvas *c, const double (*points)[2], size_t count,
+                            const strut_fill *fill, const strut_pen *pen) {
+  if (fill) strut_page_ink_fill(&c->ink, c->clips[c->clip_count], points, count, fill);
+  if (!pen || !count) return;
+  const double closing[2][2] = {{points[count - 1][0], points[count - 1][1]},
+                                {points[0][0], points[0][1]}};
+  blacken_line(c, points, count, *pen);
+  blacken_line(c, closing, 2, *pen);
+}
+
 void strut_draw_polygon(strut_canvas *c, const double (*points)[2], size_t count,
                         const strut_fill *fill, const strut_pen *pen) {
+  blacken_polygon(c, points, count, fill, pen);
   c->cairo->polygon(c->page, points, count, fill, pen);
 }
 
@@ -244,6 +325,12 @@ void strut_draw_box(strut_canvas *c, strut_box box, const strut_fill *fill, cons
 
 void strut_draw_circle(strut_canvas *c, double x, double y, double radius, const strut_fill *fill,
                        const strut_pen *pen) {
+  double points[CIRCLE][2];
+  for (int i = 0; i < CIRCLE; i++) {
+    double angle = STRUT_TAU * i / CIRCLE;
+    points[i][0] = x + radius * cos(angle), points[i][1] = y + radius * sin(angle);
+  }
+  blacken_polygon(c, (const double(*)[2])points, CIRCLE, fill, pen);
   c->cairo->circle(c->page, (const double[2]){x, y}, radius, fill, pen);
 }
 
@@ -253,7 +340,14 @@ void strut_text_size(strut_canvas *c, const char *text, strut_font font, double 
 }
 
 void strut_draw_text(strut_canvas *c, double x, double y, const char *text, strut_font font) {
-  c->cairo->text(c->page, (const double[2]){x, y}, text, font);
+  if (!text || !*text) return;
+  const strut_drawn_text drawn = c->cairo->text(c->page, (const double[2]){x, y}, text, font);
+  strut_labels_avoid(&c->labels, drawn.ink);
+  note_text(c, &drawn);
+}
+
+void strut_draw_label(strut_canvas *c, const strut_label *label) {
+  strut_labels_add(&c->labels, label);
 }
 
 void strut_draw_arrow(strut_canvas *c, double x1, double y1, double x2, double y2, double head,

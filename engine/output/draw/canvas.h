@@ -106,12 +106,34 @@ STRUT_API void strut_draw_circle(strut_canvas *canvas, double x, double y, doubl
 /** An arrow from the first to the second point, its head as long as `head` [pt] or the arrow. */
 STRUT_API void strut_draw_arrow(strut_canvas *canvas, double x1, double y1, double x2, double y2,
                                 double head, strut_pen pen);
-/** A text at x, y. Any text is allowed: letters of any script, either direction, no markup. */
+/**
+ * A text at x, y. Any text is allowed: letters of any script, either direction, no markup. A quantity such
+ * as "50 us" is drawn with the Greek letter.
+ */
 STRUT_API void strut_draw_text(strut_canvas *canvas, double x, double y, const char *text,
                                strut_font font);
 /** Width and height of a text [pt], unrotated. */
 STRUT_API void strut_text_size(strut_canvas *canvas, const char *text, strut_font font,
                                double *width, double *height);
+
+/** A text beside what it names. */
+typedef struct strut_label {
+  const char *text;
+  strut_font font;  /* its across, down and upwards are not used */
+  double at[2];     /* what is named [pt] */
+  double gap;       /* from there to the text at least [pt] */
+  double angle;     /* preferred direction, counterclockwise from the right */
+  double steady;    /* how much that matters: 0 not at all, 1 usually */
+  strut_box inside; /* the text stays in here; zero: the page */
+  int priority;     /* higher ones are placed first */
+  bool loose;       /* names nothing at its place: no line leads there */
+} strut_label;
+/**
+ * Draws a label near its place when all else is drawn (by strut_canvas_commit or _pixels): where it covers
+ * no other text and least ink, with a thin line from what is named if that is far. Labels that find no
+ * place are left out, and a note on the page counts them.
+ */
+STRUT_API void strut_draw_label(strut_canvas *canvas, const strut_label *label);
 
 struct strut_file;
 /** The file that a picture is written to, for tests that make writing fail. */

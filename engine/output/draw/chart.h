@@ -73,9 +73,45 @@ STRUT_API size_t strut_ticks(double low, double high, int wanted, double ticks[S
 STRUT_API const char *strut_prefix(double largest, const char *unit, double *factor);
 
 /**
- * A quantity as drawings write it: as strut_quantity_of, with a real minus sign and Greek micro.
+ * A quantity as drawings write it: as strut_quantity_of, with a real minus sign.
  */
 STRUT_API strut_rounded_quantity strut_drawn_quantity(double value, int digits, const char *unit);
+
+/* Outliers: few values that would take most of a scale lie beyond it, marked, counted and told. */
+
+/** Values beyond a scale. Zero-initialised: none. */
+typedef struct strut_beyond {
+  size_t below, above; /* how many */
+  double farthest;     /* of them, by magnitude */
+} strut_beyond;
+/**
+ * The limit of a scale for (count) magnitudes, which are sorted, beside `other` that it has to hold: the
+ * largest is left out where it exceeds four times all smaller ones, and so on, up to `share` of them.
+ */
+STRUT_API double strut_limit_without_outliers(double *magnitudes, size_t count, double other,
+                                              double share, strut_beyond *beyond);
+/**
+ * Narrows *low and *high to the values, which are sorted, without a twentieth at most of them where those
+ * take more than three quarters of the range. Values that are not finite do not count.
+ */
+STRUT_API void strut_range_without_outliers(double *values, size_t count, double *low, double *high,
+                                            strut_beyond *beyond);
+enum { STRUT_BEYOND_TEXT = 120 };
+/** "3 points beyond the axis, up to 167 kJ" in `text`; "" where there are none. `what` is one of them. */
+STRUT_API const char *strut_beyond_text(const strut_beyond *beyond, const char *what,
+                                        const char *unit, char text[STRUT_BEYOND_TEXT]);
+/** A side of a frame. */
+typedef enum strut_side {
+  STRUT_SIDE_TOP,
+  STRUT_SIDE_BOTTOM,
+  STRUT_SIDE_LEFT,
+  STRUT_SIDE_RIGHT
+} strut_side;
+/** A mark at a frame's edge for what lies beyond that side: a triangle inside, STRUT_BEYOND_SIZE high. */
+STRUT_API void strut_draw_beyond(strut_canvas *canvas, const double at[2], strut_side side);
+#define STRUT_BEYOND_SIZE 5.0
+/** A note inside the frame, where it is emptiest near the top. "": none. */
+STRUT_API void strut_draw_axis_note(strut_canvas *canvas, const strut_axes *axes, const char *text);
 
 enum { STRUT_TICK_TEXT = 32, STRUT_MOST_MINOR = 120 };
 /** The ticks of a settled axis and their texts. */
@@ -94,6 +130,7 @@ typedef struct strut_colour_scale {
   const char *name, *unit;
   double low, high; /* [unit]; ticks are chosen */
   strut_colours colours;
+  strut_beyond beyond; /* values that have the colours of the ends */
 } strut_colour_scale;
 STRUT_API void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
                                        const strut_colour_scale *scale);
@@ -138,7 +175,8 @@ typedef struct strut_curves {
   size_t series_count, band_count;
   const strut_series *series;
   const strut_band *bands;
-  double cursor; /* a vertical line at this x; NAN: none */
+  double cursor;    /* a vertical line at this x; NAN: none */
+  bool mark_beyond; /* points above or below the y axes are marked at the edge, counted and told */
 } strut_curves;
 
 /**
@@ -160,6 +198,7 @@ typedef struct strut_map {
   const char *const *names;     /* (category_count) */
   const double *value;          /* (rows, columns) where category is NULL; NAN: no result */
   double value_low, value_high; /* of the scale of colours; equal: from the values */
+  strut_beyond beyond;          /* values beyond these */
   const char *value_name, *value_unit;
   strut_colours colours;
   const bool *doubtful; /* (rows, columns) drawn hatched; or NULL */

@@ -3,9 +3,11 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/vec.h"
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/legend.h"
 
@@ -119,6 +121,14 @@ static void draw_bands(const plotter *p) {
   }
 }
 
+/* True on the frame's edge, too. */
+static bool is_inside(const strut_box *frame, const double at[2]) {
+  const double hair = 0.01; /* [pt] */
+  return at[0] >= frame->x - hair && at[0] <= frame->x + frame->width + hair &&
+         at[1] >= frame->y - hair && at[1] <= frame->y + frame->height + hair;
+}
+
+/* Whole markers, on the frame too. */
 static void draw_markers(const plotter *p, size_t i) {
   const strut_series *s = &p->curves->series[i];
   const strut_axes axes = axes_of(p, s);
@@ -132,10 +142,12 @@ static void draw_markers(const plotter *p, size_t i) {
     double at[2];
     if (!isfinite(s->x[k]) || !isfinite(s->y[k])) continue;
     strut_axes_point(&axes, s->x[k], s->y[k], at);
+    if (!is_inside(&axes.frame, at)) continue;
     strut_draw_marker(p->canvas, look, at[0], at[1], s->count > 200 && all ? 1.0 : MARKER);
   }
 }
 
+/* Draws the line of a series, which the caller clips. */
 static void draw_series(const plotter *p, size_t i) {
   const strut_series *s = &p->curves->series[i];
   strut_pen pen = strut_series_pen(style_of(p->curves, i));
@@ -151,7 +163,51 @@ static void draw_series(const plotter *p, size_t i) {
     }
     start = end + 1;
   }
-  if (has_markers(p->curves, i)) draw_markers(p, i);
+}
+
+/* Excursions of a panel's curves beyond the y axis, and those whose values are told. */
+enum { MOST_TOLD = 6 };
+
+/* Marks and tells the farthest point k of an excursion of series i. */
+static void mark_point(const plotter *p, size_t i, size_t k, bool told) {
+  const strut_series *s = &p->curves->series[i];
+  const strut_axes axes = axes_of(p, s);
+  bool above = s->y[k] > axes.y.high;
+  double at[2];
+  strut_axes_point(&axes, s->x[k], above ? axes.y.high : axes.y.low, at);
+  strut_draw_beyond(p->canvas, at, above ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM);
+  if (told)
+    strut_draw_label(p->canvas,
+                     &(strut_label){.text = strut_drawn_quantity(s->y[k], 3, axes.y.unit).text,
+                                    .font = {.size = 7, .halo = strut_grey(1)},
+                                    .at = {at[0], at[1]},
+                                    .gap = STRUT_BEYOND_SIZE + 1,
+                                    .angle = (above ? -0.5 : 0.5) * STRUT_PI,
+                                    .steady = 0.2,
+                                    .inside = axes.frame});
+}
+
+/* Marks where curves leave the frame above or below, and says how many points are there. */
+static void mark_beyond(const plotter *p) {
+  strut_beyond beyond = {0};
+  const char *unit = p->axes.y.unit;
+  char text[STRUT_BEYOND_TEXT];
+  size_t told = 0;
+  for (size_t i = 0; i < p->curves->series_count; i++) {
+    const strut_series *s = &p->curves->series[i];
+    const strut_axes axes = axes_of(p, s);
+    size_t farthest = SIZE_MAX; /* of the excursion that k is in */
+    for (size_t k = 0; k <= s->count; k++) {
+      bool out = k < s->count && (s->y[k] > axes.y.high || s->y[k] < axes.y.low);
+      if (out && (farthest == SIZE_MAX || fabs(s->y[k]) > fabs(s->y[farthest]))) farthest = k;
+      if (!out && farthest != SIZE_MAX) mark_point(p, i, farthest, told++ < MOST_TOLD);
+      if (!out) farthest = SIZE_MAX;
+      if (!out) continue;
+      beyond.above++;
+      if (fabs(s->y[k]) > fabs(beyond.farthest)) beyond.farthest = s->y[k], unit = axes.y.unit;
+    }
+  }
+  strut_draw_axis_note(p->canvas, &p->axes, strut_beyond_text(&beyond, "point", unit, text));
 }
 
 /* Collects the rows of the legend; equal names get one row. */
@@ -245,6 +301,9 @@ static bool draw_all(plotter *p, strut_box box) {
                        (strut_pen){.colour = strut_grey(0.3), .width = 0.8, .dash = {3, 2}});
   }
   strut_canvas_unclip(p->canvas);
+  for (size_t i = 0; i < p->curves->series_count; i++)
+    if (has_markers(p->curves, i)) draw_markers(p, i);
+  if (p->curves->mark_beyond) mark_beyond(p);
   if (p->entry_count)
     strut_draw_legend(p->canvas, p->entries, p->entry_count, width, corner[0], corner[1], inside);
   return true;

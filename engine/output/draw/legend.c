@@ -20,6 +20,13 @@ static double text_width(strut_canvas *canvas, const char *text) {
   return width;
 }
 
+/* Height of a line. */
+static double text_height(strut_canvas *canvas) {
+  double width, height;
+  strut_text_size(canvas, "0", letters(), &width, &height);
+  return height;
+}
+
 /* Width of the sign left of the text. */
 static double sign_width(strut_canvas *canvas, const strut_key_item *item) {
   switch (item->sign) {
@@ -58,24 +65,26 @@ static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x
   }
 }
 
-/* Lays the items out, draws them if `draw`, and returns the height. */
+/* Lays the items out, draws them if `draw`, and returns the height. Texts wider than the key wrap. */
 static double lay_out_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
                           size_t count, bool draw) {
-  double x = 0.0, y = LINE / 2;
-  char fitted[STRUT_FITTED_TEXT];
+  double x = 0.0, y = 0.0, row = LINE;
   for (size_t i = 0; i < count; i++) {
-    double sign = sign_width(canvas, &items[i]);
-    double room = box.width - sign;
-    const char *text = strut_text_fit(canvas, items[i].text, letters(), room, 0.0, fitted);
-    double width = sign + text_width(canvas, text);
-    if (x > 0 && x + width > box.width) x = 0.0, y += LINE;
+    double sign = sign_width(canvas, &items[i]), width, height;
+    strut_font font = letters();
+    font.down = 0.0;
+    if (sign + text_width(canvas, items[i].text) > box.width) font.width = box.width - sign;
+    strut_text_size(canvas, items[i].text, font, &width, &height);
+    if (x > 0 && x + sign + width > box.width) x = 0.0, y += row, row = LINE;
+    double top = y + 0.5 * (LINE - text_height(canvas));
     if (draw) {
-      draw_sign(canvas, &items[i], box.x + x, box.y + y);
-      strut_draw_text(canvas, box.x + x + sign, box.y + y, text, letters());
+      draw_sign(canvas, &items[i], box.x + x, box.y + y + 0.5 * LINE);
+      strut_draw_text(canvas, box.x + x + sign, box.y + top, items[i].text, font);
     }
-    x += width + BETWEEN;
+    row = fmax(row, height + LINE - text_height(canvas));
+    x += sign + width + BETWEEN;
   }
-  return count ? y + LINE / 2 : 0.0;
+  return count ? y + row : 0.0;
 }
 
 double strut_key_height(strut_canvas *canvas, double width, const strut_key_item *items,
@@ -250,16 +259,40 @@ void strut_draw_legend(strut_canvas *canvas, const strut_legend_entry *entries, 
   lay_out_legend(canvas, entries, count, width, corner, true, size);
 }
 
-void strut_draw_heading(strut_canvas *canvas, double edge, const char *name, const char *note) {
-  static const double NOTE_BELOW = 12; /* [pt] */
+static const double HEADING_GAP = 1.5, HEADING_SPACE = 6.0; /* between its texts, and below [pt] */
+
+/* Draws a heading's text of that font where `canvas` is to be drawn on; moves *y below it. */
+static void put_heading(strut_canvas *canvas, const strut_heading *h, const char *text,
+                        strut_font font, bool draw, double *y) {
+  double width, height;
+  font.width = h->width - 2 * h->edge;
+  if (!text || !*text) return;
+  strut_text_size(canvas, text, font, &width, &height);
+  if (draw) strut_draw_text(canvas, h->edge, *y, text, font);
+  *y += height + HEADING_GAP;
+}
+
+static double lay_out_heading(strut_canvas *canvas, const strut_heading *h, bool draw) {
   const strut_font bold = {.size = 9, .bold = true};
-  const strut_font grey = {.size = 8, .colour = strut_grey(0.3)};
-  double inner = strut_canvas_box(canvas).width - 2 * edge;
-  char fitted[STRUT_FITTED_TEXT];
-  strut_draw_text(canvas, edge, edge, strut_text_fit(canvas, name, bold, inner, 0, fitted), bold);
-  if (*note)
-    strut_draw_text(canvas, edge, edge + NOTE_BELOW,
-                    strut_text_fit(canvas, note, grey, inner, 0, fitted), grey);
+  const strut_colour ink = h->alarm ? strut_palette_thing(1) : strut_grey(0.3);
+  double y = h->edge;
+  put_heading(canvas, h, h->title, bold, draw, &y);
+  put_heading(canvas, h, h->note, (strut_font){.size = 8, .colour = ink}, draw, &y);
+  return y > h->edge ? y - h->edge - HEADING_GAP + HEADING_SPACE : 0.0;
+}
+
+strut_status strut_heading_measure(const strut_heading *heading, double *height,
+                                   strut_error *error) {
+  strut_canvas *ruler;
+  strut_status status = strut_canvas_open_pixels(1, 1, 1.0, &ruler, error);
+  if (status != STRUT_OK) return status;
+  *height = lay_out_heading(ruler, heading, false);
+  strut_canvas_free(ruler);
+  return STRUT_OK;
+}
+
+void strut_heading_draw(strut_canvas *canvas, const strut_heading *heading) {
+  lay_out_heading(canvas, heading, true);
 }
 
 /* Anchors at equal distances; the lightness of each row grows from left to right. */

@@ -57,7 +57,7 @@ typedef struct strut_key_item {
 /** Height [pt] of a key of this width [pt]. */
 STRUT_API double strut_key_height(strut_canvas *canvas, double width, const strut_key_item *items,
                                   size_t count);
-/** Draws it from the upper left corner of `box` on; texts longer than a line are cut. */
+/** Draws it from the upper left corner of `box` on; texts longer than a line wrap. */
 STRUT_API void strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
                               size_t count);
 
@@ -74,11 +74,15 @@ enum { STRUT_FITTED_TEXT = 320 };
 STRUT_API const char *strut_text_fit(strut_canvas *canvas, const char *text, strut_font font,
                                      double width, double height, char fitted[STRUT_FITTED_TEXT]);
 
-/**
- * A figure's heading: `name` in bold in the upper left corner, `note` in grey below it; texts are
- * cut.
- */
-STRUT_API void strut_draw_heading(strut_canvas *canvas, double edge, const char *name,
-                                  const char *note);
+/** A figure's heading in the upper left corner: the title in bold, a note in grey below; both wrap. */
+typedef struct strut_heading {
+  double width, edge;       /* of the page; around all that is drawn [pt] */
+  const char *title, *note; /* "": none */
+  bool alarm;               /* the note tells of a failure */
+} strut_heading;
+/** Height from the edge to what follows [pt]. */
+STRUT_API strut_status strut_heading_measure(const strut_heading *heading, double *height,
+                                             strut_error *error);
+STRUT_API void strut_heading_draw(strut_canvas *canvas, const strut_heading *heading);
 
 #endif

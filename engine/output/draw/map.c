@@ -201,7 +201,8 @@ strut_status strut_draw_map(strut_canvas *canvas, strut_box box, const strut_map
                                       .unit = map->value_unit ? map->value_unit : "",
                                       .low = m.low,
                                       .high = m.high,
-                                      .colours = m.colours};
+                                      .colours = m.colours,
+                                      .beyond = map->beyond};
     strut_draw_colour_scale(canvas,
                             (strut_box){box.x + width + GAP, m.axes.frame.y - 8, SCALE_WIDTH - GAP,
                                         fmax(m.axes.frame.height, 60)},

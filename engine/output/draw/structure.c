@@ -11,7 +11,6 @@
 #include "engine/model/pose.h"
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
-#include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure_parts.h"
 #include "engine/scene/wrap.h"
 
@@ -21,7 +20,7 @@ enum { SHADES = 33, BATCH = 256 };
 
 static const double BAR = 2.4, SPRING = 1.3, CABLE = 0.8, CASING = 0.7; /* [pt] */
 static const double FULL_LENGTH = 28.0; /* members this long on the page have full width [pt] */
-static const double THINNEST = 0.06;
+static const double THINNEST = 0.06, FRINGE_DASH = 2.2; /* [1], [pt] */
 
 strut_bounds strut_bounds_none(void) {
   return (strut_bounds){{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
@@ -262,162 +261,50 @@ void strut_draw_yardstick(strut_canvas *canvas, const strut_window *w) {
                   (strut_font){.size = 7, .across = 0.5, .down = 1, .halo = strut_grey(1)});
 }
 
-/* Names beside nodes and members, where the page is emptiest. */
+/* Names beside nodes and members. */
 
-enum { DIRECTIONS = 16, MOST_NAMED = 60 };
+enum { MOST_NAMED = 60 }; /* nodes; of larger structures none is named */
 
-static const double GAP = 3.6, NAME_SIZE = 7.5, MOST_WIDTH = 90;
-static const double SUPPORT = 5.0; /* half the width of a support [pt] */
-static const double HATCHED = 2.0, FREE = 1.0,
-                    FAR = 6.0;       /* cost, enough freedom, second try [pt] */
-static const double COVERED = -20.0; /* clearance where a name begins to cover another one [pt] */
+static const double NODE_GAP = 3.6, MEMBER_GAP = 1.5, NAME_SIZE = 7.5, NEAR_MIDDLE = 6.0; /* [pt] */
 
-/* What names must not cover: segments, the first of which are the members' longest. */
-typedef struct obstacles {
-  size_t segment_count, label_count;
-  double (*ends)[2]; /* (2 segment_count) [pt] */
-  strut_box *labels; /* those placed so far */
-  strut_box inside;  /* names stay in here */
-  bool ground;       /* hatched to GROUND_DEPTH below the segment `surface` */
-  double surface[2][2];
-} obstacles;
-
-/* True if a point is on the hatching below the ground's line. */
-static bool is_on_hatching(const obstacles *o, const double p[2]) {
-  const double *a = o->surface[0], *b = o->surface[1];
-  double along[2] = {b[0] - a[0], b[1] - a[1]}, length = hypot(along[0], along[1]);
-  double depth = (along[0] * (p[1] - a[1]) - along[1] * (p[0] - a[0])) / length;
-  return o->ground && depth > 0 && depth < GROUND_DEPTH;
+static void draw_name(strut_canvas *canvas, const strut_window *w, const double at[2], double angle,
+                      double gap, const char *name) {
+  strut_draw_label(canvas, &(strut_label){.text = name,
+                                          .font = {.size = NAME_SIZE,
+                                                   .italic = true,
+                                                   .halo = strut_faded(strut_grey(1), 0.85)},
+                                          .at = {at[0], at[1]},
+                                          .gap = gap,
+                                          .angle = angle,
+                                          .steady = 0.2,
+                                          .inside = w->box});
 }
 
-/* Distance of a box from all that is drawn; negative where it covers another name or leaves the
-   page. */
-static double clearance(const obstacles *o, strut_box box) {
-  double least = HUGE_VAL;
-  for (int i = 0; i <= 4; i++)
-    for (int k = 0; k <= 2; k++) {
-      const double p[2] = {box.x + 0.25 * i * box.width, box.y + 0.5 * k * box.height};
-      if (is_on_hatching(o, p)) least = -HATCHED;
-    }
-  for (size_t j = 0; j < o->segment_count; j++)
-    for (int i = 0; i <= 4; i++)
-      for (int k = 0; k <= 2; k++) {
-        const double p[2] = {box.x + 0.25 * i * box.width, box.y + 0.5 * k * box.height};
-        least = fmin(least, strut_distance_to_segment(p, o->ends[2 * j], o->ends[2 * j + 1]));
-      }
-  for (size_t i = 0; i < o->label_count; i++) {
-    const strut_box *other = &o->labels[i];
-    double dx = fmax(other->x - box.x - box.width, box.x - other->x - other->width);
-    double dy = fmax(other->y - box.y - box.height, box.y - other->y - other->height);
-    double apart = fmax(dx, dy);
-    least = fmin(least, apart < 0 ? apart + COVERED : apart);
-  }
-  double out = fmax(fmax(o->inside.x - box.x, o->inside.y - box.y),
-                    fmax(box.x + box.width - o->inside.x - o->inside.width,
-                         box.y + box.height - o->inside.y - o->inside.height));
-  return out > 0 ? fmin(least, -out) : least;
-}
-
-static strut_font name_font(void) {
-  return (strut_font){.size = NAME_SIZE, .italic = true, .halo = strut_faded(strut_grey(1), 0.85)};
-}
-
-/* The box of a name of this size around `at`, in one of the directions. */
-static strut_box beside(const double at[2], int direction, double gap, double width,
-                        double height) {
-  double angle = 2 * STRUT_PI * direction / DIRECTIONS;
-  double x = at[0] + (gap + 0.5 * width) * cos(angle),
-         y = at[1] - (gap + 0.5 * height) * sin(angle);
-  return (strut_box){x - 0.5 * width, y - 0.5 * height, width, height};
-}
-
-static void draw_name(strut_canvas *canvas, obstacles *o, const double at[2], double gap,
-                      const char *name) {
-  double width, height, best = -HUGE_VAL;
-  char fitted[STRUT_FITTED_TEXT];
-  strut_box chosen = {0};
-  name = strut_text_fit(canvas, name, name_font(), MOST_WIDTH, 0, fitted);
-  strut_text_size(canvas, name, name_font(), &width, &height);
-  for (int k = 0; k < 2 * DIRECTIONS; k++) {
-    /* Start at the upper right; any clearance of 4 pt is enough. A second ring is tried if the
-       first is full. */
-    int direction = (k + DIRECTIONS / 8) % DIRECTIONS;
-    if (k == DIRECTIONS && best > FREE) break;
-    strut_box box = beside(at, direction, gap + (k < DIRECTIONS ? 0 : FAR), width, height);
-    double free = fmin(clearance(o, box), 4.0);
-    if (free > best + 1e-9) {
-      best = free;
-      chosen = box;
-    }
-  }
-  if (best <= COVERED) return; /* one of many: those that can be read say more */
-  o->labels[o->label_count++] = chosen;
-  strut_draw_text(canvas, chosen.x, chosen.y, name, name_font());
-}
-
-/* Adds the sides of supports below nodes as segments. */
-static void add_supports(const strut_window *w, const strut_model *model, const double *q,
-                         obstacles *o) {
-  for (int32_t i = 0; i < model->node_count; i++) {
-    if (!model->scene->nodes[i].fixed[1]) continue;
-    for (int side = -1; side <= 1; side += 2) {
-      double(*ends)[2] = o->ends + 2 * o->segment_count++;
-      strut_window_point(w, q + 2 * i, ends[0]);
-      ends[1][0] = ends[0][0] + side * SUPPORT;
-      ends[1][1] = ends[0][1] + 2 * SUPPORT;
-    }
-  }
-}
-
-static bool collect_obstacles(const strut_window *w, const strut_model *model, const double *q,
-                              size_t others, obstacles *o, strut_arena *arena) {
-  size_t members = model->scene->member_count, nodes = (size_t)model->node_count, all = members;
-  for (size_t j = 0; j < members; j++)
-    if (model->scene->members[j].guide_count) all += strut_member_segments(model, j);
-  o->ends = strut_arena_allocate(arena, 2 * (all + 1 + 2 * nodes + others), sizeof *o->ends);
-  o->labels = strut_arena_allocate(arena, nodes + members, sizeof *o->labels);
-  o->inside = w->box;
-  if (!o->ends || !o->labels) return false;
-  for (size_t j = 0; j < members; j++)
-    strut_longest_segment(w, model, q, j, o->ends + 2 * o->segment_count++);
-  for (size_t j = 0; j < members; j++)
-    for (size_t k = 0; model->scene->members[j].guide_count && k < strut_member_segments(model, j);
-         k++)
-      strut_window_segment(w, model, q, j, k, o->ends + 2 * o->segment_count++);
-  if (model->scene->ground.present) { /* its line is one more segment */
-    double(*line)[2] = o->ends + 2 * o->segment_count++;
-    find_ground_line(w, model, line);
-    memcpy(o->surface, line, sizeof o->surface);
-    o->ground = true;
-  }
-  add_supports(w, model, q, o);
-  return true;
+/* Names stand outside of a structure rather than inside: away from its middle, else at the upper right. */
+static double find_outwards(const double at[2], const double middle[2]) {
+  double x = at[0] - middle[0], y = middle[1] - at[1];
+  return hypot(x, y) > NEAR_MIDDLE ? atan2(y, x) : 0.25 * STRUT_PI;
 }
 
 void strut_draw_names(strut_canvas *canvas, const strut_window *w, const strut_model *model,
-                      const double *q, const strut_drawn_names *names) {
-  size_t other_count = names->other_count;
+                      const double *q, bool members) {
   const strut_scene *scene = model->scene;
-  strut_arena arena = {0};
-  obstacles o = {0};
-  if (scene->node_count <= MOST_NAMED && collect_obstacles(w, model, q, other_count, &o, &arena)) {
-    if (other_count)
-      memcpy(o.ends + 2 * o.segment_count, names->others, 2 * other_count * sizeof *names->others);
-    o.segment_count += other_count;
-    for (size_t i = 0; i < scene->node_count && names->nodes; i++) {
-      double at[2];
-      strut_window_point(w, q + 2 * i, at);
-      if (isfinite(at[0]) && isfinite(at[1])) draw_name(canvas, &o, at, GAP, scene->nodes[i].name);
-    }
-    for (size_t j = 0; j < scene->member_count && names->members; j++) {
-      /* the middle of its longest segment */
-      const double at[2] = {0.5 * (o.ends[2 * j][0] + o.ends[2 * j + 1][0]),
-                            0.5 * (o.ends[2 * j][1] + o.ends[2 * j + 1][1])};
-      if (isfinite(at[0]) && isfinite(at[1]))
-        draw_name(canvas, &o, at, 1.5, scene->members[j].name);
-    }
+  double middle[2] = {0.0, 0.0}, at[2];
+  if (scene->node_count > MOST_NAMED) return;
+  for (size_t i = 0; i < scene->node_count; i++) {
+    strut_window_point(w, q + 2 * i, at);
+    for (int d = 0; d < 2; d++) middle[d] += at[d] / (double)scene->node_count;
   }
-  strut_arena_free(&arena);
+  for (size_t i = 0; i < scene->node_count; i++) {
+    strut_window_point(w, q + 2 * i, at);
+    draw_name(canvas, w, at, find_outwards(at, middle), NODE_GAP, scene->nodes[i].name);
+  }
+  for (size_t j = 0; j < scene->member_count && members; j++) {
+    double ends[2][2]; /* the name stands at the middle of the longest segment */
+    strut_longest_segment(w, model, q, j, ends);
+    for (int d = 0; d < 2; d++) at[d] = 0.5 * (ends[0][d] + ends[1][d]);
+    draw_name(canvas, w, at, 0.25 * STRUT_PI, MEMBER_GAP, scene->members[j].name);
+  }
 }
 
 /* Members and nodes. */
@@ -465,7 +352,7 @@ static bool is_slack(const strut_drawing *d, size_t j) {
 static double width_of(const strut_drawing *d, size_t j) {
   strut_member_kind kind = d->model->scene->members[j].kind;
   double width = kind == STRUT_BAR ? BAR : kind == STRUT_SPRING ? SPRING : CABLE;
-  return width * d->thin / (1.0 + d->style->thinness);
+  return width * d->thin / (1.0 + d->style->thinness) + d->style->fringe;
 }
 
 /* Index of a member's force colour; -1 where members are not coloured by force. */
@@ -512,7 +399,10 @@ static void draw_alike(strut_canvas *canvas, const strut_drawing *d, strut_membe
                        bool slack, int shade) {
   batch b = {.canvas = canvas};
   b.pen.colour = strut_faded(colour_of(d, kind, slack, shade), d->opacity);
-  if (slack) {
+  if (d->style->fringe > 0.0) {
+    b.pen.dash[0] = b.pen.dash[1] = FRINGE_DASH;
+    b.pen.butt = true;
+  } else if (slack) {
     b.pen.dash[0] = 2.5 * d->thin;
     b.pen.dash[1] = 2.0 * d->thin;
     b.pen.butt = true;
@@ -587,8 +477,5 @@ void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
   strut_draw_elements(canvas, &d);
   if (!style->no_nodes) draw_nodes(canvas, &d);
   draw_sliding_masses(canvas, &d);
-  if (style->node_names || style->member_names)
-    strut_draw_names(
-        canvas, window, model, q,
-        &(strut_drawn_names){.nodes = style->node_names, .members = style->member_names});
+  if (style->node_names) strut_draw_names(canvas, window, model, q, style->member_names);
 }

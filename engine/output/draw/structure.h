@@ -53,8 +53,10 @@ typedef struct strut_structure_style {
   strut_colour colour; /* for STRUT_COLOUR_ONE */
   double opacity;      /* 0: 1 */
   double thinness;     /* widths are divided by 1 + thinness */
-  bool node_names, member_names, no_nodes, no_supports;
-  double time; /* at which masses that slide stand where they are drawn [s] */
+  double fringe;       /* added to widths: members dashed, to be seen below the same ones [pt] */
+  bool node_names, no_nodes, no_supports;
+  bool member_names; /* too, where there are node_names */
+  double time;       /* at which masses that slide stand where they are drawn [s] */
 } strut_structure_style;
 
 /**
@@ -65,20 +67,12 @@ typedef struct strut_structure_style {
 STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                                     const strut_model *model, const double *q,
                                     const strut_structure_style *style);
-/** Which names are drawn, and segments that they avoid: their ends (other_count, 2) on the page [pt]. */
-typedef struct strut_drawn_names {
-  bool nodes, members;
-  const double (*others)[2]; /* NULL: none */
-  size_t other_count;
-} strut_drawn_names;
-
 /**
- * Draws names beside nodes and members where the page is emptiest, as the style's node_names and
- * member_names do, for callers that draw more before the names.
+ * Names beside nodes and, with `members`, beside members too, as the style's node_names and member_names
+ * do, for callers that name a structure without drawing it. None where there are more than 60 nodes.
  */
 STRUT_API void strut_draw_names(strut_canvas *canvas, const strut_window *window,
-                                const strut_model *model, const double *q,
-                                const strut_drawn_names *names);
+                                const strut_model *model, const double *q, bool members);
 /** The ground's line and body across the window; nothing where the scene has none. */
 STRUT_API void strut_draw_ground(strut_canvas *canvas, const strut_window *window,
                                  const strut_model *model);

@@ -2,12 +2,16 @@
 #include "engine/output/draw/work_precision.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/vec.h"
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/legend.h"
 
-static const double MARKER = 2.4, STRIP = 18;
+static const double MARKER = 2.4, STRIP = 18, TITLE_GAP = 3.5; /* [pt] */
+enum { LABEL = 130 };
 
 typedef struct diagram {
   strut_canvas *canvas;
@@ -17,8 +21,6 @@ typedef struct diagram {
   bool *front;     /* (count) */
   size_t *order;   /* (count) of the front by cost */
   strut_legend_entry *entries;
-  strut_box *labels; /* (count) where labels are */
-  size_t label_count;
 } diagram;
 
 static bool diverged(const strut_saving *b) { return !isfinite(b->error); }
@@ -101,54 +103,36 @@ static void draw_front(const diagram *d) {
   }
 }
 
-static bool overlap(strut_box a, strut_box b) {
-  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
-}
-
-/* True if a label fits there: inside the frame, on no other label and no marker. */
-static bool is_free(const diagram *d, strut_box box) {
-  const strut_box *f = &d->axes.frame;
-  if (box.x < f->x + 1 || box.x + box.width > f->x + f->width - 1 || box.y < f->y + 1 ||
-      box.y + box.height > f->y + f->height - 1)
-    return false;
-  for (size_t i = 0; i < d->label_count; i++)
-    if (overlap(box, d->labels[i])) return false;
-  for (size_t i = 0; i < d->wanted->count; i++) {
-    double at[2];
-    if (!(d->wanted->bargains[i].cost > 0)) continue;
-    place_point(d, &d->wanted->bargains[i], at);
-    if (overlap(box, (strut_box){at[0] - MARKER, at[1] - MARKER, 2 * MARKER, 2 * MARKER}))
-      return false;
+/* The text beside the k-th point of the front; with its group where other points have the same label. */
+static const char *label_text(const diagram *d, size_t k, char text[LABEL]) {
+  const strut_work_precision *w = d->wanted;
+  const strut_saving *own = &w->bargains[d->order[k]];
+  bool alike = false;
+  for (size_t i = 0; i < w->count && d->order[i] < w->count; i++) {
+    const strut_saving *other = &w->bargains[d->order[i]];
+    alike = alike || (i != k && other->label && strcmp(other->label, own->label) == 0);
   }
-  return true;
-}
-
-/* Draws a label at a free corner of its point, first at the lower left, where no better point
-   can be; omitted if all corners are taken. */
-static void draw_label(diagram *d, const double at[2], const char *label) {
-  static const double corners[4][2] = {{1, 0}, {0, 1}, {1, 1}, {0, 0}};
-  strut_font font = {.size = 7, .halo = strut_grey(1)};
-  double width, height;
-  strut_text_size(d->canvas, label, font, &width, &height);
-  for (int k = 0; k < 4; k++) {
-    double x = at[0] + (corners[k][0] > 0 ? -MARKER - 0.6 - width : MARKER + 0.6);
-    double y = at[1] + (corners[k][1] > 0 ? -MARKER - 0.1 - 0.85 * height : MARKER + 0.1);
-    strut_box box = {x, y, width, 0.85 * height};
-    if (!is_free(d, box)) continue;
-    strut_draw_text(d->canvas, x, y, label, font);
-    d->labels[d->label_count++] = box;
-    return;
-  }
+  snprintf(text, LABEL, "%.60s%s%.60s", own->label, alike ? ", " : "",
+           alike ? w->groups[own->group] : "");
+  return text;
 }
 
 /* The cheapest first. */
-static void draw_labels(diagram *d) {
+static void draw_labels(const diagram *d) {
   for (size_t k = 0; k < d->wanted->count && d->order[k] < d->wanted->count; k++) {
     const strut_saving *b = &d->wanted->bargains[d->order[k]];
     double at[2];
+    char text[LABEL];
     if (!b->label) continue;
     place_point(d, b, at);
-    draw_label(d, at, b->label);
+    strut_draw_label(d->canvas,
+                     &(strut_label){.text = label_text(d, k, text),
+                                    .font = {.size = 7, .halo = strut_grey(1)},
+                                    .at = {at[0], at[1]},
+                                    .gap = MARKER + 1,
+                                    .angle = 1.25 * STRUT_PI, /* no better point can be there */
+                                    .steady = 0.5,
+                                    .inside = d->axes.frame});
   }
 }
 
@@ -190,8 +174,12 @@ static void draw_strip(const diagram *d) {
   const strut_fill grey = {.colour = strut_grey(0.94)};
   const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
   strut_draw_box(d->canvas, d->strip, &grey, &frame);
-  strut_draw_text(d->canvas, d->strip.x + d->strip.width - 3, d->strip.y + 0.5 * STRIP, "diverged",
-                  (strut_font){.size = 7, .across = 1, .down = 0.5, .colour = strut_grey(0.35)});
+  strut_draw_label(d->canvas,
+                   &(strut_label){.text = "diverged",
+                                  .font = {.size = 7, .colour = strut_grey(0.35)},
+                                  .at = {d->strip.x + d->strip.width, d->strip.y + 0.5 * STRIP},
+                                  .inside = {d->strip.x + 3, d->strip.y + 5, d->strip.width - 6, 9},
+                                  .loose = true});
 }
 
 static void draw_diagram(diagram *d, strut_box box) {
@@ -227,21 +215,22 @@ strut_status strut_draw_work_precision(strut_canvas *canvas, strut_box box,
   d.front = strut_allocate(wanted->count + 1, sizeof *d.front);
   d.order = strut_allocate(wanted->count + 1, sizeof *d.order);
   d.entries = strut_allocate(wanted->group_count + 1, sizeof *d.entries);
-  d.labels = strut_allocate(wanted->count + 1, sizeof *d.labels);
-  bool good = d.front && d.order && d.entries && d.labels;
+  bool good = d.front && d.order && d.entries;
   if (good) {
     strut_pareto_front(wanted->bargains, wanted->count, d.front);
     sort_front(&d);
     if (wanted->title) {
-      strut_draw_text(canvas, box.x, box.y, wanted->title, (strut_font){.size = 9, .bold = true});
-      box.y += 14;
-      box.height -= 14;
+      const strut_font font = {.size = 9, .bold = true, .width = box.width};
+      double wide, high;
+      strut_text_size(canvas, wanted->title, font, &wide, &high);
+      strut_draw_text(canvas, box.x, box.y, wanted->title, font);
+      box.y += high + TITLE_GAP;
+      box.height -= high + TITLE_GAP;
     }
     draw_diagram(&d, box);
   }
   strut_release(d.front);
   strut_release(d.order);
   strut_release(d.entries);
-  strut_release(d.labels);
   return good ? STRUT_OK : STRUT_NO_MEMORY;
 }

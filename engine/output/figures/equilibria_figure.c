@@ -9,6 +9,7 @@
 #include "engine/output/draw/chart.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure.h"
+#include "engine/output/figures/equilibria_parts.h"
 #include "engine/output/figures/statics_figures.h"
 
 static bool on_ground(const strut_equilibrium *e) { return e->rest != NULL; }
@@ -23,130 +24,10 @@ static const double *drawn_shape(const strut_equilibria *all, size_t i) {
 /* The energy that all outputs list of an equilibrium [J]. */
 static double drawn_energy(const strut_equilibria *all, size_t i) { return all->list[i].energy; }
 
-/* The energy ladder: states as levels, with the barriers between them. */
-
-enum { ARC = 40, FEW = 4 };
-
-static const double LEVEL = 0.3; /* half the width of a level, in places */
-
-static int level_of(const size_t *chosen, size_t count, int32_t state) {
-  for (size_t k = 0; k < count; k++)
-    if ((int32_t)chosen[k] == state) return (int)k;
-  return -1;
-}
-
-/* Finds a barrier's two ends among the chosen states; false if one is missing. */
-static bool ends_of(const strut_barrier *b, const size_t *chosen, size_t count, int ends[2]) {
-  ends[0] = level_of(chosen, count, b->from);
-  ends[1] = level_of(chosen, count, b->to);
-  return ends[0] >= 0 && ends[1] >= 0 && ends[0] != ends[1];
-}
-
-/* The height of the direct pass where it is known, else of the lowest path. */
-static double barrier_height(const strut_barrier *b) {
-  return isfinite(b->direct) ? b->direct : b->height;
-}
-
-static bool has_barriers(const strut_equilibria *all, const size_t *chosen, size_t count) {
-  int ends[2];
-  for (size_t i = 0; i < all->barrier_count; i++)
-    if (ends_of(&all->barriers[i], chosen, count, ends)) return true;
-  return false;
-}
-
-/* A smooth curve from one level over the barrier to the other. */
-static void draw_barrier(strut_canvas *canvas, const strut_axes *axes, const int ends[2],
-                         const double energy[2], double top) {
-  double points[ARC + 1][2];
-  bool neighbours = abs(ends[0] - ends[1]) == 1;
-  const strut_pen pen = {.colour = strut_grey(neighbours ? 0.35 : 0.65),
-                         .width = neighbours ? 0.9 : 0.6,
-                         .dash = {neighbours ? 0 : 2.5, 2}};
-  double side = ends[1] > ends[0] ? LEVEL : -LEVEL;
-  for (int i = 0; i <= ARC; i++) {
-    double t = (double)i / ARC, low = t < 0.5 ? energy[0] : energy[1];
-    double rise = 0.5 - 0.5 * cos(4 * acos(0) * t); /* 0, 1, 0 */
-    strut_axes_point(axes, ends[0] + side + t * (ends[1] - ends[0] - 2 * side),
-                     low + rise * (top - low), points[i]);
-  }
-  strut_draw_line(canvas, (const double(*)[2])points, ARC + 1, pen);
-}
-
-static void draw_barriers(strut_canvas *canvas, const strut_axes *axes, const strut_equilibria *all,
-                          const size_t *chosen, size_t count, double zero) {
-  for (size_t i = 0; i < all->barrier_count; i++) {
-    const strut_barrier *b = &all->barriers[i];
-    int ends[2];
-    if (!ends_of(b, chosen, count, ends)) continue;
-    const double energy[2] = {drawn_energy(all, (size_t)b->from) - zero,
-                              drawn_energy(all, (size_t)b->to) - zero};
-    double top = energy[0] + barrier_height(b), at[2];
-    /* Among many states, only curves between neighbours remain readable. */
-    bool drawn = abs(ends[0] - ends[1]) == 1 || count <= FEW;
-    if (ends[0] < ends[1] && drawn) draw_barrier(canvas, axes, ends, energy, top);
-    if (abs(ends[0] - ends[1]) != 1) continue;
-    /* The barrier height for this direction, beside its slope. */
-    char text[80];
-    bool right = ends[1] > ends[0];
-    snprintf(text, sizeof text, right ? "%s \xe2\x86\x92" : "\xe2\x86\x90 %s",
-             strut_drawn_quantity(barrier_height(b), 3, "J").text);
-    strut_axes_point(axes, 0.5 * (ends[0] + ends[1]), top, at);
-    strut_draw_text(canvas, at[0], at[1] - (right ? 2 : 11), text,
-                    (strut_font){.size = 7, .across = 0.5, .down = 1, .halo = strut_grey(1)});
-  }
-}
-
-static void draw_levels(strut_canvas *canvas, const strut_axes *axes, const strut_equilibria *all,
-                        const size_t *chosen, size_t count, double zero) {
-  /* Many names alternate between two lines, each with the width of two places. */
-  int lines = count <= FEW ? 1 : 2;
-  double room = lines * axes->frame.width / (double)count - 2;
-  for (size_t k = 0; k < count; k++) {
-    double left[2], right[2], energy = drawn_energy(all, chosen[k]) - zero;
-    char fitted[STRUT_FITTED_TEXT];
-    strut_font font = {
-        .size = count <= FEW ? 8 : 7, .bold = count <= FEW, .across = 0.5, .halo = strut_grey(1)};
-    strut_axes_point(axes, (double)k - LEVEL, energy, left);
-    strut_axes_point(axes, (double)k + LEVEL, energy, right);
-    strut_draw_segment(canvas, left[0], left[1], right[0], right[1],
-                       (strut_pen){.colour = strut_palette_thing(0), .width = 2, .butt = true});
-    strut_draw_text(canvas, 0.5 * (left[0] + right[0]), left[1] + 3 + (double)((int)k % lines) * 8,
-                    strut_text_fit(canvas, all->list[chosen[k]].name, font, room, 0, fitted), font);
-  }
-}
-
-static strut_status draw_ladder(strut_canvas *canvas, strut_box box, const strut_equilibria *all,
-                                const size_t *chosen, size_t count) {
-  strut_axis x = {.name = "", .unit = "", .low = -0.5, .high = (double)count - 0.5};
-  if (count > FEW) { /* names are wider than their levels */
-    x.low -= 0.3;
-    x.high += 0.3;
-  }
-  const double any = (double)NAN;
-  strut_axis y = {.name = "energy above the lowest", .unit = "J", .low = any, .high = any};
-  double zero = HUGE_VAL;
-  int ends[2];
-  for (size_t k = 0; k < count; k++) zero = fmin(zero, drawn_energy(all, chosen[k]));
-  for (size_t k = 0; k < count; k++) strut_axis_include(&y, drawn_energy(all, chosen[k]) - zero);
-  for (size_t i = 0; i < all->barrier_count; i++)
-    if (ends_of(&all->barriers[i], chosen, count, ends))
-      strut_axis_include(&y, drawn_energy(all, (size_t)all->barriers[i].from) - zero +
-                                 barrier_height(&all->barriers[i]));
-  strut_axis_settle(&y, 0.2);
-  strut_axes axes = strut_axes_place(canvas, box, x, y, NULL, NULL);
-  axes.frame.height = box.y + box.height - axes.frame.y - 4; /* the x axis has no numbers */
-  strut_draw_vertical_axis(canvas, &axes);
-  strut_canvas_clip(canvas, axes.frame);
-  draw_barriers(canvas, &axes, all, chosen, count, zero);
-  draw_levels(canvas, &axes, all, chosen, count, zero);
-  strut_canvas_unclip(canvas);
-  return STRUT_OK;
-}
-
-static const double ARROW = 20; /* the longest force of the ground [pt] */
-static const double EDGE = 5, TITLE = 28, LINES = 23, MARGIN = 17, NARROW = 110, SCALE = 34,
-                    LADDER = 150;
-enum { MOST_CARDS = 12, MOST_SMALL = 6 };
+static const double COLLAPSED = 1.0 / 3.0; /* most of the cards with forces beyond the scale */
+static const double ARROW = 20;            /* the longest force of the ground [pt] */
+static const double EDGE = 5, NAME_LINE = 12, MARGIN = 17, NARROW = 110, SCALE = 34, LADDER = 150;
+enum { MOST_CARDS = 12, MOST_SMALL = 6, NOTE = 300 };
 
 /* The equilibria that are drawn, and the sizes of their cards. */
 typedef struct plan {
@@ -158,7 +39,14 @@ typedef struct plan {
   size_t *aside, aside_count;       /* further stable ones, by energy */
   size_t cards, columns, small, small_columns;
   double width, size[2], cell[2], small_cell[2], force_limit, contact_limit, largest_energy;
+  strut_beyond beyond; /* force_limit */
   bool ladder;
+  strut_heading heading;
+  double head; /* its height [pt] */
+  double card_head, small_foot,
+      aside_line; /* heights of texts: above cards, below small ones, between [pt] */
+  char aside_text[NOTE];
+  strut_canvas *ruler; /* to measure texts before there is a page */
   strut_arena arena;
 } plan;
 
@@ -201,6 +89,56 @@ static bool choose_equilibria(plan *p) {
   return true;
 }
 
+/* Texts of cards, which wrap. */
+static strut_font card_font(const plan *p) {
+  return (strut_font){.size = 7.5, .colour = strut_grey(0.3), .width = p->cell[0] - 8};
+}
+
+static strut_font small_font(const plan *p) {
+  return (strut_font){.size = 6.5, .colour = strut_grey(0.35), .width = p->small_cell[0] - 6};
+}
+
+static strut_font aside_font(const plan *p) {
+  return (strut_font){.size = 8, .colour = strut_grey(0.3), .width = p->width - 2 * EDGE};
+}
+
+static void describe_card(const plan *p, size_t i, char text[NOTE]) {
+  snprintf(text, NOTE, "%s, %s",
+           strut_drawn_quantity(drop_rounding(p, drawn_energy(p->all, i)), 6, "J").text,
+           p->all->list[i].verdict);
+}
+
+static void describe_small_card(const plan *p, size_t i, char text[NOTE]) {
+  snprintf(text, NOTE, "%s: %s",
+           strut_drawn_quantity(drop_rounding(p, drawn_energy(p->all, i)), 5, "J").text,
+           p->all->list[i].verdict);
+}
+
+static double measure_height(const plan *p, const char *text, strut_font font) {
+  double width, height;
+  strut_text_size(p->ruler, text, font, &width, &height);
+  return height;
+}
+
+/* Heights of the texts around the cards, whose widths are known. */
+static void measure_texts(plan *p) {
+  char text[NOTE];
+  p->card_head = p->small_foot = 0;
+  for (size_t k = 0; k < p->cards; k++) {
+    describe_card(p, p->standing[k], text);
+    p->card_head = fmax(p->card_head, NAME_LINE + measure_height(p, text, card_font(p)) + 2);
+  }
+  for (size_t k = 0; k < p->small; k++) {
+    describe_small_card(p, p->aside[k], text);
+    p->small_foot = fmax(p->small_foot, measure_height(p, text, small_font(p)) + 2);
+  }
+  snprintf(p->aside_text, NOTE,
+           "Stable on static supports, but not at rest on the ground%s%.0zu%s:",
+           p->small < p->aside_count ? " (the lowest of " : "",
+           p->small < p->aside_count ? p->aside_count : 0, p->small < p->aside_count ? ")" : "");
+  p->aside_line = measure_height(p, p->aside_text, aside_font(p)) + 6;
+}
+
 static strut_bounds bounds_of(const plan *p, size_t i) {
   strut_bounds b = strut_bounds_none();
   strut_bounds_add(&b, p->model, drawn_shape(p->all, i));
@@ -214,16 +152,25 @@ static void widen_scales(plan *p, size_t i) {
   for (size_t k = 0; k < p->all->count; k++)
     p->largest_energy = fmax(p->largest_energy, fabs(p->all->list[k].energy));
   for (int d = 0; d < 2; d++) p->size[d] = fmax(p->size[d], b.high[d] - b.low[d]);
-  for (size_t j = 0; j < p->model->scene->member_count; j++)
-    p->force_limit = fmax(p->force_limit, fabs(e->member_force[j]));
   for (int32_t k = 0; k < e->contact_count && e->normal; k++)
     p->contact_limit = fmax(p->contact_limit, fabs(e->normal[k]));
+}
+
+/* The scale of forces, which all cards share, but for collapsed states with far larger ones. */
+static void find_force_limit(plan *p) {
+  double most[MOST_CARDS] = {0};
+  for (size_t k = 0; k < p->cards; k++)
+    for (size_t j = 0; j < p->model->scene->member_count; j++)
+      most[k] = fmax(most[k], fabs(p->all->list[p->standing[k]].member_force[j]));
+  p->force_limit = strut_limit_without_outliers(most, p->cards, 0.0, COLLAPSED, &p->beyond);
+  p->beyond.below = p->beyond.above; /* of either sign */
 }
 
 static void lay_out_cards(plan *p) {
   double inner = p->width - 2 * EDGE;
   p->cards = p->standing_count < MOST_CARDS ? p->standing_count : MOST_CARDS;
   for (size_t k = 0; k < p->cards; k++) widen_scales(p, p->standing[k]);
+  find_force_limit(p);
   p->small_columns = (size_t)fmax(1, floor(inner / 82));
   if (p->small_columns > MOST_SMALL) p->small_columns = MOST_SMALL;
   p->small = p->aside_count < p->small_columns ? p->aside_count : p->small_columns;
@@ -234,16 +181,18 @@ static void lay_out_cards(plan *p) {
   p->cell[0] = inner / (double)p->columns;
   double aspect = p->size[0] > 0 ? p->size[1] / p->size[0] : 1;
   double wanted = (p->cell[0] - 2 * MARGIN) * aspect + 2 * MARGIN + 6;
-  p->cell[1] = LINES + fmax(46, fmin(wanted, 1.2 * p->cell[0]));
   p->small_cell[0] = inner / (double)p->small_columns;
-  p->small_cell[1] = 26 + fmax(36, fmin(p->small_cell[0] * aspect + 14, p->small_cell[0]));
-  p->ladder = p->cards > 1 && has_barriers(p->all, p->standing, p->cards);
+  measure_texts(p);
+  p->cell[1] = p->card_head + fmax(46, fmin(wanted, 1.2 * p->cell[0]));
+  p->small_cell[1] =
+      p->small_foot + fmax(36, fmin(p->small_cell[0] * aspect + 14, p->small_cell[0]));
+  p->ladder = p->cards > 1 && strut_ladder_wanted(p->all, p->standing, p->cards);
 }
 
 static double figure_height(const plan *p) {
   double rows = ceil((double)p->cards / (double)p->columns);
-  return 2 * EDGE + TITLE + rows * p->cell[1] + (p->cards ? SCALE : 0) + (p->ladder ? LADDER : 0) +
-         (p->small ? p->small_cell[1] + 16 : 0);
+  return 2 * EDGE + p->head + rows * p->cell[1] + (p->cards ? SCALE : 0) +
+         (p->ladder ? LADDER : 0) + (p->small ? p->small_cell[1] + p->aside_line : 0);
 }
 
 /* Forces of the ground as (contacts, 2), zero where it is not touched; NULL: no memory. */
@@ -266,34 +215,11 @@ static strut_window window_for(const plan *p, size_t i, strut_box box, double ma
   return strut_window_fit(box, shared, margin);
 }
 
-/* Names beside the nodes, off the members and off the arrows of the ground's forces. */
-static bool draw_names(plan *p, strut_canvas *canvas, const strut_window *window, const double *q,
-                       const double (*force)[2]) {
-  const strut_contact_table *contacts = &p->model->contacts;
-  size_t arrows = 0;
-  double(*ends)[2] = strut_arena_allocate(&p->arena, 2 * (size_t)contacts->count + 2, sizeof *ends);
-  if (!ends) return false;
-  for (int32_t c = 0; c < contacts->count && p->contact_limit > 0; c++) {
-    double length = force[c][0] / p->contact_limit * ARROW, *tip = ends[2 * arrows];
-    if (!(fabs(length) > 0.3)) continue;
-    strut_window_point(window, q + contacts->at[c], tip);
-    const strut_contact_pose pose = strut_contact_pose_at(contacts, c, q, NULL, -1);
-    ends[2 * arrows + 1][0] = tip[0] - length * pose.axes.normal[0];
-    ends[2 * arrows + 1][1] = tip[1] + length * pose.axes.normal[1];
-    arrows++;
-  }
-  strut_draw_names(canvas, window, p->model, q,
-                   &(strut_drawn_names){
-                       .nodes = true, .others = (const double(*)[2])ends, .other_count = arrows});
-  return true;
-}
-
 static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
   const strut_equilibrium *e = &p->all->list[i];
-  char text[300], fitted[STRUT_FITTED_TEXT];
+  char text[NOTE], fitted[STRUT_FITTED_TEXT];
   strut_font name = {.size = 8.5, .bold = true};
-  strut_font note = {.size = 7.5, .colour = strut_grey(0.3)};
-  strut_box box = {cell.x, cell.y + LINES, cell.width, cell.height - LINES};
+  strut_box box = {cell.x, cell.y + p->card_head, cell.width, cell.height - p->card_head};
   strut_window window = window_for(p, i, box, MARGIN);
   double(*force)[2] = contact_forces(p, e);
   if (!force) return false;
@@ -303,38 +229,31 @@ static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
                                        .limit = p->force_limit};
   strut_draw_text(canvas, cell.x + 4, cell.y,
                   strut_text_fit(canvas, e->name, name, cell.width - 8, 0, fitted), name);
-  snprintf(text, sizeof text, "%s, %s",
-           strut_drawn_quantity(drop_rounding(p, drawn_energy(p->all, i)), 6, "J").text,
-           e->verdict);
-  strut_draw_text(canvas, cell.x + 4, cell.y + 11,
-                  strut_text_fit(canvas, text, note, cell.width - 8, 0, fitted), note);
+  describe_card(p, i, text);
+  strut_draw_text(canvas, cell.x + 4, cell.y + NAME_LINE - 1, text, card_font(p));
   strut_canvas_clip(canvas, cell);
   strut_draw_ground(canvas, &window, p->model);
   strut_draw_structure(canvas, &window, p->model, drawn_shape(p->all, i), &style);
   strut_draw_contact_forces(canvas, &window, p->model, drawn_shape(p->all, i),
                             (const double(*)[2])force, p->contact_limit, ARROW);
-  bool good = cell.width <= 105 ||
-              draw_names(p, canvas, &window, drawn_shape(p->all, i), (const double(*)[2])force);
   strut_canvas_unclip(canvas);
-  return good;
+  if (cell.width > 105) strut_draw_names(canvas, &window, p->model, drawn_shape(p->all, i), false);
+  return true;
 }
 
 static void draw_small_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
-  const strut_equilibrium *e = &p->all->list[i];
-  char text[300], fitted[STRUT_FITTED_TEXT];
-  strut_font note = {.size = 6.5, .colour = strut_grey(0.35), .width = cell.width - 6};
+  char text[NOTE];
   strut_window window =
-      window_for(p, i, (strut_box){cell.x, cell.y, cell.width, cell.height - 26}, 6);
+      window_for(p, i, (strut_box){cell.x, cell.y, cell.width, cell.height - p->small_foot}, 6);
   const strut_structure_style style = {
       .colouring = STRUT_COLOUR_ONE, .colour = strut_grey(0.45), .thinness = 0.4, .no_nodes = true};
   strut_canvas_clip(canvas, cell);
   strut_draw_ground(canvas, &window, p->model);
   strut_draw_structure(canvas, &window, p->model, drawn_shape(p->all, i), &style);
-  snprintf(text, sizeof text, "%s: %s",
-           strut_drawn_quantity(drop_rounding(p, e->energy), 5, "J").text, e->verdict);
-  strut_draw_text(canvas, cell.x + 3, cell.y + cell.height - 25,
-                  strut_text_fit(canvas, text, note, cell.width - 6, 24, fitted), note);
   strut_canvas_unclip(canvas);
+  describe_small_card(p, i, text);
+  strut_draw_text(canvas, cell.x + 3, cell.y + cell.height - p->small_foot + 1, text,
+                  small_font(p));
 }
 
 static double draw_cards(plan *p, strut_canvas *canvas, double y, bool *good) {
@@ -346,7 +265,8 @@ static double draw_cards(plan *p, strut_canvas *canvas, double y, bool *good) {
   if (!p->cards) return y;
   y += ceil((double)p->cards / (double)p->columns) * p->cell[1];
   strut_window foot = window_for(
-      p, p->standing[0], (strut_box){EDGE, y + LINES, p->cell[0], p->cell[1] - LINES}, MARGIN);
+      p, p->standing[0], (strut_box){EDGE, y + p->card_head, p->cell[0], p->cell[1] - p->card_head},
+      MARGIN);
   foot.box.y = y + SCALE - 8 - foot.box.height;
   strut_draw_yardstick(canvas, &foot);
   double wide = fmin(170, 0.5 * (p->width - 2 * EDGE));
@@ -354,44 +274,45 @@ static double draw_cards(plan *p, strut_canvas *canvas, double y, bool *good) {
                                     .unit = "N",
                                     .low = -p->force_limit,
                                     .high = p->force_limit,
-                                    .colours = STRUT_COLOURS_SIGNED};
+                                    .colours = STRUT_COLOURS_SIGNED,
+                                    .beyond = p->beyond};
   if (p->force_limit > 0)
     strut_draw_colour_scale(canvas, (strut_box){p->width - EDGE - wide, y, wide, SCALE}, &scale);
   return y + SCALE;
 }
 
-static strut_status draw_figure(plan *p, strut_canvas *canvas) {
-  char text[400], fitted[STRUT_FITTED_TEXT];
-  bool good = true;
-
-  strut_font note = {.size = 8, .colour = strut_grey(0.3)};
-  double inner = p->width - 2 * EDGE, y = EDGE + TITLE;
-
+/* The heading, whose note is written to `text`, and its height. */
+static strut_status describe_all(plan *p, char text[NOTE], strut_error *error) {
   size_t stable = p->standing_count - p->floppy_count;
   char floppy[40] = "";
   if (p->floppy_count) snprintf(floppy, sizeof floppy, ", %zu floppy", p->floppy_count);
-  snprintf(text, sizeof text, "%zu stable equilibri%s%s%s%s", stable, stable == 1 ? "um" : "a",
+  snprintf(text, NOTE, "%zu stable equilibri%s%s%s%s", stable, stable == 1 ? "um" : "a",
            p->model->scene->ground.present ? " on the ground" : "", floppy,
            p->cards < p->standing_count ? ", the lowest are drawn" : "");
-  strut_draw_heading(canvas, EDGE, p->title, text);
+  p->heading = (strut_heading){.width = p->width, .edge = EDGE, .title = p->title, .note = text};
+  return strut_heading_measure(&p->heading, &p->head, error);
+}
+
+static strut_status draw_figure(plan *p, strut_canvas *canvas) {
+  bool good = true;
+  double inner = p->width - 2 * EDGE, y = EDGE + p->head;
+
+  strut_heading_draw(canvas, &p->heading);
   y = draw_cards(p, canvas, y, &good);
   if (!good) return STRUT_NO_MEMORY;
   if (p->ladder) {
     double wide = fmin(inner, 90.0 + 120.0 * (double)p->cards);
-    strut_status status = draw_ladder(canvas, (strut_box){EDGE, y + 4, wide, LADDER - 8}, p->all,
-                                      p->standing, p->cards);
+    strut_status status = strut_ladder_draw(canvas, (strut_box){EDGE, y + 4, wide, LADDER - 8},
+                                            p->all, p->standing, p->cards);
     if (status != STRUT_OK) return status;
     y += LADDER;
   }
   if (!p->small) return STRUT_OK;
-  snprintf(text, sizeof text, "Stable on static supports, but not at rest on the ground%s%.0zu%s:",
-           p->small < p->aside_count ? " (the lowest of " : "",
-           p->small < p->aside_count ? p->aside_count : 0, p->small < p->aside_count ? ")" : "");
-  strut_draw_text(canvas, EDGE, y + 2, strut_text_fit(canvas, text, note, inner, 0, fitted), note);
+  strut_draw_text(canvas, EDGE, y + 2, p->aside_text, aside_font(p));
   for (size_t k = 0; k < p->small; k++)
     draw_small_card(p, canvas, p->aside[k],
-                    (strut_box){EDGE + (double)k * p->small_cell[0], y + 16, p->small_cell[0],
-                                p->small_cell[1]});
+                    (strut_box){EDGE + (double)k * p->small_cell[0], y + p->aside_line,
+                                p->small_cell[0], p->small_cell[1]});
   return STRUT_OK;
 }
 
@@ -402,17 +323,23 @@ strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *
             .width = plot->width,
             .title = strut_plot_title(plot, model->scene->name)};
   strut_canvas *canvas = NULL;
-  strut_status status = choose_equilibria(&p) ? STRUT_OK : strut_no_memory(error, "while drawing");
+  char note[NOTE];
+  strut_status status = strut_canvas_open_pixels(1, 1, 1.0, &p.ruler, error);
+  if (status == STRUT_OK && !choose_equilibria(&p))
+    status = strut_no_memory(error, "while drawing");
   if (status == STRUT_OK) {
     lay_out_cards(&p);
-    status = strut_canvas_open(plot->path, plot->width, figure_height(&p), p.title, &canvas, error);
+    status = describe_all(&p, note, error);
   }
+  if (status == STRUT_OK)
+    status = strut_canvas_open(plot->path, plot->width, figure_height(&p), p.title, &canvas, error);
   if (status == STRUT_OK) {
     status = draw_figure(&p, canvas);
     if (status != STRUT_OK) strut_fail(error, status, "out of memory while drawing");
   }
   if (status == STRUT_OK) status = strut_canvas_commit(canvas, error);
   strut_canvas_free(canvas);
+  strut_canvas_free(p.ruler);
   strut_arena_free(&p.arena);
   return status;
 }

@@ -21,7 +21,7 @@ static const double NARROWEST = 112.0;                     /* panel, for its tit
 static const double TALLEST = 190.0;                       /* drawing inside a panel [pt] */
 static const double COVERED = 0.12;                        /* of a panel, by names */
 static const double NODE = 2.3;                            /* radius of a node as drawn [pt] */
-static const double NAME_LINE = 16.0, TITLE_LINE = 11.5, WORD_LINES = 19.0;
+static const double TITLE_LINE = 11.5, WORD_LINES = 19.0;
 static const double UNSTRAINED = 1e-9; /* strain by rounding, relative to displacement over size */
 
 typedef struct figure {
@@ -31,7 +31,6 @@ typedef struct figure {
   size_t count, columns, rows;
   size_t shown[STRUT_MODES_FIGURE_MOST]; /* indices of modes */
   double *moved;                         /* (length) the shape displaced along the mode [m] */
-  double (*arrows)[2];                   /* (nodes, 2) ends of arrows on the page [pt] */
   double *strain, *taut;                 /* (members); taut: 0 where a cable is slack at rest */
   double size;                           /* larger extent of the shape at rest [m] */
   strut_bounds bounds[STRUT_MODES_FIGURE_MOST], all; /* of the panels, and of all together */
@@ -42,10 +41,9 @@ typedef struct figure {
 static bool allocate_arrays(figure *f) {
   size_t length = (size_t)f->model->length, members = f->model->scene->member_count + 1;
   f->moved = strut_arena_allocate(&f->arena, length, sizeof(double));
-  f->arrows = strut_arena_allocate(&f->arena, length, sizeof *f->arrows);
   f->strain = strut_arena_allocate(&f->arena, members, sizeof(double));
   f->taut = strut_arena_allocate(&f->arena, members, sizeof(double));
-  return f->moved && f->arrows && f->strain && f->taut;
+  return f->moved && f->strain && f->taut;
 }
 
 /* Chooses the modes with panels: rigid-body motions only if there are no others. */
@@ -206,8 +204,7 @@ static void draw_head(figure *f, strut_box box, size_t number) {
   strut_draw_text(f->canvas, box.x, box.y,
                   strut_text_fit(f->canvas, text, bold, box.width, 0, fitted), bold);
   describe_mode(mode, text);
-  strut_draw_text(f->canvas, box.x, box.y + TITLE_LINE,
-                  strut_text_fit(f->canvas, text, plain, box.width, WORD_LINES, fitted), plain);
+  strut_draw_text(f->canvas, box.x, box.y + TITLE_LINE, text, plain);
 }
 
 static strut_pen arrow_pen(void) {
@@ -215,21 +212,17 @@ static strut_pen arrow_pen(void) {
 }
 static strut_pen contact_pen(void) { return (strut_pen){.colour = strut_grey(0.1), .width = 0.9}; }
 
-/* Arrows from the nodes at rest to where they are displaced; their ends go to f->arrows. Returns
-   how many are long enough to be drawn. */
-static size_t draw_arrows(figure *f, const strut_window *window) {
-  size_t count = 0;
+/* Arrows from the nodes at rest to where they are displaced, where they are long enough. */
+static void draw_arrows(const figure *f, const strut_window *window) {
   for (int32_t i = 0; i < f->model->node_count && f->model->node_count <= LED; i++) {
-    double *from = f->arrows[2 * count], *to = f->arrows[2 * count + 1];
+    double from[2], to[2];
     strut_window_point(window, f->modes->q + 2 * i, from);
     strut_window_point(window, f->moved + 2 * i, to);
     double length = hypot(to[0] - from[0], to[1] - from[1]), end = 1.0 - NODE / length;
     if (length < 2 * NODE) continue;
     strut_draw_arrow(f->canvas, from[0], from[1], from[0] + end * (to[0] - from[0]),
                      from[1] + end * (to[1] - from[1]), 4.5, arrow_pen());
-    count++;
   }
-  return count;
 }
 
 /* True if names cover little of the drawing; the texts name the moving nodes anyway. */
@@ -270,12 +263,8 @@ static void draw_panel(figure *f, strut_box box, strut_bounds bounds, size_t num
     strut_draw_circle(f->canvas, at[0], at[1], 3.4, NULL, &pen);
   }
   strut_draw_structure(f->canvas, &window, f->model, f->moved, &bent);
-  size_t arrows = draw_arrows(f, &window);
-  if (names_fit(f, box))
-    strut_draw_names(
-        f->canvas, &window, f->model, f->moved,
-        &(strut_drawn_names){
-            .nodes = true, .others = (const double(*)[2])f->arrows, .other_count = arrows});
+  draw_arrows(f, &window);
+  if (names_fit(f, box)) strut_draw_names(f->canvas, &window, f->model, f->moved, false);
 }
 
 /* Names the modes that have no panel; empty where all have one. */
@@ -326,12 +315,11 @@ static strut_status measure_texts(figure *f, double width, const strut_key_item 
   *key = strut_key_height(ruler, width - 2 * EDGE, items, count);
   double words = 0.0;
   for (size_t k = 0; k < f->count; k++) {
-    char text[TITLE + TITLE / 2], fitted[STRUT_FITTED_TEXT];
+    char text[TITLE + TITLE / 2];
     double wide, high;
     describe_mode(&f->modes->list[f->shown[k]], text);
     const strut_font font = word_font(f->panel_width);
-    strut_text_fit(ruler, text, font, f->panel_width, WORD_LINES, fitted);
-    strut_text_size(ruler, fitted, font, &wide, &high);
+    strut_text_size(ruler, text, font, &wide, &high);
     words = fmax(words, high);
   }
   f->head = TITLE_LINE + words;
@@ -345,15 +333,17 @@ static strut_status draw_figure(figure *f, const strut_plot *plot, strut_error *
   char at[TITLE], rest[TITLE];
   strut_key_item items[ITEMS] = {{0}};
   size_t count = make_key(f, at, rest, items);
-  double key, height = 2 * EDGE;
-  strut_status status = measure_texts(f, width, items, count, &key, error);
+  double key, head = 0.0, height = 2 * EDGE;
+  const strut_heading heading = {.width = width, .edge = EDGE, .title = title};
+  strut_status status = strut_heading_measure(&heading, &head, error);
+  if (status == STRUT_OK) status = measure_texts(f, width, items, count, &key, error);
   if (status != STRUT_OK) return status;
   for (size_t row = 0; row < f->rows; row++) height += row_height(f, row) + GAP;
-  height += NAME_LINE + key - 0.5 * GAP;
+  height += head + key - 0.5 * GAP;
   status = strut_canvas_open(plot->path, width, height, title, &f->canvas, error);
   if (status != STRUT_OK) return status;
-  strut_draw_heading(f->canvas, EDGE, title, "");
-  strut_box box = {EDGE, EDGE + NAME_LINE, f->panel_width, 0};
+  strut_heading_draw(f->canvas, &heading);
+  strut_box box = {EDGE, EDGE + head, f->panel_width, 0};
   for (size_t row = 0; row < f->rows; row++, box.y += box.height + GAP) {
     box.height = row_height(f, row);
     for (size_t k = row * f->columns; k < (row + 1) * f->columns && k < f->count; k++) {

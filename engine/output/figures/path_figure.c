@@ -47,8 +47,6 @@ typedef struct path_picture {
   double *shape;       /* (length) scratch for an enlarged shape */
   double *taut;        /* (members) its cables: 0 where slack */
   double (*points)[2]; /* (count) likewise for lines */
-  size_t other_count, other_room;
-  double (*others)[2]; /* (other_room, 2) lines that names keep off [pt] */
 } path_picture;
 
 /* True if the path scales this load. */
@@ -60,61 +58,22 @@ static bool load_grows(const strut_path *path, const strut_load *load) {
 
 /* The curve of a path, and its shapes over each other. */
 
-enum { NAMED = 12, LABEL = 200, DIRECTIONS = 12 };
+enum { NAMED = 12, LABEL = 200 };
 
-static const double MARKER = 2.7, LETTER = 8.5, MARGIN = 15.0, ARROW = 22.0; /* [pt] */
+static const double MARKER = 2.7, MARGIN = 15.0, ARROW = 22.0; /* [pt] */
 
-/* Adds a segment that names avoid. */
-static void add_obstacle(path_picture *p, const double a[2], const double b[2]) {
-  if (p->other_count >= p->other_room) return;
-  double(*ends)[2] = p->others + 2 * p->other_count++;
-  for (int d = 0; d < 2; d++) {
-    ends[0][d] = a[d];
-    ends[1][d] = b[d];
-  }
-}
-
-/*
- * Draws letters beside the stops, clear of the line through p->points and of each other. A stop at NAN
- * is not shown.
- */
-static void draw_letters(path_picture *p, strut_box inside, const double (*points)[2]) {
-  double placed[MOST_STOPS][2];
-  size_t count = 0;
-  for (size_t i = 0; i < p->stop_count; i++) {
-    double best = -HUGE_VAL;
-    if (!p->stops[i].letter[0] || isnan(points[i][0])) continue;
-    for (int k = 0; k < DIRECTIONS; k++) {
-      double angle = 2 * STRUT_PI * (k + 0.5) / DIRECTIONS, free = LETTER;
-      const double at[2] = {points[i][0] + LETTER * cos(angle), points[i][1] - LETTER * sin(angle)};
-      for (size_t j = 0; j + 1 < p->count; j++)
-        free = fmin(free, strut_distance_to_segment(at, p->points[j], p->points[j + 1]));
-      for (size_t j = 0; j < p->stop_count; j++)
-        free = fmin(free, hypot(at[0] - points[j][0], at[1] - points[j][1]));
-      for (size_t j = 0; j < count; j++)
-        free = fmin(free, hypot(at[0] - placed[j][0], at[1] - placed[j][1]) - LETTER);
-      if (at[0] < inside.x + 4 || at[0] > inside.x + inside.width - 4 || at[1] < inside.y + 5 ||
-          at[1] > inside.y + inside.height - 5)
-        free -= 2 * LETTER;
-      if (free <= best + 1e-9) continue;
-      best = free;
-      placed[count][0] = at[0];
-      placed[count][1] = at[1];
-    }
-    strut_draw_text(p->canvas, placed[count][0], placed[count][1], p->stops[i].letter,
-                    (strut_font){.size = 8,
-                                 .bold = true,
-                                 .across = 0.5,
-                                 .down = 0.5,
-                                 .halo = strut_faded(strut_grey(1), 0.85)});
-    for (int side = -1; side <= 1; side += 2) {
-      const double *at = placed[count], half = 3.0;
-      const double low[2] = {at[0] - half, at[1] - side * half};
-      const double high[2] = {at[0] + half, at[1] + side * half};
-      add_obstacle(p, low, high);
-    }
-    count++;
-  }
+/* Letters beside the stops. A stop at NAN is not shown. */
+static void draw_letters(const path_picture *p, strut_box inside, const double (*points)[2]) {
+  for (size_t i = 0; i < p->stop_count; i++)
+    strut_draw_label(
+        p->canvas,
+        &(strut_label){.text = p->stops[i].letter,
+                       .font = {.size = 8, .bold = true, .halo = strut_faded(strut_grey(1), 0.85)},
+                       .at = {points[i][0], points[i][1]},
+                       .gap = MARKER + 1.5,
+                       .angle = 0.25 * STRUT_PI,
+                       .inside = inside,
+                       .priority = 1});
 }
 
 /* Is the point within the box, its edges included up to rounding? */
@@ -365,7 +324,6 @@ static void draw_node_path(path_picture *p, const strut_window *window, double s
 static void draw_shapes(path_picture *p, strut_box box) {
   double stops[MOST_STOPS][2], arrow[2][2];
   strut_window window = find_window(p, box);
-  p->other_count = 0; /* discard those of the curve */
   strut_draw_ground(p->canvas, &window, p->model);
   for (size_t i = 0; i < p->stop_count; i++) {
     const path_vertex *vertex = &p->vertices[p->stops[i].vertex];
@@ -376,32 +334,22 @@ static void draw_shapes(path_picture *p, strut_box box) {
                                          .thinness = 0.3,
                                          .no_supports = i > 0};
     strut_draw_structure(p->canvas, &window, p->model, enlarged(p, q), &style);
-    for (size_t j = 0; i > 0 && j < p->model->scene->member_count; j++)
-      for (size_t k = 0; k < strut_member_segments(p->model, j); k++) {
-        double ends[2][2];
-        strut_window_segment(&window, p->model, p->shape, j, k, ends);
-        add_obstacle(p, ends[0], ends[1]);
-      }
   }
   for (size_t l = 0; l < p->model->scene->load_count; l++) {
     if (!load_arrow(p, &window, &p->model->scene->loads[l], arrow)) continue;
     strut_draw_arrow(p->canvas, arrow[0][0], arrow[0][1], arrow[1][0], arrow[1][1], 6,
                      (strut_pen){.colour = strut_palette_thing(1), .width = 1.4});
-    add_obstacle(p, arrow[0], arrow[1]);
   }
   draw_node_path(p, &window, stops);
   draw_markers(p, (const double(*)[2])stops);
   draw_letters(p, box, (const double(*)[2])stops);
   if (p->model->node_count <= NAMED)
-    strut_draw_names(
-        p->canvas, &window, p->model, p->path->points[0].q,
-        &(strut_drawn_names){
-            .nodes = true, .others = (const double(*)[2])p->others, .other_count = p->other_count});
+    strut_draw_names(p->canvas, &window, p->model, p->path->points[0].q, false);
 }
 
 /* The path put in order, places to stop at, the page. */
 
-static const double EDGE = 4.0, BETWEEN = 12.0, WIDE = 330.0, HEADING = 16.0; /* [pt] */
+static const double EDGE = 4.0, BETWEEN = 12.0, WIDE = 330.0; /* [pt] */
 static const double CURVE_SHAPE = 0.72;        /* height over width of the curve's box */
 static const double SEEN = 0.05, LARGE = 0.12; /* motion over the structure's size */
 static const double NO_MOTION = 1e-10;         /* likewise: rounding, which is not enlarged */
@@ -563,10 +511,8 @@ static bool prepare_picture(path_picture *p, strut_arena *arena) {
   p->vertices = strut_arena_allocate(arena, most, sizeof *p->vertices);
   p->points = strut_arena_allocate(arena, most, sizeof *p->points);
   p->shape = strut_arena_allocate(arena, (size_t)p->model->length, sizeof *p->shape);
-  p->other_room = MOST_STOPS * (p->model->scene->member_count + 2) + p->model->scene->load_count;
-  p->others = strut_arena_allocate(arena, 2 * p->other_room, sizeof *p->others);
   p->taut = strut_arena_allocate(arena, p->model->scene->member_count + 1, sizeof *p->taut);
-  if (!p->vertices || !p->points || !p->shape || !p->taut || !p->others) return false;
+  if (!p->vertices || !p->points || !p->shape || !p->taut) return false;
   p->upright = p->path->over == STRUT_PATH_OVER_ACTUATOR || p->path->over == STRUT_PATH_OVER_SCENE;
   choose_coordinate(p);
   put_in_order(p);
@@ -617,8 +563,12 @@ static strut_status draw_picture(path_picture *p, strut_error *error) {
   if (status != STRUT_OK) return status;
   double inside = width - 2 * EDGE, key = strut_key_height(ruler, inside, items, count);
   strut_canvas_free(ruler);
+  double head = 0.0;
+  const strut_heading heading = {.width = width, .edge = EDGE, .title = title};
+  status = strut_heading_measure(&heading, &head, error);
+  if (status != STRUT_OK) return status;
   bool wide = width >= WIDE;
-  strut_box curve = {EDGE, EDGE + HEADING, wide ? 0.5 * (inside - BETWEEN) : inside, 0};
+  strut_box curve = {EDGE, EDGE + head, wide ? 0.5 * (inside - BETWEEN) : inside, 0};
   curve.height = CURVE_SHAPE * curve.width;
   strut_box shapes = curve;
   if (wide) {
@@ -630,7 +580,7 @@ static strut_status draw_picture(path_picture *p, strut_error *error) {
   double below = shapes.y + shapes.height + 0.5 * BETWEEN;
   status = strut_canvas_open(p->plot->path, width, below + key + EDGE, title, &p->canvas, error);
   if (status != STRUT_OK) return status;
-  strut_draw_heading(p->canvas, EDGE, title, "");
+  strut_heading_draw(p->canvas, &heading);
   draw_curve(p, curve);
   draw_shapes(p, shapes);
   strut_draw_key(p->canvas, (strut_box){EDGE, below, inside, key}, items, count);

@@ -258,7 +258,7 @@ strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, st
   if (!(kind == STRUT_RUN_DRIVE ? fill_drive(run, first, &p) : fill_panel(run, kind, first, &p)))
     return STRUT_NO_MEMORY;
   if (kind == STRUT_RUN_DISPLACEMENT && p.count == 1) p.name = "x displacement";
-  if (!fit_labels(run, 0.4 * box.width, &p)) return STRUT_NO_MEMORY;
+  if (!fit_labels(run, 0.8 * box.width, &p)) return STRUT_NO_MEMORY;
   strut_series series[MOST_CURVES];
   for (size_t i = 0; i < p.count; i++)
     series[i] = (strut_series){.label = p.labels[i],
@@ -276,25 +276,29 @@ strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, st
   return strut_draw_curves(canvas, box, &curves);
 }
 
+void strut_run_curves_describe(strut_run_scene *run, char *text) {
+  bool some = false;
+  for (int kind = 0; kind < STRUT_RUN_PANELS; kind++)
+    some = some || strut_run_panel_wanted(run, kind);
+  snprintf(text, STRUT_RUN_NOTE, "%s", some ? "everything recorded" : "nothing changed");
+}
+
 double strut_run_curves_height(strut_run_scene *run) {
-  double height = 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE;
+  double height = 2 * STRUT_RUN_EDGE + run->head;
   for (int kind = 0; kind < STRUT_RUN_PANELS; kind++)
     if (strut_run_panel_wanted(run, kind)) height += CURVES_HEIGHT;
   return height;
 }
 
 strut_status strut_run_curves(strut_run_scene *run, strut_canvas *canvas) {
-  strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + STRUT_RUN_TITLE,
+  strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + run->head,
                    run->figure->width - 2 * STRUT_RUN_EDGE, CURVES_HEIGHT};
-  size_t drawn = 0;
   for (int kind = 0; kind < STRUT_RUN_PANELS; kind++) {
     if (!strut_run_panel_wanted(run, kind)) continue;
     strut_status status = strut_run_draw_panel(run, canvas, box, kind, 0);
     if (status != STRUT_OK) return status;
     box.y += CURVES_HEIGHT;
-    drawn++;
   }
-  strut_run_draw_title(run, canvas, drawn ? "everything recorded" : "nothing changed", true);
   return STRUT_OK;
 }
 
@@ -388,13 +392,18 @@ static double foot_height(const strut_run_scene *run, strut_canvas *canvas,
   return YARDSTICK - KEY_LINE + fmax(KEY_LINE, strut_key_height(canvas, width, items, count));
 }
 
+void strut_run_overview_describe(strut_run_scene *run, char *text) {
+  snprintf(text, STRUT_RUN_NOTE, "shape at %s",
+           strut_drawn_quantity(run->motion->time[run->frames - 1], 5, "s").text);
+}
+
 double strut_run_overview_height(strut_run_scene *run) {
   int panels[MOST_PANELS], count = panels_of(run, panels);
   char texts[ITEMS][120];
   strut_key_item items[ITEMS];
   size_t keys = make_key(run, texts, items);
   double key = foot_height(run, run->ruler, items, keys);
-  return 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE + drawing_height(run) + key + GAP +
+  return 2 * STRUT_RUN_EDGE + run->head + drawing_height(run) + key + GAP +
          CHART * (has_two_columns(run) ? (count + 1) / 2 : count);
 }
 
@@ -407,7 +416,7 @@ static bool draw_structure(strut_run_scene *run, strut_canvas *canvas, strut_box
   for (size_t i = 0; i < nodes && nodes <= MOST_PATHS; i++) {
     for (size_t f = first; f < run->frames; f++)
       for (size_t d = 0; d < 2; d++) path[f - first][d] = strut_run_positions(run, f)[2 * i + d];
-    strut_run_draw_path(run, canvas, &window, (const double(*)[2])path, run->frames - first, 0.9);
+    strut_run_draw_path(canvas, &window, (const double(*)[2])path, run->frames - first, 0.9);
   }
   strut_run_draw_reactions(run, canvas, &window, last);
   strut_run_draw_names(run, canvas, &window, q);
@@ -434,13 +443,10 @@ static strut_status draw_charts(strut_run_scene *run, strut_canvas *canvas, stru
 
 strut_status strut_run_overview(strut_run_scene *run, strut_canvas *canvas) {
   double width = run->figure->width - 2 * STRUT_RUN_EDGE, height = drawing_height(run);
-  char what[100], texts[ITEMS][120];
+  char texts[ITEMS][120];
   strut_key_item items[ITEMS];
   size_t keys = make_key(run, texts, items);
-  snprintf(what, sizeof what, "shape at %s",
-           strut_drawn_quantity(run->motion->time[run->frames - 1], 5, "s").text);
-  strut_run_draw_title(run, canvas, what, true);
-  strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + STRUT_RUN_TITLE, width - SCALE, height};
+  strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + run->head, width - SCALE, height};
   if (!draw_structure(run, canvas, box)) return STRUT_NO_MEMORY;
   strut_run_draw_scale(
       run, canvas,

@@ -10,21 +10,28 @@
 #include "engine/output/draw/canvas.h"
 #include "engine/output/figures/run_parts.h"
 
-enum { LEAST_SAMPLES = 8 };         /* per period, for its shape to be visible */
-static const double BURST = 10.0;   /* a diverged shape larger than this, in sizes, is not drawn */
+enum { LEAST_SAMPLES = 8 };       /* per period, for its shape to be visible */
+static const double BURST = 10.0; /* a diverged shape larger than this, in sizes, is not drawn */
+static const double FEW_FRAMES = 0.05;
 static const double SMALLEST = 0.2; /* of the model's size, for a drawing */
 
 static const struct {
+  void (*describe)(strut_run_scene *run, char *text);
   double (*height)(strut_run_scene *run);
   strut_status (*draw)(strut_run_scene *run, strut_canvas *canvas);
+  bool velocity; /* its heading tells the velocity */
   unsigned channels;
 } views[] = {
-    [STRUT_RUN_OVERVIEW] = {strut_run_overview_height, strut_run_overview,
+    [STRUT_RUN_OVERVIEW] = {strut_run_overview_describe, strut_run_overview_height,
+                            strut_run_overview, true,
                             STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT | STRUT_CHANNEL_ANGLE},
-    [STRUT_RUN_PERIOD] = {strut_run_period_height, strut_run_period, 0},
-    [STRUT_RUN_SNAPSHOTS] = {strut_run_snapshots_height, strut_run_snapshots,
+    [STRUT_RUN_PERIOD] = {strut_run_period_describe, strut_run_period_height, strut_run_period,
+                          true, 0},
+    [STRUT_RUN_SNAPSHOTS] = {strut_run_snapshots_describe, strut_run_snapshots_height,
+                             strut_run_snapshots, false,
                              STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT},
-    [STRUT_RUN_CURVES] = {strut_run_curves_height, strut_run_curves,
+    [STRUT_RUN_CURVES] = {strut_run_curves_describe, strut_run_curves_height, strut_run_curves,
+                          true,
                           STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT | STRUT_CHANNEL_ENERGY |
                               STRUT_CHANNEL_ANGLE | STRUT_CHANNEL_MOMENT | STRUT_CHANNEL_AREA |
                               STRUT_CHANNEL_PRESSURE},
@@ -81,10 +88,22 @@ static double largest(const double *values, size_t count) {
   return most;
 }
 
+/* The scale of forces, from the largest of each frame, but for a few frames with far larger ones. False:
+   out of memory. */
+static bool find_force_limit(strut_run_scene *run) {
+  const strut_trajectory *m = run->motion;
+  double *most = strut_arena_allocate(&run->arena, run->frames + 1, sizeof *most);
+  if (!most) return false;
+  for (size_t f = 0; f < run->frames && m->force; f++)
+    most[f] = largest(m->force + f * m->member_count, m->member_count);
+  run->force_limit = strut_limit_without_outliers(most, run->frames, 0.0, FEW_FRAMES, &run->beyond);
+  run->beyond.below = run->beyond.above; /* of either sign */
+  return true;
+}
+
 void strut_run_count_frames(strut_run_scene *run) {
   const strut_trajectory *m = run->motion;
   while (run->frames < m->frames && is_shape(run, run->frames)) run->frames++;
-  run->force_limit = largest(m->force, run->frames * m->member_count);
   double period = strut_experiment_span(run->figure->experiment, run->model->scene).period;
   double all = run->frames ? strut_run_time_from(run, 0) : 0;
   bool fine = (double)(run->frames - 1) * period >= LEAST_SAMPLES * all * (1 - 1e-9);
@@ -93,30 +112,6 @@ void strut_run_count_frames(strut_run_scene *run) {
 
 static const char *title_of(const strut_run_scene *run) {
   return run->figure->title ? run->figure->title : run->model->scene->name;
-}
-
-strut_status strut_run_figure_draw(const char *path, const strut_run_figure *figure,
-                                   const strut_model *model, const strut_trajectory *motion,
-                                   const strut_summary *summary, strut_error *error) {
-  strut_run_scene run = {
-      .figure = figure, .model = model, .motion = motion, .summary = summary, .arrow = 24};
-  if (motion->position) strut_run_count_frames(&run);
-  if (!run.frames)
-    return strut_fail(error, STRUT_USAGE, "there is nothing to draw: no positions were recorded");
-  strut_canvas *canvas = NULL;
-  strut_status status = strut_canvas_open_pixels(1, 1, 1, &run.ruler, error);
-  if (status == STRUT_OK)
-    status = strut_canvas_open(path, figure->width, views[figure->view].height(&run),
-                               title_of(&run), &canvas, error);
-  if (status == STRUT_OK) {
-    status = views[figure->view].draw(&run, canvas);
-    if (status != STRUT_OK) strut_fail(error, status, "out of memory while drawing");
-  }
-  if (status == STRUT_OK) status = strut_canvas_commit(canvas, error);
-  strut_canvas_free(canvas);
-  strut_canvas_free(run.ruler);
-  strut_arena_free(&run.arena);
-  return status;
 }
 
 double *strut_run_shape(strut_run_scene *run, size_t frame) {
@@ -190,7 +185,7 @@ double strut_run_drawing_height(const strut_bounds *b, double width, double marg
 
 /* Parts of several views: titles, shapes, contact forces, paths, names. */
 
-enum { MOST_NAMES = 30, MOST_AVOIDED = 1500, PATH_PIECES = 40, LINE = 600 };
+enum { MOST_NAMES = 30 };
 
 static const double DOT = 0.3;       /* [pt] */
 static const double STANDING = 1e-6; /* of the model's size over the whole run: it stands still */
@@ -220,36 +215,14 @@ bool strut_run_draw_frame(strut_run_scene *run, strut_canvas *canvas, const stru
   return true;
 }
 
-/* Adds a segment that names avoid; ignored without memory or beyond MOST_AVOIDED. */
-static void add_obstacle(strut_run_scene *run, const double from[2], const double to[2]) {
-  if (!run->avoid)
-    run->avoid = strut_arena_allocate(&run->arena, 2 * MOST_AVOIDED, sizeof *run->avoid);
-  if (!run->avoid || run->avoid_count == MOST_AVOIDED) return;
-  memcpy(run->avoid[2 * run->avoid_count], from, sizeof *run->avoid);
-  memcpy(run->avoid[2 * run->avoid_count + 1], to, sizeof *run->avoid);
-  run->avoid_count++;
-}
-
 void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
                               const strut_window *window, size_t frame) {
   const strut_trajectory *m = run->motion;
-  const strut_contact_table *contacts = &run->model->contacts;
   const double *q = strut_run_positions(run, frame);
   if (!m->contact || !(run->contact_limit > 0)) return;
   const double *force = m->contact + 2 * frame * m->contact_count;
   strut_draw_contact_forces(canvas, window, run->model, q, (const double(*)[2])force,
                             run->contact_limit, run->arrow);
-  for (int32_t i = 0; i < contacts->count; i++) {
-    double at[2], length = force[2 * i] / run->contact_limit * run->arrow;
-    strut_window_point(window, q + contacts->at[i], at);
-    const strut_contact_pose pose = strut_contact_pose_at(contacts, i, q, NULL, -1);
-    const double *n = pose.axes.normal, *t = pose.axes.tangent;
-    const double foot[2] = {at[0] - length * n[0], at[1] + length * n[1]};
-    if (length > 1) add_obstacle(run, foot, at);
-    length = force[2 * i + 1] / run->contact_limit * run->arrow;
-    const double tip[2] = {at[0] + length * t[0], at[1] - length * t[1]};
-    if (fabs(length) > 1) add_obstacle(run, at, tip);
-  }
 }
 
 /* True if a path is longer than a dot on the page. */
@@ -262,29 +235,17 @@ static bool is_visible(const strut_window *window, const double (*path)[2], size
   return false;
 }
 
-void strut_run_draw_path(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
-                         const double (*path)[2], size_t count, double width) {
-  double before[2], at[2];
+void strut_run_draw_path(strut_canvas *canvas, const strut_window *window, const double (*path)[2],
+                         size_t count, double width) {
   if (!is_visible(window, path, count)) return;
   strut_canvas_clip(canvas, window->box);
   strut_draw_trail(canvas, window, path, count, width);
   strut_canvas_unclip(canvas);
-  for (size_t i = 0; i <= PATH_PIECES && count > 1; i++) {
-    strut_window_point(window, path[i * (count - 1) / PATH_PIECES], at);
-    if (i > 0 && hypot(at[0] - before[0], at[1] - before[1]) > 0.5) add_obstacle(run, before, at);
-    if (i > 0 && hypot(at[0] - before[0], at[1] - before[1]) <= 0.5) continue;
-    memcpy(before, at, sizeof before);
-  }
 }
 
-void strut_run_draw_names(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
-                          const double *q) {
-  if (run->model->node_count <= MOST_NAMES)
-    strut_draw_names(canvas, window, run->model, q,
-                     &(strut_drawn_names){.nodes = true,
-                                          .others = (const double(*)[2])run->avoid,
-                                          .other_count = run->avoid_count});
-  run->avoid_count = 0;
+void strut_run_draw_names(const strut_run_scene *run, strut_canvas *canvas,
+                          const strut_window *window, const double *q) {
+  if (run->model->node_count <= MOST_NAMES) strut_draw_names(canvas, window, run->model, q, false);
 }
 
 void strut_run_draw_scale(const strut_run_scene *run, strut_canvas *canvas, strut_box box) {
@@ -292,7 +253,8 @@ void strut_run_draw_scale(const strut_run_scene *run, strut_canvas *canvas, stru
                                     .unit = "N",
                                     .low = -run->force_limit,
                                     .high = run->force_limit,
-                                    .colours = STRUT_COLOURS_SIGNED};
+                                    .colours = STRUT_COLOURS_SIGNED,
+                                    .beyond = run->beyond};
   if (run->motion->force && run->force_limit > 0) strut_draw_colour_scale(canvas, box, &scale);
 }
 
@@ -313,51 +275,11 @@ static double shown_velocity(const strut_run_scene *run) {
   return path > STANDING * run->model->size ? s->velocity : 0;
 }
 
-/* Appends the velocity to the line, with the measured point's name if it fits. */
-static void append_velocity(const strut_run_scene *run, strut_canvas *canvas, double velocity,
-                            double room, strut_font font, char line[LINE]) {
-  size_t used = strlen(line);
-  double width, height;
-  strut_rounded_quantity text = strut_drawn_quantity(velocity, 4, "m/s");
-  snprintf(line + used, LINE - used, "; velocity of %s %s", strut_run_measured_name(run),
-           text.text);
-  strut_text_size(canvas, line, font, &width, &height);
-  if (width > room) snprintf(line + used, LINE - used, "; velocity %s", text.text);
-}
+/* A second motion of the same structure, dashed below the first. */
 
-void strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, const char *what,
-                          bool velocity) {
-  const strut_summary *s = run->summary;
-  double room = strut_canvas_box(canvas).width - 2 * STRUT_RUN_EDGE, width, height;
-  const double arrow = 18, x = STRUT_RUN_EDGE, y = STRUT_RUN_EDGE + 12;
-  char line[LINE], fitted[STRUT_FITTED_TEXT];
-  const strut_font title = {.size = 9, .bold = true};
-  strut_font below = {.size = 8, .colour = strut_grey(0.3)};
-  bool failed = s && s->status != STRUT_OK;
-  if (failed) below.colour = strut_palette_thing(1);
-  velocity = velocity && !failed && s && isfinite(s->velocity);
-  double v = velocity ? shown_velocity(run) : 0;
-  if (failed)
-    snprintf(line, sizeof line, "%s at %s; %s",
-             s->status == STRUT_DIVERGED ? "diverged" : "stopped",
-             strut_drawn_quantity(s->duration, 4, "s").text, what);
-  else
-    snprintf(line, sizeof line, "%s", what);
-  if (velocity) append_velocity(run, canvas, v, v != 0 ? room - arrow - 6 : room, below, line);
-  strut_draw_text(canvas, x, STRUT_RUN_EDGE,
-                  strut_text_fit(canvas, title_of(run), title, room, 0, fitted), title);
-  strut_text_fit(canvas, line, below, v != 0 ? room - arrow - 6 : room, 0, fitted);
-  strut_draw_text(canvas, x, y, fitted, below);
-  if (v == 0) return;
-  strut_text_size(canvas, fitted, below, &width, &height);
-  double left = x + width + 5, right = left + arrow, middle = y + 0.5 * height;
-  strut_draw_arrow(canvas, v > 0 ? left : right, middle, v > 0 ? right : left, middle, 5,
-                   (strut_pen){.colour = strut_grey(0.3), .width = 1.1});
-}
-
-/* A second motion of the same structure, dashed over the first. */
-
-static const strut_pen PEN = {.colour = {0.05, 0.05, 0.05, 1}, .width = 0.7, .dash = {2.4, 1.6}};
+static const double FRINGE =
+    1.8; /* both edges of dashes, which show on both sides of what lies on them [pt] */
+static const strut_colour DASHES = {0.25, 0.25, 0.25, 1};
 
 bool strut_run_find_other(const strut_run_scene *run, strut_run_scene *other) {
   *other = (strut_run_scene){.figure = run->figure,
@@ -370,28 +292,88 @@ bool strut_run_find_other(const strut_run_scene *run, strut_run_scene *other) {
 }
 
 void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
-                          const strut_window *window, size_t frame) {
-  const strut_scene *scene = other->model->scene;
-  const double *q = strut_run_positions(other, frame);
-  for (size_t i = 0; i < scene->member_count; i++)
-    for (size_t k = 0; k < strut_member_segments(other->model, i); k++) {
-      double ends[2][2];
-      strut_window_segment(window, other->model, q, i, k, ends);
-      strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], PEN);
-    }
+                          const strut_window *window, const double *q) {
+  const strut_structure_style style = {.colouring = STRUT_COLOUR_ONE,
+                                       .colour = DASHES,
+                                       .fringe = FRINGE,
+                                       .no_nodes = true,
+                                       .no_supports = true};
+  strut_draw_structure(canvas, window, other->model, q, &style);
 }
 
 bool strut_run_draw_other_path(strut_run_scene *other, strut_canvas *canvas,
                                const strut_window *window, const double (*path)[2], size_t count) {
+  const strut_pen pen = {
+      .colour = DASHES, .width = STRUT_RUN_TRAIL + FRINGE, .dash = {2.2, 2.2}, .butt = true};
   double(*points)[2] = strut_arena_allocate(&other->arena, count, sizeof *points);
   for (size_t i = 0; points && i < count; i++) strut_window_point(window, path[i], points[i]);
-  if (points) strut_draw_line(canvas, (const double(*)[2])points, count, PEN);
+  if (points) strut_draw_line(canvas, (const double(*)[2])points, count, pen);
   return points != NULL;
 }
 
 void strut_run_describe_other(const strut_run_scene *run, char *text, size_t size) {
   size_t used = strlen(text);
   if (run->figure->other)
-    snprintf(text + used, size - used, ", black dashes: %s",
+    snprintf(text + used, size - used, "; thick dashes: %s",
              run->figure->other_name ? run->figure->other_name : "another");
+}
+
+/* ---- the whole figure ---- */
+
+/* The heading: the model's name and `what`, with the velocity where wanted, or the failure; in `note`. */
+static strut_status describe_run(strut_run_scene *run, char note[STRUT_RUN_NOTE],
+                                 strut_error *error) {
+  const strut_summary *s = run->summary;
+  char what[STRUT_RUN_NOTE];
+  bool failed = s && s->status != STRUT_OK;
+  views[run->figure->view].describe(run, what);
+  int used = 0;
+  if (failed)
+    used = snprintf(note, STRUT_RUN_NOTE, "%s at %s; ",
+                    s->status == STRUT_DIVERGED ? "diverged" : "stopped",
+                    strut_drawn_quantity(s->duration, 4, "s").text);
+  used += snprintf(note + used, STRUT_RUN_NOTE - (size_t)used, "%.400s", what);
+  if (views[run->figure->view].velocity && s && !failed && isfinite(s->velocity)) {
+    double v = shown_velocity(run);
+    snprintf(note + used, STRUT_RUN_NOTE - (size_t)used, "; velocity of %.60s %s%s",
+             strut_run_measured_name(run), strut_drawn_quantity(v, 4, "m/s").text,
+             v > 0   ? " \xe2\x86\x92"
+             : v < 0 ? " \xe2\x86\x90"
+                     : "");
+  }
+  run->heading = (strut_heading){.width = run->figure->width,
+                                 .edge = STRUT_RUN_EDGE,
+                                 .title = title_of(run),
+                                 .note = note,
+                                 .alarm = failed};
+  return strut_heading_measure(&run->heading, &run->head, error);
+}
+
+strut_status strut_run_figure_draw(const char *path, const strut_run_figure *figure,
+                                   const strut_model *model, const strut_trajectory *motion,
+                                   const strut_summary *summary, strut_error *error) {
+  strut_run_scene run = {
+      .figure = figure, .model = model, .motion = motion, .summary = summary, .arrow = 24};
+  if (motion->position) strut_run_count_frames(&run);
+  if (!run.frames)
+    return strut_fail(error, STRUT_USAGE, "there is nothing to draw: no positions were recorded");
+  strut_canvas *canvas = NULL;
+  char note[STRUT_RUN_NOTE];
+  strut_status status = strut_canvas_open_pixels(1, 1, 1, &run.ruler, error);
+  if (status == STRUT_OK && !find_force_limit(&run))
+    status = strut_no_memory(error, "while drawing");
+  if (status == STRUT_OK) status = describe_run(&run, note, error);
+  if (status == STRUT_OK)
+    status = strut_canvas_open(path, figure->width, views[figure->view].height(&run),
+                               title_of(&run), &canvas, error);
+  if (status == STRUT_OK) {
+    strut_heading_draw(canvas, &run.heading);
+    status = views[figure->view].draw(&run, canvas);
+    if (status != STRUT_OK) strut_fail(error, status, "out of memory while drawing");
+  }
+  if (status == STRUT_OK) status = strut_canvas_commit(canvas, error);
+  strut_canvas_free(canvas);
+  strut_canvas_free(run.ruler);
+  strut_arena_free(&run.arena);
+  return status;
 }

@@ -19,22 +19,25 @@ typedef struct strut_run_scene {
   strut_canvas *ruler;  /* to measure texts before there is a page */
   size_t frames;        /* that can be drawn; a diverged run ends earlier */
   double period;        /* [s]; 0: not periodic, or too few frames */
-  double force_limit;   /* largest force of a member in any frame [N] */
+  double force_limit;   /* of the colours: largest force of a member in any frame [N] */
+  strut_beyond beyond;  /* but for frames with far larger ones */
   double contact_limit; /* largest force of the ground in the frames drawn [N] */
   double arrow;         /* length of the arrow for that [pt] */
-  double (*avoid)[2];   /* (2 avoid_count) ends of segments that names avoid [pt] */
-  size_t avoid_count;
+  strut_heading heading;
+  double head; /* its height [pt] */
   strut_arena arena;
 } strut_run_scene;
 
-/** Margins around all figures, and the height of their titles [pt]. */
+/** Margins around all figures [pt]. */
 #define STRUT_RUN_EDGE 5.0
-#define STRUT_RUN_TITLE 27.0
+enum { STRUT_RUN_NOTE = 600 };
+/** Width of enlarged node trajectories [pt]. */
+#define STRUT_RUN_TRAIL 1.5
 
 /** Shorter than the time between any two frames [s]. */
 #define STRUT_RUN_MOMENT 1e-9
 
-/** Sets frames, period and force_limit, before anything is drawn. */
+/** Sets frames and period, before anything is drawn. */
 void strut_run_count_frames(strut_run_scene *run);
 /** Positions (nodes, 2) of a frame. */
 const double *strut_run_positions(const strut_run_scene *run, size_t frame);
@@ -69,29 +72,26 @@ bool strut_run_draw_frame(strut_run_scene *run, strut_canvas *canvas, const stru
 void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
                               const strut_window *window, size_t frame);
 /** A path through (count) positions [m], clipped to the window's box. */
-void strut_run_draw_path(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
-                         const double (*path)[2], size_t count, double width);
+void strut_run_draw_path(strut_canvas *canvas, const strut_window *window, const double (*path)[2],
+                         size_t count, double width);
 /**
  * The figure's second motion, with its own arena, which the caller frees; false where there is
  * none.
  */
 bool strut_run_find_other(const strut_run_scene *run, strut_run_scene *other);
-/** Draws the second motion's members in a frame, dashed. */
+/** Draws the second motion's members in a shape of its model, dashed: before the first's. */
 void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
-                          const strut_window *window, size_t frame);
-/** Draws the second motion's path through (count) positions [m], dashed; false: out of memory. */
+                          const strut_window *window, const double *q);
+/** Draws the second motion's path through (count) positions [m], dashed, likewise; false: out of memory. */
 bool strut_run_draw_other_path(strut_run_scene *other, strut_canvas *canvas,
                                const strut_window *window, const double (*path)[2], size_t count);
-/** Appends ", black dashes: NAME" to a text where there is another motion. */
+/** Appends "; thick dashes: NAME" to a text where there is another motion. */
 void strut_run_describe_other(const strut_run_scene *run, char *text, size_t size);
-/** Names of the nodes of a shape, clear of all that was drawn since the last call. */
-void strut_run_draw_names(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
-                          const double *q);
+/** Names of the nodes of a shape, unless there are many. */
+void strut_run_draw_names(const strut_run_scene *run, strut_canvas *canvas,
+                          const strut_window *window, const double *q);
 /** The scale of the colours of force. */
 void strut_run_draw_scale(const strut_run_scene *run, strut_canvas *canvas, strut_box box);
-/** The model's name and a line below it: `what`, and the velocity where wanted, or the failure. */
-void strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, const char *what,
-                          bool velocity);
 /**
  * The key entry of the contact arrows; false where there are none. `text` has room for 120 bytes.
  */
@@ -115,13 +115,20 @@ bool strut_run_panel_wanted(const strut_run_scene *run, int panel);
 strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, strut_box box,
                                   int panel, size_t first);
 
-/** Height [pt] of each view for the figure's width, and its drawing. */
+/**
+ * What each view shows, for the heading (at most STRUT_RUN_NOTE bytes), its height [pt] for the figure's
+ * width, and its drawing below the heading.
+ */
+void strut_run_overview_describe(strut_run_scene *run, char *text);
 double strut_run_overview_height(strut_run_scene *run);
 strut_status strut_run_overview(strut_run_scene *run, strut_canvas *canvas);
+void strut_run_period_describe(strut_run_scene *run, char *text);
 double strut_run_period_height(strut_run_scene *run);
 strut_status strut_run_period(strut_run_scene *run, strut_canvas *canvas);
+void strut_run_snapshots_describe(strut_run_scene *run, char *text);
 double strut_run_snapshots_height(strut_run_scene *run);
 strut_status strut_run_snapshots(strut_run_scene *run, strut_canvas *canvas);
+void strut_run_curves_describe(strut_run_scene *run, char *text);
 double strut_run_curves_height(strut_run_scene *run);
 strut_status strut_run_curves(strut_run_scene *run, strut_canvas *canvas);
 

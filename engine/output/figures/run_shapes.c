@@ -116,20 +116,20 @@ double strut_run_period_height(strut_run_scene *run) {
   node_paths w;
   double width = run->figure->width - 2 * STRUT_RUN_EDGE;
   if (!find_paths(run, &w)) return width;
-  return 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE + period_foot_height(run) +
+  return 2 * STRUT_RUN_EDGE + run->head + period_foot_height(run) +
          strut_run_drawing_height(&w.bounds, width, PERIOD_MARGIN, 0.16, 0.75);
 }
 
-static void describe_period(const strut_run_scene *run, const node_paths *w, char *text,
-                            size_t size) {
+void strut_run_period_describe(strut_run_scene *run, char *text) {
   strut_c_locale locale = strut_c_locale_enter();
   /* The period itself: the frames drawn of it span a whole number of samples. */
-  double span = run->period > 0 ? run->period : strut_run_time_from(run, w->first);
-  snprintf(text, size, "%s%s%s%s, dark to bright",
+  double span = run->period > 0 ? run->period : strut_run_time_from(run, first_frame(run));
+  snprintf(text, STRUT_RUN_NOTE, "%s%s%s%s, dark to bright",
            run->figure->width < WIDE ? "" : "node trajectories over ",
            run->period > 0 ? "one period (" : "", strut_drawn_quantity(span, 4, "s").text,
            run->period > 0 ? ")" : "");
   strut_c_locale_leave(locale);
+  strut_run_describe_other(run, text, STRUT_RUN_NOTE);
 }
 
 /* A note on the enlargement, between scale bar and colour bar, or above both. */
@@ -165,25 +165,21 @@ static void draw_time_scale(const strut_run_scene *run, strut_canvas *canvas, co
 
 strut_status strut_run_period(strut_run_scene *run, strut_canvas *canvas) {
   node_paths w;
-  char text[240];
   double width = run->figure->width - 2 * STRUT_RUN_EDGE, page = strut_canvas_box(canvas).height;
   double foot = page - STRUT_RUN_EDGE - KEY, scale_width = fmin(150, 0.45 * width);
   double end = page - STRUT_RUN_EDGE - period_foot_height(run);
   if (!find_paths(run, &w)) return STRUT_NO_MEMORY;
-  describe_period(run, &w, text, sizeof text);
-  strut_run_describe_other(run, text, sizeof text);
-  strut_run_draw_title(run, canvas, text, run->figure->width >= WIDE);
-  strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + STRUT_RUN_TITLE, width,
-                   end - STRUT_RUN_EDGE - STRUT_RUN_TITLE};
+  strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + run->head, width,
+                   end - STRUT_RUN_EDGE - run->head};
   strut_window window = strut_window_fit(box, w.bounds, PERIOD_MARGIN);
   const strut_structure_style pale = {
       .colouring = STRUT_COLOUR_ONE, .colour = strut_grey(0.72), .thinness = 0.5};
   strut_draw_ground(canvas, &window, run->model);
   strut_draw_structure(canvas, &window, run->model, w.shape, &pale);
-  for (size_t i = 0; i < run->motion->node_count; i++)
-    strut_run_draw_path(run, canvas, &window, (const double(*)[2])(w.path + i * w.count), w.count,
-                        1.5);
   if (!draw_other_paths(run, canvas, &w, &window)) return STRUT_NO_MEMORY;
+  for (size_t i = 0; i < run->motion->node_count; i++)
+    strut_run_draw_path(canvas, &window, (const double(*)[2])(w.path + i * w.count), w.count,
+                        STRUT_RUN_TRAIL);
   strut_run_draw_names(run, canvas, &window, w.shape);
   window.box.y = page - STRUT_RUN_EDGE - box.height; /* at the bottom, below the structure */
   strut_draw_yardstick(canvas, &window);
@@ -354,10 +350,21 @@ static double snapshots_foot_height(const strut_run_scene *run) {
   return narrow ? FOOT + KEY_LINE : FOOT;
 }
 
+void strut_run_snapshots_describe(strut_run_scene *run, char *text) {
+  grid g = lay_out_grid(run);
+  bool marked = g.common[0] && g.moves;
+  snprintf(text, STRUT_RUN_NOTE, "%zu snapshot%s to the same scale%s%.200s", g.count,
+           g.count == 1 ? "" : "s",
+           marked        ? "; dashed: initial position of "
+           : g.common[0] ? ""
+                         : "; each centred",
+           marked ? strut_run_measured_name(run) : "");
+  strut_run_describe_other(run, text, STRUT_RUN_NOTE);
+}
+
 double strut_run_snapshots_height(strut_run_scene *run) {
   grid g = lay_out_grid(run);
-  return 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE + (double)g.rows * g.cell[1] +
-         snapshots_foot_height(run);
+  return 2 * STRUT_RUN_EDGE + run->head + (double)g.rows * g.cell[1] + snapshots_foot_height(run);
 }
 
 static strut_window window_of(const strut_run_scene *run, const grid *g, size_t i, strut_box cell) {
@@ -402,6 +409,17 @@ static int count_digits(const strut_run_scene *run, const grid *g) {
   return (int)fmax(3, fmin(digits, 9));
 }
 
+/* Draws the second motion, if there is one, at the same time. False: out of memory. */
+static bool draw_other_shape(const strut_run_scene *run, strut_canvas *canvas,
+                             const strut_window *window, size_t frame) {
+  strut_run_scene other;
+  if (!strut_run_find_other(run, &other)) return true;
+  const double *q = strut_run_shape(&other, matching_frame(run, &other, frame));
+  if (q) strut_run_draw_other(&other, canvas, window, q);
+  strut_arena_free(&other.arena);
+  return q != NULL;
+}
+
 static bool draw_cell(strut_run_scene *run, strut_canvas *canvas, const grid *g, size_t i,
                       strut_box cell) {
   size_t frame = frame_of_cell(run, i, g->count), first = frame_of_cell(run, 0, g->count);
@@ -420,15 +438,12 @@ static bool draw_cell(strut_run_scene *run, strut_canvas *canvas, const grid *g,
                   strut_text_fit(canvas, text, font, cell.width - 6, 0, fitted), font);
   strut_canvas_clip(canvas, (strut_box){cell.x, cell.y + LINE, cell.width, cell.height - LINE});
   mark_start(run, canvas, g, &window);
-  bool good = q && strut_run_draw_frame(run, canvas, &window, frame);
+  bool good = q && draw_other_shape(run, canvas, &window, frame) &&
+              strut_run_draw_frame(run, canvas, &window, frame);
   strut_run_draw_reactions(run, canvas, &window, frame);
-  strut_run_scene other;
-  if (strut_run_find_other(run, &other))
-    strut_run_draw_other(&other, canvas, &window, matching_frame(run, &other, frame));
   if (good && run->model->node_count <= MOST_NAMED && cell.width > NAMED)
     strut_run_draw_names(run, canvas, &window, q);
   strut_canvas_unclip(canvas);
-  run->avoid_count = 0;
   return good;
 }
 
@@ -455,17 +470,7 @@ static void draw_foot(strut_run_scene *run, strut_canvas *canvas, const grid *g,
 
 strut_status strut_run_snapshots(strut_run_scene *run, strut_canvas *canvas) {
   grid g = lay_out_grid(run);
-  char what[200];
-  bool marked = g.common[0] && g.moves;
-  double top = STRUT_RUN_EDGE + STRUT_RUN_TITLE;
-  snprintf(what, sizeof what, "%zu snapshot%s to the same scale%s%s", g.count,
-           g.count == 1 ? "" : "s",
-           marked        ? "; dashed: initial position of "
-           : g.common[0] ? ""
-                         : "; each centred",
-           marked ? strut_run_measured_name(run) : "");
-  strut_run_describe_other(run, what, sizeof what);
-  strut_run_draw_title(run, canvas, what, false);
+  double top = STRUT_RUN_EDGE + run->head;
   run->arrow = ARROW;
   for (size_t i = 0; i < g.count; i++) strut_run_expect_frame(run, frame_of_cell(run, i, g.count));
   for (size_t i = 0; i < g.count; i++) {

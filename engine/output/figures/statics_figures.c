@@ -11,8 +11,9 @@
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure.h"
 
-static const double EDGE = 5, TITLE = 28, MARGIN = 24, SCALE = 46;
+static const double EDGE = 5, MARGIN = 24, SCALE = 46;
 /* Narrower figures have the colour bar below the drawing and no names. */
+enum { NOTE = 400 };
 static const double NARROW = 170, FOOT = 50, LEAST_MARGIN = 8;
 
 /* Member forces at the start, of cables that only pull, by rest lengths. Returns the largest. */
@@ -40,25 +41,33 @@ typedef struct found_form {
   const double *force;  /* (members) */
   double limit, moved;  /* the largest of them; the way of the node that went farthest [m] */
   strut_bounds bounds;
+  strut_heading heading;
+  double head; /* its height [pt] */
 } found_form;
 
-static void draw_form(strut_canvas *canvas, const char *title, const found_form *form) {
+static bool is_as_drawn(const found_form *form) { return form->moved <= 1e-9 * form->model->size; }
+
+/* The heading, whose note is written to `text`, and its height. */
+static strut_status describe_form(found_form *form, double width, const char *title,
+                                  char text[NOTE], strut_error *error) {
+  if (is_as_drawn(form))
+    snprintf(text, NOTE, "the drawn shape, and the forces that hold it");
+  else
+    snprintf(text, NOTE, "grey: drawn shape; nodes moved by up to %s",
+             strut_drawn_quantity(form->moved, 3, "m").text);
+  form->heading = (strut_heading){.width = width, .edge = EDGE, .title = title, .note = text};
+  return strut_heading_measure(&form->heading, &form->head, error);
+}
+
+static void draw_form(strut_canvas *canvas, const found_form *form) {
   const strut_model *model = form->model;
   strut_box page = strut_canvas_box(canvas);
-  double inner = page.width - 2 * EDGE, moved = form->moved, limit = form->limit;
+  double inner = page.width - 2 * EDGE, limit = form->limit;
   bool narrow = page.width < NARROW;
-  strut_box box = {EDGE, EDGE + TITLE, inner - (narrow ? 0 : SCALE),
-                   page.height - 2 * EDGE - TITLE - (narrow ? FOOT : 0)};
+  strut_box box = {EDGE, EDGE + form->head, inner - (narrow ? 0 : SCALE),
+                   page.height - 2 * EDGE - form->head - (narrow ? FOOT : 0)};
   strut_window window = strut_window_fit(box, form->bounds, narrow ? LEAST_MARGIN : MARGIN);
-  char text[200];
-  bool same = moved <= 1e-9 * model->size;
-  if (same) {
-    snprintf(text, sizeof text, "the drawn shape, and the forces that hold it");
-  } else {
-    snprintf(text, sizeof text, "grey: drawn shape; nodes moved by up to %s",
-             strut_drawn_quantity(moved, 3, "m").text);
-  }
-  strut_draw_heading(canvas, EDGE, title, text);
+  strut_heading_draw(canvas, &form->heading);
   const strut_structure_style pale = {.colouring = STRUT_COLOUR_ONE,
                                       .colour = strut_grey(0.75),
                                       .thinness = 0.4,
@@ -70,7 +79,7 @@ static void draw_form(strut_canvas *canvas, const char *title, const found_form 
                                       .limit = limit,
                                       .node_names = !narrow};
   strut_draw_ground(canvas, &window, model);
-  if (!same) strut_draw_structure(canvas, &window, model, form->before, &pale);
+  if (!is_as_drawn(form)) strut_draw_structure(canvas, &window, model, form->before, &pale);
   strut_draw_structure(canvas, &window, model, model->start, &full);
   if (narrow) window.box.height += 14;
   strut_draw_yardstick(canvas, &window);
@@ -104,11 +113,19 @@ strut_status strut_form_figure(const strut_plot *plot, const strut_model *model,
   double aspect = (bounds.high[1] - bounds.low[1]) / (bounds.high[0] - bounds.low[0]);
   double high = room * (aspect >= 0 && aspect < 10 ? aspect : 1) + 2 * margin;
   high = fmax(0.25 * width, fmin(high, 0.9 * width)) + (narrow ? FOOT : 0);
-  strut_status status =
-      strut_canvas_open(plot->path, width, 2 * EDGE + TITLE + high, title, &canvas, error);
+  char note[NOTE];
+  found_form form = {.model = model,
+                     .before = before,
+                     .force = force,
+                     .limit = limit,
+                     .moved = farthest(model, drawn),
+                     .bounds = bounds};
+  strut_status status = describe_form(&form, width, title, note, error);
+  if (status == STRUT_OK)
+    status =
+        strut_canvas_open(plot->path, width, 2 * EDGE + form.head + high, title, &canvas, error);
   if (status == STRUT_OK) {
-    draw_form(canvas, title,
-              &(found_form){model, before, force, limit, farthest(model, drawn), bounds});
+    draw_form(canvas, &form);
     status = strut_canvas_commit(canvas, error);
   }
   strut_canvas_free(canvas);
@@ -131,6 +148,8 @@ typedef struct plan {
   int32_t forces, states, motions; /* panels of each */
   size_t columns, rows;
   double *moved; /* (length) scratch */
+  strut_heading heading;
+  double head; /* its height [pt] */
 } plan;
 
 static int32_t panels_of(const plan *p) { return p->forces + p->states + p->motions; }
@@ -265,29 +284,30 @@ static void draw_panel(const plan *p, strut_canvas *canvas, int32_t k, strut_box
   strut_canvas_unclip(canvas);
 }
 
-static void draw_title(const plan *p, strut_canvas *canvas, const char *at) {
+/* The heading, whose note is written to `text`, and its height. */
+static strut_status describe_rigidity(plan *p, const char *at, char text[NOTE],
+                                      strut_error *error) {
   const strut_rigidity *r = p->rigidity;
-  char text[400];
   int32_t left_out = r->states.count - p->states + r->mechanisms.count - p->motions;
 
-  int used = snprintf(text, sizeof text, "%s: %d state%s of self-stress, %d mechanism%s", at,
+  int used = snprintf(text, NOTE, "%s: %d state%s of self-stress, %d mechanism%s", at,
                       (int)r->states.count, r->states.count == 1 ? "" : "s",
                       (int)r->mechanisms.count, r->mechanisms.count == 1 ? "" : "s");
-  if (left_out > 0)
-    snprintf(text + used, sizeof text - (size_t)used, "; %d not drawn", (int)left_out);
-  strut_draw_heading(canvas, EDGE, p->title, text);
+  if (left_out > 0) snprintf(text + used, NOTE - (size_t)used, "; %d not drawn", (int)left_out);
+  p->heading = (strut_heading){.width = p->width, .edge = EDGE, .title = p->title, .note = text};
+  return strut_heading_measure(&p->heading, &p->head, error);
 }
 
-static void draw_figure(const plan *p, strut_canvas *canvas, const char *at) {
-  draw_title(p, canvas, at);
+static void draw_figure(const plan *p, strut_canvas *canvas) {
+  strut_heading_draw(canvas, &p->heading);
   for (int32_t k = 0; k < panels_of(p); k++) {
     size_t row = (size_t)k / p->columns, column = (size_t)k % p->columns;
     draw_panel(p, canvas, k,
                (strut_box){EDGE + (double)column * p->cell[0],
-                           EDGE + TITLE + (double)row * p->cell[1], p->cell[0], p->cell[1]});
+                           EDGE + p->head + (double)row * p->cell[1], p->cell[0], p->cell[1]});
   }
-  double y = EDGE + TITLE + (double)p->rows * p->cell[1];
-  strut_box cell = {EDGE, EDGE + TITLE, p->cell[0], p->cell[1]};
+  double y = EDGE + p->head + (double)p->rows * p->cell[1];
+  strut_box cell = {EDGE, EDGE + p->head, p->cell[0], p->cell[1]};
   if (panels_of(p) == 0) { /* nothing holds and nothing moves: the shape itself */
     strut_window window = strut_window_fit(cell, p->bounds, PANEL_MARGIN);
     strut_draw_structure(canvas, &window, p->model, p->q,
@@ -318,15 +338,19 @@ strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *mo
             .title = strut_plot_title(plot, model->scene->name)};
   strut_arena arena = {0};
   strut_canvas *canvas = NULL;
+  char note[NOTE];
   p.moved = strut_arena_allocate(&arena, (size_t)model->length, sizeof *p.moved);
   strut_status status = p.moved ? STRUT_OK : strut_no_memory(error, "while drawing");
   if (status == STRUT_OK) {
     lay_out_panels(&p);
-    double height = 2 * EDGE + TITLE + (double)p.rows * p.cell[1] + PANEL_SCALE;
+    status = describe_rigidity(&p, at, note, error);
+  }
+  if (status == STRUT_OK) {
+    double height = 2 * EDGE + p.head + (double)p.rows * p.cell[1] + PANEL_SCALE;
     status = strut_canvas_open(plot->path, plot->width, height, p.title, &canvas, error);
   }
   if (status == STRUT_OK) {
-    draw_figure(&p, canvas, at);
+    draw_figure(&p, canvas);
     status = strut_canvas_commit(canvas, error);
   }
   strut_canvas_free(canvas);

@@ -11,7 +11,7 @@
 #include "engine/output/draw/legend.h"
 #include "engine/output/figures/table_parts.h"
 
-static const double EDGE = 5, TITLE = 15, LOWEST = 165, HIGHEST = 260;
+static const double EDGE = 5, LOWEST = 165, HIGHEST = 260;
 
 strut_status strut_table_groups_find(const strut_table *table, int column, size_t most,
                                      const char *what, strut_table_groups *g, strut_error *error) {
@@ -55,22 +55,21 @@ strut_status strut_panel_page_draw(const char *path, const char *title,
                                    const strut_panel_page *page,
                                    void (*head)(void *context, strut_canvas *canvas, strut_box box),
                                    strut_panel_draw panel, void *context, strut_error *error) {
-  double inner = page->width - 2 * EDGE, top = EDGE + (title ? TITLE : 0);
+  double inner = page->width - 2 * EDGE, top = 0.0;
+  const strut_heading heading = {.width = page->width, .edge = EDGE, .title = title};
   size_t columns = (size_t)fmax(1, fmin(3, floor(inner / page->least_width)));
   if (columns > page->panels) columns = page->panels;
   size_t rows = (page->panels + columns - 1) / columns;
   double wide = inner / (double)columns;
   double high = fmax(LOWEST, fmin(page->aspect * wide, HIGHEST));
   strut_canvas *canvas = NULL;
-  strut_status status =
-      strut_canvas_open(path, page->width, top + page->head + (double)rows * high + EDGE,
-                        title ? title : "", &canvas, error);
+  strut_status status = strut_heading_measure(&heading, &top, error);
+  top += EDGE;
+  if (status == STRUT_OK)
+    status = strut_canvas_open(path, page->width, top + page->head + (double)rows * high + EDGE,
+                               title ? title : "", &canvas, error);
   if (status != STRUT_OK) return status;
-  strut_font font = {.size = 9, .bold = true};
-  char fitted[STRUT_FITTED_TEXT];
-  if (title)
-    strut_draw_text(canvas, EDGE, EDGE, strut_text_fit(canvas, title, font, inner, 0, fitted),
-                    font);
+  strut_heading_draw(canvas, &heading);
   if (head) head(context, canvas, (strut_box){EDGE, top, inner, page->head});
   for (size_t k = 0; k < page->panels && status == STRUT_OK; k++)
     status = panel(context, canvas,
@@ -187,7 +186,8 @@ static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box bo
                                .series = series,
                                .band_count = bands,
                                .bands = band,
-                               .cursor = (double)NAN};
+                               .cursor = (double)NAN,
+                               .mark_beyond = !f->y_axis.limited};
   return strut_draw_curves(canvas, box, &curves);
 }
 
@@ -206,8 +206,21 @@ static const char *name_y_axis(maker *m, bool right) {
   return name;
 }
 
-/* Finds the axes, which all panels share. */
-static void find_axes(maker *m) {
+/* Narrows an axis to its values but for a few far away. False: out of memory. */
+static bool omit_outliers(maker *m, bool right, strut_axis *axis) {
+  const strut_table_figure *f = m->figure;
+  size_t rows = m->table->row_count, known = 0;
+  strut_beyond beyond;
+  double *values = strut_arena_allocate(&m->arena, rows * (size_t)f->y_count + 1, sizeof *values);
+  for (int k = 0; k < f->y_count && values; k++)
+    for (size_t i = 0; i < rows && is_right(m, k) == right; i++)
+      values[known++] = m->table->columns[f->y[k]].value[i];
+  if (values) strut_range_without_outliers(values, known, &axis->low, &axis->high, &beyond);
+  return values != NULL;
+}
+
+/* Finds the axes, which all panels share. False: out of memory. */
+static bool find_axes(maker *m) {
   const strut_table_figure *f = m->figure;
   const strut_table_column *columns = m->table->columns, *x = &columns[f->x];
   const strut_axis_choice own = {0};
@@ -228,9 +241,12 @@ static void find_axes(maker *m) {
       else if (!f->y_axis.limited)
         strut_axis_include(&m->y, value);
     }
+  bool fine = (f->log_y || f->y_axis.limited || omit_outliers(m, false, &m->y)) &&
+              (f->log_y || !m->two || omit_outliers(m, true, &m->right));
   strut_axis_settle(&m->x, 0);
   strut_axis_settle(&m->y, f->y_axis.limited ? 0 : 0.06);
   strut_axis_settle(&m->right, 0.06);
+  return fine;
 }
 
 /* Two axes suffice for two units. */
@@ -328,8 +344,7 @@ static strut_status draw_table(const char *path, const strut_table_figure *figur
     status = strut_table_groups_find(table, figure->by, STRUT_MOST_TABLE_GROUPS, "curves",
                                      &m.curves, error);
   if (status == STRUT_OK) {
-    find_axes(&m);
-    status = draw_page(&m, path, error);
+    status = find_axes(&m) ? draw_page(&m, path, error) : strut_no_memory(error, "while drawing");
   }
   strut_arena_free(&m.arena);
   return status;
@@ -357,6 +372,7 @@ typedef struct scatter {
   strut_canvas *canvas;
   strut_axes axes;
   double low, high; /* of the colours */
+  strut_beyond beyond;
 } scatter;
 
 static const double *values_of(const strut_table *table, int column) {
@@ -373,15 +389,23 @@ static strut_axis axis_of(const scatter *s, int column, const strut_axis_choice 
   return axis;
 }
 
-static void find_colours(scatter *s) {
+/* False: out of memory. */
+static bool find_colours(scatter *s) {
   const double *value = values_of(s->table, s->figure->value);
+  size_t known = 0;
+  double *sorted = strut_allocate(s->table->row_count + 1, sizeof *sorted);
+  if (!sorted) return false;
   s->low = HUGE_VAL, s->high = -HUGE_VAL;
   for (size_t i = 0; value && i < s->table->row_count; i++) {
     if (!s->figure->shown[i] || !isfinite(value[i])) continue;
     s->low = fmin(s->low, value[i]);
     s->high = fmax(s->high, value[i]);
+    sorted[known++] = value[i];
   }
+  strut_range_without_outliers(sorted, known, &s->low, &s->high, &s->beyond);
+  strut_release(sorted);
   if (!(s->low < s->high)) s->high = s->low = 0.0;
+  return true;
 }
 
 static strut_colours colours_of(const scatter *s) {
@@ -423,8 +447,9 @@ static void draw(scatter *s) {
   const strut_table_column *c = &s->table->columns[f->value];
   const strut_box frame = s->axes.frame;
   strut_box right = {left.x + left.width + 8, frame.y, SCALE_WIDTH - 8, frame.height};
-  strut_draw_colour_scale(s->canvas, right,
-                          &(strut_colour_scale){c->name, c->unit, s->low, s->high, colours_of(s)});
+  strut_draw_colour_scale(
+      s->canvas, right,
+      &(strut_colour_scale){c->name, c->unit, s->low, s->high, colours_of(s), s->beyond});
 }
 
 strut_status strut_table_scatter(const char *path, const strut_scatter_figure *f,
@@ -436,9 +461,9 @@ strut_status strut_table_scatter(const char *path, const strut_scatter_figure *f
   strut_status status = strut_canvas_open(path, f->width, f->width * SCATTER_ASPECT,
                                           f->title ? f->title : "points", &s.canvas, error);
   if (status) return status;
-  find_colours(&s);
-  draw(&s);
-  status = strut_canvas_commit(s.canvas, error);
+  if (!find_colours(&s)) status = strut_no_memory(error, "while drawing");
+  if (!status) draw(&s);
+  if (!status) status = strut_canvas_commit(s.canvas, error);
   strut_canvas_free(s.canvas);
   return status;
 }

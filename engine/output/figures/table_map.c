@@ -19,8 +19,8 @@ typedef struct mapper {
   strut_table_groups panels, names;
   double *xs, *ys;
   size_t columns, rows;
-  double low, high; /* of the values; equal if there is no or one value */
-  bool some;
+  double low, high;    /* of the values; equal if there is no or one value */
+  strut_beyond beyond; /* this range */
   strut_arena arena;
 } mapper;
 
@@ -119,6 +119,7 @@ static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box bo
       .value = value->value ? c.value : NULL,
       .value_low = m->low,
       .value_high = m->high,
+      .beyond = m->beyond,
       .value_name = value->name,
       .value_unit = value->unit,
       .colours = f->colours,
@@ -127,15 +128,20 @@ static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box bo
   return strut_draw_map(canvas, box, &map);
 }
 
-/* Finds the colour range, which all panels share. */
-static void find_range(mapper *m) {
+/* Finds the colour range, which all panels share. False: out of memory. */
+static bool find_range(mapper *m) {
   const double *value = m->table->columns[m->figure->value].value;
-  for (size_t i = 0; value && i < m->table->row_count; i++) {
+  size_t count = m->table->row_count, known = 0;
+  double *sorted = value ? strut_arena_copy(&m->arena, value, count, sizeof *value) : NULL;
+  if (value && !sorted) return false;
+  for (size_t i = 0; value && i < count; i++) {
     if (!isfinite(value[i])) continue;
-    m->low = m->some ? fmin(m->low, value[i]) : value[i];
-    m->high = m->some ? fmax(m->high, value[i]) : value[i];
-    m->some = true;
+    m->low = known ? fmin(m->low, value[i]) : value[i];
+    m->high = known ? fmax(m->high, value[i]) : value[i];
+    known++;
   }
+  if (known) strut_range_without_outliers(sorted, count, &m->low, &m->high, &m->beyond);
+  return true;
 }
 
 static int by_text(const void *a, const void *b) {
@@ -159,7 +165,7 @@ static strut_status prepare_grid(mapper *m, strut_error *error) {
     m->names.count--;
     memmove(m->names.name, m->names.name + 1, m->names.count * sizeof *m->names.name);
   }
-  find_range(m);
+  if (!find_range(m)) return strut_no_memory(error, "while drawing");
   m->xs = distinct_values(m, f->x, &m->columns);
   m->ys = distinct_values(m, f->y, &m->rows);
   if (!m->xs || !m->ys) return strut_no_memory(error, "while drawing");

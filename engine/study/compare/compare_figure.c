@@ -10,8 +10,7 @@
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure.h"
 
-static const double EDGE = 5, HEADING = 18, GAP = 12, TITLE = 13, LINE = 11, MARGIN = 16,
-                    NARROWEST = 150;
+static const double EDGE = 5, GAP = 12, TITLE = 13, LINE = 11, MARGIN = 16, NARROWEST = 150;
 static const double FOOT = 0.08; /* space for the scale bar, relative to the extent */
 static const double DOT = 4.0;   /* radius around a node [pt] */
 static const double UNLIKE = 4.0, FLATTEST = 0.35, TALLEST = 1.2;
@@ -141,8 +140,7 @@ static void draw_panel(const sheet *s, const strut_compare_column *c, strut_box 
   strut_draw_ground(s->canvas, &window, c->model);
   strut_draw_structure(s->canvas, &window, c->model, c->q, &by_kind);
   mark_driven(s, &window, c);
-  if (c->model->node_count <= NAMED)
-    strut_draw_names(s->canvas, &window, c->model, c->q, &(strut_drawn_names){.nodes = true});
+  if (c->model->node_count <= NAMED) strut_draw_names(s->canvas, &window, c->model, c->q, false);
   strut_canvas_unclip(s->canvas);
   if (!s->alike || c == s->columns) strut_draw_yardstick(s->canvas, &window);
 }
@@ -172,7 +170,8 @@ static size_t make_key(const sheet *s, strut_key_item items[KEYS]) {
 
 strut_status strut_compare_figure(const strut_plot *plot, const strut_compare *result, size_t first,
                                   size_t count, strut_error *error) {
-  double width = plot->width, top = EDGE + (plot->title ? HEADING : 0);
+  double width = plot->width, top = EDGE, head = 0.0;
+  const strut_heading heading = {.width = width, .edge = EDGE, .title = plot->title};
   sheet s = {.columns = result->columns + first, .count = count, .width = width};
   strut_key_item items[KEYS] = {{0}};
   lay_out(&s);
@@ -182,11 +181,14 @@ strut_status strut_compare_figure(const strut_plot *plot, const strut_compare *r
   if (status != STRUT_OK) return status;
   double key = strut_key_height(ruler, width - 2 * EDGE, items, keys);
   strut_canvas_free(ruler);
+  status = strut_heading_measure(&heading, &head, error);
+  if (status != STRUT_OK) return status;
+  top += head;
   double height = top + EDGE + (double)s.rows * (s.height + GAP) + key;
   status = strut_canvas_open(plot->path, width, height,
                              strut_plot_title(plot, "Structures side by side"), &s.canvas, error);
   if (status != STRUT_OK) return status;
-  if (plot->title) strut_draw_heading(s.canvas, EDGE, plot->title, "");
+  strut_heading_draw(s.canvas, &heading);
   for (size_t i = 0; i < count; i++)
     draw_panel(&s, &s.columns[i],
                (strut_box){EDGE + (double)(i % s.across) * (s.cell + GAP),

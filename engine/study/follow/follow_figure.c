@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/base/c_locale.h"
+#include "engine/base/vec.h"
 #include "engine/study/follow/follow_study.h"
 
 static const double EDGE = 4.0, PAGE = 510.24, ASPECT = 0.6, ROOM = 0.04; /* [pt], [1] */
@@ -76,42 +77,20 @@ static void draw_line(drawing *d, const strut_branch_line *line) {
   }
 }
 
-static bool overlaps(const strut_box *a, const strut_box *b) {
-  return !(a->x + a->width < b->x || b->x + b->width < a->x || a->y + a->height < b->y ||
-           b->y + b->height < a->y);
-}
-
-static bool is_within(const strut_box *box, const strut_box *frame) {
-  return box->x >= frame->x && box->y >= frame->y &&
-         box->x + box->width <= frame->x + frame->width &&
-         box->y + box->height <= frame->y + frame->height;
-}
-
-/* The name of a mark where it is clear of the others, else nowhere. */
-static void draw_name(drawing *d, const strut_branch_mark *m, strut_box *taken, size_t *count) {
-  static const double sides[4][2] = {{1, -1}, {-1, -1}, {1, 1}, {-1, 1}};
-  const strut_font font = {.size = NAME, .halo = strut_faded(strut_grey(1), 0.85)};
+static void draw_name(const drawing *d, const strut_branch_mark *m, const double at[2]) {
   char text[120];
-  double at[2], width, height;
-  strut_axes_point(&d->axes, m->data[0], m->data[1], at);
   snprintf(text, sizeof text, "%s%s%.60s", m->text ? m->text : strut_follow_kind_word(m->kind),
            m->node && *m->node ? " " : "", m->node ? m->node : "");
-  strut_text_size(d->canvas, text, font, &width, &height);
-  for (int side = 0; side < 4; side++) {
-    strut_box box = {at[0] + (sides[side][0] > 0 ? 4.0 : -4.0 - width),
-                     at[1] + (sides[side][1] > 0 ? 3.0 : -3.0 - height), width, height};
-    bool clear = is_within(&box, &d->axes.frame);
-    for (size_t k = 0; k < *count && clear; k++) clear = !overlaps(&box, &taken[k]);
-    if (!clear) continue;
-    strut_draw_text(d->canvas, box.x, box.y, text, font);
-    taken[(*count)++] = box;
-    return;
-  }
+  strut_draw_label(d->canvas,
+                   &(strut_label){.text = text,
+                                  .font = {.size = NAME, .halo = strut_faded(strut_grey(1), 0.85)},
+                                  .at = {at[0], at[1]},
+                                  .gap = MARKER + 1.5,
+                                  .angle = 0.25 * STRUT_PI,
+                                  .inside = d->axes.frame});
 }
 
-static void draw_marks(drawing *d) {
-  strut_box taken[MOST_NAMES];
-  size_t count = 0;
+static void draw_marks(const drawing *d) {
   const strut_pen edge = {.colour = strut_grey(0.1), .width = 0.6};
   for (size_t i = 0; i < d->p->mark_count; i++) {
     const strut_branch_mark *m = &d->p->marks[i];
@@ -119,9 +98,8 @@ static void draw_marks(drawing *d) {
     double at[2];
     strut_axes_point(&d->axes, m->data[0], m->data[1], at);
     strut_draw_circle(d->canvas, at[0], at[1], MARKER, &fill, &edge);
+    if (d->p->mark_count <= MOST_NAMES) draw_name(d, m, at);
   }
-  for (size_t i = 0; i < d->p->mark_count && count < MOST_NAMES; i++)
-    draw_name(d, &d->p->marks[i], taken, &count);
 }
 
 /* Height of the key, which a canvas must be there to measure. */

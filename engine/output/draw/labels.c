@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/draw/labels.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/vec.h"
+#include "engine/output/draw/legend.h"
+
+/* Distances from what is named at which a label is tried, beyond its own gap; from LED on with a line [pt]. */
+static const double RINGS[] = {0, 2, 5, 9, 14, 20, 27, 35, 45, 57, 72, 90, 115, 145};
+static const double LED = 9.0;
+enum { DIRECTIONS = 24 };
+static const double WORST = 14.0; /* a place that costs more helps nobody: the label is left out */
+
+/* What a place costs: for each pt^2 of ink below the text and around it, for each pt of distance, for a
+   line, for a turn away from the preferred direction, and beside something else that is named. */
+static const double INK = 0.30, NEAR_INK = 0.05, DISTANCE = 0.16, LINE = 1.2, TURN = 0.6,
+                    MISLEADING = 2.5;
+static const double AROUND = 2.0; /* seen around a label [pt] */
+static const double BESIDE = 3.0,
+                    BELOW =
+                        0.8; /* least distances of texts side by side and below each other [pt] */
+
+/* ---- what waits, and what is there ---- */
+
+static bool make_room(void **list, size_t count, size_t *room, size_t size) {
+  if (count < *room) return true;
+  void *more = strut_reallocate(*list, 2 * *room + 32, size);
+  if (!more) return false;
+  *list = more;
+  *room = 2 * *room + 32;
+  return true;
+}
+
+void strut_labels_add(strut_labels *l, const strut_label *label) {
+  if (!label->text || !*label->text || !isfinite(label->at[0] + label->at[1])) return;
+  char *text = strut_arena_text(&l->arena, label->text, strlen(label->text));
+  void *list = l->list;
+  l->failed = l->failed || !text || !make_room(&list, l->count, &l->room, sizeof *l->list);
+  l->list = list;
+  if (l->failed) return;
+  l->list[l->count] = *label;
+  l->list[l->count++].text = text;
+}
+
+void strut_labels_avoid(strut_labels *l, strut_box ink) {
+  void *list = l->texts;
+  l->failed = l->failed || !make_room(&list, l->text_count, &l->text_room, sizeof *l->texts);
+  l->texts = list;
+  if (!l->failed && isfinite(ink.x + ink.y)) l->texts[l->text_count++] = ink;
+}
+
+void strut_labels_free(strut_labels *l) {
+  strut_release(l->list);
+  strut_release(l->texts);
+  strut_arena_free(&l->arena);
+}
+
+/* ---- boxes ---- */
+
+static strut_box widened(strut_box box, double by) {
+  return (strut_box){box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};
+}
+
+static bool overlap(const strut_box *a, const strut_box *b) {
+  return a->x < b->x + b->width && b->x < a->x + a->width && a->y < b->y + b->height &&
+         b->y < a->y + a->height;
+}
+
+static bool is_within(const strut_box *box, const strut_box *frame) {
+  return box->x >= frame->x && box->y >= frame->y &&
+         box->x + box->width <= frame->x + frame->width &&
+         box->y + box->height <= frame->y + frame->height;
+}
+
+/* The point of a box nearest to `at`, and its distance. */
+static double nearest_point(const strut_box *box, const double at[2], double point[2]) {
+  point[0] = fmin(fmax(at[0], box->x), box->x + box->width);
+  point[1] = fmin(fmax(at[1], box->y), box->y + box->height);
+  return hypot(point[0] - at[0], point[1] - at[1]);
+}
+
+/* ---- one label ---- */
+
+/* A label being placed. */
+typedef struct search {
+  const strut_labels *labels;
+  const strut_page_ink *ink;
+  const strut_label *label;
+  strut_box inside; /* and on the page */
+  double width, height;
+  strut_box best;
+  double cost; /* of the best place; HUGE_VAL: none yet */
+} search;
+
+static bool is_free(const search *s, const strut_box *box) {
+  if (!is_within(box, &s->inside)) return false;
+  const strut_box around = {box->x - BESIDE, box->y - BELOW, box->width + 2 * BESIDE,
+                            box->height + 2 * BELOW};
+  for (size_t i = 0; i < s->labels->text_count; i++)
+    if (overlap(&around, &s->labels->texts[i])) return false;
+  return true;
+}
+
+/* True if a straight line from what is named to the box crosses no text. */
+static bool has_clear_line(const search *s, const strut_box *box) {
+  double end[2], length = nearest_point(box, s->label->at, end);
+  for (double along = 0.0; along < length; along += 2.0) {
+    const strut_box point = {s->label->at[0] + along / length * (end[0] - s->label->at[0]),
+                             s->label->at[1] + along / length * (end[1] - s->label->at[1]), 0, 0};
+    for (size_t i = 0; i < s->labels->text_count; i++)
+      if (overlap(&point, &s->labels->texts[i])) return false;
+  }
+  return true;
+}
+
+/* Cost of being nearer to something else that is named in the same place. */
+static double confusion(const search *s, const strut_box *box) {
+  double point[2], own = nearest_point(box, s->label->at, point), cost = 0.0;
+  for (size_t i = 0; i < s->labels->count; i++) {
+    const strut_label *other = &s->labels->list[i];
+    if (other == s->label || other->loose || s->label->loose ||
+        memcmp(&other->inside, &s->label->inside, sizeof other->inside) != 0)
+      continue;
+    if (hypot(other->at[0] - s->label->at[0], other->at[1] - s->label->at[1]) < 0.5) continue;
+    double distance = nearest_point(box, other->at, point);
+    if (distance < own + 1.0) cost += MISLEADING;
+  }
+  return cost;
+}
+
+/* Tries the place in one direction at one ring. */
+static void try_place(search *s, double ring, int direction) {
+  const strut_label *l = s->label;
+  double angle = l->angle + 2 * STRUT_PI * direction / DIRECTIONS, gap = l->gap + ring;
+  double x = l->at[0] + (gap + 0.5 * s->width) * cos(angle);
+  double y = l->at[1] - (gap + 0.5 * s->height) * sin(angle);
+  const strut_box box = {x - 0.5 * s->width, y - 0.5 * s->height, s->width, s->height};
+  int turn = direction <= DIRECTIONS / 2 ? direction : DIRECTIONS - direction;
+  bool led = ring >= LED;
+  double cost = DISTANCE * ring + TURN * l->steady * turn + (led ? LINE : 0.0);
+  if (cost >= s->cost || !is_free(s, &box)) return;
+  cost += INK * strut_page_ink_sum(s->ink, box) +
+          NEAR_INK * strut_page_ink_sum(s->ink, widened(box, AROUND)) + confusion(s, &box);
+  if (cost >= s->cost - 1e-9 || (led && !has_clear_line(s, &box))) return;
+  s->cost = cost;
+  s->best = box;
+}
+
+/* For what names nothing at its place: wherever least is covered, the nearer the better. */
+static bool find_empty_place(search *s) {
+  static const double STEP = 4.0, FAR = 0.01; /* [pt], cost of each pt */
+  const strut_box *in = &s->inside;
+  s->cost = HUGE_VAL;
+  for (double y = in->y; y + s->height <= in->y + in->height; y += STEP)
+    for (double x = in->x; x + s->width <= in->x + in->width; x += STEP) {
+      const strut_box box = {x, y, s->width, s->height};
+      double point[2], cost = FAR * nearest_point(&box, s->label->at, point);
+      if (cost >= s->cost || !is_free(s, &box)) continue;
+      cost += INK * strut_page_ink_sum(s->ink, box);
+      if (cost >= s->cost - 1e-9) continue;
+      s->cost = cost;
+      s->best = box;
+    }
+  return s->cost < HUGE_VAL;
+}
+
+static bool find_place(search *s) {
+  if (s->label->loose) return find_empty_place(s);
+  s->cost = HUGE_VAL;
+  for (size_t r = 0; r < sizeof RINGS / sizeof *RINGS; r++) {
+    if (DISTANCE * RINGS[r] >= s->cost) break;
+    for (int k = 0; k < DIRECTIONS; k++) /* by turns to both sides of the preferred direction */
+      try_place(s, RINGS[r], k % 2 ? (k + 1) / 2 : (DIRECTIONS - k / 2) % DIRECTIONS);
+  }
+  return s->cost < WORST;
+}
+
+/* The thin line from what is named to a label that is far from it. */
+static void draw_line(strut_canvas *canvas, const strut_label *label, const strut_box *box) {
+  double end[2], length = nearest_point(box, label->at, end), start = 0.7 * label->gap;
+  if (label->loose || length < LED + 0.5 * label->gap) return;
+  double x = (end[0] - label->at[0]) / length, y = (end[1] - label->at[1]) / length;
+  strut_draw_segment(canvas, label->at[0] + start * x, label->at[1] + start * y, end[0], end[1],
+                     (strut_pen){.colour = strut_grey(0.45), .width = 0.4});
+}
+
+static void draw_at(strut_canvas *canvas, const strut_box *box, const char *text, strut_font font) {
+  font.across = font.down = 0.5;
+  strut_draw_text(canvas, box->x + 0.5 * box->width, box->y + 0.5 * box->height, text, font);
+}
+
+/* The part of the page on which a label may be. */
+static strut_box find_inside(strut_canvas *canvas, const strut_label *label) {
+  strut_box page = widened(strut_canvas_box(canvas), -1.0), wanted = label->inside;
+  if (!(wanted.width > 0.0)) return page;
+  double right = fmin(page.x + page.width, wanted.x + wanted.width);
+  double bottom = fmin(page.y + page.height, wanted.y + wanted.height);
+  strut_box box = {fmax(page.x, wanted.x), fmax(page.y, wanted.y), 0, 0};
+  box.width = right - box.x, box.height = bottom - box.y;
+  return box;
+}
+
+/* Height of a text's letters, of that of its lines. */
+static const double LETTERS = 0.86, MOST_WIDTH = 130.0; /* [1], [pt] */
+
+static bool place_label(const strut_labels *labels, const strut_label *label, strut_canvas *canvas,
+                        const strut_page_ink *ink) {
+  search s = {.labels = labels, .ink = ink, .label = label, .inside = find_inside(canvas, label)};
+  char fitted[STRUT_FITTED_TEXT];
+  const char *text =
+      strut_text_fit(canvas, label->text, label->font,
+                     fmin(s.inside.width, label->loose ? HUGE_VAL : MOST_WIDTH), 0, fitted);
+  strut_text_size(canvas, text, label->font, &s.width, &s.height);
+  s.height *= LETTERS;
+  if (!find_place(&s)) return false;
+  draw_line(canvas, label, &s.best);
+  draw_at(canvas, &s.best, text, label->font);
+  return true;
+}
+
+/* ---- all labels ---- */
+
+/* Says how many labels found no place, where the page is emptiest. */
+static void note_omitted(strut_labels *labels, strut_canvas *canvas, const strut_page_ink *ink,
+                         size_t count) {
+  char text[60];
+  snprintf(text, sizeof text, "%zu label%s left out", count, count > 1 ? "s" : "");
+  const strut_box page = strut_canvas_box(canvas);
+  const strut_label note = {.text = text,
+                            .font = {.size = 7, .colour = strut_grey(0.3), .halo = strut_grey(1)},
+                            .at = {page.x, page.y + page.height},
+                            .loose = true};
+  place_label(labels, &note, canvas, ink);
+}
+
+void strut_labels_place(strut_labels *l, strut_canvas *canvas, const strut_page_ink *ink) {
+  size_t omitted = 0;
+  for (size_t i = 1; i < l->count; i++) { /* by importance; equal ones keep their order */
+    const strut_label moved = l->list[i];
+    size_t k = i;
+    for (; k > 0 && l->list[k - 1].priority < moved.priority; k--) l->list[k] = l->list[k - 1];
+    l->list[k] = moved;
+  }
+  for (size_t i = 0; i < l->count; i++)
+    if (!place_label(l, &l->list[i], canvas, ink)) omitted++;
+  l->count = 0;
+  if (omitted) note_omitted(l, canvas, ink, omitted);
+}
