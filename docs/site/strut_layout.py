@@ -39,7 +39,7 @@ def make_figures(app, doctree):
 def mark_tables(app, doctree):
     for table in doctree.findall(nodes.table):
         head = [entry.astext() for entry in next(table.findall(nodes.row)).children]
-        if head[0] == "key" and head[-1] == "meaning":
+        if len(head) > 3 and head[0] == "key" and head[-1] == "meaning":
             table["classes"].append("keys")
             for entry in table.findall(nodes.entry):
                 if not entry.astext():

@@ -42,9 +42,10 @@ def link_sources(app, doctree):
     for node in list(doctree.findall(lambda node: isinstance(
             node, (addnodes.download_reference, addnodes.pending_xref)))):
         target = node["reftarget"].partition("#")[0]
-        path = pathlib.Path(os.path.normpath(folder / target))
-        if not path.exists() and node.get("refdomain") == "doc":  # myst-parser 4: the name of a page
-            path = pathlib.Path(os.path.normpath(pathlib.Path(app.srcdir) / (target + ".md")))
+        path = folder / target
+        if node.get("refdomain") == "doc":  # of myst-parser 4, which gives a page's name
+            path = pathlib.Path(app.srcdir).resolve() / f"{target}.md"
+        path = pathlib.Path(os.path.normpath(path))
         if path.suffix == ".md" and pathlib.Path(app.srcdir).resolve() in path.parents:
             continue
         page = target and page_of(app, path, asked)
