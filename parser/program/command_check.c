@@ -2,7 +2,9 @@
 #include "parser/program/commands.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "engine/base/memory.h"
