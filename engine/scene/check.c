@@ -404,9 +404,10 @@ strut_status strut_setup_check(const strut_setup *setup, strut_purpose purpose,
   const strut_scene *scene = &setup->scene;
   const strut_experiment *e = &setup->experiment;
   bool runs = e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0;
-  if (purpose == STRUT_FOR_ANY) purpose = runs ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
-  bool step_later = purpose == STRUT_FOR_RUN_STEP_LATER;
-  if (step_later) purpose = STRUT_FOR_RUN;
+  bool resting = purpose == STRUT_FOR_ANY_STATICS;
+  if (purpose == STRUT_FOR_ANY || resting) purpose = runs ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
+  bool step_later = resting || purpose == STRUT_FOR_RUN_STEP_LATER;
+  if (purpose == STRUT_FOR_RUN_STEP_LATER) purpose = STRUT_FOR_RUN;
   size_t before = findings->count;
   strut_checker checker = {.scene = scene,
                            .experiment = e,

@@ -53,10 +53,21 @@ static strut_status limit_threads(const strut_command *command, const strut_argu
   return STRUT_OK;
 }
 
+/* Is help asked for, even where an option lacks its value? */
+static bool asks_for_help(int argc, char **argv) {
+  for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+    if (strcmp(argv[i], "--help") == 0) return true;
+  return false;
+}
+
 static strut_status run_command(const strut_command *command, int argc, char **argv) {
   strut_arguments arguments;
   double begin = now();
   command = strut_command_variant_of(command, argc - 1, argv + 1);
+  if (asks_for_help(argc, argv)) {
+    strut_command_help(command);
+    return STRUT_OK;
+  }
   strut_status status = strut_arguments_read(command, argc, argv, &arguments);
   if (status == STRUT_OK) status = limit_threads(command, &arguments);
   if (status == STRUT_OK && arguments.help) {

@@ -130,7 +130,7 @@ strut_status strut_warn_of_scene(const strut_setup *setup) {
 strut_status strut_open_model_text(const strut_arguments *arguments, char **text, size_t *length,
                                    strut_setup *setup) {
   source from;
-  strut_status status = open_text(arguments, STRUT_FOR_ANY, &from, setup, NULL);
+  strut_status status = open_text(arguments, STRUT_FOR_ANY_STATICS, &from, setup, NULL);
   *text = from.text;
   *length = from.length;
   return status;

@@ -159,8 +159,10 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
   strut_read_fields(reader, STRUT_SECTION_SCENE, reader->document.root, owner, &reader->top);
   if (!reader->top.map || reader->document.root->kind != STRUT_TREE_MAP) return;
   strut_require(reader, &reader->top, owner, strut_root_place(reader));
-  if (reader->purpose == STRUT_FOR_ANY)
-    reader->purpose = describes_run(reader) ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
+  strut_purpose of_run =
+      reader->purpose == STRUT_FOR_ANY_STATICS ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
+  if (reader->purpose == STRUT_FOR_ANY || reader->purpose == STRUT_FOR_ANY_STATICS)
+    reader->purpose = describes_run(reader) ? of_run : STRUT_FOR_STATICS;
   if (reader->top.broken || reader->holes) reader->ends_unknown = true;
   read_sections(reader, settings, count);
   if (reader->out_of_memory || strut_diagnostics_full(reader->diagnostics)) return;

@@ -472,7 +472,7 @@ static const strut_scene_source *source_of(const strut_study_file *file,
 /* What the scenes of the study are for. */
 static strut_purpose purpose_of(const strut_study *study) {
   if (study->follow) return STRUT_FOR_RUN_STEP_LATER;
-  return study->compute == STRUT_COMPUTE_RUN ? STRUT_FOR_RUN : STRUT_FOR_ANY;
+  return study->compute == STRUT_COMPUTE_RUN ? STRUT_FOR_RUN : STRUT_FOR_ANY_STATICS;
 }
 
 /* Reads a scene, and adjusts it. */

@@ -377,7 +377,7 @@ strut_status strut_request_setup(const strut_study_file *file, strut_request *r,
   strut_diagnostics diagnostics = {0};
   size_t count = 0;
   const strut_study_adjustment *a = &file->adjustment;
-  strut_purpose purpose = r->study.compute != STRUT_COMPUTE_RUN ? STRUT_FOR_ANY
+  strut_purpose purpose = r->study.compute != STRUT_COMPUTE_RUN ? STRUT_FOR_ANY_STATICS
                           : a->adjust                           ? a->purpose
                                                                 : STRUT_FOR_RUN;
   strut_c_locale locale = strut_c_locale_enter();

@@ -358,8 +358,8 @@ static strut_tree *whole_tree(short_writer *w, const strut_override *overrides, 
 static strut_status reads_as(const char *text, const char *flat, bool *same) {
   strut_setup setup;
   strut_diagnostics diagnostics = {0};
-  strut_status status =
-      strut_setup_read(&setup, "scene", text, strlen(text), NULL, 0, STRUT_FOR_ANY, &diagnostics);
+  strut_status status = strut_setup_read(&setup, "scene", text, strlen(text), NULL, 0,
+                                         STRUT_FOR_ANY_STATICS, &diagnostics);
   strut_diagnostics_free(&diagnostics);
   *same = false;
   if (status) return status == STRUT_NO_MEMORY ? status : STRUT_OK;

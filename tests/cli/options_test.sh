@@ -92,6 +92,10 @@ sed '/^solver/d' hop.yaml >none.yaml
 expect 0 run none.yaml --integrator adaptive --quiet
 expect 2 run none.yaml
 err_has "the solver has no step"
+# What only rests needs none either.
+expect 0 equilibria none.yaml --quiet
+expect 0 sweep --requests --help
+out_has "usage: strut sweep --requests"
 
 # The same range of a path in two ways; the same words with other values elsewhere.
 expect 0 path truss.yaml --over load=1..3N --json

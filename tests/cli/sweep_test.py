@@ -525,7 +525,8 @@ keep: [velocity]
 
 
 def wrong_use():
-    check("missing -o DIR" in run("sweep", "fails.yaml", code=1).stderr, "no -o")
+    run("sweep", "fails.yaml", code=3)
+    check(os.path.exists(os.path.join(work, "fails", "table.csv")), "without -o: a folder named after the study")
     run("sweep", "fails.yaml", "-o", "other", "--threads", "0", code=1)
     run("sweep", "nowhere.yaml", "-o", "other", code=4)
     run("sweep", "fails.yaml", "-o", "nothing", "--status", code=4)

@@ -175,7 +175,7 @@ static strut_status build_matrices(abi_call *call, strutlib_result *result, stru
 static strut_status open_setup(abi_call *call, const strutlib_scene *scene, bool compiled,
                                strutlib_result *result) {
   strut_error what = {0};
-  strut_status status = abi_setup(scene, STRUT_FOR_ANY, &result->setup, call->error);
+  strut_status status = abi_setup(scene, STRUT_FOR_ANY_STATICS, &result->setup, call->error);
   result->opened = status == STRUT_OK;
   result->setup.experiment.interrupt = abi_interrupt_of(call->control);
   if (status != STRUT_OK || !compiled) return status;

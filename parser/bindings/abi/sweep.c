@@ -182,7 +182,7 @@ static strut_status check_options(abi_call *call, sweep *s) {
   const strut_arguments *a = &call->arguments;
   bool run = s->study.compute == STRUT_COMPUTE_RUN;
   strut_setup setup;
-  s->purpose = run ? strut_run_options_purpose(a) : STRUT_FOR_ANY;
+  s->purpose = run ? strut_run_options_purpose(a) : STRUT_FOR_ANY_STATICS;
   s->options = *a;
   s->options.listener = NULL;
   if (!strut_run_option_given(a, 0)) return STRUT_OK;
