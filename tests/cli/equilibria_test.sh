@@ -165,4 +165,21 @@ expect 0 equilibria tower.yaml
 out_has "cut short: a search of all shapes, bounded to some ten seconds of work"
 expect 0 equilibria "$crawler" --starts 20
 out_has_not "cut short"
+# A configuration without contacts lies on the side on which it is drawn, though others are alike but for a turn.
+cat >sides.yaml <<'YAML'
+strut: 1
+groups: {rod: {kind: bar, stiffness: 100 kN/m, damping: 1 N s/m, mass: 50 g},
+         cable: {kind: cable, stiffness: 500 N/m, damping: 0.5 N s/m, rest_length_ratio: 0.94}}
+nodes: {a: [0, 0], b: [100 mm, 0], c: [80 mm, 60 mm], d: [0, 90 mm]}
+members: {rising: {group: rod, nodes: [a, c]}, falling: {group: rod, nodes: [b, d]},
+          floor: {group: cable, nodes: [a, b]}, right: {group: cable, nodes: [b, c]},
+          roof: {group: cable, nodes: [c, d]}, left: {group: cable, nodes: [d, a]}}
+gravity: [0, -9.81 m/s^2]
+ground: {stiffness: 100 kN/m, damping: 50 N s/m}
+configurations: {standing: {}}
+YAML
+expect 0 equilibria sides.yaml
+out_has "standing           a,b "
+expect 0 modes sides.yaml --at standing
+out_has "modes at standing, on a, b"
 done_testing

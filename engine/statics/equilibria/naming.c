@@ -135,6 +135,16 @@ static bool may_be_named(const strut_equilibrium *e) {
   return !e->name && e->outcome == STRUT_OUTCOME_STANDS;
 }
 
+/* Largest distance between corresponding nodes after the best translation carries b onto a [m]. */
+static double translated_distance(const strut_model *model, const double *a, const double *b) {
+  double shift[2] = {0.0, 0.0}, largest = 0.0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++)
+    shift[i % 2] += (b[i] - a[i]) / (double)model->node_count;
+  for (int32_t i = 0; i < 2 * model->node_count; i += 2)
+    largest = fmax(largest, hypot(b[i] - a[i] - shift[0], b[i + 1] - a[i + 1] - shift[1]));
+  return largest;
+}
+
 static void name_shaped(const strut_model *model, const strut_configuration *c, size_t count,
                         strut_equilibrium **list, double *scratch) {
   strut_equilibrium *nearest = NULL;
@@ -142,7 +152,10 @@ static void name_shaped(const strut_model *model, const strut_configuration *c, 
   memcpy(scratch, c->position[0], 2 * model->scene->node_count * sizeof *scratch);
   for (size_t i = 0; i < count; i++) {
     if (!may_be_named(list[i]) || !rests_on_set(c, list[i])) continue;
-    double d = strut_shape_distance(model, scratch, list[i]->rest, false, NULL);
+    /* Without a list of contacts, the shape says on which side the structure lies. */
+    double d = model->contacts.count && !c->set_count
+                   ? translated_distance(model, scratch, list[i]->rest)
+                   : strut_shape_distance(model, scratch, list[i]->rest, false, NULL);
     if (!(d < least)) continue;
     least = d;
     nearest = list[i];
