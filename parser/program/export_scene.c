@@ -2,6 +2,7 @@
 /* `strut export --format scene`: a model, or another program's file, as a scene. */
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
@@ -132,6 +133,10 @@ static bool is_foreign(const char *path) {
 
 strut_status strut_export_scene(const strut_arguments *arguments) {
   const strut_command *command = &strut_command_export;
+  struct stat found;
+  if (stat(arguments->model, &found) == 0 && S_ISDIR(found.st_mode))
+    return strut_print_usage_error(command, "a run needs --format vtk; its scene is %s/scene.yaml",
+                                   arguments->model);
   bool foreign = strut_option_text(arguments, STRUT_OPTION_INPUT) || is_foreign(arguments->model);
   if (foreign && (arguments->override_count || arguments->parts))
     return strut_print_usage_error(

@@ -53,7 +53,7 @@ jq -e '.running_cables == 1 and .laws == 2 and .stops == 1 and .members.rope.nod
 # What needs none of them says so.
 printf 'strut: 1\nnodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}\n%s\n' \
   'members: {m: {kind: bar, nodes: [a, b], stiffness: 1}}' >plain.yaml
-expect 0 check plain.yaml
+expect 0 check plain.yaml --verbose
 out_has "  hinges               needs a hinge"
 out_has "  stops                needs a member with a shortest or longest length"
 

@@ -17,7 +17,7 @@ if [ -e /dev/full ]; then
   full run "$hopper"
   full check "$hopper"
   full check "$hopper" --json
-  full write "$hopper"
+  full export "$hopper"
   full keys
   full help
   full --version
