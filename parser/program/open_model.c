@@ -162,7 +162,8 @@ strut_status strut_write_short(const strut_arguments *arguments, const char *tex
   if (status == STRUT_NO_MEMORY) return strut_print_out_of_memory();
   if (!*result && wanted)
     fputs(
-        "strut: the scene is written without parameters, groups and parts: with them it would read as "
+        "strut: the scene is written without parameters, groups and parts: with them it would read "
+        "as "
         "another one, for example if a node of a copy has moved\n",
         stderr);
   return STRUT_OK;
