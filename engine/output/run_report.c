@@ -276,8 +276,12 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
                      "\n  start       settled on an UNSTABLE equilibrium; node %s moves most in "
                      "the unstable direction",
                      s->settle.node);
-  strut_buffer_add(table, "\n  step        %s, stable up to %s%s\n", in(s->step, "s").text,
-                   in(s->step_limit, "s").text, s->feedback ? " without feedback" : "");
+  strut_buffer_add(table, "\n  step        %s", in(s->step, "s").text);
+  if (isinf(s->step_limit))
+    strut_buffer_add(table, ", no stability limit\n");
+  else
+    strut_buffer_add(table, ", stable up to %s%s\n", in(s->step_limit, "s").text,
+                     s->feedback ? " without feedback" : "");
   if (s->limit_fell.limit > 0.0)
     strut_buffer_add(table, "              TOO LARGE since %s: the stability limit fell to %s\n",
                      in(s->limit_fell.since, "s").text, in(s->limit_fell.limit, "s").text);
