@@ -121,6 +121,13 @@ void strut_put_without_links(strut_writer *writer, const char *markdown, bool ti
   }
 }
 
+/* Do the words of the key fill more than a cell of a table? They stand below it then. */
+static bool has_many_words(const strut_key *key) {
+  char word[40];
+  enum { MOST_WORDS = 30 };
+  return key->type == STRUT_TYPE_KEEP && strut_word_at(key->words, MOST_WORDS, word, sizeof word);
+}
+
 static void put_section(strut_writer *writer, strut_section section) {
   strut_put(writer, "\n## ");
   strut_put(writer, strut_section_name(section));
@@ -133,7 +140,10 @@ static void put_section(strut_writer *writer, strut_section section) {
     strut_put(writer, "| `");
     strut_put(writer, key->name);
     strut_put(writer, "` | ");
-    strut_put_key_type(writer, key);
+    if (has_many_words(key))
+      strut_put(writer, "list of quantities, or of the words below");
+    else
+      strut_put_key_type(writer, key);
     strut_put(writer, key->need == STRUT_REQUIRED ? " | required"
                       : *key->fallback            ? words ? " | " : " | `"
                                                   : " |");
@@ -141,6 +151,15 @@ static void put_section(strut_writer *writer, strut_section section) {
     strut_put(writer, *key->fallback && !words ? "` | " : " | ");
     strut_put(writer, key->description);
     strut_put(writer, " |\n");
+  }
+  for (int i = 0; i < strut_section_size(section); i++) {
+    const strut_key *key = strut_key_at(strut_section_first(section) + i);
+    if (!has_many_words(key)) continue;
+    strut_put(writer, "\nWords of `");
+    strut_put(writer, key->name);
+    strut_put(writer, "`: ");
+    put_words(writer, key->words);
+    strut_put(writer, ".\n");
   }
 }
 
