@@ -11,6 +11,7 @@
 #include "engine/output/page/page.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
+#include "parser/program/progress.h"
 #include "parser/program/streams.h"
 #include "parser/write/write_scene.h"
 
@@ -58,13 +59,16 @@ static strut_status check_output(const char *path) {
 }
 
 /* A search that fails leaves a remark on the page; only an interrupt or lack of memory is a failure. */
-static strut_status find_equilibria(const strut_opened *opened, int search,
+static strut_status find_equilibria(const strut_arguments *arguments, const strut_opened *opened,
                                     const volatile sig_atomic_t *interrupt, strut_equilibria *all,
                                     strut_error *remark) {
   strut_equilibria_options wanted = {.interrupt = interrupt};
-  if (search != SEARCH_ALL) return STRUT_OK;
-  strut_status status =
-      strut_equilibria_find(opened->model, &opened->setup.experiment, &wanted, all, remark);
+  strut_experiment experiment = opened->setup.experiment;
+  strut_progress progress = strut_progress_begin(arguments->quiet);
+  experiment.progress = progress.wanted ? strut_progress_show : NULL;
+  experiment.progress_context = &progress;
+  strut_status status = strut_equilibria_find(opened->model, &experiment, &wanted, all, remark);
+  strut_progress_end(&progress);
   return status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY ? status : STRUT_OK;
 }
 
@@ -97,7 +101,8 @@ static strut_status make_page(const strut_arguments *arguments, const strut_open
   strut_error error = {0}, remark = {0};
   char *yaml = NULL;
   const volatile sig_atomic_t *interrupt = strut_interrupt_watch();
-  strut_status status = find_equilibria(opened, search, interrupt, &all, &remark);
+  strut_status status = STRUT_OK;
+  if (search == SEARCH_ALL) status = find_equilibria(arguments, opened, interrupt, &all, &remark);
   if (status != STRUT_OK) error = remark;
   if (status == STRUT_OK) {
     yaml = strut_setup_write(&opened->setup);
