@@ -204,11 +204,11 @@ static strut_status run_refined(const sweep_run *r, strut_refinement *refinement
   strut_sweep_state all = {0};
   strut_status status = STRUT_OK;
   *state = (strut_sweep_state){0};
-  while (!status) {
+  for (bool first = true; !status; first = false) {
     strut_sweep_refine_learn(refinement, r->arguments->output, r->shard, r->slots);
     *others = strut_refinement_choose(refinement);
     strut_refinement_count(refinement, r->slots, &wanted, &done);
-    if (wanted == done && state->points) break;
+    if (wanted == done && !first) break;
     status = run_points(r, refinement, state, error);
     all.computed += state->computed;
     all.seconds += state->seconds;
@@ -388,6 +388,12 @@ static strut_status run_sweep(const strut_arguments *given) {
     return STRUT_USAGE;
   }
   status = strut_sweep_study_open(arguments, &study);
+  if (!status && strut_option_text(arguments, STRUT_OPTION_PLOT) &&
+      (study.plan.study->search || study.plan.study->follow))
+    status =
+        strut_print_usage_error(&strut_command_sweep,
+                                "--plot is for studies of single points: searches and branches of "
+                                "motions are drawn in DIR");
   if (!status && study.plan.study->sensitivity.wanted &&
       (strut_option_text(arguments, STRUT_OPTION_SHARD) ||
        strut_option_text(arguments, STRUT_OPTION_EMIT))) {
@@ -411,8 +417,7 @@ static strut_status run_sweep(const strut_arguments *given) {
     status = strut_sweep_follow(arguments, &study);
   else if (!status)
     status = compute_points(arguments, &study, batch);
-  bool table = !study.plan.study || (!study.plan.study->search && !study.plan.study->follow);
-  if (strut_option_text(arguments, STRUT_OPTION_PLOT) && table &&
+  if (strut_option_text(arguments, STRUT_OPTION_PLOT) &&
       (status == STRUT_OK || status == STRUT_DIVERGED || status == STRUT_INACCURATE)) {
     strut_status plotted = plot_table(arguments, &study);
     if (plotted) status = plotted;

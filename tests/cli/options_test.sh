@@ -78,6 +78,16 @@ expect 1 sweep modes.yaml -o modes --accuracy 1%
 err_has "--accuracy is for studies of runs"
 expect 0 sweep masses.yaml -o drawn --plot drawn.svg --quiet
 grep -q '<svg' drawn.svg || fail "no figure of a study"
+cat >best.yaml <<'YAML'
+strut: 1
+study: The lightest
+model: hop.yaml
+search: {over: {mass: {from: 1 kg, to: 2 kg}}, minimise: steps, evaluations: 4}
+keep: [steps]
+YAML
+expect 1 sweep best.yaml -o best --plot best.svg
+err_has "--plot is for studies of single points"
+absent best.svg
 expect 1 sweep masses.yaml -o drawn --plot drawn.svg --count
 err_has "--plot needs the table of all points"
 printf '{"mass": 2}\n' >requests

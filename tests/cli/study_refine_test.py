@@ -96,6 +96,23 @@ def same_bytes():
     check(read("parts/table.csv") == table, "shards: another table")
 
 
+def a_shard_without_points():
+    """All coarse points are of shard 0: the other one ends at once, and says whom it waits for."""
+    shutil.copy("models/basics/sliding-block.yaml", path("block.yaml"))
+    write("few.yaml", """strut: 1
+study: few
+model: block.yaml
+axes: [{mu: {from: 0.1, to: 0.4, count: 3}}, {mass: {from: 1, to: 3, count: 3}}]
+refine: {where: steps, depth: 1}
+keep: [steps]
+""")
+    first = run("sweep", "few.yaml", "-o", "few", "--quiet", "--shard", "1/2", timeout=60)
+    check("9 points of other shards" in first.stderr, f"a shard without points: {first.stderr}")
+    for k in (0, 1):
+        run("sweep", "few.yaml", "-o", "few", "--quiet", "--shard", f"{k}/2", timeout=60)
+    run("sweep", "--merge", "few")
+
+
 def emitted():
     done = run("sweep", "fine.yaml", "-o", "fine", "--emit", "parallel", "--shards", "3")
     check("in rounds" in done.stderr, done.stderr)
@@ -151,6 +168,7 @@ axes: [{{height: {COARSE[0]}}}, {{load: {COARSE[1]}}}, {{stiffness: [1, 2]}}]
 
 the_edge_is_found()
 same_bytes()
+a_shard_without_points()
 emitted()
 killed()
 numbers_and_failures()
