@@ -200,10 +200,12 @@ const strut_command strut_command_path = {
     .timed = true,
 };
 
+static const strut_refused_option refused_by_form[] = {
+    {"threads", "it computes one step after the other"}, STRUT_REFUSE_RUN_SETTINGS};
+
 static const strut_option form_options[] = {
     STRUT_FORM_OPTIONS,
     STRUT_SET_OPTION,
-    STRUT_THREADS_OPTION,
     {STRUT_OPTION_OUTPUT, "output", "FILE", "write the new model to FILE and print a report"},
     {STRUT_OPTION_JSON, "json", NULL, "print the report as one JSON object instead of the model"},
     STRUT_PLOT_OPTIONS,
@@ -284,5 +286,5 @@ const strut_command strut_command_form = {
         "old one where these can say it; it stays at rest when run without drives.\n",
     .options = form_options,
     .run = run_form,
-    .refused = refused,
+    .refused = refused_by_form,
 };

@@ -85,7 +85,7 @@ static strut_status run_command(const strut_command *command, int argc, char **a
 static const strut_command *natural_command(const char *path) {
   strut_diagnostics diagnostics = {0};
   strut_document document = {.root = NULL};
-  strut_setup setup;
+  strut_scene_source *source = NULL;
   strut_error error = {0};
   char *text = NULL;
   size_t length;
@@ -95,13 +95,14 @@ static const strut_command *natural_command(const char *path) {
   if (strut_document_read(&document, &diagnostics) == STRUT_OK && document.root &&
       strut_tree_is_study(document.root)) {
     command = &strut_command_sweep;
-  } else if (strut_setup_read(&setup, path, text, length, NULL, 0, STRUT_FOR_ANY, &diagnostics) ==
-             STRUT_OK) {
-    bool runs = setup.experiment.duration > 0.0 || setup.experiment.periods > 0.0;
-    if (!runs) command = &strut_command_equilibria;
-    strut_setup_free(&setup);
+  } else if (strut_scene_source_open(path, text, length, &diagnostics, &source) == STRUT_OK) {
+    /* with what its base holds */
+    const strut_tree *root = strut_scene_source_document(source)->root;
+    if (root && root->kind == STRUT_TREE_MAP && !strut_tree_find(root, "run", NULL))
+      command = &strut_command_equilibria;
   }
   strut_document_free(&document);
+  strut_scene_source_free(source);
   strut_diagnostics_free(&diagnostics);
   strut_release(text);
   return command;
