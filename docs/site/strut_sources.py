@@ -21,7 +21,7 @@ def repository(app):
 
 
 def page_of(app, path, asked):
-    """The name of the site's page for a file or folder of the repository, or None if there is none. Adds the
+    """The name of the site's page for a file or folder of the repository, or None if it has no page. Adds the
     file to the set `asked` if that page has to be made here."""
     root = repository(app)
     if not path.exists() or root not in path.parents:

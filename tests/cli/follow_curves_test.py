@@ -17,7 +17,7 @@ duffing = os.path.join(models, "basics", "duffing.yaml")
 def run(*words, code=0):
     done = subprocess.run([strut, "path", "--periodic", *words], capture_output=True, text=True, cwd=work, timeout=120, check=False)
     check(done.returncode == code,
-          f"strut follow {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
+          f"strut path --periodic {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
     return done
 
 

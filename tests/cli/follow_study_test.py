@@ -82,7 +82,7 @@ check([s["point"] for s in report["points"][2]["result"]["branches"][0]["special
 check(report == json.load(open(path("out", "report.json"), encoding="utf-8")), "report.json")
 check("3 done" in run("sweep", "study.yaml", "-o", "out", "--status").stdout, "status")
 
-# ---- one point alone is what `strut follow` finds
+# ---- one point alone is what `strut path --periodic` finds
 
 run("path", "--periodic", "duffing.yaml", "--over", "frequency=0.14Hz..0.24Hz", "--set", "force=0.15", "-o", "alone", "-q")
 alone = rows("alone", "branches.csv")

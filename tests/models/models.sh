@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Every model says what it shows, is valid, and runs if it has a run: begins with a comment, passes
-# strut check and strut run, and what strut write makes of it gives the same summary. A model for
-# statics alone has no run; what strut write makes of it must give the same check. A study, which
+# strut check and strut run, and what strut export makes of it gives the same summary. A model for
+# statics alone has no run; what strut export makes of it must give the same check. A study, which
 # says `study:`, must count its points.
 #
 #   sh tests/models/models.sh ROOT STRUT

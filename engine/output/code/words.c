@@ -169,8 +169,8 @@ static void add_title(strut_code_writer *w) {
   strut_buffer_add(
       &w->text,
       ".\n *\n"
-      " * Permission under section 7 of the GNU General Public License, version 3: whoever\n"
-      " * has this file may use, change and distribute it under any terms. It belongs to\n"
+      " * Permission under section 7 of the GNU General Public License, version 3: anyone\n"
+      " * who has this file may use, change and distribute it under any terms. It belongs to\n"
       " * those who described the model, although parts of it are copied from strut.\n");
 }
 

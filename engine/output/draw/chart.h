@@ -77,7 +77,7 @@ STRUT_API const char *strut_prefix(double largest, const char *unit, double *fac
  */
 STRUT_API strut_rounded_quantity strut_drawn_quantity(double value, int digits, const char *unit);
 
-/* Outliers: few values that would take most of a scale lie beyond it, marked, counted and told. */
+/* Outliers: few values that would take most of a scale lie beyond it, marked and counted. */
 
 /** Values beyond a scale. Zero-initialised: none. */
 typedef struct strut_beyond {
@@ -176,7 +176,7 @@ typedef struct strut_curves {
   const strut_series *series;
   const strut_band *bands;
   double cursor;    /* a vertical line at this x; NAN: none */
-  bool mark_beyond; /* points above or below the y axes are marked at the edge, counted and told */
+  bool mark_beyond; /* points above or below the y axes are marked at the edge and counted */
 } strut_curves;
 
 /**

@@ -165,18 +165,18 @@ static void draw_series(const plotter *p, size_t i) {
   }
 }
 
-/* Excursions of a panel's curves beyond the y axis, and those whose values are told. */
-enum { MOST_TOLD = 6 };
+/* Excursions of a panel's curves beyond the y axis, and how many of them show their values. */
+enum { MOST_LABELLED = 6 };
 
-/* Marks and tells the farthest point k of an excursion of series i. */
-static void mark_point(const plotter *p, size_t i, size_t k, bool told) {
+/* Marks the farthest point k of an excursion of series i. */
+static void mark_point(const plotter *p, size_t i, size_t k, bool labelled) {
   const strut_series *s = &p->curves->series[i];
   const strut_axes axes = axes_of(p, s);
   bool above = s->y[k] > axes.y.high;
   double at[2];
   strut_axes_point(&axes, s->x[k], above ? axes.y.high : axes.y.low, at);
   strut_draw_beyond(p->canvas, at, above ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM);
-  if (told)
+  if (labelled)
     strut_draw_label(p->canvas,
                      &(strut_label){.text = strut_drawn_quantity(s->y[k], 3, axes.y.unit).text,
                                     .font = {.size = 7, .halo = strut_grey(1)},
@@ -192,7 +192,7 @@ static void mark_beyond(const plotter *p) {
   strut_beyond beyond = {0};
   const char *unit = p->axes.y.unit;
   char text[STRUT_BEYOND_TEXT];
-  size_t told = 0;
+  size_t labelled = 0;
   for (size_t i = 0; i < p->curves->series_count; i++) {
     const strut_series *s = &p->curves->series[i];
     const strut_axes axes = axes_of(p, s);
@@ -200,7 +200,7 @@ static void mark_beyond(const plotter *p) {
     for (size_t k = 0; k <= s->count; k++) {
       bool out = k < s->count && (s->y[k] > axes.y.high || s->y[k] < axes.y.low);
       if (out && (farthest == SIZE_MAX || fabs(s->y[k]) > fabs(s->y[farthest]))) farthest = k;
-      if (!out && farthest != SIZE_MAX) mark_point(p, i, farthest, told++ < MOST_TOLD);
+      if (!out && farthest != SIZE_MAX) mark_point(p, i, farthest, labelled++ < MOST_LABELLED);
       if (!out) farthest = SIZE_MAX;
       if (!out) continue;
       beyond.above++;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The energy ladder: states as levels, with the barriers between them. See equilibria_parts.h. */
+/* The energy ladder: states as levels, with the barriers between them. See energy_ladder.h. */
 #include <math.h>
 #include <stdio.h>
 
 #include "engine/base/vec.h"
 #include "engine/output/draw/chart.h"
-#include "engine/output/figures/equilibria_parts.h"
+#include "engine/output/figures/energy_ladder.h"
 
 enum { ARC = 40, FEW = 4, TEXT = 160 };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** The energy ladder of the figure of equilibria. */
-#ifndef STRUT_ENGINE_OUTPUT_FIGURES_EQUILIBRIA_PARTS_H
-#define STRUT_ENGINE_OUTPUT_FIGURES_EQUILIBRIA_PARTS_H
+#ifndef STRUT_ENGINE_OUTPUT_FIGURES_ENERGY_LADDER_H
+#define STRUT_ENGINE_OUTPUT_FIGURES_ENERGY_LADDER_H
 
 #include "engine/base/memory.h"
 #include "engine/output/draw/canvas.h"

@@ -9,7 +9,7 @@
 #include "engine/output/draw/chart.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure.h"
-#include "engine/output/figures/equilibria_parts.h"
+#include "engine/output/figures/energy_ladder.h"
 #include "engine/output/figures/statics_figures.h"
 
 static bool on_ground(const strut_equilibrium *e) { return e->rest != NULL; }

@@ -396,7 +396,7 @@ static void add_idle(strut_buffer *table, const strut_rigidity *r, const strut_s
                    "");
 }
 
-/* "; has self-stress, cables in tension": what the kind is judged by. */
+/* ": self-stress, cables in tension": what the kind is judged by. */
 static void add_features(strut_buffer *table, const strut_tensegrity *t) {
   const struct {
     bool has;
