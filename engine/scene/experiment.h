@@ -100,6 +100,7 @@ typedef struct strut_steady {
 typedef struct strut_experiment {
   const char *integrator; /* name in the table of methods; default "rk4" */
   double step;            /* dt [s], > 0; of an adaptive method the largest; 0: it is chosen */
+  bool step_chosen;       /* the file gives none: strut_experiment_choose_step did */
   double tolerance;       /* of an adaptive method, relative [1]; default 1e-6 */
   double
       refine; /* factor of shorter steps after a touchdown [1], by methods that refine; 0: taken from the scene; 1: none */

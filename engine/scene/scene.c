@@ -245,6 +245,7 @@ void strut_experiment_choose_step(strut_experiment *e, const strut_scene *scene)
   if (e->step != 0.0 || e->accuracy > 0.0 || !strut_experiment_is_adaptive(e->integrator)) return;
   strut_span span = strut_experiment_span(e, scene);
   e->step = (span.period > 0.0 ? span.period : span.duration) / parts;
+  e->step_chosen = true;
 }
 
 /* Moves the shape of a ground. */

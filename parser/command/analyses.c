@@ -255,22 +255,29 @@ static strut_status read_stop(const strut_command *command, const strut_argument
                            scene->node_count ? scene->nodes[0].name : "node", text);
 }
 
-/* --over WHAT, or WHAT=FROM..UNTIL taken apart; texts in the arena, NULL where none is given. */
+/* --over WHAT, or WHAT=FROM..UNTIL; texts in the arena, NULL where none is given. */
 typedef struct over_text {
   const char *name, *from, *until;
 } over_text;
 
-static bool split_over(const strut_arguments *arguments, strut_arena *arena, over_text *over) {
+static strut_status read_over(const strut_command *command, const strut_arguments *arguments,
+                              strut_arena *arena, over_text *over) {
   const char *text = strut_option_text(arguments, STRUT_OPTION_OVER);
-  const char *equals = text ? strchr(text, '=') : NULL;
-  const char *dots = equals ? strstr(equals, "..") : NULL;
-  *over = (over_text){.name = text};
-  if (!equals) return true;
-  if (!dots || dots == equals + 1 || !dots[2]) return false;
-  over->name = strut_arena_text(arena, text, (size_t)(equals - text));
-  over->from = strut_arena_text(arena, equals + 1, (size_t)(dots - equals - 1));
-  over->until = dots + 2;
-  return over->name && over->from;
+  strut_range_text r;
+  *over = (over_text){.name = NULL};
+  if (!text) return STRUT_OK;
+  if (!strut_range_text_split(text, &r))
+    return strut_usage_error(command, arguments, "--over expects WHAT or WHAT=FROM..UNTIL");
+  if (r.low && (strut_option_text(arguments, STRUT_OPTION_FROM) ||
+                strut_option_text(arguments, STRUT_OPTION_UNTIL)))
+    return strut_usage_error(command, arguments,
+                             "give either --over WHAT=FROM..UNTIL, or --from and --until");
+  over->name = strut_arena_text(arena, r.name, r.name_length);
+  if (r.low) over->from = strut_arena_text(arena, r.low, r.low_length);
+  over->until = r.high;
+  if (over->name && (over->from || !r.low)) return STRUT_OK;
+  strut_tell(arguments->listener, STRUT_MESSAGE_ERROR, NULL, "out of memory");
+  return STRUT_NO_MEMORY;
 }
 
 /* A value of --over WHAT=FROM..UNTIL. */
@@ -278,16 +285,16 @@ static strut_status read_over_end(const strut_command *command, const strut_argu
                                   strut_dimension dimension, const char *text, double *value) {
   const char *example = strut_dimension_example(dimension);
   if (!text || strut_option_numbers(text, dimension, value, 1) == 1) return STRUT_OK;
-  return strut_usage_error(command, arguments, "--over: expected a value%s%s%s, not '%s'",
-                           example ? " such as " : "", example ? example : "", "", text);
+  return strut_usage_error(command, arguments, "--over: expected a value%s%s, not '%s'",
+                           example ? " such as " : "", example ? example : "", text);
 }
 
 static strut_status read_followed(const strut_command *command, const strut_arguments *arguments,
                                   strut_scene *scene, strut_varied_scenes *scenes,
                                   strut_path_options *wanted) {
   over_text over;
-  if (!split_over(arguments, &scene->arena, &over))
-    return strut_usage_error(command, arguments, "--over expects WHAT or WHAT=FROM..UNTIL");
+  strut_status early = read_over(command, arguments, &scene->arena, &over);
+  if (early != STRUT_OK) return early;
   const char *name = over.name;
   strut_dimension dimension = STRUT_DIM_NONE;
   strut_status status = STRUT_OK;

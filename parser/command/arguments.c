@@ -122,6 +122,15 @@ size_t strut_option_numbers(const char *text, strut_dimension dimension, double 
   return count;
 }
 
+bool strut_range_text_split(const char *text, strut_range_text *range) {
+  size_t length = strcspn(text, "=");
+  const char *low = text[length] ? text + length + 1 : NULL, *dots = low ? strstr(low, "..") : NULL;
+  *range = (strut_range_text){.name = text, .name_length = length};
+  if (low && (!dots || dots == low || !dots[2])) return false;
+  if (low) range->low = low, range->low_length = (size_t)(dots - low), range->high = dots + 2;
+  return length > 0;
+}
+
 strut_status strut_option_integer(const strut_command *command, const strut_arguments *arguments,
                                   strut_option_id id, int64_t low, int64_t high, int64_t *value) {
   const char *text = strut_option_text(arguments, id);

@@ -217,6 +217,14 @@ strut_status strut_option_number(const strut_command *command, const strut_argum
  */
 size_t strut_option_numbers(const char *text, strut_dimension dimension, double *values,
                             size_t most);
+/** The parts of "NAME=LOW..HIGH" within an option's text, or of "NAME" alone. */
+typedef struct strut_range_text {
+  const char *name, *low,
+      *high; /* low, high: NULL without a range; `high` goes to the text's end */
+  size_t name_length, low_length;
+} strut_range_text;
+/** False where the text is neither, or a part of it is empty. */
+bool strut_range_text_split(const char *text, strut_range_text *range);
 /** As strut_option_number, for whole numbers from low to high. */
 strut_status strut_option_integer(const strut_command *command, const strut_arguments *arguments,
                                   strut_option_id id, int64_t low, int64_t high, int64_t *value);

@@ -30,16 +30,14 @@ typedef struct range_text {
 
 /* False where the text, or the options, give no name and range. */
 static bool take_range_apart(const char *text, range_text *r) {
-  const char *equals = text ? strchr(text, '=') : NULL;
-  const char *dots = equals ? strstr(equals, "..") : NULL;
-  size_t length = equals ? (size_t)(equals - text) : text ? strlen(text) : 0;
-  if (!length || length >= STRUT_FOLLOW_NAME) return false;
-  memcpy(r->name, text, length);
-  r->name[length] = '\0';
-  const char *low = equals ? equals + 1 : r->from;
-  r->high = dots ? dots + 2 : equals ? NULL : r->until;
-  if (!low || !r->high) return false;
-  int used = dots ? (int)(dots - low) : (int)strlen(low);
+  strut_range_text parts;
+  if (!text || !strut_range_text_split(text, &parts) || parts.name_length >= STRUT_FOLLOW_NAME)
+    return false;
+  snprintf(r->name, STRUT_FOLLOW_NAME, "%.*s", (int)parts.name_length, parts.name);
+  const char *low = parts.low ? parts.low : r->from;
+  r->high = parts.low ? parts.high : r->until;
+  if (!low || !r->high || (parts.low && (r->from || r->until))) return false;
+  int used = parts.low ? (int)parts.low_length : (int)strlen(low);
   return snprintf(r->low, sizeof r->low, "%.*s", used, low) < (int)sizeof r->low;
 }
 
@@ -47,9 +45,9 @@ static bool take_range_apart(const char *text, range_text *r) {
 static strut_status split_range(const strut_command *command, const strut_arguments *arguments,
                                 const strut_scene *scene, const char *text, range_text *r) {
   if (!take_range_apart(text, r))
-    return strut_usage_error(command, arguments,
-                             "missing %s NAME=LOW..HIGH, such as %s frequency=8Hz..12Hz", r->option,
-                             r->option);
+    return strut_usage_error(
+        command, arguments, "missing %s NAME=LOW..HIGH, such as %s frequency=8Hz..12Hz%s",
+        r->option, r->option, r->from || r->until ? ", or --over NAME, --from and --until" : "");
   const strut_parameter *parameter = strut_find_parameter(scene, r->name);
   const char *near = parameter ? NULL : strut_did_you_mean(r->name, parameter_at, scene);
   if (!parameter)

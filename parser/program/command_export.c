@@ -266,7 +266,7 @@ static const strut_option options[] = {
      "scene (default), matrices, code, vtk, build or mjcf; see above"},
     {STRUT_OPTION_OUTPUT, "output", "PATH",
      "directory to write into; a file for mjcf and scene (default: print the scene)"},
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    STRUT_SET_OPTION,
     {STRUT_OPTION_AT, "at", "NAME",
      "shape for matrices, vtk and build: drawn (default), start, or an equilibrium"},
     {STRUT_OPTION_PARTS, "parts", NULL, "scene: keep parameters, groups and parts"},

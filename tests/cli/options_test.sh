@@ -100,6 +100,11 @@ expect 0 run free.yaml --json
 out_has '"method":	"adaptive"'
 sed '/^solver/d' hop.yaml >none.yaml
 expect 0 run none.yaml --integrator adaptive --quiet
+# ... but the step that it gets is no step of another method.
+expect 1 run free.yaml --integrator rk4
+err_has "the solver has no step"
+expect 0 run free.yaml --integrator rk4 --step 1ms --quiet
+expect 0 run free.yaml --accuracy 1% --quiet
 expect 2 run none.yaml
 err_has "the solver has no step"
 # What only rests needs none either.
@@ -114,6 +119,10 @@ expect 0 path truss.yaml --over load --from 1 --until 3N --json
 same one out
 expect 1 path truss.yaml --over load=1..
 err_has "--over expects WHAT or WHAT=FROM..UNTIL"
+expect 1 path truss.yaml --over load=1..3 --until 5
+err_has "give either --over WHAT=FROM..UNTIL, or --from and --until"
+expect 1 path hop.yaml --periodic --over mass=1..2 --from 1
+err_has "or --over NAME, --from and --until"
 expect 1 path truss.yaml --over load=1..3kg
 err_has "--over: expected a value such as "
 expect 0 tradeoff hop.yaml --cpu-time 1s --step-sizes 2 --own-model --quiet --plot trade.svg
