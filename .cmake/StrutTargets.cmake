@@ -8,6 +8,9 @@ set(STRUT_WARNINGS
 # A test preset keeps assertions at full optimisation; only Release drops them.
 set(CMAKE_C_FLAGS_RELEASE "-O3 -DNDEBUG")
 set(CMAKE_C_FLAGS_RELWITHDEBINFO "-O3 -g")
+if(EMSCRIPTEN) # a page is loaded; what takes the time of a step says so itself
+  set(CMAKE_C_FLAGS_RELEASE "-Oz -DNDEBUG -msimd128")
+endif()
 
 # strut_compile_options(TARGET): the same language, definitions and floating-point rules everywhere,
 # so that a result's bits do not depend on who compiled what.
@@ -22,7 +25,10 @@ function(strut_compile_options target)
   target_compile_definitions(${target} PRIVATE _POSIX_C_SOURCE=200809L
                                                STRUT_VERSION="${PROJECT_VERSION}")
   target_compile_options(${target} PRIVATE ${STRUT_WARNINGS} -ffp-contract=off -fno-math-errno
-                                           -fno-semantic-interposition -Wno-psabi)
+                                           -Wno-psabi)
+  if(NOT EMSCRIPTEN)
+    target_compile_options(${target} PRIVATE -fno-semantic-interposition)
+  endif()
   if(STRUT_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
