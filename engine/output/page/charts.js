@@ -101,7 +101,7 @@
     return kinds;
   }
 
-  /* Of each kind the curves to show, and with each that of the same name of the other run, or null. */
+  /* Of each kind the curves to show, each with that of the same name of the other run, or null. */
   function chooseCurves(run, other) {
     const others = new Map(other ? kindsOf(other).map((kind) => [kind.name, kind.curves]) : []);
     const frames = run.motion.frames;
@@ -152,7 +152,7 @@
     while (i < first.length || k < second.length) {
       const a = i < first.length ? first[i][0] : Infinity;
       const b = k < second.length ? second[k][0] : Infinity;
-      const near = Math.abs(a - b) <= 1e-9 * Math.max(Math.abs(a), Math.abs(b));
+      const near = Math.abs(a - b) <= 1e-9 * Math.abs(a) && a < Infinity || a === b;
       const one = near || a < b ? first[i++].slice(1) : gap(counts[0]);
       const two = near || b < a ? second[k++].slice(1) : gap(counts[1]);
       rows.push([Math.min(a, b), ...one, ...two]);
@@ -266,7 +266,7 @@
       });
     }
 
-    /* Draws a kind into its box, which stays where it is. Names are in the title: dygraphs has numbers. */
+    /* Draws a kind into its box, which stays in place. Names are in the title: dygraphs has numbers. */
     function fill(chart) {
       const { kind, plot } = chart, line = page.theme().line, series = {};
       const beside = kind.curves.map((_, i) => i).filter((i) => kind.beside[i]);
@@ -276,7 +276,8 @@
       chart.graph = null;
       fillTitle(chart);
       chart.graph = new Dygraph(plot, shownRows(chart), {
-        labels: ["time", ...kind.curves.map((_, i) => String(i)), ...beside.map((i) => "beside " + i)],
+        labels: ["time", ...kind.curves.map((_, i) => String(i)),
+          ...beside.map((i) => "beside " + i)],
         colors: [...kind.curves.map((_, i) => colour(i)), ...beside.map(colour)], series,
         connectSeparatedPoints: true,
         strokePattern: null, strokeWidth: 1.3, highlightCircleSize: 0, legend: "never",
@@ -306,7 +307,8 @@
       shown.forEach((kind, place) => {
         const chart = charts.get(kind.name) || createBox();
         charts.set(kind.name, chart);
-        if (host.children[place] !== chart.box) host.insertBefore(chart.box, host.children[place] || null);
+        if (host.children[place] !== chart.box)
+          host.insertBefore(chart.box, host.children[place] || null);
         if (chart.kind === kind) return;
         chart.kind = kind;
         fill(chart);
@@ -340,8 +342,8 @@
       if (window_ && !(time && window_[0] < time[time.length - 1] && window_[1] > time[0]))
         window_ = null;
       if (kinds.map((kind) => kind.name).join() !== names) offerKinds();
+      element("charts-section").hidden = kinds.length === 0; /* before charts look at its width */
       update();
-      element("charts-section").hidden = kinds.length === 0;
     }
 
     /* Time and all shown curves of all frames, as rows of a table. */
@@ -351,7 +353,8 @@
         kind.name + ": " + c.name + more + " [" + kind.unit + "]");
       const own = all.flatMap((kind) => kind.curves);
       const beside = all.flatMap((kind) => kind.beside.filter(Boolean));
-      const frames = (times, curves) => Array.from(times, (t, f) => [t, ...curves.map((c) => c.at(f))]);
+      const frames = (times, curves) =>
+        Array.from(times, (t, f) => [t, ...curves.map((c) => c.at(f))]);
       return [["time [s]", ...all.flatMap((kind) => heads(kind, kind.curves, "")),
         ...all.flatMap((kind) => heads(kind, kind.beside.filter(Boolean), " of " + label))],
       ...rowsOf(own, beside, 0, 0, frames)];

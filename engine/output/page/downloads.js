@@ -22,7 +22,8 @@
   }
 
   /* A cell as RFC 4180 has it. */
-  const cell = (text) => (/[",\r\n]/.test(text) ? "\"" + text.replaceAll("\"", "\"\"") + "\"" : text);
+  const cell = (text) =>
+    (/[",\r\n]/.test(text) ? "\"" + text.replaceAll("\"", "\"\"") + "\"" : text);
   page.csvText = (rows) => rows.map((row) =>
     row.map((value) => (value === null ? "" : cell(String(value)))).join(",")).join("\n") + "\n";
 

@@ -2,10 +2,10 @@
 /*
  * The page: puts runs, drawing, player, charts and cards together.
  *
- * strutPage.show(data, beside) shows the data of page.h, and beside them those of a second run or none;
- * any number of times. What the user chose stays. It returns a promise of when they are shown, that
- * fails if they are damaged. strutPage.onPick(index), if set, is called when a card is chosen. The
- * element #live is for controls of later scripts.
+ * strutPage.show(data, beside) shows the data of page.h, and beside them those of a second run or
+ * none; any number of times. What the user chose stays. It returns a promise that is kept when they
+ * are shown, and broken if they are damaged. strutPage.onPick(index), if set, is called when a card
+ * is chosen. The element #live is for controls of later scripts.
  */
 "use strict";
 (function (page) {
@@ -82,9 +82,9 @@
 
   function showTime(frame) {
     const clock = element("clock"), time = document.createElement("b");
-    const count = document.createElement("span"), frames = String(run.motion.frames);
-    time.textContent = page.timeText(run.time[frame], decimals, run.time[run.time.length - 1]) + " s";
-    count.textContent = "frame " + String(frame + 1).padStart(frames.length, "\u2007") + " of " + frames;
+    const count = document.createElement("span"), last = run.motion.frames - 1;
+    time.textContent = page.timeText(run.time[frame], decimals, run.time[last]) + " s";
+    count.textContent = "frame " + page.timeText(frame + 1, 0, last + 1) + " of " + (last + 1);
     clock.replaceChildren(time, count);
   }
 
@@ -186,7 +186,8 @@
 
   /* Hides choices without effect on any shape of the page. */
   function offerChoices() {
-    const { data, motion, still } = run, shapes = (data.equilibria || []).map((e) => page.shapeOf(data, e));
+    const { data, motion, still } = run;
+    const shapes = (data.equilibria || []).map((e) => page.shapeOf(data, e));
     if (motion) shapes.push(run.shapeAt(0));
     const hide = (id, hidden) => { element(id).parentElement.hidden = hidden; };
     hide("trails", !run.hasTrails);

@@ -23,8 +23,7 @@
     return line;
   }
 
-  /* A table of rows {label, value}; with a second run a second column, and a mark between those that
-     differ. */
+  /* A table of rows {label, value}; with a second run a second column, and a mark where they differ. */
   function fillTable(id, data, beside) {
     const body = document.querySelector("#" + id + " tbody");
     const rows = joinRows(data[id], beside && beside[id]).map(([label, one, two]) => {
@@ -33,9 +32,10 @@
       row.classList.toggle("differs", one !== two);
       return row;
     });
-    const heads = beside ? [makeRow("th", ["", data.label || "first", "", beside.label || "second"])] : [];
-    body.replaceChildren(...heads, ...rows);
-    document.getElementById(id + "-section").hidden = rows.length === 0;
+    if (beside)
+      rows.unshift(makeRow("th", ["", data.label || "first", "", beside.label || "second"]));
+    body.replaceChildren(...rows);
+    document.getElementById(id + "-section").hidden = !body.querySelector("td");
   }
 
   function ordinal(n) {
@@ -62,7 +62,8 @@
   function besideText(ghost) {
     const { data } = ghost.run, notes = [];
     if (ghost.delay) notes.push("the recordings do not overlap in time and begin together here");
-    if (ghost.shift) notes.push("moved by " + page.quantity(ghost.shift, "m", 4) + " to the same start");
+    if (ghost.shift)
+      notes.push("moved by " + page.quantity(ghost.shift, "m", 4) + " to the same start");
     return "Pale, with dashed curves: " + (data.label || data.name || "a second run") +
       (notes.length ? " (" + notes.join("; ") + ")" : "") + ".";
   }
@@ -146,7 +147,8 @@
         const camera = page.fit(page.boundsOf(shape.position), canvas.clientWidth,
           canvas.clientHeight, 14, run.data.size);
         page.drawStructure(page.prepareCanvas(canvas), run.structure, shape, camera, { theme,
-          colour: true, arrows: true, limit: limits.force, contactLimit: limits.contact, small: true });
+          colour: true, arrows: true, limit: limits.force, contactLimit: limits.contact,
+          small: true });
       }
     }
 

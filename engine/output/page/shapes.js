@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A run as the page draws it: its motion decoded, its shapes, and the ranges that all frames share. */
+/* A run as the page draws it: its motion decoded, its shapes, and the ranges of all frames. */
 "use strict";
 (function (page) {
   const MEASURED = 3e5; /* values looked at for the ranges */
@@ -113,9 +113,9 @@
   };
 
   /*
-   * A second run as a ghost behind the first: {run, time, delay, shift}. Recordings that do not overlap
-   * begin together: time is the second's on the clock of the first, delayed by `delay`. Structures
-   * of the same nodes begin at the same x, moved by `shift`.
+   * A second run as a ghost behind the first: {run, time, delay, shift}. Recordings that do not
+   * overlap begin together: time is the second's on the clock of the first, delayed by `delay`.
+   * Structures of the same nodes begin at the same x, moved by `shift`.
    */
   page.createGhost = function (run, other) {
     const ghost = { run: other, time: other.time, delay: 0, shift: 0 };
@@ -124,9 +124,9 @@
     if (other.time[0] > end(run.time) || run.time[0] > end(other.time))
       ghost.delay = run.time[0] - other.time[0];
     if (ghost.delay) ghost.time = other.time.map((t) => t + ghost.delay);
-    const name = (n) => n.name, begin = Math.max(run.time[0], ghost.time[0]);
-    const same = JSON.stringify(run.data.nodes.map(name)) === JSON.stringify(other.data.nodes.map(name));
-    if (same)
+    const begin = Math.max(run.time[0], ghost.time[0]);
+    const names = (r) => JSON.stringify(r.data.nodes.map((node) => node.name));
+    if (names(run) === names(other))
       ghost.shift = run.track(page.nearestFrame(run.time, begin)) -
         other.track(page.nearestFrame(ghost.time, begin));
     return ghost;

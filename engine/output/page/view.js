@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws a structure to scale on a surface {context, width, height}: the stage, a card, or a file. */
+/* Draws a structure to scale on a surface {context, width, height}: stage, card or file. */
 "use strict";
 (function (page) {
   const SIGNED = [[10, 31, 102], [47, 74, 158], [125, 131, 144], [201, 139, 69], [245, 163, 26]];
@@ -7,7 +7,7 @@
   const KINDS = { bar: 0, spring: 1, cable: 2 };
   const WIDTHS = [4.2, 2.4, 1.5], DASHES = [[], [7, 2.5], []]; /* dashes where no force is known */
   const KIND_NAMES = ["bar", "spring", "cable"], FONT = "11px system-ui, 'DejaVu Sans', sans-serif";
-  const SLACK_DASH = [4, 3], PALE = 0.3;
+  const SLACK_DASH = [4, 3], PALE = 0.4;
 
   page.MOST_NAMES = 60; /* of nodes that are written */
 
