@@ -84,7 +84,7 @@
     const clock = element("clock"), time = document.createElement("b");
     const count = document.createElement("span"), last = run.motion.frames - 1;
     time.textContent = page.timeText(run.time[frame], decimals, run.time[last]) + " s";
-    count.textContent = "frame " + page.timeText(frame + 1, 0, last + 1) + " of " + (last + 1);
+    count.textContent = "frame " + (frame + 1) + " of " + (last + 1);
     clock.replaceChildren(time, count);
   }
 
