@@ -18,13 +18,16 @@
 /* A page holds a few million numbers: reading more than 128 MB of motion would be wasted. */
 static const size_t ROOM = (size_t)1 << 24;
 
+/* Runs on one page. */
+enum { MOST_RUNS = 2 };
+
 static const char *const searches[] = {"all", "none", NULL};
 enum { SEARCH_ALL, SEARCH_NONE, SEARCH_OF_MODEL };
 
 static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "FILE.html", "the page to write (default RUN.html)"},
     {STRUT_OPTION_EQUILIBRIA, "equilibria", "WHICH",
-     "all or none (default: all of a MODEL, none of a RUN)"},
+     "all or none (default: all of a MODEL, none of a RUN); of two, those of the first"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter of MODEL; may be repeated"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
@@ -34,11 +37,16 @@ static bool ends_with(const char *text, const char *end) {
   return length > wanted && strcasecmp(text + length - wanted, end) == 0;
 }
 
+/* The path of a run or model without slashes at its end; returns its length, or that of the whole. */
+static int trim_path(const char *path, char *text, size_t size) {
+  size_t length = strlen(path);
+  while (length > 1 && path[length - 1] == '/') length--;
+  return snprintf(text, size, "%.*s", (int)length, path);
+}
+
 /* RUN.html or MODEL.html beside what is shown, in `text`; false where that has no name. */
 static bool choose_page(const char *shown, char *text, size_t size) {
-  size_t length = strlen(shown);
-  while (length > 1 && shown[length - 1] == '/') length--;
-  int used = snprintf(text, size, "%.*s", (int)length, shown);
+  int used = trim_path(shown, text, size);
   const char *slash = strrchr(text, '/'), *name = slash ? slash + 1 : text;
   bool nameless =
       !*name || strcmp(name, "-") == 0 || strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
@@ -72,63 +80,109 @@ static strut_status find_equilibria(const strut_arguments *arguments, const stru
   return status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY ? status : STRUT_OK;
 }
 
+/* `frames` of each run. */
 static void print_written(const strut_arguments *arguments, const strut_page_frames *frames,
                           size_t bytes) {
   if (arguments->quiet) return;
   printf("%s: ", arguments->output);
-  if (frames->shown > 0) printf("%zu frame%s, ", frames->shown, frames->shown == 1 ? "" : "s");
-  if (frames->shown > 0 && frames->shown < frames->recorded)
-    printf("evenly chosen from %zu recorded, ", frames->recorded);
+  for (size_t i = 0; i < arguments->model_count; i++) {
+    if (frames[i].shown == 0) continue;
+    printf("%s%zu frame%s", i > 0 ? "beside " : "", frames[i].shown,
+           frames[i].shown == 1 ? "" : "s");
+    if (frames[i].shown < frames[i].recorded)
+      printf(", evenly chosen from %zu recorded", frames[i].recorded);
+    printf(", ");
+  }
   printf("%.1f MB\n", 1e-6 * (double)bytes);
 }
 
 static strut_status write_page(const strut_arguments *arguments, const strut_page *page,
                                const volatile sig_atomic_t *interrupt, strut_error *error) {
-  strut_page_frames frames;
-  char *html = strut_page_html(page, &frames, error);
+  strut_page_frames frames[MOST_RUNS] = {0};
+  char *html = strut_page_html(page, frames, error);
   if (!html) return error->status;
   strut_status status =
       *interrupt ? strut_fail(error, STRUT_INTERRUPTED, "interrupted; no page was written")
                  : strut_file_write_path(arguments->output, html, error);
-  if (status == STRUT_OK) print_written(arguments, &frames, strlen(html));
+  if (status == STRUT_OK) print_written(arguments, frames, strlen(html));
   strut_release(html);
   return status;
+}
+
+/* The pages of all runs, the first with what is beside it; their texts are to be released. */
+static strut_status describe_pages(const strut_opened *opened, size_t count, strut_page *pages,
+                                   char **yaml) {
+  for (size_t i = 0; i < count; i++) {
+    yaml[i] = strut_setup_write(&opened[i].setup);
+    if (!yaml[i]) return STRUT_NO_MEMORY;
+    pages[i] = (strut_page){.model = opened[i].model,
+                            .experiment = &opened[i].setup.experiment,
+                            .motion = opened[i].run ? &opened[i].motion : NULL,
+                            .beside = i + 1 < count ? &pages[i + 1] : NULL,
+                            .summary = opened[i].summary,
+                            .yaml = yaml[i]};
+  }
+  return STRUT_OK;
+}
+
+/* Two runs are told apart by their paths. */
+static void label_pages(const strut_arguments *arguments, strut_page *pages,
+                        char labels[MOST_RUNS][PATH_MAX]) {
+  for (size_t i = 0; i < arguments->model_count && arguments->model_count > 1; i++) {
+    trim_path(arguments->models[i], labels[i], PATH_MAX);
+    pages[i].label = labels[i];
+  }
 }
 
 static strut_status make_page(const strut_arguments *arguments, const strut_opened *opened,
                               int search) {
   strut_equilibria all = {0};
   strut_error error = {0}, remark = {0};
-  char *yaml = NULL;
+  strut_page pages[MOST_RUNS];
+  char *yaml[MOST_RUNS] = {NULL}, labels[MOST_RUNS][PATH_MAX];
   const volatile sig_atomic_t *interrupt = strut_interrupt_watch();
   strut_status status = STRUT_OK;
   if (search == SEARCH_ALL) status = find_equilibria(arguments, opened, interrupt, &all, &remark);
   if (status != STRUT_OK) error = remark;
   if (status == STRUT_OK) {
-    yaml = strut_setup_write(&opened->setup);
-    if (!yaml) status = strut_fail(&error, STRUT_NO_MEMORY, "out of memory");
+    status = describe_pages(opened, arguments->model_count, pages, yaml);
+    if (status != STRUT_OK) strut_no_memory(&error, "");
   }
   if (status == STRUT_OK) {
-    strut_page page = {
-        .model = opened->model,
-        .experiment = &opened->setup.experiment,
-        .motion = opened->run ? &opened->motion : NULL,
-        .equilibria = remark.status == STRUT_OK ? &all : NULL,
-        .remark = search == SEARCH_NONE ? "No search for equilibria was made." : remark.message,
-        .summary = opened->summary,
-        .yaml = yaml};
-    status = write_page(arguments, &page, interrupt, &error);
+    label_pages(arguments, pages, labels);
+    if (remark.status == STRUT_OK) pages->equilibria = &all;
+    pages->remark = search == SEARCH_NONE ? "No search for equilibria was made." : remark.message;
+    status = write_page(arguments, pages, interrupt, &error);
   }
   if (status != STRUT_OK) strut_print_error(&error);
-  strut_release(yaml);
+  for (size_t i = 0; i < MOST_RUNS; i++) strut_release(yaml[i]);
   strut_equilibria_free(&all);
   return status;
 }
 
+/* Opens what the arguments name, which of several must all be runs; on failure nothing is left to free. */
+static strut_status open_all(const strut_arguments *arguments, strut_opened *opened) {
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < arguments->model_count && status == STRUT_OK; i++) {
+    strut_arguments one = *arguments;
+    one.model = arguments->models[i];
+    status = strut_open_run(&strut_command_view, &one, STRUT_OPEN_AS_RUN, ROOM, &opened[i]);
+    if (status == STRUT_OK && arguments->model_count > 1 && !opened[i].run)
+      status = strut_print_usage_error(&strut_command_view,
+                                       "two runs can be shown side by side, but '%s' is a model",
+                                       one.model);
+  }
+  for (size_t i = 0; i < MOST_RUNS && status != STRUT_OK; i++) strut_opened_free(&opened[i]);
+  return status;
+}
+
 static strut_status run_view(const strut_arguments *given) {
-  strut_opened opened = {0};
+  strut_opened opened[MOST_RUNS] = {0};
   strut_arguments with_output = *given, *arguments = &with_output;
   char page[PATH_MAX];
+  if (arguments->model_count > MOST_RUNS)
+    return strut_print_usage_error(&strut_command_view, "unexpected argument '%s'",
+                                   arguments->models[MOST_RUNS]);
   if (!arguments->output && choose_page(arguments->model, page, sizeof page))
     arguments->output = page;
   if (!arguments->output)
@@ -137,23 +191,24 @@ static strut_status run_view(const strut_arguments *given) {
   strut_status status =
       strut_option_word(&strut_command_view, arguments, STRUT_OPTION_EQUILIBRIA, searches, &search);
   if (status == STRUT_OK) status = check_output(arguments->output);
-  if (status == STRUT_OK)
-    status = strut_open_run(&strut_command_view, arguments, STRUT_OPEN_AS_RUN, ROOM, &opened);
+  if (status == STRUT_OK) status = open_all(arguments, opened);
   if (status != STRUT_OK) return status;
-  if (search == SEARCH_OF_MODEL && !opened.run) search = SEARCH_ALL;
-  status = make_page(arguments, &opened, search);
-  strut_opened_free(&opened);
+  if (search == SEARCH_OF_MODEL && !opened->run) search = SEARCH_ALL;
+  status = make_page(arguments, opened, search);
+  for (size_t i = 0; i < MOST_RUNS; i++) strut_opened_free(&opened[i]);
   return status;
 }
 
 const strut_command strut_command_view = {
     .name = "view",
-    .model = "RUN|MODEL",
+    .model = "RUN|MODEL [RUN2]",
+    .many = true,
     .summary = "writes an interactive HTML page of a run or model",
     .details =
         "\nRUN is a directory written by 'strut run MODEL -o DIR': the page plays its motion, "
         "with\n"
-        "charts, parameters and summary; --equilibria all adds the equilibria as cards. For a\n"
+        "charts, parameters and summary; --equilibria all adds the equilibria as cards. A second\n"
+        "run, RUN2, is drawn pale behind the first, its curves dashed, its numbers beside. For a\n"
         "MODEL the page shows the shape at the start and the equilibria. The page is a single "
         "file\n"
         "that works offline; above about 4 MB it keeps an even selection of the frames, and says\n"

@@ -333,6 +333,14 @@ TEST(a_run_has_its_channels) {
   strutlib_result_free(result);
 }
 
+/* A page's data: one JSON object with that text in it, which is released. */
+static void check_page_data(char *data, const char *wanted) {
+  assert_non_null(data);
+  assert_true(data[0] == '{' && strcmp(data + strlen(data) - 2, "}\n") == 0);
+  if (!strstr(data, wanted)) fail_msg("the data lack %s", wanted);
+  strutlib_release(data);
+}
+
 TEST(a_run_records_what_is_asked_for) {
   strutlib_error *error;
   strutlib_scene *scene = open_triangle();
@@ -353,6 +361,7 @@ TEST(a_run_records_what_is_asked_for) {
   assert_null(strutlib_result_array_name(result, 0));
   assert_null(strutlib_result_html(result, &error));
   assert_refused(error, STRUTLIB_USAGE, "without a recorded motion");
+  check_page_data(strutlib_result_page_data(result, &error), "\"motion\":null");
   strutlib_result_free(result);
   strutlib_close(scene);
 }
@@ -433,11 +442,13 @@ TEST(statics_have_arrays_and_pictures) {
   char *page = strutlib_result_html(result, &error);
   assert_non_null(page);
   strutlib_release(page);
+  check_page_data(strutlib_result_page_data(result, &error), "\"fate\":\"stands\"");
   strutlib_result_free(result);
 
   result = strutlib_modes(scene, 0, NULL, NULL, NULL, &error);
   assert_non_null(result);
   assert_int_equal(array_of(result, "modes.frequency").shape[0], 10);
+  check_page_data(strutlib_result_page_data(result, &error), "\"motion\":null");
   assert_int_equal(array_of(result, "modes.shape").dimensions, 3);
   check_picture(result, NULL, NULL, 0);
   strutlib_result_free(result);
@@ -465,6 +476,7 @@ TEST(statics_have_arrays_and_pictures) {
   result = strutlib_path(scene, 3, path_names, path_values, NULL, &error);
   assert_non_null(result);
   assert_int_equal(array_of(result, "points.value").dimensions, 1);
+  check_page_data(strutlib_result_page_data(result, &error), "\"motion\":null");
   check_picture(result, NULL, NULL, 0);
   strutlib_result_free(result);
 
@@ -490,6 +502,8 @@ TEST(scenes_and_runs_are_drawn) {
   assert_non_null(text);
   assert_non_null(strstr(text, "strut-data"));
   strutlib_release(text);
+  check_page_data(strutlib_scene_page_data(scene, 0, NULL, &error), "\"motion\":null");
+  check_page_data(strutlib_scene_page_data(scene, 1, NULL, &error), "\"equilibria\":");
   strutlib_result *result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
   const char *names[] = {"draw", "times"}, *values[] = {"snapshots", "0 s, 80 ms"};
   check_picture(result, NULL, NULL, 0);
@@ -500,6 +514,7 @@ TEST(scenes_and_runs_are_drawn) {
   text = strutlib_result_html(result, &error);
   assert_non_null(text);
   strutlib_release(text);
+  check_page_data(strutlib_result_page_data(result, &error), "\"motion\":{\"frames\":");
   text = strutlib_result_yaml(result, &error);
   assert_non_null(strstr(text, "triangle"));
   strutlib_release(text);

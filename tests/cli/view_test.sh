@@ -47,6 +47,27 @@ err_has "strut did not write it"
 expect 1 view - </dev/null
 err_has "missing -o FILE.html"
 
+# Two runs on one page, named by their paths; the first is that of the page alone.
+sed 's/duration: 0.2/duration: 0.1/' swing.yaml >short.yaml
+expect 0 run short.yaml -q -o beside/short
+expect 0 view swing beside/short/ -o two.html
+[ "$(sed 's/, [0-9.]* MB$//' out)" = "two.html: 201 frames, beside 101 frames" ] || fail "says: $(cat out)"
+grep -q '"label":"swing"' two.html || fail "the first run has no label"
+grep -q '"label":"beside/short"' two.html || fail "the second run has no label"
+[ "$(grep -c 'id="strut-' two.html)" -eq 2 ] || fail "two runs have other elements"
+[ "$(grep -c 'id="strut-' swing.html)" -eq 1 ] || fail "one run has other elements"
+expect 1 view swing swing.yaml -o none.html
+err_has "two runs can be shown side by side, but 'swing.yaml' is a model"
+expect 1 view swing.yaml swing -o none.html
+err_has "'swing.yaml' is a model"
+expect 1 view swing swing swing -o none.html
+err_has "unexpected argument 'swing'"
+expect 4 view swing nowhere -o none.html
+err_has "nowhere"
+expect 1 view swing swing -o none.html --set x=1
+err_has "--set needs a model"
+absent none.html
+
 # The same page in any locale and with any number of threads.
 for locale in C C.UTF-8 de_DE.UTF-8; do
   LC_ALL=$locale OMP_NUM_THREADS=1 expect 0 view swing -o again.html -q

@@ -24,6 +24,14 @@ sed 's/^run: .*/run: {periods: 30, of: drive, measure: {last: 10}}/; s/^output: 
 "$strut" run "$root/models/basics/bouncing-node.yaml" --quiet -o bouncing
 "$strut" view bouncing --quiet -o bouncing.html
 "$strut" view "$root/models/gallery/x-frame.yaml" --quiet -o model.html
+sed '/^frequency:/d; s/^output: .*/output: {last: 5, every: 1 ms, channels: [position]}/' crawler.yaml >blind.yaml
+"$strut" run blind.yaml --quiet -o blind
+"$strut" view blind --quiet -o blind.html
+"$strut" view blind --quiet --equilibria all -o blind-cards.html
+"$strut" run "$root/models/gallery/cable-pulley.yaml" --quiet --accuracy 1% -o pulley
+"$strut" view pulley --quiet -o pulley.html
+"$strut" run "$root/models/gallery/two-mass-crawler.yaml" --quiet --set friction=0.3 -o rougher
+"$strut" view two-mass rougher --quiet -o two.html
 
 # Texts that would be markup, end a script or turn the direction of writing. The language keeps names
 # of nodes simple, a program that fills a scene need not: page_test.py puts such names in.

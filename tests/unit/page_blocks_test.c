@@ -272,6 +272,40 @@ TEST(frames_are_left_out_until_they_fit) {
   assert_true(previous < FRAMES / 4);
 }
 
+/* The data alone are those in the page, and what is beside it follows. */
+TEST(a_page_has_its_data_and_those_beside_it) {
+  strut_setup setup;
+  strut_error error = {0};
+  strut_page_frames frames[2];
+  strut_trajectory motion = swing();
+  strut_model *model = weight(&setup);
+  strut_page second = {.model = model,
+                       .experiment = &setup.experiment,
+                       .motion = &motion,
+                       .yaml = "strut: 1\n",
+                       .label = "</second>",
+                       .most_bytes = 1000};
+  strut_page page = second;
+  page.label = NULL, page.most_bytes = 0, page.beside = &second;
+  char *data = strut_page_data(&page, NULL, &error);
+  char *other = strut_page_data(&second, &frames[1], &error);
+  assert_true(data && other && frames[1].shown < FRAMES);
+  char *html = strut_page_html(&page, frames, &error);
+  assert_non_null(html);
+  assert_int_equal(frames[0].shown, FRAMES);
+  assert_true(frames[1].shown < FRAMES && frames[1].recorded == FRAMES);
+  assert_true(data[0] == '{' && strchr(data, '<') == NULL);
+  has(html, data);
+  has(html, other);
+  has(data, "\"label\":\"\"");
+  has(other, "\"label\":\"\\u003c/second\\u003e\"");
+  strut_release(html);
+  strut_release(other);
+  strut_release(data);
+  strut_model_free(model);
+  strut_setup_free(&setup);
+}
+
 TEST(memory_that_is_out_is_reported) {
   strut_setup setup;
   strut_error error = {0};
@@ -279,6 +313,8 @@ TEST(memory_that_is_out_is_reported) {
   strut_model *model = weight(&setup);
   strut_page page = {
       .model = model, .experiment = &setup.experiment, .motion = &motion, .yaml = "strut: 1\n"};
+  const strut_page beside = page;
+  page.beside = &beside;
   int64_t failed = 0;
   for (int64_t n = 0;; n++) {
     strut_fail_allocation_after(n);

@@ -30,29 +30,22 @@
     return chosen.sort((a, b) => a - b).map((index) => curves[index]);
   }
 
-  page.trackedX = function (data, motion) {
-    const count = data.nodes.length, node = data.motion.track, weights = data.motion.weights;
-    if (node !== null || !weights) return column(motion.position, 2 * count, 2 * (node || 0));
-    const total = weights.reduce((a, b) => a + b, 0) || 1;
-    return (frame) => {
-      let sum = 0;
-      for (let i = 0; i < count; i++) sum += weights[i] * motion.position[2 * (frame * count + i)];
-      return sum / total;
-    };
-  };
-
-  /* The measured point's displacement along x, unless nodes move much more: then the coordinates that
-     move most. */
-  function displacements(data, motion, track) {
+  /* Displacements of the measured point along x and of all nodes. */
+  function displacements({ data, motion, track }) {
     const count = data.nodes.length, node = data.motion.track, first = track(0);
     const point = { name: (node === null ? "centre of mass" : data.nodes[node].name) + " x",
       at: (frame) => track(frame) - first };
-    const all = data.nodes.flatMap((n, i) => ["x", "y"].map((axis, d) => {
+    return [point, ...data.nodes.flatMap((n, i) => ["x", "y"].map((axis, d) => {
       const at = column(motion.position, 2 * count, 2 * i + d), start = at(0);
       return { name: n.name + " " + axis, at: (frame) => at(frame) - start };
-    })).map((curve) => ({ curve, range: rangeOf(curve, motion.frames) }))
+    }))];
+  }
+
+  /* The measured point, unless nodes move much more: then the coordinates that move most. */
+  function mostMoved([point, ...others], frames) {
+    const all = others.map((curve) => ({ curve, range: rangeOf(curve, frames) }))
       .sort((a, b) => b.range - a.range);
-    if (rangeOf(point, motion.frames) >= LARGE * all[0].range) return [point];
+    if (rangeOf(point, frames) >= LARGE * all[0].range) return [point];
     return all.slice(0, MOST_MOVING).filter((c) => c.range > LARGE * all[0].range)
       .map((c) => c.curve);
   }
@@ -68,10 +61,10 @@
         at: column(values, block.columns, i) })) };
   }
 
-  /* The possible charts: {name, unit, curves: [{name, at(frame)}]}. */
-  function kindsOf(data, motion) {
-    const count = data.nodes.length, kinds = [], track = page.trackedX(data, motion);
-    kinds.push({ name: "displacement", unit: "m", curves: displacements(data, motion, track) });
+  /* The possible charts of a run: {name, unit, curves: [{name, at(frame)}]}, all curves of each. */
+  function kindsOf(run) {
+    const { data, motion } = run, count = data.nodes.length, kinds = [];
+    kinds.push({ name: "displacement", unit: "m", curves: displacements(run) });
     if (motion.contact)
       kinds.push({ name: "contact force", unit: "N", curves: data.contacts.map((n, i) => ({
         name: data.contact_names ? data.contact_names[i] : data.nodes[n].name,
@@ -105,11 +98,20 @@
         name, at: column(motion.energy, data.motion.energy_names.length, i) })) });
     for (const [name, block] of Object.entries(data.motion))
       if (block && block.unit) kinds.push(plainKind(data, name, block, motion[name]));
-    for (const kind of kinds) {
-      kind.all = kind.curves.length;
-      kind.curves = liveliest(kind.curves, motion.frames);
-    }
-    return kinds.filter((kind) => kind.curves.length);
+    return kinds;
+  }
+
+  /* Of each kind the curves to show, each with that of the same name of the other run, or null. */
+  function chooseCurves(run, other) {
+    const others = new Map(other ? kindsOf(other).map((kind) => [kind.name, kind.curves]) : []);
+    const frames = run.motion.frames;
+    return kindsOf(run).map((kind) => {
+      const moved = kind.name === "displacement";
+      const curves = moved ? mostMoved(kind.curves, frames) : liveliest(kind.curves, frames);
+      const beside = others.get(kind.name) || [];
+      return { ...kind, curves, all: moved ? curves.length : kind.curves.length,
+        beside: curves.map((c) => beside.find((b) => b.name === c.name) || null) };
+    }).filter((kind) => kind.curves.length);
   }
 
   /* Rows for dygraphs: all frames of a time range or, if there are many, the least and largest of
@@ -143,42 +145,73 @@
     return rows;
   }
 
-  function prefixOf(curves, frames) {
+  /* Rows of the first run's curves and then of the second's; null where one has no such time. */
+  function merge(first, second, counts) {
+    const rows = [], gap = (n) => new Array(n).fill(null);
+    let i = 0, k = 0;
+    while (i < first.length || k < second.length) {
+      const a = i < first.length ? first[i][0] : Infinity;
+      const b = k < second.length ? second[k][0] : Infinity;
+      const near = Math.abs(a - b) <= 1e-9 * Math.abs(a) && a < Infinity || a === b;
+      const one = near || a < b ? first[i++].slice(1) : gap(counts[0]);
+      const two = near || b < a ? second[k++].slice(1) : gap(counts[1]);
+      rows.push([Math.min(a, b), ...one, ...two]);
+    }
+    return rows;
+  }
+
+  /* Without a prefix: units that take none. */
+  function prefixOf(kind, frames) {
+    if (/^kg|\^2$|deg/.test(kind.unit)) return { text: "", factor: 1 };
     let most = 0;
     const step = Math.max(1, Math.floor(frames / 2000));
-    for (const curve of curves)
+    for (const curve of kind.curves)
       for (let f = 0; f < frames; f += step) most = Math.max(most, Math.abs(curve.at(f)));
     const group = most > 0 ? Math.min(Math.max(Math.floor(Math.log10(most) / 3 + 1e-12), -5), 4) : 0;
     return { factor: Math.pow(1000, group),
       text: ["f", "p", "n", "\u00b5", "m", "", "k", "M", "G", "T"][group + 5] };
   }
 
-  page.createCharts = function (data, motion, onTime) {
-    const host = document.getElementById("charts"), choices = document.getElementById("chart-choices");
-    const charts = [], kinds = kindsOf(data, motion);
-    let window_ = null, frame = 0, busy = false;
+  page.createCharts = function (onTime) {
+    const element = (id) => document.getElementById(id);
+    const host = element("charts"), choices = element("chart-choices");
+    const charts = new Map(), chosen = new Map(); /* by name of their kind; what the user chose */
+    let kinds = [], time = null, ghost = null, window_ = null, frame = 0, busy = false;
 
     function placeCursor(chart) {
-      chart.cursor.style.left = chart.graph.toDomXCoord(motion.time[frame]) + "px";
+      chart.cursor.style.left = chart.graph.toDomXCoord(time[frame]) + "px";
       const [low, high] = chart.graph.xAxisRange();
-      chart.cursor.hidden = !(motion.time[frame] >= low && motion.time[frame] <= high);
+      chart.cursor.hidden = !(time[frame] >= low && time[frame] <= high);
+    }
+
+    /* Rows of a chart; curves(kind) are those of the first run, then those of the other. */
+    function rowsOf(own, beside, low, high, rows) {
+      const first = rows(time, own, low, high);
+      return beside.length
+        ? merge(first, rows(ghost.time, beside, low, high), [own.length, beside.length]) : first;
+    }
+    function scaled(kind) {
+      const scale = (c) => ({ at: (f) => c.at(f) / kind.prefix.factor });
+      return [kind.curves.map(scale), kind.beside.filter(Boolean).map(scale)];
+    }
+    function shownRows(chart) {
+      const [low, high] = window_ || [time[0], time[time.length - 1]];
+      return rowsOf(...scaled(chart.kind), low, high, thin);
     }
 
     function zoomTo(range) { /* all charts alike */
       if (busy) return;
       busy = true;
       window_ = range;
-      const [low, high] = range || [motion.time[0], motion.time[motion.frames - 1]];
-      for (const chart of charts) {
-        chart.graph.updateOptions({ file: thin(motion.time, chart.scaled, low, high),
-          dateWindow: range });
+      for (const chart of charts.values()) {
+        chart.graph.updateOptions({ file: shownRows(chart), dateWindow: range });
         placeCursor(chart);
       }
       busy = false;
     }
 
-    /* Drag: time. With Shift: zoom. Double-click: all. */
-    function interaction(chart) {
+    /* Drag: time. */
+    function seekByDragging(chart) {
       const seek = (event) => {
         const x = event.clientX - chart.plot.getBoundingClientRect().left;
         onTime(chart.graph.toDataXCoord(x));
@@ -186,34 +219,42 @@
       chart.plot.addEventListener("pointerdown", (event) => {
         if (event.shiftKey || event.button) return;
         seek(event);
-        const move = (e) => seek(e);
-        window.addEventListener("pointermove", move);
-        window.addEventListener("pointerup", () => window.removeEventListener("pointermove", move),
+        window.addEventListener("pointermove", seek);
+        window.addEventListener("pointerup", () => window.removeEventListener("pointermove", seek),
           { once: true });
       });
-      const zoom = Dygraph.defaultInteractionModel;
-      return {
-        mousedown: (event, g, context) => {
-          if (event.shiftKey) {
-            context.initializeMouseDown(event, g, context);
-            Dygraph.startZoom(event, g, context);
-          }
-        },
-        mousemove: zoom.mousemove,
-        mouseup: zoom.mouseup,
-        dblclick: () => zoomTo(null)
-      };
     }
 
-    function add(kind) {
-      const box = document.createElement("div"), title = document.createElement("div");
-      const plot = document.createElement("div"), cursor = document.createElement("div");
-      const holder = document.createElement("div"), prefix = /^kg|\^2$|deg/.test(kind.unit)
-        ? { text: "", factor: 1 } : prefixOf(kind.curves, motion.frames);
-      const chart = { kind, box, plot, cursor };
-      chart.scaled = kind.curves.map((c) => ({ at: (f) => c.at(f) / prefix.factor }));
-      title.className = "chart-title";
-      title.append(kind.name + " in " + prefix.text + kind.unit + (kind.all > kind.curves.length
+    /* With Shift: zoom. Double-click: all. */
+    const interaction = {
+      mousedown: (event, g, context) => {
+        if (!event.shiftKey) return;
+        context.initializeMouseDown(event, g, context);
+        Dygraph.startZoom(event, g, context);
+      },
+      mousemove: Dygraph.defaultInteractionModel.mousemove,
+      mouseup: Dygraph.defaultInteractionModel.mouseup,
+      dblclick: () => zoomTo(null)
+    };
+
+    function createBox() {
+      const make = (className) => {
+        const part = document.createElement("div");
+        part.className = className;
+        return part;
+      };
+      const chart = { box: make(""), title: make("chart-title"), plot: make("plot"),
+        cursor: make("cursor"), graph: null, kind: null };
+      const holder = make("chart");
+      holder.append(chart.plot, chart.cursor);
+      chart.box.append(chart.title, holder);
+      seekByDragging(chart);
+      return chart;
+    }
+
+    function fillTitle(chart) {
+      const kind = chart.kind, few = kind.all > kind.curves.length;
+      chart.title.replaceChildren(kind.name + " in " + kind.prefix.text + kind.unit + (few
         ? " (the " + kind.curves.length + " of " + kind.all + " that vary most)" : ""));
       kind.curves.forEach((curve, i) => {
         const span = document.createElement("span"), swatch = document.createElement("i");
@@ -221,57 +262,120 @@
         swatch.style.background = COLOURS[i % COLOURS.length];
         name.textContent = curve.name;
         span.append(swatch, name);
-        title.append(span);
+        chart.title.append(span);
       });
-      holder.className = "chart";
-      plot.className = "plot";
-      cursor.className = "cursor";
-      holder.append(plot, cursor);
-      box.append(title, holder);
-      host.append(box);
-      const [low, high] = window_ || [motion.time[0], motion.time[motion.frames - 1]];
-      chart.graph = new Dygraph(plot, thin(motion.time, chart.scaled, low, high), {
-        labels: ["time", ...kind.curves.map((_, i) => String(i))], /* names are in the title */
-        colors: kind.curves.map((_, i) => COLOURS[i % COLOURS.length]),
+    }
+
+    /* Draws a kind into its box, which stays in place. Names are in the title: dygraphs has numbers. */
+    function fill(chart) {
+      const { kind, plot } = chart, line = page.theme().line, series = {};
+      const beside = kind.curves.map((_, i) => i).filter((i) => kind.beside[i]);
+      const colour = (i) => COLOURS[i % COLOURS.length];
+      const labels = ["time", ...kind.curves.map((_, i) => String(i)),
+        ...beside.map((i) => "beside " + i)];
+      const data = { file: shownRows(chart), dateWindow: window_ };
+      fillTitle(chart);
+      if (chart.graph && chart.graph.getLabels().join() === labels.join()) {
+        chart.graph.updateOptions(data); /* much faster than another one */
+        placeCursor(chart);
+        return;
+      }
+      for (const i of beside) series["beside " + i] = { strokePattern: [6, 3] };
+      if (chart.graph) chart.graph.destroy();
+      chart.graph = null;
+      chart.graph = new Dygraph(plot, data.file, {
+        labels, series, connectSeparatedPoints: true,
+        colors: [...kind.curves.map((_, i) => colour(i)), ...beside.map(colour)],
         strokePattern: null, strokeWidth: 1.3, highlightCircleSize: 0, legend: "never",
         axes: { y: { axisLabelWidth: 52 }, x: { drawGrid: true } },
-        axisLineColor: page.theme().line, gridLineColor: page.theme().line, gridLineWidth: 0.6,
-        yRangePad: 5, dateWindow: window_, interactionModel: {}, animatedZooms: false,
+        axisLineColor: line, gridLineColor: line, gridLineWidth: 0.6,
+        yRangePad: 5, dateWindow: window_, interactionModel: interaction, animatedZooms: false,
         drawCallback: () => chart.graph && placeCursor(chart),
         zoomCallback: (from, to) => zoomTo([from, to]),
         underlayCallback: null });
-      chart.graph.updateOptions({ interactionModel: interaction(chart) });
-      charts.push(chart);
       placeCursor(chart);
     }
 
-    function remove(kind) {
-      const at = charts.findIndex((chart) => chart.kind === kind);
-      if (at < 0) return;
-      charts[at].graph.destroy();
-      charts[at].box.remove();
-      charts.splice(at, 1);
+    function remove(name) {
+      const chart = charts.get(name);
+      if (!chart) return;
+      chart.graph.destroy();
+      chart.box.remove();
+      charts.delete(name);
     }
 
-    kinds.forEach((kind, i) => {
-      const label = document.createElement("label"), box = document.createElement("input");
-      box.type = "checkbox";
-      box.checked = i < SHOWN;
-      box.addEventListener("change", () => (box.checked ? add(kind) : remove(kind)));
-      label.append(box, " " + kind.name);
-      choices.append(label);
-      if (box.checked) add(kind);
-    });
+    const isShown = (kind, i) => (chosen.has(kind.name) ? chosen.get(kind.name) : i < SHOWN);
 
-    return { charts, zoomTo, empty: kinds.length === 0,
+    /* Draws the charts that are chosen, in the order of their kinds, and removes others. */
+    function update() {
+      const shown = kinds.filter(isShown), names = shown.map((kind) => kind.name);
+      for (const name of [...charts.keys()]) if (!names.includes(name)) remove(name);
+      shown.forEach((kind, place) => {
+        const chart = charts.get(kind.name) || createBox();
+        charts.set(kind.name, chart);
+        if (host.children[place] !== chart.box)
+          host.insertBefore(chart.box, host.children[place] || null);
+        if (chart.kind === kind) return;
+        chart.kind = kind;
+        fill(chart);
+      });
+      element("save-csv").hidden = shown.length === 0;
+    }
+
+    function offerKinds() {
+      choices.replaceChildren(...kinds.map((kind, i) => {
+        const label = document.createElement("label"), box = document.createElement("input");
+        box.type = "checkbox";
+        box.checked = isShown(kind, i);
+        box.addEventListener("change", () => {
+          chosen.set(kind.name, box.checked);
+          update();
+        });
+        label.append(box, " " + kind.name);
+        return label;
+      }));
+    }
+
+    /* Replaces what is shown: by the curves of a run with motion, or of none (null). */
+    function load(run, besideRun) {
+      const names = kinds.map((kind) => kind.name).join();
+      const moves = run && !run.still;
+      ghost = moves && besideRun && besideRun.run.motion ? besideRun : null;
+      time = moves ? run.time : null;
+      frame = 0;
+      kinds = moves ? chooseCurves(run, ghost && ghost.run) : [];
+      for (const kind of kinds) kind.prefix = prefixOf(kind, time.length);
+      if (window_ && !(time && window_[0] < time[time.length - 1] && window_[1] > time[0]))
+        window_ = null;
+      if (kinds.map((kind) => kind.name).join() !== names) offerKinds();
+      element("charts-section").hidden = kinds.length === 0; /* before charts look at its width */
+      update();
+    }
+
+    /* Time and all shown curves of all frames, as rows of a table. */
+    function table() {
+      const all = kinds.filter(isShown), label = ghost ? ghost.run.data.label || "beside" : "";
+      const heads = (kind, curves, more) => curves.map((c) =>
+        kind.name + ": " + c.name + more + " [" + kind.unit + "]");
+      const own = all.flatMap((kind) => kind.curves);
+      const beside = all.flatMap((kind) => kind.beside.filter(Boolean));
+      const frames = (times, curves) =>
+        Array.from(times, (t, f) => [t, ...curves.map((c) => c.at(f))]);
+      return [["time [s]", ...all.flatMap((kind) => heads(kind, kind.curves, "")),
+        ...all.flatMap((kind) => heads(kind, kind.beside.filter(Boolean), " of " + label))],
+      ...rowsOf(own, beside, 0, 0, frames)];
+    }
+
+    return { load, table,
+      get charts() { return [...charts.values()]; },
       restyle() {
         const line = page.theme().line;
-        for (const chart of charts)
+        for (const chart of charts.values())
           chart.graph.updateOptions({ axisLineColor: line, gridLineColor: line });
       },
       show(at) {
         frame = at;
-        for (const chart of charts) placeCursor(chart);
+        for (const chart of charts.values()) placeCursor(chart);
       } };
   };
 })(window.strutPage);

@@ -5,9 +5,12 @@
  * What the program writes is data; what the page does with them is in page.html, page.css and the
  * scripts beside this header, and in Debian's dygraphs, all put into the library at build time. The
  * data are one JSON object in <script type="application/json" id="strut-data">, in which '<', '>' and
- * '&' are written as escapes, so that no name can end it:
+ * '&' are written as escapes, so that no name can end it; those of a second run, drawn pale behind
+ * the first, are a like object in "strut-beside". On the page, strutPage.show(data, beside) replaces
+ * what is shown by such objects any number of times. The object:
  *
  *   strut, name, description, source: texts
+ *   label: text that tells two runs on one page apart, such as their directories; may be empty
  *   nodes: [{name, fixed: [bool, bool]}], members: [{name, from, to, kind: bar|spring|cable}]
  *   contacts: [node index, ...]
  *   ground: null or {height, slope [rad], belt_speed}
@@ -26,9 +29,12 @@
  *     those that stand come first
  *   barriers: [{from, to, height [J]}]  indices into equilibria; only if both are listed
  *   parameters: [{label, value}]        as they were used, and a run's method and step
- *   summary: [{label, value}]           rows of text, ready to show
+ *   summary: [{label, value}]           rows of text, ready to show, measured quantities among them
  *   yaml: text of the scene
  *   study: null
+ *
+ * Modes and paths are no part of it: JSON of their results has all their numbers. Data of such a
+ * result are those of its structure, on which a page may draw them.
  *
  * A block is {columns, quantum, bytes}: integers n of `frames` rows, (frames, columns); a value is
  * n * quantum. Column after column, the first number as it is, the second as its difference to the
@@ -57,6 +63,8 @@ typedef struct strut_page {
   const char *remark;                 /* why no equilibria are shown, or NULL */
   const char *summary;                /* the text of summary.json, or NULL */
   const char *yaml;                   /* the scene as text */
+  const char *label;                  /* see above, or NULL */
+  const struct strut_page *beside;    /* a second run on the same page, or NULL */
   size_t most_bytes;                  /* of the data, about; 0: 4 million. Frames are left out
                                          evenly until they fit, down to two */
 } strut_page;
@@ -67,9 +75,12 @@ typedef struct strut_page_frames {
 } strut_page_frames;
 
 /**
- * The whole file, the same bytes each time, in a block of strut_allocate; or NULL with the error.
- * `frames` may be NULL.
+ * The JSON object of the data alone, without what is beside it; the same bytes each time, in a block
+ * of strut_allocate, or NULL with the error. `frames` may be NULL.
  */
+STRUT_API char *strut_page_data(const strut_page *page, strut_page_frames *frames,
+                                strut_error *error);
+/** The whole file likewise. `frames`, which may be NULL, are two where there is a page beside it. */
 STRUT_API char *strut_page_html(const strut_page *page, strut_page_frames *frames,
                                 strut_error *error);
 

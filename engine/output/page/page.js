@@ -1,114 +1,78 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The page: puts data, drawing, player, charts and cards together. */
+/*
+ * The page: puts runs, drawing, player, charts and cards together.
+ *
+ * strutPage.show(data, beside) shows the data of page.h, and beside them those of a second run or
+ * none; any number of times. What the user chose stays. It returns a promise that is kept when they
+ * are shown, and broken if they are damaged. strutPage.onPick(index), if set, is called when a card
+ * is chosen. The element #live is for controls of later scripts.
+ */
 "use strict";
 (function (page) {
   const element = (id) => document.getElementById(id);
-  const data = JSON.parse(element("strut-data").textContent);
-  const structure = page.structureOf(data);
-  const MARGIN = 46, TRAIL_FRAMES = 400, TRAIL_NODES = 60, TRAIL_PART = 0.1;
-  const MEASURED = 3e5;
-  let motion = null, player = null, charts = null, cards = null, theme = page.theme();
-  let picked = -1, limits = { force: 0, contact: 0 }, whole = null, extent = null, track = null;
-  let camera = { x: 0, y: 0, scale: 1 }, waiting = false;
-  let elsewhere = false; /* another shape is shown: even a free camera moves to it */
+  const MARGIN = 46, DRAW_TIMES = 600;
+  let run = null, ghost = null, theme = page.theme();
+  let picked = -1, decimals = 0, camera = { x: 0, y: 0, scale: 1 }, waiting = false;
+  let elsewhere = true; /* another shape is shown: even a free camera moves to it */
+  let asked = 0, shown = 0; /* calls of show */
   const drawTimes = [];
-  let decimals = 0;
+  const player = page.createPlayer(onFrame);
+  const cards = page.createCards(pick);
+  const charts = page.createCharts((time) => {
+    player.pause();
+    player.seekTime(time);
+  });
 
-  /* Finds the ranges that all frames share. Of many values a sample suffices, at uneven steps:
-     even ones would meet a periodic motion always in the same phase. */
-  function measure() {
-    const count = data.nodes.length, normals = [];
-    const step = Math.max(1, motion.frames * (count + data.members.length) / MEASURED);
-    let wide = 0, high = [Infinity, -Infinity];
-    whole = [Infinity, Infinity, -Infinity, -Infinity];
-    for (let k = 0; k * step < motion.frames; k++) {
-      const uneven = step > 1 ? k * 0.618034 % 1 : 0;
-      const shape = shapeAt(Math.min(motion.frames - 1, Math.floor((k + uneven) * step)));
-      const b = page.boundsOf(shape.position);
-      wide = Math.max(wide, b[2] - b[0]);
-      high = [Math.min(high[0], b[1]), Math.max(high[1], b[3])];
-      whole = [Math.min(whole[0], b[0]), Math.min(whole[1], b[1]), Math.max(whole[2], b[2]),
-        Math.max(whole[3], b[3])];
-      const own = page.limitsOf({ force: shape.force });
-      limits.force = Math.max(limits.force, own.force);
-      if (shape.contact) normals.push(page.limitsOf({ contact: shape.contact }).contact);
-    }
-    normals.sort((a, b) => a - b); /* impacts are short: the scale suits most frames */
-    limits.contact = normals.length ? normals[Math.floor(0.9 * (normals.length - 1))] : 0;
-    extent = [0, high[0], wide, high[1]];
-    if (count === 1) extent[2] = data.size;
+  function pickedShape() {
+    return page.shapeOf(run.data, run.data.equilibria[picked]);
   }
-
-  function shapeAt(frame) {
-    const nodes = 2 * data.nodes.length, members = data.members.length;
-    const touching = 2 * data.contacts.length;
-    const part = (values, size) =>
-      values ? values.subarray(frame * size, (frame + 1) * size) : null;
-    return { position: part(motion.position, nodes), force: part(motion.force, members),
-      contact: part(motion.contact, touching) };
-  }
-
-  function trailsAt(frame) {
-    const count = data.nodes.length;
-    if (!element("trails").checked || count > TRAIL_NODES) return [];
-    const length = Math.max(2, Math.min(Math.round(TRAIL_PART * motion.frames), TRAIL_FRAMES));
-    const first = Math.max(0, frame - length), used = frame - first;
-    if (used < 1) return [];
-    const trails = [];
-    for (let i = 0; i < count; i++) {
-      const path = new Float64Array(2 * (used + 1));
-      for (let k = 0; k <= used; k++) {
-        path[2 * k] = motion.position[2 * ((first + k) * count + i)];
-        path[2 * k + 1] = motion.position[2 * ((first + k) * count + i) + 1];
-      }
-      trails.push(path);
-    }
-    return trails;
-  }
-
   function currentShape() {
-    if (picked >= 0) return page.shapeOf(data, data.equilibria[picked]);
-    if (!motion) return { position: data.start, force: null, contact: null };
-    const shape = shapeAt(player.frame);
-    shape.trails = trailsAt(player.frame);
+    if (picked >= 0) return pickedShape();
+    const shape = run.shapeAt(player.frame);
+    if (run.hasTrails && element("trails").checked) shape.trails = run.trailsAt(player.frame);
+    const position = ghost && page.ghostAt(ghost, run.time && run.time[player.frame]);
+    if (position) shape.ghost = { structure: ghost.run.structure, position };
     return shape;
   }
+  const currentLimits = (shape) => (picked >= 0 ? page.limitsOf(shape) : run.limits);
 
-  function aim(shape, coloured) {
+  function aim(shape) {
     const canvas = element("canvas"), height = canvas.clientHeight, mode = element("camera").value;
-    const scale = coloured ? (canvas.clientWidth > 600 ? 72 : 48) : 0; /* width of the colour bar */
-    const width = canvas.clientWidth - scale;
+    const key = canvas.clientWidth > 600 ? 72 : 48; /* width of the key at the right */
+    const width = canvas.clientWidth - key;
     canvas.classList.toggle("free", mode === "free");
     if (mode === "free" && !elsewhere) return;
     elsewhere = false;
-    if (picked >= 0 || !motion)
-      camera = page.fit(page.boundsOf(shape.position), width, height, MARGIN, data.size);
-    else if (mode === "whole") camera = page.fit(whole, width, height, MARGIN, data.size);
-    else {
-      const b = page.boundsOf(shape.position);
-      camera = page.fit(extent, width, height, MARGIN, data.size);
-      camera.x = data.nodes.length > 1 ? track(player.frame) + offset : 0.5 * (b[0] + b[2]);
-    }
-    camera.x += 0.5 * scale / camera.scale;
+    let bounds = page.boundsOf(shape.position);
+    const middle = 0.5 * (bounds[0] + bounds[2]);
+    const follows = picked < 0 && run.motion && (mode !== "whole" || run.still);
+    if (picked < 0 && run.motion) bounds = follows ? run.extent : run.whole;
+    if (ghost && picked < 0 && !follows) bounds = page.union(bounds, ghostBounds());
+    camera = page.fit(bounds, width, height, MARGIN, run.data.size);
+    if (follows)
+      camera.x = run.data.nodes.length > 1 ? run.track(player.frame) + run.offset : middle;
+    camera.x += 0.5 * key / camera.scale;
   }
-  let offset = 0; /* mean distance of the structure's middle from the tracked point */
+  function ghostBounds() {
+    const [left, low, right, high] = ghost.run.whole;
+    return [left + ghost.shift, low, right + ghost.shift, high];
+  }
+
+  function paint(surface, shape) {
+    const limits = currentLimits(shape);
+    page.drawStructure(surface, run.structure, shape, camera, { theme, key: true,
+      colour: element("colour").checked, arrows: element("arrows").checked,
+      names: element("names").checked, limit: limits.force, contactLimit: limits.contact });
+  }
 
   function draw() {
     waiting = false;
+    if (!run) return;
     const begin = performance.now(), shape = currentShape();
-    const own = picked >= 0 ? page.limitsOf(shape) : limits;
-    const coloured = element("colour").checked && Boolean(shape.force) && own.force > 0;
-    aim(shape, coloured);
-    page.drawStructure(element("canvas"), structure, shape, camera, {
-      theme, colour: element("colour").checked, arrows: element("arrows").checked,
-      names: element("names").checked, limit: own.force, contactLimit: own.contact });
-    element("colours").hidden = !coloured;
-    if (coloured && own.force !== draw.scale) {
-      page.drawColourScale(element("colours"), own.force, theme);
-      draw.scale = own.force;
-    }
+    aim(shape);
+    paint(page.prepareCanvas(element("canvas")), shape);
     drawTimes.push(performance.now() - begin);
-    if (drawTimes.length > 600) drawTimes.shift();
+    if (drawTimes.length > DRAW_TIMES) drawTimes.shift();
   }
   function redraw() {
     if (waiting) return;
@@ -116,39 +80,51 @@
     requestAnimationFrame(draw);
   }
 
-  const decimal = (time) => String(Number(time.toPrecision(12)));
-  function decimalsOf(times) {
-    let most = 0;
-    for (let f = 0; f < Math.min(times.length, 20); f++)
-      most = Math.max(most, (decimal(times[f]).split(".")[1] || "").length);
-    return Math.min(most, 9);
-  }
-
   function showTime(frame) {
     const clock = element("clock"), time = document.createElement("b");
-    const count = document.createElement("span"), text = decimal(motion.time[frame]);
-    const fixed = motion.time[frame].toFixed(decimals); /* so that digits do not jump */
-    time.textContent = (Number(fixed) === Number(text) ? fixed : text) + " s";
-    count.textContent = "frame " + (frame + 1) + " of " + motion.frames;
+    const count = document.createElement("span"), last = run.motion.frames - 1;
+    time.textContent = page.timeText(run.time[frame], decimals, run.time[last]) + " s";
+    count.textContent = "frame " + (frame + 1) + " of " + (last + 1);
     clock.replaceChildren(time, count);
   }
 
   function onFrame(frame) {
-    if (picked >= 0) pick(-1);
+    if (picked >= 0) showPicked(-1);
     showTime(frame);
-    if (charts) charts.show(frame);
+    if (!run.still) charts.show(frame);
+    redraw();
+  }
+
+  /* Enables the choices that have an effect on the shape shown. */
+  function enableChoices() {
+    const shape = picked >= 0 ? pickedShape() : run.shapeAt(player.frame);
+    const limits = currentLimits(shape), where = picked >= 0 ? "this equilibrium" : run.motion
+      ? "this motion" : "the start";
+    const enable = (id, good, reason) => {
+      element(id).disabled = !good;
+      element(id).parentElement.title = good ? "" : reason;
+    };
+    enable("colour", limits.force > 0, "No member forces are known of " + where);
+    enable("arrows", limits.contact > 0, "No contact forces are known of " + where);
+    enable("trails", picked < 0, "An equilibrium does not move");
+  }
+
+  function showPicked(index) {
+    picked = index;
+    elsewhere = true;
+    element("shown").hidden = picked < 0;
+    element("clock").hidden = picked >= 0 || !run.motion;
+    if (picked >= 0) element("shown-name").textContent = run.data.equilibria[picked].name;
+    cards.mark(picked);
+    enableChoices();
     redraw();
   }
 
   function pick(index) {
-    picked = index === picked ? -1 : index;
-    elsewhere = true;
-    if (picked >= 0 && player) player.pause();
-    element("shown").hidden = picked < 0;
-    element("clock").hidden = picked >= 0 || !motion;
-    if (picked >= 0) element("shown-name").textContent = data.equilibria[picked].name;
-    if (cards) cards.mark(picked);
-    redraw();
+    showPicked(index === picked ? -1 : index);
+    if (picked < 0) return;
+    player.pause();
+    if (page.onPick) page.onPick(picked);
   }
 
   /* The free camera: drag to move, wheel to zoom at the pointer. */
@@ -182,89 +158,109 @@
     }, { passive: false });
   }
 
+  function restyle() {
+    theme = page.theme();
+    if (run) cards.draw();
+    charts.restyle();
+    redraw();
+  }
+
   function wire() {
     for (const id of ["trails", "colour", "arrows", "names", "camera"])
       element(id).addEventListener("change", redraw);
     element("back").addEventListener("click", () => pick(-1));
-    element("back").textContent = motion ? "Back to the motion" : "Back to the start";
-    const again = () => {
-      theme = page.theme();
-      draw.scale = null;
-      if (cards) cards.draw();
-      if (charts) charts.restyle();
-      redraw();
-    };
-    window.addEventListener("resize", again);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
+    window.addEventListener("resize", restyle);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", restyle);
     freeCamera();
+    page.wireCopy();
+    page.wireDownloads({ csv: charts.table,
+      runs: () => [run, ghost && ghost.run].filter(Boolean).map((r) => r.data),
+      stage() {
+        const canvas = element("canvas"), shape = currentShape(), name = run.data.name || "strut";
+        const at = picked >= 0 ? run.data.equilibria[picked].name : run.motion
+          ? run.time[player.frame].toFixed(decimals) + " s" : "start";
+        return { width: canvas.clientWidth, height: canvas.clientHeight, title: name + ", " + at,
+          paint: (surface) => paint(surface, shape) };
+      } });
   }
 
-  /* Hides choices without effect. */
+  /* Hides choices without effect on any shape of the page. */
   function offerChoices() {
-    const still = !motion || motion.frames < 2, coloured = (motion && motion.force) ||
-      (data.equilibria || []).some((e) => e.force);
-    element("trails").parentElement.hidden = still || data.nodes.length > TRAIL_NODES;
-    element("arrows").parentElement.hidden = data.contacts.length === 0;
-    element("colour").parentElement.hidden = !coloured;
-    if (!still) return;
-    element("camera").querySelector("[value=whole]").remove();
-    element("camera").options[0].textContent = "fits";
-    element("back").textContent = "Back to the start";
+    const { data, motion, still } = run;
+    const shapes = (data.equilibria || []).map((e) => page.shapeOf(data, e));
+    if (motion) shapes.push(run.shapeAt(0));
+    const hide = (id, hidden) => { element(id).parentElement.hidden = hidden; };
+    hide("trails", !run.hasTrails);
+    hide("colour", !shapes.some((shape) => shape.force));
+    hide("arrows", !shapes.some((shape) => shape.contact));
+    hide("names", data.nodes.length > page.MOST_NAMES);
+    element("camera").querySelector("[value=whole]").hidden = still;
+    element("camera").options[0].textContent = still ? "fits" : "follows";
+    element("back").textContent = still ? "Back to the start" : "Back to the motion";
+    element("transport").hidden = still;
+    if (still && element("camera").value === "whole") element("camera").value = "follow";
   }
 
-  async function start() {
-    page.fillPanels(data);
-    motion = await page.decodeMotion(data.motion);
-    element("transport").hidden = !motion || motion.frames < 2;
-    if (motion) {
-      track = page.trackedX(data, motion);
-      decimals = decimalsOf(motion.time);
-      measure();
-      for (let k = 0; k <= 20; k++) {
-        const frame = Math.round(k / 20 * (motion.frames - 1));
-        const b = page.boundsOf(shapeAt(frame).position);
-        offset += (0.5 * (b[0] + b[2]) - track(frame)) / 21;
-      }
-      player = page.createPlayer(motion.time, onFrame);
-      element("charts-section").hidden = motion.frames < 2;
-      if (motion.frames > 1)
-        charts = page.createCharts(data, motion, (time) => {
-          player.pause();
-          player.seekTime(time);
-        });
-      if (charts && charts.empty) element("charts-section").hidden = true;
-    }
+  /* An equilibrium that was chosen stays so where the new data have one of its name. */
+  function keptPick(data) {
+    if (picked < 0) return -1;
+    return (data.equilibria || []).findIndex((e) => e.name === run.data.equilibria[picked].name);
+  }
+
+  function replace(newRun, newGhost) {
+    const pickedNow = keptPick(newRun.data), first = !run;
+    picked = -1;
+    run = newRun;
+    ghost = newGhost;
+    decimals = run.motion ? page.decimalsOf(run.time) : 0;
+    page.fillPanels(run, ghost);
     offerChoices();
-    if ((data.equilibria || []).length) {
-      cards = page.createCards(data, structure, pick);
-      cards.draw();
-    }
-    wire();
-    if (player) player.seek(0);
-    redraw();
+    charts.load(run, ghost);
+    cards.load(run);
+    player.load(run.time);
+    showPicked(pickedNow);
+    elsewhere = first;
   }
 
-  const ready = start();
-  ready.catch((error) => {
+  async function load(call, data, beside) {
+    const loaded = await page.loadRun(data), other = beside ? await page.loadRun(beside) : null;
+    if (call < shown) return; /* a later call was faster */
+    shown = call;
+    replace(loaded, other && page.createGhost(loaded, other));
+    element("trouble").hidden = true;
+  }
+
+  function report(error) {
     element("trouble").hidden = false;
     element("trouble").textContent = typeof DecompressionStream === "function"
       ? "This page is damaged: " + error.message
       : "This browser is too old for this page: it cannot unpack data (DecompressionStream).";
-  });
+  }
+
+  let ready = Promise.resolve();
+  page.show = function (data, beside) {
+    ready = load(++asked, data, beside);
+    ready.catch(report);
+    return ready;
+  };
 
   /* For tests: the state shown, and the actions of the buttons. */
   window.strut = {
-    ready,
-    data,
-    get frame() { return player ? player.frame : 0; },
-    get frames() { return motion ? motion.frames : 0; },
-    get time() { return motion ? motion.time[player.frame] : 0; },
-    get playing() { return Boolean(player && player.playing); },
+    get ready() { return ready; },
+    get data() { return run && run.data; },
+    get frame() { return player.frame; },
+    get frames() { return run && run.motion ? run.motion.frames : 0; },
+    get time() { return run && run.motion ? run.time[player.frame] : 0; },
+    get playing() { return player.playing; },
     get picked() { return picked; },
     positions: () => Array.from(currentShape().position),
+    ghost() {
+      const shape = currentShape();
+      return shape.ghost ? Array.from(shape.ghost.position) : null;
+    },
     onStage() { /* positions of the nodes on the canvas [pixels] */
       const canvas = element("canvas"), shape = currentShape(), at = [];
-      aim(shape, !element("colours").hidden);
+      aim(shape);
       for (let i = 0; i < shape.position.length; i += 2)
         at.push(canvas.clientWidth / 2 + (shape.position[i] - camera.x) * camera.scale,
           canvas.clientHeight / 2 - (shape.position[i + 1] - camera.y) * camera.scale);
@@ -273,9 +269,28 @@
     seek: (frame) => player.seek(frame),
     play: () => player.play(),
     pause: () => player.pause(),
-    charts: () => (charts ? charts.charts.map((c) => ({ name: c.kind.name,
-      cursor: parseFloat(c.cursor.style.left), x: c.graph.toDomXCoord(motion.time[player.frame]) }))
-      : []),
+    charts: () => charts.charts.map((c) => ({ name: c.kind.name, series: c.graph.numColumns() - 1,
+      cursor: parseFloat(c.cursor.style.left), x: c.graph.toDomXCoord(run.time[player.frame]) })),
     drawTimes
   };
+
+  /* Shows the data that are in the page, if there are any. */
+  function showOwnData() {
+    const read = (id) => {
+      const text = element(id) ? element(id).textContent.trim() : "";
+      return text ? JSON.parse(text) : null;
+    };
+    try {
+      const data = read("strut-data");
+      if (data) page.show(data, read("strut-beside"));
+    } catch (error) {
+      ready = Promise.reject(error);
+      ready.catch(report);
+    }
+  }
+
+  for (const id of ["transport", "parameters-section", "summary-section", "scene"])
+    element(id).hidden = true; /* until there are data */
+  wire();
+  showOwnData();
 })(window.strutPage);

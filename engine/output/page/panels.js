@@ -2,19 +2,40 @@
 /* Parameters, summary, sampling and the scene's text; and the equilibria as cards. */
 "use strict";
 (function (page) {
-  function fillTable(id, rows) {
-    const body = document.querySelector("#" + id + " tbody");
-    for (const row of rows || []) {
-      const line = document.createElement("tr");
-      for (const text of [row.label, row.value]) {
-        const cell = document.createElement("td");
-        cell.dir = "auto";
-        cell.textContent = text;
-        line.append(cell);
-      }
-      body.append(line);
+  /* Rows of both runs by their labels, [label, value, value]; of equal labels the n-th with the n-th. */
+  function joinRows(rows, others) {
+    const left = (others || []).slice();
+    const joined = (rows || []).map((row) => {
+      const at = left.findIndex((other) => other.label === row.label);
+      return [row.label, row.value, at < 0 ? null : left.splice(at, 1)[0].value];
+    });
+    return [...joined, ...left.map((row) => [row.label, null, row.value])];
+  }
+
+  function makeRow(kind, texts) {
+    const line = document.createElement("tr");
+    for (const text of texts) {
+      const cell = document.createElement(kind);
+      cell.dir = "auto";
+      cell.textContent = text === null ? "\u2013" : page.micro(text);
+      line.append(cell);
     }
-    document.getElementById(id + "-section").hidden = !(rows || []).length;
+    return line;
+  }
+
+  /* A table of rows {label, value}; with a second run a second column, and a mark where they differ. */
+  function fillTable(id, data, beside) {
+    const body = document.querySelector("#" + id + " tbody");
+    const rows = joinRows(data[id], beside && beside[id]).map(([label, one, two]) => {
+      if (!beside) return makeRow("td", [label, one]);
+      const row = makeRow("td", [label, one, one === two ? "" : "\u2260", two]);
+      row.classList.toggle("differs", one !== two);
+      return row;
+    });
+    if (beside)
+      rows.unshift(makeRow("th", ["", data.label || "first", "", beside.label || "second"]));
+    body.replaceChildren(...rows);
+    document.getElementById(id + "-section").hidden = !body.querySelector("td");
   }
 
   function ordinal(n) {
@@ -38,30 +59,49 @@
     return kept + " are on this page, rounded: " + rounded.join(", ") + "." + ended + " " + made;
   }
 
-  page.fillPanels = function (data) {
-    document.getElementById("name").textContent = data.name || "Unnamed";
-    document.getElementById("source").textContent =
-      [data.description, data.source].filter(Boolean).join(" \u2014 ");
-    fillTable("parameters", data.parameters);
-    fillTable("summary", data.summary);
-    document.getElementById("sampling").textContent = samplingText(data);
-    document.getElementById("yaml").textContent = data.yaml || "";
-    document.getElementById("scene").hidden = !data.yaml;
+  function besideText(ghost) {
+    const { data } = ghost.run, notes = [];
+    if (ghost.delay) notes.push("the recordings do not overlap in time and begin together here");
+    if (ghost.shift)
+      notes.push("moved by " + page.quantity(ghost.shift, "m", 4) + " to the same start");
+    return "Pale, with dashed curves: " + (data.label || data.name || "a second run") +
+      (notes.length ? " (" + notes.join("; ") + ")" : "") + ".";
+  }
+
+  /* Texts and tables of a run, and of the ghost beside it or null. */
+  page.fillPanels = function (run, ghost) {
+    const { data } = run, beside = ghost && ghost.run.data;
+    const element = (id) => document.getElementById(id);
+    const label = data.label ? data.label + ": " : "";
+    document.title = data.name || "strut";
+    element("name").textContent = data.name || "Unnamed";
+    element("source").textContent =
+      label + [data.description, data.source].filter(Boolean).join(" \u2014 ");
+    element("beside").hidden = !ghost;
+    element("beside").textContent = ghost ? besideText(ghost) : "";
+    fillTable("parameters", data, beside);
+    fillTable("summary", data, beside);
+    element("sampling").textContent = samplingText(data);
+    element("yaml").textContent = data.yaml || "";
+    element("scene").hidden = !data.yaml;
+    element("copy").textContent = "Copy";
+    const more = data.equilibria_left_out
+      ? data.equilibria_left_out + " further equilibria are left out for size. " : "";
+    element("remark").textContent = more + page.micro(data.equilibria_remark || "");
+    element("cards-section").hidden = !(data.equilibria || []).length && !data.equilibria_remark;
+  };
+
+  page.wireCopy = function () {
     const copy = document.getElementById("copy");
     copy.hidden = !(navigator.clipboard && navigator.clipboard.writeText);
     copy.addEventListener("click", async () => {
       try {
-        await navigator.clipboard.writeText(data.yaml);
+        await navigator.clipboard.writeText(document.getElementById("yaml").textContent);
         copy.textContent = "Copied";
       } catch {
         copy.textContent = "Select the text to copy it";
       }
     });
-    const more = data.equilibria_left_out
-      ? data.equilibria_left_out + " further equilibria are left out for size. " : "";
-    document.getElementById("remark").textContent = more + (data.equilibria_remark || "");
-    document.getElementById("cards-section").hidden =
-      !(data.equilibria || []).length && !data.equilibria_remark;
   };
 })(window.strutPage);
 
@@ -74,71 +114,67 @@
       .sort((a, b) => a.height - b.height).slice(0, MOST_PASSES);
   }
 
-  /* Contact forces as the drawing expects them: normal and friction of each contact. */
-  page.shapeOf = function (data, equilibrium) {
-    const contact = new Float64Array(2 * data.contacts.length);
-    (equilibrium.contacts || []).forEach((node, k) => {
-      const at = data.contacts.indexOf(node);
-      if (at >= 0 && equilibrium.normal) contact[2 * at] = equilibrium.normal[k] || 0;
-    });
-    return { position: equilibrium.position, force: equilibrium.force || null, contact };
-  };
+  function createCard(data, equilibrium, index) {
+    const card = document.createElement("button"), canvas = document.createElement("canvas");
+    const name = document.createElement("b"), energy = document.createElement("span");
+    const verdict = document.createElement("span");
+    card.type = "button";
+    card.className = "card";
+    card.setAttribute("aria-pressed", "false");
+    name.dir = verdict.dir = "auto";
+    name.textContent = equilibrium.name;
+    energy.textContent = page.quantity(equilibrium.energy, "J", 7) + ", " + equilibrium.label;
+    verdict.textContent = page.micro(equilibrium.verdict || "");
+    card.append(canvas, name, energy, verdict);
+    for (const pass of passesOf(data, index)) {
+      const line = document.createElement("span"), to = document.createElement("bdi");
+      to.textContent = data.equilibria[pass.to].name;
+      line.append("\u2192 ", to, ": " + page.quantity(pass.height, "J", 4));
+      card.append(line);
+    }
+    return { card, canvas, equilibrium };
+  }
 
-  page.limitsOf = function (shape) {
-    let force = 0, contact = 0;
-    for (const value of shape.force || []) force = Math.max(force, Math.abs(value));
-    for (const value of shape.contact || []) contact = Math.max(contact, Math.abs(value));
-    return { force, contact };
-  };
-
-  page.createCards = function (data, structure, onPick) {
-    const host = document.getElementById("cards"), list = data.equilibria || [], cards = [];
-    const more = document.getElementById("more"), standing = list.filter((e) => e.stands).length;
-    const hidden = standing > 0 ? list.length - standing : 0;
-    list.forEach((equilibrium, index) => {
-      const card = document.createElement("button"), canvas = document.createElement("canvas");
-      const name = document.createElement("b"), energy = document.createElement("span");
-      const verdict = document.createElement("span");
-      card.type = "button";
-      card.className = "card";
-      card.setAttribute("aria-pressed", "false");
-      name.dir = verdict.dir = "auto";
-      name.textContent = equilibrium.name;
-      energy.textContent = page.quantity(equilibrium.energy, "J", 7) + ", " + equilibrium.label;
-      verdict.textContent = equilibrium.verdict;
-      card.append(canvas, name, energy, verdict);
-      for (const pass of passesOf(data, index)) {
-        const line = document.createElement("span"), to = document.createElement("bdi");
-        to.textContent = list[pass.to].name;
-        line.append("\u2192 ", to, ": " + page.quantity(pass.height, "J", 4));
-        card.append(line);
-      }
-      card.hidden = hidden > 0 && !equilibrium.stands;
-      card.addEventListener("click", () => onPick(index));
-      host.append(card);
-      cards.push({ card, canvas, equilibrium });
-    });
-
-    more.hidden = hidden === 0;
-    more.textContent = "Show " + hidden + " that do not stand";
-    more.addEventListener("click", () => {
-      for (const { card } of cards) card.hidden = false;
-      more.hidden = true;
-      draw();
-    });
+  page.createCards = function (onPick) {
+    const host = document.getElementById("cards"), more = document.getElementById("more");
+    let run = null, cards = [], all = false; /* those that do not stand, too */
 
     function draw() {
       const theme = page.theme();
       for (const { card, canvas, equilibrium } of cards) {
         if (card.hidden) continue;
-        const shape = page.shapeOf(data, equilibrium), limits = page.limitsOf(shape);
+        const shape = page.shapeOf(run.data, equilibrium), limits = page.limitsOf(shape);
         const camera = page.fit(page.boundsOf(shape.position), canvas.clientWidth,
-          canvas.clientHeight, 14, data.size);
-        page.drawStructure(canvas, structure, shape, camera, { theme, colour: true, arrows: true,
-          limit: limits.force, contactLimit: limits.contact, small: true });
+          canvas.clientHeight, 14, run.data.size);
+        page.drawStructure(page.prepareCanvas(canvas), run.structure, shape, camera, { theme,
+          colour: true, arrows: true, limit: limits.force, contactLimit: limits.contact,
+          small: true });
       }
     }
-    return { draw, cards,
+
+    function hideSome() {
+      const standing = cards.filter((c) => c.equilibrium.stands).length;
+      const hidden = standing > 0 && !all ? cards.length - standing : 0;
+      for (const { card, equilibrium } of cards) card.hidden = hidden > 0 && !equilibrium.stands;
+      more.hidden = hidden === 0;
+      more.textContent = "Show " + hidden + " that do not stand";
+    }
+
+    more.addEventListener("click", () => {
+      all = true;
+      hideSome();
+      draw();
+    });
+
+    return { draw,
+      load(shown) {
+        run = shown;
+        cards = (run.data.equilibria || []).map((e, index) => createCard(run.data, e, index));
+        cards.forEach(({ card }, index) => card.addEventListener("click", () => onPick(index)));
+        host.replaceChildren(...cards.map((c) => c.card));
+        hideSome();
+        draw();
+      },
       mark(index) {
         cards.forEach((c, i) => c.card.setAttribute("aria-pressed", String(i === index)));
       } };

@@ -47,6 +47,22 @@ window.strutPage = {};
       if (block && block.bytes) decoded[name] = await page.decodeBlock(block, motion.frames);
     return decoded;
   };
+
+  /* The last frame that is not after a time; the first if there is none. */
+  page.frameAt = function (time, t) {
+    let low = 0, high = time.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (time[middle] <= t) low = middle;
+      else high = middle - 1;
+    }
+    return low;
+  };
+  page.nearestFrame = function (time, t) {
+    const frame = page.frameAt(time, t);
+    const next = frame + 1 < time.length && time[frame + 1] - t < t - time[frame];
+    return frame + (next ? 1 : 0);
+  };
 })(window.strutPage);
 
 /* Playing, pausing, scrubbing, speed. Frames are shown as recorded, never interpolated. */
@@ -54,22 +70,11 @@ window.strutPage = {};
   const SPEEDS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
   const WATCHED = 12; /* approximate playing time [s], if not faster than real time */
 
-  page.createPlayer = function (time, onFrame) {
-    const last = time.length - 1, begin = time[0], span = time[last] - begin;
+  page.createPlayer = function (onFrame) {
     const element = (id) => document.getElementById(id);
     const button = element("play"), scrub = element("scrub"), speed = element("speed");
-    let now = begin, before = null;
-    const player = { frame: 0, playing: false, last };
-
-    function frameAt(t) {
-      let low = 0, high = last;
-      while (low < high) {
-        const middle = (low + high + 1) >> 1;
-        if (time[middle] <= t) low = middle;
-        else high = middle - 1;
-      }
-      return low;
-    }
+    let time = null, now = 0, before = null, speedChosen = false;
+    const player = { frame: 0, playing: false, last: 0 };
 
     function show(frame) {
       player.frame = frame;
@@ -78,29 +83,27 @@ window.strutPage = {};
     }
 
     player.seek = function (frame) {
-      frame = Math.min(Math.max(Math.round(frame), 0), last);
+      if (!time) return;
+      frame = Math.min(Math.max(Math.round(frame), 0), player.last);
       now = time[frame];
       show(frame);
     };
-    player.seekTime = (t) => { /* the nearest frame */
-      const frame = frameAt(t);
-      const next = frame < last && time[frame + 1] - t < t - time[frame];
-      player.seek(frame + (next ? 1 : 0));
-    };
+    player.seekTime = (t) => player.seek(page.nearestFrame(time, t));
 
     function tick(stamp) {
       if (!player.playing) return;
+      const begin = time[0], end = time[player.last];
       if (before !== null) now += (stamp - before) / 1000 * Number(speed.value);
       before = stamp;
-      if (now > time[last]) now = span > 0 ? begin + (now - begin) % span : begin;
-      const frame = frameAt(now);
+      if (now > end) now = begin + (now - begin) % (end - begin);
+      const frame = page.frameAt(time, now);
       if (frame !== player.frame) show(frame);
       requestAnimationFrame(tick);
     }
 
     player.play = function () {
-      if (player.playing || last === 0) return;
-      if (player.frame === last) player.seek(0);
+      if (player.playing || player.last === 0) return;
+      if (player.frame === player.last) player.seek(0);
       player.playing = true;
       before = null;
       button.classList.add("playing");
@@ -114,31 +117,52 @@ window.strutPage = {};
     };
     player.toggle = () => (player.playing ? player.pause() : player.play());
 
+    function suggestSpeed(span) {
+      const wanted = Math.min(1, span / WATCHED);
+      speed.value = String(SPEEDS.reduce((a, b) =>
+        Math.abs(Math.log(b / wanted)) < Math.abs(Math.log(a / wanted)) ? b : a));
+    }
+
+    /* Plays another motion, or none; at the same time where it has that. */
+    player.load = function (times) {
+      const kept = time && times && now >= times[0] && now <= times[times.length - 1];
+      time = times;
+      player.frame = 0;
+      player.last = time && time[time.length - 1] > time[0] ? time.length - 1 : 0;
+      if (player.last === 0) player.pause();
+      if (!time) return;
+      if (!speedChosen) suggestSpeed(time[player.last] - time[0]);
+      scrub.max = String(player.last);
+      if (!kept) now = time[0];
+      show(page.nearestFrame(time, now));
+    };
+
+    function onKey(event) {
+      const tag = event.target.tagName, input = tag === "INPUT" && event.target !== scrub;
+      const box = input && event.target.type === "checkbox";
+      if (event.ctrlKey || event.metaKey || event.altKey || !time) return;
+      if (tag === "SELECT" || tag === "PRE" || tag === "TEXTAREA" || (input && !box)) return;
+      const far = event.shiftKey ? 10 : 1;
+      const own = tag === "BUTTON" || tag === "SUMMARY" || box;
+      if (event.key === " " && !own) player.toggle();
+      else if (event.key === "ArrowRight") player.seek(player.frame + far);
+      else if (event.key === "ArrowLeft") player.seek(player.frame - far);
+      else if (event.key === "Home") player.seek(0);
+      else if (event.key === "End") player.seek(player.last);
+      else return;
+      event.preventDefault();
+    }
+
     for (const value of SPEEDS) {
       const option = document.createElement("option");
       option.value = String(value);
       option.textContent = value >= 1 ? value + "\u00d7" : "1/" + Math.round(1 / value);
       speed.append(option);
     }
-    const wanted = Math.min(1, span / WATCHED);
-    speed.value = String(SPEEDS.reduce((a, b) =>
-      Math.abs(Math.log(b / wanted)) < Math.abs(Math.log(a / wanted)) ? b : a));
-    scrub.max = String(last);
+    speed.addEventListener("change", () => { speedChosen = true; });
     scrub.addEventListener("input", () => player.seek(Number(scrub.value)));
     button.addEventListener("click", player.toggle);
-    document.addEventListener("keydown", (event) => {
-      const tag = event.target.tagName;
-      if (event.ctrlKey || event.metaKey || event.altKey || tag === "SELECT" || tag === "PRE") return;
-      const far = event.shiftKey ? 10 : 1;
-      const own = tag === "BUTTON" || tag === "SUMMARY" || (tag === "INPUT" && event.target !== scrub);
-      if (event.key === " " && !own) player.toggle();
-      else if (event.key === "ArrowRight") player.seek(player.frame + far);
-      else if (event.key === "ArrowLeft") player.seek(player.frame - far);
-      else if (event.key === "Home") player.seek(0);
-      else if (event.key === "End") player.seek(last);
-      else return;
-      event.preventDefault();
-    });
+    document.addEventListener("keydown", onKey);
     return player;
   };
 })(window.strutPage);

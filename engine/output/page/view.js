@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws a structure to scale on a canvas, for the stage and for the cards. */
+/* Draws a structure to scale on a surface {context, width, height}: stage, card or file. */
 "use strict";
 (function (page) {
   const SIGNED = [[10, 31, 102], [47, 74, 158], [125, 131, 144], [201, 139, 69], [245, 163, 26]];
   const SEQUENCE = [[42, 15, 84], [51, 80, 140], [31, 138, 140], [85, 181, 103], [211, 203, 47]];
   const KINDS = { bar: 0, spring: 1, cable: 2 };
-  const WIDTHS = [4.2, 2.4, 1.5];
+  const WIDTHS = [4.2, 2.4, 1.5], DASHES = [[], [7, 2.5], []]; /* dashes where no force is known */
+  const KIND_NAMES = ["bar", "spring", "cable"], FONT = "11px system-ui, 'DejaVu Sans', sans-serif";
+  const SLACK_DASH = [4, 3], PALE = 0.4;
+
+  page.MOST_NAMES = 60; /* of nodes that are written */
 
   function between(anchors, part) {
     const place = Math.min(Math.max(part, 0), 1) * (anchors.length - 1);
@@ -51,17 +55,6 @@
     const buckets = 3 * shades + 1; /* the last: slack cables */
     return { data, count, from, to, kind, guides, shades, buckets, bucket: new Int32Array(count),
       start: new Int32Array(buckets + 1), order: new Int32Array(count) };
-  };
-
-  page.boundsOf = function (position) {
-    const b = [Infinity, Infinity, -Infinity, -Infinity];
-    for (let i = 0; i < position.length; i += 2) {
-      b[0] = Math.min(b[0], position[i]);
-      b[1] = Math.min(b[1], position[i + 1]);
-      b[2] = Math.max(b[2], position[i]);
-      b[3] = Math.max(b[3], position[i + 1]);
-    }
-    return b;
   };
 
   /* A camera {x, y, scale} that shows the bounds in a picture of this size. */
@@ -165,7 +158,7 @@
 
   function drawMembers(c, s, shape, options, px, py, thin) {
     const theme = options.theme, coloured = options.colour && shape.force;
-    const plain = [theme.bar, theme.spring, theme.cable], slack = s.buckets - 1;
+    const slack = s.buckets - 1;
     sortMembers(s, shape, coloured ? options.limit : 0);
     c.lineCap = s.count > 500 ? "butt" : "round";
     if (coloured && s.count <= 500) { /* an edge separates light colours from the paper */
@@ -181,8 +174,8 @@
       const kind = b === slack ? 2 : Math.floor(b / s.shades);
       c.lineWidth = Math.max(0.5, WIDTHS[kind] * thin * (b === slack ? 0.7 : 1));
       c.strokeStyle = b === slack ? theme.slack : coloured
-        ? page.signedColour((b % s.shades) / (s.shades - 1) * 2 - 1) : plain[kind];
-      c.setLineDash(b === slack ? [4, 3] : []);
+        ? page.signedColour((b % s.shades) / (s.shades - 1) * 2 - 1) : theme[KIND_NAMES[kind]];
+      c.setLineDash(b === slack ? SLACK_DASH : coloured || options.small ? [] : DASHES[kind]);
       trace(c, s, s.start[b], s.start[b + 1], px, py);
       c.stroke();
     }
@@ -260,7 +253,7 @@
       c.fill();
       c.stroke();
     }
-    if (!options.names || count > 60) return;
+    if (!options.names || count > page.MOST_NAMES) return;
     const angles = memberAngles(s, px, py), taken = [];
     if (data.ground) /* names avoid the space below a contact, with its force and the ground's marks */
       for (const node of data.contacts) angles[node].push(Math.PI / 2);
@@ -315,7 +308,7 @@
     if (options.small) return;
     const step = roundLength(110 / camera.scale);
     const into = [Math.sin(ground.slope), Math.cos(ground.slope)];
-    c.font = "11px system-ui, 'DejaVu Sans', sans-serif";
+    c.font = FONT;
     c.fillStyle = theme.soft;
     c.textAlign = "center";
     c.textBaseline = "middle";
@@ -402,22 +395,10 @@
     });
   }
 
-  /* Draws a shape {position, force, contact, trails} as the camera sees it. */
-  page.drawStructure = function (canvas, s, shape, camera, options) {
-    const { context: c, width, height } = page.prepareCanvas(canvas), data = s.data;
-    const count = data.nodes.length, px = new Float64Array(count), py = new Float64Array(count);
-    const place = (x, y) => [width / 2 + (x - camera.x) * camera.scale,
-      height / 2 - (y - camera.y) * camera.scale];
-    for (let i = 0; i < count; i++) {
-      px[i] = width / 2 + (shape.position[2 * i] - camera.x) * camera.scale;
-      py[i] = height / 2 - (shape.position[2 * i + 1] - camera.y) * camera.scale;
-    }
-    drawGround(c, data.ground, camera, width, height, options);
-    drawSurfaces(c, data.surfaces, place, options.theme);
-    if (!options.small || count <= 60) drawSupports(c, data, px, py, options.theme);
-    for (const trail of shape.trails || []) {
-      c.lineWidth = 1.6;
-      c.lineCap = "round";
+  function drawTrails(c, trails, place) {
+    c.lineWidth = 1.6;
+    c.lineCap = "round";
+    for (const trail of trails || []) {
       const pieces = Math.min(12, trail.length / 2 - 1);
       for (let k = 0; k < pieces; k++) {
         const first = Math.floor(k * (trail.length / 2 - 1) / pieces);
@@ -428,6 +409,36 @@
         c.stroke();
       }
     }
+  }
+
+  /* Positions on the picture, [px, py]. */
+  function placeAll(position, place) {
+    const px = new Float64Array(position.length / 2), py = new Float64Array(position.length / 2);
+    for (let i = 0; i < px.length; i++)
+      [px[i], py[i]] = place(position[2 * i], position[2 * i + 1]);
+    return [px, py];
+  }
+
+  /* Another structure {structure, position}, pale and without its forces. */
+  function drawGhost(c, ghost, camera, place, options) {
+    const [px, py] = placeAll(ghost.position, place);
+    c.globalAlpha = PALE;
+    drawMembers(c, ghost.structure, { force: null }, options, px, py,
+      thinness(ghost.structure, ghost.position, camera));
+    c.globalAlpha = 1;
+  }
+
+  /* Draws a shape {position, force, contact, trails, ghost} as the camera sees it. */
+  page.drawStructure = function (surface, s, shape, camera, options) {
+    const { context: c, width, height } = surface, data = s.data, count = data.nodes.length;
+    const place = (x, y) => [width / 2 + (x - camera.x) * camera.scale,
+      height / 2 - (y - camera.y) * camera.scale];
+    const [px, py] = placeAll(shape.position, place);
+    drawGround(c, data.ground, camera, width, height, options);
+    drawSurfaces(c, data.surfaces, place, options.theme);
+    if (shape.ghost) drawGhost(c, shape.ghost, camera, place, options);
+    if (!options.small || count <= 60) drawSupports(c, data, px, py, options.theme);
+    drawTrails(c, shape.trails, place);
     drawCells(c, data, px, py, options);
     drawCollisions(c, s, px, py, camera.scale, options);
     drawMembers(c, s, shape, options, px, py,
@@ -435,6 +446,7 @@
     if (data.hinges.length <= 400) drawHinges(c, data, px, py, options);
     drawNodes(c, s, px, py, options);
     drawForces(c, data, shape, options, px, py);
+    if (options.key) drawKey(surface, s, shape, options);
   };
 
   /* A number with a prefix: "9.78 mm/s". */
@@ -448,22 +460,66 @@
     return String(number).replace("-", "\u2212") + " " + prefixes[group + 5] + unit;
   };
 
-  /* The colour bar, low values at the bottom. */
-  page.drawColourScale = function (canvas, limit, theme) {
-    const { context: c, height } = page.prepareCanvas(canvas), top = 24, bottom = height - 8;
-    c.font = "11px system-ui, 'DejaVu Sans', sans-serif";
+  /* Digits after the point that tell neighbouring times apart, at most six. */
+  page.decimalsOf = function (time) {
+    let least = Infinity;
+    for (let f = 1; f < time.length; f++) least = Math.min(least, time[f] - time[f - 1]);
+    return Math.min(6, Math.max(0, Math.ceil(-Math.log10(least) - 1e-6)));
+  };
+
+  /* A time with so many digits, as wide as the last one. */
+  page.timeText = function (t, decimals, last) {
+    return t.toFixed(decimals).padStart(last.toFixed(decimals).length, "\u2007");
+  };
+
+  /* strut's texts are ASCII; the page has the letter of micro. */
+  page.micro = (text) =>
+    text.replace(/(\d) u(?=(?:m|s|g|N|J|W|Pa|Hz|rad)(?![A-Za-z]))/g, "$1 \u00b5");
+
+  /* At the right of the picture: the scale of forces, low values at the bottom, or the pens of the
+     kinds of members. */
+  function drawKey(surface, s, shape, options) {
+    const coloured = options.colour && shape.force && options.limit > 0;
+    surface.context.font = FONT;
+    if (coloured) drawColourScale(surface, options);
+    else drawKinds(surface, s, options.theme);
+  }
+
+  function drawColourScale({ context: c, width, height }, { limit, theme }) {
+    const right = width - 12, top = 32, bottom = Math.min(170, height - 60), parts = 44;
+    const part = (bottom - top) / parts;
     c.fillStyle = theme.soft;
     c.textBaseline = "top";
     c.textAlign = "right";
-    c.fillText("force", 80, 4);
-    for (let y = top; y < bottom; y++) {
-      c.fillStyle = page.signedColour(1 - 2 * (y - top) / (bottom - top));
-      c.fillRect(68, y, 12, 1.5);
+    c.fillText("force", right, 12);
+    for (let k = 0; k < parts; k++) {
+      c.fillStyle = page.signedColour(1 - 2 * (k + 0.5) / parts);
+      c.fillRect(right - 12, top + k * part, 12, part + (k + 1 < parts ? 0.5 : 0));
     }
     c.fillStyle = theme.soft;
     c.textBaseline = "middle";
-    for (const part of [1, 0, -1])
-      c.fillText(page.quantity(part * limit, "N", 3), 62,
-        Math.min(bottom - 5, Math.max(top + 5, top + (1 - part) / 2 * (bottom - top))));
-  };
+    for (const value of [1, 0, -1])
+      c.fillText(page.quantity(value * limit, "N", 3), right - 18,
+        top + (1 - value) / 2 * (bottom - top) + 5 * value);
+  }
+
+  function drawKinds({ context: c, width }, s, theme) {
+    const right = width - 12;
+    c.textBaseline = "middle";
+    c.textAlign = "right";
+    c.lineCap = "butt";
+    KIND_NAMES.filter((_, kind) => s.kind.includes(kind)).forEach((name, row) => {
+      const kind = KINDS[name], y = 20 + 18 * row;
+      c.strokeStyle = theme[name];
+      c.lineWidth = WIDTHS[kind];
+      c.setLineDash(DASHES[kind]);
+      c.beginPath();
+      c.moveTo(right - 26, y);
+      c.lineTo(right, y);
+      c.stroke();
+      c.setLineDash([]);
+      c.fillStyle = theme.soft;
+      c.fillText(name, right - 33, y);
+    });
+  }
 })(window.strutPage);

@@ -90,7 +90,7 @@ typedef struct strutlib_control strutlib_control;
  * Counts additions to this interface: a program that needs a function may ask whether it is
  * there.
  */
-#define STRUTLIB_ABI_VERSION 1
+#define STRUTLIB_ABI_VERSION 2
 /** STRUTLIB_ABI_VERSION of the library that is loaded. */
 STRUTLIB_API int strutlib_abi_version(void);
 /** Version of the program that the library belongs to, such as "0.1.0". */
@@ -268,6 +268,9 @@ STRUTLIB_API char *strutlib_scene_svg(const strutlib_scene *scene, strutlib_erro
 /** The page that `strut view MODEL` writes; where `equilibria` is 0 none are searched. */
 STRUTLIB_API char *strutlib_scene_html(const strutlib_scene *scene, int equilibria,
                                        strutlib_control *control, strutlib_error **error);
+/** The data of that page alone, as a JSON object that engine/output/page/page.h describes. */
+STRUTLIB_API char *strutlib_scene_page_data(const strutlib_scene *scene, int equilibria,
+                                            strutlib_control *control, strutlib_error **error);
 
 /* ---- computing ---- */
 
@@ -447,6 +450,11 @@ STRUTLIB_API char *strutlib_result_svg(const strutlib_result *result, size_t cou
                                        strutlib_error **error);
 /** The page that `strut view` writes of a run, or of equilibria; others: NULL with the error. */
 STRUTLIB_API char *strutlib_result_html(const strutlib_result *result, strutlib_error **error);
+/**
+ * The data of that page alone, as a JSON object that engine/output/page/page.h describes. Of modes, rigidity and a
+ * path, which have no page, it is that of the structure: strutlib_result_json has their numbers.
+ */
+STRUTLIB_API char *strutlib_result_page_data(const strutlib_result *result, strutlib_error **error);
 /** NULL is allowed. */
 STRUTLIB_API void strutlib_result_free(strutlib_result *result);
 

@@ -130,23 +130,29 @@ char *strutlib_scene_svg(const strutlib_scene *scene, strutlib_error **error) {
   return text;
 }
 
-/* ---- pages ---- */
+/* ---- pages and their data ---- */
 
-static char *make_page(strut_page *page, const strut_setup *setup, strutlib_error **error) {
+/* strut_page_html or strut_page_data. */
+typedef char *page_writer(const strut_page *page, strut_page_frames *frames, strut_error *error);
+
+static char *write_page(strut_page *page, const strut_setup *setup, page_writer *writer,
+                        strutlib_error **error) {
   strut_error what = {0};
-  char *yaml = strut_setup_write(setup), *html = NULL;
+  char *yaml = strut_setup_write(setup), *text = NULL;
   page->yaml = yaml;
   page->experiment = &setup->experiment;
   if (!yaml)
     abi_no_memory(error);
-  else if (!(html = strut_page_html(page, NULL, &what)))
+  else if (!(text = writer(page, NULL, &what)))
     abi_fail_with(error, what.status, &what);
   strut_release(yaml);
-  return html;
+  return text;
 }
 
-char *strutlib_result_html(const strutlib_result *result, strutlib_error **error) {
-  char *html = NULL;
+/* `still`: a result without motion and equilibria shows its structure, if it has a model. */
+static char *result_page(const strutlib_result *result, bool still, page_writer *writer,
+                         strutlib_error **error) {
+  char *text = NULL;
   if (abi_lacks(error, result, "result")) return NULL;
   abi_enter(error);
   strut_page page = {.model = result->model,
@@ -155,50 +161,77 @@ char *strutlib_result_html(const strutlib_result *result, strutlib_error **error
   if (page.motion) page.summary = result->json;
   if (!page.equilibria) page.remark = "No search for equilibria was made.";
   if (page.motion && !page.motion->position) page.motion = NULL;
-  if (page.motion || page.equilibria)
-    html = make_page(&page, &result->setup, error);
+  if (page.motion || page.equilibria || (still && page.model))
+    text = write_page(&page, &result->setup, writer, error);
   else
     abi_fail(error, STRUTLIB_USAGE, "there is no page of %s without a recorded motion",
              result->command->name);
   abi_leave();
-  return html;
+  return text;
 }
 
-/* With the equilibria of the scene, or a remark where they cannot be found. */
-static char *scene_page(const strutlib_scene *scene, const strut_model *model, int wanted,
-                        const volatile sig_atomic_t *interrupt, strutlib_error **error) {
+char *strutlib_result_html(const strutlib_result *result, strutlib_error **error) {
+  return result_page(result, false, strut_page_html, error);
+}
+
+char *strutlib_result_page_data(const strutlib_result *result, strutlib_error **error) {
+  return result_page(result, true, strut_page_data, error);
+}
+
+/* A page of a scene to be written, with the equilibria or a remark where they cannot be found. */
+typedef struct scene_page {
+  const strutlib_scene *scene;
+  bool equilibria;
+  strutlib_control *control;
+  page_writer *writer;
+} scene_page;
+
+static char *write_scene_page(const scene_page *wanted, const strut_model *model,
+                              strutlib_error **error) {
+  const strut_setup *setup = &wanted->scene->setup;
   strut_equilibria all = {0};
   strut_error remark = {0};
-  const strut_equilibria_options options = {.interrupt = interrupt};
+  const strut_equilibria_options options = {.interrupt = abi_interrupt_of(wanted->control)};
   strut_status status = STRUT_OK;
-  char *html = NULL;
-  if (wanted)
-    status = strut_equilibria_find(model, &scene->setup.experiment, &options, &all, &remark);
+  char *text = NULL;
+  if (wanted->equilibria)
+    status = strut_equilibria_find(model, &setup->experiment, &options, &all, &remark);
   strut_page page = {.model = model};
-  if (wanted && status == STRUT_OK) page.equilibria = &all;
+  if (wanted->equilibria && status == STRUT_OK) page.equilibria = &all;
   if (!page.equilibria)
-    page.remark = wanted ? remark.message : "No search for equilibria was made.";
+    page.remark = wanted->equilibria ? remark.message : "No search for equilibria was made.";
   if (status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY)
     abi_fail_with(error, status, &remark);
   else
-    html = make_page(&page, &scene->setup, error);
+    text = write_page(&page, setup, wanted->writer, error);
   strut_equilibria_free(&all);
-  return html;
+  return text;
 }
 
-char *strutlib_scene_html(const strutlib_scene *scene, int equilibria, strutlib_control *control,
-                          strutlib_error **error) {
+static char *make_scene_page(const scene_page *wanted, strutlib_error **error) {
   strut_model *model = NULL;
   strut_error what = {0};
-  char *html = NULL;
-  if (abi_lacks(error, scene, "scene")) return NULL;
+  char *text = NULL;
+  if (abi_lacks(error, wanted->scene, "scene")) return NULL;
   abi_enter(error);
-  strut_status status = strut_model_compile(&scene->setup.scene, &model, &what);
+  strut_status status = strut_model_compile(&wanted->scene->setup.scene, &model, &what);
   if (status == STRUT_OK)
-    html = scene_page(scene, model, equilibria, abi_interrupt_of(control), error);
+    text = write_scene_page(wanted, model, error);
   else
     abi_fail_with(error, status, &what);
   strut_model_free(model);
   abi_leave();
-  return html;
+  return text;
+}
+
+char *strutlib_scene_html(const strutlib_scene *scene, int equilibria, strutlib_control *control,
+                          strutlib_error **error) {
+  const scene_page wanted = {scene, equilibria != 0, control, strut_page_html};
+  return make_scene_page(&wanted, error);
+}
+
+char *strutlib_scene_page_data(const strutlib_scene *scene, int equilibria,
+                               strutlib_control *control, strutlib_error **error) {
+  const scene_page wanted = {scene, equilibria != 0, control, strut_page_data};
+  return make_scene_page(&wanted, error);
 }
