@@ -20,7 +20,7 @@
 #include "engine/forces/surfaces.h"
 #include "engine/model/mass_kernel.h"
 
-STRUT_INLINE void forces_start(const strut_model *model, double *restrict force) {
+STRUT_LOOP void forces_start(const strut_model *model, double *restrict force) {
   const double *restrict constant = model->constant_force;
   if (model->terms & STRUT_TERM_CONSTANT)
     for (int32_t i = 0; i < model->length; i += STRUT_LANES)
@@ -30,9 +30,9 @@ STRUT_INLINE void forces_start(const strut_model *model, double *restrict force)
       strut_lanes_store(force + i, (strut_lanes){0});
 }
 
-STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state,
-                                    const double *restrict q, const double *restrict v,
-                                    double *restrict force, strut_accumulation balance) {
+STRUT_LOOP void forces_of_members(const strut_model *model, strut_state *state,
+                                  const double *restrict q, const double *restrict v,
+                                  double *restrict force, strut_accumulation balance) {
   four_member_powers powers;
   powers.drive = powers.exchanged = powers.lost = (strut_lanes){0};
   members_kernel(model, state, q, v, force, balance != STRUT_ACCUMULATE_NOTHING, &powers);
@@ -59,9 +59,9 @@ void strut_forces_add_rare(const strut_model *model, strut_state *state, double 
                            const double *v);
 
 /* All forces but the ground's. allowed: which ones the model may have, see STRUT_TERMS_RARE. */
-STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *state, double t,
-                                      const double *restrict q, const double *restrict v,
-                                      unsigned allowed, strut_accumulation balance) {
+STRUT_LOOP void forces_of_structure(const strut_model *model, strut_state *state, double t,
+                                    const double *restrict q, const double *restrict v,
+                                    unsigned allowed, strut_accumulation balance) {
   unsigned terms = model->terms & allowed;
   double *restrict force = state->latest.force;
   state->evaluations++;
@@ -80,9 +80,9 @@ STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *sta
   if (terms & STRUT_TERMS_RARE) strut_forces_add_rare(model, state, t, q, v);
 }
 
-STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, double t,
-                             const double *restrict q, const double *restrict v, unsigned allowed,
-                             strut_accumulation balance) {
+STRUT_LOOP void forces_sum(const strut_model *model, strut_state *state, double t,
+                           const double *restrict q, const double *restrict v, unsigned allowed,
+                           strut_accumulation balance) {
   forces_of_structure(model, state, t, q, v, allowed, balance);
   if (model->terms & STRUT_TERM_CONTACT)
     ground_kernel(model, state, q, v, state->latest.force, balance);
@@ -91,17 +91,17 @@ STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, doubl
 }
 
 /* a = M^-1 force, M with the masses that slide. */
-STRUT_INLINE void divide_by_mass(const strut_model *model, strut_state *state, double *restrict a,
-                                 unsigned allowed) {
+STRUT_LOOP void divide_by_mass(const strut_model *model, strut_state *state, double *restrict a,
+                               unsigned allowed) {
   mass_kernel(model, state->latest.force, a, state->buffers.mass_solve);
   if (model->terms & allowed & STRUT_TERM_SLIDING_MASS)
     strut_sliding_masses_correct(model, state, a);
 }
 
 /* See strut_forces_acceleration. */
-STRUT_INLINE void forces_kernel(const strut_model *model, strut_state *state, double t,
-                                const double *restrict q, const double *restrict v,
-                                double *restrict a, unsigned allowed, strut_accumulation balance) {
+STRUT_LOOP void forces_kernel(const strut_model *model, strut_state *state, double t,
+                              const double *restrict q, const double *restrict v,
+                              double *restrict a, unsigned allowed, strut_accumulation balance) {
   forces_sum(model, state, t, q, v, allowed, balance);
   divide_by_mass(model, state, a, allowed);
   if (balance && model->terms & allowed & STRUT_TERM_SLIDING_MASS)

@@ -97,10 +97,10 @@ STRUT_INLINE void ground_all(const strut_model *model, strut_state *state, const
 
 /* Adds the ground's forces on contacts begin to end; slope and friction are compiled out where the scene has
    none. */
-STRUT_INLINE void ground_kernel_range(const strut_model *model, strut_state *state,
-                                      const double *restrict q, const double *restrict v,
-                                      double *restrict force, int32_t begin, int32_t end,
-                                      strut_accumulation balance) {
+STRUT_LOOP void ground_kernel_range(const strut_model *model, strut_state *state,
+                                    const double *restrict q, const double *restrict v,
+                                    double *restrict force, int32_t begin, int32_t end,
+                                    strut_accumulation balance) {
   enum { F = STRUT_TERM_FRICTION, S = STRUT_TERM_SLOPE };
 #define STRUT_CASE(sloped, rough, laws)                                                            \
   ground_all(model, state, q, v, force, begin, end, sloped, rough, laws, balance);                 \

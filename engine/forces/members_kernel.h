@@ -155,8 +155,8 @@ STRUT_INLINE void members_add_rows_of(const strut_pull_rows *t, int32_t width,
   }
 }
 
-STRUT_INLINE void members_add_rows(const strut_pull_rows *t, double *restrict pull,
-                                   double *restrict force) {
+STRUT_LOOP void members_add_rows(const strut_pull_rows *t, double *restrict pull,
+                                 double *restrict force) {
   strut_pair_store(pull + STRUT_NO_PULL, (strut_pair){-0.0, -0.0});
   switch (t->width) {
     case 1: members_add_rows_of(t, 1, pull, force); break;
@@ -169,10 +169,10 @@ STRUT_INLINE void members_add_rows(const strut_pull_rows *t, double *restrict pu
 }
 
 /* Block b; one copy of the loop per set of terms, so none is tested inside. */
-STRUT_INLINE void members_of_block(const strut_member_table *t, const strut_state *state,
-                                   const double *restrict q, const double *restrict v,
-                                   double *restrict force, int32_t b, bool balance,
-                                   four_member_powers *powers) {
+STRUT_LOOP void members_of_block(const strut_member_table *t, const strut_state *state,
+                                 const double *restrict q, const double *restrict v,
+                                 double *restrict force, int32_t b, bool balance,
+                                 four_member_powers *powers) {
   enum { K = STRUT_TERM_DAMPING, S = STRUT_TERM_SLACK, D = STRUT_TERM_DRIVE };
   _Alignas(64) double pull[STRUT_PULL_NUMBERS];
   int32_t begin = b * STRUT_BLOCK;

@@ -16,10 +16,10 @@ static const double STRUT_RK4_AHEAD[4] = {STRUT_RK4_STAGES(STRUT_RK4_TIME)},
 #undef STRUT_RK4_WEIGHT
 
 /* Positions and velocities h after the begin of the step, by the rates v and a of the stage before. */
-STRUT_INLINE void rk4_next_stage(int32_t n, double h, const double *restrict q0,
-                                 const double *restrict v0, const double *restrict v,
-                                 const double *restrict a, double *restrict q,
-                                 double *restrict next) {
+STRUT_LOOP void rk4_next_stage(int32_t n, double h, const double *restrict q0,
+                               const double *restrict v0, const double *restrict v,
+                               const double *restrict a, double *restrict q,
+                               double *restrict next) {
   strut_lanes step = four_all(h);
   for (int32_t i = 0; i < n; i += STRUT_LANES) {
     strut_lanes_store(q + i,
@@ -30,9 +30,9 @@ STRUT_INLINE void rk4_next_stage(int32_t n, double h, const double *restrict q0,
 }
 
 /* Positions, or velocities, at the end of a step of h; out: may be z. */
-STRUT_INLINE void rk4_end_of_step(int32_t n, double h, const double *z, const double *k1,
-                                  const double *restrict k2, const double *restrict k3,
-                                  const double *restrict k4, double *out) {
+STRUT_LOOP void rk4_end_of_step(int32_t n, double h, const double *z, const double *k1,
+                                const double *restrict k2, const double *restrict k3,
+                                const double *restrict k4, double *out) {
   strut_lanes sixth = four_all(h / 6.0);
   for (int32_t i = 0; i < n; i += STRUT_LANES)
     strut_lanes_store(out + i,

@@ -26,6 +26,15 @@
 #endif
 #endif
 #define STRUT_INLINE static inline __attribute__((always_inline))
+/**
+ * Of a loop over everything: a copy of its own in each kernel. In WebAssembly a function of its own: what compiles that
+ * keeps numbers of long functions in memory, and a page has to be loaded.
+ */
+#ifdef __wasm__
+#define STRUT_LOOP static __attribute__((noinline))
+#else
+#define STRUT_LOOP STRUT_INLINE
+#endif
 
 /* No function with a vector in its signature is ever called: all of them are inlined. */
 #pragma GCC diagnostic ignored "-Wpsabi"

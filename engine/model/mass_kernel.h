@@ -55,8 +55,8 @@ STRUT_INLINE void mass_blocks(const strut_mass_operator *op, bool pair, const do
 }
 
 /* a = M^-1 f; work: scratch. All (length). */
-STRUT_INLINE void mass_kernel(const strut_model *model, const double *restrict f,
-                              double *restrict a, double *restrict work) {
+STRUT_LOOP void mass_kernel(const strut_model *model, const double *restrict f, double *restrict a,
+                            double *restrict work) {
   const strut_mass *mass = model->mass;
   const double *restrict inverse = mass->inverse;
   for (int32_t i = 0; i < model->length && mass->any_single; i += STRUT_LANES)

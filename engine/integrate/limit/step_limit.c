@@ -20,11 +20,11 @@ static double growth(double x, double y) {
     im = (re * y + im * x) / k;
     re = next;
   }
-  return hypot(re, im);
+  return sqrt(re * re + im * im); /* hypot differs by the C library */
 }
 
 double strut_rk4_limit(double re, double im) {
-  double size = hypot(re, im);
+  double size = sqrt(re * re + im * im);
   if (!(size > 0)) return HUGE_VAL;
   if (re > 0) re = 0, size = fabs(im); /* a motion that grows by itself says nothing of the step */
   if (!(size > 0)) return HUGE_VAL;

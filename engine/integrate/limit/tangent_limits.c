@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/model/mass.h"
 
 /* Passes that improve the weights; rays along which RK4's region is sampled. */
@@ -110,12 +111,12 @@ static void improve(bounding *b, double h) {
  * the frequency and no farther to the left than half the rate.
  */
 static double rk4_bound(double frequency, double rate) {
-  const double quarter = 1.57079632679489661923;
   double h = strut_rk4_limit(-rate, 0.0);
   if (!(frequency > 0.0)) return h;
   h = fmin(h, strut_rk4_limit(0.0, frequency));
   for (int i = 0; i < RAYS && rate > 0.0; i++) {
-    double angle = quarter * (i + 1) / (RAYS + 1), x = cos(angle), y = sin(angle);
+    double x, y;
+    strut_sincos_turns(0.25 * (i + 1) / (RAYS + 1), &y, &x);
     double size = fmin(frequency, 0.5 * rate / x);
     h = fmin(h, BETWEEN * strut_rk4_limit(-size * x, size * y));
   }

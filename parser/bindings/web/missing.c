@@ -4,12 +4,20 @@
 
 #include "engine/integrate/batch/batch.h"
 #include "engine/output/draw/cairo_page.h"
+#include "engine/output/page/page.h"
 #include "engine/statics/algebra.h"
 #include "engine/study/search/optimisers.h"
 
 strut_status strut_cairo_load(const strut_cairo_library **library, strut_error *error) {
   *library = NULL;
   return strut_fail(error, STRUT_USAGE, "strut in a browser draws no figures; use the program strut");
+}
+
+char *strut_page_html(const strut_page *page, strut_page_frames *frames, strut_error *error) {
+  (void)page;
+  (void)frames;
+  strut_fail(error, STRUT_USAGE, "strut in a browser writes no pages; it has the data of a page");
+  return NULL;
 }
 
 /* Small systems do not come here: rigidity and modes solve them by dense matrices. */
