@@ -20,26 +20,16 @@ static const struct {
   double (*height)(strut_run_scene *run);
   strut_status (*draw)(strut_run_scene *run, strut_canvas *canvas);
   bool velocity; /* its heading tells the velocity */
-  unsigned channels;
 } views[] = {
     [STRUT_RUN_OVERVIEW] = {strut_run_overview_describe, strut_run_overview_height,
-                            strut_run_overview, true,
-                            STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT | STRUT_CHANNEL_ANGLE},
+                            strut_run_overview, true},
     [STRUT_RUN_PERIOD] = {strut_run_period_describe, strut_run_period_height, strut_run_period,
-                          true, 0},
+                          true},
     [STRUT_RUN_SNAPSHOTS] = {strut_run_snapshots_describe, strut_run_snapshots_height,
-                             strut_run_snapshots, false,
-                             STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT},
+                             strut_run_snapshots, false},
     [STRUT_RUN_CURVES] = {strut_run_curves_describe, strut_run_curves_height, strut_run_curves,
-                          true,
-                          STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT | STRUT_CHANNEL_ENERGY |
-                              STRUT_CHANNEL_ANGLE | STRUT_CHANNEL_MOMENT | STRUT_CHANNEL_AREA |
-                              STRUT_CHANNEL_PRESSURE},
+                          true},
 };
-
-unsigned strut_run_figure_channels(strut_run_view view) {
-  return STRUT_CHANNEL_POSITION | views[view].channels;
-}
 
 strut_status strut_run_figure_check(const strut_run_figure *figure, const strut_model *model,
                                     strut_error *error) {

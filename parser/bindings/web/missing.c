@@ -1,21 +1,79 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What strut does not have in a browser, refused by name: it stands for the files that use these libraries. */
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+
 #include <assert.h>
 
 #include "engine/integrate/batch/batch.h"
-#include "engine/output/draw/cairo_page.h"
+#include "engine/output/draw/structure.h"
+#include "engine/output/figures/run_figure.h"
+#include "engine/output/figures/statics_figures.h"
 #include "engine/output/page/page.h"
 #include "engine/statics/algebra.h"
 #include "engine/study/search/optimisers.h"
 
-strut_status strut_cairo_load(const strut_cairo_library **library, strut_error *error) {
-  *library = NULL;
-  return strut_fail(error, STRUT_USAGE, "strut in a browser draws no figures; use the program strut");
+/* ---- figures, for which Cairo and Pango are too large ---- */
+
+static strut_status no_figures(strut_error *error) {
+  return strut_fail(error, STRUT_USAGE,
+                    "strut in a browser draws no figures; use the program strut");
 }
 
+strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *model,
+                                     const strut_equilibria *equilibria, strut_error *error) {
+  return no_figures(error);
+}
+strut_status strut_form_figure(const strut_plot *plot, const strut_model *model,
+                               const double (*drawn)[2], strut_error *error) {
+  return no_figures(error);
+}
+strut_status strut_modes_figure(const strut_plot *plot, const strut_model *model,
+                                const strut_modes *modes, size_t panels, strut_error *error) {
+  return no_figures(error);
+}
+strut_status strut_waves_figure(const strut_plot *plot, const strut_model *model,
+                                const strut_waves *waves, strut_error *error) {
+  return no_figures(error);
+}
+strut_status strut_path_figure(const strut_plot *plot, const strut_model *model,
+                               const strut_path *path, strut_error *error) {
+  return no_figures(error);
+}
+strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *model,
+                                   const double *q, const char *at, const strut_rigidity *rigidity,
+                                   strut_error *error) {
+  return no_figures(error);
+}
+strut_status strut_run_figure_draw(const char *path, const strut_run_figure *figure,
+                                   const strut_model *model, const strut_trajectory *motion,
+                                   const strut_summary *summary, strut_error *error) {
+  return no_figures(error);
+}
+
+/* Of a scene's picture the first call fails, so that there is no canvas for the others. */
+strut_status strut_canvas_open(const char *path, double width, double height, const char *title,
+                               strut_canvas **canvas, strut_error *error) {
+  *canvas = NULL;
+  return no_figures(error);
+}
+strut_status strut_canvas_commit(strut_canvas *canvas, strut_error *error) {
+  return no_figures(error);
+}
+void strut_canvas_free(strut_canvas *canvas) {}
+strut_bounds strut_bounds_none(void) { return (strut_bounds){{0.0}, {0.0}}; }
+void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const double *q) {}
+strut_window strut_window_fit(strut_box box, strut_bounds bounds, double margin) {
+  return (strut_window){0};
+}
+void strut_draw_ground(strut_canvas *canvas, const strut_window *window, const strut_model *model) {
+}
+void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
+                          const strut_model *model, const double *q,
+                          const strut_structure_style *style) {}
+
+/* ---- pages, sparse algebra, optimisers ---- */
+
 char *strut_page_html(const strut_page *page, strut_page_frames *frames, strut_error *error) {
-  (void)page;
-  (void)frames;
   strut_fail(error, STRUT_USAGE, "strut in a browser writes no pages; it has the data of a page");
   return NULL;
 }
@@ -29,17 +87,13 @@ strut_status strut_sparse_algebra_load(const strut_sparse_algebra_library **libr
                     "ARPACK; use the program strut");
 }
 
-bool strut_search_optimise_by_nlopt(const strut_search_task *task, const strut_search_asker *asker) {
-  (void)task;
-  (void)asker;
+bool strut_search_optimise_by_nlopt(const strut_search_task *task,
+                                    const strut_search_asker *asker) {
   return false; /* no call of the library searches */
 }
 
 /* Runs side by side in wide registers: strut_batch_widest says that there are none. */
-static void no_batch(const strut_batch *b) {
-  (void)b;
-  assert(false);
-}
-void strut_batch_rk4_4(strut_batch *b, int64_t count) { (void)count, no_batch(b); }
-void strut_batch_rk4_8(strut_batch *b, int64_t count) { (void)count, no_batch(b); }
-void strut_batch_rk4_8_halves(strut_batch *b, int64_t count) { (void)count, no_batch(b); }
+static void no_batch(const strut_batch *b) { assert(false); }
+void strut_batch_rk4_4(strut_batch *b, int64_t count) { no_batch(b); }
+void strut_batch_rk4_8(strut_batch *b, int64_t count) { no_batch(b); }
+void strut_batch_rk4_8_halves(strut_batch *b, int64_t count) { no_batch(b); }
