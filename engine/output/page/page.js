@@ -69,6 +69,7 @@
   function draw() {
     waiting = false;
     if (!run) return;
+    if (!drawTimes.length) performance.mark("strut-first-picture");
     const begin = performance.now(), shape = currentShape();
     aim(shape);
     paint(page.prepareCanvas(element("canvas")), shape);

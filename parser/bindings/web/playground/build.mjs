@@ -113,9 +113,10 @@ async function build() {
   html = fill(html, "<!--strut:style-->", styles.map((t) => `<style>\n${t}</style>`).join("\n"));
   html = fill(html, "<body>", "<body class=\"playground\">\n" + read(join(here, "parts.html")));
   html = fill(html, "<!--strut:data-->", block("strut-data", JSON.stringify(first.data)
-    .replace(/[<>&]/g, (c) => "\\u00" + c.charCodeAt(0).toString(16))) + block("strut-assets", assets) +
-    block("strut-wasm", wasm));
-  html = fill(html, "<!--strut:scripts-->", scripts.map((t) => `<script>${t}</script>`).join("\n"));
+    .replace(/[<>&]/g, (c) => "\\u00" + c.charCodeAt(0).toString(16))));
+  const elements = scripts.map((t) => `<script>${t}</script>\n`), own = elements.pop();
+  html = fill(html, "<!--strut:scripts-->", elements.join("") + block("strut-assets", assets) +
+    block("strut-wasm", wasm) + own); /* the first picture is drawn before the rest is read */
   writeFileSync(out, html);
   console.log(basename(out) + ": " + Math.round(html.length / 1000) + " kB");
 }

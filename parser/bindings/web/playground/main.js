@@ -162,7 +162,7 @@ function sayDone(call, { failure, warnings: own, page: data }, warnings) {
   const velocity = (data.summary || []).find((row) => /^mean velocity/.test(row.label));
   const accuracy = (data.summary || []).find((row) => row.label === "accuracy");
   const number = velocity ? velocity.value.split(",")[0] + (accuracy ? " (" + accuracy.value.split(";")[0] + ")" : "") + "; " : "";
-  const text = [number + "computed in " + time + ".", ...warnings, ...own].join(" ");
+  const text = [(number ? number + "computed in " : "Computed in ") + time + ".", ...warnings, ...own].join(" ");
   if (failure) showFailure(failure);
   else say(text);
 }
@@ -377,7 +377,6 @@ async function firstPicture() {
   document.body.classList.toggle("waiting", /[#&]s=/.test(location.hash));
   await window.strut.ready;
   await new Promise((resolve) => { requestAnimationFrame(() => setTimeout(resolve, 0)); });
-  performance.mark("strut-first-picture");
 }
 
 async function start() {

@@ -11,6 +11,8 @@ function make(tag, properties = {}, ...children) {
   return element;
 }
 
+const valueText = (value, unit, digits) =>
+  (unit ? page.quantity(value, unit, digits) : String(Number(value.toPrecision(digits))).replace("-", "\u2212"));
 const block = (columns, values) => ({ columns, values });
 const flat = (data, nodes) => data.nodes.flatMap((node, i) => nodes[node.name] ||
   [data.start[2 * i], data.start[2 * i + 1]]);
@@ -59,14 +61,16 @@ function modeButton(mode, index, onPick) {
 
 /* ---- paths ---- */
 
+/* What varies along a path: a load factor, or the value of what was asked for. */
+const valueOf = (json, point) => (json.over && point.value !== undefined ? point.value : point.factor);
+
 /** The data of a page whose frames are the points of a path. */
 export function pathData(data, json) {
   const points = json.points, what = json.over || "factor", unit = json.unit || "";
-  const valueOf = (p) => (json.over && p.value !== undefined ? p.value : p.factor);
   const force = points.map((p) => data.members.map((m) => (p.forces || {})[m.name] || 0));
   return withMotion(data, motionOf(data, { times: points.map((_, i) => LASTS * i / Math.max(1, points.length - 1)),
     position: points.map((p) => flat(data, p.nodes)), force,
-    clock: points.map((p) => what + " " + page.quantity(valueOf(p), unit, 5) +
+    clock: points.map((p) => what + " " + valueText(valueOf(json, p), unit, 5) +
       (p.stable === null || p.stable === undefined ? "" : p.stable ? ", stable" : ", unstable")),
     note: "The points of a path of equilibria, one a frame." }));
 }
@@ -107,7 +111,7 @@ function piecesOf(points, at) {
 /* A chart of factor over displacement; its cursor is the frame shown. */
 function fillChart(svg, json, coordinate) {
   const width = svg.clientWidth || 600, height = 260, points = json.points;
-  const factors = points.map((p) => (json.over && p.value !== undefined ? p.value : p.factor));
+  const factors = points.map((p) => valueOf(json, p));
   const x = axisOf(coordinate.values, 58, width - 14), y = axisOf(factors, height - 34, 12);
   const at = (i) => [x.at(coordinate.values[i]), y.at(factors[i])];
   const label = (x_, y_, anchor, text) => draw("text", { x: x_, y: y_, "text-anchor": anchor }, text);
@@ -117,8 +121,8 @@ function fillChart(svg, json, coordinate) {
     draw("path", { class: "axis", d: `M58 ${y.at(0)}H${width - 14}M${x.at(0)} 12V${height - 34}` }),
     ...piecesOf(points, at).map((piece) =>
       draw("polyline", { class: piece.kind, points: piece.points.map((p) => p.join()).join(" ") })),
-    label(54, height - 34, "end", page.quantity(y.low, json.unit || "", 3)),
-    label(54, 20, "end", page.quantity(y.high, json.unit || "", 3)),
+    label(54, height - 34, "end", valueText(y.low, json.unit, 3)),
+    label(54, 20, "end", valueText(y.high, json.unit, 3)),
     label(58, height - 18, "start", page.quantity(x.low, "m", 3)),
     label(width - 14, height - 18, "end", page.quantity(x.high, "m", 3)),
     label(width / 2, height - 4, "middle",
@@ -160,19 +164,19 @@ function createPathChart(data, json) {
   svg.addEventListener("pointerdown", seek);
   svg.addEventListener("pointermove", seek);
   new ResizeObserver(redraw).observe(svg);
-  return { parts: [make("label", {}, "Displacement of ", select), svg], show: (frame) => chart && chart.show(frame) };
+  return { label: make("label", {}, "Displacement of ", select), svg, show: (frame) => chart && chart.show(frame) };
 }
 
 /* ---- the section ---- */
 
 /**
- * The section #found behind #live. onShow(data) shows data on the page, onBack() what was there before; onOver(what)
+ * The section #found below the stage, with the cards of equilibria behind it. onShow(data) shows data on the page, onBack() what was there before; onOver(what)
  * follows another path: "" all loads, else a parameter or an actuator.
  */
 export function createFound({ onShow, onBack, onOver }) {
   const host = make("section", { id: "found", hidden: true });
   host.setAttribute("aria-label", "Result");
-  document.getElementById("live").after(host, document.getElementById("cards-section"));
+  document.getElementById("live").before(host, document.getElementById("cards-section"));
   let onFrame = null;
   page.onFrame = (frame) => { if (onFrame) onFrame(frame); };
 
@@ -224,8 +228,8 @@ export function createFound({ onShow, onBack, onOver }) {
       if (!json) return open("Path", choice);
       const chart = createPathChart(data, json);
       const events = json.events.map((e) => make("p", { className: "hint",
-        textContent: e.kind + " at " + page.quantity(e.factor, "", 5) + ": " + (e.detail || "") }));
-      open("Path of equilibria", choice, ...chart.parts, ...events, tableOf(table));
+        textContent: e.kind + " at " + valueText(valueOf(json, e), json.unit, 5) + ": " + (e.detail || "") }));
+      open("Path of equilibria", make("div", { className: "bar" }, choice, chart.label), chart.svg, ...events, tableOf(table));
       onFrame = chart.show;
       await onShow(pathData(data, json));
       chart.show(window.strut.frame);
