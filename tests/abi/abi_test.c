@@ -492,6 +492,16 @@ TEST(statics_have_arrays_and_pictures) {
   strutlib_close(scene);
 }
 
+TEST(the_language_is_a_schema) {
+  strutlib_error *error;
+  char *scene = strutlib_schema(0, &error), *study = strutlib_schema(1, NULL);
+  assert_null(error);
+  assert_non_null(strstr(scene, "\"title\": \"scene\""));
+  assert_non_null(strstr(study, "\"title\": \"study\""));
+  strutlib_release(scene);
+  strutlib_release(study);
+}
+
 TEST(scenes_and_runs_are_drawn) {
   strutlib_error *error;
   strutlib_scene *scene = open_triangle();

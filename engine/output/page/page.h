@@ -34,13 +34,14 @@
  *   study: null
  *
  * Modes and paths are no part of it: JSON of their results has all their numbers. Data of such a
- * result are those of its structure, on which a page may draw them.
+ * result are those of its structure, on which a page may draw them: as a motion with `made`:
+ * {note: text, clock: [text of each frame]}, which has no charts and a camera that rests.
  *
  * A block is {columns, quantum, bytes}: integers n of `frames` rows, (frames, columns); a value is
  * n * quantum. Column after column, the first number as it is, the second as its difference to the
  * first, from then on the second difference; each as zigzag (2 n, or -2 n - 1 where n < 0) in
  * little-endian groups of 7 bits, all of it deflated (raw, RFC 1951) and in base64. Numbers stay
- * below 2^53.
+ * below 2^53. Scripts may give {values: [number, ...]} instead.
  */
 #ifndef STRUT_ENGINE_OUTPUT_PAGE_PAGE_H
 #define STRUT_ENGINE_OUTPUT_PAGE_PAGE_H

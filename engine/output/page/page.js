@@ -5,7 +5,8 @@
  * strutPage.show(data, beside) shows the data of page.h, and beside them those of a second run or
  * none; any number of times. What the user chose stays. It returns a promise that is kept when they
  * are shown, and broken if they are damaged. strutPage.onPick(index), if set, is called when a card
- * is chosen. The element #live is for controls of later scripts.
+ * is chosen, strutPage.onFrame(frame) when another frame is shown; strutPage.seek(frame) shows one.
+ * The element #live is for controls of later scripts.
  */
 "use strict";
 (function (page) {
@@ -45,7 +46,7 @@
     elsewhere = false;
     let bounds = page.boundsOf(shape.position);
     const middle = 0.5 * (bounds[0] + bounds[2]);
-    const follows = picked < 0 && run.motion && (mode !== "whole" || run.still);
+    const follows = picked < 0 && run.motion && !run.made && (mode !== "whole" || run.still);
     if (picked < 0 && run.motion) bounds = follows ? run.extent : run.whole;
     if (ghost && picked < 0 && !follows) bounds = page.union(bounds, ghostBounds());
     camera = page.fit(bounds, width, height, MARGIN, run.data.size);
@@ -68,6 +69,7 @@
   function draw() {
     waiting = false;
     if (!run) return;
+    if (!drawTimes.length) performance.mark("strut-first-picture");
     const begin = performance.now(), shape = currentShape();
     aim(shape);
     paint(page.prepareCanvas(element("canvas")), shape);
@@ -81,7 +83,12 @@
   }
 
   function showTime(frame) {
-    const clock = element("clock"), time = document.createElement("b");
+    const clock = element("clock");
+    if (run.made) {
+      clock.textContent = run.made.clock[frame];
+      return;
+    }
+    const time = document.createElement("b");
     const count = document.createElement("span"), last = run.motion.frames - 1;
     time.textContent = page.timeText(run.time[frame], decimals, run.time[last]) + " s";
     count.textContent = "frame " + (frame + 1) + " of " + (last + 1);
@@ -93,6 +100,7 @@
     showTime(frame);
     if (!run.still) charts.show(frame);
     redraw();
+    if (page.onFrame) page.onFrame(frame);
   }
 
   /* Enables the choices that have an effect on the shape shown. */
@@ -215,7 +223,7 @@
     decimals = run.motion ? page.decimalsOf(run.time) : 0;
     page.fillPanels(run, ghost);
     offerChoices();
-    charts.load(run, ghost);
+    charts.load(run.made ? null : run, ghost);
     cards.load(run);
     player.load(run.time);
     showPicked(pickedNow);
@@ -236,6 +244,11 @@
       ? "This page is damaged: " + error.message
       : "This browser is too old for this page: it cannot unpack data (DecompressionStream).";
   }
+
+  page.seek = (frame) => {
+    player.pause();
+    player.seek(frame);
+  };
 
   let ready = Promise.resolve();
   page.show = function (data, beside) {

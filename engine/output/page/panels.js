@@ -47,6 +47,7 @@
     const motion = data.motion;
     const made = "Written by strut " + data.strut + "; nothing on it comes from a network.";
     if (!motion) return "A model at rest: no motion is on this page. " + made;
+    if (motion.made) return motion.made.note + " " + made;
     const kept = motion.frames === motion.recorded ? "All " + motion.frames + " recorded frames"
       : motion.frames + " of " + motion.recorded + " recorded frames (every " + motion.every +
         ordinal(motion.every) + ")";

@@ -11,10 +11,11 @@ window.strutPage = {};
     return new Uint8Array(await new Response(stream).arrayBuffer());
   }
 
-  /* One block as a Float64Array, (frames, columns). Products and sums keep integers exact up to 2^53,
+  /* One block as a Float64Array, (frames, columns); of plain numbers as they are. Products and sums keep integers exact up to 2^53,
      which shifts would not. */
   page.decodeBlock = async function (block, frames) {
     if (!block) return null;
+    if (block.values) return Float64Array.from(block.values);
     const bytes = await inflate(block.bytes);
     const columns = block.columns, values = new Float64Array(frames * columns);
     let at = 0;
@@ -44,7 +45,7 @@ window.strutPage = {};
     if (!motion) return null;
     const decoded = { frames: motion.frames };
     for (const [name, block] of Object.entries(motion))
-      if (block && block.bytes) decoded[name] = await page.decodeBlock(block, motion.frames);
+      if (block && (block.bytes || block.values)) decoded[name] = await page.decodeBlock(block, motion.frames);
     return decoded;
   };
 
@@ -141,6 +142,7 @@ window.strutPage = {};
       const tag = event.target.tagName, input = tag === "INPUT" && event.target !== scrub;
       const box = input && event.target.type === "checkbox";
       if (event.ctrlKey || event.metaKey || event.altKey || !time) return;
+      if (event.defaultPrevented || event.target.isContentEditable) return;
       if (tag === "SELECT" || tag === "PRE" || tag === "TEXTAREA" || (input && !box)) return;
       const far = event.shiftKey ? 10 : 1;
       const own = tag === "BUTTON" || tag === "SUMMARY" || box;

@@ -97,6 +97,7 @@
       values ? values.subarray(frame * size, (frame + 1) * size) : null;
     const run = { data, motion, still, structure: page.structureOf(data),
       hasTrails: !still && nodes <= MOST_TRAILS, limits: { force: 0, contact: 0 },
+      made: data.motion && data.motion.made || null,
       whole: page.boundsOf(data.start), extent: null, offset: 0,
       time: motion ? motion.time : null, track: motion ? trackedX(data, motion) : null };
     run.shapeAt = (frame) => (motion

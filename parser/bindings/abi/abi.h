@@ -95,6 +95,10 @@ typedef struct strutlib_control strutlib_control;
 STRUTLIB_API int strutlib_abi_version(void);
 /** Version of the program that the library belongs to, such as "0.1.0". */
 STRUTLIB_API const char *strutlib_version(void);
+/**
+ * The language as a JSON Schema, as `strut keys --schema` prints it; with `study` other than 0 that of studies.
+ */
+STRUTLIB_API char *strutlib_schema(int study, strutlib_error **error);
 /** Releases a text that belongs to the caller. NULL is allowed. */
 STRUTLIB_API void strutlib_release(char *text);
 /** A status as a word: "ok", "usage", "bad_scene", "diverged", ... Never NULL. */

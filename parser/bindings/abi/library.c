@@ -13,6 +13,7 @@
 #include "parser/command/analyses.h"
 #include "parser/command/run_settings.h"
 #include "parser/read/read_scene.h"
+#include "parser/write/writer.h"
 
 /* No call of the library reads or writes trajectory.h5. With this definition neither HDF5 nor the libraries for
    network files that it needs are linked. */
@@ -331,6 +332,11 @@ void strutlib_release(char *text) { strut_release(text); }
 char *abi_give(char *text, strutlib_error **error) {
   if (!text) abi_no_memory(error);
   return text;
+}
+
+char *strutlib_schema(int study, strutlib_error **error) {
+  if (error) *error = NULL;
+  return abi_give(strut_schema_write(study != 0), error);
 }
 
 /* ---- codes ---- */

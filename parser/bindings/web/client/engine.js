@@ -41,9 +41,9 @@ export class Engine {
 
   /**
    * Asks for an answer: {scene: {text, name, files, settings}, call, options, limit [s], want}. `call`: one of run,
-   * equilibria, modes, rigidity, form, path, sweep (with axes, points), or none for the scene alone. `want`: names in
-   * worker.js, such as ["page", "json", "table"]. A request under way is stopped. The promise is broken with the
-   * failure {status, message, report, messages}, or with Stopped.
+   * equilibria, modes, rigidity, form, path, sweep (with axes, points), or none for the scene alone; "schema", without
+   * a scene, for the language. `want`: names in worker.js, such as ["page", "json", "table"]. A request under way is
+   * stopped. The promise is broken with the failure {status, message, report, messages}, or with Stopped.
    */
   async ask(request, progress) {
     this.stop("a newer request");
@@ -68,14 +68,21 @@ export class Engine {
     }
     clearTimeout(asked.timer);
     this.#asked = null;
+    if (data.failure && data.failure.status < 0) this.#drop(); /* the module itself failed: memory, or a defect */
     if (data.failure) asked.reject(data.failure);
     else asked.resolve(data.answer);
   }
 
+  /* Ends the Worker; the next request starts another. */
+  #drop() {
+    if (this.#worker) this.#worker.terminate();
+    this.#worker = null;
+  }
+
   #end(error) {
     const asked = this.#asked;
-    if (this.#worker) this.#worker.terminate();
-    this.#worker = this.#asked = null;
+    this.#drop();
+    this.#asked = null;
     if (!asked) return;
     clearTimeout(asked.timer);
     asked.reject(error);

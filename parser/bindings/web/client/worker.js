@@ -5,7 +5,7 @@
  * Received: {wasm: WebAssembly.Module} first; then {id, scene, call, ...} as Engine.ask sends it. Sent: {ready: true},
  * {id, progress}, {id, answer} or {id, failure}.
  */
-import { StrutError, load, open } from "../package/index.js";
+import { StrutError, load, open, schema } from "../package/index.js";
 
 /* The scene that was opened last: a slider changes settings, not the text. */
 let last = { key: null, scene: null };
@@ -50,6 +50,7 @@ function failureOf(error) {
 }
 
 async function answer({ id, scene: asked, call, options, axes, points, limit, want }) {
+  if (call === "schema") return schema();
   const scene = await sceneOf(asked);
   const control = { limit, progress: (fraction) => { self.postMessage({ id, progress: fraction }); } };
   if (!call) return pick(OF_SCENE, scene, want);

@@ -54,6 +54,11 @@ export const version = () => textAt(module()._strutlib_version());
 export const statusName = (status) => textAt(module()._strutlib_status_name(status));
 export const statusText = (status) => textAt(module()._strutlib_status_text(status));
 
+/** The language as a JSON Schema, an object; with `study` that of studies. */
+export function schema({ study = false } = {}) {
+  return JSON.parse(taken(must((_, error) => module()._strutlib_schema(study ? 1 : 0, error))));
+}
+
 /** {name: help} of the options that a call has. */
 export function optionsOf(call) {
   return withMemory((place) => {
