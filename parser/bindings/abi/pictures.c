@@ -186,9 +186,8 @@ typedef struct scene_page {
   page_writer *writer;
 } scene_page;
 
-static char *write_scene_page(const scene_page *wanted, const strut_model *model,
-                              strutlib_error **error) {
-  const strut_setup *setup = &wanted->scene->setup;
+static char *write_scene_page(const scene_page *wanted, const strut_setup *setup,
+                              const strut_model *model, strutlib_error **error) {
   strut_equilibria all = {0};
   strut_error remark = {0};
   const strut_equilibria_options options = {.interrupt = abi_interrupt_of(wanted->control)};
@@ -210,16 +209,21 @@ static char *write_scene_page(const scene_page *wanted, const strut_model *model
 
 static char *make_scene_page(const scene_page *wanted, strutlib_error **error) {
   strut_model *model = NULL;
+  strut_setup setup;
   strut_error what = {0};
   char *text = NULL;
   if (abi_lacks(error, wanted->scene, "scene")) return NULL;
   abi_enter(error);
-  strut_status status = strut_model_compile(&wanted->scene->setup.scene, &model, &what);
-  if (status == STRUT_OK)
-    text = write_scene_page(wanted, model, error);
-  else
-    abi_fail_with(error, status, &what);
-  strut_model_free(model);
+  if (abi_setup(wanted->scene, STRUT_FOR_ANY_STATICS, &setup, error) == STRUT_OK) {
+    strut_status status = strut_resolve_start_equilibrium(&setup, &what);
+    if (status == STRUT_OK) status = strut_model_compile(&setup.scene, &model, &what);
+    if (status == STRUT_OK)
+      text = write_scene_page(wanted, &setup, model, error);
+    else
+      abi_fail_with(error, status, &what);
+    strut_model_free(model);
+    strut_setup_free(&setup);
+  }
   abi_leave();
   return text;
 }

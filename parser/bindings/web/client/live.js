@@ -136,6 +136,7 @@ class LiveControls {
     this.busy = false;
     this.times = []; /* [ms] from a change to the new picture */
     this.build();
+    this.warm();
   }
 
   build() {
@@ -185,10 +186,23 @@ class LiveControls {
     this.wanted = { settings: this.settings(), since: performance.now() };
     this.resetButton.disabled = false;
     if (!this.busy) this.computeAll();
-    else this.patience ||= setTimeout(() => {
+    else if (!this.warming) this.patience ||= setTimeout(() => {
       this.patience = 0;
       if (this.wanted) this.engine.stop("newer settings");
     }, PATIENCE);
+  }
+
+  /* Starts the Worker and reads the scene, so that the first answer is as fast as the others. */
+  async warm() {
+    const { scene, name } = this.live;
+    this.busy = this.warming = true;
+    try {
+      await this.engine.ask({ scene: { text: scene, name }, want: [] });
+    } catch (error) {
+      this.complain(error);
+    }
+    this.warming = this.busy = false;
+    if (this.wanted) this.computeAll();
   }
 
   async computeAll() {
