@@ -119,6 +119,9 @@ set(STRUT_LIVE_SCRIPT "" CACHE FILEPATH "strut-live.js of the preset web, for st
 if(STRUT_LIVE_SCRIPT)
   install(FILES "${STRUT_LIVE_SCRIPT}" DESTINATION "${strut_data_dir}" RENAME strut-live.js COMPONENT program)
   file(CREATE_LINK "${STRUT_LIVE_SCRIPT}" "${PROJECT_BINARY_DIR}/strut-live.js" SYMBOLIC)
+  if(TARGET strut_python)
+    file(CREATE_LINK "${STRUT_LIVE_SCRIPT}" "${PROJECT_BINARY_DIR}/python/strut/strut-live.js" SYMBOLIC)
+  endif()
 endif()
 
 # strut_install_link(FOLDER NAME TARGET): FOLDER/NAME leads to TARGET, however the tree is moved.

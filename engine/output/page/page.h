@@ -36,7 +36,7 @@
  *     scene: text of the scene with its parameters, without other files; name: of its file
  *     call: run, equilibria, or start for the drawn shape
  *     parameters: [{name, text, value: number [SI] or null where it is a text}]
- *     configurations: [name, ...] }
+ *     options: {name: text} of the run; configurations: [name, ...] }
  *
  * Modes and paths are no part of it: JSON of their results has all their numbers. Data of such a
  * result are those of its structure, on which a page may draw them.
@@ -64,6 +64,8 @@ typedef struct strut_page_live {
   const char *script; /* strut-live.js: the engine and the controls */
   const char *scene;  /* see `live` above */
   const char *name, *call;
+  size_t option_count; /* of a run, as its command or the library takes them */
+  const char *const *option_names, *const *option_values;
 } strut_page_live;
 
 /** The content of a page. Nothing is owned. */

@@ -320,6 +320,9 @@ static void add_live(strut_json *json, const strut_scene *scene, const strut_pag
   strut_json_text(json, to, "scene", live->scene);
   strut_json_text(json, to, "name", live->name);
   strut_json_text(json, to, "call", live->call);
+  struct cJSON *options = strut_json_object(json, to, "options");
+  for (size_t i = 0; i < live->option_count; i++)
+    strut_json_text(json, options, live->option_names[i], live->option_values[i]);
   struct cJSON *parameters = strut_json_array(json, to, "parameters");
   for (size_t i = 0; i < scene->parameter_count; i++) {
     struct cJSON *parameter = strut_json_object(json, parameters, NULL);

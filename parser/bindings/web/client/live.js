@@ -226,9 +226,9 @@ class LiveControls {
 
   /* The page's data for these settings. */
   async ask(settings) {
-    const { scene, name, call } = this.live;
+    const { scene, name, call, options } = this.live;
     const request = { scene: { text: scene, name, settings }, want: ["page"] };
-    if (call === "run") Object.assign(request, { call, want: ["page", "json"] });
+    if (call === "run") Object.assign(request, { call, options, want: ["page", "json"] });
     else request.options = { equilibria: call === "equilibria" };
     const answer = await this.engine.ask(request, (fraction) => { this.progress.value = fraction; });
     if (answer.failure) throw answer.failure;
