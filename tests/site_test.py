@@ -3,12 +3,14 @@
 of every page leads somewhere, every page can be reached and is in the sidebar, nothing is loaded from elsewhere,
 no page shows Markdown, and the cheat sheet is one page.
 
-    python3 tests/site_test.py ROOT SITE
+    python3 tests/site_test.py ROOT SITE PROGRAM
 
-builds ROOT/docs into the folder SITE. Exits with 77 where Sphinx or a part of it is missing.
+builds ROOT/docs into the folder SITE, with an empty page in place of the playground and PROGRAM, strut. Exits with 77 where Sphinx or a part of it is missing.
 """
+import base64
 import html.parser
 import importlib.util
+import json
 import pathlib
 import re
 import shutil
@@ -16,9 +18,11 @@ import subprocess
 import sys
 import tempfile
 import urllib.parse
+import zlib
 
 root = pathlib.Path(sys.argv[1]).resolve()
 site = pathlib.Path(sys.argv[2]).resolve()
+program = pathlib.Path(sys.argv[3]).resolve()
 failures = 0
 
 VOID = {"img", "br", "hr", "input", "link", "meta", "source", "col", "wbr"}
@@ -92,7 +96,8 @@ def is_web(link):
 def faults(folder):
     """What is wrong with the pages of a folder."""
     folder = folder.resolve()
-    pages = {path: Page(path.read_text(encoding="utf-8")) for path in sorted(folder.rglob("*.html"))}
+    pages = {path: Page(path.read_text(encoding="utf-8")) for path in sorted(folder.rglob("*.html"))
+             if path.name != "playground.html"}
     leads = {}
     for path, page in pages.items():
         name = path.relative_to(folder)
@@ -140,11 +145,11 @@ def faults(folder):
         yield f"{path.relative_to(folder)}: no link leads here"
 
 
-def build(tree, out):
+def build(tree, out, *settings):
     """Builds the site of a tree; returns whether that worked, and what was said."""
     with tempfile.TemporaryDirectory() as doctrees:
         done = subprocess.run([sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", "-c",
-                               tree / "docs" / "site", "-d", doctrees, tree / "docs", out],
+                               tree / "docs" / "site", "-d", doctrees, *settings, tree / "docs", out],
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     return done.returncode == 0, done.stdout
 
@@ -232,6 +237,31 @@ def check_cheat_sheet():
                 fail(f"the cheat sheet lacks {words!r}")
 
 
+def check_playground():
+    """Complete scenes have a link that holds them; what is no scene, or needs other files, has none."""
+    links = {}
+    for path in site.rglob("*.html"):
+        for link in re.findall(r'class="try" href="([^"]*)"', path.read_text(encoding="utf-8")):
+            file, packed = target(path, link)
+            if file != site / "playground.html" or not packed.startswith("s="):
+                fail(f"{path.name}: the link {link} does not lead to the playground")
+                continue
+            data = base64.urlsafe_b64decode(packed[2:] + "=" * (-len(packed[2:]) % 4))
+            links.setdefault(path.stem, []).append(json.loads(zlib.decompress(data, -15)))
+    names = {page: [scene["name"] for scene in found] for page, found in links.items()}
+    if names.get("tutorial") != ["falling.yaml", "shape.yaml", "robot.yaml"]:
+        fail(f"scenes to try in the tutorial: {names.get('tutorial')}")
+    for page in ("language", "parts", "cheat-sheet"):
+        if page not in names:
+            fail(f"no scene to try in {page}")
+    if "worm.yaml" in names.get("parts", []):
+        fail("a scene that needs another file can be tried")
+    for scene in (scene for found in links.values() for scene in found):
+        done = subprocess.run([program, "check", "-q", "-"], input=scene["text"], text=True, check=False)
+        if done.returncode or scene["settings"] != {}:
+            fail(f"{scene['name']} cannot be tried")
+
+
 missing = [name for name in ("sphinx", "myst_parser", "furo", "weasyprint") if not importlib.util.find_spec(name)]
 if missing:
     print("skipped: there is no", ", ".join(missing), "(Debian: python3-myst-parser furo weasyprint)")
@@ -239,7 +269,10 @@ if missing:
 check_self()
 if site.exists():
     shutil.rmtree(site)
-worked, said = build(root, site)
+with tempfile.TemporaryDirectory() as name:
+    page = pathlib.Path(name) / "playground.html"
+    page.write_text("<!DOCTYPE html><title>playground</title>")
+    worked, said = build(root, site, "-D", f"strut_playground={page}", "-D", f"strut_program={program}")
 if not worked:
     fail(f"the site does not build:\n{said}")
 else:
@@ -247,5 +280,6 @@ else:
         fail(fault)
     check_pages()
     check_cheat_sheet()
+    check_playground()
     print(len(list(site.rglob("*.html"))), "pages")
 sys.exit(failures > 0)

@@ -18,7 +18,7 @@ copyright = "the strut developers, GPL version 3 or later"
 version = re.search(r"project\(strut VERSION ([0-9.]+)", (here.parents[1] / "CMakeLists.txt").read_text())[1]
 
 extensions = ["myst_parser", "strut_navigation", "strut_sources", "strut_layout", "strut_paper", "strut_theme",
-              "strut_cheat_sheet"]
+              "strut_cheat_sheet", "strut_try"]
 exclude_patterns = ["site"]
 # Pages are plain Markdown, as GitHub shows it: nothing of MyST's own syntax, no quotes or dashes replaced.
 myst_heading_anchors = 6

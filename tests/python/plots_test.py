@@ -2,8 +2,13 @@
 """plot() draws the results' numbers by matplotlib, where it is installed; notebooks show tables and figures."""
 
 import html.parser
+import json
+import os
+import pathlib
 import pickle
+import re
 import sys
+import tempfile
 import unittest
 import unittest.mock
 
@@ -25,6 +30,8 @@ CRAWLER = strut.load(MODELS / "crawler/crawler.yaml")
 FRAME = strut.load(MODELS / "gallery/x-frame.yaml")
 TRUSS = strut.load(MODELS / "gallery/von-mises.yaml", load=1)
 NAME = "</script><b>&\"'"
+BAR = {"strut": 1, "nodes": {"a": {"position": [0, 0], "fixed": "both"}, "b": {"position": [1, 0], "fixed": "y", "mass": 1}},
+       "members": {"ab": {"kind": "bar", "nodes": ["a", "b"], "stiffness": 1e4}}}
 
 
 class Plots(unittest.TestCase):
@@ -148,6 +155,32 @@ class Notebooks(unittest.TestCase):
                 self.assertIn("<table>", again._repr_html_())
         self.assertIn("2 more", _views.things([{"a": 1.0}] * 14, 14))
         self.assertNotIn("--", strut.load(MODELS / "basics/x-frame.yaml").run()._repr_html_().split("</iframe>")[1])
+
+    def test_live_pages_hold_scene_options_and_script(self):
+        scene = strut.load(MODELS / "crawler/crawler.yaml").with_(friction=0.2)
+        run = scene.run(accuracy="0.5 %", channels=["position"])
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.dict(os.environ):
+            os.environ["STRUT_LIVE_SCRIPT"] = f"{folder}/live.js"
+            with self.assertRaises(FileNotFoundError):
+                run.html(live=True)
+            pathlib.Path(folder, "live.js").write_text("window.strutLive = 1;\n")
+            page = run.html(live=True)
+            shape = scene.html(live=True)
+            shown = run.view(live=True)._repr_html_()
+            with self.assertRaisesRegex(ValueError, "needs a scene with parameters"):
+                strut.Scene.from_dict(BAR).html(live=True)
+        live = json.loads(re.search(r'<script type="application/json" id="strut-data">(.*?)</script>', page, re.S)[1])["live"]
+        self.assertEqual(live["call"], "run")
+        self.assertEqual(live["options"]["accuracy"], "0.5 %")
+        self.assertIn("friction", [parameter["name"] for parameter in live["parameters"]])
+        again = strut.loads(live["scene"]).run(**live["options"])
+        self.assertEqual(again.velocity, run.velocity)
+        self.assertIn("window.strutLive = 1;", page)
+        self.assertIn("'wasm-unsafe-eval'; worker-src blob:", page)
+        self.assertIn('"call":"start"', shape)
+        self.assertTrue(shown.startswith("<iframe srcdoc="))
+        self.assertNotIn("wasm-unsafe-eval", run.html())
+        self.assertNotIn("wasm-unsafe-eval", run.view().html)
 
     def test_names_cannot_break_the_page(self):
         described = strut.load(MODELS / "basics/x-frame.yaml", load=1).to_dict()

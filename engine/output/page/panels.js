@@ -62,7 +62,7 @@
 
   function besideText(ghost) {
     const { data } = ghost.run, notes = [];
-    if (ghost.delay) notes.push("the recordings do not overlap in time and begin together here");
+    if (ghost.delay) notes.push("the recordings hardly overlap in time and begin together here");
     if (ghost.shift)
       notes.push("moved by " + page.quantity(ghost.shift, "m", 4) + " to the same start");
     return "Pale, with dashed curves: " + (data.label || data.name || "a second run") +

@@ -3,20 +3,21 @@
 "use strict";
 window.strutPage = {};
 (function (page) {
-  async function inflate(base64) {
+  /* The bytes of a text in base64, deflated (raw). */
+  page.inflate = async function (base64) {
     const text = atob(base64);
     const bytes = new Uint8Array(text.length);
     for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
     return new Uint8Array(await new Response(stream).arrayBuffer());
-  }
+  };
 
-  /* One block as a Float64Array, (frames, columns); of plain numbers as they are. Products and sums keep integers exact up to 2^53,
-     which shifts would not. */
+  /* One block as a Float64Array, (frames, columns); of plain numbers as they are. Products and sums
+     keep integers exact up to 2^53, which shifts would not. */
   page.decodeBlock = async function (block, frames) {
     if (!block) return null;
     if (block.values) return Float64Array.from(block.values);
-    const bytes = await inflate(block.bytes);
+    const bytes = await page.inflate(block.bytes);
     const columns = block.columns, values = new Float64Array(frames * columns);
     let at = 0;
     for (let c = 0; c < columns; c++) {

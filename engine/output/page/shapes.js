@@ -121,8 +121,9 @@
   page.createGhost = function (run, other) {
     const ghost = { run: other, time: other.time, delay: 0, shift: 0 };
     if (!run.motion || !other.motion) return ghost;
-    const end = (time) => time[time.length - 1];
-    if (other.time[0] > end(run.time) || run.time[0] > end(other.time))
+    const end = (time) => time[time.length - 1], length = (time) => end(time) - time[0];
+    const common = Math.min(end(run.time), end(other.time)) - Math.max(run.time[0], other.time[0]);
+    if (common < 0 || common < 0.5 * Math.min(length(run.time), length(other.time)))
       ghost.delay = run.time[0] - other.time[0];
     if (ghost.delay) ghost.time = other.time.map((t) => t + ghost.delay);
     const begin = Math.max(run.time[0], ghost.time[0]);

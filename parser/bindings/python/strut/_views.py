@@ -11,6 +11,16 @@ from ._errors import in_python
 _MOST_ROWS = 12  # of a list
 
 
+class View:
+    """What a notebook shows of a page; `html` is the page's text, to be written to a file."""
+
+    def __init__(self, html: str) -> None:
+        self.html = html
+
+    def _repr_html_(self) -> str:
+        return frame(self.html)
+
+
 def frame(page: str) -> str:
     """A page within a notebook's."""
     return (

@@ -23,7 +23,7 @@ async function sceneOf({ text, name, files, settings }) {
 
 /* What can be asked of a scene and of a result, by name. */
 const OF_SCENE = {
-  page: (scene) => JSON.parse(scene.pageData()),
+  page: (scene, options) => JSON.parse(scene.pageData(options)),
   warnings: (scene) => scene.warnings,
   names: (scene) => Object.fromEntries(scene.names("kinds").map((kind) => [kind, scene.names(kind)])),
   resolved: (scene) => scene.json(),
@@ -38,8 +38,8 @@ const OF_RESULT = {
   yaml: (result) => result.yaml()
 };
 
-function pick(from, thing, wanted) {
-  return Object.fromEntries((wanted || []).map((name) => [name, from[name](thing)]));
+function pick(from, thing, wanted, options) {
+  return Object.fromEntries((wanted || []).map((name) => [name, from[name](thing, options)]));
 }
 
 /* A failure as plain data, which a Worker can send. */
@@ -53,7 +53,7 @@ async function answer({ id, scene: asked, call, options, axes, points, limit, wa
   if (call === "schema") return schema();
   const scene = await sceneOf(asked);
   const control = { limit, progress: (fraction) => { self.postMessage({ id, progress: fraction }); } };
-  if (!call) return pick(OF_SCENE, scene, want);
+  if (!call) return pick(OF_SCENE, scene, want, options);
   const result = call === "sweep" ? scene.sweep(axes, points, options, control) : scene[call](options, control);
   try {
     return {
