@@ -171,8 +171,8 @@ function createPathChart(data, json) {
 /* ---- the section ---- */
 
 /**
- * The section #found below the stage, with the cards of equilibria behind it. onShow(data) shows data on the page, onBack() what was there before; onOver(what)
- * follows another path: "" all loads, else a parameter or an actuator.
+ * The section #found below the stage, with the cards of equilibria behind it. onShow(data) shows data on the page,
+ * onBack() what was there before; onOver(what) follows another path: "" all loads, else a parameter or an actuator.
  */
 export function createFound({ onShow, onBack, onOver }) {
   const host = make("section", { id: "found", hidden: true });
