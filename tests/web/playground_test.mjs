@@ -98,9 +98,15 @@ async function photograph(page, name) {
 
 /* ---- what a person does ---- */
 
-test("starts with the crawler, moving", async ({ page }) => {
-  const times = await page.evaluate(() => performance.getEntriesByName("strut-first-picture").map((m) => m.startTime));
-  console.log("  first picture after " + Math.round(times[0]) + " ms");
+test("starts with the crawler, moving", async ({ page, browser }) => {
+  const times = [];
+  for (let i = 0; i < 5; i++) {
+    const other = await openPage(browser, {});
+    times.push(await other.page.evaluate(() => performance.getEntriesByName("strut-first-picture")[0].startTime));
+    await other.context.close();
+  }
+  times.sort((a, b) => a - b);
+  console.log("  first picture after " + times.map(Math.round).join(", ") + " ms");
   assert.match(await velocity(page), /^10\.03 mm\/s/);
   assert.ok(await page.evaluate(() => window.strut.frames) > 100);
   assert.match(await textOf(page, "#status"), /right within .* %/);

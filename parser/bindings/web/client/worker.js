@@ -44,7 +44,8 @@ function pick(from, thing, wanted, options) {
 
 /* A failure as plain data, which a Worker can send. */
 function failureOf(error) {
-  if (!(error instanceof StrutError)) return { status: -1, message: String(error), report: String(error), messages: [] };
+  if (!(error instanceof StrutError))
+    return { status: -1, message: String(error), report: String(error), messages: [] };
   const { status, message, report, messages } = error;
   return { status, message, report, messages };
 }

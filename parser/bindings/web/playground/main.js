@@ -108,7 +108,9 @@ const sceneNow = () => ({ text: editor.text, name: state.name, files: state.file
 async function perform(job) {
   setBusy(true);
   markOld(state.shown ? "computing" : "");
-  const checked = await engine.ask({ scene: sceneNow(), limit: LIMIT, want: ["page", "names", "resolved", "warnings"] });
+  const reading = setTimeout(() => say("Reading the scene\u2026"), PATIENCE);
+  const want = ["page", "names", "resolved", "warnings"];
+  const checked = await engine.ask({ scene: sceneNow(), limit: LIMIT, want }).finally(() => clearTimeout(reading));
   clearFailure();
   takeScene(checked);
   if (!state.schema) {
@@ -116,11 +118,7 @@ async function perform(job) {
     useSchema(await engine.ask({ call: "schema" }));
   }
   if (!job.call) job.call = wantedCall(job);
-  if (!job.call) {
-    await show(state.fresh || !state.shown ? checked.page : state.shown);
-    say(checked.warnings.join(" ") || "The scene is valid.");
-    return;
-  }
+  if (!job.call) return showUncomputed(checked);
   if (!state.shown) await show(checked.page);
   await compute(job, checked.warnings);
 }
@@ -129,6 +127,21 @@ async function perform(job) {
 function wantedCall(job) {
   if (!job.opened && !job.settings && state.seconds >= QUICK) return null;
   return state.last.call === "run" ? (state.hasRun ? { call: "run" } : null) : state.last;
+}
+
+/* A scene without a run at its start; of another the last result, which is old now. */
+async function showUncomputed({ page: data, warnings }) {
+  const still = !state.hasRun && state.last.call === "run";
+  if (still || !state.shown) await show(data);
+  else markOld("of an earlier text");
+  say(warnings.join(" ") || (still ? "The scene is valid; it has no run."
+    : "The scene is valid; compute it again by its button."));
+}
+
+/* Computes the run again, or shows the scene at rest where it has none. */
+function showRun() {
+  Object.assign(state, { last: { call: "run" }, shown: null });
+  enqueue({ settings: true });
 }
 
 function takeScene({ page: data, names, resolved }) {
@@ -152,7 +165,8 @@ async function compute(job, warnings) {
     await showAnswer(call, options, answer);
     sayDone(call, answer, warnings);
   } catch (error) {
-    if (!(error instanceof Stopped) && call === "path") found.showPath(state.base, null, "", pathChoices(), options.over || "");
+    if (!(error instanceof Stopped) && call === "path")
+      found.showPath(state.base, null, "", pathChoices(), options.over || "");
     throw error;
   }
 }
@@ -161,8 +175,9 @@ function sayDone(call, { failure, warnings: own, page: data }, warnings) {
   const time = state.seconds < 1 ? Math.round(1000 * state.seconds) + " ms" : state.seconds.toFixed(1) + " s";
   const velocity = (data.summary || []).find((row) => /^mean velocity/.test(row.label));
   const accuracy = (data.summary || []).find((row) => row.label === "accuracy");
-  const number = velocity ? velocity.value.split(",")[0] + (accuracy ? " (" + accuracy.value.split(";")[0] + ")" : "") + "; " : "";
-  const text = [(number ? number + "computed in " : "Computed in ") + time + ".", ...warnings, ...own].join(" ");
+  const known = accuracy ? " (" + accuracy.value.split(";")[0] + ")" : "";
+  const number = velocity ? velocity.value.split(",")[0] + known + "; c" : "C";
+  const text = [number + "omputed in " + time + ".", ...warnings, ...own].join(" ");
   if (failure) showFailure(failure);
   else say(text);
 }
@@ -224,18 +239,20 @@ function startFrom(equilibrium) {
     settings.set({ ...settings.settings, [parameter]: equilibrium.name });
   } else {
     const { nodes } = state.base, at = equilibrium.position;
-    const places = nodes.map(({ name }, i) => nodeName(name) + ": [" + number(at[2 * i]) + ", " + number(at[2 * i + 1]) + "]");
+    const places = nodes.map(({ name }, i) =>
+      nodeName(name) + ": [" + number(at[2 * i]) + ", " + number(at[2 * i + 1]) + "]");
     const insert = "{positions: {" + places.join(", ") + "}}", old = valueAt(editor.state, ["initial"]);
     const end = editor.text.length, line = (editor.text.endsWith("\n") ? "" : "\n") + "initial: " + insert + "\n";
     editor.replace(old ? { from: old.pair.from, to: old.pair.to, insert: "initial: " + insert }
       : { from: end, to: end, insert: line });
   }
   clearTimeout(edited);
-  enqueue({ call: state.hasRun ? { call: "run" } : null });
+  showRun();
 }
 
 function wireStart() {
-  const button = Object.assign(document.createElement("button"), { type: "button", id: "start-here", textContent: "Start here" });
+  const button = document.createElement("button");
+  Object.assign(button, { type: "button", id: "start-here", textContent: "Start here" });
   element("shown").append(button);
   button.addEventListener("click", () => startFrom(window.strut.data.equilibria[window.strut.picked]));
 }
@@ -310,8 +327,8 @@ async function copyLink() {
 
 function saveScene() {
   const url = URL.createObjectURL(new Blob([editor.text], { type: "application/yaml" }));
-  Object.assign(document.createElement("a"), { href: url, download: page.fileName(state.name.replace(/\.\w+$/, ""), ".yaml") })
-    .click();
+  const download = page.fileName(state.name.replace(/\.\w+$/, ""), ".yaml");
+  Object.assign(document.createElement("a"), { href: url, download }).click();
   setTimeout(() => URL.revokeObjectURL(url), 60000);
 }
 
@@ -327,7 +344,8 @@ function wire() {
   element("stop").addEventListener("click", stop);
   element("link").addEventListener("click", copyLink);
   element("save").addEventListener("click", saveScene);
-  element("copy-command").addEventListener("click", () => copyText(element("command").textContent, element("copy-command")));
+  element("copy-command").addEventListener("click", () =>
+    copyText(element("command").textContent, element("copy-command")));
   document.addEventListener("keydown", (event) => {
     if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) {
       event.preventDefault();
@@ -356,7 +374,8 @@ function addLicences(text) {
   const details = document.createElement("details"), summary = document.createElement("summary");
   const pre = document.createElement("pre");
   summary.textContent = "Licences";
-  pre.textContent = "strut is free software under the GNU General Public License, version 3 or later. The page also has:\n\n" + text;
+  pre.textContent = "strut is free software under the GNU General Public License, version 3 or later; so are " +
+    "the parts of GSL and GLPK in it. Besides these and libyaml, cJSON, zlib and SuiteSparse the page has:\n\n" + text;
   details.append(summary, pre);
   element("sampling").parentElement.append(details);
 }
@@ -387,7 +406,7 @@ async function start() {
   engine = createEngine(assets);
   editor = createEditor(element("editor"), onEdit);
   settings = createSettings({ onChange: () => enqueue({ settings: true }), onWrite: writeIntoFile });
-  found = createFound({ onShow: show, onBack: () => state.base && enqueue({ call: state.hasRun ? { call: "run" } : null }),
+  found = createFound({ onShow: show, onBack: showRun,
     onOver: (over) => enqueue({ call: { call: "path", options: over ? { over } : {} } }) });
   models = createModelList(assets.models, openModel);
   addLicences(assets.licences);

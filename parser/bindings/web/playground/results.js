@@ -68,8 +68,8 @@ const valueOf = (json, point) => (json.over && point.value !== undefined ? point
 export function pathData(data, json) {
   const points = json.points, what = json.over || "factor", unit = json.unit || "";
   const force = points.map((p) => data.members.map((m) => (p.forces || {})[m.name] || 0));
-  return withMotion(data, motionOf(data, { times: points.map((_, i) => LASTS * i / Math.max(1, points.length - 1)),
-    position: points.map((p) => flat(data, p.nodes)), force,
+  const times = points.map((_, i) => LASTS * i / Math.max(1, points.length - 1));
+  return withMotion(data, motionOf(data, { times, position: points.map((p) => flat(data, p.nodes)), force,
     clock: points.map((p) => what + " " + valueText(valueOf(json, p), unit, 5) +
       (p.stable === null || p.stable === undefined ? "" : p.stable ? ", stable" : ", unstable")),
     note: "The points of a path of equilibria, one a frame." }));
@@ -164,20 +164,21 @@ function createPathChart(data, json) {
   svg.addEventListener("pointerdown", seek);
   svg.addEventListener("pointermove", seek);
   new ResizeObserver(redraw).observe(svg);
-  return { label: make("label", {}, "Displacement of ", select), svg, show: (frame) => chart && chart.show(frame) };
+  const label = make("label", {}, "Displacement of ", select);
+  return { label, svg, show: (frame) => chart && chart.show(frame) };
 }
 
 /* ---- the section ---- */
 
 /**
- * The section #found below the stage, with the cards of equilibria behind it. onShow(data) shows data on the page, onBack() what was there before; onOver(what)
- * follows another path: "" all loads, else a parameter or an actuator.
+ * The section #found below the stage, with the cards of equilibria behind it. onShow(data) shows data on the page,
+ * onBack() what was there before; onOver(what) follows another path: "" all loads, else a parameter or an actuator.
  */
 export function createFound({ onShow, onBack, onOver }) {
   const host = make("section", { id: "found", hidden: true });
   host.setAttribute("aria-label", "Result");
   document.getElementById("live").before(host, document.getElementById("cards-section"));
-  let onFrame = null;
+  let onFrame = null, chosen = -1; /* mode */
   page.onFrame = (frame) => { if (onFrame) onFrame(frame); };
 
   function open(title, ...parts) {
@@ -213,6 +214,7 @@ export function createFound({ onShow, onBack, onOver }) {
     showModes(data, json, table) {
       const list = make("div", { className: "mode-list" });
       const pick = async (index) => {
+        chosen = index;
         [...list.children].forEach((b, i) => b.setAttribute("aria-pressed", String(i === index)));
         await onShow(modeData(data, json, index));
         window.strut.play();
@@ -220,7 +222,7 @@ export function createFound({ onShow, onBack, onOver }) {
       list.append(...json.modes.map((mode, i) => modeButton(mode, i, pick)));
       open("Modes of vibration at " + json.at, list, tableOf(table));
       const first = json.modes.findIndex((mode) => mode.frequency > 0);
-      if (json.modes.length) pick(Math.max(first, 0));
+      if (json.modes.length) pick(chosen >= 0 && chosen < json.modes.length ? chosen : Math.max(first, 0));
     },
     /** The choice of what varies alone where json is null. */
     async showPath(data, json, table, choices, over) {
@@ -229,7 +231,8 @@ export function createFound({ onShow, onBack, onOver }) {
       const chart = createPathChart(data, json);
       const events = json.events.map((e) => make("p", { className: "hint",
         textContent: e.kind + " at " + valueText(valueOf(json, e), json.unit, 5) + ": " + (e.detail || "") }));
-      open("Path of equilibria", make("div", { className: "bar" }, choice, chart.label), chart.svg, ...events, tableOf(table));
+      const bar = make("div", { className: "bar" }, choice, chart.label);
+      open("Path of equilibria", bar, chart.svg, ...events, tableOf(table));
       onFrame = chart.show;
       await onShow(pathData(data, json));
       chart.show(window.strut.frame);
