@@ -42,8 +42,9 @@ export class Engine {
   /**
    * Asks for an answer: {scene: {text, name, files, settings}, call, options, limit [s], want}. `call`: one of run,
    * equilibria, modes, rigidity, form, path, sweep (with axes, points), or none for the scene alone, whose page has
-   * the equilibria with options {equilibria: true}. `want`: names in worker.js, such as ["page", "json", "table"]. A request under way is stopped. The promise is broken with the
-   * failure {status, message, report, messages}, or with Stopped.
+   * the equilibria with options {equilibria: true}. `want`: names in worker.js, such as ["page", "json", "table"]. A
+   * request under way is stopped. The promise is broken with the failure {status, message, report, messages}, or with
+   * Stopped.
    */
   async ask(request, progress) {
     this.stop("a newer request");
