@@ -38,8 +38,8 @@ def scenes(block):
 
 
 def is_complete(program, text):
-    """A scene in itself, which strut accepts without other files."""
-    if not re.search(r"^nodes:", text, re.M):
+    """A scene in itself, which strut accepts without other files. Studies are none."""
+    if not re.search(r"^strut: 1\b", text, re.M) or re.search(r"^study:", text, re.M):
         return False
     with tempfile.TemporaryDirectory() as empty:
         return subprocess.run([program, "check", "-q", "-"], input=text.encode(), cwd=empty, stdout=subprocess.DEVNULL,

@@ -15,8 +15,8 @@
 #include "engine/output/file.h"
 
 static const char *const run_names[] = {
-    "summary.json", "scene.yaml",   "nodes.csv",  "members.csv",   "hinges.csv",
-    "cells.csv",    "contacts.csv", "energy.csv", "trajectory.h5", "model.yaml", NULL};
+    "summary.json", "scene.yaml", "nodes.csv",     "members.csv", "hinges.csv", "cells.csv",
+    "contacts.csv", "energy.csv", "trajectory.h5", "model.yaml",  NULL};
 
 const char *strut_results_name(int i) { return run_names[i]; }
 

@@ -130,10 +130,11 @@ static strut_status describe_live(const strut_arguments *arguments, const strut_
                       opened->run ? "--live needs the file model.yaml in '%s': run the model again"
                                   : "the parameters of '%s' cannot be kept in one file for --live",
                       strut_model_name(arguments));
-  *live = (strut_page_live){
-      .scene = opened->adjustable,
-      .name = opened->run ? "model.yaml" : strut_model_name(arguments),
-      .call = opened->run ? "run" : search == SEARCH_ALL ? "equilibria" : "start"};
+  *live = (strut_page_live){.scene = opened->adjustable,
+                            .name = opened->run ? "model.yaml" : strut_model_name(arguments),
+                            .call = opened->run            ? "run"
+                                    : search == SEARCH_ALL ? "equilibria"
+                                                           : "start"};
   return STRUT_OK;
 }
 
@@ -277,7 +278,8 @@ const strut_command strut_command_view = {
         "that works offline; above about 4 MB it keeps an even selection of the frames, and says\n"
         "so. With --live the page holds strut itself, compiled for browsers: moving a slider of a\n"
         "parameter computes the run, or the equilibria of the model, again, and shows the result\n"
-        "beside the original. Without -o it is RUN.html or MODEL.html beside the input; a file that strut did not\n"
+        "beside the original. Without -o it is RUN.html or MODEL.html beside the input; a file "
+        "that strut did not\n"
         "write is never overwritten.\n",
     .options = options,
     .run = run_view,

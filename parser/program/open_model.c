@@ -189,8 +189,9 @@ static strut_status apply_run_options(const strut_arguments *arguments, strut_se
   quiet.listener = NULL;
   *before = strut_setup_write(setup);
   if (!*before) return STRUT_NO_MEMORY;
-  return strut_run_option_given(arguments, 0) ? strut_run_options_apply(&strut_command_run, &quiet, setup)
-                                              : STRUT_OK;
+  return strut_run_option_given(arguments, 0)
+             ? strut_run_options_apply(&strut_command_run, &quiet, setup)
+             : STRUT_OK;
 }
 
 strut_status strut_write_adjustable(const strut_arguments *arguments, const char *text,

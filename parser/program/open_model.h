@@ -86,7 +86,7 @@ typedef struct strut_opened {
   strut_model *model;
   strut_trajectory motion; /* of a run: positions of one frame or more */
   char *summary;           /* of a run: the text of its summary.json, or NULL */
-  char *adjustable;        /* the scene's text with its parameters: strut_write_adjustable; or NULL */
+  char *adjustable; /* the scene's text with its parameters: strut_write_adjustable; or NULL */
 } strut_opened;
 
 /**

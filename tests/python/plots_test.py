@@ -30,7 +30,8 @@ CRAWLER = strut.load(MODELS / "crawler/crawler.yaml")
 FRAME = strut.load(MODELS / "gallery/x-frame.yaml")
 TRUSS = strut.load(MODELS / "gallery/von-mises.yaml", load=1)
 NAME = "</script><b>&\"'"
-BAR = {"strut": 1, "nodes": {"a": {"position": [0, 0], "fixed": "both"}, "b": {"position": [1, 0], "fixed": "y", "mass": 1}},
+BAR = {"strut": 1,
+       "nodes": {"a": {"position": [0, 0], "fixed": "both"}, "b": {"position": [1, 0], "fixed": "y", "mass": 1}},
        "members": {"ab": {"kind": "bar", "nodes": ["a", "b"], "stiffness": 1e4}}}
 
 
@@ -169,7 +170,8 @@ class Notebooks(unittest.TestCase):
             shown = run.view(live=True)._repr_html_()
             with self.assertRaisesRegex(ValueError, "needs a scene with parameters"):
                 strut.Scene.from_dict(BAR).html(live=True)
-        live = json.loads(re.search(r'<script type="application/json" id="strut-data">(.*?)</script>', page, re.S)[1])["live"]
+        data = re.search(r'<script type="application/json" id="strut-data">(.*?)</script>', page, re.S)[1]
+        live = json.loads(data)["live"]
         self.assertEqual(live["call"], "run")
         self.assertEqual(live["options"]["accuracy"], "0.5 %")
         self.assertIn("friction", [parameter["name"] for parameter in live["parameters"]])

@@ -31,7 +31,8 @@ const summaryOf = (run) => JSON.parse(readFileSync(join(folder, run, "summary.js
 function writePages() {
   strut("run", crawler, "--accuracy", "0.5%", "-o", "crawler", "-q");
   strut("view", "crawler", "--live", "-o", "crawler.html", "-q");
-  const text = readFileSync(crawler, "utf8").replace("periods: 1100", "periods: 20").replace("last: 100}}", "last: 5}}");
+  const text = readFileSync(crawler, "utf8").replace("periods: 1100", "periods: 20")
+    .replace("last: 100}}", "last: 5}}");
   writeFileSync(join(folder, "short.yaml"), text);
   strut("run", "short.yaml", "--set", "friction=0.12", "-o", "short", "-q");
   strut("view", "short", "--live", "-o", "short.html", "-q");
@@ -72,8 +73,9 @@ async function idle(page) {
 }
 
 const textOf = (page, selector) => page.$eval(selector, (e) => e.textContent);
-const velocityRow = (page) => page.$$eval("#summary tr", (rows) =>
-  rows.map((row) => [...row.cells].map((cell) => cell.textContent)).find((cells) => cells[0].startsWith("mean velocity")));
+const velocityRow = (page) => page.$$eval("#summary tr", (rows) => rows
+  .map((row) => [...row.cells].map((cell) => cell.textContent))
+  .find((cells) => cells[0].startsWith("mean velocity")));
 
 async function picture(page, name) {
   if (pictures) await page.screenshot({ path: join(pictures, name + ".png"), fullPage: true });

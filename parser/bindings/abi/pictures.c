@@ -158,8 +158,8 @@ static bool describe_live(const strutlib_scene *scene, const char *script, const
     return false;
   }
   char *text = strutlib_scene_yaml(scene, 1, error);
-  *live = (strut_page_live){
-      .script = script, .scene = text, .name = scene->source->name, .call = call};
+  *live =
+      (strut_page_live){.script = script, .scene = text, .name = scene->source->name, .call = call};
   return text != NULL;
 }
 

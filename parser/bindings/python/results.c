@@ -255,8 +255,10 @@ static PyObject *html_live(PyObject *self, PyObject *arguments) {
   const char *script;
   strut_py_texts options[2];
   const strutlib_result *result = handle(self);
-  if (result == NULL || !PyArg_ParseTuple(arguments, "O!OOs:html_live", strut_py_types_of(((strut_py_result *)self)->module)->scene, &scene,
-                                          &names, &values, &script) ||
+  if (result == NULL ||
+      !PyArg_ParseTuple(arguments, "O!OOs:html_live",
+                        strut_py_types_of(((strut_py_result *)self)->module)->scene, &scene, &names,
+                        &values, &script) ||
       strut_py_pairs_read(names, values, options) != 0) {
     return NULL;
   }

@@ -111,8 +111,7 @@ typedef struct {
 static void write_page(void *context) {
   page *p = context;
   if (p->script != NULL) {
-    p->text =
-        strutlib_scene_html_live(p->scene, p->equilibria, p->script, p->control, &p->error);
+    p->text = strutlib_scene_html_live(p->scene, p->equilibria, p->script, p->control, &p->error);
   } else {
     p->text = strutlib_scene_html(p->scene, p->equilibria, p->control, &p->error);
   }

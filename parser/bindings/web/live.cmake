@@ -14,6 +14,7 @@ set(live_package "${PROJECT_BINARY_DIR}/package")
 set(live_sources client/live.js client/engine.js client/worker.js client/squeeze.mjs package/index.js
                  package/memory.js)
 list(TRANSFORM live_sources PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
+set(live_head "/* strut ${PROJECT_VERSION} for browsers. SPDX-License-Identifier: GPL-3.0-or-later */")
 set(bundle "${STRUT_ESBUILD}" --bundle --format=iife --minify --target=es2022 --log-level=warning
            "--define:import.meta.url=\"\"" --external:node:fs/promises --legal-comments=none)
 
@@ -26,7 +27,7 @@ add_custom_command(
   COMMAND "${STRUT_NODE}" client/squeeze.mjs "${live_package}/strut.wasm" "${live_dir}/client/strut.wasm.deflated"
   COMMAND ${bundle} "--outfile=${live_dir}/client/worker.bundle" "${live_dir}/client/worker.js"
   COMMAND ${bundle} --loader:.bundle=text --loader:.deflated=base64
-          "--banner:js=/* strut ${PROJECT_VERSION}, compiled for WebAssembly. SPDX-License-Identifier: GPL-3.0-or-later */"
+          "--banner:js=${live_head}"
           "--outfile=${PROJECT_BINARY_DIR}/strut-live.js" "${live_dir}/client/live.js"
   DEPENDS ${live_sources} strut_web "${live_package}/strut.wasm"
   WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"
