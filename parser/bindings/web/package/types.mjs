@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Prints index.d.ts: index.d.ts.in with what abi.h and the module itself say in place of its lines "@NAME@".
+ * Writes index.d.ts: index.d.ts.in with what abi.h and the module itself say in place of its lines "@NAME@".
  *
- *   node types.mjs PACKAGE abi.h index.d.ts.in >index.d.ts
+ *   node types.mjs PACKAGE abi.h index.d.ts.in index.d.ts
  */
-import { readFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
-const [folder, header, template] = process.argv.slice(2);
+const [folder, header, template, types] = process.argv.slice(2);
 const strut = await import(pathToFileURL(resolve(folder, "index.js")).href);
 await strut.load();
 const abi = readFileSync(header, "utf8");
@@ -50,4 +50,4 @@ const parts = {
     "  " + call + "(options?: " + capital(call) + "Options, control?: Control): Result;\n").join("")
 };
 
-process.stdout.write(readFileSync(template, "utf8").replace(/^ *@([A-Z]+)@\n/gm, (_, name) => parts[name]));
+writeFileSync(types, readFileSync(template, "utf8").replace(/^ *@([A-Z]+)@\n/gm, (_, name) => parts[name]));
