@@ -153,6 +153,14 @@ test("a simulation has the bits of a run, and inputs", async () => {
   failure(1, () => simulation.set("rest", "spring", NaN).advance());
 });
 
+for (const page of ["docs/javascript.md", "parser/bindings/web/package/README.md"])
+  test("the blocks of " + page + " run, one after the other", () => {
+    const blocks = Array.from(readFileSync(page, "utf8").matchAll(/^```js\n(.*?)^```$/gms), ([, block]) => block);
+    const address = JSON.stringify(pathToFileURL(join(folder, "index.js")).href);
+    const text = blocks.join("").replaceAll('"strut-wasm"', address);
+    assert.notEqual(execFileSync("node", ["--input-type=module"], { input: text, encoding: "utf8" }), "");
+  });
+
 /* ---- errors ---- */
 
 test("a scene's mistakes have their places", async () => {
