@@ -34,13 +34,15 @@ function filesBeside(path) {
   return Object.fromEntries(names.map((name) => [name, readFileSync(join(folder, name), "utf8")]));
 }
 
-/* {text} of its JSON or {failure} of its message. */
+/* {text, failure}: its JSON, and the lines of its message where it failed; of some failures there is both. */
 function byProgram(call, path) {
   const found = spawnSync(resolve(program), [call, basename(path), "--json"], {
     cwd: dirname(path), encoding: "utf8", maxBuffer: 1 << 30, timeout: 120000
   });
-  if (found.stdout) return { text: found.stdout.replace(/\n\t*"wall_time":[^\n]*/, "") };
-  return { failure: found.stderr.replace(/^strut: /gm, "").split("\n").filter((line) => !line.startsWith("warning")) };
+  return {
+    text: found.stdout.replace(/\n\t*"wall_time":[^\n]*/, ""),
+    failure: found.stderr.replace(/^strut: /gm, "").split("\n").filter((line) => !line.startsWith("warning"))
+  };
 }
 
 function byModule(call, scene) {
@@ -56,12 +58,13 @@ function byModule(call, scene) {
   }
 }
 
-/* The first lines in which they differ, or null. */
+/* The first lines in which the module's answer differs from the program's, or null. */
 function difference(mine, theirs) {
-  const a = mine.text ? mine.text.split("\n") : mine.failure, b = theirs.text ? theirs.text.split("\n") : theirs.failure;
+  const [a, b] = mine.failure ? [mine.failure, theirs.failure] : [mine.text.split("\n"), theirs.text.split("\n")];
   const at = a.findIndex((line, i) => line !== b[i]);
   if (at < 0 && a.length === b.length) return null;
-  return { program: (b[at] ?? "").trim(), module: (a[at] ?? "").trim() };
+  const line = at < 0 ? a.length : at;
+  return { program: (b[line] ?? "").trim(), module: (a[line] ?? "").trim() };
 }
 
 let same = 0;
