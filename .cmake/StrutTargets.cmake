@@ -26,7 +26,9 @@ function(strut_compile_options target)
                                                STRUT_VERSION="${PROJECT_VERSION}")
   target_compile_options(${target} PRIVATE ${STRUT_WARNINGS} -ffp-contract=off -fno-math-errno
                                            -Wno-psabi)
-  if(NOT EMSCRIPTEN)
+  if(EMSCRIPTEN) # clang 14 drops terms where it vectorises double_double.h under -Oz
+    target_compile_options(${target} PRIVATE -fno-slp-vectorize)
+  else()
     target_compile_options(${target} PRIVATE -fno-semantic-interposition)
   endif()
   if(STRUT_WERROR)

@@ -4,6 +4,7 @@
 #
 #   sh tests/install.sh          to build and run strut
 #   sh tests/install.sh tests    and what its tests need besides
+#   sh tests/install.sh web      and what strut for browsers needs, with its tests
 set -eu
 
 packages="gcc libc6-dev make cmake pkg-config
@@ -16,7 +17,8 @@ case ${1:-} in
   python3-pandas python3-matplotlib python3-jsonschema python3-yaml patch
   python3-build python3-setuptools python3-wheel python3-venv patchelf mypy
   python3-myst-parser furo weasyprint" ;;
-  *) echo "usage: sh tests/install.sh [tests]" >&2; exit 1 ;;
+  web) packages="$packages emscripten clang patch xz-utils ca-certificates nodejs npm node-acorn chromium" ;;
+  *) echo "usage: sh tests/install.sh [tests|web]" >&2; exit 1 ;;
 esac
 
 as_root=

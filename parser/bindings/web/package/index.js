@@ -10,14 +10,15 @@
  */
 import createModule from "./strut.mjs";
 import {
-  StrutError, arrayOf, attempt, flagOf, list, module, must, numberOf, pairs, taken, textAt, use, withMemory
+  STATUS, StrutError, arrayOf, attempt, failed, flagOf, list, module, must, numberOf, pairs, taken, textAt, use,
+  withMemory, writeArray, wrongUse
 } from "./memory.js";
 
 export { StrutError };
 
 /* ---- the module ---- */
 
-let loading = null;
+let loading = null, compiled = null;
 
 /* The module's file, beside this one: read in node, fetched elsewhere. */
 async function ownFile() {
@@ -27,8 +28,8 @@ async function ownFile() {
 }
 
 async function start(wasm) {
-  const compiled = wasm instanceof WebAssembly.Module ? wasm
-    : await WebAssembly.compile(wasm || await ownFile());
+  if (wasm instanceof WebAssembly.Module) compiled = wasm;
+  else compiled ||= await WebAssembly.compile(wasm || await ownFile());
   use(await createModule({
     locateFile: (name) => name, /* nothing is fetched */
     instantiateWasm(imports, done) {
@@ -38,9 +39,16 @@ async function start(wasm) {
   }));
 }
 
-/** Loads the module once. `wasm`: its bytes or a WebAssembly.Module, where its file is not beside this one. */
+/**
+ * Loads the module once, and again where it failed. `wasm`: its bytes or a WebAssembly.Module, where its file is not
+ * beside this one.
+ */
 export function load({ wasm } = {}) {
-  loading ||= start(wasm);
+  if (failed()) loading = null;
+  loading ||= start(wasm).catch((error) => {
+    loading = null;
+    throw error;
+  });
   return loading;
 }
 
@@ -52,6 +60,7 @@ export async function open(text, options) {
 
 export const version = () => textAt(module()._strutlib_version());
 export const statusName = (status) => textAt(module()._strutlib_status_name(status));
+export const exitCode = (status) => module()._strutlib_exit_code(status);
 export const statusText = (status) => textAt(module()._strutlib_status_text(status));
 
 /** The language as a JSON Schema, an object; with `study` that of studies. */
@@ -59,10 +68,10 @@ export function schema({ study = false } = {}) {
   return JSON.parse(taken(must((_, error) => module()._strutlib_schema(study ? 1 : 0, error))));
 }
 
-/** {name: help} of the options that a call has. */
+/** {name: help} of the options that a call has: one of CALLS, "sweep" or "simulate". */
 export function optionsOf(call) {
   return withMemory((place) => {
-    const name = place.text(call), found = {};
+    const name = place.text(call === "simulate" ? "simulation_open" : call), found = {};
     list((i) => module()._strutlib_option_name(name, i)).forEach((option, i) => {
       found[option] = textAt(module()._strutlib_option_help(name, i));
     });
@@ -85,63 +94,111 @@ export function channels() {
 
 /* ---- what owns memory of the module ---- */
 
-const forgotten = new FinalizationRegistry(({ free, handle }) => free(handle));
+const forgotten = new FinalizationRegistry((owned) => release(owned));
+
+/* Of a module that failed nothing is released: it goes as a whole. */
+function release({ engine, handle, free }) {
+  if (!engine.failure) free(engine, handle);
+}
 
 class Owner {
-  #handle;
-  #free;
+  #owned;
   constructor(handle, free) {
-    this.#handle = handle;
-    this.#free = free;
-    forgotten.register(this, { free, handle }, this);
+    this.#owned = { engine: module(), handle, free };
+    forgotten.register(this, this.#owned, this);
   }
-  /** Of the module; an error once it is closed. */
+  /** Of the module; an error once it is closed, or its module failed. */
   get handle() {
-    if (!this.#handle) throw new Error("this " + this.constructor.name.toLowerCase() + " is closed");
-    return this.#handle;
+    if (!this.#owned) throw wrongUse("this " + this.constructor.name.toLowerCase() + " is closed");
+    if (this.#owned.engine.failure) throw this.#owned.engine.failure;
+    return this.#owned.handle;
   }
   /** Releases its memory now rather than when JavaScript collects it. */
   close() {
-    if (!this.#handle) return;
+    if (!this.#owned) return;
     forgotten.unregister(this);
-    this.#free(this.#handle);
-    this.#handle = 0;
+    release(this.#owned);
+    this.#owned = null;
   }
 }
+if (Symbol.dispose) Owner.prototype[Symbol.dispose] = Owner.prototype.close;
 
 /* ---- scenes ---- */
 
-/* Folders of files that scenes name, below /scenes. */
+/* The folder in which a scene's files are, below /scenes; gone with the last scene that has it. */
 let folders = 0;
 
-function openScene(text, { name = "scene.yaml", settings = {}, files = {} } = {}) {
-  const folder = "/scenes/" + folders++, fs = module().FS;
-  fs.mkdirTree(folder);
-  for (const [path, content] of Object.entries(files)) {
-    const whole = folder + "/" + path;
-    fs.mkdirTree(whole.slice(0, whole.lastIndexOf("/")));
-    fs.writeFile(whole, content);
+class Folder {
+  #users = 0;
+  constructor(files) {
+    this.fs = module().FS;
+    this.path = Object.keys(files).length ? "/scenes/" + folders++ : "/scenes";
+    this.#make(this.path);
+    for (const [name, content] of Object.entries(files)) this.#write(name, content);
   }
-  fs.chdir(folder);
-  const bytes = new TextEncoder().encode(text).length;
-  return new Scene(must((place, error) => {
-    const p = pairs(place, settings);
-    return module()._strutlib_open_text(place.text(name), place.text(text), bytes, p.count, p.names,
-      p.values, error);
-  }), folder);
+  #make(path) {
+    if (!this.fs.analyzePath(path).exists) this.fs.mkdirTree(path);
+  }
+  #write(name, content) {
+    const whole = this.path + "/" + name;
+    try {
+      this.#make(whole.slice(0, whole.lastIndexOf("/")));
+      this.fs.writeFile(whole, content);
+    } catch (error) {
+      throw new StrutError({
+        status: STATUS.FILE_TROUBLE, message: "cannot store the file '" + name + "': " + (error.message || error)
+      });
+    }
+  }
+  enter() { this.fs.chdir(this.path); }
+  join() { this.#users++; }
+  leave() {
+    if (--this.#users || this.path === "/scenes") return;
+    this.fs.chdir("/scenes");
+    this.#remove(this.path);
+  }
+  #remove(path) {
+    for (const name of this.fs.readdir(path)) {
+      if (name === "." || name === "..") continue;
+      const whole = path + "/" + name;
+      if (this.fs.isDir(this.fs.stat(whole).mode)) this.#remove(whole);
+      else this.fs.unlink(whole);
+    }
+    this.fs.rmdir(path);
+  }
+}
+
+function openScene(text, { name = "scene.yaml", settings = {}, files = {} } = {}) {
+  const folder = new Folder(files);
+  folder.join();
+  try {
+    folder.enter();
+    return new Scene(must((place, error) => {
+      const p = pairs(place, settings), whole = place.whole(text);
+      return module()._strutlib_open_text(place.text(name), whole.pointer, whole.length, p.count, p.names, p.values,
+        error);
+    }), folder);
+  } finally {
+    if (!failed()) folder.leave();
+  }
 }
 
 /** A scene as it was opened, with its settings: constant. */
 export class Scene extends Owner {
   #folder;
   constructor(handle, folder) {
-    super(handle, (scene) => module()._strutlib_close(scene));
+    super(handle, (engine, scene) => {
+      engine._strutlib_close(scene);
+      folder.leave();
+    });
+    folder.join();
     this.#folder = folder;
   }
   /** The scene's handle, with the files that it names in their place. */
   get ready() {
-    module().FS.chdir(this.#folder);
-    return this.handle;
+    const handle = this.handle;
+    this.#folder.enter();
+    return handle;
   }
   with(settings) {
     const scene = this.ready;
@@ -156,6 +213,9 @@ export class Scene extends Owner {
       const at = place.text(kind);
       return list((i) => module()._strutlib_name(this.handle, at, i));
     });
+  }
+  index(kind, name) {
+    return withMemory((place) => module()._strutlib_index(this.handle, place.text(kind), place.text(name)));
   }
   number(name) {
     return numberOf((place, at) => module()._strutlib_scene_number(this.handle, place.text(name), at));
@@ -189,17 +249,20 @@ export class Scene extends Owner {
   }
   /**
    * Points of a parameter study: axes are names, points rows of values, in SI units or words. `keep`: columns;
-   * the other options as of `strut sweep`.
+   * the other options as of `strut sweep`. `control` may have row(point, status): true to stop.
    */
-  sweep(axes, points, { keep = [], ...options } = {}, control) {
+  sweep(axes, points, { keep = [], ...options } = {}, control = {}) {
+    for (const given of [axes, points, keep]) if (!Array.isArray(given)) throw wrongUse("expected a list");
+    if (points.some((point) => !Array.isArray(point) || point.length !== axes.length))
+      throw wrongUse("every point needs " + axes.length + " values, one of each axis");
     return compute(control, (place, handle, error) => {
       const p = pairs(place, options), flat = points.flat();
       const numbers = flat.map((value) => (typeof value === "number" ? value : NaN));
       const words = flat.map((value) => (typeof value === "number" ? null : String(value)));
       return module()._strutlib_sweep(
-        this.ready, axes.length, place.texts(axes), axes.length ? points.length : 1,
-        place.numbers(numbers), words.some((w) => w !== null) ? place.texts(words) : 0, keep.length,
-        place.texts(keep), p.count, p.names, p.values, 0, 0, handle, error);
+        this.ready, axes.length, place.texts(axes), axes.length ? points.length : 1, place.numbers(numbers),
+        words.some((word) => word !== null) ? place.texts(words) : 0, keep.length, place.texts(keep), p.count, p.names,
+        p.values, control.row ? callbacks().row : 0, 0, handle, error);
     });
   }
 }
@@ -217,25 +280,51 @@ for (const call of CALLS)
     });
   };
 
-/* The progress of the call under way: of one at a time, since it lasts until the call is done. */
-let onProgress = null, progressAt = 0;
+/* Who hears of the call under way: of one at a time, since it lasts until the call is done. */
+let listener = null;
+
+/* What a listener throws is thrown once the call has ended: C must not be left by an exception. */
+function heard(tell) {
+  if (!listener) return 0;
+  try {
+    return tell(listener) ? 1 : 0;
+  } catch (error) {
+    listener.thrown ||= { error };
+    return 1;
+  }
+}
+
+/* The functions that the module calls, once for each module. */
+function callbacks() {
+  const engine = module();
+  engine.callbacks ||= {
+    progress: engine.addFunction((_, fraction) => heard((l) => l.progress(fraction)), "iid"),
+    row: engine.addFunction((_, point, status) => heard((l) => l.row(point, status)), "iiii")
+  };
+  return engine.callbacks;
+}
 
 /* `control`: {progress(fraction): true to stop, limit: seconds after which it stops}. What was computed until then is
    the result, with its status and its error. */
-function compute({ progress, limit } = {}, call) {
-  const engine = module(), control = engine._strutlib_control_create();
-  const end = limit ? performance.now() + 1000 * limit : Infinity, before = onProgress;
-  onProgress = (fraction) =>
-    ((progress && progress(fraction)) || performance.now() > end ? 1 : 0);
-  progressAt ||= engine.addFunction((_, fraction) => onProgress(fraction), "iid");
-  engine._strutlib_control_on_progress(control, progressAt, 0);
+function compute({ progress, row, limit } = {}, call) {
+  const engine = module(), control = engine._strutlib_control_create(), before = listener;
+  if (!control) throw new StrutError({ status: STATUS.NO_MEMORY, message: "out of memory" });
+  const end = limit ? performance.now() + 1000 * limit : Infinity;
+  const own = listener = {
+    thrown: null,
+    progress: (fraction) => (progress && progress(fraction) === true) || performance.now() > end,
+    row: (point, status) => row(point, status) === true
+  };
   try {
+    engine._strutlib_control_on_progress(control, callbacks().progress, 0);
     const { value, error } = attempt((place, at) => call(place, control, at));
+    if (value && own.thrown) engine._strutlib_result_free(value);
+    if (own.thrown) throw own.thrown.error;
     if (!value) throw error;
     return new Result(value, error);
   } finally {
-    onProgress = before;
-    engine._strutlib_control_free(control);
+    listener = before;
+    if (!engine.failure) engine._strutlib_control_free(control);
   }
 }
 
@@ -243,7 +332,7 @@ function compute({ progress, limit } = {}, call) {
 export class Result extends Owner {
   #json;
   constructor(handle, error) {
-    super(handle, (result) => module()._strutlib_result_free(result));
+    super(handle, (engine, result) => engine._strutlib_result_free(result));
     this.error = error; /* why it is not whole, or null */
   }
   get status() { return module()._strutlib_result_status(this.handle); }
@@ -291,9 +380,11 @@ export class Result extends Owner {
 /** A run that is advanced from outside. */
 export class Simulation extends Owner {
   constructor(handle) {
-    super(handle, (simulation) => module()._strutlib_simulation_close(simulation));
+    super(handle, (engine, simulation) => engine._strutlib_simulation_close(simulation));
   }
   advance(steps = 1) {
+    if (!Number.isInteger(steps) || steps < 0 || steps > 0x7fffffff)
+      throw wrongUse("expected a number of steps, not " + String(steps));
     must((_, error) => module()._strutlib_simulation_advance(this.handle, steps, error));
     return this;
   }
@@ -304,8 +395,21 @@ export class Simulation extends Owner {
     return arrayOf((place, ...to) =>
       module()._strutlib_simulation_array(this.handle, place.text(name), ...to));
   }
+  /** What is written into an input, "rest", "actuators" or "load", as array() has it. */
+  input(name) {
+    return arrayOf((place, ...to) =>
+      module()._strutlib_simulation_input(this.handle, place.text(name), ...to));
+  }
+  /** All numbers of an input, in the order of C. */
+  write(name, numbers) {
+    const known = writeArray(numbers, (place, ...to) =>
+      module()._strutlib_simulation_input(this.handle, place.text(name), ...to));
+    if (!known) throw wrongUse("there is no input '" + name + "'");
+    return this;
+  }
   /** set("rest", "m8", 0.12); set("load", "n1.x", 3). */
   set(input, name, value) {
+    if (typeof value !== "number") throw wrongUse("the value of '" + name + "' is no number");
     must((place, error) =>
       module()._strutlib_simulation_set(this.handle, place.text(input), place.text(name), value, error));
     return this;
@@ -315,6 +419,7 @@ export class Simulation extends Owner {
       module()._strutlib_simulation_snapshot(this.handle, error)));
   }
   restore(snapshot) {
+    if (!(snapshot instanceof Snapshot)) throw wrongUse("expected a snapshot");
     must((_, error) =>
       module()._strutlib_simulation_restore(this.handle, snapshot.handle, error));
     return this;
@@ -322,8 +427,8 @@ export class Simulation extends Owner {
 }
 
 /** A stored state of a simulation. */
-export class Snapshot extends Owner {
+class Snapshot extends Owner {
   constructor(handle) {
-    super(handle, (snapshot) => module()._strutlib_snapshot_free(snapshot));
+    super(handle, (engine, snapshot) => engine._strutlib_snapshot_free(snapshot));
   }
 }

@@ -3,14 +3,59 @@
 
 let engine = null; /* the module, once it is there */
 
-/** Makes this module the one that every call uses. */
-export function use(module) { engine = module; }
+/** A call that failed: what the program would say. */
+export class StrutError extends Error {
+  constructor({ status, message, report, messages }) {
+    super(message);
+    this.name = "StrutError";
+    this.status = status;
+    this.report = report || message + "\n";
+    this.messages = messages || [];
+  }
+}
 
-/** The module; an error where nobody has loaded it. */
+/** The statuses that this side gives itself; FAILED is none of abi.h's: the engine is gone. */
+export const STATUS = { USAGE: 1, FILE_TROUBLE: 8, NO_MEMORY: 9, FAILED: -1 };
+
+export const wrongUse = (message) => new StrutError({ status: STATUS.USAGE, message });
+
+/*
+ * A trap (a stack that is too deep, an assertion, an abort) leaves the module's memory half changed: nothing of it is
+ * used again, and load() starts another.
+ */
+function guarded(owner, call) {
+  return (...given) => {
+    if (owner.failure) throw owner.failure;
+    try {
+      return call(...given);
+    } catch (error) {
+      if (!(error instanceof WebAssembly.RuntimeError || error instanceof RangeError)) throw error;
+      owner.failure = new StrutError({
+        status: STATUS.FAILED,
+        message: "strut's engine failed (" + error.message + "); load() starts another, and scenes are opened again"
+      });
+      throw owner.failure;
+    }
+  };
+}
+
+/** Makes this module the one that every call uses. */
+export function use(module) {
+  engine = Object.create(module, { failure: { value: null, writable: true } });
+  for (const name of Object.keys(module))
+    if (name.startsWith("_strutlib_") || name === "_malloc" || name === "_free")
+      engine[name] = guarded(engine, module[name]);
+}
+
+/** The module; an error where nobody has loaded it, or it failed. */
 export function module() {
-  if (!engine) throw new Error("strut is not loaded: await load() first");
+  if (!engine) throw wrongUse("strut is not loaded: await load() first");
+  if (engine.failure) throw engine.failure;
   return engine;
 }
+
+/** Did it fail? */
+export const failed = () => engine !== null && engine.failure !== null;
 
 /** A text that belongs to the module, or null. */
 export const textAt = (pointer) => (pointer ? engine.UTF8ToString(pointer) : null);
@@ -22,52 +67,63 @@ export function taken(pointer) {
   return text;
 }
 
+const encoder = new TextEncoder();
+
+/* Bytes of a text as the module has them. Half a character of two becomes U+FFFD. */
+function bytesOf(value) {
+  if (typeof value !== "string") throw wrongUse("expected a text, not " + nameOf(value));
+  return encoder.encode(value);
+}
+
+const nameOf = (value) => (value === null ? "null" : Array.isArray(value) ? "a list" : "a value of type " + typeof value);
+
 /**
- * Calls work(place), in which place.text(t), place.texts(list), place.numbers(list) and place.room(bytes) give
- * pointers that are good until work returns.
+ * Calls work(place), in which place.text(t), place.bytes(t), place.texts(list), place.numbers(list) and
+ * place.room(bytes) give pointers that are good until work returns.
  */
 export function withMemory(work) {
-  const blocks = [];
+  const blocks = [], used = module();
   const room = (bytes) => {
-    const pointer = engine._malloc(Math.max(8, bytes));
-    if (!pointer) throw new StrutError({ status: 9, message: "out of memory" });
+    const pointer = used._malloc(Math.max(8, bytes));
+    if (!pointer) throw new StrutError({ status: STATUS.NO_MEMORY, message: "out of memory" });
     blocks.push(pointer);
+    return pointer;
+  };
+  /* Its bytes and a zero behind them. */
+  const put = (bytes) => {
+    const pointer = room(bytes.length + 1), heap = used.HEAPU8;
+    heap.set(bytes, pointer);
+    heap[pointer + bytes.length] = 0;
     return pointer;
   };
   const place = {
     room,
+    /** A text that may have zeros inside: {pointer, length}. */
+    whole(value) {
+      const bytes = bytesOf(value);
+      return { pointer: put(bytes), length: bytes.length };
+    },
     text(value) {
       if (value === null || value === undefined) return 0;
-      const bytes = engine.lengthBytesUTF8(value) + 1, pointer = room(bytes);
-      engine.stringToUTF8(value, pointer, bytes);
-      return pointer;
+      const bytes = bytesOf(value);
+      if (bytes.includes(0)) throw wrongUse("a name or value has a zero character");
+      return put(bytes);
     },
     texts(list) {
       const pointers = list.map(place.text), at = room(4 * list.length);
-      engine.HEAPU32.set(pointers, at >> 2);
+      used.HEAPU32.set(pointers, at >>> 2);
       return at;
     },
     numbers(list) {
       const at = room(8 * list.length);
-      engine.HEAPF64.set(list, at >> 3);
+      used.HEAPF64.set(list, at >>> 3);
       return at;
     }
   };
   try {
     return work(place);
   } finally {
-    for (const pointer of blocks) engine._free(pointer);
-  }
-}
-
-/** A call that failed: what the program would say. */
-export class StrutError extends Error {
-  constructor({ status, message, report, messages }) {
-    super(message);
-    this.name = "StrutError";
-    this.status = status;
-    this.report = report || message + "\n";
-    this.messages = messages || [];
+    if (!used.failure) for (const pointer of blocks) used._free(pointer);
   }
 }
 
@@ -100,9 +156,9 @@ function errorAt(error) {
 export function attempt(call) {
   return withMemory((place) => {
     const error = place.room(4);
-    engine.HEAPU32[error >> 2] = 0;
+    engine.HEAPU32[error >>> 2] = 0;
     const value = call(place, error);
-    return { value, error: errorAt(engine.HEAPU32[error >> 2]) };
+    return { value, error: errorAt(engine.HEAPU32[error >>> 2]) };
   });
 }
 
@@ -117,7 +173,7 @@ export function must(call) {
 export function numberOf(call) {
   return withMemory((place) => {
     const at = place.room(8);
-    return call(place, at) ? engine.HEAPF64[at >> 3] : null;
+    return call(place, at) ? engine.HEAPF64[at >>> 3] : null;
   });
 }
 
@@ -125,31 +181,29 @@ export function numberOf(call) {
 export function flagOf(call) {
   return withMemory((place) => {
     const at = place.room(4);
-    return call(place, at) ? engine.HEAPU32[at >> 2] !== 0 : null;
+    return call(place, at) ? engine.HEAPU32[at >>> 2] !== 0 : null;
   });
 }
 
 const DIMENSIONS = 4;
 
-/** {data, shape} of the array that call(place, &data, &dimensions, shape, stride) finds, or null. */
-export function arrayOf(call) {
+/* {first, shape, stride} in doubles of the array that call(place, &data, &dimensions, shape, stride) finds, or null. */
+function placeOf(call) {
   return withMemory((place) => {
     const data = place.room(4), dimensions = place.room(4);
     const shapes = place.room(4 * DIMENSIONS), strides = place.room(4 * DIMENSIONS);
     if (!call(place, data, dimensions, shapes, strides)) return null;
-    const heap = engine.HEAPU32, count = heap[dimensions >> 2];
-    const shape = Array.from(heap.subarray(shapes >> 2, (shapes >> 2) + count));
-    const stride = Array.from(heap.subarray(strides >> 2, (strides >> 2) + count));
-    return { data: gather(heap[data >> 2] >> 3, shape, stride), shape };
+    const heap = engine.HEAPU32, count = heap[dimensions >>> 2];
+    const numbersAt = (at) => Array.from(heap.subarray(at >>> 2, (at >>> 2) + count));
+    return { first: heap[data >>> 2] >>> 3, shape: numbersAt(shapes), stride: numbersAt(strides) };
   });
 }
 
-/* The numbers in the order of C, copied. */
-function gather(first, shape, stride) {
-  const size = shape.reduce((a, b) => a * b, 1), numbers = new Float64Array(size);
-  const index = shape.map(() => 0);
+/* Calls each(place in the module, index in the order of C) for every number of an array. */
+function forNumbers({ first, shape, stride }, each) {
+  const size = shape.reduce((a, b) => a * b, 1), index = shape.map(() => 0);
   for (let i = 0, at = first; i < size; i++) {
-    numbers[i] = engine.HEAPF64[at];
+    each(at, i);
     for (let d = shape.length - 1; d >= 0; d--) {
       at += stride[d];
       if (++index[d] < shape[d]) break;
@@ -157,7 +211,25 @@ function gather(first, shape, stride) {
       index[d] = 0;
     }
   }
-  return numbers;
+}
+
+/** {data, shape} of that array, copied in the order of C, or null. */
+export function arrayOf(call) {
+  const found = placeOf(call);
+  if (!found) return null;
+  const data = new Float64Array(found.shape.reduce((a, b) => a * b, 1)), heap = engine.HEAPF64;
+  forNumbers(found, (at, i) => { data[i] = heap[at]; });
+  return { data, shape: found.shape };
+}
+
+/** Writes as many numbers, in the order of C, into that array; false where there is none. */
+export function writeArray(numbers, call) {
+  const found = placeOf(call);
+  if (!found) return false;
+  const size = found.shape.reduce((a, b) => a * b, 1), heap = engine.HEAPF64;
+  if (numbers.length !== size) throw wrongUse("expected " + size + " numbers, not " + numbers.length);
+  forNumbers(found, (at, i) => { heap[at] = Number(numbers[i]); });
+  return true;
 }
 
 /** The texts call(0), call(1), ... up to the first that is none. */
@@ -167,13 +239,23 @@ export function list(call) {
   return found;
 }
 
-/** {count, names, values} of pairs given as an object: numbers as digits that keep every bit, booleans as yes or no. */
+/* A setting as the program reads it: numbers as digits that keep every bit, yes and no, lists with commas. */
+function written(name, value) {
+  if (value === true) return "yes";
+  if (value === false) return "no";
+  if (typeof value === "number" || typeof value === "string") return String(value);
+  if (Array.isArray(value)) return value.map((part) => written(name, part)).join(",");
+  throw wrongUse("'" + name + "' is " + nameOf(value) + ", expected a number, a text, true or false");
+}
+
+/** {count, names, values} of pairs given as an object. */
 export function pairs(place, given = {}) {
+  if (typeof given !== "object" || given === null || Array.isArray(given))
+    throw wrongUse("expected an object of names and values, not " + nameOf(given));
   const entries = Object.entries(given).filter(([, value]) => value !== undefined);
-  const write = (value) => (value === true ? "yes" : value === false ? "no" : String(value));
   return {
     count: entries.length,
     names: place.texts(entries.map(([name]) => name)),
-    values: place.texts(entries.map(([, value]) => write(value)))
+    values: place.texts(entries.map(([name, value]) => written(name, value)))
   };
 }
