@@ -203,6 +203,7 @@ strut_status strut_write_adjustable(const strut_arguments *arguments, const char
   const char *name = strut_model_name(arguments);
   size_t count = 0;
   *result = NULL;
+  if (strncmp(text, STRUT_FLAT_SCENE, strlen(STRUT_FLAT_SCENE)) == 0) return STRUT_OK;
   strut_status status = strut_scene_source_open(name, text, length, &unused, &tree);
   if (status == STRUT_OK) strut_scene_source_parameters(tree, &count);
   if (status == STRUT_OK && count > 0) {
