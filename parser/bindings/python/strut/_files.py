@@ -24,7 +24,9 @@ def live_script() -> str:
     """The text of strut-live.js: the engine for browsers, in the package or where the program has it."""
     given = os.environ.get("STRUT_LIVE_SCRIPT")
     places = (_HERE / "strut-live.js", *(above / "share/strut/strut-live.js" for above in _HERE.parents))
-    found = pathlib.Path(given) if given else next((place for place in places if place.is_file()), None)
+    found = next((place for place in places if place.is_file()), None)
+    if given:
+        found = pathlib.Path(given)
     if found is None:
         raise FileNotFoundError(
             "live=True needs strut-live.js, which this installation does not have: build it with "
