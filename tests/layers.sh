@@ -66,7 +66,7 @@ breaches() {
       if (!ours) {
         base = name; sub("^suitesparse/", "", base)
         if (quoted) breach("not spelled from the repository root")
-        else if (base in home && from != home[base] && from !~ "^parser/(program|command|bindings/abi)$") breach("belongs to " home[base])
+        else if (base in home && from != home[base] && from !~ "^parser/(program|command|bindings/abi|bindings/web)$") breach("belongs to " home[base])
         else if (base in room_of && index(" " room_of[base] " ", " " stem(file) " ") == 0)
           breach("belongs to " room_of[base])
         next
@@ -76,13 +76,13 @@ breaches() {
       if (to ~ "^tests") { breach("the product includes a test"); next }
       if (from == to) next
       # On top of everything: the program and the shared library, and below both their options.
-      if (from == "parser/program" || from == "parser/bindings/abi") {
+      if (from == "parser/program" || from ~ "^parser/bindings/(abi|web)$") {
         if (to == "parser/program" || to == "parser/bindings/abi") breach("runs up")
         next
       }
       if (from == "parser/command") { if (to == "parser/program" || to == "parser/bindings/abi") breach("runs up"); next }
       # The front door of the libraries names them all, but never the program.
-      if (file == "parser/strut.h") { if (to ~ "^parser/(program|command|bindings/abi)$") breach("runs up"); next }
+      if (file == "parser/strut.h") { if (to ~ "^parser/(program|command|bindings/abi|bindings/web)$") breach("runs up"); next }
       if (from ~ "^parser") {
         if (to == "engine/base" || to == "engine/scene") next
         if (!(from in parser_floor)) breach("a folder without a floor")

@@ -26,24 +26,40 @@ export const SLOW = new Set([
   "run parts/wave-crawler-of-cells.yaml"
 ]);
 
-/** Differ, and why it is thought so; still to be given a tolerance or mended. */
+/**
+ * Differ in last bits, and in what these decide: which saddle a search meets first, how often an adaptive step is
+ * repeated. Functions of the C library (sin, cos, atan2, exp, pow) have other last bits in emscripten's than in the
+ * GNU one: seen for hypot, which is mended; thought of the others, not shown. None may join them unnoticed, and one
+ * that agrees again has to leave.
+ */
 export const DIFFERENT = new Set([
-  /* angles of expressions: sine and cosine of the C library */
+  "equilibria gallery/arch-with-flexure.yaml",
+  "modes gallery/arch-with-flexure.yaml",
+  "path gallery/arch-with-flexure.yaml",
   "equilibria gallery/cauchy-hexagon.yaml",
+  "form gallery/cauchy-hexagon.yaml",
   "modes gallery/cauchy-hexagon.yaml",
   "rigidity gallery/cauchy-hexagon.yaml",
-  "form gallery/cauchy-hexagon.yaml",
   "equilibria gallery/closed-cable-net.yaml",
+  "form gallery/closed-cable-net.yaml",
   "modes gallery/closed-cable-net.yaml",
   "rigidity gallery/closed-cable-net.yaml",
-  "form gallery/closed-cable-net.yaml",
-  /* friction of running cables: exp and atan2 of the C library */
   "path gallery/clustered-cable-with-friction.yaml",
-  /* step control of the method adaptive: cause not yet shown */
-  "run topologies/clipper.yaml",
-  "run topologies/gull.yaml",
-  "run topologies/jib.yaml",
-  "run topologies/nine-member-floor.yaml",
-  "run topologies/nine-member.yaml",
-  "run topologies/prow.yaml"
+  "equilibria gallery/hexagon-swapped.yaml",
+  "form gallery/hexagon-swapped.yaml",
+  "modes gallery/hexagon-swapped.yaml",
+  "rigidity gallery/hexagon-swapped.yaml",
+  "equilibria gallery/hexagon-three-bars.yaml",
+  "form gallery/hexagon-three-bars.yaml",
+  "modes gallery/hexagon-three-bars.yaml",
+  "rigidity gallery/hexagon-three-bars.yaml",
+  "equilibria gallery/jansen-linkage.yaml",
+  "equilibria gallery/t-bar-with-tendon.yaml",
+  "form gallery/t-bar-with-tendon.yaml",
+  "rigidity gallery/t-bar-with-tendon.yaml",
+  "run gallery/t-bar-with-tendon.yaml",
+  "run gallery/voxel-with-network.yaml",
+  "equilibria parts/bistable-lattice.yaml",
+  "equilibria parts/spring-chain.yaml",
+  "run topologies/jib.yaml"
 ]);
