@@ -97,7 +97,7 @@ def faults(folder):
     """What is wrong with the pages of a folder."""
     folder = folder.resolve()
     pages = {path: Page(path.read_text(encoding="utf-8")) for path in sorted(folder.rglob("*.html"))
-             if path.name != "playground.html"}
+             if path.name != "try.html"}
     leads = {}
     for path, page in pages.items():
         name = path.relative_to(folder)
@@ -243,7 +243,7 @@ def check_playground():
     for path in site.rglob("*.html"):
         for link in re.findall(r'class="try" href="([^"]*)"', path.read_text(encoding="utf-8")):
             file, packed = target(path, link)
-            if file != site / "playground.html" or not packed.startswith("s="):
+            if file != site / "try.html" or not packed.startswith("s="):
                 fail(f"{path.name}: the link {link} does not lead to the playground")
                 continue
             data = base64.urlsafe_b64decode(packed[2:] + "=" * (-len(packed[2:]) % 4))

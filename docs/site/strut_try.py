@@ -18,7 +18,7 @@ from html import escape
 from docutils import nodes
 from sphinx.errors import ConfigError
 
-PLAYGROUND = "playground.html"  # on the site
+PLAYGROUND = "try.html"  # on the site, beside the page about it
 DOCUMENT = re.compile(r"^cat\s*>\s*(?P<name>\S+\.yaml)\s*<<\s*'?(?P<end>\w+)'?\n(?P<text>(?:.*\n)*?)(?P=end)$", re.M)
 
 
