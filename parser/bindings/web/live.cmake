@@ -11,7 +11,7 @@ endif()
 
 set(live_dir "${CMAKE_CURRENT_BINARY_DIR}/live")
 set(live_package "${PROJECT_BINARY_DIR}/package")
-set(live_sources client/live.js client/engine.js client/worker.js client/squeeze.mjs package/index.js
+set(live_sources client/live.js client/engine.js client/scale.js client/worker.js client/squeeze.mjs package/index.js
                  package/memory.js)
 list(TRANSFORM live_sources PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
 set(live_head "/* strut ${PROJECT_VERSION} for browsers. SPDX-License-Identifier: GPL-3.0-or-later */")
@@ -23,7 +23,7 @@ add_custom_command(
   COMMAND "${CMAKE_COMMAND}" -E make_directory "${live_dir}/package" "${live_dir}/client"
   COMMAND "${CMAKE_COMMAND}" -E copy package/index.js package/memory.js "${live_package}/strut.mjs"
           "${live_dir}/package"
-  COMMAND "${CMAKE_COMMAND}" -E copy client/live.js client/engine.js client/worker.js "${live_dir}/client"
+  COMMAND "${CMAKE_COMMAND}" -E copy client/live.js client/engine.js client/scale.js client/worker.js "${live_dir}/client"
   COMMAND "${STRUT_NODE}" client/squeeze.mjs "${live_package}/strut.wasm" "${live_dir}/client/strut.wasm.deflated"
   COMMAND ${bundle} "--outfile=${live_dir}/client/worker.bundle" "${live_dir}/client/worker.js"
   COMMAND ${bundle} --loader:.bundle=text --loader:.deflated=base64

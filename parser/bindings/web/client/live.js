@@ -5,14 +5,12 @@
  * compute. The engine is inside this script, deflated, and is unpacked when it is first needed.
  */
 import { Engine, Stopped } from "./engine.js";
+import { STEPS, quantityOf, scaleOf } from "./scale.js";
 import deflated from "./strut.wasm.deflated"; /* base64 */
 import worker from "./worker.bundle"; /* its text */
 
 const page = window.strutPage;
 const PATIENCE = 300; /* [ms] that an answer under way is still waited for once there are newer settings */
-const DECADE = Math.sqrt(10); /* a slider's range is from the value divided by this to the value times this */
-const STEPS = 400, DIGITS = 4;
-const LITERAL = /^([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(?:\s*([^\d\s+*(][^+*(]*))?$/;
 
 /* ---- small elements ---- */
 
@@ -44,48 +42,38 @@ function startWorker() {
 /* A parameter that is an expression of others follows them and has no control. */
 function isDerived(parameter, all) {
   const words = parameter.value === null ? [] : parameter.text.match(/[A-Za-z_]\w*/g) || [];
-  return !LITERAL.test(parameter.text) &&
+  return !quantityOf(parameter.text) &&
     words.some((word) => all.some((other) => other.name === word && other !== parameter));
 }
 
-/* A number and its unit: as written, or in SI units where the text is an expression. */
-function quantityOf({ text, value }) {
-  const [, number, unit] = LITERAL.exec(text.trim()) || [];
-  return number === undefined ? { number: value, unit: "" }
-    : { number: Number(number), unit: (unit || "").trim() };
-}
-
-/* A slider over a decade around the value, and a field for any value. get() is a text for the scene, or null where
-   nothing was changed. */
+/* A slider around the value, and a field for any value. get() is a text for the scene, or null where nothing was
+   changed. An expression is a number in SI units. */
 function numberControl(parameter, changed) {
-  const { number, unit } = quantityOf(parameter), initial = String(number);
-  const slider = make("input", { type: "range", min: -STEPS / 2, max: STEPS / 2, step: 1, value: 0,
-    "aria-label": parameter.name, "aria-valuetext": parameter.text, hidden: number === 0 });
+  const quantity = quantityOf(parameter.text) || { value: parameter.value, unit: "", whole: false };
+  const { unit } = quantity, scale = scaleOf(quantity), initial = String(quantity.value);
+  const slider = make("input", { type: "range", min: 0, max: STEPS, step: 1, value: STEPS / 2,
+    "aria-label": parameter.name, "aria-valuetext": parameter.text });
   const field = make("input", { type: "text", inputMode: "decimal", value: initial, size: 9,
     "aria-label": parameter.name + (unit ? " in " + unit : "") });
-  const describe = () => {
-    slider.setAttribute("aria-valuetext", field.value + (unit ? " " + unit : ""));
+  const show = (text) => {
+    field.value = text;
+    slider.setAttribute("aria-valuetext", text + (unit ? " " + unit : ""));
   };
   slider.addEventListener("input", () => {
-    const at = Number(slider.value);
-    field.value = at === 0 ? initial
-      : String(Number((number * DECADE ** (2 * at / STEPS)).toPrecision(DIGITS - 1)));
-    describe();
+    show(scale.number(Number(slider.value)));
     changed();
   });
   field.addEventListener("change", () => {
-    const ratio = Number(field.value) / number;
-    slider.value = ratio > 0 ? Math.round(STEPS / 2 * Math.log(ratio) / Math.log(DECADE)) : 0;
-    describe();
+    slider.value = scale.place(Number(field.value));
+    show(field.value);
     changed();
   });
   return {
     parts: [slider, make("span", { className: "amount" }, field, unit && make("bdi", {}, page.micro(unit)))],
     get: () => (field.value.trim() === initial ? null : field.value.trim() + (unit ? " " + unit : "")),
     reset() {
-      field.value = initial;
-      slider.value = 0;
-      describe();
+      slider.value = STEPS / 2;
+      show(initial);
     }
   };
 }

@@ -3,33 +3,8 @@
  * Controls of a scene's parameters above the charts: sliders for numbers, a choice for the name of a configuration,
  * a field for anything else. They change settings, as --set does, and not the text until it is asked for.
  */
+import { STEPS, quantityOf, scaleOf } from "../client/scale.js";
 import { keysIn, unquoted, valueAt } from "./language.js";
-
-const STEPS = 1000, DECADES = 1; /* of a slider: below and above the value of the file */
-const NUMBER = /^([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)$/;
-const UNIT = /^[A-Za-z%\u00b0\u00b5][A-Za-z0-9%\u00b0\u00b5^/* .-]*$/;
-
-/* {value, unit, whole} of a text such as "10 Hz"; null where it is no number with a unit. */
-function quantityOf(text) {
-  const match = NUMBER.exec(text);
-  if (!match || (match[2] && !UNIT.test(match[2]))) return null;
-  const value = Number(match[1]);
-  return { value, unit: match[2], whole: !match[2] && /^\d+$/.test(match[1]) && value >= 2 };
-}
-
-/* The scale of a slider around the value of the file: logarithmic, or even around zero. */
-function scaleOf({ value, whole, unit }) {
-  const write = (x) => String(Number(x.toPrecision(4))) + (unit ? " " + unit : "");
-  if (value === 0)
-    return { text: (place) => write(2 * place / STEPS - 1), place: (x) => (x + 1) / 2 * STEPS };
-  return {
-    text(place) {
-      const x = value * Math.pow(10, DECADES * (2 * place / STEPS - 1));
-      return write(whole ? Math.max(1, Math.round(x)) : x);
-    },
-    place: (x) => (x / value > 0 ? (Math.log10(x / value) / DECADES + 1) / 2 * STEPS : 0)
-  };
-}
 
 /** The parameters of a scene: [{name, text}], with the text of the file, or the value in SI units. */
 export function parametersOf(state, names, resolved) {
@@ -74,11 +49,11 @@ export function createSettings({ onChange, onWrite }) {
   }
 
   function addSlider(row, quantity, box) {
-    const scale = scaleOf(quantity);
+    const scale = scaleOf(quantity), unit = quantity.unit ? " " + quantity.unit : "";
     const slider = make("input", { type: "range", min: 0, max: STEPS, step: 1 });
     slider.setAttribute("aria-label", row.name);
     slider.addEventListener("input", () => {
-      row.field.value = scale.text(Number(slider.value));
+      row.field.value = scale.number(Number(slider.value)) + unit;
       change(row, row.field.value);
     });
     row.follow = (text) => {
