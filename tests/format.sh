@@ -16,5 +16,5 @@ if printf 'int  f( void ){return 1;}\n' | "$formatter" --dry-run --Werror >/dev/
   echo "self-test: a badly laid out line passes"
   exit 1
 fi
-find engine parser tests \( -name '*.c' -o -name '*.h' \) -print0 |
+find engine parser tests -name node_modules -prune -o \( -name '*.c' -o -name '*.h' \) -print0 |
   xargs -0 "$formatter" --dry-run --Werror

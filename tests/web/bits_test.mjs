@@ -84,7 +84,7 @@ async function compareModel(path) {
       mine = { failure: error.report.split("\n") };
     }
     const found = difference(mine, byProgram(call, path));
-    if (!found && DIFFERENT.has(name)) wrong.push({ name, program: "the same", module: "the same: no longer to be listed" });
+    if (!found && DIFFERENT.has(name)) wrong.push({ name, program: "the same", module: "the same" });
     else if (!found) same++;
     else (DIFFERENT.has(name) ? known : wrong).push({ name, ...found });
   }
