@@ -36,7 +36,7 @@ void strut_open_report_free(strut_open_report *report);
 strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
                               strut_setup *setup);
 
-/** As strut_open_model, and keeps the file's text[0..length): strut_open_model_text. */
+/** As strut_open_model, and keeps the file's text[0..length), a block of strut_allocate; NULL after a failure. */
 strut_status strut_open_model_keeping(const strut_arguments *arguments, strut_open_purpose purpose,
                                       char **text, size_t *length, strut_setup *setup);
 

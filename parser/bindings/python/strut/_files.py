@@ -19,7 +19,6 @@ models = next(
 )
 
 
-
 def live_script() -> str:
     """The text of strut-live.js: the engine for browsers, in the package or where the program has it."""
     given = os.environ.get("STRUT_LIVE_SCRIPT")

@@ -26,12 +26,10 @@ let engine = null, editor = null, settings = null, found = null, models = null;
 
 /* ---- parts of the page that are packed ---- */
 
-async function unpack(id) {
-  const text = element(id).textContent, packed = atob(text), bytes = new Uint8Array(packed.length);
+function unpack(id) {
+  const text = element(id).textContent;
   element(id).remove();
-  for (let i = 0; i < bytes.length; i++) bytes[i] = packed.charCodeAt(i);
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
-  return new Response(stream).arrayBuffer();
+  return page.inflate(text);
 }
 
 /* ---- status ---- */
