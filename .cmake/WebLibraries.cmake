@@ -150,7 +150,8 @@ strut_debian_source(
   34ecc0f680fd70d2d0ed6f2ba11bbc68b033c7dcfcd4ceafcce84902999429da)
 set(g "${glpk_SOURCE_DIR}/src")
 file(GLOB glpk_sources "${g}/api/advbas.c" "${g}/api/prob*.c" "${g}/bflib/*.c" "${g}/draft/*.c" "${g}/env/*.c" "${g}/misc/*.c"
-     "${g}/npp/*.c" "${g}/simplex/*.c")
+     "${g}/simplex/*.c")
+list(FILTER glpk_sources EXCLUDE REGEX "/spydual.c$") # missing.c
 strut_web_library(glpk_web GLPK::glpk ${glpk_sources})
 target_include_directories(
   glpk_web PUBLIC "${g}" PRIVATE "${g}/api" "${g}/bflib" "${g}/draft" "${g}/env" "${g}/intopt" "${g}/misc" "${g}/npp"

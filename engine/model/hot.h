@@ -31,7 +31,7 @@
  * keeps numbers of long functions in memory, and a page has to be loaded.
  */
 #ifdef __wasm__
-#define STRUT_LOOP static __attribute__((noinline))
+#define STRUT_LOOP static __attribute__((noinline, unused))
 #else
 #define STRUT_LOOP STRUT_INLINE
 #endif

@@ -203,8 +203,8 @@ static const double LEAST_SPLIT = 1e-4;
 static double error_to_reach(double part) { return fmax(1.01, pow(0.9 / part, 5.0)); }
 
 /* What the ends of a step of sufficient accuracy, and stages from `broken` on, say about the time between. */
-STRUT_INLINE void look_between(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                               double h, double broken, unsigned terms) {
+STRUT_LOOP void look_between(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                             double h, double broken, unsigned terms) {
   if (!(l->error <= 1.0)) return;
   double part = model->contacts.count ? earliest_dip(model, state, l, h, terms) : 0.0;
   double slack = l->law_count ? earliest_slack_dip(model, state, l, h) : 0.0;

@@ -95,10 +95,10 @@ STRUT_INLINE void measure_at_end(const strut_contact_table *c, const strut_event
 }
 
 /* Adds the forces of the closed contacts at q, v to `force` and notes them at an end. */
-STRUT_INLINE void add_contact_forces(const strut_model *model, const strut_event_stepper *l,
-                                     const double *restrict q, const double *restrict v,
-                                     double *restrict force, bool damped, strut_step_end *end,
-                                     unsigned terms) {
+STRUT_LOOP void add_contact_forces(const strut_model *model, const strut_event_stepper *l,
+                                   const double *restrict q, const double *restrict v,
+                                   double *restrict force, bool damped, strut_step_end *end,
+                                   unsigned terms) {
   const strut_contact_table *c = &model->contacts;
   strut_touch *restrict touch = end->touch;
   if (frames_of(end, terms)) {
@@ -175,10 +175,10 @@ STRUT_INLINE void keep_ground_motion(const strut_model *model, const strut_state
 }
 
 /* From the forces of the structure in state->latest.force to the acceleration. */
-STRUT_INLINE void accelerate_closed(const strut_model *model, strut_state *state,
-                                    strut_event_stepper *l, const double *restrict q,
-                                    const double *restrict v, double *restrict a,
-                                    strut_step_end *end, unsigned terms, bool balance) {
+STRUT_LOOP void accelerate_closed(const strut_model *model, strut_state *state,
+                                  strut_event_stepper *l, const double *restrict q,
+                                  const double *restrict v, double *restrict a, strut_step_end *end,
+                                  unsigned terms, bool balance) {
   bool sliding = model->terms & terms & STRUT_TERM_SLIDING_MASS;
   if (l->closed_count) add_contact_forces(model, l, q, v, state->latest.force, true, end, terms);
   divide_by_mass(model, state, a, terms);
@@ -189,10 +189,10 @@ STRUT_INLINE void accelerate_closed(const strut_model *model, strut_state *state
 }
 
 /* Acceleration with explicit contact dampers inside a step; contact forces into end->touch. */
-STRUT_INLINE void accelerate_in_modes(const strut_model *model, strut_state *state,
-                                      strut_event_stepper *l, double t, const double *restrict q,
-                                      const double *restrict v, double *restrict a,
-                                      strut_step_end *end, unsigned terms, bool balance) {
+STRUT_LOOP void accelerate_in_modes(const strut_model *model, strut_state *state,
+                                    strut_event_stepper *l, double t, const double *restrict q,
+                                    const double *restrict v, double *restrict a,
+                                    strut_step_end *end, unsigned terms, bool balance) {
   forces_of_structure(model, state, t, q, v, terms, balance);
   keep_ground_motion(model, state, end, terms);
   accelerate_closed(model, state, l, q, v, a, end, terms, balance);
@@ -217,9 +217,9 @@ STRUT_INLINE void settle_band_ties(const strut_model *model, const strut_event_s
 }
 
 /* The same at the end of a step, with all that belongs to that end. */
-STRUT_INLINE void evaluate_step_end(const strut_model *model, strut_state *state,
-                                    strut_event_stepper *l, double t, strut_step_end *end,
-                                    unsigned terms, bool balance) {
+STRUT_LOOP void evaluate_step_end(const strut_model *model, strut_state *state,
+                                  strut_event_stepper *l, double t, strut_step_end *end,
+                                  unsigned terms, bool balance) {
   forces_of_structure(model, state, t, end->q, end->v, terms, balance);
   keep_structure_forces(model, state, end, balance);
   keep_ground_motion(model, state, end, terms);

@@ -28,8 +28,8 @@ STRUT_INLINE void correct(int32_t n, double h, const double *restrict v, const d
                                                                   strut_lanes_load_pairs(a1 + i)));
 }
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double t, double h, unsigned terms, bool balance) {
+STRUT_LOOP void take(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
+                     double h, unsigned terms, bool balance) {
   int32_t n = model->length;
   double *predicted = l->stage[PREDICTED], *a1 = l->next->a;
   bool moves = model->terms & terms & STRUT_TERM_SUPPORT_MOTION;

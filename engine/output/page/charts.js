@@ -232,8 +232,8 @@
         context.initializeMouseDown(event, g, context);
         Dygraph.startZoom(event, g, context);
       },
-      mousemove: Dygraph.defaultInteractionModel.mousemove,
-      mouseup: Dygraph.defaultInteractionModel.mouseup,
+      mousemove: (...given) => Dygraph.defaultInteractionModel.mousemove(...given),
+      mouseup: (...given) => Dygraph.defaultInteractionModel.mouseup(...given),
       dblclick: () => zoomTo(null)
     };
 

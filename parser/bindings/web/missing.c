@@ -5,6 +5,7 @@
 #include <assert.h>
 
 #include "engine/integrate/batch/batch.h"
+#include "engine/integrate/domain_parts.h"
 #include "engine/output/draw/structure.h"
 #include "engine/output/figures/run_figure.h"
 #include "engine/output/figures/statics_figures.h"
@@ -97,3 +98,31 @@ static void no_batch(const strut_batch *b) { assert(false); }
 void strut_batch_rk4_4(strut_batch *b, int64_t count) { no_batch(b); }
 void strut_batch_rk4_8(strut_batch *b, int64_t count) { no_batch(b); }
 void strut_batch_rk4_8_halves(strut_batch *b, int64_t count) { no_batch(b); }
+
+/* Parts of a large structure for threads of their own, of which there is one: the plain steps have the same bits. */
+bool strut_domain_steps_possible(const strut_model *model, const strut_integrator *method) {
+  return false;
+}
+strut_domain_steps *strut_domain_steps_create(const strut_model *model,
+                                              const strut_integrator *method, const int32_t *member,
+                                              int threads) {
+  return NULL;
+}
+void strut_domain_steps_free(strut_domain_steps *steps) {}
+void strut_domain_steps_restart(strut_domain_steps *steps, strut_state *state, double dt) {}
+void strut_domain_steps_advance(strut_domain_steps *steps, strut_state *state, double dt,
+                                int64_t count) {}
+
+/* ---- of GLPK the presolver and the dual simplex method, for which linear_program.c does not ask ---- */
+
+#pragma GCC diagnostic ignored "-Wmissing-prototypes"
+typedef struct NPP NPP;
+typedef struct glp_prob glp_prob;
+NPP *_glp_npp_create_wksp(void) { return NULL; }
+void _glp_npp_load_prob(NPP *npp, glp_prob *problem, int names, int solution, int scaling) {}
+int _glp_npp_simplex(NPP *npp, const void *how) { return 0; }
+void _glp_npp_build_prob(NPP *npp, glp_prob *problem) {}
+void _glp_npp_postprocess(NPP *npp, glp_prob *problem) {}
+void _glp_npp_unload_sol(NPP *npp, glp_prob *problem) {}
+void _glp_npp_delete_wksp(NPP *npp) {}
+int _glp_spy_dual(glp_prob *problem, const void *how) { return 0; }

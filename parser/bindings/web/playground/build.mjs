@@ -114,9 +114,10 @@ async function build() {
   html = fill(html, "<body>", "<body class=\"playground\">\n" + read(join(here, "parts.html")));
   html = fill(html, "<!--strut:data-->", block("strut-data", JSON.stringify(first.data)
     .replace(/[<>&]/g, (c) => "\\u00" + c.charCodeAt(0).toString(16))));
-  const elements = scripts.map((t) => `<script>${t}</script>\n`), own = elements.pop();
-  html = fill(html, "<!--strut:scripts-->", elements.join("") + block("strut-assets", assets) +
-    block("strut-wasm", wasm) + own); /* the first picture is drawn before the rest is read */
+  /* The first picture, which has no charts, is drawn before the rest is read. */
+  const [charts, ...others] = scripts.map((t) => `<script>${t}</script>\n`), own = others.pop();
+  html = fill(html, "<!--strut:scripts-->", others.join("") + charts + block("strut-assets", assets) +
+    block("strut-wasm", wasm) + own);
   writeFileSync(out, html);
   console.log(basename(out) + ": " + Math.round(html.length / 1000) + " kB");
 }
