@@ -13,6 +13,7 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
+import { gzipSync } from "node:zlib";
 
 const [folder, typescript] = process.argv.slice(2).map((path) => resolve(path));
 const strut = await import(pathToFileURL(join(folder, "index.js")).href);
@@ -50,6 +51,11 @@ async function opening(status, ...given) {
 }
 
 /* ---- the package ---- */
+
+test("the module is at most 730 kB when it is loaded", () => {
+  const size = gzipSync(readFileSync(join(folder, "strut.wasm")), { level: 9 }).length;
+  assert.ok(size <= 730000, size + " bytes gzipped");
+});
 
 test("npm packs the files that it names, and the tarball works in an empty folder", () => {
   const empty = mkdtempSync(join(tmpdir(), "strut-npm-"));

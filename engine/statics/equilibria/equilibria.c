@@ -166,7 +166,8 @@ static int compare_candidates(const void *pa, const void *pb) {
   if (stands_a != stands_b) return stands_b - stands_a;
   if (a->e.point.label != b->e.point.label) return (int)a->e.point.label - (int)b->e.point.label;
   if (a->e.energy != b->e.energy) return a->e.energy < b->e.energy ? -1 : 1;
-  return memcmp(&a->e.point.found, &b->e.point.found, sizeof a->e.point.found);
+  int order = memcmp(&a->e.point.found, &b->e.point.found, sizeof a->e.point.found);
+  return order ? order : (a->number > b->number) - (a->number < b->number);
 }
 
 static void link_ends(strut_equilibrium_search *h) {

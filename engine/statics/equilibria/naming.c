@@ -210,6 +210,7 @@ static const double SAME = 1e-7;
 typedef struct unnamed {
   strut_equilibrium *e;
   const char *stem; /* the name without its number */
+  size_t place;     /* in the list; of equals the first stays first, whatever sorts */
 } unnamed;
 
 static int kind_of(const strut_equilibrium *e) {
@@ -279,7 +280,8 @@ static int by_stem(const void *a, const void *b) {
   const unnamed *x = a, *y = b;
   int order = strcmp(x->stem, y->stem);
   if (order) return order;
-  return (x->e->energy > y->e->energy) - (x->e->energy < y->e->energy);
+  if (x->e->energy != y->e->energy) return x->e->energy < y->e->energy ? -1 : 1;
+  return (x->place > y->place) - (x->place < y->place);
 }
 
 static strut_status name_by_contacts(const strut_model *model, size_t count,
@@ -289,7 +291,7 @@ static strut_status name_by_contacts(const strut_model *model, size_t count,
   bool good = rows;
   for (size_t i = 0; i < count && good; i++) {
     if (list[i]->name) continue;
-    rows[rest] = (unnamed){list[i], make_stem(model->scene, list[i], arena)};
+    rows[rest] = (unnamed){list[i], make_stem(model->scene, list[i], arena), i};
     good = rows[rest++].stem;
   }
   if (good && rest) qsort(rows, rest, sizeof *rows, by_stem);
