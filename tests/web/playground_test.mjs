@@ -195,8 +195,8 @@ test("stops a long run and goes on", async ({ page }) => {
   assert.ok(await page.evaluate(() => window.strut.frames) > 1);
 });
 
-test("copies a link that a fresh browser opens", async ({ page, browser }) => {
-  await slide(page, "friction", 600);
+/* The scene by its link in a browser of its own: the same velocity and text. */
+async function followLink(page, browser) {
   await page.click("#link");
   await page.waitForFunction(() => document.getElementById("link").dataset.link);
   const link = await page.$eval("#link", (button) => button.dataset.link), result = await velocity(page);
@@ -205,6 +205,11 @@ test("copies a link that a fresh browser opens", async ({ page, browser }) => {
   assert.equal(await scene(other.page), await scene(page));
   assert.deepEqual(other.faults, []);
   await other.context.close();
+}
+
+test("copies a link that a fresh browser opens", async ({ page, browser }) => {
+  await slide(page, "friction", 600);
+  await followLink(page, browser);
 });
 
 test("shows equilibria, and starts from one", async ({ page }) => {
@@ -258,12 +263,13 @@ test("shows rigidity and form as tables", async ({ page }) => {
   assert.match(await textOf(page, "#found"), /self-stress/);
 });
 
-test("opens several files that are dropped", async ({ page }) => {
+test("opens several files that are dropped, and shares them by a link", async ({ page, browser }) => {
   const text = await scene(page);
   await drop(page, { "crawler.yaml": text, "mine.yaml": "strut: 1\nbase: crawler.yaml\nname: Mine\n" });
   assert.equal(await textOf(page, "#file-name"), "mine.yaml");
   assert.equal(await page.evaluate(() => window.strut.data.name), "Mine");
   assert.match(await textOf(page, "#file-others"), /crawler\.yaml/);
+  await followLink(page, browser);
 });
 
 test("a hostile name stays text", async ({ page, browser }) => {

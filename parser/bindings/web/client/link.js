@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * A scene in a link: #s=TEXT, where TEXT is {text, name, settings} as JSON in UTF-8, deflated (raw, RFC 1951), in
- * base64url without padding. Further pairs may follow, such as &embed=1.
+ * A scene in a link: #s=TEXT, where TEXT is {text, name, settings, files} as JSON in UTF-8, deflated (raw, RFC 1951),
+ * in base64url without padding. Further pairs may follow, such as &embed=1.
  */
 
 const MOST_BYTES = 4e6; /* of a scene that a link may unpack to */
@@ -21,9 +21,9 @@ function fromBase64(text) {
   return Uint8Array.from(whole, (letter) => letter.charCodeAt(0));
 }
 
-/** The fragment of a link to a state {text, name, settings}: "#s=...". */
-export async function encodeLink({ text, name, settings }) {
-  const bytes = new TextEncoder().encode(JSON.stringify({ text, name, settings }));
+/** The fragment of a link to a state {text, name, settings, files}: "#s=...". */
+export async function encodeLink({ text, name, settings, files }) {
+  const bytes = new TextEncoder().encode(JSON.stringify({ text, name, settings, files }));
   const packed = await through(bytes, new CompressionStream("deflate-raw"));
   return "#s=" + toBase64(new Uint8Array(await packed.arrayBuffer()));
 }
@@ -46,11 +46,11 @@ async function unpack(bytes) {
   }
 }
 
-const plainSettings = (given) => Object.fromEntries(Object.entries(given || {})
+const texts = (given) => Object.fromEntries(Object.entries(given || {})
   .filter(([, value]) => typeof value === "string" || typeof value === "number")
   .map(([name, value]) => [name, String(value)]));
 
-/** The state of a fragment {text, name, settings}, or null where it has none; an error where it is damaged. */
+/** The state of a fragment {text, name, settings, files}, or null where it has none; an error where it is damaged. */
 export async function decodeLink(fragment) {
   const packed = new URLSearchParams(fragment.replace(/^#/, "")).get("s");
   if (!packed) return null;
@@ -62,5 +62,5 @@ export async function decodeLink(fragment) {
   }
   if (typeof state.text !== "string") throw new Error("the link is damaged: it has no scene");
   return { text: state.text, name: String(state.name || "scene.yaml"),
-    settings: plainSettings(state.settings) };
+    settings: texts(state.settings), files: texts(state.files) };
 }

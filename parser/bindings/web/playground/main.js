@@ -314,13 +314,11 @@ async function openLink() {
 /* ---- buttons and keys ---- */
 
 async function copyLink() {
-  const { text, name, settings: given } = sceneNow(), accuracy = element("accuracy").value;
-  const fragment = await encodeLink({ text, name, settings: given });
+  const accuracy = element("accuracy").value, fragment = await encodeLink(sceneNow());
   const link = location.href.replace(/#.*$/, "") + fragment +
     (accuracy ? "&accuracy=" + encodeURIComponent(accuracy) : "");
   element("link").dataset.link = link;
   copyText(link, element("link"));
-  if (Object.keys(state.files).length) say("The link holds the scene alone, without the files that it names.");
 }
 
 function saveScene() {
