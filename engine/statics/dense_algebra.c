@@ -7,10 +7,12 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "engine/model/hot.h"
+
 enum { MOST_STEPS = 80 };
 
 /* Row i becomes the vector of the reflection that clears it, by way of d (its entries) and e. */
-static void reflect_row(double *z, size_t n, size_t i, double scale, double *d, double *e) {
+STRUT_INLINE void reflect_row(double *z, size_t n, size_t i, double scale, double *d, double *e) {
   double h = 0.0, f, g;
   for (size_t k = 0; k < i; k++) d[k] /= scale, h += d[k] * d[k];
   f = d[i - 1];
@@ -43,6 +45,7 @@ static void reflect_row(double *z, size_t n, size_t i, double scale, double *d, 
 }
 
 /* The matrix as diagonal d and off-diagonal e[1..n-1]; z keeps the reflections. */
+STRUT_CLONES
 static void reduce(double *z, size_t n, double *d, double *e) {
   for (size_t j = 0; j < n; j++) d[j] = z[j * n + n - 1];
   for (size_t i = n - 1; i > 0; i--) {
@@ -62,6 +65,7 @@ static void reduce(double *z, size_t n, double *d, double *e) {
 }
 
 /* The product of the reflections into z, transposed; d becomes the diagonal. */
+STRUT_CLONES
 static void accumulate(double *z, size_t n, double *d, double *e) {
   for (size_t i = 0; i + 1 < n; i++) {
     double h = d[i + 1], *next = z + (i + 1) * n;
@@ -86,7 +90,7 @@ static void accumulate(double *z, size_t n, double *d, double *e) {
   e[n - 1] = 0.0;
 }
 
-static void rotate(double *lower, double *upper, size_t n, double c, double s) {
+STRUT_INLINE void rotate(double *lower, double *upper, size_t n, double c, double s) {
   for (size_t k = 0; k < n; k++) {
     double h = upper[k];
     upper[k] = s * lower[k] + c * h;
@@ -95,7 +99,8 @@ static void rotate(double *lower, double *upper, size_t n, double c, double s) {
 }
 
 /* One QL step on rows l to m; `shift` gathers what was taken off the diagonal. */
-static void step(double *z, size_t n, size_t l, size_t m, double *d, double *e, double *shift) {
+STRUT_INLINE void step(double *z, size_t n, size_t l, size_t m, double *d, double *e,
+                       double *shift) {
   double g = d[l], p = (d[l + 1] - g) / (2.0 * e[l]), r = sqrt(p * p + 1.0);
   if (!(r <= DBL_MAX)) r = fabs(p);
   if (p < 0) r = -r;
@@ -121,6 +126,7 @@ static void step(double *z, size_t n, size_t l, size_t m, double *d, double *e, 
   d[l] = c * p;
 }
 
+STRUT_CLONES
 static bool diagonalise(double *z, size_t n, double *d, double *e) {
   double shift = 0.0, largest = 0.0;
   for (size_t l = 0; l < n; l++) {
@@ -143,7 +149,8 @@ bool strut_eigen(double *matrix, int32_t rows, double *value, double *work) {
   double largest = 0.0;
   int power = 0;
   if (n == 0) return true;
-  for (size_t i = 0; i < n * n; i++) largest = fmax(largest, fabs(matrix[i]));
+  for (size_t i = 0; i < n * n; i++)
+    if (fabs(matrix[i]) > largest) largest = fabs(matrix[i]);
   /* squares must neither overflow nor vanish */
   if (largest > 0) frexp(largest, &power);
   bool scaled = power > 400 || power < -400;
