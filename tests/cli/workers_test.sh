@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Searches by several workers at once: the files of one process, byte for byte, no point computed twice, whoever
 # is killed and when; and the searches that workers cannot share.
+# shellcheck disable=SC2086  # several processes are meant
 . "$(dirname "$0")/lib.sh"
 sed 's/^  seconds: 0.5/&\n  friction: 0.3/; s/mu: 0.3/mu: friction/' "$here/hopper.yaml" >model.yaml
 
