@@ -25,8 +25,8 @@ static const strut_option options[] = {
      "points per thread in lockstep: 1, 2, 4 or 8 (default automatic)"},
     {STRUT_OPTION_RETRY, "retry", NULL, "recompute points that failed"},
     {STRUT_OPTION_SHARD, "shard", "K/N",
-     "only points K, K+N, K+2N, ... with K from 0 to N-1; or slurm/N, pbs/N, torque/N, lsf/N, "
-     "sge/N, kubernetes/N, env:VARIABLE/N"},
+     "only points K, K+N, K+2N, ... with K from 0 to N-1, of a search as one of N workers; or "
+     "slurm/N, pbs/N, torque/N, lsf/N, sge/N, kubernetes/N, env:VARIABLE/N"},
     {STRUT_OPTION_EMIT, "emit", "KIND",
      "only print a cluster script: slurm, parallel (GNU parallel) or htcondor"},
     {STRUT_OPTION_SHARDS, "shards", "N", "with --emit: number of shards"},
@@ -53,7 +53,7 @@ static const char *inside(strut_sweep_study *study, const char *directory, const
   return strut_arena_format(&study->plan.arena, "%s/%s", directory, name);
 }
 
-/* Finds the shard that --shard names, and the file of its slots. */
+/* Finds the shard that --shard names, and the file of its slots, which the workers of a search share. */
 static strut_status find_shard(const strut_arguments *arguments, strut_sweep_study *study,
                                strut_shard *shard, const char **path) {
   const strut_array_task task = {
@@ -69,8 +69,9 @@ static strut_status find_shard(const strut_arguments *arguments, strut_sweep_stu
   *shard = (strut_shard){0};
   strut_status status = text ? strut_shard_read(text, &task, shard, &error) : STRUT_OK;
   if (status) return strut_print_failure(status, &error);
-  if (shard->count) strut_shard_points(*shard, &study->slots);
-  *path = strut_shard_path(arguments->output, *shard, &study->plan.arena);
+  const strut_shard part = study->plan.study->search ? (strut_shard){0} : *shard;
+  if (part.count) strut_shard_points(part, &study->slots);
+  *path = strut_shard_path(arguments->output, part, &study->plan.arena);
   return *path ? STRUT_OK : strut_print_out_of_memory();
 }
 
@@ -303,18 +304,25 @@ static strut_status emit_script(const strut_arguments *arguments, const strut_st
 }
 
 /* A search decides by each point where the next one is. */
-static strut_status check_search(const strut_arguments *arguments) {
-  const char *option = arguments->retry                                   ? "--retry"
-                       : strut_option_text(arguments, STRUT_OPTION_SHARD) ? "--shard"
-                       : strut_option_text(arguments, STRUT_OPTION_EMIT)  ? "--emit"
-                                                                          : NULL;
-  if (!option) return STRUT_OK;
-  fprintf(
-      stderr,
-      "strut sweep: %s cannot be used with a study that searches: each of its points depends on "
-      "those before it\n",
-      option);
-  return STRUT_USAGE;
+static strut_status check_search(const strut_arguments *arguments, strut_sweep_study *study) {
+  if (arguments->retry) {
+    fputs(
+        "strut sweep: --retry cannot be used with a study that searches: each of its points "
+        "depends on those before it\n",
+        stderr);
+    return STRUT_USAGE;
+  }
+  bool several = strut_option_text(arguments, STRUT_OPTION_SHARD) ||
+                 strut_option_text(arguments, STRUT_OPTION_EMIT);
+  return several ? strut_sweep_search_check_workers(study) : STRUT_OK;
+}
+
+static strut_status compute_search(const strut_arguments *arguments, strut_sweep_study *study,
+                                   int batch) {
+  strut_shard worker;
+  const char *path;
+  strut_status status = find_shard(arguments, study, &worker, &path);
+  return status ? status : strut_sweep_search(arguments, study, worker, batch);
 }
 
 /* The branches of all points go into one folder. */
@@ -403,7 +411,7 @@ static strut_status run_sweep(const strut_arguments *given) {
         stderr);
     status = STRUT_USAGE;
   }
-  if (!status && study.plan.study->search) status = check_search(arguments);
+  if (!status && study.plan.study->search) status = check_search(arguments, &study);
   if (!status && study.plan.study->follow) status = check_follow(arguments);
   if (!status && arguments->count_points)
     status = strut_print_block(strut_sweep_count_report(&study.plan, arguments->json));
@@ -412,7 +420,7 @@ static strut_status run_sweep(const strut_arguments *given) {
   else if (!status && arguments->status)
     status = show_status(arguments, &study);
   else if (!status && study.plan.study->search)
-    status = strut_sweep_search(arguments, &study, (int)batch);
+    status = compute_search(arguments, &study, (int)batch);
   else if (!status && study.plan.study->follow)
     status = strut_sweep_follow(arguments, &study);
   else if (!status)
@@ -495,7 +503,8 @@ const strut_command strut_command_merge = {
         "\nDIR is the --output of the shards. All shards must be present, complete, and of the "
         "same\n"
         "study, model and version of strut. DIR/table.csv is then byte for byte the table of an\n"
-        "undivided sweep; otherwise the command reports what is missing.\n"
+        "undivided sweep; otherwise the command reports what is missing. The workers of a search\n"
+        "write its files themselves: the command then reports whether they have.\n"
         "\nExit code: 3 if points of the study failed, 4 if shards or points are missing, else 5 "
         "if\n"
         "points are less accurate than requested.\n",

@@ -101,9 +101,14 @@ void strut_sweep_print_warnings(const strut_sweep_state *state);
 /** Prints how many points failed or are inaccurate on stderr; the status that follows from it. */
 strut_status strut_sweep_judge(int64_t points, int64_t failed, int64_t inaccurate);
 
-/** Does what the command does with a study that searches, once it is open. */
+/** STRUT_BAD_SCENE, with a message on stderr, where several workers could not share the search. */
+strut_status strut_sweep_search_check_workers(strut_sweep_study *study);
+/**
+ * Does what the command does with a study that searches, once it is open. A shard is one of the workers that
+ * share the points at the same time, each of which writes all files at the end, with the same bytes.
+ */
 strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
-                                int batch);
+                                strut_shard worker, int batch);
 /** Prints how far the searches in a directory are. */
 strut_status strut_sweep_search_status(strut_slots *slots, const char *directory, bool json);
 /** Adds the columns of a study that follows motions, and checks that its first point has some. */

@@ -23,14 +23,14 @@ static const double FIRST_PARTIAL = 2.0, RAREST_PARTIAL = 60.0;
 typedef struct display {
   strut_sweep_progress progress;
   strut_slots *slots;
-  const char *directory;
+  const char *directory; /* NULL: no partial table, of one of several workers */
   double next, interval; /* [s] since it began */
 } display;
 
 static void show(void *context, const strut_sweep_state *state) {
   display *d = context;
   strut_sweep_progress_show(&d->progress, state);
-  if (state->seconds < d->next) return;
+  if (!d->directory || state->seconds < d->next) return;
   strut_slots *const sources[] = {d->slots};
   strut_study_table_write_partial(d->directory, partial_name, sources, 1, NULL, NULL);
   if (d->interval < RAREST_PARTIAL) d->interval *= 2.0;
@@ -49,24 +49,24 @@ static void write_partial(const char *directory, strut_slots *slots) {
 }
 
 static strut_status run_search(const strut_arguments *arguments, strut_sweep_study *study,
-                               int batch, strut_slots *slots, strut_sweep_state *state,
-                               strut_search_result *result, strut_error *error) {
+                               strut_sweep_options *how, strut_slots *slots,
+                               strut_sweep_state *state, strut_search_result *result,
+                               strut_error *error) {
   display shown = {.progress = strut_sweep_progress_begin(&study->plan, arguments->quiet),
                    .slots = slots,
-                   .directory = arguments->output,
+                   .directory = how->workers ? NULL : arguments->output,
                    .next = FIRST_PARTIAL,
                    .interval = FIRST_PARTIAL};
-  const strut_sweep_options how = {.batch = batch,
-                                   .interrupt = strut_interrupt_watch(),
-                                   .progress = show,
-                                   .progress_context = &shown};
+  how->interrupt = strut_interrupt_watch();
+  how->progress = show;
+  how->progress_context = &shown;
   strut_status status = strut_sweep_texts_write(arguments, study, error);
-  if (!status) status = strut_search_run(&study->plan, slots, &how, state, result, error);
+  if (!status) status = strut_search_run(&study->plan, slots, how, state, result, error);
   strut_sweep_progress_end(&shown.progress);
   strut_error late = {0};
   strut_status synced = strut_slots_sync(slots, &late);
   if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
-  if (status && state->done > 0) write_partial(arguments->output, slots);
+  if (status && shown.directory && state->done > 0) write_partial(arguments->output, slots);
   if (status == STRUT_INTERRUPTED)
     strut_fail(error, status, "interrupted after %lld points; the same command resumes",
                (long long)state->done);
@@ -194,10 +194,11 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
   const char *table =
       strut_arena_format(&study->plan.arena, "%s/%s", arguments->output, table_name);
   if (!table) return strut_print_out_of_memory();
-  strut_status status =
-      strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
-  if (!status) status = write_best_rows(arguments, slots, result, &error);
+  strut_status status = write_best_rows(arguments, slots, result, &error);
   if (!status) status = write_best_scenes(arguments, &study->plan, result, &best, &error);
+  if (!status) /* last, as a sign that the searches are finished */
+    status =
+        strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
   if (status) return strut_print_failure(status, &error);
   strut_file_remove(arguments->output, partial_name);
   status = strut_sweep_figures_draw(&study->plan, arguments->output, table, NULL);
@@ -219,13 +220,19 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
   return STRUT_INACCURATE;
 }
 
+/* The table is written at the end. */
+static bool is_finished(const char *directory) {
+  strut_arena arena = {0};
+  const char *table = strut_arena_format(&arena, "%s/%s", directory, table_name);
+  bool finished = table && access(table, F_OK) == 0;
+  strut_arena_free(&arena);
+  return finished;
+}
+
 strut_status strut_sweep_search_status(strut_slots *slots, const char *directory, bool json) {
   char text[300];
-  strut_arena arena = {0};
   const strut_slots_description *plan = strut_slots_description_of(slots);
-  const char *table = strut_arena_format(&arena, "%s/%s", directory, table_name);
-  if (!table) return strut_print_out_of_memory();
-  bool over = access(table, F_OK) == 0; /* written at the end */
+  bool over = is_finished(directory);
   long long failed = (long long)strut_slots_failed(slots);
   long long done = (long long)(plan->count - strut_slots_missing(slots));
   snprintf(text, sizeof text,
@@ -235,26 +242,45 @@ strut_status strut_sweep_search_status(strut_slots *slots, const char *directory
            json   ? over ? "true" : "false"
            : over ? "the searches are finished"
                   : "the searches are not finished");
-  strut_arena_free(&arena);
   return strut_print(text);
 }
 
+strut_status strut_sweep_search_check_workers(strut_sweep_study *study) {
+  static const char *const words[] = {
+#define STRUT_SEARCH_METHOD_WORD(name, word) word,
+      STRUT_SEARCH_METHOD_TABLE(STRUT_SEARCH_METHOD_WORD)
+#undef STRUT_SEARCH_METHOD_WORD
+  };
+  strut_study_file *file = &study->file;
+  if (strut_search_is_parallel(&study->plan)) return STRUT_OK;
+  const strut_tree *search = strut_tree_find(file->document.root, "search", NULL);
+  const strut_tree *method = strut_tree_find(search, "method", NULL);
+  strut_diagnose(&file->diagnostics, (method ? method : search)->place,
+                 "workers cannot share a search by '%s', which computes one point after another: "
+                 "give 'starts' for several searches side by side, or the method 'cma'",
+                 words[file->study.search->method]);
+  return strut_sweep_study_report(study, STRUT_BAD_SCENE, &(strut_error){0});
+}
+
 strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
-                                int batch) {
+                                strut_shard worker, int batch) {
   strut_slots *slots = NULL;
   strut_sweep_state state = {0};
   strut_search_result result = {0};
   strut_error error = {0};
   const char *path = strut_shard_path(arguments->output, (strut_shard){0}, &study->plan.arena);
   if (!path) return strut_print_out_of_memory();
+  strut_sweep_options how = {.batch = batch, .worker = worker.index, .workers = worker.count};
   strut_status status = strut_sweep_texts_check(arguments, study, &error);
   if (!status) status = strut_sweep_figures_check_files(&study->plan, arguments->output, &error);
   if (!status) status = strut_directory_create(arguments->output, &error);
   if (!status) status = strut_shard_begin(arguments->output, (strut_shard){0}, &error);
-  if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
+  if (!status)
+    status = (worker.count ? strut_slots_open_shared : strut_slots_open)(path, &study->slots,
+                                                                         &slots, &error);
   if (!status && strut_slots_missing(slots) == strut_slots_description_of(slots)->count)
     strut_file_remove(arguments->output, table_name); /* of another search */
-  if (!status) status = run_search(arguments, study, batch, slots, &state, &result, &error);
+  if (!status) status = run_search(arguments, study, &how, slots, &state, &result, &error);
   strut_sweep_print_warnings(&state);
   strut_print_failure(status, &error);
   if (!status) status = complete(arguments, study, slots, &state, &result);
@@ -358,6 +384,19 @@ static strut_status merge_shards(const strut_sweep_study *study, const char *dir
   return status;
 }
 
+/* Each worker of a search writes all files itself. Has one? */
+static strut_status check_searches(const char *directory, bool quiet) {
+  strut_error error = {0};
+  if (!is_finished(directory))
+    return strut_print_failure(
+        strut_fail(&error, STRUT_FILE_TROUBLE,
+                   "'%s': the searches are not finished: run the study again to resume them",
+                   directory),
+        &error);
+  if (!quiet) printf("%s/%s: the searches are finished\n", directory, table_name);
+  return STRUT_OK;
+}
+
 strut_status strut_sweep_refine_merge(const strut_arguments *arguments, bool *merged) {
   strut_sweep_study study = {0};
   strut_arena arena = {0};
@@ -375,11 +414,7 @@ strut_status strut_sweep_refine_merge(const strut_arguments *arguments, bool *me
   *merged = !status && study.file.study.refine.depth > 0;
   if (!status && study.file.study.search) {
     *merged = true;
-    strut_fail(&error, STRUT_USAGE,
-               "'%s' has the results of a search, which are never in shards: 'strut sweep' writes "
-               "their table",
-               directory);
-    status = strut_print_failure(STRUT_USAGE, &error);
+    status = check_searches(directory, arguments->quiet);
     strut_study_close(&study.file);
     strut_arena_free(&arena);
     return status;

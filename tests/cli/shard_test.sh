@@ -118,6 +118,16 @@ code=$?
 [ "$(cat "a 'folder'/it's here/condor/words")" = "-f -maxjobs 2 study.dag" ] || fail "words for HTCondor"
 grep -qx 'request_memory = 2G' "a 'folder'/it's here/condor/shards.sub" || fail "no memory asked for"
 [ -s "a 'folder'/it's here/table.csv" ] || fail "HTCondor's jobs leave no table"
+sed '/^axes:/,/friction/d' study.yaml >search.yaml
+cat >>search.yaml <<'END'
+search: {maximise: velocity, over: {stiffness: {from: 100 N/m, to: 800 N/m}}, method: cma, evaluations: 16}
+END
+expect 0 sweep search.yaml -o search --quiet
+expect 0 sweep search.yaml -o search-condor --emit htcondor --shards 2
+PATH=$work/condor-bin:$PATH sh out >said 2>err || fail "the script of a search ends with $?"
+grep -q 'search-condor/table.csv: the searches are finished' said || fail "HTCondor's merge of a search"
+rm -r search-condor/condor
+diff -r -x .strut-files search search-condor >out 2>&1 || fail "HTCondor's jobs find something else"
 expect 1 sweep study.yaml -o x --emit htcondor --shards 3 --time 10
 err_has "--time is for --emit slurm"
 

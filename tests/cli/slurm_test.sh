@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A study through a real Slurm of its own on this machine: an array of shards of which one is killed
-# half way and another runs out of time, sent again, merged; the table is that of an undisturbed run.
+# half way and another runs out of time, sent again, merged; the table is that of an undisturbed run. Then a
+# search by workers of which one is killed.
 for program in slurmctld slurmd sbatch munged; do
   command -v $program >/dev/null || {
     echo "skipped: Slurm is not installed (no $program)"
@@ -128,6 +129,13 @@ submit() {
   table=$(sed -n 's/.*their table is job \([0-9]*\)$/\1/p' "$work/out")
   { [ -n "$shards" ] && [ -n "$table" ]; } || give_up "the script does not name its jobs"
 }
+# kill_task TASK: kills its strut, not its script.
+kill_task() {
+  for process in $(scontrol listpids "$(squeue --noheader --jobs="${shards}_$1" -o %A)" |
+    awk 'NR > 1 && $1 > 0 { print $1 }'); do
+    [ "$(cat "/proc/$process/comm")" != strut ] || kill -KILL "$process"
+  done
+}
 # begun SHARD: some points of it are done, but not all.
 begun() {
   "$strut" sweep study.yaml -o out --shard "$1/4" --status --json |
@@ -139,10 +147,7 @@ begun() {
 grep -q '^#SBATCH --array=0-3$' job.sh || fail "no array"
 submit
 wait_for 60 begun 1 || give_up "shard 1 does not begin"
-for process in $(scontrol listpids "$(squeue --noheader --jobs="${shards}_1" -o %A)" |
-  awk 'NR > 1 && $1 > 0 { print $1 }'); do
-  [ "$(cat "/proc/$process/comm")" != strut ] || kill -KILL "$process"
-done
+kill_task 1
 wait_for 60 begun 2 || give_up "shard 2 does not begin"
 scancel --signal=USR1 --batch "${shards}_2" # what Slurm sends before the time is over
 requeued() { [ "$(scontrol show job "${shards}_2" | grep -c 'Restarts=1')" -eq 1 ]; }
@@ -171,4 +176,28 @@ cp "out/slurm-$table-merge.log" "$work/out"
 out_has "out/table.csv: 24 points of 4 shards"
 same out/table.csv whole/table.csv
 [ "$(state "$table")" = "FAILED 3:0 " ] || fail "the merge: $(state "$table")"
+
+cat >search.yaml <<'END'
+strut: 1
+study: best hops
+model: it's a model.yaml
+set: {seconds: 60}
+search: {maximise: velocity, over: {stiffness: {from: 100 N/m, to: 800 N/m}}, method: cma, evaluations: 64}
+keep: [velocity]
+END
+expect 0 sweep search.yaml -o best-alone --quiet
+"$strut" sweep search.yaml -o best --emit slurm --shards 3 --time 10 >job.sh || give_up "no script"
+submit
+searching() { "$strut" sweep search.yaml -o best --status --json | grep -qE '"done": ([5-9]|..)'; }
+wait_for 60 searching || give_up "the search does not begin"
+kill_task 0
+wait_for 300 over "$shards" || give_up "the search does not end"
+wait_for 30 over "$table" || give_up "the last job does not end"
+[ "$(state "${shards}_0")" = "FAILED 137:0 " ] || fail "worker 0: $(state "${shards}_0")"
+for task in 1 2; do
+  [ "$(state "${shards}_$task")" = "COMPLETED 0:0 " ] || fail "worker $task: $(state "${shards}_$task")"
+done
+[ "$(state "$table")" = "COMPLETED 0:0 " ] || fail "the last job: $(state "$table")"
+rm best/slurm-*.log
+diff -r -x .strut-files best-alone best >"$work/out" 2>&1 || fail "the workers find something else"
 done_testing

@@ -362,6 +362,17 @@ TEST(one_writer_at_a_time) {
   scratch_remove();
 }
 
+/* The bytes of the file are those of one process that is not disturbed. */
+static void check_file(const char *path, int64_t points) {
+  size_t first = 0, second = 0;
+  make_file(scratch_path("b"), points);
+  char *a = scratch_read(path, &first), *b = scratch_read(scratch_path("b"), &second);
+  assert_int_equal(first, second);
+  assert_memory_equal(a, b, first);
+  free(a);
+  free(b);
+}
+
 /* Processes killed while they write, each going on from the last. */
 TEST(killed_and_resumed) {
   enum { POINTS = 3000 };
@@ -391,13 +402,98 @@ TEST(killed_and_resumed) {
     strut_slots_close(slots);
     assert_true(++kills < 10000);
   }
-  make_file(scratch_path("b"), POINTS);
-  size_t first = 0, second = 0;
-  char *a = scratch_read(path, &first), *b = scratch_read(scratch_path("b"), &second);
-  assert_int_equal(first, second);
-  assert_memory_equal(a, b, first);
-  free(a);
-  free(b);
+  check_file(path, POINTS);
+  scratch_remove();
+}
+
+static strut_slots *share_slots(const char *path, const strut_slots_description *plan) {
+  strut_slots *slots = NULL;
+  return strut_slots_open_shared(path, plan, &slots, NULL) ? NULL : slots;
+}
+
+/* In a process of its own: claims 3, puts 4, tells so, and stays until it is killed. */
+static void hold_points(const char *path, const strut_slots_description *plan, int tell) {
+  strut_slots *slots = share_slots(path, plan);
+  bool fine = slots && strut_slots_claim(slots, 3) && strut_slots_claim(slots, 4) &&
+              put(slots, 4, NULL) == STRUT_OK;
+  alarm(60); /* should the test fail */
+  if (write(tell, fine ? "y" : "n", 1) == 1) pause();
+  _exit(1);
+}
+
+TEST(claims_end_with_their_process) {
+  scratch_make();
+  const char *path = scratch_path("a");
+  strut_slots_description plan = a_plan(9);
+  char told = 0;
+  int ends[2], how;
+  assert_int_equal(pipe(ends), 0);
+  strut_slots *slots = share_slots(path, &plan);
+  assert_non_null(slots);
+  pid_t child = fork();
+  if (child == 0) hold_points(path, &plan, ends[1]);
+  assert_int_equal(read(ends[0], &told, 1), 1);
+  assert_int_equal(told, 'y');
+  assert_false(strut_slots_claim(slots, 3));
+  assert_false(strut_slots_done(slots, 3));
+  assert_false(strut_slots_done(slots, 4)); /* not read yet */
+  assert_false(strut_slots_claim(slots, 4));
+  check_row(slots, 4);
+  assert_int_equal(strut_slots_failed(slots), 1);
+  assert_true(strut_slots_claim(slots, 5));
+  pid_t other = fork();
+  if (other == 0) {
+    strut_slots *alone = NULL;
+    _exit(strut_slots_open(path, &plan, &alone, NULL) == STRUT_FILE_TROUBLE ? 0 : 1);
+  }
+  waitpid(other, &how, 0);
+  assert_true(WIFEXITED(how) && WEXITSTATUS(how) == 0);
+  kill(child, SIGKILL);
+  waitpid(child, &how, 0);
+  assert_true(strut_slots_claim(slots, 3));
+  assert_int_equal(put(slots, 3, NULL), STRUT_OK);
+  assert_int_equal(strut_slots_missing(slots), 7);
+  strut_slots_close(slots);
+  close(ends[0]);
+  close(ends[1]);
+  scratch_remove();
+}
+
+/* A worker: computes all that nobody else does. Returns how many points it left to others. */
+static int64_t share_work(const char *path, const strut_slots_description *plan) {
+  strut_slots *slots = share_slots(path, plan);
+  int64_t left = 0;
+  for (int64_t i = 0; slots && i < plan->count; i++) {
+    if (strut_slots_claim(slots, i) && put(slots, i, NULL)) return -1;
+    left += !strut_slots_done(slots, i);
+  }
+  strut_slots_close(slots);
+  return slots ? left : -1;
+}
+
+/* Three at once begin the same file, all killed again and again. */
+TEST(workers_killed_and_resumed) {
+  enum { POINTS = 3000, WORKERS = 3 };
+  scratch_make();
+  const char *path = scratch_path("a");
+  strut_slots_description plan = a_plan(POINTS);
+  for (int round = 0; round < 40; round++) {
+    pid_t child[WORKERS];
+    for (int k = 0; k < WORKERS; k++) {
+      child[k] = fork();
+      if (child[k] == 0) _exit(share_work(path, &plan) < 0 ? 1 : 0);
+    }
+    struct timespec pause = {0, 200000 + 100000 * (round % 17)};
+    nanosleep(&pause, NULL);
+    for (int k = 0; k < WORKERS; k++) {
+      int how = 0;
+      kill(child[k], SIGKILL);
+      waitpid(child[k], &how, 0);
+      assert_true(WIFSIGNALED(how) || WEXITSTATUS(how) == 0);
+    }
+  }
+  assert_int_equal(share_work(path, &plan), 0);
+  check_file(path, POINTS);
   scratch_remove();
 }
 

@@ -16,7 +16,7 @@ enum { BLOCK_BYTES = 1 << 14, BITS = 64 };
 
 struct strut_slots {
   int descriptor;
-  bool writes;
+  bool writes, shared;
   atomic_bool unsynced; /* rows were written since the last sync */
   char *path;
   strut_slots_description plan;
@@ -124,9 +124,14 @@ static strut_status prepare(strut_slots *s, strut_error *error) {
   return STRUT_OK;
 }
 
-/* Locks the file against other writers. Without file locks both would write the same bytes. */
+/*
+ * Locks the file against other writers, a shared one only against those that do not share it. Without file
+ * locks all would write the same bytes.
+ */
 static strut_status lock(const strut_slots *s, strut_error *error) {
-  struct flock wanted = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+  struct flock wanted = {.l_type = s->shared ? F_RDLCK : F_WRLCK,
+                         .l_whence = SEEK_SET,
+                         .l_len = s->shared ? 1 : 0}; /* 0: all of it */
   if (fcntl(s->descriptor, F_SETLK, &wanted) == 0 || (errno != EACCES && errno != EAGAIN))
     return STRUT_OK;
   char who[48] = "another process";
@@ -136,7 +141,10 @@ static strut_status lock(const strut_slots *s, strut_error *error) {
                     who, s->path);
 }
 
-/* The header of a new file, or of one whose header was never finished. */
+/*
+ * The header of a new file, or of one whose header was never finished. It covers all that is there, so that
+ * those who share a file may begin it at the same time.
+ */
 static strut_status begin(strut_slots *s, const strut_slots_description *plan, strut_error *error) {
   s->plan = *plan;
   if (!strut_slots_own(&s->plan, &s->arena)) return no_memory(error, s->path);
@@ -144,8 +152,7 @@ static strut_status begin(strut_slots *s, const strut_slots_description *plan, s
   if (status != STRUT_OK) return status;
   unsigned char *header = strut_slots_header(&s->plan, &s->layout, &s->arena);
   if (!header) return no_memory(error, s->path);
-  if (ftruncate(s->descriptor, 0) != 0 ||
-      !strut_slots_pwrite(s->descriptor, header, s->layout.header_bytes, 0) ||
+  if (!strut_slots_pwrite(s->descriptor, header, s->layout.header_bytes, 0) ||
       (fsync(s->descriptor) != 0 && errno != EINVAL))
     return strut_slots_trouble(error, "write", s->path, errno);
   return STRUT_OK;
@@ -173,12 +180,13 @@ static strut_status look(strut_slots *s, strut_error *error) {
 }
 
 /* Opens for writing if there is a plan, otherwise read-only. */
-static strut_status open_file(const char *path, const strut_slots_description *plan,
+static strut_status open_file(const char *path, const strut_slots_description *plan, bool shared,
                               strut_slots **slots, strut_error *error) {
   *slots = NULL;
   strut_slots *s = strut_allocate(1, sizeof *s);
   if (!s) return no_memory(error, path);
   s->writes = plan != NULL;
+  s->shared = shared;
   s->descriptor = -1;
   s->path = strut_arena_text(&s->arena, path, strlen(path));
   strut_status status = s->path ? STRUT_OK : no_memory(error, path);
@@ -198,18 +206,28 @@ static strut_status open_file(const char *path, const strut_slots_description *p
   return status;
 }
 
-strut_status strut_slots_open(const char *path, const strut_slots_description *plan,
-                              strut_slots **slots, strut_error *error) {
+static strut_status open_planned(const char *path, const strut_slots_description *plan, bool shared,
+                                 strut_slots **slots, strut_error *error) {
   strut_slots_description wanted = *plan;
   strut_slots_layout layout;
   *slots = NULL;
   strut_status status = strut_slots_lay_out(&wanted, &layout, error); /* before creating a file */
-  return status == STRUT_OK ? open_file(path, &wanted, slots, error) : status;
+  return status == STRUT_OK ? open_file(path, &wanted, shared, slots, error) : status;
+}
+
+strut_status strut_slots_open(const char *path, const strut_slots_description *plan,
+                              strut_slots **slots, strut_error *error) {
+  return open_planned(path, plan, false, slots, error);
+}
+
+strut_status strut_slots_open_shared(const char *path, const strut_slots_description *plan,
+                                     strut_slots **slots, strut_error *error) {
+  return open_planned(path, plan, true, slots, error);
 }
 
 strut_status strut_slots_read(const char *path, strut_slots **slots, strut_slots_description *plan,
                               strut_error *error) {
-  strut_status status = open_file(path, NULL, slots, error);
+  strut_status status = open_file(path, NULL, false, slots, error);
   if (status == STRUT_OK) *plan = (*slots)->plan;
   return status;
 }
@@ -281,6 +299,40 @@ static void fill_slot(const strut_slots *s, int64_t point, const strut_result_sl
   memcpy(slot, &head, sizeof head);
 }
 
+/* Does slot i have a row, which another process may have written since the file was opened? */
+static bool is_written(strut_slots *s, int64_t i) {
+  unsigned char slot[STRUT_SLOT_MOST];
+  int64_t length = (int64_t)s->layout.slot_bytes;
+  slot_head head;
+  if (is_done(s, i)) return true;
+  if (!s->shared) return false;
+  if (strut_slots_pread(s->descriptor, slot, (size_t)length, offset_of(s, i)) < length ||
+      !is_whole(s, i, slot))
+    return false;
+  memcpy(&head, slot, sizeof head);
+  mark(s, i, head.status);
+  return true;
+}
+
+/* Locks (F_WRLCK) or unlocks (F_UNLCK) the bytes of slot i. False: another process has them. */
+static bool lock_slot(const strut_slots *s, int64_t i, short type) {
+  struct flock wanted = {.l_type = type,
+                         .l_whence = SEEK_SET,
+                         .l_start = offset_of(s, i),
+                         .l_len = (off_t)s->layout.slot_bytes};
+  return fcntl(s->descriptor, F_SETLK, &wanted) == 0 || (errno != EACCES && errno != EAGAIN);
+}
+
+bool strut_slots_claim(strut_slots *slots, int64_t point) {
+  int64_t i = slot_of(slots, point);
+  if (i < 0 || is_written(slots, i)) return false;
+  if (!slots->shared) return true;
+  if (!lock_slot(slots, i, F_WRLCK)) return false;
+  if (!is_written(slots, i)) return true; /* nobody has put it since */
+  lock_slot(slots, i, F_UNLCK);
+  return false;
+}
+
 strut_status strut_slots_put(strut_slots *slots, int64_t point, const strut_result_slot *row,
                              strut_error *error) {
   unsigned char slot[STRUT_SLOT_MOST];
@@ -296,6 +348,7 @@ strut_status strut_slots_put(strut_slots *slots, int64_t point, const strut_resu
   atomic_store_explicit(&slots->unsynced, true, memory_order_relaxed);
   if (slots->retried) atomic_fetch_add(&slots->rewritten, 1);
   mark(slots, i, (uint32_t)row->status);
+  if (slots->shared) lock_slot(slots, i, F_UNLCK);
   return STRUT_OK;
 }
 

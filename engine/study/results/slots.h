@@ -68,6 +68,13 @@ typedef struct strut_slots strut_slots;
 STRUT_API strut_status strut_slots_open(const char *path, const strut_slots_description *plan,
                                         strut_slots **slots, strut_error *error);
 /**
+ * The same for a file that several processes, on machines that share a disk, write at the same time, all of
+ * which open it so. Each claims a point before it computes it.
+ */
+STRUT_API strut_status strut_slots_open_shared(const char *path,
+                                               const strut_slots_description *plan,
+                                               strut_slots **slots, strut_error *error);
+/**
  * Opens a file of slots for reading only, beside one who writes it or not. Its header goes into
  * *plan, good until closed. STRUT_FILE_TROUBLE where it cannot be read or is no such file.
  */
@@ -94,6 +101,13 @@ STRUT_API int64_t strut_slots_inaccurate(strut_slots *slots);
 /** The column that says whether a requested accuracy was reached: 1 or 0. */
 #define STRUT_KEPT_COLUMN "accuracy_kept"
 
+/**
+ * True: the point has no row, and in a shared file no other process can claim it until this one has put its
+ * row or has ended, killed or not. False: it has a row, which strut_slots_done then says, or is claimed by
+ * another process. On a disk without file locks every claim of a point without a row succeeds, and several
+ * processes write the same bytes. One thread at a time for each point.
+ */
+STRUT_API bool strut_slots_claim(strut_slots *slots, int64_t point);
 /**
  * Writes the row of a point of this file; safe from several threads for different points, and free
  * of allocations. STRUT_USAGE where the point has its result already or is not this file's;

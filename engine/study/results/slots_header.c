@@ -169,10 +169,8 @@ static bool take_texts(strut_slots_description *plan, const char *at, const char
   return good;
 }
 
-/* Is the file only an incomplete header, or space reserved for one? */
-static bool is_torn(int descriptor, const unsigned char *begin, int64_t got, size_t most) {
-  struct stat found;
-  if (fstat(descriptor, &found) != 0 || found.st_size > (off_t)most) return false;
+/* Are these only the first bytes of a header, or of space reserved for one? */
+static bool is_torn(const unsigned char *begin, int64_t got) {
   bool magic = true, zeros = true;
   for (int64_t i = 0; i < got; i++) {
     magic = magic && (i >= (int64_t)sizeof MAGIC || begin[i] == (unsigned char)MAGIC[i]);
@@ -191,10 +189,12 @@ strut_status strut_slots_read_header(const strut_slots_file *file, strut_slots_d
   const int descriptor = file->descriptor;
   const char *path = file->path;
   fixed_part fixed = {0};
+  struct stat found; /* before the bytes are read, since another process may write rows meanwhile */
+  bool small = fstat(descriptor, &found) == 0 && found.st_size <= (off_t)file->most;
   *torn = false;
   int64_t got = strut_slots_pread(descriptor, &fixed, sizeof fixed, 0);
   if (got < 0) return strut_slots_trouble(error, "read", path, errno);
-  *torn = is_torn(descriptor, (unsigned char *)&fixed, got, file->most);
+  *torn = small && is_torn((unsigned char *)&fixed, got);
   bool ours = memcmp(fixed.magic, MAGIC, sizeof MAGIC) == 0;
   if (got < (int64_t)sizeof fixed || !ours)
     return *torn ? STRUT_OK : foreign(error, path, "not a file of study results");

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
+#include <time.h>
 
 #include "engine/base/memory.h"
 #include "engine/integrate/batch/batch.h"
@@ -15,6 +16,8 @@
 
 /* Time between two reports [s]. */
 static const double OFTEN = 0.1;
+/* Times between two looks at what other workers have done, which grow [ns]. */
+enum { SHORTEST_PAUSE = 2000000, LONGEST_PAUSE = 500000000 };
 
 static int by_point(const void *a, const void *b) {
   int64_t first = ((const strut_batch_point_wanted *)a)->point;
@@ -126,22 +129,29 @@ static bool is_running(strut_search_batch *b) {
 static bool next_point(void *context, int64_t *point) {
   strut_search_batch *b = context;
   size_t i = 0;
-  if (!is_running(b)) return false;
+  while (is_running(b)) {
 #ifdef _OPENMP
 #pragma omp atomic capture
 #endif
-  i = b->next++;
-  if (i >= b->count) return false;
-  *point = b->wanted[i].point;
-  return true;
+    i = b->next++;
+    if (i >= b->count) return false;
+    *point = b->wanted[(b->first + i) % b->count].point;
+    if (strut_slots_claim(b->slots, *point)) return true;
+  }
+  return false;
+}
+
+/* The rows in the file, of which other workers may have written some. */
+static void count_rows(strut_search_batch *b) {
+  b->state->done = strut_slots_description_of(b->slots)->count - strut_slots_missing(b->slots);
+  b->state->failed = strut_slots_failed(b->slots);
 }
 
 static void report(strut_search_batch *b, const strut_sweep_job *job) {
   strut_sweep_state *state = b->state;
   double now = strut_run_clock();
-  state->done++;
+  count_rows(b);
   state->computed++;
-  state->failed += job->cells.row.status != STRUT_OK;
   state->last = job->point;
   state->row = &job->cells.row;
   state->seconds = now - b->began;
@@ -181,23 +191,45 @@ static void store_point(void *context, const strut_sweep_job *job) {
   }
 }
 
-strut_status strut_search_batch_run(strut_search_batch *b) {
+/* Computes the wanted points that no other worker has claimed, this worker's share of them first. */
+static void compute_points(strut_search_batch *b) {
   const strut_sweep_queue queue = {b, next_point, store_point};
+  size_t workers = b->options.workers > 0 ? (size_t)b->options.workers : 1;
+  size_t share = (b->count + workers - 1) / workers;
   int threads = b->count < (size_t)b->threads ? (int)b->count : b->threads;
-  const volatile sig_atomic_t *interrupt = b->options.interrupt;
+  int32_t batch = strut_sweep_batch_size(b->batch, threads, (int64_t)share);
   b->next = 0;
-  if (b->count > 0) {
-    int32_t batch = strut_sweep_batch_size(b->batch, threads, (int64_t)b->count);
-    qsort(b->wanted, b->count, sizeof *b->wanted, by_point);
+  b->first = (size_t)b->options.worker * share;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(static, 1) num_threads(threads)
 #endif
-    for (int i = 0; i < threads; i++) {
+  for (int i = 0; i < threads; i++) {
 #ifdef _OPENMP
-      omp_set_num_threads(1); /* of searches within a point */
+    omp_set_num_threads(1); /* of searches within a point */
 #endif
-      strut_sweep_work(&b->worker, &queue, b->jobs + i * b->batch, batch);
-    }
+    strut_sweep_work(&b->worker, &queue, b->jobs + i * b->batch, batch);
+  }
+}
+
+/* Leaves only the points that are still without a row. */
+static void forget_done(strut_search_batch *b) {
+  size_t left = 0;
+  for (size_t i = 0; i < b->count; i++)
+    if (!strut_slots_done(b->slots, b->wanted[i].point)) b->wanted[left++] = b->wanted[i];
+  b->count = left;
+  count_rows(b);
+}
+
+strut_status strut_search_batch_run(strut_search_batch *b) {
+  const volatile sig_atomic_t *interrupt = b->options.interrupt;
+  struct timespec pause = {.tv_nsec = SHORTEST_PAUSE};
+  if (b->count > 1) qsort(b->wanted, b->count, sizeof *b->wanted, by_point);
+  while (b->count > 0 && is_running(b)) {
+    compute_points(b);
+    forget_done(b);
+    if (b->count == 0) break;
+    nanosleep(&pause, NULL); /* others compute the rest; the claims of those that are killed end */
+    if (pause.tv_nsec < LONGEST_PAUSE) pause.tv_nsec += pause.tv_nsec / 4;
   }
   if (!b->status && interrupt && *interrupt)
     b->status = strut_fail(b->error, STRUT_INTERRUPTED, "interrupted");

@@ -35,9 +35,9 @@ typedef struct nlopt_search {
   double *best, least; /* (dimension) and its value */
   double *last, value; /* the latest point and its value, for the conditions */
   double *broken;      /* (conditions) there */
-  double
-      *spread; /* (spread_count, dimension + 1) evenly spread points, and behind each its value */
-  int64_t spread_count;
+  double *spread,
+      *spread_values; /* (spread_count, dimension) evenly spread points; (spread_count) */
+  size_t spread_count;
 } nlopt_search;
 
 static const struct method_row {
@@ -159,23 +159,28 @@ static bool run(nlopt_search *s, strut_search_method method, double first_step, 
 }
 
 /*
- * Asks for the start and for points spread evenly over the box, together a share of the evaluations, and keeps
- * them in s->spread. Controlled random search alone, which begins at random, misses a narrow basin more often.
+ * Asks at once for the start and for points spread evenly over the box, together a share of the evaluations, and
+ * keeps them in s->spread. Controlled random search alone, which begins at random, misses a narrow basin more often.
  */
 static bool spread_points(nlopt_search *s, double share) {
   size_t n = s->task->dimension;
   const strut_search_spread sequence = strut_search_spread_begin(n, s->task->seed);
   double usual = 20.0 * ((double)n + 1.0);
   int64_t count = (int64_t)fmax(fmin(usual, floor(share * (double)s->task->evaluations)), 1.0);
-  s->spread = strut_allocate((size_t)count * (n + 1), sizeof *s->spread);
-  if (!s->spread) return false;
-  s->most = INT64_MAX;
-  for (int64_t k = 0; k < count && !s->ended; k++) {
-    double *point = s->spread + (size_t)k * (n + 1);
+  s->spread = strut_allocate((size_t)count * n, sizeof *s->spread);
+  s->spread_values = strut_allocate((size_t)count, sizeof *s->spread_values);
+  if (!s->spread || !s->spread_values) return false;
+  for (int64_t k = 0; k < count; k++)
     for (size_t i = 0; i < n; i++)
-      point[i] = k == 0 ? s->task->start[i] : strut_search_spread_at(&sequence, k, i);
-    point[n] = look_at(s, point);
-    if (!s->ended) s->spread_count++;
+      s->spread[(size_t)k * n + i] =
+          k == 0 ? s->task->start[i] : strut_search_spread_at(&sequence, k, i);
+  s->spread_count = (size_t)count;
+  s->asked = count;
+  s->ended = !s->asker->ask(s->asker->context, s->spread_count, s->spread, s->spread_values, NULL);
+  for (size_t k = 0; k < s->spread_count && !s->ended; k++) {
+    if (s->spread_values[k] >= s->least) continue;
+    s->least = s->spread_values[k];
+    memcpy(s->best, s->spread + k * n, n * sizeof *s->best);
   }
   return true;
 }
@@ -194,14 +199,14 @@ static bool is_near(const nlopt_search *s, const double *point, const double *ot
 /* The best of the spread points that is near to none of `others`; NULL: there is none. */
 static const double *best_apart(const nlopt_search *s, const double *const *others, size_t count) {
   size_t n = s->task->dimension;
-  const double *best = NULL;
-  for (int64_t k = 0; k < s->spread_count; k++) {
-    const double *point = s->spread + (size_t)k * (n + 1);
+  size_t best = s->spread_count;
+  for (size_t k = 0; k < s->spread_count; k++) {
     bool near = false;
-    for (size_t i = 0; i < count && !near; i++) near = is_near(s, point, others[i]);
-    if (!near && (!best || point[n] < best[n])) best = point;
+    for (size_t i = 0; i < count && !near; i++) near = is_near(s, s->spread + k * n, others[i]);
+    if (!near && (best == s->spread_count || s->spread_values[k] < s->spread_values[best]))
+      best = k;
   }
-  return best;
+  return best < s->spread_count ? s->spread + best * n : NULL;
 }
 
 /* A descent from a point. s->best becomes the best of what it was and of the descent. */
@@ -264,6 +269,7 @@ bool strut_search_optimise_by_nlopt(const strut_search_task *task,
            : many ? descend_from_spread(&s)
                   : run(&s, task->method, FIRST_STEP, INT64_MAX);
   strut_release(s.spread);
+  strut_release(s.spread_values);
   strut_release(block);
   return fine;
 }

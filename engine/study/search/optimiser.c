@@ -33,6 +33,10 @@ static bool optimise_by_cma(const strut_search_task *task, const strut_search_as
   return fine;
 }
 
+bool strut_search_has_generations(strut_search_method method) {
+  return method == STRUT_SEARCH_CMA || method == STRUT_SEARCH_NSGA2;
+}
+
 bool strut_search_optimise(const strut_search_task *task, const strut_search_asker *asker) {
   switch (task->method) {
     case STRUT_SEARCH_CMA: return optimise_by_cma(task, asker);

@@ -60,6 +60,8 @@ typedef struct strut_search_task {
 
 /** Does the method know conditions? Else broken ones have to make the values worse. */
 bool strut_search_knows_conditions(strut_search_method method);
+/** Does it ask for many points at once, a generation? Else for one after another. */
+bool strut_search_has_generations(strut_search_method method);
 /** Runs to the end. To be called in a thread of its own: random numbers are the thread's. False: no memory. */
 bool strut_search_optimise(const strut_search_task *task, const strut_search_asker *asker);
 bool strut_search_optimise_by_nsga2(const strut_search_task *task, const strut_search_asker *asker);

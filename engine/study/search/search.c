@@ -388,6 +388,13 @@ strut_status strut_search_run(const strut_sweep_plan *plan, strut_slots *slots,
   return status;
 }
 
+bool strut_search_is_parallel(const strut_sweep_plan *plan) {
+  const strut_study_search *what = plan->study->search;
+  const strut_search_layout l = strut_search_layout_of(plan);
+  return strut_search_has_generations((strut_search_method)what->method) ||
+         l.outers * what->starts * l.scenarios > 1;
+}
+
 void strut_search_result_free(strut_search_result *result) {
   strut_arena_free(&result->arena);
   *result = (strut_search_result){0};

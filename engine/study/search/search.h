@@ -101,6 +101,11 @@ STRUT_API strut_status strut_search_run(const strut_sweep_plan *plan, strut_slot
                                         const strut_sweep_options *options,
                                         strut_sweep_state *state, strut_search_result *result,
                                         strut_error *error);
+/**
+ * Are there several points to compute at the same time: generations, searches side by side, or scenarios?
+ * Otherwise workers cannot share the search.
+ */
+STRUT_API bool strut_search_is_parallel(const strut_sweep_plan *plan);
 STRUT_API void strut_search_result_free(strut_search_result *result);
 
 /** The values of all columns of the axes at a point of the study whose variables have `values`. */

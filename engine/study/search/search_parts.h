@@ -39,7 +39,8 @@ typedef struct strut_search_batch {
   int32_t batch;       /* at most */
   int64_t first_check; /* rows from here on are those of search 0 */
   double began, reported;
-  size_t count, capacity, next;
+  size_t count, capacity, next,
+      first;                        /* first: of the wanted points in the order of this process */
   strut_batch_point_wanted *wanted; /* (count) */
   strut_status status;              /* of what stopped it */
   strut_arena arena;
@@ -50,7 +51,7 @@ void strut_search_batch_free(strut_search_batch *batch);
 /** Adds the points of all scenarios of a row that have no result yet. False: no memory. */
 bool strut_search_batch_add(strut_search_batch *batch, int64_t outer, int64_t row,
                             const strut_study_value *values);
-/** Computes what was added, and forgets it. */
+/** Computes what was added, or waits until other workers have, and forgets it. */
 strut_status strut_search_batch_run(strut_search_batch *batch);
 
 /* judge.c: rows to points of the search */

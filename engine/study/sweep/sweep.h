@@ -90,6 +90,8 @@ typedef struct strut_sweep_options {
   void (*values)(const void *context, int64_t point, strut_study_value *values);
   void (*adjust)(const void *context, int64_t point, strut_setup *setup);
   const void *point_context;
+  /** Of a search whose slots are shared: this process is `worker`, from 0, of `workers`; 0: alone. */
+  int64_t worker, workers;
 } strut_sweep_options;
 
 /**
