@@ -49,9 +49,11 @@ def run_to(log, command, limit):
         try:
             return child.wait(timeout=limit)
         except subprocess.TimeoutExpired:
-            os.killpg(child.pid, signal.SIGKILL)
-            child.wait()
             return None
+        finally:  # also where this program is ended
+            if child.poll() is None:
+                os.killpg(child.pid, signal.SIGKILL)
+                child.wait()
 
 
 def number_of(check, text):
@@ -128,6 +130,7 @@ def main():
         for check in CHECKS:
             print(f"{check.name:14} {check.about}")
         return 0
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     options.folder.mkdir(parents=True, exist_ok=True)
     record, failed = options.folder / "results.json", False
     results = json.loads(record.read_text()) if record.is_file() else {}
