@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random scenes of five classes: smooth, contact, friction, stiff, wide. Numbers in SI units.
+"""Random scenes of six classes: smooth, contact, friction, stiff, wide, robots. Numbers in SI units.
 
 make(kind, random) gives (scene, grid): the scene as a mapping that JSON writes, and a time [s] that
 divides the whole run and its window, small beside the fastest motion that matters.
@@ -317,6 +317,11 @@ def wide(random):
     return scene, unit / 1000
 
 
+def robot(random):
+    scene, unit = wide_scenes.make_robot(random)
+    return scene, unit / 1000
+
+
 CLASSES = {
     "smooth": [chain, net, tumbling, shaken],
     "contact": [dropped, ball, tethered, hopper],
@@ -324,6 +329,7 @@ CLASSES = {
     "stiff": [lambda r: chain(r, stiffness_ratio(r)), lambda r: tumbling(r, stiffness_ratio(r)),
               lambda r: shaken(r, stiffness_ratio(r))],
     "wide": [wide],
+    "robots": [robot],
 }
 
 

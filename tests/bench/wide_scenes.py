@@ -2,7 +2,8 @@
 """Random scenes of every kind that the language has, for testing what `--accuracy` promises.
 
 make(random) returns (scene, unit): the scene as a mapping that JSON writes, and a time [s] that
-divides the run and its window: the drive's period, or a two-hundredth of the run. Structures have 2 to
+divides the run and its window: the drive's period, or a two-hundredth of the run; make_robot(random) one that also has
+sensors. Structures have 2 to
 8 nodes joined by springs, bars and cables; they stand on, fall on or hang above level, sloping and moving
 ground with each law of friction and of contact damping, and are driven by up to three actuators and a load.
 """
@@ -124,4 +125,57 @@ def make(random):
             scene["run"]["measure"] = {"last": round(0.5 * duration, 4)}
         unit = duration / 200
     scene["solver"] = {"integrator": "adaptive", "step": unit / 50}
+    return scene, unit
+
+
+def make_reflex(random, members, amplitude, frequency):
+    """Sensors and a signal that follows them: a drive that a foot's contact starts, a relay, a controller or feedback."""
+    name = random.choice([m for m in members if len(members[m]["nodes"]) == 2])
+    sensors = {"l": {"length": name}, "touch": {"contact": "n0"}}
+    kind = random.choice(["starts", "starts", "relay", "pid", "feedback", "held"])
+    if kind == "starts":
+        signal = {"half_sine": {"amplitude": amplitude, "frequency": frequency}, "starts": {"contact": "n0", "each": True}}
+        return sensors, {}, signal
+    wave = f"{amplitude} m * sin(2*pi*{frequency} Hz*t)"
+    if kind == "relay":
+        relay = {"kind": "relay", "of": "touch", "on_above": 0.6, "off_below": 0.4, "on_value": amplitude,
+                 "off_value": -amplitude, "every": 0.05 / frequency}
+        return sensors, {"reflex": relay}, {"expression": "reflex", "lag": 0.2 / frequency}
+    if kind == "pid":
+        pid = {"sensor": "l", "target": members[name]["rest"], "gain": round(random.uniform(0.1, 0.5), 2),
+               "integral": f"{frequency} Hz", "least": -amplitude, "most": amplitude, "every": 0.05 / frequency}
+        return sensors, {"hold": pid}, {"expression": "hold"}
+    if kind == "held":
+        return sensors, {}, {"expression": f"{wave} * touch", "every": 0.02 / frequency}
+    return sensors, {}, {"expression": f"{wave} - {random.uniform(0.02, 0.2):.3f} * (l - {members[name]['rest']} m)"}
+
+
+def make_robot(random):
+    """A scene of make() with feet on the ground that also has sensors, a reflex, stops and a running cable."""
+    scene, unit = make(random)
+    while "d0" not in scene["actuators"] or "periods" not in scene["run"] or len(scene["nodes"]) < 3:
+        scene, unit = make(random)
+    members, places = scene["members"], {n: v["position"] for n, v in scene["nodes"].items()}
+    for m in members.values():
+        m["rest"] = round(math.dist(*(places[n] for n in m["nodes"])), 4)
+    frequency = random.choice([1.0, 1.0, 2.0]) / unit
+    amplitude = round(0.03 * min(m["rest"] for m in members.values()), 5)
+    sensors, controllers, signal = make_reflex(random, members, amplitude, round(frequency, 3))
+    reflex = random.choice([m for m in members if m != scene["actuators"]["d0"]["member"]])
+    scene["sensors"] = sensors
+    if controllers:
+        scene["controllers"] = controllers
+    scene["actuators"] = {"d0": scene["actuators"]["d0"], "reflex": {"member": reflex, "signal": signal}}
+    stiffest = max(m["stiffness"] for m in members.values())
+    for name in random.sample(list(members), min(2, len(members))):
+        if members[name]["kind"] == "spring" and random.random() < 0.7:
+            members[name].update(longest=round(1.03 * members[name]["rest"], 4), stop_stiffness=10 * stiffest)
+    for m in members.values():
+        del m["rest"]
+    if random.random() < 0.6:
+        members["tendon"] = {"kind": "cable", "nodes": ["n0", "n1", "n2"], "rest_length_ratio": 0.97,
+                             "stiffness": round(0.3 * stiffest, 1), "damping": 0.1}
+    rests = "friction" in scene["ground"] and not {"slope", "belt_speed"} & set(scene["ground"])
+    if rests and random.random() < 0.6:
+        scene["initial"] = {"settle": True}
     return scene, unit

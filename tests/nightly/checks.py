@@ -65,7 +65,7 @@ CHECKS = (
     target("malloc", "each allocation of a command fails once", "memory_walk",
            r": (\d+) allocations, exit codes", "{total} allocations failed, one at a time", 6),
     Check("scenes", "random scenes: is the accuracy kept that a run states?",
-          f"{TESTS} && python3 tests/bench/promise.py build/tests/strut $(({{scenes}} / 9))",
+          f"{TESTS} && python3 tests/bench/promise.py build/tests/strut $(({{scenes}} / 15))",
           r"(\d+) of (\d+) promises kept; (\d+) of (\d+) scenes got none",
           "{0} of {1} promises kept; {2} of {3} scenes without", 10),
     target("golden", "the golden motions and works by two compilers at four levels", "golden_all",

@@ -118,8 +118,8 @@ def parse():
     unknown = set(options.names) - {check.name for check in CHECKS}
     if unknown:
         parser.error(f"no such check: {' '.join(sorted(unknown))}; --list prints them")
-    if min(options.jobs, options.minutes) < 1 or options.scenes < 9:
-        parser.error("--jobs and --minutes are at least 1, --scenes at least 9")
+    if min(options.jobs, options.minutes) < 1 or options.scenes < 15:
+        parser.error("--jobs and --minutes are at least 1, --scenes at least 15")
     options.folder = options.folder.resolve()
     return options
 
