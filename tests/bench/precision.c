@@ -386,6 +386,14 @@ static bool is_wanted(const precision_scene *scene, char *const *names, int coun
 int bench_precision(const char *folder, double limit, char *const *names, int count) {
   static scene_run s;
   int code = 0;
+  for (int i = 0; i < count; i++)
+    if (!scene_named(names[i])) {
+      fprintf(stderr, "strut_bench: unknown scene '%s'; scenes are:", names[i]);
+      for (size_t k = 0; precision_scene_at(k); k++)
+        fprintf(stderr, " %s", precision_scene_at(k)->name);
+      fputc('\n', stderr);
+      return 1;
+    }
 #ifndef BENCH_SUNDIALS
   puts("CVODE, ARKODE: not built with SUNDIALS");
 #endif
