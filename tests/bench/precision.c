@@ -109,7 +109,7 @@ static const struct candidate {
                   {"adaptive", 0, 1e-11, 30},
                   {"rk4-events", 0, 6, 30},
                   {"GSL rkf45", 1, 1e-8, 20},
-                  {"GSL rkf45", 1, 1e-7, 20},
+                  {"GSL rkf45", 1, 1e-7, 120},
                   {"GSL rk8pd", 1, 1e-13, 5},
                   {"ARKODE ERK 8", 2, 1e-13, 5},
                   {"ARKODE ERK 8, roots", 2, 1e-13, 5},
