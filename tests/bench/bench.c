@@ -8,6 +8,9 @@
  *   strut_bench large [MEMBERS]              grids in order and shuffled, by one thread and several
  *   strut_bench terms                        what each term costs, alone
  *   strut_bench methods [METHOD]             what a force evaluation costs by each method, alone
+ *   strut_bench rivals [--limit S] [-o DIR] [SCENE...]   error against cost, strut and other solvers; a table
+ *                                            for each scene, CSV and figures into DIR, S of CPU time per cell
+ *   strut_bench rivals --check               whether all of them converge to one answer
  *   strut_bench chain MEMBERS [lumped|consistent]   writes such a chain as a scene file to stdout
  *   strut_bench load FILE                    reads and compiles a scene file; seconds and memory
  *
@@ -23,6 +26,7 @@
 #include "engine/integrate/integrator.h"
 #ifdef BENCH_PARSER
 #include "parser/read/read_scene.h"
+#include "tests/bench/precision.h"
 #endif
 #include "tests/bench/batch_runs.h"
 #include "tests/bench/falls.h"
@@ -217,12 +221,36 @@ static int usage(void) {
           "       strut_bench terms\n"
           "       strut_bench methods [METHOD]\n"
           "       strut_bench falls [NODES]\n"
+          "       strut_bench rivals [--limit S] [-o DIR] [SCENE...]\n"
+          "       strut_bench rivals --check\n"
           "       strut_bench chain MEMBERS [lumped|consistent] > FILE\n"
           "       strut_bench load FILE\n");
   return 1;
 }
 
+#ifdef BENCH_PARSER
+static int compare_rivals(int argc, char **argv) {
+  const char *folder = NULL;
+  double limit = 1.0;
+  int i = 2;
+  if (argc == 3 && strcmp(argv[2], "--check") == 0) return bench_precision_check();
+  for (; i + 1 < argc && argv[i][0] == '-'; i += 2) {
+    if (strcmp(argv[i], "--limit") == 0)
+      limit = atof(argv[i + 1]);
+    else if (strcmp(argv[i], "-o") == 0)
+      folder = argv[i + 1];
+    else
+      return usage();
+  }
+  if (!(limit > 0)) return usage();
+  return bench_precision(folder, limit, argv + i, argc - i);
+}
+#endif
+
 int main(int argc, char **argv) {
+#ifdef BENCH_PARSER
+  if (argc >= 2 && strcmp(argv[1], "rivals") == 0) return compare_rivals(argc, argv);
+#endif
   if (argc == 2 && strcmp(argv[1], "batch") == 0) {
     bench_batch(15);
     return 0;
