@@ -21,7 +21,8 @@ cmake --build --preset web -j "$(nproc)"
 [ "$upto" != build ] || exit 0
 
 # The program whose bits the module must have, and what the tests have from npm.
-cmake --preset tests
-cmake --build --preset tests -j "$(nproc)" --target strut
+cmake --preset release
+cmake --build --preset release -j "$(nproc)" --target strut
+cmake --preset web -DSTRUT_WEB_PROGRAM="$PWD/build/release/strut"
 npm ci --prefix tests/web --ignore-scripts --no-audit --no-fund
 ctest --preset web
