@@ -116,7 +116,7 @@ study: hops & falls
 model: it's a model.yaml
 axes:
   - stiffness: {from: 100 N/m, to: 800 N/m, count: 8}
-  - seconds: [60, 1e-9, 50]
+  - seconds: [200, 1e-9, 150] # long enough to be killed in between
 keep: [velocity, steps]
 END
 expect 3 sweep study.yaml -o whole --quiet
@@ -181,7 +181,7 @@ cat >search.yaml <<'END'
 strut: 1
 study: best hops
 model: it's a model.yaml
-set: {seconds: 60}
+set: {seconds: 150}
 search: {maximise: velocity, over: {stiffness: {from: 100 N/m, to: 800 N/m}}, method: cma, evaluations: 64}
 keep: [velocity]
 END
