@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Does `strut run --accuracy X` keep X? On random scenes of four classes.
+"""Does `strut run --accuracy X` keep X? On random scenes of six classes.
 
   tests/bench/promise.py STRUT [SCENES [SEED [FOLDER [CLASS...]]]]
 
 SCENES of each class (default 50): smooth, contact, friction, stiff (promise_scenes.py), and of wide_scenes.py five
 times as many of every kind that the language has, wide, and six times as many robots with sensors, reflexes, stops and
 running cables, robots; or of the classes named. Of robots X is 1 %, and the cost is compared with that of the cheapest
-run with a step or tolerance of its own, of any method, whose error is truly that small. Else X is 1 %, 0.5 % or 0.1 %, at random; of
-wide ones 0.2 % instead of 0.1 %. The reference is `adaptive` with a tolerance of 1e-11; it counts where the same
+run with a step or tolerance of its own, of any method, whose error is truly that small. Else X is 1 %, 0.5 % or
+0.1 %, at random; of wide ones 0.2 % instead of 0.1 %. The reference is `adaptive` with a tolerance of 1e-11; it counts where the same
 with 1e-9 on another grid, or `rk4-events` with a small step, agrees to a twentieth of X; scenes where
 none does, because the motion is chaotic over its time, are made again and counted as such; those of them
 that a run vouches for are counted too. An error is

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The long checks before a release, one after the other, and a page with a number and a date for each.
 
-    python3 tests/nightly/nightly.py              all of them: about a day on two cores
+    python3 tests/nightly/nightly.py              all of them: many hours
     python3 tests/nightly/nightly.py NAME...      these; the page keeps the others' last numbers, with their dates
     python3 tests/nightly/nightly.py --list
 
