@@ -68,7 +68,7 @@ enum { STRUT_DRIVES_AHEAD = 8, STRUT_INSTANTS_AHEAD = 32 };
 typedef struct strut_drives_ahead {
   bool used;
   int32_t next, count;                                    /* instants */
-  double time[STRUT_INSTANTS_AHEAD];                      /* of the signals, ascending [s] */
+  double time[STRUT_INSTANTS_AHEAD];                      /* of the signals [s] */
   double value[STRUT_DRIVES_AHEAD][STRUT_INSTANTS_AHEAD]; /* of each drive [m] */
   double rate[STRUT_DRIVES_AHEAD][STRUT_INSTANTS_AHEAD];  /* [m/s] */
 } strut_drives_ahead;
@@ -137,7 +137,7 @@ STRUT_INLINE void drives_ahead_apply(const strut_model *model, strut_state *stat
   drives_ahead_place(model, state, drives, t);
 }
 
-/** Foresees the stages of one step of h from t on: 1 to `count`, at parts of it that do not descend. */
+/** Foresees the stages of one step of h from t on: 1 to `count`, none of them before the first or after the last. */
 STRUT_INLINE void drives_ahead_stages(const strut_model *model, const strut_state *state,
                                       strut_drives_ahead *drives, double t, double h,
                                       const double *part, int32_t count) {

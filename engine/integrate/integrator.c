@@ -11,12 +11,12 @@
 #include "engine/model/linear_solver.h"
 
 /* The rows, each defined in its method's own file. */
-#define STRUT_INTEGRATOR_ROW(row, word) extern const strut_integrator strut_integrator_##row;
+#define STRUT_INTEGRATOR_ROW(row, word, steps) extern const strut_integrator strut_integrator_##row;
 STRUT_INTEGRATORS(STRUT_INTEGRATOR_ROW)
 #undef STRUT_INTEGRATOR_ROW
 
 static const strut_integrator *const table[] = {
-#define STRUT_INTEGRATOR_ROW(row, word) &strut_integrator_##row,
+#define STRUT_INTEGRATOR_ROW(row, word, steps) &strut_integrator_##row,
     STRUT_INTEGRATORS(STRUT_INTEGRATOR_ROW)
 #undef STRUT_INTEGRATOR_ROW
 };

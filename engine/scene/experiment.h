@@ -80,20 +80,22 @@ typedef struct strut_steady {
 } strut_steady;
 
 /**
- * X(row, "word"): the methods of integration, in the order of their table; their rows strut_integrator_*
- * are in engine/integrate.
+ * X(row, "word", steps): the methods of integration, in the order of their table; their rows strut_integrator_*
+ * are in engine/integrate. steps: of a method that chooses its steps, the least number per period, or per run, where
+ * the file has no longest step; else 0.
  */
 #define STRUT_INTEGRATORS(X)                                                                       \
-  X(rk4, "rk4")                                                                                    \
-  X(euler, "euler")                                                                                \
-  X(verlet, "verlet")                                                                              \
-  X(rk4_events, "rk4-events")                                                                      \
-  X(euler_events, "euler-events")                                                                  \
-  X(verlet_events, "verlet-events")                                                                \
-  X(adaptive, "adaptive")                                                                          \
-  X(midpoint, "midpoint")
+  X(rk4, "rk4", 0)                                                                                 \
+  X(euler, "euler", 0)                                                                             \
+  X(verlet, "verlet", 0)                                                                           \
+  X(rk4_events, "rk4-events", 0)                                                                   \
+  X(euler_events, "euler-events", 0)                                                               \
+  X(verlet_events, "verlet-events", 0)                                                             \
+  X(adaptive, "adaptive", 100)                                                                     \
+  X(adaptive8, "adaptive8", 10)                                                                    \
+  X(midpoint, "midpoint", 0)
 /** Their words as the key table lists them: "rk4|euler|...". */
-#define STRUT_INTEGRATOR_WORD(row, word) "|" word
+#define STRUT_INTEGRATOR_WORD(row, word, steps) "|" word
 #define STRUT_INTEGRATOR_WORDS (&("" STRUT_INTEGRATORS(STRUT_INTEGRATOR_WORD))[1])
 
 /** Start, method, duration and measurements of an experiment. */
@@ -178,7 +180,7 @@ STRUT_API strut_span strut_experiment_span(const strut_experiment *experiment,
 
 /** Does the method of this name choose its steps, so that a run may leave out the longest one? */
 STRUT_API bool strut_experiment_is_adaptive(const char *integrator);
-/** Gives such a method its longest step where there is none: a hundredth of a period, or of the run. */
+/** Gives such a method its longest step where there is none: a part of a period, or of the run. */
 STRUT_API void strut_experiment_choose_step(strut_experiment *experiment, const strut_scene *scene);
 
 #endif

@@ -236,15 +236,23 @@ strut_span strut_experiment_span(const strut_experiment *e, const strut_scene *s
   return span;
 }
 
+/* Steps per period of a method that chooses its steps; 0: it does not. */
+static double steps_per_period(const char *integrator) {
+#define STRUT_INTEGRATOR_STEPS(row, word, steps)                                                   \
+  if (strcmp(integrator, word) == 0) return steps;
+  STRUT_INTEGRATORS(STRUT_INTEGRATOR_STEPS)
+#undef STRUT_INTEGRATOR_STEPS
+  return 0.0;
+}
+
 bool strut_experiment_is_adaptive(const char *integrator) {
-  return integrator && strcmp(integrator, "adaptive") == 0;
+  return integrator && steps_per_period(integrator) > 0.0;
 }
 
 void strut_experiment_choose_step(strut_experiment *e, const strut_scene *scene) {
-  const double parts = 100.0;
   if (e->step != 0.0 || e->accuracy > 0.0 || !strut_experiment_is_adaptive(e->integrator)) return;
   strut_span span = strut_experiment_span(e, scene);
-  e->step = (span.period > 0.0 ? span.period : span.duration) / parts;
+  e->step = (span.period > 0.0 ? span.period : span.duration) / steps_per_period(e->integrator);
   e->step_chosen = true;
 }
 

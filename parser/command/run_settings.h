@@ -19,7 +19,7 @@
       {STRUT_OPTION_INTEGRATOR, "integrator", "NAME",                                              \
        "integration method, instead of that of the file"},                                         \
       {STRUT_OPTION_STEP, "step", "TIME", "time step, instead of that of the file"},               \
-      {STRUT_OPTION_TOLERANCE, "tolerance", "X", "error tolerance of the method adaptive"}, {      \
+      {STRUT_OPTION_TOLERANCE, "tolerance", "X", "error tolerance of adaptive and adaptive8"}, {   \
     STRUT_OPTION_STEADY, "steady", "TOLERANCE",                                                    \
         "stop once the motion repeats within TOLERANCE, such as 0.5%"                              \
   }

@@ -37,7 +37,8 @@ static bool solve(precision_problem *p, const precision_method *row, double sett
   strut_error error = {0};
   strut_state *state = NULL;
   bool adaptive = row->ladder == PRECISION_TOLERANCES;
-  int64_t steps = p->parts * (adaptive ? 100 : (int64_t)ceil(p->end / (double)p->parts / setting));
+  int64_t longest = method->order < 8 ? 100 : 10; /* per part, as strut_experiment_choose_step */
+  int64_t steps = p->parts * (adaptive ? longest : (int64_t)ceil(p->end / (double)p->parts / setting));
   e.integrator = row->like, e.step = p->end / (double)steps;
   if (adaptive) e.tolerance = setting;
   const strut_integrator_settings settings = strut_integrator_settings_of(&e);
@@ -90,6 +91,7 @@ const precision_method precision_strut_methods[] = {
     BY_STEPS("rk4-events", "rk4-events", PRECISION_STEPS),
     BY_STEPS("verlet-events", "verlet-events", PRECISION_STEPS),
     {.name = "adaptive", .strut = true, .like = "adaptive", .solve = solve},
+    {.name = "adaptive8", .strut = true, .like = "adaptive8", .solve = solve},
     BY_STEPS("midpoint", "midpoint", PRECISION_LONG_STEPS),
     BY_STEPS("rk4, rigid bars", "rk4", PRECISION_STEPS, .rigid = true),
     {.name = PRECISION_ACCURACY, .strut = true, .solve = solve_accurately},

@@ -62,8 +62,8 @@ static void make_blocks(strut_scene *scene) {
 }
 
 TEST(blocks_stop_where_coulomb_says) {
-  static const char *const methods[] = {"rk4-events", "adaptive"};
-  for (int k = 0; k < 2; k++) {
+  static const char *const methods[] = {"rk4-events", "adaptive", "adaptive8"};
+  for (int k = 0; k < 3; k++) {
     strut_scene scene;
     motion m;
     make_blocks(&scene);
@@ -86,8 +86,8 @@ static const double TOLERANCE = 1e-9;
 
 /* Blocks that fall from one height all touch and open at once; each moves as it would alone. */
 TEST(blocks_that_touch_at_once_move_as_one) {
-  static const char *const methods[] = {"rk4-events", "adaptive", "verlet-events"};
-  for (int k = 0; k < 3; k++) {
+  static const char *const methods[] = {"rk4-events", "adaptive", "adaptive8", "verlet-events"};
+  for (int k = 0; k < 4; k++) {
     double alone[2] = {0.0, 0.0};
     for (int blocks = 1; blocks <= BLOCKS; blocks += BLOCKS - 1) {
       strut_scene scene;

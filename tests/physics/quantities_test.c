@@ -569,7 +569,7 @@ TEST(a_blow_between_steps) {
   const double m = 0.1, k = 2e4, v = 2.0, w = sqrt(k / m), peak = v * sqrt(k * m), time = 0.4;
   for (size_t i = 0; strut_integrator_at(i); i++) {
     const strut_integrator *method = strut_integrator_at(i);
-    const bool adaptive = strcmp(method->name, "adaptive") == 0;
+    const bool adaptive = strut_experiment_is_adaptive(method->name);
     const double close = adaptive ? 1e-5 : method->order < 2 ? 2e-2 : 1e-2;
     char filled[2000];
     snprintf(filled, sizeof filled, text, method->name, adaptive ? "10 ms" : "0.31 ms");

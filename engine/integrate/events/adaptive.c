@@ -1,20 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Dormand and Prince's pair of orders 5 and 4 (J. Comp. Appl. Math. 6, 1980) with error control,
- * from event to event. The last stage is the first of the next step.
+ * Pairs of explicit Runge-Kutta methods with error control, from event to event. The end of a step is the
+ * first stage of the next one.
  *
  * Errors are measured against the size of the structure, a hundredth of it, for positions, and
  * against the fastest speed so far for velocities. A step within which a contact's gap or slip dips
  * below its mode's edge and comes back is rejected as well: its ends alone would not show that.
  */
-#include "engine/integrate/events/dormand_prince.h"
-
 #include <assert.h>
+
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/small/small_trials.h"
+#include "engine/integrate/events/tableaus.h"
 #include "engine/integrate/integrator.h"
 
-enum { V = 1, A = V + PAIR, KEPT = A + PAIR, STAGES = KEPT + 2 };
+/* Positions, then velocities and accelerations of the stages but the first; then what given_up keeps. */
+#define ARRAYS(tableau) (1 + 2 * ((tableau)->stages - 1) + 2)
 
 /*
  * sum_j weight[j] k[j] over `count` stages at i; where these are constants the loop over them unrolls.
@@ -32,26 +33,28 @@ STRUT_INLINE strut_lanes weighted(double *const *k, const double *weight, int co
   return sum;
 }
 
-/* Stage k: q = q0 + h sum v, v[k] = v0 + h sum a, over the stages before it. */
+/* Stage k, or the end: q = q0 + h sum v, v[k] = v0 + h sum a, over the stages before it. */
 STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *const *v,
-                        double *const *a, int k, double *restrict q) {
+                        double *const *a, const double *weight, int k, double *restrict q) {
   double *restrict speed = v[k];
   for (int32_t i = 0; i < n; i += STRUT_LANES) {
-    strut_lanes_store(q + i, strut_lanes_load(now->q + i) + h * weighted(v, table[k], k, false, i));
+    strut_lanes_store(q + i, strut_lanes_load(now->q + i) + h * weighted(v, weight, k, false, i));
     strut_lanes_store(speed + i,
-                      strut_lanes_load(now->v + i) + h * weighted(a, table[k], k, true, i));
+                      strut_lanes_load(now->v + i) + h * weighted(a, weight, k, true, i));
   }
 }
 
+/* With constants for the earlier stages, of which both pairs have as many. */
 STRUT_INLINE void stage_of(int32_t n, double h, const strut_step_end *now, double *const *v,
-                           double *const *a, int k, double *restrict q) {
+                           double *const *a, const strut_tableau *t, int k, double *restrict q) {
   switch (k) {
-    case 1: stage(n, h, now, v, a, 1, q); break;
-    case 2: stage(n, h, now, v, a, 2, q); break;
-    case 3: stage(n, h, now, v, a, 3, q); break;
-    case 4: stage(n, h, now, v, a, 4, q); break;
-    case 5: stage(n, h, now, v, a, 5, q); break;
-    default: stage(n, h, now, v, a, 6, q); break;
+    case 1: stage(n, h, now, v, a, t->weight[1], 1, q); break;
+    case 2: stage(n, h, now, v, a, t->weight[2], 2, q); break;
+    case 3: stage(n, h, now, v, a, t->weight[3], 3, q); break;
+    case 4: stage(n, h, now, v, a, t->weight[4], 4, q); break;
+    case 5: stage(n, h, now, v, a, t->weight[5], 5, q); break;
+    case 6: stage(n, h, now, v, a, t->weight[6], 6, q); break;
+    default: stage(n, h, now, v, a, t->weight[k], k, q); break;
   }
 }
 
@@ -75,12 +78,15 @@ STRUT_INLINE double largest_of(largest x) {
 }
 
 /* Local error over what is allowed, by the difference of the pair. */
-STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *l, double h,
-                             double *const *v, double *const *a) {
+STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *l,
+                             const strut_tableau *tableau, double h, double *const *v,
+                             double *const *a) {
+  int count = tableau->stages + 1;
+  const double *difference = tableau->difference;
   largest position = {0}, velocity = {0}, speed = {0};
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
-    position = larger_of(position, h * weighted(v, difference, PAIR, false, i));
-    velocity = larger_of(velocity, h * weighted(a, difference, PAIR, true, i));
+    position = larger_of(position, h * weighted(v, difference, count, false, i));
+    velocity = larger_of(velocity, h * weighted(a, difference, count, true, i));
     speed = larger_of(speed, strut_lanes_load(l->now->v + i));
     speed = larger_of(speed, strut_lanes_load(l->next->v + i));
   }
@@ -200,7 +206,9 @@ STRUT_INLINE double earliest_dip(const strut_model *model, const strut_state *st
 static const double LEAST_SPLIT = 1e-4;
 
 /* The error that makes the next step end there. */
-static double error_to_reach(double part) { return fmax(1.01, pow(0.9 / part, 5.0)); }
+static double error_to_reach(const strut_event_stepper *l, double part) {
+  return fmax(1.01, pow(0.9 / part, l->stepper->tableau->order));
+}
 
 /* What the ends of a step of sufficient accuracy, and stages from `broken` on, say about the time between. */
 STRUT_LOOP void look_between(const strut_model *model, strut_state *state, strut_event_stepper *l,
@@ -212,56 +220,50 @@ STRUT_LOOP void look_between(const strut_model *model, strut_state *state, strut
   if (broken > 0.0 && (part == 0.0 || broken < part) && h > LEAST_SPLIT * l->longest &&
       strut_event_first(model, state, l, h).kind == STRUT_EVENT_NONE)
     part = broken;
-  if (part > 0.0) l->error = error_to_reach(part);
+  if (part > 0.0) l->error = error_to_reach(l, part);
 }
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double t, double h, unsigned terms, bool balance) {
-  double *v[PAIR], *a[PAIR];
-  for (int k = 0; k < PAIR; k++) v[k] = l->stage[V + k], a[k] = l->stage[A + k];
+STRUT_INLINE void take(const strut_tableau *tableau, const strut_model *model, strut_state *state,
+                       strut_event_stepper *l, double t, double h, unsigned terms, bool balance) {
+  double *v[STRUT_MOST_STAGES + 1], *a[STRUT_MOST_STAGES + 1];
+  const int end = tableau->stages;
+  const double *ahead = tableau->ahead, *last = tableau->weight[end];
   v[0] = l->now->v, a[0] = l->now->a;
-  v[PAIR - 1] = l->next->v, a[PAIR - 1] = l->next->a;
-  int32_t n = model->length;
+  for (int k = 1; k < end; k++) v[k] = l->stage[k], a[k] = l->stage[end - 1 + k];
+  v[end] = l->next->v, a[end] = l->next->a;
   double broken = 0.0; /* where a stage contradicts a contact's mode */
   strut_drives_ahead drives;
   drives_ahead_begin(model, terms, &drives);
-  drives_ahead_stages(model, state, &drives, t, h, ahead, PAIR - 2);
+  drives_ahead_stages(model, state, &drives, t, h, ahead, end - 1);
   for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
-    l->gained[p] = table[PAIR - 1][0] * h * l->now->power[p];
-  for (int k = 1; k < PAIR; k++) {
-    double *q = k == PAIR - 1 ? l->next->q : l->stage[0];
-    stage_of(n, h, l->now, v, a, k, q);
+    l->gained[p] = last[0] * h * l->now->power[p];
+  for (int k = 1; k <= end; k++) {
+    double *q = k == end ? l->next->q : l->stage[0];
+    stage_of(model->length, h, l->now, v, a, tableau, k, q);
     if (model->terms & terms & STRUT_TERM_SUPPORT_MOTION)
       strut_support_motion_place(model, state, t + ahead[k] * h, q, v[k]);
-    if (k == PAIR - 1) break;
+    if (k == end) break;
     drives_ahead_meet(model, state, &drives, t + ahead[k] * h);
     accelerate_in_modes(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, terms, balance);
     if (l->closed_count && broken == 0.0 && any_contradicts_at_stage(model, l)) broken = ahead[k];
     for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
-      l->gained[p] += table[PAIR - 1][k] * h * state->latest.power[p];
+      l->gained[p] += last[k] * h * state->latest.power[p];
   }
   evaluate_step_end(model, state, l, t + h, l->next, terms, balance);
-  l->error = error_of(model, l, h, v, a);
+  l->error = error_of(model, l, tableau, h, v, a);
   look_between(model, state, l, h, broken, terms);
 }
 
-STRUT_EVENT_TRIAL(adaptive, take)
-
-/* The step of a small model in registers, see small_adaptive.h; else by the general kernel. */
-static void trial(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
-                  double h) {
-  strut_small_trial *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_adaptive);
-  if (small) {
-    double broken = small(model, state, l, t, h);
-    look_between(model, state, l, h, broken, STRUT_TERMS_COMMON);
-  } else {
-    adaptive_trial(model, state, l, t, h);
-  }
+/* The step of a small model in registers, see small_adaptive.h. */
+static void take_small(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t, double h, strut_small_trial *small) {
+  double broken = small(model, state, l, t, h);
+  look_between(model, state, l, h, broken, STRUT_TERMS_COMMON);
 }
 
-static void advance_until_event(const strut_model *model, strut_state *state,
-                                strut_event_stepper *l, double dt, int64_t end) {
-  strut_small_quiet *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_adaptive_quiet);
+/* Several of them; small: NULL where the general kernel steps. */
+static void advance_small(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                          double dt, int64_t end, strut_small_quiet *small) {
   if (!small || !strut_small_is_quiet(state, l)) return;
   double broken = small(model, state, l, dt, end);
   if (l->tried)
@@ -273,24 +275,47 @@ static void look_between_of_region(const strut_model *model, strut_state *state,
   look_between(model, state, l, h, broken, STRUT_TERMS_COMMON);
 }
 
-static const strut_tableau pair = {.stages = PAIR - 1,
-                                   .velocities = V,
-                                   .ahead = ahead,
-                                   .weight = table[0],
-                                   .difference = difference};
-static const strut_step_formula stepper = {.trial = trial,
-                                           .stages = STAGES,
-                                           .exact = true,
-                                           .adaptive = true,
-                                           .advance_until_event = advance_until_event,
-                                           .tableau = &pair,
-                                           .contradicts_at_stage = any_contradicts_at_stage,
-                                           .look_between = look_between_of_region};
+/* Defines NAME_create, of the method that steps by this pair. */
+#define PAIR_METHOD(name, pair)                                                                    \
+  STRUT_INLINE void name##_take(const strut_model *model, strut_state *state,                      \
+                                strut_event_stepper *l, double t, double h, unsigned terms,        \
+                                bool balance) {                                                    \
+    take(&(pair), model, state, l, t, h, terms, balance);                                          \
+  }                                                                                                \
+  STRUT_EVENT_TRIAL(name, name##_take)                                                             \
+                                                                                                   \
+  static void name##_step(const strut_model *model, strut_state *state, strut_event_stepper *l,    \
+                          double t, double h) {                                                    \
+    strut_small_trial *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_##name);            \
+    if (small)                                                                                     \
+      take_small(model, state, l, t, h, small);                                                    \
+    else                                                                                           \
+      name##_trial(model, state, l, t, h);                                                         \
+  }                                                                                                \
+                                                                                                   \
+  static void name##_until_event(const strut_model *model, strut_state *state,                     \
+                                 strut_event_stepper *l, double dt, int64_t end) {                 \
+    advance_small(model, state, l, dt, end,                                                        \
+                  STRUT_SMALL_EVENTS(model, state, l, strut_small_##name##_quiet));                \
+  }                                                                                                \
+                                                                                                   \
+  static const strut_step_formula name##_formula = {                                               \
+      .trial = name##_step,                                                                        \
+      .stages = ARRAYS(&(pair)),                                                                   \
+      .exact = true,                                                                               \
+      .adaptive = true,                                                                            \
+      .advance_until_event = name##_until_event,                                                   \
+      .tableau = &(pair),                                                                          \
+      .contradicts_at_stage = any_contradicts_at_stage,                                            \
+      .look_between = look_between_of_region};                                                     \
+                                                                                                   \
+  static void *name##_create(const strut_model *model, strut_state *state,                         \
+                             const strut_integrator_settings *settings) {                          \
+    return strut_event_stepper_create(model, state, &name##_formula, settings);                    \
+  }
 
-static void *create(const strut_model *model, strut_state *state,
-                    const strut_integrator_settings *settings) {
-  return strut_event_stepper_create(model, state, &stepper, settings);
-}
+PAIR_METHOD(adaptive, strut_dormand_prince)
+PAIR_METHOD(adaptive8, strut_verner)
 
 const strut_integrator strut_integrator_adaptive = {
     .name = "adaptive",
@@ -299,9 +324,21 @@ const strut_integrator strut_integrator_adaptive = {
     .evaluations = 6,
     .role = STRUT_ROLE_REFERENCE,
     .events = true,
-    .create = create,
+    .create = adaptive_create,
     .restart = strut_event_stepper_restart,
     .advance = strut_event_stepper_advance,
     .observe = strut_event_stepper_observe,
     .tangent = true,
+};
+
+const strut_integrator strut_integrator_adaptive8 = {
+    .name = "adaptive8",
+    .description = "Verner 8(7) from event to event, step by error control",
+    .order = 8,
+    .evaluations = 13,
+    .events = true,
+    .create = adaptive8_create,
+    .restart = strut_event_stepper_restart,
+    .advance = strut_event_stepper_advance,
+    .observe = strut_event_stepper_observe,
 };

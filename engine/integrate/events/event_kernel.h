@@ -341,9 +341,9 @@ STRUT_INLINE double next_step_size(const strut_state *state, const strut_event_s
   return h > rest * (1.0 - 1e-9) ? rest : h;
 }
 
-/* New step after an error of l->error in a method of fifth order. */
+/* New step after an error of l->error. */
 STRUT_INLINE void control_step(strut_event_stepper *l, double h, bool whole) {
-  double factor = 0.9 * pow(fmax(l->error, 1e-10), -0.2);
+  double factor = 0.9 * pow(fmax(l->error, 1e-10), -1.0 / l->stepper->tableau->order);
   factor = factor < 0.2 ? 0.2 : factor > 5.0 ? 5.0 : factor;
   if (!whole || factor < 1.0 || factor * h > l->h) l->h = factor * h;
 }

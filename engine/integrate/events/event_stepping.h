@@ -159,18 +159,19 @@ typedef struct strut_event_view {
   bool smooth;                   /* nothing has switched or jumped since the latest piece */
 } strut_event_view;
 
+enum { STRUT_MOST_STAGES = 13 };
+
 /**
  * An explicit Runge-Kutta method, for what follows its steps; velocities are those of an equation of second
  * order.
  */
 typedef struct strut_tableau {
-  int stages;
-  int velocities;      /* velocities of stage k > 0 are in l->stage[velocities + k] */
-  const double *ahead; /* (stages) times, in steps */
-  const double
-      *weight; /* (stages + 1, stages) of the stages before, row by row; then of the step */
-  const double
-      *difference; /* (stages + 1) weights of the local error, the end's last; NULL: none */
+  int stages; /* the step's end is one more, and the first stage of the next step */
+  int order;
+  double ahead[STRUT_MOST_STAGES + 1];                     /* times, in steps */
+  double weight[STRUT_MOST_STAGES + 1][STRUT_MOST_STAGES]; /* of the stages before; of the step */
+  double
+      difference[STRUT_MOST_STAGES + 1]; /* weights of the local error; 0 without error control */
 } strut_tableau;
 
 /** What a method adds: how one step goes while nothing happens. */

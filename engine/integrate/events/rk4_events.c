@@ -54,10 +54,11 @@ static void advance_until_event(const strut_model *model, strut_state *state,
   if (small && strut_small_is_quiet(state, l)) small(model, state, l, dt, end);
 }
 
-static const double table[5][4] = {
-    {0}, {0.5}, {0.0, 0.5}, {0.0, 0.0, 1.0}, {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}};
 static const strut_tableau tableau = {
-    .stages = 4, .velocities = V - 1, .ahead = STRUT_RK4_AHEAD, .weight = table[0]};
+    .stages = 4,
+    .order = 4,
+    .ahead = {0.0, 0.5, 0.5, 1.0},
+    .weight = {{0}, {0.5}, {0.0, 0.5}, {0.0, 0.0, 1.0}, {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}}};
 static const strut_step_formula stepper = {.trial = trial,
                                            .stages = STAGES,
                                            .exact = true,

@@ -501,7 +501,7 @@ static const strut_option simulation_options[] = {
     {STRUT_OPTION_INTEGRATOR, "integrator", "NAME",
      "integration method, instead of that of the file"},
     {STRUT_OPTION_STEP, "step", "TIME", "time step, instead of that of the file"},
-    {STRUT_OPTION_TOLERANCE, "tolerance", "X", "error tolerance of the method adaptive"},
+    {STRUT_OPTION_TOLERANCE, "tolerance", "X", "error tolerance of adaptive and adaptive8"},
     STRUT_FIDELITY_OPTIONS,
     END};
 static const strut_option sweep_options[] = {

@@ -113,13 +113,13 @@ static const double *place_stage(const strut_model *model, const strut_event_ste
                                  double h, double *q) {
   const strut_tableau *t = l->stepper->tableau;
   if (k == 0) return l->now->v;
-  const double *weight = t->weight + k * t->stages;
+  const double *weight = t->weight[k];
   for (int32_t i = 0; i < model->length; i++) {
     double sum = weight[0] * l->now->v[i];
-    for (int j = 1; j < k; j++) sum += weight[j] * l->stage[t->velocities + j][i];
+    for (int j = 1; j < k; j++) sum += weight[j] * l->stage[j][i];
     q[i] = l->now->q[i] + h * sum;
   }
-  return l->stage[t->velocities + k];
+  return l->stage[k];
 }
 
 void strut_variation_step(const strut_model *model, strut_state *state,
@@ -131,16 +131,14 @@ void strut_variation_step(const strut_model *model, strut_state *state,
   for (int k = 0; k < tableau->stages; k++) {
     const double *z = k ? x->middle : x->columns;
     const double *v = place_stage(model, l, k, h, x->stage_q);
-    if (k)
-      combine(2 * half, h, tableau->weight + k * tableau->stages, k, x->slope, x->columns,
-              x->middle);
+    if (k) combine(2 * half, h, tableau->weight[k], k, x->slope, x->columns, x->middle);
     strut_mode_tangent_evaluate(model, state, l, t + tableau->ahead[k] * h,
                                 k ? x->stage_q : l->now->q, v, x->tangent);
     memcpy(x->slope[k], z + half, bytes);
     multiply(x->n, x->stride, x->tangent->rate, z, x->slope[k] + half);
   }
-  combine(2 * half, h, tableau->weight + tableau->stages * tableau->stages, tableau->stages,
-          x->slope, x->columns, x->middle);
+  combine(2 * half, h, tableau->weight[tableau->stages], tableau->stages, x->slope, x->columns,
+          x->middle);
   double *swap = x->columns;
   x->columns = x->middle, x->middle = swap;
   memset(x->delay, 0, (size_t)x->stride * sizeof(double));

@@ -163,8 +163,6 @@ void strut_local_evaluate(const strut_model *model, strut_state *state, strut_ev
 
 /* ---- steps ---- */
 
-enum { MOST_STAGES = 7 };
-
 /* q = q0 + h sum v, speed = v0 + h sum a at the region's nodes, over `count` stages. */
 STRUT_INLINE void region_stage(const strut_local_region *r, double h, const strut_step_end *now,
                                double *const *v, double *const *a, const double *weight, int count,
@@ -206,17 +204,17 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   const strut_tableau *tableau = l->stepper->tableau;
   strut_local_events *p = l->within;
   int stages = tableau->stages;
-  double *v[MOST_STAGES], *a[MOST_STAGES], *q = l->stage[0];
+  double *v[STRUT_MOST_STAGES + 1], *a[STRUT_MOST_STAGES + 1], *q = l->stage[0];
   double broken = 0.0; /* where a stage contradicts a contact's mode */
   v[0] = l->now->v, a[0] = l->now->a;
   for (int k = 1; k < stages; k++) v[k] = l->stage[k], a[k] = l->stage[stages - 1 + k];
   v[stages] = l->next->v, a[stages] = l->next->a;
-  const double *weight = tableau->weight, *last = weight + stages * stages;
+  const double *last = tableau->weight[stages];
   for (int k = 0; k < STRUT_POWER_COUNT && balance; k++)
     l->gained[k] = last[0] * h * l->now->power[k];
   for (int s = 1; s < stages; s++) {
     double at = t + tableau->ahead[s] * h;
-    region_stage(&p->region, h, l->now, v, a, weight + s * stages, s, q, v[s]);
+    region_stage(&p->region, h, l->now, v, a, tableau->weight[s], s, q, v[s]);
     strut_local_place_halo(p, (at - p->whole.start) / p->whole.span, q, v[s]);
     region_forces(model, state, p, at, q, v[s], balance);
     region_accelerations(model, state, l, q, v[s], a[s], l->next, balance);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Hot: Dormand and Prince's pair for small models; see adaptive.c, whose operations these are.
+ * Hot: pairs with error control for small models; see adaptive.c, whose operations these are.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_EVENTS_SMALL_SMALL_ADAPTIVE_H
 #define STRUT_ENGINE_INTEGRATE_EVENTS_SMALL_SMALL_ADAPTIVE_H
 
-#include "engine/integrate/events/dormand_prince.h"
 #include "engine/integrate/events/small/small_checks.h"
+#include "engine/integrate/events/tableaus.h"
 
 STRUT_SMALL_INLINE small_row small_scaled(double weight, small_row x) {
   SMALL_EACH(p) x.part[p] = weight * x.part[p];
@@ -26,9 +26,9 @@ STRUT_SMALL_INLINE void small_add_weighted(small_points *sum, double weight,
   }
 }
 
-/* sum_j for_v[j] v[j] and sum_j for_a[j] a[j] over `count` stages. A weight of 0, which only the second
-   stage has, is left out. Loops, since six copies of
-   all that follows would not stay in the processor's cache of instructions. */
+/* sum_j for_v[j] v[j] and sum_j for_a[j] a[j] over `count` stages. The second one has mostly weight 0, and is left out
+   then. Loops, since a copy
+   of all that follows for each stage would not stay in the processor's cache of instructions. */
 STRUT_SMALL_INLINE small_sums small_weighted(const small_points *v, const double *for_v,
                                              const small_points *a, const double *for_a,
                                              int count) {
@@ -66,11 +66,13 @@ STRUT_SMALL_INLINE double small_largest_of(const small_largest *x) {
 }
 
 /* Local error over what is allowed, by the difference of the pair. */
-STRUT_SMALL_INLINE double small_error(const strut_model *model, strut_event_stepper *l, double h,
-                                      const small_points *v, const small_points *a,
-                                      const small_points *speed) {
+STRUT_SMALL_INLINE double small_error(const strut_model *model, strut_event_stepper *l,
+                                      const strut_tableau *tableau, double h, const small_points *v,
+                                      const small_points *a) {
+  const small_points *speed = &v[tableau->stages];
   small_largest position = {0}, velocity = {0}, fastest = {0};
-  small_sums off_by = small_weighted(v, difference, a, difference, PAIR);
+  small_sums off_by =
+      small_weighted(v, tableau->difference, a, tableau->difference, tableau->stages + 1);
   SMALL_EACH(p) {
     small_enlarge(&position, h * off_by.v.x.part[p]);
     small_enlarge(&position, h * off_by.v.y.part[p]);
@@ -88,40 +90,41 @@ STRUT_SMALL_INLINE double small_error(const strut_model *model, strut_event_step
 
 /* A step from `now` at time t over h to `next`, with the works of it; leaves rest lengths and forces in the
    state. Returns the part of the step by which a stage contradicts a mode; 0: none does. */
-STRUT_SMALL_INLINE double small_adaptive_step(small_events *e, const strut_model *model,
-                                              strut_state *state, double t, double h,
-                                              const small_end_point *now, small_end_point *next,
-                                              small_work *gained, bool balance) {
+STRUT_SMALL_INLINE double small_adaptive_step(const strut_tableau *tableau, small_events *e,
+                                              const strut_model *model, strut_state *state,
+                                              double t, double h, const small_end_point *now,
+                                              small_end_point *next, small_work *gained,
+                                              bool balance) {
   strut_event_stepper *l = e->stepper;
-  int stride = e->run.terms & STRUT_TERM_DRIVE ? 1 : 0;
-  const small_rest *rest = small_rest_at(model, state, l->small, t, h, ahead + 1, PAIR - 2);
-  small_points v[PAIR], a[PAIR], q, next_q;
+  const int stride = e->run.terms & STRUT_TERM_DRIVE ? 1 : 0, end = tableau->stages;
+  const double *ahead = tableau->ahead, *last = tableau->weight[end];
+  const small_rest *rest = small_rest_at(model, state, l->small, t, h, ahead + 1, end - 1);
+  small_points v[STRUT_MOST_STAGES + 1], a[STRUT_MOST_STAGES + 1], q, next_q;
   double broken = 0.0;
   v[0] = now->v, a[0] = now->a;
-  q.x = small_ahead(now->q.x, h, small_scaled(table[1][0], v[0].x));
-  q.y = small_ahead(now->q.y, h, small_scaled(table[1][0], v[0].y));
+  q.x = small_ahead(now->q.x, h, small_scaled(tableau->weight[1][0], v[0].x));
+  q.y = small_ahead(now->q.y, h, small_scaled(tableau->weight[1][0], v[0].y));
   small_shapes shapes = {0};
   small_measure_members(e->run.tables, &q, &shapes);
-  if (balance) *gained = small_scaled_work(table[PAIR - 1][0] * h, &now->power);
-  for (int k = 1; k < PAIR; k++) {
-    bool last = k == PAIR - 1;
-    const double *further = table[last ? 0 : k + 1]; /* positions are a stage ahead */
-    small_sums sum = small_weighted(v, further, a, table[k], k);
+  if (balance) *gained = small_scaled_work(last[0] * h, &now->power);
+  for (int k = 1; k <= end; k++) {
+    const double *further = tableau->weight[k < end ? k + 1 : 0]; /* positions are a stage ahead */
+    small_sums sum = small_weighted(v, further, a, tableau->weight[k], k);
     v[k].x = small_ahead(v[0].x, h, sum.a.x), v[k].y = small_ahead(v[0].y, h, sum.a.y);
-    if (!last) small_add_weighted(&sum.v, further[k], &v[k]);
+    if (k < end) small_add_weighted(&sum.v, further[k], &v[k]);
     next_q.x = small_ahead(now->q.x, h, sum.v.x), next_q.y = small_ahead(now->q.y, h, sum.v.y);
-    a[k] = small_accelerate_in_modes(e, rest + (k < 6 ? k - 1 : 4) * stride, &q, &shapes,
-                                     last ? NULL : &next_q, &v[k], balance);
-    if (last) break;
+    a[k] = small_accelerate_in_modes(e, rest + (k < end ? k - 1 : end - 2) * stride, &q, &shapes,
+                                     k < end ? &next_q : NULL, &v[k], balance);
+    if (k == end) break;
     q = next_q;
     if (l->closed_count && broken == 0.0 && small_contradicts_at_stage(e)) broken = ahead[k];
-    if (balance) small_add_work(gained, table[PAIR - 1][k] * h, &e->power);
+    if (balance) small_add_work(gained, last[k] * h, &e->power);
   }
-  state->evaluations += PAIR - 1;
-  *next = (small_end_point){q, v[6], a[6], e->power};
-  e->rest = rest + 4 * stride;
+  state->evaluations += end;
+  *next = (small_end_point){q, v[end], a[end], e->power};
+  e->rest = rest + (end - 2) * stride;
   e->time = t + h;
-  l->error = small_error(model, l, h, v, a, &v[6]);
+  l->error = small_error(model, l, tableau, h, v, a);
   return broken;
 }
 

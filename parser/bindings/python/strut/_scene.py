@@ -210,7 +210,7 @@ class Scene(Frozen):
 
         `accuracy` chooses method and step for this relative error of the velocity; `budget` limits its work, in
         units of one run with a fine fixed step (default 20). Without it `integrator` and `step` [s] replace those
-        of the scene, `tolerance` is the error tolerance of the method "adaptive", and `force=True` allows a step
+        of the scene, `tolerance` is the error tolerance of "adaptive" and "adaptive8", and `force=True` allows a step
         above the stability limit. `steady` ends the run once the motion repeats within this relative tolerance.
         `bars`, `mass_model`, `friction_law` and `damping_law` replace those of the scene. `channels` are
         recorded instead of those of the scene; `record=False` records nothing.
