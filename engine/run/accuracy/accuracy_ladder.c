@@ -12,10 +12,7 @@
 #include "engine/integrate/integrator.h"
 #include "engine/run/accuracy/accuracy.h"
 
-/*
- * Factor from one run with error control to the next. Local errors are of fifth order, so that half the
- * longest step has about the same effect.
- */
+/* Factor from one run with error control to the next. */
 static const double FINER_TOLERANCE = 1.0 / 30.0;
 /*
  * Tolerance of the first such run: at most, and over the wanted error. Looser ones cost hardly less, since
@@ -25,13 +22,20 @@ static const double FINER_TOLERANCE = 1.0 / 30.0;
 static const double FIRST_TOLERANCE = 1e-5, FIRST_TOLERANCE_PER_ERROR = 1e-3;
 /* Smallest tolerance: below it rounding dominates. */
 static const double LEAST_TOLERANCE = 3e-14;
-/* Longest steps per period of the first such run; of these, steps per moment of a track. */
-enum { STEPS_OF_PERIOD = 50, STEPS_OF_MOMENT = 5, MOST_MOMENTS = 61 };
+/* Moments of a track: per period or run, and the most. */
+enum { MOMENTS_OF_PERIOD = 10, MOST_MOMENTS = 61 };
 /* Moments are at most this part of the shortest signal time apart. */
 static const double SIGNAL_FRACTION = 0.1;
 /* Largest size of a track in doubles. */
 static const double MOST_TRACK_NUMBERS = 4e6;
-enum { MOST_RUNS = 12 };
+/* Runs in all, and of these the first ones, by the coarse method. */
+enum { MOST_RUNS = 12, COARSE_RUNS = 2 };
+/*
+ * Longest steps per moment of the runs with error control. They grow slowly, since the tolerance bounds the error and
+ * the longest step the cost. Successive ones have no common divisor: two runs so meet at moments only, and a peak that
+ * both miss in between is not missed alike.
+ */
+static const double STEPS_OF_MOMENT[MOST_RUNS] = {3, 4, 5, 7, 9, 11, 13, 17, 19, 23, 29, 31};
 
 /* Quantities below this part of their largest term count as zero. */
 static const double ZERO_QUANTITY = 1e-3;
@@ -58,7 +62,7 @@ typedef struct ladder {
   size_t worst;                  /* index of the quantity with the largest relative error */
   double distance;               /* of the latest two tracks */
   int runs;
-  double mean[MOST_RUNS]; /* (means) velocities of the runs but the first [m/s] */
+  double mean[MOST_RUNS]; /* (means) velocities of the runs with error control [m/s] */
   int means;
   double expected; /* estimated error of the latest run, relative */
   bool same_motion, kept, budget_spent;
@@ -87,14 +91,16 @@ static double find_grid_unit(const strut_accuracy *a, bool *meets) {
   return span.duration;
 }
 
+/* 0 or less: there is none yet. Where only one method suits the scene, it does not count. */
+static int runs_with_error_control(const ladder *l) { return l->runs - COARSE_RUNS; }
+
 static double divide_evenly(double unit, double step) {
   return unit / ceil(unit / step * (1.0 - 1e-9));
 }
 
 /*
- * Steps between two moments in the k-th of runs of which the first has `first`: about twice as many from run
- * to run, without a common divisor. Two successive runs so meet at moments only, and a peak that both miss in
- * between is not missed alike.
+ * Fixed steps between two moments in the k-th of runs of which the first has `first`: about twice as many from run to
+ * run, without a common divisor, as above.
  */
 static double count_steps_of_moment(double first, int k) {
   double count = first;
@@ -103,23 +109,23 @@ static double count_steps_of_moment(double first, int k) {
 }
 
 /*
- * Settings of the k-th run: ever smaller steps where only one method suits the scene, otherwise
- * first Verlet and then error control.
+ * Settings of the k-th run: ever smaller steps where only one method suits the scene, otherwise first Verlet, with
+ * half the step too, and then error control.
  */
 static strut_experiment refine_experiment(const ladder *l, int k) {
   const strut_accuracy *a = l->a;
   strut_experiment e = a->coarse;
   e.steady.tolerance = fmin(e.steady.tolerance, 0.2 * a->target);
   double coarse = ceil(l->moment / e.step * (1.0 - 1e-9));
-  if (a->single_method) {
+  if (a->single_method || k < COARSE_RUNS) {
     e.step = l->moment / count_steps_of_moment(coarse, k);
-  } else if (k == 0) {
-    e.step = l->moment / (fmod(coarse, STEPS_OF_MOMENT) == 0.0 ? coarse + 1.0 : coarse);
+    if (k > 0) e.refine_rate *= 0.5; /* steps after a touchdown are finer, too */
   } else {
+    int further = k - COARSE_RUNS;
     e.integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
-    e.step = l->moment / count_steps_of_moment(STEPS_OF_MOMENT, k - 1);
+    e.step = l->moment / STEPS_OF_MOMENT[further];
     e.tolerance = fmin(FIRST_TOLERANCE, FIRST_TOLERANCE_PER_ERROR * a->target);
-    e.tolerance = fmax(LEAST_TOLERANCE, e.tolerance * pow(FINER_TOLERANCE, k - 1));
+    e.tolerance = fmax(LEAST_TOLERANCE, e.tolerance * pow(FINER_TOLERANCE, further));
   }
   strut_span span = strut_experiment_span(&a->experiment, a->scene);
   double kept = (MOST_MOMENTS - 1) * l->moment;
@@ -214,22 +220,23 @@ static strut_status run_next_rung(ladder *l) {
       next->e.steady.wanted ? strut_experiment_span(&l->a->experiment, l->a->scene).period : 0.0;
   l->change = compare_results(l, &next->s, &l->before->s, l->difference);
   l->distance = strut_track_distance(&next->track, &l->before->track, period);
-  if (l->runs > 1 && l->means < MOST_RUNS) l->mean[l->means++] = next->s.velocity;
+  if (runs_with_error_control(l) > 0 && l->means < MOST_RUNS)
+    l->mean[l->means++] = next->s.velocity;
   return STRUT_OK;
 }
 
 /* Tracks closer than this, relative to the range of motion, are the same motion. */
 static const double SAME_MOTION = 0.03;
 /*
- * The same for two runs by different methods that shall be enough: over the accuracy wanted, and at most. A
- * mean velocity that is small beside the nodes' may agree by chance where their motions do not.
+ * The same for two runs of which the first is coarse: over the accuracy wanted, and at most. A mean velocity that is
+ * small beside the nodes' may agree by chance where their motions do not.
  */
-static const double SAME_MOTION_OF_TWO = 0.5, MOST_APART_OF_TWO = 0.005;
+static const double SAME_MOTION_OF_COARSE = 0.5, MOST_APART_OF_COARSE = 0.005;
 /*
- * Expected error that is accepted, as part of the wanted one: of two runs by different methods, the
- * first coarse and of unknown convergence; and of later runs.
+ * Expected error that is accepted, as part of the wanted one: of two runs, the first coarse and of unknown convergence;
+ * and of later runs.
  */
-static const double ENOUGH_OF_TWO = 0.2, ENOUGH = 0.3;
+static const double ENOUGH_OF_COARSE = 0.2, ENOUGH = 0.3;
 /*
  * The same for the first two runs with error control: both may have taken the longest step, so that
  * their tolerances changed nothing, and no third run shows the convergence.
@@ -253,7 +260,7 @@ static const double DEVIATIONS = 4.0;
  */
 static double estimate_motion_error(const ladder *l) {
   if (!(l->distance <= SAME_MOTION)) return HUGE_VAL;
-  bool series = l->runs > 3 || (l->a->single_method && l->runs > 2);
+  bool series = runs_with_error_control(l) > 2 || (l->a->single_method && l->runs > 2);
   double ratio = series && l->earlier_change > 0.0 ? l->change / l->earlier_change : 0.5;
   double noise = 1e-9; /* smaller differences are rounding and show no convergence */
   if (!(ratio < CONVERGING) && l->change > noise) return HUGE_VAL;
@@ -279,14 +286,16 @@ static double estimate_mean_error(const ladder *l) {
 
 /* Decides whether the latest run is accurate enough, and estimates its error. */
 static void judge_agreement(ladder *l) {
-  double wanted = l->a->target, enough = l->runs == 2 ? ENOUGH_OF_TWO : ENOUGH;
-  if (l->runs == 3) enough = ENOUGH_OF_FIRST_PAIR;
+  int further = runs_with_error_control(l);
+  double wanted = l->a->target, enough = further < 2 ? ENOUGH_OF_COARSE : ENOUGH;
+  if (further == 2) enough = ENOUGH_OF_FIRST_PAIR;
   if (l->a->single_method) enough = ENOUGH_ALONE;
   l->expected = estimate_motion_error(l);
   l->same_motion = l->distance <= SAME_MOTION;
   /* steps of one method must agree twice: a single agreement may be chance */
   bool once = l->a->single_method && l->runs < 3;
-  bool apart = l->runs == 2 && l->distance > fmin(SAME_MOTION_OF_TWO * wanted, MOST_APART_OF_TWO);
+  double near = fmin(SAME_MOTION_OF_COARSE * wanted, MOST_APART_OF_COARSE);
+  bool apart = further < 2 && l->distance > near;
   l->kept = strut_accuracy_is_kept(!once && !apart, l->expected, enough * wanted);
   if (l->kept || l->same_motion) return;
   l->expected = estimate_mean_error(l);
@@ -297,7 +306,7 @@ static void judge_agreement(ladder *l) {
 
 static bool may_refine(const ladder *l) {
   if (l->kept || l->budget_spent || l->runs >= MOST_RUNS) return false;
-  if (l->runs < 2 || l->a->single_method) return true;
+  if (runs_with_error_control(l) < 1 || l->a->single_method) return true;
   return l->now->e.tolerance > LEAST_TOLERANCE;
 }
 
@@ -306,7 +315,7 @@ static strut_status create_ladder(strut_accuracy *a, ladder *l) {
   strut_status status = STRUT_OK;
   l->model = a->model;
   l->unit = find_grid_unit(a, &meets);
-  l->moment = l->unit / (STEPS_OF_PERIOD / STEPS_OF_MOMENT);
+  l->moment = l->unit / MOMENTS_OF_PERIOD;
   double signals = strut_accuracy_signal_time(a->scene);
   if (l->moment > SIGNAL_FRACTION * signals)
     l->moment = divide_evenly(l->moment, SIGNAL_FRACTION * signals);
@@ -362,7 +371,7 @@ static strut_status check_sensitivity(ladder *l) {
   strut_snapshot start = {.q = NULL};
   strut_summary shifted = {0};
   const rung *r = l->budget_spent ? l->now : l->before; /* the one before was not finished */
-  if (!l->same_motion || a->single_method || l->runs < 3) return STRUT_OK;
+  if (!l->same_motion || a->single_method || runs_with_error_control(l) < 2) return STRUT_OK;
   if (!(r->e.tolerance < CHECKED_BELOW)) return STRUT_OK;
   strut_status status = shift_start(l, &start);
   if (status) return status;
@@ -419,8 +428,9 @@ static void explain_ladder(const ladder *l, char *why, size_t size) {
         how, SHIFT * l->model->size, l->sensitivity);
   else if (l->kept)
     snprintf(why, size, "%s: %s gives the same motion, and %s", how,
-             l->runs == 2 && !a->single_method ? strut_integrator_for(STRUT_ROLE_COARSE)->name
-                                               : "a coarser run",
+             runs_with_error_control(l) == 1 && !a->single_method
+                 ? strut_integrator_for(STRUT_ROLE_COARSE)->name
+                 : "a coarser run",
              apart);
   else if (l->same_motion)
     snprintf(why, size, "%s; a coarser run gives the same motion, but %s%s", how, apart,
@@ -433,7 +443,7 @@ static void explain_ladder(const ladder *l, char *why, size_t size) {
 }
 
 static double choose_margin(const ladder *l) {
-  return l->runs == 3 && !l->a->single_method ? MARGIN_OF_FIRST_PAIR : MARGIN;
+  return runs_with_error_control(l) == 2 && !l->a->single_method ? MARGIN_OF_FIRST_PAIR : MARGIN;
 }
 
 /* Runs whose range counts where they are the same motion: earlier ones were further from it. */
@@ -525,10 +535,11 @@ strut_status strut_accuracy_climb_ladder(strut_accuracy *a) {
     status = run_next_rung(&l);
     if (!status && !l.budget_spent && l.runs > 1) judge_agreement(&l);
   }
-  /* three runs or more that ran into a limit may still agree well enough */
+  /* runs that met a limit may still agree well enough */
+  bool fine = a->single_method ? l.runs > 2 : runs_with_error_control(&l) > 1;
   if (!l.kept)
-    l.kept = strut_accuracy_is_kept(l.same_motion && l.runs > 2, choose_margin(&l) * l.expected,
-                                    a->target);
+    l.kept =
+        strut_accuracy_is_kept(l.same_motion && fine, choose_margin(&l) * l.expected, a->target);
   if (!status) status = check_sensitivity(&l);
   if (!status) status = deliver_answer(&l);
   if (!status) report_ladder(&l);
