@@ -16,7 +16,7 @@
  * The velocity is the mean over the experiment's window or, with experiment.steady, that of the
  * steady motion. A run by periods whose motion becomes steady long before its window is made with
  * the cheapest method, and its orbit is then corrected by an accurate one (orbit.h). Any other run
- * is made with the cheapest method and with one of error control, then with ever smaller
+ * is made with the cheapest method, with half its step, and with error control and ever smaller
  * tolerances, until two agree; rigid bars with ever smaller steps. Where there is no ground and
  * stiff members hold explicit steps far below the motion, implicit midpoint comes first
  * (accuracy_midpoint.c). summary->accuracy reports the choice with its reason, the cost of the
