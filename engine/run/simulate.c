@@ -584,7 +584,7 @@ static void fill_summary(strut_run *r, strut_status status) {
                                                .steps = r->watch.limit.steps_below};
   strut_measure_finish(&r->measure, s);
   if (r->steady.wanted) strut_steady_detector_finish(&r->steady.detector, s);
-  s->velocity_zero = strut_measure_is_zero(&r->measure, s->velocity);
+  s->velocity_zero = strut_measure_is_zero(&r->measure, s);
   for (size_t i = 0; i < 2 * s->end.node_count; i++) s->end.positions[i] = r->state->q[i];
   measure_elements(r);
   list_breaks(r);
