@@ -33,10 +33,12 @@ double strut_run_clock(void) {
 
 /* More steps than these are refused, so that to recommend them is no help. */
 static const double MOST_STEPS = 1e15;
+/* At the limit itself a motion may grow; what rounding leaves of a limit does not matter. */
+static const double AT_LIMIT = 1.0 - 1e-9;
 
 static strut_status check_step_limit(const strut_run *r, bool bound) {
   double limit = r->summary->step_limit, duration = (double)(r->steps - r->first) * r->dt;
-  if (r->dt <= limit || r->options->force) return STRUT_OK;
+  if (r->dt < AT_LIMIT * limit || r->options->force) return STRUT_OK;
   if (!(limit * MOST_STEPS > duration))
     return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
                       "the largest stable step of %s would be %.2g s (all contacts closed), too "
@@ -50,9 +52,9 @@ static strut_status check_step_limit(const strut_run *r, bool bound) {
                       "step); use solver.step <= %.3g s, or --force to run anyway",
                       r->dt, limit, r->method->name, 0.99 * limit);
   return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
-                    "the step %g s is above the largest stable step of %s, %.4g s (all contacts "
+                    "the step %g s is %s the largest stable step of %s, %.4g s (all contacts "
                     "closed); use solver.step <= %.2g s, or --force to run anyway",
-                    r->dt, r->method->name, limit, 0.9 * limit);
+                    r->dt, r->dt > limit ? "above" : "at", r->method->name, limit, 0.9 * limit);
 }
 
 static strut_status allocate_summary(strut_run *r) {
