@@ -213,7 +213,8 @@ static strut_status prepare_run(strut_run *r) {
   r->state->limits.most_evaluations = r->options->most_evaluations;
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
   if (!strut_step_limit_monitor_create(r->model, r->state, r->method, r->dt, &r->watch.limit) ||
-      !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->watch.band))
+      !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->watch.band) ||
+      !strut_motion_frequency_create(r->model, r->state, &r->watch.frequency))
     return strut_memory_fail_model(r->model->scene, r->error);
   strut_energy_reset_load_work(r->model, r->state);
   r->watch.initial = strut_energy_evaluate(r->model, r->state, begin);
@@ -464,6 +465,9 @@ static strut_status sample_balance(strut_run *r) {
   if (!r->state->balance) return STRUT_OK;
   strut_balance_sample(r->model, r->state, &r->watch.initial, time_of_balance(r), &r->watch.balance,
                        &r->summary->energy);
+  if (r->method->lag > 0.0)
+    strut_motion_frequency_sample(r->model, r->state, r->summary->energy.kinetic,
+                                  &r->watch.frequency);
   return strut_run_check_losses(r);
 }
 
