@@ -26,7 +26,7 @@ strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node) {
          least = r->summary->step_limit;
   double seen = (double)r->watch.limit.last * r->dt;
   const char *remedy = r->dt > 0.5 * fmin(limit, least) ? "use a smaller step"
-                       : (r->model->terms & STRUT_TERM_FEEDBACK)
+                       : r->summary->feedback
                            ? "look for a loop of sensors and drives that is unstable, of which the "
                              "largest step knows nothing; a smaller step may also help"
                            : "look for a member or contact that is far too stiff, or a load that "
@@ -164,12 +164,14 @@ strut_status strut_run_check_states(const strut_run *r) {
   const strut_scene *scene = r->model->scene;
   for (int32_t i = 0; i < f->state_count; i++) {
     if (isfinite(r->state->v[f->base + i])) continue;
-    bool own = (size_t)i < scene->state_count;
+    bool own = (size_t)i < scene->state_count, bent = i >= f->state_count - f->bristle_count;
     return strut_fail(
         r->error, STRUT_DIVERGED,
         "%s%s%s is no longer a finite number at t = %.9g s with dt = %g s; look at its "
         "rate, or use a smaller step",
-        own ? "state '" : "the lag of a signal or the force of a Maxwell branch",
+        own    ? "state '"
+        : bent ? "the bend of bristles"
+               : "the lag of a signal or the force of a Maxwell branch",
         own ? scene->states[i].name : "", own ? "'" : "", strut_run_time(r), r->dt);
   }
   return STRUT_OK;
