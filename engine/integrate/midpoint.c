@@ -492,6 +492,7 @@ const strut_integrator strut_integrator_midpoint = {
     .name = "midpoint",
     .description = "implicit midpoint, fixed step, for stiff members without ground",
     .order = 2,
+    .lag = 1.0 / 12.0,
     .evaluations = 4, /* about: as many as Newton's method takes */
     .region = STRUT_REGION_ALL,
     .role = STRUT_ROLE_STIFF,

@@ -107,6 +107,7 @@ const strut_integrator strut_integrator_rk4 = {
     .name = "rk4",
     .description = "classical Runge-Kutta, fixed step, forces at every stage",
     .order = 4,
+    .lag = 1.0 / 120.0,
     .evaluations = 4,
     .region = STRUT_REGION_RK4,
     .role = STRUT_ROLE_PLAIN,

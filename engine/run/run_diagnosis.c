@@ -26,7 +26,7 @@ strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node) {
          least = r->summary->step_limit;
   double seen = (double)r->watch.limit.last * r->dt;
   const char *remedy = r->dt > 0.5 * fmin(limit, least) ? "use a smaller step"
-                       : (r->model->terms & STRUT_TERM_FEEDBACK)
+                       : r->summary->feedback
                            ? "look for a loop of sensors and drives that is unstable, of which the "
                              "largest step knows nothing; a smaller step may also help"
                            : "look for a member or contact that is far too stiff, or a load that "
@@ -164,12 +164,14 @@ strut_status strut_run_check_states(const strut_run *r) {
   const strut_scene *scene = r->model->scene;
   for (int32_t i = 0; i < f->state_count; i++) {
     if (isfinite(r->state->v[f->base + i])) continue;
-    bool own = (size_t)i < scene->state_count;
+    bool own = (size_t)i < scene->state_count, bent = i >= f->state_count - f->bristle_count;
     return strut_fail(
         r->error, STRUT_DIVERGED,
         "%s%s%s is no longer a finite number at t = %.9g s with dt = %g s; look at its "
         "rate, or use a smaller step",
-        own ? "state '" : "the lag of a signal or the force of a Maxwell branch",
+        own    ? "state '"
+        : bent ? "the bend of bristles"
+               : "the lag of a signal or the force of a Maxwell branch",
         own ? scene->states[i].name : "", own ? "'" : "", strut_run_time(r), r->dt);
   }
   return STRUT_OK;
@@ -405,6 +407,10 @@ static void explain_balance(const strut_run *r, char *text, size_t size) {
              "; likely because fixed steps pass over %s; use rk4-events, a smaller step, or "
              "--accuracy 1%%",
              over);
+  else if (r->method->lag == 0.0)
+    snprintf(text, size,
+             "; the tolerance of %g allows that; use a smaller solver.tolerance, or --accuracy 1%%",
+             r->experiment->tolerance);
   else
     snprintf(text, size,
              "; likely because the step of %g s is too large for the fastest motion; use a smaller "
@@ -418,13 +424,41 @@ static void warn_of_balance(const strut_run *r) {
   strut_balance_warn(r->summary, why);
 }
 
-/* States that the error is unknown where fixed steps pass over events. */
+/* Phase errors of vibrations matter from here on [rad]: they are errors relative to the amplitude. */
+static const double SHIFTED = 0.05;
+/* Less of the exchanged energy than this is no motion, but its rounding. */
+static const double AT_REST = 1e-6;
+
+/*
+ * The largest error from the phase that fixed steps lose, relative to a vibration's first amplitude, which
+ * dampers and friction reduce as exp(-decay t / 2); *rate: its frequency [rad/s].
+ */
+static double shifted_phase(const strut_run *r, double *rate) {
+  const strut_motion_frequency *w = &r->watch.frequency;
+  const strut_energy *e = &r->summary->energy;
+  double time = r->summary->duration;
+  if (!(w->movement > AT_REST * e->moved && w->curvature > 0.0)) return 0.0;
+  *rate = sqrt(w->curvature / w->movement);
+  double rubbed = fmax(0.0, e->dissipated_friction) * (double)w->samples / time;
+  double decay = (w->damping + rubbed) / w->movement, lasts = fmin(time, 2.0 / decay);
+  double z = *rate * r->dt, lag = r->method->lag * z * z * (r->method->order > 2 ? z * z : 1.0);
+  return lag * *rate * lasts * exp(-0.5 * decay * lasts);
+}
+
+/* States that the error is unknown where fixed steps pass over events, or lose the phase of vibrations. */
 static void add_caveat(const strut_run *r) {
   strut_summary *s = r->summary;
   const char *events = describe_missed_events(r);
+  double rate = 0.0, shift = shifted_phase(r, &rate);
   s->caveat[0] = '\0';
-  if (!events || r->options->chosen || s->status != STRUT_OK) return;
-  snprintf(s->caveat, sizeof s->caveat, "fixed steps of %s pass over %s", s->method, events);
+  if (r->options->chosen || s->status != STRUT_OK) return;
+  if (events)
+    snprintf(s->caveat, sizeof s->caveat, "fixed steps of %s pass over %s", s->method, events);
+  else if (shift > SHIFTED)
+    snprintf(s->caveat, sizeof s->caveat,
+             "steps of %.3g s shift the phase of vibrations at %.3g Hz, where most of the kinetic "
+             "energy is, by some %.2g rad",
+             r->dt, rate / STRUT_TAU, shift);
 }
 
 void strut_run_warn(const strut_run *r) {

@@ -33,10 +33,12 @@ double strut_run_clock(void) {
 
 /* More steps than these are refused, so that to recommend them is no help. */
 static const double MOST_STEPS = 1e15;
+/* At the limit itself a motion may grow; what rounding leaves of a limit does not matter. */
+static const double AT_LIMIT = 1.0 - 1e-9;
 
 static strut_status check_step_limit(const strut_run *r, bool bound) {
   double limit = r->summary->step_limit, duration = (double)(r->steps - r->first) * r->dt;
-  if (r->dt <= limit || r->options->force) return STRUT_OK;
+  if (r->dt < AT_LIMIT * limit || r->options->force) return STRUT_OK;
   if (!(limit * MOST_STEPS > duration))
     return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
                       "the largest stable step of %s would be %.2g s (all contacts closed), too "
@@ -50,9 +52,9 @@ static strut_status check_step_limit(const strut_run *r, bool bound) {
                       "step); use solver.step <= %.3g s, or --force to run anyway",
                       r->dt, limit, r->method->name, 0.99 * limit);
   return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
-                    "the step %g s is above the largest stable step of %s, %.4g s (all contacts "
+                    "the step %g s is %s the largest stable step of %s, %.4g s (all contacts "
                     "closed); use solver.step <= %.2g s, or --force to run anyway",
-                    r->dt, r->method->name, limit, 0.9 * limit);
+                    r->dt, r->dt > limit ? "above" : "at", r->method->name, limit, 0.9 * limit);
 }
 
 static strut_status allocate_summary(strut_run *r) {
@@ -211,7 +213,8 @@ static strut_status prepare_run(strut_run *r) {
   r->state->limits.most_evaluations = r->options->most_evaluations;
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
   if (!strut_step_limit_monitor_create(r->model, r->state, r->method, r->dt, &r->watch.limit) ||
-      !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->watch.band))
+      !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->watch.band) ||
+      !strut_motion_frequency_create(r->model, r->state, &r->watch.frequency))
     return strut_memory_fail_model(r->model->scene, r->error);
   strut_energy_reset_load_work(r->model, r->state);
   r->watch.initial = strut_energy_evaluate(r->model, r->state, begin);
@@ -462,6 +465,9 @@ static strut_status sample_balance(strut_run *r) {
   if (!r->state->balance) return STRUT_OK;
   strut_balance_sample(r->model, r->state, &r->watch.initial, time_of_balance(r), &r->watch.balance,
                        &r->summary->energy);
+  if (r->method->lag > 0.0)
+    strut_motion_frequency_sample(r->model, r->state, r->summary->energy.kinetic,
+                                  &r->watch.frequency);
   return strut_run_check_losses(r);
 }
 
@@ -584,7 +590,7 @@ static void fill_summary(strut_run *r, strut_status status) {
                                                .steps = r->watch.limit.steps_below};
   strut_measure_finish(&r->measure, s);
   if (r->steady.wanted) strut_steady_detector_finish(&r->steady.detector, s);
-  s->velocity_zero = strut_measure_is_zero(&r->measure, s->velocity);
+  s->velocity_zero = strut_measure_is_zero(&r->measure, s);
   for (size_t i = 0; i < 2 * s->end.node_count; i++) s->end.positions[i] = r->state->q[i];
   measure_elements(r);
   list_breaks(r);

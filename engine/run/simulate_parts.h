@@ -35,6 +35,7 @@ typedef struct strut_run {
   struct {
     strut_step_limit_monitor limit;
     strut_stick_band band;
+    strut_motion_frequency frequency;
     strut_energies initial;
     strut_balance_monitor balance;
   } watch;

@@ -7,7 +7,7 @@
  *   strut_bench batch                        the crawler alone and in batches of 4 and 8
  *   strut_bench large [MEMBERS]              grids in order and shuffled, by one thread and several
  *   strut_bench terms                        what each term costs, alone
- *   strut_bench methods [METHOD]             what a force evaluation costs by each method, alone
+ *   strut_bench methods [METHOD [FINER]]     what a force evaluation costs by each method, alone
  *   strut_bench rivals [--limit S] [-o DIR] [SCENE...]   error against cost, strut and other solvers; a table
  *                                            for each scene, CSV and figures into DIR, S of CPU time per cell
  *   strut_bench rivals --check               whether all of them converge to one answer
@@ -219,7 +219,7 @@ static int usage(void) {
           "       strut_bench batch\n"
           "       strut_bench large [MEMBERS]\n"
           "       strut_bench terms\n"
-          "       strut_bench methods [METHOD]\n"
+          "       strut_bench methods [METHOD [FINER]]\n"
           "       strut_bench falls [NODES]\n"
           "       strut_bench rivals [--limit S] [-o DIR] [SCENE...]\n"
           "       strut_bench rivals --check\n"
@@ -264,7 +264,7 @@ int main(int argc, char **argv) {
     return 0;
   }
   if (argc >= 2 && strcmp(argv[1], "methods") == 0) {
-    bench_methods(31, argc > 2 ? argv[2] : NULL);
+    bench_methods(31, argc > 2 ? argv[2] : NULL, argc > 3 ? atof(argv[3]) : 1.0);
     return 0;
   }
   if (argc >= 2 && strcmp(argv[1], "falls") == 0) {
@@ -292,7 +292,7 @@ int main(int argc, char **argv) {
   compare_crawlers(repeats);
   bench_batch(repeats);
   bench_terms(repeats);
-  bench_methods(repeats, NULL);
+  bench_methods(repeats, NULL, 1.0);
   compare_chains(members, repeats);
   return 0;
 }

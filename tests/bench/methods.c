@@ -32,14 +32,14 @@ static double now(void) {
 }
 
 /* ns of a force evaluation; NAN where the processor has no such kernel. */
-static double run(const method_row *row, strut_small_level level, bool balance) {
+static double run(const method_row *row, double step, strut_small_level level, bool balance) {
   strut_setup setup = {0};
   strut_model *model = NULL;
   strut_state *state = NULL;
   double time = (double)NAN;
   strut_experiment experiment = strut_experiment_default();
   experiment.integrator = row->method;
-  experiment.step = row->step;
+  experiment.step = step;
   const strut_integrator_settings settings = strut_integrator_settings_of(&experiment);
   const strut_integrator *method = strut_integrator_find(row->method);
   void *work = NULL;
@@ -52,10 +52,10 @@ static double run(const method_row *row, strut_small_level level, bool balance) 
   if (work && here) {
     if (model->small) model->small->level = level;
     state->balance = balance;
-    if (method->restart) method->restart(model, state, work, row->step);
-    int64_t steps = (int64_t)(STEPS * 5e-5 / row->step);
+    if (method->restart) method->restart(model, state, work, step);
+    int64_t steps = (int64_t)(STEPS * 5e-5 / step);
     double begin = now();
-    method->advance(model, state, work, row->step, steps);
+    method->advance(model, state, work, step, steps);
     time = 1e9 * (now() - begin) / (double)state->evaluations;
   }
   strut_state_free(state);
@@ -68,13 +68,13 @@ static bool is_wanted(const method_row *row, const char *only) {
   return !only || strcmp(row->method, only) == 0 || strcmp(row->method, "rk4") == 0;
 }
 
-void bench_methods(int repeats, const char *only) {
+void bench_methods(int repeats, const char *only, double finer) {
   static double best[ROWS][KERNELS][BALANCES];
   for (int r = 0; r < repeats; r++)
     for (int i = 0; i < ROWS; i++)
       for (int k = 0; k < KERNELS && is_wanted(&rows[i], only); k++)
         for (int b = 0; b < BALANCES; b++) {
-          double time = run(&rows[i], levels[k], b == 1);
+          double time = run(&rows[i], rows[i].step / (i ? finer : 1.0), levels[k], b == 1);
           best[i][k][b] = r ? fmin(best[i][k][b], time) : time;
         }
   printf(

@@ -80,6 +80,13 @@ jq -e '[.warnings[] | select(.code == "bristles")] | length == 1' "$work/out" >/
 expect 0 run belt.yaml --json
 jq -e '[.warnings[] | select(.code == "bristles")] | length == 0' "$work/out" >/dev/null || fail "short steps are fine"
 
+# Steps far too long for them end the run, and nothing is said of sensors.
+sed 's|10 mm/s|50 m/s|' belt.yaml >fast.yaml
+expect 3 run fast.yaml --integrator rk4-events
+err_has "the bend of bristles is no longer a finite number at t = "
+expect 3 run fast.yaml
+err_has "look for a member or contact that is far too stiff"
+
 # Pushed slowly, bristles give way like Dahl's law: x = -d ln(1 - F / (mu_0 N)).
 cat >push.yaml <<'YAML'
 strut: 1

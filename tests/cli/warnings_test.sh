@@ -148,6 +148,51 @@ for method in "--integrator rk4-events" "--accuracy 1%"; do
   out_has '"caveat":	null'
 done
 
+# Fixed steps lose the phase of an oscillator of 1 rad/s: 629 rad z^2/24 by verlet and euler and twice that by
+# midpoint, z^4/120 by rk4. With damping of 0.02 it is gone long before that, as 100 rad z^2/24 exp(-1).
+cat >sway.yaml <<'EOF'
+strut: 1
+parameters: {damping: 0}
+nodes: {wall: {position: [0, 0], fixed: both}, n: {position: [1, 0], mass: 1, fixed: y}}
+members: {s: {kind: spring, nodes: [wall, n], stiffness: 1, rest_length: 1, damping: damping}}
+initial: {positions: {n: [1.25, 0]}}
+solver: {step: 0.2}
+run: {duration: 629}
+EOF
+for case in "verlet 0.2 1" "euler 0.2 1" "verlet-events 0.2 1" "midpoint 0.2 2.1" "rk4 0.4 0.13"; do
+  # shellcheck disable=SC2086
+  set -- $case
+  expect 0 run sway.yaml --integrator "$1" --step "$2" --json
+  out_has "\"caveat\":	\"steps of $2 s shift the phase of vibrations at 0.159 Hz, where most of the kinetic energy is, by some $3 rad\""
+done
+expect 0 run sway.yaml --integrator verlet --step 0.3 --set damping=0.02
+out_has "by some 0.14 rad; --accuracy 1%"
+for silent in "verlet --step 0.1 --set damping=0.02" "rk4 --step 0.2" "adaptive --step 0.4"; do
+  # shellcheck disable=SC2086
+  expect 0 run sway.yaml --json --integrator $silent
+  out_has '"caveat":	null'
+done
+
+# The limit itself is too large a step: there motions of verlet grow.
+expect 3 run sway.yaml --integrator verlet --step 2
+err_has "the step 2 s is at the largest stable step of verlet, 2 s (all contacts closed); use solver.step <= 1.8 s"
+expect 3 run sway.yaml --integrator verlet --step 2.01
+err_has "the step 2.01 s is above the largest stable step of verlet, 2 s"
+
+# What adaptive loses is due to its tolerance, not to its step. (This one is five fast periods, at whose ends all rests.)
+cat >slow.yaml <<'EOF'
+strut: 1
+nodes: {wall: {position: [0, 0], fixed: both}, a: {position: [1, 0], mass: 1, fixed: y}, b: {position: [2, 0], mass: 1, fixed: y}}
+members: {soft: {kind: spring, nodes: [wall, a], stiffness: 1e-6, rest_length: 1}, hard: {kind: spring, nodes: [a, b], stiffness: 1, rest_length: 1}}
+initial: {positions: {b: [2.25, 0]}}
+solver: {integrator: adaptive, tolerance: 1e-9, step: 22.21441746759419}
+run: {duration: 2221.441746759419}
+EOF
+expect 0 run slow.yaml
+err_has "; the tolerance of 1e-09 allows that; use a smaller solver.tolerance, or --accuracy 1%"
+expect 0 run slow.yaml --tolerance 1e-11
+[ ! -s err ] || fail "a smaller tolerance is no remedy"
+
 # The models that come with strut say nothing of the kind.
 for model in "$models"/*/*.yaml; do
   grep -q '^strut:' "$model" && ! grep -q '^sweep:' "$model" || continue

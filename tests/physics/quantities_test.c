@@ -326,6 +326,28 @@ TEST(works_and_periods) {
   end_run(&r);
 }
 
+/* Nothing cancels in a short way: a block at 1 m/s slides v^2 / (2 mu g), and its steps may be too long for that. */
+TEST(a_short_way_is_not_rounding) {
+  static const char *const methods[] = {"rk4-events", "euler-events"};
+  static const double mu[] = {1e9, 1e6};
+  for (int k = 0; k < 2; k++) {
+    char text[600];
+    snprintf(text, sizeof text,
+             "strut: 1\n"
+             "nodes: {n: {position: [0, -9.81e-5], mass: 1}}\n"
+             "gravity: [0, -9.81]\n"
+             "ground: {stiffness: 1e5, damping: 100, friction: {law: coulomb, mu: %g}}\n"
+             "initial: {velocity: [1, 0]}\n"
+             "solver: {step: 0.1 ms, integrator: %s}\n"
+             "run: {duration: 1 s, measure: {quantities: {way: {of: n.x, take: final}}}}\n",
+             mu[k], methods[k]);
+    measured_run r = run_text(text);
+    if (k == 0) assert_relative(value(&r, "way"), 1 / (2 * mu[k] * GRAVITY), 1e-6);
+    assert_false(get(&r, "way")->zero || r.summary.velocity_zero);
+    end_run(&r);
+  }
+}
+
 /* Two masses that swing against each other: the centre stays, to rounding. */
 TEST(zero_by_symmetry) {
   measured_run r = run_text(

@@ -32,6 +32,7 @@ const strut_integrator strut_integrator_euler_events = {
     .name = "euler-events",
     .description = "semi-implicit Euler from event to event, fixed step",
     .order = 1,
+    .lag = 1.0 / 24.0,
     .evaluations = 1,
     .region = STRUT_REGION_EULER,
     .events = true,

@@ -76,6 +76,7 @@ const strut_integrator strut_integrator_rk4_events = {
     .name = "rk4-events",
     .description = "classical Runge-Kutta from event to event, fixed step",
     .order = 4,
+    .lag = 1.0 / 120.0,
     .evaluations = 4,
     .region = STRUT_REGION_RK4,
     .role = STRUT_ROLE_EXACT_STICK,

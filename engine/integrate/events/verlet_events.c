@@ -175,6 +175,7 @@ const strut_integrator strut_integrator_verlet_events = {
         "velocity Verlet from event to event, implicit ground dampers, shorter steps "
         "after a touchdown",
     .order = 2,
+    .lag = 1.0 / 24.0,
     .evaluations = 1,
     .region = STRUT_REGION_VERLET,
     .role = STRUT_ROLE_COARSE,

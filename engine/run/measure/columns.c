@@ -14,7 +14,7 @@
 #include "engine/model/pose.h"
 #include "engine/model/surface_search.h"
 
-/* Rounding of positions, relative to the structure's size; and of sums over many steps. */
+/* Rounding of positions, relative to the lengths that forces compare; and of sums over many steps. */
 static const double POSITION_ROUNDING = 1e-12, SUM_ROUNDING = 1e-10;
 
 /* What a column belongs to, and the powers of its unit. */
@@ -363,8 +363,9 @@ static double member_stiffness(const strut_model *model, int32_t member) {
 
 double strut_columns_noise(const strut_columns *c, size_t index) {
   strut_column column = c->column[index];
-  double length = POSITION_ROUNDING * c->model->size;
-  if (is_length(column.kind)) return length;
+  bool joined = c->model->members.count > 0 || c->model->elements.count > 0;
+  double length = joined ? POSITION_ROUNDING * c->model->size : 0.0;
+  if (is_length(column.kind)) return fmax(length, POSITION_ROUNDING * c->largest[index]);
   if (is_angle(column.kind)) return POSITION_ROUNDING;
   if (is_speed(column.kind)) return SUM_ROUNDING * c->fastest;
   if (column.kind == STRUT_COLUMN_FORCE || column.kind == STRUT_COLUMN_LAST_FORCE)

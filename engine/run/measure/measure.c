@@ -170,7 +170,7 @@ strut_balance strut_balance_judge(const strut_energy *e, int64_t steps) {
 /* A mark this close to the end of a step, in steps, counts as being there. */
 static const double MARK_TOLERANCE = 1e-6;
 
-/* A mean velocity below this part of the node speeds is the rounding of a symmetric motion. */
+/* A mean velocity below this part of what cancels in it, among nodes or over time, is rounding. */
 static const double SYMMETRY_ROUNDING = 1e-10;
 
 void strut_measure_tracked_point(const strut_model *model, const strut_state *state,
@@ -248,19 +248,21 @@ int64_t strut_measure_first_step(const strut_measurement *m) {
   return n > 0 ? (int64_t)n : 0;
 }
 
-static double largest_node_speed(const strut_model *model, const strut_state *state) {
+/* The largest velocity of a node beside that of the tracked point along x, v. */
+static double largest_difference(const strut_model *model, const strut_state *state, double v) {
   double most = 0.0;
   for (int32_t i = 0; i < model->node_count; i++)
-    most = fmax(most, hypot(state->v[2 * i], state->v[2 * i + 1]));
+    most = fmax(most, hypot(state->v[2 * i] - v, state->v[2 * i + 1]));
   return most;
 }
 
 void strut_measure_begin(const strut_model *model, strut_state *state, strut_measurement *m) {
   const strut_marks marks = {
       .step = m->grid.step, .offset = m->grid.offset, .count = m->marks, .time = m->time};
-  m->fastest = largest_node_speed(model, state);
   if (m->quantities) strut_quantities_begin(m->quantities, &marks, state);
   strut_measure_tracked_point(model, state, m, &m->last_x, &m->last_v);
+  m->apart = largest_difference(model, state, m->last_v);
+  m->path = 0.0;
   m->last_work = state->work[STRUT_POWER_DRIVE];
   m->balance = state->balance;
   double position = m->time[0] / m->grid.step - (double)state->step;
@@ -322,7 +324,7 @@ static double step_length(const strut_measurement *m, int64_t n) {
 static __attribute__((noinline)) void pass_marks(const strut_model *model, const strut_state *state,
                                                  strut_measurement *m, double x, double v) {
   double n = (double)state->step, step = m->grid.step, length = step_length(m, state->step);
-  m->fastest = fmax(m->fastest, largest_node_speed(model, state));
+  m->apart = fmax(m->apart, largest_difference(model, state, v));
   while (mark_reached(m, n)) {
     double s = (m->time[m->next] / step - (n - 1.0)) * (step / length);
     bool end = s > 1.0 - MARK_TOLERANCE;
@@ -337,6 +339,7 @@ void strut_measure_step(const strut_model *model, const strut_state *state, stru
   strut_measure_tracked_point(model, state, m, &x, &v);
   count_contacts(model, state, m);
   if (mark_reached(m, (double)state->step)) pass_marks(model, state, m, x, v);
+  m->path += fabs(x - m->last_x);
   m->last_x = x;
   m->last_v = v;
   m->last_work = state->work[STRUT_POWER_DRIVE];
@@ -349,8 +352,8 @@ void strut_measure_step_quantities(const strut_model *model, strut_state *state,
   strut_quantities_step(m->quantities, step_length(m, state->step), state);
 }
 
-bool strut_measure_is_zero(const strut_measurement *m, double velocity) {
-  return fabs(velocity) <= SYMMETRY_ROUNDING * m->fastest;
+bool strut_measure_is_zero(const strut_measurement *m, const strut_summary *s) {
+  return fabs(s->velocity) <= SYMMETRY_ROUNDING * (m->apart + m->path / s->window.time);
 }
 
 void strut_measure_finish(const strut_measurement *m, strut_summary *summary) {

@@ -91,7 +91,9 @@ typedef struct strut_measurement {
   double *max_height;     /* (contacts) [m] */
   double *last_gap,
       *gap_before; /* (contacts) after the latest step, and after the one before it [m] */
-  double fastest;  /* largest speed of a node at the start of the window and at marks [m/s] */
+  double
+      apart; /* largest velocity of a node from the tracked point's, at the start and marks [m/s] */
+  double path; /* length of the tracked x's way since the start of the window [m] */
   strut_quantities *quantities; /* NULL where the scene names none */
   strut_arena arena;
   double *work;     /* (marks) work of the drives there [J] */
@@ -125,8 +127,8 @@ void strut_measure_step_quantities(const strut_model *model, strut_state *state,
                                    strut_measurement *measure);
 /** Fills velocity, quantities, spread, window and contacts of the summary from the marks passed so far. */
 void strut_measure_finish(const strut_measurement *measure, strut_summary *summary);
-/** Is a mean velocity only rounding, as of a symmetric motion? */
-bool strut_measure_is_zero(const strut_measurement *measure, double velocity);
+/** Is the mean velocity of a finished window only rounding, as of a symmetric motion? */
+bool strut_measure_is_zero(const strut_measurement *measure, const strut_summary *summary);
 void strut_measure_free(strut_measurement *measure);
 
 #endif

@@ -240,6 +240,36 @@ strut_status strut_step_limit_monitor_fail(const strut_step_limit_monitor *g,
       (double)state->step * g->step, name, start_limit, g->step, 0.75 * g->step);
 }
 
+/* ---- vibrations ---- */
+
+bool strut_motion_frequency_create(const strut_model *model, strut_state *state,
+                                   strut_motion_frequency *w) {
+  *w = (strut_motion_frequency){0};
+  w->image = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
+  return w->image;
+}
+
+/* v'(stiff K + damp D)v of the velocities. */
+static double form_of_motion(const strut_model *model, const strut_state *state, double stiff,
+                             double damp, double *image) {
+  double sum = 0.0;
+  product p = {model, state->q, state->v, image, stiff, damp};
+  memset(image, 0, (size_t)model->length * sizeof *image);
+  strut_tangent_visit(model, state->q, state->latest.rest, -HUGE_VAL, STRUT_CLOSED_TOUCHING, &p,
+                      apply_member, apply_element, apply_contact);
+  for (int32_t i = 0; i < 2 * model->node_count; i++)
+    if (!model->fixed[i]) sum += image[i] * state->v[i];
+  return sum;
+}
+
+void strut_motion_frequency_sample(const strut_model *model, const strut_state *state,
+                                   double kinetic, strut_motion_frequency *w) {
+  w->curvature += form_of_motion(model, state, 1.0, 0.0, w->image);
+  w->damping += form_of_motion(model, state, 0.0, 1.0, w->image);
+  w->movement += 2.0 * kinetic;
+  w->samples++;
+}
+
 /* ---- stick band ---- */
 
 /* Samples per solved acceleration; fewest of those for a mean. */

@@ -68,6 +68,26 @@ double strut_step_limit_monitor_last_limit(const strut_model *model,
                                            const strut_step_limit_monitor *monitor);
 
 /*
+ * At which frequency a structure vibrates, and how fast its dampers end that, from its motion: Rayleigh
+ * quotients v'Kv / v'Mv and v'Dv / v'Mv of its velocities with the tangent matrices, in the mean over
+ * samples. Of several modes they are means weighted with kinetic energy, of squares of the frequencies.
+ */
+typedef struct strut_motion_frequency {
+  double *image;    /* (length) */
+  double curvature; /* sum of v'Kv [J/s^2] */
+  double damping;   /* sum of v'Dv [J/s] */
+  double movement;  /* sum of v'Mv [J] */
+  int64_t samples;
+} strut_motion_frequency;
+
+/** Allocates in the arena of the state. False: out of memory. */
+bool strut_motion_frequency_create(const strut_model *model, strut_state *state,
+                                   strut_motion_frequency *frequency);
+/** Samples between steps a motion of that kinetic energy [J], with the latest rest lengths. */
+void strut_motion_frequency_sample(const strut_model *model, const strut_state *state,
+                                   double kinetic, strut_motion_frequency *frequency);
+
+/*
  * Monitors whether Karnopp's stick band is wide enough for the step. A step changes the slip
  * velocity of a node by |a| dt; a narrower band is stepped over, and the node never sticks. Methods
  * that locate events need no width.
