@@ -380,8 +380,10 @@ enum { BEST_METHODS = 2 };
 static const double SPEED_SHARE = 1e-3, COARSE = 0.2; /* of the limit */
 /* Floors to reach: parts of the accuracy, or without one; of the unchanged model and of variants. */
 static const double OWN_PART = 0.01, OWN_FLOOR = 1e-6, OTHER_PART = 0.1, OTHER_FLOOR = 1e-4;
-/* The part of the work that is kept for variants, and for finer references relative to that done. */
-static const double FOR_VARIANTS = 0.35, FOR_REFERENCE = 0.5;
+/* The former without an accuracy, while a level costs less than so many of the scene's own runs. */
+static const double CHEAP_FLOOR = 1e-10, CHEAP = 8;
+/* Parts of the work: at most of the base, kept for variants, of finer references relative to that done. */
+static const double FOR_BASE = 0.5, FOR_VARIANTS = 0.35, FOR_REFERENCE = 0.5;
 
 static strut_status out_of_memory(tradeoff_study *s) { return strut_no_memory(s->error, ""); }
 
@@ -422,6 +424,7 @@ static strut_status measure_points(tradeoff_study *s) {
     strut_status status = strut_tradeoff_compile(s, p, 0, &model);
     if (status != STRUT_OK) return status;
     strut_span span = strut_experiment_span(&setup->experiment, &setup->scene);
+    if (p == 0) s->result->scenes = strut_tradeoff_classify(model);
     s->size[p] = model->size;
     s->scale[p] = SPEED_SHARE * model->size / (span.period > 0 ? span.period : span.duration);
   }
@@ -499,17 +502,20 @@ static strut_status run_coarse(tradeoff_study *s) {
   return strut_tradeoff_run(s, 0, 0, s->coarse, value, &outcome);
 }
 
-/* Of energies there is no reference: work is then bounded by the scene's own run. */
+/* Without an accuracy, or a reference as for energies, the scene's own run bounds the work too. */
 static strut_status make_reference(tradeoff_study *s, tradeoff_reference *reference) {
   strut_tradeoff *r = s->result;
-  double target = r->accuracy > 0 ? OWN_PART * r->accuracy : OWN_FLOOR;
+  bool asked = r->accuracy > 0, balance = r->measure == STRUT_TRADEOFF_ENERGY;
+  double target = asked ? OWN_PART * r->accuracy : OWN_FLOOR, own = 0;
+  for (size_t p = 0; p < r->point_count; p++) own += strut_tradeoff_planned(s, p, s->base);
+  s->least_unit = r->work_unit = asked && !balance ? 0 : own;
   strut_status status = strut_tradeoff_reference_begin(s, 0, reference);
   if (status == STRUT_OK) status = strut_tradeoff_reference_refine(s, reference, target, HUGE_VAL);
   if (status == STRUT_OK && !r->variants[0].run)
     status =
         strut_fail(s->error, STRUT_DIVERGED, "no reference solution: %s", r->variants[0].remark);
-  for (size_t p = 0; p < r->point_count && r->measure == STRUT_TRADEOFF_ENERGY; p++)
-    r->reference_work += strut_tradeoff_planned(s, p, s->base);
+  if (status == STRUT_OK && !asked)
+    status = strut_tradeoff_reference_refine(s, reference, CHEAP_FLOOR, CHEAP * own);
   return status;
 }
 
@@ -521,8 +527,8 @@ static strut_status study_own_model(tradeoff_study *s, step_series_list *own) {
     if (strut_tradeoff_is_wanted(s, strut_integrator_at(i), 0))
       status = strut_tradeoff_add_method(s, own, 0, strut_integrator_at(i));
   double share = r->variant_count > 1 ? 1 - FOR_VARIANTS : 1;
+  if (status == STRUT_OK) status = strut_tradeoff_run_base(s, own, FOR_BASE);
   if (status == STRUT_OK) status = strut_tradeoff_run_series(s, own, share, 0.2, 0.6);
-  if (status == STRUT_OK) status = strut_tradeoff_run_base(s, own);
   strut_tradeoff_judge(s);
   for (int i = 0; i < 3 && status == STRUT_OK && !(r->accuracy > 0); i++) {
     double target = 0.01 * strut_tradeoff_smallest_error(s, 0); /* a smaller floor uncovers more */
@@ -632,7 +638,7 @@ static strut_status make(tradeoff_study *s, size_t count) {
   double others = (double)(r->variant_count - 1);
   for (size_t i = 1; i < r->variant_count && status == STRUT_OK; i++) {
     double begin = ((double)i - 1) / others, end = (double)i / others;
-    double left = strut_tradeoff_work_left(s, 1) / (STRUT_TRADEOFF_MOST_WORK * r->reference_work);
+    double left = strut_tradeoff_work_left(s, 1) / (STRUT_TRADEOFF_MOST_WORK * r->work_unit);
     double share = 1 - left + fmax(0, left) / (double)(r->variant_count - i); /* shared evenly */
     status = study_variant(s, (int)i, share, 0.6 + 0.4 * begin, 0.6 + 0.4 * end);
   }

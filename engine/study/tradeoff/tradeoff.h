@@ -10,7 +10,8 @@
  * A reference is what two different methods agree on, each refined until they agree to a hundredth
  * of the accuracy; how far they still differ is the *floor*, and no error is given as smaller than
  * it. The finest of these runs is the *reference run*: all work is bounded by a multiple of its force
- * evaluations. Costs are force evaluations, so that the same study gives the same numbers.
+ * evaluations, or of those of the scene's own run where no accuracy is requested and these are more.
+ * Costs are force evaluations, so that the same study gives the same numbers.
  */
 #ifndef STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_H
 #define STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_H
@@ -111,11 +112,13 @@ typedef struct strut_tradeoff {
   double base_seconds;                 /* NAN: not run */
   int base;                            /* row; -1: not run, its evaluations are those planned */
   double accuracy;                     /* as requested; 0: none */
-  double work,
-      reference_work; /* force evaluations of all runs, of a reference run; of all points */
-  size_t left_out;    /* methods that the bound on work kept from finer steps */
-  bool cut;           /* the CPU time was over: another machine may measure more */
-  double spent;       /* CPU time [s] */
+  int scenes;       /* the class of scenes on which other libraries were measured; 0: none */
+  double work;      /* force evaluations of all runs */
+  double work_unit; /* of a reference run at all points, or of the scene's own run where that takes
+                       more and no accuracy is requested */
+  size_t left_out;  /* series of steps that the bound on work or time kept from finer ones */
+  bool cut;         /* the CPU time was over: another machine may measure more */
+  double spent;     /* CPU time [s] */
   strut_model_variant *variants;
   strut_tradeoff_row *rows;
   strut_arena arena;

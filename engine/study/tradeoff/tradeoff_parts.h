@@ -47,6 +47,7 @@ typedef struct tradeoff_study {
   tradeoff_setting base, coarse; /* the latter for what one cheap run tells */
   double *coarse_value;          /* (values) of the unchanged model at the first point */
   double limit;                  /* of the base's method [s]; 0 where there is none */
+  double least_unit;             /* of result->work_unit */
   double allowed;                /* force evaluations of the next run; 0: any number */
   size_t row_capacity;
   tradeoff_model *models; /* (points, TRADEOFF_VARIANTS) */
@@ -156,8 +157,8 @@ strut_status strut_tradeoff_add_method(tradeoff_study *s, step_series_list *all,
  */
 strut_status strut_tradeoff_run_series(tradeoff_study *s, step_series_list *all, double share,
                                        double from, double to);
-/** Adds the row of the base to its method's series, or to one of its own, if the bound allows. */
-strut_status strut_tradeoff_run_base(tradeoff_study *s, step_series_list *own);
+/** Adds the row of the base to its method's series, or to one of its own, if the share allows. */
+strut_status strut_tradeoff_run_base(tradeoff_study *s, step_series_list *own, double share);
 
 enum { STRUT_TRADEOFF_TEXT = 100 };
 
@@ -170,6 +171,14 @@ const char *strut_tradeoff_group_text(const strut_tradeoff_row *row,
 const char *strut_tradeoff_step_text(const strut_tradeoff_row *row, char text[STRUT_TRADEOFF_TEXT]);
 /** "velocity", "position", "energy". */
 const char *strut_tradeoff_measure_text(strut_tradeoff_measure measure);
+/**
+ * The class of a model's scene among those on which other libraries were measured: with contact whose
+ * friction is not smooth, with bars 1e4 times stiffer than a spring or cable, with neither; 0: in no class, as
+ * with rigid bars, or bars without a spring to compare them with.
+ */
+int strut_tradeoff_classify(const strut_model *model);
+/** Adds a sentence about them, if the class is one, for the measured error next to `error`. */
+void strut_tradeoff_add_rivals(strut_buffer *text, int scenes, double error);
 /** Adds a sentence per error level and per variant. Call in the C locale. */
 void strut_tradeoff_add_advice(strut_buffer *text, const strut_tradeoff *result);
 

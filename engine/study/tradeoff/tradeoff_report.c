@@ -120,6 +120,7 @@ static void advise_accuracy(strut_buffer *text, const strut_tradeoff *r) {
     strut_buffer_add(text, "  certainty: the references differ by %s, %s of this error\n",
                      strut_tradeoff_percent_text(floor, b),
                      strut_tradeoff_percent_text(floor / a.error, c));
+  strut_tradeoff_add_rivals(text, r->scenes, a.error);
 }
 
 static void advise_levels(strut_buffer *text, const strut_tradeoff *r) {
@@ -268,8 +269,10 @@ char *strut_tradeoff_table(const strut_tradeoff *r) {
                      r->left_out == 1 ? "series of steps was" : "series of steps were");
   if (r->cut) strut_buffer_add(&table, "  cut by --cpu-time: another machine may measure more\n");
   strut_buffer_add(&table, "  work: %.3g force evaluations, %.2g times %s (at most %d)\n\n",
-                   r->work, r->work / r->reference_work,
-                   r->measure == STRUT_TRADEOFF_ENERGY ? "those of cost 1" : "a reference run",
+                   r->work, r->work / r->work_unit,
+                   r->accuracy > 0 && r->measure != STRUT_TRADEOFF_ENERGY
+                       ? "a reference run"
+                       : "the longer of a reference run and cost 1",
                    STRUT_TRADEOFF_MOST_WORK);
   strut_tradeoff_add_advice(&table, r);
   strut_c_locale_leave(locale);
@@ -412,7 +415,7 @@ static void put_advice(strut_json *json, const strut_tradeoff *r) {
 static void put_work(strut_json *json, const strut_tradeoff *r) {
   struct cJSON *object = strut_json_object(json, json->root, "work");
   strut_json_number(json, object, "evaluations", r->work);
-  strut_json_number(json, object, "reference_run", r->reference_work);
+  strut_json_number(json, object, "unit", r->work_unit);
   strut_json_integer(json, object, "limit", STRUT_TRADEOFF_MOST_WORK);
   strut_json_integer(json, object, "unrefined_series", (int64_t)r->left_out);
   strut_json_bool(json, object, "cut_by_time", r->cut);

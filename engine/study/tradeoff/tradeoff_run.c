@@ -20,7 +20,7 @@ double strut_tradeoff_cpu_clock(void) {
 }
 
 double strut_tradeoff_work_left(const tradeoff_study *s, double share) {
-  return share * STRUT_TRADEOFF_MOST_WORK * s->result->reference_work - s->result->work;
+  return share * STRUT_TRADEOFF_MOST_WORK * s->result->work_unit - s->result->work;
 }
 
 bool strut_tradeoff_has_time(tradeoff_study *s, double evaluations) {
@@ -302,12 +302,12 @@ static double estimate_error(const tradeoff_study *s, const tradeoff_reference *
   return apart;
 }
 
-/* The evaluations of a reference run: of the method that takes more. */
-static void count_reference(strut_tradeoff *result, const tradeoff_reference *r) {
+/* The unit of the bound on work: a run of the method that takes more. */
+static void count_reference(strut_tradeoff *result, const tradeoff_reference *r, double least) {
   double work[2] = {0};
   for (size_t p = 0; p < result->point_count; p++)
     for (int k = 0; k < 2; k++) work[k] += r->work[k][p];
-  if (r->variant == 0) result->reference_work = fmax(work[0], work[1]);
+  if (r->variant == 0) result->work_unit = fmax(least, fmax(work[0], work[1]));
 }
 
 /* Refines the reference of one point by one level, until the study has made `end` force evaluations. */
@@ -327,7 +327,7 @@ static strut_status refine_point(tradeoff_study *s, tradeoff_reference *r, size_
   }
   s->allowed = 0;
   if (status != STRUT_OK || r->level[p] == MOST_LEVELS) return status;
-  count_reference(result, r);
+  count_reference(result, r, s->least_unit);
   double apart = estimate_error(s, r, p);
   memcpy(r->before + 2 * p * count, r->latest, 2 * count * sizeof *r->latest);
   bool idle = r->level[p] > 1 && !(apart < 0.5 * f->floor[p]);
@@ -615,11 +615,11 @@ strut_status strut_tradeoff_run_series(tradeoff_study *s, step_series_list *all,
   return status;
 }
 
-strut_status strut_tradeoff_run_base(tradeoff_study *s, step_series_list *own) {
+strut_status strut_tradeoff_run_base(tradeoff_study *s, step_series_list *own, double share) {
   strut_tradeoff *r = s->result;
   step_series alone = {.group = -1, .first = s->base}, *in = &alone;
   strut_tradeoff_row *row = NULL;
-  double cost = 0, most = strut_tradeoff_work_left(s, 1);
+  double cost = 0, most = strut_tradeoff_work_left(s, share);
   for (size_t i = own->count; i-- > 0;)
     if (own->at[i].first.method == s->base.method && !isfinite(own->at[i].first.refine))
       in = &own->at[i];
