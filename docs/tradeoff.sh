@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Measures what accuracy costs, for the crawler and five scenes of other kinds, at one operating point and
-# at many: the diagrams and tables of docs/numerics.md, section "What accuracy costs". Takes some twelve
+# at many: the diagrams and tables of docs/numerics.md, section "What accuracy costs". Takes a few
 # minutes of CPU time. With names behind the directory, only those.
 #
 #   sh docs/tradeoff.sh build/release/strut docs/tradeoff [NAME]...

@@ -355,9 +355,14 @@ const strut_command strut_command_tradeoff = {
         "as\n"
         "they apply. Errors are relative to references on which two methods agree; their "
         "remaining\n"
-        "difference is the floor of all errors. Costs are relative to rk4 with the scene's step:\n"
-        "force evaluations, and CPU time as measured here. The step error of a run is kept apart\n"
-        "from the model error of a variant. Ends with recommendations.\n"
+        "difference is the floor of all errors. Costs are force evaluations relative to rk4 with "
+        "the\n"
+        "scene's step; CPU times are as measured here, and decide nothing. The step error of a run "
+        "is\n"
+        "kept apart from the model error of a variant.\n"
+        "Ends with the cheapest setting for each error, or for that of --accuracy with the cost "
+        "of\n"
+        "half the error and how well the reference is known. Work is at most 30 reference runs.\n"
         "With --vary, errors are median, 90th percentile and worst over random points, since a\n"
         "single small error at a large step may be luck.\n",
     .options = options,

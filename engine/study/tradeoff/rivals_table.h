@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Made by tests/bench/rivals_table.py from docs/rivals/rivals.txt: class, error, least and largest
    quotient, scenes, those on which no other solver keeps the error. */
+/* clang-format off */
 {CONTACT, 2e-02, 2.83, 13.3, 8, 0},
 {CONTACT, 1e-03, 2.83, 7.98, 8, 4},
 {CONTACT, 1e-04, 1.27, 2.78, 8, 6},
