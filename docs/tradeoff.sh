@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Measures what accuracy costs, for the crawler and five scenes of other kinds, at one operating point and
-# at many: the diagrams and tables of docs/numerics.md, section "What accuracy costs". Takes some twelve
+# at many: the diagrams and tables of docs/numerics.md, section "What accuracy costs". Takes a few
 # minutes of CPU time. With names behind the directory, only those.
 #
 #   sh docs/tradeoff.sh build/release/strut docs/tradeoff [NAME]...
@@ -29,23 +29,23 @@ study() {
   echo "$name"
 }
 
-study crawler crawler/crawler --periods 60 --step-sizes 4 --cpu-time "60 s"
-study smooth gallery/double-pendulum --cpu-time "12 s"
-study contact basics/bouncing-node --cpu-time "10 s"
-study friction gallery/two-mass-crawler --cpu-time "25 s"
-study stiff basics/pendulum --set stiffness="1e8 N/m" --cpu-time "12 s"
-study cable gallery/d-bar --cpu-time "12 s"
+study crawler crawler/crawler --periods 60 --step-sizes 4
+study smooth gallery/double-pendulum
+study contact basics/bouncing-node
+study friction gallery/two-mass-crawler
+study stiff basics/pendulum --set stiffness="1e8 N/m"
+study cable gallery/d-bar
 # Many operating points: the errors that one point hides.
 study points crawler/crawler --vary frequency=9.8..15 --vary friction=0.05..0.5 \
-  --vary start=I,II --points 40 --seed 1 --periods 60 --step-sizes 3 --own-model --cpu-time "400 s" \
+  --vary start=I,II --points 40 --seed 1 --periods 60 --own-model --accuracy 0.5% \
   --integrator rk4,rk4-events,verlet-events,adaptive
 study points-smooth gallery/double-pendulum --vary length=0.5..2 --vary mass=0.5..2 --points 20 \
-  --seed 1 --step-sizes 6 --own-model --cpu-time "20 s"
+  --seed 1 --own-model --accuracy 0.5%
 study points-contact basics/bouncing-node --vary height=0.05..0.3 --vary zeta=0.02..0.5 \
-  --points 40 --seed 1 --step-sizes 6 --own-model --cpu-time "12 s"
+  --points 40 --seed 1 --own-model --accuracy 0.5%
 study points-friction gallery/two-mass-crawler --set step="50 us" --vary friction=0.05..0.3 \
-  --vary frequency=6..15 --points 20 --seed 1 --step-sizes 6 --own-model --cpu-time "25 s"
+  --vary frequency=6..15 --points 20 --seed 1 --own-model --accuracy 0.5%
 study points-stiff basics/pendulum --vary stiffness=1e7..1e9 --vary length=0.5..2 --points 20 \
-  --seed 1 --step-sizes 6 --own-model --cpu-time "20 s"
-study points-cable gallery/d-bar --vary bars=1e7..1e9 --points 20 --seed 1 --step-sizes 4 --own-model \
-  --cpu-time "15 s"
+  --seed 1 --own-model --accuracy 0.5%
+study points-cable gallery/d-bar --vary bars=1e7..1e9 --points 20 --seed 1 --own-model \
+  --accuracy 0.5%

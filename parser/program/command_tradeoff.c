@@ -138,12 +138,15 @@ static const double PAGE = 510.24; /* 180 mm [pt] */
 static const double LEAST_BUDGET = 1e-3, MOST_BUDGET = 1e7, MOST_PERIODS = 1e7;
 
 static const strut_option options[] = {
+    {STRUT_OPTION_ACCURACY, "accuracy", "X",
+     "recommend method and step for a relative error of X, such as 0.1%"},
     {STRUT_OPTION_MEASURE, "measure", "WHAT",
      "measured quantity: velocity, position or energy (default automatic)"},
     {STRUT_OPTION_INTEGRATOR, "integrator", "NAME,...",
      "only these methods, such as rk4,verlet-events"},
     {STRUT_OPTION_STEP_SIZES, "step-sizes", "N",
-     "steps per method, five per decade (default " STRUT_TEXT_OF(STRUT_TRADEOFF_USUAL_STEPS) ")"},
+     "steps per method, five per decade (default " STRUT_TEXT_OF(
+         STRUT_TRADEOFF_USUAL_STEPS) ", or as many as --accuracy takes)"},
     {STRUT_OPTION_PERIODS, "periods", "N",
      "maximum number of periods of a run (default " STRUT_TEXT_OF(
          STRUT_TRADEOFF_USUAL_PERIODS) ")"},
@@ -154,7 +157,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_SEED, "seed", "N",
      "seed of the random points (default " STRUT_TEXT_OF(USUAL_SEED) ")"},
     {STRUT_OPTION_CPU_TIME, "cpu-time", "TIME",
-     "approximate CPU time to spend (default " STRUT_TEXT_OF(STRUT_TRADEOFF_USUAL_BUDGET) " s)"},
+     "begin no run after this CPU time (default " STRUT_TEXT_OF(STRUT_TRADEOFF_USUAL_BUDGET) " s)"},
     {STRUT_OPTION_OWN_MODEL, "own-model", NULL, "skip variants of the model"},
     STRUT_SET_OPTION,
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write tradeoff.csv, .json and .svg into DIR"},
@@ -228,6 +231,13 @@ static strut_status read_numbers(const strut_arguments *arguments, tradeoff_requ
   if (status == STRUT_OK)
     status = strut_option_number(command, arguments, STRUT_OPTION_CPU_TIME, STRUT_DIM_TIME,
                                  &w->study.budget);
+  if (status == STRUT_OK)
+    status = strut_option_number(command, arguments, STRUT_OPTION_ACCURACY, STRUT_DIM_NONE,
+                                 &w->study.accuracy);
+  if (status == STRUT_OK && strut_option_text(arguments, STRUT_OPTION_ACCURACY) &&
+      !(w->study.accuracy > 0.0 && w->study.accuracy <= 1.0))
+    status = strut_usage_error(command, arguments,
+                               "--accuracy must be above 0 and at most 1, that is 100%%");
   if (status == STRUT_OK) status = check_positive("periods", w->study.periods, 1, MOST_PERIODS);
   if (status == STRUT_OK)
     status = check_positive("cpu-time", w->study.budget, LEAST_BUDGET, MOST_BUDGET);
@@ -333,9 +343,7 @@ static strut_status run_tradeoff(const strut_arguments *arguments) {
 }
 
 static const strut_refused_option refused[] = {
-    {"accuracy", "the table gives the cheapest settings for each accuracy"},
-    {"step", "it runs each method with many steps; --step-sizes says how many"},
-    {NULL, NULL}};
+    {"step", "it runs each method with many steps; --step-sizes says how many"}, {NULL, NULL}};
 
 const strut_command strut_command_tradeoff = {
     .name = "tradeoff",
@@ -347,9 +355,14 @@ const strut_command strut_command_tradeoff = {
         "as\n"
         "they apply. Errors are relative to references on which two methods agree; their "
         "remaining\n"
-        "difference is the floor of all errors. Costs are relative to rk4 with the scene's step:\n"
-        "force evaluations, and CPU time as measured here. The step error of a run is kept apart\n"
-        "from the model error of a variant. Ends with recommendations.\n"
+        "difference is the floor of all errors. Costs are force evaluations relative to rk4 with "
+        "the\n"
+        "scene's step; CPU times are as measured here, and decide nothing. The step error of a run "
+        "is\n"
+        "kept apart from the model error of a variant.\n"
+        "Ends with the cheapest setting for each error, or for that of --accuracy with the cost "
+        "of\n"
+        "half the error and how well the reference is known. Work is at most 30 reference runs.\n"
         "With --vary, errors are median, 90th percentile and worst over random points, since a\n"
         "single small error at a large step may be luck.\n",
     .options = options,

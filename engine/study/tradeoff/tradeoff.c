@@ -14,9 +14,16 @@
 
 /* ---- errors, spreads over the operating points, and the Pareto front ---- */
 
-static const double levels[STRUT_TRADEOFF_LEVELS] = {0.05, 0.01, 0.005, 0.001};
+static const double levels[] = {0.02, 0.01, 0.005, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
+static const double SURE = 0.1; /* an error is known where the floor is this part of it */
 
-double strut_tradeoff_level(int i) { return levels[i]; }
+size_t strut_tradeoff_level_count(const strut_tradeoff *r) {
+  return r->accuracy > 0 ? 1 : sizeof levels / sizeof levels[0];
+}
+
+double strut_tradeoff_level(const strut_tradeoff *r, size_t i) {
+  return r->accuracy > 0 ? r->accuracy : levels[i];
+}
 
 static int ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
@@ -32,7 +39,7 @@ strut_spread strut_spread_of(const double *values, size_t count, double *scratch
   return (strut_spread){median, scratch[rank - 1], scratch[count - 1]};
 }
 
-static void evaluate_errors(tradeoff_study *s, strut_tradeoff_row *row) {
+void strut_tradeoff_judge_row(tradeoff_study *s, strut_tradeoff_row *row) {
   strut_tradeoff *r = s->result;
   const strut_model_variant *own = &r->variants[0], *f = &r->variants[row->variant];
   for (size_t p = 0; p < r->point_count; p++) {
@@ -44,6 +51,37 @@ static void evaluate_errors(tradeoff_study *s, strut_tradeoff_row *row) {
   }
   row->error_spread = strut_spread_of(row->error, r->point_count, s->scratch);
   row->total_spread = strut_spread_of(row->total, r->point_count, s->scratch);
+}
+
+/* Costs of a row: medians over the points at which it did not diverge, or else what was planned. */
+static void evaluate_cost(tradeoff_study *s, strut_tradeoff_row *row,
+                          const strut_tradeoff_row *base) {
+  strut_tradeoff *r = s->result;
+  double *ratio = s->spare, *rate = ratio + r->point_count;
+  size_t count = 0;
+  for (int planned = 0; planned < 2 && count == 0; planned++)
+    for (size_t p = 0; p < r->point_count; p++) {
+      const tradeoff_setting own = {row->method, row->step, row->tolerance, row->refine};
+      double forces = planned ? strut_tradeoff_planned(s, p, own) : row->forces[p];
+      double unit = base && isfinite(base->forces[p]) ? base->forces[p]
+                                                      : strut_tradeoff_planned(s, p, s->base);
+      if (p == 0) r->base_evaluations = unit;
+      if (!isfinite(forces)) continue;
+      ratio[count] = forces / unit;
+      rate[count++] = forces / strut_tradeoff_span(s, p).duration;
+    }
+  row->evaluations = strut_spread_of(ratio, count, s->scratch).median;
+  row->rate = strut_spread_of(rate, count, s->scratch).median;
+  row->cpu = base ? row->seconds / base->seconds : (double)NAN;
+}
+
+static void evaluate_costs(tradeoff_study *s) {
+  strut_tradeoff *r = s->result;
+  const strut_tradeoff_row *base = NULL;
+  for (size_t i = 0; i < r->row_count; i++)
+    if (r->rows[i].base) base = &r->rows[i];
+  r->base_seconds = base ? base->seconds : (double)NAN;
+  for (size_t i = 0; i < r->row_count; i++) evaluate_cost(s, &r->rows[i], base);
 }
 
 static void find_fronts(strut_tradeoff *r) {
@@ -72,7 +110,8 @@ void strut_tradeoff_judge(tradeoff_study *s) {
     f->model_spread = strut_spread_of(f->model_error, r->point_count, s->scratch);
     f->floor_spread = strut_spread_of(f->floor, r->point_count, s->scratch);
   }
-  for (size_t i = 0; i < r->row_count; i++) evaluate_errors(s, &r->rows[i]);
+  for (size_t i = 0; i < r->row_count; i++) strut_tradeoff_judge_row(s, &r->rows[i]);
+  evaluate_costs(s);
   find_fronts(r);
 }
 
@@ -99,14 +138,56 @@ double strut_tradeoff_promise(const strut_tradeoff *r, int row) {
   return most;
 }
 
-int strut_tradeoff_best(const strut_tradeoff *r, int variant, double level) {
+static bool is_confirmed(const strut_tradeoff *r, const strut_tradeoff_row *row) {
+  bool finer = false;
+  for (size_t k = 0; k < r->row_count; k++)
+    finer = finer || (&r->rows[k] != row && is_finer(row, &r->rows[k]));
+  return finer;
+}
+
+/* The cheapest confirmed row that keeps a level, of any method but one. */
+static int best_but(const strut_tradeoff *r, int variant, double level,
+                    const strut_integrator *excluded) {
   int best = -1;
   for (size_t i = 0; i < r->row_count; i++) {
     const strut_tradeoff_row *row = &r->rows[i];
-    if (row->variant != variant || !(strut_tradeoff_promise(r, (int)i) <= level)) continue;
+    if (row->variant != variant || row->method == excluded || row->above) continue;
+    if (!is_confirmed(r, row) || !(strut_tradeoff_promise(r, (int)i) <= level)) continue;
     if (best < 0 || row->evaluations < r->rows[best].evaluations) best = (int)i;
   }
   return best;
+}
+
+int strut_tradeoff_best(const strut_tradeoff *r, int variant, double level) {
+  return best_but(r, variant, level, NULL);
+}
+
+/* Cost of an error between a row that keeps it and the next coarser one of its group, on a line of logarithms. */
+static double interpolate_cost(const strut_tradeoff *r, int row, double error) {
+  const strut_tradeoff_row *fine = &r->rows[row], *coarse = NULL;
+  for (size_t i = 0; i < r->row_count; i++) {
+    const strut_tradeoff_row *other = &r->rows[i];
+    if (other == fine || !is_finer(other, fine)) continue;
+    if (!coarse || is_finer(coarse, other)) coarse = other;
+  }
+  double high = coarse ? strut_tradeoff_promise(r, (int)(coarse - r->rows)) : HUGE_VAL;
+  double low = strut_tradeoff_promise(r, row);
+  if (!isfinite(high) || !(high > low)) return fine->evaluations;
+  double part = log(high / error) / log(high / low);
+  return coarse->evaluations * pow(fine->evaluations / coarse->evaluations, part);
+}
+
+strut_tradeoff_advice strut_tradeoff_advise(const strut_tradeoff *r, double error) {
+  strut_tradeoff_advice a = {.error = error, .cost = (double)NAN};
+  a.known = r->variants[0].floor_spread.worst <= SURE * 0.5 * error;
+  a.row = a.known ? strut_tradeoff_best(r, 0, error) : -1;
+  a.half = a.row < 0 ? -1 : strut_tradeoff_best(r, 0, 0.5 * error);
+  a.other = a.row < 0 ? -1 : best_but(r, 0, error, r->rows[a.row].method);
+  if (a.half >= 0)
+    a.cost = a.half == a.row
+                 ? 1
+                 : fmax(1, interpolate_cost(r, a.half, 0.5 * error) / r->rows[a.row].evaluations);
+  return a;
 }
 
 /* ---- models of the scene besides its own ---- */
@@ -296,9 +377,13 @@ bool strut_tradeoff_is_wanted(const tradeoff_study *s, const strut_integrator *m
 /* ---- the study: base, references, rows, other models ---- */
 
 enum { BEST_METHODS = 2 };
-static const double FIRST_TARGET = 1e-4, SPEED_SHARE = 1e-3; /* [s], [1], [1] */
-/* Cumulative shares of the budget for the unchanged model: references, rows, refined references. */
-static const double OWN_REFERENCE = 0.3, OWN_ROWS = 0.6, OWN_REFINED = 0.75;
+static const double SPEED_SHARE = 1e-3, COARSE = 0.2; /* of the limit */
+/* Floors to reach: parts of the accuracy, or without one; of the unchanged model and of variants. */
+static const double OWN_PART = 0.01, OWN_FLOOR = 1e-6, OTHER_PART = 0.1, OTHER_FLOOR = 1e-4;
+/* The former without an accuracy, while a level costs less than so many of the scene's own runs. */
+static const double CHEAP_FLOOR = 1e-10, CHEAP = 8;
+/* Parts of the work: at most of the base, kept for variants, of finer references relative to that done. */
+static const double FOR_BASE = 0.5, FOR_VARIANTS = 0.35, FOR_REFERENCE = 0.5;
 
 static strut_status out_of_memory(tradeoff_study *s) { return strut_no_memory(s->error, ""); }
 
@@ -339,6 +424,7 @@ static strut_status measure_points(tradeoff_study *s) {
     strut_status status = strut_tradeoff_compile(s, p, 0, &model);
     if (status != STRUT_OK) return status;
     strut_span span = strut_experiment_span(&setup->experiment, &setup->scene);
+    if (p == 0) s->result->scenes = strut_tradeoff_classify(model);
     s->size[p] = model->size;
     s->scale[p] = SPEED_SHARE * model->size / (span.period > 0 ? span.period : span.duration);
   }
@@ -350,18 +436,17 @@ static strut_status prepare(tradeoff_study *s, size_t count) {
   const strut_scene *scene = &s->setups[0]->scene;
   r->name = scene->name;
   r->point_count = count;
+  r->accuracy = s->options->accuracy;
   r->measure = choose_measure(s->setups[0], s->options->measure);
   r->value_count = r->measure == STRUT_TRADEOFF_POSITION ? 2 * scene->node_count : 1;
   size_t most = count > 2 * scene->node_count ? count : 2 * scene->node_count;
   s->size = strut_arena_allocate(&r->arena, count, sizeof *s->size);
   s->scale = strut_arena_allocate(&r->arena, count, sizeof *s->scale);
-  s->base_evaluations = strut_arena_allocate(&r->arena, count, sizeof *s->base_evaluations);
-  s->base_seconds = strut_arena_allocate(&r->arena, count, sizeof *s->base_seconds);
-  s->base_timed = strut_arena_allocate(&r->arena, count, sizeof *s->base_timed);
   s->scratch = strut_arena_allocate(&r->arena, most, sizeof *s->scratch);
+  s->spare = strut_arena_allocate(&r->arena, 2 * count, sizeof *s->spare);
+  s->coarse_value = strut_arena_allocate(&r->arena, most, sizeof *s->coarse_value);
   s->models = strut_allocate(count * TRADEOFF_VARIANTS, sizeof *s->models);
-  if (!s->models || !s->size || !s->scale || !s->base_evaluations || !s->base_seconds ||
-      !s->base_timed || !s->scratch)
+  if (!s->models || !s->size || !s->scale || !s->scratch || !s->spare || !s->coarse_value)
     return out_of_memory(s);
   if (!(strut_experiment_span(&s->setups[0]->experiment, scene).duration > 0))
     return strut_fail(s->error, STRUT_USAGE,
@@ -372,20 +457,9 @@ static strut_status prepare(tradeoff_study *s, size_t count) {
   return STRUT_OK;
 }
 
-/* Measures positions instead if the structure does not travel. */
-static void fall_back_to_position(tradeoff_study *s) {
-  strut_tradeoff *r = s->result;
-  bool still = r->measure == STRUT_TRADEOFF_VELOCITY && fabs(s->scratch[0]) < 1e-9 * s->scale[0];
-  if (s->options->measure != STRUT_TRADEOFF_AUTOMATIC || !still) return;
-  r->measure = STRUT_TRADEOFF_POSITION;
-  r->value_count = 2 * s->setups[0]->scene.node_count;
-}
-
 /* rk4 at the scene's step, or the first method in the table that can run the scene. */
 static strut_status choose_base(tradeoff_study *s) {
   strut_tradeoff *r = s->result;
-  tradeoff_outcome outcome = {0};
-  strut_status status = STRUT_OK;
   strut_experiment e = strut_tradeoff_experiment(s, 0);
   strut_span span = strut_tradeoff_span(s, 0);
   r->periods = e.periods;
@@ -393,16 +467,19 @@ static strut_status choose_base(tradeoff_study *s) {
   for (size_t i = 0; strut_integrator_at(i); i++) {
     const strut_integrator *method = strut_integrator_at(i);
     if (strut_tradeoff_is_adaptive(method) || !strut_tradeoff_can_run(s, method, 0)) continue;
-    double step = e.step > 0 ? e.step : span.duration / 1000;
-    s->base = (tradeoff_setting){method, step, (double)NAN, 1};
-    status = strut_tradeoff_probe(s, 0, s->base, &outcome);
+    double step = e.step > 0 ? e.step : span.duration / 1000, limit = 0;
+    bool cannot = false;
+    strut_status status = strut_tradeoff_limit(s, 0, method, &limit, &cannot);
     if (status != STRUT_OK) return status;
-    if (outcome.cannot) continue;
-    bool wild = !(e.step > 0) || e.step > outcome.step_limit;
-    if (wild && isfinite(outcome.step_limit)) s->base.step = 0.5 * outcome.step_limit;
-    s->base.step = strut_tradeoff_fit_step(s, 0, s->base.step);
-    s->base.refine = (double)NAN;
-    s->limit = isfinite(outcome.step_limit) ? outcome.step_limit : 0;
+    if (cannot) continue;
+    bool wild = !(e.step > 0) || e.step > limit;
+    if (wild && isfinite(limit)) step = 0.5 * limit;
+    step = strut_tradeoff_fit_step(s, 0, step);
+    s->base = s->coarse = (tradeoff_setting){method, step, (double)NAN, (double)NAN};
+    s->limit = isfinite(limit) ? limit : 0;
+    s->coarse.step = fmax(step, COARSE * s->limit);
+    r->base_method = method;
+    r->base_step = step;
     return STRUT_OK;
   }
   return s->error->status != STRUT_OK
@@ -410,45 +487,52 @@ static strut_status choose_base(tradeoff_study *s) {
              : strut_fail(s->error, STRUT_USAGE, "no method can run this scene");
 }
 
-static strut_status run_base(tradeoff_study *s, step_series_list *own) {
+/* The coarse run, and positions as measure instead if the structure does not travel. */
+static strut_status run_coarse(tradeoff_study *s) {
   strut_tradeoff *r = s->result;
-  step_series alone = {.group = -1, .first = s->base}, *in = &alone;
-  for (size_t i = own->count; i-- > 0;)
-    if (own->at[i].first.method == s->base.method && !isfinite(own->at[i].first.refine))
-      in = &own->at[i];
-  if (in == &alone) alone.group = (int)r->group_count++;
-  for (size_t p = 0; p < r->point_count; p++)
-    s->base_evaluations[p] =
-        strut_tradeoff_span(s, p).duration / s->base.step * s->base.method->evaluations;
-  bool cannot = false;
-  strut_status status = strut_tradeoff_run_row(s, in, s->base, true, &cannot);
-  in->last_cost = 0;
+  tradeoff_outcome outcome;
+  double *value = s->coarse_value;
+  strut_status status = strut_tradeoff_run(s, 0, 0, s->coarse, value, &outcome);
   if (status != STRUT_OK) return status;
-  if (cannot || r->row_count == 0) return s->error->status;
-  r->base_evaluations = (int64_t)s->base_evaluations[0];
-  r->base_seconds = r->rows[0].seconds;
-  return STRUT_OK;
+  if (outcome.cannot) return s->error->status;
+  bool still = r->measure == STRUT_TRADEOFF_VELOCITY && fabs(value[0]) < 1e-9 * s->scale[0];
+  if (s->options->measure != STRUT_TRADEOFF_AUTOMATIC || !still) return STRUT_OK;
+  r->measure = STRUT_TRADEOFF_POSITION;
+  r->value_count = 2 * s->setups[0]->scene.node_count;
+  return strut_tradeoff_run(s, 0, 0, s->coarse, value, &outcome);
+}
+
+/* Without an accuracy, or a reference as for energies, the scene's own run bounds the work too. */
+static strut_status make_reference(tradeoff_study *s, tradeoff_reference *reference) {
+  strut_tradeoff *r = s->result;
+  bool asked = r->accuracy > 0, balance = r->measure == STRUT_TRADEOFF_ENERGY;
+  double target = asked ? OWN_PART * r->accuracy : OWN_FLOOR, own = 0;
+  for (size_t p = 0; p < r->point_count; p++) own += strut_tradeoff_planned(s, p, s->base);
+  s->least_unit = r->work_unit = asked && !balance ? 0 : own;
+  strut_status status = strut_tradeoff_reference_begin(s, 0, reference);
+  if (status == STRUT_OK) status = strut_tradeoff_reference_refine(s, reference, target, HUGE_VAL);
+  if (status == STRUT_OK && !r->variants[0].run)
+    status =
+        strut_fail(s->error, STRUT_DIVERGED, "no reference solution: %s", r->variants[0].remark);
+  if (status == STRUT_OK && !asked)
+    status = strut_tradeoff_reference_refine(s, reference, CHEAP_FLOOR, CHEAP * own);
+  return status;
 }
 
 static strut_status study_own_model(tradeoff_study *s, step_series_list *own) {
+  strut_tradeoff *r = s->result;
   tradeoff_reference reference;
-  strut_status status = STRUT_OK;
+  strut_status status = make_reference(s, &reference);
   for (size_t i = 0; strut_integrator_at(i) && status == STRUT_OK; i++)
     if (strut_tradeoff_is_wanted(s, strut_integrator_at(i), 0))
       status = strut_tradeoff_add_method(s, own, 0, strut_integrator_at(i));
-  if (status == STRUT_OK) status = run_base(s, own);
-  if (status == STRUT_OK) status = strut_tradeoff_reference_begin(s, 0, &reference);
-  if (status == STRUT_OK)
-    status = strut_tradeoff_reference_refine(s, &reference, FIRST_TARGET, OWN_REFERENCE);
-  if (status != STRUT_OK) return status;
-  if (!s->result->variants[0].run)
-    return strut_fail(s->error, STRUT_DIVERGED, "no reference solution: %s",
-                      s->result->variants[0].remark);
-  status = strut_tradeoff_run_series(s, own, OWN_ROWS, 0.2, 0.6);
+  double share = r->variant_count > 1 ? 1 - FOR_VARIANTS : 1;
+  if (status == STRUT_OK) status = strut_tradeoff_run_base(s, own, FOR_BASE);
+  if (status == STRUT_OK) status = strut_tradeoff_run_series(s, own, share, 0.2, 0.6);
   strut_tradeoff_judge(s);
-  for (int i = 0; i < 3 && status == STRUT_OK; i++) { /* a smaller floor uncovers smaller errors */
-    double target = 0.01 * strut_tradeoff_smallest_error(s, 0);
-    status = strut_tradeoff_reference_refine(s, &reference, target, OWN_REFINED);
+  for (int i = 0; i < 3 && status == STRUT_OK && !(r->accuracy > 0); i++) {
+    double target = 0.01 * strut_tradeoff_smallest_error(s, 0); /* a smaller floor uncovers more */
+    status = strut_tradeoff_reference_refine(s, &reference, target, FOR_REFERENCE * r->work);
     strut_tradeoff_judge(s);
   }
   return status;
@@ -457,8 +541,8 @@ static strut_status study_own_model(tradeoff_study *s, step_series_list *own) {
 /* Methods of the unchanged model that are cheapest at some error level. */
 static size_t best_methods(const strut_tradeoff *r, const strut_integrator *best[BEST_METHODS]) {
   size_t count = 0;
-  for (int i = 0; i < STRUT_TRADEOFF_LEVELS; i++) {
-    int row = strut_tradeoff_best(r, 0, strut_tradeoff_level(i));
+  for (size_t i = 0; i < strut_tradeoff_level_count(r); i++) {
+    int row = strut_tradeoff_best(r, 0, strut_tradeoff_level(r, i));
     bool is_known = row < 0;
     for (size_t k = 0; k < count && !is_known; k++) is_known = best[k] == r->rows[row].method;
     if (!is_known && count < BEST_METHODS) best[count++] = r->rows[row].method;
@@ -466,49 +550,62 @@ static size_t best_methods(const strut_tradeoff *r, const strut_integrator *best
   return count;
 }
 
-/* Does the variant change the base's run at the first point? */
+/* Does the variant change the coarse run? */
 static strut_status differs(tradeoff_study *s, int variant, bool *different) {
   const strut_tradeoff *r = s->result;
   tradeoff_outcome outcome;
   *different = true;
-  if (!strut_tradeoff_can_run(s, s->base.method, variant)) return STRUT_OK;
-  strut_status status = strut_tradeoff_probe(s, variant, s->base, &outcome);
+  if (!strut_tradeoff_can_run(s, s->coarse.method, variant)) return STRUT_OK;
+  strut_status status = strut_tradeoff_run(s, 0, variant, s->coarse, s->scratch, &outcome);
   if (status != STRUT_OK || outcome.cannot || outcome.status != STRUT_OK) return status;
   *different = false;
   for (size_t i = 0; i < r->value_count; i++)
-    if (s->scratch[i] != r->rows[r->base].value[i]) *different = true;
+    if (s->scratch[i] != s->coarse_value[i]) *different = true;
   return STRUT_OK;
+}
+
+/* The rows of a variant whose reference is known, unless it is farther off than the accuracy. */
+static strut_status run_variant(tradeoff_study *s, const tradeoff_reference *reference,
+                                double share, double from, double to) {
+  strut_tradeoff *r = s->result;
+  int variant = reference->variant;
+  const strut_integrator *best[BEST_METHODS];
+  size_t count = best_methods(r, best);
+  step_series_list all = {.count = 0};
+  strut_status status = STRUT_OK;
+  strut_tradeoff_judge(s);
+  if (r->accuracy > 0 && r->variants[variant].model_spread.worst > r->accuracy) return STRUT_OK;
+  s->allowed = fmax(1, strut_tradeoff_work_left(s, share));
+  for (size_t i = 0; i < count && status == STRUT_OK; i++)
+    if (strut_tradeoff_can_run(s, best[i], variant))
+      status = strut_tradeoff_add_method(s, &all, variant, best[i]);
+  if (status == STRUT_OK && all.count == 0 && reference->method[0])
+    status = strut_tradeoff_add_method(s, &all, variant, reference->method[0]);
+  return status == STRUT_OK ? strut_tradeoff_run_series(s, &all, share, from, to) : status;
 }
 
 static strut_status study_variant(tradeoff_study *s, int variant, double share, double from,
                                   double to) {
   strut_tradeoff *r = s->result;
-  const strut_integrator *best[BEST_METHODS];
-  size_t count = best_methods(r, best);
-  double before = strut_tradeoff_time_left(s, share);
-  if (before <= 0) {
-    snprintf(r->variants[variant].remark, sizeof r->variants[variant].remark, "budget exhausted");
+  strut_model_variant *f = &r->variants[variant];
+  double left = strut_tradeoff_work_left(s, share);
+  double target = r->accuracy > 0 ? OTHER_PART * r->accuracy : OTHER_FLOOR;
+  if (left <= 0 || r->cut) {
+    snprintf(f->remark, sizeof f->remark, "%s",
+             r->cut ? STRUT_TRADEOFF_NO_TIME : STRUT_TRADEOFF_NO_WORK);
     return STRUT_OK;
   }
   tradeoff_reference reference;
-  step_series_list all = {.count = 0};
   bool different = true;
   strut_status status = differs(s, variant, &different);
   if (status == STRUT_OK && !different)
-    snprintf(r->variants[variant].remark, sizeof r->variants[variant].remark,
-             "the motion does not depend on it");
+    snprintf(f->remark, sizeof f->remark, "the motion does not depend on it");
   if (status != STRUT_OK || !different) return status;
   status = strut_tradeoff_reference_begin(s, variant, &reference);
   if (status == STRUT_OK)
-    status = strut_tradeoff_reference_refine(s, &reference, FIRST_TARGET,
-                                             share - 0.5 * fmax(0, before) / s->budget);
-  for (size_t i = 0; i < count && status == STRUT_OK && r->variants[variant].run; i++)
-    if (strut_tradeoff_can_run(s, best[i], variant))
-      status = strut_tradeoff_add_method(s, &all, variant, best[i]);
-  if (status == STRUT_OK && all.count == 0 && r->variants[variant].run && reference.method[0])
-    status = strut_tradeoff_add_method(s, &all, variant, reference.method[0]);
-  if (status == STRUT_OK) status = strut_tradeoff_run_series(s, &all, share, from, to);
-  return status;
+    status = strut_tradeoff_reference_refine(s, &reference, target, 0.5 * left);
+  if (status != STRUT_OK || !f->run) return status;
+  return run_variant(s, &reference, share, from, to);
 }
 
 /* Order of rows: by group, coarse before fine. */
@@ -525,8 +622,9 @@ static void sort_rows(strut_tradeoff *r) {
     for (; k > 0 && before(&row, &r->rows[k - 1]); k--) r->rows[k] = r->rows[k - 1];
     r->rows[k] = row;
   }
+  r->base = -1;
   for (size_t i = 0; i < r->row_count; i++)
-    if (r->rows[i].base) r->base = i;
+    if (r->rows[i].base) r->base = (int)i;
 }
 
 static strut_status make(tradeoff_study *s, size_t count) {
@@ -534,14 +632,14 @@ static strut_status make(tradeoff_study *s, size_t count) {
   step_series_list own = {.count = 0};
   strut_status status = prepare(s, count);
   if (status == STRUT_OK) status = choose_base(s);
-  if (status == STRUT_OK) fall_back_to_position(s);
+  if (status == STRUT_OK) status = run_coarse(s);
   if (status == STRUT_OK && strut_tradeoff_list_variants(s) != STRUT_OK) status = out_of_memory(s);
   if (status == STRUT_OK) status = study_own_model(s, &own);
   double others = (double)(r->variant_count - 1);
   for (size_t i = 1; i < r->variant_count && status == STRUT_OK; i++) {
     double begin = ((double)i - 1) / others, end = (double)i / others;
-    double spent = 1 - strut_tradeoff_time_left(s, 1) / s->budget; /* the rest is shared evenly */
-    double share = spent + fmax(0, 1 - spent) / (double)(r->variant_count - i);
+    double left = strut_tradeoff_work_left(s, 1) / (STRUT_TRADEOFF_MOST_WORK * r->work_unit);
+    double share = 1 - left + fmax(0, left) / (double)(r->variant_count - i); /* shared evenly */
     status = study_variant(s, (int)i, share, 0.6 + 0.4 * begin, 0.6 + 0.4 * end);
   }
   if (status != STRUT_OK) return status;

@@ -8,8 +8,10 @@
  * distance of a run from the latter.
  *
  * A reference is what two different methods agree on, each refined until they agree to a hundredth
- * of the smallest error there is, or until the budget is spent; how far they still differ is the
- * *floor*, and no error is given as smaller than it.
+ * of the accuracy; how far they still differ is the *floor*, and no error is given as smaller than
+ * it. The finest of these runs is the *reference run*: all work is bounded by a multiple of its force
+ * evaluations, or of those of the scene's own run where no accuracy is requested and these are more.
+ * Costs are force evaluations, so that the same study gives the same numbers.
  */
 #ifndef STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_H
 #define STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_H
@@ -34,15 +36,19 @@ enum { STRUT_TRADEOFF_MOST_STEPS = 40 };
 /** What zeros in strut_tradeoff_options stand for. */
 #define STRUT_TRADEOFF_USUAL_STEPS 8
 #define STRUT_TRADEOFF_USUAL_PERIODS 120
-#define STRUT_TRADEOFF_USUAL_BUDGET 120 /* [s] */
+#define STRUT_TRADEOFF_USUAL_BUDGET 600 /* [s] */
+/** Bound on the force evaluations of a study, in reference runs. */
+#define STRUT_TRADEOFF_MOST_WORK 30
 
 /** Zero-initialise for the defaults. */
 typedef struct strut_tradeoff_options {
   strut_tradeoff_measure measure;
-  int steps;      /* per method, five per decade from its limit down; 0: the usual ones */
+  double accuracy; /* the error that the study is for: methods are refined until they keep half of
+                      it; 0: by `steps` */
+  int steps;      /* at most, per method, five per decade from its limit down; 0: the usual ones, or
+                     as many as `accuracy` takes */
   double periods; /* maximum for a run given in periods; 0: the usual ones */
-  double budget;  /* approximate CPU time [s]; 0: the usual one */
-  int repeats;    /* of a short run, for its CPU time; 0: 5 */
+  double budget;  /* CPU time after which nothing is begun [s]; 0: the usual one */
   const strut_integrator *const *methods; /* (method_count) only these; 0: all */
   size_t method_count;
   bool own_model;                                   /* skip variants of the model */
@@ -80,12 +86,15 @@ typedef struct strut_tradeoff_row {
   double tolerance; /* NAN where the method is not adaptive */
   double refine;    /* as strut_experiment.refine; NAN where nothing is refined */
   double *value;    /* (points, values); NAN where it diverged */
+  double *forces;   /* (points) force evaluations; NAN where it diverged */
   double *error, *total; /* (points) step error and total error; INFINITY where it diverged */
   strut_spread error_spread, total_spread;
   size_t diverged;    /* points */
+  bool above;         /* its step is above the stability limit: runs refuse it */
   double evaluations; /* of the forces over those of the base: median over the points */
-  double cpu;         /* CPU time over that of the base, measured in turn; NAN: not measured */
-  double seconds;     /* CPU time of a run, median [s]; NAN: not measured */
+  double rate;        /* the same per simulated second [1/s] */
+  double cpu;         /* CPU time over that of the base; NAN: not measured */
+  double seconds;     /* CPU time of a run, median over the points [s]; NAN: not measured */
   bool front; /* Pareto-optimal among the rows of its variant, by `evaluations` and worst error */
 } strut_tradeoff_row;
 
@@ -97,11 +106,19 @@ typedef struct strut_tradeoff {
   double scale;    /* velocities below it have errors relative to it [m/s]; of the first point */
   double periods;  /* run; 0 where the run is given in seconds */
   double duration; /* of the first point [s] */
-  int64_t base_evaluations; /* of the first point */
-  double base_seconds;
-  size_t base;     /* row */
-  size_t left_out; /* settings for which the budget did not suffice */
-  double spent;    /* CPU time [s] */
+  const strut_integrator *base_method; /* what costs are relative to */
+  double base_step;                    /* [s] */
+  double base_evaluations;             /* of the first point */
+  double base_seconds;                 /* NAN: not run */
+  int base;                            /* row; -1: not run, its evaluations are those planned */
+  double accuracy;                     /* as requested; 0: none */
+  int scenes;       /* the class of scenes on which other libraries were measured; 0: none */
+  double work;      /* force evaluations of all runs */
+  double work_unit; /* of a reference run at all points, or of the scene's own run where that takes
+                       more and no accuracy is requested */
+  size_t left_out;  /* series of steps that the bound on work or time kept from finer ones */
+  bool cut;         /* the CPU time was over: another machine may measure more */
+  double spent;     /* CPU time [s] */
   strut_model_variant *variants;
   strut_tradeoff_row *rows;
   strut_arena arena;
@@ -121,21 +138,34 @@ STRUT_API void strut_tradeoff_free(strut_tradeoff *result);
 /** Median, 90th percentile and worst of (count) values; scratch holds as many. */
 STRUT_API strut_spread strut_spread_of(const double *values, size_t count, double *scratch);
 
-/** Error levels of the recommendations. */
-enum { STRUT_TRADEOFF_LEVELS = 4 };
-STRUT_API double strut_tradeoff_level(int i);
+/** Errors of the recommendations, in descending order: the accuracy, else decades from 2 % down. */
+STRUT_API size_t strut_tradeoff_level_count(const strut_tradeoff *result);
+STRUT_API double strut_tradeoff_level(const strut_tradeoff *result, size_t i);
 /** The largest worst total error of a row and of all finer ones of its group. */
 STRUT_API double strut_tradeoff_promise(const strut_tradeoff *result, int row);
 /**
  * The cheapest row of a variant whose worst total error stays within `level`, and that of all
- * smaller steps or tolerances of its group too: a single small error at a large step is luck. -1:
- * none.
+ * smaller steps or tolerances of its group too, of which there is one at least: a single small error
+ * at a large step is luck. Its step is stable. -1: none.
  */
 STRUT_API int strut_tradeoff_best(const strut_tradeoff *result, int variant, double level);
 
+/** Answer to the question which setting of the unchanged model to use for an error. */
+typedef struct strut_tradeoff_advice {
+  double error;
+  bool known; /* the reference's floor is at most a tenth of half the error */
+  int row;    /* strut_tradeoff_best; -1: none */
+  int half;   /* the same for half the error */
+  double
+      cost;  /* of half the error over that of `row`, interpolated between the steps of the group of
+                  `half`; NAN: not measured */
+  int other; /* the best of all other methods; -1: none */
+} strut_tradeoff_advice;
+STRUT_API strut_tradeoff_advice strut_tradeoff_advise(const strut_tradeoff *result, double error);
+
 /**
  * Texts in blocks of strut_allocate; NULL: memory was out. CPU times in them are measurements: they
- * differ from run to run, everything else does not while the budget suffices.
+ * differ from run to run, everything else does not unless the study was cut.
  */
 STRUT_API char *strut_tradeoff_table(const strut_tradeoff *result);
 /** setups: the operating points, whose parameters are listed. */

@@ -17,10 +17,14 @@ typedef struct tradeoff_setting {
 typedef struct tradeoff_outcome {
   strut_status status; /* STRUT_OK, or STRUT_DIVERGED for any failure during the run */
   bool cannot;         /* the method cannot run this model at all; error holds the reason */
-  int64_t evaluations;
-  double seconds;    /* CPU time of the stepping alone */
-  double step_limit; /* [s] */
+  bool cut;            /* by the bound on work */
+  double evaluations;  /* of the forces, without those of settling */
+  double seconds;      /* CPU time of the stepping alone */
 } tradeoff_outcome;
+
+/** Remarks of variants that are not run. */
+#define STRUT_TRADEOFF_NO_TIME "the CPU time was over"
+#define STRUT_TRADEOFF_NO_WORK "the work is bounded"
 
 enum { TRADEOFF_VARIANTS = 7 }; /* at most, the unchanged model included */
 
@@ -36,21 +40,27 @@ typedef struct tradeoff_study {
   const strut_tradeoff_options *options;
   strut_tradeoff *result;
   strut_error *error;
-  double began;         /* CPU clock [s] */
-  double budget;        /* [s] */
-  double *size, *scale; /* (points) [m], [m/s] */
-  double *scratch;      /* (max(points, values)) */
-  tradeoff_setting base;
-  double limit; /* of the base's method [s]; 0 where there is none */
-  double *base_evaluations, *base_seconds, *base_timed; /* (points); [s], [s] of the clock */
+  double began;                  /* CPU clock [s] */
+  double budget, stepping;       /* CPU time: limit, and of all steps so far [s] */
+  double *size, *scale;          /* (points) [m], [m/s] */
+  double *scratch, *spare;       /* (max(points, values)) */
+  tradeoff_setting base, coarse; /* the latter for what one cheap run tells */
+  double *coarse_value;          /* (values) of the unchanged model at the first point */
+  double limit;                  /* of the base's method [s]; 0 where there is none */
+  double least_unit;             /* of result->work_unit */
+  double allowed;                /* force evaluations of the next run; 0: any number */
   size_t row_capacity;
   tradeoff_model *models; /* (points, TRADEOFF_VARIANTS) */
 } tradeoff_study;
 
 /** This thread's CPU time [s]. */
 double strut_tradeoff_cpu_clock(void);
-/** CPU time left until a share of the budget is spent [s]; below 0: over. */
-double strut_tradeoff_time_left(const tradeoff_study *s, double share);
+/** Force evaluations left until a share of the bound on work is spent; below 0: over. */
+double strut_tradeoff_work_left(const tradeoff_study *s, double share);
+/** Is there CPU time for so many force evaluations? Where not, the study is marked as cut. */
+bool strut_tradeoff_has_time(tradeoff_study *s, double evaluations);
+/** Force evaluations that a setting plans at a point: what a run makes that no event interrupts. */
+double strut_tradeoff_planned(const tradeoff_study *s, size_t point, tradeoff_setting setting);
 /** strut_simulate's experiment for `point`, cut to the periods that are wanted. */
 strut_experiment strut_tradeoff_experiment(const tradeoff_study *s, size_t point);
 /** The largest step up to `step` of which the period, or else the duration, is a multiple. */
@@ -60,10 +70,17 @@ strut_span strut_tradeoff_span(const tradeoff_study *s, size_t point);
 /** The longest step that can make sense: a part of the period, or else of the duration [s]. */
 double strut_tradeoff_longest_step(const tradeoff_study *s, size_t point);
 /**
+ * The largest step of a method worth trying in a variant at the first point [s], INFINITY where nothing
+ * limits it. *cannot: the method cannot run it, and the study's error says why. Fails with STRUT_NO_MEMORY
+ * alone.
+ */
+strut_status strut_tradeoff_limit(tradeoff_study *s, int variant, const strut_integrator *method,
+                                  double *limit, bool *cannot);
+/**
  * Runs a variant with a setting at an operating point; its values go into (value_count) `value`,
  * NAN where it diverged. Fails with STRUT_INTERRUPTED and STRUT_NO_MEMORY alone.
  */
-strut_status strut_tradeoff_run(const tradeoff_study *s, size_t point, int variant,
+strut_status strut_tradeoff_run(tradeoff_study *s, size_t point, int variant,
                                 tradeoff_setting setting, double *value, tradeoff_outcome *outcome);
 /** Distance of two answers at a point: that of errors. INFINITY where one is not a number. */
 double strut_tradeoff_distance(const tradeoff_study *s, size_t point, const double *value,
@@ -94,18 +111,20 @@ typedef struct tradeoff_reference {
   const strut_integrator *method[2];
   double limit;            /* [s] first step of the first method */
   int *level, *idle;       /* (points) next level; levels in a row that did not help */
-  double last_cost;        /* CPU time of the latest level of one point [s] */
+  double *work[2];         /* (points) force evaluations of the latest run by each method */
   double *latest, *before; /* (2, values), (points, 2, values) */
 } tradeoff_reference;
 
 /** Chooses the methods. Without any, the variant is marked as not run, with a remark. */
 strut_status strut_tradeoff_reference_begin(tradeoff_study *s, int variant, tradeoff_reference *r);
-/** Refines until every floor is at most `target` or the share of the budget is spent. */
+/** Refines until every floor is at most `target`; after the first two levels for `most` evaluations. */
 strut_status strut_tradeoff_reference_refine(tradeoff_study *s, tradeoff_reference *r,
-                                             double target, double share);
+                                             double target, double most);
 
-/** Errors, spreads and fronts of all rows, from values and references. */
+/** Errors, spreads, costs and fronts of all rows, from values and references. */
 void strut_tradeoff_judge(tradeoff_study *s);
+/** Errors of one row. */
+void strut_tradeoff_judge_row(tradeoff_study *s, strut_tradeoff_row *row);
 /** The smallest worst error of a row, not counting what a floor hides; 1 where there is none. */
 double strut_tradeoff_smallest_error(const tradeoff_study *s, int variant);
 
@@ -116,33 +135,30 @@ typedef struct step_series {
   int variant, group;
   tradeoff_setting first; /* its step is the method's limit */
   bool limited;           /* there is one */
-  double last_cost;       /* CPU time of the latest row [s]; 0: none yet */
-  bool over;              /* the budget does not suffice for the next */
+  int next;               /* index of its next setting */
+  double last_cost;       /* force evaluations of the latest row; 0: none yet */
+  int kept;               /* rows up to it in a row whose errors are within half the accuracy */
+  bool over;              /* nothing finer is run */
 } step_series;
 
 typedef struct step_series_list {
   step_series at[MOST_STEP_SERIES];
   size_t count;
+  double
+      cheapest; /* force evaluations of the cheapest row that confirms half the accuracy; 0: none */
 } step_series_list;
 
-/** Runs a setting at the first point, with its values in s->scratch. */
-strut_status strut_tradeoff_probe(const tradeoff_study *s, int variant, tradeoff_setting setting,
-                                  tradeoff_outcome *outcome);
-/**
- * Runs a setting at every point as a new row, with its cost; `base` where costs are relative to it.
- * Where its method cannot, there is no row.
- */
-strut_status strut_tradeoff_run_row(tradeoff_study *s, step_series *from, tradeoff_setting setting,
-                                    bool base, bool *cannot);
 /** Adds a series for each refinement of a method that makes a difference in this scene. */
 strut_status strut_tradeoff_add_method(tradeoff_study *s, step_series_list *all, int variant,
                                        const strut_integrator *method);
 /**
- * Runs all series in parallel from coarse to fine, within a share of the budget; reports progress
+ * Runs all series from coarse to fine, the cheapest row next, within a share of the bound on work; reports progress
  * between two fractions.
  */
 strut_status strut_tradeoff_run_series(tradeoff_study *s, step_series_list *all, double share,
                                        double from, double to);
+/** Adds the row of the base to its method's series, or to one of its own, if the share allows. */
+strut_status strut_tradeoff_run_base(tradeoff_study *s, step_series_list *own, double share);
 
 enum { STRUT_TRADEOFF_TEXT = 100 };
 
@@ -155,6 +171,14 @@ const char *strut_tradeoff_group_text(const strut_tradeoff_row *row,
 const char *strut_tradeoff_step_text(const strut_tradeoff_row *row, char text[STRUT_TRADEOFF_TEXT]);
 /** "velocity", "position", "energy". */
 const char *strut_tradeoff_measure_text(strut_tradeoff_measure measure);
+/**
+ * The class of a model's scene among those on which other libraries were measured: with contact whose
+ * friction is not smooth, with bars 1e4 times stiffer than a spring or cable, with neither; 0: in no class, as
+ * with rigid bars, or bars without a spring to compare them with.
+ */
+int strut_tradeoff_classify(const strut_model *model);
+/** Adds a sentence about them, if the class is one, for the measured error next to `error`. */
+void strut_tradeoff_add_rivals(strut_buffer *text, int scenes, double error);
 /** Adds a sentence per error level and per variant. Call in the C locale. */
 void strut_tradeoff_add_advice(strut_buffer *text, const strut_tradeoff *result);
 

@@ -52,40 +52,106 @@ const char *strut_tradeoff_measure_text(strut_tradeoff_measure measure) {
   return names[measure];
 }
 
-static const char *refined(const strut_tradeoff_row *row, char text[STRUT_TRADEOFF_TEXT]) {
-  text[0] = '\0';
-  if (isfinite(row->refine) && row->refine > 0)
-    snprintf(text, STRUT_TRADEOFF_TEXT, ", steps divided by %.3g after touchdowns", row->refine);
-  else if (isfinite(row->refine))
-    snprintf(text, STRUT_TRADEOFF_TEXT, ", steps refined after touchdowns as the scene requests");
+/* "verlet-events, refined 8, 80 us". */
+static const char *setting_text(const strut_tradeoff_row *row, char text[3 * STRUT_TRADEOFF_TEXT]) {
+  char group[STRUT_TRADEOFF_TEXT], step[STRUT_TRADEOFF_TEXT];
+  snprintf(text, 3 * STRUT_TRADEOFF_TEXT, "%s, %s%s", strut_tradeoff_group_text(row, group),
+           isfinite(row->tolerance) ? "tolerance " : "", strut_tradeoff_step_text(row, step));
   return text;
 }
 
-static void advise_level(strut_buffer *text, const strut_tradeoff *r, double level) {
-  char a[STRUT_TRADEOFF_TEXT], b[STRUT_TRADEOFF_TEXT], c[STRUT_TRADEOFF_TEXT],
-      d[STRUT_TRADEOFF_TEXT];
-  int best = strut_tradeoff_best(r, 0, level);
-  strut_buffer_add(text, "  %5s: ", strut_tradeoff_percent_text(level, a));
-  if (best < 0) {
-    strut_buffer_add(text, "no setting achieves it\n");
+/* The mapping of the language that runs a row. */
+static void add_solver(strut_buffer *text, const strut_tradeoff_row *row) {
+  strut_buffer_add(text, "solver: {integrator: %s, step: %s", row->method->name,
+                   strut_quantity_of(row->step, 6, "s").text);
+  if (isfinite(row->tolerance)) strut_buffer_add(text, ", tolerance: %.0e", row->tolerance);
+  if (!isfinite(row->tolerance) && !isfinite(row->refine) && row->method->events)
+    strut_buffer_add(text, ", refine: 1");
+  if (row->refine > 0) strut_buffer_add(text, ", refine: %.3g", row->refine);
+  strut_buffer_add(text, "}");
+}
+
+static const char *base_text(const strut_tradeoff *r, char text[3 * STRUT_TRADEOFF_TEXT]) {
+  snprintf(text, 3 * STRUT_TRADEOFF_TEXT, "%s, %s", r->base_method->name,
+           strut_quantity_of(r->base_step, 3, "s").text);
+  return text;
+}
+
+/* ---- advice: for one accuracy in words, else a line for each level ---- */
+
+static void add_half(strut_buffer *text, const strut_tradeoff *r, const strut_tradeoff_advice *a) {
+  char b[STRUT_TRADEOFF_TEXT];
+  strut_buffer_add(text, "  half the error: ");
+  if (a->half < 0)
+    strut_buffer_add(text, "not measured\n");
+  else if (a->half == a->row)
+    strut_buffer_add(text, "kept by the same setting\n");
+  else
+    strut_buffer_add(text, "%.2f times that cost, interpolated between steps of %s\n", a->cost,
+                     strut_tradeoff_group_text(&r->rows[a->half], b));
+}
+
+static void advise_accuracy(strut_buffer *text, const strut_tradeoff *r) {
+  const strut_tradeoff_advice a = strut_tradeoff_advise(r, r->accuracy);
+  char b[3 * STRUT_TRADEOFF_TEXT], c[3 * STRUT_TRADEOFF_TEXT], d[STRUT_TRADEOFF_TEXT];
+  double floor = r->variants[0].floor_spread.worst;
+  strut_buffer_add(text, "For an error of %s: ", strut_tradeoff_percent_text(a.error, b));
+  if (!a.known) {
+    strut_buffer_add(text, "not known: the references differ by %s\n",
+                     strut_tradeoff_percent_text(floor, c));
     return;
   }
-  const strut_tradeoff_row *row = &r->rows[best], *base = &r->rows[r->base];
-  strut_buffer_add(text, "%s, %s%s%s: %.2g times the cost of %s, %s", row->method->name,
-                   isfinite(row->tolerance) ? "tolerance " : "", strut_tradeoff_step_text(row, a),
-                   refined(row, b), row->evaluations, base->method->name,
-                   strut_tradeoff_step_text(base, c));
-  if (isfinite(row->cpu)) strut_buffer_add(text, " (CPU time %.2g times)", row->cpu);
-  strut_buffer_add(text, "; error at most %s\n",
-                   strut_tradeoff_percent_text(strut_tradeoff_promise(r, best), d));
+  if (a.row < 0) {
+    strut_buffer_add(text, "no setting measured keeps it\n");
+  } else {
+    const strut_tradeoff_row *row = &r->rows[a.row];
+    add_solver(text, row);
+    strut_buffer_add(text, "\n  cost: %.3g force evaluations per simulated second, %.2g times %s; ",
+                     row->rate, row->evaluations, base_text(r, b));
+    strut_buffer_add(text, "its error is at most %s\n",
+                     strut_tradeoff_percent_text(strut_tradeoff_promise(r, a.row), d));
+    add_half(text, r, &a);
+  }
+  if (a.other >= 0)
+    strut_buffer_add(text, "  next best method: %s, at %.2g times that cost\n",
+                     setting_text(&r->rows[a.other], c),
+                     r->rows[a.other].evaluations / r->rows[a.row].evaluations);
+  if (floor > 0)
+    strut_buffer_add(text, "  certainty: the references differ by %s, %s of this error\n",
+                     strut_tradeoff_percent_text(floor, b),
+                     strut_tradeoff_percent_text(floor / a.error, c));
+  strut_tradeoff_add_rivals(text, r->scenes, a.error);
+}
+
+static void advise_levels(strut_buffer *text, const strut_tradeoff *r) {
+  char b[STRUT_TRADEOFF_TEXT], c[STRUT_TRADEOFF_TEXT], d[3 * STRUT_TRADEOFF_TEXT];
+  strut_buffer_add(text,
+                   "The cheapest setting for an error that it and all finer settings keep\n"
+                   "  %7s %12s %9s %9s %8s  setting\n",
+                   "error", "forces/s", "cost", "for half", "CPU");
+  for (size_t i = 0; i < strut_tradeoff_level_count(r); i++) {
+    const strut_tradeoff_advice a = strut_tradeoff_advise(r, strut_tradeoff_level(r, i));
+    char half[STRUT_TRADEOFF_TEXT] = "-", cpu[STRUT_TRADEOFF_TEXT] = "-";
+    strut_buffer_add(text, "  %7s ", strut_tradeoff_percent_text(a.error, b));
+    if (a.row < 0) {
+      strut_buffer_add(text, "%s\n", a.known ? "no setting measured keeps it" : "not known");
+      return;
+    }
+    const strut_tradeoff_row *row = &r->rows[a.row];
+    if (isfinite(a.cost)) snprintf(half, sizeof half, "%.2f", a.cost);
+    if (isfinite(row->cpu)) snprintf(cpu, sizeof cpu, "%.3g", row->cpu);
+    strut_buffer_add(text, "%12.3g %9.3g %9s %8s  %s; at most %s\n", row->rate, row->evaluations,
+                     half, cpu, setting_text(row, d),
+                     strut_tradeoff_percent_text(strut_tradeoff_promise(r, a.row), c));
+  }
 }
 
 /* The row of a variant that reaches some error level cheaper than the unchanged model, or -1. */
 static int find_saving(const strut_tradeoff *r, int variant, double *level) {
-  for (int i = STRUT_TRADEOFF_LEVELS; i-- > 0;) {
-    int own = strut_tradeoff_best(r, 0, strut_tradeoff_level(i));
-    int other = strut_tradeoff_best(r, variant, strut_tradeoff_level(i));
-    *level = strut_tradeoff_level(i);
+  for (size_t i = strut_tradeoff_level_count(r); i-- > 0;) {
+    *level = strut_tradeoff_level(r, i);
+    int own = strut_tradeoff_best(r, 0, *level);
+    int other = strut_tradeoff_best(r, variant, *level);
     if (other >= 0 && (own < 0 || r->rows[other].evaluations < 0.9 * r->rows[own].evaluations))
       return other;
   }
@@ -113,7 +179,7 @@ static void advise_model(strut_buffer *text, const strut_tradeoff *r, int varian
       strut_buffer_add(text, "the unchanged model %.2g\n", r->rows[own].evaluations);
     else
       strut_buffer_add(text, "the unchanged model does not achieve it\n");
-  } else if (change > strut_tradeoff_level(0)) {
+  } else if (change > strut_tradeoff_level(r, 0)) {
     strut_buffer_add(text, "; does not pay off in this scene\n");
   } else {
     strut_buffer_add(text, " (floor %s), and is no cheaper; does not pay off in this scene\n",
@@ -122,11 +188,10 @@ static void advise_model(strut_buffer *text, const strut_tradeoff *r, int varian
 }
 
 void strut_tradeoff_add_advice(strut_buffer *text, const strut_tradeoff *r) {
-  strut_buffer_add(
-      text,
-      "Recommendations: the cheapest setting for an error that it and all finer settings "
-      "keep\n");
-  for (int i = 0; i < STRUT_TRADEOFF_LEVELS; i++) advise_level(text, r, strut_tradeoff_level(i));
+  if (r->accuracy > 0)
+    advise_accuracy(text, r);
+  else
+    advise_levels(text, r);
   if (r->variant_count > 1)
     strut_buffer_add(text, "\nConverged variants of the model, relative to the unchanged one\n");
   for (size_t i = 1; i < r->variant_count; i++) advise_model(text, r, (int)i);
@@ -135,8 +200,7 @@ void strut_tradeoff_add_advice(strut_buffer *text, const strut_tradeoff *r) {
 /* ---- the table ---- */
 
 static void add_head(strut_buffer *table, const strut_tradeoff *r) {
-  const strut_tradeoff_row *base = &r->rows[r->base];
-  char a[STRUT_TRADEOFF_TEXT];
+  char a[3 * STRUT_TRADEOFF_TEXT];
   strut_buffer_add(table, "%s%serror against cost of the %s", r->name, *r->name ? ": " : "",
                    strut_tradeoff_measure_text(r->measure));
   if (r->periods > 0)
@@ -144,11 +208,9 @@ static void add_head(strut_buffer *table, const strut_tradeoff *r) {
   else
     strut_buffer_add(table, " in %s", strut_quantity_of(r->duration, 4, "s").text);
   if (r->point_count > 1) strut_buffer_add(table, ", %zu operating points", r->point_count);
-  strut_buffer_add(table, "\ncost 1: %s, %s: %.0f force evaluations", base->method->name,
-                   strut_tradeoff_step_text(base, a), (double)r->base_evaluations);
-  if (isfinite(r->base_seconds))
-    strut_buffer_add(table, ", %s of CPU time", strut_quantity_of(r->base_seconds, 3, "s").text);
-  strut_buffer_add(table, "%s\n", r->point_count > 1 ? " at the first point" : "");
+  strut_buffer_add(table, "\ncost 1: %s: %.0f force evaluations%s%s\n", base_text(r, a),
+                   r->base_evaluations, r->point_count > 1 ? " at the first point" : "",
+                   r->base < 0 ? ", not run" : "");
   if (r->measure == STRUT_TRADEOFF_VELOCITY)
     strut_buffer_add(table, "errors relative to the velocity, or to %s if larger\n",
                      strut_quantity_of(r->scale, 3, "m/s").text);
@@ -201,10 +263,17 @@ char *strut_tradeoff_table(const strut_tradeoff *r) {
       if (shown) add_row(&table, r, row);
     }
   }
-  strut_buffer_add(&table, "  (* Pareto-optimal, = the reference of costs)\n");
+  strut_buffer_add(&table, "  (* Pareto-optimal, = the reference of costs; CPU: measured here)\n");
   if (r->left_out)
-    strut_buffer_add(&table, "  %zu finer settings skipped: budget exhausted\n", r->left_out);
-  strut_buffer_add(&table, "\n");
+    strut_buffer_add(&table, "  %zu %s not refined further: the work is bounded\n", r->left_out,
+                     r->left_out == 1 ? "series of steps was" : "series of steps were");
+  if (r->cut) strut_buffer_add(&table, "  cut by --cpu-time: another machine may measure more\n");
+  strut_buffer_add(&table, "  work: %.3g force evaluations, %.2g times %s (at most %d)\n\n",
+                   r->work, r->work / r->work_unit,
+                   r->accuracy > 0 && r->measure != STRUT_TRADEOFF_ENERGY
+                       ? "a reference run"
+                       : "the longer of a reference run and cost 1",
+                   STRUT_TRADEOFF_MOST_WORK);
   strut_tradeoff_add_advice(&table, r);
   strut_c_locale_leave(locale);
   return strut_buffer_take(&table);
@@ -294,12 +363,14 @@ static void put_rows(strut_json *json, const strut_tradeoff *r) {
     strut_json_number(json, object, "tolerance", row->tolerance);
     strut_json_number(json, object, "refine", row->refine);
     strut_json_number(json, object, "evaluations", row->evaluations);
+    strut_json_number(json, object, "rate", row->rate);
     strut_json_number(json, object, "cpu", row->cpu);
     strut_json_number(json, object, "seconds", row->seconds);
     put_spread(json, object, "step_error", &row->error_spread, row->error, r->point_count);
     put_spread(json, object, "total_error", &row->total_spread, row->total, r->point_count);
     strut_json_numbers(json, object, "values", row->value, r->point_count * r->value_count);
     strut_json_integer(json, object, "diverged", (int64_t)row->diverged);
+    strut_json_bool(json, object, "above_limit", row->above);
     strut_json_bool(json, object, "front", row->front);
     strut_json_bool(json, object, "base", row->base);
   }
@@ -319,17 +390,35 @@ static void put_points(strut_json *json, const strut_setup *const *setups, size_
   }
 }
 
+/* An index of `settings`, or null. */
+static void put_setting(strut_json *json, struct cJSON *object, const char *key, int row) {
+  if (row < 0)
+    strut_json_text(json, object, key, NULL);
+  else
+    strut_json_integer(json, object, key, row);
+}
+
 static void put_advice(strut_json *json, const strut_tradeoff *r) {
   struct cJSON *list = strut_json_array(json, json->root, "advice");
-  for (int i = 0; i < STRUT_TRADEOFF_LEVELS; i++) {
-    int best = strut_tradeoff_best(r, 0, strut_tradeoff_level(i));
+  for (size_t i = 0; i < strut_tradeoff_level_count(r); i++) {
+    const strut_tradeoff_advice a = strut_tradeoff_advise(r, strut_tradeoff_level(r, i));
     struct cJSON *object = strut_json_object(json, list, NULL);
-    strut_json_number(json, object, "error", strut_tradeoff_level(i));
-    if (best < 0)
-      strut_json_text(json, object, "setting", NULL);
-    else
-      strut_json_integer(json, object, "setting", best);
+    strut_json_number(json, object, "error", a.error);
+    strut_json_bool(json, object, "known", a.known);
+    put_setting(json, object, "setting", a.row);
+    put_setting(json, object, "half_setting", a.half);
+    strut_json_number(json, object, "half_cost", a.cost);
+    put_setting(json, object, "next_method", a.other);
   }
+}
+
+static void put_work(strut_json *json, const strut_tradeoff *r) {
+  struct cJSON *object = strut_json_object(json, json->root, "work");
+  strut_json_number(json, object, "evaluations", r->work);
+  strut_json_number(json, object, "unit", r->work_unit);
+  strut_json_integer(json, object, "limit", STRUT_TRADEOFF_MOST_WORK);
+  strut_json_integer(json, object, "unrefined_series", (int64_t)r->left_out);
+  strut_json_bool(json, object, "cut_by_time", r->cut);
 }
 
 char *strut_tradeoff_json(const strut_tradeoff *r, const strut_setup *const *setups) {
@@ -340,11 +429,11 @@ char *strut_tradeoff_json(const strut_tradeoff *r, const strut_setup *const *set
   if (r->periods > 0) strut_json_number(&json, json.root, "periods", r->periods);
   strut_json_number(&json, json.root, "duration", r->duration);
   if (r->measure == STRUT_TRADEOFF_VELOCITY) strut_json_number(&json, json.root, "scale", r->scale);
-  strut_json_integer(&json, json.root, "base_setting", (int64_t)r->base);
-  strut_json_integer(&json, json.root, "base_evaluations", r->base_evaluations);
+  put_setting(&json, json.root, "base_setting", r->base);
+  strut_json_number(&json, json.root, "base_evaluations", r->base_evaluations);
   strut_json_number(&json, json.root, "base_seconds", r->base_seconds);
   strut_json_number(&json, json.root, "spent_seconds", r->spent);
-  strut_json_integer(&json, json.root, "skipped_settings", (int64_t)r->left_out);
+  put_work(&json, r);
   put_points(&json, setups, r->point_count);
   put_variants(&json, r);
   put_rows(&json, r);
@@ -460,10 +549,8 @@ static bool fill_models(panel *p, const strut_tradeoff *r, strut_arena *arena) {
 
 static strut_status draw_panel(strut_canvas *canvas, strut_box box, const panel *p,
                                const char *title, const char *error, const strut_tradeoff *r) {
-  char cost[2 * STRUT_TRADEOFF_TEXT], text[STRUT_TRADEOFF_TEXT];
-  const strut_tradeoff_row *base = &r->rows[r->base];
-  snprintf(cost, sizeof cost, "cost in force evaluations, %s with %s = 1", base->method->name,
-           strut_tradeoff_step_text(base, text));
+  char cost[4 * STRUT_TRADEOFF_TEXT], text[3 * STRUT_TRADEOFF_TEXT];
+  snprintf(cost, sizeof cost, "cost in force evaluations, %s = 1", base_text(r, text));
   const strut_work_precision diagram = {.title = title,
                                         .cost = {cost, "", true, (double)NAN, (double)NAN},
                                         .error = {error, "", true, (double)NAN, (double)NAN},

@@ -5,9 +5,13 @@
 #include <string.h>
 #include <time.h>
 
+#include "engine/integrate/limit/step_limit.h"
 #include "engine/output/buffer.h"
 #include "engine/run/simulate.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
+
+/* CPU time of steps from which that of an evaluation is known [s]. */
+static const double LEAST_KNOWN = 0.1;
 
 double strut_tradeoff_cpu_clock(void) {
   struct timespec t;
@@ -15,12 +19,19 @@ double strut_tradeoff_cpu_clock(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-double strut_tradeoff_time_left(const tradeoff_study *s, double share) {
-  return share * s->budget - (strut_tradeoff_cpu_clock() - s->began);
+double strut_tradeoff_work_left(const tradeoff_study *s, double share) {
+  return share * STRUT_TRADEOFF_MOST_WORK * s->result->work_unit - s->result->work;
+}
+
+bool strut_tradeoff_has_time(tradeoff_study *s, double evaluations) {
+  bool is_known = s->stepping > LEAST_KNOWN;
+  double needed = is_known ? evaluations * s->stepping / s->result->work : 0;
+  if (strut_tradeoff_cpu_clock() - s->began + needed > s->budget) s->result->cut = true;
+  return !s->result->cut;
 }
 
 bool strut_tradeoff_is_adaptive(const strut_integrator *method) {
-  return method->role == STRUT_ROLE_REFERENCE;
+  return strut_experiment_is_adaptive(method->name);
 }
 
 strut_experiment strut_tradeoff_experiment(const tradeoff_study *s, size_t point) {
@@ -50,6 +61,12 @@ double strut_tradeoff_fit_step(const tradeoff_study *s, size_t point, double ste
   bool whole = turns > 0.5 && fabs(turns - round(turns)) < 1e-9 * turns;
   double unit = whole ? span.period : span.duration;
   return unit / ceil(unit / step * (1 - 1e-9));
+}
+
+double strut_tradeoff_planned(const tradeoff_study *s, size_t point, tradeoff_setting setting) {
+  double steps =
+      strut_tradeoff_span(s, point).duration / strut_tradeoff_fit_step(s, point, setting.step);
+  return round(steps) * setting.method->evaluations;
 }
 
 /* A sink that measures the CPU time of the stepping alone. */
@@ -91,19 +108,29 @@ double strut_tradeoff_longest_step(const tradeoff_study *s, size_t point) {
   return (span.period > 0 ? span.period : span.duration) / 20;
 }
 
-/*
- * The largest step worth trying. Where nothing vibrates, as for rigid bars swinging under gravity, the
- * stability limit may exceed the duration: then a part of the duration counts.
- */
-static double useful_limit(const tradeoff_study *s, size_t point, double limit) {
-  return isfinite(limit) ? fmin(limit, strut_tradeoff_longest_step(s, point)) : limit;
-}
-
 static bool is_permanent_failure(strut_status status) {
   return status == STRUT_USAGE || status == STRUT_BAD_SCENE || status == STRUT_SINGULAR;
 }
 
-static strut_status simulate(const tradeoff_study *s, size_t point, int variant,
+/*
+ * Where nothing vibrates, as for rigid bars swinging under gravity, the stability limit may exceed the
+ * duration: then a part of the duration counts.
+ */
+strut_status strut_tradeoff_limit(tradeoff_study *s, int variant, const strut_integrator *method,
+                                  double *limit, bool *cannot) {
+  const strut_model *model = NULL;
+  strut_experiment e = strut_tradeoff_experiment(s, 0);
+  e.integrator = method->name;
+  *limit = HUGE_VAL;
+  strut_status status = strut_tradeoff_compile(s, 0, variant, &model);
+  if (status == STRUT_OK) status = strut_integrator_check(model, &e, s->error);
+  if (status == STRUT_OK) status = strut_step_limit_for_method(model, method, limit, s->error);
+  if (isfinite(*limit)) *limit = fmin(*limit, strut_tradeoff_longest_step(s, 0));
+  *cannot = status != STRUT_OK;
+  return status == STRUT_NO_MEMORY ? status : STRUT_OK;
+}
+
+static strut_status simulate(tradeoff_study *s, size_t point, int variant,
                              const strut_experiment *experiment, double *value,
                              tradeoff_outcome *outcome) {
   const strut_model *model = NULL;
@@ -111,13 +138,18 @@ static strut_status simulate(const tradeoff_study *s, size_t point, int variant,
   strut_sink clock = {&outcome->seconds, begin_clock, ignore_rows, end_clock,
                       STRUT_CHANNEL_POSITION};
   strut_sink *sinks[] = {&clock};
-  const strut_run_options options = {
-      .force = true, .interrupt = s->options->interrupt, .sinks = sinks, .sink_count = 1};
+  const strut_run_options options = {.force = true,
+                                     .interrupt = s->options->interrupt,
+                                     .sinks = sinks,
+                                     .sink_count = 1,
+                                     .most_evaluations = (int64_t)s->allowed};
   strut_status status = strut_tradeoff_compile(s, point, variant, &model);
   if (status == STRUT_OK) status = strut_simulate(model, experiment, &options, &summary, s->error);
-  outcome->evaluations = summary.spent.evaluations;
-  outcome->step_limit = useful_limit(s, point, summary.step_limit);
+  outcome->evaluations = (double)summary.spent.evaluations;
+  s->result->work += outcome->evaluations;
+  if (isfinite(outcome->seconds)) s->stepping += outcome->seconds;
   outcome->cannot = is_permanent_failure(status);
+  outcome->cut = status == STRUT_WORK_LIMIT;
   bool ours = status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY;
   outcome->status = status == STRUT_OK ? STRUT_OK : STRUT_DIVERGED;
   if (status == STRUT_OK) take_values(s, &summary, value);
@@ -125,7 +157,7 @@ static strut_status simulate(const tradeoff_study *s, size_t point, int variant,
   return ours ? status : STRUT_OK;
 }
 
-strut_status strut_tradeoff_run(const tradeoff_study *s, size_t point, int variant,
+strut_status strut_tradeoff_run(tradeoff_study *s, size_t point, int variant,
                                 tradeoff_setting setting, double *value,
                                 tradeoff_outcome *outcome) {
   *outcome = (tradeoff_outcome){.seconds = (double)NAN};
@@ -158,7 +190,7 @@ double strut_tradeoff_distance(const tradeoff_study *s, size_t point, const doub
 
 /* ---- references: two methods refined until they agree ---- */
 
-enum { MOST_LEVELS = 14, MOST_IDLE = 3 };
+enum { MOST_LEVELS = 14, MOST_IDLE = 2 };
 static const double FIRST_TOLERANCE = 1e-5;
 
 /* Rank of a method as a reference. */
@@ -181,7 +213,7 @@ static tradeoff_setting setting_of(const tradeoff_study *s, const tradeoff_refer
 }
 
 /* The best method that can run it, other than `not`; its step limit into r->limit. */
-static strut_status choose(const tradeoff_study *s, tradeoff_reference *r, int which,
+static strut_status choose(tradeoff_study *s, tradeoff_reference *r, int which,
                            const strut_integrator * not ) {
   bool tried[64] = {false};
   for (;;) {
@@ -199,13 +231,13 @@ static strut_status choose(const tradeoff_study *s, tradeoff_reference *r, int w
     if (!best) return STRUT_OK;
     tried[at] = true;
     r->method[which] = best;
-    tradeoff_outcome outcome;
-    strut_status status =
-        strut_tradeoff_run(s, 0, r->variant, setting_of(s, r, which, 0), r->latest, &outcome);
+    double limit = 0;
+    bool cannot = false;
+    strut_status status = strut_tradeoff_limit(s, r->variant, best, &limit, &cannot);
     if (status != STRUT_OK) return status;
-    if (which == 0 && outcome.step_limit > 0 && !outcome.cannot)
-      r->limit = isfinite(outcome.step_limit) ? 0.5 * outcome.step_limit : s->base.step;
-    if (!outcome.cannot) return STRUT_OK;
+    if (!isfinite(limit)) limit = strut_tradeoff_longest_step(s, 0);
+    if (which == 0 && limit > 0 && !cannot) r->limit = 0.5 * limit;
+    if (!cannot) return STRUT_OK;
     r->method[which] = NULL;
   }
 }
@@ -224,7 +256,10 @@ strut_status strut_tradeoff_reference_begin(tradeoff_study *s, int variant, trad
   r->latest = strut_arena_allocate(&result->arena, 2 * result->value_count, sizeof *r->latest);
   r->before = strut_arena_allocate(&result->arena, 2 * result->value_count * result->point_count,
                                    sizeof *r->before);
-  if (!r->level || !r->idle || !r->latest || !r->before) return strut_no_memory(s->error, "");
+  for (int k = 0; k < 2; k++)
+    r->work[k] = strut_arena_allocate(&result->arena, result->point_count, sizeof *r->work[k]);
+  if (!r->level || !r->idle || !r->latest || !r->before || !r->work[0] || !r->work[1])
+    return strut_no_memory(s->error, "");
   f->run = true;
   for (size_t p = 0; p < result->point_count; p++) f->floor[p] = HUGE_VAL;
   if (result->measure == STRUT_TRADEOFF_ENERGY) {
@@ -267,20 +302,32 @@ static double estimate_error(const tradeoff_study *s, const tradeoff_reference *
   return apart;
 }
 
-/* Refines the reference of one point by one level. */
-static strut_status refine_point(tradeoff_study *s, tradeoff_reference *r, size_t p) {
+/* The unit of the bound on work: a run of the method that takes more. */
+static void count_reference(strut_tradeoff *result, const tradeoff_reference *r, double least) {
+  double work[2] = {0};
+  for (size_t p = 0; p < result->point_count; p++)
+    for (int k = 0; k < 2; k++) work[k] += r->work[k][p];
+  if (r->variant == 0) result->work_unit = fmax(least, fmax(work[0], work[1]));
+}
+
+/* Refines the reference of one point by one level, until the study has made `end` force evaluations. */
+static strut_status refine_point(tradeoff_study *s, tradeoff_reference *r, size_t p, double end) {
   strut_tradeoff *result = s->result;
   strut_model_variant *f = &result->variants[r->variant];
   size_t count = result->value_count;
   double *a = r->latest, *b = r->latest + count, *kept = f->value + p * count;
-  double before = strut_tradeoff_cpu_clock();
-  tradeoff_outcome outcome;
-  strut_status status =
-      strut_tradeoff_run(s, p, r->variant, setting_of(s, r, 0, r->level[p]), a, &outcome);
-  if (status == STRUT_OK)
-    status = strut_tradeoff_run(s, p, r->variant, setting_of(s, r, 1, r->level[p]), b, &outcome);
-  if (status != STRUT_OK) return status;
-  r->last_cost = strut_tradeoff_cpu_clock() - before;
+  strut_status status = STRUT_OK;
+  for (int k = 0; k < 2 && status == STRUT_OK; k++) {
+    tradeoff_outcome outcome;
+    s->allowed = isfinite(end) ? fmax(1, end - result->work) : 0;
+    status =
+        strut_tradeoff_run(s, p, r->variant, setting_of(s, r, k, r->level[p]), k ? b : a, &outcome);
+    r->work[k][p] = outcome.evaluations;
+    if (outcome.cut) r->level[p] = MOST_LEVELS;
+  }
+  s->allowed = 0;
+  if (status != STRUT_OK || r->level[p] == MOST_LEVELS) return status;
+  count_reference(result, r, s->least_unit);
   double apart = estimate_error(s, r, p);
   memcpy(r->before + 2 * p * count, r->latest, 2 * count * sizeof *r->latest);
   bool idle = r->level[p] > 1 && !(apart < 0.5 * f->floor[p]);
@@ -296,37 +343,44 @@ static strut_status refine_point(tradeoff_study *s, tradeoff_reference *r, size_
 }
 
 strut_status strut_tradeoff_reference_refine(tradeoff_study *s, tradeoff_reference *r,
-                                             double target, double share) {
+                                             double target, double most) {
   strut_tradeoff *result = s->result;
   strut_model_variant *f = &result->variants[r->variant];
   if (!f->run || !r->method[0]) return STRUT_OK;
+  double end = result->work + most;
   for (bool more = true; more;) {
     more = false;
     for (size_t p = 0; p < result->point_count; p++) {
-      bool first = r->level[p] < 2;
+      double next = 2 * (r->work[0][p] + r->work[1][p]);
       if (f->floor[p] <= target || r->level[p] >= MOST_LEVELS || r->idle[p] >= MOST_IDLE) continue;
-      if (!first && strut_tradeoff_time_left(s, share) < 2.5 * r->last_cost) continue;
-      strut_status status = refine_point(s, r, p);
+      if (r->level[p] >= 2 && result->work + next > end) continue;
+      if (!strut_tradeoff_has_time(s, next)) continue;
+      strut_status status = refine_point(s, r, p, end);
       if (status != STRUT_OK) return status;
       more = true;
     }
   }
   for (size_t p = 0; p < result->point_count; p++)
-    if (!isfinite(f->floor[p])) mark_not_run(f, "no two methods complete the run");
+    if (!isfinite(f->floor[p]))
+      mark_not_run(f, result->cut               ? STRUT_TRADEOFF_NO_TIME
+                      : result->work + 1 >= end ? STRUT_TRADEOFF_NO_WORK
+                                                : "no two methods complete the run");
   return STRUT_OK;
 }
 
 /* ---- rows: the settings of a method from coarse to fine ---- */
 
-enum { USUAL_REPEATS = 5, ABOVE = 3, MOST_TIMES = 64, LOOKED_AT = 5 };
-static const double SHORT = 0.05; /* a run that is repeated for its CPU time [s] */
+enum { ABOVE = 3, LOOKED_AT = 5, MOST_TOLERANCES = 13, CONFIRMED = 3 };
 static const double BELOW = 0.95, IN_DECADE = 5;
+/* Cost of a tenth of the tolerance, of order 5. */
+static const double TENTH = 1.6;
 /* Series without a stability limit start at this multiple of the explicit limit, or of the base's step. */
 static const double FREE = 100, FREE_OF_BASE = 10;
 static const double above[ABOVE] = {2.5, 1.5, 1.1};
 
 static int step_count(const tradeoff_study *s) {
-  return s->options->steps > 0 ? s->options->steps : STRUT_TRADEOFF_USUAL_STEPS;
+  if (s->options->steps > 0) return s->options->steps;
+  return s->options->accuracy > 0 ? STRUT_TRADEOFF_MOST_STEPS : STRUT_TRADEOFF_USUAL_STEPS;
 }
 
 static void report_progress(const tradeoff_study *s, double fraction) {
@@ -358,95 +412,44 @@ static strut_tradeoff_row *new_row(tradeoff_study *s, const step_series *from,
                               .cpu = (double)NAN,
                               .seconds = (double)NAN};
   row->value = strut_arena_allocate(&r->arena, r->point_count * r->value_count, sizeof(double));
+  row->forces = strut_arena_allocate(&r->arena, r->point_count, sizeof(double));
   row->error = strut_arena_allocate(&r->arena, r->point_count, sizeof(double));
   row->total = strut_arena_allocate(&r->arena, r->point_count, sizeof(double));
-  if (!row->value || !row->error || !row->total) return NULL;
+  if (!row->value || !row->forces || !row->error || !row->total) return NULL;
   r->row_count++;
   return row;
 }
 
-/* CPU times of a setting and of the base, in turn. */
-typedef struct timing {
-  double own[MOST_TIMES], ratio[MOST_TIMES];
-  size_t count;
-} timing;
-
-/* Times the base again, unless it is a long run that was timed a moment ago. */
-static strut_status time_base(tradeoff_study *s, size_t p) {
-  tradeoff_outcome base;
-  double now = strut_tradeoff_cpu_clock(), is_known = s->base_seconds[p];
-  bool fresh = s->base_timed[p] > 0 && now - s->base_timed[p] < 10 * is_known;
-  if (fresh && !(is_known < SHORT)) return STRUT_OK;
-  strut_status status = strut_tradeoff_run(s, p, 0, s->base, s->scratch, &base);
-  s->base_seconds[p] = base.status == STRUT_OK ? base.seconds : (double)NAN;
-  s->base_timed[p] = strut_tradeoff_cpu_clock();
-  return status;
-}
-
-static strut_status time_point(tradeoff_study *s, const strut_tradeoff_row *row,
-                               tradeoff_setting setting, size_t p, double seconds, timing *times) {
-  size_t repeats = (size_t)(s->options->repeats > 0 ? s->options->repeats : USUAL_REPEATS);
-  size_t points = s->result->point_count < repeats ? s->result->point_count : repeats;
-  size_t here = seconds > SHORT ? 1 : (repeats + points - 1) / points;
-  tradeoff_outcome outcome;
-  double *value = s->scratch;
-  for (size_t i = 0; i < here && p < points && times->count < MOST_TIMES; i++) {
-    strut_status status = time_base(s, p);
-    if (status == STRUT_OK && i > 0)
-      status = strut_tradeoff_run(s, p, row->variant, setting, value, &outcome);
-    if (status != STRUT_OK) return status;
-    if (i > 0) seconds = outcome.seconds;
-    times->own[times->count] = seconds;
-    times->ratio[times->count] = seconds / s->base_seconds[p];
-    times->count++;
-  }
-  return STRUT_OK;
-}
-
-/* Evaluations that a row would need if it did not diverge, over those of the base. */
-static double planned_evaluations(const tradeoff_study *s, const strut_tradeoff_row *row) {
-  return s->base.step / row->step * row->method->evaluations / s->base.method->evaluations;
-}
-
-static void cost_row(tradeoff_study *s, strut_tradeoff_row *row, double *ratios, size_t count,
-                     const timing *times) {
-  row->evaluations =
-      count ? strut_spread_of(ratios, count, s->scratch).median : planned_evaluations(s, row);
-  if (times->count == 0) return;
-  double sorted[MOST_TIMES];
-  row->seconds = strut_spread_of(times->own, times->count, sorted).median;
-  row->cpu = strut_spread_of(times->ratio, times->count, sorted).median;
-}
-
-strut_status strut_tradeoff_run_row(tradeoff_study *s, step_series *from, tradeoff_setting setting,
-                                    bool base, bool *cannot) {
+/*
+ * Runs a setting at every point as a new row. There is none where its method cannot, or where the bound on
+ * work ends it, and with it the series.
+ */
+static strut_status run_row(tradeoff_study *s, step_series *from, tradeoff_setting setting,
+                            double most, strut_tradeoff_row **made) {
   strut_tradeoff *r = s->result;
-  double began = strut_tradeoff_cpu_clock();
+  double began = r->work;
+  tradeoff_outcome outcome = {0};
   strut_tradeoff_row *row = new_row(s, from, setting);
-  double *ratios = strut_arena_allocate(&r->arena, r->point_count, sizeof *ratios);
-  if (!row || !ratios) return out_of_memory(s);
-  timing times = {.count = 0};
   size_t finished = 0;
-  strut_status status = STRUT_OK;
-  *cannot = false;
-  for (size_t p = 0; p < r->point_count; p++) {
-    tradeoff_outcome outcome;
+  strut_status status = row ? STRUT_OK : out_of_memory(s);
+  for (size_t p = 0; p < r->point_count && status == STRUT_OK && !outcome.cannot && !outcome.cut;
+       p++) {
+    s->allowed = fmax(1, most - (r->work - began));
     status =
         strut_tradeoff_run(s, p, row->variant, setting, row->value + p * r->value_count, &outcome);
-    if (status != STRUT_OK) return status;
-    *cannot = outcome.cannot;
-    if (outcome.cannot) break;
-    if (outcome.status != STRUT_OK) row->diverged++;
-    if (outcome.status != STRUT_OK) continue;
-    if (base) s->base_evaluations[p] = (double)outcome.evaluations;
-    ratios[finished++] = (double)outcome.evaluations / s->base_evaluations[p];
-    status = time_point(s, row, setting, p, outcome.seconds, &times);
-    if (status != STRUT_OK) return status;
+    bool good = outcome.status == STRUT_OK;
+    row->forces[p] = good ? outcome.evaluations : (double)NAN;
+    row->diverged += !good;
+    if (good) s->spare[finished++] = outcome.seconds;
   }
-  cost_row(s, row, ratios, finished, &times);
-  row->base = base;
-  if (*cannot) r->row_count--;
-  from->last_cost = strut_tradeoff_cpu_clock() - began;
+  s->allowed = 0;
+  if (status != STRUT_OK) return status;
+  row->seconds = strut_spread_of(s->spare, finished, s->scratch).median;
+  row->above = from->limited && setting.step > from->first.step;
+  from->last_cost = r->work - began;
+  if (outcome.cut) from->over = true, r->left_out++;
+  if (outcome.cannot || outcome.cut) r->row_count--;
+  *made = outcome.cannot || outcome.cut ? NULL : row;
   return STRUT_OK;
 }
 
@@ -456,8 +459,9 @@ strut_status strut_tradeoff_run_row(tradeoff_study *s, step_series *from, tradeo
 static bool setting_at(const tradeoff_study *s, const step_series *l, int k,
                        tradeoff_setting *setting) {
   bool adaptive = strut_tradeoff_is_adaptive(l->first.method);
-  int extra = l->limited ? ABOVE : 0;
-  if (k >= step_count(s) + (adaptive ? 0 : ABOVE)) return false;
+  int extra = l->limited && !(s->options->accuracy > 0) ? ABOVE : 0;
+  if (k >= step_count(s) + (adaptive ? 0 : ABOVE) || (adaptive && k >= MOST_TOLERANCES))
+    return false;
   *setting = l->first;
   if (adaptive)
     setting->tolerance = 1e-2 * pow(0.1, k);
@@ -466,11 +470,6 @@ static bool setting_at(const tradeoff_study *s, const step_series *l, int k,
   else
     setting->step *= BELOW * pow(10, -(k - extra) / IN_DECADE);
   return true;
-}
-
-strut_status strut_tradeoff_probe(const tradeoff_study *s, int variant, tradeoff_setting setting,
-                                  tradeoff_outcome *outcome) {
-  return strut_tradeoff_run(s, 0, variant, setting, s->scratch, outcome);
 }
 
 static step_series *add_series(tradeoff_study *s, step_series_list *all, int variant,
@@ -485,8 +484,8 @@ static step_series *add_series(tradeoff_study *s, step_series_list *all, int var
 }
 
 /* Do two refinements differ at one of the first points? They do not without touchdowns. */
-static strut_status differ(const tradeoff_study *s, int variant, tradeoff_setting a,
-                           tradeoff_setting b, bool *different) {
+static strut_status differ(tradeoff_study *s, int variant, tradeoff_setting a, tradeoff_setting b,
+                           bool *different) {
   tradeoff_outcome one = {0}, other = {0};
   strut_status status = STRUT_OK;
   *different = false;
@@ -523,14 +522,14 @@ static strut_status add_refined(tradeoff_study *s, step_series_list *all, int va
 
 strut_status strut_tradeoff_add_method(tradeoff_study *s, step_series_list *all, int variant,
                                        const strut_integrator *method) {
-  tradeoff_outcome outcome;
   tradeoff_setting first = {method, s->base.step, (double)NAN, 1};
-  bool adaptive = strut_tradeoff_is_adaptive(method);
+  bool adaptive = strut_tradeoff_is_adaptive(method), cannot = false;
+  double limit = 0;
+  strut_status status = strut_tradeoff_limit(s, variant, method, &limit, &cannot);
+  if (status != STRUT_OK || cannot) return status;
   if (adaptive) first.step = fmax(10 * first.step, s->limit), first.tolerance = 1e-2;
-  strut_status status = strut_tradeoff_probe(s, variant, first, &outcome);
-  if (status != STRUT_OK || outcome.cannot) return status;
-  bool limited = !adaptive && isfinite(outcome.step_limit) && outcome.step_limit > 0;
-  if (limited) first.step = outcome.step_limit;
+  bool limited = !adaptive && isfinite(limit) && limit > 0;
+  if (limited) first.step = limit;
   if (!limited && !adaptive) {
     double most = s->limit > 0 ? FREE * s->limit : FREE_OF_BASE * first.step;
     first.step = fmin(most, strut_tradeoff_longest_step(s, 0));
@@ -551,24 +550,84 @@ static bool is_known(const strut_tradeoff *r, const step_series *l, const tradeo
   return false;
 }
 
+/* Force evaluations to expect of a series' next row. An adaptive method begins near the explicit limit. */
+static double predict(const tradeoff_study *s, const step_series *l, tradeoff_setting setting) {
+  double planned = 0;
+  bool adaptive = strut_tradeoff_is_adaptive(setting.method);
+  if (adaptive && l->last_cost > 0) return TENTH * l->last_cost;
+  if (adaptive) setting.step = s->limit > 0 ? s->limit : s->base.step;
+  for (size_t p = 0; p < s->result->point_count; p++)
+    planned += strut_tradeoff_planned(s, p, setting);
+  return planned;
+}
+
+/* The series whose next row is the cheapest; NULL: all are over. */
+static step_series *find_next(const tradeoff_study *s, step_series_list *all,
+                              tradeoff_setting *setting, double *cost) {
+  step_series *next = NULL;
+  for (size_t i = 0; i < all->count; i++) {
+    step_series *l = &all->at[i];
+    tradeoff_setting own;
+    bool left = !l->over && setting_at(s, l, l->next, &own);
+    while (left && is_known(s->result, l, &own, strut_tradeoff_fit_step(s, 0, own.step)))
+      left = setting_at(s, l, ++l->next, &own);
+    double expected = left ? predict(s, l, own) : HUGE_VAL;
+    if (!left || (next && expected >= *cost)) continue;
+    next = l;
+    *setting = own;
+    *cost = expected;
+  }
+  if (next) next->next++;
+  return next;
+}
+
+/*
+ * Of an accuracy, a series ends when three settings in a row keep half of it, and sooner where the next costs
+ * more than that by which another series got there.
+ */
+static void judge_series(tradeoff_study *s, step_series_list *all, step_series *l,
+                         strut_tradeoff_row *row) {
+  if (!(s->options->accuracy > 0)) return;
+  strut_tradeoff_judge_row(s, row);
+  l->kept = row->total_spread.worst <= 0.5 * s->options->accuracy ? l->kept + 1 : 0;
+  if (l->kept < CONFIRMED) return;
+  l->over = true;
+  all->cheapest = fmin(all->cheapest > 0 ? all->cheapest : HUGE_VAL, l->last_cost);
+}
+
 strut_status strut_tradeoff_run_series(tradeoff_study *s, step_series_list *all, double share,
                                        double from, double to) {
-  int most = step_count(s) + ABOVE;
-  for (int k = 0; k < most; k++) {
-    report_progress(s, from + (to - from) * k / most);
-    for (size_t i = 0; i < all->count; i++) {
-      step_series *l = &all->at[i];
-      tradeoff_setting setting;
-      bool cannot = false, left = setting_at(s, l, k, &setting);
-      if (!left || is_known(s->result, l, &setting, strut_tradeoff_fit_step(s, 0, setting.step)))
-        continue;
-      if (l->last_cost > 0 && 1.6 * l->last_cost > strut_tradeoff_time_left(s, share))
-        l->over = true;
-      if (l->over) s->result->left_out++;
-      if (l->over) continue;
-      strut_status status = strut_tradeoff_run_row(s, l, setting, false, &cannot);
-      if (status != STRUT_OK) return status;
-    }
+  double most = strut_tradeoff_work_left(s, share), cost = 0;
+  tradeoff_setting setting;
+  step_series *l = NULL;
+  strut_status status = STRUT_OK;
+  while (status == STRUT_OK && (l = find_next(s, all, &setting, &cost))) {
+    double left = strut_tradeoff_work_left(s, share);
+    report_progress(s, to - (to - from) * fmax(0, left) / most);
+    bool useless = l->kept == 0 && all->cheapest > 0 && cost > all->cheapest;
+    bool possible = useless || (cost <= left && strut_tradeoff_has_time(s, cost));
+    l->over = useless || !possible;
+    s->result->left_out += !possible;
+    strut_tradeoff_row *row = NULL;
+    if (!l->over) status = run_row(s, l, setting, left, &row);
+    if (row) judge_series(s, all, l, row);
   }
-  return STRUT_OK;
+  return status;
+}
+
+strut_status strut_tradeoff_run_base(tradeoff_study *s, step_series_list *own, double share) {
+  strut_tradeoff *r = s->result;
+  step_series alone = {.group = -1, .first = s->base}, *in = &alone;
+  strut_tradeoff_row *row = NULL;
+  double cost = 0, most = strut_tradeoff_work_left(s, share);
+  for (size_t i = own->count; i-- > 0;)
+    if (own->at[i].first.method == s->base.method && !isfinite(own->at[i].first.refine))
+      in = &own->at[i];
+  if (in == &alone) alone.group = (int)r->group_count++;
+  for (size_t p = 0; p < r->point_count; p++) cost += strut_tradeoff_planned(s, p, s->base);
+  strut_status status = STRUT_OK;
+  if (cost <= most && strut_tradeoff_has_time(s, cost))
+    status = run_row(s, in, s->base, most, &row);
+  if (status == STRUT_OK && row) row->base = true;
+  return status;
 }
