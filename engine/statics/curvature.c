@@ -11,7 +11,8 @@
 #include "engine/statics/potential.h"
 
 /* |x| for the multiplier mu, and d|x|/dmu; mu lies above minus the lowest value. */
-static double step_length_at(const strut_quadratic *r, double mu, double *slope) {
+static double step_length_at(const void *quadratic, double mu, double *slope) {
+  const strut_quadratic *r = quadratic;
   double square = 0.0, cube = 0.0;
   for (int32_t i = 0; i < r->n; i++) {
     if (r->idle[i] || r->part[i] == 0.0) continue;
@@ -25,11 +26,12 @@ static double step_length_at(const strut_quadratic *r, double mu, double *slope)
 }
 
 /* The multiplier at which |x| is the radius, between low (too long a step there) and high. */
-static double solve_secular(const strut_quadratic *r, double low, double high, double radius) {
+static double solve_secular(double (*step_length)(const void *r, double mu, double *slope),
+                            const void *r, double low, double high, double radius) {
   double mu = low > 0 ? low * (1.0 + 1e-12) : low;
   for (int i = 0; i < 80 && high - low > 1e-14 * high; i++) {
     if (!(mu > low && mu < high)) mu = low > 0 ? 0.5 * (low + high) : 1e-3 * high;
-    double slope, length = step_length_at(r, mu, &slope);
+    double slope, length = step_length(r, mu, &slope);
     if (fabs(length - radius) <= 1e-6 * radius) return mu;
     if (length > radius)
       low = mu;
@@ -62,7 +64,7 @@ double strut_trust_step(const strut_quadratic *r, double radius, double *x) {
   double floor = fmax(0.0, -lowest) + (lowest <= 0 ? DBL_EPSILON * r->scale + 1e-300 : 0.0);
   double length = step_length_at(r, floor, &slope);
   if (length > radius)
-    return shares_at(r, solve_secular(r, floor, floor + size / radius, radius), x);
+    return shares_at(r, solve_secular(step_length_at, r, floor, floor + size / radius, radius), x);
   shares_at(r, floor, x);
   if (lowest > -r->noise) return floor;
   double rest = sqrt(fmax(radius * radius - length * length, 0.0)); /* the hard case */
@@ -70,12 +72,19 @@ double strut_trust_step(const strut_quadratic *r, double radius, double *x) {
   return floor;
 }
 
-/* Steps by all eigenvectors of the Hessian: exact trust-region steps. */
+/*
+ * Exact trust-region steps in the basis of the Hessian's tridiagonal form, for a quarter of the work
+ * of its eigenvectors. These serve where it is singular, so that motions without stiffness are left
+ * alone, where the lowest one is needed, and where there are so few that they cost next to nothing.
+ */
+enum { FEW_MODES = 20 };
 
 typedef struct dense_curvature {
   strut_spectrum_workspace *spectra;
+  strut_tridiagonal *reduced;
+  bool has_modes; /* `now` is filled, and `reduced` has lost its reflections */
   strut_spectrum now;
-  double *part, *x;  /* (n) the gradient's and the step's share of each mode */
+  double *part, *x;  /* (n) the gradient and the step in the modes, or in the basis of T */
   uint8_t *idle;     /* (n) modes to leave alone */
   double scale;      /* largest |eigenvalue| */
   double multiplier; /* of the step that descend gave last */
@@ -103,11 +112,62 @@ void *strut_curvature_dense_create(const strut_potential *potential) {
   return NULL;
 }
 
+/* The modes of what was reduced last, at q; NULL where it is not singular, which refines nothing. */
+static bool find_modes(dense_curvature *r, const double *q) {
+  if (r->has_modes) return true;
+  r->has_modes = strut_spectrum_finish(r->spectra, q, false, &r->now);
+  if (r->has_modes && r->now.n)
+    r->scale = fmax(fabs(r->now.value[0]), fabs(r->now.value[r->now.n - 1]));
+  return r->has_modes;
+}
+
 static bool dense_decompose(void *memory, const double *q) {
   dense_curvature *r = memory;
-  if (!strut_spectrum_compute(r->spectra, q, 0.0, false, &r->now)) return false;
-  const double *value = r->now.value;
-  r->scale = r->now.n ? fmax(fabs(value[0]), fabs(value[r->now.n - 1])) : 0.0;
+  bool singular;
+  r->has_modes = false;
+  if (!strut_spectrum_reduce(r->spectra, q, &r->reduced, &singular)) return false;
+  r->scale = r->reduced->bound;
+  return (!singular && r->reduced->n > FEW_MODES) || find_modes(r, q);
+}
+
+static bool is_definite(dense_curvature *r) {
+  return !r->has_modes && strut_tridiagonal_factor(r->reduced, 0.0) == 0;
+}
+
+/* |x| of x = -(T + mu)^-1 part, and d|x|/dmu; infinite where T + mu is not positive definite. */
+static double reduced_length_at(const void *memory, double mu, double *slope) {
+  const dense_curvature *r = memory;
+  int32_t n = r->reduced->n;
+  *slope = 0.0;
+  if (strut_tridiagonal_factor(r->reduced, mu) > 0) return HUGE_VAL;
+  for (int32_t i = 0; i < n; i++) r->x[i] = -r->part[i];
+  strut_tridiagonal_solve(r->reduced, r->x);
+  double length = sqrt(strut_dot(r->x, r->x, n));
+  if (length > 0) *slope = -strut_tridiagonal_form(r->reduced, r->x) / length;
+  return length;
+}
+
+static void enter_basis(dense_curvature *r, const double *g) {
+  memcpy(r->part, g, (size_t)r->reduced->n * sizeof *g);
+  strut_tridiagonal_enter(r->reduced, r->part);
+}
+
+/* False in the hard case, which needs the lowest mode: g has next to no share of it. */
+static bool step_in_basis(dense_curvature *r, const double *g, double radius, double *s,
+                          strut_model_step *step) {
+  int32_t n = r->reduced->n;
+  enter_basis(r, g);
+  double slope, mu = 0.0, length = reduced_length_at(r, mu, &slope);
+  if (length > radius) {
+    double size = sqrt(strut_dot(r->part, r->part, n)), lowest = isfinite(length) ? 0.0 : r->scale;
+    mu = solve_secular(reduced_length_at, r, 0.0, lowest + size / radius, radius);
+    length = reduced_length_at(r, mu, &slope);
+    if (!(fabs(length - radius) <= 1e-5 * radius)) return false;
+  }
+  r->multiplier = mu;
+  *step = (strut_model_step){length, 0.5 * (mu * length * length - strut_dot(r->part, r->x, n))};
+  memcpy(s, r->x, (size_t)n * sizeof *s);
+  strut_tridiagonal_leave(r->reduced, s);
   return true;
 }
 
@@ -142,6 +202,9 @@ static strut_model_step assemble_step(const dense_curvature *r, double *s) {
 static strut_model_step dense_trust_step(void *memory, const double *g, double radius, double still,
                                          double *s) {
   dense_curvature *r = memory;
+  strut_model_step step = {0};
+  if (!r->has_modes && step_in_basis(r, g, radius, s, &step)) return step;
+  if (!find_modes(r, NULL)) return step;
   split_gradient(r, g, still);
   strut_quadratic model = {r->now.n, r->now.value, r->part, r->idle, r->scale, 0.0};
   if (r->now.n > 0) model.noise = 4.0 * r->now.noise[0];
@@ -149,10 +212,40 @@ static strut_model_step dense_trust_step(void *memory, const double *g, double r
   return assemble_step(r, s);
 }
 
+/* A border in the middle of the gap above `stiff`; 0: no mode is stiffer. */
+static double find_border(dense_curvature *r, double stiff) {
+  int32_t soft = strut_tridiagonal_factor(r->reduced, -stiff);
+  double high = stiff;
+  if (soft == r->reduced->n) return 0.0;
+  while (strut_tridiagonal_factor(r->reduced, -10.0 * high) == soft) high *= 10.0;
+  return sqrt(stiff * high);
+}
+
+/*
+ * Newton's step weighed mode by mode by 1 - 5 u^4 + 4 u^5, u = c / (value + c): 1 for stiff modes, to
+ * (c / value)^4, and 0 for soft ones, to (value / c)^2. A border within a gap is as good as a sharp one.
+ */
+static bool rebalance_in_basis(dense_curvature *r, const double *g, double stiff, double *s) {
+  int32_t n = r->reduced->n;
+  double c = 2.0 * find_border(r, stiff);
+  if (c == 0.0 || strut_tridiagonal_factor(r->reduced, c) > 0) return false;
+  enter_basis(r, g);
+  memset(r->x, 0, (size_t)n * sizeof *r->x);
+  for (int k = 1; k <= 5; k++) {
+    strut_tridiagonal_solve(r->reduced, r->part);
+    for (int32_t i = 0; i < n; i++) r->x[i] += (k < 5 ? 1.0 : -4.0) * r->part[i];
+    for (int32_t i = 0; i < n; i++) r->part[i] *= c;
+  }
+  strut_tridiagonal_leave(r->reduced, r->x);
+  for (int32_t i = 0; i < n; i++) s[i] -= r->x[i];
+  return true;
+}
+
 static bool dense_rebalance(void *memory, const double *g, double *s) {
   dense_curvature *r = memory;
-  size_t n = (size_t)r->now.n;
   double stiff = r->multiplier > 0 ? 10.0 * r->multiplier : 1e-3 * r->scale;
+  if (!r->has_modes) return rebalance_in_basis(r, g, stiff, s);
+  size_t n = (size_t)r->now.n;
   bool any = false;
   for (size_t i = 0; i < n; i++) {
     const double *mode = r->now.vector + i * n;
@@ -167,6 +260,9 @@ static bool dense_rebalance(void *memory, const double *g, double *s) {
 
 static double dense_newton_step(void *memory, const double *g, double *s) {
   dense_curvature *r = memory;
+  strut_model_step step;
+  if (is_definite(r) && step_in_basis(r, g, HUGE_VAL, s, &step)) return step.length;
+  if (!find_modes(r, NULL)) return HUGE_VAL;
   split_gradient(r, g, HUGE_VAL);
   for (int32_t i = 0; i < r->now.n; i++) r->x[i] = r->idle[i] ? 0.0 : -r->part[i] / r->now.value[i];
   return assemble_step(r, s).length;
@@ -174,7 +270,9 @@ static double dense_newton_step(void *memory, const double *g, double *s) {
 
 static bool dense_unstable_direction(void *memory, double *s) {
   dense_curvature *r = memory;
-  if (r->now.n == 0 || !(r->now.value[0] < -4.0 * r->now.noise[0])) return false;
+  if (is_definite(r)) return false;
+  if (!find_modes(r, NULL) || r->now.n == 0 || !(r->now.value[0] < -4.0 * r->now.noise[0]))
+    return false;
   memcpy(s, r->now.vector, (size_t)r->now.n * sizeof *s);
   return true;
 }

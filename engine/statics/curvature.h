@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The Hessian as a descent uses it, by eigenvectors or by a sparse factor; and the step within a
+ * The Hessian as a descent uses it, dense or by a sparse factor; and the step within a
  * trust region (More and Sorensen).
  */
 #ifndef STRUT_ENGINE_STATICS_CURVATURE_H

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "engine/base/vec.h"
 #include "engine/model/hot.h"
 
 enum { MOST_STEPS = 80 };
@@ -143,23 +144,107 @@ static bool diagonalise(double *z, size_t n, double *d, double *e) {
   return true;
 }
 
+/* Scales the matrix by a power of two, which is returned, where squares might overflow or vanish. */
+static int scale_matrix(double *matrix, size_t n) {
+  double largest = 0.0;
+  int power = 0;
+  for (size_t i = 0; i < n * n; i++)
+    if (fabs(matrix[i]) > largest) largest = fabs(matrix[i]);
+  if (largest > 0) frexp(largest, &power);
+  if (power <= 400 && power >= -400) return 0;
+  for (size_t i = 0; i < n * n; i++) matrix[i] = ldexp(matrix[i], -power);
+  return power;
+}
+
 bool strut_eigen(double *matrix, int32_t rows, double *value, double *work) {
   assert(rows >= 0);
   size_t n = (size_t)rows;
-  double largest = 0.0;
-  int power = 0;
   if (n == 0) return true;
-  for (size_t i = 0; i < n * n; i++)
-    if (fabs(matrix[i]) > largest) largest = fabs(matrix[i]);
-  /* squares must neither overflow nor vanish */
-  if (largest > 0) frexp(largest, &power);
-  bool scaled = power > 400 || power < -400;
-  for (size_t i = 0; i < n * n && scaled; i++) matrix[i] = ldexp(matrix[i], -power);
+  int power = scale_matrix(matrix, n);
   reduce(matrix, n, value, work);
   accumulate(matrix, n, value, work);
   if (!diagonalise(matrix, n, value, work)) return false;
-  for (size_t i = 0; i < n && scaled; i++) value[i] = ldexp(value[i], power);
+  for (size_t i = 0; i < n && power; i++) value[i] = ldexp(value[i], power);
   return true;
+}
+
+bool strut_tridiagonal_create(strut_tridiagonal *t, int32_t rows, strut_arena *arena) {
+  size_t n = (size_t)rows;
+  *t = (strut_tridiagonal){.n = rows, .z = strut_arena_allocate(arena, n * n, sizeof *t->z)};
+  double **line[] = {&t->height, &t->work, &t->diagonal, &t->beside, &t->pivot, &t->ratio};
+  bool good = t->z != NULL;
+  for (size_t i = 0; i < sizeof line / sizeof line[0]; i++)
+    good = good && (*line[i] = strut_arena_allocate(arena, n, sizeof(double)));
+  return good;
+}
+
+void strut_tridiagonal_reduce(strut_tridiagonal *t) {
+  size_t n = (size_t)t->n;
+  double before = 0.0;
+  t->bound = 0.0;
+  if (n == 0) return;
+  t->power = scale_matrix(t->z, n);
+  reduce(t->z, n, t->height, t->work);
+  for (size_t i = 0; i < n; i++) {
+    t->diagonal[i] = ldexp(t->z[i * n + i], t->power);
+    t->beside[i] = i + 1 < n ? ldexp(t->work[i + 1], t->power) : 0.0;
+    t->bound = fmax(t->bound, fabs(t->diagonal[i]) + fabs(t->beside[i]) + before);
+    before = fabs(t->beside[i]);
+  }
+}
+
+bool strut_tridiagonal_eigen(strut_tridiagonal *t, double *value) {
+  size_t n = (size_t)t->n;
+  if (n == 0) return true;
+  accumulate(t->z, n, t->height, t->work);
+  if (!diagonalise(t->z, n, t->height, t->work)) return false;
+  for (size_t i = 0; i < n; i++) value[i] = ldexp(t->height[i], t->power);
+  return true;
+}
+
+/* x without twice its share along the reflection of row i. */
+STRUT_INLINE void reflect(const strut_tridiagonal *t, size_t i, double *x) {
+  const double *row = t->z + i * (size_t)t->n;
+  if (t->height[i] == 0.0) return;
+  double share = strut_dot(row, x, (ptrdiff_t)i) / t->height[i];
+  for (size_t k = 0; k < i; k++) x[k] -= share * row[k];
+}
+
+void strut_tridiagonal_enter(const strut_tridiagonal *t, double *x) {
+  for (size_t i = (size_t)t->n; i-- > 1;) reflect(t, i, x);
+}
+
+void strut_tridiagonal_leave(const strut_tridiagonal *t, double *x) {
+  for (size_t i = 1; i < (size_t)t->n; i++) reflect(t, i, x);
+}
+
+int32_t strut_tridiagonal_factor(strut_tridiagonal *t, double shift) {
+  int32_t negative = 0;
+  double taken = 0.0;
+  for (int32_t i = 0; i < t->n; i++) {
+    double pivot = t->diagonal[i] + shift - taken;
+    if (pivot == 0.0) pivot = -DBL_MIN;
+    negative += !(pivot > 0.0);
+    t->pivot[i] = pivot;
+    t->ratio[i] = t->beside[i] / pivot;
+    taken = t->ratio[i] * t->beside[i];
+  }
+  return negative;
+}
+
+double strut_tridiagonal_form(const strut_tridiagonal *t, const double *x) {
+  double sum = 0.0, y = 0.0;
+  for (int32_t i = 0; i < t->n; i++) {
+    y = x[i] - (i > 0 ? t->ratio[i - 1] * y : 0.0);
+    sum += y * y / t->pivot[i];
+  }
+  return sum;
+}
+
+void strut_tridiagonal_solve(const strut_tridiagonal *t, double *x) {
+  for (int32_t i = 1; i < t->n; i++) x[i] -= t->ratio[i - 1] * x[i - 1];
+  for (int32_t i = 0; i < t->n; i++) x[i] /= t->pivot[i];
+  for (int32_t i = t->n - 1; i-- > 0;) x[i] -= t->ratio[i] * x[i + 1];
 }
 
 /* Fixes the sign of a vector, so that results do not depend on how it was computed. */

@@ -5,7 +5,6 @@
  */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
@@ -239,9 +238,11 @@ strut_status strut_compare_rigidity(strut_compare_work *work, const strut_model 
 
 /* ---- states ---- */
 
-static int by_energy(const void *a, const void *b) {
-  const strut_compare_state *x = a, *y = b;
-  return (x->energy > y->energy) - (x->energy < y->energy);
+/* Adds a state to those before it, which are in order; of one energy they stay in the list's. */
+static void insert_by_energy(strut_compare_column *c, strut_compare_state state) {
+  size_t k = c->state_count++;
+  for (; k > 0 && c->states[k - 1].energy > state.energy; k--) c->states[k] = c->states[k - 1];
+  c->states[k] = state;
 }
 
 static strut_status keep_states(strut_compare_work *work, const strut_equilibria *all) {
@@ -254,12 +255,11 @@ static strut_status keep_states(strut_compare_work *work, const strut_equilibria
     names[i] = strut_arena_format(work->arena, "%s", all->list[i].name);
     if (!names[i]) return STRUT_NO_MEMORY;
     if (all->list[i].outcome == STRUT_OUTCOME_STANDS)
-      c->states[c->state_count++] = (strut_compare_state){names[i], all->list[i].energy};
+      insert_by_energy(c, (strut_compare_state){names[i], all->list[i].energy});
   }
   for (size_t i = 0; i < all->barrier_count; i++)
     c->barriers[c->barrier_count++] = (strut_compare_barrier){
         names[all->barriers[i].from], names[all->barriers[i].to], all->barriers[i].height};
-  qsort(c->states, c->state_count, sizeof *c->states, by_energy);
   return STRUT_OK;
 }
 
