@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What other libraries took on scenes of the same class: see docs/numerics.md, "Beside other integrators". */
+/*
+ * What other libraries took on scenes of the same class: see docs/numerics.md, "Beside other
+ * integrators".
+ */
 #include <math.h>
 
 #include "engine/model/model.h"

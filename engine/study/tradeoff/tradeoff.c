@@ -162,7 +162,10 @@ int strut_tradeoff_best(const strut_tradeoff *r, int variant, double level) {
   return best_but(r, variant, level, NULL);
 }
 
-/* Cost of an error between a row that keeps it and the next coarser one of its group, on a line of logarithms. */
+/*
+ * Cost of an error between a row that keeps it and the next coarser one of its group, on a line of
+ * logarithms.
+ */
 static double interpolate_cost(const strut_tradeoff *r, int row, double error) {
   const strut_tradeoff_row *fine = &r->rows[row], *coarse = NULL;
   for (size_t i = 0; i < r->row_count; i++) {
@@ -378,11 +381,16 @@ bool strut_tradeoff_is_wanted(const tradeoff_study *s, const strut_integrator *m
 
 enum { BEST_METHODS = 2 };
 static const double SPEED_SHARE = 1e-3, COARSE = 0.2; /* of the limit */
-/* Floors to reach: parts of the accuracy, or without one; of the unchanged model and of variants. */
+/*
+ * Floors to reach: parts of the accuracy, or without one; of the unchanged model and of variants.
+ */
 static const double OWN_PART = 0.01, OWN_FLOOR = 1e-6, OTHER_PART = 0.1, OTHER_FLOOR = 1e-4;
 /* The former without an accuracy, while a level costs less than so many of the scene's own runs. */
 static const double CHEAP_FLOOR = 1e-10, CHEAP = 8;
-/* Parts of the work: at most of the base, kept for variants, of finer references relative to that done. */
+/*
+ * Parts of the work: at most of the base, kept for variants, of finer references relative to that
+ * done.
+ */
 static const double FOR_BASE = 0.5, FOR_VARIANTS = 0.35, FOR_REFERENCE = 0.5;
 
 static strut_status out_of_memory(tradeoff_study *s) { return strut_no_memory(s->error, ""); }

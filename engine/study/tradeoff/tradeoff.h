@@ -9,9 +9,9 @@
  *
  * A reference is what two different methods agree on, each refined until they agree to a hundredth
  * of the accuracy; how far they still differ is the *floor*, and no error is given as smaller than
- * it. The finest of these runs is the *reference run*: all work is bounded by a multiple of its force
- * evaluations, or of those of the scene's own run where no accuracy is requested and these are more.
- * Costs are force evaluations, so that the same study gives the same numbers.
+ * it. The finest of these runs is the *reference run*: all work is bounded by a multiple of its
+ * force evaluations, or of those of the scene's own run where no accuracy is requested and these
+ * are more. Costs are force evaluations, so that the same study gives the same numbers.
  */
 #ifndef STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_H
 #define STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_H
@@ -145,8 +145,8 @@ STRUT_API double strut_tradeoff_level(const strut_tradeoff *result, size_t i);
 STRUT_API double strut_tradeoff_promise(const strut_tradeoff *result, int row);
 /**
  * The cheapest row of a variant whose worst total error stays within `level`, and that of all
- * smaller steps or tolerances of its group too, of which there is one at least: a single small error
- * at a large step is luck. Its step is stable. -1: none.
+ * smaller steps or tolerances of its group too, of which there is one at least: a single small
+ * error at a large step is luck. Its step is stable. -1: none.
  */
 STRUT_API int strut_tradeoff_best(const strut_tradeoff *result, int variant, double level);
 

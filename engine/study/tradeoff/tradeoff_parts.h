@@ -70,9 +70,9 @@ strut_span strut_tradeoff_span(const tradeoff_study *s, size_t point);
 /** The longest step that can make sense: a part of the period, or else of the duration [s]. */
 double strut_tradeoff_longest_step(const tradeoff_study *s, size_t point);
 /**
- * The largest step of a method worth trying in a variant at the first point [s], INFINITY where nothing
- * limits it. *cannot: the method cannot run it, and the study's error says why. Fails with STRUT_NO_MEMORY
- * alone.
+ * The largest step of a method worth trying in a variant at the first point [s], INFINITY where
+ * nothing limits it. *cannot: the method cannot run it, and the study's error says why. Fails with
+ * STRUT_NO_MEMORY alone.
  */
 strut_status strut_tradeoff_limit(tradeoff_study *s, int variant, const strut_integrator *method,
                                   double *limit, bool *cannot);
@@ -117,7 +117,10 @@ typedef struct tradeoff_reference {
 
 /** Chooses the methods. Without any, the variant is marked as not run, with a remark. */
 strut_status strut_tradeoff_reference_begin(tradeoff_study *s, int variant, tradeoff_reference *r);
-/** Refines until every floor is at most `target`; after the first two levels for `most` evaluations. */
+/**
+ * Refines until every floor is at most `target`; after the first two levels for `most`
+ * evaluations.
+ */
 strut_status strut_tradeoff_reference_refine(tradeoff_study *s, tradeoff_reference *r,
                                              double target, double most);
 
@@ -152,8 +155,8 @@ typedef struct step_series_list {
 strut_status strut_tradeoff_add_method(tradeoff_study *s, step_series_list *all, int variant,
                                        const strut_integrator *method);
 /**
- * Runs all series from coarse to fine, the cheapest row next, within a share of the bound on work; reports progress
- * between two fractions.
+ * Runs all series from coarse to fine, the cheapest row next, within a share of the bound on work;
+ * reports progress between two fractions.
  */
 strut_status strut_tradeoff_run_series(tradeoff_study *s, step_series_list *all, double share,
                                        double from, double to);
@@ -172,9 +175,9 @@ const char *strut_tradeoff_step_text(const strut_tradeoff_row *row, char text[ST
 /** "velocity", "position", "energy". */
 const char *strut_tradeoff_measure_text(strut_tradeoff_measure measure);
 /**
- * The class of a model's scene among those on which other libraries were measured: with contact whose
- * friction is not smooth, with bars 1e4 times stiffer than a spring or cable, with neither; 0: in no class, as
- * with rigid bars, or bars without a spring to compare them with.
+ * The class of a model's scene among those on which other libraries were measured: with contact
+ * whose friction is not smooth, with bars 1e4 times stiffer than a spring or cable, with neither;
+ * 0: in no class, as with rigid bars, or bars without a spring to compare them with.
  */
 int strut_tradeoff_classify(const strut_model *model);
 /** Adds a sentence about them, if the class is one, for the measured error next to `error`. */

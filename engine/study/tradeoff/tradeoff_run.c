@@ -113,8 +113,8 @@ static bool is_permanent_failure(strut_status status) {
 }
 
 /*
- * Where nothing vibrates, as for rigid bars swinging under gravity, the stability limit may exceed the
- * duration: then a part of the duration counts.
+ * Where nothing vibrates, as for rigid bars swinging under gravity, the stability limit may exceed
+ * the duration: then a part of the duration counts.
  */
 strut_status strut_tradeoff_limit(tradeoff_study *s, int variant, const strut_integrator *method,
                                   double *limit, bool *cannot) {
@@ -289,8 +289,8 @@ static void name_setting(tradeoff_setting setting, char name[100]) {
 }
 
 /*
- * How far a pair of answers is from what is sought: their distance, or a tenth of what either changed
- * by since the level before, if that is more. Two coarse answers may agree by chance.
+ * How far a pair of answers is from what is sought: their distance, or a tenth of what either
+ * changed by since the level before, if that is more. Two coarse answers may agree by chance.
  */
 static double estimate_error(const tradeoff_study *s, const tradeoff_reference *r, size_t p) {
   size_t count = s->result->value_count;
@@ -310,7 +310,10 @@ static void count_reference(strut_tradeoff *result, const tradeoff_reference *r,
   if (r->variant == 0) result->work_unit = fmax(least, fmax(work[0], work[1]));
 }
 
-/* Refines the reference of one point by one level, until the study has made `end` force evaluations. */
+/*
+ * Refines the reference of one point by one level, until the study has made `end` force
+ * evaluations.
+ */
 static strut_status refine_point(tradeoff_study *s, tradeoff_reference *r, size_t p, double end) {
   strut_tradeoff *result = s->result;
   strut_model_variant *f = &result->variants[r->variant];
@@ -374,7 +377,10 @@ enum { ABOVE = 3, LOOKED_AT = 5, MOST_TOLERANCES = 13, CONFIRMED = 3 };
 static const double BELOW = 0.95, IN_DECADE = 5;
 /* Cost of a tenth of the tolerance, of order 5. */
 static const double TENTH = 1.6;
-/* Series without a stability limit start at this multiple of the explicit limit, or of the base's step. */
+/*
+ * Series without a stability limit start at this multiple of the explicit limit, or of the base's
+ * step.
+ */
 static const double FREE = 100, FREE_OF_BASE = 10;
 static const double above[ABOVE] = {2.5, 1.5, 1.1};
 
@@ -421,8 +427,8 @@ static strut_tradeoff_row *new_row(tradeoff_study *s, const step_series *from,
 }
 
 /*
- * Runs a setting at every point as a new row. There is none where its method cannot, or where the bound on
- * work ends it, and with it the series.
+ * Runs a setting at every point as a new row. There is none where its method cannot, or where the
+ * bound on work ends it, and with it the series.
  */
 static strut_status run_row(tradeoff_study *s, step_series *from, tradeoff_setting setting,
                             double most, strut_tradeoff_row **made) {
@@ -550,7 +556,10 @@ static bool is_known(const strut_tradeoff *r, const step_series *l, const tradeo
   return false;
 }
 
-/* Force evaluations to expect of a series' next row. An adaptive method begins near the explicit limit. */
+/*
+ * Force evaluations to expect of a series' next row. An adaptive method begins near the explicit
+ * limit.
+ */
 static double predict(const tradeoff_study *s, const step_series *l, tradeoff_setting setting) {
   double planned = 0;
   bool adaptive = strut_tradeoff_is_adaptive(setting.method);
@@ -582,8 +591,8 @@ static step_series *find_next(const tradeoff_study *s, step_series_list *all,
 }
 
 /*
- * Of an accuracy, a series ends when three settings in a row keep half of it, and sooner where the next costs
- * more than that by which another series got there.
+ * Of an accuracy, a series ends when three settings in a row keep half of it, and sooner where the
+ * next costs more than that by which another series got there.
  */
 static void judge_series(tradeoff_study *s, step_series_list *all, step_series *l,
                          strut_tradeoff_row *row) {
