@@ -38,9 +38,64 @@ TEST(the_crawler_on_nodes_1_and_4) {
     assert_true(p->down[0] >= 0 && p->down[1] >= 0);
   }
   /* no shape was met just once: the estimate is that of one more, and the limit that of three */
-  assert_within(f.set.missed, 1.0 / 4001.0, 1.0 / 257.0);
-  assert_within(f.set.missed_below / f.set.missed, 2.9, 3.0);
+  strut_missed missed = f.set.missed;
+  assert_within(missed.probability, 1.0 / 4001.0, 1.0 / 257.0);
+  assert_near(missed.below, -log(0.05) / (1.0 / missed.probability - 1.0), 1e-12);
+  assert_int_equal(f.set.unseen, 0);
   critical_tear_down(&f);
+}
+
+static double uniform(uint64_t *state) {
+  *state ^= *state << 13, *state ^= *state >> 7, *state ^= *state << 17;
+  return (double)(*state >> 11) * 0x1p-53;
+}
+
+/* `starts` draws of n independent cells, up with the probability `up`: what they tell, and the truth. */
+static strut_missed draw_states(int cells, double up, int starts, uint64_t *state, double *mass,
+                                double *largest) {
+  static int hits[1 << 10];
+  int64_t distinct = 0, once = 0, twice = 0;
+  memset(hits, 0, sizeof hits);
+  for (int i = 0; i < starts; i++) {
+    int drawn = 0;
+    for (int k = 0; k < cells; k++) drawn = 2 * drawn + (uniform(state) < up);
+    hits[drawn]++;
+  }
+  *mass = *largest = 0.0;
+  for (int i = 0; i < 1 << cells; i++) {
+    double share = 1.0;
+    for (int k = 0; k < cells; k++) share *= i >> k & 1 ? up : 1.0 - up;
+    distinct += hits[i] > 0, once += hits[i] == 1, twice += hits[i] == 2;
+    if (hits[i]) continue;
+    *mass += share;
+    *largest = fmax(*largest, share);
+  }
+  return strut_estimate_missed(starts, distinct, once, twice);
+}
+
+/* Each of the three limits holds in 95 of 100 searches of n bistable cells, which have 2^n states. */
+TEST(limits_on_what_was_missed_hold) {
+  enum { TURNS = 1000, MOST_WRONG = 65 };
+  static const int starts[] = {30, 100, 400, 3000};
+  static const double up[] = {0.5, 0.7, 0.8};
+  uint64_t state = 88172645463325252u;
+  for (int cells = 4; cells <= 10; cells += 3)
+    for (int k = 0; k < 12; k++) {
+      int wrong[3] = {0}, n = starts[k % 4];
+      double estimated = 0.0, missed = 0.0, mass, largest;
+      for (int turn = 0; turn < TURNS; turn++) {
+        strut_missed m = draw_states(cells, up[k / 4], n, &state, &mass, &largest);
+        wrong[0] += mass > m.below;
+        wrong[1] += largest > m.one;
+        wrong[2] += (double)(1 << cells) < m.count;
+        estimated += m.probability / TURNS, missed += mass / TURNS;
+      }
+      for (int i = 0; i < 3; i++) assert_within(wrong[i], 0, MOST_WRONG);
+      /* (once + 1) / (n + 1) is by as much more than once / n, whose mean is that of what is missed */
+      assert_near(estimated, missed + (1.0 - missed) / n, 4.0 / sqrt((double)n * TURNS));
+    }
+  strut_missed none = strut_estimate_missed(0, 0, 0, 0);
+  assert_true(none.probability == 1.0 && none.below == 1.0 && none.one == 1.0 && none.count == 0.0);
 }
 
 /* A node on a loose cable hangs, or lies anywhere where the cable is slack: one floppy point. */

@@ -317,10 +317,11 @@ char *strut_equilibria_json(const strut_equilibria *all, const strut_model *mode
   strut_json_integer(&json, json.root, "seed", (int64_t)all->seed);
   strut_json_integer(&json, json.root, "starts", all->starts);
   struct cJSON *missed = strut_json_object(&json, json.root, "missed");
-  strut_json_number(&json, missed, "probability", all->missed);
-  strut_json_number(&json, missed, "probability_bound", all->missed_below);
+  strut_json_number(&json, missed, "probability", all->missed.probability);
+  strut_json_number(&json, missed, "probability_bound", all->missed.below);
   strut_json_integer(&json, missed, "unreached", all->unmet);
-  strut_json_number(&json, missed, "smallest_basin", all->missed_one);
+  strut_json_number(&json, missed, "smallest_basin", all->missed.one);
+  strut_json_integer(&json, missed, "at_least", all->unseen);
   strut_json_bool(&json, missed, "cut_short", all->cut_short);
   strut_json_settle(&json, json.root, &all->settle);
   if (all->settle.evaluations > 0)
@@ -516,13 +517,16 @@ char *strut_equilibria_table(const strut_equilibria *all, const strut_model *mod
         "  probability that one more start finds a new stable one: about %.2g, at most "
         "%.2g (95 %%);\n  a stable one that was missed attracts less than %.2g of the "
         "starts (95 %%)\n",
-        all->missed, all->missed_below, all->missed_one);
+        all->missed.probability, all->missed.below, all->missed.one);
   if (all->unmet)
     strut_buffer_add(&table,
                      "  %" PRId64
                      " stable %s reached by no random start, only from other shapes: more basins "
                      "this small\n  may be missing\n",
                      all->unmet, all->unmet == 1 ? "one was" : "ones were");
+  if (all->unseen)
+    strut_buffer_add(&table, "  at least %" PRId64 " more stable ones exist (95 %%)\n",
+                     all->unseen);
   if (all->cut_short)
     strut_buffer_add(&table,
                      "  cut short: a search of all shapes, bounded to some ten seconds of work; a "

@@ -13,10 +13,13 @@
 /* Adds a search's counts; of its estimates the largest is kept. */
 static void count_starts(strut_equilibrium_search *h, const strut_critical_set *set) {
   h->out->starts += set->starts;
-  h->out->missed = fmax(h->out->missed, set->missed);
-  h->out->missed_below = fmax(h->out->missed_below, set->missed_below);
+  strut_missed *most = &h->out->missed;
+  most->probability = fmax(most->probability, set->missed.probability);
+  most->below = fmax(most->below, set->missed.below);
+  most->one = fmax(most->one, set->missed.one);
+  most->count = fmax(most->count, set->missed.count);
   h->out->unmet += set->unmet;
-  h->out->missed_one = fmax(h->out->missed_one, set->missed_one);
+  h->out->unseen += set->unseen;
   h->out->cut_short = h->out->cut_short || set->cut_short;
 }
 

@@ -99,11 +99,10 @@ typedef struct strut_equilibria {
   strut_barrier *barriers;
   uint64_t seed;
   int64_t starts;
-  double missed;       /* the largest over the searches, as in strut_critical_set */
-  double missed_below; /* its upper 95 % limit */
-  double missed_one;   /* upper 95 % limit on the share of starts of a stable one never met */
-  int64_t unmet;       /* stable ones, over all searches, that no random start met */
-  bool cut_short;      /* some search ended early, for the structure's size */
+  strut_missed missed;         /* stable ones not found: the largest over the searches */
+  int64_t unmet;               /* stable ones, over all searches, that no random start met */
+  int64_t unseen;              /* at least as many more exist in all of them, each at 95 % */
+  bool cut_short;              /* some search ended early, for the structure's size */
   strut_settle_summary settle; /* how the scene's start settled; zero where it was not asked to */
   int32_t start;               /* the equilibrium it settled in, or -1: not in the list */
   char start_trouble[600];     /* why the start did not come to rest; else empty */

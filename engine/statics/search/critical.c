@@ -132,22 +132,28 @@ static strut_status search_known_shapes(search *s) {
   return status ? status : run_tasks(s);
 }
 
-/* Counts minima that random starts have found exactly once, and at all. */
-static int64_t count_met_once(const search *s, int64_t *distinct) {
-  int64_t once = 0;
-  *distinct = 0;
+/* Minima that random starts have met at all, exactly once, exactly twice, and never. */
+typedef struct meetings {
+  int64_t distinct, once, twice, never;
+} meetings;
+
+static meetings count_meetings(const search *s) {
+  meetings m = {0};
   for (size_t i = 0; i < s->all.count; i++) {
     if (!is_minimum(&s->all.points[i])) continue;
-    *distinct += s->hits[i] > 0;
-    once += s->hits[i] == 1;
+    m.distinct += s->hits[i] > 0;
+    m.once += s->hits[i] == 1;
+    m.twice += s->hits[i] == 2;
+    m.never += s->hits[i] == 0;
   }
-  return once;
+  return m;
 }
 
 static bool has_enough_starts(search *s, int64_t most) {
-  int64_t distinct, once = count_met_once(s, &distinct), least = PER_MINIMUM * distinct;
+  meetings m = count_meetings(s);
+  int64_t least = PER_MINIMUM * m.distinct;
   if (least < LEAST_RANDOM) least = LEAST_RANDOM;
-  if (s->random >= least && 150 * once <= s->random) return true;
+  if (s->random >= least && 150 * m.once <= s->random) return true;
   if (s->random >= most) s->set->cut_short = true;
   return s->random >= most || is_over_budget(s, RANDOM_BY);
 }
@@ -222,27 +228,32 @@ static strut_status shake_rare_minima(search *s) {
   return status ? status : run_tasks(s);
 }
 
-/* Upper 95 % confidence limit of a Poisson mean from one count (Wilson, Hilferty). */
-static double upper_limit(int64_t count) {
-  double k = (double)count + 1.0;
-  return k * pow(1.0 - 1.0 / (9.0 * k) + 1.645 / (3.0 * sqrt(k)), 3.0);
+/* Upper 95 % limit of the mean of a count with this variance; of a count of none it is exact. */
+static double upper_limit(double count, double variance) {
+  return count - log(0.05) + 1.645 * sqrt(variance);
 }
 
-/* Estimates from the random starts the probability of minima not found. */
+strut_missed strut_estimate_missed(int64_t starts, int64_t distinct, int64_t once, int64_t twice) {
+  assert(starts >= 0 && distinct >= once + twice);
+  double n = (double)starts, f1 = (double)once, f2 = (double)twice;
+  strut_missed missed = {1.0, 1.0, 1.0, (double)distinct};
+  if (starts == 0) return missed;
+  missed.probability = fmin(1.0, (f1 + 1.0) / (n + 1.0));
+  missed.below = fmin(1.0, upper_limit(f1, f1 + 2.0 * f2) / n);
+  /* No more than 1/p minima have a share of p; that one of them is missed has exp(-n p) / p = 5 %. */
+  for (int i = 0; i < 60; i++) missed.one = -log(0.05 * missed.one) / n;
+  missed.one = fmin(missed.one, missed.below);
+  double least = fmax(0.0, f1 - 1.645 * sqrt(f1));
+  missed.count += floor(least * least / (2.0 * upper_limit(f2, f2)));
+  return missed;
+}
+
 static void estimate_missed(search *s) {
-  strut_critical_set *set = s->set;
-  int64_t distinct, once = count_met_once(s, &distinct);
-  set->missed = set->missed_below = set->missed_one = 1.0;
+  meetings m = count_meetings(s);
+  s->set->missed = strut_estimate_missed(s->random, m.distinct, m.once, m.twice);
   if (s->random == 0) return;
-  double starts = (double)s->random;
-  set->missed = fmin(1.0, (double)(once + 1) / (starts + 1.0));
-  set->missed_below = fmin(1.0, upper_limit(once) / starts);
-  if (s->random > 3) set->missed_one = 3.0 / starts;
-}
-
-static void count_unmet(search *s) {
-  for (size_t i = 0; i < s->all.count && s->random > 0; i++)
-    s->set->unmet += is_minimum(&s->all.points[i]) && s->hits[i] == 0;
+  s->set->unmet = m.never;
+  s->set->unseen = (int64_t)fmax(0.0, s->set->missed.count - (double)(m.distinct + m.never));
 }
 
 static strut_status climb_from(search *s, strut_task task) {
@@ -419,9 +430,8 @@ strut_status strut_critical_search(const strut_potential *potential,
   if (!status) status = search_folded_minima(&s);
   if (!status) status = search_crossed_minima(&s);
   if (!status) status = shake_rare_minima(&s);
-  if (!status) estimate_missed(&s);
   if (!status) status = find_saddles(&s);
-  if (!status) count_unmet(&s);
+  if (!status) estimate_missed(&s);
   if (!status) status = sort_into_set(&s);
   strut_search_tasks_free(s.batch);
   strut_stationary_set_free(&s.all);

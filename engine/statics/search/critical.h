@@ -11,19 +11,23 @@
 #include "engine/statics/potential.h"
 #include "engine/statics/search/critical_point.h"
 
+/**
+ * Of `starts` that met `distinct` minima, `once` of these once and `twice` twice. The variance of
+ * Good and Turing's estimate is Esty's, (once + 2 twice) / starts^2.
+ */
+STRUT_API strut_missed strut_estimate_missed(int64_t starts, int64_t distinct, int64_t once,
+                                             int64_t twice);
+
 typedef struct strut_critical_set {
   size_t count;
   strut_critical_point *points; /* minima by energy, then saddles by energy, then maxima */
   int64_t starts;               /* tried for minima */
   int64_t saddle_starts;        /* tried for saddles */
   int64_t exhausted, runaway;   /* starts that ended nowhere */
-  double missed; /* estimated chance that a further random start would find a new minimum: Good and
-                         Turing's, one more counted than was met once, for few starts never tell 0 */
-  double missed_below; /* the same, its upper 95 % limit */
-  int64_t unmet;       /* minima found that no random start met: their basins are small */
-  bool cut_short;      /* the structure is too large for as many starts and climbs as it asks for */
-  double
-      missed_one; /* upper 95 % bound on the share of starts of a minimum never seen: 3/starts-like */
+  strut_missed missed;          /* minima that were not found */
+  int64_t unmet;                /* minima found that no random start met: their basins are small */
+  int64_t unseen;               /* at least as many more minima exist, at 95 % */
+  bool cut_short; /* the structure is too large for as many starts and climbs as it asks for */
   strut_arena arena;
 } strut_critical_set;
 

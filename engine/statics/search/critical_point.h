@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** A stationary point of a potential, and its kind. */
+/** A stationary point of a potential, its kind, and what is known of those not found. */
 #ifndef STRUT_ENGINE_STATICS_SEARCH_CRITICAL_POINT_H
 #define STRUT_ENGINE_STATICS_SEARCH_CRITICAL_POINT_H
 
@@ -33,5 +33,14 @@ typedef struct strut_critical_point {
   int32_t shape;       /* points of one number are mirror images of each other, not merged */
   int32_t down[2];     /* of a saddle with one negative: minima downhill either way, or -1 */
 } strut_critical_point;
+
+/** What independent random starts tell about minima that none of them has met. */
+typedef struct strut_missed {
+  double probability; /* of a new minimum by one more start: Good and Turing's estimate, with one
+                         more counted than was met once, for few starts never tell 0 */
+  double below;       /* its upper 95 % limit */
+  double one;         /* upper 95 % limit of the share of starts of any one minimum not met */
+  double count;       /* lower 95 % limit of the number of all minima, met or not: Chao's bound */
+} strut_missed;
 
 #endif

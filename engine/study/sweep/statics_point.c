@@ -132,7 +132,7 @@ typedef enum column_shape {
   X(ENERGIES, "energy", "J", NUMBERS, state_energy(r, i))                                          \
   X(BARRIERS, "barrier", "J", NUMBERS, state_barrier(r, i))                                        \
   X(STARTS, "starts", "1", NUMBER, (double)r->equilibria.starts)                                   \
-  X(MISSED, "missed_probability", "1", NUMBER, r->equilibria.missed)                               \
+  X(MISSED, "missed_probability", "1", NUMBER, r->equilibria.missed.probability)                   \
   X(LOWEST_BARRIER, "lowest_barrier", "J", NUMBER, lowest_barrier(r))                              \
   X(SHAPE, "shape_distance", "m", NUMBER, nearest_shape(r))
 #define MODES_COLUMNS(X)                                                                           \
