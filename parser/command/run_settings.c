@@ -60,10 +60,12 @@ static strut_status apply_settings(const strut_command *command, const strut_arg
         arguments,
         "--accuracy chooses method and step: give either --accuracy, or --integrator and --step");
   if (by_hand) e->accuracy = 0.0;
-  if (e->step_chosen && !strut_experiment_is_adaptive(e->integrator) && !(e->accuracy > 0.0) &&
+  bool stepless = e->step_chosen || (by_hand && e->step == 0.0);
+  if (stepless && !strut_experiment_is_adaptive(e->integrator) && !(e->accuracy > 0.0) &&
       !strut_option_text(arguments, STRUT_OPTION_STEP))
-    return refuse(arguments,
-                  "the solver has no step, which only adaptive does without: give --step");
+    return refuse(
+        arguments,
+        "the solver has no step, which only adaptive and adaptive8 do without: give --step");
   if (e->accuracy > 1.0) return refuse(arguments, "--accuracy must be at most 1, that is 100%");
   return STRUT_OK;
 }

@@ -35,7 +35,8 @@ from typing import Callable
 
 PAGE = pathlib.Path(__file__).parents[2] / "docs" / "numerics.md"
 BEGIN, END = "<!-- extremes -->\n", "<!-- /extremes -->\n"
-METHODS = ["rk4", "euler", "verlet", "rk4-events", "euler-events", "verlet-events", "adaptive", "midpoint"]
+METHODS = ["rk4", "euler", "verlet", "rk4-events", "euler-events", "verlet-events", "adaptive", "adaptive8", "midpoint"]
+FORCES = {"adaptive": 6, "adaptive8": 13}  # per step
 COLUMNS = METHODS + ["--accuracy 0.1%"]
 TOLERANCE, PROMISE = 1e-9, 1e-3  # of adaptive and of --accuracy
 CPU_SECONDS, MOST_STEPS = 60, 2e9
@@ -71,7 +72,7 @@ def phase_error(method, z, steps, size=1.0):
     """
     if base(method) == "rk4":
         return steps * (z**5 / 120 + z**6 / 144)
-    if method == "adaptive":
+    if method.startswith("adaptive"):
         return size * TOLERANCE * steps
     if method == "midpoint":
         return steps * (z - 2 * math.atan(z / 2))
@@ -80,7 +81,7 @@ def phase_error(method, z, steps, size=1.0):
 
 def energy_error(method, z, steps):
     """Error of an oscillator's energy, relative to it: rk4's grows, those of verlet and euler come and go."""
-    if method == "adaptive":
+    if method.startswith("adaptive"):
         return 2 * TOLERANCE * steps
     return {"rk4": steps * z**6 / 72, "verlet": z**2 / 4, "euler": z / 2}.get(base(method), 0)
 
@@ -137,7 +138,7 @@ def mass(method, ratio):
 def friction(method, mu):
     """A block that slides at 1 m/s for 1 s or until it stops. Exact friction for methods with events."""
     g, k, speed, band, step = 9.81, 1e5, 1, 1e-4, 1e-4
-    events = "events" in method or method in ("adaptive", COLUMNS[-1])
+    events = "events" in method or method in ("adaptive", "adaptive8", COLUMNS[-1])
     time = min(1, speed / (mu * g)) if mu else 1
     way = speed * time - mu * g * time**2 / 2
     if not events:  # stops up to a step late, and keeps the speed with which it enters the band
@@ -234,7 +235,7 @@ def judge(strut, folder, kind, value, method):
     if method in METHODS and case.duration / case.step > MOST_STEPS:
         return "too long", f"{case.duration / case.step:.1e} steps"
     quantity, words = {"of": case.of, "take": case.take}, ["--integrator", method]
-    if method == "adaptive":
+    if method.startswith("adaptive"):
         words += ["--tolerance", repr(TOLERANCE)]
     elif method not in METHODS:
         quantity["accuracy"] = f"{PROMISE * case.scale!r} {case.unit}"
@@ -257,7 +258,7 @@ def judge(strut, folder, kind, value, method):
 def verdict(case, method, found):
     got = found["measured"]["x"]["value"]
     error = math.inf if got is None else abs(got - case.exact) / case.scale
-    bound = case.bound(found["force_evaluations"] / 6 if method == "adaptive" else found["steps"])
+    bound = case.bound(found["force_evaluations"] / FORCES[method] if method in FORCES else found["steps"])
     short = re.sub(r"e([+-])0*", lambda sign: "e" + sign[1].strip("+"), f"{error:.1g}")
     words = [warning["text"] for warning in found["warnings"] if warning["code"] in WARNINGS]
     words += [found["caveat"]] if found["caveat"] else []

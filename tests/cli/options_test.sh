@@ -104,6 +104,10 @@ expect 0 run none.yaml --integrator adaptive --quiet
 expect 1 run free.yaml --integrator rk4
 err_has "the solver has no step"
 expect 0 run free.yaml --integrator rk4 --step 1ms --quiet
+sed 's/^solver: .*/solver: {accuracy: 1%}/' hop.yaml >promised.yaml
+expect 1 run promised.yaml --integrator verlet
+err_has "the solver has no step, which only adaptive and adaptive8 do without: give --step"
+expect 0 run promised.yaml --integrator adaptive8 --quiet
 expect 0 run free.yaml --accuracy 1% --quiet
 expect 2 run none.yaml
 err_has "the solver has no step"
