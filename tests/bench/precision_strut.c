@@ -38,7 +38,8 @@ static bool solve(precision_problem *p, const precision_method *row, double sett
   strut_state *state = NULL;
   bool adaptive = row->ladder == PRECISION_TOLERANCES;
   int64_t longest = method->order < 8 ? 100 : 10; /* per part, as strut_experiment_choose_step */
-  int64_t steps = p->parts * (adaptive ? longest : (int64_t)ceil(p->end / (double)p->parts / setting));
+  int64_t steps =
+      p->parts * (adaptive ? longest : (int64_t)ceil(p->end / (double)p->parts / setting));
   e.integrator = row->like, e.step = p->end / (double)steps;
   if (adaptive) e.tolerance = setting;
   const strut_integrator_settings settings = strut_integrator_settings_of(&e);

@@ -260,7 +260,7 @@ while read -r scene coarse fine; do
   cp "$work/out" "$work/json"
   expect 0 run "$scene" --accuracy "$fine" --json
   jq -ne --slurpfile a "$work/json" --slurpfile b "$work/out" \
-    '($a[0].step / $b[0].step) as $r | $r > 1.5 and ($r - ($r | round) | fabs) > 0.01' >/dev/null ||
+    '($a[0].step / $b[0].step) as $r | $r > 1.2 and ($r - ($r | round) | fabs) > 0.01' >/dev/null ||
     fail "$scene: grids that are nested"
 done <<END
 $work/rod.yaml 0.0001% 0.000001%

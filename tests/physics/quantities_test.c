@@ -594,7 +594,9 @@ TEST(a_blow_between_steps) {
     const bool adaptive = strut_experiment_is_adaptive(method->name);
     const double close = adaptive ? 1e-5 : method->order < 2 ? 2e-2 : 1e-2;
     char filled[2000];
-    snprintf(filled, sizeof filled, text, method->name, adaptive ? "10 ms" : "0.31 ms");
+    /* between the ends of steps positions are of fifth degree, whatever the order of the method */
+    const char *step = !adaptive ? "0.31 ms" : method->order > 5 ? "1 ms" : "10 ms";
+    snprintf(filled, sizeof filled, text, method->name, step);
     if (method->no_ground) continue;
     measured_run r = run_text(filled);
     assert_relative(value(&r, "blow"), peak, close);

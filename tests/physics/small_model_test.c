@@ -130,7 +130,8 @@ static void compare(const strut_setup *setup, const char *method, strut_small_le
 }
 
 TEST(small_models_have_the_bits_of_the_general_kernel) {
-  static const char *const methods[] = {"rk4", "verlet", "rk4-events", "verlet-events", "adaptive", "adaptive8"};
+  static const char *const methods[] = {"rk4",           "verlet",   "rk4-events",
+                                        "verlet-events", "adaptive", "adaptive8"};
   int stepped[STRUT_SMALL_AVX512 + 1] = {0};
   for (uint64_t seed = 1; seed <= SCENES; seed++) {
     strut_setup setup = {.experiment = strut_experiment_default()};

@@ -28,8 +28,7 @@ enum { MOMENTS_OF_PERIOD = 10, MOST_MOMENTS = 61 };
 static const double SIGNAL_FRACTION = 0.1;
 /* Largest size of a track in doubles. */
 static const double MOST_TRACK_NUMBERS = 4e6;
-/* Runs in all, and of these the first ones, by the coarse method. */
-enum { MOST_RUNS = 12, COARSE_RUNS = 2 };
+enum { MOST_RUNS = 12 };
 /*
  * Longest steps per moment of the runs with error control. They grow slowly, since the tolerance bounds the error and
  * the longest step the cost. Successive ones have no common divisor: two runs so meet at moments only, and a peak that
@@ -61,8 +60,8 @@ typedef struct ladder {
   double *results;               /* (runs, quantities + 1) of each run, then the velocity, SI */
   size_t worst;                  /* index of the quantity with the largest relative error */
   double distance;               /* of the latest two tracks */
-  int runs;
-  double mean[MOST_RUNS]; /* (means) velocities of the runs with error control [m/s] */
+  int runs, coarse_runs;         /* of all, the first ones, by the coarse method */
+  double mean[MOST_RUNS];        /* (means) velocities of the runs with error control [m/s] */
   int means;
   double expected; /* estimated error of the latest run, relative */
   bool same_motion, kept, budget_spent;
@@ -92,7 +91,7 @@ static double find_grid_unit(const strut_accuracy *a, bool *meets) {
 }
 
 /* 0 or less: there is none yet. Where only one method suits the scene, it does not count. */
-static int runs_with_error_control(const ladder *l) { return l->runs - COARSE_RUNS; }
+static int runs_with_error_control(const ladder *l) { return l->runs - l->coarse_runs; }
 
 static double divide_evenly(double unit, double step) {
   return unit / ceil(unit / step * (1.0 - 1e-9));
@@ -110,18 +109,18 @@ static double count_steps_of_moment(double first, int k) {
 
 /*
  * Settings of the k-th run: ever smaller steps where only one method suits the scene, otherwise first Verlet, with
- * half the step too, and then error control.
+ * half the step too where the run is short, and then error control.
  */
 static strut_experiment refine_experiment(const ladder *l, int k) {
   const strut_accuracy *a = l->a;
   strut_experiment e = a->coarse;
   e.steady.tolerance = fmin(e.steady.tolerance, 0.2 * a->target);
   double coarse = ceil(l->moment / e.step * (1.0 - 1e-9));
-  if (a->single_method || k < COARSE_RUNS) {
+  if (a->single_method || k < l->coarse_runs) {
     e.step = l->moment / count_steps_of_moment(coarse, k);
     if (k > 0) e.refine_rate *= 0.5; /* steps after a touchdown are finer, too */
   } else {
-    int further = k - COARSE_RUNS;
+    int further = k - l->coarse_runs;
     e.integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
     e.step = l->moment / STEPS_OF_MOMENT[further];
     e.tolerance = fmin(FIRST_TOLERANCE, FIRST_TOLERANCE_PER_ERROR * a->target);
@@ -322,6 +321,9 @@ static strut_status create_ladder(strut_accuracy *a, ladder *l) {
   if (!meets) l->moment = divide_evenly(l->moment, fmin(l->unit / 40.0, 5.0 * a->coarse.step));
   double capacity = MOST_TRACK_NUMBERS / (2.0 * l->model->node_count);
   size_t moments = capacity < 2.0 ? 2 : capacity < MOST_MOMENTS ? (size_t)capacity : MOST_MOMENTS;
+  /* Two steps of one method may lead to the same wrong motion: they must agree from the start on. */
+  double duration = strut_experiment_span(&a->experiment, a->scene).duration;
+  l->coarse_runs = duration <= (double)(moments - 1) * l->moment ? 2 : 1;
   for (int k = 0; k < 3 && !status; k++)
     status = strut_track_create(l->model, moments, &l->arena, &l->rung[k].track);
   size_t quantities = a->experiment.quantity_count;
