@@ -32,7 +32,8 @@ STRUT_INLINE bool signal_is_wave(const strut_signal *s, const double *time, int3
          fabs(first) < 0x1p48 && fabs(last) < 0x1p48;
 }
 
-/* Values and rates of a signal at `count` times, none before the first or after the last; arrays have room for whole vectors. */
+/* Values and rates of a signal at `count` times, none before the first or after the last; arrays have room for
+   whole vectors. */
 STRUT_INLINE void signal_at_times(const strut_signal *signals, int32_t index, const double *time,
                                   int32_t count, double *value, double *rate) {
   const strut_signal *s = &signals[index];

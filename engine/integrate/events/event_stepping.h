@@ -162,8 +162,8 @@ typedef struct strut_event_view {
 enum { STRUT_MOST_STAGES = 13 };
 
 /**
- * An explicit Runge-Kutta method, for what follows its steps; velocities are those of an equation of second
- * order.
+ * An explicit Runge-Kutta method, for what follows its steps. After a trial l->stage[k] holds the velocities of
+ * stage k > 0.
  */
 typedef struct strut_tableau {
   int stages; /* the step's end is one more, and the first stage of the next step */

@@ -26,9 +26,9 @@ STRUT_SMALL_INLINE void small_add_weighted(small_points *sum, double weight,
   }
 }
 
-/* sum_j for_v[j] v[j] and sum_j for_a[j] a[j] over `count` stages. The second one has mostly weight 0, and is left out
-   then. Loops, since a copy
-   of all that follows for each stage would not stay in the processor's cache of instructions. */
+/* sum_j for_v[j] v[j] and sum_j for_a[j] a[j] over `count` stages. The second one has mostly weight 0, and is
+   left out then. Loops, since a copy of all that follows for each stage would not stay in the processor's cache
+   of instructions. */
 STRUT_SMALL_INLINE small_sums small_weighted(const small_points *v, const double *for_v,
                                              const small_points *a, const double *for_a,
                                              int count) {

@@ -286,7 +286,8 @@ STRUT_SMALL_INLINE small_events small_at_kept(const small_events *e, const small
   return at;
 }
 
-/* Rest lengths at the instants t + part[i] h, none before the first or after the last, into the rows of the modes. */
+/* Rest lengths at the instants t + part[i] h, none before the first or after the last, into the rows of the
+   modes. */
 STRUT_SMALL_INLINE const small_rest *small_rest_at(const strut_model *model,
                                                    const strut_state *state, strut_small_modes *m,
                                                    double t, double h, const double *part,
