@@ -29,10 +29,14 @@ def quotients(path):
 
 
 if __name__ == "__main__":
+    rows = []
+    for (scene, error), values in sorted(quotients(sys.argv[1]).items(), key=lambda i: (i[0][0], -float(i[0][1]))):
+        known = [v for v in values if v is not None] or [0]
+        rows.append(f"  X({scene}, {error}, {min(known):g}, {max(known):g}, {len(values)}, {values.count(None)})")
     print("/* SPDX-License-Identifier: GPL-3.0-or-later */\n"
           "/* Made by tests/bench/rivals_table.py from docs/rivals/rivals.txt: class, error, least and largest\n"
           "   quotient, scenes, those on which no other solver keeps the error. */\n"
-          "/* clang-format off */")
-    for (scene, error), values in sorted(quotients(sys.argv[1]).items(), key=lambda i: (i[0][0], -float(i[0][1]))):
-        known = [v for v in values if v is not None] or [0]
-        print(f"{{{scene}, {error}, {min(known):g}, {max(known):g}, {len(values)}, {values.count(None)}}},")
+          "#ifndef STRUT_ENGINE_STUDY_TRADEOFF_RIVALS_TABLE_H\n"
+          "#define STRUT_ENGINE_STUDY_TRADEOFF_RIVALS_TABLE_H\n"
+          "/* clang-format off */\n"
+          "#define STRUT_RIVALS(X) \\\n" + " \\\n".join(rows) + "\n#endif")

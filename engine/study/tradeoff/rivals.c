@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "engine/model/model.h"
+#include "engine/study/tradeoff/rivals_table.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
 typedef enum scene_class { NO_CLASS, CONTACT, STIFF, SMOOTH } scene_class;
@@ -18,7 +19,10 @@ static const struct rival_row {
   double error, least, most; /* quotients of CPU times */
   int scenes, none;
 } rows[] = {
-#include "engine/study/tradeoff/rivals_table.h"
+#define STRUT_RIVAL_ROW(of, error, least, most, scenes, none)                                      \
+  {of, error, least, most, scenes, none},
+    STRUT_RIVALS(STRUT_RIVAL_ROW)
+#undef STRUT_RIVAL_ROW
 };
 enum { ROWS = sizeof rows / sizeof rows[0] };
 
