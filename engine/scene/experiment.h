@@ -180,7 +180,7 @@ STRUT_API strut_span strut_experiment_span(const strut_experiment *experiment,
 
 /** Does the method of this name choose its steps, so that a run may leave out the longest one? */
 STRUT_API bool strut_experiment_is_adaptive(const char *integrator);
-/** Gives such a method its longest step where there is none: a part of a period, or of the run. */
+/** Sets the longest step of such a method, if missing, to a part of the period or of the run. */
 STRUT_API void strut_experiment_choose_step(strut_experiment *experiment, const strut_scene *scene);
 
 #endif

@@ -7,7 +7,7 @@ usage: rivals_table.py docs/rivals/rivals.txt > engine/study/tradeoff/rivals_tab
 import re
 import sys
 
-CLASSES = {  # by the features that strut_tradeoff_rivals reads; smooth friction on a contact is in none
+CLASSES = {  # by the features that strut_tradeoff_classify reads; smooth friction on a contact is in none
     "CONTACT": ("crawler", "bouncing", "sliding"),
     "STIFF": ("bars",),
     "SMOOTH": ("net", "the net", "arm", "law", "10,000"),

@@ -90,7 +90,7 @@ static double find_grid_unit(const strut_accuracy *a, bool *meets) {
   return span.duration;
 }
 
-/* 0 or less: there is none yet. Where only one method suits the scene, it does not count. */
+/* Not positive before the first one; meaningless where only one method suits the scene. */
 static int runs_with_error_control(const ladder *l) { return l->runs - l->coarse_runs; }
 
 static double divide_evenly(double unit, double step) {

@@ -46,7 +46,7 @@ typedef struct tradeoff_study {
   double *scratch, *spare;       /* (max(points, values)) */
   tradeoff_setting base, coarse; /* the latter for what one cheap run tells */
   double *coarse_value;          /* (values) of the unchanged model at the first point */
-  double limit;                  /* of the base's method [s]; 0 where there is none */
+  double limit;                  /* of the base's method [s]; 0: unlimited */
   double least_unit;             /* of result->work_unit */
   double allowed;                /* force evaluations of the next run; 0: any number */
   size_t row_capacity;

@@ -427,8 +427,8 @@ static strut_tradeoff_row *new_row(tradeoff_study *s, const step_series *from,
 }
 
 /*
- * Runs a setting at every point as a new row. There is none where its method cannot, or where the
- * bound on work ends it, and with it the series.
+ * Runs a setting at every point as a new row; *made: NULL if its method cannot run it, or if the bound on
+ * work ends the run, and with it the series.
  */
 static strut_status run_row(tradeoff_study *s, step_series *from, tradeoff_setting setting,
                             double most, strut_tradeoff_row **made) {
