@@ -17,20 +17,17 @@
 /* Positions, then velocities and accelerations of the stages but the first; then what given_up keeps. */
 #define ARRAYS(tableau) (1 + 2 * ((tableau)->stages - 1) + 2)
 
-/*
- * sum_j weight[j] k[j] over `count` stages at i; where these are constants the loop over them unrolls.
- * `pairs`: the last one has just been stored pair by pair.
- */
+/* sum_j weight[j] k[j] over `count` stages at i. `pairs`: the last one has just been stored pair by pair. */
 STRUT_INLINE strut_lanes weighted(double *const *k, const double *weight, int count, bool pairs,
                                   int32_t i) {
-  strut_lanes sum = weight[0] * (pairs && count == 1 ? strut_lanes_load_pairs(k[0] + i)
-                                                     : strut_lanes_load(k[0] + i));
-#pragma GCC unroll 8
-  for (int j = 1; j < count; j++)
-    if (weight[j] != 0.0)
-      sum += weight[j] * (pairs && j == count - 1 ? strut_lanes_load_pairs(k[j] + i)
-                                                  : strut_lanes_load(k[j] + i));
-  return sum;
+  const int last = count - 1;
+  strut_lanes newest =
+      weight[last] * (pairs ? strut_lanes_load_pairs(k[last] + i) : strut_lanes_load(k[last] + i));
+  if (last == 0) return newest;
+  strut_lanes sum = weight[0] * strut_lanes_load(k[0] + i);
+  for (int j = 1; j < last; j++)
+    if (weight[j] != 0.0) sum += weight[j] * strut_lanes_load(k[j] + i);
+  return sum + newest;
 }
 
 /* Stage k, or the end: q = q0 + h sum v, v[k] = v0 + h sum a, over the stages before it. */
@@ -41,20 +38,6 @@ STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *
     strut_lanes_store(q + i, strut_lanes_load(now->q + i) + h * weighted(v, weight, k, false, i));
     strut_lanes_store(speed + i,
                       strut_lanes_load(now->v + i) + h * weighted(a, weight, k, true, i));
-  }
-}
-
-/* With constants for the earlier stages, of which both pairs have as many. */
-STRUT_INLINE void stage_of(int32_t n, double h, const strut_step_end *now, double *const *v,
-                           double *const *a, const strut_tableau *t, int k, double *restrict q) {
-  switch (k) {
-    case 1: stage(n, h, now, v, a, t->weight[1], 1, q); break;
-    case 2: stage(n, h, now, v, a, t->weight[2], 2, q); break;
-    case 3: stage(n, h, now, v, a, t->weight[3], 3, q); break;
-    case 4: stage(n, h, now, v, a, t->weight[4], 4, q); break;
-    case 5: stage(n, h, now, v, a, t->weight[5], 5, q); break;
-    case 6: stage(n, h, now, v, a, t->weight[6], 6, q); break;
-    default: stage(n, h, now, v, a, t->weight[k], k, q); break;
   }
 }
 
@@ -78,9 +61,9 @@ STRUT_INLINE double largest_of(largest x) {
 }
 
 /* Local error over what is allowed, by the difference of the pair. */
-STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *l,
-                             const strut_tableau *tableau, double h, double *const *v,
-                             double *const *a) {
+STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *l, double h,
+                             double *const *v, double *const *a) {
+  const strut_tableau *tableau = l->stepper->tableau;
   int count = tableau->stages + 1;
   const double *difference = tableau->difference;
   largest position = {0}, velocity = {0}, speed = {0};
@@ -223,8 +206,9 @@ STRUT_LOOP void look_between(const strut_model *model, strut_state *state, strut
   if (part > 0.0) l->error = error_to_reach(l, part);
 }
 
-STRUT_INLINE void take(const strut_tableau *tableau, const strut_model *model, strut_state *state,
-                       strut_event_stepper *l, double t, double h, unsigned terms, bool balance) {
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t, double h, unsigned terms, bool balance) {
+  const strut_tableau *tableau = l->stepper->tableau;
   double *v[STRUT_MOST_STAGES + 1], *a[STRUT_MOST_STAGES + 1];
   const int end = tableau->stages;
   const double *ahead = tableau->ahead, *last = tableau->weight[end];
@@ -239,7 +223,7 @@ STRUT_INLINE void take(const strut_tableau *tableau, const strut_model *model, s
     l->gained[p] = last[0] * h * l->now->power[p];
   for (int k = 1; k <= end; k++) {
     double *q = k == end ? l->next->q : l->stage[0];
-    stage_of(model->length, h, l->now, v, a, tableau, k, q);
+    stage(model->length, h, l->now, v, a, tableau->weight[k], k, q);
     if (model->terms & terms & STRUT_TERM_SUPPORT_MOTION)
       strut_support_motion_place(model, state, t + ahead[k] * h, q, v[k]);
     if (k == end) break;
@@ -250,20 +234,28 @@ STRUT_INLINE void take(const strut_tableau *tableau, const strut_model *model, s
       l->gained[p] += last[k] * h * state->latest.power[p];
   }
   evaluate_step_end(model, state, l, t + h, l->next, terms, balance);
-  l->error = error_of(model, l, tableau, h, v, a);
+  l->error = error_of(model, l, h, v, a);
   look_between(model, state, l, h, broken, terms);
 }
 
-/* The step of a small model in registers, see small_adaptive.h. */
-static void take_small(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double t, double h, strut_small_trial *small) {
+STRUT_EVENT_TRIAL(adaptive, take)
+
+/* The step of a small model in registers, see small_adaptive.h, or by the general kernel. */
+static void adaptive_step(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                          double t, double h) {
+  strut_small_trial *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_adaptive);
+  if (!small) {
+    adaptive_trial(model, state, l, t, h);
+    return;
+  }
   double broken = small(model, state, l, t, h);
   look_between(model, state, l, h, broken, STRUT_TERMS_COMMON);
 }
 
-/* Several of them; small: NULL where the general kernel steps. */
-static void advance_small(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                          double dt, int64_t end, strut_small_quiet *small) {
+/* Several of them in registers. */
+static void adaptive_until_event(const strut_model *model, strut_state *state,
+                                 strut_event_stepper *l, double dt, int64_t end) {
+  strut_small_quiet *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_adaptive_quiet);
   if (!small || !strut_small_is_quiet(state, l)) return;
   double broken = small(model, state, l, dt, end);
   if (l->tried)
@@ -275,47 +267,25 @@ static void look_between_of_region(const strut_model *model, strut_state *state,
   look_between(model, state, l, h, broken, STRUT_TERMS_COMMON);
 }
 
-/* Defines NAME_create, of the method that steps by this pair. */
-#define PAIR_METHOD(name, pair)                                                                    \
-  STRUT_INLINE void name##_take(const strut_model *model, strut_state *state,                      \
-                                strut_event_stepper *l, double t, double h, unsigned terms,        \
-                                bool balance) {                                                    \
-    take(&(pair), model, state, l, t, h, terms, balance);                                          \
-  }                                                                                                \
-  STRUT_EVENT_TRIAL(name, name##_take)                                                             \
-                                                                                                   \
-  static void name##_step(const strut_model *model, strut_state *state, strut_event_stepper *l,    \
-                          double t, double h) {                                                    \
-    strut_small_trial *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_##name);            \
-    if (small)                                                                                     \
-      take_small(model, state, l, t, h, small);                                                    \
-    else                                                                                           \
-      name##_trial(model, state, l, t, h);                                                         \
-  }                                                                                                \
-                                                                                                   \
-  static void name##_until_event(const strut_model *model, strut_state *state,                     \
-                                 strut_event_stepper *l, double dt, int64_t end) {                 \
-    advance_small(model, state, l, dt, end,                                                        \
-                  STRUT_SMALL_EVENTS(model, state, l, strut_small_##name##_quiet));                \
-  }                                                                                                \
-                                                                                                   \
-  static const strut_step_formula name##_formula = {                                               \
-      .trial = name##_step,                                                                        \
-      .stages = ARRAYS(&(pair)),                                                                   \
-      .exact = true,                                                                               \
-      .adaptive = true,                                                                            \
-      .advance_until_event = name##_until_event,                                                   \
-      .tableau = &(pair),                                                                          \
-      .contradicts_at_stage = any_contradicts_at_stage,                                            \
-      .look_between = look_between_of_region};                                                     \
-                                                                                                   \
-  static void *name##_create(const strut_model *model, strut_state *state,                         \
-                             const strut_integrator_settings *settings) {                          \
-    return strut_event_stepper_create(model, state, &name##_formula, settings);                    \
+/* The method that steps by this pair. */
+#define FORMULA(pair)                                                                              \
+  {                                                                                                \
+    .trial = adaptive_step, .stages = ARRAYS(&(pair)), .exact = true, .adaptive = true,            \
+    .advance_until_event = adaptive_until_event, .tableau = &(pair),                               \
+    .contradicts_at_stage = any_contradicts_at_stage, .look_between = look_between_of_region       \
   }
+static const strut_step_formula order_5 = FORMULA(strut_dormand_prince),
+                                order_8 = FORMULA(strut_verner);
 
-PAIR_METHOD(adaptive, strut_dormand_prince)
-PAIR_METHOD(adaptive8, strut_verner)
+static void *adaptive_create(const strut_model *model, strut_state *state,
+                             const strut_integrator_settings *settings) {
+  return strut_event_stepper_create(model, state, &order_5, settings);
+}
+
+static void *adaptive8_create(const strut_model *model, strut_state *state,
+                              const strut_integrator_settings *settings) {
+  return strut_event_stepper_create(model, state, &order_8, settings);
+}
 
 const strut_integrator strut_integrator_adaptive = {
     .name = "adaptive",

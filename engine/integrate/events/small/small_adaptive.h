@@ -6,7 +6,6 @@
 #define STRUT_ENGINE_INTEGRATE_EVENTS_SMALL_SMALL_ADAPTIVE_H
 
 #include "engine/integrate/events/small/small_checks.h"
-#include "engine/integrate/events/tableaus.h"
 
 STRUT_SMALL_INLINE small_row small_scaled(double weight, small_row x) {
   SMALL_EACH(p) x.part[p] = weight * x.part[p];
@@ -66,9 +65,9 @@ STRUT_SMALL_INLINE double small_largest_of(const small_largest *x) {
 }
 
 /* Local error over what is allowed, by the difference of the pair. */
-STRUT_SMALL_INLINE double small_error(const strut_model *model, strut_event_stepper *l,
-                                      const strut_tableau *tableau, double h, const small_points *v,
-                                      const small_points *a) {
+STRUT_SMALL_INLINE double small_error(const strut_model *model, strut_event_stepper *l, double h,
+                                      const small_points *v, const small_points *a) {
+  const strut_tableau *tableau = l->stepper->tableau;
   const small_points *speed = &v[tableau->stages];
   small_largest position = {0}, velocity = {0}, fastest = {0};
   small_sums off_by =
@@ -90,12 +89,12 @@ STRUT_SMALL_INLINE double small_error(const strut_model *model, strut_event_step
 
 /* A step from `now` at time t over h to `next`, with the works of it; leaves rest lengths and forces in the
    state. Returns the part of the step by which a stage contradicts a mode; 0: none does. */
-STRUT_SMALL_INLINE double small_adaptive_step(const strut_tableau *tableau, small_events *e,
-                                              const strut_model *model, strut_state *state,
-                                              double t, double h, const small_end_point *now,
-                                              small_end_point *next, small_work *gained,
-                                              bool balance) {
+STRUT_SMALL_INLINE double small_adaptive_step(small_events *e, const strut_model *model,
+                                              strut_state *state, double t, double h,
+                                              const small_end_point *now, small_end_point *next,
+                                              small_work *gained, bool balance) {
   strut_event_stepper *l = e->stepper;
+  const strut_tableau *tableau = l->stepper->tableau;
   const int stride = e->run.terms & STRUT_TERM_DRIVE ? 1 : 0, end = tableau->stages;
   const double *ahead = tableau->ahead, *last = tableau->weight[end];
   const small_rest *rest = small_rest_at(model, state, l->small, t, h, ahead + 1, end - 1);
@@ -124,7 +123,7 @@ STRUT_SMALL_INLINE double small_adaptive_step(const strut_tableau *tableau, smal
   *next = (small_end_point){q, v[end], a[end], e->power};
   e->rest = rest + (end - 2) * stride;
   e->time = t + h;
-  l->error = small_error(model, l, tableau, h, v, a);
+  l->error = small_error(model, l, h, v, a);
   return broken;
 }
 

@@ -6,9 +6,8 @@
 #include "engine/integrate/events/small/small_exact.h"
 #include "engine/integrate/events/small/small_verlet_events.h"
 
-STRUT_SMALL_EXACT(adaptive, &strut_dormand_prince)
-STRUT_SMALL_EXACT(adaptive8, &strut_verner)
-STRUT_SMALL_EXACT(rk4_events, NULL)
+STRUT_SMALL_EXACT(adaptive, true)
+STRUT_SMALL_EXACT(rk4_events, false)
 STRUT_SMALL_QUIET(verlet_events, small_verlet_events)
 #else
 extern int strut_small_events_avx512_is_empty;

@@ -9,15 +9,14 @@
 #include "engine/integrate/events/small/small_adaptive.h"
 #include "engine/integrate/events/small/small_rk4_events.h"
 
-/* The step of a pair or, where that is NULL, of rk4-events, and what settle_band_ties does to its end. */
+/* The step of a pair, where `adaptive`, or of rk4-events, and what settle_band_ties does to its end. */
 STRUT_SMALL_INLINE double small_exact_step(small_events *e, const strut_model *model,
-                                           strut_state *state, double t, double h,
-                                           const strut_tableau *pair, const small_end_point *now,
-                                           small_end_point *next, small_work *gained,
-                                           bool balance) {
+                                           strut_state *state, double t, double h, bool adaptive,
+                                           const small_end_point *now, small_end_point *next,
+                                           small_work *gained, bool balance) {
   double broken = 0.0;
-  if (pair)
-    broken = small_adaptive_step(pair, e, model, state, t, h, now, next, gained, balance);
+  if (adaptive)
+    broken = small_adaptive_step(e, model, state, t, h, now, next, gained, balance);
   else
     small_rk4_events_step(e, model, state, t, h, now, next, gained, balance);
   if (e->stepper->closed_count && !e->stepper->all_sliding) small_settle_ties(e);
@@ -77,8 +76,7 @@ STRUT_SMALL_INLINE bool small_is_eventful(const small_events *e, const strut_mod
 /* Leaves the step that has been tried, or is asked for, in l->next. Returns what the trial does. */
 STRUT_SMALL_INLINE double small_exact(const strut_model *model, strut_state *state,
                                       strut_event_stepper *l, small_request r, unsigned terms,
-                                      const strut_tableau *pair, bool balance) {
-  const bool adaptive = pair != NULL;
+                                      bool adaptive, bool balance) {
   small_events e = small_events_begin(model, l, terms);
   small_kept kept;
   small_end_point now = small_end_now(model, l), next;
@@ -88,7 +86,7 @@ STRUT_SMALL_INLINE double small_exact(const strut_model *model, strut_state *sta
   double broken = 0.0;
   while (!r.quiet || small_next_quiet(state, l, &r)) {
     if (r.quiet && adaptive && l->done == 0.0) start = (small_grid_start){now.q, now.v, work, true};
-    broken = small_exact_step(&e, model, state, r.t, r.h, pair, &now, &next, &gained, balance);
+    broken = small_exact_step(&e, model, state, r.t, r.h, adaptive, &now, &next, &gained, balance);
     tried = !r.quiet || small_is_eventful(&e, model, r.h, adaptive, broken, &now, &next);
     if (tried) break;
     taken = true;
@@ -115,17 +113,17 @@ STRUT_SMALL_INLINE double small_exact(const strut_model *model, strut_state *sta
 
 /* Defines the trial and the quiet steps of a method: copies for models with common terms only and for all, with
    the energy balance and without. */
-#define STRUT_SMALL_EXACT_COPY(name, copy, terms, pair, balance)                                   \
+#define STRUT_SMALL_EXACT_COPY(name, copy, terms, adaptive, balance)                               \
   STRUT_SMALL_TARGET                                                                               \
   static double name##_##copy(const strut_model *model, strut_state *state,                        \
                               strut_event_stepper *l, small_request r) {                           \
-    return small_exact(model, state, l, r, terms, pair, balance);                                  \
+    return small_exact(model, state, l, r, terms, adaptive, balance);                              \
   }
 
-#define STRUT_SMALL_EXACT(name, pair)                                                              \
-  STRUT_SMALL_EXACT_COPY(name, usual_with_balance, STRUT_SMALL_USUAL, pair, true)                  \
-  STRUT_SMALL_EXACT_COPY(name, usual, STRUT_SMALL_USUAL, pair, false)                              \
-  STRUT_SMALL_EXACT_COPY(name, any, STRUT_TERMS_ALL, pair, state->balance)                         \
+#define STRUT_SMALL_EXACT(name, adaptive)                                                          \
+  STRUT_SMALL_EXACT_COPY(name, usual_with_balance, STRUT_SMALL_USUAL, adaptive, true)              \
+  STRUT_SMALL_EXACT_COPY(name, usual, STRUT_SMALL_USUAL, adaptive, false)                          \
+  STRUT_SMALL_EXACT_COPY(name, any, STRUT_TERMS_ALL, adaptive, state->balance)                     \
   static double name##_steps(const strut_model *model, strut_state *state, strut_event_stepper *l, \
                              small_request r) {                                                    \
     if (small_copy_of(model) < 2) return name##_any(model, state, l, r);                           \

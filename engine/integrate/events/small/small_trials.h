@@ -13,7 +13,6 @@ typedef double strut_small_trial(const strut_model *model, strut_state *state,
                                  strut_event_stepper *l, double t, double h);
 
 strut_small_trial strut_small_adaptive_avx2, strut_small_adaptive_avx512;
-strut_small_trial strut_small_adaptive8_avx2, strut_small_adaptive8_avx512;
 strut_small_trial strut_small_rk4_events_avx2, strut_small_rk4_events_avx512;
 
 /** Steps up to grid point `end` until something happens: see a step formula's advance_until_event. With
@@ -23,7 +22,6 @@ typedef double strut_small_quiet(const strut_model *model, strut_state *state,
 
 strut_small_quiet strut_small_verlet_events_avx2, strut_small_verlet_events_avx512;
 strut_small_quiet strut_small_adaptive_quiet_avx2, strut_small_adaptive_quiet_avx512;
-strut_small_quiet strut_small_adaptive8_quiet_avx2, strut_small_adaptive8_quiet_avx512;
 strut_small_quiet strut_small_rk4_events_quiet_avx2, strut_small_rk4_events_quiet_avx512;
 
 /* Forces of stages, which are of lower order, may be off by this part without a word. */
