@@ -59,7 +59,7 @@ CHECKS = (
           "python3 tests/bench/mutants.py --jobs {jobs} --whole || true",
           r"(\d+) of (\d+) noticed, (\d+) %", "{0} of {1} noticed, {2} %", 12, 95),
     target("kills", "studies killed at a random moment a hundred times, and resumed", "sweep_kills",
-           r"killed: ([\d.]+) s", "the same bytes as without", 2),
+           r"killed_and_resumed: ([\d.]+) s", "the same bytes as without", 2),
     Check("disks", "full disks and closed pipes", f"{TESTS} && ctest --test-dir build/tests -R 'cli_trouble|^sweep$' "
           "--output-on-failure", PASSED, "{0} of {1} tests failed", 1),
     target("malloc", "each allocation of a command fails once", "memory_walk",
