@@ -4,6 +4,7 @@
  * integrators".
  */
 #include <math.h>
+#include <stdio.h>
 
 #include "engine/model/model.h"
 #include "engine/study/tradeoff/rivals_table.h"
@@ -14,11 +15,7 @@ typedef enum scene_class { NO_CLASS, CONTACT, STIFF, SMOOTH } scene_class;
 static const char *const names[] = {"", "with contact", "with stiff bars",
                                     "without contact or stiff bars"};
 
-static const struct rival_row {
-  scene_class of;
-  double error, least, most; /* quotients of CPU times */
-  int scenes, none;
-} rows[] = {
+static const strut_tradeoff_rival rows[] = {
 #define STRUT_RIVAL_ROW(of, error, least, most, scenes, none)                                      \
   {of, error, least, most, scenes, none},
     STRUT_RIVALS(STRUT_RIVAL_ROW)
@@ -48,19 +45,29 @@ int strut_tradeoff_classify(const strut_model *model) {
   return bar >= STIFF_RATIO * spring ? STIFF : SMOOTH;
 }
 
+const strut_tradeoff_rival *strut_tradeoff_next_rival(int scenes,
+                                                      const strut_tradeoff_rival *last) {
+  for (const strut_tradeoff_rival *row = last ? last + 1 : rows; row < rows + ROWS; row++)
+    if (row->of == scenes) return row;
+  return NULL;
+}
+
+const char *strut_tradeoff_scenes_text(const strut_tradeoff_rival *rival,
+                                       char text[STRUT_TRADEOFF_TEXT]) {
+  snprintf(text, STRUT_TRADEOFF_TEXT, "%d scenes %s", rival->scenes, names[rival->of]);
+  return text;
+}
+
 void strut_tradeoff_add_rivals(strut_buffer *text, int scenes, double error) {
-  const struct rival_row *near = NULL;
-  char a[STRUT_TRADEOFF_TEXT];
-  for (size_t i = 0; i < ROWS; i++) {
-    double apart = fabs(log(rows[i].error / error));
-    if ((int)rows[i].of == scenes && (!near || apart < fabs(log(near->error / error))))
-      near = &rows[i];
-  }
+  const strut_tradeoff_rival *near = NULL, *row = NULL;
+  char a[STRUT_TRADEOFF_TEXT], b[STRUT_TRADEOFF_TEXT];
+  while ((row = strut_tradeoff_next_rival(scenes, row)))
+    if (!near || fabs(log(row->error / error)) < fabs(log(near->error / error))) near = row;
   if (!near) return;
   strut_buffer_add(text,
-                   "  other libraries: for %s on %d scenes %s, the best took %.2g to %.2g times "
-                   "strut's CPU time",
-                   strut_tradeoff_percent_text(near->error, a), near->scenes, names[scenes],
+                   "  other libraries: for %s on %s, the best took %.2g to %.2g times strut's CPU "
+                   "time",
+                   strut_tradeoff_percent_text(near->error, a), strut_tradeoff_scenes_text(near, b),
                    near->least, near->most);
   if (near->none > 0) strut_buffer_add(text, ", none kept it on %d", near->none);
   strut_buffer_add(text, "\n");

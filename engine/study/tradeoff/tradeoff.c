@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The whole study, from the variants of the model to the Pareto front. */
+/* The whole study, from the base to the Pareto front. */
 #include "engine/study/tradeoff/tradeoff.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "engine/model/model.h"
-#include "engine/output/buffer.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
 /* ---- errors, spreads over the operating points, and the Pareto front ---- */
@@ -191,190 +189,6 @@ strut_tradeoff_advice strut_tradeoff_advise(const strut_tradeoff *r, double erro
                  ? 1
                  : fmax(1, interpolate_cost(r, a.half, 0.5 * error) / r->rows[a.row].evaluations);
   return a;
-}
-
-/* ---- models of the scene besides its own ---- */
-
-/* All variants in the order in which they run: the most expensive last. */
-typedef enum kind { OWN, MASS, RIGID, GROUND, KARNOPP, COULOMB, SMOOTH, KINDS } kind;
-
-static bool has_member_mass(const strut_scene *scene) {
-  for (size_t i = 0; i < scene->member_count; i++)
-    if (scene->members[i].mass > 0) return true;
-  return false;
-}
-
-/* True if there are bars and none is driven, so that they could be rigid. */
-static bool has_still_bars(const strut_scene *scene) {
-  bool any = false;
-  for (size_t i = 0; i < scene->member_count; i++) any = any || scene->members[i].kind == STRUT_BAR;
-  for (size_t i = 0; i < scene->actuator_count; i++)
-    any = any && (scene->actuators[i].member < 0 || scene->actuators[i].force ||
-                  scene->members[scene->actuators[i].member].kind != STRUT_BAR);
-  return any;
-}
-
-static bool has_friction(const strut_scene *scene, strut_friction_law law) {
-  for (size_t i = 0; i < scene->contact_count; i++)
-    if (scene->contacts[i].friction.law == law) return true;
-  return false;
-}
-
-static bool has_any_friction(const strut_scene *scene) {
-  for (size_t i = 0; i < scene->contact_count; i++)
-    if (scene->contacts[i].friction.law != STRUT_FRICTION_NONE) return true;
-  return false;
-}
-
-/* Depth of a contact at rest if all contacts shared the weight equally [m]; 0 without gravity. */
-static double depth_at_rest(const strut_scene *scene, const strut_contact *contact) {
-  double mass = 0, gravity = hypot(scene->gravity[0], scene->gravity[1]);
-  for (size_t i = 0; i < scene->node_count; i++) mass += scene->nodes[i].mass;
-  for (size_t i = 0; i < scene->member_count; i++) mass += scene->members[i].mass;
-  return mass * gravity / (contact->stiffness * (double)scene->contact_count);
-}
-
-static bool has_damped_ground(const strut_scene *scene) {
-  bool any = false;
-  for (size_t i = 0; i < scene->contact_count; i++) {
-    const strut_contact *c = &scene->contacts[i];
-    any = any || c->damping > 0 || c->dissipation > 0;
-    if (!(depth_at_rest(scene, c) > 0)) return false;
-  }
-  return any;
-}
-
-static bool makes_sense(const strut_scene *scene, kind what) {
-  switch (what) {
-    case OWN: return true;
-    case MASS: return has_member_mass(scene);
-    case RIGID: return has_still_bars(scene) && !scene->ground_count;
-    case KARNOPP: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_KARNOPP);
-    case COULOMB: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_COULOMB);
-    case SMOOTH: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_SMOOTH);
-    case GROUND:
-      return scene->contact_count > 0 && !scene->ground_count && has_damped_ground(scene);
-    case KINDS: break;
-  }
-  return false;
-}
-
-/* The regularisation speed for friction laws that need one [m/s]. */
-static double regularisation_speed(const tradeoff_study *s, const strut_friction *friction) {
-  if (friction->stick_velocity > 0) return friction->stick_velocity;
-  return friction->width > 0 ? friction->width : s->scale[0];
-}
-
-static void describe(const tradeoff_study *s, kind what, strut_model_variant *f) {
-  const strut_scene *scene = &s->setups[0]->scene;
-  if (what == OWN) snprintf(f->name, sizeof f->name, "unchanged model");
-  if (what == COULOMB) snprintf(f->name, sizeof f->name, "Coulomb friction");
-  if (what == MASS)
-    snprintf(f->name, sizeof f->name, "%s masses",
-             scene->mass_model == STRUT_MASS_LUMPED ? "consistent" : "lumped");
-  if (what == RIGID)
-    snprintf(f->name, sizeof f->name, "%s bars",
-             scene->bar_model == STRUT_BARS_RIGID ? "elastic" : "rigid");
-  if (what == KARNOPP || what == SMOOTH) {
-    double speed = regularisation_speed(s, &scene->contacts[0].friction);
-    snprintf(f->name, sizeof f->name, "%s friction, %s", what == SMOOTH ? "smooth" : "Karnopp",
-             strut_quantity_of(speed, 3, "m/s").text);
-  }
-  if (what != GROUND) return;
-  bool printed = scene->ground.damping_law == STRUT_DAMPING_APPROACH;
-  snprintf(f->name, sizeof f->name, "%s",
-           printed ? "Hunt-Crossley ground" : "approach-only ground damping");
-  snprintf(f->remark, sizeof f->remark,
-           "damped as by the scene's law at the depth at which the ground carries the weight, %s",
-           strut_quantity_of(depth_at_rest(scene, &scene->contacts[0]), 3, "m").text);
-}
-
-/* The kind of the i-th variant in the list. */
-static kind kind_of(const tradeoff_study *s, int variant) {
-  int found = -1;
-  for (int what = OWN; what < KINDS; what++)
-    if (makes_sense(&s->setups[0]->scene, (kind)what) && ++found == variant) return (kind)what;
-  return OWN;
-}
-
-strut_status strut_tradeoff_list_variants(tradeoff_study *s) {
-  strut_tradeoff *r = s->result;
-  bool all = !s->options->own_model && r->measure != STRUT_TRADEOFF_ENERGY;
-  r->variants = strut_arena_allocate(&r->arena, KINDS, sizeof *r->variants);
-  if (!r->variants) return STRUT_NO_MEMORY;
-  for (int what = OWN; what < KINDS; what++) {
-    if (!makes_sense(&s->setups[0]->scene, (kind)what) || (what != OWN && !all)) continue;
-    strut_model_variant *f = &r->variants[r->variant_count++];
-    describe(s, (kind)what, f);
-    f->value = strut_arena_allocate(&r->arena, r->point_count * r->value_count, sizeof *f->value);
-    f->floor = strut_arena_allocate(&r->arena, r->point_count, sizeof *f->floor);
-    f->model_error = strut_arena_allocate(&r->arena, r->point_count, sizeof *f->model_error);
-    if (!f->value || !f->floor || !f->model_error) return STRUT_NO_MEMORY;
-  }
-  return STRUT_OK;
-}
-
-static void change_contact(const tradeoff_study *s, kind what, const strut_scene *scene,
-                           strut_contact *contact) {
-  double depth = depth_at_rest(scene, contact), slope = contact->stiffness * depth;
-  bool rough = contact->friction.law != STRUT_FRICTION_NONE;
-  double speed = regularisation_speed(s, &contact->friction);
-  if (what == GROUND && scene->ground.damping_law == STRUT_DAMPING_HUNT_CROSSLEY)
-    contact->dissipation = contact->damping / slope;
-  else if (what == GROUND)
-    contact->damping = contact->dissipation * slope;
-  if (!rough) return;
-  if (what == KARNOPP) contact->friction.law = STRUT_FRICTION_KARNOPP;
-  if (what == COULOMB) contact->friction.law = STRUT_FRICTION_COULOMB;
-  if (what == SMOOTH) contact->friction.law = STRUT_FRICTION_SMOOTH;
-  if (what == KARNOPP) contact->friction.stick_velocity = speed;
-  if (what == SMOOTH) contact->friction.width = speed;
-}
-
-strut_status strut_tradeoff_change_scene(const tradeoff_study *s, int variant, strut_scene *scene,
-                                         strut_arena *arena) {
-  kind what = kind_of(s, variant);
-  if (what == MASS)
-    scene->mass_model =
-        scene->mass_model == STRUT_MASS_LUMPED ? STRUT_MASS_CONSISTENT : STRUT_MASS_LUMPED;
-  if (what == RIGID)
-    scene->bar_model = scene->bar_model == STRUT_BARS_RIGID ? STRUT_BARS_ELASTIC : STRUT_BARS_RIGID;
-  if (what < GROUND) return STRUT_OK;
-  strut_contact *contacts = strut_arena_allocate(arena, scene->contact_count, sizeof *contacts);
-  if (!contacts) return STRUT_NO_MEMORY;
-  if (what == GROUND)
-    scene->ground.damping_law = scene->ground.damping_law == STRUT_DAMPING_APPROACH
-                                    ? STRUT_DAMPING_HUNT_CROSSLEY
-                                    : STRUT_DAMPING_APPROACH;
-  for (size_t i = 0; i < scene->contact_count; i++) {
-    contacts[i] = scene->contacts[i];
-    change_contact(s, what, scene, &contacts[i]);
-  }
-  scene->contacts = contacts;
-  return STRUT_OK;
-}
-
-bool strut_tradeoff_has_switches(const strut_scene *scene) {
-  for (size_t i = 0; i < scene->member_count; i++)
-    if (scene->members[i].kind == STRUT_CABLE) return true;
-  return scene->contact_count > 0;
-}
-
-bool strut_tradeoff_can_run(const tradeoff_study *s, const strut_integrator *method, int variant) {
-  kind what = kind_of(s, variant);
-  bool own = has_friction(&s->setups[0]->scene, STRUT_FRICTION_COULOMB);
-  bool exact = own ? what <= GROUND : what == COULOMB;
-  if (exact && !method->events) return false;
-  return !method->events || strut_tradeoff_is_adaptive(method) ||
-         strut_tradeoff_has_switches(&s->setups[0]->scene);
-}
-
-bool strut_tradeoff_is_wanted(const tradeoff_study *s, const strut_integrator *method,
-                              int variant) {
-  bool wanted = s->options->method_count == 0;
-  for (size_t i = 0; i < s->options->method_count; i++)
-    wanted = wanted || s->options->methods[i] == method;
-  return wanted && strut_tradeoff_can_run(s, method, variant);
 }
 
 /* ---- the study: base, references, rows, other models ---- */
