@@ -15,7 +15,7 @@
 #include "engine/integrate/integrator.h"
 
 /* Positions, then velocities and accelerations of the stages but the first; then what given_up keeps. */
-#define ARRAYS(tableau) (1 + 2 * ((tableau)->stages - 1) + 2)
+#define ARRAYS(stages) (1 + 2 * ((stages)-1) + 2)
 
 /* sum_j weight[j] k[j] over `count` stages at i. `pairs`: the last one has just been stored pair by pair. */
 STRUT_INLINE strut_lanes weighted(double *const *k, const double *weight, int count, bool pairs,
@@ -268,14 +268,15 @@ static void look_between_of_region(const strut_model *model, strut_state *state,
 }
 
 /* The method that steps by this pair. */
-#define FORMULA(pair)                                                                              \
+#define FORMULA(pair, count)                                                                       \
   {                                                                                                \
-    .trial = adaptive_step, .stages = ARRAYS(&(pair)), .exact = true, .adaptive = true,            \
+    .trial = adaptive_step, .stages = ARRAYS(count), .exact = true, .adaptive = true,              \
     .advance_until_event = adaptive_until_event, .tableau = &(pair),                               \
     .contradicts_at_stage = any_contradicts_at_stage, .look_between = look_between_of_region       \
   }
-static const strut_step_formula order_5 = FORMULA(strut_dormand_prince),
-                                order_8 = FORMULA(strut_verner);
+static const strut_step_formula order_5 =
+                                    FORMULA(strut_dormand_prince, STRUT_DORMAND_PRINCE_STAGES),
+                                order_8 = FORMULA(strut_verner, STRUT_VERNER_STAGES);
 
 static void *adaptive_create(const strut_model *model, strut_state *state,
                              const strut_integrator_settings *settings) {

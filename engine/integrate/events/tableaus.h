@@ -5,9 +5,12 @@
 
 #include "engine/integrate/events/event_stepping.h"
 
+/* Their stages, as constants of C. */
+enum { STRUT_DORMAND_PRINCE_STAGES = 6, STRUT_VERNER_STAGES = 13 };
+
 /** Dormand and Prince's pair of orders 5 and 4 (J. Comp. Appl. Math. 6, 1980). */
 static const strut_tableau strut_dormand_prince = {
-    .stages = 6,
+    .stages = STRUT_DORMAND_PRINCE_STAGES,
     .order = 5,
     .ahead = {0.0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1.0, 1.0},
     .weight = {{0},
@@ -22,7 +25,7 @@ static const strut_tableau strut_dormand_prince = {
 
 /** Verner's efficient pair of orders 8 and 7 (Numer. Algorithms 53, 2010), as decimals of 17 digits. */
 static const strut_tableau strut_verner = {
-    .stages = 13,
+    .stages = STRUT_VERNER_STAGES,
     .order = 8,
     .ahead = {0.0, 1.0 / 20, 341.0 / 3200, 1023.0 / 6400, 39.0 / 100, 93.0 / 200, 31.0 / 200,
               943.0 / 1000, 7067558016280.0 / 7837150160667, 909.0 / 1000, 47.0 / 50, 1.0, 1.0,
