@@ -28,6 +28,8 @@ apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty
 
 missing=
 for package in $packages; do
+  # Other nodejs packages than Debian's bring npm, and refuse Debian's.
+  if [ "$package" = npm ] && command -v npm >/dev/null; then continue; fi
   dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' ||
     missing="$missing $package"
 done
