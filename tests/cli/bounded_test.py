@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What a scene asks for is done soon, or refused by name at once: long profiles, runs that would not end, samples beyond
-# the run; and what killed processes leave goes, and hidden characters do not act on the terminal.
+# the run, and structures at rest; and what killed processes leave goes, and hidden characters do not act on the terminal.
 #
 #   python3 bounded_test.py STRUT
+import json
 import os
 import pty
 import random
@@ -117,7 +118,29 @@ def hidden():
     check("\u202e" not in done.stderr and "did you mean 'mass'" in done.stderr, done.stderr)
 
 
+def at_rest():
+    """A smaller tolerance costs no more where nothing moves: rounding has no speed to be compared with."""
+    for feet in (2, 12):  # in registers, and by the general kernel
+        nodes = {f"f{k}": [k, 0] for k in range(feet)} | {f"t{k}": [k + 0.5, 0.8] for k in range(feet)}
+        bars = [(f"f{k}", f"t{k}") for k in range(feet)] + [(f"t{k}", f"f{k + 1}") for k in range(feet - 1)]
+        bars += [(f"{row}{k}", f"{row}{k + 1}") for row in "ft" for k in range(feet - 1)]
+        scene = {"strut": 1, "gravity": [0, -9.81], "nodes": {n: {"position": at, "mass": 1} for n, at in nodes.items()},
+                 "members": {a + b: {"kind": "bar", "nodes": [a, b], "stiffness": 5e3, "damping": 5} for a, b in bars},
+                 "ground": {"stiffness": 1e4, "damping": 50, "friction": {"law": "coulomb", "mu": 0.3}},
+                 "initial": {"settle": True}, "run": {"duration": 2}, "solver": {"step": 0.01}}
+        write("rest.yaml", json.dumps(scene))
+        for method in ("adaptive", "adaptive8"):
+            costs = []
+            for tolerance in ("1e-4", "1e-12"):
+                done, _ = run("run", "rest.yaml", "--integrator", method, "--tolerance", tolerance, "--json")
+                answer = json.loads(done.stdout)
+                costs.append(answer["force_evaluations"])
+                check(abs(answer["velocity"]) < 1e-11, f"{method}, {tolerance}: velocity {answer['velocity']}")
+            check(costs[1] <= 1.5 * costs[0] < 2e5, f"{method}, {feet} feet at rest: {costs} evaluations")
+
+
 profiles()
+at_rest()
 endless_runs()
 killed()
 hidden()

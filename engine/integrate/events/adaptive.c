@@ -75,9 +75,7 @@ STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *l, d
   }
   double fast = largest_of(speed), off = largest_of(velocity);
   if (fast > l->fastest) l->fastest = fast;
-  double error = largest_of(position) / (0.01 * model->size * l->tolerance);
-  double other = off > 0.0 ? off / (l->fastest * l->tolerance) : 0.0;
-  return other > error ? other : error;
+  return relative_error(model, l, h, largest_of(position), off);
 }
 
 /*

@@ -341,6 +341,18 @@ STRUT_INLINE double next_step_size(const strut_state *state, const strut_event_s
   return h > rest * (1.0 - 1e-9) ? rest : h;
 }
 
+/*
+ * Local error of a step of h over what is allowed, by those of positions and of velocities. The latter is not
+ * asked for beyond what rounding leaves of it: a structure at rest has no speed to compare it with.
+ */
+STRUT_INLINE double relative_error(const strut_model *model, const strut_event_stepper *l, double h,
+                                   double position, double velocity) {
+  double error = position / (0.01 * model->size * l->tolerance);
+  double allowed = l->fastest * l->tolerance, least = h * l->rounding;
+  double other = velocity > 0.0 ? velocity / (allowed > least ? allowed : least) : 0.0;
+  return other > error ? other : error;
+}
+
 /* New step after an error of l->error. */
 STRUT_INLINE void control_step(strut_event_stepper *l, double h, bool whole) {
   double factor = 0.9 * pow(fmax(l->error, 1e-10), -1.0 / l->stepper->tableau->order);

@@ -239,6 +239,7 @@ struct strut_event_stepper {
   double *settling_time;               /* (contacts) relaxation time of a closed contact [s] */
   double longest;                      /* adaptive: the longest step, a step of the grid [s] */
   double tolerance, h, error, fastest; /* adaptive: relative, [s], [1], [m/s] */
+  double rounding;   /* adaptive: of what the pair says of accelerations [m/s^2] */
   int passes;        /* sweeps over normal and tangent where they are coupled by M */
   double next_break; /* when a drive or load jumps next, with the state's time_offset
                                [s]; INFINITY: never */

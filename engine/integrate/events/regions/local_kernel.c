@@ -193,9 +193,7 @@ STRUT_INLINE double region_error(const strut_model *model, const strut_event_ste
       if (!(fabs(h * x) <= position)) position = fabs(h * x);
       if (!(fabs(h * y) <= velocity)) velocity = fabs(h * y);
     }
-  double error = position / (0.01 * model->size * l->tolerance);
-  double other = velocity > 0.0 ? velocity / (l->fastest * l->tolerance) : 0.0;
-  error = other > error ? other : error;
+  double error = relative_error(model, l, h, position, velocity);
   return error == error ? error : HUGE_VAL;
 }
 

@@ -82,9 +82,7 @@ STRUT_SMALL_INLINE double small_error(const strut_model *model, strut_event_step
   }
   double fast = small_largest_of(&fastest), off = small_largest_of(&velocity);
   if (fast > l->fastest) l->fastest = fast;
-  double error = small_largest_of(&position) / (0.01 * model->size * l->tolerance);
-  double other = off > 0.0 ? off / (l->fastest * l->tolerance) : 0.0;
-  return other > error ? other : error;
+  return relative_error(model, l, h, small_largest_of(&position), off);
 }
 
 /* A step from `now` at time t over h to `next`, with the works of it; leaves rest lengths and forces in the
