@@ -419,9 +419,11 @@ static void explain_ladder(const ladder *l, char *why, size_t size) {
              "%s, unchecked: the budget of %.2g force evaluations was used up before a second run "
              "finished; give a larger budget",
              how, (double)a->budget);
-  else if (l->kept && !l->same_motion)
+  else if (l->kept && !l->same_motion && l->means >= LEAST_MEANS)
     snprintf(why, size, "%s: a coarser run gives a different motion, but %s, as in all %d runs",
              how, apart, l->means);
+  else if (l->kept && !l->same_motion)
+    snprintf(why, size, "%s: a coarser run gives a different motion, but also %s", how, apart);
   else if (l->sensitivity > a->target)
     snprintf(
         why, size,
