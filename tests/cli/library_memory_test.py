@@ -35,7 +35,7 @@ COMMANDS = {  # name: (words, folders and files to remove before, libraries that
              ABORTING),
     "matrices": (["export", PENTAGON, "--format", "matrices", "-o", "out"], ABORTING),
     "modes": (["modes", PENTAGON, "-o", "out"], ABORTING),
-    "rigidity": (["rigidity", PENTAGON, "-o", "out"], ABORTING),
+    "rigidity": (["rigidity", PENTAGON, "-o", "out"], ABORTING + ":libgsl"),  # GSL checks none of its own
     "form": (["form", PENTAGON, "-o", "out.html", "--quiet"], ABORTING),
     "check": (["check", HOPPER], ABORTING),
     "search": (["sweep", "search.yaml", "-o", "out", "--threads", "1", "--quiet"], WITH_HDF5),

@@ -70,10 +70,9 @@ static bool leave_fork(strut_path_walk *w, const strut_path_fork *f, double side
   double step = LEAVING;
   bool found = false;
   memcpy(s->latest.pulling, f->pulling, (size_t)s->model->members.count);
-  memcpy(s->contacts.contact, f->contact,
-         (size_t)s->model->contacts.count * sizeof *s->contacts.contact);
-  memcpy(s->elements.element, f->element,
-         (size_t)s->model->elements.count * sizeof *s->elements.element);
+  size_t contacts = (size_t)s->model->contacts.count, elements = (size_t)s->model->elements.count;
+  if (contacts) memcpy(s->contacts.contact, f->contact, contacts * sizeof *f->contact);
+  if (elements) memcpy(s->elements.element, f->element, elements * sizeof *f->element);
   memcpy(w->y, f->y, strut_path_bytes(w));
   for (int32_t i = 0; i <= s->n; i++) w->tangent[i] = side * f->direction[i];
   for (int k = 0; k < SHORTER && !found; k++, step *= 0.25) {
