@@ -139,7 +139,7 @@ MUTANTS = [
            "strut_loads_apply(model, state, step->begin + 0.5 * step->h, u);",
            "strut_loads_apply(model, state, step->begin, u);",
            "implicit midpoint takes loads at the begin of a step", "midpoint|order"),
-    Mutant("adaptive-error-of-positions-only", "engine/integrate/events/adaptive.c",
+    Mutant("adaptive-error-of-positions-only", "engine/integrate/events/event_kernel.h",
            "  return other > error ? other : error;", "  return error;",
            "error control does not look at velocities", "order|oscillator|extremes_events|energy"),
     Mutant("event-forgets-time", "engine/integrate/events/event_stepping.c",
