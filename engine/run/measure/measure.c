@@ -172,8 +172,6 @@ static const double MARK_TOLERANCE = 1e-6;
 
 /* A mean velocity below this part of what cancels in it, among nodes or over time, is rounding. */
 static const double SYMMETRY_ROUNDING = 1e-10;
-/* And so is a way that is this part of the size: that of a structure at rest. */
-static const double REST_ROUNDING = 1e-13;
 
 void strut_measure_tracked_point(const strut_model *model, const strut_state *state,
                                  const strut_measurement *m, double *x, double *v) {
@@ -217,7 +215,7 @@ void strut_measure_window(const strut_model *model, strut_state *state, double b
 strut_status strut_measure_create(const strut_model *model, const strut_experiment *experiment,
                                   const strut_time_grid *grid, double begin, size_t capacity,
                                   strut_measurement *m) {
-  *m = (strut_measurement){.grid = *grid, .node = experiment->measure_node, .size = model->size};
+  *m = (strut_measurement){.grid = *grid, .node = experiment->measure_node};
   strut_span span = strut_experiment_span(experiment, model->scene);
   m->by_periods = span.period > 0;
   double periods = span.period > 0 ? (span.duration - span.window_start) / span.period : 1.0;
@@ -355,8 +353,7 @@ void strut_measure_step_quantities(const strut_model *model, strut_state *state,
 }
 
 bool strut_measure_is_zero(const strut_measurement *m, const strut_summary *s) {
-  double rest = REST_ROUNDING * m->size / s->window.time;
-  return fabs(s->velocity) <= SYMMETRY_ROUNDING * (m->apart + m->path / s->window.time) + rest;
+  return fabs(s->velocity) <= SYMMETRY_ROUNDING * (m->apart + m->path / s->window.time);
 }
 
 void strut_measure_finish(const strut_measurement *m, strut_summary *summary) {

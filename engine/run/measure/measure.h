@@ -94,7 +94,6 @@ typedef struct strut_measurement {
   double
       apart; /* largest velocity of a node from the tracked point's, at the start and marks [m/s] */
   double path; /* length of the tracked x's way since the start of the window [m] */
-  double size; /* of the model [m] */
   strut_quantities *quantities; /* NULL where the scene names none */
   strut_arena arena;
   double *work;     /* (marks) work of the drives there [J] */
