@@ -358,6 +358,27 @@ void strut_model_free(strut_model *model) {
   strut_release(model);
 }
 
+/* The lightest of nodes that are free to move [kg]. */
+static double lightest_of(const strut_model *model, const uint32_t *at, int count) {
+  double lightest = HUGE_VAL;
+  for (int k = 0; k < count; k++)
+    if (!(model->fixed[at[k]] && model->fixed[at[k] + 1]) && model->weight[at[k] / 2] > 0.0)
+      lightest = fmin(lightest, model->weight[at[k] / 2]);
+  return lightest;
+}
+
+double strut_model_fastest_spring(const strut_model *model) {
+  const strut_member_table *m = &model->members;
+  const strut_contact_table *c = &model->contacts;
+  double square = 0.0;
+  for (int32_t j = 0; j < m->count; j++)
+    square = fmax(
+        square, m->stiffness[j] / lightest_of(model, (const uint32_t[]){m->from[j], m->to[j]}, 2));
+  for (int32_t i = 0; i < c->count; i++)
+    square = fmax(square, c->entry[i].stiffness / lightest_of(model, &c->at[i], 1));
+  return sqrt(square);
+}
+
 /* Damping that a scene gives as a ratio or by Rayleigh's two numbers; see compile_parts.h. */
 
 /* Inverse of a node's lumped mass along d, in which supported directions are infinitely heavy. */

@@ -171,5 +171,7 @@ STRUT_API strut_status strut_model_compile(const strut_scene *scene, strut_model
                                            strut_error *error);
 /** NULL is allowed. */
 STRUT_API void strut_model_free(strut_model *model);
+/** Of members and contacts: the largest root of stiffness over the mass of the lightest free node [rad/s]. */
+STRUT_API double strut_model_fastest_spring(const strut_model *model);
 
 #endif

@@ -59,10 +59,11 @@ def profiles():
 
 
 def endless_runs():
-    write("stiff.yaml", MASS.replace("STIFFNESS", "1e30") + "solver: {integrator: adaptive, step: 1 ms}\n"
-          "run: {duration: 1 s}\n")
-    done, seconds = run("run", "stiff.yaml", code=3)
-    check("adaptive would take more than 1e+09 steps" in done.stderr and seconds < 5, done.stderr)
+    for method in ("adaptive", "adaptive8"):
+        write("stiff.yaml", MASS.replace("STIFFNESS", "1e30") + f"solver: {{integrator: {method}, step: 1 ms}}\n"
+              "run: {duration: 1 s}\n")
+        done, seconds = run("run", "stiff.yaml", code=3)
+        check(f"{method} would take more than 1e+09 steps" in done.stderr and seconds < 5, done.stderr)
     write("rare.yaml", MASS.replace("STIFFNESS", "100 N/m") + "solver: {integrator: rk4, step: 1 ms}\n"
           "run: {duration: 1 s}\noutput: {every: 1e300 s, channels: [position]}\n")
     run("run", "rare.yaml", "-o", "rare")

@@ -302,6 +302,7 @@ const strut_integrator strut_integrator_adaptive = {
 
 const strut_integrator strut_integrator_adaptive8 = {
     .name = "adaptive8",
+    .role = STRUT_ROLE_PRECISE,
     .description = "Verner 8(7) from event to event, step by error control",
     .order = 8,
     .evaluations = 13,

@@ -136,30 +136,14 @@ static bool make_held(const strut_model *model, strut_state *state) {
   return normal && friction;
 }
 
-/* The lightest of nodes that are free to move [kg]. */
-static double lightest_of(const strut_model *model, const uint32_t *at, int count) {
-  double lightest = HUGE_VAL;
-  for (int k = 0; k < count; k++)
-    if (!(model->fixed[at[k]] && model->fixed[at[k] + 1]) && model->weight[at[k] / 2] > 0.0)
-      lightest = fmin(lightest, model->weight[at[k] / 2]);
-  return lightest;
-}
-
 /*
  * What rounding leaves of a pair's difference of accelerations [m/s^2]: lengths are known to a part in 1e16 of the
  * size, and the stiffest spring on the lightest node pulls by as much.
  */
 static double rounding_of(const strut_model *model, const strut_tableau *pair) {
-  const strut_member_table *m = &model->members;
-  const strut_contact_table *c = &model->contacts;
-  double square = 0.0, weights = 0.0; /* of the fastest vibration [rad/s] */
-  for (int32_t j = 0; j < m->count; j++)
-    square = fmax(
-        square, m->stiffness[j] / lightest_of(model, (const uint32_t[]){m->from[j], m->to[j]}, 2));
-  for (int32_t i = 0; i < c->count; i++)
-    square = fmax(square, c->entry[i].stiffness / lightest_of(model, &c->at[i], 1));
+  double fastest = strut_model_fastest_spring(model), weights = 0.0;
   for (int k = 0; k <= pair->stages; k++) weights += fabs(pair->difference[k]);
-  return DBL_EPSILON * model->size * square * weights;
+  return DBL_EPSILON * model->size * fastest * fastest * weights;
 }
 
 void *strut_event_stepper_create(const strut_model *model, strut_state *state,

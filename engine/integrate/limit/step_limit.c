@@ -516,24 +516,12 @@ double strut_step_limit_of_method(const strut_step_limit *limit, const strut_int
 
 /* ---- effort of error control ---- */
 
-/* No member or contact vibrates faster on the lightest node that is free to move [rad/s]. */
-static double fastest_spring(const strut_model *model) {
-  double stiffest = 0.0, lightest = HUGE_VAL;
-  for (int32_t j = 0; j < model->members.count; j++)
-    stiffest = fmax(stiffest, model->members.stiffness[j]);
-  for (int32_t i = 0; i < model->contacts.count; i++)
-    stiffest = fmax(stiffest, model->contacts.entry[i].stiffness);
-  for (int32_t i = 0; i < model->node_count; i++)
-    if (!(model->fixed[2 * i] && model->fixed[2 * i + 1]) && model->weight[i] > 0.0)
-      lightest = fmin(lightest, model->weight[i]);
-  return sqrt(stiffest / lightest);
-}
-
 strut_status strut_step_limit_check_effort(const strut_model *model, const strut_integrator *method,
                                            double dt, strut_error *error) {
   const double most = 1e9;
   strut_step_limit limit;
-  if (method->role != STRUT_ROLE_REFERENCE || fastest_spring(model) * dt < 0.1 * most)
+  if (!strut_integrator_controls_error(method) ||
+      strut_model_fastest_spring(model) * dt < 0.1 * most)
     return STRUT_OK;
   strut_status status = strut_step_limit_estimate(model, &limit, error);
   if (status || dt <= most * limit.limit) return status;
