@@ -310,6 +310,24 @@ expect 0 run "$work/stiffer.yaml" --set "frequency=9 Hz" --set friction=0.331206
 cp "$work/out" "$work/json"
 [ "$(field '.accuracy.kept and (.velocity | fabs) < 1e-3')" = true ] || fail "stiffer: the first run exploded"
 
+# Halved steps of verlet-events where their motions converge, two runs with error control, adaptive8 for small errors:
+# none does more than it must, and each says how far off it may be. The velocities are those of GSL's rk8pd and ARKODE's
+# pairs of order 5 and 8 (docs/rivals/rivals.txt).
+while read -r scene accuracy method velocity most; do
+  expect 0 run "$here/../bench/precision/$scene.yaml" --accuracy "$accuracy" --json
+  cp "$work/out" "$work/json"
+  [ "$(field .accuracy.kept)" = true ] || fail "$scene, $accuracy: not kept"
+  [ "$(field .method)" = "\"$method\"" ] || fail "$scene, $accuracy: by another method"
+  about "$(field .velocity)" "$velocity" "$(field .accuracy.expected)"
+  [ "$(field "(.force_evaluations + .accuracy.check_evaluations) < $most")" = true ] || fail "$scene, $accuracy: dear"
+done <<END
+grid 0.1% verlet-events 0.09817027006 6000
+bouncing 2% adaptive 0.2150404677 45000
+smooth-friction 2% adaptive -0.003066621342 65000
+smooth-friction 0.1% adaptive -0.003066621342 95000
+feedback 0.0001% adaptive8 -0.03813063327 130000
+END
+
 # What makes no sense is refused.
 expect 1 run "$crawler" --accuracy 1% --integrator rk4
 err_has "give either --accuracy, or --integrator and --step"

@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The runs of accuracy_ladder.c and what accuracy_judge.c makes of them. */
+#ifndef STRUT_ENGINE_RUN_ACCURACY_LADDER_PARTS_H
+#define STRUT_ENGINE_RUN_ACCURACY_LADDER_PARTS_H
+
+#include <math.h>
+
+#include "engine/run/accuracy/accuracy.h"
+
+enum { STRUT_LADDER_RUNS = 12 };
+/** Shift of the start, over the size of the structure: no model is known to so many digits. */
+#define STRUT_LADDER_SHIFT 1e-12
+
+/** One run with its result. */
+typedef struct strut_rung {
+  strut_experiment e;
+  strut_summary s;
+  strut_track track;
+  int64_t cost; /* force evaluations */
+} strut_rung;
+
+typedef struct strut_ladder {
+  strut_accuracy *a;
+  strut_rung rung[3], *now, *before;
+  double unit;                    /* the longest steps and moments divide it [s] */
+  double moment;                  /* between moments of a track [s] */
+  double change, earlier_change;  /* relative, of the latest two runs and of the two before */
+  double earliest_change;         /* of the two before those */
+  double *difference;             /* (quantities) of the latest two runs, SI */
+  double *shifted;                /* (quantities) what a shifted start changes, SI */
+  double sensitivity;             /* the same as `change` */
+  double *results;                /* (runs, quantities + 1) of each run, then the velocity, SI */
+  size_t worst;                   /* index of the quantity with the largest relative error */
+  double distance;                /* of the latest two tracks */
+  double earlier_distance;        /* of the two before */
+  int runs, coarse_runs;          /* of all, the first ones, by the coarse method */
+  double mean[STRUT_LADDER_RUNS]; /* (means) velocities of the runs with error control [m/s] */
+  int means;
+  double expected; /* estimated error of the latest run, relative */
+  bool same_motion, kept, budget_spent;
+  const strut_model *model;
+  strut_arena arena;
+} strut_ladder;
+
+/** Not positive before the first one; meaningless where only one method suits the scene. */
+static inline int strut_ladder_runs_with_error_control(const strut_ladder *l) {
+  return l->runs - l->coarse_runs;
+}
+
+/** Are there so many runs, and all by the coarse method? */
+static inline bool strut_ladder_is_coarse(const strut_ladder *l, int least) {
+  return !l->a->single_method && l->runs >= least && strut_ladder_runs_with_error_control(l) < 1;
+}
+
+static inline double strut_ladder_velocity_size(const strut_ladder *l, double velocity) {
+  return fmax(fabs(velocity), l->a->scale);
+}
+
+/**
+ * Error allowed for quantity i, in its unit. Relative ones refer to its value, or to a thousandth
+ * of its largest term if that is larger.
+ */
+double strut_ladder_tolerated_error(const strut_ladder *l, const strut_measured *m, size_t i);
+/** Decides whether the latest of two or more runs is accurate enough, and estimates its error. */
+void strut_ladder_judge(strut_ladder *l);
+/** Lets the coarse method go on where one or two more halved steps should do, for less than another method takes. */
+void strut_ladder_extend_coarse(strut_ladder *l);
+/** No more runs follow: those that met a limit may still agree well enough. */
+void strut_ladder_judge_last(strut_ladder *l);
+/** Fills the summary's accuracy and quantities. */
+void strut_ladder_report(strut_ladder *l);
+
+#endif
