@@ -132,9 +132,24 @@ static bool any_contradicts_at_stage(const strut_model *model, const strut_event
   return false;
 }
 
+/* Part of what is left of the step after a law begins to act, after which it still does. */
+static const double SOON = 0.1;
+
+/*
+ * Where a law acts for a while within the step that does not at its ends: its strain passes the kink, towards which a
+ * damper pulls beside it, and by the end the damper outweighs it. 0: it does not.
+ */
+static double short_pull(const strut_event_stepper *l, int32_t k, double h, double faint) {
+  double from = -l->now->stretch[k], to = l->next->stretch[k];
+  if (l->acting[k] || !(from > 0.0 && to > faint && l->next->tension[k] <= 0.0)) return 0.0;
+  double at = strut_event_cubic_root(from, -h * l->now->stretch_rate[k], -to,
+                                     -h * l->next->stretch_rate[k]);
+  return at + SOON * (1.0 - at);
+}
+
 /* Earliest point, within the step, where a law that acts at both ends does not, or the other way; 0: none. */
-static double earliest_slack_dip(const strut_model *model, strut_state *state,
-                                 strut_event_stepper *l, double h) {
+static double earliest_switch(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                              double h) {
   double first = 0.0, faint = 0.01 * fmax(0.1 * l->tolerance, 1e-12) * model->size;
   strut_event_measure(model, state, l, l->next);
   int32_t count = strut_laws_of(l);
@@ -143,9 +158,9 @@ static double earliest_slack_dip(const strut_model *model, strut_state *state,
     double side = l->acting[k] ? 1.0 : -1.0;
     if (l->laws[k].event != STRUT_EVENT_ACTS) continue;
     double from = side * l->now->stretch[k], to = side * l->next->stretch[k];
-    if (!(from > 0.0 && to > 0.0)) continue;
-    double at = dip(from, side * h * l->now->stretch_rate[k], to,
-                    side * h * l->next->stretch_rate[k], faint);
+    double at = from > 0.0 && to > 0.0 ? dip(from, side * h * l->now->stretch_rate[k], to,
+                                             side * h * l->next->stretch_rate[k], faint)
+                                       : short_pull(l, k, h, faint);
     if (at > 0.0 && (first == 0.0 || at < first)) first = at;
   }
   return first;
@@ -196,7 +211,7 @@ STRUT_LOOP void look_between(const strut_model *model, strut_state *state, strut
                              double h, double broken, unsigned terms) {
   if (!(l->error <= 1.0)) return;
   double part = model->contacts.count ? earliest_dip(model, state, l, h, terms) : 0.0;
-  double slack = l->law_count ? earliest_slack_dip(model, state, l, h) : 0.0;
+  double slack = l->law_count ? earliest_switch(model, state, l, h) : 0.0;
   if (slack > 0.0 && (part == 0.0 || slack < part)) part = slack;
   if (broken > 0.0 && (part == 0.0 || broken < part) && h > LEAST_SPLIT * l->longest &&
       strut_event_first(model, state, l, h).kind == STRUT_EVENT_NONE)

@@ -355,6 +355,8 @@ strut_event strut_event_first(const strut_model *model, strut_state *state, stru
 /** The earliest one of contact i alone. */
 strut_event strut_event_of_contact(const strut_model *model, const strut_event_stepper *l,
                                    int32_t i, double h);
+/** First root in [0, 1] of the cubic with these values and slopes at 0 and 1; g0 > 0 > g1. */
+double strut_event_cubic_root(double g0, double d0, double g1, double d1);
 /** The value that event ends at 0, at an end; positive while the mode holds. */
 double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t index);

@@ -10,8 +10,7 @@
 /* A ground damper this much weaker than the whole reaction is rounding, whatever its sign. */
 static const double FAINT = 1e-12;
 
-/* First root in [0, 1] of the cubic with these values and slopes at 0 and 1; g0 > 0 > g1. */
-static double cubic_root(double g0, double d0, double g1, double d1) {
+double strut_event_cubic_root(double g0, double d0, double g1, double d1) {
   double low = 0.0, high = 1.0, x = g0 / (g0 - g1);
   for (int k = 0; k < 60 && high - low > 1e-15; k++) {
     double r = 1.0 - x;
@@ -91,12 +90,12 @@ static double fraction_of(const strut_model *model, const strut_event_stepper *l
     strut_touch a, b;
     measure_at_end(c, l, l->now, i, STRUT_TERMS_ALL, &a);
     measure_at_end(c, l, l->next, i, STRUT_TERMS_ALL, &b);
-    return cubic_root(g0, h * a.into, g1, h * b.into);
+    return strut_event_cubic_root(g0, h * a.into, g1, h * b.into);
   }
   if (strut_event_rate(l, l->now, kind, i, &d0) && strut_event_rate(l, l->next, kind, i, &d1))
-    return cubic_root(g0, h * d0, g1, h * d1);
+    return strut_event_cubic_root(g0, h * d0, g1, h * d1);
   if (kind == STRUT_EVENT_ACTS && cable_rates(l, i, h, &d0, &d1))
-    return cubic_root(g0, h * d0, g1, h * d1);
+    return strut_event_cubic_root(g0, h * d0, g1, h * d1);
   return g0 / (g0 - g1);
 }
 
