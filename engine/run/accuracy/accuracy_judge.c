@@ -21,10 +21,10 @@ double strut_ladder_tolerated_error(const strut_ladder *l, const strut_measured 
 /* Tracks closer than this, relative to the range of motion, are the same motion. */
 static const double SAME_MOTION = 0.03;
 /*
- * The same for two runs of which the first is coarse: over the accuracy wanted, and at most. A mean velocity that is
- * small beside the nodes' may agree by chance where their motions do not.
+ * The same for two runs only: over the accuracy wanted, and, where the first is coarse, at most. A mean velocity that
+ * is small beside the nodes' may agree by chance where their motions do not.
  */
-static const double SAME_MOTION_OF_COARSE = 0.5, MOST_APART_OF_COARSE = 0.005;
+static const double SAME_MOTION_OF_TWO = 0.5, MOST_APART_OF_COARSE = 0.005;
 /* The same for coarse runs that converge, each with half the step of the one before. */
 static const double MOST_APART_OF_CONVERGING = 0.01, CONVERGING_STEPS = 0.5;
 /* Part that half the step leaves of what two runs of the coarse method, of order 2, differ by. */
@@ -34,10 +34,11 @@ enum { MOST_COARSE_RUNS = 4 };
 static const double WORTH = 5.0;
 /*
  * Expected error that is accepted, as part of the wanted one: of two runs by one method or by two, which show no
- * convergence; and of later runs. Where the first two with error control both took the longest step, so that their
- * tolerances changed nothing, an error of order 1 in it is three times their difference.
+ * convergence; of two whose motions are further apart than that; and of later runs. Where the first two with error
+ * control both took the longest step, so that their tolerances changed nothing, an error of order 1 in it is three
+ * times their difference.
  */
-static const double ENOUGH_OF_TWO = 0.2, ENOUGH = 0.3;
+static const double ENOUGH_OF_TWO = 0.2, ENOUGH_OF_TWO_APART = 0.05, ENOUGH = 0.3;
 /* The same where only one method suits the scene. */
 static const double ENOUGH_ALONE = 0.05;
 /* Runs converge whose differences shrink from one to the next by this factor or a smaller one. */
@@ -103,7 +104,7 @@ static bool coarse_runs_converge(const strut_ladder *l) {
 /* Largest distance of the motions of two runs of which the first is coarse. */
 static double allowed_distance(const strut_ladder *l, bool converging) {
   double most = converging ? MOST_APART_OF_CONVERGING : MOST_APART_OF_COARSE;
-  return fmin(SAME_MOTION_OF_COARSE * l->a->target, most);
+  return fmin(SAME_MOTION_OF_TWO * l->a->target, most);
 }
 
 void strut_ladder_extend_coarse(strut_ladder *l) {
@@ -124,6 +125,7 @@ void strut_ladder_extend_coarse(strut_ladder *l) {
 void strut_ladder_judge(strut_ladder *l) {
   int further = strut_ladder_runs_with_error_control(l);
   double wanted = l->a->target, enough = further < 3 ? ENOUGH_OF_TWO : ENOUGH;
+  if (further == 2 && l->distance > SAME_MOTION_OF_TWO * wanted) enough = ENOUGH_OF_TWO_APART;
   if (l->a->single_method) enough = ENOUGH_ALONE;
   l->expected = estimate_motion_error(l);
   l->same_motion = l->distance <= SAME_MOTION;
