@@ -403,4 +403,10 @@ MUTANTS = [
            "if (a->e.energy != b->e.energy) return a->e.energy < b->e.energy ? -1 : 1;",
            "if (a->e.energy != b->e.energy) return a->e.energy > b->e.energy ? -1 : 1;",
            "equilibria are listed from the highest energy on", "equilibria|standing|cli_equilibria"),
+    Mutant("brief-pulls", "engine/integrate/events/adaptive.c",
+           "to > faint && l->next->tension[k] < 0.0", "to > faint && l->next->tension[k] > 0.0",
+           "a damped cable that pulls for part of a step is not seen", "cli_accuracy"),
+    Mutant("chance-of-coarse", "engine/run/accuracy/accuracy_judge.c",
+           "return fmax(error, LEFT_BY_HALF_STEP * earlier);", "return earlier > 0.0 ? error : earlier;",
+           "coarse runs that agree by chance count as accurate", "cli_accuracy"),
 ]

@@ -141,7 +141,7 @@ static const double SOON = 0.1;
  */
 static double short_pull(const strut_event_stepper *l, int32_t k, double h, double faint) {
   double from = -l->now->stretch[k], to = l->next->stretch[k];
-  if (l->acting[k] || !(from > 0.0 && to > faint && l->next->tension[k] <= 0.0)) return 0.0;
+  if (l->acting[k] || !(from > 0.0 && to > faint && l->next->tension[k] < 0.0)) return 0.0;
   double at = strut_event_cubic_root(from, -h * l->now->stretch_rate[k], -to,
                                      -h * l->next->stretch_rate[k]);
   return at + SOON * (1.0 - at);

@@ -7,7 +7,7 @@
 
 #include "engine/run/accuracy/accuracy.h"
 
-enum { STRUT_LADDER_RUNS = 12 };
+enum { STRUT_LADDER_RUNS = 12 }; /* at most */
 /** Shift of the start, over the size of the structure: no model is known to so many digits. */
 #define STRUT_LADDER_SHIFT 1e-12
 
