@@ -23,6 +23,7 @@ except ImportError as missing:
 from testing import fail, files_in, finish, models, strut
 
 CRAWLER, X = f"{models}/crawler/crawler.yaml", f"{models}/gallery/x-frame.yaml"
+TRUSS = f"{models}/basics/von-mises-truss.yaml"
 SQUARE, PENDULUM = f"{models}/basics/x-frame.yaml", f"{models}/basics/pendulum.yaml"
 TWO, SNAP = f"{models}/gallery/two-mass-crawler.yaml", f"{models}/gallery/von-mises.yaml"
 
@@ -179,6 +180,7 @@ for path in (X, SQUARE, SNAP):
     check_rigidity(path, model["values"])
     check_states(path, model)
     check_frequencies(path, model["values"])
+check_states(TRUSS, read("compare", TRUSS, "--no-motion")["models"][0])  # two of different energies
 for path in (X, SQUARE, CRAWLER):
     check_stiffness(path, read("compare", path, "--no-motion", "--no-states")["models"][0])
 

@@ -6,12 +6,22 @@ set -eu
 strut=$1
 shift
 seen=0 wrong=0
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
+log=$(mktemp) spared=$(mktemp)
+trap 'rm -f "$log" "$spared"' EXIT
+# glibc's loader compares words beyond the end of a short path
+cat >"$spared" <<'END'
+{
+   loader
+   Memcheck:Addr8
+   fun:strncmp
+   fun:is_dst
+   ...
+}
+END
 for model in $(find "$@" -name '*.yaml' | sort); do
   for command in run equilibria modes rigidity path; do
     seen=$((seen + 1))
-    timeout 900 valgrind --quiet --error-exitcode=99 "$strut" "$command" "$model" --json >/dev/null 2>"$log" || code=$?
+    timeout 900 valgrind --quiet --suppressions="$spared" --error-exitcode=99 "$strut" "$command" "$model" --json >/dev/null 2>"$log" || code=$?
     case ${code:-0} in
       99 | 124) wrong=$((wrong + 1)); echo "$command $model: exit code $code"; cat "$log" ;;
     esac
