@@ -136,8 +136,8 @@ static bool any_contradicts_at_stage(const strut_model *model, const strut_event
 static const double SOON = 0.1;
 
 /*
- * Where a law acts for a while within the step that does not at its ends: its strain passes the kink, towards which a
- * damper pulls beside it, and by the end the damper outweighs it. 0: it does not.
+ * Where a law acts within the step but at neither end: its strain passes the kink, at a speed at which the damper pulls
+ * too, and by the end the damper outweighs it. 0: nowhere.
  */
 static double short_pull(const strut_event_stepper *l, int32_t k, double h, double faint) {
   double from = -l->now->stretch[k], to = l->next->stretch[k];

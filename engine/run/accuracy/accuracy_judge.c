@@ -29,7 +29,7 @@ static const double SAME_MOTION_OF_TWO = 0.5, MOST_APART_OF_COARSE = 0.005;
 static const double MOST_APART_OF_CONVERGING = 0.01, CONVERGING_STEPS = 0.5;
 /* Part that half the step leaves of what two runs of the coarse method, of order 2, differ by. */
 static const double LEFT_BY_HALF_STEP = 0.25;
-/* Runs by the coarse method, and what those after the second may cost, over the first: a run with error control does. */
+/* Runs by the coarse method; and what those after the second may cost, over the first: as a run with error control. */
 enum { MOST_COARSE_RUNS = 4 };
 static const double WORTH = 5.0;
 /*
