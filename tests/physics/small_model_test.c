@@ -67,7 +67,10 @@ static void add_ground(strut_scene *scene, uint64_t *r) {
     c->dissipation = random_between(r, 0.1, 2);
     if (rough && random_once_in(r, 3)) c->friction.law = STRUT_FRICTION_COULOMB;
     if (!laws || !rough) continue;
-    if (random_once_in(r, 3)) c->friction.law = STRUT_FRICTION_SMOOTH, c->friction.width = 0.01;
+    if (random_once_in(r, 3)) {
+      c->friction.law = random_once_in(r, 2) ? STRUT_FRICTION_SMOOTH : STRUT_FRICTION_STRIBECK;
+      c->friction.width = 0.01, c->friction.decay_velocity = 0.1;
+    }
     c->friction.directional = random_once_in(r, 2);
     c->friction.mu_static_backward = 0.9, c->friction.mu_kinetic_backward = 0.5;
   }

@@ -69,10 +69,16 @@ STRUT_SMALL_INLINE small_real small_holding(const strut_small_contacts *c, int p
 /* See friction_in_mode. */
 STRUT_SMALL_INLINE small_real small_friction_in_mode(const strut_small_contacts *c,
                                                      const strut_small_modes *m, int p,
-                                                     small_real normal, small_real applied,
-                                                     bool laws) {
+                                                     small_real normal, small_real slip,
+                                                     small_real applied, bool laws) {
   small_real friction =
       small_keep(SMALL_MODE_MASK(mask.rubs), SMALL_MODE(row.slip_factor) * normal);
+  if (laws && m->is.any_by_speed) {
+    const small_friction_numbers numbers = small_friction_at(c, p);
+    const small_friction_choice has = small_choice_at(c, p);
+    friction = small_choose(SMALL_MODE_MASK(mask.by_speed),
+                            small_friction(&numbers, &has, normal, slip, applied), friction);
+  }
   if (!m->is.any_band) return friction;
   small_real holding = small_holding(c, p, normal, applied, laws);
   return small_choose(SMALL_MODE_MASK(mask.band), small_friction_in_band(holding, applied),
@@ -98,9 +104,10 @@ STRUT_SMALL_INLINE void small_add_ground(small_events *e, int p, const small_poi
   }
   small_mask closed = SMALL_MODE_MASK(mask.closed);
   small_real normal = small_normal_force(c, m, p, gap, into, laws);
-  small_real friction = small_friction_in_mode(c, m, p, normal, applied, laws);
+  small_real slip = along - small_belt(&e->run);
+  small_real friction = small_friction_in_mode(c, m, p, normal, slip, applied, laws);
   e->contacts.gap.part[p] = gap, e->contacts.into.part[p] = into;
-  e->contacts.slip.part[p] = along - small_belt(&e->run), e->contacts.applied.part[p] = applied;
+  e->contacts.slip.part[p] = slip, e->contacts.applied.part[p] = applied;
   e->contacts.normal.part[p] = normal, e->contacts.friction.part[p] = friction;
   small_real px = sloped ? friction * tx + normal * nx : friction;
   small_real py = sloped ? friction * ty + normal * ny : normal;

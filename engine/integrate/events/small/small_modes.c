@@ -15,15 +15,15 @@ strut_status strut_small_modes_create(const strut_model *model, strut_state *sta
 }
 
 /* Does the kernel of small models know friction in this mode? */
-static bool is_known(const strut_contact_entry *e, uint8_t mode) {
+static bool is_known(uint8_t mode) {
   switch ((strut_contact_mode)mode) {
     case STRUT_MODE_OPEN:
     case STRUT_MODE_SLIP:
     case STRUT_MODE_STICK:
     case STRUT_MODE_BAND:
     case STRUT_MODE_PUSH:
-    case STRUT_MODE_CREEP: return true;
-    case STRUT_MODE_SLIDE: return !strut_friction_is_continuous(e->friction.law);
+    case STRUT_MODE_CREEP:
+    case STRUT_MODE_SLIDE: return true;
     case STRUT_MODE_YIELD: break;
   }
   return false;
@@ -47,8 +47,11 @@ static void list_contact(const strut_model *model, const strut_event_stepper *l,
   m->mask.band[n] = mask_of(mode == STRUT_MODE_BAND);
   m->mask.stick[n] = mask_of(mode == STRUT_MODE_STICK);
   m->mask.creep[n] = mask_of(mode == STRUT_MODE_CREEP);
+  m->mask.by_speed[n] =
+      mask_of(mode == STRUT_MODE_SLIDE && strut_friction_is_continuous(e->friction.law));
   m->is.any_held = m->is.any_held || m->mask.stick[n] || m->mask.creep[n];
   m->is.any_band = m->is.any_band || m->mask.band[n] || m->mask.pushes[n];
+  m->is.any_by_speed = m->is.any_by_speed || m->mask.by_speed[n];
   m->is.any_by_sign = m->is.any_by_sign || l->damper[i] == 0;
   m->mask.drops[n] = mask_of(strut_friction_drops(&e->friction));
   m->mask.damper_on[n] = mask_of(l->damper[i] > 0);
@@ -113,7 +116,7 @@ void strut_small_modes_update(const strut_model *model, const strut_state *state
   strut_small_inputs_read(model, state, &m->inputs);
   for (int32_t i = 0; i < c->count; i++) {
     m->row.outward[c->entry[i].node] = l->outward[i];
-    if (!is_known(&c->entry[i], l->mode[i])) m->is.in_registers = false;
+    if (!is_known(l->mode[i])) m->is.in_registers = false;
     if (l->mode[i] == STRUT_MODE_OPEN) continue;
     list_contact(model, l, i, m);
     if (m->is.decoupled) list_answers(model, l, i, m);

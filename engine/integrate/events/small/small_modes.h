@@ -26,12 +26,14 @@ typedef struct strut_small_modes {
     bool decoupled;    /* and no two closed contacts are of one body, on level ground */
     bool any_held;     /* some contact sticks or creeps */
     bool any_band;     /* or is in Karnopp's band */
-    bool any_by_sign;  /* or has a damper that acts by its sign */
+    bool any_by_speed; /* or has friction by the speed alone */
+    bool any_by_sign;  /* or a damper that acts by its sign */
   } is;
   strut_small_inputs inputs;
   struct {
     strut_small_mask closed, slips, rubs, band, pushes, held; /* rubs: slips or is pushed */
     strut_small_mask stick, creep, drops; /* drops: static and kinetic friction differ */
+    strut_small_mask by_speed;            /* slides with a continuous law */
     strut_small_mask damper_on, damper_off, damper_by_sign;
   } mask;
   struct {

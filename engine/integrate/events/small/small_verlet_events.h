@@ -63,12 +63,12 @@ STRUT_SMALL_INLINE void small_implicit_ground(small_events *e, double h, const s
     small_real spring = small_ground_spring(&numbers, gap), half = 0.5 * h * SMALL_MODE(row.normal);
     small_real free = v->y.part[p] + 0.5 * h * (a0->y.part[p] + a1->y.part[p]) + half * spring;
     small_real normal = spring + small_ground_implicit_damper(&numbers, spring, free, half, laws);
-    small_real friction = small_friction_in_mode(c, m, p, normal, applied, laws);
+    small_real slip = speed->x.part[p] - small_belt(&e->run);
+    small_real friction = small_friction_in_mode(c, m, p, normal, slip, applied, laws);
     if (m->is.any_held)
       friction = small_choose(SMALL_MODE_MASK(mask.stick) | SMALL_MODE_MASK(mask.creep),
                               -a1->x.part[p] / SMALL_MODE(row.tangent), friction);
-    o->gap.part[p] = gap, o->applied.part[p] = applied;
-    o->slip.part[p] = speed->x.part[p] - small_belt(&e->run);
+    o->gap.part[p] = gap, o->applied.part[p] = applied, o->slip.part[p] = slip;
     x.part[p] = o->friction.part[p] = friction;
     y.part[p] = o->normal.part[p] = normal;
   }
