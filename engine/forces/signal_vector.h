@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Hot: a signal at many times at once. Sines go by vectors, with the bits of strut_signal_evaluate; all other
- * signals through it.
+ * Hot: a signal at many times at once. Sines, and sums of them, go by vectors, with the bits of
+ * strut_signal_evaluate; all other signals through it.
  */
 #ifndef STRUT_ENGINE_FORCES_SIGNAL_VECTOR_H
 #define STRUT_ENGINE_FORCES_SIGNAL_VECTOR_H
@@ -32,23 +32,51 @@ STRUT_INLINE bool signal_is_wave(const strut_signal *s, const double *time, int3
          fabs(first) < 0x1p48 && fabs(last) < 0x1p48;
 }
 
-/* Values and rates of a signal at `count` times, none before the first or after the last; arrays have room for
-   whole vectors. */
-STRUT_INLINE void signal_at_times(const strut_signal *signals, int32_t index, const double *time,
-                                  int32_t count, double *value, double *rate) {
-  const strut_signal *s = &signals[index];
-  if (!signal_is_wave(s, time, count)) {
-    for (int32_t h = 0; h < count; h++)
-      strut_signal_evaluate(signals, index, time[h], &value[h], &rate[h]);
-    return;
+/* The same of a sum of nothing but sines. */
+STRUT_INLINE bool signal_is_sum_of_waves(const strut_signal *signals, const strut_signal *s,
+                                         const double *time, int32_t count) {
+  bool all = s->kind == STRUT_SUM && time[0] >= s->start && time[count - 1] < s->stop;
+  for (size_t i = 0; all && i < s->term_count; i++) {
+    const strut_signal *term = &signals[s->terms[i]];
+    all = signal_is_wave(term, time, count) && term->trigger.kind == STRUT_TRIGGER_NONE &&
+          !(term->lag > 0.0) && !(term->every > 0.0);
   }
+  return all;
+}
+
+/* Adds a wave at `count` times, in whole vectors, to values and rates, or begins them. */
+STRUT_INLINE void signal_add_wave(const strut_signal *s, const double *time, int32_t count,
+                                  bool begin, double *value, double *rate) {
   double fast = s->amplitude * STRUT_TAU * s->frequency;
   for (int32_t h = 0; h < count; h += STRUT_LANES) {
     strut_lanes sine, cosine;
     strut_lanes turns = s->frequency * (strut_lanes_load(time + h) - s->start) + s->phase;
     signal_vector_sincos(turns, &sine, &cosine);
-    strut_lanes_store(value + h, s->amplitude * sine);
-    strut_lanes_store(rate + h, fast * cosine);
+    sine = s->amplitude * sine, cosine = fast * cosine;
+    if (!begin) sine = strut_lanes_load(value + h) + sine;
+    if (!begin) cosine = strut_lanes_load(rate + h) + cosine;
+    strut_lanes_store(value + h, sine);
+    strut_lanes_store(rate + h, cosine);
+  }
+}
+
+/* Values and rates of a signal at `count` times, none before the first or after the last; arrays have room for
+   whole vectors. */
+STRUT_INLINE void signal_at_times(const strut_signal *signals, int32_t index, const double *time,
+                                  int32_t count, double *value, double *rate) {
+  const strut_signal *s = &signals[index];
+  if (signal_is_wave(s, time, count)) {
+    signal_add_wave(s, time, count, true, value, rate);
+  } else if (signal_is_sum_of_waves(signals, s, time, count)) {
+    for (int32_t h = 0; h < count; h += STRUT_LANES) {
+      strut_lanes_store(value + h, (strut_lanes){0.0});
+      strut_lanes_store(rate + h, (strut_lanes){0.0});
+    }
+    for (size_t i = 0; i < s->term_count; i++)
+      signal_add_wave(&signals[s->terms[i]], time, count, false, value, rate);
+  } else {
+    for (int32_t h = 0; h < count; h++)
+      strut_signal_evaluate(signals, index, time[h], &value[h], &rate[h]);
   }
 }
 

@@ -2,6 +2,7 @@
 /* Waveforms against their closed forms, and their rates against differences. */
 #include <math.h>
 
+#include "engine/forces/signal_vector.h"
 #include "engine/scene/signal.h"
 #include "tests/support/test.h"
 
@@ -135,6 +136,27 @@ TEST(sums_add_values_and_rates) {
     near(value_of(s, 2, t), value_of(s, 0, t) + 2 * value_of(s, 1, t), 1e-14);
     near(rate_of(s, 3, t), 2 * rate_of(s, 0, t) + 2 * rate_of(s, 1, t), 1e-12);
   }
+}
+
+/* Many times at once, in the kernels' whole vectors: sines, sums of them, and sums of other signals too. */
+TEST(many_times_have_the_bits_of_each) {
+  enum { COUNT = 13, ROOM = 16 };
+  const int32_t of_sines[] = {0, 1, 2}, of_both[] = {0, 3}, of_sums[] = {0, 4};
+  strut_signal s[7] = {sine(2, 10, 0.1, 0), sine(-1, 20, 0, 0.25), sine(0.3, 0.7, -4, -1)};
+  s[3] = strut_signal_default(STRUT_SQUARE), s[3].amplitude = 0.5, s[3].frequency = 3;
+  for (int i = 4; i < 7; i++) s[i] = strut_signal_default(STRUT_SUM);
+  s[4].terms = of_sines, s[4].term_count = 3, s[4].stop = 1.5;
+  s[5].terms = of_both, s[5].term_count = 2, s[6].terms = of_sums, s[6].term_count = 2;
+  for (int32_t index = 0; index < 7; index++)
+    for (int begin = 0; begin < 200; begin++) {
+      double time[ROOM] = {0}, value[ROOM], rate[ROOM];
+      for (int h = 0; h < COUNT; h++) time[h] = 0.01 * begin + 0.0013 * h;
+      signal_at_times(s, index, time, COUNT, value, rate);
+      for (int h = 0; h < COUNT; h++) {
+        assert_true(value[h] == value_of(s, index, time[h]));
+        assert_true(rate[h] == rate_of(s, index, time[h]));
+      }
+    }
 }
 
 TEST(rates_are_derivatives) {
