@@ -18,8 +18,11 @@ static const double FINER_TOLERANCE = 1.0 / 30.0;
  * leads to.
  */
 static const double FIRST_TOLERANCE = 1e-5, FIRST_TOLERANCE_PER_ERROR = 1e-3;
-/* For smaller errors wanted the method of higher order costs less. */
-static const double PRECISE = 2e-6;
+/*
+ * The method of higher order costs less for smaller errors wanted, and where two runs show that tolerances set the
+ * steps, not events: one of order 5 then makes twice the steps for a tolerance finer by that factor.
+ */
+static const double PRECISE = 2e-6, GROWTH_BY_TOLERANCE = 1.6;
 /* Smallest tolerance: below it rounding dominates. */
 static const double LEAST_TOLERANCE = 3e-14;
 /* Moments of a track: per period or run, and the most. */
@@ -85,8 +88,8 @@ static strut_experiment refine_experiment(const strut_ladder *l, int k) {
     if (k > 0) e.refine_rate *= 0.5; /* steps after a touchdown are finer, too */
   } else {
     int further = k - l->coarse_runs;
-    bool precise = a->target < PRECISE;
-    e.integrator = strut_integrator_for(precise ? STRUT_ROLE_PRECISE : STRUT_ROLE_REFERENCE)->name;
+    e.integrator =
+        strut_integrator_for(l->precise ? STRUT_ROLE_PRECISE : STRUT_ROLE_REFERENCE)->name;
     e.step = l->moment / STEPS_OF_MOMENT[further];
     e.tolerance = fmin(FIRST_TOLERANCE, FIRST_TOLERANCE_PER_ERROR * a->target);
     e.tolerance = fmax(LEAST_TOLERANCE, e.tolerance * pow(FINER_TOLERANCE, further));
@@ -160,6 +163,9 @@ static strut_status run_next_rung(strut_ladder *l) {
   next->cost = next->s.spent.evaluations;
   l->a->check_evaluations += next->cost;
   if (status == STRUT_WORK_LIMIT) return discard_unfinished_run(l);
+  if (strut_ladder_runs_with_error_control(l) > 1 &&
+      (double)next->cost > GROWTH_BY_TOLERANCE * (double)l->before->cost)
+    l->precise = true;
   l->earliest_change = l->earlier_change;
   l->earlier_change = l->change;
   l->earlier_distance = l->distance;
@@ -286,7 +292,8 @@ strut_status strut_accuracy_climb_ladder(strut_accuracy *a) {
                     .earlier_change = HUGE_VAL,
                     .earliest_change = HUGE_VAL,
                     .distance = HUGE_VAL,
-                    .expected = HUGE_VAL};
+                    .expected = HUGE_VAL,
+                    .precise = a->target < PRECISE};
   strut_status status = create_ladder(a, &l);
   while (!status && may_refine(&l)) {
     status = run_next_rung(&l);

@@ -38,6 +38,7 @@ typedef struct strut_ladder {
   int means;
   double expected; /* estimated error of the latest run, relative */
   bool same_motion, kept, budget_spent;
+  bool precise; /* runs with error control are by the method of higher order */
   const strut_model *model;
   strut_arena arena;
 } strut_ladder;
