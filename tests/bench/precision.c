@@ -210,9 +210,13 @@ static double cost_of(const precision_row *row, cost kind) {
   return kind == CPU_TIME ? row->answer.seconds : (double)row->answer.evaluations;
 }
 
-static bool is_cheaper(const precision_row *a, const precision_row *than, cost kind) {
-  return a && (!than || cost_of(a, kind) < cost_of(than, kind));
-}
+/* What a method asks for an error; no row: it does not offer it. */
+typedef struct offer {
+  const precision_row *row;
+  double cost;
+} offer;
+
+static bool is_cheaper(offer a, offer than) { return a.row && (!than.row || a.cost < than.cost); }
 
 /* --accuracy must keep what was asked for. */
 static bool keeps_promise(const precision_row *row, double error) {
@@ -220,47 +224,65 @@ static bool keeps_promise(const precision_row *row, double error) {
 }
 
 /*
+ * Cost at an error that the coarser row does not keep and the finer one does: on the diagram's line between both, so
+ * that it does not depend on where settings happen to lie.
+ */
+static double cost_between(const precision_row *coarser, const precision_row *finer, double error,
+                           cost kind) {
+  double fine = cost_of(finer, kind), coarse = cost_of(coarser, kind);
+  if (!(coarser->error < HUGE_VAL && finer->error > 0.0 && coarse > 0.0 && coarse < fine))
+    return fine;
+  double part = log(error / finer->error) / log(coarser->error / finer->error);
+  return fine * pow(coarse / fine, part);
+}
+
+/*
  * The cheapest row of a method within an error, whose finer settings keep it too: one small error alone may be a
  * coincidence.
  */
-static const precision_row *cheapest_of(const scene_run *s, const precision_method *m, double error,
-                                        cost kind) {
-  const precision_row *best = NULL;
+static offer cheapest_of(const scene_run *s, const precision_method *m, double error, cost kind) {
+  offer best = {NULL, 0.0};
+  const precision_row *finer = NULL;
   for (size_t i = s->count; i-- > 0;) {
     const precision_row *row = &s->rows[i];
-    if (row->method != m || (isnan(row->error) && !best)) continue;
+    if (row->method != m || (isnan(row->error) && !best.row)) continue;
     bool kept = is_accuracy(m) ? keeps_promise(row, error) : row->error <= error;
-    if (!kept && !is_accuracy(m)) return best;
-    if (kept && is_cheaper(row, best, kind)) best = row;
+    offer found = {row, cost_of(row, kind)};
+    if (!kept && !is_accuracy(m)) {
+      found = (offer){finer, finer ? cost_between(row, finer, error, kind) : 0.0};
+      return is_cheaper(found, best) ? found : best;
+    }
+    if (kept && is_cheaper(found, best)) best = found;
+    finer = row;
   }
   return best;
 }
 
 typedef enum contender { OF_OTHERS, OF_STRUT } contender;
 
-static const precision_row *cheapest(const scene_run *s, contender who, double error, cost kind) {
-  const precision_row *best = NULL;
+static offer cheapest(const scene_run *s, contender who, double error, cost kind) {
+  offer best = {NULL, 0.0};
   for (size_t i = 0; method_at(i); i++) {
     const precision_method *m = method_at(i);
     if (m->strut != (who == OF_STRUT) || is_accuracy(m)) continue;
-    const precision_row *row = cheapest_of(s, m, error, kind);
-    if (is_cheaper(row, best, kind)) best = row;
+    offer found = cheapest_of(s, m, error, kind);
+    if (is_cheaper(found, best)) best = found;
   }
   return best;
 }
 
 /* ---- output ---- */
 
-static void print_row(const precision_row *row, cost kind) {
-  if (row)
-    printf(" %-20s %8.3g", row->method->name, cost_of(row, kind));
+static void print_offer(offer o) {
+  if (o.row)
+    printf(" %-20s %8.3g", o.row->method->name, o.cost);
   else
     printf(" %-20s %8s", "none", "-");
 }
 
-static void print_ratio(const precision_row *a, const precision_row *b, cost kind) {
-  if (a && b)
-    printf(" %7.3g", cost_of(a, kind) / cost_of(b, kind));
+static void print_ratio(offer a, offer b) {
+  if (a.row && b.row)
+    printf(" %7.3g", a.cost / b.cost);
   else
     printf(" %7s", "-");
 }
@@ -269,14 +291,14 @@ static void print_costs(const scene_run *s, cost kind) {
   printf("  %-6s %-29s %-29s %7s %7s\n", "error",
          kind == CPU_TIME ? "strut, CPU s" : "strut, forces", "others", "o/strut", "acc/best");
   for (int l = 0; l < LEVELS && levels[l] >= s->floor; l++) {
-    const precision_row *own = cheapest(s, OF_STRUT, levels[l], kind);
-    const precision_row *other = cheapest(s, OF_OTHERS, levels[l], kind);
+    offer own = cheapest(s, OF_STRUT, levels[l], kind);
+    offer other = cheapest(s, OF_OTHERS, levels[l], kind);
     printf("  %-6.0e", levels[l]);
-    print_row(own, kind);
-    print_row(other, kind);
-    print_ratio(other, own, kind);
+    print_offer(own);
+    print_offer(other);
+    print_ratio(other, own);
     print_ratio(cheapest_of(s, method_named(PRECISION_ACCURACY), levels[l], kind),
-                is_cheaper(own, other, kind) ? own : other, kind);
+                is_cheaper(own, other) ? own : other);
     printf("\n");
   }
 }
@@ -294,7 +316,7 @@ static bool is_drawn(const scene_run *s, const precision_method *m) {
   bool drawn = is_accuracy(m);
   for (int l = 0; l < LEVELS; l++)
     for (cost kind = 0; kind < COSTS; kind++) {
-      const precision_row *row = cheapest(s, m->strut ? OF_STRUT : OF_OTHERS, levels[l], kind);
+      const precision_row *row = cheapest(s, m->strut ? OF_STRUT : OF_OTHERS, levels[l], kind).row;
       drawn = drawn || (row && row->method == m);
     }
   return drawn;
