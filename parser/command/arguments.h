@@ -149,6 +149,7 @@ typedef struct strut_arguments {
   const char *output;
   bool help, json, quiet, force, stuck, wave, own_model, csv, no_motion, no_states;
   bool all, count_points, status, retry;
+  bool no_notes; /* a model's notes have been printed */
   const char *texts[STRUT_OPTION_TEXTS_END - STRUT_OPTION_TEXTS]; /* NULL where not given */
   strut_override *overrides;                                      /* (override_count) of --set */
   size_t *override_model; /* (override_count) how many models stand before each */

@@ -87,6 +87,7 @@ static strut_status open_point(const strut_command *command, const strut_argumen
     strut_arguments here = *arguments;
     here.overrides = overrides;
     here.override_count = set + varied;
+    here.no_notes = number > 0;
     status = strut_open_model(&here, STRUT_OPEN_FOR_RUN, setup);
     if (status != STRUT_OK && varied > 0) {
       fprintf(stderr, "strut %s: at operating point %zu:", command->name, number + 1);

@@ -29,14 +29,14 @@ const char *strut_model_name(const strut_arguments *arguments) {
 }
 
 /* Prints what was found; on failure nothing is left of the setup. */
-static strut_status print_found(strut_diagnostics *diagnostics, strut_status status,
+static strut_status print_found(strut_diagnostics *diagnostics, strut_status status, bool noted,
                                 strut_setup *setup) {
   if (status == STRUT_BAD_SCENE) {
     const char *messages = strut_diagnostics_render(diagnostics, MOST_MESSAGES);
     if (messages) fputs(messages, stderr);
     if (!messages) status = STRUT_NO_MEMORY;
   }
-  if (status == STRUT_OK && diagnostics->note_count) {
+  if (status == STRUT_OK && diagnostics->note_count && !noted) {
     const char *notes = strut_diagnostics_render_notes(diagnostics);
     if (notes) fputs(notes, stderr);
     if (!notes) strut_setup_free(setup);
@@ -58,7 +58,7 @@ static strut_status read_source(const strut_arguments *arguments, const source *
   }
   status = strut_setup_read(setup, from->name, from->text, from->length, arguments->overrides,
                             arguments->override_count, purpose, diagnostics);
-  if (!report) status = print_found(diagnostics, status, setup);
+  if (!report) status = print_found(diagnostics, status, arguments->no_notes, setup);
   if (status == STRUT_NO_MEMORY) {
     strut_memory_fail_document(from->name, from->text, from->length, &error);
     strut_print_error(&error);

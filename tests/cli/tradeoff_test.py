@@ -428,6 +428,12 @@ groups = {row["group"] for row in found["settings"]}
 if "verlet-events, refined" not in groups or "verlet-events, refined 8" not in groups:
     fail(f"no refined steps over several points: {groups}")
 
+# ---- What a model's reader notes is said once, not at each point.
+done = run("models/basics/pendulum.yaml", "--vary", "stiffness=1e9..2e9", "--points", "3", "--step-sizes", "1",
+           "--integrator", "rk4", "--own-model", "--cpu-time", "1 s")
+if done.stderr.count("note: --set stiffness") != 1:
+    fail(f"notes of three points: {done.stderr}")
+
 # ---- Wrong use: one sentence, nothing on stdout.
 for words, text in (
         (("--measure", "speed"), "--measure expects velocity, position or energy"),
