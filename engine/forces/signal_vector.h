@@ -44,7 +44,7 @@ STRUT_INLINE bool signal_is_sum_of_waves(const strut_signal *signals, const stru
   return all;
 }
 
-/* Adds a wave at `count` times, in whole vectors, to values and rates, or begins them. */
+/* Adds a wave at `count` times, in whole vectors, to values and rates; or begins them. */
 STRUT_INLINE void signal_add_wave(const strut_signal *s, const double *time, int32_t count,
                                   bool begin, double *value, double *rate) {
   double fast = s->amplitude * STRUT_TAU * s->frequency;
@@ -60,24 +60,32 @@ STRUT_INLINE void signal_add_wave(const strut_signal *s, const double *time, int
   }
 }
 
+/* All signals but a sine, whose caller so keeps its registers. */
+static __attribute__((noinline, unused)) void signal_at_times_otherwise(
+    const strut_signal *signals, int32_t index, const double *time, int32_t count, double *value,
+    double *rate) {
+  const strut_signal *s = &signals[index];
+  if (!signal_is_sum_of_waves(signals, s, time, count)) {
+    for (int32_t h = 0; h < count; h++)
+      strut_signal_evaluate(signals, index, time[h], &value[h], &rate[h]);
+    return;
+  }
+  for (int32_t h = 0; h < count; h += STRUT_LANES) {
+    strut_lanes_store(value + h, (strut_lanes){0.0});
+    strut_lanes_store(rate + h, (strut_lanes){0.0});
+  }
+  for (size_t i = 0; i < s->term_count; i++)
+    signal_add_wave(&signals[s->terms[i]], time, count, false, value, rate);
+}
+
 /* Values and rates of a signal at `count` times, none before the first or after the last; arrays have room for
    whole vectors. */
 STRUT_INLINE void signal_at_times(const strut_signal *signals, int32_t index, const double *time,
                                   int32_t count, double *value, double *rate) {
-  const strut_signal *s = &signals[index];
-  if (signal_is_wave(s, time, count)) {
-    signal_add_wave(s, time, count, true, value, rate);
-  } else if (signal_is_sum_of_waves(signals, s, time, count)) {
-    for (int32_t h = 0; h < count; h += STRUT_LANES) {
-      strut_lanes_store(value + h, (strut_lanes){0.0});
-      strut_lanes_store(rate + h, (strut_lanes){0.0});
-    }
-    for (size_t i = 0; i < s->term_count; i++)
-      signal_add_wave(&signals[s->terms[i]], time, count, false, value, rate);
-  } else {
-    for (int32_t h = 0; h < count; h++)
-      strut_signal_evaluate(signals, index, time[h], &value[h], &rate[h]);
-  }
+  if (signal_is_wave(&signals[index], time, count))
+    signal_add_wave(&signals[index], time, count, true, value, rate);
+  else
+    signal_at_times_otherwise(signals, index, time, count, value, rate);
 }
 
 #endif

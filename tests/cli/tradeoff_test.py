@@ -343,12 +343,16 @@ if "cut by --cpu-time" in run(OSCILLATOR, "--accuracy", "1%").stdout:
 
 # ---- Other libraries: the quotients once more from all measured cells.
 def cheapest(cells, error):
-    """CPU time of the cheapest setting of one method that keeps an error, as all finer ones do."""
-    best = math.inf
+    """Least CPU time of one method within an error that all finer settings keep too, between two on a straight line."""
+    best, finer = math.inf, None
     for cell in reversed([c for c in cells if c["error"]]):
-        if not float(cell["error"]) <= error:
+        found, time = float(cell["error"]), float(cell["cpu [s]"])
+        if not found <= error:
+            if finer and finer[0] > 0 and time < finer[1]:
+                part = math.log(error / finer[0]) / math.log(found / finer[0])
+                best = min(best, finer[1] ** (1 - part) * time ** part)
             break
-        best = min(best, float(cell["cpu [s]"]))
+        best, finer = min(best, time), (found, time)
     return best
 
 
