@@ -105,8 +105,9 @@ class Suite:
         return {path.name for path in paths if path not in folders}
 
     def names(self, wanted):
-        pattern = re.compile(f"^({wanted})$")
-        return [name for name in self.programs if pattern.match(name)]
+        """The tests that one pattern of the table means; there must be some."""
+        found = [name for name in self.programs if re.fullmatch(wanted, name)]
+        return found or sys.exit(f"mutants.py: there is no test {wanted}")
 
     def build(self, names=None):
         """None: everything. Returns what the build said where it failed, else None."""

@@ -18,8 +18,10 @@ expect 0 equilibria "$crawler" --all --starts 60
 for text in "tips over n4 onto n2 and n4: II" "below ground (" "presses with" "held-n1-n2-1 " \
   "  between III and III-2"; do out_has "$text"; done
 
-# Numbers in names grow with the energy.
+# Numbers in names grow with the energy, and so does the list.
 expect 0 equilibria "$here/../../models/basics/von-mises-truss.yaml" --json
+jq -e '[.equilibria[] | select(.outcome == "stands") | .energy] | . == sort and .[0] < .[1]' out >/dev/null ||
+  fail "equilibria are not listed from the lowest energy on"
 [ "$(jq -c '[.equilibria[] | select(.outcome == "stands")] | sort_by(.energy) | map(.name)' out)" = \
   '["equilibrium-1","equilibrium-2"]' ] || fail "names are not in the order of the energy"
 
