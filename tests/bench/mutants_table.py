@@ -376,7 +376,7 @@ MUTANTS = [
            "resamples without variance give indices", "sensitivity_indices"),
     Mutant("weights-of-stages", "engine/scene/laws/runge_kutta.h",
            "X(0.0, 1.0) X(0.5, 2.0) X(0.5, 2.0) X(1.0, 1.0)", "X(0.0, 1.5) X(0.5, 1.5) X(0.5, 2.0) X(1.0, 1.0)",
-           "the stages of the Runge-Kutta method have other weights", "order|models|simulate"),
+           "works of the first two stages of the Runge-Kutta method have other weights", "energy|balance"),
     Mutant("worst-ranked-first", "engine/study/search/cma.c",
            "if (first->value != second->value) return first->value < second->value ? -1 : 1;",
            "if (first->value != second->value) return first->value > second->value ? -1 : 1;",
