@@ -19,8 +19,8 @@ static const double FINER_TOLERANCE = 1.0 / 30.0;
  */
 static const double FIRST_TOLERANCE = 1e-5, FIRST_TOLERANCE_PER_ERROR = 1e-3;
 /*
- * The method of higher order costs less for smaller errors wanted, and where two runs show that tolerances set the
- * steps, not events: one of order 5 then makes twice the steps for a tolerance finer by that factor.
+ * The method of higher order costs less for smaller errors wanted, and where tolerances set the steps, not events. Two
+ * runs show that by their costs: one of order 5 needs twice the steps for a tolerance finer by FINER_TOLERANCE.
  */
 static const double PRECISE = 2e-6, GROWTH_BY_TOLERANCE = 1.6;
 /* Smallest tolerance: below it rounding dominates. */
