@@ -20,9 +20,10 @@ static const double FINER_TOLERANCE = 1.0 / 30.0;
 static const double FIRST_TOLERANCE = 1e-5, FIRST_TOLERANCE_PER_ERROR = 1e-3;
 /*
  * The method of higher order costs less for smaller errors wanted, and where tolerances set the steps, not events. Two
- * runs show that by their costs: one of order 5 needs twice the steps for a tolerance finer by FINER_TOLERANCE.
+ * runs show that by their costs: one of order 5 needs twice the steps for a tolerance finer by FINER_TOLERANCE. Where the
+ * cost grows faster, events have come up that the coarser run did not see.
  */
-static const double PRECISE = 2e-6, GROWTH_BY_TOLERANCE = 1.6;
+static const double PRECISE = 2e-6, GROWTH_BY_TOLERANCE = 1.6, GROWTH_BY_EVENTS = 3.0;
 /* Smallest tolerance: below it rounding dominates. */
 static const double LEAST_TOLERANCE = 3e-14;
 /* Moments of a track: per period or run, and the most. */
@@ -147,6 +148,12 @@ static void keep_results(const strut_ladder *l, const strut_summary *s) {
   value[s->measured_count] = s->velocity;
 }
 
+/* Do tolerances set the steps of the two latest runs, with error control? */
+static void note_growth(strut_ladder *l) {
+  double growth = (double)l->now->cost / (double)l->before->cost;
+  if (growth > GROWTH_BY_TOLERANCE && growth < GROWTH_BY_EVENTS) l->precise = true;
+}
+
 /* Makes one more run without output and compares it with the one before. */
 static strut_status run_next_rung(strut_ladder *l) {
   strut_rung *next = l->runs == 0 ? l->rung : l->now == &l->rung[1] ? &l->rung[2] : &l->rung[1];
@@ -163,9 +170,7 @@ static strut_status run_next_rung(strut_ladder *l) {
   next->cost = next->s.spent.evaluations;
   l->a->check_evaluations += next->cost;
   if (status == STRUT_WORK_LIMIT) return discard_unfinished_run(l);
-  if (strut_ladder_runs_with_error_control(l) > 1 &&
-      (double)next->cost > GROWTH_BY_TOLERANCE * (double)l->before->cost)
-    l->precise = true;
+  if (strut_ladder_runs_with_error_control(l) > 1) note_growth(l);
   l->earliest_change = l->earlier_change;
   l->earlier_change = l->change;
   l->earlier_distance = l->distance;
