@@ -117,6 +117,7 @@ static void copy_numbers(const strut_state *from, strut_state *to) {
   to->refined_until = from->refined_until;
   to->evaluations = from->evaluations;
   to->events = from->events;
+  to->forced = from->forced;
   to->limits.interrupt = from->limits.interrupt;
   to->limits.most_evaluations = from->limits.most_evaluations;
   to->trouble = from->trouble;

@@ -97,6 +97,7 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
   size_t slots = (size_t)model->members.slots * sizeof(double);
   state->step = 0;
   state->evaluations = state->events = 0;
+  state->forced = (strut_forced_steps){0};
   state->limits.interrupt = NULL;
   state->limits.most_evaluations = 0;
   state->trouble = STRUT_FAILURE_NONE;

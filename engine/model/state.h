@@ -88,6 +88,12 @@ typedef struct strut_history {
   double *kept;       /* what strut_history_store stores, as it was at an earlier time */
 } strut_history;
 
+/** Steps of exact methods with events, since the reset, in which contacts or laws switch too often to be followed. */
+typedef struct strut_forced_steps {
+  int64_t count;
+  double first; /* when the first of them began, as n * dt [s] */
+} strut_forced_steps;
+
 /** What signals remember; arrays are (signals). */
 typedef struct strut_signal_states {
   double *started;     /* when those with a trigger started [s]; INFINITY: not yet */
@@ -159,10 +165,11 @@ typedef struct strut_state {
   double work[STRUT_POWER_ROOM]; /* powers integrated since t = 0 [J] */
   double load_work_origin;       /* strut_energy_reset_load_work: where the works count from [J] */
   double support_work_origin;    /* strut_support_motion_reset_work: where it counts from [J] */
-  double time_offset;    /* drives and loads stand where they do so much later than n * dt [s] */
-  double refined_until;  /* methods that refine after touchdowns do so until then [s] */
-  int64_t evaluations;   /* of the forces since the reset */
-  int64_t events;        /* switches located in time, since the reset */
+  double time_offset;   /* drives and loads stand where they do so much later than n * dt [s] */
+  double refined_until; /* methods that refine after touchdowns do so until then [s] */
+  int64_t evaluations;  /* of the forces since the reset */
+  int64_t events;       /* switches located in time, since the reset */
+  strut_forced_steps forced;
   strut_failure trouble; /* why a method could not go on; it stays on the latest grid point */
   int32_t trouble_node;  /* where, with STRUT_FAILURE_IMPLICIT; the signal, with _RELAY */
   bool kicked; /* velocities have jumped at the end of the latest step of a method without events */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Errors that end a run, and warnings about its result, each with cause and remedy. */
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -445,7 +446,7 @@ static double shifted_phase(const strut_run *r, double *rate) {
   return lag * *rate * lasts * exp(-0.5 * decay * lasts);
 }
 
-/* States that the error is unknown where fixed steps pass over events, or lose the phase of vibrations. */
+/* States that the error is unknown where steps pass over events, or lose the phase of vibrations. */
 static void add_caveat(const strut_run *r) {
   strut_summary *s = r->summary;
   const char *events = describe_missed_events(r);
@@ -454,6 +455,12 @@ static void add_caveat(const strut_run *r) {
   if (r->options->chosen || s->status != STRUT_OK) return;
   if (events)
     snprintf(s->caveat, sizeof s->caveat, "fixed steps of %s pass over %s", s->method, events);
+  else if (s->spent.forced)
+    snprintf(s->caveat, sizeof s->caveat,
+             "contacts or laws switch too often to be followed in %" PRId64
+             " steps, first at "
+             "t = %.6g s; use a smaller solver.step",
+             s->spent.forced, r->state->forced.first + r->grid.offset);
   else if (shift > SHIFTED)
     snprintf(s->caveat, sizeof s->caveat,
              "steps of %.3g s shift the phase of vibrations at %.3g Hz, where most of the kinetic "

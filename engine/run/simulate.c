@@ -584,6 +584,7 @@ static void fill_summary(strut_run *r, strut_status status) {
     s->duration = strut_experiment_span(r->experiment, r->model->scene).duration;
   s->spent.evaluations = r->state->evaluations;
   s->spent.events = r->state->events;
+  s->spent.forced = r->state->forced.count;
   s->limit_fell = (strut_step_limit_violation){.limit = r->watch.limit.lowest,
                                                .time = r->watch.limit.lowest_time,
                                                .since = r->watch.limit.first_time,

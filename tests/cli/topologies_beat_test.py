@@ -17,7 +17,7 @@ study: Three grounds
 model: {model}
 set: {{frequency: {frequency} Hz}}
 axes: [{{friction: [0.1, 0.2, 0.5]}}]
-solver: {{accuracy: 0.5 %}}
+solver: {{accuracy: 1 %}}
 keep: [velocity, expected_error, cost_of_transport, total_mass]
 """
 
@@ -44,7 +44,7 @@ for frequency in (10, 8.7, 8.9, 11.2):
     for row, rival in zip(ours, rows("nine-member.yaml", frequency)):
         friction = row["friction"]
         check(abs(float(row["total_mass"]) - float(rival["total_mass"])) < 1e-9, "masses differ")
-        check(float(row["expected_error"]) <= 0.005, f"{friction}: {row['expected_error']}")
+        check(float(row["expected_error"]) <= 0.01, f"{friction}: {row['expected_error']}")
         check(abs(float(row["velocity"])) > 1.05 * abs(float(rival["velocity"])),
               f"friction {friction}: {row['velocity']}, "
               f"the paper's {rival['velocity']} at {frequency} Hz")

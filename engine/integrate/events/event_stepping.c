@@ -19,10 +19,13 @@
 /* A root this close to where the step begins, in grid steps, is there already. */
 static const double AT_ONCE = 1e-9;
 /*
- * After so many switches of one contact or law without a step, or of all within one step of the grid, one is
- * taken whatever the modes say: switches may follow each other faster and faster without end (Zeno).
+ * After so many switches of one contact or law without a step, or STRUT_MOST_SWITCHES of all, one is taken whatever
+ * the modes say: switches may follow each other faster and faster without end (Zeno).
  */
-enum { MOST_AT_ONCE = 8, MOST_TRIALS = 60 };
+enum { MOST_AT_ONCE = 8, MOST_TRIALS = 60, MOST_HALVINGS = 30 };
+
+/* A step above this part of the one that the method wants separates switches from those before. */
+static const double SEPARATES = 0.1;
 
 /* What contacts of surfaces need beside the others. */
 static bool make_frames(const strut_model *model, strut_arena *arena, strut_step_end *end) {
@@ -427,10 +430,12 @@ static double retake(const strut_model *model, strut_state *state, strut_event_s
     bool tied = edge && band_forces_balance(l, &l->next->touch[event->index], event->index);
     if (edge && !tied) break;
     if (l->within && !tied && is_near(l, event, &s, rate)) break;
-    if (s.value == 0.0 || (k > 0 && !tied && stagnant(&s))) break;
+    /* a value as large as where the step begins is not yet near its root, however little the search has moved */
+    bool still = k > 0 && !tied && stagnant(&s), ahead = s.value > 0.5 * before;
+    if (s.value == 0.0 || (still && !ahead)) break;
     if (tied && s.high - s.x <= BALANCED) break;
     double x = l->within && rate == 0.0 ? next_by_parabola(&s) : next_point(&s, rate);
-    if (tied) x = 0.5 * (s.low + s.high);
+    if (tied || still) x = 0.5 * (s.low + s.high);
     if (s.high - s.low <= 1e-13) break;
     s.x = x;
   }
@@ -478,6 +483,11 @@ static void accept_within(strut_state *state, strut_event_stepper *l) {
   for (int p = 0; p < STRUT_POWER_COUNT && state->balance; p++) state->work[p] += l->gained[p];
 }
 
+/* Where an event is in the arrays of strut_switch_counts. */
+static int32_t place_of(const strut_model *model, const strut_event *event) {
+  return event->index + (strut_event_is_of_law(event->kind) ? model->contacts.count : 0);
+}
+
 /* Counts an event; moved: a step has led to it. */
 static void count_switch(const strut_model *model, strut_event_stepper *l, const strut_event *event,
                          bool moved) {
@@ -486,7 +496,7 @@ static void count_switch(const strut_model *model, strut_event_stepper *l, const
     for (int32_t k = 0; k < c->count; k++) c->times[c->switched[k]] = 0;
     c->count = c->most = 0;
   }
-  int32_t i = event->index + (strut_event_is_of_law(event->kind) ? model->contacts.count : 0);
+  int32_t i = place_of(model, event);
   if (!c->times[i]) c->switched[c->count++] = i;
   if (c->times[i] < UINT8_MAX) c->times[i]++;
   if (c->times[i] > c->most) c->most = c->times[i];
@@ -498,19 +508,47 @@ static bool must_step(const strut_event_stepper *l) {
 }
 
 /*
- * A step that is taken whatever the modes say. Where a contact opens within AT_ONCE, it may stick and slip in
- * turn until then, and in the wrong mode friction would push it on: that step only passes the opening.
+ * Where a contact opens within AT_ONCE, it may stick and slip in turn until then, and in the wrong mode friction
+ * would push it on: a step of this length only passes the opening. Otherwise 0.
  */
-static double forced_step(const strut_model *model, strut_event_stepper *l, double h, double dt) {
+static double past_opening(const strut_model *model, const strut_event_stepper *l, double h,
+                           double dt) {
   double moment = 10.0 * AT_ONCE * dt;
-  for (int32_t k = 0; k < l->closed_count; k++) {
+  for (int32_t k = 0; k < l->closed_count && 2.0 * moment < h; k++) {
     const strut_touch *o = &l->now->touch[l->closed[k]];
     bool rubs = strut_friction_largest(&model->contacts.entry[l->closed[k]].friction) > 0.0;
-    if (!rubs || !(o->gap > -moment * o->into) || !(2.0 * moment < h)) continue;
-    l->tried = false;
-    return 2.0 * moment;
+    if (rubs && o->gap > -moment * o->into) return 2.0 * moment;
   }
-  return h;
+  return 0.0;
+}
+
+/*
+ * The step over h has been taken in modes that have switched back and forth where it begins. Where these end
+ * within it, half of it is tried, and half of that: what switches back may just come back later. Another one may have
+ * to switch first, or the modes hold for no time, but would after one more switch: that is left in *turn, and *h is 0.
+ * False: neither, and the step over h is taken against the modes.
+ */
+static bool hold_modes(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t, double dt, double *h, strut_event *turn) {
+  bool endless = l->switches >= STRUT_MOST_SWITCHES || !l->stepper->exact;
+  double length = *h;
+  for (int k = 0; k < MOST_HALVINGS; k++, length *= 0.5) {
+    if (k > 0) l->stepper->trial(model, state, l, t, length);
+    strut_event first = strut_event_first(model, state, l, length);
+    if (!first.kind) {
+      *h = length;
+      return true;
+    }
+    if (endless) break;
+    int most = k < MOST_HALVINGS - 1 ? MOST_AT_ONCE - 1 : MOST_AT_ONCE;
+    if (first.fraction * length > AT_ONCE * dt || l->counts.times[place_of(model, &first)] > most)
+      continue;
+    *turn = first, *h = 0.0;
+    return true;
+  }
+  if (l->stepper->exact && !state->forced.count++) state->forced.first = t;
+  if (length < *h) l->stepper->trial(model, state, l, t, *h);
+  return false;
 }
 
 /* One trial over at most h at time t; handles rejection and events. Returns the time gone, 0 if none. */
@@ -518,7 +556,8 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
                                double t, double h, double dt) {
   strut_event event = {STRUT_EVENT_NONE, 0, 1.0};
   bool force = must_step(l);
-  if (force) h = forced_step(model, l, h, dt);
+  double passes = force ? past_opening(model, l, h, dt) : 0.0;
+  if (passes > 0.0) h = passes, l->tried = false;
   if (l->stepper->predict && !l->tried) {
     l->stepper->predict(model, l, h);
     strut_surface_move(model, state, l->next, t + h);
@@ -527,8 +566,9 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
   }
   if (h > AT_ONCE * dt || !event.kind) {
     if (!try_step(model, state, l, t, h, dt)) return 0.0;
-    strut_event inside =
-        force ? (strut_event){STRUT_EVENT_NONE, 0, 1.0} : strut_event_first(model, state, l, h);
+    if (force && !(passes > 0.0) && hold_modes(model, state, l, t, dt, &h, &event)) force = false;
+    strut_event inside = {STRUT_EVENT_NONE, 0, 1.0};
+    if (!force && h > 0.0) inside = strut_event_first(model, state, l, h);
     if (inside.kind && l->local && strut_local_events_take(model, state, l, t, h, dt))
       inside.kind = STRUT_EVENT_NONE;
     if (inside.kind) {
@@ -551,6 +591,7 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
       accept_step(model, state, l, state->balance);
     if (observed) show_piece(model, state, l, t, h, dt);
     l->at_once = 0;
+    if (h > SEPARATES * (l->stepper->adaptive ? l->h : dt)) l->switches = 0;
   } else {
     l->at_once++;
   }

@@ -146,7 +146,7 @@ typedef struct strut_law_switch {
   int32_t relay;     /* with RELAY 1 + its signal */
 } strut_law_switch;
 
-/** After so many switches within one step of the grid, steps are taken whatever the modes say. */
+/** After so many switches with hardly a step between them, one is taken whatever the modes say. */
 enum { STRUT_MOST_SWITCHES = 2000 };
 
 typedef struct strut_event_stepper strut_event_stepper;
@@ -250,7 +250,7 @@ struct strut_event_stepper {
   strut_switch_counts counts;
   int32_t pushed;            /* contact that passed its threshold last, or -1 */
   double pushed_at;          /* when that was [s] */
-  int switches;              /* since the latest grid point */
+  int switches;              /* since the latest grid point, or step that separates them */
   bool tried;                /* next is the end of the step that is due */
   strut_event_view *view;    /* NULL: nothing is observed */
   strut_drives_ahead drives; /* of methods with one evaluation a step, during a call */

@@ -3,6 +3,7 @@
  * How accurate the latest of several runs is: two must agree, not only in the velocity, which may agree by chance, but
  * as motions. And what is said of it.
  */
+#include <inttypes.h>
 #include <stdio.h>
 
 #include "engine/integrate/integrator.h"
@@ -134,8 +135,9 @@ void strut_ladder_judge(strut_ladder *l) {
   bool converging = coarse_runs_converge(l),
        diverging = strut_ladder_is_coarse(l, 3) && !converging;
   bool apart = further < 2 && (diverging || l->distance > allowed_distance(l, converging));
-  l->kept = strut_accuracy_is_kept(!once && !apart, l->expected, enough * wanted);
-  if (l->kept || l->same_motion) return;
+  bool followed = !l->now->s.spent.forced;
+  l->kept = strut_accuracy_is_kept(!once && !apart && followed, l->expected, enough * wanted);
+  if (l->kept || l->same_motion || !followed) return;
   l->expected = estimate_mean_error(l);
   bool zero = !l->now->s.measured_count && l->now->s.velocity_zero && l->before->s.velocity_zero;
   if (zero) l->expected = 0.0;
@@ -149,6 +151,7 @@ static double choose_margin(const strut_ladder *l) {
 
 void strut_ladder_judge_last(strut_ladder *l) {
   bool fine = l->a->single_method ? l->runs > 2 : strut_ladder_runs_with_error_control(l) > 1;
+  if (l->now->s.spent.forced) fine = false;
   if (!l->kept)
     l->kept = strut_accuracy_is_kept(l->same_motion && fine, choose_margin(l) * l->expected,
                                      l->a->target);
@@ -185,6 +188,11 @@ static void explain_ladder(const strut_ladder *l, char *why, size_t size) {
              "%s, unchecked: the budget of %.2g force evaluations was used up before a second run "
              "finished; give a larger budget",
              how, (double)a->budget);
+  else if (a->summary->spent.forced)
+    snprintf(why, size,
+             "%s: contacts or laws switch too often to be followed in %" PRId64
+             " steps; choose a method and a smaller solver.step",
+             how, a->summary->spent.forced);
   else if (l->kept && !l->same_motion && l->means >= LEAST_MEANS)
     snprintf(why, size, "%s: a coarser run gives a different motion, but %s, as in all %d runs",
              how, apart, l->means);
@@ -236,7 +244,7 @@ static void report_quantities(const strut_ladder *l) {
     m->expected = (double)NAN;
     if (l->runs > 1)
       m->expected = fmax(choose_margin(l) * factor * l->difference[i], l->shifted[i]);
-    m->kept = l->kept || strut_accuracy_is_kept(l->same_motion, m->expected,
+    m->kept = l->kept || strut_accuracy_is_kept(l->same_motion && !s->spent.forced, m->expected,
                                                 strut_ladder_tolerated_error(l, m, i));
     if (!m->kept && l->runs > 1) m->expected = fmax(m->expected, range_about_latest(l, i));
   }

@@ -589,7 +589,9 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *a, bool *done) {
     status = find_creep(&solve, &steady);
   if (ran && !status && !solve.answer) status = find_orbit(&solve, steady);
   if (ran && !status) status = confirm_orbit(&solve, &orbit);
-  *done = !status && solve.answer;
+  bool followed =
+      orbit.spent.forced + solve.last_run.spent.forced + solve.reference_map.forced == 0;
+  *done = !status && solve.answer && followed;
   if (*done)
     strut_orbit_solve_report(&solve, &orbit);
   else

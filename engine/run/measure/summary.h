@@ -161,6 +161,7 @@ typedef struct strut_summary {
     int64_t steps;       /* of the duration */
     int64_t evaluations; /* of forces, in these steps and in what corrected the state */
     int64_t events;      /* located in time; 0 with methods that locate none */
+    int64_t forced;      /* steps in which contacts or laws switched too often to be followed */
     double wall_time;    /* seconds spent stepping; never written into a file */
   } spent;
   char method[32];         /* method used */
@@ -209,6 +210,7 @@ typedef struct strut_summary {
   X(run, steps, "1", COUNT, s->spent.steps, true)                                                  \
   X(run, force_evaluations, "1", COUNT, s->spent.evaluations, true)                                \
   X(run, events, "1", COUNT, s->spent.events, true)                                                \
+  X(run, forced_steps, "1", COUNT, s->spent.forced, s->spent.forced > 0)                           \
   X(run, method, "1", TEXT, s->method, true)                                                       \
   X(run, step, "s", NUMBER, s->step, true)                                                         \
   X(run, step_limit, "s", NUMBER, s->step_limit, true)                                             \

@@ -29,6 +29,7 @@ typedef struct strut_period_map {
       *interrupt;           /* an application ends soon after it is set; may be NULL */
   int64_t most_evaluations; /* likewise after this many in all applications; 0: no limit */
   int64_t evaluations, events, applied; /* so far; applied: drive periods */
+  int64_t forced;                       /* see strut_forced_steps */
   /** Sees the state after each step of the grid; NULL: nobody looks. */
   void (*watch)(void *context, const strut_state *state);
   void *watch_context;

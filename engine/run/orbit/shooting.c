@@ -95,6 +95,7 @@ double strut_period_map_apply(strut_period_map *map, double *y) {
   advance_application(map);
   map->evaluations += state->evaluations;
   map->events += state->events;
+  map->forced += state->forced.count;
   map->applied += map->repeats;
   strut_measure_tracked_point(model, state, &map->measure, &to, &speed);
   memcpy(y, state->q, bytes);

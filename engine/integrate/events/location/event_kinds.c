@@ -45,7 +45,23 @@ RATE(band_rate) {
 }
 VALUE(stick_left) { return margin_of_stick(&l->entry[i], &end->touch[i]); }
 VALUE(creep_out_left) { return margin_of_creep_out(&l->entry[i], &end->touch[i], l->side[i]); }
-VALUE(creep_in_left) { return margin_of_creep_in(&l->entry[i], &end->touch[i], l->side[i]); }
+
+/* How far the other forces are from what friction holds, where that is more than sliding gives; negative: beyond. */
+static double room_to_push(const strut_contact_entry *e, const strut_touch *o) {
+  return strut_law_margin_of_holding(holding_limit(e, o->normal, o->applied), o->applied);
+}
+
+/*
+ * Where the other forces pass what friction holds, friction inside the band drops, and the margin jumps. How
+ * far they are from there bounds it on both sides, so that a search for its root is led to the jump.
+ */
+VALUE(creep_in_left) {
+  const strut_touch *o = &end->touch[i];
+  double margin = margin_of_creep_in(&l->entry[i], o, l->side[i]);
+  if (!strut_friction_drops(&l->entry[i].friction)) return margin;
+  double room = room_to_push(&l->entry[i], o);
+  return room > 0.0 ? fmin(room, margin) : fmax(room, margin);
+}
 VALUE(push_left) { return margin_of_push(&l->entry[i], &end->touch[i], l->mode[i], l->side[i]); }
 VALUE(yield_left) { return margin_of_yield(&l->entry[i], &end->touch[i]); }
 VALUE(speed_left) { return l->damper[i] > 0 ? -end->touch[i].into : end->touch[i].into; }
@@ -89,13 +105,14 @@ static void decide_at_edge(const strut_model *model, strut_state *state, strut_e
 }
 
 /*
- * Where contact i is pushed to. Without a normal force yet, other forces may begin just now: those a step
- * later say.
+ * Contact i by what pushes it along the ground. Without a normal force yet, other forces may begin just now:
+ * those a step later say.
  */
+static const strut_touch *pushed_touch(const strut_event_stepper *l, int32_t i) {
+  return l->now->touch[i].normal > 0.0 ? &l->now->touch[i] : &l->next->touch[i];
+}
 static int8_t side_of_push(const strut_event_stepper *l, int32_t i) {
-  const strut_touch *o = &l->now->touch[i];
-  double applied = o->normal > 0.0 ? o->applied : l->next->touch[i].applied;
-  return applied < 0.0 ? -1 : 1;
+  return pushed_touch(l, i)->applied < 0.0 ? -1 : 1;
 }
 
 EFFECT(no_effect) {}
@@ -118,11 +135,19 @@ EFFECT(leave_band) {
   decide_at_edge(model, state, l, i, true, t);
 }
 EFFECT(break_stick) {
-  l->side[i] = l->now->touch[i].friction > 0.0 ? -1 : 1;
+  l->side[i] = pushed_touch(l, i)->friction > 0.0 ? -1 : 1;
   l->mode[i] = STRUT_MODE_SLIP;
 }
 EFFECT(creep_out) { l->mode[i] = STRUT_MODE_SLIP; }
-EFFECT(creep_in) { l->mode[i] = STRUT_MODE_BAND; }
+EFFECT(creep_in) {
+  const strut_contact_entry *e = &l->entry[i];
+  const strut_touch *o = &l->now->touch[i];
+  /* which of the two has ended it: the forces inside the band still push out of it where that is the jump */
+  bool pushed = strut_friction_drops(&e->friction) &&
+                room_to_push(e, o) < fmax(0.0, l->side[i] * (-o->applied - o->friction));
+  l->mode[i] = pushed ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
+  if (pushed) l->side[i] = side_of_push(l, i);
+}
 EFFECT(push) {
   /* back and forth without a step between: the threshold attracts from both sides */
   if (l->pushed == i && l->pushed_at == t)
