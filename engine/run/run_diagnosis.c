@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Errors that end a run, and warnings about its result, each with cause and remedy. */
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -457,10 +456,9 @@ static void add_caveat(const strut_run *r) {
     snprintf(s->caveat, sizeof s->caveat, "fixed steps of %s pass over %s", s->method, events);
   else if (s->spent.forced)
     snprintf(s->caveat, sizeof s->caveat,
-             "contacts or laws switch too often to be followed in %" PRId64
-             " steps, first at "
-             "t = %.6g s; use a smaller solver.step",
-             s->spent.forced, r->state->forced.first + r->grid.offset);
+             "contacts or laws switch too often to be followed in %lld steps, first at t = %.6g s; "
+             "use a smaller solver.step",
+             (long long)s->spent.forced, r->state->forced.first + r->grid.offset);
   else if (shift > SHIFTED)
     snprintf(s->caveat, sizeof s->caveat,
              "steps of %.3g s shift the phase of vibrations at %.3g Hz, where most of the kinetic "

@@ -3,7 +3,6 @@
  * How accurate the latest of several runs is: two must agree, not only in the velocity, which may agree by chance, but
  * as motions. And what is said of it.
  */
-#include <inttypes.h>
 #include <stdio.h>
 
 #include "engine/integrate/integrator.h"
@@ -190,9 +189,9 @@ static void explain_ladder(const strut_ladder *l, char *why, size_t size) {
              how, (double)a->budget);
   else if (a->summary->spent.forced)
     snprintf(why, size,
-             "%s: contacts or laws switch too often to be followed in %" PRId64
-             " steps; choose a method and a smaller solver.step",
-             how, a->summary->spent.forced);
+             "%s: contacts or laws switch too often to be followed in %lld steps; choose a method "
+             "and a smaller solver.step",
+             how, (long long)a->summary->spent.forced);
   else if (l->kept && !l->same_motion && l->means >= LEAST_MEANS)
     snprintf(why, size, "%s: a coarser run gives a different motion, but %s, as in all %d runs",
              how, apart, l->means);

@@ -19,7 +19,8 @@ void strut_orbit_solve_count_evaluations(strut_orbit_solve *solve) {
 void strut_summary_append(strut_summary *whole, strut_summary *part) {
   int64_t steps = whole->spent.steps + part->spent.steps,
           events = whole->spent.events + part->spent.events;
-  int64_t evaluations = whole->spent.evaluations + part->spent.evaluations;
+  int64_t evaluations = whole->spent.evaluations + part->spent.evaluations,
+          forced = whole->spent.forced + part->spent.forced;
   int64_t periods = whole->steady.periods + part->steady.periods;
   double duration = whole->duration + part->duration,
          wall = whole->spent.wall_time + part->spent.wall_time;
@@ -28,6 +29,7 @@ void strut_summary_append(strut_summary *whole, strut_summary *part) {
   *whole = *part;
   *part = (strut_summary){0};
   whole->spent.steps = steps, whole->spent.events = events, whole->spent.evaluations = evaluations;
+  whole->spent.forced = forced;
   whole->duration = duration, whole->spent.wall_time = wall, whole->settle_time = settle;
   whole->steady.periods = periods;
 }
