@@ -282,7 +282,7 @@ static void remember(compilation *c, strut_element *e) {
   e->slot = t->history_slot + t->history_slots++;
   double *rest = (double *)model->members.rest;
   rest[e->slot] = e->base >= 0 ? rest[e->base] : e->natural;
-  if (e->law == STRUT_LAW_FOLDING) {
+  if (e->law == STRUT_LAW_FOLDING && !c->failed) {
     rest[e->slot + STRUT_CURVE_PIECE] = e->numbers.curve->start;
     t->history_slots += STRUT_CURVE_SLOTS - 1;
   }

@@ -68,7 +68,8 @@ def fails_everywhere(name, words, spared):
         total = int(file.read())
     step = max(1, total // COUNT) if COUNT else 1
     codes = {}
-    for n in range(1 + step // 2, total + 1, step):
+    last = range(total - 99, total + 1) if name == "elements" else ()  # laws are compiled there
+    for n in sorted({*range(1 + step // 2, total + 1, step), *last}):
         done = call(words, LD_PRELOAD=PRELOAD, STRUT_SPARE=spared, STRUT_FAIL_AT=str(n))
         codes[done.returncode] = codes.get(done.returncode, 0) + 1
         check(done.returncode >= 0, f"{name}: allocation {n} of {total}: signal {-done.returncode}")
