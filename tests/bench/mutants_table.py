@@ -424,4 +424,8 @@ MUTANTS = [
     Mutant("vouches-for-forced-steps", "engine/run/accuracy/accuracy_judge.c",
            "bool followed = !l->now->s.spent.forced;", "bool followed = true;",
            "--accuracy promises what steps against the modes have given", "cli_accuracy"),
+    Mutant("leaving-hides-holding", "engine/integrate/events/location/event_location.c",
+           "if (kind == STRUT_EVENT_LEAVES_STICK_BAND && l->stepper->exact) {",
+           "if (kind == STRUT_EVENT_NONE && l->stepper->exact) {",
+           "a contact that is held again before it leaves its band is pushed on", "cli_accuracy"),
 ]

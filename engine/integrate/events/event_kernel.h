@@ -263,6 +263,17 @@ STRUT_INLINE double margin_of_yield(const strut_contact_entry *e, const strut_to
   return 2.0 * STRUT_YIELD_LAYER * threshold - fabs(fabs(o->applied) - threshold);
 }
 
+/* What but its speed ends the mode of a contact within its band. */
+STRUT_INLINE strut_event_kind event_within_band(const strut_contact_entry *e, const strut_touch *o,
+                                                uint8_t mode, double s) {
+  if (mode == STRUT_MODE_YIELD)
+    return margin_of_yield(e, o) < 0.0 ? STRUT_EVENT_YIELDED : STRUT_EVENT_NONE;
+  if (!strut_friction_drops(&e->friction)) return STRUT_EVENT_NONE;
+  double margin = margin_of_push(e, o, mode, s);
+  bool holds = mode == STRUT_MODE_PUSH ? margin > 0.0 : !(margin < 0.0);
+  return holds ? STRUT_EVENT_NONE : STRUT_EVENT_PUSH;
+}
+
 /* The event that ends the mode of a closed contact, by its state at the end of a step. */
 STRUT_INLINE strut_event_kind contradicting_event(const strut_contact_entry *e,
                                                   const strut_touch *o, uint8_t mode, double s) {
@@ -277,16 +288,10 @@ STRUT_INLINE strut_event_kind contradicting_event(const strut_contact_entry *e,
       if (margin_of_creep_out(e, o, s) < 0.0) return STRUT_EVENT_CREEP_OUT;
       return STRUT_ENDS(margin_of_creep_in(e, o, s), CREEP_IN);
     case STRUT_MODE_BAND:
-    case STRUT_MODE_PUSH: {
-      if (strut_law_margin_of_band(fabs(o->slip), edge) < 0.0) return STRUT_EVENT_LEAVES_STICK_BAND;
-      if (!strut_friction_drops(&e->friction)) return STRUT_EVENT_NONE;
-      double margin = margin_of_push(e, o, mode, s);
-      bool holds = mode == STRUT_MODE_PUSH ? margin > 0.0 : !(margin < 0.0);
-      return holds ? STRUT_EVENT_NONE : STRUT_EVENT_PUSH;
-    }
+    case STRUT_MODE_PUSH:
     case STRUT_MODE_YIELD:
       if (strut_law_margin_of_band(fabs(o->slip), edge) < 0.0) return STRUT_EVENT_LEAVES_STICK_BAND;
-      return STRUT_ENDS(margin_of_yield(e, o), YIELDED);
+      return event_within_band(e, o, mode, s);
     case STRUT_MODE_OPEN:
     case STRUT_MODE_SLIDE: break;
   }

@@ -254,6 +254,10 @@ STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_step
   const strut_contact_entry *entry = terms & STRUT_TERM_SURFACES ? l->entry : c->entry;
   strut_event_kind kind = contradicting_event(&entry[i], o, l->mode[i], l->side[i]);
   if (kind) keep_first(model, l, kind, i, h, first);
+  if (kind == STRUT_EVENT_LEAVES_STICK_BAND && l->stepper->exact) { /* it may be held before that */
+    kind = event_within_band(&entry[i], o, l->mode[i], l->side[i]);
+    if (kind) keep_first(model, l, kind, i, h, first);
+  }
   int32_t nearest;
   if (frames_of(l->next, terms) && strut_surface_facet_margin(c, l, l->next, i, &nearest) < 0.0)
     keep_first(model, l, STRUT_EVENT_FACET, i, h, first);
