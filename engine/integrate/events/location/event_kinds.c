@@ -46,11 +46,6 @@ RATE(band_rate) {
 VALUE(stick_left) { return margin_of_stick(&l->entry[i], &end->touch[i]); }
 VALUE(creep_out_left) { return margin_of_creep_out(&l->entry[i], &end->touch[i], l->side[i]); }
 
-/* How far the other forces are from what friction holds, where that is more than sliding gives; negative: beyond. */
-static double room_to_push(const strut_contact_entry *e, const strut_touch *o) {
-  return strut_law_margin_of_holding(holding_limit(e, o->normal, o->applied), o->applied);
-}
-
 /*
  * Where the other forces pass what friction holds, friction inside the band drops, and the margin jumps. How
  * far they are from there bounds it on both sides, so that a search for its root is led to the jump.
@@ -59,7 +54,7 @@ VALUE(creep_in_left) {
   const strut_touch *o = &end->touch[i];
   double margin = margin_of_creep_in(&l->entry[i], o, l->side[i]);
   if (!strut_friction_drops(&l->entry[i].friction)) return margin;
-  double room = room_to_push(&l->entry[i], o);
+  double room = margin_of_push(&l->entry[i], o, STRUT_MODE_BAND, 0.0);
   return room > 0.0 ? fmin(room, margin) : fmax(room, margin);
 }
 VALUE(push_left) { return margin_of_push(&l->entry[i], &end->touch[i], l->mode[i], l->side[i]); }
@@ -143,8 +138,9 @@ EFFECT(creep_in) {
   const strut_contact_entry *e = &l->entry[i];
   const strut_touch *o = &l->now->touch[i];
   /* which of the two has ended it: the forces inside the band still push out of it where that is the jump */
-  bool pushed = strut_friction_drops(&e->friction) &&
-                room_to_push(e, o) < fmax(0.0, l->side[i] * (-o->applied - o->friction));
+  bool pushed =
+      strut_friction_drops(&e->friction) && margin_of_push(e, o, STRUT_MODE_BAND, 0.0) <
+                                                fmax(0.0, l->side[i] * (-o->applied - o->friction));
   l->mode[i] = pushed ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
   if (pushed) l->side[i] = side_of_push(l, i);
 }
