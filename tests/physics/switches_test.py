@@ -14,6 +14,9 @@ they find must not depend on where steps happen to end, nor on the method.
 - yielding: static above kinetic friction; a contact stays where holding and pushing lead to each other.
 - jump-at-the-edge: a drive jumps while a contact stays at the edge of its band.
 - tied-and-held: both at once, with a loose tolerance.
+- up-and-down-again: a contact opens, and is on its way back by when something else is located.
+- kink-of-a-margin: what ends creep falls slowly, then fast, since another force passes what friction holds.
+- bounces: a search that meets a root but for rounding is at its end.
 """
 import json
 import pathlib
@@ -54,6 +57,10 @@ def adaptive(unit, steps, tolerance):
     return ("--integrator", "adaptive", "--step", repr(unit / steps), "--tolerance", tolerance)
 
 
+def precise(unit, steps, tolerance):
+    return ("--integrator", "adaptive8", *adaptive(unit, steps, tolerance)[2:])
+
+
 def fixed(unit, steps, method="rk4-events"):
     return ("--integrator", method, "--step", repr(unit / steps))
 
@@ -75,6 +82,12 @@ compare("jump-at-the-edge", 1e-5, 500, adaptive(u, 100, "1e-9"), adaptive(u, 400
         fixed(u, 2000))
 u = unit_of("tied-and-held")
 compare("tied-and-held", 5e-3, 2000, adaptive(u, 50, "1e-4"), adaptive(u, 100, "1e-9"))
+u = unit_of("up-and-down-again")
+compare("up-and-down-again", 1e-9, 90, precise(u, 100, "1e-12"), precise(u, 1000, "1e-12"), adaptive(u, 1000, "1e-12"))
+u = unit_of("kink-of-a-margin")
+compare("kink-of-a-margin", 2e-9, 120, precise(u, 100, "1e-12"), precise(u, 1000, "1e-12"), adaptive(u, 100, "1e-12"))
+u = unit_of("bounces")
+compare("bounces", 1e-9, 20, adaptive(u, 50, "1e-12"), adaptive(u, 500, "1e-12"), precise(u, 50, "1e-12"))
 
 # A rest length that jumps: the work of the drive is what it adds to the elastic energy, and the balance
 # closes.

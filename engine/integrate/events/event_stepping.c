@@ -22,7 +22,7 @@ static const double AT_ONCE = 1e-9;
  * After so many switches of one contact or law without a step, or STRUT_MOST_SWITCHES of all, one is taken whatever
  * the modes say: switches may follow each other faster and faster without end (Zeno).
  */
-enum { MOST_AT_ONCE = 8, MOST_TRIALS = 60, MOST_HALVINGS = 30 };
+enum { MOST_AT_ONCE = 8, MOST_TRIALS = 100, MOST_HALVINGS = 30 };
 
 /* A step above this part of the one that the method wants separates switches from those before. */
 static const double SEPARATES = 0.1;
@@ -310,8 +310,8 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
 /* Where a value passes 0: between low and high, and the latest two points of the search. */
 typedef struct search {
   double low, high;
-  double x, value, last_x, last_value;
-  double low_value, high_value; /* of a region's search, which uses both */
+  double x, value, last_x, last_value, size_before; /* the size of the value before the last one */
+  double low_value, high_value;
 } search;
 
 static search begin_search(double before, double fraction, double after, double first) {
@@ -319,42 +319,50 @@ static search begin_search(double before, double fraction, double after, double 
                   .x = first,
                   .last_x = before > 0.0 ? 0.0 : fraction,
                   .last_value = before > 0.0 ? before : after,
+                  .size_before = HUGE_VAL,
                   .low_value = before,
                   .high_value = after};
 }
 
-/* Newton's step where the slope is known, else the secant's; halves where they leave the bracket. */
-static double next_point(search *s, double slope) {
-  *(s->value < 0.0 ? &s->high : &s->low) = s->x;
-  if (slope == 0.0) slope = (s->value - s->last_value) / (s->x - s->last_x);
-  double next = s->x - s->value / slope;
-  s->last_x = s->x, s->last_value = s->value;
-  return next > s->low && next < s->high ? next : 0.5 * (s->low + s->high);
+/* Of the value by x: its rate where that is known, else that of the secant. */
+static double slope_of(const search *s, double rate) {
+  return rate != 0.0 ? rate : (s->value - s->last_value) / (s->x - s->last_x);
 }
 
-/* The root of the parabola through the ends of the bracket and the point between, which narrows it. */
-static double next_by_parabola(search *s) {
+/*
+ * Goes to `next`, or to the middle of the bracket, narrowed by the value at x, where that is outside, and where two
+ * steps have not made the value half as large: at a kink secants creep on from both sides.
+ */
+static double go_on(search *s, double next) {
+  bool slow = fabs(s->value) > 0.5 * s->size_before;
+  *(s->value < 0.0 ? &s->high_value : &s->low_value) = s->value;
+  *(s->value < 0.0 ? &s->high : &s->low) = s->x;
+  s->size_before = fabs(s->last_value);
+  s->last_x = s->x, s->last_value = s->value;
+  return next > s->low && next < s->high && !slow ? next : 0.5 * (s->low + s->high);
+}
+
+/* The root of the parabola through the ends of the bracket and the point between. */
+static double root_of_parabola(const search *s) {
   double low = s->low_value, high = s->high_value, width = s->high - s->low;
   double x = (s->x - s->low) / width, y = s->value, chord = (y - low) / x;
   double bend = ((high - y) / (1.0 - x) - chord), slope = chord - bend * x;
-  *(s->value < 0.0 ? &s->high_value : &s->low_value) = s->value;
   double root = -2.0 * low / (slope - sqrt(fmax(0.0, slope * slope - 4.0 * bend * low)));
-  double next = s->low + root * width;
-  *(s->value < 0.0 ? &s->high : &s->low) = s->x;
-  s->last_x = s->x, s->last_value = s->value;
-  return next > s->low && next < s->high ? next : 0.5 * (s->low + s->high);
+  return s->low + root * width;
 }
+
+/* Part of a step, or of the change of a value over it, that is small. */
+static const double STILL = 1e-6;
 
 /* The latest correction was small and did not make the value smaller: the rest is rounding. */
 static bool stagnant(const search *s) {
-  return fabs(s->x - s->last_x) <= 1e-6 && fabs(s->value) > 0.1 * fabs(s->last_value);
+  return fabs(s->x - s->last_x) <= STILL && fabs(s->value) > 0.1 * fabs(s->last_value);
 }
 
 /* Near enough for a region, which is joined to the step of the whole with an error of its own: what is left is
    below a thousandth of what the method leaves. A creeping contact that is tied to the edge is there, too. */
 static bool is_near(const strut_event_stepper *l, const strut_event *event, const search *s,
-                    double rate) {
-  double slope = rate != 0.0 ? rate : (s->value - s->last_value) / (s->x - s->last_x);
+                    double slope) {
   if (event->kind == STRUT_EVENT_CREEP_IN &&
       fabs(s->value) <= 2.0 * STRUT_TIED * l->next->touch[event->index].normal)
     return true;
@@ -424,17 +432,20 @@ static double retake(const strut_model *model, strut_state *state, strut_event_s
     s.value = strut_event_value(model, l, l->next, event->kind, event->index);
     double rate = 0.0;
     if (strut_event_rate(l, l->next, event->kind, event->index, &rate)) rate *= h;
-    if (fabs(s.value) <= 1e-13 * fabs(rate)) break;
+    double slope = slope_of(&s, rate);
+    if (fabs(s.value) <= 1e-13 * fabs(slope)) break;
     bool edge = is_at_edge(model, event, s.value);
     /* forces that balance keep the speed there for a while: the value stays small, but has no root nearby */
     bool tied = edge && band_forces_balance(l, &l->next->touch[event->index], event->index);
     if (edge && !tied) break;
-    if (l->within && !tied && is_near(l, event, &s, rate)) break;
-    /* a value as large as where the step begins is not yet near its root, however little the search has moved */
-    bool still = k > 0 && !tied && stagnant(&s), ahead = s.value > 0.5 * before;
-    if (s.value == 0.0 || (still && !ahead)) break;
+    if (l->within && !tied && is_near(l, event, &s, slope)) break;
+    /* a value that is not small beside those of the step's ends has its root, or a jump, farther on, however little
+       the search has moved */
+    bool still = k > 0 && !tied && stagnant(&s),
+         far = fabs(s.value) > STILL * (fabs(before) + fabs(after));
+    if (s.value == 0.0 || (still && !far)) break;
     if (tied && s.high - s.x <= BALANCED) break;
-    double x = l->within && rate == 0.0 ? next_by_parabola(&s) : next_point(&s, rate);
+    double x = go_on(&s, l->within && rate == 0.0 ? root_of_parabola(&s) : s.x - s.value / slope);
     if (tied || still) x = 0.5 * (s.low + s.high);
     if (s.high - s.low <= 1e-13) break;
     s.x = x;

@@ -241,6 +241,12 @@ static bool closes(const strut_contact_table *c, int32_t i, const strut_event_st
   return to.into < 0.0;
 }
 
+/* Whether closed contact i, which is at `o` at the step's end, has come up above the ground, though it may be on its
+   way back by then. One that has just touched may stand above 0 by rounding, on its way down. */
+static bool opens(const strut_event_stepper *l, int32_t i, const strut_touch *o) {
+  return o->gap > 0.0 && (o->into > 0.0 || l->now->touch[i].gap < 0.0);
+}
+
 /* What ends a mode of contact i, if it comes before `first`. */
 STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_stepper *l, int32_t i,
                                 double h, unsigned terms, strut_event *first) {
@@ -262,8 +268,7 @@ STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_step
   if (frames_of(l->next, terms) && strut_surface_facet_margin(c, l, l->next, i, &nearest) < 0.0)
     keep_first(model, l, STRUT_EVENT_FACET, i, h, first);
   if (!l->stepper->exact) return;
-  /* a gap that rounding left above 0 at touchdown is closing: only one that grows has opened */
-  if (o->gap > 0.0 && o->into > 0.0) keep_first(model, l, STRUT_EVENT_OPEN, i, h, first);
+  if (opens(l, i, o)) keep_first(model, l, STRUT_EVENT_OPEN, i, h, first);
   if (l->damper[i] && (l->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
       c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
     keep_first(model, l, STRUT_EVENT_DAMPER, i, h, first);
