@@ -90,46 +90,54 @@ static double dip(double g0, double d0, double g1, double d1, double faint) {
   return g0 + x * (d0 + x * (b + x * c)) < -faint ? x : 0.0;
 }
 
-/*
- * Does contact i, as a stage has it, contradict its mode by more than a stage's own error? Where the ends
- * of the step do not, what began within it would have ended within it unseen.
- */
-static bool contradicts_at_stage(const strut_model *model, const strut_event_stepper *l,
-                                 int32_t i) {
-  assert(i >= 0 && i < model->contacts.count);
+/* The margin by whose zero the mode of contact i, at o, ends; HUGE_VAL: look_between sees that from the ends alone. */
+static double kept_margin(const strut_event_stepper *l, int32_t i, const strut_touch *o) {
   const strut_contact_entry *e = &l->entry[i];
-  const strut_touch *o = &l->next->touch[i];
-  double more = 1.0 + STRUT_STAGE_ERROR, fewer = 1.0 - STRUT_STAGE_ERROR, s = l->side[i];
-  if (!(o->normal > 0.0)) return false;
   switch ((strut_contact_mode)l->mode[i]) {
-    case STRUT_MODE_STICK: {
-      double held = holding_limit(e, o->normal, -o->friction);
-      return strut_law_margin_of_holding(held * more, o->friction) < 0.0;
-    }
+    case STRUT_MODE_STICK: return margin_of_stick(e, o);
+    case STRUT_MODE_CREEP: return margin_of_creep_out(e, o, l->side[i]);
     case STRUT_MODE_BAND:
-      return strut_friction_drops(&e->friction) &&
-             strut_law_margin_of_holding(holding_limit(e, o->normal, o->applied) * more,
-                                         o->applied) < 0.0;
-    case STRUT_MODE_PUSH: {
-      double holding = holding_limit(e, o->normal, o->applied);
-      return strut_law_margin_of_push(s, holding * fewer, o->applied) < 0.0;
-    }
-    case STRUT_MODE_CREEP: {
-      double sliding = sliding_limit(e, o->normal, s) * more;
-      return strut_law_margin_of_creep_out(s, sliding, o->friction) < 0.0;
-    }
+      if (!strut_friction_drops(&e->friction)) break;
+      return margin_of_push(e, o, STRUT_MODE_BAND, l->side[i]);
+    case STRUT_MODE_PUSH: return margin_of_push(e, o, STRUT_MODE_PUSH, l->side[i]);
     case STRUT_MODE_OPEN:
     case STRUT_MODE_SLIDE:
     case STRUT_MODE_SLIP: /* by earliest_dip */
     case STRUT_MODE_YIELD: break;
   }
-  return false;
+  return HUGE_VAL;
 }
 
-static bool any_contradicts_at_stage(const strut_model *model, const strut_event_stepper *l) {
-  for (int32_t k = 0; k < l->closed_count; k++)
-    if (contradicts_at_stage(model, l, l->closed[k])) return true;
-  return false;
+static void note_stage(const strut_event_stepper *l, double at, bool first) {
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    int32_t i = l->closed[k];
+    const strut_touch *o = &l->next->touch[i];
+    double margin = o->normal > 0.0 ? kept_margin(l, i, o) : HUGE_VAL;
+    if (first || margin < l->least[i].margin) l->least[i] = (strut_least_margin){margin, at};
+  }
+}
+
+/* A margin this small beside the normal force says nothing. */
+static const double FAINT_MARGIN = 1e-9;
+
+/*
+ * Earliest stage by which a contact has nearly given way, or has, though it keeps its mode at both ends of the step:
+ * from either of these its margin falls by more than is left of it. 0: none.
+ */
+static double earliest_spent(const strut_event_stepper *l) {
+  double first = 0.0;
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    int32_t i = l->closed[k];
+    const strut_touch *now = &l->now->touch[i], *next = &l->next->touch[i];
+    if (l->least[i].margin == HUGE_VAL) continue;
+    double from = now->normal > 0.0 ? kept_margin(l, i, now) : 0.0;
+    double to = next->normal > 0.0 ? kept_margin(l, i, next) : 0.0;
+    double kept = fmin(from, to) - FAINT_MARGIN * next->normal;
+    if (fmin(from, to) >= 0.0 && strut_law_margin_is_spent(l->least[i].margin, kept) &&
+        (first == 0.0 || l->least[i].at < first))
+      first = l->least[i].at;
+  }
+  return first;
 }
 
 /* Part of what is left of the step after a law begins to act, after which it still does. */
@@ -206,16 +214,18 @@ static double error_to_reach(const strut_event_stepper *l, double part) {
   return fmax(1.01, pow(0.9 / part, l->stepper->tableau->order));
 }
 
-/* What the ends of a step of sufficient accuracy, and stages from `broken` on, say about the time between. */
+/* What the ends of a step of sufficient accuracy, and its stages, say about the time between. */
 STRUT_LOOP void look_between(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                             double h, double broken, unsigned terms) {
+                             double h, unsigned terms) {
   if (!(l->error <= 1.0)) return;
   double part = model->contacts.count ? earliest_dip(model, state, l, h, terms) : 0.0;
   double slack = l->law_count ? earliest_switch(model, state, l, h) : 0.0;
   if (slack > 0.0 && (part == 0.0 || slack < part)) part = slack;
-  if (broken > 0.0 && (part == 0.0 || broken < part) && h > LEAST_SPLIT * l->longest &&
-      strut_event_first(model, state, l, h).kind == STRUT_EVENT_NONE)
-    part = broken;
+  double spent = h > LEAST_SPLIT * l->longest && !l->all_sliding ? earliest_spent(l) : 0.0;
+  if (spent > 0.0 && (part == 0.0 || spent < part)) {
+    strut_event event = strut_event_first(model, state, l, h);
+    if (!event.kind || event.fraction > spent) part = spent;
+  }
   if (part > 0.0) l->error = error_to_reach(l, part);
 }
 
@@ -228,7 +238,6 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   v[0] = l->now->v, a[0] = l->now->a;
   for (int k = 1; k < end; k++) v[k] = l->stage[k], a[k] = l->stage[end - 1 + k];
   v[end] = l->next->v, a[end] = l->next->a;
-  double broken = 0.0; /* where a stage contradicts a contact's mode */
   strut_drives_ahead drives;
   drives_ahead_begin(model, terms, &drives);
   drives_ahead_stages(model, state, &drives, t, h, ahead, end - 1);
@@ -242,13 +251,13 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
     if (k == end) break;
     drives_ahead_meet(model, state, &drives, t + ahead[k] * h);
     accelerate_in_modes(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, terms, balance);
-    if (l->closed_count && broken == 0.0 && any_contradicts_at_stage(model, l)) broken = ahead[k];
+    if (l->closed_count && !l->all_sliding) note_stage(l, ahead[k], k == 1);
     for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
       l->gained[p] += last[k] * h * state->latest.power[p];
   }
   evaluate_step_end(model, state, l, t + h, l->next, terms, balance);
   l->error = error_of(model, l, h, v, a);
-  look_between(model, state, l, h, broken, terms);
+  look_between(model, state, l, h, terms);
 }
 
 STRUT_EVENT_TRIAL(adaptive, take)
@@ -261,8 +270,8 @@ static void adaptive_step(const strut_model *model, strut_state *state, strut_ev
     adaptive_trial(model, state, l, t, h);
     return;
   }
-  double broken = small(model, state, l, t, h);
-  look_between(model, state, l, h, broken, STRUT_TERMS_COMMON);
+  small(model, state, l, t, h);
+  look_between(model, state, l, h, STRUT_TERMS_COMMON);
 }
 
 /* Several of them in registers. */
@@ -270,22 +279,21 @@ static void adaptive_until_event(const strut_model *model, strut_state *state,
                                  strut_event_stepper *l, double dt, int64_t end) {
   strut_small_quiet *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_adaptive_quiet);
   if (!small || !strut_small_is_quiet(state, l)) return;
-  double broken = small(model, state, l, dt, end);
-  if (l->tried)
-    look_between(model, state, l, next_step_size(state, l, dt), broken, STRUT_TERMS_COMMON);
+  small(model, state, l, dt, end);
+  if (l->tried) look_between(model, state, l, next_step_size(state, l, dt), STRUT_TERMS_COMMON);
 }
 
 static void look_between_of_region(const strut_model *model, strut_state *state,
-                                   strut_event_stepper *l, double h, double broken) {
-  look_between(model, state, l, h, broken, STRUT_TERMS_COMMON);
+                                   strut_event_stepper *l, double h) {
+  look_between(model, state, l, h, STRUT_TERMS_COMMON);
 }
 
 /* The method that steps by this pair. */
 #define FORMULA(pair, count)                                                                       \
   {                                                                                                \
     .trial = adaptive_step, .stages = ARRAYS(count), .exact = true, .adaptive = true,              \
-    .advance_until_event = adaptive_until_event, .tableau = &(pair),                               \
-    .contradicts_at_stage = any_contradicts_at_stage, .look_between = look_between_of_region       \
+    .advance_until_event = adaptive_until_event, .tableau = &(pair), .note_stage = note_stage,     \
+    .look_between = look_between_of_region                                                         \
   }
 static const strut_step_formula order_5 =
                                     FORMULA(strut_dormand_prince, STRUT_DORMAND_PRINCE_STAGES),

@@ -66,12 +66,13 @@ static bool make_arrays(const strut_model *model, strut_state *state, strut_even
   l->damped = strut_arena_allocate(arena, contacts, sizeof *l->damped);
   l->response = strut_arena_allocate(arena, contacts, sizeof *l->response);
   l->settling_time = strut_arena_allocate(arena, contacts, sizeof(double));
+  l->least = strut_arena_allocate(arena, contacts, sizeof *l->least);
   l->scatter = strut_arena_allocate(arena, length, sizeof(double));
   l->stage = strut_arena_allocate(arena, (size_t)l->stepper->stages + 1, sizeof *l->stage);
   if (model->contacts.surface) l->facet = strut_arena_allocate(arena, contacts, sizeof *l->facet);
   bool ready = (l->facet || !model->contacts.surface) && l->mode && l->side && l->damper &&
                l->outward && l->body && l->closed && l->stuck && l->damped && l->response &&
-               l->settling_time && l->scatter && l->stage;
+               l->settling_time && l->least && l->scatter && l->stage;
   for (int k = 0; k < l->stepper->stages && ready; k++)
     ready = (l->stage[k] = strut_arena_allocate(arena, length, sizeof(double)));
   return ready;

@@ -192,12 +192,11 @@ typedef struct strut_step_formula {
   void (*advance_until_event)(const strut_model *model, strut_state *state, strut_event_stepper *l,
                               double dt, int64_t end);
   const strut_tableau *tableau; /* NULL: variations cannot follow */
-  /** With error control, in a region (local_events.h): does a contact contradict its mode at the stage just evaluated?
-      And raises l->error where something happens and ends within the step; broken: the part of the step at which the
-      first stage that contradicts is, or 0. */
-  bool (*contradicts_at_stage)(const strut_model *model, const strut_event_stepper *l);
+  /** With error control, in a region (local_events.h): notes the margins of the stage just evaluated, the part `at`
+      into the step, in l->least; and after a step raises l->error where something happens and ends within it. */
+  void (*note_stage)(const strut_event_stepper *l, double at, bool first);
   void (*look_between)(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double h, double broken);
+                       double h);
 } strut_step_formula;
 
 /** Who has switched since the latest step: many may do so at one moment, but none many times. */
@@ -207,6 +206,12 @@ typedef struct strut_switch_counts {
   int32_t count;
   int most; /* the largest of them */
 } strut_switch_counts;
+
+/** What is left of the margin by whose zero the mode of a closed contact ends, where that is least at a stage. */
+typedef struct strut_least_margin {
+  double margin; /* [N]; HUGE_VAL: the ends of a step say all about the mode */
+  double at;     /* part of the step */
+} strut_least_margin;
 
 /** Workspace of a method with events; in the state's arena. */
 struct strut_event_stepper {
@@ -219,9 +224,10 @@ struct strut_event_stepper {
   int8_t *side, *damper;         /* (contacts) s; ground damper: 1 on, -1 off, 0: by its sign */
   int32_t *closed;               /* (closed_count) contacts that touch, ascending */
   int32_t closed_count;
-  double *outward; /* (contacts) the sign of gaps that keep the mode: 1 open, -1 closed */
-  int32_t *body;   /* (contacts) equal where a force on one accelerates the other */
-  bool *body_seen; /* (contacts) scratch */
+  double *outward;           /* (contacts) the sign of gaps that keep the mode: 1 open, -1 closed */
+  int32_t *body;             /* (contacts) equal where a force on one accelerates the other */
+  bool *body_seen;           /* (contacts) scratch */
+  strut_least_margin *least; /* (contacts) adaptive: over the latest step, of those closed */
   strut_sliding_contact *sliding;     /* (closed_count), where all_sliding */
   bool all_sliding;                   /* decoupled, and all closed contacts are in the list above */
   bool contacts_decoupled;            /* level ground, and no two closed contacts are of one body */

@@ -48,6 +48,12 @@ LAW_INLINE real LAW(margin_of_creep_in)(real side, real at_edge, real friction) 
   return side * (at_edge - friction);
 }
 
+/**
+ * Is less of a margin left, where it is `least` within a step, than it has lost from what it is at its ends, `kept`
+ * at least? Its true least value may then be below 0.
+ */
+LAW_INLINE mask LAW(margin_is_spent)(real least, real kept) { return less(2.0 * least, kept); }
+
 /* Forces and speeds that agree to this part are taken to be equal at the edge of a band. */
 #define STRUT_TIED 1e-8
 

@@ -203,7 +203,6 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   strut_local_events *p = l->within;
   int stages = tableau->stages;
   double *v[STRUT_MOST_STAGES + 1], *a[STRUT_MOST_STAGES + 1], *q = l->stage[0];
-  double broken = 0.0; /* where a stage contradicts a contact's mode */
   v[0] = l->now->v, a[0] = l->now->a;
   for (int k = 1; k < stages; k++) v[k] = l->stage[k], a[k] = l->stage[stages - 1 + k];
   v[stages] = l->next->v, a[stages] = l->next->a;
@@ -216,8 +215,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
     strut_local_place_halo(p, (at - p->whole.start) / p->whole.span, q, v[s]);
     region_forces(model, state, p, at, q, v[s], balance);
     region_accelerations(model, state, l, q, v[s], a[s], l->next, balance);
-    if (l->stepper->adaptive && broken == 0.0 && l->stepper->contradicts_at_stage(model, l))
-      broken = tableau->ahead[s];
+    if (l->stepper->adaptive) l->stepper->note_stage(l, tableau->ahead[s], s == 1);
     for (int k = 0; k < STRUT_POWER_COUNT && balance; k++)
       l->gained[k] += last[s] * h * state->latest.power[k];
   }
@@ -226,7 +224,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   region_end(model, state, l, t + h, l->next, balance);
   if (!l->stepper->adaptive) return;
   l->error = region_error(model, l, h, v, a);
-  l->stepper->look_between(model, state, l, h, broken);
+  l->stepper->look_between(model, state, l, h);
 }
 
 STRUT_CLONES

@@ -86,18 +86,17 @@ STRUT_SMALL_INLINE double small_error(const strut_model *model, strut_event_step
 }
 
 /* A step from `now` at time t over h to `next`, with the works of it; leaves rest lengths and forces in the
-   state. Returns the part of the step by which a stage contradicts a mode; 0: none does. */
-STRUT_SMALL_INLINE double small_adaptive_step(small_events *e, const strut_model *model,
-                                              strut_state *state, double t, double h,
-                                              const small_end_point *now, small_end_point *next,
-                                              small_work *gained, bool balance) {
+   state. */
+STRUT_SMALL_INLINE void small_adaptive_step(small_events *e, const strut_model *model,
+                                            strut_state *state, double t, double h,
+                                            const small_end_point *now, small_end_point *next,
+                                            small_work *gained, bool balance) {
   strut_event_stepper *l = e->stepper;
   const strut_tableau *tableau = l->stepper->tableau;
   const int stride = e->run.terms & STRUT_TERM_DRIVE ? 1 : 0, end = tableau->stages;
   const double *ahead = tableau->ahead, *last = tableau->weight[end];
   const small_rest *rest = small_rest_at(model, state, l->small, t, h, ahead + 1, end - 1);
   small_points v[STRUT_MOST_STAGES + 1], a[STRUT_MOST_STAGES + 1], q, next_q;
-  double broken = 0.0;
   v[0] = now->v, a[0] = now->a;
   q.x = small_ahead(now->q.x, h, small_scaled(tableau->weight[1][0], v[0].x));
   q.y = small_ahead(now->q.y, h, small_scaled(tableau->weight[1][0], v[0].y));
@@ -114,7 +113,7 @@ STRUT_SMALL_INLINE double small_adaptive_step(small_events *e, const strut_model
                                      k < end ? &next_q : NULL, &v[k], balance);
     if (k == end) break;
     q = next_q;
-    if (l->closed_count && broken == 0.0 && small_contradicts_at_stage(e)) broken = ahead[k];
+    if (small_keeps_margins(e)) small_note_stage(e, ahead[k], k == 1);
     if (balance) small_add_work(gained, last[k] * h, &e->power);
   }
   state->evaluations += end;
@@ -122,7 +121,6 @@ STRUT_SMALL_INLINE double small_adaptive_step(small_events *e, const strut_model
   e->rest = rest + (end - 2) * stride;
   e->time = t + h;
   l->error = small_error(model, l, h, v, a);
-  return broken;
 }
 
 #endif

@@ -24,7 +24,8 @@ typedef struct small_events {
   small_points structure, force; /* without the ground, and with it */
   small_work structure_power, power;
   small_contacts contacts;
-  const small_rest *rest; /* at its time, without the offset [s] */
+  small_row least, least_at; /* margins over the stages, see strut_least_margin */
+  const small_rest *rest;    /* at its time, without the offset [s] */
   double time;
 } small_events;
 
@@ -194,29 +195,62 @@ STRUT_SMALL_INLINE small_points small_accelerate_in_modes(small_events *e, const
   return a;
 }
 
-/* See contradicts_at_stage in adaptive.c. */
-STRUT_SMALL_INLINE bool small_contradicts_at_stage(const small_events *e) {
+/* Is there a contact with a margin that stages have to note? */
+STRUT_SMALL_INLINE bool small_keeps_margins(const small_events *e) {
+  return e->stepper->closed_count && (e->modes->is.any_band || e->modes->is.any_held);
+}
+
+/* See kept_margin in adaptive.c; infinite without a normal force, too. */
+STRUT_SMALL_INLINE small_real small_kept_margin(const small_events *e, int p) {
   const strut_small_contacts *c = &e->run.tables->contact;
   const strut_small_modes *m = e->modes;
-  const double more = 1.0 + STRUT_STAGE_ERROR, fewer = 1.0 - STRUT_STAGE_ERROR;
-  bool laws = e->run.terms & STRUT_TERM_LAWS, any = false;
-  if (!m->is.any_band && !m->is.any_held) return false;
+  bool laws = e->run.terms & STRUT_TERM_LAWS;
+  small_real zero = {0}, none = small_all(HUGE_VAL), margin = none;
+  small_real normal = e->contacts.normal.part[p], side = SMALL_MODE(row.side);
+  small_real friction = e->contacts.friction.part[p], applied = e->contacts.applied.part[p];
+  small_real held = small_holding(c, p, normal, -friction, laws);
+  small_real holding = small_holding(c, p, normal, applied, laws);
+  small_real sliding = SMALL_MODE(row.kinetic) * normal;
+#define SMALL_KEEPS(mode, value) margin = small_choose(mode, value, margin)
+  SMALL_KEEPS(SMALL_MODE_MASK(mask.stick), small_margin_of_holding(held, friction));
+  SMALL_KEEPS(SMALL_MODE_MASK(mask.creep), small_margin_of_creep_out(side, sliding, friction));
+  SMALL_KEEPS(SMALL_MODE_MASK(mask.band) & SMALL_MODE_MASK(mask.drops),
+              small_margin_of_holding(holding, applied));
+  SMALL_KEEPS(SMALL_MODE_MASK(mask.pushes), small_margin_of_push(side, holding, applied));
+#undef SMALL_KEEPS
+  return small_choose(SMALL_MODE_MASK(mask.closed) & small_less(zero, normal), margin, none);
+}
+
+/* See note_stage in adaptive.c. */
+STRUT_SMALL_INLINE void small_note_stage(small_events *e, double at, bool first) {
   SMALL_EACH(p) {
-    small_real zero = {0}, normal = e->contacts.normal.part[p], side = SMALL_MODE(row.side);
-    small_real friction = e->contacts.friction.part[p], applied = e->contacts.applied.part[p];
-    small_real held = small_holding(c, p, normal, -friction, laws) * more;
-    small_real holding = small_holding(c, p, normal, applied, laws);
-    small_real sliding = SMALL_MODE(row.kinetic) * normal * more;
-#define SMALL_ENDS(mode, margin) (SMALL_MODE_MASK(mask.mode) & small_less(margin, zero))
-    small_mask bad = SMALL_ENDS(stick, small_margin_of_holding(held, friction));
-    bad |= SMALL_MODE_MASK(mask.drops) &
-           SMALL_ENDS(band, small_margin_of_holding(holding * more, applied));
-    bad |= SMALL_ENDS(pushes, small_margin_of_push(side, holding * fewer, applied));
-    bad |= SMALL_ENDS(creep, small_margin_of_creep_out(side, sliding, friction));
-#undef SMALL_ENDS
-    any = any || small_some(bad & SMALL_MODE_MASK(mask.closed) & small_less(zero, normal));
+    small_real margin = small_kept_margin(e, p);
+    small_mask less = small_less(margin, e->least.part[p]);
+    e->least.part[p] = first ? margin : small_choose(less, margin, e->least.part[p]);
+    e->least_at.part[p] =
+        first ? small_all(at) : small_choose(less, small_all(at), e->least_at.part[p]);
   }
+}
+
+/* Whether look_between may find one in the step just made; see earliest_spent in adaptive.c. */
+STRUT_SMALL_INLINE bool small_spent(const small_events *e) {
+  bool any = false;
+  if (!small_keeps_margins(e)) return false;
+  SMALL_EACH(p)
+  any = any || small_some(small_margin_is_spent(e->least.part[p], small_kept_margin(e, p)));
   return any;
+}
+
+/* The least margins of the contacts that touch, one by one, into l->least. */
+STRUT_SMALL_INLINE void small_keep_least(const small_events *e, const strut_model *model) {
+  const strut_event_stepper *l = e->stepper;
+  bool kept = small_keeps_margins(e);
+  strut_small_row margin, at;
+  small_row_store(margin, e->least), small_row_store(at, e->least_at);
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    int32_t i = l->closed[k], n = model->contacts.entry[i].node;
+    l->least[i] = (strut_least_margin){kept ? margin[n] : HUGE_VAL, at[n]};
+  }
 }
 
 /* The contacts that touch, one by one, into end->touch; a: the acceleration there. */

@@ -10,17 +10,15 @@
 #include "engine/integrate/events/small/small_rk4_events.h"
 
 /* The step of a pair, where `adaptive`, or of rk4-events, and what settle_band_ties does to its end. */
-STRUT_SMALL_INLINE double small_exact_step(small_events *e, const strut_model *model,
-                                           strut_state *state, double t, double h, bool adaptive,
-                                           const small_end_point *now, small_end_point *next,
-                                           small_work *gained, bool balance) {
-  double broken = 0.0;
+STRUT_SMALL_INLINE void small_exact_step(small_events *e, const strut_model *model,
+                                         strut_state *state, double t, double h, bool adaptive,
+                                         const small_end_point *now, small_end_point *next,
+                                         small_work *gained, bool balance) {
   if (adaptive)
-    broken = small_adaptive_step(e, model, state, t, h, now, next, gained, balance);
+    small_adaptive_step(e, model, state, t, h, now, next, gained, balance);
   else
     small_rk4_events_step(e, model, state, t, h, now, next, gained, balance);
   if (e->stepper->closed_count && !e->stepper->all_sliding) small_settle_ties(e);
-  return broken;
 }
 
 STRUT_SMALL_INLINE small_end_point small_end_now(const strut_model *model,
@@ -66,28 +64,27 @@ STRUT_SMALL_INLINE bool small_next_quiet(const strut_state *state, const strut_e
 
 /* Does anything happen in the step? */
 STRUT_SMALL_INLINE bool small_is_eventful(const small_events *e, const strut_model *model, double h,
-                                          bool adaptive, double broken, const small_end_point *now,
+                                          bool adaptive, const small_end_point *now,
                                           const small_end_point *next) {
-  if (adaptive && (!(e->stepper->error <= 1.0) || broken > 0.0)) return true;
+  if (adaptive && (!(e->stepper->error <= 1.0) || small_spent(e))) return true;
   if (small_exact_event(e, next)) return true;
   return adaptive && model->contacts.count && small_dips(e, model, h, now, next);
 }
 
-/* Leaves the step that has been tried, or is asked for, in l->next. Returns what the trial does. */
-STRUT_SMALL_INLINE double small_exact(const strut_model *model, strut_state *state,
-                                      strut_event_stepper *l, small_request r, unsigned terms,
-                                      bool adaptive, bool balance) {
+/* Leaves the step that has been tried, or is asked for, in l->next. */
+STRUT_SMALL_INLINE void small_exact(const strut_model *model, strut_state *state,
+                                    strut_event_stepper *l, small_request r, unsigned terms,
+                                    bool adaptive, bool balance) {
   small_events e = small_events_begin(model, l, terms);
   small_kept kept;
   small_end_point now = small_end_now(model, l), next;
   small_work gained = small_work_load(l->gained), work = small_work_load(state->work);
   small_grid_start start = {.known = false};
   bool tried = false, taken = false;
-  double broken = 0.0;
   while (!r.quiet || small_next_quiet(state, l, &r)) {
     if (r.quiet && adaptive && l->done == 0.0) start = (small_grid_start){now.q, now.v, work, true};
-    broken = small_exact_step(&e, model, state, r.t, r.h, adaptive, &now, &next, &gained, balance);
-    tried = !r.quiet || small_is_eventful(&e, model, r.h, adaptive, broken, &now, &next);
+    small_exact_step(&e, model, state, r.t, r.h, adaptive, &now, &next, &gained, balance);
+    tried = !r.quiet || small_is_eventful(&e, model, r.h, adaptive, &now, &next);
     if (tried) break;
     taken = true;
     kept = small_kept_of(&e);
@@ -98,7 +95,7 @@ STRUT_SMALL_INLINE double small_exact(const strut_model *model, strut_state *sta
   }
   if (r.quiet) l->tried = tried;
   small_keep_start(&start, model, l);
-  if (!taken && !tried) return 0.0;
+  if (!taken && !tried) return;
   if (balance) small_work_store(l->gained, gained);
   if (taken) {
     small_events at_now = small_at_kept(&e, &kept);
@@ -106,38 +103,41 @@ STRUT_SMALL_INLINE double small_exact(const strut_model *model, strut_state *sta
     if (balance) small_work_store(state->work, work);
     l->fresh = true;
   }
+  if (tried && adaptive) small_keep_least(&e, model);
   if (tried) small_keep_end(&e, model, &next.q, &next.v, &next.a, l->next, balance);
   small_leave(&e, model, state, balance);
-  return broken;
 }
 
 /* Defines the trial and the quiet steps of a method: copies for models with common terms only and for all, with
    the energy balance and without. */
 #define STRUT_SMALL_EXACT_COPY(name, copy, terms, adaptive, balance)                               \
   STRUT_SMALL_TARGET                                                                               \
-  static double name##_##copy(const strut_model *model, strut_state *state,                        \
-                              strut_event_stepper *l, small_request r) {                           \
-    return small_exact(model, state, l, r, terms, adaptive, balance);                              \
+  static void name##_##copy(const strut_model *model, strut_state *state, strut_event_stepper *l,  \
+                            small_request r) {                                                     \
+    small_exact(model, state, l, r, terms, adaptive, balance);                                     \
   }
 
 #define STRUT_SMALL_EXACT(name, adaptive)                                                          \
   STRUT_SMALL_EXACT_COPY(name, usual_with_balance, STRUT_SMALL_USUAL, adaptive, true)              \
   STRUT_SMALL_EXACT_COPY(name, usual, STRUT_SMALL_USUAL, adaptive, false)                          \
   STRUT_SMALL_EXACT_COPY(name, any, STRUT_TERMS_ALL, adaptive, state->balance)                     \
-  static double name##_steps(const strut_model *model, strut_state *state, strut_event_stepper *l, \
-                             small_request r) {                                                    \
-    if (small_copy_of(model) < 2) return name##_any(model, state, l, r);                           \
-    return state->balance ? name##_usual_with_balance(model, state, l, r)                          \
-                          : name##_usual(model, state, l, r);                                      \
+  static void name##_steps(const strut_model *model, strut_state *state, strut_event_stepper *l,   \
+                           small_request r) {                                                      \
+    if (small_copy_of(model) < 2)                                                                  \
+      name##_any(model, state, l, r);                                                              \
+    else if (state->balance)                                                                       \
+      name##_usual_with_balance(model, state, l, r);                                               \
+    else                                                                                           \
+      name##_usual(model, state, l, r);                                                            \
   }                                                                                                \
                                                                                                    \
-  double STRUT_SMALL_NAME(name)(const strut_model *model, strut_state *state,                      \
-                                strut_event_stepper *l, double t, double h) {                      \
-    return name##_steps(model, state, l, (small_request){.t = t, .h = h});                         \
+  void STRUT_SMALL_NAME(name)(const strut_model *model, strut_state *state,                        \
+                              strut_event_stepper *l, double t, double h) {                        \
+    name##_steps(model, state, l, (small_request){.t = t, .h = h});                                \
   }                                                                                                \
-  double STRUT_SMALL_NAME(name##_quiet)(const strut_model *model, strut_state *state,              \
-                                        strut_event_stepper *l, double dt, int64_t end) {          \
-    return name##_steps(model, state, l, (small_request){.dt = dt, .end = end, .quiet = true});    \
+  void STRUT_SMALL_NAME(name##_quiet)(const strut_model *model, strut_state *state,                \
+                                      strut_event_stepper *l, double dt, int64_t end) {            \
+    name##_steps(model, state, l, (small_request){.dt = dt, .end = end, .quiet = true});           \
   }
 
 #endif

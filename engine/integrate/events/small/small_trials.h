@@ -7,25 +7,20 @@
 
 #include "engine/integrate/events/small/small_modes.h"
 
-/** A step from l->now at time t over h to l->next. Returns the part of the step by which a stage
-    contradicts a mode; 0: none does. */
-typedef double strut_small_trial(const strut_model *model, strut_state *state,
-                                 strut_event_stepper *l, double t, double h);
+/** A step from l->now at time t over h to l->next; with error control its stages' margins into l->least. */
+typedef void strut_small_trial(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                               double t, double h);
 
 strut_small_trial strut_small_adaptive_avx2, strut_small_adaptive_avx512;
 strut_small_trial strut_small_rk4_events_avx2, strut_small_rk4_events_avx512;
 
-/** Steps up to grid point `end` until something happens: see a step formula's advance_until_event. With
-    l->tried, returns what the trial does; else 0. */
-typedef double strut_small_quiet(const strut_model *model, strut_state *state,
-                                 strut_event_stepper *l, double dt, int64_t end);
+/** Steps up to grid point `end` until something happens: see a step formula's advance_until_event. */
+typedef void strut_small_quiet(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                               double dt, int64_t end);
 
 strut_small_quiet strut_small_verlet_events_avx2, strut_small_verlet_events_avx512;
 strut_small_quiet strut_small_adaptive_quiet_avx2, strut_small_adaptive_quiet_avx512;
 strut_small_quiet strut_small_rk4_events_quiet_avx2, strut_small_rk4_events_quiet_avx512;
-
-/* Forces of stages, which are of lower order, may be off by this part without a word. */
-#define STRUT_STAGE_ERROR 0.01
 
 /** The function of that name; NULL where the general kernel steps. Variations need its stages. */
 #if defined(__x86_64__)

@@ -214,15 +214,14 @@ STRUT_SMALL_INLINE void small_verlet_events(const strut_model *model, strut_stat
     steps(model, state, l, dt, end, STRUT_TERMS_ALL, state->balance);                              \
   }                                                                                                \
                                                                                                    \
-  double STRUT_SMALL_NAME(name)(const strut_model *model, strut_state *state,                      \
-                                strut_event_stepper *l, double dt, int64_t end) {                  \
+  void STRUT_SMALL_NAME(name)(const strut_model *model, strut_state *state,                        \
+                              strut_event_stepper *l, double dt, int64_t end) {                    \
     if (small_copy_of(model) < 2)                                                                  \
       name##_any(model, state, l, dt, end);                                                        \
     else if (state->balance)                                                                       \
       name##_usual_with_balance(model, state, l, dt, end);                                         \
     else                                                                                           \
       name##_usual(model, state, l, dt, end);                                                      \
-    return 0.0;                                                                                    \
   }
 
 #endif
