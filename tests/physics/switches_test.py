@@ -16,6 +16,8 @@ they find must not depend on where steps happen to end, nor on the method.
 - tied-and-held: both at once, with a loose tolerance.
 - up-and-down-again: a contact opens, and is on its way back by when something else is located.
 - kink-of-a-margin: what ends creep falls slowly, then fast, since another force passes what friction holds.
+- gives-way-briefly: a contact gives way within a step at whose ends it would hold.
+- released-at-once: three contacts give way at one jump, on either side of 0 by rounding.
 - bounces: a search that meets a root but for rounding is at its end.
 """
 import json
@@ -86,6 +88,11 @@ u = unit_of("up-and-down-again")
 compare("up-and-down-again", 1e-9, 90, precise(u, 100, "1e-12"), precise(u, 1000, "1e-12"), adaptive(u, 1000, "1e-12"))
 u = unit_of("kink-of-a-margin")
 compare("kink-of-a-margin", 2e-9, 120, precise(u, 100, "1e-12"), precise(u, 1000, "1e-12"), adaptive(u, 100, "1e-12"))
+u = unit_of("gives-way-briefly")
+compare("gives-way-briefly", 1e-9, 120, precise(u, 100, "1e-12"), precise(u, 1000, "1e-12"), adaptive(u, 100, "1e-12"))
+u = unit_of("released-at-once")
+compare("released-at-once", 1e-9, 120, *(precise(u, n, t) for n in (100, 300, 1000) for t in ("1e-10", "1e-12")),
+        adaptive(u, 100, "1e-12"))
 u = unit_of("bounces")
 compare("bounces", 1e-9, 20, adaptive(u, 50, "1e-12"), adaptive(u, 500, "1e-12"), precise(u, 50, "1e-12"))
 

@@ -44,15 +44,18 @@ static double room_to_leave(const strut_model *model, const strut_event_stepper 
 
 /*
  * How far contact i is from ceasing to slip, where that is `room` by its speed, which is `after` at the end
- * of the step. A slip that begins where the step does, and grows at first, ends where it has come back.
+ * of the step. A slip that begins where the step does, and grows at first, ends where it has come back; one that
+ * does not grow ends at once, on whichever side of 0 rounding has left it.
  */
 static double room_to_slip(const strut_model *model, const strut_event_stepper *l, int32_t i,
                            double room, double after) {
   assert(i >= 0 && i < model->contacts.count);
-  double edge = stick_band_edge(&l->entry[i]), least = 1e-9 * edge, rate = 0.0;
+  double edge = stick_band_edge(&l->entry[i]), rate = 0.0;
   if (edge > 0.0 && !l->stepper->exact) return room;
+  double begins = fmax(1e-9 * edge, -1e-12 * after);
+  if (room > begins) return room;
   strut_event_rate(l, l->now, STRUT_EVENT_SLIP_ENDS, i, &rate);
-  return room <= least && rate > 0.0 ? fmax(least, -1e-12 * after) : room;
+  return rate > 0.0 ? begins : 0.0;
 }
 
 /*
