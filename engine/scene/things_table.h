@@ -260,7 +260,7 @@
 #define STRUT_FRICTION_FIELDS(X) \
   X(FRICTION, LAW, "law", WORD, NONE, ANY, "karnopp", WRITTEN, 0, STRUT_FRICTION_WORDS, FIELD(strut_friction, law), "`karnopp`: Coulomb friction with a stick band (the paper's law). `coulomb`: exact sticking; needs a method with events. `smooth`: -mu_kinetic N u / sqrt(u^2 + width^2); loaded contacts creep. `stribeck`: likewise, from mu_static to mu_kinetic as speed grows. `lugre`: bristles that bend before they slide, with these coefficients; on straight grounds at rest.") \
   X(FRICTION, MU, "mu", FREE, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "a number, a signal or the name of one", BY_HAND, "Both friction coefficients. A signal changes them with time; where it is negative they are 0. Settling uses its value at t = 0.") \
-  X(FRICTION, MU_STATIC, "mu_static", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", FIELD(strut_friction, mu_static), "Coefficient of static friction.") \
+  X(FRICTION, MU_STATIC, "mu_static", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", FIELD(strut_friction, mu_static), "Coefficient of static friction; with `karnopp` and `coulomb` not below `mu_kinetic`.") \
   X(FRICTION, MU_KINETIC, "mu_kinetic", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", FIELD(strut_friction, mu_kinetic), "Coefficient of kinetic friction.") \
   X(FRICTION, MU_FORWARD, "mu_forward", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", BY_HAND, "Both coefficients against motion towards +x along the ground, if they depend on the direction.") \
   X(FRICTION, MU_FORWARD_STATIC, "mu_forward_static", NUMBER, NONE, NOT_NEGATIVE, "`mu_forward`", OPTIONAL, 0, "", BY_HAND, "Coefficient of static friction against motion towards +x.") \
