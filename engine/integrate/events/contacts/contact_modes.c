@@ -37,8 +37,8 @@ void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
     strut_local_evaluate(model, state, l, t);
   else
     evaluate_now(model, state, l, t);
-  /* a rejected step has taken the sensors further */
-  if (fresh && model->feedback.relay_count) strut_drive_apply(model, state, t);
+  /* a step that is not taken has left rest lengths and sensors of its end */
+  if (fresh && l->law_count) strut_drive_apply(model, state, t);
   strut_event_measure(model, state, l, l->now);
 }
 
