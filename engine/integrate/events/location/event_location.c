@@ -8,7 +8,7 @@
 #include "engine/integrate/events/event_kernel.h"
 
 /* A ground damper this much weaker than the whole reaction is rounding, whatever its sign. */
-static const double FAINT = 1e-12;
+static const double FAINT = 1e-11;
 
 double strut_event_cubic_root(double g0, double d0, double g1, double d1) {
   double low = 0.0, high = 1.0, x = g0 / (g0 - g1);
@@ -43,19 +43,13 @@ static double room_to_leave(const strut_model *model, const strut_event_stepper 
 }
 
 /*
- * How far contact i is from ceasing to slip, where that is `room` by its speed, which is `after` at the end
- * of the step. A slip that begins where the step does, and grows at first, ends where it has come back; one that
- * does not grow ends at once, on whichever side of 0 rounding has left it.
+ * How far an event is, whose value is `room` where the step begins, with this rate, and `after` at its end. A mode that
+ * begins there, but for rounding, and lasts at first, ends where the value has come back; one that does not last ends
+ * at once, on whichever side of 0 rounding has left it.
  */
-static double room_to_slip(const strut_model *model, const strut_event_stepper *l, int32_t i,
-                           double room, double after) {
-  assert(i >= 0 && i < model->contacts.count);
-  double edge = stick_band_edge(&l->entry[i]), rate = 0.0;
-  if (edge > 0.0 && !l->stepper->exact) return room;
-  double begins = fmax(1e-9 * edge, -1e-12 * after);
-  if (room > begins) return room;
-  strut_event_rate(l, l->now, STRUT_EVENT_SLIP_ENDS, i, &rate);
-  return rate > 0.0 ? begins : 0.0;
+static double room_to_last(double least, double room, double rate, double after) {
+  double begins = fmax(least, -1e-12 * after);
+  return room > begins ? room : rate > 0.0 ? begins : 0.0;
 }
 
 /*
@@ -80,26 +74,37 @@ static bool cable_rates(const strut_event_stepper *l, int32_t i, double h, doubl
   return true;
 }
 
+/* Rates of the event's value at both ends of the step; false where a secant must do. */
+static bool rates_of(const strut_model *model, const strut_event_stepper *l, strut_event_kind kind,
+                     int32_t i, double h, double *d0, double *d1) {
+  if (kind == STRUT_EVENT_TOUCH) {
+    strut_touch a, b;
+    measure_at_end(&model->contacts, l, l->now, i, STRUT_TERMS_ALL, &a);
+    measure_at_end(&model->contacts, l, l->next, i, STRUT_TERMS_ALL, &b);
+    *d0 = h * a.into, *d1 = h * b.into;
+    return true;
+  }
+  if (kind == STRUT_EVENT_ACTS) return cable_rates(l, i, h, d0, d1);
+  if (!strut_event_rate(l, l->now, kind, i, d0) || !strut_event_rate(l, l->next, kind, i, d1))
+    return false;
+  *d0 *= h, *d1 *= h;
+  return true;
+}
+
 /* Where between now and next the event's value passes 0. */
 static double fraction_of(const strut_model *model, const strut_event_stepper *l,
                           strut_event_kind kind, int32_t i, double h) {
   double g0 = strut_event_value(model, l, l->now, kind, i), d0, d1;
   double g1 = strut_event_value(model, l, l->next, kind, i);
-  if (kind == STRUT_EVENT_LEAVES_STICK_BAND) g0 = room_to_leave(model, l, i, g0);
-  if (kind == STRUT_EVENT_SLIP_ENDS) g0 = room_to_slip(model, l, i, g0, g1);
-  if (!(g0 > 0.0)) return 0.0;
-  if (kind == STRUT_EVENT_TOUCH) {
-    const strut_contact_table *c = &model->contacts;
-    strut_touch a, b;
-    measure_at_end(c, l, l->now, i, STRUT_TERMS_ALL, &a);
-    measure_at_end(c, l, l->next, i, STRUT_TERMS_ALL, &b);
-    return strut_event_cubic_root(g0, h * a.into, g1, h * b.into);
+  bool rated = rates_of(model, l, kind, i, h, &d0, &d1);
+  if (kind == STRUT_EVENT_LEAVES_STICK_BAND) {
+    g0 = room_to_leave(model, l, i, g0);
+  } else if (rated && !strut_event_is_of_law(kind) && l->stepper->exact) {
+    double edge = kind == STRUT_EVENT_SLIP_ENDS ? stick_band_edge(&l->entry[i]) : 0.0;
+    g0 = room_to_last(1e-9 * edge, g0, d0, g1);
   }
-  if (strut_event_rate(l, l->now, kind, i, &d0) && strut_event_rate(l, l->next, kind, i, &d1))
-    return strut_event_cubic_root(g0, h * d0, g1, h * d1);
-  if (kind == STRUT_EVENT_ACTS && cable_rates(l, i, h, &d0, &d1))
-    return strut_event_cubic_root(g0, h * d0, g1, h * d1);
-  return g0 / (g0 - g1);
+  if (!(g0 > 0.0)) return 0.0;
+  return rated ? strut_event_cubic_root(g0, d0, g1, d1) : g0 / (g0 - g1);
 }
 
 static void keep_first(const strut_model *model, const strut_event_stepper *l,
