@@ -352,23 +352,20 @@ static double root_of_parabola(const search *s) {
   return s->low + root * width;
 }
 
-/* Part of a step, or of the change of a value over it, that is small. */
-static const double STILL = 1e-6;
-
 /* The latest correction was small and did not make the value smaller: the rest is rounding. */
 static bool stagnant(const search *s) {
-  return fabs(s->x - s->last_x) <= STILL && fabs(s->value) > 0.1 * fabs(s->last_value);
+  return fabs(s->x - s->last_x) <= 1e-6 && fabs(s->value) > 0.1 * fabs(s->last_value);
 }
 
-/* Near enough for a region, which is joined to the step of the whole with an error of its own: what is left is
-   below a thousandth of what the method leaves. A creeping contact that is tied to the edge is there, too. */
-static bool is_near(const strut_event_stepper *l, const strut_event *event, const search *s,
-                    double slope) {
-  if (event->kind == STRUT_EVENT_CREEP_IN &&
-      fabs(s->value) <= 2.0 * STRUT_TIED * l->next->touch[event->index].normal)
-    return true;
-  return fabs(s->value) <= 1e-8 * fabs(slope);
+/* Does a creeping contact balance the other forces, within STRUT_TIED? friction_in_creep lets it come no nearer. */
+static bool is_balanced(const strut_event_stepper *l, const strut_event *event, double value) {
+  return event->kind == STRUT_EVENT_CREEP_IN &&
+         fabs(value) <= 1.5 * STRUT_TIED * l->next->touch[event->index].normal;
 }
+
+/* A part of a region's step that is near enough: it is joined to the step of the whole with an error of its own, and
+   this is below a thousandth of what the method leaves. */
+static const double NEAR = 1e-8;
 
 /* Where forces balance until then, an edge is left so gently that this part of a step is harmless. */
 static const double BALANCED = 1e-8;
@@ -439,11 +436,13 @@ static double retake(const strut_model *model, strut_state *state, strut_event_s
     /* forces that balance keep the speed there for a while: the value stays small, but has no root nearby */
     bool tied = edge && band_forces_balance(l, &l->next->touch[event->index], event->index);
     if (edge && !tied) break;
-    if (l->within && !tied && is_near(l, event, &s, slope)) break;
-    /* a value that is not small beside those of the step's ends has its root, or a jump, farther on, however little
-       the search has moved */
+    /* variations need a point from which the value changes */
+    if (!state->watched.variation && is_balanced(l, event, s.value)) break;
+    if (l->within && !tied && fabs(s.value) <= NEAR * fabs(slope)) break;
+    /* a value that is not small beside those of the step's ends jumps, or has its root farther on, however little the
+       search has moved */
     bool still = k > 0 && !tied && stagnant(&s),
-         far = fabs(s.value) > STILL * (fabs(before) + fabs(after));
+         far = fabs(s.value) > 0.1 * (fabs(before) + fabs(after));
     if (s.value == 0.0 || (still && !far)) break;
     if (tied && s.high - s.x <= BALANCED) break;
     double x = go_on(&s, l->within && rate == 0.0 ? root_of_parabola(&s) : s.x - s.value / slope);
@@ -451,7 +450,7 @@ static double retake(const strut_model *model, strut_state *state, strut_event_s
     if (s.high - s.low <= 1e-13) break;
     s.x = x;
   }
-  return s.x * h;
+  return s.x * h > 0.0 ? reached * h : 0.0;
 }
 
 /* The trial over h, and what happens in it. False: the error is too large; l->h says what to try. */
@@ -588,6 +587,11 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
       double taken = event.fraction * h <= AT_ONCE * dt && !l->stepper->exact
                          ? 0.0
                          : retake(model, state, l, t, h, &event);
+      if (l->stepper->adaptive && taken > AT_ONCE * dt &&
+          l->error > 1.0) { /* something comes before it */
+        control_step(l, taken, true);
+        return 0.0;
+      }
       h = taken > AT_ONCE * dt ? taken : 0.0;
     }
   } else {
