@@ -95,7 +95,8 @@ static double kept_margin(const strut_event_stepper *l, int32_t i, const strut_t
   const strut_contact_entry *e = &l->entry[i];
   switch ((strut_contact_mode)l->mode[i]) {
     case STRUT_MODE_STICK: return margin_of_stick(e, o);
-    case STRUT_MODE_CREEP: return margin_of_creep_out(e, o, l->side[i]);
+    case STRUT_MODE_CREEP:
+      return fmin(margin_of_creep_out(e, o, l->side[i]), margin_of_creep_in(e, o, l->side[i]));
     case STRUT_MODE_BAND:
       if (!strut_friction_drops(&e->friction)) break;
       return margin_of_push(e, o, STRUT_MODE_BAND, l->side[i]);
@@ -117,31 +118,39 @@ static void note_stage(const strut_event_stepper *l, double at, bool first) {
   }
 }
 
+/* Part of what is left of a step, after which what has begun still lasts. */
+static const double SOON = 0.1;
+
 /* A margin this small beside the normal force says nothing. */
 static const double FAINT_MARGIN = 1e-9;
 
 /*
- * Earliest stage by which a contact has nearly given way, or has, though it keeps its mode at both ends of the step:
- * from either of these its margin falls by more than is left of it. 0: none.
+ * Earliest stage by which contact i has nearly given way, or has, though it keeps its mode at the end of the step: from
+ * there and from the begin its margin falls by more than is left of it. Where it is below 0 from the begin, since other
+ * forces have jumped there: soon after. 0: none.
  */
-static double earliest_spent(const strut_event_stepper *l) {
-  double first = 0.0;
-  for (int32_t k = 0; k < l->closed_count; k++) {
-    int32_t i = l->closed[k];
-    const strut_touch *now = &l->now->touch[i], *next = &l->next->touch[i];
-    if (l->least[i].margin == HUGE_VAL) continue;
-    double from = now->normal > 0.0 ? kept_margin(l, i, now) : 0.0;
-    double to = next->normal > 0.0 ? kept_margin(l, i, next) : 0.0;
-    double kept = fmin(from, to) - FAINT_MARGIN * next->normal;
-    if (fmin(from, to) >= 0.0 && strut_law_margin_is_spent(l->least[i].margin, kept) &&
-        (first == 0.0 || l->least[i].at < first))
-      first = l->least[i].at;
-  }
-  return first;
+static double spent_at(const strut_event_stepper *l, int32_t i) {
+  const strut_touch *now = &l->now->touch[i], *next = &l->next->touch[i];
+  if (l->least[i].margin == HUGE_VAL) return 0.0;
+  double from = now->normal > 0.0 ? kept_margin(l, i, now) : 0.0;
+  double to = next->normal > 0.0 ? kept_margin(l, i, next) : 0.0;
+  double faint = FAINT_MARGIN * next->normal;
+  if (to < 0.0 || !strut_law_margin_is_spent(l->least[i].margin, to)) return 0.0;
+  if (from < -faint) return SOON * l->stepper->tableau->ahead[1];
+  return strut_law_margin_is_spent(l->least[i].margin, fmin(from, to) - faint) ? l->least[i].at
+                                                                               : 0.0;
 }
 
-/* Part of what is left of the step after a law begins to act, after which it still does. */
-static const double SOON = 0.1;
+/* The earlier one of two parts of a step, of which 0 is none. */
+static double earlier(double one, double other) {
+  return one == 0.0 || (other > 0.0 && other < one) ? other : one;
+}
+
+static double earliest_spent(const strut_event_stepper *l) {
+  double first = 0.0;
+  for (int32_t k = 0; k < l->closed_count; k++) first = earlier(first, spent_at(l, l->closed[k]));
+  return first;
+}
 
 /*
  * Where a law acts within the step but at neither end: its strain passes the kink, at a speed at which the damper pulls
@@ -155,7 +164,27 @@ static double short_pull(const strut_event_stepper *l, int32_t k, double h, doub
   return at + SOON * (1.0 - at);
 }
 
-/* Earliest point, within the step, where a law that acts at both ends does not, or the other way; 0: none. */
+/* Lowest point, within the step, of the distance of an element's strain from one of its kinks, on whose other side it is
+   for a while; 0: none. */
+static double kink_dip(const strut_model *model, const strut_state *state,
+                       const strut_event_stepper *l, int32_t k, double h, double faint) {
+  int32_t element = l->laws[k].element;
+  const strut_element *e = &model->elements.element[element];
+  int piece = state->modes.element_piece[element];
+  double way = h * strut_law_way(e->law, &e->numbers, piece), from[2], to[2], at = 0.0;
+  double d0 = way * l->now->stretch_rate[k], d1 = way * l->next->stretch_rate[k];
+  strut_law_margins(e->law, &e->numbers, piece, l->now->stretch[k], &from[0], &from[1]);
+  strut_law_margins(e->law, &e->numbers, piece, l->next->stretch[k], &to[0], &to[1]);
+  for (int side = 0; side < 2; side++) {
+    double sign = side ? -1.0 : 1.0;
+    if (from[side] > 0.0 && to[side] > 0.0 && to[side] < HUGE_VAL)
+      at = earlier(at, dip(from[side], sign * d0, to[side], sign * d1, faint));
+  }
+  return at;
+}
+
+/* Earliest point, within the step, where a law that acts at both ends does not, or the other way, or is on another
+   piece; 0: none. */
 static double earliest_switch(const strut_model *model, strut_state *state, strut_event_stepper *l,
                               double h) {
   double first = 0.0, faint = 0.01 * fmax(0.1 * l->tolerance, 1e-12) * model->size;
@@ -164,22 +193,42 @@ static double earliest_switch(const strut_model *model, strut_state *state, stru
   for (int32_t n = 0; n < count; n++) {
     int32_t k = strut_law_of(l, n);
     double side = l->acting[k] ? 1.0 : -1.0;
+    if (l->laws[k].event == STRUT_EVENT_KINK)
+      first = earlier(first, kink_dip(model, state, l, k, h, faint));
     if (l->laws[k].event != STRUT_EVENT_ACTS) continue;
     double from = side * l->now->stretch[k], to = side * l->next->stretch[k];
     double at = from > 0.0 && to > 0.0 ? dip(from, side * h * l->now->stretch_rate[k], to,
                                              side * h * l->next->stretch_rate[k], faint)
                                        : short_pull(l, k, h, faint);
-    if (at > 0.0 && (first == 0.0 || at < first)) first = at;
+    first = earlier(first, at);
   }
   return first;
 }
 
-/* Earliest lowest point, within the step, of a gap or slip that passes its edge twice; 0: none. */
+/* Lowest point, within the step, of what is left of the slip of closed contact i, or of its speed into the ground, where
+   that passes 0 twice; 0: none. */
+static double speed_dip(const strut_event_stepper *l, int32_t i, double h, double to_slip,
+                        double to_into, double faint) {
+  const strut_touch *now = &l->now->touch[i], *next = &l->next->touch[i];
+  double at = 0.0;
+  if (l->mode[i] == STRUT_MODE_SLIP) {
+    double s = l->side[i], edge = stick_band_edge(&l->entry[i]), end = s * to_slip - edge;
+    if (end > 0.0)
+      at = dip(s * now->slip - edge, s * h * now->slip_rate, end, s * h * next->slip_rate, faint);
+  }
+  double turns = -l->damper[i], end = turns * to_into;
+  if (end > 0.0)
+    at = earlier(at, dip(turns * now->into, turns * h * now->into_rate, end,
+                         turns * h * next->into_rate, faint));
+  return at;
+}
+
+/* Earliest lowest point, within the step, of a gap or speed that passes its edge twice; 0: none. */
 STRUT_INLINE double earliest_dip(const strut_model *model, const strut_state *state,
                                  const strut_event_stepper *l, double h, unsigned terms) {
   const strut_contact_table *c = &model->contacts;
   double first = 0.0, part = fmax(0.1 * l->tolerance, 1e-12);
-  double faint[2] = {0.01 * part * model->size, part * l->fastest}; /* of a gap, of a slip */
+  double faint[2] = {0.01 * part * model->size, part * l->fastest}; /* of a gap, of a speed */
   bool surfaces = frames_of(l->next, terms) && !l->contact_list;
   int32_t count = surfaces ? strut_surface_candidates(model, l, h, state->buffers.near)
                            : strut_contacts_of(model, l);
@@ -193,15 +242,8 @@ STRUT_INLINE double earliest_dip(const strut_model *model, const strut_state *st
     double at = 0.0;
     if (side * to.gap > 0.0)
       at = dip(side * from.gap, side * h * from.into, side * to.gap, side * h * to.into, faint[0]);
-    if (l->mode[i] == STRUT_MODE_SLIP && at == 0.0) {
-      const strut_contact_entry *e = &l->entry[i];
-      double s = l->side[i], edge = stick_band_edge(e);
-      double end = s * to.slip - edge;
-      if (end > 0.0)
-        at = dip(s * from.slip - edge, s * h * l->now->touch[i].slip_rate, end,
-                 s * h * l->next->touch[i].slip_rate, faint[1]);
-    }
-    if (at > 0.0 && (first == 0.0 || at < first)) first = at;
+    if (!open) at = earlier(at, speed_dip(l, i, h, to.slip, to.into, faint[1]));
+    first = earlier(first, at);
   }
   return first;
 }
@@ -220,9 +262,9 @@ STRUT_LOOP void look_between(const strut_model *model, strut_state *state, strut
   if (!(l->error <= 1.0)) return;
   double part = model->contacts.count ? earliest_dip(model, state, l, h, terms) : 0.0;
   double slack = l->law_count ? earliest_switch(model, state, l, h) : 0.0;
-  if (slack > 0.0 && (part == 0.0 || slack < part)) part = slack;
+  part = earlier(part, slack);
   double spent = h > LEAST_SPLIT * l->longest && !l->all_sliding ? earliest_spent(l) : 0.0;
-  if (spent > 0.0 && (part == 0.0 || spent < part)) {
+  if (spent > 0.0 && earlier(part, spent) == spent) {
     strut_event event = strut_event_first(model, state, l, h);
     if (!event.kind || event.fraction > spent) part = spent;
   }

@@ -89,23 +89,25 @@ typedef struct small_end_point {
   small_work power;
 } small_end_point;
 
-/* Gap, speed into the ground and along it, and the rate of that, of part p of all nodes. */
+/* Gap, speed into the ground and along it, and the rates of both, of part p of all nodes. */
 typedef struct small_measures {
-  small_real gap, into, slip, slip_rate;
+  small_real gap, into, slip, into_rate, slip_rate;
 } small_measures;
 
 STRUT_SMALL_INLINE small_measures small_measure(const small_events *e, int p,
                                                 const small_end_point *x) {
   const strut_contact_table *t = e->run.contacts;
   small_real gap = x->q.y.part[p] - t->height, into = x->v.y.part[p], along = x->v.x.part[p];
-  small_real rate = x->a.x.part[p];
+  small_real rate = x->a.x.part[p], into_rate = x->a.y.part[p];
   if (e->run.terms & STRUT_TERM_SLOPE) {
     small_real u = along, w = into;
     gap = x->q.x.part[p] * t->normal[0] + gap * t->normal[1];
     into = u * t->normal[0] + w * t->normal[1], along = u * t->tangent[0] + w * t->tangent[1];
-    rate = rate * t->tangent[0] + x->a.y.part[p] * t->tangent[1];
+    small_real ax = rate, ay = into_rate;
+    rate = ax * t->tangent[0] + ay * t->tangent[1];
+    into_rate = ax * t->normal[0] + ay * t->normal[1];
   }
-  return (small_measures){gap, into, along - small_belt(&e->run), rate};
+  return (small_measures){gap, into, along - small_belt(&e->run), into_rate, rate};
 }
 
 /* See dip in adaptive.c: the lanes in which the cubic is below -faint. */
@@ -138,6 +140,14 @@ STRUT_SMALL_INLINE bool small_dips(const small_events *e, const strut_model *mod
     if (small_some(slips))
       bad |= slips & small_dips_below(s * from.slip - edge, s * h * from.slip_rate, beyond,
                                       s * h * to.slip_rate, slow);
+    small_mask off = SMALL_MODE_MASK(mask.damper_off);
+    small_mask turns = off | SMALL_MODE_MASK(mask.damper_on);
+    if (small_some(turns)) {
+      small_real way = small_choose(off, small_all(1.0), small_all(-1.0));
+      bad |= turns & small_less(zero, way * to.into) &
+             small_dips_below(way * from.into, way * h * from.into_rate, way * to.into,
+                              way * h * to.into_rate, slow);
+    }
     any = any || small_some(bad);
   }
   return any;

@@ -67,6 +67,13 @@ STRUT_SMALL_INLINE small_real small_holding(const strut_small_contacts *c, int p
   return small_friction_holding(&numbers, normal, towards, laws);
 }
 
+/* With which it slides. */
+STRUT_SMALL_INLINE small_real small_sliding(const strut_small_contacts *c, int p, small_real normal,
+                                            small_real towards, bool laws) {
+  const small_friction_numbers numbers = small_friction_at(c, p);
+  return small_friction_sliding(&numbers, normal, towards, laws);
+}
+
 /* See friction_in_mode. */
 STRUT_SMALL_INLINE small_real small_friction_in_mode(const strut_small_contacts *c,
                                                      const strut_small_modes *m, int p,
@@ -210,10 +217,13 @@ STRUT_SMALL_INLINE small_real small_kept_margin(const small_events *e, int p) {
   small_real friction = e->contacts.friction.part[p], applied = e->contacts.applied.part[p];
   small_real held = small_holding(c, p, normal, -friction, laws);
   small_real holding = small_holding(c, p, normal, applied, laws);
-  small_real sliding = SMALL_MODE(row.kinetic) * normal;
+  small_real out = small_margin_of_creep_out(side, SMALL_MODE(row.kinetic) * normal, friction);
+  small_real edge =
+      small_friction_at_edge(holding, small_sliding(c, p, normal, applied, laws), applied);
+  small_real in = small_margin_of_creep_in(side, edge, friction);
 #define SMALL_KEEPS(mode, value) margin = small_choose(mode, value, margin)
   SMALL_KEEPS(SMALL_MODE_MASK(mask.stick), small_margin_of_holding(held, friction));
-  SMALL_KEEPS(SMALL_MODE_MASK(mask.creep), small_margin_of_creep_out(side, sliding, friction));
+  SMALL_KEEPS(SMALL_MODE_MASK(mask.creep), small_choose(small_less(out, in), out, in));
   SMALL_KEEPS(SMALL_MODE_MASK(mask.band) & SMALL_MODE_MASK(mask.drops),
               small_margin_of_holding(holding, applied));
   SMALL_KEEPS(SMALL_MODE_MASK(mask.pushes), small_margin_of_push(side, holding, applied));
