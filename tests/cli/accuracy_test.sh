@@ -207,7 +207,7 @@ done
 expect 5 run "$here/chaotic.yaml" --accuracy 0.2% --json
 cp "$work/out" "$work/json"
 [ "$(field '(.accuracy.kept | not) and .accuracy.expected > 0.1')" = true ] || fail "chaotic: kept"
-field .accuracy.why | grep -q 'nearby motions separate' || fail "chaotic: no reason"
+field .accuracy.why | grep -q 'nearby motions separate\|too sensitive' || fail "chaotic: no reason"
 # Work is bounded, and what could not be settled within it says so.
 expect 5 run "$here/chaotic.yaml" --accuracy 0.2% --budget 1 --json
 cp "$work/out" "$work/json"

@@ -14,10 +14,17 @@ they find must not depend on where steps happen to end, nor on the method.
 - yielding: static above kinetic friction; a contact stays where holding and pushing lead to each other.
 - jump-at-the-edge: a drive jumps while a contact stays at the edge of its band.
 - tied-and-held: both at once, with a loose tolerance.
+Found by tests/bench/grids.py; there adaptive8 with long and short steps must agree, too:
+
 - up-and-down-again: a contact opens, and is on its way back by when something else is located.
+- touches-again: one that has opened comes back within a step.
 - kink-of-a-margin: what ends creep falls slowly, then fast, since another force passes what friction holds.
 - gives-way-briefly: a contact gives way within a step at whose ends it would hold.
 - released-at-once: three contacts give way at one jump, on either side of 0 by rounding.
+- creeps-out-at-a-jump, creeps-in-at-a-jump: creep ends at a jump, and could go on by the end of the step.
+- cable-beside-a-jump: a cable is taut or not by its rest length at a jump, not by that of a step not taken.
+- damper-turned-twice: a contact goes up and down again while it is closed.
+- carried-by-a-belt: speeds of a contact at rest are rounding, and what cannot be located takes its time all the same.
 - bounces: a search that meets a root but for rounding is at its end.
 """
 import json
@@ -84,12 +91,13 @@ compare("jump-at-the-edge", 1e-5, 500, adaptive(u, 100, "1e-9"), adaptive(u, 400
         fixed(u, 2000))
 u = unit_of("tied-and-held")
 compare("tied-and-held", 5e-3, 2000, adaptive(u, 50, "1e-4"), adaptive(u, 100, "1e-9"))
-u = unit_of("up-and-down-again")
-compare("up-and-down-again", 1e-9, 90, precise(u, 100, "1e-12"), precise(u, 1000, "1e-12"), adaptive(u, 1000, "1e-12"))
-u = unit_of("kink-of-a-margin")
-compare("kink-of-a-margin", 2e-9, 120, precise(u, 100, "1e-12"), precise(u, 1000, "1e-12"), adaptive(u, 100, "1e-12"))
-u = unit_of("gives-way-briefly")
-compare("gives-way-briefly", 1e-9, 120, precise(u, 100, "1e-12"), precise(u, 1000, "1e-12"), adaptive(u, 100, "1e-12"))
+for name, part, most_events in (("up-and-down-again", 1e-9, 90), ("touches-again", 1e-9, 50), ("kink-of-a-margin", 2e-9, 120),
+                                ("gives-way-briefly", 1e-9, 120), ("creeps-out-at-a-jump", 1e-9, 160),
+                                ("creeps-in-at-a-jump", 1e-9, 420), ("cable-beside-a-jump", 1e-9, 180),
+                                ("carried-by-a-belt", 1e-9, 140), ("damper-turned-twice", 1e-9, 210)):
+    u = unit_of(name)
+    compare(name, part, most_events, precise(u, 100, "1e-12"), precise(u, 1000, "1e-12"), adaptive(u, 100, "1e-12"))
+    compare(name, 50 * part, most_events, precise(u, 100, "1e-10"), precise(u, 1000, "1e-12"))
 u = unit_of("released-at-once")
 compare("released-at-once", 1e-9, 120, *(precise(u, n, t) for n in (100, 300, 1000) for t in ("1e-10", "1e-12")),
         adaptive(u, 100, "1e-12"))
