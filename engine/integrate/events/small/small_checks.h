@@ -40,12 +40,11 @@ STRUT_SMALL_INLINE small_mask small_gives_way(const small_events *e, int p, smal
                                               bool laws) {
   const strut_small_contacts *c = &e->run.tables->contact;
   const strut_small_modes *m = e->modes;
-  const small_friction_numbers numbers = small_friction_at(c, p);
   small_real normal = e->contacts.normal.part[p], friction = e->contacts.friction.part[p];
   small_real applied = e->contacts.applied.part[p], side = SMALL_MODE(row.side), zero = {0};
-  small_real held = small_friction_holding(&numbers, normal, -friction, laws);
-  small_real at_edge = small_friction_at_edge(
-      holding, small_friction_sliding(&numbers, normal, applied, laws), applied);
+  small_real held = small_holding(c, p, normal, -friction, laws);
+  small_real at_edge =
+      small_friction_at_edge(holding, small_sliding(c, p, normal, applied, laws), applied);
   small_real out = small_margin_of_creep_out(side, SMALL_MODE(row.kinetic) * normal, friction);
   small_mask ends = small_less(out, zero);
   ends |= small_less(small_margin_of_creep_in(side, at_edge, friction), zero);

@@ -204,7 +204,7 @@ STRUT_SMALL_INLINE small_points small_accelerate_in_modes(small_events *e, const
 
 /* Is there a contact with a margin that stages have to note? */
 STRUT_SMALL_INLINE bool small_keeps_margins(const small_events *e) {
-  return e->stepper->closed_count && (e->modes->is.any_band || e->modes->is.any_held);
+  return e->stepper->closed_count && (e->modes->is.any_held || e->modes->is.any_drops);
 }
 
 /* See kept_margin in adaptive.c; infinite without a normal force, too. */
@@ -215,18 +215,22 @@ STRUT_SMALL_INLINE small_real small_kept_margin(const small_events *e, int p) {
   small_real zero = {0}, none = small_all(HUGE_VAL), margin = none;
   small_real normal = e->contacts.normal.part[p], side = SMALL_MODE(row.side);
   small_real friction = e->contacts.friction.part[p], applied = e->contacts.applied.part[p];
-  small_real held = small_holding(c, p, normal, -friction, laws);
   small_real holding = small_holding(c, p, normal, applied, laws);
-  small_real out = small_margin_of_creep_out(side, SMALL_MODE(row.kinetic) * normal, friction);
-  small_real edge =
-      small_friction_at_edge(holding, small_sliding(c, p, normal, applied, laws), applied);
-  small_real in = small_margin_of_creep_in(side, edge, friction);
 #define SMALL_KEEPS(mode, value) margin = small_choose(mode, value, margin)
-  SMALL_KEEPS(SMALL_MODE_MASK(mask.stick), small_margin_of_holding(held, friction));
-  SMALL_KEEPS(SMALL_MODE_MASK(mask.creep), small_choose(small_less(out, in), out, in));
-  SMALL_KEEPS(SMALL_MODE_MASK(mask.band) & SMALL_MODE_MASK(mask.drops),
-              small_margin_of_holding(holding, applied));
-  SMALL_KEEPS(SMALL_MODE_MASK(mask.pushes), small_margin_of_push(side, holding, applied));
+  if (m->is.any_held) {
+    small_real held = small_holding(c, p, normal, -friction, laws);
+    small_real out = small_margin_of_creep_out(side, SMALL_MODE(row.kinetic) * normal, friction);
+    small_real edge =
+        small_friction_at_edge(holding, small_sliding(c, p, normal, applied, laws), applied);
+    small_real in = small_margin_of_creep_in(side, edge, friction);
+    SMALL_KEEPS(SMALL_MODE_MASK(mask.stick), small_margin_of_holding(held, friction));
+    SMALL_KEEPS(SMALL_MODE_MASK(mask.creep), small_choose(small_less(out, in), out, in));
+  }
+  if (m->is.any_drops) {
+    SMALL_KEEPS(SMALL_MODE_MASK(mask.band) & SMALL_MODE_MASK(mask.drops),
+                small_margin_of_holding(holding, applied));
+    SMALL_KEEPS(SMALL_MODE_MASK(mask.pushes), small_margin_of_push(side, holding, applied));
+  }
 #undef SMALL_KEEPS
   return small_choose(SMALL_MODE_MASK(mask.closed) & small_less(zero, normal), margin, none);
 }

@@ -26,6 +26,7 @@ typedef struct strut_small_modes {
     bool decoupled;    /* and no two closed contacts are of one body, on level ground */
     bool any_held;     /* some contact sticks or creeps */
     bool any_band;     /* or is in Karnopp's band */
+    bool any_drops;    /* in which friction drops where forces pass what it holds */
     bool any_by_speed; /* or has friction by the speed alone */
     bool any_by_sign;  /* or a damper that acts by its sign */
   } is;
