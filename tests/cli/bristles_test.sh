@@ -80,10 +80,11 @@ jq -e '[.warnings[] | select(.code == "bristles")] | length == 1' "$work/out" >/
 expect 0 run belt.yaml --json
 jq -e '[.warnings[] | select(.code == "bristles")] | length == 0' "$work/out" >/dev/null || fail "short steps are fine"
 
-# Steps far too long for them end the run, and nothing is said of sensors.
+# Steps far too long for them end the run, by whichever number grows first, and nothing is said of sensors.
 sed 's|10 mm/s|50 m/s|' belt.yaml >fast.yaml
 expect 3 run fast.yaml --integrator rk4-events
-err_has "the bend of bristles is no longer a finite number at t = "
+grep -qE "the bend of bristles is no longer a finite number at t = |node 'block' left all bounds at t = " "$work/err" ||
+  fail "a run of long steps over bristles: $(cat "$work/err")"
 expect 3 run fast.yaml
 err_has "look for a member or contact that is far too stiff"
 

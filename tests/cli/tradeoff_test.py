@@ -279,8 +279,8 @@ def check_half(what, answer):
                  key=lambda i: answer["settings"][i][key])
     (x, a), (y, b) = [(math.log(promise(answer, i)), math.log(answer["settings"][i]["evaluations"]))
                       for i in (coarse, advice["half_setting"])]
-    slope = (b - a) / (y - x)
-    cost = math.exp(a + slope * (math.log(advice["error"] / 2) - x))
+    slope = (b - a) / (y - x) if x > y else 0.0  # where the coarser one is as good: the cost of the finer one
+    cost = math.exp(b + slope * (math.log(advice["error"] / 2) - y))
     wanted = max(1, cost / answer["settings"][advice["setting"]]["evaluations"])
     if not close(wanted, advice["half_cost"], 1e-9):
         fail(f"{what}: half costs {advice['half_cost']}, not {wanted}")

@@ -54,8 +54,7 @@ static void list_contact(const strut_model *model, const strut_event_stepper *l,
   m->is.any_by_speed = m->is.any_by_speed || m->mask.by_speed[n];
   m->is.any_by_sign = m->is.any_by_sign || l->damper[i] == 0;
   m->mask.drops[n] = mask_of(strut_friction_drops(&e->friction));
-  m->is.any_drops =
-      m->is.any_drops || ((m->mask.band[n] || m->mask.pushes[n]) && m->mask.drops[n]);
+  m->is.any_drops = m->is.any_drops || ((m->mask.band[n] || m->mask.pushes[n]) && m->mask.drops[n]);
   m->mask.damper_on[n] = mask_of(l->damper[i] > 0);
   m->mask.damper_off[n] = mask_of(l->damper[i] < 0);
   m->mask.damper_by_sign[n] = mask_of(l->damper[i] == 0);
