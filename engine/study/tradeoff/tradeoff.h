@@ -16,9 +16,9 @@
 #ifndef STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_H
 #define STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_H
 
-#include <signal.h>
 #include <stdbool.h>
 
+#include "engine/base/flag.h"
 #include "engine/integrate/integrator.h"
 #include "engine/scene/experiment.h"
 #include "engine/scene/scene.h"
@@ -52,7 +52,7 @@ typedef struct strut_tradeoff_options {
   const strut_integrator *const *methods; /* (method_count) only these; 0: all */
   size_t method_count;
   bool own_model;                                   /* skip variants of the model */
-  const volatile sig_atomic_t *interrupt;           /* may be NULL */
+  const strut_flag *interrupt;                      /* may be NULL */
   void (*progress)(void *context, double fraction); /* may be NULL */
   void *progress_context;
 } strut_tradeoff_options;

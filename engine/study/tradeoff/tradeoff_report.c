@@ -59,10 +59,14 @@ static const char *setting_text(const strut_tradeoff_row *row, char text[3 * STR
   return text;
 }
 
-/* The mapping of the language that runs a row. */
+/* The mapping of the language that runs a row. With error control the error left depends on the grid by chance: its
+   step is given in full. */
 static void add_solver(strut_buffer *text, const strut_tradeoff_row *row) {
-  strut_buffer_add(text, "solver: {integrator: %s, step: %s", row->method->name,
-                   strut_quantity_of(row->step, 6, "s").text);
+  strut_buffer_add(text, "solver: {integrator: %s, step: ", row->method->name);
+  if (isfinite(row->tolerance))
+    strut_buffer_add(text, "%.17g s", row->step);
+  else
+    strut_buffer_add(text, "%s", strut_quantity_of(row->step, 6, "s").text);
   if (isfinite(row->tolerance)) strut_buffer_add(text, ", tolerance: %.0e", row->tolerance);
   if (!isfinite(row->tolerance) && !isfinite(row->refine) && row->method->events)
     strut_buffer_add(text, ", refine: 1");

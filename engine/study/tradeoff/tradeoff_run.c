@@ -285,7 +285,7 @@ static bool setting_at(const tradeoff_study *s, const step_series *l, int k,
     return false;
   *setting = l->first;
   if (adaptive)
-    setting->tolerance = 1e-2 * pow(0.1, k);
+    setting->tolerance = 1.0 / pow(10.0, k + 2); /* the number that its decimal text gives */
   else if (k < extra)
     setting->step *= above[k];
   else
