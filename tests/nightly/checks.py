@@ -50,7 +50,8 @@ CHECKS = (
     suite("suite", "all tests, at full speed with assertions", "tests", 2),
     suite("sanitize", "all tests under the address and undefined-behaviour sanitizers", "sanitize", 12),
     suite("threads", "all tests under the thread sanitizer", "threads", 12,
-          "TSAN_OPTIONS=ignore_noninstrumented_modules=1"),
+          "TSAN_OPTIONS=ignore_noninstrumented_modules=1 "  # and what tells it of the joins of OpenMP
+          "OMP_TOOL_LIBRARIES=$(ls /usr/lib/llvm-*/lib/libarcher.so | tail -1)"),
     Check("memory", "memory read before it is written: models under valgrind",
           f"{TESTS} && sh tests/nightly/valgrind.sh build/tests/strut models/basics models/topologies",
           r"(\d+) commands, (\d+) with errors", "{0} commands under valgrind, {1} with errors", 4),
