@@ -8,8 +8,7 @@
 #ifndef STRUT_ENGINE_MODEL_STATE_H
 #define STRUT_ENGINE_MODEL_STATE_H
 
-#include <signal.h>
-
+#include "engine/base/flag.h"
 #include "engine/model/model.h"
 
 /** Powers that the energy balance integrates beside the motion [W]. Kernels write them by fours. */
@@ -61,8 +60,8 @@ typedef enum strut_failure {
 
 /** When a method whose steps may take long gives up. Nothing of it after the reset. */
 typedef struct strut_state_limits {
-  const volatile sig_atomic_t *interrupt; /* soon after it becomes non-zero; NULL: never */
-  int64_t most_evaluations;               /* of the forces: soon after so many; 0: never */
+  const strut_flag *interrupt; /* soon after it becomes non-zero; NULL: never */
+  int64_t most_evaluations;    /* of the forces: soon after so many; 0: never */
 } strut_state_limits;
 
 /** What methods with events freeze between events. */

@@ -213,8 +213,8 @@ void strut_relaxation_free(strut_relaxation *r) {
 }
 
 strut_status strut_settle_state(const strut_model *model, const strut_experiment *experiment,
-                                strut_state *state, const volatile sig_atomic_t *interrupt,
-                                double *time, strut_error *error) {
+                                strut_state *state, const strut_flag *interrupt, double *time,
+                                strut_error *error) {
   strut_relaxation r;
   size_t bytes = (size_t)model->length * sizeof(double);
   strut_status status = strut_relaxation_create(model, experiment, &r, error);
@@ -494,9 +494,8 @@ static strut_status settle_and_perturb(strut_relaxation *r, double *q, strut_set
 }
 
 strut_status strut_settle_experiment(const strut_model *model, const strut_experiment *experiment,
-                                     strut_step_limits *limits,
-                                     const volatile sig_atomic_t *interrupt, double *q,
-                                     strut_settle_summary *how, strut_error *error) {
+                                     strut_step_limits *limits, const strut_flag *interrupt,
+                                     double *q, strut_settle_summary *how, strut_error *error) {
   strut_relaxation r;
   strut_status status = strut_relaxation_create(model, experiment, &r, error);
   *how = (strut_settle_summary){0};
@@ -527,7 +526,7 @@ static strut_status move_start(const strut_scene *scene, const double *q,
 }
 
 strut_status strut_settle_model(const strut_model *model, const strut_experiment *experiment,
-                                const volatile sig_atomic_t *interrupt, strut_settled_start *start,
+                                const strut_flag *interrupt, strut_settled_start *start,
                                 strut_error *error) {
   *start = (strut_settled_start){.model = model};
   if (!experiment->settle.wanted) return STRUT_OK;

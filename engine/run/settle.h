@@ -10,8 +10,7 @@
 #ifndef STRUT_ENGINE_RUN_SETTLE_H
 #define STRUT_ENGINE_RUN_SETTLE_H
 
-#include <signal.h>
-
+#include "engine/base/flag.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/state.h"
 #include "engine/run/measure/summary.h"
@@ -29,7 +28,7 @@ typedef struct strut_relaxation {
   double step;          /* [s] */
   double time;          /* simulated so far [s] */
   int64_t evaluations;  /* so far */
-  const volatile sig_atomic_t *interrupt;
+  const strut_flag *interrupt;
   strut_arena arena;
 } strut_relaxation;
 
@@ -50,8 +49,8 @@ void strut_relaxation_free(strut_relaxation *relaxation);
 
 /** A single relaxation with the given step; *time is the simulated time [s]. */
 strut_status strut_settle_state(const strut_model *model, const strut_experiment *experiment,
-                                strut_state *state, const volatile sig_atomic_t *interrupt,
-                                double *time, strut_error *error);
+                                strut_state *state, const strut_flag *interrupt, double *time,
+                                strut_error *error);
 
 /**
  * Settles the start of an experiment: q (length) are the positions [m], `how` the details. The step follows
@@ -62,7 +61,7 @@ strut_status strut_settle_state(const strut_model *model, const strut_experiment
 STRUT_API strut_status strut_settle_experiment(const strut_model *model,
                                                const strut_experiment *experiment,
                                                strut_step_limits *limits,
-                                               const volatile sig_atomic_t *interrupt, double *q,
+                                               const strut_flag *interrupt, double *q,
                                                strut_settle_summary *how, strut_error *error);
 
 /** A settled start shared by several experiments, so that all start from the same bits. */
@@ -81,8 +80,8 @@ typedef struct strut_settled_start {
  */
 STRUT_API strut_status strut_settle_model(const strut_model *model,
                                           const strut_experiment *experiment,
-                                          const volatile sig_atomic_t *interrupt,
-                                          strut_settled_start *start, strut_error *error);
+                                          const strut_flag *interrupt, strut_settled_start *start,
+                                          strut_error *error);
 STRUT_API void strut_settled_start_free(strut_settled_start *start);
 
 #endif

@@ -3,8 +3,7 @@
 #ifndef STRUT_ENGINE_RUN_SIMULATE_H
 #define STRUT_ENGINE_RUN_SIMULATE_H
 
-#include <signal.h>
-
+#include "engine/base/flag.h"
 #include "engine/model/model.h"
 #include "engine/run/measure/summary.h"
 #include "engine/run/recorder.h"
@@ -25,8 +24,8 @@ typedef struct strut_snapshot {
 
 /** Options of a run. Zero: obey the step limit, no callbacks, no recording. */
 typedef struct strut_run_options {
-  bool force;                             /* run even above the step limit */
-  const volatile sig_atomic_t *interrupt; /* stops soon after it becomes non-zero; may be NULL */
+  bool force;                  /* run even above the step limit */
+  const strut_flag *interrupt; /* stops soon after it becomes non-zero; may be NULL */
   void (*progress)(void *context, double fraction); /* a few times a second; may be NULL */
   void (*phase)(
       void *context,

@@ -299,8 +299,7 @@ static strut_status make_endless(strut_experiment *e, strut_error *error) {
   return STRUT_OK;
 }
 
-strut_status strut_stepping_create(strut_setup *setup, bool force,
-                                   const volatile sig_atomic_t *interrupt,
+strut_status strut_stepping_create(strut_setup *setup, bool force, const strut_flag *interrupt,
                                    strut_stepping **stepping, strut_error *error) {
   strut_stepping *s = strut_allocate(1, sizeof *s);
   *stepping = NULL;
@@ -374,7 +373,7 @@ strut_status strut_stepping_advance(strut_stepping *s, int64_t steps, strut_erro
     return s->status;
   }
   if (steps < 0) return strut_fail(error, STRUT_USAGE, "a simulation cannot go back");
-  const volatile sig_atomic_t *interrupt = s->options.interrupt;
+  const strut_flag *interrupt = s->options.interrupt;
   if (interrupt && *interrupt)
     return strut_fail(error, STRUT_INTERRUPTED, "interrupted at t = %.9g s",
                       strut_run_time(&s->run));

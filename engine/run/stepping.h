@@ -9,8 +9,7 @@
 #ifndef STRUT_ENGINE_RUN_STEPPING_H
 #define STRUT_ENGINE_RUN_STEPPING_H
 
-#include <signal.h>
-
+#include "engine/base/flag.h"
 #include "engine/run/recorder.h"
 #include "engine/scene/experiment.h"
 
@@ -31,8 +30,8 @@ typedef enum strut_input {
  * must be resolved and the step be given. Fails as strut_simulate before its first step.
  */
 STRUT_API strut_status strut_stepping_create(strut_setup *setup, bool force,
-                                             const volatile sig_atomic_t *interrupt,
-                                             strut_stepping **stepping, strut_error *error);
+                                             const strut_flag *interrupt, strut_stepping **stepping,
+                                             strut_error *error);
 STRUT_API void strut_stepping_free(strut_stepping *stepping); /* NULL is allowed */
 
 /**

@@ -9,8 +9,7 @@
 #ifndef STRUT_ENGINE_SCENE_EXPERIMENT_H
 #define STRUT_ENGINE_SCENE_EXPERIMENT_H
 
-#include <signal.h>
-
+#include "engine/base/flag.h"
 #include "engine/scene/channels.h"
 #include "engine/scene/quantity.h"
 #include "engine/scene/scene.h"
@@ -132,7 +131,7 @@ typedef struct strut_experiment {
   unsigned channels;   /* strut_channel bits; default position, length, force */
   /* Ends statics on this experiment with STRUT_INTERRUPTED, soon after it is set; NULL: nothing does.
      Not part of what a file describes; runs and searches for all equilibria have options for it. */
-  const volatile sig_atomic_t *interrupt;
+  const strut_flag *interrupt;
   /* Hears which part of a search for equilibria or of a path is done, 0 to 1; NULL: nobody does. */
   void (*progress)(void *context, double fraction);
   void *progress_context;

@@ -5,11 +5,11 @@
 
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_permutation.h>
-#include <signal.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
+#include "engine/base/flag.h"
 #include "engine/base/library.h"
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
@@ -87,7 +87,7 @@ typedef struct strut_lanczos_problem {
   void *context;
   void (*solve)(void *context, double *x);                 /* x becomes (K - shift M)^-1 x */
   void (*mass)(void *context, const double *x, double *y); /* y = M x */
-  const volatile sig_atomic_t *interrupt; /* ends it with STRUT_INTERRUPTED; or NULL */
+  const strut_flag *interrupt; /* ends it with STRUT_INTERRUPTED; or NULL */
 } strut_lanczos_problem;
 
 /** A matrix (rows, columns) by columns: the entries of column j are row and value [start[j], start[j + 1]). */
@@ -145,7 +145,7 @@ typedef struct strut_linear_program {
   size_t entry_count, entry_room;
   int32_t *entry_row, *entry_column; /* each place once */
   double *entry;
-  const volatile sig_atomic_t *interrupt; /* ends the solution; NULL at first */
+  const strut_flag *interrupt; /* ends the solution; NULL at first */
 } strut_linear_program;
 
 typedef enum strut_linear_program_end {

@@ -124,7 +124,7 @@ static void solve(const strut_linear_program *p, const entries *e, double *x, do
 
 typedef struct way_out {
   jmp_buf place;
-  const volatile sig_atomic_t *interrupt;
+  const strut_flag *interrupt;
 } way_out;
 
 /* GLPK knows no other way out when memory fails than to end the process, or this. */

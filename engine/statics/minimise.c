@@ -25,7 +25,7 @@ struct strut_minimiser {
   double *g, *g_trial, *step; /* (n) */
   double *unbent;             /* (n) the step before its correction */
   double *trial, *before;     /* (length) */
-  const volatile sig_atomic_t *interrupt;
+  const strut_flag *interrupt;
   void (*visit)(void *context, const double *q); /* or NULL */
   void *visitor;
   strut_arena arena;
@@ -268,7 +268,7 @@ static bool descend_once(strut_minimiser *m, double *q, double still, double *ra
  * A gradient within rounding ends the descent only if the Newton step is short too: beside very
  * stiff members rounding hides forces that soft members still yield to.
  */
-void strut_minimiser_watch(strut_minimiser *m, const volatile sig_atomic_t *interrupt) {
+void strut_minimiser_watch(strut_minimiser *m, const strut_flag *interrupt) {
   m->interrupt = interrupt;
 }
 

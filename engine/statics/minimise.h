@@ -10,8 +10,7 @@
 #ifndef STRUT_ENGINE_STATICS_MINIMISE_H
 #define STRUT_ENGINE_STATICS_MINIMISE_H
 
-#include <signal.h>
-
+#include "engine/base/flag.h"
 #include "engine/statics/potential.h"
 
 enum { STRUT_DENSE_STATICS = 120 };
@@ -37,7 +36,7 @@ STRUT_API strut_status strut_minimiser_create(const strut_potential *potential,
 STRUT_API void strut_minimiser_free(strut_minimiser *minimiser);
 
 /** Descents end as exhausted soon after the flag is set. NULL: no flag. */
-void strut_minimiser_watch(strut_minimiser *minimiser, const volatile sig_atomic_t *interrupt);
+void strut_minimiser_watch(strut_minimiser *minimiser, const strut_flag *interrupt);
 
 /** Calls `visit` with every point q (length) that a descent keeps, its start and its end too; NULL: nothing. */
 void strut_minimiser_visit(strut_minimiser *minimiser,

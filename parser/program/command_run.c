@@ -85,7 +85,7 @@ static strut_status simulate(const strut_model *model, const strut_setup *setup,
                              const strut_arguments *arguments, run_files *keep,
                              strut_run_pictures *pictures, strut_summary *summary,
                              strut_error *error) {
-  const volatile sig_atomic_t *interrupt = strut_interrupt_watch(); /* before there are files */
+  const strut_flag *interrupt = strut_interrupt_watch(); /* before there are files */
   strut_status status = begin_results(arguments, setup, keep, error);
   if (status != STRUT_OK) return status;
   strut_sink *pictures_sink = strut_run_pictures_sink(pictures, model->scene, &status);

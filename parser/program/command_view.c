@@ -71,7 +71,7 @@ static strut_status check_output(const char *path) {
 
 /* A search that fails leaves a remark on the page; only an interrupt or lack of memory is a failure. */
 static strut_status find_equilibria(const strut_arguments *arguments, const strut_opened *opened,
-                                    const volatile sig_atomic_t *interrupt, strut_equilibria *all,
+                                    const strut_flag *interrupt, strut_equilibria *all,
                                     strut_error *remark) {
   strut_equilibria_options wanted = {.interrupt = interrupt};
   strut_experiment experiment = opened->setup.experiment;
@@ -151,7 +151,7 @@ static strut_status prepare_live(const strut_arguments *arguments, char **script
 }
 
 static strut_status write_page(const strut_arguments *arguments, const strut_page *page,
-                               const volatile sig_atomic_t *interrupt, strut_error *error) {
+                               const strut_flag *interrupt, strut_error *error) {
   strut_page_frames frames[MOST_RUNS] = {0};
   char *html = strut_page_html(page, frames, error);
   if (!html) return error->status;
@@ -196,7 +196,7 @@ static strut_status make_page(const strut_arguments *arguments, const strut_open
   strut_error error = {0}, remark = {0};
   strut_page pages[MOST_RUNS];
   char *yaml[MOST_RUNS] = {NULL}, labels[MOST_RUNS][PATH_MAX];
-  const volatile sig_atomic_t *interrupt = strut_interrupt_watch();
+  const strut_flag *interrupt = strut_interrupt_watch();
   strut_status status = STRUT_OK;
   if (script) status = describe_live(arguments, opened, search, &live, &error);
   live.script = script;

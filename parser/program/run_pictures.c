@@ -83,7 +83,7 @@ strut_status strut_run_film_make(strut_film *film, const strut_model *model,
   if (!film->path) return STRUT_OK;
   strut_progress progress = strut_progress_begin(quiet);
   /* After an interrupted run the film still shows what was recorded. */
-  const volatile sig_atomic_t *interrupt = strut_interrupt_watch();
+  const strut_flag *interrupt = strut_interrupt_watch();
   film->interrupt = *interrupt ? NULL : interrupt;
   film->progress = progress.wanted ? strut_progress_show : NULL;
   film->progress_context = &progress;

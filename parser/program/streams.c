@@ -188,7 +188,7 @@ const strut_listener *strut_stderr_listener(void) {
 enum { SAME_PRESS = 300 /* [ms] */ };
 
 /* A signal handler has no context: the only variables of the program that live outside of main. */
-static volatile sig_atomic_t interrupted, first_time;
+static strut_flag interrupted, first_time;
 
 static int milliseconds(void) {
   struct timespec time = {0, 0};
@@ -207,7 +207,7 @@ static void note(int signal_number) {
   }
 }
 
-const volatile sig_atomic_t *strut_interrupt_watch(void) {
+const strut_flag *strut_interrupt_watch(void) {
   struct sigaction action = {.sa_handler = note, .sa_flags = SA_RESTART};
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);

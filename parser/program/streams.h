@@ -7,6 +7,7 @@
 
 #include <signal.h>
 
+#include "engine/base/flag.h"
 #include "engine/base/status.h"
 #include "engine/output/record_files.h"
 #include "parser/program/options.h"
@@ -41,7 +42,7 @@ strut_status strut_print_usage_error(const strut_command *command, const char *f
 const strut_listener *strut_stderr_listener(void);
 
 /** From now on SIGINT and SIGTERM set the flag that is returned; a moment later they kill. */
-const volatile sig_atomic_t *strut_interrupt_watch(void);
+const strut_flag *strut_interrupt_watch(void);
 
 /* ---- table_file.c: a table of numbers and texts, from a file or the standard input ---- */
 

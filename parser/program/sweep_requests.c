@@ -27,7 +27,7 @@ typedef struct strut_evaluate_task {
   const strut_study_file *file;
   strut_request_choice choice; /* of the command line */
   strut_evaluator *evaluator;
-  const volatile sig_atomic_t *interrupt;
+  const strut_flag *interrupt;
 } strut_evaluate_task;
 
 enum { MOST_MESSAGES = 50 };

@@ -8,8 +8,7 @@
 #ifndef STRUT_TESTS_BENCH_PRECISION_H
 #define STRUT_TESTS_BENCH_PRECISION_H
 
-#include <signal.h>
-
+#include "engine/base/flag.h"
 #include "engine/integrate/integrator.h"
 
 /** A scene to integrate; zero where nothing special. */
@@ -46,7 +45,7 @@ bool precision_open(precision_problem *p, const precision_scene *scene, bool rig
 void precision_close(precision_problem *p);
 
 /** Set when the time of precision_allow is over: the next evaluation of the forces fails. */
-extern volatile sig_atomic_t precision_late;
+extern strut_flag precision_late;
 /** Allows so much CPU time from now on [s]; 0: any. */
 void precision_allow(double seconds);
 

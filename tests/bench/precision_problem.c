@@ -149,7 +149,7 @@ void precision_close(precision_problem *p) {
 
 /* ---- time ---- */
 
-volatile sig_atomic_t precision_late;
+strut_flag precision_late;
 
 static void set_late(int signal) {
   (void)signal;

@@ -162,7 +162,7 @@ TEST(a_slack_cable_stores_nothing) {
   }
 }
 
-static volatile sig_atomic_t ring;
+static strut_flag ring;
 
 static void note_ring(int number) {
   (void)number;

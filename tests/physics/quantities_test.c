@@ -426,7 +426,7 @@ TEST(a_run_that_is_interrupted) {
   strut_summary full = hop("rk4", ALL, &setup), s;
   strut_summary_free(&full);
   strut_model *model = motion_compile(&setup.scene);
-  volatile sig_atomic_t stop = 1;
+  strut_flag stop = 1;
   strut_run_options options = {.interrupt = &stop};
   assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, &error),
                    STRUT_INTERRUPTED);

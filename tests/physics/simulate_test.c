@@ -195,7 +195,7 @@ TEST(a_mass_that_flies_beyond_all_bounds_is_lost) {
   strut_setup_free(&setup);
 }
 
-static volatile sig_atomic_t stop;
+static strut_flag stop;
 static int reported;
 
 static void stop_at_once(void *context, double fraction) {
@@ -211,7 +211,8 @@ TEST(an_interrupt_stops_within_a_second) {
   strut_error error;
   strut_run_options options = {
       .interrupt = &stop, .progress = stop_at_once, .progress_context = &reported};
-  stop = 0, reported = 0;
+  stop = 0;
+  reported = 0;
   stiff(&setup, 1e-3, 1e9);
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_INTERRUPTED);
   assert_int_equal(reported, 1);

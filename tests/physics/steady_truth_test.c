@@ -281,7 +281,7 @@ TEST(shooting_can_be_interrupted) {
   strut_setup setup;
   snap_scene(&setup, 5, 1.1);
   setup.experiment.steady.wanted = false;
-  volatile sig_atomic_t flag = 0;
+  strut_flag flag = 0;
   strut_model *model = motion_compile(&setup.scene);
   strut_period_map map;
   strut_steady_summary found = {0};

@@ -124,7 +124,7 @@ TEST(without_memory) {
 }
 
 TEST(interrupted) {
-  const volatile sig_atomic_t now = 1;
+  const strut_flag now = 1;
   const strut_compare_options options = {.interrupt = &now};
   assert_int_equal(make(&options, false), STRUT_INTERRUPTED);
 }

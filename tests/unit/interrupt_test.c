@@ -16,7 +16,7 @@ static void send_signals(int signal_number) {
   assert_int_equal(pipe(pipe_ends), 0);
   pid_t child = fork();
   if (child == 0) {
-    const volatile sig_atomic_t *flag = strut_interrupt_watch();
+    const strut_flag *flag = strut_interrupt_watch();
     if (*flag) _exit(1);
     raise(signal_number);
     if (!*flag) _exit(2);

@@ -6,12 +6,12 @@
 #ifndef STRUT_ENGINE_OUTPUT_FILM_FILM_H
 #define STRUT_ENGINE_OUTPUT_FILM_FILM_H
 
-#include <signal.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <sys/types.h>
 
+#include "engine/base/flag.h"
 #include "engine/model/model.h"
 #include "engine/output/draw/structure.h"
 #include "engine/output/file.h"
@@ -126,7 +126,7 @@ typedef struct strut_film {
   const char *path; /* .mp4, .webm (1280 x 720 pixels) or .gif (640 x 360); NULL: no film */
   double speed;     /* 1: real time, 0.1: ten times slower */
   double fps;       /* frames per second; 0: default of the format */
-  const volatile sig_atomic_t *interrupt; /* stops soon after it becomes non-zero; may be NULL */
+  const strut_flag *interrupt; /* stops soon after it becomes non-zero; may be NULL */
   void (*progress)(void *context, double fraction); /* may be NULL */
   void *progress_context;
 } strut_film;

@@ -10,6 +10,7 @@
 #ifndef STRUT_ENGINE_RUN_FOLLOW_SYSTEM_H
 #define STRUT_ENGINE_RUN_FOLLOW_SYSTEM_H
 
+#include "engine/base/flag.h"
 #include "engine/integrate/events/location/event_log.h"
 #include "engine/integrate/events/location/variation.h"
 #include "engine/run/orbit/orbit.h"
@@ -32,7 +33,7 @@ typedef struct strut_follow_system {
     int64_t steps_per_period; /* of a method with fixed steps; of others the fewest */
     int32_t repeats;          /* drive periods of P */
     int threads;
-    const volatile sig_atomic_t *interrupt;
+    const strut_flag *interrupt;
   } how;
   /* made by open and by the first value */
   double value; /* of the model below [SI]; NAN: there is none */

@@ -9,8 +9,7 @@
 #ifndef STRUT_ENGINE_RUN_ORBIT_ORBIT_H
 #define STRUT_ENGINE_RUN_ORBIT_ORBIT_H
 
-#include <signal.h>
-
+#include "engine/base/flag.h"
 #include "engine/integrate/integrator.h"
 #include "engine/run/measure/measure.h"
 
@@ -25,9 +24,8 @@ typedef struct strut_period_map {
   int64_t steps;     /* steps per drive period */
   int32_t repeats;   /* drive periods per application */
   bool travels;
-  const volatile sig_atomic_t
-      *interrupt;           /* an application ends soon after it is set; may be NULL */
-  int64_t most_evaluations; /* likewise after this many in all applications; 0: no limit */
+  const strut_flag *interrupt; /* an application ends soon after it is set; may be NULL */
+  int64_t most_evaluations;    /* likewise after this many in all applications; 0: no limit */
   int64_t evaluations, events, applied; /* so far; applied: drive periods */
   int64_t forced;                       /* see strut_forced_steps */
   /** Sees the state after each step of the grid; NULL: nobody looks. */

@@ -114,7 +114,7 @@ static strut_status search_on_supports(strut_equilibrium_search *h, int32_t grou
 static strut_status search_all_sets(strut_equilibrium_search *h) {
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < h->supports.count && !status; i++) {
-    const volatile sig_atomic_t *interrupt = h->options->interrupt;
+    const strut_flag *interrupt = h->options->interrupt;
     status = interrupt && *interrupt
                  ? strut_fail(h->error, STRUT_INTERRUPTED, "interrupted while searching")
                  : search_on_supports(h, (int32_t)i);

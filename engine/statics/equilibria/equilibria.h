@@ -3,8 +3,7 @@
 #ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_H
 #define STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_H
 
-#include <signal.h>
-
+#include "engine/base/flag.h"
 #include "engine/model/model.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
@@ -115,7 +114,7 @@ typedef struct strut_equilibria_options {
   const uint64_t *seed;           /* NULL: as the experiment says */
   const strut_node_set *supports; /* NULL: as the experiment says */
   bool standing_only;             /* only equilibria that stand: no saddles, no barriers */
-  const volatile sig_atomic_t *interrupt;
+  const strut_flag *interrupt;
 } strut_equilibria_options;
 
 /** strut_equilibria_free releases it, after a failure too. The model must outlive it. */

@@ -5,8 +5,7 @@
 #ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_PARTS_H
 #define STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_PARTS_H
 
-#include <signal.h>
-
+#include "engine/base/flag.h"
 #include "engine/scene/experiment.h"
 #include "engine/scene/scene.h"
 #include "engine/statics/equilibria/equilibria.h"
@@ -83,8 +82,8 @@ int32_t strut_crossing_find(const strut_model *model, const double *a, const dou
  * it early; it may be NULL.
  */
 strut_status strut_passages_find(const strut_potential *potential, const strut_critical_set *set,
-                                 bool merged, const volatile sig_atomic_t *interrupt,
-                                 int32_t *through, strut_error *error);
+                                 bool merged, const strut_flag *interrupt, int32_t *through,
+                                 strut_error *error);
 
 /* The scene as statics sees it: nothing moves by itself, the ground is level, and static supports
  * may take the ground's place, as in (12): contact nodes held in turn.
@@ -192,8 +191,8 @@ void strut_relax_down(strut_relaxer *relaxer, double *q, strut_relaxed *relaxed)
  * where the motion has left it along the ground. passes may be NULL. STRUT_OK or STRUT_INTERRUPTED.
  */
 strut_status strut_relax(strut_relaxer *relaxer, double *q, strut_pass_of passes,
-                         const void *context, const volatile sig_atomic_t *interrupt,
-                         strut_relaxed *relaxed, strut_error *error);
+                         const void *context, const strut_flag *interrupt, strut_relaxed *relaxed,
+                         strut_error *error);
 
 /* The state of a search for equilibria: the level scene and the candidates found so far. */
 

@@ -433,7 +433,7 @@ static bool is_decided(strut_relaxer *r, double energy, const double *q, strut_p
 typedef enum outcome { DECIDED, LEFT, TIME_OUT, UNSTABLE_STEP, STOPPED } outcome;
 
 static outcome simulate(strut_relaxer *r, double step, strut_pass_of passes, const void *context,
-                        const volatile sig_atomic_t *interrupt) {
+                        const strut_flag *interrupt) {
   size_t bytes = (size_t)r->model->length * sizeof(double);
   verdict v = {-1.0, 0};
   strut_state_reset(r->model, r->state);
@@ -482,8 +482,7 @@ void strut_relax_down(strut_relaxer *r, double *q, strut_relaxed *relaxed) {
 }
 
 strut_status strut_relax(strut_relaxer *r, double *q, strut_pass_of passes, const void *context,
-                         const volatile sig_atomic_t *interrupt, strut_relaxed *relaxed,
-                         strut_error *error) {
+                         const strut_flag *interrupt, strut_relaxed *relaxed, strut_error *error) {
   size_t bytes = (size_t)r->model->length * sizeof(double);
   outcome end = DECIDED;
   *relaxed = (strut_relaxed){.end = STRUT_RELAXED_RESTS};

@@ -355,8 +355,8 @@ static void follow(void *context, const double *q) {
 }
 
 strut_status strut_passages_find(const strut_potential *potential, const strut_critical_set *set,
-                                 bool merged, const volatile sig_atomic_t *interrupt,
-                                 int32_t *through, strut_error *error) {
+                                 bool merged, const strut_flag *interrupt, int32_t *through,
+                                 strut_error *error) {
   const strut_model *model = potential->model;
   size_t length = (size_t)model->length;
   strut_arena scratch = {0};

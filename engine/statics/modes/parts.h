@@ -3,9 +3,8 @@
 #ifndef STRUT_ENGINE_STATICS_MODES_PARTS_H
 #define STRUT_ENGINE_STATICS_MODES_PARTS_H
 
-#include <signal.h>
-
 #include "engine/base/double_double.h"
+#include "engine/base/flag.h"
 #include "engine/forces/elements.h"
 #include "engine/model/linear_solver.h"
 #include "engine/statics/equilibria/equilibria.h"
@@ -159,8 +158,7 @@ typedef struct strut_modes_solver {
   strut_dd *b, *r, *mx; /* (n) each */
   double *step;         /* (n) */
   strut_arena arena;
-  const volatile sig_atomic_t
-      *interrupt; /* once set, nothing more is factorised or solved; or NULL */
+  const strut_flag *interrupt; /* once set, nothing more is factorised or solved; or NULL */
 } strut_modes_solver;
 
 /** v must outlive it. STRUT_OK or STRUT_NO_MEMORY; strut_modes_solver_free either way. */

@@ -75,7 +75,7 @@ static strut_status read_result(search *s, const strut_task *task,
 }
 
 static strut_status run_tasks(search *s) {
-  const volatile sig_atomic_t *interrupt = s->effort->interrupt;
+  const strut_flag *interrupt = s->effort->interrupt;
   const strut_task_result *result = strut_search_tasks_run(s->batch, s->task, s->tasks, interrupt);
   if (interrupt && *interrupt)
     return strut_fail(s->error, STRUT_INTERRUPTED, "interrupted while searching");

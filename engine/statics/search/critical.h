@@ -5,8 +5,7 @@
 #ifndef STRUT_ENGINE_STATICS_SEARCH_CRITICAL_H
 #define STRUT_ENGINE_STATICS_SEARCH_CRITICAL_H
 
-#include <signal.h>
-
+#include "engine/base/flag.h"
 #include "engine/statics/minimise.h"
 #include "engine/statics/potential.h"
 #include "engine/statics/search/critical_point.h"
@@ -34,13 +33,13 @@ typedef struct strut_critical_set {
 typedef struct strut_critical_effort {
   int64_t starts; /* random starts for minima; 0: until `missed` is small, within reason */
   uint64_t seed;
-  int32_t searches;           /* searches that share the work limit, one per support set; 0: 1 */
-  bool saddles;               /* look for saddles too, and where they lead down to */
-  size_t extra_count;         /* starts that the caller knows of, tried first */
-  const double *const *extra; /* (extra_count) each (length) */
-  size_t hint_count;          /* shapes close to a saddle with one negative eigenvalue */
-  const double *const *hint;  /* (hint_count) each (length) */
-  const volatile sig_atomic_t *interrupt; /* ends the search with STRUT_INTERRUPTED; may be NULL */
+  int32_t searches;            /* searches that share the work limit, one per support set; 0: 1 */
+  bool saddles;                /* look for saddles too, and where they lead down to */
+  size_t extra_count;          /* starts that the caller knows of, tried first */
+  const double *const *extra;  /* (extra_count) each (length) */
+  size_t hint_count;           /* shapes close to a saddle with one negative eigenvalue */
+  const double *const *hint;   /* (hint_count) each (length) */
+  const strut_flag *interrupt; /* ends the search with STRUT_INTERRUPTED; may be NULL */
 } strut_critical_effort;
 
 /**
@@ -119,8 +118,7 @@ void strut_search_tasks_free(strut_search_tasks *batch);
  * *interrupt is not 0 are left out, and then no result means anything; `interrupt` may be NULL.
  */
 const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task,
-                                                size_t count,
-                                                const volatile sig_atomic_t *interrupt);
+                                                size_t count, const strut_flag *interrupt);
 
 /* A set of stationary points without duplicates, with copies of one shape merged. */
 

@@ -168,7 +168,7 @@ typedef struct batch_run {
   strut_search_tasks *tasks;
   const strut_task *task;
   int count;
-  const volatile sig_atomic_t *interrupt;
+  const strut_flag *interrupt;
   atomic_int next, worker;
 } batch_run;
 
@@ -184,8 +184,7 @@ static void *work(void *context) {
 /* Threads of their own and not OpenMP's, which between the batches of a search wait by spinning: half again as
    much processor time, on a busy machine taken from others. */
 const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task,
-                                                size_t count,
-                                                const volatile sig_atomic_t *interrupt) {
+                                                size_t count, const strut_flag *interrupt) {
   assert(count <= STRUT_BATCH);
   batch_run run = {.tasks = batch, .task = task, .count = (int)count, .interrupt = interrupt};
   pthread_t thread[STRUT_BATCH];

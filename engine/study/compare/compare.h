@@ -8,9 +8,9 @@
 #ifndef STRUT_ENGINE_STUDY_COMPARE_COMPARE_H
 #define STRUT_ENGINE_STUDY_COMPARE_COMPARE_H
 
-#include <signal.h>
 #include <stdbool.h>
 
+#include "engine/base/flag.h"
 #include "engine/model/model.h"
 #include "engine/output/draw/chart.h"
 #include "engine/run/measure/summary.h"
@@ -127,7 +127,7 @@ typedef struct strut_compare_options {
   double accuracy;                                  /* of velocities, relative; 0: the usual one */
   bool no_motion;                                   /* leave out runs */
   bool no_states;                                   /* leave out the search for stable states */
-  const volatile sig_atomic_t *interrupt;           /* may be NULL */
+  const strut_flag *interrupt;                      /* may be NULL */
   void (*progress)(void *context, double fraction); /* may be NULL */
   void *progress_context;
 } strut_compare_options;

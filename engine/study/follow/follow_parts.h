@@ -3,6 +3,7 @@
 #ifndef STRUT_ENGINE_STUDY_FOLLOW_FOLLOW_PARTS_H
 #define STRUT_ENGINE_STUDY_FOLLOW_FOLLOW_PARTS_H
 
+#include "engine/base/flag.h"
 #include "engine/output/buffer.h"
 #include "engine/output/draw/chart.h"
 #include "engine/output/draw/legend.h"
@@ -75,8 +76,8 @@ typedef struct strut_follow_points_options {
                         strut_setup *setup, strut_error *error);
   void *context;
   const char *directory;
-  int threads;                            /* 0: strut_sweep_threads */
-  const volatile sig_atomic_t *interrupt; /* may be NULL */
+  int threads;                 /* 0: strut_sweep_threads */
+  const strut_flag *interrupt; /* may be NULL */
   /** After each point, one thread at a time; may be NULL. */
   void (*progress)(void *context, const strut_sweep_state *state);
   void *progress_context;

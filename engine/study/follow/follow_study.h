@@ -6,6 +6,7 @@
 #ifndef STRUT_ENGINE_STUDY_FOLLOW_STUDY_H
 #define STRUT_ENGINE_STUDY_FOLLOW_STUDY_H
 
+#include "engine/base/flag.h"
 #include "engine/output/draw/chart.h"
 #include "engine/run/follow/follow_parts.h"
 #include "engine/scene/study.h"
@@ -38,7 +39,7 @@ typedef struct strut_follow_options {
   int32_t steps;      /* most of a branch each way; 0: STRUT_FOLLOW_USUAL_STEPS */
   bool not_doubled;   /* do not follow doubled branches */
   int threads;
-  const volatile sig_atomic_t *interrupt;
+  const strut_flag *interrupt;
   void (*progress)(void *context, double fraction); /* may be NULL */
   void *progress_context;
   bool basins; /* kick the stable motions at the values of the starts */

@@ -443,7 +443,7 @@ static strut_status set_up(const strut_sweep_plan *plan, const strut_search_poin
 
 strut_status strut_search_winner_figure(const strut_sweep_plan *plan, const strut_study_figure *f,
                                         const char *path, const strut_search_point *best,
-                                        double width, const volatile sig_atomic_t *interrupt,
+                                        double width, const strut_flag *interrupt,
                                         strut_error *error) {
   strut_setup setups[2];
   strut_compare result = {0};

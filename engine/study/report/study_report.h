@@ -7,9 +7,9 @@
 #ifndef STRUT_ENGINE_STUDY_REPORT_STUDY_REPORT_H
 #define STRUT_ENGINE_STUDY_REPORT_STUDY_REPORT_H
 
-#include <signal.h>
 #include <stdbool.h>
 
+#include "engine/base/flag.h"
 #include "engine/output/record_files.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
@@ -48,6 +48,6 @@ strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study
 strut_status strut_search_winner_figure(const strut_sweep_plan *plan,
                                         const strut_study_figure *figure, const char *path,
                                         const strut_search_point *best, double width,
-                                        const volatile sig_atomic_t *interrupt, strut_error *error);
+                                        const strut_flag *interrupt, strut_error *error);
 
 #endif

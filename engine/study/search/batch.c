@@ -122,7 +122,7 @@ static bool is_running(strut_search_batch *b) {
 #pragma omp atomic read
 #endif
   status = b->status;
-  const volatile sig_atomic_t *interrupt = b->options.interrupt;
+  const strut_flag *interrupt = b->options.interrupt;
   return !status && !(interrupt && *interrupt);
 }
 
@@ -221,7 +221,7 @@ static void forget_done(strut_search_batch *b) {
 }
 
 strut_status strut_search_batch_run(strut_search_batch *b) {
-  const volatile sig_atomic_t *interrupt = b->options.interrupt;
+  const strut_flag *interrupt = b->options.interrupt;
   struct timespec pause = {.tv_nsec = SHORTEST_PAUSE};
   if (b->count > 1) qsort(b->wanted, b->count, sizeof *b->wanted, by_point);
   while (b->count > 0 && is_running(b)) {

@@ -17,7 +17,7 @@
 #endif
 
 struct strut_evaluator {
-  const volatile sig_atomic_t *interrupt;
+  const strut_flag *interrupt;
   int threads;
   strut_equilibrium_cache *equilibria;
   strut_sweep_plan plan; /* of the latest evaluation, which owns its results */
@@ -25,7 +25,7 @@ struct strut_evaluator {
   strut_error error;
 };
 
-strut_evaluator *strut_evaluator_create(const volatile sig_atomic_t *interrupt, int threads) {
+strut_evaluator *strut_evaluator_create(const strut_flag *interrupt, int threads) {
   strut_evaluator *e = strut_allocate(1, sizeof *e);
   if (!e) return NULL;
   e->interrupt = interrupt;

@@ -8,8 +8,7 @@
 #ifndef STRUT_ENGINE_STUDY_SWEEP_EVALUATION_H
 #define STRUT_ENGINE_STUDY_SWEEP_EVALUATION_H
 
-#include <signal.h>
-
+#include "engine/base/flag.h"
 #include "engine/study/sweep/sweep.h"
 
 /** For one thread. */
@@ -37,8 +36,7 @@ typedef struct strut_evaluation {
  * `interrupt` ends a computation early; may be NULL. `threads`, 1 or more: of searches within an
  * evaluation, on which results do not depend. NULL: memory is out.
  */
-STRUT_API strut_evaluator *strut_evaluator_create(const volatile sig_atomic_t *interrupt,
-                                                  int threads);
+STRUT_API strut_evaluator *strut_evaluator_create(const strut_flag *interrupt, int threads);
 STRUT_API void strut_evaluator_free(strut_evaluator *evaluator); /* NULL is allowed */
 
 /**

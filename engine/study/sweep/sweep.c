@@ -163,7 +163,7 @@ static bool is_running(sweep *s) {
 #pragma omp atomic read
 #endif
   stopped = s->stopped;
-  const volatile sig_atomic_t *interrupt = s->worker.options->interrupt;
+  const strut_flag *interrupt = s->worker.options->interrupt;
   return !stopped && !(interrupt && *interrupt);
 }
 

@@ -5,8 +5,7 @@
 #ifndef STRUT_ENGINE_STUDY_SWEEP_SWEEP_H
 #define STRUT_ENGINE_STUDY_SWEEP_SWEEP_H
 
-#include <signal.h>
-
+#include "engine/base/flag.h"
 #include "engine/base/memory.h"
 #include "engine/scene/experiment.h"
 #include "engine/scene/study.h"
@@ -77,8 +76,8 @@ typedef struct strut_sweep_state {
 typedef struct strut_sweep_options {
   int threads; /* 0: strut_sweep_threads */
   int batch;   /* points per thread in lockstep, if their structures agree; 0: automatic */
-  const volatile sig_atomic_t *interrupt; /* may be NULL */
-  const char *directory;                  /* of runs, where trajectories are wanted */
+  const strut_flag *interrupt; /* may be NULL */
+  const char *directory;       /* of runs, where trajectories are wanted */
   /** A few times a second, one thread at a time; may be NULL. */
   void (*progress)(void *context, const strut_sweep_state *state);
   void *progress_context;

@@ -5,6 +5,7 @@
 #ifndef STRUT_ENGINE_STUDY_SWEEP_SWEEP_PARTS_H
 #define STRUT_ENGINE_STUDY_SWEEP_SWEEP_PARTS_H
 
+#include "engine/base/flag.h"
 #include "engine/run/simulate.h"
 #include "engine/study/sweep/evaluation_parts.h"
 #include "engine/study/sweep/sweep.h"
@@ -80,13 +81,13 @@ typedef struct strut_sweep_job {
   strut_status
       status; /* at the end: STRUT_OK, and cells.row is filled; else what stops the sweep */
   strut_error error;
-  double deadline;            /* by strut_run_clock [s]; 0: none; guarded by the watch */
-  volatile sig_atomic_t stop; /* set by the watch when it has passed, or the sweep is interrupted */
+  double deadline; /* by strut_run_clock [s]; 0: none; guarded by the watch */
+  strut_flag stop; /* set by the watch when it has passed, or the sweep is interrupted */
 } strut_sweep_job;
 
 /** What ends the job's computation early; may be NULL. */
-const volatile sig_atomic_t *strut_sweep_interrupt_of(const strut_sweep_worker *worker,
-                                                      const strut_sweep_job *job);
+const strut_flag *strut_sweep_interrupt_of(const strut_sweep_worker *worker,
+                                           const strut_sweep_job *job);
 /** Starts a point on an idle job. True: it waits for its run. False: it has ended already. */
 bool strut_sweep_job_begin(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job);
 /** Stores the result of the run and frees the summary. True: the job waits for another run. */
@@ -115,8 +116,7 @@ strut_status strut_statics_point(const strut_sweep_worker *worker, strut_sweep_j
 
 /** Ends jobs that take longer than the study allows. NULL: there is no memory or no thread for it. */
 struct strut_sweep_watch *strut_sweep_watch_create(double seconds, strut_sweep_job *jobs,
-                                                   size_t count,
-                                                   const volatile sig_atomic_t *interrupt);
+                                                   size_t count, const strut_flag *interrupt);
 void strut_sweep_watch_free(struct strut_sweep_watch *watch);
 /** The job's time begins, and ends; the latter true if it had passed. A NULL watch does nothing. */
 void strut_sweep_watch_begin(struct strut_sweep_watch *watch, strut_sweep_job *job);

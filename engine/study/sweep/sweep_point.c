@@ -30,8 +30,8 @@ static void pad_cells(const strut_sweep_plan *plan, strut_row_buffer *cells) {
   while (cells->number_count < plan->column_count - words) strut_sweep_number(cells, (double)NAN);
 }
 
-const volatile sig_atomic_t *strut_sweep_interrupt_of(const strut_sweep_worker *w,
-                                                      const strut_sweep_job *job) {
+const strut_flag *strut_sweep_interrupt_of(const strut_sweep_worker *w,
+                                           const strut_sweep_job *job) {
   return w->watch ? &job->stop : w->options->interrupt;
 }
 
@@ -343,7 +343,7 @@ typedef struct strut_sweep_watch {
   double seconds;
   strut_sweep_job *jobs; /* (count) */
   size_t count;
-  const volatile sig_atomic_t *interrupt; /* of the sweep, or NULL */
+  const strut_flag *interrupt; /* of the sweep, or NULL */
 } strut_sweep_watch;
 
 /* True when the sweep is over. */
@@ -365,7 +365,7 @@ static void *watch_jobs(void *context) {
 }
 
 strut_sweep_watch *strut_sweep_watch_create(double seconds, strut_sweep_job *jobs, size_t count,
-                                            const volatile sig_atomic_t *interrupt) {
+                                            const strut_flag *interrupt) {
   strut_sweep_watch *w = strut_allocate(1, sizeof *w);
   if (!w) return NULL;
   w->seconds = seconds, w->jobs = jobs, w->count = count, w->interrupt = interrupt;

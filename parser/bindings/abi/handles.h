@@ -6,11 +6,11 @@
 #define STRUT_PARSER_BINDINGS_ABI_HANDLES_H
 
 #include <pthread.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "engine/base/flag.h"
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "engine/model/model.h"
@@ -63,13 +63,13 @@ double *abi_tree_array(const abi_tree *tree, const char *name, int most, strut_a
 /* ---- control ---- */
 
 struct strutlib_control {
-  volatile sig_atomic_t interrupt;
+  strut_flag interrupt;
   strutlib_progress progress;
   void *context;
 };
 
 /** The flag that stops a computation, or NULL. */
-static inline const volatile sig_atomic_t *abi_interrupt_of(const strutlib_control *control) {
+static inline const strut_flag *abi_interrupt_of(const strutlib_control *control) {
   return control ? &control->interrupt : NULL;
 }
 

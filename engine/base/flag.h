@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/** The word by which signal handlers and other threads ask computations to end. */
+#ifndef STRUT_ENGINE_BASE_FLAG_H
+#define STRUT_ENGINE_BASE_FLAG_H
+
+#include <signal.h>
+
+#ifdef __cplusplus
+typedef volatile sig_atomic_t strut_flag; /* its size; C++ has atomics of its own */
+#else
+/** Non-zero asks for an end. It is free of locks, so that handlers of signals may set it. */
+typedef _Atomic sig_atomic_t strut_flag;
+#endif
+
+#endif
