@@ -6,7 +6,7 @@
 
 SCENES of each class (default 20): friction, contact, wide and robots of promise_scenes.py, or of the classes named.
 Each is run on a grid by `adaptive8` and on another one by `adaptive`, with a tolerance of 1e-10, and once more with
-gravity changed by 1e-11 of itself; where the nodes end in the same places to 1e-7 of the structure's width, that is
+gravity changed by 1e-11 of itself, or where there is none by 1e-10 m/s^2; where the nodes end in the same places to 1e-7 of the structure's width, that is
 the right answer, else the scene is sensitive and tells nothing. Both methods then run on a grid thirty times as coarse
 with tolerances of 1e-10 and 1e-12: where all is well, the smaller tolerance is right to 1e-6. Scenes in which it is
 not are left in FOLDER. Exit code 1 where there is one.
@@ -37,9 +37,10 @@ def ends(strut, file, method, tolerance, step):
 
 
 def heavier(scene, file):
-    """The scene with gravity changed by 1e-11 of itself, beside its file."""
+    """The scene with another gravity, beside its file."""
     other = file.with_suffix(".heavier.yaml")
-    changed = {**scene, "gravity": [x * (1 + 1e-11) for x in scene["gravity"]]}
+    gravity = scene.get("gravity", [0, 0])
+    changed = {**scene, "gravity": [gravity[0], gravity[1] * (1 + 1e-11) - (1e-10 if gravity[1] == 0 else 0)]}
     other.write_text(json.dumps(changed), encoding="utf-8")
     return other
 

@@ -587,8 +587,8 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
       double taken = event.fraction * h <= AT_ONCE * dt && !l->stepper->exact
                          ? 0.0
                          : retake(model, state, l, t, h, &event);
-      if (l->stepper->adaptive && taken > AT_ONCE * dt &&
-          l->error > 1.0) { /* something comes before it */
+      bool sooner = l->stepper->adaptive && l->error > 1.0; /* something else comes before it */
+      if (sooner && taken > AT_ONCE * dt) {
         control_step(l, taken, true);
         return 0.0;
       }

@@ -96,13 +96,12 @@ static double fraction_of(const strut_model *model, const strut_event_stepper *l
                           strut_event_kind kind, int32_t i, double h) {
   double g0 = strut_event_value(model, l, l->now, kind, i), d0, d1;
   double g1 = strut_event_value(model, l, l->next, kind, i);
-  bool rated = rates_of(model, l, kind, i, h, &d0, &d1);
-  if (kind == STRUT_EVENT_LEAVES_STICK_BAND) {
+  bool rated = rates_of(model, l, kind, i, h, &d0, &d1), slips = kind == STRUT_EVENT_SLIP_ENDS;
+  double edge = slips ? stick_band_edge(&l->entry[i]) : 0.0;
+  if (kind == STRUT_EVENT_LEAVES_STICK_BAND)
     g0 = room_to_leave(model, l, i, g0);
-  } else if (rated && !strut_event_is_of_law(kind) && l->stepper->exact) {
-    double edge = kind == STRUT_EVENT_SLIP_ENDS ? stick_band_edge(&l->entry[i]) : 0.0;
+  else if (rated && !strut_event_is_of_law(kind) && (l->stepper->exact || (slips && edge == 0.0)))
     g0 = room_to_last(1e-9 * edge, g0, d0, g1);
-  }
   if (!(g0 > 0.0)) return 0.0;
   return rated ? strut_event_cubic_root(g0, d0, g1, d1) : g0 / (g0 - g1);
 }
