@@ -6,10 +6,10 @@
 
 SCENES of each class (default 20): friction, contact, wide and robots of promise_scenes.py, or of the classes named.
 Each is run on a grid by `adaptive8` and on another one by `adaptive`, with a tolerance of 1e-10, and once more with
-gravity changed by 1e-11 of itself, or where there is none by 1e-10 m/s^2; where the nodes end in the same places to 1e-7 of the structure's width, that is
-the right answer, else the scene is sensitive and tells nothing. Both methods then run on a grid thirty times as coarse
-with tolerances of 1e-10 and 1e-12: where all is well, the smaller tolerance is right to 1e-6. Scenes in which it is
-not are left in FOLDER. Exit code 1 where there is one.
+gravity changed by 1e-11 of itself, or by 1e-10 m/s^2 where there is none; where the nodes end in the same places to
+1e-7 of the structure's width, that is the right answer, else the scene is sensitive and tells nothing. Both methods
+then run on a grid thirty times as coarse with tolerances of 1e-10 and 1e-12: where all is well, the smaller tolerance
+is right to 1e-6. Scenes in which it is not are left in FOLDER. Exit code 1 where there is one.
 """
 import json
 import pathlib
