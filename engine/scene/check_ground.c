@@ -70,6 +70,9 @@ static void check_friction(strut_checker *checker, size_t index, const char *own
         "the friction of %s has bristles that hold nothing: its mu_static is 0, but "
         "its mu_kinetic is not",
         owner);
+  if (strut_friction_holds_too_little(f))
+    strut_report_finding(checker, STRUT_ON_CONTACT, index, "mu_static",
+                         "the friction of %s has static friction below kinetic friction", owner);
   for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++)
     if (strut_friction_needs(f->law, p) && strut_friction_value(f, p) == 0.0)
       strut_check_number(checker, &whose, STRUT_FIELDS_FRICTION, strut_friction_key(p), 0.0);

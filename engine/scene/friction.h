@@ -177,6 +177,17 @@ static inline bool strut_friction_is_exact(strut_friction_law law) {
   return false;
 }
 
+/**
+ * The direction, 1 or -1, in which what sticks exactly is held by less than kinetic friction, so that it would be held
+ * again as soon as it gives way; 0: neither. Signals give both coefficients.
+ */
+static inline int strut_friction_holds_too_little(const strut_friction *f) {
+  if (f->driven || (!strut_friction_has_band(f->law) && !strut_friction_is_exact(f->law))) return 0;
+  if (f->mu_static >= 0.0 && f->mu_static < f->mu_kinetic) return 1;
+  bool back = f->mu_static_backward >= 0.0 && f->mu_static_backward < f->mu_kinetic_backward;
+  return f->directional && back ? -1 : 0;
+}
+
 /** Has it an internal state? */
 static inline bool strut_friction_has_bristles(strut_friction_law law) {
   return strut_friction_states(law) == STRUT_FRICTION_BRISTLES;

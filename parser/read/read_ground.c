@@ -126,26 +126,18 @@ static void report_lack(strut_reader *reader, const friction_layers *f, int key)
                            : "a number such as 0.5");
 }
 
-/* With these laws a contact that gives way must slide: is kinetic friction in this direction above static friction? */
-static bool holds_too_little(const strut_friction *f, double statics, double kinetics) {
-  bool sticks = f->law == STRUT_FRICTION_COULOMB || f->law == STRUT_FRICTION_KARNOPP;
-  return sticks && !f->driven && statics < kinetics;
-}
-
 /* Reports static friction below kinetic friction, once for each top layer. False: there is some. */
 static bool check_static_friction(strut_reader *reader, const friction_layers *f,
                                   const strut_tree **reported) {
-  const strut_friction *all = &f->friction;
-  bool back =
-      all->directional && holds_too_little(all, all->mu_static_backward, all->mu_kinetic_backward);
-  if (!back && !holds_too_little(all, all->mu_static, all->mu_kinetic)) return true;
+  int way = strut_friction_holds_too_little(&f->friction);
+  if (way == 0) return true;
   if (*reported != f->last)
     strut_report_error(
         reader, f->last->place,
         "%s has static friction %g below kinetic friction %g, expected at least as much: a "
         "contact that gives way would be held again at once",
-        strut_owner_text(reader, f->owner), back ? all->mu_static_backward : all->mu_static,
-        back ? all->mu_kinetic_backward : all->mu_kinetic);
+        strut_owner_text(reader, f->owner), strut_friction_static(&f->friction, way),
+        strut_friction_kinetic(&f->friction, way));
   *reported = f->last;
   return false;
 }

@@ -217,6 +217,8 @@ TEST(ground) {
   expect(&s, STRUT_ON_CONTACT, 1, "damping", "negative");
   s.contacts[0].friction.mu_static = -1;
   expect(&s, STRUT_ON_CONTACT, 0, "mu_static", "node 'b'");
+  s.contacts[0].friction.mu_static = 0.05;
+  expect(&s, STRUT_ON_CONTACT, 0, "mu_static", "below kinetic friction");
   s.contacts[0].friction.mu_kinetic = (double)NAN;
   expect(&s, STRUT_ON_CONTACT, 0, "mu_kinetic", "finite");
   s.contacts[0].friction.stick_velocity = 0;

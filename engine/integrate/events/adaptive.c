@@ -90,7 +90,7 @@ static double dip(double g0, double d0, double g1, double d1, double faint) {
   return g0 + x * (d0 + x * (b + x * c)) < -faint ? x : 0.0;
 }
 
-/* The margin by whose zero the mode of contact i, at o, ends; HUGE_VAL: look_between sees that from the ends alone. */
+/* The margin at whose zero the mode of contact i, at o, ends; HUGE_VAL for modes that need no look at stages. */
 static double kept_margin(const strut_event_stepper *l, int32_t i, const strut_touch *o) {
   const strut_contact_entry *e = &l->entry[i];
   switch ((strut_contact_mode)l->mode[i]) {
@@ -141,7 +141,7 @@ static double spent_at(const strut_event_stepper *l, int32_t i) {
                                                                                : 0.0;
 }
 
-/* The earlier one of two parts of a step, of which 0 is none. */
+/* The smaller of two fractions of a step; 0 stands for none. */
 static double earlier(double one, double other) {
   return one == 0.0 || (other > 0.0 && other < one) ? other : one;
 }
@@ -164,8 +164,8 @@ static double short_pull(const strut_event_stepper *l, int32_t k, double h, doub
   return at + SOON * (1.0 - at);
 }
 
-/* Lowest point, within the step, of the distance of an element's strain from one of its kinks, on whose other side it is
-   for a while; 0: none. */
+/* Lowest point, within the step, of the distance of an element's strain from a kink that it passes and comes back over;
+   0: none. */
 static double kink_dip(const strut_model *model, const strut_state *state,
                        const strut_event_stepper *l, int32_t k, double h, double faint) {
   int32_t element = l->laws[k].element;
@@ -205,8 +205,8 @@ static double earliest_switch(const strut_model *model, strut_state *state, stru
   return first;
 }
 
-/* Lowest point, within the step, of what is left of the slip of closed contact i, or of its speed into the ground, where
-   that passes 0 twice; 0: none. */
+/* Lowest point, within the step, of the slip left to closed contact i, or of its speed into the ground, where that
+   passes 0 twice; 0: none. */
 static double speed_dip(const strut_event_stepper *l, int32_t i, double h, double to_slip,
                         double to_into, double faint) {
   const strut_touch *now = &l->now->touch[i], *next = &l->next->touch[i];

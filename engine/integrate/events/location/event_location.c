@@ -248,8 +248,8 @@ static bool closes(const strut_contact_table *c, int32_t i, const strut_event_st
   return to.into < 0.0;
 }
 
-/* Whether closed contact i, which is at `o` at the step's end, has come up above the ground, though it may be on its
-   way back by then. One that has just touched may stand above 0 by rounding, on its way down. */
+/* Has closed contact i, at `o` at the end of the step, left the ground, even if it is falling again by then? A contact
+   that has just touched may be above the ground by rounding while it still moves down. */
 static bool opens(const strut_event_stepper *l, int32_t i, const strut_touch *o) {
   return o->gap > 0.0 && (o->into > 0.0 || l->now->touch[i].gap < 0.0);
 }
