@@ -321,7 +321,8 @@ void strut_capstan_add_forces(const strut_model *model, strut_state *state, int3
   const uint32_t *at = model->elements.at + e->first;
   cable c;
   bool frozen = stand(model, state, i, q, &c);
-  if (frozen) keep_materials(model, state, i, &c);
+  /* a step that is tried, and goes beyond where the cable is slack, must not share out what sticks */
+  if (frozen && !is_slack(&c)) keep_materials(model, state, i, &c);
   find_rates(model, state, i, v, &c);
   double damper = e->damping > 0.0 ? damper_force(e, &c) : 0.0;
   for (int k = 0; k < c.n; k++) {
@@ -489,7 +490,7 @@ double strut_capstan_energy(const strut_model *model, int32_t i, const double *r
                             const double *q) {
   cable c;
   measure(model, rest, i, q, &c);
-  return energy_of(&c);
+  return is_slack(&c) ? 0.0 : energy_of(&c);
 }
 
 void strut_capstan_stiffness(const strut_model *model, int32_t i, const double *q, double *k) {
