@@ -41,8 +41,10 @@ static void add_nodes(structure *s, uint64_t *r) {
     double turn = STRUT_TAU * (i + random_between(r, -0.2, 0.2)) / ANCHORS;
     build_support(&s->setup.scene, cos(turn), sin(turn));
   }
-  for (int i = 0; i < FREE; i++)
-    build_node(&s->setup.scene, random_between(r, -0.7, 0.7), random_between(r, -0.7, 0.7));
+  for (int i = 0; i < FREE; i++) {
+    double y = random_between(r, -0.7, 0.7), x = random_between(r, -0.7, 0.7);
+    build_node(&s->setup.scene, x, y);
+  }
 }
 
 static void add_hinge(strut_scene *scene, uint64_t *r, int32_t a, int32_t b, int32_t c) {
@@ -71,8 +73,8 @@ static void make(structure *s, uint64_t seed) {
   hard->law.kind = STRUT_LAW_POLYNOMIAL;
   hard->law.count = 3, hard->law.force = build_numbers(scene, cubic, 3);
   hard->stiffness = 0;
-  int32_t cable = build_sized(scene, STRUT_CABLE, 0, 2, random_between(&r, 5, 20), 0, 0,
-                              random_between(&r, 1.5, 3));
+  double rest = random_between(&r, 1.5, 3), stiffness = random_between(&r, 5, 20);
+  int32_t cable = build_sized(scene, STRUT_CABLE, 0, 2, stiffness, 0, 0, rest);
   static int32_t guides[2] = {ANCHORS + 1, ANCHORS + 2};
   scene->members[cable].guides = guides, scene->members[cable].guide_count = 2;
   scene->hinges = strut_arena_allocate(&scene->arena, 2, sizeof *scene->hinges);
@@ -127,7 +129,7 @@ static double energy_at(const structure *s, const double *q) {
 /* The largest slope of the energy along a free coordinate, by differences. */
 static double slope_at(const structure *s, const double *from) {
   double q[2 * NODES], most = 0;
-  const double h = 1e-5;
+  const double h = 1e-6;
   memcpy(q, from, sizeof q);
   for (size_t i = 2 * ANCHORS; i < 2 * NODES; i++) {
     double here = q[i], high, low;

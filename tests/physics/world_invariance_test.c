@@ -148,6 +148,7 @@ static void enlarge_numbers(strut_scene *scene) {
     strut_contact *c = &scene->contacts[i];
     c->dissipation /= LARGER;
     c->friction.stick_velocity *= LARGER, c->friction.width *= LARGER;
+    c->friction.decay_velocity *= LARGER;
   }
   for (size_t i = 0; i < scene->signal_count; i++) {
     bool length = false; /* the pressure of a cell stays */
