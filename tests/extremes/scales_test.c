@@ -62,7 +62,8 @@ TEST(a_million_metres_from_the_origin) {
 
 static double any(uint64_t *r) {
   if (random_once_in(r, 2)) return random_scale(r, 0.01, 100);
-  return exp(random_between(r, -690, 690)) * (random_once_in(r, 20) ? 0 : 1); /* 1e-300 .. 1e300 */
+  double most = exp(random_between(r, -690, 690)); /* 1e-300 .. 1e300 */
+  return random_once_in(r, 20) ? 0 : most;
 }
 
 static double either(uint64_t *r) { return random_once_in(r, 2) ? any(r) : -any(r); }
@@ -73,18 +74,22 @@ static void wild_scene(strut_setup *setup, uint64_t seed) {
   strut_setup_init(setup);
   setup->scene.mass_model = random_once_in(r, 2) ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
   for (int32_t i = 0; i < nodes; i++) {
-    build_mass(&setup->scene, either(r), either(r), any(r));
+    double mass = any(r), y = either(r), x = either(r);
+    build_mass(&setup->scene, x, y, mass);
     for (int c = 0; c < 2; c++) {
       setup->scene.nodes[i].fixed[c] = random_once_in(r, 4);
       if (random_once_in(r, 3)) setup->scene.nodes[i].velocity[c] = either(r);
     }
   }
-  for (int32_t j = 1; j < nodes; j++)
-    build_sized(&setup->scene, (strut_member_kind)random_below(r, 3), random_below(r, j), j, any(r),
-                any(r), any(r), any(r));
+  for (int32_t j = 1; j < nodes; j++) {
+    double rest = any(r), mass = any(r), damping = any(r), stiffness = any(r);
+    int32_t from = random_below(r, j), kind = random_below(r, 3);
+    build_sized(&setup->scene, (strut_member_kind)kind, from, j, stiffness, damping, mass, rest);
+  }
   setup->scene.gravity[1] = -any(r);
   for (int32_t i = 0; i < nodes && random_once_in(r, 2); i++) {
-    build_rough_contact(&setup->scene, i, any(r), any(r), any(r), any(r), any(r));
+    double width = any(r), mu_kinetic = any(r), mu_static = any(r), damping = any(r);
+    build_rough_contact(&setup->scene, i, any(r), damping, mu_static, mu_kinetic, width);
     if (random_once_in(r, 2)) setup->scene.contacts[i].friction.law = STRUT_FRICTION_COULOMB;
   }
   setup->scene.ground.height = either(r);

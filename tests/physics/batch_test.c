@@ -155,8 +155,8 @@ static void compare_random(uint64_t seed, void make(strut_scene *, uint64_t), wa
     make(&points[count].setup.scene, seed);
     if (count) vary(&points[count].setup, &r);
     double slow = points[count].setup.scene.hinge_count ? 8.0 : 1.0;
-    begin_point(&points[count], "rk4", slow * random_scale(&r, 1e-4, 1e-3),
-                3 + random_below(&r, 200), balance);
+    int32_t steps = 3 + random_below(&r, 200);
+    begin_point(&points[count], "rk4", slow * random_scale(&r, 1e-4, 1e-3), steps, balance);
     possible = strut_batch_possible(points[0].slot.model, points[0].slot.method) &&
                strut_batch_takes_both(points[0].slot.model, points[count].slot.model);
   }
@@ -189,12 +189,12 @@ static void run_crawlers(const char *method, way how, bool balance) {
   uint64_t r = 7;
   for (int i = 0; i < POINTS; i++) {
     strut_setup_init(&points[i].setup);
-    structure_crawler(&points[i].setup.scene, random_between(&r, 1, 20),
-                      random_between(&r, 1e-5, 1e-3), random_between(&r, 0.05, 0.6), i % 2);
+    double mu = random_between(&r, 0.05, 0.6), amplitude = random_between(&r, 1e-5, 1e-3);
+    structure_crawler(&points[i].setup.scene, random_between(&r, 1, 20), amplitude, mu, i % 2);
     if (i % 5 == 3) points[i].setup.scene.signals[0].kind = STRUT_HALF_SINE;
     points[i].setup.experiment.refine = i % 4;
-    begin_point(&points[i], method, random_between(&r, 5e-5, 1e-4), 200 + random_below(&r, 6000),
-                balance);
+    int32_t steps = 200 + random_below(&r, 6000);
+    begin_point(&points[i], method, random_between(&r, 5e-5, 1e-4), steps, balance);
     assert_true(strut_batch_possible(points[i].slot.model, points[i].slot.method));
   }
   run_in_batch(points, POINTS, how, balance);

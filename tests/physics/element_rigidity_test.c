@@ -22,8 +22,10 @@ static void make(strut_setup *setup, uint64_t *r) {
   strut_scene *scene = &setup->scene;
   build_support(scene, -1, 0);
   build_support(scene, 1, 0);
-  for (int i = 2; i < NODES; i++)
-    build_node(scene, random_between(r, -1, 1), random_between(r, -1, 1));
+  for (int i = 2; i < NODES; i++) {
+    double y = random_between(r, -1, 1), x = random_between(r, -1, 1);
+    build_node(scene, x, y);
+  }
   for (int i = 2; i < NODES; i++) build_member(scene, STRUT_BAR, i % 2, i, 100, 0, 0);
   int32_t cable = build_member(scene, STRUT_CABLE, 0, 4, 100, 0, 0);
   scene->members[cable].guides = guides, scene->members[cable].guide_count = 3;

@@ -141,8 +141,9 @@ static void make_grid(strut_scene *scene, uint64_t seed, int law, bool lumped) {
   scene->mass_model = lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
   for (int32_t c = 0; c < COLUMNS; c++)
     for (int32_t r = 0; r < ROWS; r++) {
-      int32_t i = build_mass(scene, 0.1 * c + random_between(&random, -0.01, 0.01),
-                             0.1 * r + random_between(&random, 0.0005, 0.008), 0.05);
+      double up = random_between(&random, 0.0005, 0.008),
+             right = random_between(&random, -0.01, 0.01);
+      int32_t i = build_mass(scene, 0.1 * c + right, 0.1 * r + up, 0.05);
       scene->nodes[i].velocity[0] = 0.2 + random_between(&random, -0.1, 0.1);
       scene->nodes[i].velocity[1] = -0.8;
       if (r == 0) add_contact(scene, &random, i, law);

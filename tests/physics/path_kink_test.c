@@ -236,7 +236,10 @@ static void random_net(strut_setup *setup, uint64_t seed) {
   strut_setup_init(setup);
   build_support(&setup->scene, 0, 0);
   build_support(&setup->scene, 1 + draw(&seed), 0);
-  for (int i = 0; i < 3; i++) build_node(&setup->scene, 2 * draw(&seed), 0.3 + draw(&seed));
+  for (int i = 0; i < 3; i++) {
+    double y = 0.3 + draw(&seed), x = 2 * draw(&seed);
+    build_node(&setup->scene, x, y);
+  }
   for (int32_t i = 0; i < 5; i++)
     for (int32_t k = i > 1 ? i + 1 : 2; k < 5; k++) {
       double kind = draw(&seed), slack = 0.9 + 0.2 * draw(&seed);
@@ -245,7 +248,8 @@ static void random_net(strut_setup *setup, uint64_t seed) {
       build_sized(&setup->scene, kind < 0.5 ? STRUT_BAR : STRUT_CABLE, i, k,
                   100 * (1 + draw(&seed)), 0, 0, slack * hypot(b[0] - a[0], b[1] - a[1]));
     }
-  build_load(&setup->scene, 2 + (int32_t)(3 * draw(&seed)), draw(&seed) - 0.5, -draw(&seed), -1);
+  double fy = -draw(&seed), fx = draw(&seed) - 0.5;
+  build_load(&setup->scene, 2 + (int32_t)(3 * draw(&seed)), fx, fy, -1);
 }
 
 /* Negative eigenvalues of the potential's own second derivatives; -1 where one is about zero. */

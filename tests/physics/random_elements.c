@@ -71,9 +71,10 @@ static void add_member(strut_scene *scene, int32_t a, int32_t b, double damping,
   const double *from = scene->nodes[a].position, *to = scene->nodes[b].position;
   double drawn = strut_distance(from, to), stiffness = random_between(r, 50, 200);
   strut_law_kind kind = random_kind(r);
-  int32_t j =
-      build_sized(scene, random_once_in(r, 3) ? STRUT_CABLE : STRUT_SPRING, a, b, stiffness,
-                  damping * random_between(r, 0.1, 1.0), 0, drawn * random_between(r, 0.8, 1.1));
+  double rest = drawn * random_between(r, 0.8, 1.1);
+  double own = damping * random_between(r, 0.1, 1.0);
+  strut_member_kind member = random_once_in(r, 3) ? STRUT_CABLE : STRUT_SPRING;
+  int32_t j = build_sized(scene, member, a, b, stiffness, own, 0, rest);
   strut_member *m = &scene->members[j];
   m->law = random_law(scene, kind, 0.3 * drawn, 0.3 * drawn * stiffness, r);
   if (m->kind == STRUT_SPRING) m->law.carries = (strut_carries)random_below(r, 3);

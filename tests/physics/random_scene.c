@@ -51,8 +51,10 @@ static void add_member(strut_scene *scene, int32_t a, int32_t b, double mass, ui
 static void add_group(strut_scene *scene, int32_t size, uint64_t *r) {
   int32_t first = (int32_t)scene->node_count;
   for (int32_t i = 0; i < size; i++) add_node(scene, r);
-  for (int32_t i = 1; i < size; i++)
-    add_member(scene, first + random_below(r, i), first + i, random_scale(r, 0.01, 10), r);
+  for (int32_t i = 1; i < size; i++) {
+    double mass = random_scale(r, 0.01, 10);
+    add_member(scene, first + random_below(r, i), first + i, mass, r);
+  }
   for (int32_t i = 0; i < size / 3; i++) {
     int32_t a = random_below(r, size), b = random_below(r, size);
     if (a != b) add_member(scene, first + a, first + b, random_scale(r, 0.01, 10), r);
@@ -103,13 +105,17 @@ static void add_signals(strut_scene *scene, uint64_t *r) {
 static void add_drives_and_loads(strut_scene *scene, uint64_t *r) {
   int32_t members = (int32_t)scene->member_count, nodes = (int32_t)scene->node_count;
   int32_t signals = (int32_t)scene->signal_count;
-  for (int32_t i = random_below(r, 6); i > 0; i--)
-    build_actuator(scene, random_below(r, members), random_below(r, signals));
+  for (int32_t i = random_below(r, 6); i > 0; i--) {
+    int32_t signal = random_below(r, signals);
+    build_actuator(scene, random_below(r, members), signal);
+  }
   if (scene->actuator_count) /* two on one member add up */
     build_actuator(scene, scene->actuators[0].member, random_below(r, signals));
-  for (int32_t i = random_below(r, 5); i > 0; i--)
-    build_load(scene, random_below(r, nodes), random_between(r, -50, 50),
-               random_between(r, -50, 50), random_once_in(r, 2) ? -1 : random_below(r, signals));
+  for (int32_t i = random_below(r, 5); i > 0; i--) {
+    int32_t signal = random_once_in(r, 2) ? -1 : random_below(r, signals);
+    double fy = random_between(r, -50, 50), fx = random_between(r, -50, 50);
+    build_load(scene, random_below(r, nodes), fx, fy, signal);
+  }
 }
 
 static void add_ground(strut_scene *scene, uint64_t *r) {

@@ -131,8 +131,8 @@ static void same_summary(const strut_summary *a, const strut_summary *b) {
 /* The crawler, sometimes as something that no lane takes, or that fails. */
 static void make_scene(strut_setup *setup, int i, const char *method, uint64_t *r) {
   strut_setup_init(setup);
-  structure_crawler(&setup->scene, random_between(r, 2, 20), random_between(r, 1e-5, 3e-4),
-                    random_between(r, 0.05, 0.6), i % 2);
+  double mu = random_between(r, 0.05, 0.6), amplitude = random_between(r, 1e-5, 3e-4);
+  structure_crawler(&setup->scene, random_between(r, 2, 20), amplitude, mu, i % 2);
   strut_experiment *e = &setup->experiment;
   e->step = random_between(r, 5e-5, 1e-4);
   e->duration = random_between(r, 0.02, 0.5);

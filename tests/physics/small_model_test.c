@@ -16,7 +16,8 @@ enum { SCENES = 400 };
 static void add_structure(strut_scene *scene, uint64_t *r) {
   int32_t nodes = 2 + random_below(r, 7), extra = random_below(r, 6);
   for (int32_t i = 0; i < nodes; i++) {
-    build_node(scene, (i % 4) + random_between(r, -0.3, 0.3), i / 4 + random_between(r, -0.3, 0.3));
+    double up = random_between(r, -0.3, 0.3), right = random_between(r, -0.3, 0.3);
+    build_node(scene, (i % 4) + right, i / 4 + up);
     strut_node *node = &scene->nodes[i];
     node->mass = random_scale(r, 0.1, 10);
     node->velocity[0] = random_between(r, -1, 1), node->velocity[1] = random_between(r, -1, 1);
@@ -29,8 +30,8 @@ static void add_structure(strut_scene *scene, uint64_t *r) {
     if (a == b) continue;
     double mass = random_once_in(r, 2) ? random_scale(r, 0.1, 10) : 0.0;
     int32_t kind = mass > 0 ? STRUT_BAR : random_below(r, 3);
-    build_member(scene, (strut_member_kind)kind, a, b, random_scale(r, 10, 1e4),
-                 random_once_in(r, 3) ? 0.0 : random_scale(r, 0.1, 10), mass);
+    double damping = random_once_in(r, 3) ? 0.0 : random_scale(r, 0.1, 10);
+    build_member(scene, (strut_member_kind)kind, a, b, random_scale(r, 10, 1e4), damping, mass);
     scene->members[scene->member_count - 1].rest_kind = STRUT_REST_RATIO;
     scene->members[scene->member_count - 1].rest_value = random_between(r, 0.7, 1.3);
   }
@@ -46,8 +47,10 @@ static void add_drives(strut_scene *scene, uint64_t *r) {
     if (i == 1) s.start = random_between(r, 0, 0.01), s.stop = s.start + random_between(r, 0, 0.05);
     build_signal(scene, s);
   }
-  for (int32_t i = random_below(r, 5); i > 0; i--)
-    build_actuator(scene, random_below(r, (int32_t)scene->member_count), random_below(r, 3));
+  for (int32_t i = random_below(r, 5); i > 0; i--) {
+    int32_t signal = random_below(r, 3);
+    build_actuator(scene, random_below(r, (int32_t)scene->member_count), signal);
+  }
 }
 
 /* Contacts with all laws that a plain method steps. */

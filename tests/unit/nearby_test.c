@@ -32,8 +32,10 @@ static void read_crowd(uint64_t *r, double mu, model_run *run) {
                 "friction: {mu: %g, width: 0.01}}}\n",
                 mu);
   at += sprintf(at, "initial:\n  velocities:\n");
-  for (int k = 0; k < RODS; k++)
-    at += sprintf(at, "    a%d: [%g, %g]\n", k, random_between(r, -2, 2), random_between(r, -2, 2));
+  for (int k = 0; k < RODS; k++) {
+    double vy = random_between(r, -2, 2), vx = random_between(r, -2, 2);
+    at += sprintf(at, "    a%d: [%g, %g]\n", k, vx, vy);
+  }
   sprintf(at, "solver: {step: 0.2 ms}\nrun: {duration: 1 s}\n");
   model_read_text(run, "crowd.yaml", text, set_none);
   strut_error error = {0};

@@ -17,16 +17,20 @@ enum { NODES = 7, MEMBERS = 13, POSES = 2000 };
 /* Cables and bars between random nodes, one of them without a length, over an inclined ground. */
 static void build(strut_scene *scene, uint64_t *r, double slope) {
   strut_scene_init(scene);
-  for (int i = 0; i < NODES; i++)
-    build_mass(scene, random_between(r, -1, 1), random_between(r, -1, 1), 1.0);
+  for (int i = 0; i < NODES; i++) {
+    double y = random_between(r, -1, 1), x = random_between(r, -1, 1);
+    build_mass(scene, x, y, 1.0);
+  }
   for (int j = 0; j < MEMBERS; j++) {
     int32_t a = (int32_t)(j % NODES), b = (int32_t)((a + 1 + j / NODES) % NODES);
-    build_sized(scene, j % 3 ? STRUT_CABLE : STRUT_BAR, a, b, random_scale(r, 1, 1e6),
-                j % 4 ? random_scale(r, 0.1, 100) : 0.0, 0.0, random_between(r, 0, 1.5));
+    double rest = random_between(r, 0, 1.5), damping = j % 4 ? random_scale(r, 0.1, 100) : 0.0;
+    strut_member_kind kind = j % 3 ? STRUT_CABLE : STRUT_BAR;
+    build_sized(scene, kind, a, b, random_scale(r, 1, 1e6), damping, 0.0, rest);
   }
-  for (int i = 0; i < NODES; i++)
-    build_rough_contact(scene, i, random_scale(r, 1e2, 1e5), random_scale(r, 1, 100), 0.5, 0.4,
-                        0.1);
+  for (int i = 0; i < NODES; i++) {
+    double damping = random_scale(r, 1, 100), stiffness = random_scale(r, 1e2, 1e5);
+    build_rough_contact(scene, i, stiffness, damping, 0.5, 0.4, 0.1);
+  }
   scene->ground.slope = slope;
   scene->ground.height = random_between(r, -0.5, 0.5);
   scene->ground.belt_speed = random_between(r, -1, 1);

@@ -52,9 +52,9 @@ static bool set_up(fixture *f, uint64_t seed) {
   f->down = strut_arena_allocate(&f->scene.arena, length, sizeof(double));
   v = strut_arena_allocate(&f->scene.arena, length, sizeof(double));
   for (size_t i = 0; i < length; i++) held[i] = (uint8_t)random_once_in(&r, 10);
-  assert_int_equal(strut_potential_create(f->model, random_once_in(&r, 2) ? held : NULL,
-                                          !random_once_in(&r, 4), &f->potential, NULL),
-                   STRUT_OK);
+  bool contacts = !random_once_in(&r, 4);
+  const uint8_t *mask = random_once_in(&r, 2) ? held : NULL;
+  assert_int_equal(strut_potential_create(f->model, mask, contacts, &f->potential, NULL), STRUT_OK);
   for (uint64_t again = 0; again < 20; again++) {
     random_motion(&f->scene, seed + 1000 * again, &t, f->q, v);
     if (clear_of_kinks(f->model, f->q, 3e-3)) return f->potential->n > 0;

@@ -71,7 +71,7 @@ TEST(bounds_do_not_change_the_nearest_facet) {
     for (int i = 0; i < 200; i++) {
       const strut_facet *f = &facet[random_below(&r, count)];
       double along = random_between(&r, -1, 2) * f->length;
-      double across = random_scale(&r, 1e-9, 30) * (random_once_in(&r, 2) ? 1 : -1);
+      double side = random_once_in(&r, 2) ? 1 : -1, across = side * random_scale(&r, 1e-9, 30);
       if (random_once_in(&r, 10)) across = 0.0;
       double p[2];
       for (int c = 0; c < 2; c++)
