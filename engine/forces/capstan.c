@@ -394,29 +394,26 @@ void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t 
   for (int k = 0; k + 1 < c.n; k++) side[k] = (int8_t)c.side[k];
 }
 
-double strut_capstan_bend(const strut_model *model, const strut_state *state, int32_t i, int k,
-                          const double *q) {
-  assert(i >= 0 && i < model->elements.count);
-  cable c;
-  measure(model, state->latest.rest, i, q, &c);
-  return bend_on_side(&c, k, sides_of(model, state, i)[k]) + STRAIGHT;
-}
-
 void strut_capstan_pass_straight(const strut_model *model, strut_state *state, int32_t i, int k) {
   assert(i >= 0 && i < model->elements.count);
   int8_t *side = sides_of(model, state, i);
   side[k] = (int8_t)-side[k];
 }
 
-double strut_capstan_margin(const strut_model *model, const strut_state *state, int32_t i, int k,
-                            const double *q, const double *v, double h) {
+void strut_capstan_measure(const strut_model *model, const strut_state *state, int32_t i,
+                           const double *q, const double *v, double h, strut_capstan_guide *guide) {
   assert(i >= 0 && i < model->elements.count);
+  const int8_t *side = sides_of(model, state, i);
   cable c;
-  if (!stand(model, state, i, q, &c) || is_slack(&c)) return c.ea;
-  if (c.mode[k] == STRUT_GUIDE_STICKS) return room_at(&c, k, ROUNDING);
-  find_rates(model, state, i, v, &c);
-  find_flows(&c);
-  return c.mode[k] * c.flow[k] * h * c.ea / c.whole;
+  bool pulls = stand(model, state, i, q, &c) && !is_slack(&c);
+  if (pulls) find_rates(model, state, i, v, &c);
+  if (pulls) find_flows(&c);
+  for (int k = 0; k + 1 < c.n; k++) {
+    double flow = pulls ? c.mode[k] * c.flow[k] * h * c.ea / c.whole : c.ea;
+    bool sticks = pulls && c.mode[k] == STRUT_GUIDE_STICKS;
+    guide[k].margin = sticks ? room_at(&c, k, ROUNDING) : flow;
+    guide[k].bend = bend_on_side(&c, k, side[k]) + STRAIGHT;
+  }
 }
 
 strut_capstan_stretch strut_capstan_stretch_of(const strut_model *model, const strut_state *state,

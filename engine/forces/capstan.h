@@ -39,12 +39,14 @@ void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i
 /** Modes by the tensions and the flows at q and v, of which those of the tensions are renewed. */
 void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t i, const double *q,
                           const double *v);
-/** How far guide k (0: the first) is from the end of its mode at q and v, as a force; `h`: a step [s]. */
-double strut_capstan_margin(const strut_model *model, const strut_state *state, int32_t i, int k,
-                            const double *q, const double *v, double h);
-/** Turning angle of guide k, continued through straight from the side on which modes were frozen. */
-double strut_capstan_bend(const strut_model *model, const strut_state *state, int32_t i, int k,
-                          const double *q);
+/** A guide at some q and v: how far it is from the end of its mode, as a force [N]; and its turning angle, continued
+    through straight from the side on which modes were frozen [rad]. */
+typedef struct strut_capstan_guide {
+  double margin, bend;
+} strut_capstan_guide;
+/** All its guides, the first first; `h`: a step [s]. */
+void strut_capstan_measure(const strut_model *model, const strut_state *state, int32_t i,
+                           const double *q, const double *v, double h, strut_capstan_guide *guide);
 /** It has passed straight. */
 void strut_capstan_pass_straight(const strut_model *model, strut_state *state, int32_t i, int k);
 /** How much longer than its material the whole cable is, and the rate: it is slack below 0. */

@@ -109,12 +109,32 @@ static double kept_margin(const strut_event_stepper *l, int32_t i, const strut_t
   return HUGE_VAL;
 }
 
+static void note(strut_least_margin *least, double margin, double at, bool first) {
+  if (first || margin < least->margin) *least = (strut_least_margin){margin, at};
+}
+
 static void note_stage(const strut_event_stepper *l, double at, bool first) {
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
     const strut_touch *o = &l->next->touch[i];
-    double margin = o->normal > 0.0 ? kept_margin(l, i, o) : HUGE_VAL;
-    if (first || margin < l->least[i].margin) l->least[i] = (strut_least_margin){margin, at};
+    note(&l->least[i], o->normal > 0.0 ? kept_margin(l, i, o) : HUGE_VAL, at, first);
+  }
+}
+
+/* Is switch k one of a slider, a guide or a break, whose margin has no rate? */
+static bool remembers(const strut_event_stepper *l, int32_t k) {
+  assert(k >= 0 && k < l->law_count);
+  return l->laws[k].event == STRUT_EVENT_SLIDER || l->laws[k].event == STRUT_EVENT_BREAK;
+}
+
+/* The same of what remembers, at a stage's q and v. */
+static void note_memory(const strut_model *model, const strut_state *state,
+                        const strut_event_stepper *l, const strut_step_end *stage, double at) {
+  for (int32_t k = 0; k < l->law_count; k++) {
+    if (!remembers(l, k)) continue;
+    strut_history_measure(model, state, l, stage, k);
+    note(&l->least[model->contacts.count + k], stage->tension[k], at,
+         at == l->stepper->tableau->ahead[1]);
   }
 }
 
@@ -146,9 +166,21 @@ static double earlier(double one, double other) {
   return one == 0.0 || (other > 0.0 && other < one) ? other : one;
 }
 
-static double earliest_spent(const strut_event_stepper *l) {
+/* The same of switch k of what remembers. */
+static double memory_spent_at(const strut_model *model, const strut_event_stepper *l, int32_t k) {
+  const strut_least_margin *least = &l->least[model->contacts.count + k];
+  double from = fmax(l->now->tension[k], 0.0), to = l->next->tension[k];
+  bool spent =
+      to > 0.0 && strut_law_margin_is_spent(least->margin, fmin(from, to) - FAINT_MARGIN * to);
+  return spent ? least->at : 0.0;
+}
+
+static double earliest_spent(const strut_model *model, const strut_event_stepper *l) {
   double first = 0.0;
-  for (int32_t k = 0; k < l->closed_count; k++) first = earlier(first, spent_at(l, l->closed[k]));
+  for (int32_t k = 0; k < l->closed_count && !l->all_sliding; k++)
+    first = earlier(first, spent_at(l, l->closed[k]));
+  for (int32_t k = 0; k < l->law_count && model->terms & STRUT_TERM_MEMORY; k++)
+    if (remembers(l, k)) first = earlier(first, memory_spent_at(model, l, k));
   return first;
 }
 
@@ -205,17 +237,26 @@ static double earliest_switch(const strut_model *model, strut_state *state, stru
   return first;
 }
 
-/* Lowest point, within the step, of the slip left to closed contact i, or of its speed into the ground, where that
-   passes 0 twice; 0: none. */
+/* Lowest point, within the step, of the slip left to closed contact i, of what is left to the edge of its band, or of
+   its speed into the ground, where that passes 0 twice; 0: none. */
 static double speed_dip(const strut_event_stepper *l, int32_t i, double h, double to_slip,
                         double to_into, double faint) {
   const strut_touch *now = &l->now->touch[i], *next = &l->next->touch[i];
   double at = 0.0;
-  if (l->mode[i] == STRUT_MODE_SLIP) {
-    double s = l->side[i], edge = stick_band_edge(&l->entry[i]), end = s * to_slip - edge;
-    if (end > 0.0)
-      at = dip(s * now->slip - edge, s * h * now->slip_rate, end, s * h * next->slip_rate, faint);
+  double edge = stick_band_edge(&l->entry[i]), s = 0.0, bound = 0.0; /* s u is above it */
+  switch ((strut_contact_mode)l->mode[i]) {
+    case STRUT_MODE_SLIP: s = l->side[i], bound = edge; break;
+    case STRUT_MODE_BAND:
+    case STRUT_MODE_PUSH:
+    case STRUT_MODE_YIELD: s = to_slip < 0.0 ? 1.0 : -1.0, bound = -edge; break;
+    case STRUT_MODE_OPEN:
+    case STRUT_MODE_SLIDE:
+    case STRUT_MODE_STICK:
+    case STRUT_MODE_CREEP: break;
   }
+  double left = s * to_slip - bound;
+  if (s != 0.0 && left > 0.0)
+    at = dip(s * now->slip - bound, s * h * now->slip_rate, left, s * h * next->slip_rate, faint);
   double turns = -l->damper[i], end = turns * to_into;
   if (end > 0.0)
     at = earlier(at, dip(turns * now->into, turns * h * now->into_rate, end,
@@ -263,7 +304,7 @@ STRUT_LOOP void look_between(const strut_model *model, strut_state *state, strut
   double part = model->contacts.count ? earliest_dip(model, state, l, h, terms) : 0.0;
   double slack = l->law_count ? earliest_switch(model, state, l, h) : 0.0;
   part = earlier(part, slack);
-  double spent = h > LEAST_SPLIT * l->longest && !l->all_sliding ? earliest_spent(l) : 0.0;
+  double spent = h > LEAST_SPLIT * l->longest ? earliest_spent(model, l) : 0.0;
   if (spent > 0.0 && earlier(part, spent) == spent) {
     strut_event event = strut_event_first(model, state, l, h);
     if (!event.kind || event.fraction > spent) part = spent;
@@ -294,6 +335,11 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
     drives_ahead_meet(model, state, &drives, t + ahead[k] * h);
     accelerate_in_modes(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, terms, balance);
     if (l->closed_count && !l->all_sliding) note_stage(l, ahead[k], k == 1);
+    if (model->terms & terms & STRUT_TERM_MEMORY) {
+      strut_step_end at = *l->next;
+      at.q = q, at.v = v[k];
+      note_memory(model, state, l, &at, ahead[k]);
+    }
     for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
       l->gained[p] += last[k] * h * state->latest.power[p];
   }

@@ -66,7 +66,8 @@ static bool make_arrays(const strut_model *model, strut_state *state, strut_even
   l->damped = strut_arena_allocate(arena, contacts, sizeof *l->damped);
   l->response = strut_arena_allocate(arena, contacts, sizeof *l->response);
   l->settling_time = strut_arena_allocate(arena, contacts, sizeof(double));
-  l->least = strut_arena_allocate(arena, contacts, sizeof *l->least);
+  size_t margins = contacts + strut_most_law_switches(model);
+  l->least = strut_arena_allocate(arena, margins, sizeof *l->least);
   l->scatter = strut_arena_allocate(arena, length, sizeof(double));
   l->stage = strut_arena_allocate(arena, (size_t)l->stepper->stages + 1, sizeof *l->stage);
   if (model->contacts.surface) l->facet = strut_arena_allocate(arena, contacts, sizeof *l->facet);

@@ -207,9 +207,10 @@ typedef struct strut_switch_counts {
   int most; /* the largest of them */
 } strut_switch_counts;
 
-/** What is left of the margin by whose zero the mode of a closed contact ends, where that is least at a stage. */
+/** What is left of the margin by whose zero the mode of a closed contact, or of what remembers, ends, where that is
+    least at a stage. */
 typedef struct strut_least_margin {
-  double margin; /* [N]; HUGE_VAL: the ends of a step say all about the mode */
+  double margin; /* [N], of a hinge [N m]; HUGE_VAL: the ends of a step say all about the mode */
   double at;     /* part of the step */
 } strut_least_margin;
 
@@ -224,10 +225,11 @@ struct strut_event_stepper {
   int8_t *side, *damper;         /* (contacts) s; ground damper: 1 on, -1 off, 0: by its sign */
   int32_t *closed;               /* (closed_count) contacts that touch, ascending */
   int32_t closed_count;
-  double *outward;           /* (contacts) the sign of gaps that keep the mode: 1 open, -1 closed */
-  int32_t *body;             /* (contacts) equal where a force on one accelerates the other */
-  bool *body_seen;           /* (contacts) scratch */
-  strut_least_margin *least; /* (contacts) adaptive: over the latest step, of those closed */
+  double *outward; /* (contacts) the sign of gaps that keep the mode: 1 open, -1 closed */
+  int32_t *body;   /* (contacts) equal where a force on one accelerates the other */
+  bool *body_seen; /* (contacts) scratch */
+  strut_least_margin
+      *least; /* (contacts, laws) adaptive: in the latest step, of closed ones and memory */
   strut_sliding_contact *sliding;     /* (closed_count), where all_sliding */
   bool all_sliding;                   /* decoupled, and all closed contacts are in the list above */
   bool contacts_decoupled;            /* level ground, and no two closed contacts are of one body */
@@ -400,7 +402,7 @@ void strut_modes_start(const strut_model *model, strut_state *state, strut_event
 
 /** Lists their switches in l->laws, for which there is space. */
 void strut_history_list(const strut_model *model, const strut_state *state, strut_event_stepper *l);
-/** Of a slider or what breaks, at an end: its margin into end->tension. */
+/** Of a slider or what breaks, at an end: its margin into end->tension; with the first guide of a cable, of all. */
 void strut_history_measure(const strut_model *model, const strut_state *state,
                            const strut_event_stepper *l, const strut_step_end *end, int32_t k);
 /** Lets all sliders follow their forces at now, and back to their yields. */

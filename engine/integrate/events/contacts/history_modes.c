@@ -71,6 +71,19 @@ static bool is_taut(const strut_event_stepper *l, int32_t k) {
   return l->acting[whole];
 }
 
+/* All switches of the guides of a cable, the first of which is switch k. */
+static void measure_guides(const strut_model *model, const strut_state *state,
+                           const strut_event_stepper *l, const strut_step_end *end, int32_t k) {
+  int32_t i = l->laws[k].element;
+  strut_capstan_guide guide[STRUT_MOST_ELEMENT_NODES];
+  bool taut = is_taut(l, k); /* which guides slip is found when it gets so */
+  strut_capstan_measure(model, state, i, end->q, end->v, l->wanted_step, guide);
+  for (int32_t g = 0; g + 2 < model->elements.element[i].nodes; g++, k += 2) {
+    end->tension[k] = taut ? guide[g].margin : 1.0;
+    end->tension[k + 1] = guide[g].bend;
+  }
+}
+
 void strut_history_measure(const strut_model *model, const strut_state *state,
                            const strut_event_stepper *l, const strut_step_end *end, int32_t k) {
   assert(k >= 0 && k < l->law_count);
@@ -86,15 +99,10 @@ void strut_history_measure(const strut_model *model, const strut_state *state,
     return;
   }
   if (law->event == STRUT_EVENT_SLIDER) {
-    bool guide = law->guide && !is_gone(model, state, law->element);
-    if (guide && law->straight)
-      end->tension[k] = strut_capstan_bend(model, state, law->element, law->guide - 1, end->q);
-    else
-      end->tension[k] = !guide ? slider_margin(model, state, l, end, law->element)
-                        : is_taut(l, k)
-                            ? strut_capstan_margin(model, state, law->element, law->guide - 1,
-                                                   end->q, end->v, l->wanted_step)
-                            : 1.0; /* which guides slip is found when it gets taut */
+    if (!law->guide || is_gone(model, state, law->element))
+      end->tension[k] = slider_margin(model, state, l, end, law->element);
+    else if (law->guide == 1 && !law->straight)
+      measure_guides(model, state, l, end, k);
     return;
   }
   bool broken = state->history.broken_at[law->breakable] < HUGE_VAL;

@@ -135,7 +135,14 @@ STRUT_SMALL_INLINE bool small_dips(const small_events *e, const strut_model *mod
     small_real zero = {0}, gap = side * to.gap, beyond = s * to.slip - edge;
     small_mask bad = SMALL_CONTACT_MASK(touches) & small_less(zero, gap);
     bad &= small_dips_below(side * from.gap, side * h * from.into, gap, side * h * to.into, faint);
-    small_mask slips = SMALL_MODE_MASK(mask.slips) & small_less(zero, beyond);
+    small_mask slips = SMALL_MODE_MASK(mask.slips);
+    if (m->is.any_band) {
+      small_mask band = SMALL_MODE_MASK(mask.band) | SMALL_MODE_MASK(mask.pushes);
+      small_real back = small_choose(small_less(to.slip, zero), small_all(1.0), small_all(-1.0));
+      s = small_choose(band, back, s), edge = small_choose(band, -edge, edge);
+      beyond = s * to.slip - edge, slips |= band;
+    }
+    slips &= small_less(zero, beyond);
     if (small_some(slips))
       bad |= slips & small_dips_below(s * from.slip - edge, s * h * from.slip_rate, beyond,
                                       s * h * to.slip_rate, slow);
