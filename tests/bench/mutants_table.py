@@ -467,4 +467,10 @@ MUTANTS = [
     Mutant("materials-of-a-try", "engine/forces/capstan.c",
            "if (frozen && !is_slack(&c)) keep_materials", "if (frozen) keep_materials",
            "a step that is not taken shares out a running cable as if it were slack", "switches"),
+    Mutant("bands-left-briefly", "engine/integrate/events/adaptive.c",
+           "if (s != 0.0 && left > 0.0)", "if (s != 0.0 && left > 0.0 && bound >= 0.0)",
+           "a contact that leaves its band and comes back within a step is not seen", "switches"),
+    Mutant("guides-that-slip-briefly", "engine/integrate/events/adaptive.c",
+           "if (remembers(l, k)) first = earlier(", "if (remembers(l, k) && k < 0) first = earlier(",
+           "a guide that slips and sticks again within a step is not seen", "switches"),
 ]
