@@ -24,6 +24,7 @@ Found by tests/bench/grids.py; there adaptive8 with long and short steps must ag
 - creeps-out-at-a-jump, creeps-in-at-a-jump: creep ends at a jump, and could go on by the end of the step.
 - cable-beside-a-jump: a cable is taut or not by its rest length at a jump, not by that of a step not taken.
 - damper-turned-twice: a contact goes up and down again while it is closed.
+- knee-passed-twice: a strain passes the knee of a law and comes back within a step.
 - carried-by-a-belt: speeds of a contact at rest are rounding, and what cannot be located takes its time all the same.
 - bounces: a search that meets a root but for rounding is at its end.
 
@@ -101,7 +102,7 @@ for name, part, most_events in (("up-and-down-again", 1e-9, 90), ("touches-again
                                 ("kink-of-a-margin", 2e-9, 120), ("gives-way-briefly", 1e-9, 120),
                                 ("creeps-out-at-a-jump", 1e-9, 160), ("creeps-in-at-a-jump", 1e-9, 420),
                                 ("cable-beside-a-jump", 1e-9, 180), ("carried-by-a-belt", 1e-9, 140),
-                                ("damper-turned-twice", 1e-9, 210),
+                                ("damper-turned-twice", 1e-9, 210), ("knee-passed-twice", 1e-9, 8),
                                 ("leaves-the-band-briefly", 2e-9, 15), ("guide-slips-briefly", 5e-9, 40),
                                 ("slack-in-a-try", 1e-9, 20)):
     u = unit_of(name)
