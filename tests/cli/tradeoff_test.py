@@ -434,7 +434,7 @@ if "verlet-events, refined" not in groups or "verlet-events, refined 8" not in g
 
 # ---- What a model's reader notes is said once, not at each point.
 done = run("models/basics/pendulum.yaml", "--vary", "stiffness=1e9..2e9", "--points", "3", "--step-sizes", "1",
-           "--integrator", "rk4", "--own-model", "--cpu-time", "1 s")
+           "--integrator", "rk4", "--own-model", "--cpu-time", "3 s")
 if done.stderr.count("note: --set stiffness") != 1:
     fail(f"notes of three points: {done.stderr}")
 
