@@ -237,6 +237,7 @@ static double carried(const cable *c, int k) {
 
 static double energy_of(const cable *c) {
   double sum = 0.0;
+  if (is_slack(c)) return sum;
   for (int k = 0; k < c->n; k++) {
     double stretch = c->length[k] - c->material[k];
     if (stretch > 0.0 && c->material[k] > 0.0)
@@ -347,22 +348,23 @@ void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i
   memset(drops_of(model, state, i), 0, (size_t)c.n * sizeof(double));
 }
 
-void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i, const double *q) {
+void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i, const double *q,
+                         bool jumped) {
   cable c;
-  double before[MOST], moved = 0.0, *drop = drops_of(model, state, i);
+  double before[MOST], moved = 0.0, lost = 0.0, *drop = drops_of(model, state, i);
   measure(model, state->latest.rest, i, q, &c);
   memcpy(before, c.material, sizeof before);
+  double held = energy_of(&c);
   settle(&c);
   for (int k = 0; k + 1 < c.n; k++) {
     double now = carried(&c, k) - carried(&c, k + 1);
     moved += c.material[k] - before[k];
-    if (state->balance && moved != 0.0) {
-      double lost = fmax(0.0, 0.5 * (drop[k] + now) * moved);
-      state->work[STRUT_POWER_MEMBERS] += lost;
-      state->work[STRUT_POWER_EXCHANGED] += lost;
-    }
+    lost += fmax(0.0, 0.5 * (drop[k] + now) * moved);
     drop[k] = now;
   }
+  if (jumped) lost = held - energy_of(&c);
+  if (state->balance) state->work[STRUT_POWER_MEMBERS] += lost;
+  if (state->balance) state->work[STRUT_POWER_EXCHANGED] += fabs(lost);
   keep_materials(model, state, i, &c);
 }
 
@@ -376,7 +378,7 @@ void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t 
                           const double *v) {
   int8_t *mode = modes_of(model, state, i);
   cable c;
-  strut_capstan_renew(model, state, i, q);
+  strut_capstan_renew(model, state, i, q, true);
   measure(model, state->latest.rest, i, q, &c);
   for (int k = 0; k < c.n; k++) c.mode[k] = STRUT_GUIDE_STICKS;
   solve(&c);
@@ -487,7 +489,7 @@ double strut_capstan_energy(const strut_model *model, int32_t i, const double *r
                             const double *q) {
   cable c;
   measure(model, rest, i, q, &c);
-  return is_slack(&c) ? 0.0 : energy_of(&c);
+  return energy_of(&c);
 }
 
 void strut_capstan_stiffness(const strut_model *model, int32_t i, const double *q, double *k) {

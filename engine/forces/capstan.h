@@ -34,8 +34,10 @@ void strut_capstan_add_forces(const strut_model *model, strut_state *state, int3
                               const double *q, const double *v, double *force);
 /** Materials from q where none are remembered: equal tensions. */
 void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i, const double *q);
-/** Materials after a step, by the tensions at q; what slipping loses goes to the losses. */
-void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i, const double *q);
+/** Materials after a step, by the tensions at q; what slipping loses goes to the losses. Where nothing but the rest
+    length has `jumped`, that is the energy set free. */
+void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i, const double *q,
+                         bool jumped);
 /** Modes by the tensions and the flows at q and v, of which those of the tensions are renewed. */
 void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t i, const double *q,
                           const double *v);

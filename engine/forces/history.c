@@ -306,7 +306,7 @@ static bool renew(const strut_model *model, strut_state *state, double t, bool j
     if (strut_has_capstan(&table->element[i]) &&
         !strut_element_is_gone(state->latest.rest[table->element[i].slot])) {
       strut_capstan_begin(model, state, i, state->q);
-      strut_capstan_renew(model, state, i, state->q);
+      strut_capstan_renew(model, state, i, state->q, jumped);
     }
     if (strut_element_is_gone(state->latest.rest[table->element[i].slot])) continue;
     if (yields(&table->element[i])) strut_slider_return(model, state, i, state->q, jumped);
