@@ -217,23 +217,27 @@ static void keep_begin(const strut_model *model, const strut_state *state, strut
   memcpy(view->work, state->work, sizeof view->work);
 }
 
+/* From the time at which a step that begins at t is evaluated to one after what jumps at t; see moment_before. */
+static double moment_after(const strut_event_stepper *l, double t, double dt) {
+  return l->next_break < HUGE_VAL ? 2.0 * moment_before(t, dt) : 0.0;
+}
+
 /* Shows the step of h that began at t and has been accepted, in whose modes l still is. */
 static void show_piece(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        double t, double h, double dt) {
   const strut_step_end *begin = l->next, *end = l->now;
   const strut_event_view *view = l->view;
-  const strut_motion_piece piece = {
-      .begin = t,
-      .length = h,
-      .moment = l->next_break < HUGE_VAL ? 2.0 * moment_before(t, dt) : 0.0,
-      .q = {view->q, end->q},
-      .v = {view->v, end->v},
-      .a = {begin->a, end->a},
-      .work = {view->work, state->work},
-      .power = {begin->power, end->power},
-      .smooth = view->smooth,
-      .hold = hold_contacts,
-      .workspace = l};
+  const strut_motion_piece piece = {.begin = t,
+                                    .length = h,
+                                    .moment = moment_after(l, t, dt),
+                                    .q = {view->q, end->q},
+                                    .v = {view->v, end->v},
+                                    .a = {begin->a, end->a},
+                                    .work = {view->work, state->work},
+                                    .power = {begin->power, end->power},
+                                    .smooth = view->smooth,
+                                    .hold = hold_contacts,
+                                    .workspace = l};
   show_contacts(model, state, l, end);
   state->watched.observer->see(state->watched.observer, state, &piece);
   l->view->smooth = true;
@@ -611,6 +615,7 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
     if (h > SEPARATES * (l->stepper->adaptive ? l->h : dt)) l->switches = 0;
   } else {
     l->at_once++;
+    t += moment_after(l, t, dt);
   }
   if (state->watched.variation && event.kind)
     strut_variation_meet(model, state, l, &event, t + h, dt, h > 0.0);
