@@ -470,4 +470,10 @@ MUTANTS = [
     Mutant("guides-that-slip-briefly", "engine/integrate/events/adaptive.c",
            "if (remembers(l, k)) first = earlier(", "if (remembers(l, k) && k < 0) first = earlier(",
            "a guide that slips and sticks again within a step is not seen", "switches"),
+    Mutant("at-once-before-the-jump", "engine/integrate/events/event_stepping.c",
+           "    t += moment_after(l, t, dt);\n", "",
+           "what happens at once where a drive jumps happens with the values before it", "switches"),
+    Mutant("jumps-that-slip-for-nothing", "engine/forces/capstan.c",
+           "if (jumped) lost = held - energy_of(&c);", "(void)jumped, (void)held;",
+           "what guides lose at a jump of the rest length is not what is set free", "switches"),
 ]
