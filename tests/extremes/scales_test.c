@@ -97,9 +97,9 @@ static void wild_scene(strut_setup *setup, uint64_t seed) {
   const strut_integrator *method = NULL;
   size_t methods = 0;
   while (strut_integrator_at(methods)) methods++;
-  do /* one that chooses its steps takes as many as such numbers need */
+  do /* those that choose their steps take as many as such numbers need */
     method = strut_integrator_at((size_t)random_below(r, (int32_t)methods));
-  while (!strcmp(method->name, "adaptive"));
+  while (!strncmp(method->name, "adaptive", 8));
   setup->experiment.integrator = method->name;
   setup->experiment.refine = 1;
   setup->experiment.step = any(r);
