@@ -31,10 +31,11 @@ Found by tests/bench/grids.py; there adaptive8 with long and short steps must ag
 Found by random scenes of tests/physics/random_world.c:
 
 - leaves-the-band-briefly: a contact at the edge of its band goes out and comes back within a step.
-- guides-at-a-jump: what happens at once where a drive jumps happens with the rest length after it; and the balance
-  closes.
-- guide-slips-briefly: so does a cable at a guide with friction.
+- guide-slips-briefly: a cable slips at a guide with friction and sticks again within a step.
 - slack-in-a-try: a running cable with friction is slack by the end of a step that is not taken.
+
+- guides-at-a-jump: what happens at once where a drive jumps happens with the rest length after it; and the balance
+  closes. Found by a file written on the spot.
 """
 import json
 import pathlib
@@ -128,5 +129,5 @@ for name in ("square-drive", "guides-at-a-jump"):
 
 for line in failures:
     print(line)
-print(f"{max(0, 8 - len(failures))} passed, {len(failures)} failed" if failures else "all agree")
+print(f"{len(failures)} failed" if failures else "all agree")
 sys.exit(bool(failures))

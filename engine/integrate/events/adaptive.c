@@ -127,14 +127,14 @@ static bool remembers(const strut_event_stepper *l, int32_t k) {
   return l->laws[k].event == STRUT_EVENT_SLIDER || l->laws[k].event == STRUT_EVENT_BREAK;
 }
 
-/* The same of what remembers, at a stage's q and v. */
+/* As note_stage, of sliders, guides and breaks, at a stage's q and v. */
 static void note_memory(const strut_model *model, const strut_state *state,
-                        const strut_event_stepper *l, const strut_step_end *stage, double at) {
+                        const strut_event_stepper *l, const strut_step_end *stage, double at,
+                        bool first) {
   for (int32_t k = 0; k < l->law_count; k++) {
     if (!remembers(l, k)) continue;
     strut_history_measure(model, state, l, stage, k);
-    note(&l->least[model->contacts.count + k], stage->tension[k], at,
-         at == l->stepper->tableau->ahead[1]);
+    note(&l->least[model->contacts.count + k], stage->tension[k], at, first);
   }
 }
 
@@ -166,7 +166,7 @@ static double earlier(double one, double other) {
   return one == 0.0 || (other > 0.0 && other < one) ? other : one;
 }
 
-/* The same of switch k of what remembers. */
+/* As spent_at, of switch k of a slider, a guide or a break. */
 static double memory_spent_at(const strut_model *model, const strut_event_stepper *l, int32_t k) {
   const strut_least_margin *least = &l->least[model->contacts.count + k];
   double from = fmax(l->now->tension[k], 0.0), to = l->next->tension[k];
@@ -338,7 +338,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
     if (model->terms & terms & STRUT_TERM_MEMORY) {
       strut_step_end at = *l->next;
       at.q = q, at.v = v[k];
-      note_memory(model, state, l, &at, ahead[k]);
+      note_memory(model, state, l, &at, ahead[k], k == 1);
     }
     for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
       l->gained[p] += last[k] * h * state->latest.power[p];

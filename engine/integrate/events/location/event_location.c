@@ -248,8 +248,8 @@ static bool closes(const strut_contact_table *c, int32_t i, const strut_event_st
   return to.into < 0.0;
 }
 
-/* Has closed contact i, at `o` at the end of the step, left the ground, even if it is falling again by then? A contact
-   that has just touched may be above the ground by rounding while it still moves down. */
+/* Has closed contact i left the ground by the end of the step, where it is at `o`, even if it is on its way down again?
+   One that has just touched may be above the ground by rounding while it still moves down. */
 static bool opens(const strut_event_stepper *l, int32_t i, const strut_touch *o) {
   return o->gap > 0.0 && (o->into > 0.0 || l->now->touch[i].gap < 0.0);
 }
