@@ -41,15 +41,18 @@ void strut_labels_add(strut_labels *l, const strut_label *label) {
   l->failed = l->failed || !text || !make_room(&list, l->count, &l->room, sizeof *l->list);
   l->list = list;
   if (l->failed) return;
-  l->list[l->count] = *label;
-  l->list[l->count++].text = text;
+  strut_label *added = &l->list[l->count++];
+  *added = *label;
+  added->text = text;
+  for (int d = 0; d < 2; d++) added->at[d] = strut_settle_coordinate(label->at[d]);
+  added->inside = strut_settle_box(label->inside);
 }
 
 void strut_labels_avoid(strut_labels *l, strut_box ink) {
   void *list = l->texts;
   l->failed = l->failed || !make_room(&list, l->text_count, &l->text_room, sizeof *l->texts);
   l->texts = list;
-  if (!l->failed && isfinite(ink.x + ink.y)) l->texts[l->text_count++] = ink;
+  if (!l->failed && isfinite(ink.x + ink.y)) l->texts[l->text_count++] = strut_settle_box(ink);
 }
 
 void strut_labels_free(strut_labels *l) {
@@ -137,7 +140,8 @@ static void try_place(search *s, double ring, int direction) {
   double angle = l->angle + 2 * STRUT_PI * direction / DIRECTIONS, gap = l->gap + ring;
   double x = l->at[0] + (gap + 0.5 * s->width) * cos(angle);
   double y = l->at[1] - (gap + 0.5 * s->height) * sin(angle);
-  const strut_box box = {x - 0.5 * s->width, y - 0.5 * s->height, s->width, s->height};
+  const strut_box box =
+      strut_settle_box((strut_box){x - 0.5 * s->width, y - 0.5 * s->height, s->width, s->height});
   int turn = direction <= DIRECTIONS / 2 ? direction : DIRECTIONS - direction;
   bool led = ring >= LED;
   double cost = DISTANCE * ring + TURN * l->steady * turn + (led ? LINE : 0.0);

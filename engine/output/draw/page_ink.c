@@ -59,8 +59,10 @@ static void stamp(strut_page_ink *ink, const int x[2], const int y[2], double da
     }
 }
 
-static void draw_segment(strut_page_ink *ink, const strut_box *clip, const double a[2],
-                         const double b[2], double width, double dark) {
+static void draw_segment(strut_page_ink *ink, const strut_box *clip, const double from[2],
+                         const double to[2], double width, double dark) {
+  const double a[2] = {strut_settle_coordinate(from[0]), strut_settle_coordinate(from[1])};
+  const double b[2] = {strut_settle_coordinate(to[0]), strut_settle_coordinate(to[1])};
   double part[2], length = hypot(b[0] - a[0], b[1] - a[1]), half = 0.5 * fmax(width - 1.0, 0.0);
   if (!isfinite(length) || !clip_segment(clip, a, b, part)) return;
   int steps = (int)ceil((part[1] - part[0]) * length), last[2] = {-1, -1};
@@ -81,6 +83,7 @@ void strut_page_ink_line(strut_page_ink *ink, strut_box clip, const double (*poi
   double dark = darkness(pen.colour) * pen.colour.alpha * fmin(1.0, pen.width);
   if (pen.dash[0] > 0.0) dark *= DASHED;
   const strut_box page = {0, 0, ink->columns, ink->rows};
+  clip = strut_settle_box(clip);
   double right = fmin(clip.x + clip.width, page.width);
   double bottom = fmin(clip.y + clip.height, page.height);
   strut_box seen = {fmax(clip.x, 0.0), fmax(clip.y, 0.0), 0, 0};
@@ -95,7 +98,9 @@ static int find_crossings(const double (*points)[2], size_t count, double level,
                           double at[MOST_CROSSINGS]) {
   int found = 0;
   for (size_t i = 0; i < count && found < MOST_CROSSINGS; i++) {
-    const double *a = points[i], *b = points[i + 1 < count ? i + 1 : 0];
+    const double *from = points[i], *to = points[i + 1 < count ? i + 1 : 0];
+    const double a[2] = {strut_settle_coordinate(from[0]), strut_settle_coordinate(from[1])};
+    const double b[2] = {strut_settle_coordinate(to[0]), strut_settle_coordinate(to[1])};
     if ((a[1] <= level) == (b[1] <= level)) continue;
     double x = a[0] + (level - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
     int k = found++;
@@ -115,8 +120,8 @@ void strut_page_ink_fill(strut_page_ink *ink, strut_box clip, const double (*poi
     if (!isfinite(points[i][0] + points[i][1])) return;
     low = fmin(low, points[i][1]), high = fmax(high, points[i][1]);
   }
-  clip_squares(ink, clip, x, y);
-  find_squares(low, high, ink->rows, rows);
+  clip_squares(ink, strut_settle_box(clip), x, y);
+  find_squares(strut_settle_coordinate(low), strut_settle_coordinate(high), ink->rows, rows);
   for (int row = rows[0] > y[0] ? rows[0] : y[0]; row <= rows[1] && row <= y[1]; row++) {
     int crossings = find_crossings(points, count, row + 0.5, crossing);
     for (int k = 0; k + 1 < crossings; k += 2) {

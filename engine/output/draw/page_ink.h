@@ -5,7 +5,20 @@
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_PAGE_INK_H
 #define STRUT_ENGINE_OUTPUT_DRAW_PAGE_INK_H
 
+#include <math.h>
+
 #include "engine/output/draw/canvas.h"
+
+/**
+ * A coordinate [pt] on a grid of 1/64 pt, for decisions of layout: points that differ by rounding get the same one.
+ * What is symmetric lies on multiples of 1/2 pt; the rounding changes far from those.
+ */
+static inline double strut_settle_coordinate(double x) { return floor(64.0 * x + 0.36) / 64.0; }
+
+static inline strut_box strut_settle_box(strut_box b) {
+  return (strut_box){strut_settle_coordinate(b.x), strut_settle_coordinate(b.y),
+                     strut_settle_coordinate(b.width), strut_settle_coordinate(b.height)};
+}
 
 typedef struct strut_page_ink {
   int columns, rows;

@@ -11,6 +11,7 @@
 #include "engine/model/pose.h"
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
+#include "engine/output/draw/page_ink.h"
 #include "engine/output/draw/structure_parts.h"
 #include "engine/scene/wrap.h"
 
@@ -107,7 +108,8 @@ void strut_longest_segment(const strut_window *w, const strut_model *model, cons
   for (size_t k = 1; k < strut_member_segments(model, member); k++) {
     double ends[2][2], x = longest[1][0] - longest[0][0], y = longest[1][1] - longest[0][1];
     strut_window_segment(w, model, q, member, k, ends);
-    if (hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]) > hypot(x, y))
+    double length = hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]);
+    if (strut_settle_coordinate(length) > strut_settle_coordinate(hypot(x, y)))
       memcpy(longest, ends, sizeof ends);
   }
 }
@@ -152,15 +154,17 @@ static void draw_support(strut_canvas *canvas, const double tip[2], const double
 /* Triangles below pinned nodes, on wheels where one direction is free. */
 static void draw_supports(strut_canvas *canvas, const strut_window *w, const strut_model *model,
                           const double *q, double size, double opacity) {
-  double middle = 0;
-  for (int32_t i = 0; i < model->node_count; i++) middle += q[2 * i] / model->node_count;
+  double centre[2] = {0.0, 0.0}, middle[2];
+  for (int32_t i = 0; i < 2 * model->node_count; i++) centre[i % 2] += q[i] / model->node_count;
+  strut_window_point(w, centre, middle);
   for (int32_t i = 0; i < model->node_count; i++) {
     const bool *fixed = model->scene->nodes[i].fixed;
     double tip[2];
     if (!fixed[0] && !fixed[1]) continue;
     strut_window_point(w, q + 2 * i, tip);
     /* Fixed in x only: drawn from the side away from the structure. */
-    const double below[2] = {0, 1}, side[2] = {q[2 * i] <= middle ? -1 : 1, 0};
+    bool left = strut_settle_coordinate(tip[0]) <= strut_settle_coordinate(middle[0]);
+    const double below[2] = {0, 1}, side[2] = {left ? -1 : 1, 0};
     draw_support(canvas, tip, fixed[1] ? below : side, !(fixed[0] && fixed[1]), size, opacity);
   }
 }
@@ -282,7 +286,8 @@ static void draw_name(strut_canvas *canvas, const strut_window *w, const double 
 
 /* Names stand outside of a structure rather than inside: away from its middle, else at the upper right. */
 static double find_outwards(const double at[2], const double middle[2]) {
-  double x = at[0] - middle[0], y = middle[1] - at[1];
+  double x = strut_settle_coordinate(at[0]) - strut_settle_coordinate(middle[0]);
+  double y = strut_settle_coordinate(middle[1]) - strut_settle_coordinate(at[1]);
   return hypot(x, y) > NEAR_MIDDLE ? atan2(y, x) : 0.25 * STRUT_PI;
 }
 
