@@ -31,9 +31,7 @@ double strut_event_cubic_root(double g0, double d0, double g1, double d1) {
  * has its edge, but for rounding, where the step begins; so has one at whose edge the forces balance: it
  * is left when they cease to, not before.
  */
-static double room_to_leave(const strut_model *model, const strut_event_stepper *l, int32_t i,
-                            double room) {
-  assert(i >= 0 && i < model->contacts.count);
+static double room_to_leave(const strut_event_stepper *l, int32_t i, double room) {
   const strut_contact_entry *e = &l->entry[i];
   if (!l->stepper->exact && !strut_friction_drops(&e->friction)) return room;
   double faint = 1e-9 * stick_band_edge(e), rate = 0.0;
@@ -99,7 +97,7 @@ static double fraction_of(const strut_model *model, const strut_event_stepper *l
   bool rated = rates_of(model, l, kind, i, h, &d0, &d1), slips = kind == STRUT_EVENT_SLIP_ENDS;
   double edge = slips ? stick_band_edge(&l->entry[i]) : 0.0;
   if (kind == STRUT_EVENT_LEAVES_STICK_BAND)
-    g0 = room_to_leave(model, l, i, g0);
+    g0 = room_to_leave(l, i, g0);
   else if (rated && !strut_event_is_of_law(kind) && (l->stepper->exact || (slips && edge == 0.0)))
     g0 = room_to_last(1e-9 * edge, g0, d0, g1);
   if (!(g0 > 0.0)) return 0.0;
