@@ -58,14 +58,12 @@ extern "C" {
 #include "engine/study/compare/compare.h"
 #include "engine/study/results/slots.h"
 #include "engine/study/results/study_table.h"
-#include "engine/study/sweep/evaluation.h"
 #include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep.h"
 #include "engine/study/tradeoff/tradeoff.h"
 #include "parser/import/import.h"
 #include "parser/read/read_scene.h"
 #include "parser/study/read_study.h"
-#include "parser/study/study_request.h"
 #include "parser/write/write_scene.h"
 
 #ifdef __cplusplus

@@ -39,7 +39,6 @@ typedef enum strut_option_id {
   STRUT_OPTION_MAN,      /* of help: the manual page */
   STRUT_OPTION_FIX,      /* of check --layout: rewrite the files */
   STRUT_OPTION_VERBOSE,  /* of check: what is omitted, too */
-  STRUT_OPTION_DAKOTA,   /* of requests: the files of DAKOTA */
   STRUT_OPTION_BASINS,   /* of periodic motions */
   STRUT_OPTION_LIVE,     /* of view: with the engine inside */
   STRUT_OPTION_SELECTOR, /* only selects a form of the command */
@@ -114,10 +113,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_SHARD,
   STRUT_OPTION_CHANNELS, /* of the library's run, and whether it records */
   STRUT_OPTION_RECORD,
-  STRUT_OPTION_COMPUTE, /* of requests and the library's sweep: what, and which results */
-  STRUT_OPTION_KEEP,
-  STRUT_OPTION_REQUESTS,
-  STRUT_OPTION_ANSWERS,
+  STRUT_OPTION_COMPUTE,   /* of the library's sweep: what */
   STRUT_OPTION_ALLOWANCE, /* of export: for the ends of cables */
   STRUT_OPTION_INPUT, /* of export: the format of another program's file, and its unit of length */
   STRUT_OPTION_UNIT,
@@ -156,7 +152,7 @@ typedef struct strut_arguments {
   size_t override_count;
   strut_override *varied; /* (varied_count) of --vary */
   size_t varied_count;
-  bool parts, study, man, dakota;
+  bool parts, study, man;
   bool fix, verbose;
   const strut_listener *listener; /* hears what is wrong with an option, warnings and notes */
   bool basins;

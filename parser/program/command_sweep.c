@@ -434,10 +434,7 @@ static strut_status run_sweep(const strut_arguments *given) {
   return status;
 }
 
-static const strut_command_variant forms[] = {{"merge", &strut_command_merge},
-                                              {"requests", &strut_command_requests},
-                                              {"dakota", &strut_command_requests},
-                                              {NULL, NULL}};
+static const strut_command_variant forms[] = {{"merge", &strut_command_merge}, {NULL, NULL}};
 
 const strut_command strut_command_sweep = {
     .name = "sweep",

@@ -30,7 +30,6 @@ extern const strut_command strut_command_layout;
 extern const strut_command strut_command_merge;
 extern const strut_command strut_command_new;
 extern const strut_command strut_command_periodic;
-extern const strut_command strut_command_requests;
 extern const strut_command strut_command_schema;
 
 /** The i-th command, or NULL after the last. */

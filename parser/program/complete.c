@@ -85,8 +85,7 @@ static const struct key_option {
 } key_options[] = {{STRUT_OPTION_BARS, STRUT_KEY_SCENE_BARS},
                    {STRUT_OPTION_MASS_MODEL, STRUT_KEY_SCENE_MASS_MODEL},
                    {STRUT_OPTION_FRICTION_LAW, STRUT_KEY_FRICTION_LAW},
-                   {STRUT_OPTION_DAMPING_LAW, STRUT_KEY_GROUND_DAMPING_LAW},
-                   {STRUT_OPTION_COMPUTE, STRUT_KEY_STUDY_COMPUTE}};
+                   {STRUT_OPTION_DAMPING_LAW, STRUT_KEY_GROUND_DAMPING_LAW}};
 
 static const char *words_of(const strut_command *command, strut_option_id id) {
   for (size_t i = 0; i < sizeof word_options / sizeof word_options[0]; i++) {
@@ -127,9 +126,6 @@ static const char *complete_value(const strut_command *command, const strut_opti
       return ":";
     case STRUT_OPTION_AT: strut_offer_shapes(c); return ":";
     case STRUT_OPTION_INTEGRATOR: keep_list(c), offer_methods(c); return ":";
-    case STRUT_OPTION_KEEP:
-      keep_list(c), offer_words(c, strut_key_at(STRUT_KEY_STUDY_KEEP)->words);
-      return ":";
     case STRUT_OPTION_SUPPORTS: keep_list(c), strut_offer_nodes(c); return ":";
     case STRUT_OPTION_LOAD: strut_offer_loads(c); return ":";
     case STRUT_OPTION_OVER: strut_offer_path_parameters(c); return ":";

@@ -30,9 +30,6 @@ strut_status strut_sweep_study_open(const strut_arguments *arguments, strut_swee
 /** The same without messages: those about a place are in the file's diagnostics, others in `error`. */
 strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep_study *study,
                                    strut_error *error);
-/** Makes the scenes of the open study those that options such as --accuracy ask for; STRUT_USAGE. */
-strut_status strut_sweep_adjust(const strut_command *command, const strut_arguments *arguments,
-                                strut_study_file *file);
 /** Prints the messages of a failure; returns `status`. */
 strut_status strut_sweep_study_report(strut_sweep_study *study, strut_status status,
                                       strut_error *error);

@@ -77,12 +77,13 @@ static strut_status apply_options(const void *context, strut_setup *setup) {
   return strut_run_options_apply(&strut_command_sweep, context, setup);
 }
 
-strut_status strut_sweep_adjust(const strut_command *command, const strut_arguments *arguments,
-                                strut_study_file *file) {
+/* Makes the scenes of the open study those that options such as --accuracy ask for; STRUT_USAGE. */
+static strut_status adjust_scenes(const strut_arguments *arguments, strut_study_file *file) {
   const strut_option *first = strut_run_option_given(arguments, 0);
   if (!first) return STRUT_OK;
   if (file->study.compute != STRUT_COMPUTE_RUN || file->study.follow)
-    return strut_print_usage_error(command, "--%s is for studies of runs", first->name);
+    return strut_print_usage_error(&strut_command_sweep, "--%s is for studies of runs",
+                                   first->name);
   file->adjustment =
       (strut_study_adjustment){apply_options, arguments, strut_run_options_purpose(arguments)};
   return STRUT_OK;
@@ -150,7 +151,7 @@ strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep
   const strut_sweep_scenes scenes = {setup_of, strut_setup_write, file};
   strut_status status = strut_study_open(arguments->model, arguments->overrides,
                                          arguments->override_count, file, error);
-  if (!status) status = strut_sweep_adjust(&strut_command_sweep, arguments, file);
+  if (!status) status = adjust_scenes(arguments, file);
   if (!status) status = try_ends(file);
   if (!status) status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, error);
   if (!status && file->study.search) status = bind_search(study, error);

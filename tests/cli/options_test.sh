@@ -90,9 +90,6 @@ err_has "--plot is for studies of single points"
 absent best.svg
 expect 1 sweep masses.yaml -o drawn --plot drawn.svg --count
 err_has "--plot needs the table of all points"
-printf '{"mass": 2}\n' >requests
-"$strut" sweep hop.yaml --requests requests --keep steps --step 0.5ms >out 2>err || fail "requests with another step"
-out_has '"steps":100'
 
 # A method that chooses its steps needs none.
 sed 's/^solver: .*/solver: {integrator: adaptive}/' hop.yaml >free.yaml
@@ -113,8 +110,6 @@ expect 2 run none.yaml
 err_has "the solver has no step"
 # What only rests needs none either.
 expect 0 equilibria none.yaml --quiet
-expect 0 sweep --requests --help
-out_has "usage: strut sweep --requests"
 
 # The same range of a path in two ways; the same words with other values elsewhere.
 expect 0 path truss.yaml --over load=1..3N --json

@@ -1,49 +1,63 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Single points of a study, one after the other, whose scenes come from outside: no grid, no files.
- *
- * An evaluation gives what a sweep would write into the row of that point, with the same bits. What the
- * points have in common, their equilibria, is kept from one to the next.
+ * What evaluating a point of a study needs: distances from its goals, equilibria of points nearby.
  */
 #ifndef STRUT_ENGINE_STUDY_SWEEP_EVALUATION_H
 #define STRUT_ENGINE_STUDY_SWEEP_EVALUATION_H
 
-#include "engine/base/flag.h"
-#include "engine/study/sweep/sweep.h"
+#include "engine/scene/experiment.h"
+#include "engine/scene/study.h"
+#include "engine/statics/path/path.h"
 
-/** For one thread. */
-typedef struct strut_evaluator strut_evaluator;
+/* How far a point is from what a study wants: a shape, a curve of force over displacement; and what a
+ * small force at a node meets.
+ */
 
-/** One result: a number in SI (NAN: missing) or a word. */
-typedef struct strut_evaluated {
-  const char *name, *unit; /* unit "1": none */
-  const char *word;        /* NULL: it is a number */
-  double number;
-} strut_evaluated;
+/** Are what the study names there, a node or a configuration with positions? STRUT_BAD_SCENE. */
+strut_status strut_goals_check(const strut_study *study, const strut_scene *scene,
+                               strut_error *error);
+/**
+ * Root mean square distance [m] of nodes from the wanted shape after the best rigid motion, which turns
+ * and moves the whole but does not mirror it. positions (node_count, 2). NAN: the study wants none, or a
+ * node is not there.
+ */
+double strut_goals_shape_distance(const strut_study *study, const strut_scene *scene,
+                                  const double *positions);
+/**
+ * Root mean square difference [N] of the force that holds the displaced coordinate from the wanted
+ * curve; where a path passes a displacement several times, its first passage counts. NAN: one of the
+ * displacements is not reached.
+ */
+double strut_goals_curve_distance(const strut_study *study, const strut_path *path);
+/** Stiffness at the study's node along its direction, at the equilibrium q [N/m]; NAN: none. */
+strut_status strut_goals_stiffness(const strut_study *study, const strut_model *model,
+                                   const double *q, double *stiffness, strut_error *error);
 
-/** Valid until the next evaluation. */
-typedef struct strut_evaluation {
-  strut_status status; /* STRUT_OK, or why there are no results */
-  const char *message; /* likewise */
-  size_t count;
-  const strut_evaluated *results; /* (count) in the order of the table */
-  size_t warning_count;
-  const char *const *warnings; /* (warning_count) sentences */
-  bool inaccurate;             /* a requested accuracy was not reached; there are results */
-} strut_evaluation;
+/* Equilibria of a study's scenes, found once for all points with the same statics.
+ *
+ * Where a structure stands does not depend on its drive, on friction or on how it is integrated. So
+ * the points of most studies have their equilibria in common; those that have are identified by the
+ * numbers that do matter, compared bit by bit. A point gets the bits it would get on its own.
+ */
+
+/** Safe from several threads. */
+typedef struct strut_equilibrium_cache strut_equilibrium_cache;
+
+/** NULL: memory is out. */
+strut_equilibrium_cache *strut_equilibrium_cache_create(void);
+void strut_equilibrium_cache_free(strut_equilibrium_cache *standing); /* NULL is allowed */
+
+/** As strut_resolve_start_equilibrium. */
+strut_status strut_equilibrium_cache_resolve(strut_equilibrium_cache *standing, strut_setup *setup,
+                                             strut_error *error);
 
 /**
- * `interrupt` ends a computation early; may be NULL. `threads`, 1 or more: of searches within an
- * evaluation, on which results do not depend. NULL: memory is out.
+ * The configuration whose equilibrium is nearest to a shape (node_count, 2), turned and shifted at
+ * will, or mirrored too where contacts alone tell the configuration: its index, -1 where none is
+ * within a tenth of the structure's size. STRUT_OK, STRUT_NO_MEMORY.
  */
-STRUT_API strut_evaluator *strut_evaluator_create(const strut_flag *interrupt, int threads);
-STRUT_API void strut_evaluator_free(strut_evaluator *evaluator); /* NULL is allowed */
-
-/**
- * Computes what the study, which has no axes, wants of a scene; takes the setup over. Failures of the
- * computation are in the evaluation. STRUT_INTERRUPTED.
- */
-STRUT_API strut_status strut_evaluate(strut_evaluator *evaluator, const strut_study *study,
-                                      strut_setup *setup, strut_evaluation *evaluation);
+strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing,
+                                             const strut_setup *setup, const double *positions,
+                                             int32_t *index, strut_error *error);
 
 #endif

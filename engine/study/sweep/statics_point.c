@@ -15,7 +15,7 @@
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/path/path.h"
 #include "engine/statics/rigidity/rigidity.h"
-#include "engine/study/sweep/evaluation_parts.h"
+#include "engine/study/sweep/evaluation.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 /* Results of one point; those of the study's computation are filled. */

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/study/sweep/evaluation_parts.h"
+#include "engine/study/sweep/evaluation.h"
 #include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep_parts.h"
 
@@ -265,15 +265,6 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
   return STRUT_OK;
 }
 
-strut_status strut_sweep_plan_of_setup(const strut_study *study, const strut_sweep_scenes *scenes,
-                                       const strut_setup *setup, strut_sweep_plan *plan,
-                                       strut_error *error) {
-  *plan = (strut_sweep_plan){.study = study, .scenes = *scenes};
-  plan->points = strut_grid_points(study);
-  plan->axis_columns = strut_grid_columns(study);
-  return choose_columns(plan, setup, error);
-}
-
 strut_status strut_sweep_plan_make(const strut_study *study, const strut_sweep_scenes *scenes,
                                    strut_sweep_plan *plan, strut_error *error) {
   strut_setup setup;
@@ -286,7 +277,9 @@ strut_status strut_sweep_plan_make(const strut_study *study, const strut_sweep_s
   strut_status status = scenes->setup(scenes->context, values, &setup, error);
   strut_release(values);
   if (status) return status;
-  status = strut_sweep_plan_of_setup(study, scenes, &setup, plan, error);
+  plan->points = strut_grid_points(study);
+  plan->axis_columns = strut_grid_columns(study);
+  status = choose_columns(plan, &setup, error);
   strut_setup_free(&setup);
   return status;
 }

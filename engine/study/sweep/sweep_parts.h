@@ -7,7 +7,7 @@
 
 #include "engine/base/flag.h"
 #include "engine/run/simulate.h"
-#include "engine/study/sweep/evaluation_parts.h"
+#include "engine/study/sweep/evaluation.h"
 #include "engine/study/sweep/sweep.h"
 
 /** The cells of a row while its point is computed. */
@@ -21,11 +21,6 @@ typedef struct strut_row_buffer {
 } strut_row_buffer;
 
 /* sweep_columns.c */
-
-/** As strut_sweep_plan_make, by the scene of the first point, which is there already. */
-strut_status strut_sweep_plan_of_setup(const strut_study *study, const strut_sweep_scenes *scenes,
-                                       const strut_setup *setup, strut_sweep_plan *plan,
-                                       strut_error *error);
 
 /** Appends the kept values of a run; summary NULL: all missing. outcome may be "". */
 void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
