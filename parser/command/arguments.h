@@ -37,7 +37,6 @@ typedef enum strut_option_id {
   STRUT_OPTION_PARTS,    /* of exported scenes: the short one */
   STRUT_OPTION_STUDY,    /* of keys --schema: that of a study */
   STRUT_OPTION_MAN,      /* of help: the manual page */
-  STRUT_OPTION_FIX,      /* of check --layout: rewrite the files */
   STRUT_OPTION_VERBOSE,  /* of check: what is omitted, too */
   STRUT_OPTION_BASINS,   /* of periodic motions */
   STRUT_OPTION_LIVE,     /* of view: with the engine inside */
@@ -153,7 +152,7 @@ typedef struct strut_arguments {
   strut_override *varied; /* (varied_count) of --vary */
   size_t varied_count;
   bool parts, study, man;
-  bool fix, verbose;
+  bool verbose;
   const strut_listener *listener; /* hears what is wrong with an option, warnings and notes */
   bool basins;
   bool live;

@@ -656,9 +656,6 @@ static const strut_refused_option refused[] = {
     {"threads", "nothing takes long enough"},
     {NULL, NULL}};
 
-static const strut_command_variant forms[] = {
-    {"layout", &strut_command_layout}, {"fix", &strut_command_layout}, {NULL, NULL}};
-
 const strut_command strut_command_check = {
     .name = "check",
     .model = "MODEL",
@@ -673,6 +670,5 @@ const strut_command strut_command_check = {
         "--json lists all messages with their places, for editors; a study is checked, too.\n",
     .options = options,
     .run = run_check,
-    .forms = forms,
     .refused = refused,
 };

@@ -26,7 +26,6 @@ extern const strut_command strut_command_view;
 /* Forms of commands. */
 
 extern const strut_command strut_command_completion;
-extern const strut_command strut_command_layout;
 extern const strut_command strut_command_merge;
 extern const strut_command strut_command_new;
 extern const strut_command strut_command_periodic;

@@ -8,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "engine/output/file.h"
@@ -76,27 +75,4 @@ strut_status strut_create_file(const char *path, const char *text, size_t length
   if (!code) return STRUT_OK;
   unlink(path);
   return trouble(error, path, code);
-}
-
-static int replace(const char *path, const char *text, size_t length) {
-  char part[STRUT_LONGEST_PATH + 32];
-  struct stat found;
-  if (access(path, W_OK) != 0 || stat(path, &found) != 0) return errno;
-  int code = 0, file = strut_file_create_beside(path, part, sizeof part);
-  if (file < 0) return errno;
-  if (fchmod(file, found.st_mode & 07777) != 0) code = errno;
-  int written = write_all(file, text, length);
-  if (!code) code = written;
-  if (!code && rename(part, path) != 0) code = errno;
-  if (code) unlink(part);
-  return code;
-}
-
-strut_status strut_replace_file(const char *path, const char *text, size_t length,
-                                strut_error *error) {
-  char *real = realpath(path, NULL);
-  int code = real ? ENAMETOOLONG : errno;
-  if (real && strlen(real) < STRUT_LONGEST_PATH) code = replace(real, text, length);
-  free(real);
-  return code ? trouble(error, path, code) : STRUT_OK;
 }

@@ -24,11 +24,4 @@ bool strut_find_module(const char *name, char path[STRUT_LONGEST_PATH]);
 strut_status strut_create_file(const char *path, const char *text, size_t length,
                                strut_error *error);
 
-/**
- * Replaces a file by one with this text, whole or not at all: written beside it and renamed. Permissions
- * stay; where the path is a link, the file behind it is replaced.
- */
-strut_status strut_replace_file(const char *path, const char *text, size_t length,
-                                strut_error *error);
-
 #endif

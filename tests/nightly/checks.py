@@ -65,7 +65,7 @@ CHECKS = (
     Check("memory", "memory read before it is written: models under valgrind",
           f"{TESTS} && sh tests/nightly/valgrind.sh build/tests/strut models/basics models/topologies",
           r"(\d+) commands, (\d+) with errors", "{0} commands under valgrind, {1} with errors", 4),
-    *(fuzzer(name) for name in ("document", "layout", "scene", "study", "exchange", "abi")),
+    *(fuzzer(name) for name in ("document", "scene", "study", "exchange", "abi")),
     Check("mutants", "planted bugs that the tests notice",
           "python3 tests/bench/mutants.py --jobs {jobs} --whole || true",
           r"(\d+) of (\d+) noticed, (\d+) %", "{0} of {1} noticed, {2} %", 12, 95),
