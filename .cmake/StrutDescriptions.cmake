@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What the program tells about itself, made by running it after it was built, and installed: the schema of
-# the language for editors, the completion scripts of shells, the manual. A cross-compiled program that nothing here can run goes without.
+# the language for editors, and the manual page. A cross-compiled program that nothing here can run goes without.
 if(CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR)
   return()
 endif()
@@ -26,20 +26,21 @@ endmacro()
 
 strut_describe_and_install(strut strut-1.schema.json keys --schema)
 strut_describe_and_install(strut strut-1.study.schema.json keys --schema --study)
-# Where bash-completion looks, and Debian's zsh and fish.
-strut_describe_and_install(bash-completion/completions strut help --completion bash)
-strut_describe_and_install(zsh/vendor-completions _strut help --completion zsh)
-strut_describe_and_install(fish/vendor_completions.d strut.fish help --completion fish)
+install(FILES "${PROJECT_SOURCE_DIR}/parser/program/strut.bash" RENAME strut COMPONENT program
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
 
-# Manual pages: of the program, of each command in the table of commands.c, of the language.
-strut_describe_and_install(man/man1 strut.1 help --man)
-strut_describe_and_install(man/man5 strut-model.5 help --man model)
-set(commands "${PROJECT_SOURCE_DIR}/parser/program/commands.c")
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${commands}")
-file(STRINGS "${commands}" rows REGEX "^    {\"[A-Za-z, ]+\", &strut_command_[a-z]+},$")
-foreach(row IN LISTS rows)
-  string(REGEX REPLACE ".*&strut_command_([a-z]+).*" "\\1" command "${row}")
-  strut_describe_and_install(man/man1 strut-${command}.1 help --man ${command})
-endforeach()
+# The manual page, for packages; help2man takes its date from SOURCE_DATE_EPOCH.
+find_program(HELP2MAN help2man)
+if(HELP2MAN)
+  execute_process(COMMAND date -u -d "${STRUT_DATE}" +%s OUTPUT_VARIABLE seconds
+                  OUTPUT_STRIP_TRAILING_WHITESPACE)
+  set(page "${PROJECT_BINARY_DIR}/descriptions/strut.1")
+  add_custom_command(
+    OUTPUT "${page}" DEPENDS strut VERBATIM COMMENT ""
+    COMMAND ${CMAKE_COMMAND} -E env SOURCE_DATE_EPOCH=${seconds} "${HELP2MAN}" --no-info
+            --name "planar structures of bars, springs and cables" --output "${page}" $<TARGET_FILE:strut>)
+  list(APPEND strut_described "${page}")
+  install(FILES "${page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT program)
+endif()
 
 add_custom_target(strut_descriptions ALL DEPENDS ${strut_described})

@@ -121,18 +121,8 @@ cmp schema "$prefix/share/strut/strut-1.schema.json"
 cmp schema "$prefix/share/strut/strut-1.study.schema.json"
 "$prefix/bin/strut" examples crawler
 cmp crawler.yaml "$source/models/crawler/crawler.yaml"
-"$prefix/bin/strut" examples --new robot
-"$prefix/bin/strut" check robot.yaml >/dev/null
-grep -q "schema=.*/share/strut/strut-1.schema.json" robot.yaml
-for page in man1/strut.1 man1/strut-run.1 man1/strut-export.1 man5/strut-model.5; do
-  test -s "$prefix/share/man/$page"
-done
-[ "$(find "$prefix/share/man" -name 'strut*' | wc -l)" -ge 17 ]
-for script in bash:bash-completion/completions/strut zsh:zsh/vendor-completions/_strut \
-  fish:fish/vendor_completions.d/strut.fish; do
-  "$prefix/bin/strut" help --completion "${script%%:*}" >script
-  cmp script "$prefix/share/${script#*:}"
-done
+test -s "$prefix/share/bash-completion/completions/strut"
+! command -v help2man >/dev/null || test -s "$prefix/share/man/man1/strut.1"
 "$prefix/bin/strut" check "$source/models/crawler/crawler.yaml" >/dev/null
 
 # The Python package finds the library beside it, wherever both are.

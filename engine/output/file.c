@@ -79,7 +79,12 @@ static int create_new(const char *name) {
   return -1;
 }
 
-int strut_file_create_beside(const char *path, char *part, size_t capacity) {
+/*
+ * Opens a new file beside `path` under a temporary name, which it writes into `part`; -1 with errno where that
+ * fails. The name is PATH.strut-N with the first N that no process is writing: what a process left that was
+ * killed is written over.
+ */
+static int create_beside(const char *path, char *part, size_t capacity) {
   int descriptor = -1, code = EEXIST;
   for (int i = 0; i < MOST_NAMES && descriptor < 0 && code == EEXIST; i++) {
     snprintf(part, capacity, "%s.strut-%d", path, i);
@@ -114,7 +119,7 @@ static strut_status open_beside(strut_file *file, strut_error *error) {
     return status;
   }
   if (!folder) {
-    descriptor = strut_file_create_beside(file->path, file->part, capacity);
+    descriptor = create_beside(file->path, file->part, capacity);
     code = errno;
   }
   if (descriptor >= 0) {

@@ -17,12 +17,6 @@ typedef struct strut_file {
   char *path, *part; /* the final name, and the name while it is written */
 } strut_file;
 
-/**
- * Opens a new file beside `path` under a temporary name, which it writes into `part`; -1 with errno where that
- * fails. The name is PATH.strut-N with the first N that no process is writing: what a process left that was
- * killed is written over.
- */
-STRUT_API int strut_file_create_beside(const char *path, char *part, size_t capacity);
 /** Creates a directory and what is missing above it, as mkdir -p. */
 STRUT_API strut_status strut_directory_create(const char *directory, strut_error *error);
 /** Opens directory/name for writing under a temporary name beside it. */

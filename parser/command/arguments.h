@@ -36,7 +36,6 @@ typedef enum strut_option_id {
   STRUT_OPTION_RETRY,
   STRUT_OPTION_PARTS,    /* of exported scenes: the short one */
   STRUT_OPTION_STUDY,    /* of keys --schema: that of a study */
-  STRUT_OPTION_MAN,      /* of help: the manual page */
   STRUT_OPTION_VERBOSE,  /* of check: what is omitted, too */
   STRUT_OPTION_BASINS,   /* of periodic motions */
   STRUT_OPTION_LIVE,     /* of view: with the engine inside */
@@ -123,8 +122,6 @@ typedef enum strut_option_id {
   STRUT_OPTION_PREFIX,
   STRUT_OPTION_AND, /* of periodic motions: the second parameter, and where branches start */
   STRUT_OPTION_VALUES,
-  STRUT_OPTION_NEW,        /* of examples: the scene to start from */
-  STRUT_OPTION_COMPLETION, /* of help: the shell */
   STRUT_OPTION_TEXTS_END
 } strut_option_id;
 
@@ -151,7 +148,7 @@ typedef struct strut_arguments {
   size_t override_count;
   strut_override *varied; /* (varied_count) of --vary */
   size_t varied_count;
-  bool parts, study, man;
+  bool parts, study;
   bool verbose;
   const strut_listener *listener; /* hears what is wrong with an option, warnings and notes */
   bool basins;

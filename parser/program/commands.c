@@ -9,24 +9,12 @@
 
 static strut_status print_help(const strut_arguments *arguments);
 
-static const strut_option help_options[] = {
-    {STRUT_OPTION_MAN, "man", NULL, "print the source of the manual page, for man -l"},
-    {STRUT_OPTION_END, NULL, NULL, NULL},
-};
-
-static const strut_command_variant help_forms[] = {{"completion", &strut_command_completion},
-                                                   {NULL, NULL}};
-
 static const strut_command help_command = {
     .name = "help",
     .model = "COMMAND|KEY",
     .model_optional = true,
     .summary = "explains the program, a command, or a key of the language",
-    .details =
-        "\nWith --man, COMMAND may also be 'model', for the page strut-model(5) of the language.\n",
-    .options = help_options,
     .run = print_help,
-    .forms = help_forms,
 };
 
 /* In the order of the help; each begins with the group that it belongs to. */
@@ -85,7 +73,7 @@ void strut_program_help(void) {
   }
   printf(
       "strut %s: planar structures of bars, springs and cables, described in YAML\n\n"
-      "usage: strut COMMAND [OPTION]... [MODEL]\n       strut MODEL [OPTION]...\n",
+      "Usage: strut COMMAND [OPTION]... [MODEL]\n  or:  strut MODEL [OPTION]...\n",
       STRUT_VERSION);
   for (size_t i = 0; i < COMMANDS; i++) {
     if (strcmp(rows[i].group, group) != 0) printf("\n%s:\n", rows[i].group);
@@ -102,23 +90,15 @@ void strut_program_help(void) {
 
 /* The help of a word that is no command: a key or section of the language, or none. */
 static strut_status print_other_help(const strut_arguments *arguments) {
-  if (!arguments->man && strut_keys_know(arguments->model))
+  if (strut_keys_know(arguments->model))
     return strut_command_keys.run(arguments);
   return strut_command_find(arguments->model) ? STRUT_OK : STRUT_USAGE;
 }
 
 static strut_status print_help(const strut_arguments *arguments) {
-  if (arguments->man && arguments->model && strcmp(arguments->model, "model") == 0) {
-    strut_manual_of_language();
-    return STRUT_OK;
-  }
   const strut_command *command = arguments->model ? strut_command_named(arguments->model) : NULL;
   if (arguments->model && !command) return print_other_help(arguments);
-  if (arguments->man && command)
-    strut_manual_of_command(command);
-  else if (arguments->man)
-    strut_manual_of_program();
-  else if (command)
+  if (command)
     strut_command_help(command);
   else
     strut_program_help();

@@ -25,9 +25,7 @@ extern const strut_command strut_command_view;
 
 /* Forms of commands. */
 
-extern const strut_command strut_command_completion;
 extern const strut_command strut_command_merge;
-extern const strut_command strut_command_new;
 extern const strut_command strut_command_periodic;
 extern const strut_command strut_command_schema;
 
@@ -47,17 +45,10 @@ strut_status strut_export_scene(const strut_arguments *arguments);
 /** Prints the help of the whole program on stdout. */
 void strut_program_help(void);
 
-/* Manual pages in man(7), made from the tables of commands, options and keys. */
+/** Calls `each` with FOLDER/NAME.yaml of every model that comes with strut, in order. */
+void strut_examples_list(void (*each)(void *context, const char *model), void *context);
 
-/** Prints strut(1), the page of a command, or strut-model(5). */
-void strut_manual_of_program(void);
-void strut_manual_of_command(const strut_command *command);
-void strut_manual_of_language(void);
-
-/** manual.c: source of a page. Text is Markdown with code in backticks; lines are kept short. */
-void strut_manual_begin(const char *name, int chapter, const char *summary);
-void strut_manual_heading(const char *macro, const char *text);
-void strut_manual_text(const char *markdown);
-void strut_manual_item(const char *markdown); /* the tag of a paragraph that follows */
+/** Prints the words that complete the last of `words` (count >= 0), which may be empty. */
+strut_status strut_complete(int count, char **words);
 
 #endif

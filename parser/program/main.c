@@ -19,7 +19,6 @@
 #include "engine/output/file.h"
 #include "engine/output/record_files.h"
 #include "parser/program/commands.h"
-#include "parser/program/complete.h"
 #include "parser/program/open_model.h"
 #include "parser/program/streams.h"
 #include "parser/read/reader.h"

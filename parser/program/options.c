@@ -138,7 +138,6 @@ static strut_status store_option(const strut_command *command, int id, strut_arg
     case STRUT_OPTION_RETRY: to->retry = true; break;
     case STRUT_OPTION_PARTS: to->parts = true; break;
     case STRUT_OPTION_STUDY: to->study = true; break;
-    case STRUT_OPTION_MAN: to->man = true; break;
     case STRUT_OPTION_VERBOSE: to->verbose = true; break;
     case STRUT_OPTION_BASINS: to->basins = true; break;
     case STRUT_OPTION_LIVE: to->live = true; break;
@@ -233,7 +232,7 @@ static void print_option(const strut_option *option) {
 }
 
 void strut_command_help(const strut_command *command) {
-  printf("usage: strut %s", command->name);
+  printf("Usage: strut %s", command->name);
   printf(" [OPTION]...");
   if (command->model) printf(command->model_optional ? " [%s]" : " %s", command->model);
   if (command->model_optional && command->many) printf("...");

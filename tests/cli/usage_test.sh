@@ -24,7 +24,7 @@ grep '^  [a-z]' out >list
 [ "$(sed -E 's/^(  [a-z]+ +).*/\1/' list | awk '{print length($0)}' | sort -u | wc -l)" -eq 1 ] ||
   fail "the list of commands is not aligned"
 expect 0 help help
-out_has "usage: strut help"
+out_has "Usage: strut help"
 expect 0 help --help
 for words in help --help -h; do
   expect 0 $words
@@ -33,7 +33,7 @@ for words in help --help -h; do
 done
 for command in run check export keys; do
   expect 0 $command --help
-  out_has "usage: strut $command"
+  out_has "Usage: strut $command"
   out_has "--help"
   err_empty
   cp out first

@@ -1,4 +1,4 @@
-# bash completion for strut. `strut help --completion bash` prints it; strut itself finds the words.
+# bash completion for strut, which itself finds the words.
 _strut() {
     # bash takes words apart at '=', so they are put together again
     local words=() word line directive=: glued=
@@ -20,7 +20,6 @@ _strut() {
         if [[ $line == :* ]]; then
             directive=$line
         else
-            line=${line%%$'\t'*}
             COMPREPLY+=("$(printf %q "${line#"$cut"}")")
         fi
     done < <("${COMP_WORDS[0]}" complete "${words[@]}" 2>/dev/null)

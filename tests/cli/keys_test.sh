@@ -1,0 +1,32 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The keys of single sections.
+. "$(dirname "$0")/lib.sh"
+
+expect 0 keys member
+err_empty
+out_has "stiffness: number [N/m], not negative; default 0"
+out_has "    Force per elongation."
+grep -q '`\|](' out && fail "Markdown on the terminal"
+[ "$(awk '{ if (length($0) > most) most = length($0) } END { print most }' out)" -le 79 ] ||
+  fail "lines of more than 79 columns"
+expect 0 keys sine solver
+out_has "amplitude: number"
+out_has "integrator: rk4"
+expect 1 keys membre
+out_empty
+err_has "there is no section or key 'membre'; did you mean 'member'?"
+expect 0 keys mu
+[ "$(grep -c '^in ' out)" -eq 2 ] || fail "the sections of a key: $(cat out)"
+out_has "Both friction coefficients"
+cp out named
+expect 0 help mu
+same named out
+expect 1 help membre
+err_has "unknown command 'membre'"
+expect 1 keys member nothing_like_it
+out_empty
+err_has "Sections:"
+grep -q ' scene, part, ' err || fail "the sections are not listed"
+expect 0 keys --quiet solver
+done_testing
