@@ -12,7 +12,6 @@ trap 'rm -rf "$work"' EXIT
 mkdir -p "$2"
 "$1" rivals -o "$work" >"$2/rivals.txt"
 awk 'FNR > 1 || NR == 1' "$work"/*.csv >"$2/rivals.csv"
-python3 "$here/../tests/bench/rivals_table.py" "$2/rivals.txt" >"$here/../engine/study/tradeoff/rivals_table.h"
 for name in crawler-I-10 sliding stiff-1e7 feedback drift grid-shaken; do
   awk -f "$here/smaller.awk" "$work/$name.svg" >"$2/$name.svg"
 done

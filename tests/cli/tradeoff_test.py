@@ -238,9 +238,6 @@ with tempfile.TemporaryDirectory() as here:
     svg = open(os.path.join(out, "tradeoff.svg"), encoding="utf-8").read()
     if "</svg>" not in svg:
         fail("half a picture")
-    curves = re.findall(r"best other library on (\d+) scenes with contact: (least|most)<", svg)
-    if [kind for _, kind in curves] != ["least", "most"]:
-        fail(f"curves of other libraries: {curves}")
     before = {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}
     os.mkdir(os.path.join(here, "blocked"))
     os.mkdir(os.path.join(here, "blocked", "tradeoff.svg"))
@@ -340,45 +337,6 @@ if "cut by --cpu-time" not in done.stdout:
 if "cut by --cpu-time" in run(OSCILLATOR, "--accuracy", "1%").stdout:
     fail("a short study is cut")
 
-
-# ---- Other libraries: the quotients once more from all measured cells.
-def cheapest(cells, error):
-    """Least CPU time of one method within an error that all finer settings keep too, between two on a straight line."""
-    best, finer = math.inf, None
-    for cell in reversed([c for c in cells if c["error"]]):
-        found, time = float(cell["error"]), float(cell["cpu [s]"])
-        if not found <= error:
-            if finer and finer[0] > 0 and time < finer[1]:
-                part = math.log(error / finer[0]) / math.log(found / finer[0])
-                best = min(best, finer[1] ** (1 - part) * time ** part)
-            break
-        best, finer = min(best, time), (found, time)
-    return best
-
-
-def quotients(scenes, error):
-    cells = {}
-    for row in csv.DictReader(open("docs/rivals/rivals.csv", newline="", encoding="utf-8")):
-        if row["scene"].startswith(scenes) and row["method"] != "--accuracy":
-            cells.setdefault(row["scene"], {}).setdefault(row["method"], []).append(row)
-    own = ("rk4", "verlet", "euler", "adaptive", "midpoint")
-    for methods in cells.values():
-        best = [min(cheapest(c, error) for m, c in methods.items() if m.startswith(own) == mine) for mine in (0, 1)]
-        yield best[0] / best[1]
-
-
-found = list(quotients(("crawler", "bouncing", "sliding"), 1e-3))
-kept = [q for q in found if math.isfinite(q)]
-line = re.search(r"other libraries: for 0.1 % on (\d+) scenes with contact, the best took ([\d.]+) to ([\d.]+) times "
-                 r"strut's CPU time, none kept it on (\d+)", run(BALL, "--accuracy", "0.1%", "--own-model").stdout)
-if not line or (int(line[1]), int(line[4])) != (len(found), len(found) - len(kept)) or not all(
-        close(float(line[i]), q, 0.05) for i, q in ((2, min(kept)), (3, max(kept)))):
-    fail(f"other libraries: {line and line[0]}, cells {found}")
-with tempfile.TemporaryDirectory() as here:
-    out = os.path.join(here, "out")
-    done = run("models/gallery/double-pendulum.yaml", "--accuracy", "1%", "--own-model", "-o", out)
-    if "other librar" in done.stdout + open(os.path.join(out, "tradeoff.svg"), encoding="utf-8").read():
-        fail("bars without a spring are in a class")
 
 # ---- Rigid bars of a pendulum vibrate nowhere: no limit says how long a step makes sense, and the
 # answer is still that of the stiff ones, nearly. They are a bargain: steps of a tenth of a second.

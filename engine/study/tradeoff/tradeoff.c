@@ -246,7 +246,6 @@ static strut_status measure_points(tradeoff_study *s) {
     strut_status status = strut_tradeoff_compile(s, p, 0, &model);
     if (status != STRUT_OK) return status;
     strut_span span = strut_experiment_span(&setup->experiment, &setup->scene);
-    if (p == 0) s->result->scenes = strut_tradeoff_classify(model);
     s->size[p] = model->size;
     s->scale[p] = SPEED_SHARE * model->size / (span.period > 0 ? span.period : span.duration);
   }

@@ -112,8 +112,7 @@ typedef struct strut_tradeoff {
   double base_seconds;                 /* NAN: not run */
   int base;                            /* row; -1: not run, its evaluations are those planned */
   double accuracy;                     /* as requested; 0: none */
-  int scenes;       /* the class of scenes on which other libraries were measured; 0: none */
-  double work;      /* force evaluations of all runs */
+  double work;                         /* force evaluations of all runs */
   double work_unit; /* of a reference run at all points, or of the scene's own run where that takes
                        more and no accuracy is requested */
   size_t left_out;  /* series of steps that the bound on work or time kept from finer ones */

@@ -21,10 +21,7 @@ typedef struct panel {
 } panel;
 
 static bool begin_panel(panel *p, const strut_tradeoff *r, strut_arena *arena) {
-  size_t rivals = 0;
-  const strut_tradeoff_rival *rival = NULL;
-  while ((rival = strut_tradeoff_next_rival(r->scenes, rival))) rivals++;
-  p->savings = strut_arena_allocate(arena, 2 * (r->row_count + rivals) + 1, sizeof *p->savings);
+  p->savings = strut_arena_allocate(arena, 2 * r->row_count + 1, sizeof *p->savings);
   return p->savings != NULL;
 }
 
@@ -74,33 +71,6 @@ static bool fill_methods(panel *p, const strut_tradeoff *r, strut_arena *arena) 
     }
     if (!add_saving(p, r, row, (int)p->group_count - 1, &row->error_spread, row->front, arena))
       return false;
-  }
-  return true;
-}
-
-/* What other libraries took on scenes of the same class: the least and most of their CPU times over
-   strut's, times the cost of the cheapest setting here that keeps the error. */
-static bool fill_rivals(panel *p, const strut_tradeoff *r, strut_arena *arena) {
-  const strut_tradeoff_rival *const first = strut_tradeoff_next_rival(r->scenes, NULL);
-  char text[STRUT_TRADEOFF_TEXT];
-  for (int most = 0; first && most < 2 && p->group_count < MOST_GROUPS; most++) {
-    size_t before = p->count;
-    for (const strut_tradeoff_rival *rival = first; rival;
-         rival = strut_tradeoff_next_rival(r->scenes, rival)) {
-      int row = strut_tradeoff_advise(r, rival->error).row;
-      if (row < 0) continue;
-      p->savings[p->count++] =
-          (strut_saving){.group = (int)p->group_count,
-                         .cost = r->rows[row].evaluations * (most ? rival->most : rival->least),
-                         .error = rival->error,
-                         .low = (double)NAN,
-                         .high = (double)NAN};
-    }
-    if (p->count == before) return true;
-    p->groups[p->group_count] =
-        strut_arena_format(arena, "best other library on %s: %s",
-                           strut_tradeoff_scenes_text(first, text), most ? "most" : "least");
-    if (!p->groups[p->group_count++]) return false;
   }
   return true;
 }
@@ -193,8 +163,7 @@ strut_status strut_tradeoff_figure(const char *path, double width, const strut_t
   strut_c_locale locale = strut_c_locale_enter();
   for (size_t i = 0; i < r->variant_count; i++) models += r->variants[i].run ? 1 : 0;
   bool good = begin_panel(&panels[0], r, &arena) && begin_panel(&panels[1], r, &arena) &&
-              fill_methods(&panels[0], r, &arena) && fill_rivals(&panels[0], r, &arena) &&
-              fill_models(&panels[1], r, &arena);
+              fill_methods(&panels[0], r, &arena) && fill_models(&panels[1], r, &arena);
   strut_status status = good ? draw(path, width, r, panels, models > 1, error)
                              : strut_no_memory(error, "while drawing");
   strut_c_locale_leave(locale);

@@ -177,26 +177,6 @@ const char *strut_tradeoff_base_text(const strut_tradeoff *result,
                                      char text[3 * STRUT_TRADEOFF_TEXT]);
 /** "velocity", "position", "energy". */
 const char *strut_tradeoff_measure_text(strut_tradeoff_measure measure);
-/**
- * The class of a model's scene among those on which other libraries were measured: with contact
- * whose friction is not smooth, with bars 1e4 times stiffer than a spring or cable, with neither;
- * 0: in no class, as with rigid bars, or bars without a spring to compare them with.
- */
-int strut_tradeoff_classify(const strut_model *model);
-/** What the best other library took on the scenes of a class, over strut's best method. */
-typedef struct strut_tradeoff_rival {
-  int of;                    /* the class */
-  double error, least, most; /* quotients of CPU times */
-  int scenes, none; /* how many there are, and on how many no other library keeps the error */
-} strut_tradeoff_rival;
-
-/** The first of a class, else the one after; descending errors. NULL: no more. */
-const strut_tradeoff_rival *strut_tradeoff_next_rival(int scenes, const strut_tradeoff_rival *last);
-/** "8 scenes with contact". */
-const char *strut_tradeoff_scenes_text(const strut_tradeoff_rival *rival,
-                                       char text[STRUT_TRADEOFF_TEXT]);
-/** Adds a sentence about them, if the class is one, for the measured error next to `error`. */
-void strut_tradeoff_add_rivals(strut_buffer *text, int scenes, double error);
 /** Adds a sentence per error level and per variant. Call in the C locale. */
 void strut_tradeoff_add_advice(strut_buffer *text, const strut_tradeoff *result);
 

@@ -123,7 +123,6 @@ static void advise_accuracy(strut_buffer *text, const strut_tradeoff *r) {
     strut_buffer_add(text, "  certainty: the references differ by %s, %s of this error\n",
                      strut_tradeoff_percent_text(floor, b),
                      strut_tradeoff_percent_text(floor / a.error, c));
-  strut_tradeoff_add_rivals(text, r->scenes, a.error);
 }
 
 static void advise_levels(strut_buffer *text, const strut_tradeoff *r) {
