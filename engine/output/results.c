@@ -18,8 +18,6 @@ static const char *const run_names[] = {
     "summary.json", "scene.yaml", "nodes.csv",     "members.csv", "hinges.csv", "cells.csv",
     "contacts.csv", "energy.csv", "trajectory.h5", "model.yaml",  NULL};
 
-const char *strut_results_name(int i) { return run_names[i]; }
-
 static strut_status trouble(strut_error *error, const char *path, int code) {
   char reason[128];
   if (strerror_r(code, reason, sizeof reason) != 0) {

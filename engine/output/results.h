@@ -22,8 +22,6 @@ typedef struct strut_results {
   const char *const *names; /* of all possible files, NULL after the last */
 } strut_results;
 
-/** The i-th name of a file of results, or NULL after the last. */
-STRUT_API const char *strut_results_name(int i);
 /** Creates the directory and checks that it is writable. */
 STRUT_API strut_status strut_results_begin(strut_results *results, const char *directory,
                                            strut_error *error);

@@ -32,9 +32,6 @@ strut_hinge strut_hinge_default(void) { return *(const strut_hinge *)USUAL(HINGE
 strut_contact strut_contact_default(void) { return *(const strut_contact *)USUAL(CONTACT); }
 strut_cell strut_cell_default(void) { return *(const strut_cell *)USUAL(CELL); }
 strut_collision strut_collision_default(void) { return *(const strut_collision *)USUAL(COLLISION); }
-strut_sliding_mass strut_sliding_mass_default(void) {
-  return *(const strut_sliding_mass *)USUAL(SLIDER);
-}
 #undef USUAL
 
 void strut_scene_free(strut_scene *scene) {

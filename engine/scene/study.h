@@ -267,9 +267,6 @@ typedef struct strut_keep_set {
 static inline void strut_keep_add(strut_keep_set *set, unsigned keep) {
   set->bits[keep / 64] |= (uint64_t)1 << keep % 64;
 }
-static inline void strut_keep_remove(strut_keep_set *set, unsigned keep) {
-  set->bits[keep / 64] &= ~((uint64_t)1 << keep % 64);
-}
 static inline bool strut_keep_has(const strut_keep_set *set, unsigned keep) {
   return set->bits[keep / 64] >> keep % 64 & 1u;
 }

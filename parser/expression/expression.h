@@ -112,10 +112,5 @@ size_t strut_number_scan(const char *text, size_t left);
  */
 STRUT_API bool strut_number_read_scaled(const char *text, size_t length, int decimal,
                                         double *value);
-/**
- * Reads a strict decimal number that fills text[0..length): the reader of every number literal. A
- * literal has no sign. False also where the value is beyond the range of a double.
- */
-STRUT_API bool strut_number_read(const char *text, size_t length, double *value);
 
 #endif

@@ -105,10 +105,6 @@ bool strut_number_read_scaled(const char *text, size_t length, int decimal, doub
   return read_slow(text, &parts, exponent, value) && isfinite(*value) && *value != 0;
 }
 
-bool strut_number_read(const char *text, size_t length, double *value) {
-  return strut_number_read_scaled(text, length, 0, value);
-}
-
 enum { UNIT_POWER_MOST = 12 };
 
 /* The unit so far: up / down * 10^decimal. */

@@ -60,20 +60,9 @@ int strut_key_find(strut_section section, const char *name) {
   return -1;
 }
 
-int strut_rest_key(strut_rest_kind kind) {
-  static const int keys[] = {STRUT_KEY_MEMBER_REST_LENGTH_RATIO, STRUT_KEY_MEMBER_REST_LENGTH,
-                             STRUT_KEY_MEMBER_PRETENSION, STRUT_KEY_MEMBER_FORCE_DENSITY};
-  assert((unsigned)kind < sizeof keys / sizeof keys[0]);
-  return keys[kind];
-}
-
 strut_section strut_wave_section(strut_signal_kind kind) {
   assert(kind >= STRUT_SINE && kind <= STRUT_RAMP);
   return (strut_section)(STRUT_SECTION_SINE + (kind - STRUT_SINE));
-}
-
-bool strut_key_is_bound(const strut_key *key) {
-  return key->field.role == STRUT_FIELD_VALUE && key->measure != STRUT_MEASURE_CONTEXT;
 }
 
 strut_section strut_section_below(const strut_key *key) {

@@ -214,12 +214,8 @@ STRUT_API const char *strut_section_introduction(strut_section section);
 enum { STRUT_GROUP_SECTIONS = 4 };
 STRUT_API extern const strut_section strut_group_sections[STRUT_GROUP_SECTIONS];
 
-/** The key of a member that gives its rest length in this way. */
-STRUT_API int strut_rest_key(strut_rest_kind kind);
 /** The section of a wave: sine, half_sine, square or ramp. */
 STRUT_API strut_section strut_wave_section(strut_signal_kind kind);
-/** True for a key whose value is kept in a field without code of its own. */
-STRUT_API bool strut_key_is_bound(const strut_key *key);
 /** The section of the keys below a mapping's key, or STRUT_SECTION_COUNT. */
 STRUT_API strut_section strut_section_below(const strut_key *key);
 

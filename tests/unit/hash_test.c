@@ -1,61 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* SHA-256 and XXH64 against published values. */
-#include <stdio.h>
-#include <string.h>
-
+/* XXH64 against published values. */
 #include "engine/base/checksum.h"
 #include "tests/support/check.h"
-
-static void digest_of(const char *text, size_t length, size_t part, size_t times, char hex[65]) {
-  strut_sha256 hash;
-  uint8_t digest[STRUT_SHA256_BYTES];
-  strut_sha256_begin(&hash);
-  for (size_t i = 0; i < times; i++)
-    for (size_t k = 0; k < length; k += part)
-      strut_sha256_add(&hash, text + k, length - k < part ? length - k : part);
-  strut_sha256_end(&hash, digest);
-  for (int i = 0; i < STRUT_SHA256_BYTES; i++) snprintf(hex + 2 * i, 3, "%02x", digest[i]);
-}
-
-/* The examples of FIPS 180-4 and NIST's list of short messages. */
-TEST(sha256) {
-  static const struct {
-    const char *text, *hex;
-  } cases[] = {
-      {"", "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"},
-      {"abc", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"},
-      {"abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq",
-       "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1"},
-      {"abcdefghbcdefghicdefghijdefghijkefghijklfghijklmghijklmnhijklmnoijklmnopjklmnopqklmnopqrlmn"
-       "op"
-       "qrsmnopqrstnopqrstu",
-       "cf5b16a778af8380036ce59e7b0492370b249b11e8f07a51afac45037afee9d1"},
-  };
-  char hex[65];
-  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-    for (size_t part = 1; part < 130; part++) {
-      digest_of(cases[i].text, strlen(cases[i].text), part, 1, hex);
-      assert_string_equal(hex, cases[i].hex);
-    }
-  char many[1000];
-  memset(many, 'a', sizeof many);
-  digest_of(many, sizeof many, 77, 1000, hex); /* a million of them */
-  assert_string_equal(hex, "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
-}
-
-TEST(texts_keep_their_ends) {
-  uint8_t first[STRUT_SHA256_BYTES], second[STRUT_SHA256_BYTES];
-  strut_sha256 hash;
-  strut_sha256_begin(&hash);
-  strut_sha256_add_text(&hash, "ab");
-  strut_sha256_add_text(&hash, "c");
-  strut_sha256_end(&hash, first);
-  strut_sha256_begin(&hash);
-  strut_sha256_add_text(&hash, "a");
-  strut_sha256_add_text(&hash, "bc");
-  strut_sha256_end(&hash, second);
-  assert_true(memcmp(first, second, sizeof first) != 0);
-}
 
 /* From the sanity check of xxHash itself: its buffer of 2222 bytes, and values for some lengths. */
 TEST(checksum) {

@@ -25,13 +25,14 @@ static bool same_bits(double a, double b) { return memcmp(&a, &b, sizeof a) == 0
 
 static void expect_literal(const char *text, double value) {
   double got = -1;
-  if (!strut_number_read(text, strlen(text), &got)) fail_msg("'%s' was refused", text);
+  if (!strut_number_read_scaled(text, strlen(text), 0, &got)) fail_msg("'%s' was refused", text);
   if (!same_bits(got, value)) fail_msg("'%s' gave %.17g, expected %.17g", text, got, value);
 }
 
 static void expect_refusal(const char *text) {
   double got;
-  if (strut_number_read(text, strlen(text), &got)) fail_msg("'%s' was read as %.17g", text, got);
+  if (strut_number_read_scaled(text, strlen(text), 0, &got))
+    fail_msg("'%s' was read as %.17g", text, got);
 }
 
 TEST(literals_have_their_values) {
@@ -79,21 +80,21 @@ TEST(other_texts_are_refused) {
                                       "1 e5"};
   for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) expect_refusal(texts[i]);
   double got;
-  assert_false(strut_number_read("1\0", 2, &got));
+  assert_false(strut_number_read_scaled("1\0", 2, 0, &got));
   char *longest = calloc(1, STRUT_NUMBER_MOST + 2);
   memset(longest, '0', STRUT_NUMBER_MOST + 1);
-  assert_true(strut_number_read(longest, STRUT_NUMBER_MOST, &got));
-  assert_false(strut_number_read(longest, STRUT_NUMBER_MOST + 1, &got));
+  assert_true(strut_number_read_scaled(longest, STRUT_NUMBER_MOST, 0, &got));
+  assert_false(strut_number_read_scaled(longest, STRUT_NUMBER_MOST + 1, 0, &got));
   free(longest);
 }
 
 TEST(length_bounds_the_literal) {
   double got;
-  assert_true(strut_number_read("12345", 3, &got));
+  assert_true(strut_number_read_scaled("12345", 3, 0, &got));
   assert_true(got == 123);
-  assert_true(strut_number_read("1e55", 3, &got));
+  assert_true(strut_number_read_scaled("1e55", 3, 0, &got));
   assert_true(got == 1e5);
-  assert_false(strut_number_read("1.5", 2, &got));
+  assert_false(strut_number_read_scaled("1.5", 2, 0, &got));
   assert_int_equal(strut_number_scan("1.5e3kg", 7), 5);
   assert_int_equal(strut_number_scan("1e+kg", 5), 1);
   assert_int_equal(strut_number_scan("1.kg", 4), 1);
@@ -114,7 +115,7 @@ TEST(rounding_is_correct) {
       snprintf(text + used, 20, "e%d", (int)random_below(i % 3 ? 60 : 600) - 300);
     double expected = strtod(text, NULL), got = -1;
     bool readable = isfinite(expected) && (expected != 0 || strspn(text, "0.e-+") == strlen(text));
-    bool read = strut_number_read(text, strlen(text), &got);
+    bool read = strut_number_read_scaled(text, strlen(text), 0, &got);
     if (expected == 0 && read)
       assert_true(got == 0);
     else if (read != readable || (read && !same_bits(got, expected)))
@@ -132,7 +133,7 @@ TEST(every_double_comes_back) {
     char text[40];
     snprintf(text, sizeof text, "%.17g", value);
     expect_literal(text, value);
-    assert_true(strut_number_read(text, strlen(text), &got));
+    assert_true(strut_number_read_scaled(text, strlen(text), 0, &got));
   }
 }
 
@@ -176,7 +177,7 @@ TEST(grammar_is_the_one_of_the_language) {
     bool fits = regexec(&grammar, text, 0, NULL, 0) == 0;
     bool nonzero = strcspn(text, "123456789") < strcspn(text, "eE");
     bool expected = fits && isfinite(value) && (value != 0 || !nonzero);
-    bool read = strut_number_read(text, strlen(text), &got);
+    bool read = strut_number_read_scaled(text, strlen(text), 0, &got);
     if (read != expected) fail_msg("'%s' was %s", text, read ? "read" : "refused");
     if (read && !same_bits(got, value)) fail_msg("'%s' gave %.17g", text, got);
     accepted += read;
@@ -209,9 +210,9 @@ TEST(locale_does_not_matter) {
     strut_quantity q;
     strut_expression_error error;
     strut_diagnostics diagnostics = {0};
-    fast = strut_number_read("1.5", 3, &got) && got == 1.5;
-    slow = strut_number_read(digits, strlen(digits), &got) && got == 0.1;
-    comma = strut_number_read("1,5", 3, &got);
+    fast = strut_number_read_scaled("1.5", 3, 0, &got) && got == 1.5;
+    slow = strut_number_read_scaled(digits, strlen(digits), 0, &got) && got == 0.1;
+    comma = strut_number_read_scaled("1,5", 3, 0, &got);
     quantity = strut_expression_evaluate("1234567.891011121314151617 mm", NULL, &q, &error) &&
                q.value == 1234.567891011121314151617;
     strut_diagnose(&diagnostics, (strut_place){0}, "%.1f", 0.5);

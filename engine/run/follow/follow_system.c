@@ -381,10 +381,6 @@ strut_status strut_follow_differentiate_parameter(strut_follow_system *s, const 
 
 /* ---- unknowns ---- */
 
-void strut_follow_unknowns(const strut_follow_system *s, const double *y, double *z) {
-  for (size_t i = 0; i < s->n; i++) z[i] = y[s->place[i]] / strut_follow_unit(s, i);
-}
-
 void strut_follow_move(const strut_follow_system *s, double *y, const double *d, double factor) {
   for (size_t i = 0; i < s->n; i++) y[s->place[i]] += factor * d[i] * strut_follow_unit(s, i);
 }

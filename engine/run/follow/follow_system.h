@@ -107,15 +107,11 @@ strut_status strut_follow_differentiate_parameter(strut_follow_system *s, const 
 /** Fills jacobian and column at y and the present value; f is the residual there. */
 strut_status strut_follow_differentiate(strut_follow_system *s, const double *y, const double *f,
                                         bool *lost, strut_error *error);
-/** The parameter [SI] over its range, and back. */
+/** The parameter [SI] over its range. */
 static inline double strut_follow_scaled(const strut_follow_system *s, double value) {
   return (value - s->low) / (s->high - s->low);
 }
-static inline double strut_follow_value(const strut_follow_system *s, double scaled) {
-  return s->low + scaled * (s->high - s->low);
-}
-/** z (n): the unknowns of the state y; and y moved by a difference d (n) of unknowns. */
-void strut_follow_unknowns(const strut_follow_system *s, const double *y, double *z);
+/** The state y moved by a difference d (n) of unknowns. */
 void strut_follow_move(const strut_follow_system *s, double *y, const double *d, double factor);
 /** Shifts y along the ground so that the mean of the nodes is at 0, where the structure travels. */
 void strut_follow_centre(const strut_follow_system *s, double *y);

@@ -161,12 +161,6 @@ void strut_equilibrium_elongate(const strut_equilibrium_matrix *a, const double 
   }
 }
 
-void strut_equilibrium_dense(const strut_equilibrium_matrix *a, double *dense) {
-  for (int32_t j = 0; j < a->columns; j++)
-    for (int32_t k = a->start[j]; k < a->start[j + 1]; k++)
-      dense[(size_t)a->row[k] * (size_t)a->columns + (size_t)j] = a->value[k];
-}
-
 typedef struct sums {
   strut_triplets mass, elastic, geometric, contact;
   const strut_model *model;

@@ -68,9 +68,6 @@ STRUT_API void strut_equilibrium_multiply(const strut_equilibrium_matrix *a, con
 STRUT_API void strut_equilibrium_elongate(const strut_equilibrium_matrix *a, const double *d,
                                           double *e);
 
-/** A as (rows, columns) row by row into dense, which holds zeros. */
-STRUT_API void strut_equilibrium_dense(const strut_equilibrium_matrix *a, double *dense);
-
 /* The rank of an equilibrium matrix, with the gap that decides it, and its two null spaces.
  *
  * Up to STRUT_DENSE_RIGIDITY rows and columns by singular values; above by sparse QR, the diagonal

@@ -251,10 +251,6 @@ int64_t strut_slots_point(const strut_slots *slots, int64_t i) {
   return slots->plan.first + i * slots->plan.stride;
 }
 
-bool strut_slots_holds(const strut_slots *slots, int64_t point) {
-  return slot_of(slots, point) >= 0;
-}
-
 static bool is_done(const strut_slots *s, int64_t i) {
   return atomic_load_explicit(&s->done[i / BITS], memory_order_acquire) >> i % BITS & 1;
 }

@@ -87,8 +87,6 @@ STRUT_API void strut_slots_close(strut_slots *slots);
 STRUT_API const strut_slots_description *strut_slots_description_of(const strut_slots *slots);
 /** The number of the file's i-th point, 0 <= i < count. */
 STRUT_API int64_t strut_slots_point(const strut_slots *slots, int64_t i);
-/** Does the point belong to this file? */
-STRUT_API bool strut_slots_holds(const strut_slots *slots, int64_t point);
 /** Does a point of this file have a result? Cheap; thread-safe. */
 STRUT_API bool strut_slots_done(const strut_slots *slots, int64_t point);
 /** Number of points of this file without a result, and number of failed ones. */

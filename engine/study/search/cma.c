@@ -391,16 +391,3 @@ void strut_cma_tell(strut_cma *c, const double *values) {
   c->asked = false;
   c->stop = find_stop(c, decomposed);
 }
-
-const char *strut_cma_stop_text(strut_cma_stop stop) {
-  switch (stop) {
-    case STRUT_CMA_GOES_ON: return "goes on";
-    case STRUT_CMA_EVALUATIONS: return "the evaluations are used up";
-    case STRUT_CMA_TARGET: return "the target is reached";
-    case STRUT_CMA_POINT: return "the search has become as narrow as wanted";
-    case STRUT_CMA_FLAT: return "values do not differ any more";
-    case STRUT_CMA_STAGNANT: return "the best values have not improved for many generations";
-    case STRUT_CMA_CONDITION: return "the search has become too narrow in one direction";
-  }
-  return "";
-}

@@ -140,8 +140,6 @@ STRUT_API const double *strut_cma_ask(strut_cma *cma);
 /** values (population), in the order of the points; the smaller the better. */
 STRUT_API void strut_cma_tell(strut_cma *cma, const double *values);
 STRUT_API strut_cma_stop strut_cma_stopped(const strut_cma *cma);
-/** A sentence's end: why it stopped. */
-STRUT_API const char *strut_cma_stop_text(strut_cma_stop stop);
 
 /** The best point given so far (dimension) and its value; NULL and NAN before any was finite. */
 STRUT_API const double *strut_cma_best(const strut_cma *cma, double *value);
