@@ -5,7 +5,6 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "engine/base/memory.h"
 #include "engine/base/vec.h"
@@ -19,10 +18,9 @@
 #include "parser/command/run_settings.h"
 #include "parser/program/check_messages.h"
 #include "parser/program/open_model.h"
-#include "parser/program/progress.h"
 #include "parser/program/streams.h"
 
-enum { MOST_MEMBERS = 40, DIGITS = 5, SKETCH_COLUMNS = 72, SKETCH_ROWS = 16 };
+enum { MOST_MEMBERS = 40, DIGITS = 5 };
 
 static const strut_option options[] = {
     STRUT_SET_OPTION,
@@ -368,17 +366,6 @@ static void print_distances(const strut_model *model, int names) {
     printf("  ... and %zu more; --json lists all\n", scene->distance_count - MOST_MEMBERS);
 }
 
-/* Sketches the drawn shape, whatever a run starts with, since that is where typing errors show. */
-static strut_status print_sketch(const strut_model *model, const double *q) {
-  int columns = strut_terminal_columns(STDOUT_FILENO, SKETCH_COLUMNS);
-  if (columns > SKETCH_COLUMNS) columns = SKETCH_COLUMNS;
-  char *text = strut_sketch(model, q, columns, SKETCH_ROWS, strut_terminal_unicode());
-  if (!text) return strut_print_out_of_memory();
-  if (*text) printf("\n%s\n", text);
-  strut_release(text);
-  return STRUT_OK;
-}
-
 static strut_status print_estimate(const strut_cost_estimate *estimate, const strut_model *model,
                                    const strut_experiment *experiment, bool verbose) {
   const strut_scene *scene = model->scene;
@@ -386,7 +373,6 @@ static strut_status print_estimate(const strut_cost_estimate *estimate, const st
   double *q = drawn_shape(model);
   if (!q) return strut_print_out_of_memory();
   printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
-  strut_status status = print_sketch(model, q);
   print_counts(estimate);
   print_run(estimate, experiment);
   print_terms(estimate, true, "each step evaluates");
@@ -401,7 +387,7 @@ static strut_status print_estimate(const strut_cost_estimate *estimate, const st
   print_collisions(model, q, names);
   print_distances(model, names);
   strut_release(q);
-  return status;
+  return STRUT_OK;
 }
 
 static void add_estimate(strut_json *json, const strut_cost_estimate *estimate,
@@ -661,12 +647,13 @@ const strut_command strut_command_check = {
     .model = "MODEL",
     .summary = "validates a model and describes what a run of it computes",
     .details =
-        "\nPrints a sketch of the drawn structure, its numbers of nodes and members, the terms of "
+        "\nPrints the numbers of nodes and members, the terms of the equations that a step "
+        "evaluates and\n"
+        "those it omits, the largest stable step, and for each member its rest length in each of "
         "the\n"
-        "equations that a step evaluates and those it omits, the largest stable step, and for "
-        "each\n"
-        "member its rest length in each of the four forms that the language accepts. Running\n"
-        "cables, laws, stops and hinges have tables of their own.\n"
+        "four forms that the language accepts. Running cables, laws, stops and hinges have tables "
+        "of\n"
+        "their own.\n"
         "--json lists all messages with their places, for editors; a study is checked, too.\n",
     .options = options,
     .run = run_check,

@@ -18,10 +18,10 @@
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
 #include "engine/output/record_files.h"
+#include "parser/program/check_messages.h"
 #include "parser/program/commands.h"
 #include "parser/program/open_model.h"
 #include "parser/program/streams.h"
-#include "parser/read/reader.h"
 #include "parser/yaml/document.h"
 
 static double now(void) {
@@ -83,24 +83,19 @@ static strut_status run_command(const strut_command *command, int argc, char **a
 /* What `strut MODEL` does: runs what describes a run, computes a study, finds the equilibria of the rest. */
 static const strut_command *natural_command(const char *path) {
   strut_diagnostics diagnostics = {0};
-  strut_document document = {.root = NULL};
   strut_scene_source *source = NULL;
   strut_error error = {0};
   char *text = NULL;
   size_t length;
+  if (strut_is_study(path)) return &strut_command_sweep;
   const strut_command *command = &strut_command_run; /* which says what is wrong with the file */
   if (strut_file_read(path, &text, &length, &error) != STRUT_OK) return command;
-  strut_diagnostics_source(&diagnostics, path, text, length);
-  if (strut_document_read(&document, &diagnostics) == STRUT_OK && document.root &&
-      strut_tree_is_study(document.root)) {
-    command = &strut_command_sweep;
-  } else if (strut_scene_source_open(path, text, length, &diagnostics, &source) == STRUT_OK) {
+  if (strut_scene_source_open(path, text, length, &diagnostics, &source) == STRUT_OK) {
     /* with what its base holds */
     const strut_tree *root = strut_scene_source_document(source)->root;
     if (root && root->kind == STRUT_TREE_MAP && !strut_tree_find(root, "run", NULL))
       command = &strut_command_equilibria;
   }
-  strut_document_free(&document);
   strut_scene_source_free(source);
   strut_diagnostics_free(&diagnostics);
   strut_release(text);

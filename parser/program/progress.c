@@ -34,7 +34,8 @@ static const char *locale_name(void) {
   return "C";
 }
 
-bool strut_terminal_unicode(void) {
+/* May the terminal show more than ASCII? */
+static bool shows_unicode(void) {
   locale_t locale = newlocale(LC_CTYPE_MASK, "", (locale_t)0);
   if (locale == (locale_t)0) return says_utf8(locale_name());
   bool unicode = says_utf8(nl_langinfo_l(CODESET, locale));
@@ -73,7 +74,7 @@ strut_progress strut_progress_begin(bool quiet) {
   return (strut_progress){
       .wanted = !quiet && isatty(STDERR_FILENO),
       .colour = !plain,
-      .unicode = strut_terminal_unicode(),
+      .unicode = shows_unicode(),
       .start = now(),
       .columns = strut_terminal_columns(STDERR_FILENO, USUAL),
   };

@@ -9,8 +9,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/** True if the user's locale writes UTF-8. */
-bool strut_terminal_unicode(void);
 /** Columns of the terminal on that descriptor, else the value of COLUMNS, else `usual`. */
 int strut_terminal_columns(int descriptor, int usual);
 

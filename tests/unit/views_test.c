@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The sketch, the files for ParaView and films where memory or the disk is out. */
+/* The files for ParaView and films where memory or the disk is out. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +7,6 @@
 #include "engine/base/memory.h"
 #include "engine/output/exports.h"
 #include "engine/output/film/film.h"
-#include "engine/output/report/reports.h"
 #include "parser/read/read_scene.h"
 #include "tests/support/test.h"
 #include "tests/unit/scratch.h"
@@ -65,24 +64,6 @@ static void make(things *t) {
 static void drop(things *t) {
   strut_model_free(t->model);
   strut_setup_free(&t->setup);
-}
-
-TEST(sketch_without_memory) {
-  things t;
-  make(&t);
-  char *whole = strut_sketch(t.model, t.model->start, 60, 12, true), *drawn = NULL;
-  assert_non_null(whole);
-  int failed = 0;
-  for (; failed < MOST && !drawn; failed++) {
-    strut_fail_allocation_after(failed);
-    drawn = strut_sketch(t.model, t.model->start, 60, 12, true);
-    strut_fail_allocation_after(-1);
-  }
-  assert_true(failed > 3 && failed < MOST);
-  assert_string_equal(drawn, whole);
-  strut_release(drawn);
-  strut_release(whole);
-  drop(&t);
 }
 
 /* All files or none, and the reason. */

@@ -75,19 +75,4 @@ STRUT_API char *strut_rigidity_json(const strut_rigidity *rigidity, const strut_
 STRUT_API char *strut_rigidity_table(const strut_rigidity *rigidity, const strut_model *model,
                                      const char *at);
 
-/* ---- a structure in a few lines of text, true to scale ---- */
-
-enum { STRUT_SKETCH_LEAST_COLUMNS = 20, STRUT_SKETCH_LEAST_ROWS = 5, STRUT_SKETCH_MOST = 400 };
-
-/**
- * Draws the shape q (model->length) in at most `columns` by `rows` character cells, each taken to
- * be twice as high as wide, and a line with its extent: bars solid, springs and cables dotted, nodes
- * with their names where these fit, supports, and the ground where it is near. Braille dots in
- * UTF-8 if `unicode`, else ASCII. Names that a terminal may not print from left to right in a known width
- * are replaced by the node's number, #1 for the first. Lines end with '\n' and without blanks. A
- * block of strut_allocate; NULL when memory is out.
- */
-STRUT_API char *strut_sketch(const strut_model *model, const double *q, int columns, int rows,
-                             bool unicode);
-
 #endif
