@@ -73,7 +73,7 @@ void strut_program_help(void) {
   }
   printf(
       "strut %s: planar structures of bars, springs and cables, described in YAML\n\n"
-      "Usage: strut COMMAND [OPTION]... [MODEL]\n  or:  strut MODEL [OPTION]...\n",
+      "Usage: strut COMMAND [OPTION]... [MODEL]\n   or: strut MODEL [OPTION]...\n",
       STRUT_VERSION);
   for (size_t i = 0; i < COMMANDS; i++) {
     if (strcmp(rows[i].group, group) != 0) printf("\n%s:\n", rows[i].group);
