@@ -90,8 +90,7 @@ void strut_program_help(void) {
 
 /* The help of a word that is no command: a key or section of the language, or none. */
 static strut_status print_other_help(const strut_arguments *arguments) {
-  if (strut_keys_know(arguments->model))
-    return strut_command_keys.run(arguments);
+  if (strut_keys_know(arguments->model)) return strut_command_keys.run(arguments);
   return strut_command_find(arguments->model) ? STRUT_OK : STRUT_USAGE;
 }
 
