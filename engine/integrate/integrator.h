@@ -33,7 +33,6 @@ typedef struct strut_integrator_settings {
   double step;      /* wanted [s]; a run may take slightly shorter ones, to divide a period */
   double tolerance; /* of error control [1] */
   double refine, refine_time, refine_rate, refine_memory;
-  int32_t local_from; /* nodes from which on events are taken locally; 0: the default */
 } strut_integrator_settings;
 
 /** A method. Its workspace belongs to one state, whose arena holds it: freeing the state frees it. */
@@ -109,8 +108,7 @@ static inline strut_integrator_settings strut_integrator_settings_of(const strut
                                      .refine = e->refine,
                                      .refine_time = e->refine_time,
                                      .refine_rate = e->refine_rate,
-                                     .refine_memory = e->refine_memory,
-                                     .local_from = 0};
+                                     .refine_memory = e->refine_memory};
 }
 /**
  * Can the experiment's method run the model? STRUT_USAGE, with what to change, where there is no such

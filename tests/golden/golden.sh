@@ -18,7 +18,6 @@ expected=tests/golden/crawler.hash
 # description and its reader once, or once by each compiler.
 engine="tests/golden/golden.c engine/run/settle.c engine/integrate/rk4.c
   $(ls engine/integrate/small_*.c engine/integrate/events/small/small_*.c engine/integrate/events/contacts/contact_coupling.c)
-  $(ls engine/integrate/events/regions/local_*.c)
   engine/integrate/events/verlet_events.c engine/integrate/events/event_stepping.c
   engine/integrate/events/location/event_log.c engine/integrate/events/location/event_location.c
   engine/integrate/events/location/event_kinds.c

@@ -62,12 +62,11 @@ typedef struct run_plan {
   /* Compares a state at the end; `where` is the method and how it was stepped. */
   void (*compare)(const strut_setup *setup, const strut_integrator *method, const double *q,
                   const double *v, const char *where);
-  int small, domains, local, lanes, methods; /* runs made so */
+  int small, domains, lanes, methods; /* runs made so */
 } run_plan;
 
-typedef enum run_way { GENERAL, AVX2, AVX512, LOCAL, DOMAINS, WAYS } run_way;
-static const char *const way_names[WAYS] = {"general", "small avx2", "small avx512", "local events",
-                                            "subdomains"};
+typedef enum run_way { GENERAL, AVX2, AVX512, DOMAINS, WAYS } run_way;
+static const char *const way_names[WAYS] = {"general", "small avx2", "small avx512", "subdomains"};
 
 /* Brings the model to the way; false: it is not stepped so. */
 static bool lead(strut_model *model, const strut_integrator *method, run_way way) {
@@ -80,7 +79,6 @@ static bool lead(strut_model *model, const strut_integrator *method, run_way way
     return true;
   }
   model->small = NULL;
-  if (way == LOCAL) return method->events;
   return way != DOMAINS || strut_domain_steps_possible(model, method);
 }
 
@@ -89,7 +87,6 @@ static bool step(const strut_model *model, strut_state *state, const strut_integ
   strut_integrator_settings settings = strut_integrator_settings_of(&terms->setup->experiment);
   int64_t count = llround(terms->time / terms->dt);
   settings.step = terms->dt;
-  if (way == LOCAL) settings.local_from = 1;
   if (way == DOMAINS) {
     strut_domain_steps *steps = strut_domain_steps_create(model, method, NULL, 2);
     if (!steps) return false;
@@ -118,7 +115,6 @@ static void run(run_plan *terms, const strut_integrator *method, run_way way) {
     if (good) terms->compare(terms->setup, method, state->q, state->v, where);
     terms->small += way == AVX2 || way == AVX512;
     terms->domains += way == DOMAINS;
-    terms->local += way == LOCAL;
     terms->methods += way == GENERAL;
   }
   strut_state_free(state);
@@ -250,8 +246,8 @@ static void test_the_friction_law(int count) {
   strut_release(written);
   run_plan terms = {.setup = &setup, .dt = 1e-4, .time = 0.3, .compare = compare_blocks};
   run_all(&terms);
-  expect(terms.methods >= 8 && terms.local >= 4 && (count == 1 || terms.domains == 3),
-         "too few runs are made", "friction law", terms.methods);
+  expect(terms.methods >= 8 && (count == 1 || terms.domains == 3), "too few runs are made",
+         "friction law", terms.methods);
   expect(strut_batch_widest() == 1 || terms.lanes == 2, "is not run in lanes", "friction law",
          terms.lanes);
   expect(strut_batch_widest() == 1 || count == 1 || count > STRUT_SMALL_NODES || terms.small >= 5,
@@ -368,7 +364,7 @@ static void test_the_member_law(int count, const char *kind) {
   strut_release(written);
   run_plan terms = {.setup = &setup, .dt = 1e-3, .time = 1, .compare = compare_pairs};
   run_all(&terms);
-  expect(terms.methods >= 9 && terms.local >= 4, "too few runs are made", kind, terms.methods);
+  expect(terms.methods >= 9, "too few runs are made", kind, terms.methods);
   expect(bar || strut_batch_widest() == 1 ? terms.lanes == 0 : terms.lanes == 2, "lanes", kind,
          terms.lanes);
   /* about the start it is 4 (1 + 3 x^2 / s^2) = 37 N/m; rk4 is stable up to 2.83 over the rate */

@@ -270,11 +270,10 @@ STRUT_INLINE double earliest_dip(const strut_model *model, const strut_state *st
   const strut_contact_table *c = &model->contacts;
   double first = 0.0, part = fmax(0.1 * l->tolerance, 1e-12);
   double faint[2] = {0.01 * part * model->size, part * l->fastest}; /* of a gap, of a speed */
-  bool surfaces = frames_of(l->next, terms) && !l->contact_list;
-  int32_t count = surfaces ? strut_surface_candidates(model, l, h, state->buffers.near)
-                           : strut_contacts_of(model, l);
+  bool surfaces = frames_of(l->next, terms);
+  int32_t count = surfaces ? strut_surface_candidates(model, l, h, state->buffers.near) : c->count;
   for (int32_t k = 0; k < count; k++) {
-    int32_t i = surfaces ? state->buffers.near[k] : strut_contact_of(l, k);
+    int32_t i = surfaces ? state->buffers.near[k] : k;
     strut_touch from, to;
     measure_at_end(c, l, l->now, i, terms, &from);
     measure_at_end(c, l, l->next, i, terms, &to);
@@ -371,17 +370,11 @@ static void adaptive_until_event(const strut_model *model, strut_state *state,
   if (l->tried) look_between(model, state, l, next_step_size(state, l, dt), STRUT_TERMS_COMMON);
 }
 
-static void look_between_of_region(const strut_model *model, strut_state *state,
-                                   strut_event_stepper *l, double h) {
-  look_between(model, state, l, h, STRUT_TERMS_COMMON);
-}
-
 /* The method that steps by this pair. */
 #define FORMULA(pair, count)                                                                       \
   {                                                                                                \
     .trial = adaptive_step, .stages = ARRAYS(count), .exact = true, .adaptive = true,              \
-    .advance_until_event = adaptive_until_event, .tableau = &(pair), .note_stage = note_stage,     \
-    .look_between = look_between_of_region                                                         \
+    .advance_until_event = adaptive_until_event, .tableau = &(pair)                                \
   }
 static const strut_step_formula order_5 =
                                     FORMULA(strut_dormand_prince, STRUT_DORMAND_PRINCE_STAGES),

@@ -11,7 +11,6 @@
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/location/event_log.h"
 #include "engine/integrate/events/location/variation.h"
-#include "engine/integrate/events/regions/local_events.h"
 #include "engine/integrate/events/small/small_modes.h"
 #include "engine/integrate/observer.h"
 #include "engine/model/compile_parts.h"
@@ -37,8 +36,9 @@ static bool make_frames(const strut_model *model, strut_arena *arena, strut_step
   return end->frame && (end->motion || !c->moves);
 }
 
-bool strut_step_end_create(const strut_model *model, strut_arena *arena, strut_step_end *end,
-                           bool borrowed) {
+/* Arrays of one end of a step, with or without positions and velocities of its own. */
+static bool create_step_end(const strut_model *model, strut_arena *arena, strut_step_end *end,
+                            bool borrowed) {
   size_t length = (size_t)model->length, switches = strut_most_law_switches(model) + 1;
   if (!borrowed) end->q = strut_arena_allocate(arena, length, sizeof(double));
   if (!borrowed) end->v = strut_arena_allocate(arena, length, sizeof(double));
@@ -113,8 +113,8 @@ static bool list_laws(const strut_model *model, strut_state *state, strut_event_
   }
   strut_history_list(model, state, l);
   if (model->elements.scattered)
-    l->law_list = l->nearby_laws = strut_arena_allocate(&state->arena, most, sizeof(int32_t));
-  if (model->elements.scattered && !l->law_list) return false;
+    l->nearby_laws = strut_arena_allocate(&state->arena, most, sizeof(int32_t));
+  if (model->elements.scattered && !l->nearby_laws) return false;
   for (int32_t i = 0; i < model->feedback.relay_count; i++)
     l->laws[l->law_count++] = (strut_law_switch){.event = STRUT_EVENT_RELAY,
                                                  .member = -1,
@@ -123,8 +123,9 @@ static bool list_laws(const strut_model *model, strut_state *state, strut_event_
   return true;
 }
 
-bool strut_switch_counts_create(const strut_model *model, strut_arena *arena,
-                                strut_event_stepper *l) {
+/* After the laws have been listed. */
+static bool create_switch_counts(const strut_model *model, strut_arena *arena,
+                                 strut_event_stepper *l) {
   size_t switches = (size_t)model->contacts.count + (size_t)l->law_count;
   strut_switch_counts *c = &l->counts;
   c->times = strut_arena_allocate(arena, switches, sizeof *c->times);
@@ -161,13 +162,11 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
   l->now->q = state->q, l->now->v = state->v;
   l->tolerance = settings->tolerance;
   l->rounding = stepper->adaptive ? rounding_of(model, stepper->tableau) : 0.0;
-  if (!strut_step_end_create(model, &state->arena, l->now, true) ||
-      !strut_step_end_create(model, &state->arena, l->next, false) ||
-      !make_arrays(model, state, l) || !list_laws(model, state, l) ||
-      !strut_switch_counts_create(model, &state->arena, l) || !make_held(model, state) ||
-      strut_small_modes_create(model, state, l) ||
-      strut_event_stepper_prepare(model, state, settings, l) ||
-      strut_local_events_create(model, state, settings, l))
+  if (!create_step_end(model, &state->arena, l->now, true) ||
+      !create_step_end(model, &state->arena, l->next, false) || !make_arrays(model, state, l) ||
+      !list_laws(model, state, l) || !create_switch_counts(model, &state->arena, l) ||
+      !make_held(model, state) || strut_small_modes_create(model, state, l) ||
+      strut_event_stepper_prepare(model, state, settings, l))
     return NULL;
   return l;
 }
@@ -195,7 +194,7 @@ bool strut_event_stepper_observe(const strut_model *model, strut_state *state, v
   view->q = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
   view->v = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
   l->view = view;
-  return view->q && view->v && strut_step_end_create(model, arena, &view->instant, false);
+  return view->q && view->v && create_step_end(model, arena, &view->instant, false);
 }
 
 /* Contact forces in the present modes at an instant within a step. */
@@ -317,7 +316,6 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
 typedef struct search {
   double low, high;
   double x, value, last_x, last_value, size_before; /* the size of the value before the last one */
-  double low_value, high_value;
 } search;
 
 static search begin_search(double before, double fraction, double after, double first) {
@@ -325,9 +323,7 @@ static search begin_search(double before, double fraction, double after, double 
                   .x = first,
                   .last_x = before > 0.0 ? 0.0 : fraction,
                   .last_value = before > 0.0 ? before : after,
-                  .size_before = HUGE_VAL,
-                  .low_value = before,
-                  .high_value = after};
+                  .size_before = HUGE_VAL};
 }
 
 /* Of the value by x: its rate where that is known, else that of the secant. */
@@ -336,25 +332,15 @@ static double slope_of(const search *s, double rate) {
 }
 
 /*
- * Goes to `next`, or to the middle of the bracket, narrowed by the value at x, where that is outside, and where two
+ * Goes to `next`, or to the middle of the bracket, narrowed at x, where that is outside, and where two
  * steps have not made the value half as large: at a kink secants creep on from both sides.
  */
 static double go_on(search *s, double next) {
   bool slow = fabs(s->value) > 0.5 * s->size_before;
-  *(s->value < 0.0 ? &s->high_value : &s->low_value) = s->value;
   *(s->value < 0.0 ? &s->high : &s->low) = s->x;
   s->size_before = fabs(s->last_value);
   s->last_x = s->x, s->last_value = s->value;
   return next > s->low && next < s->high && !slow ? next : 0.5 * (s->low + s->high);
-}
-
-/* The root of the parabola through the ends of the bracket and the point between. */
-static double root_of_parabola(const search *s) {
-  double low = s->low_value, high = s->high_value, width = s->high - s->low;
-  double x = (s->x - s->low) / width, y = s->value, chord = (y - low) / x;
-  double bend = ((high - y) / (1.0 - x) - chord), slope = chord - bend * x;
-  double root = -2.0 * low / (slope - sqrt(fmax(0.0, slope * slope - 4.0 * bend * low)));
-  return s->low + root * width;
 }
 
 /* The latest correction was small and did not make the value smaller: the rest is rounding. */
@@ -368,10 +354,6 @@ static bool is_balanced(const strut_event_stepper *l, const strut_event *event, 
          fabs(value) <= 1.5 * STRUT_TIED * l->next->touch[event->index].normal;
 }
 
-/* A part of a region's step that is near enough: it is joined to the step of the whole with an error of its own, and
-   this is below a thousandth of what the method leaves. */
-static const double NEAR = 1e-8;
-
 /* Where forces balance until then, an edge is left so gently that this part of a step is harmless. */
 static const double BALANCED = 1e-8;
 
@@ -380,29 +362,6 @@ static bool is_at_edge(const strut_model *model, const strut_event *event, doubl
   if (event->kind != STRUT_EVENT_LEAVES_STICK_BAND) return false;
   double tie = STRUT_TIED * stick_band_edge(&model->contacts.entry[event->index]);
   return value > 0.5 * tie && value < 1.5 * tie;
-}
-
-static bool is_above_threshold(const strut_friction *f, const strut_touch *o) {
-  return fabs(o->applied) > strut_friction_static(f, o->applied) * o->normal;
-}
-
-/*
- * May the end of a region's step be moved, instead of taking it again? Not far, and not where a force has had
- * a kink on the way, which the polynomial of both ends does not know: a contact within its band is held by as
- * much as acts on it, up to its threshold, where its mode may end.
- */
-static bool may_shift(const strut_model *model, const strut_event_stepper *l, double from,
-                      double to) {
-  if (!l->within || fabs(to - from) > STRUT_LOCAL_SHIFT * from) return false;
-  for (int32_t k = 0; k < l->closed_count; k++) {
-    int32_t i = l->closed[k];
-    const strut_friction *f = &model->contacts.entry[i].friction;
-    if (l->mode[i] == STRUT_MODE_YIELD) return false;
-    if (l->mode[i] != STRUT_MODE_BAND) continue;
-    bool before = !strut_friction_drops(f) && is_above_threshold(f, &l->now->touch[i]);
-    if (is_above_threshold(f, &l->next->touch[i]) != before) return false;
-  }
-  return true;
 }
 
 /*
@@ -417,10 +376,7 @@ static double retake(const strut_model *model, strut_state *state, strut_event_s
   double reached = 1.0; /* the part of the step at whose end l->next is */
   for (int k = 0; k < MOST_TRIALS && s.x * h > 0.0; k++) {
     if (l->stepper->predict) l->stepper->predict(model, l, s.x * h);
-    if (may_shift(model, l, reached, s.x))
-      strut_local_shift(model, state, l, t, reached * h, s.x * h);
-    else
-      l->stepper->trial(model, state, l, t, s.x * h);
+    l->stepper->trial(model, state, l, t, s.x * h);
     reached = s.x;
     if (!l->stepper->exact) break;
     strut_event other = strut_event_first(model, state, l, s.x * h);
@@ -443,14 +399,13 @@ static double retake(const strut_model *model, strut_state *state, strut_event_s
     if (edge && !tied) break;
     /* variations need a point from which the value changes */
     if (!state->watched.variation && is_balanced(l, event, s.value)) break;
-    if (l->within && !tied && fabs(s.value) <= NEAR * fabs(slope)) break;
     /* a value that is not small beside those of the step's ends jumps, or has its root farther on, however little the
        search has moved */
     bool still = k > 0 && !tied && stagnant(&s),
          far = fabs(s.value) > 0.1 * (fabs(before) + fabs(after));
     if (s.value == 0.0 || (still && !far)) break;
     if (tied && s.high - s.x <= BALANCED) break;
-    double x = go_on(&s, l->within && rate == 0.0 ? root_of_parabola(&s) : s.x - s.value / slope);
+    double x = go_on(&s, s.x - s.value / slope);
     if (tied || still) x = 0.5 * (s.low + s.high);
     if (s.high - s.low <= 1e-13) break;
     s.x = x;
@@ -489,14 +444,6 @@ static void switch_relay(const strut_model *model, strut_state *state, strut_eve
   strut_relay_switch(model, state, signal, t);
   accumulate_jump(model, state, t, before);
   strut_modes_after_jump(model, state, l, t);
-}
-
-/* The step of a region: its ends change places. */
-static void accept_within(strut_state *state, strut_event_stepper *l) {
-  strut_step_end *now = l->next;
-  l->next = l->now, l->now = now;
-  l->fresh = true;
-  for (int p = 0; p < STRUT_POWER_COUNT && state->balance; p++) state->work[p] += l->gained[p];
 }
 
 /* Where an event is in the arrays of strut_switch_counts. */
@@ -568,8 +515,8 @@ static bool hold_modes(const strut_model *model, strut_state *state, strut_event
 }
 
 /* One trial over at most h at time t; handles rejection and events. Returns the time gone, 0 if none. */
-STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                               double t, double h, double dt) {
+static double step_piece(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                         double t, double h, double dt) {
   strut_event event = {STRUT_EVENT_NONE, 0, 1.0};
   bool force = must_step(l);
   double passes = force ? past_opening(model, l, h, dt) : 0.0;
@@ -585,8 +532,6 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
     if (force && !(passes > 0.0) && hold_modes(model, state, l, t, dt, &h, &event)) force = false;
     strut_event inside = {STRUT_EVENT_NONE, 0, 1.0};
     if (!force && h > 0.0) inside = strut_event_first(model, state, l, h);
-    if (inside.kind && l->local && strut_local_events_take(model, state, l, t, h, dt))
-      inside.kind = STRUT_EVENT_NONE;
     if (inside.kind) {
       event = inside;
       double taken = event.fraction * h <= AT_ONCE * dt && !l->stepper->exact
@@ -606,10 +551,7 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
     if (state->watched.variation) strut_variation_step(model, state, l, t, h);
     bool observed = l->view && state->watched.observer;
     if (observed) keep_begin(model, state, l->view);
-    if (l->within)
-      accept_within(state, l);
-    else
-      accept_step(model, state, l, state->balance);
+    accept_step(model, state, l, state->balance);
     if (observed) show_piece(model, state, l, t, h, dt);
     l->at_once = 0;
     if (h > SEPARATES * (l->stepper->adaptive ? l->h : dt)) l->switches = 0;
@@ -639,11 +581,6 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
   if (state->watched.variation && (event.kind || force))
     strut_variation_pass(model, state, l, event.kind != STRUT_EVENT_NONE);
   return h;
-}
-
-double strut_event_stepper_piece(const strut_model *model, strut_state *state,
-                                 strut_event_stepper *l, double t, double h, double dt) {
-  return step_piece(model, state, l, t, h, dt);
 }
 
 /*

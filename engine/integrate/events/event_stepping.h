@@ -192,11 +192,6 @@ typedef struct strut_step_formula {
   void (*advance_until_event)(const strut_model *model, strut_state *state, strut_event_stepper *l,
                               double dt, int64_t end);
   const strut_tableau *tableau; /* NULL: variations cannot follow */
-  /** With error control, in a region (local_events.h): notes the margins of the stage just evaluated, the part `at`
-      into the step, in l->least; and after a step raises l->error where something happens and ends within it. */
-  void (*note_stage)(const strut_event_stepper *l, double at, bool first);
-  void (*look_between)(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double h);
 } strut_step_formula;
 
 /** Who has switched since the latest step: many may do so at one moment, but none many times. */
@@ -267,29 +262,18 @@ struct strut_event_stepper {
   int32_t *facet; /* (contacts) of closed contacts of surfaces; NULL without STRUT_TERM_SURFACES */
   struct strut_small_modes *small; /* see small_modes.h; NULL where the model is not small */
   struct strut_contact_coupling *coupling; /* contact_coupling.h; NULL where contacts are few */
-  struct strut_local_events *local; /* takes events locally; NULL: the whole structure does */
-  /* of the stepper of a region, local_kernel.h: its contacts and laws; NULL of the whole structure's */
-  struct strut_local_events *within;
-  const int32_t *contact_list, *law_list;
-  int32_t contact_list_count, law_list_count;
-  /* where collisions are many, the list of laws is of those that may switch: of state->nearby, made so often */
-  int32_t *nearby_laws;
+  /* where collisions are many: the laws that may switch, of state->nearby, made so often; else NULL */
+  int32_t *nearby_laws, nearby_count;
   int64_t nearby_made;
 };
 
-/** Contacts and laws that a stepper looks at: `count` of them, each by its place in a list. */
-static inline int32_t strut_contacts_of(const strut_model *model, const strut_event_stepper *l) {
-  return l->contact_list ? l->contact_list_count : model->contacts.count;
-}
-static inline int32_t strut_contact_of(const strut_event_stepper *l, int32_t place) {
-  return l->contact_list ? l->contact_list[place] : place;
-}
+/** Laws that may switch: `count` of them, each by its place in a list. */
 static inline int32_t strut_laws_of(const strut_event_stepper *l) {
-  return l->law_list ? l->law_list_count : l->law_count;
+  return l->nearby_laws ? l->nearby_count : l->law_count;
 }
 static inline int32_t strut_law_of(const strut_event_stepper *l, int32_t place) {
-  assert(place >= 0 && place < (l->law_list ? l->law_list_count : l->law_count));
-  return l->law_list ? l->law_list[place] : place;
+  assert(place >= 0 && place < strut_laws_of(l));
+  return l->nearby_laws ? l->nearby_laws[place] : place;
 }
 
 /** Most laws that switch: each cable, each element by its sign, by its kinks and by its memory, relays. */
@@ -315,17 +299,6 @@ bool strut_event_stepper_observe(const strut_model *model, strut_state *state, v
 /** `count` steps of dt. */
 void strut_event_stepper_advance(const strut_model *model, strut_state *state, void *workspace,
                                  double dt, int64_t count);
-
-/** One trial over at most h at time t; handles rejection and events. Returns the time gone, 0 if none. */
-double strut_event_stepper_piece(const strut_model *model, strut_state *state,
-                                 strut_event_stepper *l, double t, double h, double dt);
-/** Arrays of one end of a step, with or without positions and velocities of its own. */
-bool strut_step_end_create(const strut_model *model, strut_arena *arena, strut_step_end *end,
-                           bool borrowed);
-
-/** After the laws have been listed. */
-bool strut_switch_counts_create(const strut_model *model, strut_arena *arena,
-                                strut_event_stepper *l);
 
 /* ---- parts of it, in contact_compliance.c, contact_modes.c and event_location.c ---- */
 
@@ -360,9 +333,6 @@ bool strut_event_is_of_law(strut_event_kind kind);
 /** The earliest event between now and next, a step h apart; kind NONE if every mode holds. */
 strut_event strut_event_first(const strut_model *model, strut_state *state, strut_event_stepper *l,
                               double h);
-/** The earliest one of contact i alone. */
-strut_event strut_event_of_contact(const strut_model *model, const strut_event_stepper *l,
-                                   int32_t i, double h);
 /** First root in [0, 1] of the cubic with these values and slopes at 0 and 1; g0 > 0 > g1. */
 double strut_event_cubic_root(double g0, double d0, double g1, double d1);
 /** The value that event ends at 0, at an end; positive while the mode holds. */

@@ -6,7 +6,6 @@
 
 #include "engine/integrate/events/contacts/contact_coupling.h"
 #include "engine/integrate/events/event_kernel.h"
-#include "engine/integrate/events/regions/local_events.h"
 #include "engine/integrate/events/small/small_modes.h"
 #include "engine/model/dense_cholesky.h"
 
@@ -287,10 +286,9 @@ void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
   strut_small_modes_change(l);
   l->closed_count = l->stuck_count = 0;
   l->contacts_decoupled = model->contacts.normal[0] == 0.0 && !has_moving_axes(model);
-  int32_t count = strut_contacts_of(model, l);
-  for (int32_t k = 0; k < count; k++) l->body_seen[l->body[strut_contact_of(l, k)]] = false;
-  for (int32_t k = 0; k < count; k++) {
-    int32_t i = strut_contact_of(l, k);
+  int32_t count = model->contacts.count;
+  for (int32_t i = 0; i < count; i++) l->body_seen[l->body[i]] = false;
+  for (int32_t i = 0; i < count; i++) {
     l->outward[i] = l->mode[i] == STRUT_MODE_OPEN ? 1.0 : -1.0;
     if (l->mode[i] == STRUT_MODE_OPEN) continue;
     if (l->body_seen[l->body[i]]) l->contacts_decoupled = false;
@@ -298,11 +296,6 @@ void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
     l->closed[l->closed_count++] = i;
     if (l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP)
       if (l->response[i].tangent > 0.0) l->stuck[l->stuck_count++] = i;
-  }
-  if (l->within) {
-    l->all_sliding = l->contacts_decoupled = false;
-    strut_local_factor(model, l);
-    return;
   }
   list_sliding_contacts(model, l);
   if (l->stuck_count > l->stuck_room)

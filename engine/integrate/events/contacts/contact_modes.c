@@ -6,7 +6,6 @@
 #include "engine/forces/drives.h"
 #include "engine/forces/history.h"
 #include "engine/integrate/events/event_kernel.h"
-#include "engine/integrate/events/regions/local_events.h"
 
 /* At rest on the ground is what is slower than this part of size times the contact's frequency; and no force what
    is below this part of the forces on the node. */
@@ -33,10 +32,7 @@ static void evaluate_now(const strut_model *model, strut_state *state, strut_eve
 void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
                                  strut_event_stepper *l, double t) {
   bool fresh = l->fresh;
-  if (l->within)
-    strut_local_evaluate(model, state, l, t);
-  else
-    evaluate_now(model, state, l, t);
+  evaluate_now(model, state, l, t);
   /* a step that is not taken has left rest lengths and sensors of its end */
   if (fresh && l->law_count) strut_drive_apply(model, state, t);
   strut_event_measure(model, state, l, l->now);
@@ -236,10 +232,8 @@ void strut_modes_start(const strut_model *model, strut_state *state, strut_event
                        double t) {
   l->fresh = false;
   strut_surface_move(model, state, l->now, t);
-  int32_t contacts = strut_contacts_of(model, l);
-  for (int32_t k = 0; k < contacts; k++) {
+  for (int32_t i = 0; i < model->contacts.count; i++) {
     strut_touch o;
-    int32_t i = strut_contact_of(l, k);
     l->mode[i] = STRUT_MODE_OPEN;
     measure_at_end(&model->contacts, l, l->now, i, STRUT_TERMS_ALL, &o);
     if (o.gap < 0.0 || (o.gap == 0.0 && o.into <= 0.0)) strut_contact_close(model, l, i, -1);

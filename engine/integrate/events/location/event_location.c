@@ -50,28 +50,6 @@ static double room_to_last(double least, double room, double rate, double after)
   return room > begins ? room : rate > 0.0 ? begins : 0.0;
 }
 
-/*
- * Rates of the value of a cable's law at both ends of a region's step, that of the stretch's own rate by a
- * secant; false where they are not known, or not alike at both ends.
- */
-static bool cable_rates(const strut_event_stepper *l, int32_t i, double h, double *d0, double *d1) {
-  const strut_law_switch *law = &l->laws[i];
-  if (!l->within || law->event != STRUT_EVENT_ACTS || law->member < 0 || !(law->stiffness > 0.0))
-    return false;
-  const strut_step_end *a = l->now, *b = l->next;
-  double k = law->stiffness, d = law->damping, sign = l->acting[i] ? 1.0 : -1.0;
-  bool elastic[2] = {false};
-  if (!l->acting[i] || law->abrupt) {
-    elastic[0] = k * a->stretch[i] < a->tension[i];
-    elastic[1] = k * b->stretch[i] < b->tension[i];
-  }
-  if (elastic[0] != elastic[1]) return false;
-  double bend = elastic[0] ? 0.0 : d * (b->stretch_rate[i] - a->stretch_rate[i]) / h;
-  *d0 = sign * (k * a->stretch_rate[i] + bend);
-  *d1 = sign * (k * b->stretch_rate[i] + bend);
-  return true;
-}
-
 /* Rates of the event's value at both ends of the step; false where a secant must do. */
 static bool rates_of(const strut_model *model, const strut_event_stepper *l, strut_event_kind kind,
                      int32_t i, double h, double *d0, double *d1) {
@@ -82,7 +60,6 @@ static bool rates_of(const strut_model *model, const strut_event_stepper *l, str
     *d0 = h * a.into, *d1 = h * b.into;
     return true;
   }
-  if (kind == STRUT_EVENT_ACTS) return cable_rates(l, i, h, d0, d1);
   if (!strut_event_rate(l, l->now, kind, i, d0) || !strut_event_rate(l, l->next, kind, i, d1))
     return false;
   *d0 *= h, *d1 *= h;
@@ -186,7 +163,7 @@ static void measure_relay(const strut_model *model, const strut_state *state,
 static void measure_laws(const strut_model *model, const strut_state *state,
                          const strut_event_stepper *l, const strut_step_end *end) {
   int32_t laws = strut_laws_of(l), cables = laws < l->cable_count ? laws : l->cable_count;
-  measure_cables(model, state, l, end, l->law_list, cables);
+  measure_cables(model, state, l, end, l->nearby_laws, cables);
   for (int32_t n = cables; n < laws; n++) {
     int32_t k = strut_law_of(l, n);
     if (l->laws[k].event == STRUT_EVENT_RELAY)
@@ -203,13 +180,13 @@ static bool is_of_collision(const strut_model *model, const strut_law_switch *la
   return law->element >= 0 && model->elements.element[law->element].role == STRUT_ELEMENT_COLLISION;
 }
 
-/* Laws that may switch at `end`, in l->law_list; those that have come near are measured at both ends. */
+/* Laws that may switch at `end`, in l->nearby_laws; those that have come near are measured at both ends. */
 static void list_nearby(const strut_model *model, strut_state *state, strut_event_stepper *l,
                         const strut_step_end *end) {
   const strut_nearby *near = strut_nearby_at(model, state, end->q);
   if (l->nearby_made == near->made) return;
   l->nearby_made = near->made;
-  l->law_list_count = 0;
+  l->nearby_count = 0;
   int32_t next = 0;
   for (int32_t k = 0; k < l->law_count; k++) {
     const strut_law_switch *law = &l->laws[k];
@@ -219,7 +196,7 @@ static void list_nearby(const strut_model *model, strut_state *state, strut_even
       measure_element(model, state, law, l->now, k);
       measure_element(model, state, law, l->next, k);
     }
-    l->nearby_laws[l->law_list_count++] = k;
+    l->nearby_laws[l->nearby_count++] = k;
   }
 }
 
@@ -315,23 +292,12 @@ STRUT_INLINE strut_event first_event(const strut_model *model, strut_state *stat
   return first;
 }
 
-strut_event strut_event_of_contact(const strut_model *model, const strut_event_stepper *l,
-                                   int32_t i, double h) {
-  strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
-  keep_first_of(model, l, i, h, STRUT_TERMS_COMMON, &first);
-  return first;
-}
-
 strut_event strut_event_first(const strut_model *model, strut_state *state, strut_event_stepper *l,
                               double h) {
-  int32_t count = strut_contacts_of(model, l);
-  if (model->contacts.surface && !l->contact_list)
+  if (model->contacts.surface)
     return first_event(model, state, l, h, state->buffers.near,
                        strut_surface_candidates(model, l, 0.0, state->buffers.near),
                        STRUT_TERMS_ALL);
-  if (model->contacts.surface)
-    return first_event(model, state, l, h, l->contact_list, count, STRUT_TERMS_ALL);
-  if (l->within) return first_event(model, state, l, h, l->contact_list, count, STRUT_TERMS_COMMON);
   return first_event(model, state, l, h, NULL, model->contacts.count, STRUT_TERMS_COMMON);
 }
 

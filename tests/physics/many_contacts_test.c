@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * Events taken in regions about them, as large structures do, here on small ones: closed forms, and falls of
- * random grids against steps of the whole structure.
- */
+/* Structures with many contacts, whose events come at once or soon after each other: closed forms, and falls of
+   random grids by several methods. */
 #include <math.h>
 #include <string.h>
 
@@ -13,15 +11,12 @@
 #include "tests/support/random.h"
 
 static const double G = 9.81;
-enum { ALL_BY_REGIONS = 1, BY_THE_WHOLE = INT32_MAX };
 
-/* As motion_begin_by, with events taken locally in structures of so many nodes and more. */
 static void begin(motion *m, const strut_scene *scene, const char *method, double step,
-                  double tolerance, int32_t local_from) {
+                  double tolerance) {
   strut_experiment experiment = strut_experiment_default();
   experiment.tolerance = tolerance, experiment.step = step;
   strut_integrator_settings settings = strut_integrator_settings_of(&experiment);
-  settings.local_from = local_from;
   *m = (motion){.model = motion_compile(scene), .step = step};
   assert_int_equal(strut_state_create(m->model, &m->state, NULL), STRUT_OK);
   m->method = strut_integrator_find(method);
@@ -67,7 +62,7 @@ TEST(blocks_stop_where_coulomb_says) {
     strut_scene scene;
     motion m;
     make_blocks(&scene);
-    begin(&m, &scene, methods[k], 1e-3, 1e-9, ALL_BY_REGIONS);
+    begin(&m, &scene, methods[k], 1e-3, 1e-9);
     for (int n = 0; n < 25; n++) {
       motion_steps(&m, 70);
       for (int32_t i = 0; i < BLOCKS; i++)
@@ -79,7 +74,7 @@ TEST(blocks_stop_where_coulomb_says) {
   }
 }
 
-/* ---- many switches at one moment, by steps of the whole ---- */
+/* ---- many switches at one moment ---- */
 
 /* Of `adaptive`, whose steps after events differ with their number. */
 static const double TOLERANCE = 1e-9;
@@ -96,7 +91,7 @@ TEST(blocks_that_touch_at_once_move_as_one) {
       scene.gravity[1] = -G;
       for (int i = 0; i < blocks; i++)
         build_contact(&scene, build_mass(&scene, i, 0.0123, 1.0), GROUND, 20.0);
-      begin(&m, &scene, methods[k], 1e-3, TOLERANCE, BY_THE_WHOLE);
+      begin(&m, &scene, methods[k], 1e-3, TOLERANCE);
       motion_steps(&m, 100);
       if (blocks == 1) alone[0] = m.state->q[1], alone[1] = m.state->v[1];
       for (int i = 0; i < blocks; i++) {
@@ -163,7 +158,7 @@ static void make_grid(strut_scene *scene, uint64_t seed, int law, bool lumped) {
 
 typedef struct fall {
   double q[2 * NODES], v[2 * NODES], residual;
-  int64_t evaluations, events;
+  int64_t events;
 } fall;
 
 static double total_energy(motion *m) {
@@ -174,16 +169,16 @@ static double total_energy(motion *m) {
 }
 
 static void let_fall(const strut_scene *scene, const char *method, double step, double tolerance,
-                     int32_t local_from, fall *f) {
+                     fall *f) {
   motion m;
-  begin(&m, scene, method, step, tolerance, local_from);
+  begin(&m, scene, method, step, tolerance);
   double before = total_energy(&m);
   motion_steps(&m, llround(0.02 / step));
   assert_int_equal(m.state->trouble, STRUT_FAILURE_NONE);
   memcpy(f->q, m.state->q, sizeof f->q);
   memcpy(f->v, m.state->v, sizeof f->v);
   f->residual = total_energy(&m) - before;
-  f->evaluations = m.state->evaluations, f->events = m.state->events;
+  f->events = m.state->events;
   motion_end(&m);
 }
 
@@ -193,38 +188,22 @@ static double distance(const double *a, const double *b) {
   return most;
 }
 
-/* No farther from the exact motion than steps of the whole, but for a little. */
-static void assert_as_good(const fall *local, const fall *whole, const fall *exact, double least) {
-  double q = distance(whole->q, exact->q), v = distance(whole->v, exact->v);
-  assert_within(distance(local->q, exact->q), 0.0, 2.0 * q + least);
-  assert_within(distance(local->v, exact->v), 0.0, 2.0 * v + 1e3 * least);
-  assert_near(local->residual, 0.0, 1e-6);
-  assert_within((double)local->evaluations, 0.0, 0.8 * (double)whole->evaluations);
-}
-
-static void compare(uint64_t seed, int law, bool lumped) {
-  static fall exact, whole, local;
-  strut_scene scene;
-  make_grid(&scene, seed, law, lumped);
-  let_fall(&scene, "adaptive", 4e-5, 1e-11, BY_THE_WHOLE, &exact);
-  let_fall(&scene, "rk4-events", 1e-4, 1e-6, BY_THE_WHOLE, &whole);
-  let_fall(&scene, "rk4-events", 1e-4, 1e-6, ALL_BY_REGIONS, &local);
-  assert_as_good(&local, &whole, &exact, 1e-12);
-  let_fall(&scene, "adaptive", 1e-4, 1e-6, BY_THE_WHOLE, &whole);
-  let_fall(&scene, "adaptive", 1e-4, 1e-6, ALL_BY_REGIONS, &local);
-  assert_as_good(&local, &whole, &exact, 1e-12);
-  if (law < 2)
-    assert_int_equal(local.events, exact.events); /* a yielding contact may switch to and fro */
-  strut_scene_free(&scene);
-}
-
-TEST(grids_fall_as_by_steps_of_the_whole) {
-  for (int lumped = 0; lumped < 2; lumped++)
-    for (int law = 0; law < LAWS; law++) compare(1 + (uint64_t)law, law, lumped);
-}
-
 /* Contacts at rest that let go and hold again: forces have kinks where a threshold is passed. */
-TEST(grids_on_yielding_contacts_fall_so_too) {
-  for (uint64_t seed = 1; seed <= 8; seed++) compare(seed, 2, true);
-  compare(23, 2, true);
+TEST(grids_fall_alike_by_every_method_with_events) {
+  static fall exact, other;
+  for (int lumped = 0; lumped < 2; lumped++)
+    for (int law = 0; law < LAWS; law++) {
+      strut_scene scene;
+      make_grid(&scene, 1 + (uint64_t)law, law, lumped);
+      let_fall(&scene, "adaptive", 4e-5, 1e-11, &exact);
+      for (int k = 0; k < 2; k++) {
+        let_fall(&scene, k ? "adaptive" : "rk4-events", 1e-4, 1e-6, &other);
+        assert_within(distance(other.q, exact.q), 0.0, NEAR);
+        assert_within(distance(other.v, exact.v), 0.0, 1e3 * NEAR);
+        assert_near(other.residual, 0.0, 1e-6);
+        if (law < 2)
+          assert_int_equal(other.events, exact.events); /* else a contact may switch to and fro */
+      }
+      strut_scene_free(&scene);
+    }
 }
