@@ -8,7 +8,6 @@
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
 #include "engine/integrate/rk4_stages.h"
-#include "engine/integrate/small_steps.h"
 
 /* Stage values, (length) each: positions now, velocities of stages 2 to 4, accelerations of all. */
 typedef struct rk4_workspace {
@@ -88,11 +87,8 @@ static void rk4_rigid(const strut_model *model, strut_state *state, rk4_workspac
 
 static void rk4_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
                         int64_t count) {
-  strut_small_steps *small = STRUT_SMALL_STEPS(model, strut_small_rk4);
   if (state->rigid)
     rk4_rigid(model, state, workspace, dt, count);
-  else if (small)
-    small(model, state, NULL, dt, count);
   else
     rk4_plain(model, state, workspace, dt, count);
 }

@@ -3,7 +3,6 @@
 #include "engine/forces/history.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
-#include "engine/integrate/small_steps.h"
 
 /*
  * Semi-implicit (symplectic) Euler with a fixed step: v += h a(q, v), q += h v. Of first order, and
@@ -131,11 +130,7 @@ static void verlet_advance(const strut_model *model, strut_state *state, void *w
                            int64_t count) {
   verlet_workspace *w = workspace;
   if (!w->started) verlet_restart(model, state, workspace, dt);
-  strut_small_steps *small = STRUT_SMALL_STEPS(model, strut_small_verlet);
-  if (small)
-    small(model, state, &(strut_small_kept){w->a, w->power}, dt, count);
-  else
-    verlet_plain(model, state, w, dt, count);
+  verlet_plain(model, state, w, dt, count);
 }
 
 const strut_integrator strut_integrator_verlet = {

@@ -8,7 +8,6 @@
 #include "engine/model/mass.h"
 #include "engine/model/memory_estimate.h"
 #include "engine/model/model.h"
-#include "engine/model/small_model.h"
 
 _Static_assert(STRUT_FRICTION_LAW_COUNT <= 32 && STRUT_DAMPING_COUNT <= 32 &&
                    STRUT_LAW_COUNT <= 32 && STRUT_STRAIN_COUNT <= 32,
@@ -343,10 +342,6 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
     return status;
   }
   if (model->mass && !model->mass->diagonal) model->terms |= STRUT_TERM_SOLVE;
-  if (!strut_small_model_compile(model)) {
-    strut_model_free(model);
-    return strut_memory_fail_model(scene, error);
-  }
   *result = model;
   return STRUT_OK;
 }

@@ -155,7 +155,6 @@ typedef struct strut_model {
   strut_support_motion_table support_motion;
   bool unbalance_corners; /* some rotating mass has an angle whose rate jumps */
   strut_sliding_table sliding;
-  struct strut_small_model *small; /* small_model.h; NULL where only the general kernel steps it */
 } strut_model;
 
 /** Does nothing but supports and the ground tell one direction in space from another? */

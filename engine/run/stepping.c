@@ -8,7 +8,6 @@
 
 #include "engine/forces/drives.h"
 #include "engine/forces/forces.h"
-#include "engine/model/small_model.h"
 #include "engine/run/simulate_parts.h"
 
 /* ---- inputs ---- */
@@ -158,7 +157,6 @@ static void write_stiffness(const strut_model *model, int32_t member, double sti
     return;
   }
   ((double *)(uintptr_t)model->members.stiffness)[member] = stiffness;
-  if (model->small) model->small->stiffness[member] = stiffness;
 }
 
 /* The tables of a model that inputs change, which is why it belongs to one stepping alone. */

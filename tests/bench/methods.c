@@ -8,10 +8,9 @@
 #include <time.h>
 
 #include "engine/integrate/integrator.h"
-#include "engine/model/small_model.h"
 #include "tests/bench/scenes.h"
 
-enum { STEPS = 4000, KERNELS = 3, BALANCES = 2 };
+enum { STEPS = 4000, BALANCES = 2 };
 
 typedef struct method_row {
   const char *method;
@@ -22,8 +21,6 @@ static const method_row rows[] = {
     {"rk4", 5e-5},      {"verlet", 5e-5}, {"verlet-events", 5e-5}, {"rk4-events", 1e-4},
     {"adaptive", 1e-3}, {"euler", 5e-5},  {"euler-events", 5e-5}};
 enum { ROWS = sizeof rows / sizeof rows[0] };
-static const strut_small_level levels[KERNELS] = {STRUT_SMALL_AVX512, STRUT_SMALL_AVX2,
-                                                  STRUT_SMALL_NONE};
 
 static double now(void) {
   struct timespec t;
@@ -31,8 +28,8 @@ static double now(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* ns of a force evaluation; NAN where the processor has no such kernel. */
-static double run(const method_row *row, double step, strut_small_level level, bool balance) {
+/* ns of a force evaluation. */
+static double run(const method_row *row, double step, bool balance) {
   strut_setup setup = {0};
   strut_model *model = NULL;
   strut_state *state = NULL;
@@ -47,10 +44,7 @@ static double run(const method_row *row, double step, strut_small_level level, b
       strut_model_compile(&setup.scene, &model, NULL) == STRUT_OK &&
       strut_state_create(model, &state, NULL) == STRUT_OK)
     work = method->create(model, state, &settings);
-  bool here =
-      model && (level == STRUT_SMALL_NONE || (model->small && model->small->level >= level));
-  if (work && here) {
-    if (model->small) model->small->level = level;
+  if (work) {
     state->balance = balance;
     if (method->restart) method->restart(model, state, work, step);
     int64_t steps = (int64_t)(STEPS * 5e-5 / step);
@@ -69,27 +63,20 @@ static bool is_wanted(const method_row *row, const char *only) {
 }
 
 void bench_methods(int repeats, const char *only, double finer) {
-  static double best[ROWS][KERNELS][BALANCES];
+  static double best[ROWS][BALANCES];
   for (int r = 0; r < repeats; r++)
     for (int i = 0; i < ROWS; i++)
-      for (int k = 0; k < KERNELS && is_wanted(&rows[i], only); k++)
-        for (int b = 0; b < BALANCES; b++) {
-          double time = run(&rows[i], rows[i].step / (i ? finer : 1.0), levels[k], b == 1);
-          best[i][k][b] = r ? fmin(best[i][k][b], time) : time;
-        }
+      for (int b = 0; b < BALANCES && is_wanted(&rows[i], only); b++) {
+        double time = run(&rows[i], rows[i].step / (i ? finer : 1.0), b == 1);
+        best[i][b] = r ? fmin(best[i][b], time) : time;
+      }
   printf(
       "crawler, 10 Hz, friction 0.1: ns of a force evaluation, and times rk4; without the energy "
-      "balance, "
-      "and with it\n"
-      "  %-16s %26s %26s %26s\n",
-      "method", "AVX-512", "AVX2", "general kernel");
+      "balance, and with it\n");
   for (int i = 0; i < ROWS; i++) {
     if (!is_wanted(&rows[i], only)) continue;
-    printf("  %-16s", rows[i].method);
-    for (int k = 0; k < KERNELS; k++) {
-      const double *time = best[i][k], *rk4 = best[0][k];
-      printf("   %5.1f %4.2f  %5.1f %4.2f", time[0], time[0] / rk4[0], time[1], time[1] / rk4[1]);
-    }
-    printf("\n");
+    const double *time = best[i], *rk4 = best[0];
+    printf("  %-16s   %5.1f %4.2f  %5.1f %4.2f\n", rows[i].method, time[0], time[0] / rk4[0],
+           time[1], time[1] / rk4[1]);
   }
 }

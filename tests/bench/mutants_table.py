@@ -350,14 +350,7 @@ MUTANTS = [
     Mutant("reach-at-the-end", "engine/forces/strains/reach.h",
            "s = s < 0.0 ? 0.0 : s > 1.0 ? 1.0 : s;", "s = s < 0.0 ? 0.0 : s;",
            "a bar's second end goes on for collisions", "elements|world"),
-    # Small models, code, orbits, sensitivity.
-    Mutant("small-pull-sign", "engine/model/small_model.c",
-           "add_pull(s, s->to[j], j, INT64_MIN);", "add_pull(s, s->to[j], j, 0);",
-           "members of small models pull both ends the same way", "small_model"),
-    Mutant("small-one-direction", "engine/model/small_model.c",
-           "t->mu_static_backward[n] = strut_friction_static(f, -1.0);",
-           "t->mu_static_backward[n] = strut_friction_static(f, 1.0);",
-           "friction of small models does not depend on the direction", "small_model"),
+    # Code, orbits, sensitivity.
     Mutant("code-slot", "engine/output/code/element_tables.c",
            "return slot < members ? slot : slot - padded + members;", "return slot;",
            "generated code drives another hinge than the scene", "code"),

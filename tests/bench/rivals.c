@@ -7,7 +7,6 @@
 #include <time.h>
 
 #include "engine/integrate/integrator.h"
-#include "engine/model/small_model.h"
 #include "tests/bench/hand_kernel.h"
 #include "tests/bench/scenes.h"
 #ifdef BENCH_MUJOCO
@@ -39,8 +38,7 @@ static void engine_free(void *crawler) {
   free(it);
 }
 
-/* level: the kernel, at most what the processor has. */
-static void *engine_make(bool balance, strut_small_level level) {
+static void *engine_make(bool balance) {
   engine_crawler *it = calloc(1, sizeof *it);
   if (!it) return NULL;
   const strut_integrator_settings settings = {.step = 1e-4};
@@ -54,14 +52,11 @@ static void *engine_make(bool balance, strut_small_level level) {
   }
   strut_state_reset(it->model, it->state);
   it->state->balance = balance;
-  if (it->model->small && level < it->model->small->level) it->model->small->level = level;
   return it;
 }
 
-static void *engine_create(void) { return engine_make(false, STRUT_SMALL_AVX512); }
-static void *engine_create_balance(void) { return engine_make(true, STRUT_SMALL_AVX512); }
-static void *engine_create_avx2(void) { return engine_make(true, STRUT_SMALL_AVX2); }
-static void *engine_create_general(void) { return engine_make(true, STRUT_SMALL_NONE); }
+static void *engine_create(void) { return engine_make(false); }
+static void *engine_create_balance(void) { return engine_make(true); }
 
 static double engine_run(void *crawler, long long steps) {
   engine_crawler *it = crawler;
@@ -168,10 +163,6 @@ static double octave_position(void *crawler) {
 static const rival rivals[] = {
     {"strut", 20000, engine_create, engine_run, engine_position, engine_free},
     {"strut, with the energy balance", 20000, engine_create_balance, engine_run, engine_position,
-     engine_free},
-    {"the same in registers of AVX2", 20000, engine_create_avx2, engine_run, engine_position,
-     engine_free},
-    {"the same by the general kernel", 20000, engine_create_general, engine_run, engine_position,
      engine_free},
     {"by hand, vector registers", 20000, hand_create, hand_run, hand_position, free},
     {BENCH_SCALAR, 20000, hand_create, hand_run_scalar, hand_position, free},

@@ -188,7 +188,9 @@ static double distance(const double *a, const double *b) {
   return most;
 }
 
-/* Contacts at rest that let go and hold again: forces have kinks where a threshold is passed. */
+/* How far positions by steps of 0.1 ms and by error control with 1e-6 may be from those with 1e-11 [m]. */
+static const double NEAR[2] = {1e-9, 5e-12};
+
 TEST(grids_fall_alike_by_every_method_with_events) {
   static fall exact, other;
   for (int lumped = 0; lumped < 2; lumped++)
@@ -198,11 +200,11 @@ TEST(grids_fall_alike_by_every_method_with_events) {
       let_fall(&scene, "adaptive", 4e-5, 1e-11, &exact);
       for (int k = 0; k < 2; k++) {
         let_fall(&scene, k ? "adaptive" : "rk4-events", 1e-4, 1e-6, &other);
-        assert_within(distance(other.q, exact.q), 0.0, NEAR);
-        assert_within(distance(other.v, exact.v), 0.0, 1e3 * NEAR);
+        assert_within(distance(other.q, exact.q), 0.0, NEAR[k]);
+        assert_within(distance(other.v, exact.v), 0.0, 1e3 * NEAR[k]);
         assert_near(other.residual, 0.0, 1e-6);
         if (law < 2)
-          assert_int_equal(other.events, exact.events); /* else a contact may switch to and fro */
+          assert_int_equal(other.events, exact.events); /* else a contact may yield to and fro */
       }
       strut_scene_free(&scene);
     }

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "engine/integrate/batch/batch.h"
-#include "engine/model/small_model.h"
 #include "engine/run/simulate.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * The works of a Runge-Kutta step, whose powers are added up lane by lane, against the powers of its four evaluations
- * with the weights of the method: of a driven crawler on a belt, by every kernel.
+ * with the weights of the method: of a driven crawler on a belt.
  */
 #include <string.h>
 
-#include "engine/model/small_model.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
@@ -33,7 +32,7 @@ static void expect_works(const motion *m, double *works) {
   }
 }
 
-static void check_kernel(strut_small_level level, const char *name) {
+TEST(works_are_powers_with_the_weights_of_the_stages) {
   strut_setup setup = {.experiment = strut_experiment_default()};
   motion m;
   double works[STRUT_POWER_ROOM], before[STRUT_POWER_ROOM], most[STRUT_POWER_ROOM] = {0};
@@ -42,33 +41,22 @@ static void check_kernel(strut_small_level level, const char *name) {
   structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
   setup.scene.ground.belt_speed = 0.05;
   motion_begin_by(&m, &setup, "rk4", STEP);
-  if (level == STRUT_SMALL_NONE) m.model->small = NULL;
-  if (level == STRUT_SMALL_NONE || (m.model->small && m.model->small->level >= level)) {
-    if (m.model->small) m.model->small->level = level;
-    m.state->balance = true;
-    motion_steps(&m, SETTLED);
-    for (int n = 0; n < STEPS; n++) {
-      memcpy(before, m.state->work, sizeof before);
-      expect_works(&m, works);
-      motion_steps(&m, 1);
-      for (int p = 0; p < STRUT_POWER_ROOM; p++) {
-        assert_near(m.state->work[p] - before[p], works[p],
-                    1e-11 * works[STRUT_POWER_EXCHANGED] + 1e-14 * fabs(before[p]));
-        most[p] = fmax(most[p], fabs(works[p]));
-      }
+  m.state->balance = true;
+  motion_steps(&m, SETTLED);
+  for (int n = 0; n < STEPS; n++) {
+    memcpy(before, m.state->work, sizeof before);
+    expect_works(&m, works);
+    motion_steps(&m, 1);
+    for (int p = 0; p < STRUT_POWER_ROOM; p++) {
+      assert_near(m.state->work[p] - before[p], works[p],
+                  1e-11 * works[STRUT_POWER_EXCHANGED] + 1e-14 * fabs(before[p]));
+      most[p] = fmax(most[p], fabs(works[p]));
     }
-    /* all that the scene has was at work */
-    assert_true(most[STRUT_POWER_DRIVE] > 0 && most[STRUT_POWER_BELT] > 0 &&
-                most[STRUT_POWER_MEMBERS] > 0 && most[STRUT_POWER_CONTACT] > 0 &&
-                most[STRUT_POWER_FRICTION] > 0);
-    print_message("%s\n", name);
   }
+  /* all that the scene has was at work */
+  assert_true(most[STRUT_POWER_DRIVE] > 0 && most[STRUT_POWER_BELT] > 0 &&
+              most[STRUT_POWER_MEMBERS] > 0 && most[STRUT_POWER_CONTACT] > 0 &&
+              most[STRUT_POWER_FRICTION] > 0);
   motion_end(&m);
   strut_scene_free(&setup.scene);
-}
-
-TEST(works_are_powers_with_the_weights_of_the_stages) {
-  check_kernel(STRUT_SMALL_NONE, "general kernel");
-  check_kernel(STRUT_SMALL_AVX2, "AVX2");
-  check_kernel(STRUT_SMALL_AVX512, "AVX-512");
 }

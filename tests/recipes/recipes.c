@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * What docs/dev/recipes.md adds works: its friction law, its law of members and its strain in every method, by
- * every kernel, alone and in lanes, in subdomains, at rest, in the step limit and in exported code; its method of integration on a smooth scene; and all through the language and back.
+ * What docs/dev/recipes.md adds works: its friction law, its law of members and its strain in every method, alone
+ * and in lanes, in subdomains, at rest, in the step limit and in exported code; its method of integration on a smooth scene; and all through the language and back.
  */
 #include <math.h>
 #include <stdio.h>
@@ -13,7 +13,6 @@
 #include "engine/integrate/domain_parts.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/limit/step_limit.h"
-#include "engine/model/small_model.h"
 #include "engine/output/code/code.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibria.h"
@@ -54,7 +53,7 @@ static bool read_setup(const char *text, strut_setup *setup, bool report) {
   return status == STRUT_OK;
 }
 
-/* ---- runs by every method and every kernel ---- */
+/* ---- runs by every method ---- */
 
 typedef struct run_plan {
   const strut_setup *setup;
@@ -62,23 +61,14 @@ typedef struct run_plan {
   /* Compares a state at the end; `where` is the method and how it was stepped. */
   void (*compare)(const strut_setup *setup, const strut_integrator *method, const double *q,
                   const double *v, const char *where);
-  int small, domains, lanes, methods; /* runs made so */
+  int domains, lanes, methods; /* runs made so */
 } run_plan;
 
-typedef enum run_way { GENERAL, AVX2, AVX512, DOMAINS, WAYS } run_way;
-static const char *const way_names[WAYS] = {"general", "small avx2", "small avx512", "subdomains"};
+typedef enum run_way { GENERAL, DOMAINS, WAYS } run_way;
+static const char *const way_names[WAYS] = {"general", "subdomains"};
 
-/* Brings the model to the way; false: it is not stepped so. */
-static bool lead(strut_model *model, const strut_integrator *method, run_way way) {
-  strut_small_level level = way == AVX2     ? STRUT_SMALL_AVX2
-                            : way == AVX512 ? STRUT_SMALL_AVX512
-                                            : STRUT_SMALL_NONE;
-  if (level > STRUT_SMALL_NONE) {
-    if (!model->small || model->small->level < level) return false;
-    model->small->level = level;
-    return true;
-  }
-  model->small = NULL;
+/* Can the model be stepped so? */
+static bool is_possible(const strut_model *model, const strut_integrator *method, run_way way) {
   return way != DOMAINS || strut_domain_steps_possible(model, method);
 }
 
@@ -109,11 +99,10 @@ static void run(run_plan *terms, const strut_integrator *method, run_way way) {
   snprintf(where, sizeof where, "%s, %s", method->name, way_names[way]);
   if (strut_model_compile(&terms->setup->scene, &model, NULL)) {
     expect(false, "the scene is not compiled", where, 0);
-  } else if (lead(model, method, way)) {
+  } else if (is_possible(model, method, way)) {
     bool good = !strut_state_create(model, &state, NULL) && step(model, state, method, terms, way);
     expect(good, "is not stepped", where, 0);
     if (good) terms->compare(terms->setup, method, state->q, state->v, where);
-    terms->small += way == AVX2 || way == AVX512;
     terms->domains += way == DOMAINS;
     terms->methods += way == GENERAL;
   }
@@ -250,8 +239,6 @@ static void test_the_friction_law(int count) {
          "friction law", terms.methods);
   expect(strut_batch_widest() == 1 || terms.lanes == 2, "is not run in lanes", "friction law",
          terms.lanes);
-  expect(strut_batch_widest() == 1 || count == 1 || count > STRUT_SMALL_NODES || terms.small >= 5,
-         "is not run by the small kernel", "friction law", terms.small);
   expect(limit_of(&setup) < 0.2, "is not known to the step limit", "the law's slope", 0);
   snprintf(text, sizeof text, "code-friction-%d", count);
   export_code(&terms, text);

@@ -10,7 +10,6 @@
 #include <assert.h>
 
 #include "engine/integrate/events/event_kernel.h"
-#include "engine/integrate/events/small/small_trials.h"
 #include "engine/integrate/events/tableaus.h"
 #include "engine/integrate/integrator.h"
 
@@ -349,32 +348,11 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
 
 STRUT_EVENT_TRIAL(adaptive, take)
 
-/* The step of a small model in registers, see small_adaptive.h, or by the general kernel. */
-static void adaptive_step(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                          double t, double h) {
-  strut_small_trial *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_adaptive);
-  if (!small) {
-    adaptive_trial(model, state, l, t, h);
-    return;
-  }
-  small(model, state, l, t, h);
-  look_between(model, state, l, h, STRUT_TERMS_COMMON);
-}
-
-/* Several of them in registers. */
-static void adaptive_until_event(const strut_model *model, strut_state *state,
-                                 strut_event_stepper *l, double dt, int64_t end) {
-  strut_small_quiet *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_adaptive_quiet);
-  if (!small || !strut_small_is_quiet(state, l)) return;
-  small(model, state, l, dt, end);
-  if (l->tried) look_between(model, state, l, next_step_size(state, l, dt), STRUT_TERMS_COMMON);
-}
-
 /* The method that steps by this pair. */
 #define FORMULA(pair, count)                                                                       \
   {                                                                                                \
-    .trial = adaptive_step, .stages = ARRAYS(count), .exact = true, .adaptive = true,              \
-    .advance_until_event = adaptive_until_event, .tableau = &(pair)                                \
+    .trial = adaptive_trial, .stages = ARRAYS(count), .exact = true, .adaptive = true,             \
+    .tableau = &(pair)                                                                             \
   }
 static const strut_step_formula order_5 =
                                     FORMULA(strut_dormand_prince, STRUT_DORMAND_PRINCE_STAGES),

@@ -11,7 +11,6 @@
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/location/event_log.h"
 #include "engine/integrate/events/location/variation.h"
-#include "engine/integrate/events/small/small_modes.h"
 #include "engine/integrate/observer.h"
 #include "engine/model/compile_parts.h"
 
@@ -165,8 +164,7 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
   if (!create_step_end(model, &state->arena, l->now, true) ||
       !create_step_end(model, &state->arena, l->next, false) || !make_arrays(model, state, l) ||
       !list_laws(model, state, l) || !create_switch_counts(model, &state->arena, l) ||
-      !make_held(model, state) || strut_small_modes_create(model, state, l) ||
-      strut_event_stepper_prepare(model, state, settings, l))
+      !make_held(model, state) || strut_event_stepper_prepare(model, state, settings, l))
     return NULL;
   return l;
 }
@@ -260,7 +258,6 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
   l->at_once = l->switches = 0;
   l->pushed = -1;
   l->tried = false;
-  if (l->small) l->small->is.rows_current = false;
   l->next_break =
       strut_drive_next_break(model, state, t + state->time_offset + STRUT_AT_BREAK * dt);
   if (l->next_break < HUGE_VAL) t += moment_before(t, dt);

@@ -260,7 +260,6 @@ struct strut_event_stepper {
   const strut_contact_entry
       *entry;     /* (contacts) the model's, or a state's with STRUT_TERM_SURFACES */
   int32_t *facet; /* (contacts) of closed contacts of surfaces; NULL without STRUT_TERM_SURFACES */
-  struct strut_small_modes *small; /* see small_modes.h; NULL where the model is not small */
   struct strut_contact_coupling *coupling; /* contact_coupling.h; NULL where contacts are few */
   /* where collisions are many: the laws that may switch, of state->nearby, made so often; else NULL */
   int32_t *nearby_laws, nearby_count;

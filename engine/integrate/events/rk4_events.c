@@ -4,7 +4,6 @@
  * that the fourth order holds through contact, friction and slack cables.
  */
 #include "engine/integrate/events/event_kernel.h"
-#include "engine/integrate/events/small/small_trials.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/rk4_stages.h"
 
@@ -39,31 +38,13 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
 
 STRUT_EVENT_TRIAL(rk4_events, take)
 
-static void trial(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
-                  double h) {
-  strut_small_trial *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_rk4_events);
-  if (small)
-    small(model, state, l, t, h);
-  else
-    rk4_events_trial(model, state, l, t, h);
-}
-
-static void advance_until_event(const strut_model *model, strut_state *state,
-                                strut_event_stepper *l, double dt, int64_t end) {
-  strut_small_quiet *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_rk4_events_quiet);
-  if (small && strut_small_is_quiet(state, l)) small(model, state, l, dt, end);
-}
-
 static const strut_tableau tableau = {
     .stages = 4,
     .order = 4,
     .ahead = {0.0, 0.5, 0.5, 1.0},
     .weight = {{0}, {0.5}, {0.0, 0.5}, {0.0, 0.0, 1.0}, {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}}};
-static const strut_step_formula stepper = {.trial = trial,
-                                           .stages = STAGES,
-                                           .exact = true,
-                                           .advance_until_event = advance_until_event,
-                                           .tableau = &tableau};
+static const strut_step_formula stepper = {
+    .trial = rk4_events_trial, .stages = STAGES, .exact = true, .tableau = &tableau};
 
 static void *create(const strut_model *model, strut_state *state,
                     const strut_integrator_settings *settings) {

@@ -5,7 +5,6 @@
  */
 #include "engine/integrate/events/contacts/contact_coupling.h"
 #include "engine/integrate/events/contacts/implicit_ground.h"
-#include "engine/integrate/events/small/small_trials.h"
 #include "engine/integrate/integrator.h"
 
 enum { PREDICTED, STAGES };
@@ -148,10 +147,7 @@ static void verlet_advance_with_rare_terms(const strut_model *model, strut_state
 
 static void verlet_advance_until_event(const strut_model *model, strut_state *state,
                                        strut_event_stepper *l, double dt, int64_t end) {
-  strut_small_quiet *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_verlet_events);
-  if (small && l->small->is.decoupled)
-    small(model, state, l, dt, end);
-  else if (model->terms & STRUT_TERMS_RARE)
+  if (model->terms & STRUT_TERMS_RARE)
     verlet_advance_with_rare_terms(model, state, l, dt, end);
   else if (state->balance)
     verlet_advance_with_balance(model, state, l, dt, end);

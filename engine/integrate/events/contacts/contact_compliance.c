@@ -6,7 +6,6 @@
 
 #include "engine/integrate/events/contacts/contact_coupling.h"
 #include "engine/integrate/events/event_kernel.h"
-#include "engine/integrate/events/small/small_modes.h"
 #include "engine/model/dense_cholesky.h"
 
 /* Entries below this part of a column's largest one change no bit that matters. */
@@ -283,7 +282,6 @@ static void factor_matrix(const strut_model *model, strut_event_stepper *l) {
 }
 
 void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
-  strut_small_modes_change(l);
   l->closed_count = l->stuck_count = 0;
   l->contacts_decoupled = model->contacts.normal[0] == 0.0 && !has_moving_axes(model);
   int32_t count = model->contacts.count;
