@@ -337,7 +337,6 @@ STRUT_API strut_hinge strut_hinge_default(void);
 STRUT_API strut_contact strut_contact_default(void);
 STRUT_API strut_cell strut_cell_default(void);
 STRUT_API strut_collision strut_collision_default(void);
-STRUT_API strut_sliding_mass strut_sliding_mass_default(void);
 /** Frees the contents of the scene and zeroes it. */
 STRUT_API void strut_scene_free(strut_scene *scene);
 
