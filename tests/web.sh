@@ -24,5 +24,5 @@ cmake --build --preset web -j "$(nproc)"
 cmake --preset release
 cmake --build --preset release -j "$(nproc)" --target strut
 cmake --preset web -DSTRUT_WEB_PROGRAM="$PWD/build/release/strut"
-npm ci --prefix tests/web --ignore-scripts --no-audit --no-fund
+npm install --prefix tests/web --no-package-lock --before=2026-11-20 --ignore-scripts --no-audit --no-fund
 ctest --preset web
