@@ -61,7 +61,7 @@ MUTANTS = [
     Mutant("conic-without-rounding", "engine/statics/rigidity/stiffness.c",
            "value[0] <= ROUNDING * value[2]", "value[0] <= 0.0",
            "members of two directions are said to lie on no conic, but for luck",
-           "rigidity|rigidity_cells"),
+           "rigidity"),
 
     # Scene.
     Mutant("drawn-from-start", "engine/scene/scene.c",
@@ -185,7 +185,7 @@ MUTANTS = [
     Mutant("neighbours-merged", "engine/statics/search/merge.c",
            "return fabs(a - b) <= g->flat + 1e-9 * fmin(fabs(a), fabs(b));",
            "return fabs(a - b) <= g->flat + 1e-3 * fmax(fabs(a), fabs(b));",
-           "shapes of similar energies count as of one energy", "critical|von_mises|critical_gallery"),
+           "shapes of similar energies count as of one energy", "critical|von_mises|gallery"),
     Mutant("barrier-from-other-side", "engine/statics/equilibria/landscape.c",
            ".height = points[way].potential - points[a].potential,",
            ".height = points[way].potential - points[b].potential,",
@@ -203,11 +203,11 @@ MUTANTS = [
            "path|cli_path|path_figure"),
     Mutant("cables-need-not-pull", "engine/statics/rigidity/self_stress.c",
            "program->row_low[r] = 1.0;", "program->row_low[r] = r ? 1.0 : -1.0;",
-           "the first cable may push in the state that is to pull all cables", "rigidity|rigidity_cells|cli_rigidity"),
+           "the first cable may push in the state that is to pull all cables", "rigidity|cli_rigidity"),
     Mutant("floppy-is-stable", "engine/statics/search/merge.c",
            "return point->zero > point->rigid ? STRUT_FLOPPY : STRUT_STABLE;",
            "return point->zero > point->rigid + 1 ? STRUT_FLOPPY : STRUT_STABLE;",
-           "one motion without stiffness does not make a shape floppy", "critical|critical_gallery"),
+           "one motion without stiffness does not make a shape floppy", "critical|gallery"),
 
     # Output.
     Mutant("hdf5-rows-at-begin", "engine/output/hdf5_writer.c",

@@ -6,10 +6,86 @@
 #include <omp.h>
 #endif
 
+#include "engine/statics/search/critical.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/structures.h"
-#include "tests/unit/critical_support.h"
+
+/* A scene (fill it first), and what a search of it gives. */
+typedef struct fixture {
+  strut_scene scene;
+  strut_model *model;
+  strut_potential *potential;
+  strut_critical_set set;
+} fixture;
+
+/* A structure by its numbers alone. */
+typedef struct node_row {
+  double x, y;
+  int fixed; /* 1: in x, 2: in y */
+} node_row;
+typedef struct member_row {
+  strut_member_kind kind;
+  int a, b; /* from 1 */
+  double stiffness, rest;
+} member_row;
+
+/* Compiles and searches with seed 1; checks what every point must be. */
+static void critical_find(fixture *f, const uint8_t *held, bool ground, bool saddles) {
+  strut_critical_effort effort = {.seed = 1, .saddles = saddles};
+  assert_int_equal(strut_model_compile(&f->scene, &f->model, NULL), STRUT_OK);
+  assert_int_equal(strut_potential_create(f->model, held, ground, &f->potential, NULL), STRUT_OK);
+  assert_int_equal(strut_critical_search(f->potential, &effort, &f->set, NULL), STRUT_OK);
+  for (size_t i = 0; i < f->set.count; i++) { /* what every point must be */
+    const strut_critical_point *p = &f->set.points[i];
+    assert_true(p->residual <= 16 * strut_potential_rounding(f->potential, p->q));
+    assert_true(p->found > 0 || p->label == STRUT_STABLE || p->label == STRUT_FLOPPY);
+    if (i > 0 && p[-1].label == p->label) assert_true(p[-1].potential <= p->potential);
+    for (int k = 0; k < 2; k++)
+      if (p->down[k] >= 0) assert_true(f->set.points[p->down[k]].potential < p->potential);
+  }
+}
+
+static void critical_tear_down(fixture *f) {
+  strut_critical_free(&f->set);
+  strut_potential_free(f->potential);
+  strut_model_free(f->model);
+  strut_scene_free(&f->scene);
+}
+
+static size_t count_of(const fixture *f, strut_stability label) {
+  size_t count = 0;
+  for (size_t i = 0; i < f->set.count; i++) count += f->set.points[i].label == label;
+  return count;
+}
+
+/* The point of that label whose potential is nearest. */
+static const strut_critical_point *nearest(const fixture *f, strut_stability label, double value) {
+  const strut_critical_point *best = NULL;
+  for (size_t i = 0; i < f->set.count; i++) {
+    const strut_critical_point *p = &f->set.points[i];
+    if (p->label != label) continue;
+    if (!best || fabs(p->potential - value) < fabs(best->potential - value)) best = p;
+  }
+  assert_non_null(best);
+  return best;
+}
+
+static void critical_build(strut_scene *scene, const node_row *node, int nodes,
+                           const member_row *member, int members) {
+  strut_scene_init(scene);
+  for (int i = 0; i < nodes; i++) {
+    build_node(scene, node[i].x, node[i].y);
+    scene->nodes[i].fixed[0] = node[i].fixed & 1;
+    scene->nodes[i].fixed[1] = node[i].fixed & 2;
+  }
+  for (int j = 0; j < members; j++)
+    build_sized(scene, member[j].kind, member[j].a - 1, member[j].b - 1, member[j].stiffness, 0, 0,
+                member[j].rest);
+}
+#define BUILD(scene, node, member)                                                                 \
+  critical_build(scene, node, (int)(sizeof(node) / sizeof(node)[0]), member,                       \
+                 (int)(sizeof(member) / sizeof(member)[0]))
 
 TEST(the_crawler_on_nodes_1_and_4) {
   /* found again by every one of several seeds */
