@@ -66,68 +66,6 @@ TEST(spinning_bar) {
   model_run_free(&run);
 }
 
-/* Net force on a free node of the X from the positions alone: cables pull, bars push too. */
-static void x_frame_force(const model_run *run, int node, double load, double force[2]) {
-  static const struct {
-    const char *a, *b;
-    double stiffness, rest;
-  } members[] = {{"n1", "n2", 100, 0.95}, {"n2", "n3", 100, 0.95}, {"n3", "n4", 100, 0.95},
-                 {"n4", "n1", 100, 0.95}, {"n2", "n4", 1000, 0},   {"n1", "n3", 1000, 0}};
-  force[0] = 0, force[1] = -load;
-  for (int i = 0; i < 6; i++) {
-    int ends[] = {members[i].a[1] - '0', members[i].b[1] - '0'};
-    if (ends[0] != node && ends[1] != node) continue;
-    const double *p = model_position(run, members[i].a), *q = model_position(run, members[i].b);
-    double length = hypot(q[0] - p[0], q[1] - p[1]);
-    double stretch = length - (members[i].rest > 0 ? members[i].rest : sqrt(2));
-    double pull = members[i].stiffness * stretch * (ends[0] == node ? 1 : -1) / length;
-    if (members[i].rest > 0 && stretch < 0) continue;
-    force[0] += pull * (q[0] - p[0]), force[1] += pull * (q[1] - p[1]);
-  }
-}
-
-TEST(x_frame) {
-  double side = (100 * 0.95 + 1000 * 1) / (100 + 1000.0);
-  model_run run;
-  model_run_file(&run, "basics/x-frame", set_none);
-  const double *n3 = model_position(&run, "n3");
-  assert_near(n3[0], side, 1e-9);
-  assert_near(n3[1], side, 1e-9);
-  double cable = 100 * (side - 0.95), bar = 1000 * sqrt(2) * (side - 1);
-  size_t last = run.row_count - 1;
-  assert_near(model_value(&run, last, STRUT_CHANNEL_FORCE, "top", 0), cable, 1e-7);
-  assert_near(model_value(&run, last, STRUT_CHANNEL_FORCE, "left", 0), cable, 1e-7);
-  assert_near(model_value(&run, last, STRUT_CHANNEL_FORCE, "rising", 0), bar, 1e-6);
-  assert_relative(run.summary.energy.elastic, 4 * cable * cable / 200 + 2 * bar * bar / 2000, 1e-9);
-  model_run_free(&run);
-}
-
-TEST(x_frame_loaded) {
-  static const struct {
-    const char *set;
-    double load;
-    bool slack;
-  } cases[] = {{"load=5", 5, false}, {"load=7.58", 7.58, false}, {"load=7.59", 7.59, true}};
-  for (int i = 0; i < 3; i++) {
-    model_run run;
-    model_run_file(&run, "basics/x-frame", set_to(cases[i].set));
-    double force[2];
-    x_frame_force(&run, 2, 0, force);
-    assert_near(force[0], 0, 1e-7); /* free in x only */
-    for (int node = 3; node <= 4; node++) {
-      x_frame_force(&run, node, cases[i].load, force);
-      assert_near(force[0], 0, 1e-7);
-      assert_near(force[1], 0, 1e-7);
-    }
-    double right = model_value(&run, run.row_count - 1, STRUT_CHANNEL_FORCE, "right", 0);
-    double left = model_value(&run, run.row_count - 1, STRUT_CHANNEL_FORCE, "left", 0);
-    assert_true(cases[i].slack ? left == 0 && right == 0 : left > 1e-3 && right > 1e-3);
-    if (!i) assert_near(model_position(&run, "n3")[0], 1.0196838, 1e-7);
-    if (!i) assert_near(model_position(&run, "n3")[1], 0.9660162, 1e-7);
-    model_run_free(&run);
-  }
-}
-
 /* Height and speed of the first bounce: damped sine in, undamped sine out, gravity in both. */
 static double bounce_height(double zeta, double *arrival, double *departure) {
   const double w = 100, rest = -G / (w * w), wd = w * sqrt(1 - zeta * zeta);
@@ -212,39 +150,6 @@ TEST(belt) {
   }
   assert_near(error[0], 0, 2e-4);
   assert_true(fabs(error[1]) < fabs(error[0]) / 4);
-}
-
-TEST(belt_without_stick_slip) {
-  double low, high;
-  model_run run;
-  model_run_file(&run, "basics/belt", set_to("static=1"));
-  swing(&run, &low, &high);
-  assert_near(low, 0, 1e-4);
-  assert_near(high, 0.02, 2e-4);
-  model_run_free(&run);
-}
-
-/* The load that holds the arch's apex at y. */
-static double arch_load(double y) { return 2 * 1000 * y * (hypot(1, 0.3) / hypot(1, y) - 1); }
-
-TEST(von_mises_truss) {
-  double free_length = hypot(1, 0.3), length = cbrt(free_length * 1 * 1);
-  double limit = arch_load(sqrt(length * length - 1));
-  char set[2][64];
-  snprintf(set[0], sizeof set[0], "load=%.17g", limit * (1 - 1e-4));
-  snprintf(set[1], sizeof set[1], "load=%.17g", limit * (1 + 1e-4));
-  model_run run;
-  model_run_file(&run, "basics/von-mises-truss", set_none);
-  assert_near(model_position(&run, "apex")[0], 0, 1e-12);
-  assert_near(model_position(&run, "apex")[1], 0.2, 1e-8);
-  model_run_free(&run);
-  for (int i = 0; i < 2; i++) {
-    model_run_file(&run, "basics/von-mises-truss", set_to(set[i]));
-    double y = model_position(&run, "apex")[1];
-    assert_true(i ? y < -0.3 : y > sqrt(length * length - 1));
-    assert_near(arch_load(y), limit * (i ? 1 + 1e-4 : 1 - 1e-4), 1e-7);
-    model_run_free(&run);
-  }
 }
 
 /* Put on at once, a smaller load is enough: the largest of k (L0 - L)^2 / (h - y) over y. */
