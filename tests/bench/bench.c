@@ -6,7 +6,6 @@
  *                                            X-frames of 10 to N (default 1000000) members
  *   strut_bench batch                        the crawler alone and in batches of 4 and 8
  *   strut_bench large [MEMBERS]              grids in order and shuffled, by one thread and several
- *   strut_bench terms                        what each term costs, alone
  *   strut_bench methods [METHOD [FINER]]     what a force evaluation costs by each method, alone
  *   strut_bench rivals [--limit S] [-o DIR] [SCENE...]   error against cost, strut and other solvers; a table
  *                                            for each scene, CSV and figures into DIR, S of CPU time per cell
@@ -29,12 +28,10 @@
 #include "tests/bench/precision.h"
 #endif
 #include "tests/bench/batch_runs.h"
-#include "tests/bench/falls.h"
 #include "tests/bench/large.h"
 #include "tests/bench/methods.h"
 #include "tests/bench/rivals.h"
 #include "tests/bench/scenes.h"
-#include "tests/bench/terms.h"
 
 enum { MOST_RIVALS = 16, MOST_REPEATS = 1001 };
 
@@ -218,9 +215,7 @@ static int usage(void) {
           "usage: strut_bench [--repeats N] [--members N]\n"
           "       strut_bench batch\n"
           "       strut_bench large [MEMBERS]\n"
-          "       strut_bench terms\n"
           "       strut_bench methods [METHOD [FINER]]\n"
-          "       strut_bench falls [NODES]\n"
           "       strut_bench rivals [--limit S] [-o DIR] [SCENE...]\n"
           "       strut_bench rivals --check\n"
           "       strut_bench chain MEMBERS [lumped|consistent] > FILE\n"
@@ -259,16 +254,8 @@ int main(int argc, char **argv) {
     bench_large(argc > 2 ? atol(argv[2]) : 0);
     return 0;
   }
-  if (argc == 2 && strcmp(argv[1], "terms") == 0) {
-    bench_terms(51);
-    return 0;
-  }
   if (argc >= 2 && strcmp(argv[1], "methods") == 0) {
     bench_methods(31, argc > 2 ? argv[2] : NULL, argc > 3 ? atof(argv[3]) : 1.0);
-    return 0;
-  }
-  if (argc >= 2 && strcmp(argv[1], "falls") == 0) {
-    bench_falls(argc > 2 ? atol(argv[2]) : 0);
     return 0;
   }
   if (argc == 3 && strcmp(argv[1], "load") == 0) return load(argv[2]);
@@ -291,7 +278,6 @@ int main(int argc, char **argv) {
   if (repeats < 1 || repeats > MOST_REPEATS) return usage();
   compare_crawlers(repeats);
   bench_batch(repeats);
-  bench_terms(repeats);
   bench_methods(repeats, NULL, 1.0);
   compare_chains(members, repeats);
   return 0;

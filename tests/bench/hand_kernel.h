@@ -17,11 +17,7 @@ typedef struct hand_crawler_state {
 /** State I of the paper as drawn (equations (12)), or its mirror image, state II; at rest. */
 void hand_crawler_place(hand_crawler_state *state, int mirrored);
 
-/** Advances by so many steps of dt [s]; drive f [Hz], a [m]. Vector registers, no branches. */
-void hand_crawler_run(hand_crawler_state *state, double dt, double f, double a, double mu,
-                      long long steps);
-
-/** The same in plain scalar straight-line code. */
+/** Advances by so many steps of dt [s]; drive f [Hz], a [m]. Plain scalar straight-line code. */
 void hand_crawler_run_scalar(hand_crawler_state *state, double dt, double f, double a, double mu,
                              long long steps);
 

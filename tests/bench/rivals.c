@@ -9,9 +9,6 @@
 #include "engine/integrate/integrator.h"
 #include "tests/bench/hand_kernel.h"
 #include "tests/bench/scenes.h"
-#ifdef BENCH_MUJOCO
-#include "tests/bench/mujoco_crawler.h"
-#endif
 
 static const double frequency = 10.0, amplitude = 1e-4, friction = 0.1, step = 1e-4;
 
@@ -78,12 +75,6 @@ static void *hand_create(void) {
   return it;
 }
 
-static double hand_run(void *crawler, long long steps) {
-  double start = bench_seconds();
-  hand_crawler_run(crawler, step, frequency, amplitude, friction, steps);
-  return bench_seconds() - start;
-}
-
 static double hand_run_scalar(void *crawler, long long steps) {
   double start = bench_seconds();
   hand_crawler_run_scalar(crawler, step, frequency, amplitude, friction, steps);
@@ -95,79 +86,11 @@ static double hand_position(void *crawler) {
   return it->x[0];
 }
 
-/* MuJoCo */
-
-#ifdef BENCH_MUJOCO
-static void *mujoco_make(void) {
-  char message[500] = "";
-  void *it = mujoco_crawler_create(frequency, amplitude, message, sizeof message);
-  if (!it) fprintf(stderr, "strut_bench: MuJoCo: %s\n", message);
-  return it;
-}
-
-static double mujoco_run(void *crawler, long long steps) {
-  double start = bench_seconds();
-  mujoco_crawler_run(crawler, steps);
-  return bench_seconds() - start;
-}
-
-static double mujoco_position(void *crawler) { return mujoco_crawler_position(crawler); }
-static void mujoco_free(void *crawler) { mujoco_crawler_free(crawler); }
-#else
-static void *mujoco_make(void) { return NULL; }
-static double mujoco_run(void *crawler, long long steps) {
-  (void)crawler, (void)steps;
-  return 0;
-}
-static double mujoco_position(void *crawler) {
-  (void)crawler;
-  return 0;
-}
-static void mujoco_free(void *crawler) { (void)crawler; }
-#endif
-
-/* Octave: a script that starts anew each time and times itself. */
-
-typedef struct octave_crawler {
-  double position;
-} octave_crawler;
-
-static double octave_run(void *crawler, long long steps) {
-  octave_crawler *it = crawler;
-  char command[600];
-  snprintf(command, sizeof command, "octave-cli --norc -q '%s/bench/crawler.m' %lld 2>/dev/null",
-           STRUT_TESTS_DIR, steps);
-  FILE *pipe = popen(command, "r");
-  double nanoseconds = (double)NAN;
-  if (!pipe) return nanoseconds;
-  if (fscanf(pipe, "%lf ns per step, node 1 at %lf", &nanoseconds, &it->position) != 2)
-    nanoseconds = (double)NAN;
-  pclose(pipe);
-  return 1e-9 * nanoseconds * (double)steps;
-}
-
-static void *octave_create(void) {
-  octave_crawler *it = calloc(1, sizeof *it);
-  if (it && !isfinite(octave_run(it, 1))) {
-    free(it);
-    it = NULL;
-  }
-  return it;
-}
-
-static double octave_position(void *crawler) {
-  const octave_crawler *it = crawler;
-  return it->position;
-}
-
 static const rival rivals[] = {
     {"strut", 20000, engine_create, engine_run, engine_position, engine_free},
     {"strut, with the energy balance", 20000, engine_create_balance, engine_run, engine_position,
      engine_free},
-    {"by hand, vector registers", 20000, hand_create, hand_run, hand_position, free},
     {BENCH_SCALAR, 20000, hand_create, hand_run_scalar, hand_position, free},
-    {"MuJoCo, RK4", 1000, mujoco_make, mujoco_run, mujoco_position, mujoco_free},
-    {"Octave, vectorised", 1000, octave_create, octave_run, octave_position, free},
 };
 
 const rival *rival_at(size_t i) { return i < sizeof rivals / sizeof rivals[0] ? &rivals[i] : NULL; }

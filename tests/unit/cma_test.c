@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* CMA-ES: evaluations that known functions take, bounds, the same bits, stops. tests/bench/cma.py
- * takes the same functions to python3-cmaes: evaluations here and there agree within a fifth. */
+/* CMA-ES: evaluations that known functions take (python3-cmaes agrees within a fifth), bounds, the same bits,
+   stops. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
