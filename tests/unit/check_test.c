@@ -98,6 +98,13 @@ static void expect(sample *s, strut_subject subject, size_t index, const char *k
   fill(s);
 }
 
+/* The same of the sample after a change. */
+#define EXPECT(change, subject, index, key, word)                                                  \
+  do {                                                                                             \
+    change;                                                                                        \
+    expect(&s, STRUT_ON_##subject, index, key, word);                                              \
+  } while (0)
+
 TEST(a_valid_scene_has_no_findings) {
   sample s;
   strut_findings findings = {0};
@@ -111,29 +118,19 @@ TEST(a_valid_scene_has_no_findings) {
 TEST(nodes) {
   sample s;
   fill(&s);
-  s.nodes[1].name = "a";
-  expect(&s, STRUT_ON_NODE, 1, NULL, "two nodes 'a'");
-  s.nodes[1].name = NULL;
-  expect(&s, STRUT_ON_NODE, 1, NULL, "no name");
-  s.nodes[1].name = "";
-  expect(&s, STRUT_ON_NODE, 1, NULL, "no name");
-  s.nodes[2].mass = -1;
-  expect(&s, STRUT_ON_NODE, 2, "mass", "negative");
-  s.nodes[2].mass = (double)INFINITY;
-  expect(&s, STRUT_ON_NODE, 2, "mass", "finite");
-  s.nodes[2].position[1] = (double)NAN;
-  expect(&s, STRUT_ON_NODE, 2, "position", "finite");
-  s.nodes[2].start[0] = (double)NAN;
-  expect(&s, STRUT_ON_NODE, 2, "start", "finite");
-  s.nodes[2].velocity[0] = (double)NAN;
-  expect(&s, STRUT_ON_NODE, 2, "velocity", "finite");
-  s.nodes[0].velocity[1] = 1;
-  expect(&s, STRUT_ON_NODE, 0, "velocity", "fixed in y");
-  s.nodes[2].mass = s.members[1].mass = 0;
-  expect(&s, STRUT_ON_NODE, 2, "mass", "no mass");
-  s.setup.scene.member_count = 1, s.setup.scene.actuator_count = 0;
-  s.setup.scene.load_count = 0, s.nodes[2].mass = 0;
-  expect(&s, STRUT_ON_NODE, 2, NULL, "nothing uses node 'c'");
+  EXPECT(s.nodes[1].name = "a", NODE, 1, NULL, "two nodes 'a'");
+  EXPECT(s.nodes[1].name = NULL, NODE, 1, NULL, "no name");
+  EXPECT(s.nodes[1].name = "", NODE, 1, NULL, "no name");
+  EXPECT(s.nodes[2].mass = -1, NODE, 2, "mass", "negative");
+  EXPECT(s.nodes[2].mass = (double)INFINITY, NODE, 2, "mass", "finite");
+  EXPECT(s.nodes[2].position[1] = (double)NAN, NODE, 2, "position", "finite");
+  EXPECT(s.nodes[2].start[0] = (double)NAN, NODE, 2, "start", "finite");
+  EXPECT(s.nodes[2].velocity[0] = (double)NAN, NODE, 2, "velocity", "finite");
+  EXPECT(s.nodes[0].velocity[1] = 1, NODE, 0, "velocity", "fixed in y");
+  EXPECT(s.nodes[2].mass = s.members[1].mass = 0, NODE, 2, "mass", "no mass");
+  EXPECT((s.setup.scene.member_count = 1, s.setup.scene.actuator_count = 0,
+          s.setup.scene.load_count = 0, s.nodes[2].mass = 0),
+         NODE, 2, NULL, "nothing uses node 'c'");
 }
 
 TEST(members) {
@@ -143,44 +140,34 @@ TEST(members) {
     s.members[0].node[1] = bad;
     expect(&s, STRUT_ON_MEMBER, 0, "nodes", "does not exist");
   }
-  s.members[0].node[1] = 0;
-  expect(&s, STRUT_ON_MEMBER, 0, "nodes", "itself");
-  s.members[0].kind = (strut_member_kind)7;
-  expect(&s, STRUT_ON_MEMBER, 0, "kind", "unknown");
-  s.members[0].rest_kind = (strut_rest_kind)-1;
-  expect(&s, STRUT_ON_MEMBER, 0, "kind", "unknown");
-  s.members[0].stiffness = -1;
-  expect(&s, STRUT_ON_MEMBER, 0, "stiffness", "negative");
-  s.members[0].stiffness = 0, s.members[0].axial_stiffness = -1;
-  expect(&s, STRUT_ON_MEMBER, 0, "axial_stiffness", "negative");
-  s.members[0].axial_stiffness = 1;
-  expect(&s, STRUT_ON_MEMBER, 0, "axial_stiffness", "both");
-  s.members[0].damping = (double)NAN;
-  expect(&s, STRUT_ON_MEMBER, 0, "damping", "finite");
-  s.members[0].mass = -0.5;
-  expect(&s, STRUT_ON_MEMBER, 0, "mass", "-0.5");
-  s.members[0].stiffness = 0;
-  expect(&s, STRUT_ON_MEMBER, 0, NULL, "neither stiffness nor damping");
-  s.members[0].rest_value = -1;
-  expect(&s, STRUT_ON_MEMBER, 0, "rest_length_ratio", "negative");
-  s.members[0].rest_kind = STRUT_REST_PRETENSION, s.members[0].rest_value = 11;
-  expect(&s, STRUT_ON_MEMBER, 0, "pretension", "below zero");
-  s.members[0].rest_kind = STRUT_REST_FORCE_DENSITY, s.members[0].rest_value = (double)NAN;
-  expect(&s, STRUT_ON_MEMBER, 0, "force_density", "finite");
-  s.members[0].rest_kind = STRUT_REST_PRETENSION, s.members[0].rest_value = -1;
-  s.members[0].kind = STRUT_CABLE;
-  expect(&s, STRUT_ON_MEMBER, 0, "pretension", "cannot push");
-  s.members[0].rest_kind = STRUT_REST_PRETENSION, s.members[0].rest_value = 1;
-  s.members[0].stiffness = 0, s.members[0].damping = 1;
-  expect(&s, STRUT_ON_MEMBER, 0, "pretension", "needs a stiffness");
-  s.members[0].stiffness = 0, s.members[0].axial_stiffness = 5, s.members[0].rest_value = 0;
-  expect(&s, STRUT_ON_MEMBER, 0, "rest_length_ratio", "above zero");
-  s.nodes[1].position[0] = s.nodes[1].start[0] = 0;
-  expect(&s, STRUT_ON_MEMBER, 0, "nodes", "drawn in one place");
-  s.nodes[1].start[0] = 0;
-  expect(&s, STRUT_ON_MEMBER, 0, "nodes", "start in one place");
-  s.members[1].name = "ab";
-  expect(&s, STRUT_ON_MEMBER, 1, NULL, "two members");
+  EXPECT(s.members[0].node[1] = 0, MEMBER, 0, "nodes", "itself");
+  EXPECT(s.members[0].kind = (strut_member_kind)7, MEMBER, 0, "kind", "unknown");
+  EXPECT(s.members[0].rest_kind = (strut_rest_kind)-1, MEMBER, 0, "kind", "unknown");
+  EXPECT(s.members[0].stiffness = -1, MEMBER, 0, "stiffness", "negative");
+  EXPECT((s.members[0].stiffness = 0, s.members[0].axial_stiffness = -1), MEMBER, 0,
+         "axial_stiffness", "negative");
+  EXPECT(s.members[0].axial_stiffness = 1, MEMBER, 0, "axial_stiffness", "both");
+  EXPECT(s.members[0].damping = (double)NAN, MEMBER, 0, "damping", "finite");
+  EXPECT(s.members[0].mass = -0.5, MEMBER, 0, "mass", "-0.5");
+  EXPECT(s.members[0].stiffness = 0, MEMBER, 0, NULL, "neither stiffness nor damping");
+  EXPECT(s.members[0].rest_value = -1, MEMBER, 0, "rest_length_ratio", "negative");
+  EXPECT((s.members[0].rest_kind = STRUT_REST_PRETENSION, s.members[0].rest_value = 11), MEMBER, 0,
+         "pretension", "below zero");
+  EXPECT((s.members[0].rest_kind = STRUT_REST_FORCE_DENSITY, s.members[0].rest_value = (double)NAN),
+         MEMBER, 0, "force_density", "finite");
+  EXPECT((s.members[0].rest_kind = STRUT_REST_PRETENSION, s.members[0].rest_value = -1,
+          s.members[0].kind = STRUT_CABLE),
+         MEMBER, 0, "pretension", "cannot push");
+  EXPECT((s.members[0].rest_kind = STRUT_REST_PRETENSION, s.members[0].rest_value = 1,
+          s.members[0].stiffness = 0, s.members[0].damping = 1),
+         MEMBER, 0, "pretension", "needs a stiffness");
+  EXPECT(
+      (s.members[0].stiffness = 0, s.members[0].axial_stiffness = 5, s.members[0].rest_value = 0),
+      MEMBER, 0, "rest_length_ratio", "above zero");
+  EXPECT(s.nodes[1].position[0] = s.nodes[1].start[0] = 0, MEMBER, 0, "nodes",
+         "drawn in one place");
+  EXPECT(s.nodes[1].start[0] = 0, MEMBER, 0, "nodes", "start in one place");
+  EXPECT(s.members[1].name = "ab", MEMBER, 1, NULL, "two members");
 }
 
 TEST(a_spring_of_no_length_may_begin_in_one_place) {
@@ -195,66 +182,42 @@ TEST(a_spring_of_no_length_may_begin_in_one_place) {
 TEST(ground) {
   sample s;
   fill(&s);
-  s.setup.scene.ground.height = (double)NAN;
-  expect(&s, STRUT_ON_GROUND, 0, "height", "finite");
-  s.setup.scene.ground.belt_speed = (double)INFINITY;
-  expect(&s, STRUT_ON_GROUND, 0, "belt_speed", "finite");
-  s.setup.scene.ground.slope = 1.5707963267948966;
-  expect(&s, STRUT_ON_GROUND, 0, "slope", "90 deg");
-  s.setup.scene.ground.slope = (double)NAN;
-  expect(&s, STRUT_ON_GROUND, 0, "slope", "between");
-  s.setup.scene.contact_count = 0;
-  expect(&s, STRUT_ON_GROUND, 0, "nodes", "no node");
-  s.setup.scene.ground.present = false;
-  expect(&s, STRUT_ON_GROUND, 0, NULL, "no ground");
-  s.contacts[1].node = 3;
-  expect(&s, STRUT_ON_CONTACT, 1, NULL, "does not exist");
-  s.contacts[1].node = 1;
-  expect(&s, STRUT_ON_CONTACT, 1, NULL, "out of order");
-  s.contacts[1].stiffness = 0;
-  expect(&s, STRUT_ON_CONTACT, 1, "stiffness", "above zero");
-  s.contacts[1].damping = -1;
-  expect(&s, STRUT_ON_CONTACT, 1, "damping", "negative");
-  s.contacts[0].friction.mu_static = -1;
-  expect(&s, STRUT_ON_CONTACT, 0, "mu_static", "node 'b'");
-  s.contacts[0].friction.mu_static = 0.05;
-  expect(&s, STRUT_ON_CONTACT, 0, "mu_static", "below kinetic friction");
-  s.contacts[0].friction.mu_kinetic = (double)NAN;
-  expect(&s, STRUT_ON_CONTACT, 0, "mu_kinetic", "finite");
-  s.contacts[0].friction.stick_velocity = 0;
-  expect(&s, STRUT_ON_CONTACT, 0, "stick_velocity", "above zero");
-  s.contacts[0].friction.law = (strut_friction_law)9;
-  expect(&s, STRUT_ON_CONTACT, 0, "law", "unknown");
+  EXPECT(s.setup.scene.ground.height = (double)NAN, GROUND, 0, "height", "finite");
+  EXPECT(s.setup.scene.ground.belt_speed = (double)INFINITY, GROUND, 0, "belt_speed", "finite");
+  EXPECT(s.setup.scene.ground.slope = 1.5707963267948966, GROUND, 0, "slope", "90 deg");
+  EXPECT(s.setup.scene.ground.slope = (double)NAN, GROUND, 0, "slope", "between");
+  EXPECT(s.setup.scene.contact_count = 0, GROUND, 0, "nodes", "no node");
+  EXPECT(s.setup.scene.ground.present = false, GROUND, 0, NULL, "no ground");
+  EXPECT(s.contacts[1].node = 3, CONTACT, 1, NULL, "does not exist");
+  EXPECT(s.contacts[1].node = 1, CONTACT, 1, NULL, "out of order");
+  EXPECT(s.contacts[1].stiffness = 0, CONTACT, 1, "stiffness", "above zero");
+  EXPECT(s.contacts[1].damping = -1, CONTACT, 1, "damping", "negative");
+  EXPECT(s.contacts[0].friction.mu_static = -1, CONTACT, 0, "mu_static", "node 'b'");
+  EXPECT(s.contacts[0].friction.mu_static = 0.05, CONTACT, 0, "mu_static",
+         "below kinetic friction");
+  EXPECT(s.contacts[0].friction.mu_kinetic = (double)NAN, CONTACT, 0, "mu_kinetic", "finite");
+  EXPECT(s.contacts[0].friction.stick_velocity = 0, CONTACT, 0, "stick_velocity", "above zero");
+  EXPECT(s.contacts[0].friction.law = (strut_friction_law)9, CONTACT, 0, "law", "unknown");
 }
 
 TEST(signals) {
   sample s;
   fill(&s);
-  s.setup.experiment.periods = 0, s.setup.experiment.duration = 20;
-  s.signals[0].frequency = 0;
-  expect(&s, STRUT_ON_SIGNAL, 0, "frequency", "signal 'wave'");
-  s.signals[0].frequency = (double)NAN;
-  expect(&s, STRUT_ON_SIGNAL, 0, "frequency", "finite"); /* and the run does not say it again */
-  s.signals[0].amplitude = (double)INFINITY;
-  expect(&s, STRUT_ON_SIGNAL, 0, "amplitude", "finite");
-  s.signals[0].start = 3, s.signals[0].stop = 3;
-  expect(&s, STRUT_ON_SIGNAL, 0, "stop", "after its start");
-  s.signals[3].stop = (double)INFINITY;
-  expect(&s, STRUT_ON_SIGNAL, 3, "stop", "load 'swell' needs a stop");
-  s.time[1] = 0;
-  expect(&s, STRUT_ON_SIGNAL, 1, "table", "actuator 'drive' must increase");
-  s.value[1] = (double)NAN;
-  expect(&s, STRUT_ON_SIGNAL, 1, "table", "point 2");
-  s.signals[1].point_count = 0;
-  expect(&s, STRUT_ON_SIGNAL, 1, "table", "no points");
-  s.signals[2].term_count = 0;
-  expect(&s, STRUT_ON_SIGNAL, 2, "sum", "no terms");
-  s.terms[0] = 2;
-  expect(&s, STRUT_ON_SIGNAL, 2, "sum", "term 1");
-  s.terms[1] = -1;
-  expect(&s, STRUT_ON_SIGNAL, 2, "sum", "term 2");
-  s.signals[1].kind = (strut_signal_kind)12;
-  expect(&s, STRUT_ON_SIGNAL, 1, NULL, "unknown kind");
+  EXPECT((s.setup.experiment.periods = 0, s.setup.experiment.duration = 20,
+          s.signals[0].frequency = 0),
+         SIGNAL, 0, "frequency", "signal 'wave'");
+  EXPECT(s.signals[0].frequency = (double)NAN, SIGNAL, 0, "frequency",
+         "finite"); /* and the run does not say it again */
+  EXPECT(s.signals[0].amplitude = (double)INFINITY, SIGNAL, 0, "amplitude", "finite");
+  EXPECT((s.signals[0].start = 3, s.signals[0].stop = 3), SIGNAL, 0, "stop", "after its start");
+  EXPECT(s.signals[3].stop = (double)INFINITY, SIGNAL, 3, "stop", "load 'swell' needs a stop");
+  EXPECT(s.time[1] = 0, SIGNAL, 1, "table", "actuator 'drive' must increase");
+  EXPECT(s.value[1] = (double)NAN, SIGNAL, 1, "table", "point 2");
+  EXPECT(s.signals[1].point_count = 0, SIGNAL, 1, "table", "no points");
+  EXPECT(s.signals[2].term_count = 0, SIGNAL, 2, "sum", "no terms");
+  EXPECT(s.terms[0] = 2, SIGNAL, 2, "sum", "term 1");
+  EXPECT(s.terms[1] = -1, SIGNAL, 2, "sum", "term 2");
+  EXPECT(s.signals[1].kind = (strut_signal_kind)12, SIGNAL, 1, NULL, "unknown kind");
 }
 
 /* Sums of sums: two terms each make 2^40 in 40 steps; a chain of 100 is too deep to evaluate. */
@@ -285,18 +248,12 @@ TEST(sums_cannot_explode) {
 TEST(drives) {
   sample s;
   fill(&s);
-  s.actuators[0].member = 2;
-  expect(&s, STRUT_ON_ACTUATOR, 0, "member", "does not exist");
-  s.actuators[0].signal = -1;
-  expect(&s, STRUT_ON_ACTUATOR, 0, "signal", "no signal");
-  s.actuators[0].signal = 4;
-  expect(&s, STRUT_ON_ACTUATOR, 0, "signal", "no signal");
-  s.loads[0].node = -1;
-  expect(&s, STRUT_ON_LOAD, 0, "node", "does not exist");
-  s.loads[0].force[1] = (double)NAN;
-  expect(&s, STRUT_ON_LOAD, 0, "force", "finite");
-  s.loads[0].signal = 4;
-  expect(&s, STRUT_ON_LOAD, 0, "signal", "does not exist");
+  EXPECT(s.actuators[0].member = 2, ACTUATOR, 0, "member", "does not exist");
+  EXPECT(s.actuators[0].signal = -1, ACTUATOR, 0, "signal", "no signal");
+  EXPECT(s.actuators[0].signal = 4, ACTUATOR, 0, "signal", "no signal");
+  EXPECT(s.loads[0].node = -1, LOAD, 0, "node", "does not exist");
+  EXPECT(s.loads[0].force[1] = (double)NAN, LOAD, 0, "force", "finite");
+  EXPECT(s.loads[0].signal = 4, LOAD, 0, "signal", "does not exist");
 }
 
 TEST(shapes) {
@@ -358,46 +315,26 @@ TEST(experiment) {
   sample s;
   fill(&s);
   strut_experiment *e = &s.setup.experiment;
-  s.setup.experiment.settle.speed = 0;
-  expect(&s, STRUT_ON_INITIAL, 0, "speed", "above zero");
-  s.setup.experiment.settle.limit = (double)NAN;
-  expect(&s, STRUT_ON_INITIAL, 0, "limit", "finite");
-  s.setup.scene.gravity[1] = (double)NAN;
-  expect(&s, STRUT_ON_SCENE, 0, "gravity", "finite");
-  s.setup.scene.mass_model = (strut_mass_model)5;
-  expect(&s, STRUT_ON_SCENE, 0, "mass_model", "unknown");
-  e->step = 0;
-  expect(&s, STRUT_ON_SOLVER, 0, "step", "no step");
-  e->step = -1;
-  expect(&s, STRUT_ON_SOLVER, 0, "step", "above zero");
-  e->step = (double)NAN;
-  expect(&s, STRUT_ON_SOLVER, 0, "step", "finite");
-  e->step = 6;
-  expect(&s, STRUT_ON_SOLVER, 0, "step", "longer than the whole run");
-  e->step = 1e-16;
-  expect(&s, STRUT_ON_SOLVER, 0, "step", "1e15");
-  e->integrator = "";
-  expect(&s, STRUT_ON_SOLVER, 0, "integrator", "no integrator");
-  e->duration = 1;
-  expect(&s, STRUT_ON_RUN, 0, "periods", "both");
-  e->duration = -1;
-  expect(&s, STRUT_ON_RUN, 0, "duration", "negative");
-  e->periods = 0;
-  expect(&s, STRUT_ON_RUN, 0, NULL, "neither");
-  e->period_signal = 3;
-  expect(&s, STRUT_ON_RUN, 0, "of", "no period");
-  e->period_signal = 4;
-  expect(&s, STRUT_ON_RUN, 0, "of", "needs a signal");
-  e->periods = 1e308, s.signals[0].frequency = 1e-10;
-  expect(&s, STRUT_ON_RUN, 0, "periods", "overflows");
-  e->measure_last = 11;
-  expect(&s, STRUT_ON_RUN, 0, "last", "last 11 periods of a run of 10 periods");
-  e->measure_node = 3;
-  expect(&s, STRUT_ON_RUN, 0, "node", "does not exist");
-  e->output_last = 11;
-  expect(&s, STRUT_ON_OUTPUT, 0, "last", "cannot record");
-  e->output_every = -1;
-  expect(&s, STRUT_ON_OUTPUT, 0, "every", "negative");
+  EXPECT(s.setup.experiment.settle.speed = 0, INITIAL, 0, "speed", "above zero");
+  EXPECT(s.setup.experiment.settle.limit = (double)NAN, INITIAL, 0, "limit", "finite");
+  EXPECT(s.setup.scene.gravity[1] = (double)NAN, SCENE, 0, "gravity", "finite");
+  EXPECT(s.setup.scene.mass_model = (strut_mass_model)5, SCENE, 0, "mass_model", "unknown");
+  EXPECT(e->step = 0, SOLVER, 0, "step", "no step");
+  EXPECT(e->step = -1, SOLVER, 0, "step", "above zero");
+  EXPECT(e->step = (double)NAN, SOLVER, 0, "step", "finite");
+  EXPECT(e->step = 6, SOLVER, 0, "step", "longer than the whole run");
+  EXPECT(e->step = 1e-16, SOLVER, 0, "step", "1e15");
+  EXPECT(e->integrator = "", SOLVER, 0, "integrator", "no integrator");
+  EXPECT(e->duration = 1, RUN, 0, "periods", "both");
+  EXPECT(e->duration = -1, RUN, 0, "duration", "negative");
+  EXPECT(e->periods = 0, RUN, 0, NULL, "neither");
+  EXPECT(e->period_signal = 3, RUN, 0, "of", "no period");
+  EXPECT(e->period_signal = 4, RUN, 0, "of", "needs a signal");
+  EXPECT((e->periods = 1e308, s.signals[0].frequency = 1e-10), RUN, 0, "periods", "overflows");
+  EXPECT(e->measure_last = 11, RUN, 0, "last", "last 11 periods of a run of 10 periods");
+  EXPECT(e->measure_node = 3, RUN, 0, "node", "does not exist");
+  EXPECT(e->output_last = 11, OUTPUT, 0, "last", "cannot record");
+  EXPECT(e->output_every = -1, OUTPUT, 0, "every", "negative");
 }
 
 TEST(statics_need_neither_mass_nor_run) {
