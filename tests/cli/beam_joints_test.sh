@@ -7,10 +7,7 @@
 cat >corner.yaml <<'END'
 strut: 1
 parameters: {n: 10}
-nodes:
-  foot: {position: [0, 0], fixed: both}
-  corner: [0, 1 m]
-  tip: [2 m, 1 m]
+nodes: {foot: {position: [0, 0], fixed: both}, corner: [0, 1 m], tip: [2 m, 1 m]}
 beams:
   post: {nodes: [foot, corner], bending_stiffness: 3 N m^2, axial_stiffness: 10 MN, parts: n, clamped: start, mass: 0.1, damping: 2 ms}
   arm: {nodes: [corner, tip], bending_stiffness: 6 N m^2, axial_stiffness: 10 MN, parts: 2*n, clamped_to: {start: post}, mass: 0.1, damping: 3 ms}
@@ -49,11 +46,8 @@ near '.energy.residual / .energy.exchanged' 0 1e-6
 cat >tee.yaml <<'END'
 strut: 1
 parameters: {n: 10}
-nodes:
-  left: {position: [-1 m, 0], fixed: both}
-  right: {position: [2 m, 0], fixed: both}
-  joint: [0, 0]
-  tip: [0, 1.5 m]
+nodes: {left: {position: [-1 m, 0], fixed: both}, right: {position: [2 m, 0], fixed: both}, joint: [0, 0],
+        tip: [0, 1.5 m]}
 beams:
   one: {nodes: [left, joint], bending_stiffness: 2 N m^2, axial_stiffness: 10 MN, parts: n, clamped: start, mass: 0.1}
   two: {nodes: [joint, right], bending_stiffness: 5 N m^2, axial_stiffness: 10 MN, parts: n, clamped: end, clamped_to: {start: one}, mass: 0.1}
@@ -78,12 +72,9 @@ done
 cat >bar.yaml <<'END'
 strut: 1
 parameters: {n: 20}
-nodes:
-  pin: {position: [0, 0], fixed: both}
-  corner: {position: [0, 0.5 m], mass: 3 kg}
-  roller: {position: [2 m, 0.5 m], mass: 1 kg, fixed: y}
-members:
-  bar: {kind: bar, nodes: [pin, corner], stiffness: 100 MN/m}
+nodes: {pin: {position: [0, 0], fixed: both}, corner: {position: [0, 0.5 m], mass: 3 kg},
+        roller: {position: [2 m, 0.5 m], mass: 1 kg, fixed: y}}
+members: {bar: {kind: bar, nodes: [pin, corner], stiffness: 100 MN/m}}
 beams:
   arm: {nodes: [corner, roller], bending_stiffness: 6 N m^2, axial_stiffness: 10 MN, parts: n, mass: 1 mg, clamped_to: {start: bar}}
 END
@@ -97,13 +88,9 @@ grep -q '  arm.start: {nodes: \[pin, corner, arm.1\], stiffness: 120}' out || fa
 # At a fixed clamp of the other beam an end is held in that direction.
 cat >held.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: [1, 0]
-  c: [0, 1]
-beams:
-  rod: {nodes: [a, b], bending_stiffness: 3, axial_stiffness: 1e7, clamped: start}
-  mast: {nodes: [a, c], bending_stiffness: 3, axial_stiffness: 1e7, clamped_to: {start: rod}}
+nodes: {a: {position: [0, 0], fixed: both}, b: [1, 0], c: [0, 1]}
+beams: {rod: {nodes: [a, b], bending_stiffness: 3, axial_stiffness: 1e7, clamped: start},
+        mast: {nodes: [a, c], bending_stiffness: 3, axial_stiffness: 1e7, clamped_to: {start: rod}}}
 loads: {tip: {node: c, force: [1e-5, 0]}}
 END
 expect 0 path held.yaml --load tip --until 1 --json

@@ -20,10 +20,10 @@ b.yaml:3:42:8: error: unknown key 'stifness' in member 'ab' [did you mean 'stiff
 END
 jq -r '.messages[] | "\(.file):\(.line):\(.column):\(.length): \(.severity): \(.message) [\(.hint)]"' out >got
 same wanted got
-jq -e '.valid == false and .unlisted == 0' out >/dev/null || fail "not invalid"
+holds '.valid == false and .unlisted == 0'
 "$strut" check - --json <b.yaml >out 2>err
 [ $? -eq 2 ] || fail "the exit code of a bad scene on the standard input"
-jq -e '.messages[0].file == "<stdin>" and (.messages | length) == 3' out >/dev/null || fail "no messages of stdin"
+holds '.messages[0].file == "<stdin>" and (.messages | length) == 3'
 # JSON and text say the same, in the same order.
 count=0
 mkdir bad
@@ -58,32 +58,26 @@ fi
 printf 'strut: 1\nparts:\n  rod: {nodes: {a: {position: [0, 0], mass: 1 kg}}}\nnodes: {b: {position: [0, 0], mass: 1 kg}, c: {position: [0, 1], mass: 1 kg}}\nmembers: {bc: {kind: spring, nodes: [b, c], stiffness: 1 N/m, rest_length: 1 m}}\nplace:\n  one: {part: rod, repeat: {count: 2, step: [1, 0]}}\n' >copies.yaml
 printf 'run: {duration: 1 s}\nsolver: {step: 1 ms}\n' >>copies.yaml
 expect 0 check copies.yaml --json
-jq -e '.messages[0] | (.message | startswith("nodes one.0.a, one.1.a have mass")) and .line == 3 and .column == 17' out >/dev/null ||
-  fail "the place of a warning in a part"
+holds '.messages[0] | (.message | startswith("nodes one.0.a, one.1.a have mass")) and .line == 3 and .column == 17'
 
 # Notes and other files.
 printf 'strut: 1\nparts: {rod: {use: part.yaml}}\nplace: {one: {part: rod}}\n' >used.yaml
 printf 'strut: 1\nnodes: {a: [0, 0], b: [1, 0]}\nmembers: {m: {kind: bra, nodes: [a, b], stiffness: 1}}\n' >part.yaml
 expect 2 check used.yaml --json
-jq -e '.messages[0] | (.file | endswith("part.yaml")) and .line == 3 and .column == 21' out >/dev/null ||
-  fail "the place in another file"
+holds '.messages[0] | (.file | endswith("part.yaml")) and .line == 3 and .column == 21'
 
 # A valid scene: nothing else has changed, and warnings have places.
 cat >w.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], mass: 1}
-members:
-  one: {nodes: [a, b], kind: bar, stiffness: 100}
-  two: {nodes: [a, b], kind: bar, stiffness: 100}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}
+members: {one: {nodes: [a, b], kind: bar, stiffness: 100}, two: {nodes: [a, b], kind: bar, stiffness: 100}}
 END
 expect 0 check w.yaml --json
-jq -e '.valid and .nodes == 2 and .members.one.stiffness == 100' out >/dev/null || fail "what check --json had"
-jq -e '.messages | length == 1' out >/dev/null || fail "one warning"
+holds '.valid and .nodes == 2 and .members.one.stiffness == 100'
+holds '.messages | length == 1'
 jq -e '.messages[0] | .severity == "warning" and (.line == 6 or .line == 7) and .column == 3 and .length == 3' \
   out >/dev/null || fail "the place of a warning"
-jq -e '.messages[0].message == .warnings[0].text' out >/dev/null || fail "the text of a warning"
+holds '.messages[0].message == .warnings[0].text'
 # What has no place stands at the beginning of the file.
 cat >f.yaml <<'END'
 strut: 1
@@ -98,9 +92,8 @@ code=$?
 [ $code -ne 0 ] || fail "Coulomb friction with a method without events"
 expect $code check f.yaml --json
 err_empty
-jq -e '.valid == false and (.messages | length == 1)' out >/dev/null || fail "no message"
-jq -e '.messages[0] | .file == "f.yaml" and .line == 1 and .column == 1 and .length == 0' out >/dev/null ||
-  fail "the place of the whole file"
+holds '.valid == false and (.messages | length == 1)'
+holds '.messages[0] | .file == "f.yaml" and .line == 1 and .column == 1 and .length == 0'
 expect 4 check missing.yaml --json
 out_empty
 err_has "No such file"
@@ -109,12 +102,11 @@ err_has "No such file"
 cp -R "$studies" studies
 "$unpack" studies/bad studies/bad || fail "no bad studies"
 for study in studies/good/*.yaml; do
-  expect 0 check "$study"
-  out_has ": valid"
+  shows 0 ": valid" check "$study"
   expect 0 check "$study" -q
   out_empty
   expect 0 check "$study" --json
-  jq -e '.valid and .points >= 1 and (.study | length > 0)' out >/dev/null || fail "$study"
+  holds '.valid and .points >= 1 and (.study | length > 0)'
 done
 for study in studies/bad/*.yaml; do
   [ "$study" != studies/bad/study-is-model.yaml ] || continue
@@ -130,8 +122,7 @@ for study in studies/bad/*.yaml; do
     "\(.line):\(.column): error: \(.message)\(if .hint then "; " + .hint else "" end)"' out | head -n 50 | grep -v "^1:1:" >got
   sed -n 's/^[^ ]*\.[a-z]*:\([0-9]*:[0-9]*: error: \)/\1/p' text | grep -v "^1:1:" >wanted
   [ ! -s wanted ] || same wanted got
-  jq -e ".valid == false and (.messages | length > 0)" out >/dev/null || fail "$study: nothing is wrong"
+  holds ".valid == false and (.messages | length > 0)"
 done
-expect 1 check studies/good/path.yaml --step 1ms
-err_has "--step needs a model, not the study"
+tells 1 "--step needs a model, not the study" check studies/good/path.yaml --step 1ms
 done_testing

@@ -23,13 +23,9 @@ jq -e '[.points[] | (101 | sqrt) as $n | .contacts.a - $n, .nodes.a[0] - (.value
 # ---- on top of a circle: springs of 20 N/m sideways hold until the normal force by the radius is as much ----
 cat >ball.yaml <<'END'
 strut: 1
-nodes:
-  l: {position: [-3 m, 1 m], fixed: both}
-  r: {position: [3 m, 1 m], fixed: both}
-  a: [0, 1.2 m]
-members:
-  sl: {kind: spring, nodes: [l, a], stiffness: 10 N/m, rest_length: 2.5 m}
-  sr: {kind: spring, nodes: [r, a], stiffness: 10 N/m, rest_length: 2.5 m}
+nodes: {l: {position: [-3 m, 1 m], fixed: both}, r: {position: [3 m, 1 m], fixed: both}, a: [0, 1.2 m]}
+members: {sl: {kind: spring, nodes: [l, a], stiffness: 10 N/m, rest_length: 2.5 m},
+          sr: {kind: spring, nodes: [r, a], stiffness: 10 N/m, rest_length: 2.5 m}}
 ground: {circle: {centre: [0, 0], radius: 1 m}, stiffness: 100 kN/m, nodes: [a]}
 loads: {w: {node: a, force: [0, -10 N]}}
 END
@@ -41,17 +37,11 @@ jq -e '.events | length == 1 and .[0].kind == "bifurcation" and
 # ---- over a convex corner: on each of its sides the forces along the facet balance ----
 cat >hill.yaml <<'END'
 strut: 1
-nodes:
-  l: {position: [-3 m, 1 m], fixed: both}
-  r: {position: [3 m, 1 m], fixed: both}
-  a: {position: [0, 1.2 m], mass: 1 kg}
-members:
-  sl: {kind: spring, nodes: [l, a], stiffness: 10 N/m, rest_length: 2 m}
-  sr: {kind: spring, nodes: [r, a], stiffness: 10 N/m, rest_length: 2 m}
-ground:
-  profile: [[-3, 0], [-1, 0.5], [0.5, 1], [1, 0.5], [1.5, 0.4], [3, 1]]
-  stiffness: 100 kN/m
-  nodes: [a]
+nodes: {l: {position: [-3 m, 1 m], fixed: both}, r: {position: [3 m, 1 m], fixed: both},
+        a: {position: [0, 1.2 m], mass: 1 kg}}
+members: {sl: {kind: spring, nodes: [l, a], stiffness: 10 N/m, rest_length: 2 m},
+          sr: {kind: spring, nodes: [r, a], stiffness: 10 N/m, rest_length: 2 m}}
+ground: {profile: [[-3, 0], [-1, 0.5], [0.5, 1], [1, 0.5], [1.5, 0.4], [3, 1]], stiffness: 100 kN/m, nodes: [a]}
 gravity: [0, -10 m/s^2]
 loads: {p: {node: a, force: [1 N, 0]}}
 END
@@ -83,14 +73,9 @@ jq -e --slurpfile m moved.last '(.points[0].nodes.a | .[0] - $m[0][0], .[1] - $m
 # ---- form finding in a pipe and between a floor and walls: the forces drawn for hold the shape ----
 cat >hung.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [-0.6, -0.8], mass: 1}
-  b: {position: [0.6, -0.8], mass: 1}
-  c: {position: [0, -0.4], mass: 1}
-members:
-  ab: {kind: bar, nodes: [a, b], stiffness: 10 kN/m}
-  ac: {kind: bar, nodes: [a, c], stiffness: 10 kN/m}
-  bc: {kind: bar, nodes: [b, c], stiffness: 10 kN/m}
+nodes: {a: {position: [-0.6, -0.8], mass: 1}, b: {position: [0.6, -0.8], mass: 1}, c: {position: [0, -0.4], mass: 1}}
+members: {ab: {kind: bar, nodes: [a, b], stiffness: 10 kN/m}, ac: {kind: bar, nodes: [a, c], stiffness: 10 kN/m},
+          bc: {kind: bar, nodes: [b, c], stiffness: 10 kN/m}}
 ground: {circle: {centre: [0, 0], radius: 1, inside: yes}, stiffness: 100 kN/m, nodes: [a, b]}
 gravity: [0, -10]
 END

@@ -29,19 +29,17 @@ advances() {
     "$work/out" >"$work/value" || fail "$2: velocity $(jq .velocity "$work/out")"
 }
 
-while read -r method keys law tolerance; do
+for row in "adaptive step:~20~ms,~tolerance:~1e-6 law:~coulomb 0.002" \
+  "adaptive step:~20~ms,~tolerance:~1e-5 law:~karnopp,~stick_velocity:~1e-5~m/s 0.01" \
+  "rk4-events step:~2~ms law:~coulomb 0.002" "verlet-events step:~1~ms law:~coulomb 0.002" \
+  "verlet-events step:~1~ms law:~karnopp,~stick_velocity:~1e-5~m/s 0.01" \
+  "rk4 step:~0.5~ms law:~karnopp,~stick_velocity:~1e-4~m/s 0.06" \
+  "adaptive step:~20~ms,~tolerance:~1e-5 law:~smooth,~width:~1e-5~m/s 0.02"; do
+  set -- $row; method=$1 keys=$2 law=$3 tolerance=$4
   worm "$work/worm.yaml" "$method" "$(echo "$keys" | tr '~' ' ')" "$(echo "$law" | tr '~' ' ')"
   expect 0 run "$work/worm.yaml" --json
   advances "$tolerance" "$method $law"
-done <<'END'
-adaptive step:~20~ms,~tolerance:~1e-6 law:~coulomb 0.002
-adaptive step:~20~ms,~tolerance:~1e-5 law:~karnopp,~stick_velocity:~1e-5~m/s 0.01
-rk4-events step:~2~ms law:~coulomb 0.002
-verlet-events step:~1~ms law:~coulomb 0.002
-verlet-events step:~1~ms law:~karnopp,~stick_velocity:~1e-5~m/s 0.01
-rk4 step:~0.5~ms law:~karnopp,~stick_velocity:~1e-4~m/s 0.06
-adaptive step:~20~ms,~tolerance:~1e-5 law:~smooth,~width:~1e-5~m/s 0.02
-END
+done
 
 # Points of a study run side by side in batch: with the bits of single runs.
 worm "$work/worm.yaml" rk4 "step: 0.5 ms" "law: karnopp, stick_velocity: 1e-4 m/s"

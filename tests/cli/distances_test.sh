@@ -7,8 +7,7 @@
 cat >along.yaml <<'YAML'
 strut: 1
 nodes: {a: {position: [1, 2], fixed: both}, b: {position: [3, 1], mass: 1}}
-distances:
-  d: {nodes: [a, b], along: 30 deg, stiffness: "4 * pi^2", rest_distance: 1 m}
+distances: {d: {nodes: [a, b], along: 30 deg, stiffness: "4 * pi^2", rest_distance: 1 m}}
 initial: {velocities: {b: [-0.5, 0.8660254037844386]}}
 solver: {integrator: rk4, step: 1 ms}
 run:
@@ -46,8 +45,7 @@ near '.distances["two.d"].drawn' 2 1e-15
 near '.distances["two.d"].rest' 1.6 1e-15
 near '.distances["one.o"].drawn' 0.5 0
 near '.distances["two.o"].drawn' 1 1e-15
-expect 0 export parts.yaml
-out_has 'one.d: {nodes: [one.a, one.b], along: x, stiffness: 5, rest_distance: 0.8}'
+shows 0 'one.d: {nodes: [one.a, one.b], along: x, stiffness: 5, rest_distance: 0.8}' export parts.yaml
 out_has 'two.d: {nodes: [two.a, two.b], along: y, stiffness: 5, rest_distance: 1.6}'
 out_has 'two.o: {node: two.b, line: [two.t, two.a], stiffness: 5, rest_distance: 0.4}'
 cp out written.yaml
@@ -60,10 +58,8 @@ near '.modes[3].frequency' '(5 | sqrt) / 2 / 3.141592653589793' 1e-9
 cat >ball.yaml <<'YAML'
 strut: 1
 gravity: [0, -10]
-nodes:
-  left: {position: [-1, -0.2], fixed: both}
-  right: {position: [3, 0.6], fixed: both}
-  ball: {position: [0, 0.5], mass: 1}
+nodes: {left: {position: [-1, -0.2], fixed: both}, right: {position: [3, 0.6], fixed: both},
+        ball: {position: [0, 0.5], mass: 1}}
 distances: {hit: {node: ball, line: [left, right], rest_distance: 0, stiffness: 1e4, law: compression_only}}
 solver: {integrator: rk4-events, step: 1 ms}
 run:
@@ -124,30 +120,23 @@ near '.points[-1].factor' '50 * 0.02 / 3' 1e-9
 expect 0 path crossed.yaml --load f --until 2 --stop b.x=1 --json
 near '.points[-1].factor' 2 0
 for stop in b.x b.z=1 c.x=1 b.x=0 b.x=1N b.x= =1; do
-  expect 1 path crossed.yaml --stop $stop
-  err_has "--stop expects a node's displacement, not 0, such as a.x=10mm, not '$stop'"
+  tells 1 "--stop expects a node's displacement, not 0, such as a.x=10mm, not '$stop'" path crossed.yaml --stop $stop
 done
 expect 0 equilibria crossed.yaml --json
 near '.equilibria | length' 1 0
-expect 2 form held.yaml --given densities
-err_has 'x is a distance'
+tells 2 'x is a distance' form held.yaml --given densities
 
 # What a distance cannot be.
 cat >bad.yaml <<'YAML'
 strut: 1
 nodes: {a: [0, 0], b: [1, 0], c: [1, 1]}
 members: {m: {kind: spring, nodes: [a, b], stiffness: 1}}
-distances:
-  one: {nodes: [a, b], stiffness: 1}
-  two: {node: a, line: [b, b], stiffness: 1}
-  three: {nodes: [a, b], along: 3 m, stiffness: 1}
-  four: {nodes: [a, b], along: x}
-  five: {node: c, line: [a, b], along: x, stiffness: 1}
-  six: {nodes: [a, b], along: [1, 2], stiffness: 1}
-  seven: {nodes: [a, c], along: y, stiffness: 1, law: logarithmic}
+distances: {one: {nodes: [a, b], stiffness: 1}, two: {node: a, line: [b, b], stiffness: 1},
+            three: {nodes: [a, b], along: 3 m, stiffness: 1}, four: {nodes: [a, b], along: x},
+            five: {node: c, line: [a, b], along: x, stiffness: 1}, six: {nodes: [a, b], along: [1, 2], stiffness: 1},
+            seven: {nodes: [a, c], along: y, stiffness: 1, law: logarithmic}}
 YAML
-expect 2 check bad.yaml
-err_has "bad.yaml:5:3: error: distance 'one' must have 'nodes' and 'along', or 'node' and 'line'"
+tells 2 "bad.yaml:5:3: error: distance 'one' must have 'nodes' and 'along', or 'node' and 'line'" check bad.yaml
 err_has "distance 'two' names node 'b' twice"
 err_has "bad.yaml:7:33: error: expected an angle such as '30 deg' for 'along' of distance 'three', found a length"
 err_has "distance 'four' has neither stiffness nor damping"
@@ -155,7 +144,6 @@ err_has "distance 'five' must have"
 err_has "expected x, y, or an angle from +x for 'along' of distance 'six', found a list of 2"
 err_has "distance 'seven' has the law logarithmic, which is for members only"
 sed 's/along: 30 deg/along: x/; s/d.force/d.forse/' along.yaml >misspelt.yaml
-expect 2 check misspelt.yaml
-err_has "distance 'd' has no column 'forse'; did you mean 'force'?"
+tells 2 "distance 'd' has no column 'forse'; did you mean 'force'?" check misspelt.yaml
 
 done_testing

@@ -6,31 +6,23 @@
 cat >all.yaml <<'YAML'
 strut: 1
 name: all elements
-nodes:
-  a: {position: [0, 0], fixed: both}
-  p: {position: [0.1, -0.06], mass: 0.1}
-  b: {position: [0.3, 0], fixed: both}
-  d: {position: [0.1, -0.16], mass: 0.1}
+nodes: {a: {position: [0, 0], fixed: both}, p: {position: [0.1, -0.06], mass: 0.1},
+        b: {position: [0.3, 0], fixed: both}, d: {position: [0.1, -0.16], mass: 0.1}}
 gravity: [0, -9.81]
-members:
-  rope: {kind: cable, nodes: [a, p, b], stiffness: 500, damping: 1, rest_length: 0.31}
-  rod: {kind: bar, nodes: [p, d], stiffness: 2000, damping: 1, longest: 0.1002}
-  soft: {kind: spring, nodes: [a, d], law: {kind: table, points: [[-0.1, -1], [0, 0], [0.1, 2]]}}
-  prop: {kind: spring, nodes: [b, d], stiffness: 10, law: compression_only}
-hinges:
-  elbow: {nodes: [a, p, d], stiffness: 0.05, damping: 0.001, rest_angle: 100 deg}
+members: {rope: {kind: cable, nodes: [a, p, b], stiffness: 500, damping: 1, rest_length: 0.31},
+          rod: {kind: bar, nodes: [p, d], stiffness: 2000, damping: 1, longest: 0.1002},
+          soft: {kind: spring, nodes: [a, d], law: {kind: table, points: [[-0.1, -1], [0, 0], [0.1, 2]]}},
+          prop: {kind: spring, nodes: [b, d], stiffness: 10, law: compression_only}}
+hinges: {elbow: {nodes: [a, p, d], stiffness: 0.05, damping: 0.001, rest_angle: 100 deg}}
 actuators: {motor: {hinge: elbow, signal: {sine: {amplitude: 10 deg, frequency: 5 Hz}}}}
 solver: {integrator: rk4-events, step: 0.1 ms}
 run:
   duration: 0.1 s
   measure:
-    quantities:
-      bend: {of: elbow.angle, take: final}
-      spin: {of: elbow.rate, take: max}
-      moment: {of: hinge(elbow).moment, take: final}
-      stretch: {of: rope.stretch, take: final}
-      length: {of: rope.length, take: final}
-      balance: {of: energy.total - work.drives + losses.total, take: range}
+    quantities: {bend: {of: elbow.angle, take: final}, spin: {of: elbow.rate, take: max},
+                 moment: {of: hinge(elbow).moment, take: final}, stretch: {of: rope.stretch, take: final},
+                 length: {of: rope.length, take: final},
+                 balance: {of: energy.total - work.drives + losses.total, take: range}}
 output: {every: 1 ms, channels: [position, length, force, angle, moment]}
 YAML
 
@@ -53,8 +45,7 @@ jq -e '.running_cables == 1 and .laws == 2 and .stops == 1 and .members.rope.nod
 # What needs none of them says so.
 printf 'strut: 1\nnodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}\n%s\n' \
   'members: {m: {kind: bar, nodes: [a, b], stiffness: 1}}' >plain.yaml
-expect 0 check plain.yaml --verbose
-out_has "  hinges               needs a hinge"
+shows 0 "  hinges               needs a hinge" check plain.yaml --verbose
 out_has "  stops                needs a member with a shortest or longest length"
 
 # Recorded: the channels of the hinge, and of the members their sums.

@@ -7,14 +7,10 @@
 # W / (2 sqrt(1 - (a/L)^2)).
 cat >ring.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], fixed: both}
-  ring: {position: [0.3, -0.4], mass: 1}
-members:
-  string: {kind: cable, nodes: [a, ring, b], stiffness: 1e8, rest_length: 1.4}
-loads:
-  weight: {node: ring, force: [0, -10 N]}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: both},
+        ring: {position: [0.3, -0.4], mass: 1}}
+members: {string: {kind: cable, nodes: [a, ring, b], stiffness: 1e8, rest_length: 1.4}}
+loads: {weight: {node: ring, force: [0, -10 N]}}
 END
 expect 0 equilibria ring.yaml --json
 near '.equilibria | length' 1 0
@@ -28,17 +24,11 @@ near '.equilibria[0].reactions.a[1]' 5 1e-6
 cat >links.yaml <<'END'
 strut: 1
 groups: {rod: {kind: bar, stiffness: 1e8}}
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [0.5, 0], mass: 1}
-  c: {position: [1, 0], fixed: y, mass: 1}
-members:
-  ab: {group: rod, nodes: [a, b]}
-  bc: {group: rod, nodes: [b, c]}
-hinges:
-  h: {nodes: [a, b, c], stiffness: 2, rest_angle: 180 deg}
-loads:
-  press: {node: c, force: [-10, 0]}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0.5, 0], mass: 1},
+        c: {position: [1, 0], fixed: y, mass: 1}}
+members: {ab: {group: rod, nodes: [a, b]}, bc: {group: rod, nodes: [b, c]}}
+hinges: {h: {nodes: [a, b, c], stiffness: 2, rest_angle: 180 deg}}
+loads: {press: {node: c, force: [-10, 0]}}
 END
 expect 0 equilibria links.yaml --all --json
 near '[.equilibria[] | select(.label == "saddle")] | length' 1 0
@@ -76,22 +66,17 @@ done
 # A pendulum with a hinge: omega^2 = kappa / (m l^2) + g / l.
 cat >pendulum.yaml <<'END'
 strut: 1
-nodes:
-  top: {position: [0, 1], fixed: both}
-  pivot: {position: [0, 0], fixed: both}
-  bob: {position: [0, -0.5], mass: 2}
-members:
-  rod: {kind: bar, nodes: [pivot, bob], stiffness: 1e9}
-hinges:
-  h: {nodes: [top, pivot, bob], stiffness: 3, rest_angle: 180 deg}
+nodes: {top: {position: [0, 1], fixed: both}, pivot: {position: [0, 0], fixed: both},
+        bob: {position: [0, -0.5], mass: 2}}
+members: {rod: {kind: bar, nodes: [pivot, bob], stiffness: 1e9}}
+hinges: {h: {nodes: [top, pivot, bob], stiffness: 3, rest_angle: 180 deg}}
 gravity: [0, -9.81]
 END
 expect 0 modes pendulum.yaml --json
 near '.modes[0].angular_frequency' '(3 / (2 * 0.25) + 9.81 / 0.5) | sqrt' 1e-6
 out_has "geometric"
 sed '/gravity/d' pendulum.yaml >weightless.yaml
-expect 0 modes weightless.yaml
-out_has "h 100 % of the energy"
+shows 0 "h 100 % of the energy" modes weightless.yaml
 out_has_not "geometric"
 
 # A cantilever of four links and hinges under a couple: every hinge turns by the same angle M / kappa,
@@ -100,32 +85,17 @@ cat >cantilever.yaml <<'END'
 strut: 1
 parameters: {turn: 0.25, force: 4 * turn / (0.2 * cos(4 * turn))}
 groups: {rod: {kind: bar, stiffness: 1e9}}
-nodes:
-  wall: {position: [-1, 0], fixed: both}
-  n0: {position: [0, 0], fixed: both}
-  n1: {position: [0.25, 0]}
-  n2: {position: [0.5, 0]}
-  n3: {position: [0.75, 0]}
-  n4: {position: [1, 0]}
-  u: {position: [1, 0.1]}
-  w: {position: [1, -0.1]}
-members:
-  m0: {group: rod, nodes: [n0, n1]}
-  m1: {group: rod, nodes: [n1, n2]}
-  m2: {group: rod, nodes: [n2, n3]}
-  m3: {group: rod, nodes: [n3, n4]}
-  u3: {group: rod, nodes: [n3, u]}
-  u4: {group: rod, nodes: [n4, u]}
-  w3: {group: rod, nodes: [n3, w]}
-  w4: {group: rod, nodes: [n4, w]}
-hinges:
-  h0: {nodes: [wall, n0, n1], stiffness: 4, rest_angle: 180 deg}
-  h1: {nodes: [n0, n1, n2], stiffness: 4, rest_angle: 180 deg}
-  h2: {nodes: [n1, n2, n3], stiffness: 4, rest_angle: 180 deg}
-  h3: {nodes: [n2, n3, n4], stiffness: 4, rest_angle: 180 deg}
-loads:
-  up: {node: u, force: [-force, 0]}
-  down: {node: w, force: [force, 0]}
+nodes: {wall: {position: [-1, 0], fixed: both}, n0: {position: [0, 0], fixed: both}, n1: {position: [0.25, 0]},
+        n2: {position: [0.5, 0]}, n3: {position: [0.75, 0]}, n4: {position: [1, 0]}, u: {position: [1, 0.1]},
+        w: {position: [1, -0.1]}}
+members: {m0: {group: rod, nodes: [n0, n1]}, m1: {group: rod, nodes: [n1, n2]}, m2: {group: rod, nodes: [n2, n3]},
+          m3: {group: rod, nodes: [n3, n4]}, u3: {group: rod, nodes: [n3, u]}, u4: {group: rod, nodes: [n4, u]},
+          w3: {group: rod, nodes: [n3, w]}, w4: {group: rod, nodes: [n4, w]}}
+hinges: {h0: {nodes: [wall, n0, n1], stiffness: 4, rest_angle: 180 deg},
+         h1: {nodes: [n0, n1, n2], stiffness: 4, rest_angle: 180 deg},
+         h2: {nodes: [n1, n2, n3], stiffness: 4, rest_angle: 180 deg},
+         h3: {nodes: [n2, n3, n4], stiffness: 4, rest_angle: 180 deg}}
+loads: {up: {node: u, force: [-force, 0]}, down: {node: w, force: [force, 0]}}
 END
 expect 0 equilibria cantilever.yaml --json
 for k in 1 2 3 4; do
@@ -136,17 +106,11 @@ done
 # A weight on a logarithmic and on an exponential spring: L exp(W / (k L)), s ln(1 + W / (k s)).
 cat >weights.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [0.1, -1], mass: 1}
-  c: {position: [2, 0], fixed: both}
-  d: {position: [2.1, -1], mass: 1}
-members:
-  log: {kind: spring, nodes: [a, b], stiffness: 10, rest_length: 1, law: logarithmic}
-  exp: {kind: cable, nodes: [c, d], stiffness: 10, rest_length: 1, law: {kind: exponential, scale: 0.2}}
-loads:
-  one: {node: b, force: [0, -5]}
-  two: {node: d, force: [0, -5]}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0.1, -1], mass: 1}, c: {position: [2, 0], fixed: both},
+        d: {position: [2.1, -1], mass: 1}}
+members: {log: {kind: spring, nodes: [a, b], stiffness: 10, rest_length: 1, law: logarithmic},
+          exp: {kind: cable, nodes: [c, d], stiffness: 10, rest_length: 1, law: {kind: exponential, scale: 0.2}}}
+loads: {one: {node: b, force: [0, -5]}, two: {node: d, force: [0, -5]}}
 END
 expect 0 equilibria weights.yaml --json
 near '.equilibria[] | select(.label == "stable") | .nodes.b[1]' '-(0.5 | exp)' 1e-9
@@ -157,15 +121,11 @@ near '.equilibria[] | select(.label == "stable") | .forces.exp' 5 1e-9
 # A shape with a hinge is shown as it was found: its mirror image, nearer to the drawn one, is none.
 cat >bent.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [0, 1], fixed: x, mass: 1}
-  c: {position: [-0.9, 1.2], mass: 1}
-members:
-  ab: {kind: bar, nodes: [a, b], stiffness: 100, rest_length: 1}
-  bc: {kind: bar, nodes: [b, c], stiffness: 100, rest_length: 1}
-hinges:
-  h: {nodes: [a, b, c], stiffness: 2, rest_angle: 90 deg}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, 1], fixed: x, mass: 1},
+        c: {position: [-0.9, 1.2], mass: 1}}
+members: {ab: {kind: bar, nodes: [a, b], stiffness: 100, rest_length: 1},
+          bc: {kind: bar, nodes: [b, c], stiffness: 100, rest_length: 1}}
+hinges: {h: {nodes: [a, b, c], stiffness: 2, rest_angle: 90 deg}}
 END
 expect 0 equilibria bent.yaml --json
 near '[.equilibria[] | select(.label == "stable" and .nodes.b[1] > 0)][0].nodes.c[0]' 1 1e-6
@@ -173,35 +133,23 @@ near '[.equilibria[] | select(.label == "stable" and .nodes.b[1] > 0)][0].nodes.
 # What fixed steps miss is reported by name: a hinge whose angle jumps, and stops.
 cat >jump.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], mass: 1}
-  c: {position: [2, 0.1], mass: 1}
-members:
-  ab: {kind: spring, nodes: [a, b], stiffness: 100}
-  bc: {kind: spring, nodes: [b, c], stiffness: 100}
-hinges:
-  h: {nodes: [a, b, c], stiffness: 3}
-actuators:
-  m: {hinge: h, signal: {square: {amplitude: 0.4, frequency: 2.3 Hz}}}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}, c: {position: [2, 0.1], mass: 1}}
+members: {ab: {kind: spring, nodes: [a, b], stiffness: 100}, bc: {kind: spring, nodes: [b, c], stiffness: 100}}
+hinges: {h: {nodes: [a, b, c], stiffness: 3}}
+actuators: {m: {hinge: h, signal: {square: {amplitude: 0.4, frequency: 2.3 Hz}}}}
 solver: {step: 0.1 ms}
 run: {duration: 1 s}
 END
-expect 0 run jump.yaml
-err_has "the drive of hinge 'h' changes its angle by 0.8 rad within one step"
+tells 0 "the drive of hinge 'h' changes its angle by 0.8 rad within one step" run jump.yaml
 cat >stop.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], mass: 1}
-members:
-  m: {kind: spring, nodes: [a, b], stiffness: 1, longest: 1.1, stop_stiffness: 1e5, stop_damping: 300}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}
+members: {m: {kind: spring, nodes: [a, b], stiffness: 1, longest: 1.1, stop_stiffness: 1e5, stop_damping: 300}}
 initial: {velocities: {b: [3, 0]}}
 solver: {step: 4 ms}
 run: {duration: 0.1 s}
 END
-expect 0 run stop.yaml
-err_has "fixed steps pass over stops"
+tells 0 "fixed steps pass over stops" run stop.yaml
 # A bar or a spring that carries one sign only does so with the linear law, too.
 for kind in bar spring; do
   for law in tension_only compression_only '{carries: tension}' '{carries: compression}'; do

@@ -4,17 +4,16 @@
 models=$(realpath "$2")
 . "$(dirname "$0")/lib.sh"
 
-expect 0 examples robot
-out_has "robot.yaml"
+shows 0 "robot.yaml" examples robot
 expect 0 check robot.yaml
 err_empty
 expect 0 run robot.yaml --json
 err_empty
 near '.velocity' 0.0614 0.001
-jq -e '.status == "completed" and .accuracy.kept' out >/dev/null || fail "the scene does not run"
+holds '.status == "completed" and .accuracy.kept'
 expect 0 run robot.yaml --set friction=0.2 --json
 err_empty
-jq -e '.status == "completed"' out >/dev/null || fail "a comment of the scene is wrong"
+holds '.status == "completed"'
 expect 0 equilibria robot.yaml -q
 expect 0 modes robot.yaml -q
 expect 0 examples robot # it is here already
@@ -52,10 +51,8 @@ out_empty
 [ "$(ls all | wc -l)" -eq "$(ls "$models/crawler" | wc -l)" ] || fail "a folder"
 expect 0 examples pendulum gallery/arm -o two
 [ "$(ls two | tr '\n' ' ')" = "arm.yaml pendulum.yaml " ] || fail "two examples: $(ls two)"
-expect 1 examples crawlr
-err_has "there is no example 'crawlr'; 'strut examples' lists all"
-expect 1 examples -o nothing
-err_has "missing NAME"
+tells 1 "there is no example 'crawlr'; 'strut examples' lists all" examples crawlr
+tells 1 "missing NAME" examples -o nothing
 absent nothing
 cd "$work" || exit 1
 expect 0 complete examples crawler/c

@@ -8,122 +8,76 @@
 cat >pd.yaml <<'END'
 strut: 1
 parameters: {k: 40 N/m, c: 0.8 N s/m}
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], fixed: y, mass: 2 kg}
-members:
-  m: {nodes: [a, b], kind: spring, stiffness: 1e-12}
-sensors:
-  x: {position: b, along: x}
-  v: {velocity: b, along: x}
-loads:
-  pd: {node: b, force: [1 N, 0], signal: {expression: "-(k*(x - 1 m) + c*v)/(1 N)"}}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
+members: {m: {nodes: [a, b], kind: spring, stiffness: 1e-12}}
+sensors: {x: {position: b, along: x}, v: {velocity: b, along: x}}
+loads: {pd: {node: b, force: [1 N, 0], signal: {expression: "-(k*(x - 1 m) + c*v)/(1 N)"}}}
 initial: {velocities: {b: [1, 0]}}
 solver: {integrator: rk4, step: 1 ms}
 run: {duration: 2 s, measure: {quantities: {x: {of: x - 1 m, take: final}, v: {of: v, take: final}}}}
 END
 poles='(0.2) as $a | (20 - 0.04 | sqrt) as $w | '
-while read -r method tolerance; do
+for row in "rk4 1e-11" "rk4-events 1e-11" "adaptive 1e-8" "verlet 1e-5" "verlet-events 1e-5" "midpoint 2e-5" \
+  "euler 2e-2" "euler-events 2e-2"; do
+  set -- $row; method=$1 tolerance=$2
   sed "s/integrator: rk4/integrator: $method/" pd.yaml >run.yaml
   expect 0 run run.yaml --json
   near '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance"
   near '.measured.v.value' "$poles"'(-2*$a | exp) * ((2*$w | cos) - $a/$w * (2*$w | sin))' "$tolerance"
   near '.energy.residual' 0 "$tolerance"
-done <<'END'
-rk4 1e-11
-rk4-events 1e-11
-adaptive 1e-8
-verlet 1e-5
-verlet-events 1e-5
-midpoint 2e-5
-euler 2e-2
-euler-events 2e-2
-END
+done
 
 # A rest length that follows its own member's length: k (1 + g) and c (1 + g), since the damper feels
 # the rate that is derived from the expression. The energy balance closes with the drive's work.
 cat >length.yaml <<'END'
 strut: 1
 parameters: {k: 40 N/m, c: 0.8 N s/m, g: 0.75}
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], fixed: y, mass: 2 kg}
-members:
-  m: {nodes: [a, b], kind: spring, stiffness: k, damping: c}
-sensors:
-  l: {length: m}
-signals:
-  error: {expression: "1 m - l"}
-actuators:
-  pd: {member: m, signal: {expression: g*error}}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
+members: {m: {nodes: [a, b], kind: spring, stiffness: k, damping: c}}
+sensors: {l: {length: m}}
+signals: {error: {expression: "1 m - l"}}
+actuators: {pd: {member: m, signal: {expression: g*error}}}
 initial: {velocities: {b: [1, 0]}}
 solver: {integrator: rk4, step: 1 ms}
-run:
-  duration: 2 s
-  measure:
-    quantities: {x: {of: l - 1 m, take: final}, e: {of: error, take: final}}
+run: {duration: 2 s, measure: {quantities: {x: {of: l - 1 m, take: final}, e: {of: error, take: final}}}}
 END
 poles='(0.35) as $a | (35 - 0.1225 | sqrt) as $w | '
-while read -r method tolerance; do
+for row in "rk4 1e-10" "rk4-events 1e-10" "adaptive 1e-8" "verlet 4e-5" "verlet-events 4e-5" "midpoint 4e-5" \
+  "euler 2e-2" "euler-events 2e-2"; do
+  set -- $row; method=$1 tolerance=$2
   sed "s/integrator: rk4/integrator: $method/" length.yaml >run.yaml
   expect 0 run run.yaml --json
   near '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance"
   near '.measured.e.value' "$poles"'-(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance"
   near '.energy.residual' 0 "$tolerance"
-done <<'END'
-rk4 1e-10
-rk4-events 1e-10
-adaptive 1e-8
-verlet 4e-5
-verlet-events 4e-5
-midpoint 4e-5
-euler 2e-2
-euler-events 2e-2
-END
+done
 
 # The same poles from an actuator that gives a force, by the length and its rate.
 cat >force.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], fixed: y, mass: 2 kg}
-members:
-  m: {nodes: [a, b], kind: spring, stiffness: 1e-12}
-sensors:
-  l: {length: m}
-actuators:
-  pd: {member: m, force: {expression: "70 N/m*(l - 1 m) + 1.4 N s/m*rate(l)"}}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
+members: {m: {nodes: [a, b], kind: spring, stiffness: 1e-12}}
+sensors: {l: {length: m}}
+actuators: {pd: {member: m, force: {expression: "70 N/m*(l - 1 m) + 1.4 N s/m*rate(l)"}}}
 initial: {velocities: {b: [1, 0]}}
 solver: {integrator: rk4, step: 1 ms}
 run: {duration: 2 s, measure: {quantities: {x: {of: l - 1 m, take: final}}}}
 END
-while read -r method tolerance; do
+for row in "rk4 1e-10" "rk4-events 1e-10" "adaptive 1e-8" "verlet 4e-5" "midpoint 4e-5" "euler 2e-2"; do
+  set -- $row; method=$1 tolerance=$2
   sed "s/integrator: rk4/integrator: $method/" force.yaml >run.yaml
   expect 0 run run.yaml --json
   near '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance"
   near '.energy.residual' 0 "$tolerance"
-done <<'END'
-rk4 1e-10
-rk4-events 1e-10
-adaptive 1e-8
-verlet 4e-5
-midpoint 4e-5
-euler 2e-2
-END
+done
 
 # Every function in an expression has its derivative: a driven length whose value is that of a sine
 # moves its mass as the sine does, through the damper alone.
 cat >functions.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], fixed: y, mass: 2 kg}
-members:
-  m: {nodes: [a, b], kind: spring, damping: 3}
-actuators:
-  d:
-    member: m
-    signal: {sine: {amplitude: 0.3 m, frequency: 1 Hz}}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
+members: {m: {nodes: [a, b], kind: spring, damping: 3}}
+actuators: {d: {member: m, signal: {sine: {amplitude: 0.3 m, frequency: 1 Hz}}}}
 solver: {integrator: rk4, step: 2 ms}
 run: {duration: 0.7 s, measure: {quantities: {x: {of: b.x, take: final}}}}
 END
@@ -154,28 +108,17 @@ END
 cat >all.yaml <<'END'
 strut: 1
 gravity: [0, -9.81]
-nodes:
-  a: {position: [0, 0.5], fixed: both}
-  b: {position: [0.3, 0.5], mass: 0.2}
-  c: {position: [0.6, 0.4], mass: 0.2}
-members:
-  ab: {nodes: [a, b], kind: spring, stiffness: 900, damping: 2}
-  bc: {nodes: [b, c], kind: spring, stiffness: 900, damping: 2}
-hinges:
-  h: {nodes: [a, b, c], stiffness: 1, damping: 0.01}
+nodes: {a: {position: [0, 0.5], fixed: both}, b: {position: [0.3, 0.5], mass: 0.2},
+        c: {position: [0.6, 0.4], mass: 0.2}}
+members: {ab: {nodes: [a, b], kind: spring, stiffness: 900, damping: 2},
+          bc: {nodes: [b, c], kind: spring, stiffness: 900, damping: 2}}
+hinges: {h: {nodes: [a, b, c], stiffness: 1, damping: 0.01}}
 ground: {stiffness: 1e4, damping: 5, nodes: [c]}
-sensors:
-  touch: {contact: c}
-  angle: {angle: h}
-  tension: {force: ab}
-  kinetic: {energy: kinetic}
-  elastic: {energy: elastic}
-  total: {energy: total}
-actuators:
-  bend: {hinge: h, signal: {expression: "0.2*(angle - 180 deg)"}}
-loads:
-  lift: {node: c, force: [0, 1 N], signal: {expression: 2*touch + tension/(10 N)}}
-  push: {node: b, force: [1 N, 0], signal: {expression: (kinetic + elastic - total)/(1 J)}}
+sensors: {touch: {contact: c}, angle: {angle: h}, tension: {force: ab}, kinetic: {energy: kinetic},
+          elastic: {energy: elastic}, total: {energy: total}}
+actuators: {bend: {hinge: h, signal: {expression: "0.2*(angle - 180 deg)"}}}
+loads: {lift: {node: c, force: [0, 1 N], signal: {expression: 2*touch + tension/(10 N)}},
+        push: {node: b, force: [1 N, 0], signal: {expression: (kinetic + elastic - total)/(1 J)}}}
 solver: {integrator: rk4-events, step: 0.25 ms}
 run: {duration: 0.5 s, measure: {quantities: {y: {of: b.y, take: final}}}}
 END
@@ -191,49 +134,34 @@ done
 # A lag of a constant that begins at 0: 1 - e^{-t/tau}, by every method at its order.
 cat >lag.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], fixed: both, mass: 2 kg}
-members:
-  m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 0.3}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: both, mass: 2 kg}}
+members: {m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 0.3}}
 signals: {slow: {constant: 10 mm, lag: 0.5 s}}
 actuators: {d: {member: m, signal: slow}}
 solver: {integrator: rk4, step: 10 ms}
 run: {duration: 1 s, measure: {quantities: {z: {of: slow, take: final}, f: {of: m.force, take: final}}}}
 END
-while read -r method tolerance; do
+for row in "rk4 1e-10" "rk4-events 1e-10" "adaptive 1e-10" "verlet 1e-6" "verlet-events 1e-6" "midpoint 1e-6" \
+  "euler 1e-4" "euler-events 1e-4"; do
+  set -- $row; method=$1 tolerance=$2
   sed "s/integrator: rk4/integrator: $method/" lag.yaml >run.yaml
   expect 0 run run.yaml --json
   near '.measured.z.value' '0.01 * (1 - (-2 | exp))' "$tolerance"
   near '.measured.f.value' '-40 * 0.01 * (1 - (-2 | exp)) - 0.3 * 0.02 * (-2 | exp)' \
     "(40 * $tolerance)"
   near '.energy.residual' 0 "$tolerance"
-done <<'END'
-rk4 1e-10
-rk4-events 1e-10
-adaptive 1e-10
-verlet 1e-6
-verlet-events 1e-6
-midpoint 1e-6
-euler 1e-4
-euler-events 1e-4
-END
+done
 
 # Two oscillators lock where their frequencies differ by less than twice the coupling, with the phase
 # difference arcsin(dw / 2K); else they drift apart at sqrt(dw^2 - 4 K^2) on average.
 cat >oscillators.yaml <<'END'
 strut: 1
 parameters: {df: 0.4 Hz}
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], fixed: y, mass: 2 kg}
-members:
-  m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 0.3}
-oscillators:
-  o1: {frequency: 1 Hz, coupling: {o2: 2 rad/s}}
-  o2: {frequency: 1 Hz + df, phase: 20 deg, coupling: {o1: 2 rad/s}}
-actuators:
-  d: {member: m, signal: {expression: 10 mm*sin(o1)}}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
+members: {m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 0.3}}
+oscillators: {o1: {frequency: 1 Hz, coupling: {o2: 2 rad/s}},
+              o2: {frequency: 1 Hz + df, phase: 20 deg, coupling: {o1: 2 rad/s}}}
+actuators: {d: {member: m, signal: {expression: 10 mm*sin(o1)}}}
 solver: {integrator: rk4, step: 5 ms}
 run:
   duration: 100 s
@@ -261,21 +189,14 @@ near '.measured.drift.value' '0.4 * 6.283185307179586 - 1' 1e-8
 cat >sampled.yaml <<'END'
 strut: 1
 parameters: {K: 4.3}
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], fixed: y, mass: 1 kg}
-members:
-  m: {nodes: [a, b], kind: spring, damping: 1}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 1 kg}}
+members: {m: {nodes: [a, b], kind: spring, damping: 1}}
 sensors: {x: {position: b, along: x}}
-loads:
-  p: {node: b, force: [1 N, 0], signal: {expression: -K*(x - 1 m)/(1 m), every: 500 ms}}
+loads: {p: {node: b, force: [1 N, 0], signal: {expression: -K*(x - 1 m)/(1 m), every: 500 ms}}}
 initial: {velocities: {b: [1, 0]}}
 solver: {integrator: rk4, step: 10 ms}
-run:
-  duration: 100 s
-  measure:
-    last: 10 s
-    quantities: {x: {of: x - 1 m, take: final}, most: {of: abs(x - 1 m), take: max}}
+run: {duration: 100 s,
+      measure: {last: 10 s, quantities: {x: {of: x - 1 m, take: final}, most: {of: abs(x - 1 m), take: max}}}}
 END
 map='(-0.5 | exp) as $e | reduce range(200) as $n ([0, 1];
   (-$K * .[0]) as $u | [.[0] + (1 - $e) * .[1] + (0.5 - 1 + $e) * $u, $e * .[1] + (1 - $e) * $u]) | .[0]'
@@ -288,8 +209,7 @@ for method in rk4 rk4-events adaptive; do
 done
 for gain in 4.2 4.5; do
   expect 0 run sampled.yaml --set "K=$gain" --json
-  jq -e ".measured.most.value | if $gain < 4.362 then . < 0.3 else . > 1.2 end" out >jq.out ||
-    fail "sampled control with a gain of $gain: $(jq -c .measured.most.value out)"
+  holds ".measured.most.value | if $gain < 4.362 then . < 0.3 else . > 1.2 end"
 done
 # Samples that a fixed step would miss are refused; a method with events stops at them.
 sed 's/every: 500 ms/every: 125 ms/' sampled.yaml >run.yaml
@@ -305,53 +225,37 @@ near '.measured.x.value' "$want" 1e-9
 # A held rest length jumps at each sample; what that does to the elastic energy is work of the drive.
 cat >held.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], fixed: y, mass: 1 kg}
-members:
-  m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 1}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 1 kg}}
+members: {m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 1}}
 sensors: {x: {position: b, along: x}}
-actuators:
-  d: {member: m, signal: {expression: -0.3*(x - 1 m), every: 100 ms}}
+actuators: {d: {member: m, signal: {expression: -0.3*(x - 1 m), every: 100 ms}}}
 initial: {velocities: {b: [1, 0]}}
 solver: {integrator: rk4, step: 1 ms}
 run: {duration: 2.05 s, measure: {quantities: {x: {of: x, take: final}}}}
 END
 expect 0 run held.yaml --json
 want=$(jq .measured.x.value out)
-while read -r method tolerance; do
+for row in "rk4 1e-9" "rk4-events 1e-9" "adaptive 1e-9" "verlet 2e-5" "verlet-events 2e-5" "midpoint 2e-5" \
+  "euler 1e-2" "euler-events 1e-2"; do
+  set -- $row; method=$1 tolerance=$2
   sed "s/integrator: rk4/integrator: $method/" held.yaml >run.yaml
   expect 0 run run.yaml --json
   near '.energy.residual' 0 "$tolerance"
   near '.measured.x.value' "$want" "$tolerance"
-done <<'END'
-rk4 1e-9
-rk4-events 1e-9
-adaptive 1e-9
-verlet 2e-5
-verlet-events 2e-5
-midpoint 2e-5
-euler 1e-2
-euler-events 1e-2
-END
+done
 
 # A PI controller of a length against the poles of the loop: m x'' + c x' + k x = k u with
 # u = g e + i I, I' = e: in rest e = 0. And with limits it does not wind up.
 cat >pi.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], fixed: y, mass: 2 kg}
-members:
-  m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 4}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
+members: {m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 4}}
 sensors: {l: {length: m}}
-controllers:
-  c: {sensor: l, target: 1.1 m, gain: 0.5, integral: 1 Hz, most: 0.3 m, least: -0.3 m}
+controllers: {c: {sensor: l, target: 1.1 m, gain: 0.5, integral: 1 Hz, most: 0.3 m, least: -0.3 m}}
 actuators: {d: {member: m, signal: c}}
 solver: {integrator: rk4, step: 5 ms}
-run:
-  duration: 40 s
-  measure: {quantities: {x: {of: l, take: final}, i: {of: c_integral, take: final}, s: {of: c, take: max}}}
+run: {duration: 40 s,
+      measure: {quantities: {x: {of: l, take: final}, i: {of: c_integral, take: final}, s: {of: c, take: max}}}}
 END
 for method in rk4 midpoint rk4-events; do
   sed "s/integrator: rk4/integrator: $method/" pi.yaml >run.yaml
@@ -372,15 +276,10 @@ near '.measured.x.value' 1.1 1e-6
 # A state of one's own: van der Pol's oscillator, by all methods of high order alike.
 cat >state.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], fixed: y, mass: 2 kg}
-members:
-  m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 0.3}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
+members: {m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 0.3}}
 sensors: {f: {force: m}}
-states:
-  z: {rate: w, start: 1 m}
-  w: {rate: "(1 - (z/(1 m))^2)*w/(1 s) - z/(1 s^2) + 1e-3*f/(1 kg)", start: 0 m/s}
+states: {z: {rate: w, start: 1 m}, w: {rate: "(1 - (z/(1 m))^2)*w/(1 s) - z/(1 s^2) + 1e-3*f/(1 kg)", start: 0 m/s}}
 actuators: {d: {member: m, signal: {expression: 0.05*z}}}
 solver: {integrator: rk4-events, step: 5 ms}
 run: {duration: 10 s, measure: {quantities: {z: {of: z, take: final}}}}
@@ -403,30 +302,21 @@ done
 # A Maxwell branch between held nodes relaxes as e^{-t k/c}; what it has stored is lost in the dashpot.
 cat >maxwell.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], fixed: both, mass: 1 kg}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: both, mass: 1 kg}}
 members:
   m: {nodes: [a, b], kind: spring, stiffness: 10, maxwell: {stiffness: 50 N/m, damping: 25 N s/m, force: 2 N}}
 solver: {integrator: rk4, step: 10 ms}
 run: {duration: 1 s, measure: {quantities: {f: {of: m.force, take: final}, e: {of: energy.elastic, take: final}, l: {of: losses.members, take: final}}}}
 END
-while read -r method tolerance; do
+for row in "rk4 1e-8" "rk4-events 1e-8" "adaptive 1e-8" "verlet 1e-4" "verlet-events 1e-4" "midpoint 1e-4" \
+  "euler 1e-2" "euler-events 1e-2"; do
+  set -- $row; method=$1 tolerance=$2
   sed "s/integrator: rk4/integrator: $method/" maxwell.yaml >run.yaml
   expect 0 run run.yaml --json
   near '.measured.f.value' '2 * (-2 | exp)' "$tolerance"
   near '.measured.e.value' '4 * (-4 | exp) / 100' "$tolerance"
   near '.measured.l.value' '0.04 * (1 - (-4 | exp))' "$tolerance"
-done <<'END'
-rk4 1e-8
-rk4-events 1e-8
-adaptive 1e-8
-verlet 1e-4
-verlet-events 1e-4
-midpoint 1e-4
-euler 1e-2
-euler-events 1e-2
-END
+done
 # Shaken by its rest length with amplitude A at w it loses pi A^2 k w T / (1 + w^2 T^2) in a cycle, which
 # the drive does; and a free mass on it keeps the balance.
 sed 's/, force: 2 N//; s/damping: 25 N s\/m/time: 0.5 s/; s/duration: 1 s/duration: 10 s/
@@ -452,17 +342,13 @@ done
 cat >starts.yaml <<'END'
 strut: 1
 gravity: [0, -9.81]
-nodes:
-  a: {position: [0, 1], mass: 1}
-  c: {position: [3, 0], fixed: both}
-  d: {position: [4, 0], fixed: both, mass: 1}
-members:
-  m: {nodes: [c, d], kind: spring, stiffness: 40, damping: 1}
+nodes: {a: {position: [0, 1], mass: 1}, c: {position: [3, 0], fixed: both},
+        d: {position: [4, 0], fixed: both, mass: 1}}
+members: {m: {nodes: [c, d], kind: spring, stiffness: 40, damping: 1}}
 ground: {stiffness: 1e5, nodes: [a]}
 sensors: {y: {position: a, along: y}}
-signals:
-  kick: {sine: {amplitude: 10 mm, frequency: 1 Hz}, starts: {contact: a}}
-  late: {ramp: {amplitude: 5 mm, stop: 1 s}, starts: {sensor: y, below: 0.5 m}}
+signals: {kick: {sine: {amplitude: 10 mm, frequency: 1 Hz}, starts: {contact: a}},
+          late: {ramp: {amplitude: 5 mm, stop: 1 s}, starts: {sensor: y, below: 0.5 m}}}
 actuators: {d: {member: m, signal: {sum: [kick, late]}}}
 solver: {integrator: rk4-events, step: 1 ms}
 run: {duration: 0.6 s, measure: {quantities: {kick: {of: kick, take: final}, late: {of: late, take: final}}}}
@@ -481,9 +367,7 @@ cat >grounds.yaml <<'END'
 strut: 1
 gravity: [0, -9.81]
 nodes: {a: {position: [0, 10 mm], mass: 1}}
-grounds:
-  wall: {slope: 90 deg, through: [1, 0], stiffness: 1e4}
-  floor: {stiffness: 1e4, damping: 200}
+grounds: {wall: {slope: 90 deg, through: [1, 0], stiffness: 1e4}, floor: {stiffness: 1e4, damping: 200}}
 sensors: {touch: {contact: a}}
 signals: {go: {constant: 1, starts: {contact: a}}}
 loads: {push: {node: a, force: [1, 0], signal: go}}
@@ -521,12 +405,10 @@ near '.measured.f.value' '2 * (-2 | exp)' 1e-8
 
 # Loops that are unstable, and states that run away, are stopped with name and time.
 sed 's/-0.3\*/-10*/; s/duration: 2.05 s/duration: 60 s/' held.yaml >run.yaml
-expect 3 run run.yaml
-err_has "node 'b' left all bounds at t = "
+tells 3 "node 'b' left all bounds at t = " run run.yaml
 err_has 'look for a loop of sensors and drives that is unstable'
 sed 's/{rate: w, start/{rate: "z^2\/(1 m s)", start/; s/z\/(1 s^2)/w*0\/(1 s)/; s/0.05\*z/0.05*w*0*1 s/; s/1e-3\*f/0*f/' free.yaml >run.yaml
-expect 3 run run.yaml
-err_has "state 'z' is no longer a finite number at t = "
+tells 3 "state 'z' is no longer a finite number at t = " run run.yaml
 
 # Shooting knows nothing of internal states, and says so.
 sed 's/duration: 100 s/periods: 400\n  of: beat/; s/measure:/measure:\n    steady: {shooting: yes}/
@@ -537,21 +419,16 @@ expect 0 run run.yaml --set 'df=0 Hz'
 # Starts are a memory, too.
 cat >begun.yaml <<'END'
 strut: 1
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], fixed: y, mass: 2 kg}
-members:
-  m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 4}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
+members: {m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 4}}
 sensors: {l: {length: m}}
-signals:
-  beat: {sine: {amplitude: 10 mm, frequency: 1 Hz}}
-  more: {constant: 1 mm, starts: {sensor: l, above: 1.005 m}}
+signals: {beat: {sine: {amplitude: 10 mm, frequency: 1 Hz}},
+          more: {constant: 1 mm, starts: {sensor: l, above: 1.005 m}}}
 actuators: {d: {member: m, signal: {sum: [beat, more]}}}
 solver: {integrator: rk4-events, step: 1 ms}
 run: {periods: 40, of: beat, measure: {steady: {shooting: yes}, last: 1, node: b}}
 END
-expect 0 run begun.yaml
-out_has 'internal states, samples, starts and relays are a memory that shooting does not correct'
+shows 0 'internal states, samples, starts and relays are a memory that shooting does not correct' run begun.yaml
 
 # The largest step counts Maxwell branches, as stiff as they are in fast motions, sqrt((k + K)/m), and
 # what relaxes by itself; it knows nothing of feedback, and so do modes, and both say so.
@@ -566,66 +443,47 @@ END
 expect 0 run branch.yaml --json
 near .step_limit '8 / 10010 | sqrt' 1e-9
 sed 's/20 ms/29 ms/' branch.yaml >run.yaml
-expect 3 run run.yaml
-err_has 'is above the largest stable step of rk4, 0.02827 s'
+tells 3 'is above the largest stable step of rk4, 0.02827 s' run run.yaml
 sed 's/time: 0.5 s/time: 5 ms/' branch.yaml >run.yaml
-expect 3 run run.yaml
-err_has 'is above the largest stable step of rk4, 0.01393 s'
-expect 0 modes branch.yaml
-out_has 'without Maxwell branches, which have relaxed'
+tells 3 'is above the largest stable step of rk4, 0.01393 s' run run.yaml
+shows 0 'without Maxwell branches, which have relaxed' modes branch.yaml
 sed 's/constant: 10 mm, lag: 0.5 s/constant: 10 mm, lag: 2 ms/' lag.yaml >run.yaml
-expect 3 run run.yaml
-err_has 'is above the largest stable step of rk4, 0.005571 s'
-expect 0 modes pd.yaml
-out_has 'without the feedback of sensors'
-expect 0 check pd.yaml
-out_has 'feedback           not counted in this frequency and these steps'
-expect 0 run pd.yaml
-out_has 'without feedback'
+tells 3 'is above the largest stable step of rk4, 0.005571 s' run run.yaml
+shows 0 'without the feedback of sensors' modes pd.yaml
+shows 0 'feedback           not counted in this frequency and these steps' check pd.yaml
+shows 0 'without feedback' run pd.yaml
 
 # Sensors of cells, distances, contacts and collisions are the columns of the same things, all the way.
 cat >sensed.yaml <<'END'
 strut: 1
 gravity: [0, -9.81]
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1, 0], fixed: both}
-  top: {position: [0.5, 1], mass: 1}
-  ball: {position: [0.5, 1.1], mass: 0.3}
-members:
-  left: {kind: spring, nodes: [a, top], stiffness: 30, damping: 0.3}
-  right: {kind: spring, nodes: [b, top], stiffness: 30}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: both}, top: {position: [0.5, 1], mass: 1},
+        ball: {position: [0.5, 1.1], mass: 0.3}}
+members: {left: {kind: spring, nodes: [a, top], stiffness: 30, damping: 0.3},
+          right: {kind: spring, nodes: [b, top], stiffness: 30}}
 cells: {air: {nodes: [a, b, top], gas: {kind: isothermal, pressure: 5 N/m, outside: 5 N/m}}}
 collisions: {hit: {nodes: [top, ball], thickness: 0.15, stiffness: 500, damping: 2}}
 distances: {wide: {nodes: [ball, top], along: x, stiffness: 3}}
 ground: {height: 0.93, stiffness: 200, damping: 3, friction: {law: none}, nodes: [top]}
-sensors:
-  area: {area: air}
-  p: {pressure: air}
-  d: {distance: wide}
-  c: {collision_force: hit}
-  n: {contact_force: top}
-signals:
-  lift: {expression: "(n + c + 0.1*p*(1 m))/(10 N) + rate(area)/(1 m^2/s) + rate(d)/(1 m/s)"}
+sensors: {area: {area: air}, p: {pressure: air}, d: {distance: wide}, c: {collision_force: hit},
+          n: {contact_force: top}}
+signals: {lift: {expression: "(n + c + 0.1*p*(1 m))/(10 N) + rate(area)/(1 m^2/s) + rate(d)/(1 m/s)"}}
 loads: {lift: {node: ball, force: [0.2 N, 1 N], signal: lift}}
 initial: {velocities: {ball: [0.1, 0], top: [0, 0.5]}}
 solver: {integrator: rk4, step: 0.1 ms}
 run:
   duration: 1 s
   measure:
-    quantities:
-      area: {of: abs(area/(1 m^2) - air.area/(1 m^2)), take: max}
-      p: {of: abs(p/(1 N/m) - air.pressure/(1 N/m)), take: max}
-      d: {of: abs(d/(1 m) - wide.distance/(1 m)), take: max}
-      c: {of: abs(c/(1 N) - hit.force/(1 N)), take: max}
-      n: {of: abs(n/(1 N) - top.normal/(1 N)), take: max}
-      pushed: {of: n, take: max}
-      hit: {of: c, take: max}
-      y: {of: ball.y, take: final}
+    quantities: {area: {of: abs(area/(1 m^2) - air.area/(1 m^2)), take: max},
+                 p: {of: abs(p/(1 N/m) - air.pressure/(1 N/m)), take: max},
+                 d: {of: abs(d/(1 m) - wide.distance/(1 m)), take: max},
+                 c: {of: abs(c/(1 N) - hit.force/(1 N)), take: max},
+                 n: {of: abs(n/(1 N) - top.normal/(1 N)), take: max}, pushed: {of: n, take: max},
+                 hit: {of: c, take: max}, y: {of: ball.y, take: final}}
 END
 expect 0 run sensed.yaml --json
 for what in area p d c n; do near ".measured.$what.value" 0 1e-12; done
-jq -e '.measured.pushed.value > 1 and .measured.hit.value > 1' out >/dev/null || fail "nothing touched"
+holds '.measured.pushed.value > 1 and .measured.hit.value > 1'
 y=$(jq .measured.y.value out)
 for method in rk4-events adaptive verlet; do
   expect 0 run sensed.yaml --integrator $method --json
@@ -660,22 +518,18 @@ strut: 1
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
 members: {m: {nodes: [a, b], kind: spring, stiffness: 40 N/m, damping: 0.1 N s/m}}
 sensors: {l: {length: m}, v: {velocity: b, along: x}}
-signals:
-  one: {expression: "tanh(0.5*l/(1 m) - 1.2*v/(1 m/s) + 0.1)"}
-  two: {expression: "tanh(0.8*l/(1 m) + 0.3*v/(1 m/s) - 0.4)"}
-controllers:
-  push: {network: brain.csv, inputs: [l/(1 m), v/(1 m/s)], scale: 3 N}
-  pull: {network: brain.csv, inputs: [l/(1 m), v/(1 m/s)], output: 2, last: linear, scale: 2 N}
+signals: {one: {expression: "tanh(0.5*l/(1 m) - 1.2*v/(1 m/s) + 0.1)"},
+          two: {expression: "tanh(0.8*l/(1 m) + 0.3*v/(1 m/s) - 0.4)"}}
+controllers: {push: {network: brain.csv, inputs: [l/(1 m), v/(1 m/s)], scale: 3 N},
+              pull: {network: brain.csv, inputs: [l/(1 m), v/(1 m/s)], output: 2, last: linear, scale: 2 N}}
 actuators: {push: {member: m, force: push}, pull: {member: m, force: pull}}
 initial: {velocities: {b: [1, 0]}}
 solver: {integrator: rk4, step: 1 ms}
 run:
   duration: 2 s
   measure:
-    quantities:
-      push: {of: "abs(push/(1 N) - 3*tanh(1.5*one - 0.7*two))", take: max}
-      pull: {of: "abs(pull/(2 N) - (0.9*two - 0.3*one + 0.2))", take: max}
-      x: {of: b.x, take: final}
+    quantities: {push: {of: "abs(push/(1 N) - 3*tanh(1.5*one - 0.7*two))", take: max},
+                 pull: {of: "abs(pull/(2 N) - (0.9*two - 0.3*one + 0.2))", take: max}, x: {of: b.x, take: final}}
 END
 expect 0 run brain.yaml --json
 near .measured.push.value 0 1e-12
@@ -687,8 +541,7 @@ for method in rk4-events adaptive verlet; do
 done
 broken() { # CSV of the first layer, message
   printf '%s\n' "$1" >brain.csv
-  expect 2 check brain.yaml
-  err_has "$2"
+  tells 2 "$2" check brain.yaml
 }
 cp brain.csv whole.csv
 broken '0.5, -1.2' "line 1: 2 numbers, expected 3: a weight for each of 2 values, and a bias"
@@ -696,12 +549,10 @@ broken '0.5, -1.2, x' "line 1: expected a number, found x"
 broken '' "there is no neuron in this file"
 broken '1, 2, 3' "controller 'pull' is output 2 of a network that has 1"
 rm brain.csv
-expect 2 check brain.yaml
-err_has "brain.csv"
+tells 2 "brain.csv" check brain.yaml
 cp whole.csv brain.csv
 sed 's/inputs: .l.(1 m), /inputs: [l, /' brain.yaml >units.yaml
-expect 2 check units.yaml
-err_has "expected a number without unit for 'inputs' of controller 'push', found a length"
+tells 2 "expected a number without unit for 'inputs' of controller 'push', found a length" check units.yaml
 
 # What is written reads back to the same run; statics, figures, sweeps and pages know such scenes.
 for scene in pd length force all lag oscillators sampled held pi free maxwell shaken starts sensed half brain; do

@@ -9,17 +9,14 @@ cat >rocker.yaml <<'YAML'
 strut: 1
 gravity: [0, -10]
 parameters: {tilt: 0.005, mu: 2}
-nodes:
-  n: {position: ["-sin(tilt)", "1 - cos(tilt)"], mass: 3}
-  o: {position: ["0.6*sin(tilt)", "1 + 0.6*cos(tilt)"], mass: 1}
-members:
-  body: {kind: bar, nodes: [n, o], stiffness: 1e5, damping: 100}
+nodes: {n: {position: ["-sin(tilt)", "1 - cos(tilt)"], mass: 3},
+        o: {position: ["0.6*sin(tilt)", "1 + 0.6*cos(tilt)"], mass: 1}}
+members: {body: {kind: bar, nodes: [n, o], stiffness: 1e5, damping: 100}}
 feet: {f: {member: body, node: n, radius: 1 m}}
 ground: {height: 4e-4, stiffness: 1e5, damping: 1000, friction: {law: smooth, mu: mu, width: 1 mm/s}, nodes: [n]}
 solver: {integrator: rk4, step: 0.03 ms}
-run:
-  duration: 0.8 s
-  measure: {quantities: {quarter: {of: n.x - o.x, take: arrival, target: 0}, n: {of: n.normal, take: final}}}
+run: {duration: 0.8 s,
+      measure: {quantities: {quarter: {of: n.x - o.x, take: arrival, target: 0}, n: {of: n.normal, take: final}}}}
 YAML
 for method in rk4 adaptive verlet rk4-events; do
   expect 0 run rocker.yaml --integrator $method --json
@@ -42,17 +39,11 @@ cat >wheel.yaml <<'YAML'
 strut: 1
 parameters: {slope: 10 deg}
 gravity: [10*sin(slope), -10*cos(slope)]
-nodes:
-  a: {position: [0, 0], mass: 1}
-  b: {position: [0, 2], mass: 1}
-  top: {position: [0, 1], mass: 2}
-members:
-  down: {kind: bar, nodes: [a, top], stiffness: 1e5, damping: 200}
-  up: {kind: bar, nodes: [b, top], stiffness: 1e5, damping: 200}
+nodes: {a: {position: [0, 0], mass: 1}, b: {position: [0, 2], mass: 1}, top: {position: [0, 1], mass: 2}}
+members: {down: {kind: bar, nodes: [a, top], stiffness: 1e5, damping: 200},
+          up: {kind: bar, nodes: [b, top], stiffness: 1e5, damping: 200}}
 hinges: {straight: {nodes: [a, top, b], stiffness: 1e4, damping: 20, rest_angle: 180 deg}}
-feet:
-  one: {member: down, node: a, radius: 0.9999 m}
-  two: {member: up, node: b, radius: 0.9999 m}
+feet: {one: {member: down, node: a, radius: 0.9999 m}, two: {member: up, node: b, radius: 0.9999 m}}
 ground: {height: 4e-4, stiffness: 1e5, damping: 500, friction: {law: smooth, mu: 1, width: 1 mm/s}, nodes: [a, b]}
 solver: {integrator: rk4, step: 0.03 ms}
 run: {duration: 1 s, measure: {quantities: {x: {of: top.x, take: final}}}}
@@ -71,15 +62,13 @@ grep -q "f: {member: body, node: n, radius: 1}" written.yaml || fail "the foot w
 expect 1 run rocker.yaml --integrator midpoint
 refused() { # sed command, message
   sed "$1" rocker.yaml >bad.yaml
-  expect 2 check bad.yaml
-  err_has "$2"
+  tells 2 "$2" check bad.yaml
 }
 refused 's/radius: 1 m/radius: 2 m/' "more than member 'body' is long"
 refused 's/node: n, radius/node: x, radius/' "unknown node 'x'"
 refused 's/law: smooth, mu: mu, width: 1 mm.s/law: coulomb, mu: 1/' "no friction that sticks exactly"
 refused 's/nodes: .n..$/nodes: [o]}/' "may touch no ground"
 refused 's/radius: 1 m/radius: -1 m/' "'radius' of foot 'f' must be above zero"
-expect 2 export rocker.yaml --format code -o code
-err_has "feet"
+tells 2 "feet" export rocker.yaml --format code -o code
 
 done_testing

@@ -78,14 +78,10 @@ check([r["point"] for r in table].count("cusp") == 1 and len(table) == len(curve
 write("bilinear.yaml", """strut: 1
 name: Bilinear oscillator
 parameters: {frequency: 1 Hz, gap: 30 mm, push: 1 N}
-nodes:
-  top: {position: [0, 1 + gap], fixed: both}
-  mass: {position: [0, gap], fixed: x, mass: 1}
-members:
-  spring: {kind: spring, nodes: [top, mass], stiffness: 100, damping: 1, rest_length: 1}
+nodes: {top: {position: [0, 1 + gap], fixed: both}, mass: {position: [0, gap], fixed: x, mass: 1}}
+members: {spring: {kind: spring, nodes: [top, mass], stiffness: 100, damping: 1, rest_length: 1}}
 ground: {stiffness: 100, damping: 0, contacts: {mass: {}}}
-loads:
-  push: {node: mass, force: [0, push], signal: {sine: {amplitude: 1, frequency: frequency}}}
+loads: {push: {node: mass, force: [0, push], signal: {sine: {amplitude: 1, frequency: frequency}}}}
 solver: {integrator: rk4, step: 1 ms}
 run: {periods: 100, of: push, measure: {node: mass}}
 """)
@@ -102,15 +98,11 @@ for curve in grazing["curves"]:
 write("wells.yaml", """strut: 1
 name: Two wells
 parameters: {force: 0.17 N, damping: 0.25 N s/m}
-nodes:
-  wall: {position: [0, 0], fixed: both}
-  mass: {position: [10.2, 0], fixed: y, mass: 1}
+nodes: {wall: {position: [0, 0], fixed: both}, mass: {position: [10.2, 0], fixed: y, mass: 1}}
 members:
-  spring:
-    {kind: spring, nodes: [wall, mass], law: {kind: polynomial, coefficients: [-1 N/m, 0, 1 N/m^3]}, damping: damping,
-     rest_length: 10}
-loads:
-  push: {node: mass, force: [force, 0], signal: {sine: {amplitude: 1, frequency: 1/(2*pi)*1 Hz}}}
+  spring: {kind: spring, nodes: [wall, mass], law: {kind: polynomial, coefficients: [-1 N/m, 0, 1 N/m^3]},
+           damping: damping, rest_length: 10}
+loads: {push: {node: mass, force: [force, 0], signal: {sine: {amplitude: 1, frequency: 1/(2*pi)*1 Hz}}}}
 solver: {integrator: rk4, step: 1 ms}
 run: {periods: 200, of: push, measure: {node: mass}}
 """)

@@ -132,14 +132,10 @@ check(wells["branches"][1]["points"][2]["stable"], "the doubled branch is stable
 write("bilinear.yaml", """strut: 1
 name: Bilinear oscillator
 parameters: {frequency: 1 Hz, gap: 30 mm}
-nodes:
-  top: {position: [0, 1 + gap], fixed: both}
-  mass: {position: [0, gap], fixed: x, mass: 1}
-members:
-  spring: {kind: spring, nodes: [top, mass], stiffness: 100, damping: 1, rest_length: 1}
+nodes: {top: {position: [0, 1 + gap], fixed: both}, mass: {position: [0, gap], fixed: x, mass: 1}}
+members: {spring: {kind: spring, nodes: [top, mass], stiffness: 100, damping: 1, rest_length: 1}}
 ground: {stiffness: 100, damping: 0, contacts: {mass: {}}}
-loads:
-  push: {node: mass, force: [0, 1 N], signal: {sine: {amplitude: 1, frequency: frequency}}}
+loads: {push: {node: mass, force: [0, 1 N], signal: {sine: {amplitude: 1, frequency: frequency}}}}
 solver: {integrator: rk4, step: 1 ms}
 run: {periods: 100, of: push, measure: {node: mass}}
 """)
@@ -162,14 +158,10 @@ write("dry.yaml", """strut: 1
 name: Dry friction
 parameters: {friction: 0.3, ratio: 0.8}
 gravity: [0, -10 m/s^2]
-nodes:
-  wall: {position: [0, -10 mm], fixed: both}
-  mass: {position: [1, -10 mm], mass: 1}
-members:
-  spring: {kind: spring, nodes: [wall, mass], stiffness: 100, rest_length: 1}
+nodes: {wall: {position: [0, -10 mm], fixed: both}, mass: {position: [1, -10 mm], mass: 1}}
+members: {spring: {kind: spring, nodes: [wall, mass], stiffness: 100, rest_length: 1}}
 ground: {stiffness: 1000, damping: 50, contacts: {mass: {}}, friction: {law: coulomb, mu: friction}}
-loads:
-  push: {node: mass, force: [10 N, 0], signal: {sine: {amplitude: 1, frequency: ratio*10/(2*pi)*1 Hz}}}
+loads: {push: {node: mass, force: [10 N, 0], signal: {sine: {amplitude: 1, frequency: ratio*10/(2*pi)*1 Hz}}}}
 solver: {integrator: rk4-events, step: 1 ms}
 run: {periods: 200, of: push, measure: {node: mass}}
 """)

@@ -44,6 +44,11 @@ near_number() {
   awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { d = a - b; exit !(d <= t && -d <= t) }' ||
     fail "$4: $1, expected $2 within $3"
 }
+# shows CODE TEXT WORD..., tells CODE TEXT WORD...: the same, and stdout (stderr) has the text.
+shows() { has=$2 && expected=$1 && shift 2 && expect "$expected" "$@"; out_has "$has"; }
+tells() { has=$2 && expected=$1 && shift 2 && expect "$expected" "$@"; err_has "$has"; }
+# holds CONDITION: of the JSON in out, by jq.
+holds() { jq -e "$1" "$work/out" >"$work/jq.out" 2>&1 || fail "not so: $1"; }
 out_has() { grep -qF -- "$1" "$work/out" || fail "stdout lacks '$1'"; }
 out_has_not() { ! grep -qF -- "$1" "$work/out" || fail "stdout has '$1'"; }
 err_has() { grep -qF -- "$1" "$work/err" || fail "stderr lacks '$1'"; }

@@ -6,17 +6,11 @@
 cat >frame.yaml <<'END'
 strut: 1
 name: Frame
-groups:
-  cable: {kind: cable, stiffness: 1000, mass: 0.02, damping: 0.1, force_density: 120}
-  bar: {kind: bar, stiffness: 5e4, mass: 0.3, damping: 0.1, force_density: -120}
+groups: {cable: {kind: cable, stiffness: 1000, mass: 0.02, damping: 0.1, force_density: 120},
+         bar: {kind: bar, stiffness: 5e4, mass: 0.3, damping: 0.1, force_density: -120}}
 nodes: {a: [0, 0], b: [1, 0], c: [1, 1], d: [0, 1]}
-members:
-  ab: {group: cable, nodes: [a, b]}
-  bc: {group: cable, nodes: [b, c]}
-  cd: {group: cable, nodes: [c, d]}
-  da: {group: cable, nodes: [d, a]}
-  ac: {group: bar, nodes: [a, c]}
-  bd: {group: bar, nodes: [b, d]}
+members: {ab: {group: cable, nodes: [a, b]}, bc: {group: cable, nodes: [b, c]}, cd: {group: cable, nodes: [c, d]},
+          da: {group: cable, nodes: [d, a]}, ac: {group: bar, nodes: [a, c]}, bd: {group: bar, nodes: [b, d]}}
 END
 
 expect 0 modes frame.yaml
@@ -51,36 +45,27 @@ same results/modes.json first
 [ "$(wc -l <results/modes.csv)" -eq 9 ] || fail "modes.csv has not 9 lines"
 
 # Refusals: wrong use, a scene that is none, a shape that is none, what cannot be computed.
-expect 1 modes frame.yaml --count 0
-err_has "--count"
+tells 1 "--count" modes frame.yaml --count 0
 expect 1 modes frame.yaml --count many
-expect 1 modes frame.yaml --at nowhere
-err_has "nowhere"
-expect 1 modes
-err_has "missing MODEL"
+tells 1 "nowhere" modes frame.yaml --at nowhere
+tells 1 "missing MODEL" modes
 sed 's/stiffness: 1000/stifness: 1000/' frame.yaml >bad.yaml
-expect 2 modes bad.yaml
-err_has "did you mean 'stiffness'?"
+tells 2 "did you mean 'stiffness'?" modes bad.yaml
 sed 's/mass: 0.02, //; s/mass: 0.3, //' frame.yaml >light.yaml
-expect 2 modes light.yaml
-err_has "mass"
+tells 2 "mass" modes light.yaml
 out_empty
 sed 's/, force_density: -*120//' frame.yaml | sed 's/mass: 0.02, //; s/mass: 0.3, //; s/d: \[0, 1\]/d: {position: [0, 1], mass: 1}/' |
   sed '/  bd: /d; /  cd: /d; /  da: /d' >loose.yaml
-expect 3 modes loose.yaml
-err_has "has no mass and can move without stiffness"
+tells 3 "has no mass and can move without stiffness" modes loose.yaml
 printf 'strut: 1\nnodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: both}}\nmembers: {m: {kind: bar, nodes: [a, b], stiffness: 1, mass: 1}}\n' >held.yaml
-expect 2 modes held.yaml
-err_has "no node is free to move"
+tells 2 "no node is free to move" modes held.yaml
 cat >string.yaml <<'END'
 strut: 1
 nodes: {a: {position: [-1, 0], fixed: both}, b: {position: [0, 0], mass: 1}, c: {position: [1, 0], fixed: both}}
-members:
-  ab: {kind: cable, nodes: [a, b], stiffness: 1e13, rest_length: 1 - 1e-13}
-  bc: {kind: cable, nodes: [b, c], stiffness: 1e13, rest_length: 1 - 1e-13}
+members: {ab: {kind: cable, nodes: [a, b], stiffness: 1e13, rest_length: 1 - 1e-13},
+          bc: {kind: cable, nodes: [b, c], stiffness: 1e13, rest_length: 1 - 1e-13}}
 END
-expect 3 modes string.yaml
-err_has "not to 1e-8"
+tells 3 "not to 1e-8" modes string.yaml
 err_has "condition"
 out_empty
 
@@ -93,13 +78,10 @@ for cells in 8 16 23; do
   near '[.modes[] | select(.frequency > 0) | .frequency] | min | if . > 1 then 1 else 0 end' 1 0
   near '.just_taut | length' "3 * $cells + 1" 0
 done
-expect 0 modes "$arch" --set cells=16 --count 1
-out_has "just taut, without prestress: foot and 48 more"
+shows 0 "just taut, without prestress: foot and 48 more" modes "$arch" --set cells=16 --count 1
 out_has "members are just taut"
-expect 0 rigidity "$arch" --set cells=16
-out_has "without force      foot and 48 more"
-expect 3 modes "$arch" --set cells=200 --count 4
-err_has "396 modes have no stiffness"
+shows 0 "without force      foot and 48 more" rigidity "$arch" --set cells=16
+tells 3 "396 modes have no stiffness" modes "$arch" --set cells=200 --count 4
 # Two ropes as one running cable, and a spring that only pulls, likewise.
 cat >vee.yaml <<'END'
 strut: 1
@@ -127,24 +109,18 @@ done
 cat >standing.yaml <<'END'
 strut: 1
 nodes: {a: {position: [0, 0], mass: 1}, b: {position: [1, 0], mass: 1}, top: {position: [0.5, 1], mass: 1}}
-members:
-  ab: {kind: bar, nodes: [a, b], stiffness: 1e5}
-  at: {kind: bar, nodes: [a, top], stiffness: 1e5}
-  bt: {kind: bar, nodes: [b, top], stiffness: 1e5}
+members: {ab: {kind: bar, nodes: [a, b], stiffness: 1e5}, at: {kind: bar, nodes: [a, top], stiffness: 1e5},
+          bt: {kind: bar, nodes: [b, top], stiffness: 1e5}}
 gravity: [0, -9.81]
 ground: {stiffness: 1e5, damping: 20, nodes: [a, b]}
 END
 expect 0 modes standing.yaml
 for text in "on a, b" "6 coordinates" "the structure moves along x" "the ground"; do out_has "$text"; done
-expect 0 modes standing.yaml --stuck
-out_has "4 coordinates"
+shows 0 "4 coordinates" modes standing.yaml --stuck
 grep -q rigid-body out && fail "held along the ground it has no rigid motion"
 
 # A name that only the list of all equilibria gives.
-expect 0 modes standing.yaml --at a-b-1
-out_has "modes at a-b-1, on"
-expect 1 modes standing.yaml --at a-b-99
-err_has "unknown equilibrium 'a-b-99'"
-expect 1 modes standing.yaml --at top-1
-err_has "choose one of: start, drawn"
+shows 0 "modes at a-b-1, on" modes standing.yaml --at a-b-1
+tells 1 "unknown equilibrium 'a-b-99'" modes standing.yaml --at a-b-99
+tells 1 "choose one of: start, drawn" modes standing.yaml --at top-1
 done_testing

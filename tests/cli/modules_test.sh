@@ -55,8 +55,7 @@ folder=$built/modules
 mkdir -p moved/bin/modules
 cp "$folder"/strut-algebra.so "$folder"/strut-hdf5.so moved/bin/modules
 echo nothing >moved/bin/modules/strut-drawing.so
-expect 4 run "$models/basics/pendulum.yaml" --plot pendulum.svg
-err_has "cannot load the module 'strut-drawing.so' of strut: "
+tells 4 "cannot load the module 'strut-drawing.so' of strut: " run "$models/basics/pendulum.yaml" --plot pendulum.svg
 err_has "install strut again"
 version=$("$strut" --version | sed 's/^strut //')
 sed "s/$version/9.9.9/g" "$folder/strut-hdf5.so" >moved/bin/modules/strut-hdf5.so

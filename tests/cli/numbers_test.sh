@@ -10,8 +10,7 @@ err_has "above the largest stable step"
 err_has "--force"
 absent refused
 
-expect 3 run "$hopper" --set "step=20 ms" --set seconds=60 --force --json -o kept
-err_has "dt = 0.02 s"
+tells 3 "dt = 0.02 s" run "$hopper" --set "step=20 ms" --set seconds=60 --force --json -o kept
 err_has "t = "
 err_has "node '"
 out_has '"status":	"diverged"'
@@ -22,8 +21,7 @@ grep -q wall_time kept/summary.json && fail "summary.json knows the wall time"
 [ "$(wc -l <kept/nodes.csv)" -gt 1 ] || fail "nothing was kept"
 grep -q '^#' kept/nodes.csv && fail "CSV with comments"
 
-expect 3 run "$hopper" --set "step=20 ms" --set seconds=60 --force
-out_has "Hopper: diverged"
+shows 3 "Hopper: diverged" run "$hopper" --set "step=20 ms" --set seconds=60 --force
 
 # A stiffness beyond physical sense: no step can be recommended.
 cat >stiff.yaml <<'YAML'
@@ -35,11 +33,9 @@ solver: {step: 1 ms}
 run: {duration: 1 s}
 YAML
 for stiffness in 1e300 1e-265; do
-  expect 3 run stiff.yaml --set "stiffness=$stiffness"
-  err_has "check their units"
+  tells 3 "check their units" run stiff.yaml --set "stiffness=$stiffness"
   ! grep -qF 'solver.step <=' err || fail "a step is recommended"
 done
 
-expect 0 check "$hopper" --set "step=20 ms"
-out_has "strut run rejects it"
+shows 0 "strut run rejects it" check "$hopper" --set "step=20 ms"
 done_testing

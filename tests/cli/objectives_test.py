@@ -19,22 +19,12 @@ BLOCK = """strut: 1
 name: A block pushed along the ground
 parameters: {friction: 0.3, speed: 20 mm/s, fall: 9.81 m/s^2}
 gravity: [0, -fall]
-nodes:
-  wall: {position: [0, 0], fixed: both}
-  block: {position: [100 mm, 0], mass: 0.5 kg}
-members:
-  push: {nodes: [wall, block], kind: spring, stiffness: 5 kN/m, damping: 20 N s/m, rest_length: 100 mm}
-ground:
-  friction: {mu: friction, stick_velocity: 0.01 mm/s}
-  nodes: [block]
-  stiffness: 1 MN/m
-  damping: 300 N s/m
-actuators:
-  drive: {member: push, signal: {expression: speed*time}}
+nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [100 mm, 0], mass: 0.5 kg}}
+members: {push: {nodes: [wall, block], kind: spring, stiffness: 5 kN/m, damping: 20 N s/m, rest_length: 100 mm}}
+ground: {friction: {mu: friction, stick_velocity: 0.01 mm/s}, nodes: [block], stiffness: 1 MN/m, damping: 300 N s/m}
+actuators: {drive: {member: push, signal: {expression: speed*time}}}
 solver: {integrator: rk4-events, step: 0.1 ms}
-run:
-  duration: 1 s
-  measure: {last: 0.5 s%s}
+run: {duration: 1 s, measure: {last: 0.5 s%s}}
 """
 QUANTITIES = """, quantities: {
       peak: {of: largest_force, take: max},

@@ -69,19 +69,12 @@ for name in one one_on_ground two_in_one pressed_sideways slack stiff huge pushe
 done
 
 # What is said.
-expect 0 modes one_on_ground.yaml
-out_has "50.3292 Hz"
-expect 3 modes pressed_sideways.yaml
-err_has "because nothing presses it down"
-expect 3 equilibria pushed.yaml --starts 40
-err_has "leave the range of numbers"
-expect 3 form pushed.yaml --given lengths
-err_has "the residual is 1e+300 N"
-expect 2 modes stiff.yaml
-err_has "check their units"
-expect 3 modes under.yaml
-err_has "moves away without end, n"
-expect 3 form "$models/gallery/d-bar.yaml" --given densities
-err_has "nodes 'n1' and 'n3', the ends of 'taut', coincide"
+shows 0 "50.3292 Hz" modes one_on_ground.yaml
+tells 3 "because nothing presses it down" modes pressed_sideways.yaml
+tells 3 "leave the range of numbers" equilibria pushed.yaml --starts 40
+tells 3 "the residual is 1e+300 N" form pushed.yaml --given lengths
+tells 2 "check their units" modes stiff.yaml
+tells 3 "moves away without end, n" modes under.yaml
+tells 3 "nodes 'n1' and 'n3', the ends of 'taut', coincide" form "$models/gallery/d-bar.yaml" --given densities
 out_empty
 done_testing

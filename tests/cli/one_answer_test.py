@@ -19,21 +19,18 @@ models, tests = os.path.abspath("models"), os.path.dirname(os.path.abspath(__fil
 ROBOT = """strut: 1
 name: Oblique X
 parameters: {frequency: 23 Hz, amplitude: 0.5 mm, friction: 0.3, prestress: 3 N}
-groups:
-  rod: {kind: bar, stiffness: 100 kN/m, damping: 1 N s/m, mass: 50 g}
-  cable: {kind: cable, stiffness: 500 N/m, damping: 0.5 N s/m}
+groups: {rod: {kind: bar, stiffness: 100 kN/m, damping: 1 N s/m, mass: 50 g},
+         cable: {kind: cable, stiffness: 500 N/m, damping: 0.5 N s/m}}
 nodes: {a: [0, 0], b: [100 mm, 0], c: [80 mm, 60 mm], d: [0, 90 mm]}
-members:
-  rising: {group: rod, nodes: [a, c], pretension: -1.25*prestress}
-  falling: {group: rod, nodes: [b, d], pretension: -1.922*prestress}
-  floor: {group: cable, nodes: [a, b], pretension: prestress}
-  right: {group: cable, nodes: [b, c], pretension: 1.355*prestress}
-  roof: {group: cable, nodes: [c, d], pretension: 1.526*prestress}
-  left: {group: cable, nodes: [d, a], pretension: 0.75*prestress}
+members: {rising: {group: rod, nodes: [a, c], pretension: -1.25*prestress},
+          falling: {group: rod, nodes: [b, d], pretension: -1.922*prestress},
+          floor: {group: cable, nodes: [a, b], pretension: prestress},
+          right: {group: cable, nodes: [b, c], pretension: 1.355*prestress},
+          roof: {group: cable, nodes: [c, d], pretension: 1.526*prestress},
+          left: {group: cable, nodes: [d, a], pretension: 0.75*prestress}}
 gravity: [0, -9.81 m/s^2]
 ground: {stiffness: 100 kN/m, damping: 50 N s/m, friction: {law: coulomb, mu: friction}}
-actuators:
-  drive: {member: left, signal: {sine: {amplitude: amplitude, frequency: frequency}}}
+actuators: {drive: {member: left, signal: {sine: {amplitude: amplitude, frequency: frequency}}}}
 initial: {settle: true}
 solver: {accuracy: 1 %}
 run: {periods: 400, of: drive, measure: {last: 20, steady: true}}

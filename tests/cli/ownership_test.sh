@@ -14,8 +14,7 @@ refuses() {
   mkdir -p "$(dirname "$file")"
   echo "mine, not strut's" >"$file"
   before=$(ls -A "$(dirname "$file")")
-  expect 4 "$@"
-  err_has "$file' is not overwritten"
+  tells 4 "$file' is not overwritten" "$@"
   [ "$(cat "$file")" = "mine, not strut's" ] || fail "$file: lost by strut $*"
   [ "$(ls -A "$(dirname "$file")")" = "$before" ] || fail "strut $*: left more than was there"
   rm "$file"
@@ -43,10 +42,8 @@ cat >study.yaml <<END
 strut: 1
 study: heights
 model: hopper.yaml
-axes:
-  - seconds: [0.1, 0.2]
-figures:
-  velocities: {x: seconds, y: velocity}
+axes: [{seconds: [0.1, 0.2]}]
+figures: {velocities: {x: seconds, y: velocity}}
 END
 for name in table.csv velocities.svg study.yaml model.yaml; do
   refuses "points/$name" sweep study.yaml -o points --quiet

@@ -15,9 +15,7 @@ cat >'study {} $HOME.yaml' <<'END'
 strut: 1
 study: hops & falls
 model: it's a model.yaml
-axes:
-  - stiffness: {from: 100 N/m, to: 800 N/m, count: 8}
-  - seconds: [20, 1e-9, 30]
+axes: [{stiffness: {from: 100 N/m, to: 800 N/m, count: 8}}, {seconds: [20, 1e-9, 30]}]
 keep: [velocity, steps]
 END
 expect 3 sweep 'study {} $HOME.yaml' -o whole --quiet --set 'step=0.2 ms'
@@ -72,10 +70,8 @@ sh short.sh >"$work/out" 2>"$work/err"
 err_has "1 of 6 shards is missing (3)"
 
 # Wrong use.
-expect 1 sweep 'study {} $HOME.yaml' -o x --emit parallel
-err_has "--shards"
-expect 1 sweep 'study {} $HOME.yaml' -o x --emit parallel --shards 2 --time 1:00
-err_has "for --emit slurm"
+tells 1 "--shards" sweep 'study {} $HOME.yaml' -o x --emit parallel
+tells 1 "for --emit slurm" sweep 'study {} $HOME.yaml' -o x --emit parallel --shards 2 --time 1:00
 expect 1 sweep 'study {} $HOME.yaml' -o x --emit pbs --shards 2
 expect 1 sweep 'study {} $HOME.yaml' -o x --emit parallel --shards 0
 absent x

@@ -6,18 +6,11 @@
 cat >block.yaml <<'END'
 strut: 1
 parameters: {grip: 0.5}
-nodes:
-  hand: {position: [2 m, 0], fixed: both}
-  block: {position: [0, 0], mass: 1 kg}
-members:
-  s: {kind: spring, nodes: [hand, block], stiffness: 10 N/m, rest_length: 2 m}
+nodes: {hand: {position: [2 m, 0], fixed: both}, block: {position: [0, 0], mass: 1 kg}}
+members: {s: {kind: spring, nodes: [hand, block], stiffness: 10 N/m, rest_length: 2 m}}
 ground: {stiffness: 1e9, nodes: [block], friction: {law: coulomb, mu_static: grip, mu_kinetic: 0.3}}
 gravity: [0, -10]
-path:
-  friction: kept
-  stages:
-    - {over: hand.x, until: 1 m}
-    - {over: hand.x, until: -1 m}
+path: {friction: kept, stages: [{over: hand.x, until: 1 m}, {over: hand.x, until: -1 m}]}
 END
 expect 0 path block.yaml --json
 jq -e '
@@ -30,12 +23,11 @@ jq -e '
   (.points[-1] | (.nodes.block[0] | is(-0.7)) and (.friction.block | is(3)) and (.reactions.hand[0] | is(-3)))' \
   "$work/out" >/dev/null || fail "a block: $(cat "$work/out")"
 expect 0 path block.yaml --json --over hand.x --until '1 m' --friction none
-jq -e '(.points[-1].nodes.block[0] - 1 | fabs < 1e-8) and (.points[0] | has("friction") | not)' "$work/out" >/dev/null ||
-  fail "a block without friction"
+holds '(.points[-1].nodes.block[0] - 1 | fabs < 1e-8) and (.points[0] | has("friction") | not)'
 # below the limit it holds
 sed 's/\[2 m, 0\]/[2.4 m, 0]/; s/rest_length: 2 m/rest_length: 2.4 m/' block.yaml >hold.yaml
 expect 0 path hold.yaml --json --over hand.x --until '0.45 m'
-jq -e '.events == []' "$work/out" >/dev/null || fail "a block that holds"
+holds '.events == []'
 
 # ---- two that push each other off, with more grip backwards: 100 mm less twice 2 N of the spring a cycle ----
 cat >worm.yaml <<'END'
@@ -47,11 +39,8 @@ gravity: [0, -10]
 actuators: {drive: {member: s, signal: {sine: {amplitude: 0.1 m, frequency: 1 Hz}}}}
 path:
   friction: kept
-  stages:
-    - {over: drive, until: 100 mm}
-    - {over: drive, until: 0 mm}
-    - {over: drive, until: 100 mm}
-    - {over: drive, until: 0 mm}
+  stages: [{over: drive, until: 100 mm}, {over: drive, until: 0 mm}, {over: drive, until: 100 mm},
+           {over: drive, until: 0 mm}]
 END
 expect 0 path worm.yaml --json
 jq -e '[.earlier_stages[1], .] | map(.points[-1].nodes.rear[0]) | (.[0] - 0.06 | fabs < 1e-6) and (.[1] - 0.12 | fabs < 1e-6)' \
@@ -66,9 +55,7 @@ nodes: {a: {position: [0, -1], mass: 1}}
 ground: {circle: {centre: [0, 0], radius: 1, inside: yes}, stiffness: 1e4, nodes: [a], friction: {law: coulomb, mu: 0.3}}
 loads: {p: {node: a, force: [1, 0]}}
 gravity: [0, -10]
-path:
-  friction: kept
-  stages: [{load: p, until: 10}, {load: p, until: -10}]
+path: {friction: kept, stages: [{load: p, until: 10}, {load: p, until: -10}]}
 END
 expect 0 path pipe.yaml --json
 jq -e '(0.7 / 1.3) as $t | (.earlier_stages[0] | (.events[0].factor - 3 | fabs < 1e-6) and
@@ -78,9 +65,7 @@ jq -e '(0.7 / 1.3) as $t | (.earlier_stages[0] | (.events[0].factor - 3 | fabs <
 # on a straight path past where the load turns: it sticks where its place turns back
 cat >turn.yaml <<'END'
 strut: 1
-nodes:
-  hand: {position: [2, -2], fixed: both}
-  block: {position: [0, 0], mass: 1}
+nodes: {hand: {position: [2, -2], fixed: both}, block: {position: [0, 0], mass: 1}}
 members: {s: {kind: spring, nodes: [hand, block], stiffness: 20, rest_length: 2.828427}}
 ground: {stiffness: 1e9, nodes: [block], friction: {law: coulomb, mu: 0.3}}
 gravity: [0, -40]
@@ -116,20 +101,14 @@ jq -e '(20 * 3.141592653589793 / 180) as $s | (($s | sin) / ($s | cos)) as $t |
 # ---- a rope over a post, turning by a right angle: its tensions differ by exp(0.3 pi/2) at most, there and back ----
 cat >rope.yaml <<'END'
 strut: 1
-nodes:
-  weight: {position: [0, -1], fixed: x, mass: 1}
-  post: {position: [0, 0], fixed: both}
-  hand: {position: [0.5, 0], fixed: both}
-members:
-  rope: {kind: cable, nodes: [weight, post, hand], stiffness: 1000, rest_length: 1.48, guide_friction: 0.3}
+nodes: {weight: {position: [0, -1], fixed: x, mass: 1}, post: {position: [0, 0], fixed: both},
+        hand: {position: [0.5, 0], fixed: both}}
+members: {rope: {kind: cable, nodes: [weight, post, hand], stiffness: 1000, rest_length: 1.48, guide_friction: 0.3}}
 gravity: [0, -10]
 path:
   friction: kept
-  stages:
-    - {over: hand.x, until: 1.5 mm}
-    - {over: hand.x, until: 30 mm}
-    - {over: hand.x, until: 29 mm}
-    - {over: hand.x, until: -10 mm}
+  stages: [{over: hand.x, until: 1.5 mm}, {over: hand.x, until: 30 mm}, {over: hand.x, until: 29 mm},
+           {over: hand.x, until: -10 mm}]
 END
 expect 0 path rope.yaml --json
 # while it sticks at the post, the part beyond stretches alone, from the 10 N that the weight asks for
@@ -144,15 +123,11 @@ jq -e 'def is($x): . - $x | fabs < 1e-8;
 
 # ---- what cannot be ----
 sed 's/friction: {[^}]*}/friction: {law: smooth, mu: 0.3, width: 1 mm\/s}/' pipe.yaml >smooth.yaml
-expect 0 path smooth.yaml --json
-err_has "no contact has a static coefficient, and no cable rubs"
+tells 0 "no contact has a static coefficient, and no cable rubs" path smooth.yaml --json
 sed -e 's/^nodes:/parameters: {high: 0 m}\nnodes:/' -e 's/centre: \[0, 0\]/centre: [0, high]/' pipe.yaml >moves.yaml
-expect 1 path moves.yaml --over high --until '0.1 m'
-err_has "high moves the ground, and friction is kept"
-expect 1 path pipe.yaml --friction some
-err_has "--friction expects 'none' or 'kept', not 'some'"
+tells 1 "high moves the ground, and friction is kept" path moves.yaml --over high --until '0.1 m'
+tells 1 "--friction expects 'none' or 'kept', not 'some'" path pipe.yaml --friction some
 sed 's/friction: kept/friction: stuck/' pipe.yaml >word.yaml
-expect 2 path word.yaml
-err_has "word.yaml:7:13: error:"
+tells 2 "word.yaml:7:13: error:" path word.yaml
 
 done_testing

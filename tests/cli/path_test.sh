@@ -7,21 +7,13 @@ cat >arch.yaml <<'END'
 strut: 1
 name: Arch
 parameters: {side: 0}
-nodes:
-  left: {position: [-1, 0], fixed: both}
-  right: {position: [1, 0], fixed: both}
-  top: [0, 0.3]
-members:
-  a: {kind: bar, nodes: [left, top], stiffness: 1000}
-  b: {kind: bar, nodes: [right, top], stiffness: 1000}
-loads:
-  weight: {node: top, force: [0, -1]}
-  wind: {node: top, force: [side, 0]}
+nodes: {left: {position: [-1, 0], fixed: both}, right: {position: [1, 0], fixed: both}, top: [0, 0.3]}
+members: {a: {kind: bar, nodes: [left, top], stiffness: 1000}, b: {kind: bar, nodes: [right, top], stiffness: 1000}}
+loads: {weight: {node: top, force: [0, -1]}, wind: {node: top, force: [side, 0]}}
 END
 
 # The limit load in closed form: 9.94991696 at a height of 0.17071165.
-expect 0 path arch.yaml --load weight --until 12
-out_has "limit point: the factor can grow no further here"
+shows 0 "limit point: the factor can grow no further here" path arch.yaml --load weight --until 12
 out_has "9.949917"
 expect 0 path arch.yaml --load weight --until 12 --json -o curve
 jq -e '.load == "weight" and .end == "until" and (.events | length) == 2 and
@@ -36,61 +28,44 @@ head -n 1 curve/path.csv | grep -qF 'negative_eigenvalues,event,left.x [m],left.
 [ "$(grep -c 'limit point' curve/path.csv)" -eq 2 ] || fail "events in the table"
 expect 0 path arch.yaml --load weight --until 12 --json
 same curve/path.json "$work/out"
-expect 0 path arch.yaml --load weight --until 12 --steps 5
-out_has "5 steps led to the factor"
-expect 0 path arch.yaml --load weight --until -3
-out_has "stable"
+shows 0 "5 steps led to the factor" path arch.yaml --load weight --until 12 --steps 5
+shows 0 "stable" path arch.yaml --load weight --until -3
 
 # A load that nothing resists, one that is not there, one that does nothing.
-expect 1 path arch.yaml --load wait
-err_has "unknown load 'wait'; the scene's loads are: weight, wind"
-expect 1 path arch.yaml --load wind
-err_has "acts on nothing that can move"
-expect 1 path arch.yaml --until "3 N"
-err_has "--until expects"
-expect 1 path arch.yaml --steps 0
-err_has "a whole number from 1 to"
+tells 1 "unknown load 'wait'; the scene's loads are: weight, wind" path arch.yaml --load wait
+tells 1 "acts on nothing that can move" path arch.yaml --load wind
+tells 1 "--until expects" path arch.yaml --until "3 N"
+tells 1 "a whole number from 1 to" path arch.yaml --steps 0
 sed '/right: {pos/s/, fixed: both//; s/left: {position: \[-1, 0\], fixed: both}/left: [-1, 0]/' \
   arch.yaml >loose.yaml
-expect 3 path loose.yaml --load weight
-err_has "nothing holds the structure"
+tells 3 "nothing holds the structure" path loose.yaml --load weight
 sed '/^loads/,$d; /^parameters/d' arch.yaml >idle.yaml
-expect 1 path idle.yaml
-err_has "no constant load"
+tells 1 "no constant load" path idle.yaml
 # Stiffnesses that span twelve decades do not make a held chain one that moves as a whole.
 cat >chain.yaml <<'END'
 strut: 1
-nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y},
-        c: {position: [2, 0], fixed: y}, d: {position: [3, 0], fixed: y}}
-members:
-  ab: {kind: spring, nodes: [a, b], stiffness: 1}
-  bc: {kind: spring, nodes: [b, c], stiffness: 1e12}
-  cd: {kind: spring, nodes: [c, d], stiffness: 1}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y}, c: {position: [2, 0], fixed: y},
+        d: {position: [3, 0], fixed: y}}
+members: {ab: {kind: spring, nodes: [a, b], stiffness: 1}, bc: {kind: spring, nodes: [b, c], stiffness: 1e12},
+          cd: {kind: spring, nodes: [c, d], stiffness: 1}}
 loads: {tip: {node: d, force: [1, 0]}}
 END
-expect 0 path chain.yaml
-out_has "2 m             0 m  stable"
+shows 0 "2 m             0 m  stable" path chain.yaml
 
 # Over something else than a load: closed forms of the arch, held at y by 2 k y (l0 / l - 1).
 cat >over.yaml <<'END'
 strut: 1
 name: Arch
 parameters: {k: 1000 N/m, span: 1 m, load: 1 N}
-nodes:
-  left: {position: [-span, 0], fixed: both}
-  right: {position: [span, 0], fixed: both}
-  top: {position: [0, 0.3], mass: 1, fixed: x}
-  low: {position: [0, -1], fixed: both}
-members:
-  a: {kind: bar, nodes: [left, top], stiffness: k, rest_length: 1.0440306508910551}
-  b: {kind: bar, nodes: [right, top], stiffness: k, rest_length: 1.0440306508910551}
-  tie: {kind: spring, nodes: [top, low], stiffness: 1 mN/m, rest_length: 1.3}
+nodes: {left: {position: [-span, 0], fixed: both}, right: {position: [span, 0], fixed: both},
+        top: {position: [0, 0.3], mass: 1, fixed: x}, low: {position: [0, -1], fixed: both}}
+members: {a: {kind: bar, nodes: [left, top], stiffness: k, rest_length: 1.0440306508910551},
+          b: {kind: bar, nodes: [right, top], stiffness: k, rest_length: 1.0440306508910551},
+          tie: {kind: spring, nodes: [top, low], stiffness: 1 mN/m, rest_length: 1.3}}
 signals: {wave: {sine: {amplitude: 1 mm, frequency: 1 Hz}}}
 actuators: {pull: {member: tie, signal: wave}}
 loads: {weight: {node: top, force: [0, -load]}}
-configurations:
-  flat: {top: [0, 0.3]}
-  inverted: {top: [0, -0.3]}
+configurations: {flat: {top: [0, 0.3]}, inverted: {top: [0, -0.3]}}
 END
 # The stiffness at which it gives way under 1 N: 100.50336 N/m, and no further.
 expect 0 path over.yaml --over k --until "60 N/m" --steps 60 --json -o over
@@ -112,16 +87,14 @@ jq -e '.unit == "m" and (.events | length) == 0 and ([.points[] | .stable] | all
   .points[-1].value == -0.5 and
   ([.points[] | .reactions.top[1]] | max > 10 and min < -8)' "$work/out" >jq.out ||
   fail "the apex pushed through"
-expect 0 path over.yaml --over top.y --until "-0.5 m"
-out_has "reaction"
+shows 0 "reaction" path over.yaml --over top.y --until "-0.5 m"
 expect 0 path over.yaml --over left.x --from "1 mm" --until "5 mm" --json
 jq -e '.points[0].value == 1e-3 and (.points[-1].nodes.left[0] - -0.995 | fabs) < 1e-12' "$work/out" \
   >jq.out || fail "a support displaced"
 expect 0 path over.yaml --over pull --until "-0.2 m" --json
 jq -e '.over == "pull" and .points[-1].value == -0.2 and .points[-1].forces.tie > 1.9e-4' \
   "$work/out" >jq.out || fail "an actuator"
-expect 0 path over.yaml --over span --until "1.02 m"
-out_has "1.02 m"
+shows 0 "1.02 m" path over.yaml --over span --until "1.02 m"
 "$strut" path - --over k --until "900 N/m" <over.yaml >"$work/out" || fail "a model from stdin"
 out_has "900 N/m"
 # From another equilibrium: the inverted arch carries the same load upside down without a limit point.
@@ -131,10 +104,8 @@ jq -e '(.points[0].nodes.top[1] - -0.3 | fabs) < 1e-3 and (.events | length) == 
 expect 0 path over.yaml --at flat --from 1 --until 12 --json
 jq -e '.points[0].factor == 1 and .points[0].force == 1 and .points[0].nodes.top[1] < 0.2999 and
   .events[0].kind == "limit point"' "$work/out" >jq.out || fail "--at flat --from 1"
-expect 1 path over.yaml --at upright
-err_has "unknown configuration 'upright'"
-expect 3 path over.yaml --at drawn --from 1 --until 2
-err_has "'drawn' is no equilibrium where the path starts"
+tells 1 "unknown configuration 'upright'" path over.yaml --at upright
+tells 3 "'drawn' is no equilibrium where the path starts" path over.yaml --at drawn --from 1 --until 2
 
 # Where Zeeman's machine folds: first and second derivative zero on the circle of a rigid bar, to 30 digits.
 expect 0 path "$here/../../models/gallery/zeeman.yaml" --set "rod=1e11 N/m" --over control_y \
@@ -156,14 +127,13 @@ cat >reel.yaml <<END
 strut: 1
 parameters: {L: 1 m}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1, fixed: y}, c: {position: [2, 0], fixed: both}}
-members:
-  rope: {kind: cable, nodes: [a, b], axial_stiffness: 100 N, rest_length: L}
-  back: {kind: spring, nodes: [b, c], stiffness: 100, rest_length: 1}
+members: {rope: {kind: cable, nodes: [a, b], axial_stiffness: 100 N, rest_length: L},
+          back: {kind: spring, nodes: [b, c], stiffness: 100, rest_length: 1}}
 actuators: {reel: {member: rope, signal: {constant: 0}}}
 END
 for over in "--over reel --until -0.5" "--over L --until 0.5"; do
   expect 0 path reel.yaml $over --json
-  jq -e '(.points[-1].nodes.b[0] - 2 / 3 | fabs) < 1e-12' "$work/out" >jq.out || fail "$over"
+  holds '(.points[-1].nodes.b[0] - 2 / 3 | fabs) < 1e-12'
 done
 expect 0 path reel.yaml --over reel --until "-1.5 m" --json
 jq -e '.end == "invalid" and (.remark | contains("rest length of rope would reach zero"))' \
@@ -205,33 +175,21 @@ out_has "twin of branch 2"
 expect 0 path "$column" --set links=4 --until 40 --plot alone.svg
 [ "$(grep -c '<path' branches.svg)" -gt "$(($(grep -c '<path' alone.svg) + 100))" ] ||
   fail "branches in the picture"
-expect 1 path "$column" --branches 0
-err_has "--branches expects a whole number from 1 to 10"
+tells 1 "--branches expects a whole number from 1 to 10" path "$column" --branches 0
 
 # What cannot be followed.
-expect 1 path over.yaml --over kk --until 3
-err_has "did you mean 'k'?"
-expect 1 path over.yaml --over tip.y --until 3
-err_has "did you mean 'top.y'?"
-expect 1 path over.yaml --over weight --until 3
-err_has "'weight' is a load; use --load weight"
-expect 1 path over.yaml --over k
-err_has "missing --until VALUE"
-expect 1 path over.yaml --over k --until "3 m"
-err_has "--until expects a stiffness"
-expect 1 path over.yaml --over k --until "1000 N/m"
-err_has "--from and --until are equal"
-expect 1 path over.yaml --over k --load weight --until 3
-err_has "give either --load or --over, not both"
-expect 1 path over.yaml --over pull --from "-2 m" --until 0
-err_has "the rest length of tie would be negative"
+tells 1 "did you mean 'k'?" path over.yaml --over kk --until 3
+tells 1 "did you mean 'top.y'?" path over.yaml --over tip.y --until 3
+tells 1 "'weight' is a load; use --load weight" path over.yaml --over weight --until 3
+tells 1 "missing --until VALUE" path over.yaml --over k
+tells 1 "--until expects a stiffness" path over.yaml --over k --until "3 m"
+tells 1 "--from and --until are equal" path over.yaml --over k --until "1000 N/m"
+tells 1 "give either --load or --over, not both" path over.yaml --over k --load weight --until 3
+tells 1 "the rest length of tie would be negative" path over.yaml --over pull --from "-2 m" --until 0
 sed 's/load: 1 N/load: 1 N, speed: 3, shape: "flat"/; s/frequency: 1 Hz/frequency: speed/
   $a initial: {configuration: shape}' over.yaml >idle.yaml
-expect 1 path idle.yaml --over speed --until 5
-err_has "speed changes nothing that matters at rest"
-expect 1 path idle.yaml --over shape --until 5
-err_has "parameter 'shape' is a text, expected a number"
+tells 1 "speed changes nothing that matters at rest" path idle.yaml --over speed --until 5
+tells 1 "parameter 'shape' is a text, expected a number" path idle.yaml --over shape --until 5
 sed -i 's/speed: 3/speed: 3, unused: 4/' idle.yaml
-expect 2 path idle.yaml --over unused --until 5
-err_has "nothing in the scene uses parameter 'unused'"
+tells 2 "nothing in the scene uses parameter 'unused'" path idle.yaml --over unused --until 5
 done_testing

@@ -12,8 +12,7 @@ files deep/er/one $all
 expect 0 run "$hopper" -o two -q
 out_empty
 same_directory deep/er/one two
-expect 0 run "$hopper" -o two --json # over the old ones, with the same bytes
-out_has '"wall_time":'
+shows 0 '"wall_time":' run "$hopper" -o two --json # over the old ones, with the same bytes
 grep -v '"wall_time":' out >without
 same without two/summary.json
 same_directory deep/er/one two

@@ -7,15 +7,10 @@ cat >x.yaml <<'END'
 strut: 1
 name: X
 groups: {cable: {kind: cable, stiffness: 100 N/m, force_density: 5 N/m},
-  bar: {kind: bar, stiffness: 1000 N/m, force_density: -5 N/m}}
+         bar: {kind: bar, stiffness: 1000 N/m, force_density: -5 N/m}}
 nodes: {a: [0, 0], b: [1, 0], c: [1, 1], d: [0, 1]}
-members:
-  ab: {group: cable, nodes: [a, b]}
-  bc: {group: cable, nodes: [b, c]}
-  cd: {group: cable, nodes: [c, d]}
-  da: {group: cable, nodes: [d, a]}
-  ac: {group: bar, nodes: [a, c]}
-  bd: {group: bar, nodes: [b, d]}
+members: {ab: {group: cable, nodes: [a, b]}, bc: {group: cable, nodes: [b, c]}, cd: {group: cable, nodes: [c, d]},
+          da: {group: cable, nodes: [d, a]}, ac: {group: bar, nodes: [a, c]}, bd: {group: bar, nodes: [b, d]}}
 END
 expect 0 rigidity x.yaml
 err_empty
@@ -38,40 +33,31 @@ cp x.yaml piped.yaml
 same printed out
 
 # Refused: an unknown shape, an unknown option, a scene that is none, a directory that cannot be.
-expect 1 rigidity x.yaml --at nowhere
-err_has "nowhere"
+tells 1 "nowhere" rigidity x.yaml --at nowhere
 out_empty
-expect 1 rigidity x.yaml --accuracy 1%
-err_has "--accuracy cannot be used here: equilibria are computed to rounding errors"
+tells 1 "--accuracy cannot be used here: equilibria are computed to rounding errors" rigidity x.yaml --accuracy 1%
 sed 's/kind: bar/kind: rod/' x.yaml >wrong.yaml
-expect 2 rigidity wrong.yaml
-err_has "rod"
+tells 2 "rod" rigidity wrong.yaml
 echo text >taken
-expect 4 rigidity x.yaml -o taken
-err_has "taken"
+tells 4 "taken" rigidity x.yaml -o taken
 
 # A four-bar linkage moves, and says how far it was followed.
 grep -v 'ac:\|bd:\|bar' x.yaml | sed 's/force_density: 5 N.m},/rest_length_ratio: 1}}/' >loop.yaml
-expect 0 rigidity loop.yaml
-out_has "f = 4: 3 rigid-body, 1 finite"
+shows 0 "f = 4: 3 rigid-body, 1 finite" rigidity loop.yaml
 out_has "lengths constant within"
 
 # Nodes alone, all held: an answer, not a failure.
 printf 'strut: 1\nnodes: {a: {position: [0, 0], mass: 1}, b: {position: [1, 0], mass: 1}}\n' >nodes.yaml
-expect 0 rigidity nodes.yaml
-out_has "f = 4: 3 rigid-body, 1 finite"
+shows 0 "f = 4: 3 rigid-body, 1 finite" rigidity nodes.yaml
 printf 'strut: 1\nnodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: both}}\nmembers: {m: {kind: bar, nodes: [a, b], stiffness: 1}}\n' >held.yaml
-expect 0 rigidity held.yaml
-out_has "s = 1"
+shows 0 "s = 1" rigidity held.yaml
 out_has "f = 0"
 
 # At an equilibrium by its name: the crawler lies on the ground, its forces balance there.
 crawler=$here/../../models/crawler/crawler.yaml
-expect 0 rigidity "$crawler" --at I --json
-out_has '"at":	"I"'
+shows 0 '"at":	"I"' rigidity "$crawler" --at I --json
 out_has '"equilibrium":	true'
 out_has '"rank":	7'
-expect 1 rigidity "$crawler" --at IV
-err_has "IV"
+tells 1 "IV" rigidity "$crawler" --at IV
 
 [ $failures -eq 0 ]

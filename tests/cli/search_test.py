@@ -28,9 +28,7 @@ def search(name, body, *words, code=0):
 # A mass on a spring: its frequency is sqrt(k/m)/(2 pi).
 write("spring.yaml", """strut: 1
 parameters: {stiffness: 100 N/m, mass: 1 kg}
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: {position: [1 m, 0], fixed: y, mass: mass}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1 m, 0], fixed: y, mass: mass}}
 members: {s: {kind: spring, nodes: [a, b], stiffness: stiffness, rest_length: 1 m}}
 """)
 wanted = (2 * math.pi * 2.0) ** 2
@@ -142,11 +140,8 @@ run: {duration: 2 ms, measure: {last: 1 ms, quantities: {gap: {of: b.x - a.x, ta
 write("words.yaml", """strut: 1
 study: Words and angles
 model: drop.yaml
-search:
-  maximise: pull
-  over: {start: [low, middle, high], phase: {from: 0 deg, to: 360 deg, wraps: yes}}
-  subject_to: [gap < 2 m, motion != periodic]
-  evaluations: 150
+search: {maximise: pull, over: {start: [low, middle, high], phase: {from: 0 deg, to: 360 deg, wraps: yes}},
+         subject_to: [gap < 2 m, motion != periodic], evaluations: 150}
 keep: [gap, pull, motion]
 """)
 found = json.loads(run("sweep", "words.yaml", "-o", "words", "--json").stdout)["best"][0]

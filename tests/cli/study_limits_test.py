@@ -21,9 +21,7 @@ def lines(name):
 
 write("block.yaml", """strut: 1
 parameters: {mass: 1 kg, seconds: 10 ms}
-nodes:
-  wall: {position: [0, 0], fixed: both}
-  block: {position: [1, 0], mass: mass, fixed: y}
+nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: mass, fixed: y}}
 members: {spring: {kind: spring, nodes: [wall, block], stiffness: 100, damping: 1}}
 solver: {step: 1 ms}
 run: {duration: seconds, measure: {node: block}}

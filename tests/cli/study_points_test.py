@@ -26,11 +26,9 @@ def write(name, text):
 
 write("block.yaml", """strut: 1
 parameters: {stiffness: 100 N/m, mass: 1 kg, seconds: 2 ms, place: "near", shift: 0 m, turn: 0, slow: 0 m/s}
-nodes:
-  wall: {position: [0, 0], fixed: both}
-  block: {position: [1 m + shift + turn * 1 m + slow * 1 s, 0], mass: mass, fixed: y}
-members:
-  spring: {kind: spring, nodes: [wall, block], stiffness: stiffness, damping: 1 N s/m}
+nodes: {wall: {position: [0, 0], fixed: both},
+        block: {position: [1 m + shift + turn * 1 m + slow * 1 s, 0], mass: mass, fixed: y}}
+members: {spring: {kind: spring, nodes: [wall, block], stiffness: stiffness, damping: 1 N s/m}}
 configurations: {near: {}, far: {block: [1.2, 0]}}
 initial: {configuration: place}
 solver: {step: 10 us}

@@ -18,13 +18,10 @@ from testing import check, finish, path, read, rows, run, strut, work, write
 
 write("truss.yaml", """strut: 1
 parameters: {height: 0.3 m, load: 0 N, stiffness: 1000 N/m}
-nodes:
-  left: {position: [-1, 0], fixed: both}
-  right: {position: [1, 0], fixed: both}
-  apex: {position: [0, height], mass: 1 kg}
-members:
-  a: {kind: bar, nodes: [apex, left], stiffness: stiffness}
-  b: {kind: bar, nodes: [apex, right], stiffness: stiffness}
+nodes: {left: {position: [-1, 0], fixed: both}, right: {position: [1, 0], fixed: both},
+        apex: {position: [0, height], mass: 1 kg}}
+members: {a: {kind: bar, nodes: [apex, left], stiffness: stiffness},
+          b: {kind: bar, nodes: [apex, right], stiffness: stiffness}}
 loads: {weight: {node: apex, force: [0, -load]}}
 """)
 

@@ -67,9 +67,7 @@ def make_tables():
         file.write("""strut: 1
 study: fails
 model: models/crawler/crawler.yaml
-axes:
-  - step: [0.1 ms, 10 ms]
-  - start: [I, II]
+axes: [{step: [0.1 ms, 10 ms]}, {start: [I, II]}]
 run: {periods: 20, measure: {last: 5}}
 keep: [velocity, motion]
 """)

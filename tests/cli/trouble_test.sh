@@ -47,8 +47,7 @@ expect 4 run "$hopper" -o file/below
 expect 4 run "$hopper" -o ''
 expect 4 run "$hopper" -o /proc/strut
 mkdir -p taken/nodes.csv
-expect 4 run "$hopper" -o taken
-err_has "Is a directory"
+tells 4 "Is a directory" run "$hopper" -o taken
 files taken nodes.csv
 # Known before the run starts, not after it.
 if command -v timeout >/dev/null; then
@@ -57,8 +56,7 @@ if command -v timeout >/dev/null; then
 fi
 mkdir locked && chmod 555 locked
 if ! touch locked/x 2>/dev/null; then # root writes everywhere
-  expect 4 run "$hopper" -o locked
-  err_has "Permission denied"
+  tells 4 "Permission denied" run "$hopper" -o locked
   expect 4 run "$hopper" -o locked/sub
 fi
 chmod 755 locked

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """strut sweep with variants: their rows are those of studies with the same keys, each by itself.
-
 usage: variants_test.py STRUT
 """
 import csv
@@ -25,11 +24,8 @@ def sweep(name, text, *words, code=0):
 write("block.yaml", """strut: 1
 name: Block
 parameters: {stiffness: 100 N/m, mass: 1 kg, step: 1 ms, place: "near"}
-nodes:
-  wall: {position: [0, 0], fixed: both}
-  block: {position: [1, 0], mass: mass, fixed: y}
-members:
-  spring: {kind: spring, nodes: [wall, block], stiffness: stiffness, damping: 1 N s/m}
+nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: mass, fixed: y}}
+members: {spring: {kind: spring, nodes: [wall, block], stiffness: stiffness, damping: 1 N s/m}}
 configurations: {near: {}, far: {block: [1.2, 0]}}
 initial: {configuration: place}
 solver: {step: step}
@@ -38,9 +34,7 @@ run: {duration: 0.5 s, measure: {node: block}}
 STUDY = """strut: 1
 study: one
 model: block.yaml
-axes:
-  - mass: [1 kg, 2 kg]
-  - stiffness: {from: 100, to: 200, step: 50}
+axes: [{mass: [1 kg, 2 kg]}, {stiffness: {from: 100, to: 200, step: 50}}]
 solver: {integrator: verlet}
 keep: [velocity, distance, steps, step, duration, positions, energy]
 """
@@ -77,9 +71,8 @@ said, _ = sweep("all", variants.replace("  rk4:", "  other:"), code=1)
 check("another study" in said, said)
 said, _ = sweep("all", variants.replace("step: 2 ms", "step: 1 ms"), code=1)
 check("another study" in said, said)
-figures = """figures:
-  near: {x: stiffness, y: velocity, series: mass, only: variant=near}
-  less: {x: stiffness, y: velocity, series: mass, panels: variant, difference: mass}
+figures = """figures: {near: {x: stiffness, y: velocity, series: mass, only: variant=near},
+          less: {x: stiffness, y: velocity, series: mass, panels: variant, difference: mass}}
 """
 sweep("all", variants + figures)
 check(os.path.exists("all/near.svg") and os.path.exists("all/less.svg"), "figures")

@@ -41,8 +41,7 @@ expect 0 view beside/swing -q
 expect 0 view beside/model.yaml -q
 [ -s beside/model.html ] || fail "no page of the model"
 echo mine >beside/swing.html
-expect 4 view beside/swing
-err_has "strut did not write it"
+tells 4 "strut did not write it" view beside/swing
 [ "$(cat beside/swing.html)" = mine ] || fail "overwrote a file"
 expect 1 view - </dev/null
 err_has "missing -o FILE.html"
@@ -56,16 +55,11 @@ grep -q '"label":"swing"' two.html || fail "the first run has no label"
 grep -q '"label":"beside/short"' two.html || fail "the second run has no label"
 [ "$(grep -c 'id="strut-' two.html)" -eq 2 ] || fail "two runs have other elements"
 [ "$(grep -c 'id="strut-' swing.html)" -eq 1 ] || fail "one run has other elements"
-expect 1 view swing swing.yaml -o none.html
-err_has "two runs can be shown side by side, but 'swing.yaml' is a model"
-expect 1 view swing.yaml swing -o none.html
-err_has "'swing.yaml' is a model"
-expect 1 view swing swing swing -o none.html
-err_has "unexpected argument 'swing'"
-expect 4 view swing nowhere -o none.html
-err_has "nowhere"
-expect 1 view swing swing -o none.html --set x=1
-err_has "--set needs a model"
+tells 1 "two runs can be shown side by side, but 'swing.yaml' is a model" view swing swing.yaml -o none.html
+tells 1 "'swing.yaml' is a model" view swing.yaml swing -o none.html
+tells 1 "unexpected argument 'swing'" view swing swing swing -o none.html
+tells 4 "nowhere" view swing nowhere -o none.html
+tells 1 "--set needs a model" view swing swing -o none.html --set x=1
 absent none.html
 
 # Live pages: the scene and the script are inside; without script, parameters or model.yaml they are refused.
@@ -82,23 +76,18 @@ run: {duration: 0.2 s}
 output: {every: 1 ms, channels: [position, force]}
 END
 expect 0 run rocking.yaml --set weight=2 --step '2 ms' -q -o rocking
-expect 1 view rocking --live -o live.html
-err_has "--live needs strut-live.js"
+tells 1 "--live needs strut-live.js" view rocking --live -o live.html
 err_has "STRUT_LIVE_SCRIPT"
 echo "window.strutLive = 1;" >live.js
 STRUT_LIVE_SCRIPT=nowhere.js expect 4 view rocking --live -o live.html
 err_has "nowhere.js"
 export STRUT_LIVE_SCRIPT=live.js
-expect 1 view rocking rocking --live -o live.html
-err_has "--live shows one run or model, not two"
-expect 1 view swing --live -o live.html
-err_has "--live needs a scene with parameters; 'swing' has none"
-expect 1 view swing.yaml --live -o live.html
-err_has "'swing.yaml' has none"
+tells 1 "--live shows one run or model, not two" view rocking rocking --live -o live.html
+tells 1 "--live needs a scene with parameters; 'swing' has none" view swing --live -o live.html
+tells 1 "'swing.yaml' has none" view swing.yaml --live -o live.html
 cp -r rocking older
 rm older/model.yaml
-expect 1 view older --live -o live.html
-err_has "--live needs the file model.yaml in 'older': run the model again"
+tells 1 "--live needs the file model.yaml in 'older': run the model again" view older --live -o live.html
 absent live.html
 expect 0 view rocking --live -o live.html
 grep -q "script-src 'unsafe-inline' 'wasm-unsafe-eval'; worker-src blob:;" live.html || fail "policy of a live page"
@@ -138,34 +127,25 @@ timeout --preserve-status -s INT 0.1 "$strut" view "$here/../../models/crawler/c
 absent stopped.html
 
 # Wrong use: a sentence, and nothing is written.
-expect 1 view .
-err_has "missing -o FILE.html"
-expect 1 view swing -o page.pdf
-err_has "must end in .html"
+tells 1 "missing -o FILE.html" view .
+tells 1 "must end in .html" view swing -o page.pdf
 expect 1 view swing -o .html
-expect 1 view swing -o page.html --equilibria some
-err_has "some"
-expect 1 view swing -o page.html --set x=1
-err_has "--set needs a model"
-expect 1 view -o page.html
-err_has "missing RUN|MODEL"
+tells 1 "some" view swing -o page.html --equilibria some
+tells 1 "--set needs a model" view swing -o page.html --set x=1
+tells 1 "missing RUN|MODEL" view -o page.html
 expect 1 view swing -o page.html --plot a.svg
 absent page.html
 
 # Files: where the page cannot go is found out first; what is no run is said to be none.
-expect 4 view no-such-model.yaml -o no/such/folder/page.html
-err_has "no/such/folder"
+tells 4 "no/such/folder" view no-such-model.yaml -o no/such/folder/page.html
 mkdir folder.html
 expect 4 view swing -o folder.html
-expect 4 view nowhere -o page.html
-err_has "nowhere"
+tells 4 "nowhere" view nowhere -o page.html
 mkdir empty
-expect 4 view empty -o page.html
-err_has "holds no run"
+tells 4 "holds no run" view empty -o page.html
 cp -r swing still
 rm still/trajectory.h5
-expect 4 view still -o page.html
-err_has "no recorded motion"
+tells 4 "no recorded motion" view still -o page.html
 echo nonsense >still/trajectory.h5
 expect 4 view still -o page.html
 cp -r swing damaged
@@ -177,8 +157,7 @@ expect 0 view damaged -o damaged.html -q
 grep -q '"summary":\[\]' damaged.html || fail "rows from no summary"
 sed 's/\[position, force\]/[force]/' swing.yaml >blind.yaml
 expect 0 run blind.yaml -q -o blind
-expect 4 view blind -o page.html
-err_has "recorded no positions"
+tells 4 "recorded no positions" view blind -o page.html
 expect 2 view /dev/null -o page.html
 absent page.html
 if small_disk 16; then

@@ -20,8 +20,7 @@ reported() { # FILE CODE WORDS
   [ "$(grep -c warning err)" -eq 1 ] || fail "more than one warning"
   expect 0 run "$1" --quiet --force
   once "$3"
-  expect 0 check "$1" --json
-  out_has "\"code\":	\"$2\""
+  shows 0 "\"code\":	\"$2\"" check "$1" --json
 }
 
 unreported() { # FILE
@@ -30,8 +29,7 @@ unreported() { # FILE
     expect 0 $command "$1"
     [ ! -s err ] || fail "$command has nothing to warn of"
   done
-  expect 0 check "$1" --json
-  out_has '"warnings":	[]'
+  shows 0 '"warnings":	[]' check "$1" --json
 }
 
 # a drive that takes its member through nothing, at its lowest, which is no multiple of anything
@@ -48,21 +46,14 @@ unreported drive40.yaml
 # two drives on one member together; four members, one line
 write four.yaml <<'EOF'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -50 mm], mass: 0.1}, c: {position: [0.2, 0], fixed: both}, d: {position: [0.3, 0], fixed: both}, e: {position: [0.4, 0], fixed: both}}
-members:
-  m: {kind: spring, nodes: [a, b], stiffness: 100, damping: 1, rest_length: 50 mm}
-  n: {kind: spring, nodes: [c, b], stiffness: 100, damping: 1, rest_length: 50 mm}
-  o: {kind: spring, nodes: [d, b], stiffness: 100, damping: 1, rest_length: 50 mm}
-  p: {kind: spring, nodes: [e, b], stiffness: 100, damping: 1, rest_length: 50 mm}
+members: {m: {kind: spring, nodes: [a, b], stiffness: 100, damping: 1, rest_length: 50 mm},
+          n: {kind: spring, nodes: [c, b], stiffness: 100, damping: 1, rest_length: 50 mm},
+          o: {kind: spring, nodes: [d, b], stiffness: 100, damping: 1, rest_length: 50 mm},
+          p: {kind: spring, nodes: [e, b], stiffness: 100, damping: 1, rest_length: 50 mm}}
 signals: {half: {ramp: {amplitude: -30 mm, start: 0.2, stop: 0.4}}}
-actuators:
-  d1: {member: m, signal: half}
-  d2: {member: m, signal: half}
-  d3: {member: n, signal: half}
-  d4: {member: n, signal: half}
-  d5: {member: o, signal: half}
-  d6: {member: o, signal: half}
-  d7: {member: p, signal: half}
-  d8: {member: p, signal: half}
+actuators: {d1: {member: m, signal: half}, d2: {member: m, signal: half}, d3: {member: n, signal: half},
+            d4: {member: n, signal: half}, d5: {member: o, signal: half}, d6: {member: o, signal: half},
+            d7: {member: p, signal: half}, d8: {member: p, signal: half}}
 EOF
 reported four.yaml rest_length_below_zero "the same of m, n, o and 1 more"
 
@@ -79,23 +70,19 @@ unreported block0.0981.yaml
 # a member twice; a spring beside its damper
 write twice.yaml <<'EOF'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}}
-members:
-  m: {kind: spring, nodes: [a, b], stiffness: 100}
-  again: {kind: cable, nodes: [b, a], stiffness: 100}
+members: {m: {kind: spring, nodes: [a, b], stiffness: 100}, again: {kind: cable, nodes: [b, a], stiffness: 100}}
 EOF
 reported twice.yaml same_nodes "members 'm' and 'again' join the same two nodes"
 write iwan.yaml <<'EOF'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}}
-members:
-  m: {kind: spring, nodes: [a, b], stiffness: 100, law: {kind: play, gap: 1 mm}}
-  again: {kind: spring, nodes: [b, a], stiffness: 100, law: {kind: play, gap: 2 mm}}
+members: {m: {kind: spring, nodes: [a, b], stiffness: 100, law: {kind: play, gap: 1 mm}},
+          again: {kind: spring, nodes: [b, a], stiffness: 100, law: {kind: play, gap: 2 mm}}}
 EOF
 unreported iwan.yaml
 write damped.yaml <<'EOF'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}}
-members:
-  m: {kind: spring, nodes: [a, b], stiffness: 100}
-  damper: {kind: spring, nodes: [b, a], stiffness: 0, damping: 1}
+members: {m: {kind: spring, nodes: [a, b], stiffness: 100},
+          damper: {kind: spring, nodes: [b, a], stiffness: 0, damping: 1}}
 EOF
 unreported damped.yaml
 
@@ -122,10 +109,8 @@ err_has 'scale.yaml:3:17: note: --set A=0.3 is taken as 0.3 in SI units, 150 tim
 err_has 'write --set A="0.3 mm" if that is meant'
 err_has '3 | parameters: {A: 2 mm'
 [ "$(grep -c note err)" -eq 1 ] || fail "a note twice"
-expect 0 check scale.yaml --set mass=2e-3
-err_has 'write --set mass="2e-3 kg"'
-expect 0 check scale.yaml --set product=6
-err_has 'write --set product="6 UNIT"'
+tells 0 'write --set mass="2e-3 kg"' check scale.yaml --set mass=2e-3
+tells 0 'write --set product="6 UNIT"' check scale.yaml --set product=6
 for set in A=0.2 A=2e-5 "A=500 mm" mass=99 A=0; do
   expect 0 check scale.yaml --set "$set"
   [ ! -s err ] || fail "--set $set is no case for a note"
@@ -144,8 +129,7 @@ expect 0 run slide.yaml
 out_has '  accuracy    not known: fixed steps of rk4 pass over changes between sticking and slipping; --accuracy 1%'
 for method in "--integrator rk4-events" "--accuracy 1%"; do
   # shellcheck disable=SC2086
-  expect 0 run slide.yaml --json $method
-  out_has '"caveat":	null'
+  shows 0 '"caveat":	null' run slide.yaml --json $method
 done
 
 # Fixed steps lose the phase of an oscillator of 1 rad/s: 629 rad z^2/24 by verlet and euler and twice that by
@@ -165,12 +149,10 @@ for case in "verlet 0.2 1" "euler 0.2 1" "verlet-events 0.2 1" "midpoint 0.2 2.1
   expect 0 run sway.yaml --integrator "$1" --step "$2" --json
   out_has "\"caveat\":	\"steps of $2 s shift the phase of vibrations at 0.159 Hz, where most of the kinetic energy is, by some $3 rad\""
 done
-expect 0 run sway.yaml --integrator verlet --step 0.3 --set damping=0.02
-out_has "by some 0.14 rad; --accuracy 1%"
+shows 0 "by some 0.14 rad; --accuracy 1%" run sway.yaml --integrator verlet --step 0.3 --set damping=0.02
 for silent in "verlet --step 0.1 --set damping=0.02" "rk4 --step 0.2" "adaptive --step 0.4"; do
   # shellcheck disable=SC2086
-  expect 0 run sway.yaml --json --integrator $silent
-  out_has '"caveat":	null'
+  shows 0 '"caveat":	null' run sway.yaml --json --integrator $silent
 done
 
 # The limit itself is too large a step: there motions of verlet grow.
@@ -188,8 +170,7 @@ initial: {positions: {b: [2.25, 0]}}
 solver: {integrator: adaptive, tolerance: 1e-9, step: 22.21441746759419}
 run: {duration: 2221.441746759419}
 EOF
-expect 0 run slow.yaml
-err_has "; the tolerance of 1e-09 allows that; use a smaller solver.tolerance, or --accuracy 1%"
+tells 0 "; the tolerance of 1e-09 allows that; use a smaller solver.tolerance, or --accuracy 1%" run slow.yaml
 expect 0 run slow.yaml --tolerance 1e-11
 [ ! -s err ] || fail "a smaller tolerance is no remedy"
 
@@ -210,8 +191,7 @@ initial: {velocities: {b: [3e-4, 0]}}
 solver: {integrator: rk4, step: 1 us}
 run: {duration: 1 ms}
 END
-expect 0 run stored.yaml
-out_has 'nJ   balance closed up to the rounding of the stored energy'
+shows 0 'nJ   balance closed up to the rounding of the stored energy' run stored.yaml
 out_has_not 'within 1 %'
 
 done_testing

@@ -80,8 +80,7 @@ for method in cma nsga2 multistart; do
   for k in 0 1 2; do
     [ "$(jq .computed "report-$k")" -gt 0 ] || fail "$method: worker $k has computed nothing"
   done
-  expect 0 sweep --merge $method-3
-  out_has "$method-3/table.csv: the searches are finished"
+  shows 0 "$method-3/table.csv: the searches are finished" sweep --merge $method-3
 
   # One of three is stopped with what it has claimed, then killed; the others finish.
   work_together $method $method-killed
@@ -98,8 +97,7 @@ for method in cma nsga2 multistart; do
   kill -KILL $workers
   wait
   absent $method-resumed/table.csv
-  expect 4 sweep --merge $method-resumed
-  err_has "the searches are not finished"
+  tells 4 "the searches are not finished" sweep --merge $method-resumed
   before=$(done_points $method $method-resumed)
   work $method $method-resumed 2/4
   end_well "$worker"
@@ -113,15 +111,11 @@ done
 work cma cma-shared 0/2
 wait_for_points cma cma-shared 5
 kill -STOP "$worker"
-expect 4 sweep cma.yaml -o cma-shared
-err_has "($worker) is writing 'cma-shared/points.slots'"
-expect 1 sweep cma.yaml -o cma-shared --shard 1/2 --set seconds=3
-err_has "another study"
+tells 4 "($worker) is writing 'cma-shared/points.slots'" sweep cma.yaml -o cma-shared
+tells 1 "another study" sweep cma.yaml -o cma-shared --shard 1/2 --set seconds=3
 kill -KILL "$worker"
-expect 1 sweep cma.yaml -o cma-shared --shard 2/2
-err_has "shards of 2 are numbered 0 to 1"
-expect 1 sweep cma.yaml -o cma-shared --shard 0/2 --retry
-err_has "depends on those before it"
+tells 1 "shards of 2 are numbered 0 to 1" sweep cma.yaml -o cma-shared --shard 2/2
+tells 1 "depends on those before it" sweep cma.yaml -o cma-shared --shard 0/2 --retry
 
 # What workers cannot share is refused by name, where the study says so.
 for method in crs2 direct sbplx; do

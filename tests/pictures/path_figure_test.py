@@ -149,17 +149,12 @@ with tempfile.TemporaryDirectory() as here:
 
 # A slider that snaps from one cable to the other: dashes from kink to kink, and nowhere else.
 TOGGLE = """strut: 1
-nodes:
-  anchor: {position: [0, 0.5], fixed: both}
-  left: {position: [-1, 0], fixed: both}
-  right: {position: [1, 0], fixed: both}
-  tip: {position: [-0.12, 0], fixed: y}
-members:
-  over: {kind: spring, nodes: [anchor, tip], stiffness: 500, rest_length: 0.7}
-  a: {kind: cable, nodes: [left, tip], stiffness: 2000, rest_length: 1.1}
-  b: {kind: cable, nodes: [right, tip], stiffness: 2000, rest_length: 1.1}
-loads:
-  push: {node: tip, force: [2 N, 0]}
+nodes: {anchor: {position: [0, 0.5], fixed: both}, left: {position: [-1, 0], fixed: both},
+        right: {position: [1, 0], fixed: both}, tip: {position: [-0.12, 0], fixed: y}}
+members: {over: {kind: spring, nodes: [anchor, tip], stiffness: 500, rest_length: 0.7},
+          a: {kind: cable, nodes: [left, tip], stiffness: 2000, rest_length: 1.1},
+          b: {kind: cable, nodes: [right, tip], stiffness: 2000, rest_length: 1.1}}
+loads: {push: {node: tip, force: [2 N, 0]}}
 """
 STOP = 0.1
 TURN = 500 * (1 - 0.7 / math.hypot(STOP, 0.5)) * -STOP / 2

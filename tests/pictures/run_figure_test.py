@@ -107,12 +107,10 @@ name: Thrown triangle
 gravity: [0, -9.81 m/s^2]
 ground: {stiffness: 1e4 N/m, damping: 5 N s/m, friction: {law: karnopp, mu: 0.3, stick_velocity: 0.1 mm/s}}
 nodes: {a: [0, 0], b: [0.1 m, 0], c: [0.05 m, 0.03 m]}
-members:
-  ab: {kind: bar, nodes: [a, b], stiffness: 1e4 N/m, mass: 0.1 kg}
-  ac: {kind: bar, nodes: [a, c], stiffness: 1e4 N/m, mass: 0.1 kg}
-  bc: {kind: bar, nodes: [b, c], stiffness: 1e4 N/m, mass: 0.1 kg}
-initial:
-  velocities: {a: [1, 2 m/s], b: [1, 2.5 m/s], c: [1, 2 m/s]}
+members: {ab: {kind: bar, nodes: [a, b], stiffness: 1e4 N/m, mass: 0.1 kg},
+          ac: {kind: bar, nodes: [a, c], stiffness: 1e4 N/m, mass: 0.1 kg},
+          bc: {kind: bar, nodes: [b, c], stiffness: 1e4 N/m, mass: 0.1 kg}}
+initial: {velocities: {a: [1, 2 m/s], b: [1, 2.5 m/s], c: [1, 2 m/s]}}
 solver: {step: 0.05 ms}
 run: {duration: 0.7 s}
 """

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Figures of what the runs of a study recorded: closed forms found again in the pictures.
-
 usage: study_figures_test.py STRUT
 """
 import math
@@ -50,11 +49,8 @@ os.chdir(work)
 write("block.yaml", """strut: 1
 name: Block
 parameters: {far: 0.2, mass: 1 kg}
-nodes:
-  wall: {position: [0, 0], fixed: both}
-  block: {position: [1, 0], mass: mass, fixed: y}
-members:
-  spring: {kind: spring, nodes: [wall, block], stiffness: 100 N/m}
+nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: mass, fixed: y}}
+members: {spring: {kind: spring, nodes: [wall, block], stiffness: 100 N/m}}
 configurations: {drawn: {}, out: {block: [1 + far, 0]}}
 initial: {configuration: out}
 solver: {step: 0.5 ms}
@@ -66,9 +62,7 @@ STUDY = """strut: 1
 study: motion
 model: block.yaml
 axes: [{mass: [1 kg]}]
-variants:
-  rest: {initial: {configuration: drawn, velocities: {block: [1, 0]}}}
-  out: {output: {every: 8 ms}}
+variants: {rest: {initial: {configuration: drawn, velocities: {block: [1, 0]}}}, out: {output: {every: 8 ms}}}
 trajectories: yes
 keep: [velocity]
 figures:
