@@ -191,8 +191,8 @@ expect 0 run written.yaml --json
 near '.measured.small.value' '3 + 2 * (-0.4 * 1.5 * 2 | exp)' 1e-10
 expect 0 export pipe.yaml --format code -o code
 # a piston that is pushed in presses gas into the other cell until both press alike; the balance closes with what the pipe takes
-sed -e 's/  e: {position: .3, 0., fixed: both}/  e: {position: [3, 0], fixed: y, mass: 1}/' \
-  -e 's/  f: {position: .3, 1., fixed: both}/  f: {position: [3, 1], fixed: y, mass: 1}/' \
+sed -e 's/ e: {position: .3, 0., fixed: both}/ e: {position: [3, 0], fixed: y, mass: 1}/' \
+  -e 's/ f: {position: .3, 1., fixed: both}/ f: {position: [3, 1], fixed: y, mass: 1}/' \
   -e 's/^cells:/members: {lid: {kind: bar, nodes: [e, f], stiffness: 1000}}\nrayleigh: {mass: 2 s^-1}\ncells:/' \
   -e 's/duration: 2 s/duration: 300 s/' pipe.yaml >piston2.yaml
 for method in rk4 adaptive midpoint; do

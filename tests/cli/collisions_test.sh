@@ -107,10 +107,14 @@ holds '.energy.dissipated_members > 0.01'
 # The search finds the bar at rest on a peg, k d r cos = W, and hanging down.
 cat >peg.yaml <<'END'
 strut: 1
-nodes: {hinge: {position: [0, 0], fixed: both}, tip: {position: [1, 0.1], mass: 1},
-        peg: {position: [0.5, -0.1], fixed: both}}
-members: {bar: {kind: bar, nodes: [hinge, tip], stiffness: 1e6}}
-collisions: {rest: {node: peg, member: bar, thickness: 50 mm, stiffness: 1e5}}
+nodes:
+  hinge: {position: [0, 0], fixed: both}
+  tip: {position: [1, 0.1], mass: 1}
+  peg: {position: [0.5, -0.1], fixed: both}
+members:
+  bar: {kind: bar, nodes: [hinge, tip], stiffness: 1e6}
+collisions:
+  rest: {node: peg, member: bar, thickness: 50 mm, stiffness: 1e5}
 gravity: [0, -10]
 END
 expect 0 equilibria peg.yaml --json
@@ -247,19 +251,28 @@ cat >arm.yaml <<'YAML'
 strut: 1
 gravity: [0, 0]
 parameters: {bend_1: 0, bend_2: 0, bend_3: 0}
-nodes: {wall: {position: [-0.1, 0], fixed: both}, base: {position: [0, 0], fixed: both},
-        k1: {position: [0.1, 0], mass: 10 g}, k2: {position: [0.2, 0], mass: 10 g},
-        tip: {position: [0.3, 0], mass: 10 g}, low: {position: [0.2, 0.17], fixed: both},
-        high: {position: [0.2, 0.3], fixed: both}}
+nodes:
+  wall: {position: [-0.1, 0], fixed: both}
+  base: {position: [0, 0], fixed: both}
+  k1: {position: [0.1, 0], mass: 10 g}
+  k2: {position: [0.2, 0], mass: 10 g}
+  tip: {position: [0.3, 0], mass: 10 g}
+  low: {position: [0.2, 0.17], fixed: both}
+  high: {position: [0.2, 0.3], fixed: both}
 groups: {arm: {kind: bar, stiffness: 1e4, damping: 5}, post: {kind: bar, stiffness: 1e4}}
-members: {a1: {group: arm, nodes: [base, k1]}, a2: {group: arm, nodes: [k1, k2]}, a3: {group: arm, nodes: [k2, tip]},
-          bar: {group: post, nodes: [low, high]}}
-hinges: {h1: {nodes: [wall, base, k1], stiffness: 5, damping: 0.05},
-         h2: {nodes: [base, k1, k2], stiffness: 5, damping: 0.05},
-         h3: {nodes: [k1, k2, tip], stiffness: 5, damping: 0.05}}
-actuators: {turn_1: {hinge: h1, signal: {ramp: {amplitude: bend_1, stop: 1 s}}},
-            turn_2: {hinge: h2, signal: {ramp: {amplitude: bend_2, stop: 1 s}}},
-            turn_3: {hinge: h3, signal: {ramp: {amplitude: bend_3, stop: 1 s}}}}
+members:
+  a1: {group: arm, nodes: [base, k1]}
+  a2: {group: arm, nodes: [k1, k2]}
+  a3: {group: arm, nodes: [k2, tip]}
+  bar: {group: post, nodes: [low, high]}
+hinges:
+  h1: {nodes: [wall, base, k1], stiffness: 5, damping: 0.05}
+  h2: {nodes: [base, k1, k2], stiffness: 5, damping: 0.05}
+  h3: {nodes: [k1, k2, tip], stiffness: 5, damping: 0.05}
+actuators:
+  turn_1: {hinge: h1, signal: {ramp: {amplitude: bend_1, stop: 1 s}}}
+  turn_2: {hinge: h2, signal: {ramp: {amplitude: bend_2, stop: 1 s}}}
+  turn_3: {hinge: h3, signal: {ramp: {amplitude: bend_3, stop: 1 s}}}
 collisions: {hit: {between: [arm, post], thickness: 10 mm, stiffness: 0.1 N/m}}
 solver: {integrator: verlet, step: 0.1 ms}
 run:
@@ -302,7 +315,10 @@ grep -q '"name":"hit","thickness":0.05,"nodes":\[2\],"members":\[0\]' page.html 
 # ---- a disc that slides along a rod on which it lies: mu g takes its speed, in every method ----
 cat >slides.yaml <<'END'
 strut: 1
-nodes: {a: {position: [-5, 0], fixed: both}, b: {position: [5, 0], fixed: both}, d: {position: [-2, 0.099], mass: 2}}
+nodes:
+  a: {position: [-5, 0], fixed: both}
+  b: {position: [5, 0], fixed: both}
+  d: {position: [-2, 0.099], mass: 2}
 members: {rod: {kind: bar, nodes: [a, b], stiffness: 1000}}
 collisions:
   k: {node: d, member: rod, thickness: 0.1, stiffness: 10000, damping: 200, friction: {mu: 0.3, width: 0.1 mm/s}}

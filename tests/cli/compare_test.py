@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """strut compare: its numbers are those of the single commands, its differences those of the texts.
+
 usage: compare_test.py STRUT
 """
 import csv
@@ -232,7 +233,8 @@ with tempfile.TemporaryDirectory() as folder:
 name: one
 parameters: {stiff: 100 N/m, unlike: 1}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1 kg}}
-members: {ab: {kind: spring, nodes: [a, b], stiffness: stiff}}
+members:
+  ab: {kind: spring, nodes: [a, b], stiffness: stiff}
 """
     open("one.yaml", "w").write(text)
     open("two.yaml", "w").write(text.replace("name: one", "name: two").replace(

@@ -37,11 +37,17 @@ jq -e '.events | length == 1 and .[0].kind == "bifurcation" and
 # ---- over a convex corner: on each of its sides the forces along the facet balance ----
 cat >hill.yaml <<'END'
 strut: 1
-nodes: {l: {position: [-3 m, 1 m], fixed: both}, r: {position: [3 m, 1 m], fixed: both},
-        a: {position: [0, 1.2 m], mass: 1 kg}}
-members: {sl: {kind: spring, nodes: [l, a], stiffness: 10 N/m, rest_length: 2 m},
-          sr: {kind: spring, nodes: [r, a], stiffness: 10 N/m, rest_length: 2 m}}
-ground: {profile: [[-3, 0], [-1, 0.5], [0.5, 1], [1, 0.5], [1.5, 0.4], [3, 1]], stiffness: 100 kN/m, nodes: [a]}
+nodes:
+  l: {position: [-3 m, 1 m], fixed: both}
+  r: {position: [3 m, 1 m], fixed: both}
+  a: {position: [0, 1.2 m], mass: 1 kg}
+members:
+  sl: {kind: spring, nodes: [l, a], stiffness: 10 N/m, rest_length: 2 m}
+  sr: {kind: spring, nodes: [r, a], stiffness: 10 N/m, rest_length: 2 m}
+ground:
+  profile: [[-3, 0], [-1, 0.5], [0.5, 1], [1, 0.5], [1.5, 0.4], [3, 1]]
+  stiffness: 100 kN/m
+  nodes: [a]
 gravity: [0, -10 m/s^2]
 loads: {p: {node: a, force: [1 N, 0]}}
 END

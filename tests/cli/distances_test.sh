@@ -58,8 +58,10 @@ near '.modes[3].frequency' '(5 | sqrt) / 2 / 3.141592653589793' 1e-9
 cat >ball.yaml <<'YAML'
 strut: 1
 gravity: [0, -10]
-nodes: {left: {position: [-1, -0.2], fixed: both}, right: {position: [3, 0.6], fixed: both},
-        ball: {position: [0, 0.5], mass: 1}}
+nodes:
+  left: {position: [-1, -0.2], fixed: both}
+  right: {position: [3, 0.6], fixed: both}
+  ball: {position: [0, 0.5], mass: 1}
 distances: {hit: {node: ball, line: [left, right], rest_distance: 0, stiffness: 1e4, law: compression_only}}
 solver: {integrator: rk4-events, step: 1 ms}
 run:
@@ -131,10 +133,14 @@ cat >bad.yaml <<'YAML'
 strut: 1
 nodes: {a: [0, 0], b: [1, 0], c: [1, 1]}
 members: {m: {kind: spring, nodes: [a, b], stiffness: 1}}
-distances: {one: {nodes: [a, b], stiffness: 1}, two: {node: a, line: [b, b], stiffness: 1},
-            three: {nodes: [a, b], along: 3 m, stiffness: 1}, four: {nodes: [a, b], along: x},
-            five: {node: c, line: [a, b], along: x, stiffness: 1}, six: {nodes: [a, b], along: [1, 2], stiffness: 1},
-            seven: {nodes: [a, c], along: y, stiffness: 1, law: logarithmic}}
+distances:
+  one: {nodes: [a, b], stiffness: 1}
+  two: {node: a, line: [b, b], stiffness: 1}
+  three: {nodes: [a, b], along: 3 m, stiffness: 1}
+  four: {nodes: [a, b], along: x}
+  five: {node: c, line: [a, b], along: x, stiffness: 1}
+  six: {nodes: [a, b], along: [1, 2], stiffness: 1}
+  seven: {nodes: [a, c], along: y, stiffness: 1, law: logarithmic}
 YAML
 tells 2 "bad.yaml:5:3: error: distance 'one' must have 'nodes' and 'along', or 'node' and 'line'" check bad.yaml
 err_has "distance 'two' names node 'b' twice"

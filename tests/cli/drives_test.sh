@@ -160,11 +160,16 @@ shows 0 "damping by mass" check rayleigh.yaml
 shaken() { # METHOD STEP MASS RUN
   cat <<END
 strut: 1
-nodes: {a: {position: [0, 0], fixed: y, moves: {x: shake}}, b: {position: [1, 0], fixed: y, mass: 2}}
-members: {m: {kind: spring, nodes: [a, b], stiffness: 200, damping: 8, mass: $3}}
-signals: {shake: {sine: {amplitude: 10 mm, frequency: 1 Hz}}}
+nodes:
+  a: {position: [0, 0], fixed: y, moves: {x: shake}}
+  b: {position: [1, 0], fixed: y, mass: 2}
+members:
+  m: {kind: spring, nodes: [a, b], stiffness: 200, damping: 8, mass: $3}
+signals:
+  shake: {sine: {amplitude: 10 mm, frequency: 1 Hz}}
 solver: {integrator: $1, step: $2}
-run: $4
+run:
+  $4
 END
 }
 rms='measure: {last: 1, quantities: {rms: {of: b.x - 1 m, take: rms}, x: {of: b.x, take: final}}}'

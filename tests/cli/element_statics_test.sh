@@ -10,11 +10,19 @@ value() { jq -r "$1" "$work/out"; }
 cat >links.yaml <<'END'
 strut: 1
 parameters: {kappa: 3 N m/rad, rest: 180 deg, press: 1 N}
-nodes: {a: {position: [0, 0], fixed: both}, b: [1, 0], c: {position: [2, 0], fixed: y}}
-members: {m1: {kind: bar, nodes: [a, b], stiffness: 1e11}, m2: {kind: bar, nodes: [b, c], stiffness: 1e11}}
-hinges: {h: {nodes: [a, b, c], stiffness: kappa, rest_angle: rest}}
-actuators: {motor: {hinge: h, signal: {sine: {amplitude: 0.1, frequency: 1 Hz}}}}
-loads: {p: {node: c, force: [-press, 0]}}
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: [1, 0]
+  c: {position: [2, 0], fixed: y}
+members:
+  m1: {kind: bar, nodes: [a, b], stiffness: 1e11}
+  m2: {kind: bar, nodes: [b, c], stiffness: 1e11}
+hinges:
+  h: {nodes: [a, b, c], stiffness: kappa, rest_angle: rest}
+actuators:
+  motor: {hinge: h, signal: {sine: {amplitude: 0.1, frequency: 1 Hz}}}
+loads:
+  p: {node: c, force: [-press, 0]}
 END
 expect 0 path links.yaml --until 8 --json
 holds '(.events | length) == 1 and .events[0].kind == "bifurcation" and
@@ -45,10 +53,15 @@ shows 0 "h moment" path links.yaml --until 8
 cat >cubic.yaml <<'END'
 strut: 1
 parameters: {hard: 20000}
-nodes: {left: {position: [-1, 0], fixed: both}, right: {position: [1, 0], fixed: both}, top: [0, 0.3]}
-members: {a: {kind: bar, nodes: [left, top], law: {kind: polynomial, coefficients: [1000, 0, hard]}},
-          b: {kind: bar, nodes: [right, top], law: {kind: polynomial, coefficients: [1000, 0, hard]}}}
-loads: {weight: {node: top, force: [0, -1]}}
+nodes:
+  left: {position: [-1, 0], fixed: both}
+  right: {position: [1, 0], fixed: both}
+  top: [0, 0.3]
+members:
+  a: {kind: bar, nodes: [left, top], law: {kind: polynomial, coefficients: [1000, 0, hard]}}
+  b: {kind: bar, nodes: [right, top], law: {kind: polynomial, coefficients: [1000, 0, hard]}}
+loads:
+  weight: {node: top, force: [0, -1]}
 END
 limit=$(awk 'function p(h, l, x) { l = sqrt(1 + h * h); x = l - sqrt(1.09); return -2 * (1000 * x + 20000 * x ^ 3) * h / l }
   BEGIN { a = 0.01; b = 0.29; for (i = 0; i < 200; i++) { c = a + (b - a) / 3; d = b - (b - a) / 3

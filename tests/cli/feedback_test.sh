@@ -75,9 +75,15 @@ done
 # moves its mass as the sine does, through the damper alone.
 cat >functions.yaml <<'END'
 strut: 1
-nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
-members: {m: {nodes: [a, b], kind: spring, damping: 3}}
-actuators: {d: {member: m, signal: {sine: {amplitude: 0.3 m, frequency: 1 Hz}}}}
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 2 kg}
+members:
+  m: {nodes: [a, b], kind: spring, damping: 3}
+actuators:
+  d:
+    member: m
+    signal: {sine: {amplitude: 0.3 m, frequency: 1 Hz}}
 solver: {integrator: rk4, step: 2 ms}
 run: {duration: 0.7 s, measure: {quantities: {x: {of: b.x, take: final}}}}
 END
@@ -157,11 +163,16 @@ done
 cat >oscillators.yaml <<'END'
 strut: 1
 parameters: {df: 0.4 Hz}
-nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
-members: {m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 0.3}}
-oscillators: {o1: {frequency: 1 Hz, coupling: {o2: 2 rad/s}},
-              o2: {frequency: 1 Hz + df, phase: 20 deg, coupling: {o1: 2 rad/s}}}
-actuators: {d: {member: m, signal: {expression: 10 mm*sin(o1)}}}
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 2 kg}
+members:
+  m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 0.3}
+oscillators:
+  o1: {frequency: 1 Hz, coupling: {o2: 2 rad/s}}
+  o2: {frequency: 1 Hz + df, phase: 20 deg, coupling: {o1: 2 rad/s}}
+actuators:
+  d: {member: m, signal: {expression: 10 mm*sin(o1)}}
 solver: {integrator: rk4, step: 5 ms}
 run:
   duration: 100 s

@@ -17,11 +17,15 @@ from testing import check, finish, path, rows, run, strut, work, write
 write("duffing.yaml", """strut: 1
 name: Duffing
 parameters: {frequency: 0.14 Hz, force: 0.1 N, periods: 200, step: 1 ms}
-nodes: {wall: {position: [0, 0], fixed: both}, mass: {position: [10, 0], fixed: y, mass: 1}}
+nodes:
+  wall: {position: [0, 0], fixed: both}
+  mass: {position: [10, 0], fixed: y, mass: 1}
 members:
-  spring: {nodes: [wall, mass], kind: spring, law: {kind: polynomial, coefficients: [1 N/m, 0, 0.05 N/m^3]},
-           damping: 0.05, rest_length: 10}
-loads: {push: {node: mass, force: [force, 0], signal: {sine: {amplitude: 1, frequency: frequency}}}}
+  spring:
+    {nodes: [wall, mass], kind: spring, law: {kind: polynomial, coefficients: [1 N/m, 0, 0.05 N/m^3]},
+     damping: 0.05, rest_length: 10}
+loads:
+  push: {node: mass, force: [force, 0], signal: {sine: {amplitude: 1, frequency: frequency}}}
 configurations: {drawn: {}, far: {mass: [12, 0]}}
 solver: {integrator: rk4, step: step}
 run: {periods: periods, of: push, measure: {node: mass}}
@@ -30,7 +34,10 @@ STUDY = """strut: 1
 study: Duffing's folds
 model: duffing.yaml
 axes: [{force: [0.06 N, 0.1 N, 0.15 N]}]
-follow: {over: frequency, from: 0.14 Hz, to: 0.24 Hz}
+follow:
+  over: frequency
+  from: 0.14 Hz
+  to: 0.24 Hz
 figures: {widest: {x: force, y: amplitude_max}}
 """
 write("study.yaml", STUDY)

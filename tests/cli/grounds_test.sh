@@ -25,8 +25,9 @@ cat >v.yaml <<'END'
 strut: 1
 gravity: [0, -10]
 nodes: {ball: {position: [0, 1 mm], mass: 2}}
-grounds: {left: {slope: -40 deg, through: [0, 0], stiffness: 1e4, damping: 60},
-          right: {normal: [-1.7320508075688772, 1], through: [0, 0], stiffness: 1e4, damping: 60}}
+grounds:
+  left: {slope: -40 deg, through: [0, 0], stiffness: 1e4, damping: 60}
+  right: {normal: [-1.7320508075688772, 1], through: [0, 0], stiffness: 1e4, damping: 60}
 solver: {integrator: rk4, step: 0.2 ms}
 run: {duration: 2 s}
 output: {channels: [position, velocity, contact, energy]}

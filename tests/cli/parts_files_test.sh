@@ -25,7 +25,8 @@ strut: 1
 name: spine
 parameters: {vertebrae: 4, spacing: 0.15 m, hold: 0.9}
 groups: {cable: {kind: cable, stiffness: 500 N/m, rest_length_ratio: hold}}
-parts: {vertebra: {use: cells/vertebra.yaml, parameters: {height: 0.1 m}}}
+parts:
+  vertebra: {use: cells/vertebra.yaml, parameters: {height: 0.1 m}}
 place:
   v:
     part: vertebra
@@ -33,10 +34,11 @@ place:
       count: vertebrae
       step: [spacing, 0]
       next:
-        members: {lower: {group: cable, nodes: [lower, next.lower]},
-                  upper: {group: cable, nodes: [upper, next.upper]},
-                  front_lower: {group: cable, nodes: [front, next.lower]},
-                  front_upper: {group: cable, nodes: [front, next.upper]}}
+        members:
+          lower: {group: cable, nodes: [lower, next.lower]}
+          upper: {group: cable, nodes: [upper, next.upper]}
+          front_lower: {group: cable, nodes: [front, next.lower]}
+          front_upper: {group: cable, nodes: [front, next.upper]}
 nodes: {v.0.middle: {fixed: both}, v.0.lower: {fixed: x}}
 END
 

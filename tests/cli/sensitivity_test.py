@@ -44,8 +44,11 @@ def within(row, wanted, errors=4.0):
 OSCILLATOR = """strut: 1
 name: A mass on a spring
 parameters: {stiff: 100 N/m, heavy: 2 kg, idle: 0.5, long: 1 m}
-nodes: {wall: {position: [0, 0], fixed: both}, mass: {position: [1, 0], mass: heavy, fixed: y}}
-members: {spring: {nodes: [wall, mass], kind: spring, stiffness: stiff, rest_length: long + 0 m*idle}}
+nodes:
+  wall: {position: [0, 0], fixed: both}
+  mass: {position: [1, 0], mass: heavy, fixed: y}
+members:
+  spring: {nodes: [wall, mass], kind: spring, stiffness: stiff, rest_length: long + 0 m*idle}
 solver: {step: 1 ms}
 run: {duration: 1 s}
 """
@@ -58,9 +61,10 @@ def products():
 compute: modes
 lowest: 1
 keep: [frequencies, total_mass]
-sensitivity: {of: [frequency_1, total_mass],
-              over: {stiff: {lognormal: [100 N/m, 0.6]}, heavy: {lognormal: [2 kg, 0.4]}, idle: {uniform: [0, 1]}},
-              samples: 512}
+sensitivity:
+  of: [frequency_1, total_mass]
+  over: {stiff: {lognormal: [100 N/m, 0.6]}, heavy: {lognormal: [2 kg, 0.4]}, idle: {uniform: [0, 1]}}
+  samples: 512
 """
     said, rows = sweep("product", text)
     a, b = math.exp(0.3 ** 2) - 1, math.exp(0.2 ** 2) - 1  # squared variations of both factors
@@ -130,7 +134,9 @@ def errors():
 name: A mass that falls
 parameters: {start: 1 m/s, pull: 9.81 m/s^2}
 gravity: [0, -pull]
-nodes: {top: {position: [0, 0], fixed: both}, mass: {position: [0, 1], mass: 1 kg}}
+nodes:
+  top: {position: [0, 0], fixed: both}
+  mass: {position: [0, 1], mass: 1 kg}
 members: {idle: {nodes: [top, mass], kind: cable, stiffness: 1 N/m, rest_length: 100 m}}
 initial: {velocities: {mass: [start, start]}}
 solver: {integrator: rk4-events, step: 1 ms}
@@ -138,12 +144,17 @@ run:
   duration: 0.5 s
   measure:
     last: 0.5 s
-    quantities: {height: {of: mass.y, take: max}, right: {of: mass.vx, take: final},
-                 late: {of: mass.y, take: arrival, target: 1.05 m}}
+    quantities:
+      height: {of: mass.y, take: max}
+      right: {of: mass.vx, take: final}
+      late: {of: mass.y, take: arrival, target: 1.05 m}
 """)
     text = """model: fall.yaml
 keep: [quantities]
-sensitivity: {of: [height, right, late], over: {start: {uniform: [-1 m/s, 3 m/s]}}, samples: 64}
+sensitivity:
+  of: [height, right, late]
+  over: {start: {uniform: [-1 m/s, 3 m/s]}}
+  samples: 64
 """
     _, rows = sweep("fall", text)  # height: 1 + start^2/(2 pull) above start = 0
     row = pick(rows, "height", "derivative", "start")
@@ -171,10 +182,13 @@ def texts():
     write("truss.yaml", """strut: 1
 name: A shallow arch
 parameters: {load: 5 N, idle: 0}
-nodes: {left: {position: [-1, 0], fixed: both}, right: {position: [1, 0], fixed: both},
-        apex: {position: [0, 0.3], mass: 1 kg}}
-members: {falling: {kind: bar, nodes: [apex, left], stiffness: 1000 N/m},
-          rising: {kind: bar, nodes: [apex, right], stiffness: 1000 N/m}}
+nodes:
+  left: {position: [-1, 0], fixed: both}
+  right: {position: [1, 0], fixed: both}
+  apex: {position: [0, 0.3], mass: 1 kg}
+members:
+  falling: {kind: bar, nodes: [apex, left], stiffness: 1000 N/m}
+  rising: {kind: bar, nodes: [apex, right], stiffness: 1000 N/m}
 loads: {weight: {node: apex, force: [0 N*idle, -load]}}
 initial: {settle: true}
 solver: {step: 1 ms}
@@ -183,8 +197,11 @@ configurations: {up: {apex: [0, 0.3]}, down: {apex: [0, -0.3]}}
 """)
     _, rows = sweep("arch", """model: truss.yaml
 keep: [outcome]
-sensitivity: {of: [outcome], over: {load: {uniform: [5 N, 15 N]}, idle: {uniform: [0, 1]}}, samples: 32,
-              derivatives: no}
+sensitivity:
+  of: [outcome]
+  over: {load: {uniform: [5 N, 15 N]}, idle: {uniform: [0, 1]}}
+  samples: 32
+  derivatives: no
 """)
     up = 0.4949917  # it snaps through above 9.949917 N
     names = {r["of"] for r in rows}

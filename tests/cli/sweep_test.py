@@ -33,8 +33,11 @@ def rows(name):
 BLOCK = """strut: 1
 name: Block
 parameters: {stiffness: 100 N/m, mass: 1 kg, seconds: 0.5 s, step: 1 ms, place: "near"}
-nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: mass, fixed: y}}
-members: {spring: {kind: spring, nodes: [wall, block], stiffness: stiffness, damping: 1 N s/m}}
+nodes:
+  wall: {position: [0, 0], fixed: both}
+  block: {position: [1, 0], mass: mass, fixed: y}
+members:
+  spring: {kind: spring, nodes: [wall, block], stiffness: stiffness, damping: 1 N s/m}
 configurations: {near: {}, far: {block: [1.2, 0]}}
 initial: {configuration: place}
 solver: {step: step}
@@ -47,9 +50,11 @@ def points_are_those_of_numpy():
     write("grid.yaml", """strut: 1
 study: grid
 model: block.yaml
-axes: [{place: [near, far]}, {stiffness: {from: 1 N/m, to: 1000 N/m, count: 7, scale: log}},
-       {zip: {mass: {from: 1 kg, to: 2 kg, step: 0.1 kg}, step: {from: 1 ms, to: 2 ms, count: 11}}},
-       {seconds: {from: 5 ms, to: 16 ms, step: 2 ms}}]
+axes:
+  - place: [near, far]
+  - stiffness: {from: 1 N/m, to: 1000 N/m, count: 7, scale: log}
+  - zip: {mass: {from: 1 kg, to: 2 kg, step: 0.1 kg}, step: {from: 1 ms, to: 2 ms, count: 11}}
+  - seconds: {from: 5 ms, to: 16 ms, step: 2 ms}
 keep: [duration]
 """)
     count = json.loads(run("sweep", "grid.yaml", "--count", "--json").stdout)
@@ -298,7 +303,9 @@ def points_that_fail():
 study: fails
 model: block.yaml
 set: {seconds: 5 s}
-axes: [{step: [1 ms, 1, 2 ms]}, {stiffness: [100, 200]}]
+axes:
+  - step: [1 ms, 1, 2 ms]
+  - stiffness: [100, 200]
 keep: [velocity]
 """)
     said = run("sweep", "fails.yaml", "-o", "fails", code=3)
@@ -376,7 +383,9 @@ def checked_again():
     write("check.yaml", """strut: 1
 study: check
 model: block.yaml
-axes: [{seconds: [0.1 s, 0.157 s]}, {place: [near, far]}]
+axes:
+  - seconds: [0.1 s, 0.157 s]
+  - place: [near, far]
 check: {half_step: yes}
 """)
     run("sweep", "check.yaml", "-o", "check", "--quiet")
@@ -391,9 +400,12 @@ def figures():
     study = """strut: 1
 study: figures
 model: block.yaml
-axes: [{mass: [1 kg, 2 kg, 3 kg]}, {seconds: [0.1 s, 0.2 s]}]
-figures: {lines: {x: mass, y: velocity, series: seconds, title: All lines},
-          map: {kind: map, x: mass, y: seconds, color: outcome}}
+axes:
+  - mass: [1 kg, 2 kg, 3 kg]
+  - seconds: [0.1 s, 0.2 s]
+figures:
+  lines: {x: mass, y: velocity, series: seconds, title: All lines}
+  map: {kind: map, x: mass, y: seconds, color: outcome}
 """
     write("figures.yaml", study)
     run("sweep", "figures.yaml", "-o", "figures", "--quiet")
@@ -530,7 +542,9 @@ def memory_is_flat():
 study: many
 model: block.yaml
 set: {seconds: 1 ms}
-axes: [{mass: {from: 1 kg, to: 2 kg, count: 100}}, {stiffness: {from: 10, to: 20, count: COUNT}}]
+axes:
+  - mass: {from: 1 kg, to: 2 kg, count: 100}
+  - stiffness: {from: 10, to: 20, count: COUNT}
 keep: [velocity]
 """)
     text = read("many.yaml").decode()
