@@ -120,8 +120,12 @@ static void finish_case(document *d) {
   d->now = NULL;
 }
 
+/* name: NULL for that of the document and the line. */
 static void begin_case(document *d, const char *name, bool is_base) {
   faulty_cases *all = d->cases;
+  char own[PATH_SIZE];
+  const char *file = strrchr(d->path, '/') + 1;
+  snprintf(own, sizeof own, "%.*s-%d", (int)strcspn(file, "."), file, d->line_number);
   finish_case(d);
   all->items = realloc(all->items, (all->count + 1) * sizeof *all->items);
   if (!all->items) abort();
@@ -133,7 +137,7 @@ static void begin_case(document *d, const char *name, bool is_base) {
   char place[PATH_SIZE + 20];
   snprintf(place, sizeof place, "%s:%d", d->path, d->line_number);
   *d->now = (faulty_case){.is_base = is_base,
-                          .name = copy_text(name),
+                          .name = copy_text(name ? name : own),
                           .document = copy_text(place),
                           .purpose = d->purpose};
   d->text = d->base;
@@ -166,8 +170,6 @@ static void read_statement(document *d, char *line) {
     begin_case(d, rest, true);
   } else if (IS("case")) {
     begin_case(d, rest, false);
-  } else if (!d->now) {
-    refuse(d, "before the first base or case:", line);
   } else if (IS("expect")) {
     add_message(d, rest);
   } else if (IS("note")) {
@@ -202,7 +204,10 @@ static void read_document(faulty_cases *cases, const char *folder, const char *n
     next = line + strcspn(line, "\n");
     if (*next) *next++ = '\0';
     d->line_number++;
+    if (!*line) finish_case(d);
     if (!*line || *line == '#') continue;
+    if (!d->now && strncmp(line, "base", 4) != 0 && strncmp(line, "case ", 5) != 0)
+      begin_case(d, NULL, false);
     if (strchr("|=-+@", *line))
       change_line(d, *line, line + 1);
     else
