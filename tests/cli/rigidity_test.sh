@@ -7,10 +7,15 @@ cat >x.yaml <<'END'
 strut: 1
 name: X
 groups: {cable: {kind: cable, stiffness: 100 N/m, force_density: 5 N/m},
-         bar: {kind: bar, stiffness: 1000 N/m, force_density: -5 N/m}}
+  bar: {kind: bar, stiffness: 1000 N/m, force_density: -5 N/m}}
 nodes: {a: [0, 0], b: [1, 0], c: [1, 1], d: [0, 1]}
-members: {ab: {group: cable, nodes: [a, b]}, bc: {group: cable, nodes: [b, c]}, cd: {group: cable, nodes: [c, d]},
-          da: {group: cable, nodes: [d, a]}, ac: {group: bar, nodes: [a, c]}, bd: {group: bar, nodes: [b, d]}}
+members:
+  ab: {group: cable, nodes: [a, b]}
+  bc: {group: cable, nodes: [b, c]}
+  cd: {group: cable, nodes: [c, d]}
+  da: {group: cable, nodes: [d, a]}
+  ac: {group: bar, nodes: [a, c]}
+  bd: {group: bar, nodes: [b, d]}
 END
 expect 0 rigidity x.yaml
 err_empty

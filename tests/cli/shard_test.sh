@@ -8,7 +8,9 @@ strut: 1
 study: hops
 model: model.yaml
 set: {seconds: 10 ms}
-axes: [{stiffness: {from: 100 N/m, to: 800 N/m, count: 9}}, {friction: [1, 2]}]
+axes:
+  - stiffness: {from: 100 N/m, to: 800 N/m, count: 9}
+  - friction: [1, 2]
 keep: [velocity, steps]
 END
 sed -i 's/^  seconds: 0.5/&\n  friction: 1/; s/mu: 0.3/mu: 0.3*friction/' model.yaml

@@ -20,7 +20,10 @@ done
 # ---- a disc pushed into a cable by 30 N: at rest the tension's two parts balance it; none touches before ----
 cat >disc.yaml <<'END'
 strut: 1
-nodes: {a: {position: [-2, 0], fixed: both}, disc: {position: [0, -1.5], mass: 2}, b: {position: [2, 0], fixed: both}}
+nodes:
+  a: {position: [-2, 0], fixed: both}
+  disc: {position: [0, -1.5], mass: 2}
+  b: {position: [2, 0], fixed: both}
 members:
   rope: {kind: cable, nodes: [a, disc, b], stiffness: 200, rest_length: 3.9, guide_radius: 1, guide_side: right}
   weak: {kind: spring, nodes: [disc, ground], stiffness: 10, rest_length: 0.5}
