@@ -19,6 +19,7 @@ expected=tests/golden/crawler.hash
 engine="tests/golden/golden.c engine/run/settle.c engine/integrate/rk4.c
   engine/integrate/events/contacts/contact_coupling.c
   engine/integrate/events/verlet_events.c engine/integrate/events/event_stepping.c
+  engine/integrate/events/event_workspace.c engine/integrate/events/location/event_search.c
   engine/integrate/events/location/event_log.c engine/integrate/events/location/event_location.c
   engine/integrate/events/location/event_kinds.c
   engine/integrate/events/contacts/contact_modes.c

@@ -60,21 +60,21 @@ STRUT_INLINE double largest_of(largest x) {
 }
 
 /* Local error over what is allowed, by the difference of the pair. */
-STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *l, double h,
+STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *stepper, double h,
                              double *const *v, double *const *a) {
-  const strut_tableau *tableau = l->stepper->tableau;
+  const strut_tableau *tableau = stepper->formula->tableau;
   int count = tableau->stages + 1;
   const double *difference = tableau->difference;
   largest position = {0}, velocity = {0}, speed = {0};
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
     position = larger_of(position, h * weighted(v, difference, count, false, i));
     velocity = larger_of(velocity, h * weighted(a, difference, count, true, i));
-    speed = larger_of(speed, strut_lanes_load(l->now->v + i));
-    speed = larger_of(speed, strut_lanes_load(l->next->v + i));
+    speed = larger_of(speed, strut_lanes_load(stepper->now->v + i));
+    speed = larger_of(speed, strut_lanes_load(stepper->next->v + i));
   }
   double fast = largest_of(speed), off = largest_of(velocity);
-  if (fast > l->fastest) l->fastest = fast;
-  return relative_error(model, l, h, largest_of(position), off);
+  if (fast > stepper->control.fastest) stepper->control.fastest = fast;
+  return relative_error(model, &stepper->control, h, largest_of(position), off);
 }
 
 /*
@@ -90,16 +90,17 @@ static double dip(double g0, double d0, double g1, double d1, double faint) {
 }
 
 /* The margin at whose zero the mode of contact i, at o, ends; HUGE_VAL for modes that need no look at stages. */
-static double kept_margin(const strut_event_stepper *l, int32_t i, const strut_touch *o) {
-  const strut_contact_entry *e = &l->entry[i];
-  switch ((strut_contact_mode)l->mode[i]) {
+static double kept_margin(const strut_event_stepper *stepper, int32_t i, const strut_touch *o) {
+  const strut_contact_entry *e = &stepper->contacts.entry[i];
+  switch ((strut_contact_mode)stepper->modes.of[i]) {
     case STRUT_MODE_STICK: return margin_of_stick(e, o);
     case STRUT_MODE_CREEP:
-      return fmin(margin_of_creep_out(e, o, l->side[i]), margin_of_creep_in(e, o, l->side[i]));
+      return fmin(margin_of_creep_out(e, o, stepper->modes.side[i]),
+                  margin_of_creep_in(e, o, stepper->modes.side[i]));
     case STRUT_MODE_BAND:
       if (!strut_friction_drops(&e->friction)) break;
-      return margin_of_push(e, o, STRUT_MODE_BAND, l->side[i]);
-    case STRUT_MODE_PUSH: return margin_of_push(e, o, STRUT_MODE_PUSH, l->side[i]);
+      return margin_of_push(e, o, STRUT_MODE_BAND, stepper->modes.side[i]);
+    case STRUT_MODE_PUSH: return margin_of_push(e, o, STRUT_MODE_PUSH, stepper->modes.side[i]);
     case STRUT_MODE_OPEN:
     case STRUT_MODE_SLIDE:
     case STRUT_MODE_SLIP: /* by earliest_dip */
@@ -112,30 +113,36 @@ static void note(strut_least_margin *least, double margin, double at, bool first
   if (first || margin < least->margin) *least = (strut_least_margin){margin, at};
 }
 
-static void note_stage(const strut_event_stepper *l, double at, bool first) {
-  for (int32_t k = 0; k < l->closed_count; k++) {
-    int32_t i = l->closed[k];
-    const strut_touch *o = &l->next->touch[i];
-    note(&l->least[i], o->normal > 0.0 ? kept_margin(l, i, o) : HUGE_VAL, at, first);
+static void note_stage(const strut_event_stepper *stepper, double at, bool first) {
+  for (int32_t k = 0; k < stepper->active.closed_count; k++) {
+    int32_t i = stepper->active.closed[k];
+    const strut_touch *o = &stepper->next->touch[i];
+    note(&stepper->control.least[i], o->normal > 0.0 ? kept_margin(stepper, i, o) : HUGE_VAL, at,
+         first);
   }
 }
 
 /* Is switch k one of a slider, a guide or a break, whose margin has no rate? */
-static bool remembers(const strut_event_stepper *l, int32_t k) {
-  assert(k >= 0 && k < l->law_count);
-  return l->laws[k].event == STRUT_EVENT_SLIDER || l->laws[k].event == STRUT_EVENT_BREAK;
+static bool remembers(const strut_event_stepper *stepper, int32_t k) {
+  const strut_law_switches *laws = &stepper->laws;
+  assert(k >= 0 && k < laws->count);
+  return laws->item[k].event == STRUT_EVENT_SLIDER || laws->item[k].event == STRUT_EVENT_BREAK;
 }
 
 /* As note_stage, of sliders, guides and breaks, at a stage's q and v. */
 static void note_memory(const strut_model *model, const strut_state *state,
-                        const strut_event_stepper *l, const strut_step_end *stage, double at,
+                        const strut_event_stepper *stepper, const strut_step_end *stage, double at,
                         bool first) {
-  for (int32_t k = 0; k < l->law_count; k++) {
-    if (!remembers(l, k)) continue;
-    strut_history_measure(model, state, l, stage, k);
-    note(&l->least[model->contacts.count + k], stage->tension[k], at, first);
+  for (int32_t k = 0; k < stepper->laws.count; k++) {
+    if (!remembers(stepper, k)) continue;
+    strut_history_measure(model, state, stepper, stage, k);
+    note(&stepper->control.least[model->contacts.count + k], stage->tension[k], at, first);
   }
 }
+
+/* Is less of a margin left, where it is `least` within a step, than it has lost from what it is at its ends, `kept` at
+   least? Its true least value may then be below 0. */
+static bool is_spent_at_stage(double least, double kept) { return 2.0 * least < kept; }
 
 /* Part of what is left of a step, after which what has begun still lasts. */
 static const double SOON = 0.1;
@@ -148,16 +155,17 @@ static const double FAINT_MARGIN = 1e-9;
  * there and from the begin its margin falls by more than is left of it. Where it is below 0 from the begin, since other
  * forces have jumped there: soon after. 0: none.
  */
-static double spent_at(const strut_event_stepper *l, int32_t i) {
-  const strut_touch *now = &l->now->touch[i], *next = &l->next->touch[i];
-  if (l->least[i].margin == HUGE_VAL) return 0.0;
-  double from = now->normal > 0.0 ? kept_margin(l, i, now) : 0.0;
-  double to = next->normal > 0.0 ? kept_margin(l, i, next) : 0.0;
+static double spent_at(const strut_event_stepper *stepper, int32_t i) {
+  const strut_step_control *control = &stepper->control;
+  const strut_touch *now = &stepper->now->touch[i], *next = &stepper->next->touch[i];
+  if (control->least[i].margin == HUGE_VAL) return 0.0;
+  double from = now->normal > 0.0 ? kept_margin(stepper, i, now) : 0.0;
+  double to = next->normal > 0.0 ? kept_margin(stepper, i, next) : 0.0;
   double faint = FAINT_MARGIN * next->normal;
-  if (to < 0.0 || !strut_law_margin_is_spent(l->least[i].margin, to)) return 0.0;
-  if (from < -faint) return SOON * l->stepper->tableau->ahead[1];
-  return strut_law_margin_is_spent(l->least[i].margin, fmin(from, to) - faint) ? l->least[i].at
-                                                                               : 0.0;
+  if (to < 0.0 || !is_spent_at_stage(control->least[i].margin, to)) return 0.0;
+  if (from < -faint) return SOON * stepper->formula->tableau->ahead[1];
+  return is_spent_at_stage(control->least[i].margin, fmin(from, to) - faint) ? control->least[i].at
+                                                                             : 0.0;
 }
 
 /* The smaller of two fractions of a step; 0 stands for none. */
@@ -166,20 +174,20 @@ static double earlier(double one, double other) {
 }
 
 /* As spent_at, of switch k of a slider, a guide or a break. */
-static double memory_spent_at(const strut_model *model, const strut_event_stepper *l, int32_t k) {
-  const strut_least_margin *least = &l->least[model->contacts.count + k];
-  double from = fmax(l->now->tension[k], 0.0), to = l->next->tension[k];
-  bool spent =
-      to > 0.0 && strut_law_margin_is_spent(least->margin, fmin(from, to) - FAINT_MARGIN * to);
+static double memory_spent_at(const strut_model *model, const strut_event_stepper *stepper,
+                              int32_t k) {
+  const strut_least_margin *least = &stepper->control.least[model->contacts.count + k];
+  double from = fmax(stepper->now->tension[k], 0.0), to = stepper->next->tension[k];
+  bool spent = to > 0.0 && is_spent_at_stage(least->margin, fmin(from, to) - FAINT_MARGIN * to);
   return spent ? least->at : 0.0;
 }
 
-static double earliest_spent(const strut_model *model, const strut_event_stepper *l) {
+static double earliest_spent(const strut_model *model, const strut_event_stepper *stepper) {
   double first = 0.0;
-  for (int32_t k = 0; k < l->closed_count && !l->all_sliding; k++)
-    first = earlier(first, spent_at(l, l->closed[k]));
-  for (int32_t k = 0; k < l->law_count && model->terms & STRUT_TERM_MEMORY; k++)
-    if (remembers(l, k)) first = earlier(first, memory_spent_at(model, l, k));
+  for (int32_t k = 0; k < stepper->active.closed_count && !stepper->active.all_sliding; k++)
+    first = earlier(first, spent_at(stepper, stepper->active.closed[k]));
+  for (int32_t k = 0; k < stepper->laws.count && model->terms & STRUT_TERM_MEMORY; k++)
+    if (remembers(stepper, k)) first = earlier(first, memory_spent_at(model, stepper, k));
   return first;
 }
 
@@ -187,25 +195,26 @@ static double earliest_spent(const strut_model *model, const strut_event_stepper
  * Where a law acts within the step but at neither end: its strain passes the kink, at a speed at which the damper pulls
  * too, and by the end the damper outweighs it. 0: nowhere.
  */
-static double short_pull(const strut_event_stepper *l, int32_t k, double h, double faint) {
-  double from = -l->now->stretch[k], to = l->next->stretch[k];
-  if (l->acting[k] || !(from > 0.0 && to > faint && l->next->tension[k] < 0.0)) return 0.0;
-  double at = strut_event_cubic_root(from, -h * l->now->stretch_rate[k], -to,
-                                     -h * l->next->stretch_rate[k]);
+static double short_pull(const strut_event_stepper *stepper, int32_t k, double h, double faint) {
+  double from = -stepper->now->stretch[k], to = stepper->next->stretch[k];
+  if (stepper->laws.acting[k] || !(from > 0.0 && to > faint && stepper->next->tension[k] < 0.0))
+    return 0.0;
+  double at = strut_event_cubic_root(from, -h * stepper->now->stretch_rate[k], -to,
+                                     -h * stepper->next->stretch_rate[k]);
   return at + SOON * (1.0 - at);
 }
 
 /* Lowest point, within the step, of the distance of an element's strain from a kink that it passes and comes back over;
    0: none. */
 static double kink_dip(const strut_model *model, const strut_state *state,
-                       const strut_event_stepper *l, int32_t k, double h, double faint) {
-  int32_t element = l->laws[k].element;
+                       const strut_event_stepper *stepper, int32_t k, double h, double faint) {
+  int32_t element = stepper->laws.item[k].element;
   const strut_element *e = &model->elements.element[element];
   int piece = state->modes.element_piece[element];
   double way = h * strut_law_way(e->law, &e->numbers, piece), from[2], to[2], at = 0.0;
-  double d0 = way * l->now->stretch_rate[k], d1 = way * l->next->stretch_rate[k];
-  strut_law_margins(e->law, &e->numbers, piece, l->now->stretch[k], &from[0], &from[1]);
-  strut_law_margins(e->law, &e->numbers, piece, l->next->stretch[k], &to[0], &to[1]);
+  double d0 = way * stepper->now->stretch_rate[k], d1 = way * stepper->next->stretch_rate[k];
+  strut_law_margins(e->law, &e->numbers, piece, stepper->now->stretch[k], &from[0], &from[1]);
+  strut_law_margins(e->law, &e->numbers, piece, stepper->next->stretch[k], &to[0], &to[1]);
   for (int side = 0; side < 2; side++) {
     double sign = side ? -1.0 : 1.0;
     if (from[side] > 0.0 && to[side] > 0.0 && to[side] < HUGE_VAL)
@@ -216,21 +225,21 @@ static double kink_dip(const strut_model *model, const strut_state *state,
 
 /* Earliest point, within the step, where a law that acts at both ends does not, or the other way, or is on another
    piece; 0: none. */
-static double earliest_switch(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                              double h) {
-  double first = 0.0, faint = 0.01 * fmax(0.1 * l->tolerance, 1e-12) * model->size;
-  strut_event_measure(model, state, l, l->next);
-  int32_t count = strut_laws_of(l);
+static double earliest_switch(const strut_model *model, strut_state *state,
+                              strut_event_stepper *stepper, double h) {
+  double first = 0.0, faint = 0.01 * fmax(0.1 * stepper->control.tolerance, 1e-12) * model->size;
+  strut_event_measure(model, state, stepper, stepper->next);
+  int32_t count = strut_laws_of(&stepper->laws);
   for (int32_t n = 0; n < count; n++) {
-    int32_t k = strut_law_of(l, n);
-    double side = l->acting[k] ? 1.0 : -1.0;
-    if (l->laws[k].event == STRUT_EVENT_KINK)
-      first = earlier(first, kink_dip(model, state, l, k, h, faint));
-    if (l->laws[k].event != STRUT_EVENT_ACTS) continue;
-    double from = side * l->now->stretch[k], to = side * l->next->stretch[k];
-    double at = from > 0.0 && to > 0.0 ? dip(from, side * h * l->now->stretch_rate[k], to,
-                                             side * h * l->next->stretch_rate[k], faint)
-                                       : short_pull(l, k, h, faint);
+    int32_t k = strut_law_of(&stepper->laws, n);
+    double side = stepper->laws.acting[k] ? 1.0 : -1.0;
+    if (stepper->laws.item[k].event == STRUT_EVENT_KINK)
+      first = earlier(first, kink_dip(model, state, stepper, k, h, faint));
+    if (stepper->laws.item[k].event != STRUT_EVENT_ACTS) continue;
+    double from = side * stepper->now->stretch[k], to = side * stepper->next->stretch[k];
+    double at = from > 0.0 && to > 0.0 ? dip(from, side * h * stepper->now->stretch_rate[k], to,
+                                             side * h * stepper->next->stretch_rate[k], faint)
+                                       : short_pull(stepper, k, h, faint);
     first = earlier(first, at);
   }
   return first;
@@ -238,13 +247,14 @@ static double earliest_switch(const strut_model *model, strut_state *state, stru
 
 /* Lowest point, within the step, of the slip left to closed contact i, of what is left to the edge of its band, or of
    its speed into the ground, where that passes 0 twice; 0: none. */
-static double speed_dip(const strut_event_stepper *l, int32_t i, double h, double to_slip,
+static double speed_dip(const strut_event_stepper *stepper, int32_t i, double h, double to_slip,
                         double to_into, double faint) {
-  const strut_touch *now = &l->now->touch[i], *next = &l->next->touch[i];
+  const strut_touch *now = &stepper->now->touch[i], *next = &stepper->next->touch[i];
   double at = 0.0;
-  double edge = stick_band_edge(&l->entry[i]), s = 0.0, bound = 0.0; /* s u is above it */
-  switch ((strut_contact_mode)l->mode[i]) {
-    case STRUT_MODE_SLIP: s = l->side[i], bound = edge; break;
+  double edge = stick_band_edge(&stepper->contacts.entry[i]), s = 0.0,
+         bound = 0.0; /* s u is above it */
+  switch ((strut_contact_mode)stepper->modes.of[i]) {
+    case STRUT_MODE_SLIP: s = stepper->modes.side[i], bound = edge; break;
     case STRUT_MODE_BAND:
     case STRUT_MODE_PUSH:
     case STRUT_MODE_YIELD: s = to_slip < 0.0 ? 1.0 : -1.0, bound = -edge; break;
@@ -256,7 +266,7 @@ static double speed_dip(const strut_event_stepper *l, int32_t i, double h, doubl
   double left = s * to_slip - bound;
   if (s != 0.0 && left > 0.0)
     at = dip(s * now->slip - bound, s * h * now->slip_rate, left, s * h * next->slip_rate, faint);
-  double turns = -l->damper[i], end = turns * to_into;
+  double turns = -stepper->modes.damper[i], end = turns * to_into;
   if (end > 0.0)
     at = earlier(at, dip(turns * now->into, turns * h * now->into_rate, end,
                          turns * h * next->into_rate, faint));
@@ -265,23 +275,25 @@ static double speed_dip(const strut_event_stepper *l, int32_t i, double h, doubl
 
 /* Earliest lowest point, within the step, of a gap or speed that passes its edge twice; 0: none. */
 STRUT_INLINE double earliest_dip(const strut_model *model, const strut_state *state,
-                                 const strut_event_stepper *l, double h, unsigned terms) {
+                                 const strut_event_stepper *stepper, double h, unsigned terms) {
   const strut_contact_table *c = &model->contacts;
-  double first = 0.0, part = fmax(0.1 * l->tolerance, 1e-12);
-  double faint[2] = {0.01 * part * model->size, part * l->fastest}; /* of a gap, of a speed */
-  bool surfaces = frames_of(l->next, terms);
-  int32_t count = surfaces ? strut_surface_candidates(model, l, h, state->buffers.near) : c->count;
+  double first = 0.0, part = fmax(0.1 * stepper->control.tolerance, 1e-12);
+  double faint[2] = {0.01 * part * model->size,
+                     part * stepper->control.fastest}; /* of a gap, of a speed */
+  bool surfaces = frames_of(stepper->next, terms);
+  int32_t count =
+      surfaces ? strut_surface_candidates(model, stepper, h, state->buffers.near) : c->count;
   for (int32_t k = 0; k < count; k++) {
     int32_t i = surfaces ? state->buffers.near[k] : k;
     strut_touch from, to;
-    measure_at_end(c, l, l->now, i, terms, &from);
-    measure_at_end(c, l, l->next, i, terms, &to);
-    bool open = l->mode[i] == STRUT_MODE_OPEN;
+    measure_at_end(c, &stepper->modes, stepper->now, i, terms, &from);
+    measure_at_end(c, &stepper->modes, stepper->next, i, terms, &to);
+    bool open = stepper->modes.of[i] == STRUT_MODE_OPEN;
     double side = open ? 1.0 : -1.0;
     double at = 0.0;
     if (side * to.gap > 0.0)
       at = dip(side * from.gap, side * h * from.into, side * to.gap, side * h * to.into, faint[0]);
-    if (!open) at = earlier(at, speed_dip(l, i, h, to.slip, to.into, faint[1]));
+    if (!open) at = earlier(at, speed_dip(stepper, i, h, to.slip, to.into, faint[1]));
     first = earlier(first, at);
   }
   return first;
@@ -291,59 +303,61 @@ STRUT_INLINE double earliest_dip(const strut_model *model, const strut_state *st
 static const double LEAST_SPLIT = 1e-4;
 
 /* The error that makes the next step end there. */
-static double error_to_reach(const strut_event_stepper *l, double part) {
-  return fmax(1.01, pow(0.9 / part, l->stepper->tableau->order));
+static double error_to_reach(const strut_event_stepper *stepper, double part) {
+  return fmax(1.01, pow(0.9 / part, stepper->formula->tableau->order));
 }
 
 /* What the ends of a step of sufficient accuracy, and its stages, say about the time between. */
-STRUT_LOOP void look_between(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                             double h, unsigned terms) {
-  if (!(l->error <= 1.0)) return;
-  double part = model->contacts.count ? earliest_dip(model, state, l, h, terms) : 0.0;
-  double slack = l->law_count ? earliest_switch(model, state, l, h) : 0.0;
+STRUT_LOOP void look_between(const strut_model *model, strut_state *state,
+                             strut_event_stepper *stepper, double h, unsigned terms) {
+  if (!(stepper->control.error <= 1.0)) return;
+  double part = model->contacts.count ? earliest_dip(model, state, stepper, h, terms) : 0.0;
+  double slack = stepper->laws.count ? earliest_switch(model, state, stepper, h) : 0.0;
   part = earlier(part, slack);
-  double spent = h > LEAST_SPLIT * l->longest ? earliest_spent(model, l) : 0.0;
+  double spent = h > LEAST_SPLIT * stepper->control.longest ? earliest_spent(model, stepper) : 0.0;
   if (spent > 0.0 && earlier(part, spent) == spent) {
-    strut_event event = strut_event_first(model, state, l, h);
+    strut_event event = strut_event_first(model, state, stepper, h);
     if (!event.kind || event.fraction > spent) part = spent;
   }
-  if (part > 0.0) l->error = error_to_reach(l, part);
+  if (part > 0.0) stepper->control.error = error_to_reach(stepper, part);
 }
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                        double t, double h, unsigned terms, bool balance) {
-  const strut_tableau *tableau = l->stepper->tableau;
+  const strut_tableau *tableau = stepper->formula->tableau;
   double *v[STRUT_MOST_STAGES + 1], *a[STRUT_MOST_STAGES + 1];
   const int end = tableau->stages;
   const double *ahead = tableau->ahead, *last = tableau->weight[end];
-  v[0] = l->now->v, a[0] = l->now->a;
-  for (int k = 1; k < end; k++) v[k] = l->stage[k], a[k] = l->stage[end - 1 + k];
-  v[end] = l->next->v, a[end] = l->next->a;
+  v[0] = stepper->now->v, a[0] = stepper->now->a;
+  for (int k = 1; k < end; k++) v[k] = stepper->stage[k], a[k] = stepper->stage[end - 1 + k];
+  v[end] = stepper->next->v, a[end] = stepper->next->a;
   strut_drives_ahead drives;
   drives_ahead_begin(model, terms, &drives);
   drives_ahead_stages(model, state, &drives, t, h, ahead, end - 1);
   for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
-    l->gained[p] = last[0] * h * l->now->power[p];
+    stepper->gained[p] = last[0] * h * stepper->now->power[p];
   for (int k = 1; k <= end; k++) {
-    double *q = k == end ? l->next->q : l->stage[0];
-    stage(model->length, h, l->now, v, a, tableau->weight[k], k, q);
+    double *q = k == end ? stepper->next->q : stepper->stage[0];
+    stage(model->length, h, stepper->now, v, a, tableau->weight[k], k, q);
     if (model->terms & terms & STRUT_TERM_SUPPORT_MOTION)
       strut_support_motion_place(model, state, t + ahead[k] * h, q, v[k]);
     if (k == end) break;
     drives_ahead_meet(model, state, &drives, t + ahead[k] * h);
-    accelerate_in_modes(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, terms, balance);
-    if (l->closed_count && !l->all_sliding) note_stage(l, ahead[k], k == 1);
+    accelerate_in_modes(model, state, stepper, t + ahead[k] * h, q, v[k], a[k], stepper->next,
+                        terms, balance);
+    if (stepper->active.closed_count && !stepper->active.all_sliding)
+      note_stage(stepper, ahead[k], k == 1);
     if (model->terms & terms & STRUT_TERM_MEMORY) {
-      strut_step_end at = *l->next;
+      strut_step_end at = *stepper->next;
       at.q = q, at.v = v[k];
-      note_memory(model, state, l, &at, ahead[k], k == 1);
+      note_memory(model, state, stepper, &at, ahead[k], k == 1);
     }
     for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
-      l->gained[p] += last[k] * h * state->latest.power[p];
+      stepper->gained[p] += last[k] * h * state->latest.power[p];
   }
-  evaluate_step_end(model, state, l, t + h, l->next, terms, balance);
-  l->error = error_of(model, l, h, v, a);
-  look_between(model, state, l, h, terms);
+  evaluate_step_end(model, state, stepper, t + h, stepper->next, terms, balance);
+  stepper->control.error = error_of(model, stepper, h, v, a);
+  look_between(model, state, stepper, h, terms);
 }
 
 STRUT_EVENT_TRIAL(adaptive, take)

@@ -146,9 +146,6 @@ typedef struct strut_law_switch {
   int32_t relay;     /* with RELAY 1 + its signal */
 } strut_law_switch;
 
-/** After so many switches with hardly a step between them, one is taken whatever the modes say. */
-enum { STRUT_MOST_SWITCHES = 2000 };
-
 typedef struct strut_event_stepper strut_event_stepper;
 
 /** What an observer of the pieces needs beside the ends of a step. */
@@ -162,7 +159,7 @@ typedef struct strut_event_view {
 enum { STRUT_MOST_STAGES = 13 };
 
 /**
- * An explicit Runge-Kutta method, for what follows its steps. After a trial l->stage[k] holds the velocities of
+ * An explicit Runge-Kutta method, for what follows its steps. After a trial stepper->stage[k] holds the velocities of
  * stage k > 0.
  */
 typedef struct strut_tableau {
@@ -176,31 +173,23 @@ typedef struct strut_tableau {
 
 /** What a method adds: how one step goes while nothing happens. */
 typedef struct strut_step_formula {
-  /** From l->now at time t over h to l->next, with the works of it in l->gained. */
-  void (*trial)(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
-                double h);
-  int stages; /* (length) arrays it needs in l->stage */
+  /** From stepper->now at time t over h to stepper->next, with the works of it in stepper->gained. */
+  void (*trial)(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
+                double t, double h);
+  int stages; /* (length) arrays it needs in stepper->stage */
   bool exact; /* iterate roots to rounding, and locate kinks as well as jumps */
-  /** Fills l->next->q and what trial needs beside it, where positions are known before forces are:
+  /** Fills stepper->next->q and what trial needs beside it, where positions are known before forces are:
       q + h v + h^2/2 a at any fraction of a step. trial expects it done. NULL: they are not. */
-  void (*predict)(const strut_model *model, strut_event_stepper *l, double h);
-  /* l->error is the local error over what is allowed; l->h is the step to try; the last two stages
-     are not trial's: they hold the state at the begin of the grid step */
+  void (*predict)(const strut_model *model, strut_event_stepper *stepper, double h);
+  /* with error control, by stepper->control; the last two stages are not trial's: they hold the state at the begin of
+     the grid step */
   bool adaptive;
   /** Takes steps up to grid point `end` while nothing happens, with the bits that trial gives; stops
-      before the step in which something does, with l->tried if it has tried that one. May be NULL. */
-  void (*advance_until_event)(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                              double dt, int64_t end);
+      before the step in which something does, with stepper->tried if it has tried that one. May be NULL. */
+  void (*advance_until_event)(const strut_model *model, strut_state *state,
+                              strut_event_stepper *stepper, double dt, int64_t end);
   const strut_tableau *tableau; /* NULL: variations cannot follow */
 } strut_step_formula;
-
-/** Who has switched since the latest step: many may do so at one moment, but none many times. */
-typedef struct strut_switch_counts {
-  uint8_t *times;    /* (contacts, then laws) */
-  int32_t *switched; /* (count) those that are not 0 */
-  int32_t count;
-  int most; /* the largest of them */
-} strut_switch_counts;
 
 /** What is left of the margin by whose zero the mode of a closed contact, or of what remembers, ends, where that is
     least at a stage. */
@@ -209,90 +198,115 @@ typedef struct strut_least_margin {
   double at;     /* part of the step */
 } strut_least_margin;
 
+/** Modes of contacts, (contacts) each. */
+typedef struct strut_contact_modes {
+  uint8_t *of;           /* strut_contact_mode */
+  int8_t *side, *damper; /* s; ground damper: 1 on, -1 off, 0: by its sign */
+  int32_t *facet;        /* of closed contacts of surfaces; NULL without STRUT_TERM_SURFACES */
+  double *outward;       /* the sign of gaps that keep the mode: 1 open, -1 closed */
+} strut_contact_modes;
+
+/** What strut_update_active_set makes of the modes. */
+typedef struct strut_active_set {
+  int32_t *closed, closed_count; /* contacts that touch, ascending */
+  int32_t *stuck, stuck_count,
+      stuck_room;                 /* those in STICK or CREEP; count < 0: without a factor */
+  double *factor;                 /* (stuck_count, stuck_count) Cholesky factor of T' M^-1 T */
+  double *work;                   /* (stuck_room) */
+  bool decoupled;                 /* level ground, and no two closed contacts are of one body */
+  bool all_sliding;               /* decoupled, and all closed contacts are in this list: */
+  strut_sliding_contact *sliding; /* (closed_count) */
+} strut_active_set;
+
+/** Contacts in all modes, (contacts) each. */
+typedef struct strut_contact_bodies {
+  const strut_contact_entry *entry; /* the model's, or a state's with STRUT_TERM_SURFACES */
+  strut_contact_compliance *compliance;
+  double *settling_time; /* relaxation time of a closed contact [s] */
+  int32_t *body;         /* equal where a force on one accelerates the other */
+  int passes;            /* sweeps over normal and tangent where they are coupled by M */
+  struct strut_contact_coupling *coupling; /* contact_coupling.h; NULL where contacts are few */
+  bool *body_seen;                         /* scratch */
+  double *damped;  /* scratch: damper force while it is being solved for [N] */
+  double *scatter; /* (length) scratch, zero between uses */
+} strut_contact_bodies;
+
+/** Cables, elements and relays that switch, cables first. */
+typedef struct strut_law_switches {
+  strut_law_switch *item; /* (count) */
+  int32_t count, cable_count;
+  uint8_t *acting; /* (count) of those without kinks */
+  /* where collisions are many: those that may switch, of state->nearby, made so often; else NULL */
+  int32_t *nearby, nearby_count;
+  int64_t nearby_made;
+} strut_law_switches;
+
+/** Lengths of steps. */
+typedef struct strut_step_control {
+  double wanted_step;                        /* of the settings [s] */
+  double refine, refine_time, refine_memory; /* after a touchdown [1], [s], [1] */
+  /* with error control: */
+  double tolerance, h, error,
+      fastest;               /* relative, step to try [s], relative to what is allowed [1], [m/s] */
+  double longest;            /* a step of the grid [s] */
+  double rounding;           /* of what the pair says of accelerations [m/s^2] */
+  strut_least_margin *least; /* (contacts, laws) in the latest step, of closed ones and memory */
+  double work[STRUT_POWER_ROOM]; /* at the begin of the grid step [J] */
+} strut_step_control;
+
+/** How often modes have switched without a step between: many may do so at one moment, but none many times. */
+typedef struct strut_chatter {
+  int at_once;       /* switches since the latest step */
+  int switches;      /* since the latest grid point, or step that separates them */
+  uint8_t *times;    /* (contacts, then laws) since the latest step */
+  int32_t *switched; /* (count) those that are not 0 */
+  int32_t count;
+  int most;         /* the largest of them */
+  int32_t pushed;   /* contact that passed its threshold last, or -1 */
+  double pushed_at; /* when that was [s] */
+} strut_chatter;
+
 /** Workspace of a method with events; in the state's arena. */
 struct strut_event_stepper {
-  const strut_step_formula *stepper;
+  const strut_step_formula *formula;
   strut_step_end end[2], *now, *next; /* now->q and now->v are the state's own */
-  double **stage;                     /* (stepper->stages) arrays (length) */
-  double gained[STRUT_POWER_ROOM];
-  double work[STRUT_POWER_ROOM]; /* adaptive: at the begin of the grid step [J] */
-  uint8_t *mode;                 /* (contacts) strut_contact_mode */
-  int8_t *side, *damper;         /* (contacts) s; ground damper: 1 on, -1 off, 0: by its sign */
-  int32_t *closed;               /* (closed_count) contacts that touch, ascending */
-  int32_t closed_count;
-  double *outward; /* (contacts) the sign of gaps that keep the mode: 1 open, -1 closed */
-  int32_t *body;   /* (contacts) equal where a force on one accelerates the other */
-  bool *body_seen; /* (contacts) scratch */
-  strut_least_margin
-      *least; /* (contacts, laws) adaptive: in the latest step, of closed ones and memory */
-  strut_sliding_contact *sliding;     /* (closed_count), where all_sliding */
-  bool all_sliding;                   /* decoupled, and all closed contacts are in the list above */
-  bool contacts_decoupled;            /* level ground, and no two closed contacts are of one body */
-  double *damped;                     /* (contacts) damper force while it is being solved for [N] */
-  strut_contact_compliance *response; /* (contacts) */
-  int32_t *stuck, stuck_count, stuck_room; /* contacts in STICK or CREEP */
-  double *stuck_factor;   /* (stuck_count, stuck_count) Cholesky factor of T' M^-1 T */
-  double *stuck_work;     /* (stuck_room) */
-  strut_law_switch *laws; /* (law_count), cables first */
-  int32_t law_count, cable_count;
-  uint8_t *acting;                           /* (laws) of those without kinks */
-  double *scatter;                           /* (length) scratch, zero between uses */
-  double wanted_step;                        /* of the settings [s] */
-  double refine, refine_time, refine_memory; /* [1], [s], [1] */
-  double *settling_time;               /* (contacts) relaxation time of a closed contact [s] */
-  double longest;                      /* adaptive: the longest step, a step of the grid [s] */
-  double tolerance, h, error, fastest; /* adaptive: relative, [s], [1], [m/s] */
-  double rounding;   /* adaptive: of what the pair says of accelerations [m/s^2] */
-  int passes;        /* sweeps over normal and tangent where they are coupled by M */
-  double next_break; /* when a drive or load jumps next, with the state's time_offset
-                               [s]; INFINITY: never */
-  bool fresh;        /* now.structure holds for now */
-  bool started;
+  double **stage;                     /* (formula->stages) arrays (length) */
+  double gained[STRUT_POWER_ROOM];    /* by the step from now to next [J] */
+  strut_contact_modes modes;
+  strut_active_set active;
+  strut_contact_bodies contacts;
+  strut_law_switches laws;
+  strut_step_control control;
+  strut_chatter chatter;
   double done; /* of the grid step under way [s] */
-  int at_once; /* switches since the latest step */
-  strut_switch_counts counts;
-  int32_t pushed;            /* contact that passed its threshold last, or -1 */
-  double pushed_at;          /* when that was [s] */
-  int switches;              /* since the latest grid point, or step that separates them */
+  double
+      next_break; /* when a drive or load jumps next, with the state's time_offset [s]; INFINITY: never */
+  bool started;
+  bool fresh;                /* now->structure holds for now */
   bool tried;                /* next is the end of the step that is due */
   strut_event_view *view;    /* NULL: nothing is observed */
   strut_drives_ahead drives; /* of methods with one evaluation a step, during a call */
-  const strut_contact_entry
-      *entry;     /* (contacts) the model's, or a state's with STRUT_TERM_SURFACES */
-  int32_t *facet; /* (contacts) of closed contacts of surfaces; NULL without STRUT_TERM_SURFACES */
-  struct strut_contact_coupling *coupling; /* contact_coupling.h; NULL where contacts are few */
-  /* where collisions are many: the laws that may switch, of state->nearby, made so often; else NULL */
-  int32_t *nearby_laws, nearby_count;
-  int64_t nearby_made;
 };
 
 /** Laws that may switch: `count` of them, each by its place in a list. */
-static inline int32_t strut_laws_of(const strut_event_stepper *l) {
-  return l->nearby_laws ? l->nearby_count : l->law_count;
+static inline int32_t strut_laws_of(const strut_law_switches *laws) {
+  return laws->nearby ? laws->nearby_count : laws->count;
 }
-static inline int32_t strut_law_of(const strut_event_stepper *l, int32_t place) {
-  assert(place >= 0 && place < strut_laws_of(l));
-  return l->nearby_laws ? l->nearby_laws[place] : place;
-}
-
-/** Most laws that switch: each cable, each element by its sign, by its kinks and by its memory, relays. */
-static inline size_t strut_most_law_switches(const strut_model *model) {
-  bool slack = model->terms & STRUT_TERM_SLACK;
-  return (slack ? (size_t)model->members.count : 0) + 2 * (size_t)model->elements.count +
-         (size_t)(2 * model->elements.history_slots + model->elements.breakable_count +
-                  model->feedback.relay_count);
+static inline int32_t strut_law_of(const strut_law_switches *laws, int32_t place) {
+  assert(place >= 0 && place < strut_laws_of(laws));
+  return laws->nearby ? laws->nearby[place] : place;
 }
 
-/** Workspace for a method with `stepper`; NULL: out of memory. */
+/** Arrays of one end of a step, with or without positions and velocities of its own. */
+void strut_step_end_create(const strut_model *model, strut_arena *arena, bool borrowed,
+                           strut_step_end *end, bool *failed);
+/** Workspace for a method; NULL: out of memory. */
 void *strut_event_stepper_create(const strut_model *model, strut_state *state,
-                                 const strut_step_formula *stepper,
+                                 const strut_step_formula *formula,
                                  const strut_integrator_settings *settings);
 /** Makes the modes anew from q and v. */
 void strut_event_stepper_restart(const strut_model *model, strut_state *state, void *workspace,
                                  double dt);
-/** One step within the grid's, and what happens in it. */
-void strut_event_stepper_step(const strut_model *model, strut_state *state, void *workspace,
-                              double dt);
 /** Prepares for an observer; see strut_integrator. */
 bool strut_event_stepper_observe(const strut_model *model, strut_state *state, void *workspace);
 /** `count` steps of dt. */
@@ -304,93 +318,104 @@ void strut_event_stepper_advance(const strut_model *model, strut_state *state, v
 /** Responses, settling times, refinement. STRUT_OK or STRUT_NO_MEMORY. */
 strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *state,
                                          const strut_integrator_settings *settings,
-                                         strut_event_stepper *l);
+                                         strut_event_stepper *stepper);
 /** Lists closed and stuck contacts after modes have changed and factors T' M^-1 T. */
-void strut_update_active_set(const strut_model *model, strut_event_stepper *l);
+void strut_update_active_set(const strut_model *model, strut_event_stepper *stepper);
 /** Compliances of the closed contacts with sliding masses as they have been placed. */
 void strut_refresh_compliances(const strut_model *model, const strut_state *state,
-                               strut_event_stepper *l);
+                               strut_event_stepper *stepper);
 /** Multipliers that hold the stuck contacts: adds to a, writes end->touch[].friction. */
-void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
-                                   strut_step_end *end);
-/** a += response of contact i to the force (normal, tangential) on its node, along these axes. */
-void strut_apply_contact_impulse(const strut_event_stepper *l, int32_t i,
-                                 const strut_contact_axes *axes, double normal, double tangential,
-                                 double *a);
-/** Acceleration, contact forces and powers of l->now at time t, in the present modes. */
+void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *stepper,
+                                   double *a, strut_step_end *end);
+/** a += acceleration by the force (normal, tangential) on a contact's node, along these axes. */
+void strut_apply_contact_impulse(const strut_contact_compliance *r, const strut_contact_axes *axes,
+                                 double normal, double tangential, double *a);
+/** Acceleration, contact forces and powers of stepper->now at time t, in the present modes. */
 void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
-                                 strut_event_stepper *l, double t);
+                                 strut_event_stepper *stepper, double t);
 
 typedef struct strut_event {
   strut_event_kind kind;
-  int32_t index;   /* of the contact, or into l->laws */
+  int32_t index;   /* of the contact, or into stepper->laws.item */
   double fraction; /* of the step, by interpolation */
 } strut_event;
 
 /** Does the event end the mode of a law, not of a contact? */
 bool strut_event_is_of_law(strut_event_kind kind);
 /** The earliest event between now and next, a step h apart; kind NONE if every mode holds. */
-strut_event strut_event_first(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                              double h);
+strut_event strut_event_first(const strut_model *model, strut_state *state,
+                              strut_event_stepper *stepper, double h);
+/**
+ * Takes the step of h from now at time t again up to the event, or to one that comes before it. Returns the length
+ * taken; next is its end. Exact formulas go on until the root is known to 1e-13 of the step, or to rounding.
+ */
+double strut_event_locate(const strut_model *model, strut_state *state,
+                          strut_event_stepper *stepper, double t, double h, strut_event *event);
 /** First root in [0, 1] of the cubic with these values and slopes at 0 and 1; g0 > 0 > g1. */
 double strut_event_cubic_root(double g0, double d0, double g1, double d1);
 /** The value that event ends at 0, at an end; positive while the mode holds. */
-double strut_event_value(const strut_model *model, const strut_event_stepper *l,
+double strut_event_value(const strut_model *model, const strut_event_stepper *stepper,
                          const strut_step_end *end, strut_event_kind kind, int32_t index);
 /** Forces and strains of the laws that switch, at an end that has just been evaluated. */
-void strut_event_measure(const strut_model *model, strut_state *state, strut_event_stepper *l,
+void strut_event_measure(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                          const strut_step_end *end);
 /** Where collisions are many: all of them apart, and those listed that may touch at now. */
-void strut_event_part_all(const strut_model *model, strut_state *state, strut_event_stepper *l);
+void strut_event_part_all(const strut_model *model, strut_state *state,
+                          strut_event_stepper *stepper);
 /** Time derivative of that value where it is known; false where a secant must do. */
-bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
+bool strut_event_rate(const strut_event_stepper *stepper, const strut_step_end *end,
                       strut_event_kind kind, int32_t index, double *rate);
-/** Before a step of a stepper that predicts: the first touchdown or opening. */
+/** Before a step of a formula that predicts: the first touchdown or opening. */
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
-                                const strut_event_stepper *l, double h);
+                                const strut_event_stepper *stepper, double h);
 /* ---- contact_modes.c: what an event does is made of these ---- */
 
 /** Mode of contact i, which touches, from its speeds; with surfaces on `facet`, or -1: the nearest. */
-void strut_contact_close(const strut_model *model, strut_event_stepper *l, int32_t i,
+void strut_contact_close(const strut_model *model, strut_event_stepper *stepper, int32_t i,
                          int32_t facet);
 /** Sets the speed of contact i along the ground exactly. */
-void strut_contact_snap(const strut_model *model, strut_event_stepper *l, int32_t i, double slip);
+void strut_contact_snap(const strut_model *model, strut_event_stepper *stepper, int32_t i,
+                        double slip);
 /** Law k passes the nearer kink of its piece at time t. */
-void strut_law_pass_kink(const strut_model *model, strut_state *state, strut_event_stepper *l,
+void strut_law_pass_kink(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                          int32_t k, double t);
-/** Evaluates l->now at time t, letting go of one overloaded stuck contact after the other. */
-void strut_modes_derive(const strut_model *model, strut_state *state, strut_event_stepper *l,
+/** Evaluates stepper->now at time t, letting go of one overloaded stuck contact after the other. */
+void strut_modes_derive(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                         double t);
-/** Changes the mode at l->now, time t, and leaves it fresh. */
-void strut_event_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
+/** Changes the mode at stepper->now, time t, and leaves it fresh. */
+void strut_event_apply(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                        strut_event event, double t);
 /** Modes from q and v alone. */
-void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
+void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                        double t);
 /* ---- history_modes.c: sliders, and what breaks ---- */
 
-/** Lists their switches in l->laws, for which there is space. */
-void strut_history_list(const strut_model *model, const strut_state *state, strut_event_stepper *l);
+/** Adds their switches to the laws, for which there is space. */
+void strut_history_list(const strut_model *model, const strut_state *state,
+                        strut_law_switches *laws);
 /** Of a slider or what breaks, at an end: its margin into end->tension; with the first guide of a cable, of all. */
 void strut_history_measure(const strut_model *model, const strut_state *state,
-                           const strut_event_stepper *l, const strut_step_end *end, int32_t k);
+                           const strut_event_stepper *stepper, const strut_step_end *end,
+                           int32_t k);
 /** Lets all sliders follow their forces at now, and back to their yields. */
-void strut_history_thaw(const strut_model *model, strut_state *state, strut_event_stepper *l);
+void strut_history_thaw(const strut_model *model, strut_state *state, strut_event_stepper *stepper);
 /** Freezes the mode of switch k at now, whose forces have been evaluated. */
-void strut_history_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
+void strut_history_start(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                          int32_t k);
 /** Changes the mode at the event of switch k, at time t. */
-void strut_history_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
+void strut_history_apply(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                          int32_t k, double t);
 /** Of what has broken, no switch acts. */
-void strut_history_drop_gone(const strut_model *model, strut_state *state, strut_event_stepper *l);
+void strut_history_drop_gone(const strut_model *model, strut_state *state,
+                             strut_law_switches *laws);
 
 /** A cable, law k, acts from now on, or not. */
-void strut_cable_set_acting(strut_state *state, strut_event_stepper *l, int32_t k, bool pulls);
+void strut_cable_set_acting(strut_state *state, strut_event_stepper *stepper, int32_t k,
+                            bool pulls);
 /** After a drive has jumped: laws anew; contacts keep their modes, since nothing has moved. */
-void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                            double t);
+void strut_modes_after_jump(const strut_model *model, strut_state *state,
+                            strut_event_stepper *stepper, double t);
 /** After a step, what need not be located: opening. True if something changed. */
-bool strut_modes_after_step(const strut_model *model, strut_event_stepper *l);
+bool strut_modes_after_step(const strut_model *model, strut_event_stepper *stepper);
 
 #endif

@@ -10,30 +10,32 @@
 /* Positions, then velocities and accelerations of the stages 2 to 4. */
 enum { Q, V, A = V + 3, STAGES = A + 3 };
 
-STRUT_INLINE void gain(const strut_state *state, strut_event_stepper *l, double weight) {
-  for (int p = 0; p < STRUT_POWER_COUNT; p++) l->gained[p] += weight * state->latest.power[p];
+STRUT_INLINE void gain(const strut_state *state, strut_event_stepper *stepper, double weight) {
+  for (int p = 0; p < STRUT_POWER_COUNT; p++) stepper->gained[p] += weight * state->latest.power[p];
 }
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                        double t, double h, unsigned terms, bool balance) {
   const double *ahead = STRUT_RK4_AHEAD, *weight = STRUT_RK4_WEIGHTS;
-  double **w = l->stage;
-  const double *const v[4] = {l->now->v, w[V], w[V + 1], w[V + 2]};
-  double *const a[4] = {l->now->a, w[A], w[A + 1], w[A + 2]};
+  double **w = stepper->stage;
+  const double *const v[4] = {stepper->now->v, w[V], w[V + 1], w[V + 2]};
+  double *const a[4] = {stepper->now->a, w[A], w[A + 1], w[A + 2]};
   int32_t n = model->length;
   bool moves = model->terms & terms & STRUT_TERM_SUPPORT_MOTION;
-  for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) l->gained[p] = h / 6.0 * l->now->power[p];
+  for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
+    stepper->gained[p] = h / 6.0 * stepper->now->power[p];
   for (int k = 1; k < 4; k++) {
-    rk4_next_stage(n, ahead[k] * h, l->now->q, l->now->v, v[k - 1], a[k - 1], w[Q], w[V + k - 1]);
+    rk4_next_stage(n, ahead[k] * h, stepper->now->q, stepper->now->v, v[k - 1], a[k - 1], w[Q],
+                   w[V + k - 1]);
     if (moves) strut_support_motion_place(model, state, t + ahead[k] * h, w[Q], w[V + k - 1]);
-    accelerate_in_modes(model, state, l, t + ahead[k] * h, w[Q], v[k], a[k], l->next, terms,
-                        balance);
-    if (balance) gain(state, l, weight[k] * h / 6.0);
+    accelerate_in_modes(model, state, stepper, t + ahead[k] * h, w[Q], v[k], a[k], stepper->next,
+                        terms, balance);
+    if (balance) gain(state, stepper, weight[k] * h / 6.0);
   }
-  rk4_end_of_step(n, h, l->now->q, v[0], v[1], v[2], v[3], l->next->q);
-  rk4_end_of_step(n, h, l->now->v, a[0], a[1], a[2], a[3], l->next->v);
-  if (moves) strut_support_motion_place(model, state, t + h, l->next->q, l->next->v);
-  evaluate_step_end(model, state, l, t + h, l->next, terms, balance);
+  rk4_end_of_step(n, h, stepper->now->q, v[0], v[1], v[2], v[3], stepper->next->q);
+  rk4_end_of_step(n, h, stepper->now->v, a[0], a[1], a[2], a[3], stepper->next->v);
+  if (moves) strut_support_motion_place(model, state, t + h, stepper->next->q, stepper->next->v);
+  evaluate_step_end(model, state, stepper, t + h, stepper->next, terms, balance);
 }
 
 STRUT_EVENT_TRIAL(rk4_events, take)
@@ -43,14 +45,14 @@ static const strut_tableau tableau = {
     .order = 4,
     .ahead = {0.0, 0.5, 0.5, 1.0},
     .weight = {{0}, {0.5}, {0.0, 0.5}, {0.0, 0.0, 1.0}, {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}}};
-static const strut_step_formula stepper = {
+static const strut_step_formula formula = {
     .trial = rk4_events_trial, .stages = STAGES, .exact = true, .tableau = &tableau};
 
 static void *create(const strut_model *model, strut_state *state,
                     const strut_integrator_settings *settings) {
-  strut_event_stepper *l = strut_event_stepper_create(model, state, &stepper, settings);
-  if (l && !(settings->refine > 0.0)) l->refine = 1.0;
-  return l;
+  strut_event_stepper *stepper = strut_event_stepper_create(model, state, &formula, settings);
+  if (stepper && !(settings->refine > 0.0)) stepper->control.refine = 1.0;
+  return stepper;
 }
 
 const strut_integrator strut_integrator_rk4_events = {

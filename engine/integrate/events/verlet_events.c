@@ -9,9 +9,11 @@
 
 enum { PREDICTED, STAGES };
 
-static void predict(const strut_model *model, strut_event_stepper *l, double h) {
-  const double *restrict q = l->now->q, *restrict v = l->now->v, *restrict a = l->now->a;
-  double *restrict next = l->next->q, *restrict speed = l->stage[PREDICTED], half = 0.5 * h;
+static void predict(const strut_model *model, strut_event_stepper *stepper, double h) {
+  const double *restrict q = stepper->now->q, *restrict v = stepper->now->v,
+                         *restrict a = stepper->now->a;
+  double *restrict next = stepper->next->q, *restrict speed = stepper->stage[PREDICTED],
+                   half = 0.5 * h;
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
     strut_lanes rate = strut_lanes_load(v + i), bend = strut_lanes_load(a + i);
     strut_lanes_store(next + i, strut_lanes_load(q + i) + h * (rate + half * bend));
@@ -27,58 +29,61 @@ STRUT_INLINE void correct(int32_t n, double h, const double *restrict v, const d
                                                                   strut_lanes_load_pairs(a1 + i)));
 }
 
-STRUT_LOOP void take(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
-                     double h, unsigned terms, bool balance) {
+STRUT_LOOP void take(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
+                     double t, double h, unsigned terms, bool balance) {
   int32_t n = model->length;
-  double *predicted = l->stage[PREDICTED], *a1 = l->next->a;
+  double *predicted = stepper->stage[PREDICTED], *a1 = stepper->next->a;
   bool moves = model->terms & terms & STRUT_TERM_SUPPORT_MOTION;
   bool sliding = model->terms & terms & STRUT_TERM_SLIDING_MASS;
-  if (moves) strut_support_motion_place(model, state, t + h, l->next->q, predicted);
+  if (moves) strut_support_motion_place(model, state, t + h, stepper->next->q, predicted);
   if (terms == STRUT_TERMS_COMMON && t == (double)state->step * h)
-    drives_ahead_ends(model, state, &l->drives, h);
-  if (terms == STRUT_TERMS_COMMON) drives_ahead_meet(model, state, &l->drives, t + h);
-  forces_of_structure(model, state, t + h, l->next->q, predicted, terms, balance);
-  keep_structure_forces(model, state, l->next, balance);
-  keep_ground_motion(model, state, l->next, terms);
-  if (!l->closed_count) {
+    drives_ahead_ends(model, state, &stepper->drives, h);
+  if (terms == STRUT_TERMS_COMMON) drives_ahead_meet(model, state, &stepper->drives, t + h);
+  forces_of_structure(model, state, t + h, stepper->next->q, predicted, terms, balance);
+  keep_structure_forces(model, state, stepper->next, balance);
+  keep_ground_motion(model, state, stepper->next, terms);
+  if (!stepper->active.closed_count) {
     divide_by_mass(model, state, a1, terms);
-  } else if (l->all_sliding) {
+  } else if (stepper->active.all_sliding) {
     mass_kernel(model, state->latest.force, a1, state->buffers.mass_solve);
-    implicit_ground_slides(model, l, h, a1);
-  } else if (l->contacts_decoupled) {
+    implicit_ground_slides(model, stepper, h, a1);
+  } else if (stepper->active.decoupled) {
     mass_kernel(model, state->latest.force, a1, state->buffers.mass_solve);
-    implicit_ground_decoupled(model, l, h, predicted, state->latest.force, a1);
+    implicit_ground_decoupled(model, stepper, h, predicted, state->latest.force, a1);
   } else {
-    add_contact_forces(model, l, l->next->q, predicted, state->latest.force, false, l->next, terms);
+    add_contact_forces(model, stepper, stepper->next->q, predicted, state->latest.force, false,
+                       stepper->next, terms);
     divide_by_mass(model, state, a1, terms);
-    if (sliding) strut_refresh_compliances(model, state, l);
-    if (l->coupling)
-      strut_contact_coupling_ground(model, l, h, a1);
+    if (sliding) strut_refresh_compliances(model, state, stepper);
+    if (stepper->contacts.coupling)
+      strut_contact_coupling_ground(model, stepper, h, a1);
     else
-      implicit_ground_together(model, l, h, a1, terms);
+      implicit_ground_together(model, stepper, h, a1, terms);
   }
-  correct(n, h, l->now->v, l->now->a, a1, l->next->v);
-  if (moves) strut_support_motion_place(model, state, t + h, l->next->q, l->next->v);
-  if (l->closed_count && l->contacts_decoupled)
-    implicit_ground_leave(model, state, l, balance);
-  else if (l->closed_count)
-    implicit_ground_finish(model, state, l, terms, balance);
-  if (!l->all_sliding) settle_band_ties(model, l);
-  if (balance && sliding) strut_sliding_masses_add_power(model, state, l->next->q, l->next->v, a1);
+  correct(n, h, stepper->now->v, stepper->now->a, a1, stepper->next->v);
+  if (moves) strut_support_motion_place(model, state, t + h, stepper->next->q, stepper->next->v);
+  if (stepper->active.closed_count && stepper->active.decoupled)
+    implicit_ground_leave(model, state, stepper, balance);
+  else if (stepper->active.closed_count)
+    implicit_ground_finish(model, state, stepper, terms, balance);
+  if (!stepper->active.all_sliding) settle_band_ties(model, stepper);
+  if (balance && sliding)
+    strut_sliding_masses_add_power(model, state, stepper->next->q, stepper->next->v, a1);
   for (int p = 0; p < STRUT_POWER_ROOM && balance; p += STRUT_LANES) {
     strut_lanes power = strut_lanes_load(state->latest.power + p);
-    strut_lanes_store(l->next->power + p, power);
-    strut_lanes_store(l->gained + p, 0.5 * h * (strut_lanes_load(l->now->power + p) + power));
+    strut_lanes_store(stepper->next->power + p, power);
+    strut_lanes_store(stepper->gained + p,
+                      0.5 * h * (strut_lanes_load(stepper->now->power + p) + power));
   }
 }
 
 STRUT_EVENT_TRIAL(verlet_events, take)
 
 /* Does a contact open or close within the step that has been predicted? */
-STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_event_stepper *l,
+STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_event_stepper *stepper,
                           const double *restrict q) {
   const uint32_t *restrict at = c->at;
-  const double *restrict outward = l->outward;
+  const double *restrict outward = stepper->modes.outward;
   const double slope = c->normal[0], rise = c->normal[1], height = c->height;
   double lowest = 0.0;
   if (slope == 0.0) {
@@ -95,74 +100,76 @@ STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_event_steppe
   return lowest < 0.0;
 }
 
-/* Does what l->next says contradict a mode? */
-STRUT_INLINE bool contradicts(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                              double h) {
-  if (l->all_sliding) {
-    const strut_sliding_contact *s = l->sliding;
-    for (const strut_sliding_contact *end = s + l->closed_count; s < end; s++)
-      if (s->side * l->next->touch[s->index].slip < s->edge) return true;
+/* Does what stepper->next says contradict a mode? */
+STRUT_INLINE bool contradicts(const strut_model *model, strut_state *state,
+                              strut_event_stepper *stepper, double h) {
+  if (stepper->active.all_sliding) {
+    const strut_sliding_contact *s = stepper->active.sliding;
+    for (const strut_sliding_contact *end = s + stepper->active.closed_count; s < end; s++)
+      if (s->side * stepper->next->touch[s->index].slip < s->edge) return true;
   }
-  for (int32_t k = 0; k < l->closed_count && !l->all_sliding; k++) {
-    int32_t i = l->closed[k];
-    if (contradicting_event(&l->entry[i], &l->next->touch[i], l->mode[i], l->side[i])) return true;
+  for (int32_t k = 0; k < stepper->active.closed_count && !stepper->active.all_sliding; k++) {
+    int32_t i = stepper->active.closed[k];
+    if (contradicting_event(&stepper->contacts.entry[i], &stepper->modes, i,
+                            &stepper->next->touch[i]))
+      return true;
   }
-  return l->law_count && strut_event_first(model, state, l, h).kind;
+  return stepper->laws.count && strut_event_first(model, state, stepper, h).kind;
 }
 
 STRUT_INLINE void advance_predicted(const strut_model *model, strut_state *state,
-                                    strut_event_stepper *l, double dt, int64_t end, unsigned terms,
-                                    bool balance) {
+                                    strut_event_stepper *stepper, double dt, int64_t end,
+                                    unsigned terms, bool balance) {
   while (state->step < end) {
-    double t = (double)state->step * dt + l->done, h = next_step_size(state, l, dt);
-    if (t + h + state->time_offset > l->next_break - STRUT_AT_BREAK * dt) return;
-    t = evaluation_time(l, t, dt);
-    predict(model, l, h);
-    if (crosses(&model->contacts, l, l->next->q)) return;
-    take(model, state, l, t, h, terms, balance);
-    l->tried = contradicts(model, state, l, h);
-    if (l->tried) return;
-    accept_step(model, state, l, balance);
-    advance_within_grid(state, l, h, dt);
+    double t = (double)state->step * dt + stepper->done, h = next_step_size(state, stepper, dt);
+    if (t + h + state->time_offset > stepper->next_break - STRUT_AT_BREAK * dt) return;
+    t = evaluation_time(stepper, t, dt);
+    predict(model, stepper, h);
+    if (crosses(&model->contacts, stepper, stepper->next->q)) return;
+    take(model, state, stepper, t, h, terms, balance);
+    stepper->tried = contradicts(model, state, stepper, h);
+    if (stepper->tried) return;
+    accept_step(model, state, stepper, balance);
+    advance_within_grid(state, stepper, h, dt);
   }
 }
 
 STRUT_CLONES
 static void verlet_advance_with_balance(const strut_model *model, strut_state *state,
-                                        strut_event_stepper *l, double dt, int64_t end) {
-  advance_predicted(model, state, l, dt, end, STRUT_TERMS_COMMON, true);
+                                        strut_event_stepper *stepper, double dt, int64_t end) {
+  advance_predicted(model, state, stepper, dt, end, STRUT_TERMS_COMMON, true);
 }
 
 STRUT_CLONES
 static void verlet_advance_without_balance(const strut_model *model, strut_state *state,
-                                           strut_event_stepper *l, double dt, int64_t end) {
-  advance_predicted(model, state, l, dt, end, STRUT_TERMS_COMMON, false);
+                                           strut_event_stepper *stepper, double dt, int64_t end) {
+  advance_predicted(model, state, stepper, dt, end, STRUT_TERMS_COMMON, false);
 }
 
 STRUT_CLONES
 static void verlet_advance_with_rare_terms(const strut_model *model, strut_state *state,
-                                           strut_event_stepper *l, double dt, int64_t end) {
-  advance_predicted(model, state, l, dt, end, STRUT_TERMS_ALL, state->balance);
+                                           strut_event_stepper *stepper, double dt, int64_t end) {
+  advance_predicted(model, state, stepper, dt, end, STRUT_TERMS_ALL, state->balance);
 }
 
 static void verlet_advance_until_event(const strut_model *model, strut_state *state,
-                                       strut_event_stepper *l, double dt, int64_t end) {
+                                       strut_event_stepper *stepper, double dt, int64_t end) {
   if (model->terms & STRUT_TERMS_RARE)
-    verlet_advance_with_rare_terms(model, state, l, dt, end);
+    verlet_advance_with_rare_terms(model, state, stepper, dt, end);
   else if (state->balance)
-    verlet_advance_with_balance(model, state, l, dt, end);
+    verlet_advance_with_balance(model, state, stepper, dt, end);
   else
-    verlet_advance_without_balance(model, state, l, dt, end);
+    verlet_advance_without_balance(model, state, stepper, dt, end);
 }
 
-static const strut_step_formula stepper = {.trial = verlet_events_trial,
+static const strut_step_formula formula = {.trial = verlet_events_trial,
                                            .stages = STAGES,
                                            .predict = predict,
                                            .advance_until_event = verlet_advance_until_event};
 
 static void *create(const strut_model *model, strut_state *state,
                     const strut_integrator_settings *settings) {
-  return strut_event_stepper_create(model, state, &stepper, settings);
+  return strut_event_stepper_create(model, state, &formula, settings);
 }
 
 const strut_integrator strut_integrator_verlet_events = {

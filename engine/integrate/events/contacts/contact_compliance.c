@@ -65,9 +65,9 @@ static void mark_nodes(const strut_model *model, const double *x, const double *
   }
 }
 
-static strut_status make_response(const strut_model *model, strut_state *state, int32_t i,
-                                  double *x, double *y, uint8_t *answers,
-                                  strut_contact_compliance *r) {
+static strut_status make_compliance(const strut_model *model, strut_state *state, int32_t i,
+                                    double *x, double *y, uint8_t *answers,
+                                    strut_contact_compliance *r) {
   assert(i >= 0 && i < model->contacts.count);
   const strut_contact_table *c = &model->contacts;
   uint32_t at = c->at[i];
@@ -98,10 +98,10 @@ static strut_status make_response(const strut_model *model, strut_state *state, 
 
 /* The compliance of contact i with sliding masses as they have been placed. */
 static void refresh_compliance(const strut_model *model, const strut_state *state,
-                               strut_event_stepper *l, int32_t i) {
+                               strut_event_stepper *stepper, int32_t i) {
   assert(i >= 0 && i < model->contacts.count);
-  strut_contact_compliance *r = &l->response[i];
-  double *xy = (double *)r->xy, *column = l->scatter;
+  strut_contact_compliance *r = &stepper->contacts.compliance[i];
+  double *xy = (double *)r->xy, *column = stepper->contacts.scatter;
   uint32_t at = model->contacts.at[i];
   for (int32_t k = 0; k < r->count; k++)
     for (uint32_t c = 0; c < 2; c++) column[r->at[k] + c] = r->constant[2 * (uint32_t)k + c];
@@ -120,8 +120,9 @@ static void refresh_compliance(const strut_model *model, const strut_state *stat
 }
 
 void strut_refresh_compliances(const strut_model *model, const strut_state *state,
-                               strut_event_stepper *l) {
-  for (int32_t k = 0; k < l->closed_count; k++) refresh_compliance(model, state, l, l->closed[k]);
+                               strut_event_stepper *stepper) {
+  for (int32_t k = 0; k < stepper->active.closed_count; k++)
+    refresh_compliance(model, state, stepper, stepper->active.closed[k]);
 }
 
 /*
@@ -141,32 +142,35 @@ static int32_t root_of(int32_t *body, int32_t i) {
   return i;
 }
 
-/* Joins contacts whose responses share a node. */
-static strut_status find_bodies(const strut_model *model, strut_event_stepper *l) {
+/* Joins contacts that accelerate a common node. */
+static strut_status find_bodies(const strut_model *model, strut_event_stepper *stepper) {
+  strut_contact_bodies *contacts = &stepper->contacts;
   size_t nodes = (size_t)model->node_count;
   int32_t *seen = strut_allocate(nodes, sizeof *seen), count = model->contacts.count;
   if (!seen) return STRUT_NO_MEMORY;
   for (int32_t i = 0; i < count; i++) {
-    const strut_contact_compliance *r = &l->response[i];
-    l->body[i] = i;
+    const strut_contact_compliance *r = &contacts->compliance[i];
+    contacts->body[i] = i;
     for (int32_t k = 0; k < r->count; k++) {
       int32_t *first = &seen[r->at[k] / 2]; /* one more than the index; 0: none yet */
       if (*first)
-        l->body[root_of(l->body, *first - 1)] = root_of(l->body, i);
+        contacts->body[root_of(contacts->body, *first - 1)] = root_of(contacts->body, i);
       else
         *first = i + 1;
     }
   }
-  for (int32_t i = 0; i < count; i++) l->body[i] = root_of(l->body, i);
+  for (int32_t i = 0; i < count; i++) contacts->body[i] = root_of(contacts->body, i);
   strut_release(seen);
   return STRUT_OK;
 }
 
 strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *state,
                                          const strut_integrator_settings *e,
-                                         strut_event_stepper *l) {
+                                         strut_event_stepper *stepper) {
+  strut_contact_bodies *contacts = &stepper->contacts;
+  strut_active_set *active = &stepper->active;
   const strut_contact_table *c = &model->contacts;
-  double *x = l->next->q, *y = l->next->v;
+  double *x = stepper->next->q, *y = stepper->next->v;
   double fastest = 0.0;
   memset(x, 0, (size_t)model->length * sizeof *x);
   memset(y, 0, (size_t)model->length * sizeof *y);
@@ -175,34 +179,34 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
   if (!answers) return STRUT_NO_MEMORY;
   if (model->terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, 0.0);
   for (int32_t i = 0; i < c->count; i++) {
-    strut_status status = make_response(model, state, i, x, y, answers, &l->response[i]);
+    strut_status status = make_compliance(model, state, i, x, y, answers, &contacts->compliance[i]);
     if (status) return status;
-    if (model->terms & STRUT_TERM_SLIDING_MASS) refresh_compliance(model, state, l, i);
-    l->settling_time[i] = settling_time(&c->entry[i], l->response[i].normal);
-    fastest = fmax(fastest, c->entry[i].damping * l->response[i].normal);
-    fastest = fmax(fastest, sqrt(c->entry[i].stiffness * l->response[i].normal));
+    if (model->terms & STRUT_TERM_SLIDING_MASS) refresh_compliance(model, state, stepper, i);
+    contacts->settling_time[i] = settling_time(&c->entry[i], contacts->compliance[i].normal);
+    fastest = fmax(fastest, c->entry[i].damping * contacts->compliance[i].normal);
+    fastest = fmax(fastest, sqrt(c->entry[i].stiffness * contacts->compliance[i].normal));
   }
   double wanted = ceil(fastest * e->step / e->refine_rate);
-  l->wanted_step = e->step;
-  l->refine = e->refine > 0.0 ? e->refine : fmin(fmax(1.0, wanted), MOST_REFINED);
-  l->refine_time = e->refine_time;
-  l->refine_memory = e->refine_memory;
-  l->passes = c->surface || (c->normal[0] != 0.0 && !model->mass->shared) ? 8 : 1;
-  l->stuck_room = c->count < LARGEST_FACTOR ? c->count : LARGEST_FACTOR;
-  size_t room = (size_t)l->stuck_room;
-  l->stuck_factor = strut_arena_allocate(&state->arena, room * room, sizeof(double));
-  l->stuck_work = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof(double));
-  l->body_seen = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->body_seen);
-  l->sliding = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->sliding);
-  if (!l->stuck_factor || !l->stuck_work || !l->body_seen || !l->sliding) return STRUT_NO_MEMORY;
-  strut_status status = strut_contact_coupling_create(model, state, l);
-  return status ? status : find_bodies(model, l);
+  stepper->control.wanted_step = e->step;
+  stepper->control.refine = e->refine > 0.0 ? e->refine : fmin(fmax(1.0, wanted), MOST_REFINED);
+  stepper->control.refine_time = e->refine_time;
+  stepper->control.refine_memory = e->refine_memory;
+  contacts->passes = c->surface || (c->normal[0] != 0.0 && !model->mass->shared) ? 8 : 1;
+  active->stuck_room = c->count < LARGEST_FACTOR ? c->count : LARGEST_FACTOR;
+  size_t room = (size_t)active->stuck_room;
+  active->factor = strut_arena_allocate(&state->arena, room * room, sizeof(double));
+  active->work = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof(double));
+  contacts->body_seen =
+      strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *contacts->body_seen);
+  active->sliding = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *active->sliding);
+  if (!active->factor || !active->work || !contacts->body_seen || !active->sliding)
+    return STRUT_NO_MEMORY;
+  strut_status status = strut_contact_coupling_create(model, state, stepper);
+  return status ? status : find_bodies(model, stepper);
 }
 
-void strut_apply_contact_impulse(const strut_event_stepper *l, int32_t i,
-                                 const strut_contact_axes *axes, double normal, double tangential,
-                                 double *a) {
-  const strut_contact_compliance *r = &l->response[i];
+void strut_apply_contact_impulse(const strut_contact_compliance *r, const strut_contact_axes *axes,
+                                 double normal, double tangential, double *a) {
   double fx = tangential * axes->tangent[0] + normal * axes->normal[0];
   double fy = tangential * axes->tangent[1] + normal * axes->normal[1];
   for (int32_t k = 0; k < r->count; k++) {
@@ -224,82 +228,91 @@ static bool factor(int32_t n, double *a) {
 }
 
 /* T' M^-1 T of the stuck contacts, column by column through the scatter array. */
-static void factor_stuck(const strut_model *model, strut_event_stepper *l,
+static void factor_stuck(const strut_model *model, strut_event_stepper *stepper,
                          const strut_contact_frame *frame) {
+  const strut_contact_bodies *contacts = &stepper->contacts;
+  strut_active_set *active = &stepper->active;
   const strut_contact_table *c = &model->contacts;
-  int32_t n = l->stuck_count;
+  int32_t n = active->stuck_count;
   for (int32_t j = 0; j < n; j++) {
-    const strut_contact_compliance *r = &l->response[l->stuck[j]];
-    const double *t = strut_axes_of_contact(c, frame, l->stuck[j])->tangent;
+    const strut_contact_compliance *r = &contacts->compliance[active->stuck[j]];
+    const double *t = strut_axes_of_contact(c, frame, active->stuck[j])->tangent;
     for (int32_t k = 0; k < r->count; k++) {
-      l->scatter[r->at[k]] = r->xy[2 * k] * t[0];
-      l->scatter[r->at[k] + 1] = r->xy[2 * k + 1] * t[1];
+      contacts->scatter[r->at[k]] = r->xy[2 * k] * t[0];
+      contacts->scatter[r->at[k] + 1] = r->xy[2 * k + 1] * t[1];
     }
     for (int32_t i = j; i < n; i++) {
-      uint32_t at = c->at[l->stuck[i]];
-      const double *s = strut_axes_of_contact(c, frame, l->stuck[i])->tangent;
-      l->stuck_factor[i * n + j] = l->scatter[at] * s[0] + l->scatter[at + 1] * s[1];
+      uint32_t at = c->at[active->stuck[i]];
+      const double *s = strut_axes_of_contact(c, frame, active->stuck[i])->tangent;
+      active->factor[i * n + j] = contacts->scatter[at] * s[0] + contacts->scatter[at + 1] * s[1];
     }
-    for (int32_t k = 0; k < r->count; k++) l->scatter[r->at[k]] = l->scatter[r->at[k] + 1] = 0.0;
+    for (int32_t k = 0; k < r->count; k++)
+      contacts->scatter[r->at[k]] = contacts->scatter[r->at[k] + 1] = 0.0;
   }
-  if (!factor(n, l->stuck_factor)) l->stuck_count = -n; /* singular: by sweeps */
+  if (!factor(n, active->factor)) active->stuck_count = -n; /* singular: by sweeps */
 }
 
-static bool is_sliding(const strut_event_stepper *l, const strut_contact_entry *e, int32_t i) {
+static bool is_sliding(const strut_event_stepper *stepper, const strut_contact_entry *e,
+                       int32_t i) {
   if (e->dissipation > 0.0) return false;
-  return l->mode[i] == STRUT_MODE_SLIP ||
-         (l->mode[i] == STRUT_MODE_SLIDE && !strut_friction_is_continuous(e->friction.law));
+  return stepper->modes.of[i] == STRUT_MODE_SLIP ||
+         (stepper->modes.of[i] == STRUT_MODE_SLIDE &&
+          !strut_friction_is_continuous(e->friction.law));
 }
 
-static void list_sliding_contacts(const strut_model *model, strut_event_stepper *l) {
-  l->all_sliding = l->contacts_decoupled;
-  for (int32_t k = 0; k < l->closed_count && l->all_sliding; k++) {
-    int32_t i = l->closed[k];
-    const strut_contact_entry *e = &l->entry[i];
-    const strut_contact_compliance *r = &l->response[i];
-    bool slips = l->mode[i] == STRUT_MODE_SLIP;
-    l->all_sliding = is_sliding(l, e, i);
-    l->sliding[k] = (strut_sliding_contact){
+static void list_sliding_contacts(const strut_model *model, strut_event_stepper *stepper) {
+  const strut_contact_modes *modes = &stepper->modes;
+  stepper->active.all_sliding = stepper->active.decoupled;
+  for (int32_t k = 0; k < stepper->active.closed_count && stepper->active.all_sliding; k++) {
+    int32_t i = stepper->active.closed[k];
+    const strut_contact_entry *e = &stepper->contacts.entry[i];
+    const strut_contact_compliance *r = &stepper->contacts.compliance[i];
+    bool slips = modes->of[i] == STRUT_MODE_SLIP;
+    stepper->active.all_sliding = is_sliding(stepper, e, i);
+    stepper->active.sliding[k] = (strut_sliding_contact){
         .at = model->contacts.at[i],
         .index = i,
         .nodes = r->count,
         .stiffness = e->stiffness,
         .damping = e->damping,
         .answer = r->normal,
-        .friction = slips ? -l->side[i] * strut_friction_kinetic(&e->friction, l->side[i]) : 0.0,
-        .side = slips ? l->side[i] : 0.0,
+        .friction =
+            slips ? -modes->side[i] * strut_friction_kinetic(&e->friction, modes->side[i]) : 0.0,
+        .side = slips ? modes->side[i] : 0.0,
         .edge = slips ? stick_band_edge(e) : 0.0,
         .place = r->at,
         .xy = r->xy};
   }
 }
 
-static void factor_matrix(const strut_model *model, strut_event_stepper *l) {
-  if (l->coupling)
-    strut_contact_coupling_factor(model, l);
+static void factor_matrix(const strut_model *model, strut_event_stepper *stepper) {
+  if (stepper->contacts.coupling)
+    strut_contact_coupling_factor(model, stepper);
   else
-    factor_stuck(model, l, NULL);
+    factor_stuck(model, stepper, NULL);
 }
 
-void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
-  l->closed_count = l->stuck_count = 0;
-  l->contacts_decoupled = model->contacts.normal[0] == 0.0 && !has_moving_axes(model);
+void strut_update_active_set(const strut_model *model, strut_event_stepper *stepper) {
+  const strut_contact_bodies *contacts = &stepper->contacts;
+  strut_active_set *active = &stepper->active;
+  active->closed_count = active->stuck_count = 0;
+  active->decoupled = model->contacts.normal[0] == 0.0 && !has_moving_axes(model);
   int32_t count = model->contacts.count;
-  for (int32_t i = 0; i < count; i++) l->body_seen[l->body[i]] = false;
+  for (int32_t i = 0; i < count; i++) contacts->body_seen[contacts->body[i]] = false;
   for (int32_t i = 0; i < count; i++) {
-    l->outward[i] = l->mode[i] == STRUT_MODE_OPEN ? 1.0 : -1.0;
-    if (l->mode[i] == STRUT_MODE_OPEN) continue;
-    if (l->body_seen[l->body[i]]) l->contacts_decoupled = false;
-    l->body_seen[l->body[i]] = true;
-    l->closed[l->closed_count++] = i;
-    if (l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP)
-      if (l->response[i].tangent > 0.0) l->stuck[l->stuck_count++] = i;
+    stepper->modes.outward[i] = stepper->modes.of[i] == STRUT_MODE_OPEN ? 1.0 : -1.0;
+    if (stepper->modes.of[i] == STRUT_MODE_OPEN) continue;
+    if (contacts->body_seen[contacts->body[i]]) active->decoupled = false;
+    contacts->body_seen[contacts->body[i]] = true;
+    active->closed[active->closed_count++] = i;
+    if (stepper->modes.of[i] == STRUT_MODE_STICK || stepper->modes.of[i] == STRUT_MODE_CREEP)
+      if (contacts->compliance[i].tangent > 0.0) active->stuck[active->stuck_count++] = i;
   }
-  list_sliding_contacts(model, l);
-  if (l->stuck_count > l->stuck_room)
-    l->stuck_count = -l->stuck_count;
-  else if (l->stuck_count > 1 && !model->contacts.surface && !has_moving_masses(model))
-    factor_matrix(model, l);
+  list_sliding_contacts(model, stepper);
+  if (active->stuck_count > active->stuck_room)
+    active->stuck_count = -active->stuck_count;
+  else if (active->stuck_count > 1 && !model->contacts.surface && !has_moving_masses(model))
+    factor_matrix(model, stepper);
 }
 
 /* Rate of the sliding speed of a contact under the accelerations x. */
@@ -319,23 +332,25 @@ STRUT_INLINE void still(const strut_contact_table *c, int32_t i, double *a,
   a[c->at[i] + 1] -= rest * t[1];
 }
 
-STRUT_INLINE double tangent_compliance(const strut_event_stepper *l, int32_t i,
+STRUT_INLINE double tangent_compliance(const strut_event_stepper *stepper, int32_t i,
                                        const strut_contact_frame *frame) {
-  if (!frame) return l->response[i].tangent;
-  return strut_compliance_along(&l->response[i], frame[i].axes.tangent);
+  if (!frame) return stepper->contacts.compliance[i].tangent;
+  return strut_compliance_along(&stepper->contacts.compliance[i], frame[i].axes.tangent);
 }
 
 /* One after the other until none needs more: for sets too large for a matrix. */
-static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *l, double *a,
+static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *stepper, double *a,
                            strut_step_end *end) {
+  const strut_active_set *active = &stepper->active;
   const strut_contact_table *c = &model->contacts;
-  int32_t n = l->stuck_count < 0 ? -l->stuck_count : l->stuck_count;
+  int32_t n = active->stuck_count < 0 ? -active->stuck_count : active->stuck_count;
   for (int sweep = 0; sweep < 200; sweep++) {
     double largest = 0.0, changed = 0.0;
     for (int32_t k = 0; k < n; k++) {
-      int32_t i = l->stuck[k];
-      double more = -along(c, i, a, end->frame) / tangent_compliance(l, i, end->frame);
-      strut_apply_contact_impulse(l, i, strut_axes_of_contact(c, end->frame, i), 0.0, more, a);
+      int32_t i = active->stuck[k];
+      double more = -along(c, i, a, end->frame) / tangent_compliance(stepper, i, end->frame);
+      strut_apply_contact_impulse(&stepper->contacts.compliance[i],
+                                  strut_axes_of_contact(c, end->frame, i), 0.0, more, a);
       end->touch[i].friction += more;
       changed = fmax(changed, fabs(more));
       largest = fmax(largest, fabs(end->touch[i].friction));
@@ -344,50 +359,51 @@ static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *
   }
 }
 
-STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *l, double *a,
+STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *stepper, double *a,
                              strut_step_end *end, unsigned terms) {
   const strut_contact_frame *frame = frames_of(end, terms);
   const strut_contact_table *c = &model->contacts;
-  int32_t n = l->stuck_count;
-  double *x = l->stuck_work;
+  int32_t n = stepper->active.stuck_count;
+  double *x = stepper->active.work;
   if ((frame || has_moving_masses(model)) &&
       n > 1) { /* their axes turn, or have not been known until now */
-    factor_stuck(model, l, frame);
-    bool singular = l->stuck_count < 0;
-    l->stuck_count = n;
+    factor_stuck(model, stepper, frame);
+    bool singular = stepper->active.stuck_count < 0;
+    stepper->active.stuck_count = n;
     if (singular) {
-      hold_by_sweeps(model, l, a, end);
+      hold_by_sweeps(model, stepper, a, end);
       return;
     }
   }
   if (n < 0) {
-    hold_by_sweeps(model, l, a, end);
+    hold_by_sweeps(model, stepper, a, end);
     return;
   }
-  for (int32_t k = 0; k < n; k++) x[k] = -along(c, l->stuck[k], a, frame);
+  for (int32_t k = 0; k < n; k++) x[k] = -along(c, stepper->active.stuck[k], a, frame);
   if (n == 1) {
-    x[0] /= tangent_compliance(l, l->stuck[0], frame);
-  } else if (l->coupling) {
-    strut_contact_coupling_solve(l, x);
+    x[0] /= tangent_compliance(stepper, stepper->active.stuck[0], frame);
+  } else if (stepper->contacts.coupling) {
+    strut_contact_coupling_solve(stepper, x);
   } else {
-    strut_cholesky_solve(n, l->stuck_factor, x);
+    strut_cholesky_solve(n, stepper->active.factor, x);
   }
-  bool together = l->coupling && !model->mass->diagonal && n > FEW_COLUMNS;
-  if (together) strut_contact_coupling_push(model, l, x, a);
+  bool together = stepper->contacts.coupling && !model->mass->diagonal && n > FEW_COLUMNS;
+  if (together) strut_contact_coupling_push(model, stepper, x, a);
   for (int32_t k = 0; k < n; k++) {
-    int32_t i = l->stuck[k];
+    int32_t i = stepper->active.stuck[k];
     if (!together)
-      strut_apply_contact_impulse(l, i, strut_axes_of_contact(c, frame, i), 0.0, x[k], a);
+      strut_apply_contact_impulse(&stepper->contacts.compliance[i],
+                                  strut_axes_of_contact(c, frame, i), 0.0, x[k], a);
     end->touch[i].friction += x[k];
     still(c, i, a, frame);
   }
-  for (int32_t k = 0; k < n; k++) still(c, l->stuck[k], a, frame);
+  for (int32_t k = 0; k < n; k++) still(c, stepper->active.stuck[k], a, frame);
 }
 
-void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
-                                   strut_step_end *end) {
+void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *stepper,
+                                   double *a, strut_step_end *end) {
   if (model->contacts.surface)
-    hold_stuck(model, l, a, end, STRUT_TERMS_ALL);
+    hold_stuck(model, stepper, a, end, STRUT_TERMS_ALL);
   else
-    hold_stuck(model, l, a, end, STRUT_TERMS_COMMON);
+    hold_stuck(model, stepper, a, end, STRUT_TERMS_COMMON);
 }

@@ -27,18 +27,18 @@ struct strut_contact_coupling {
   int32_t *factored, factored_count; /* (stuck_room) the stuck contacts it belongs to */
 };
 
-/** In the state's arena, after the compliances. l->coupling stays NULL where it does not pay. */
+/** In the state's arena, after the compliances. stepper->contacts.coupling stays NULL where it does not pay. */
 strut_status strut_contact_coupling_create(const strut_model *model, strut_state *state,
-                                           strut_event_stepper *l);
+                                           strut_event_stepper *stepper);
 /** Factors T' M^-1 T of the stuck contacts, unless it is that of the latest ones. */
-void strut_contact_coupling_factor(const strut_model *model, strut_event_stepper *l);
+void strut_contact_coupling_factor(const strut_model *model, strut_event_stepper *stepper);
 /** x becomes (T' M^-1 T)^-1 x. */
-void strut_contact_coupling_solve(const strut_event_stepper *l, double *x);
+void strut_contact_coupling_solve(const strut_event_stepper *stepper, double *x);
 /** a += M^-1 of forces x (stuck_count) along the ground on the stuck contacts. */
-void strut_contact_coupling_push(const strut_model *model, const strut_event_stepper *l,
+void strut_contact_coupling_push(const strut_model *model, const strut_event_stepper *stepper,
                                  const double *x, double *a);
 /** As implicit_ground_together; a1 contains the springs, and friction without the dampers' part. */
-void strut_contact_coupling_ground(const strut_model *model, strut_event_stepper *l, double h,
+void strut_contact_coupling_ground(const strut_model *model, strut_event_stepper *stepper, double h,
                                    double *a1);
 
 #endif

@@ -19,11 +19,11 @@ STRUT_INLINE double implicit_damper(const strut_contact_entry *e, double spring,
 }
 
 /* Speed into the ground at the end of the step, given the accelerations so far. */
-STRUT_INLINE double final_speed(const strut_contact_table *c, const strut_event_stepper *l,
+STRUT_INLINE double final_speed(const strut_contact_table *c, const strut_event_stepper *stepper,
                                 int32_t i, double h, const double *a1,
                                 const strut_contact_frame *frame) {
   uint32_t at = c->at[i];
-  const double *v = l->now->v + at, *a0 = l->now->a + at, *a = a1 + at;
+  const double *v = stepper->now->v + at, *a0 = stepper->now->a + at, *a = a1 + at;
   const double *normal = strut_axes_of_contact(c, frame, i)->normal;
   double into =
       (v[0] + 0.5 * h * (a0[0] + a[0])) * normal[0] + (v[1] + 0.5 * h * (a0[1] + a[1])) * normal[1];
@@ -31,119 +31,130 @@ STRUT_INLINE double final_speed(const strut_contact_table *c, const strut_event_
 }
 
 /* The damper of contact i among others of its body; returns the change of its force. */
-STRUT_INLINE double solve_damper(const strut_model *model, strut_event_stepper *l, int32_t i,
+STRUT_INLINE double solve_damper(const strut_model *model, strut_event_stepper *stepper, int32_t i,
                                  double h, const double *a1, double gap,
                                  const strut_contact_frame *frame) {
+  strut_contact_bodies *contacts = &stepper->contacts;
   const strut_contact_table *c = &model->contacts;
-  const strut_contact_entry *e = &l->entry[i];
-  double answer =
-      frame ? strut_compliance_along(&l->response[i], frame[i].axes.normal) : l->response[i].normal;
-  double half = 0.5 * h * answer, now = l->damped[i];
-  double free = final_speed(c, l, i, h, a1, frame) - half * now;
-  l->damped[i] = implicit_damper(e, -e->stiffness * gap, free, half);
-  return l->damped[i] - now;
+  const strut_contact_entry *e = &contacts->entry[i];
+  double answer = frame ? strut_compliance_along(&contacts->compliance[i], frame[i].axes.normal)
+                        : contacts->compliance[i].normal;
+  double half = 0.5 * h * answer, now = contacts->damped[i];
+  double free = final_speed(c, stepper, i, h, a1, frame) - half * now;
+  contacts->damped[i] = implicit_damper(e, -e->stiffness * gap, free, half);
+  return contacts->damped[i] - now;
 }
 
-STRUT_INLINE void solve_dampers(const strut_model *model, strut_event_stepper *l, double h,
+STRUT_INLINE void solve_dampers(const strut_model *model, strut_event_stepper *stepper, double h,
                                 double *a1, const strut_touch *restrict touch,
                                 const strut_contact_frame *frame) {
   for (int sweep = 0; sweep < 40; sweep++) {
     double changed = 0.0, largest = 0.0;
-    for (int32_t k = 0; k < l->closed_count; k++) {
-      int32_t i = l->closed[k];
-      double more = solve_damper(model, l, i, h, a1, touch[i].gap, frame);
+    for (int32_t k = 0; k < stepper->active.closed_count; k++) {
+      int32_t i = stepper->active.closed[k];
+      double more = solve_damper(model, stepper, i, h, a1, touch[i].gap, frame);
       const strut_contact_axes *axes = strut_axes_of_contact(&model->contacts, frame, i);
-      if (more != 0.0) strut_apply_contact_impulse(l, i, axes, more, 0.0, a1);
+      if (more != 0.0)
+        strut_apply_contact_impulse(&stepper->contacts.compliance[i], axes, more, 0.0, a1);
       if (fabs(more) > changed) changed = fabs(more);
       if (fabs(touch[i].normal) > largest) largest = fabs(touch[i].normal);
     }
-    if (changed <= 1e-15 * largest || l->closed_count == 1) break;
+    if (changed <= 1e-15 * largest || stepper->active.closed_count == 1) break;
   }
 }
 
 /* Friction again with the whole normal force, then what holds stuck nodes. */
-STRUT_INLINE void solve_friction(const strut_model *model, strut_event_stepper *l, double *a1,
+STRUT_INLINE void solve_friction(const strut_model *model, strut_event_stepper *stepper, double *a1,
                                  strut_touch *restrict touch, const strut_contact_frame *frame) {
-  for (int32_t k = 0; k < l->closed_count; k++) {
-    int32_t i = l->closed[k];
+  const strut_active_set *active = &stepper->active;
+  for (int32_t k = 0; k < active->closed_count; k++) {
+    int32_t i = active->closed[k];
     strut_touch *o = &touch[i];
-    o->normal = -model->contacts.entry[i].stiffness * o->gap + l->damped[i];
-    if (frame) o->applied = strut_surface_applied(model, l, k, l->next);
-    double friction =
-        friction_in_mode(&l->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);
-    bool held = l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP;
+    o->normal = -model->contacts.entry[i].stiffness * o->gap + stepper->contacts.damped[i];
+    if (frame) o->applied = strut_surface_applied(&model->contacts, active, k, stepper->next);
+    double friction = friction_in_mode(&stepper->contacts.entry[i], &stepper->modes, i, o);
+    bool held =
+        stepper->modes.of[i] == STRUT_MODE_STICK || stepper->modes.of[i] == STRUT_MODE_CREEP;
     if (held || friction == o->friction) continue;
-    strut_apply_contact_impulse(l, i, strut_axes_of_contact(&model->contacts, frame, i), 0.0,
+    strut_apply_contact_impulse(&stepper->contacts.compliance[i],
+                                strut_axes_of_contact(&model->contacts, frame, i), 0.0,
                                 friction - o->friction, a1);
     o->friction = friction;
   }
-  if (l->stuck_count) strut_solve_stick_constraints(model, l, a1, l->next);
+  if (active->stuck_count) strut_solve_stick_constraints(model, stepper, a1, stepper->next);
 }
 
 /* Coupled contacts: their dampers, then friction with the whole normal force; `a1`: in and out. */
-STRUT_INLINE void implicit_ground_together(const strut_model *model, strut_event_stepper *l,
+STRUT_INLINE void implicit_ground_together(const strut_model *model, strut_event_stepper *stepper,
                                            double h, double *restrict a1, unsigned terms) {
-  strut_touch *restrict touch = l->next->touch;
-  const strut_contact_frame *frame = frames_of(l->next, terms);
-  for (int32_t k = 0; k < l->closed_count; k++) l->damped[l->closed[k]] = 0.0;
-  for (int pass = 0; pass < l->passes; pass++) {
-    solve_dampers(model, l, h, a1, touch, frame);
-    solve_friction(model, l, a1, touch, frame);
+  strut_touch *restrict touch = stepper->next->touch;
+  const strut_contact_frame *frame = frames_of(stepper->next, terms);
+  for (int32_t k = 0; k < stepper->active.closed_count; k++)
+    stepper->contacts.damped[stepper->active.closed[k]] = 0.0;
+  for (int pass = 0; pass < stepper->contacts.passes; pass++) {
+    solve_dampers(model, stepper, h, a1, touch, frame);
+    solve_friction(model, stepper, a1, touch, frame);
   }
 }
 
 /* Gaps, speeds and their rates at the end of the step; with the energy balance the ground's powers. */
 STRUT_INLINE void implicit_ground_finish(const strut_model *model, strut_state *state,
-                                         strut_event_stepper *l, unsigned terms, bool balance) {
+                                         strut_event_stepper *stepper, unsigned terms,
+                                         bool balance) {
   const strut_contact_table *c = &model->contacts;
-  strut_step_end *next = l->next;
+  strut_step_end *next = stepper->next;
   strut_contact_frame *frame = frames_of(next, terms);
-  for (int32_t k = 0; k < l->closed_count; k++) {
-    int32_t i = l->closed[k];
+  for (int32_t k = 0; k < stepper->active.closed_count; k++) {
+    int32_t i = stepper->active.closed[k];
     if (frame)
-      strut_surface_measure(c, l, next->motion, i, next->q, next->v, &next->touch[i], &frame[i]);
+      strut_surface_measure(c, &stepper->modes, next->motion, i, next->q, next->v, &next->touch[i],
+                            &frame[i]);
     else
       measure_on_line(c, i, next->q, next->v, &next->touch[i]);
   }
-  measure_contact_rates(model, l, next, terms);
-  if (balance) add_contact_powers(model, state, l, next, terms);
+  measure_contact_rates(model, &stepper->active, next, terms);
+  if (balance) add_contact_powers(model, state, &stepper->active, next, terms);
 }
 
 /* The force of one level contact, bodies apart; x, y: its node's acceleration without the ground. */
 STRUT_INLINE void implicit_ground_touch(const strut_contact_entry *e,
                                         const strut_contact_compliance *r,
-                                        const strut_touch *before, strut_touch *o, uint8_t mode,
-                                        int8_t side, double h, double x, double y) {
+                                        const strut_touch *before, strut_touch *o,
+                                        const strut_contact_modes *modes, int32_t i, double h,
+                                        double x, double y) {
+  uint8_t mode = modes->of[i];
   double spring = -e->stiffness * o->gap, half = 0.5 * h * r->normal;
   double free = before->into + 0.5 * h * (before->into_rate + y) + half * spring;
   o->normal = spring + implicit_damper(e, spring, free, half);
   if (mode == STRUT_MODE_STICK || mode == STRUT_MODE_CREEP)
     o->friction = -x / r->tangent;
   else
-    o->friction = friction_in_mode(e, mode, side, o->normal, o->slip, o->applied);
+    o->friction = friction_in_mode(e, modes, i, o);
 }
 
 /*
  * Level ground, and contacts that do not answer to each other: one pass. force, a: of the structure
  * alone; v: predicted velocity, which only the smooth law of friction asks.
  */
-STRUT_INLINE void implicit_ground_decoupled(const strut_model *model, const strut_event_stepper *l,
-                                            double h, const double *restrict v,
-                                            const double *restrict force, double *restrict a) {
+STRUT_INLINE void implicit_ground_decoupled(const strut_model *model,
+                                            const strut_event_stepper *stepper, double h,
+                                            const double *restrict v, const double *restrict force,
+                                            double *restrict a) {
   const strut_contact_table *c = &model->contacts;
-  const strut_touch *restrict before = l->now->touch;
-  const double *restrict q = l->next->q;
-  strut_touch *restrict touch = l->next->touch;
-  for (int32_t k = 0, count = l->closed_count; k < count; k++) {
-    int32_t i = l->closed[k];
+  const strut_touch *restrict before = stepper->now->touch;
+  const double *restrict q = stepper->next->q;
+  strut_touch *restrict touch = stepper->next->touch;
+  for (int32_t k = 0, count = stepper->active.closed_count; k < count; k++) {
+    int32_t i = stepper->active.closed[k];
     uint32_t at = c->at[i];
-    uint8_t mode = l->mode[i];
-    const strut_contact_compliance *r = &l->response[i];
+    uint8_t mode = stepper->modes.of[i];
+    const strut_contact_compliance *r = &stepper->contacts.compliance[i];
     strut_touch *o = &touch[i];
     o->gap = q[at + 1] - c->height;
     o->slip = v[at] - c->belt_speed;
     o->applied = force[at];
-    implicit_ground_touch(&l->entry[i], r, &before[i], o, mode, l->side[i], h, a[at], a[at + 1]);
+    implicit_ground_touch(&stepper->contacts.entry[i], r, &before[i], o, &stepper->modes, i, h,
+                          a[at], a[at + 1]);
     const strut_pair reaction = {o->friction, o->normal};
     const double *restrict xy = r->xy;
     for (int32_t j = 0, nodes = r->count; j < nodes; j++) {
@@ -155,13 +166,14 @@ STRUT_INLINE void implicit_ground_decoupled(const strut_model *model, const stru
 }
 
 /* The same where all of them slip, or have no friction. */
-STRUT_INLINE void implicit_ground_slides(const strut_model *model, const strut_event_stepper *l,
-                                         double h, double *restrict a) {
-  const strut_touch *restrict before = l->now->touch;
-  const double *restrict q = l->next->q, height = model->contacts.height;
-  strut_touch *restrict touch = l->next->touch;
-  const strut_sliding_contact *s = l->sliding;
-  for (const strut_sliding_contact *end = s + l->closed_count; s < end; s++) {
+STRUT_INLINE void implicit_ground_slides(const strut_model *model,
+                                         const strut_event_stepper *stepper, double h,
+                                         double *restrict a) {
+  const strut_touch *restrict before = stepper->now->touch;
+  const double *restrict q = stepper->next->q, height = model->contacts.height;
+  strut_touch *restrict touch = stepper->next->touch;
+  const strut_sliding_contact *s = stepper->active.sliding;
+  for (const strut_sliding_contact *end = s + stepper->active.closed_count; s < end; s++) {
     const strut_touch *b = &before[s->index];
     strut_touch *o = &touch[s->index];
     double gap = q[s->at + 1] - height, spring = -s->stiffness * gap, half = 0.5 * h * s->answer;
@@ -181,20 +193,20 @@ STRUT_INLINE void implicit_ground_slides(const strut_model *model, const strut_e
 
 /* As implicit_ground_finish, on level ground. */
 STRUT_INLINE void implicit_ground_leave(const strut_model *model, strut_state *state,
-                                        const strut_event_stepper *l, bool balance) {
+                                        const strut_event_stepper *stepper, bool balance) {
   const strut_contact_table *c = &model->contacts;
-  const double *restrict v = l->next->v, *restrict a = l->next->a;
+  const double *restrict v = stepper->next->v, *restrict a = stepper->next->a;
   double contact = 0.0, friction = 0.0, belt = 0.0, exchanged = 0.0;
-  for (int32_t k = 0, count = l->closed_count; k < count; k++) {
-    int32_t i = l->closed[k];
+  for (int32_t k = 0, count = stepper->active.closed_count; k < count; k++) {
+    int32_t i = stepper->active.closed[k];
     uint32_t at = c->at[i];
-    strut_touch *o = &l->next->touch[i];
+    strut_touch *o = &stepper->next->touch[i];
     o->into = v[at + 1];
     o->slip = v[at] - c->belt_speed;
     o->into_rate = a[at + 1];
     o->slip_rate = a[at];
     if (!balance) continue;
-    double damped = -(o->normal + l->entry[i].stiffness * o->gap) * o->into;
+    double damped = -(o->normal + stepper->contacts.entry[i].stiffness * o->gap) * o->into;
     double rubbed = -o->friction * o->slip, carried = o->friction * c->belt_speed;
     contact += damped, friction += rubbed, belt += carried;
     exchanged += fabs(damped) + fabs(rubbed) + fabs(carried);

@@ -1,81 +1,176 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Friction in the modes of contacts, and the margins at whose zeros modes end (event_stepping.h names both).
+ * Hot: friction in the modes of contacts, and the margins at whose zeros modes end: positive while a mode holds.
  *
- * `normal`, `friction` and `applied`, the sum of the other forces along the ground, are forces on the node [N];
- * `side` is the direction of a mode, 1 or -1; `holding` and `sliding` are limits of friction in a direction
- * (strut_friction_static, strut_friction_kinetic). A margin is positive while the mode holds; all are forces [N]
- * but those of speeds.
+ * `side` is the direction of a mode, 1 or -1. What friction holds and what it slides with may depend on the direction
+ * in which the other forces push, or in which the node moves.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_EVENTS_CONTACTS_MODE_LAW_H
 #define STRUT_ENGINE_INTEGRATE_EVENTS_CONTACTS_MODE_LAW_H
 
-#include "engine/model/hot.h"
-#include "engine/scene/laws/scalar.h"
+#include <math.h>
 
-/** Friction in STRUT_MODE_BAND: it balances the other forces up to its limit. */
-STRUT_INLINE double strut_law_friction_in_band(double holding, double applied) {
-  return holding < applied ? -holding : applied < -holding ? holding : -applied;
-}
-
-/** Friction inside the band of a contact that creeps along its edge. */
-STRUT_INLINE double strut_law_friction_at_edge(double holding, double sliding, double applied) {
-  return fabs(applied) < holding ? -applied : -sliding * strut_sign(applied);
-}
-
-/** STRUT_EVENT_SLIP_ENDS: from the speed at the edge of the band, or 0 [m/s]. */
-STRUT_INLINE double strut_law_margin_of_slip(double side, double slip, double edge) {
-  return side * slip - edge;
-}
-
-/** STRUT_EVENT_LEAVES_STICK_BAND, by the speed towards the edge [m/s]. */
-STRUT_INLINE double strut_law_margin_of_band(double speed, double edge) { return edge - speed; }
-
-/** STRUT_EVENT_STICK_BREAKS; and STRUT_EVENT_PUSH of a contact within its band, by the applied force. */
-STRUT_INLINE double strut_law_margin_of_holding(double holding, double force) {
-  return holding - fabs(force);
-}
-
-/** STRUT_EVENT_PUSH of a contact that is pushed; it is pushed no more where this is 0, too. */
-STRUT_INLINE double strut_law_margin_of_push(double side, double holding, double applied) {
-  return side * applied - holding;
-}
-
-/** STRUT_EVENT_CREEP_OUT: outside of the band friction is all that sliding gives. */
-STRUT_INLINE double strut_law_margin_of_creep_out(double side, double sliding, double friction) {
-  return side * friction + sliding;
-}
-
-/** STRUT_EVENT_CREEP_IN: inside of the band friction is what it is there. */
-STRUT_INLINE double strut_law_margin_of_creep_in(double side, double at_edge, double friction) {
-  return side * (at_edge - friction);
-}
-
-/**
- * Is less of a margin left, where it is `least` within a step, than it has lost from what it is at its ends, `kept`
- * at least? Its true least value may then be below 0.
- */
-STRUT_INLINE bool strut_law_margin_is_spent(double least, double kept) {
-  return 2.0 * least < kept;
-}
+#include "engine/forces/forces_kernel.h"
+#include "engine/integrate/events/event_stepping.h"
 
 /* Forces and speeds that agree to this part are taken to be equal at the edge of a band. */
 #define STRUT_TIED 1e-8
 
-/**
- * Friction of a creeping contact: where it balances the other forces but for rounding, creep ends, and the
- * contact stays within the band, at its edge, which rounding does not leave.
- */
-STRUT_INLINE double strut_law_friction_in_creep(double side, double normal, double friction,
-                                                double applied) {
-  double faint = STRUT_TIED * normal;
-  return faint >= fabs(friction + applied) ? -applied + side * faint : friction;
+/* Half the layer about the threshold mu_0 N in which a contact yields, relative. */
+static const double STRUT_YIELD_LAYER = 1e-3;
+
+/* Normal force of the spring and, where `damped`, the damper, of a contact that touches. */
+STRUT_INLINE double contact_normal_force(const strut_contact_entry *e, int8_t damper, double gap,
+                                         double into, bool damped) {
+  const strut_law_ground_numbers numbers = strut_contact_numbers(e);
+  bool acts = damper ? damper > 0 : into<0.0, crossley = e->dissipation> 0.0;
+  return damped ? strut_law_ground_normal_in_mode(&numbers, acts, gap, into, crossley)
+                : strut_law_ground_spring(&numbers, gap);
 }
 
-/** Sliding speed of a contact in its band: at the edge but for rounding, it is within it. */
-STRUT_INLINE double strut_law_slip_in_band(double slip, double edge) {
-  bool tied = STRUT_TIED * edge >= fabs(fabs(slip) - edge);
-  return tied ? (slip < 0.0 ? -edge : edge) * (1.0 - STRUT_TIED) : slip;
+/* The most that friction holds against a push, and with which it slides, in this direction [N]. */
+STRUT_INLINE double holding_limit(const strut_contact_entry *e, double normal, double towards) {
+  return strut_friction_static(&e->friction, towards) * normal;
+}
+STRUT_INLINE double sliding_limit(const strut_contact_entry *e, double normal, double towards) {
+  return strut_friction_kinetic(&e->friction, towards) * normal;
+}
+
+/* Friction between holding and pushing, by how far the applied force is through the layer. */
+STRUT_INLINE double yield_friction(const strut_contact_entry *e, double normal, double applied) {
+  double threshold = holding_limit(e, normal, applied), half = STRUT_YIELD_LAYER * threshold;
+  double size = applied < 0.0 ? -applied : applied;
+  double pushed = half > 0.0 ? 0.5 + 0.5 * (size - threshold) / half : 1.0;
+  pushed = pushed < 0.0 ? 0.0 : pushed > 1.0 ? 1.0 : pushed;
+  double friction =
+      (1.0 - pushed) * size + pushed * strut_friction_kinetic(&e->friction, applied) * normal;
+  return applied < 0.0 ? friction : -friction;
+}
+
+/* In STRUT_MODE_BAND it balances the other forces up to its limit. */
+STRUT_INLINE double band_friction(double holding, double applied) {
+  return holding < applied ? -holding : applied < -holding ? holding : -applied;
+}
+
+/* Friction by the mode; a multiplier, which comes later, is 0 here. */
+STRUT_INLINE double friction_in_mode(const strut_contact_entry *e, const strut_contact_modes *modes,
+                                     int32_t i, const strut_touch *o) {
+  int8_t side = modes->side[i];
+  switch ((strut_contact_mode)modes->of[i]) {
+    case STRUT_MODE_SLIP:
+    case STRUT_MODE_PUSH: return -side * strut_friction_kinetic(&e->friction, side) * o->normal;
+    case STRUT_MODE_SLIDE:
+      return strut_friction_is_continuous(e->friction.law)
+                 ? strut_friction_force(&e->friction, o->normal, o->slip, o->applied)
+                 : 0.0;
+    case STRUT_MODE_BAND: return band_friction(holding_limit(e, o->normal, o->applied), o->applied);
+    case STRUT_MODE_YIELD: return yield_friction(e, o->normal, o->applied);
+    case STRUT_MODE_OPEN:
+    case STRUT_MODE_STICK:
+    case STRUT_MODE_CREEP: break;
+  }
+  return 0.0;
+}
+
+/* Edge of the band, or 0 where sticking is exact. */
+STRUT_INLINE double stick_band_edge(const strut_contact_entry *e) {
+  bool band = strut_friction_has_band(e->friction.law);
+  return band ? e->friction.stick_velocity : 0.0;
+}
+
+/*
+ * Ties at the edge of a band, but for rounding. Where a creeping contact balances the other forces creep ends, and the
+ * contact stays within the band, at its edge, which rounding does not leave.
+ */
+STRUT_INLINE void settle_band_tie(const strut_contact_entry *e, const strut_contact_modes *modes,
+                                  int32_t i, strut_touch *o) {
+  double edge = e->friction.stick_velocity, faint = STRUT_TIED * o->normal;
+  if (modes->of[i] == STRUT_MODE_CREEP && faint >= fabs(o->friction + o->applied))
+    o->friction = -o->applied + modes->side[i] * faint;
+  if (modes->of[i] == STRUT_MODE_BAND && STRUT_TIED * edge >= fabs(fabs(o->slip) - edge))
+    o->slip = (o->slip < 0.0 ? -edge : edge) * (1.0 - STRUT_TIED);
+}
+
+/* Do the forces on a contact within its band balance, but for rounding? Then its speed does not change. */
+STRUT_INLINE bool band_forces_balance(const strut_contact_compliance *r, const strut_touch *o) {
+  return fabs(o->slip_rate) <= STRUT_TIED * o->normal * r->tangent;
+}
+
+/* ---- margins, of speeds [m/s] and of forces [N] ---- */
+
+STRUT_INLINE double margin_of_slip(const strut_contact_entry *e, const strut_touch *o,
+                                   double side) {
+  return side * o->slip - stick_band_edge(e);
+}
+/* By the speed towards the edge. */
+STRUT_INLINE double margin_of_band(const strut_contact_entry *e, double speed) {
+  return stick_band_edge(e) - speed;
+}
+STRUT_INLINE double margin_of_stick(const strut_contact_entry *e, const strut_touch *o) {
+  return holding_limit(e, o->normal, -o->friction) - fabs(o->friction);
+}
+/* Outside of the band friction is all that sliding gives. */
+STRUT_INLINE double margin_of_creep_out(const strut_contact_entry *e, const strut_touch *o,
+                                        double side) {
+  return side * o->friction + sliding_limit(e, o->normal, side);
+}
+/* Inside of the band friction is what it is there. */
+STRUT_INLINE double margin_of_creep_in(const strut_contact_entry *e, const strut_touch *o,
+                                       double side) {
+  bool held = fabs(o->applied) < holding_limit(e, o->normal, o->applied);
+  double sliding = sliding_limit(e, o->normal, o->applied);
+  double at_edge = held ? -o->applied : -sliding * strut_sign(o->applied);
+  return side * (at_edge - o->friction);
+}
+/* In PUSH, which ends where this is 0, too, and else. */
+STRUT_INLINE double margin_of_push(const strut_contact_entry *e, const strut_touch *o, uint8_t mode,
+                                   double side) {
+  double holding = holding_limit(e, o->normal, o->applied);
+  return mode == STRUT_MODE_PUSH ? side * o->applied - holding : holding - fabs(o->applied);
+}
+/* From either end of the range of the applied force in which a contact keeps yielding. */
+STRUT_INLINE double margin_of_yield(const strut_contact_entry *e, const strut_touch *o) {
+  double threshold = holding_limit(e, o->normal, o->applied);
+  return 2.0 * STRUT_YIELD_LAYER * threshold - fabs(fabs(o->applied) - threshold);
+}
+
+/* What but its speed ends the mode of a contact within its band. */
+STRUT_INLINE strut_event_kind event_within_band(const strut_contact_entry *e,
+                                                const strut_contact_modes *modes, int32_t i,
+                                                const strut_touch *o) {
+  uint8_t mode = modes->of[i];
+  if (mode == STRUT_MODE_YIELD)
+    return margin_of_yield(e, o) < 0.0 ? STRUT_EVENT_YIELDED : STRUT_EVENT_NONE;
+  if (!strut_friction_drops(&e->friction)) return STRUT_EVENT_NONE;
+  double margin = margin_of_push(e, o, mode, modes->side[i]);
+  bool holds = mode == STRUT_MODE_PUSH ? margin > 0.0 : !(margin < 0.0);
+  return holds ? STRUT_EVENT_NONE : STRUT_EVENT_PUSH;
+}
+
+/* The event that ends the mode of closed contact i, by its state at the end of a step. */
+STRUT_INLINE strut_event_kind contradicting_event(const strut_contact_entry *e,
+                                                  const strut_contact_modes *modes, int32_t i,
+                                                  const strut_touch *o) {
+  double side = modes->side[i];
+#define STRUT_ENDS(margin, NAME) ((margin) < 0.0 ? STRUT_EVENT_##NAME : STRUT_EVENT_NONE)
+  switch ((strut_contact_mode)modes->of[i]) {
+    case STRUT_MODE_SLIP: return STRUT_ENDS(margin_of_slip(e, o, side), SLIP_ENDS);
+    case STRUT_MODE_STICK:
+      /* also where the gap is open by then: what holds a node lets go before that */
+      return STRUT_ENDS(margin_of_stick(e, o), STICK_BREAKS);
+    case STRUT_MODE_CREEP:
+      if (margin_of_creep_out(e, o, side) < 0.0) return STRUT_EVENT_CREEP_OUT;
+      return STRUT_ENDS(margin_of_creep_in(e, o, side), CREEP_IN);
+    case STRUT_MODE_BAND:
+    case STRUT_MODE_PUSH:
+    case STRUT_MODE_YIELD:
+      if (margin_of_band(e, fabs(o->slip)) < 0.0) return STRUT_EVENT_LEAVES_STICK_BAND;
+      return event_within_band(e, modes, i, o);
+    case STRUT_MODE_OPEN:
+    case STRUT_MODE_SLIDE: break;
+  }
+#undef STRUT_ENDS
+  return STRUT_EVENT_NONE;
 }
 
 #endif

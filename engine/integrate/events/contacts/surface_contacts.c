@@ -8,11 +8,11 @@
 #include "engine/forces/surfaces.h"
 #include "engine/integrate/events/event_kernel.h"
 
-void strut_surface_measure(const strut_contact_table *c, const strut_event_stepper *l,
+void strut_surface_measure(const strut_contact_table *c, const strut_contact_modes *modes,
                            const strut_ground_motion *motion, int32_t i, const double *q,
                            const double *v, strut_touch *o, strut_contact_frame *frame) {
   assert(i >= 0 && i < c->count);
-  int32_t facet = l->mode[i] == STRUT_MODE_OPEN ? -1 : l->facet[i];
+  int32_t facet = modes->of[i] == STRUT_MODE_OPEN ? -1 : modes->facet[i];
   const strut_contact_pose pose = strut_contact_pose_at(c, i, q, motion, facet);
   const strut_ground_motion *own = strut_contact_motion(c, i, motion);
   const double *n = pose.axes.normal, *t = pose.axes.tangent;
@@ -32,16 +32,15 @@ void strut_surface_measure(const strut_contact_table *c, const strut_event_stepp
   frame->slip_drift -= strut_component(t, own->bend[0], own->bend[1]);
 }
 
-double strut_surface_applied(const strut_model *model, const strut_event_stepper *l, int32_t k,
-                             const strut_step_end *end) {
-  const strut_contact_table *c = &model->contacts;
+double strut_surface_applied(const strut_contact_table *c, const strut_active_set *active,
+                             int32_t k, const strut_step_end *end) {
   const strut_touch *touch = end->touch;
-  int32_t i = l->closed[k];
+  int32_t i = active->closed[k];
   const double *t = end->frame[i].axes.tangent;
   double sum = end->frame[i].alone;
   for (int32_t step = -1; step <= 1; step += 2)
-    for (int32_t m = k + step; m >= 0 && m < l->closed_count; m += step) {
-      int32_t j = l->closed[m];
+    for (int32_t m = k + step; m >= 0 && m < active->closed_count; m += step) {
+      int32_t j = active->closed[m];
       if (c->at[j] != c->at[i]) break;
       const strut_contact_axes *axes = &end->frame[j].axes;
       sum += touch[j].normal * strut_component(t, axes->normal[0], axes->normal[1]) +
@@ -50,27 +49,26 @@ double strut_surface_applied(const strut_model *model, const strut_event_stepper
   return sum;
 }
 
-static bool shares_node(const strut_contact_table *c, const strut_event_stepper *l, int32_t k) {
-  uint32_t at = c->at[l->closed[k]];
-  return (k > 0 && c->at[l->closed[k - 1]] == at) ||
-         (k + 1 < l->closed_count && c->at[l->closed[k + 1]] == at);
+static bool shares_node(const strut_contact_table *c, const strut_active_set *active, int32_t k) {
+  uint32_t at = c->at[active->closed[k]];
+  return (k > 0 && c->at[active->closed[k - 1]] == at) ||
+         (k + 1 < active->closed_count && c->at[active->closed[k + 1]] == at);
 }
 
 /* Friction of all closed contacts, until those of one node agree. */
-static void find_friction(const strut_model *model, const strut_event_stepper *l,
+static void find_friction(const strut_model *model, const strut_event_stepper *stepper,
                           const strut_step_end *end) {
   enum { MOST_SWEEPS = 60 };
   const strut_contact_table *c = &model->contacts;
   for (int sweep = 0; sweep < MOST_SWEEPS; sweep++) {
     double changed = 0.0, largest = 0.0;
-    for (int32_t k = 0; k < l->closed_count; k++) {
-      int32_t i = l->closed[k];
+    for (int32_t k = 0; k < stepper->active.closed_count; k++) {
+      int32_t i = stepper->active.closed[k];
       strut_touch *o = &end->touch[i];
       double before = o->friction;
-      o->applied = strut_surface_applied(model, l, k, end);
-      o->friction =
-          friction_in_mode(&l->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);
-      if (!shares_node(c, l, k)) continue;
+      o->applied = strut_surface_applied(c, &stepper->active, k, end);
+      o->friction = friction_in_mode(&stepper->contacts.entry[i], &stepper->modes, i, o);
+      if (!shares_node(c, &stepper->active, k)) continue;
       changed = fmax(changed, fabs(o->friction - before));
       largest = fmax(largest, fabs(o->friction));
     }
@@ -78,24 +76,25 @@ static void find_friction(const strut_model *model, const strut_event_stepper *l
   }
 }
 
-void strut_surface_add_forces(const strut_model *model, const strut_event_stepper *l,
+void strut_surface_add_forces(const strut_model *model, const strut_event_stepper *stepper,
                               const double *q, const double *v, double *force, bool damped,
                               const strut_step_end *end) {
   const strut_contact_table *c = &model->contacts;
-  for (int32_t k = 0; k < l->closed_count; k++) {
-    int32_t i = l->closed[k];
+  for (int32_t k = 0; k < stepper->active.closed_count; k++) {
+    int32_t i = stepper->active.closed[k];
     strut_touch *o = &end->touch[i];
     strut_contact_frame *frame = &end->frame[i];
-    strut_surface_measure(c, l, end->motion, i, q, v, o, frame);
+    strut_surface_measure(c, &stepper->modes, end->motion, i, q, v, o, frame);
     frame->alone = strut_component(frame->axes.tangent, force[c->at[i]], force[c->at[i] + 1]);
-    o->normal = contact_normal_force(&l->entry[i], l->damper[i], o->gap, o->into, damped);
+    o->normal = contact_normal_force(&stepper->contacts.entry[i], stepper->modes.damper[i], o->gap,
+                                     o->into, damped);
     o->friction = 0.0;
   }
-  find_friction(model, l, end);
-  for (int32_t k = 0; k < l->closed_count; k++) {
-    const strut_touch *o = &end->touch[l->closed[k]];
-    const strut_contact_axes *axes = &end->frame[l->closed[k]].axes;
-    double *f = force + c->at[l->closed[k]];
+  find_friction(model, stepper, end);
+  for (int32_t k = 0; k < stepper->active.closed_count; k++) {
+    const strut_touch *o = &end->touch[stepper->active.closed[k]];
+    const strut_contact_axes *axes = &end->frame[stepper->active.closed[k]].axes;
+    double *f = force + c->at[stepper->active.closed[k]];
     f[0] += o->friction * axes->tangent[0] + o->normal * axes->normal[0];
     f[1] += o->friction * axes->tangent[1] + o->normal * axes->normal[1];
   }
@@ -113,7 +112,7 @@ double strut_surface_moving_power(const strut_touch *o, const strut_contact_fram
   return o->normal * frame->ground_into + o->friction * frame->ground_along;
 }
 
-double strut_surface_facet_margin(const strut_contact_table *c, const strut_event_stepper *l,
+double strut_surface_facet_margin(const strut_contact_table *c, const strut_contact_modes *modes,
                                   const strut_step_end *end, int32_t i, int32_t *nearest) {
   assert(i >= 0 && i < c->count);
   const strut_surface *s = &c->surface[c->surface_of[i]];
@@ -121,8 +120,8 @@ double strut_surface_facet_margin(const strut_contact_table *c, const strut_even
   const strut_ground_motion *own = strut_contact_motion(c, i, end->motion);
   double point[2] = {at[0], at[1]};
   if (own) point[0] -= own->place[0], point[1] -= own->place[1];
-  *nearest = l->facet[i];
-  return s->facets > 1 ? strut_surface_margin(s, point, l->facet[i], nearest) : HUGE_VAL;
+  *nearest = modes->facet[i];
+  return s->facets > 1 ? strut_surface_margin(s, point, modes->facet[i], nearest) : HUGE_VAL;
 }
 
 void strut_surface_move(const strut_model *model, const strut_state *state, strut_step_end *end,
@@ -134,10 +133,10 @@ void strut_surface_move(const strut_model *model, const strut_state *state, stru
  * A gap that is wider than this at the end of a step is positive at both ends, and so is the cubic between
  * them.
  */
-static double dip_margin(const strut_contact_table *c, const strut_event_stepper *l, int32_t i,
-                         double h) {
+static double dip_margin(const strut_contact_table *c, const strut_event_stepper *stepper,
+                         int32_t i, double h) {
   assert(i >= 0 && i < c->count);
-  const strut_step_end *end[2] = {l->now, l->next};
+  const strut_step_end *end[2] = {stepper->now, stepper->next};
   double place[2][2], margin = 0.0;
   for (int e = 0; e < 2; e++) {
     const strut_ground_motion *own = strut_contact_motion(c, i, end[e]->motion);
@@ -149,17 +148,19 @@ static double dip_margin(const strut_contact_table *c, const strut_event_stepper
   return margin + strut_distance(place[0], place[1]);
 }
 
-int32_t strut_surface_candidates(const strut_model *model, const strut_event_stepper *l, double h,
-                                 int32_t *list) {
+int32_t strut_surface_candidates(const strut_model *model, const strut_event_stepper *stepper,
+                                 double h, int32_t *list) {
+  const strut_active_set *active = &stepper->active;
   const strut_contact_table *c = &model->contacts;
   int32_t count = 0, closed = 0;
   for (int32_t first = 0, end; first < c->count; first = end) {
     end = strut_contacts_end_of_node(c, first);
     int32_t from = count;
-    double margin = h > 0.0 ? dip_margin(c, l, first, h) : 0.0;
-    count += strut_contacts_near(c, first, end, l->next->q, l->next->motion, margin, list + count);
-    for (; closed < l->closed_count && l->closed[closed] < end; closed++) {
-      int32_t i = l->closed[closed], at = count;
+    double margin = h > 0.0 ? dip_margin(c, stepper, first, h) : 0.0;
+    count += strut_contacts_near(c, first, end, stepper->next->q, stepper->next->motion, margin,
+                                 list + count);
+    for (; closed < active->closed_count && active->closed[closed] < end; closed++) {
+      int32_t i = active->closed[closed], at = count;
       while (at > from && list[at - 1] > i) at--;
       if (at > from && list[at - 1] == i) continue;
       memmove(list + at + 1, list + at, (size_t)(count++ - at) * sizeof *list);

@@ -13,23 +13,23 @@
 #include "engine/integrate/events/event_stepping.h"
 
 /** Fills *touch and *frame with the kinematics of contact i at q, v and the motion of the grounds then. */
-void strut_surface_measure(const strut_contact_table *c, const strut_event_stepper *l,
+void strut_surface_measure(const strut_contact_table *c, const strut_contact_modes *modes,
                            const strut_ground_motion *motion, int32_t i, const double *q,
                            const double *v, strut_touch *touch, strut_contact_frame *frame);
 /** As add_contact_forces, for surfaces. */
-void strut_surface_add_forces(const strut_model *model, const strut_event_stepper *l,
+void strut_surface_add_forces(const strut_model *model, const strut_event_stepper *stepper,
                               const double *q, const double *v, double *force, bool damped,
                               const strut_step_end *end);
 /** Force along the surface of closed contact closed[k] by all else on its node, other contacts included. */
-double strut_surface_applied(const strut_model *model, const strut_event_stepper *l, int32_t k,
-                             const strut_step_end *end);
+double strut_surface_applied(const strut_contact_table *c, const strut_active_set *active,
+                             int32_t k, const strut_step_end *end);
 /** As the same of event_kernel.h, for one closed contact. */
 void strut_surface_measure_rates(const strut_contact_table *c, int32_t i, const double *a,
                                  strut_touch *touch, const strut_contact_frame *frame);
 /** Power that the ground's own motion gives to the structure through contact i [W]. */
 double strut_surface_moving_power(const strut_touch *touch, const strut_contact_frame *frame);
 /** By how much the facet of closed contact i is nearer than every other one at an end [m]. */
-double strut_surface_facet_margin(const strut_contact_table *c, const strut_event_stepper *l,
+double strut_surface_facet_margin(const strut_contact_table *c, const strut_contact_modes *modes,
                                   const strut_step_end *end, int32_t i, int32_t *nearest);
 /** The motion of the grounds at time t into an end. */
 void strut_surface_move(const strut_model *model, const strut_state *state, strut_step_end *end,
@@ -49,10 +49,10 @@ static inline const strut_contact_axes *strut_axes_of_contact(const strut_contac
   return frame ? &frame[i].axes : &c->axes;
 }
 /**
- * Closed contacts, and open ones that may touch at l->next or, with h > 0, within the step of h that ends there.
+ * Closed contacts, and open ones that may touch at stepper->next or, with h > 0, within the step of h that ends there.
  * Ascending, into list (contacts); returns their number.
  */
-int32_t strut_surface_candidates(const strut_model *model, const strut_event_stepper *l, double h,
-                                 int32_t *list);
+int32_t strut_surface_candidates(const strut_model *model, const strut_event_stepper *stepper,
+                                 double h, int32_t *list);
 
 #endif

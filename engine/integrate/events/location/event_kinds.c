@@ -11,40 +11,42 @@
 #define MAYBE __attribute__((unused))
 
 #define VALUE(name)                                                                                \
-  static double name(MAYBE const strut_model *model, MAYBE const strut_event_stepper *l,           \
+  static double name(MAYBE const strut_model *model, MAYBE const strut_event_stepper *stepper,     \
                      MAYBE const strut_step_end *end, MAYBE int32_t i)
 #define RATE(name)                                                                                 \
-  static double name(MAYBE const strut_event_stepper *l, const strut_step_end *end, int32_t i)
+  static double name(MAYBE const strut_event_stepper *stepper, const strut_step_end *end, int32_t i)
 
 VALUE(no_end) { return 1.0; }
-VALUE(gap) { return gap_at_end(&model->contacts, l, i, end, STRUT_TERMS_ALL); }
-VALUE(depth) { return -gap_at_end(&model->contacts, l, i, end, STRUT_TERMS_ALL); }
+VALUE(gap) { return gap_at_end(&model->contacts, &stepper->modes, i, end, STRUT_TERMS_ALL); }
+VALUE(depth) { return -gap_at_end(&model->contacts, &stepper->modes, i, end, STRUT_TERMS_ALL); }
 RATE(depth_rate) { return -end->touch[i].into; }
 VALUE(slip_left) {
-  return strut_law_margin_of_slip(l->side[i], end->touch[i].slip, stick_band_edge(&l->entry[i]));
+  return margin_of_slip(&stepper->contacts.entry[i], &end->touch[i], stepper->modes.side[i]);
 }
-RATE(slip_rate) { return l->side[i] * end->touch[i].slip_rate; }
+RATE(slip_rate) { return stepper->modes.side[i] * end->touch[i].slip_rate; }
 
 /*
  * The edge of the band by which contact i leaves: that of the step's end, which may be beyond the one
- * by which it came in, where the step begins. Steppers that are not exact take each end's own: a band
+ * by which it came in, where the step begins. Methods that are not exact take each end's own: a band
  * narrower than a step they pass in a step of its own, which smooths their period map.
  */
-static double way_out(const strut_event_stepper *l, const strut_touch *o, int32_t i) {
-  double slip = l->stepper->exact ? l->next->touch[i].slip : o->slip;
+static double way_out(const strut_event_stepper *stepper, const strut_touch *o, int32_t i) {
+  double slip = stepper->formula->exact ? stepper->next->touch[i].slip : o->slip;
   return slip < 0.0 ? -1.0 : 1.0;
 }
 
 VALUE(band_left) {
   const strut_touch *o = &end->touch[i];
-  return strut_law_margin_of_band(way_out(l, o, i) * o->slip, stick_band_edge(&l->entry[i]));
+  return margin_of_band(&stepper->contacts.entry[i], way_out(stepper, o, i) * o->slip);
 }
 RATE(band_rate) {
   const strut_touch *o = &end->touch[i];
-  return -way_out(l, o, i) * o->slip_rate;
+  return -way_out(stepper, o, i) * o->slip_rate;
 }
-VALUE(stick_left) { return margin_of_stick(&l->entry[i], &end->touch[i]); }
-VALUE(creep_out_left) { return margin_of_creep_out(&l->entry[i], &end->touch[i], l->side[i]); }
+VALUE(stick_left) { return margin_of_stick(&stepper->contacts.entry[i], &end->touch[i]); }
+VALUE(creep_out_left) {
+  return margin_of_creep_out(&stepper->contacts.entry[i], &end->touch[i], stepper->modes.side[i]);
+}
 
 /*
  * Where the other forces pass what friction holds, friction inside the band drops, and the margin jumps. How
@@ -52,125 +54,136 @@ VALUE(creep_out_left) { return margin_of_creep_out(&l->entry[i], &end->touch[i],
  */
 VALUE(creep_in_left) {
   const strut_touch *o = &end->touch[i];
-  double margin = margin_of_creep_in(&l->entry[i], o, l->side[i]);
-  if (!strut_friction_drops(&l->entry[i].friction)) return margin;
-  double room = margin_of_push(&l->entry[i], o, STRUT_MODE_BAND, 0.0);
+  double margin = margin_of_creep_in(&stepper->contacts.entry[i], o, stepper->modes.side[i]);
+  if (!strut_friction_drops(&stepper->contacts.entry[i].friction)) return margin;
+  double room = margin_of_push(&stepper->contacts.entry[i], o, STRUT_MODE_BAND, 0.0);
   return room > 0.0 ? fmin(room, margin) : fmax(room, margin);
 }
-VALUE(push_left) { return margin_of_push(&l->entry[i], &end->touch[i], l->mode[i], l->side[i]); }
-VALUE(yield_left) { return margin_of_yield(&l->entry[i], &end->touch[i]); }
-VALUE(speed_left) { return l->damper[i] > 0 ? -end->touch[i].into : end->touch[i].into; }
-RATE(speed_rate) { return l->damper[i] > 0 ? -end->touch[i].into_rate : end->touch[i].into_rate; }
+VALUE(push_left) {
+  return margin_of_push(&stepper->contacts.entry[i], &end->touch[i], stepper->modes.of[i],
+                        stepper->modes.side[i]);
+}
+VALUE(yield_left) { return margin_of_yield(&stepper->contacts.entry[i], &end->touch[i]); }
+VALUE(speed_left) {
+  return stepper->modes.damper[i] > 0 ? -end->touch[i].into : end->touch[i].into;
+}
+RATE(speed_rate) {
+  return stepper->modes.damper[i] > 0 ? -end->touch[i].into_rate : end->touch[i].into_rate;
+}
 VALUE(facet_left) {
   int32_t nearest;
-  return strut_surface_facet_margin(&model->contacts, l, end, i, &nearest);
+  return strut_surface_facet_margin(&model->contacts, &stepper->modes, end, i, &nearest);
 }
-VALUE(of_law) { return law_value(l, end, i); }
+VALUE(of_law) { return law_value(stepper, end, i); }
 
 /* ---- what follows ---- */
 
 #define EFFECT(name)                                                                               \
   static void name(MAYBE const strut_model *model, MAYBE strut_state *state,                       \
-                   MAYBE strut_event_stepper *l, MAYBE int32_t i, MAYBE double t)
+                   MAYBE strut_event_stepper *stepper, MAYBE int32_t i, MAYBE double t)
 
 /*
  * At the edge of Karnopp's band, u = s delta: outside friction is -s mu N, inside it balances. The
  * node goes where the acceleration on that side leads; where both lead to the edge it creeps along.
  */
-static void decide_at_edge(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                           int32_t i, bool from_inside, double t) {
-  const strut_contact_entry *e = &l->entry[i];
-  double s = l->side[i];
-  strut_contact_snap(model, l, i, s * e->friction.stick_velocity);
-  l->mode[i] = STRUT_MODE_SLIP;
-  strut_update_active_set(model, l);
-  strut_evaluate_acceleration(model, state, l, t);
-  const strut_touch *o = &l->now->touch[i];
+static void decide_at_edge(const strut_model *model, strut_state *state,
+                           strut_event_stepper *stepper, int32_t i, bool from_inside, double t) {
+  strut_contact_modes *modes = &stepper->modes;
+  const strut_contact_entry *e = &stepper->contacts.entry[i];
+  double s = modes->side[i];
+  strut_contact_snap(model, stepper, i, s * e->friction.stick_velocity);
+  modes->of[i] = STRUT_MODE_SLIP;
+  strut_update_active_set(model, stepper);
+  strut_evaluate_acceleration(model, state, stepper, t);
+  const strut_touch *o = &stepper->now->touch[i];
   double outside = s * o->slip_rate;
   double most = strut_friction_static(&e->friction, o->applied) * o->normal;
   bool pushed = fabs(o->applied) >= most;
-  l->mode[i] = pushed && strut_friction_drops(&e->friction) ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
-  l->side[i] = (int8_t)(l->mode[i] == STRUT_MODE_PUSH ? strut_sign(o->applied) : s);
-  strut_update_active_set(model, l);
-  strut_evaluate_acceleration(model, state, l, t);
-  double inside = s * l->now->touch[i].slip_rate;
+  modes->of[i] = pushed && strut_friction_drops(&e->friction) ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
+  modes->side[i] = (int8_t)(modes->of[i] == STRUT_MODE_PUSH ? strut_sign(o->applied) : s);
+  strut_update_active_set(model, stepper);
+  strut_evaluate_acceleration(model, state, stepper, t);
+  double inside = s * stepper->now->touch[i].slip_rate;
   if (inside < 0.0 && (outside < 0.0 || !from_inside)) return;
-  l->side[i] = (int8_t)s;
-  l->mode[i] = outside > 0.0 ? STRUT_MODE_SLIP : STRUT_MODE_CREEP;
+  modes->side[i] = (int8_t)s;
+  modes->of[i] = outside > 0.0 ? STRUT_MODE_SLIP : STRUT_MODE_CREEP;
 }
 
 /*
  * Contact i by what pushes it along the ground. Without a normal force yet, other forces may begin just now:
  * those a step later say.
  */
-static const strut_touch *pushed_touch(const strut_event_stepper *l, int32_t i) {
-  return l->now->touch[i].normal > 0.0 ? &l->now->touch[i] : &l->next->touch[i];
+static const strut_touch *pushed_touch(const strut_event_stepper *stepper, int32_t i) {
+  return stepper->now->touch[i].normal > 0.0 ? &stepper->now->touch[i] : &stepper->next->touch[i];
 }
-static int8_t side_of_push(const strut_event_stepper *l, int32_t i) {
-  return pushed_touch(l, i)->applied < 0.0 ? -1 : 1;
+static int8_t side_of_push(const strut_event_stepper *stepper, int32_t i) {
+  return pushed_touch(stepper, i)->applied < 0.0 ? -1 : 1;
 }
 
 EFFECT(no_effect) {}
 EFFECT(close_nearest) {
-  double time = l->refine_time > 0.0 ? l->refine_time : l->refine_memory * l->settling_time[i];
-  strut_contact_close(model, l, i, -1);
+  double time = stepper->control.refine_time > 0.0
+                    ? stepper->control.refine_time
+                    : stepper->control.refine_memory * stepper->contacts.settling_time[i];
+  strut_contact_close(model, stepper, i, -1);
   state->refined_until = fmax(state->refined_until, t + time);
 }
-EFFECT(open) { l->mode[i] = STRUT_MODE_OPEN; }
+EFFECT(open) { stepper->modes.of[i] = STRUT_MODE_OPEN; }
 EFFECT(end_slip) {
-  if (stick_band_edge(&l->entry[i]) > 0.0) {
-    decide_at_edge(model, state, l, i, false, t);
+  if (stick_band_edge(&stepper->contacts.entry[i]) > 0.0) {
+    decide_at_edge(model, state, stepper, i, false, t);
   } else {
-    strut_contact_snap(model, l, i, 0.0);
-    l->mode[i] = STRUT_MODE_STICK;
+    strut_contact_snap(model, stepper, i, 0.0);
+    stepper->modes.of[i] = STRUT_MODE_STICK;
   }
 }
 EFFECT(leave_band) {
-  l->side[i] = l->now->touch[i].slip < 0.0 ? -1 : 1;
-  decide_at_edge(model, state, l, i, true, t);
+  stepper->modes.side[i] = stepper->now->touch[i].slip < 0.0 ? -1 : 1;
+  decide_at_edge(model, state, stepper, i, true, t);
 }
 EFFECT(break_stick) {
-  l->side[i] = pushed_touch(l, i)->friction > 0.0 ? -1 : 1;
-  l->mode[i] = STRUT_MODE_SLIP;
+  stepper->modes.side[i] = pushed_touch(stepper, i)->friction > 0.0 ? -1 : 1;
+  stepper->modes.of[i] = STRUT_MODE_SLIP;
 }
-EFFECT(creep_out) { l->mode[i] = STRUT_MODE_SLIP; }
+EFFECT(creep_out) { stepper->modes.of[i] = STRUT_MODE_SLIP; }
 EFFECT(creep_in) {
-  const strut_contact_entry *e = &l->entry[i];
-  const strut_touch *o = &l->now->touch[i];
+  const strut_contact_entry *e = &stepper->contacts.entry[i];
+  const strut_touch *o = &stepper->now->touch[i];
   /* which of the two has ended it: the forces inside the band still push out of it where that is the jump */
-  bool pushed =
-      strut_friction_drops(&e->friction) && margin_of_push(e, o, STRUT_MODE_BAND, 0.0) <
-                                                fmax(0.0, l->side[i] * (-o->applied - o->friction));
-  l->mode[i] = pushed ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
-  if (pushed) l->side[i] = side_of_push(l, i);
+  bool pushed = strut_friction_drops(&e->friction) &&
+                margin_of_push(e, o, STRUT_MODE_BAND, 0.0) <
+                    fmax(0.0, stepper->modes.side[i] * (-o->applied - o->friction));
+  stepper->modes.of[i] = pushed ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
+  if (pushed) stepper->modes.side[i] = side_of_push(stepper, i);
 }
 EFFECT(push) {
   /* back and forth without a step between: the threshold attracts from both sides */
-  if (l->pushed == i && l->pushed_at == t)
-    l->mode[i] = STRUT_MODE_YIELD;
+  if (stepper->chatter.pushed == i && stepper->chatter.pushed_at == t)
+    stepper->modes.of[i] = STRUT_MODE_YIELD;
   else
-    l->mode[i] = l->mode[i] == STRUT_MODE_BAND ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
-  l->pushed = i, l->pushed_at = t;
-  l->side[i] = side_of_push(l, i);
+    stepper->modes.of[i] =
+        stepper->modes.of[i] == STRUT_MODE_BAND ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
+  stepper->chatter.pushed = i, stepper->chatter.pushed_at = t;
+  stepper->modes.side[i] = side_of_push(stepper, i);
 }
 EFFECT(end_yield) {
-  const strut_touch *o = &l->now->touch[i];
-  const strut_friction *f = &l->entry[i].friction;
+  const strut_touch *o = &stepper->now->touch[i];
+  const strut_friction *f = &stepper->contacts.entry[i].friction;
   bool over = fabs(o->applied) > strut_friction_static(f, o->applied) * o->normal;
-  l->mode[i] = over ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
-  l->side[i] = side_of_push(l, i);
+  stepper->modes.of[i] = over ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
+  stepper->modes.side[i] = side_of_push(stepper, i);
 }
-EFFECT(turn_damper) { l->damper[i] = (int8_t)-l->damper[i]; }
+EFFECT(turn_damper) { stepper->modes.damper[i] = (int8_t)-stepper->modes.damper[i]; }
 EFFECT(act) {
-  strut_cable_set_acting(state, l, i, !l->acting[i]);
-  if (l->laws[i].whole) strut_history_apply(model, state, l, i, t);
+  strut_cable_set_acting(state, stepper, i, !stepper->laws.acting[i]);
+  if (stepper->laws.item[i].whole) strut_history_apply(model, state, stepper, i, t);
 }
-EFFECT(pass_kink) { strut_law_pass_kink(model, state, l, i, t); }
-EFFECT(remember) { strut_history_apply(model, state, l, i, t); }
+EFFECT(pass_kink) { strut_law_pass_kink(model, state, stepper, i, t); }
+EFFECT(remember) { strut_history_apply(model, state, stepper, i, t); }
 EFFECT(change_facet) {
   int32_t nearest;
-  strut_surface_facet_margin(&model->contacts, l, l->now, i, &nearest);
-  strut_contact_close(model, l, i, nearest);
+  strut_surface_facet_margin(&model->contacts, &stepper->modes, stepper->now, i, &nearest);
+  strut_contact_close(model, stepper, i, nearest);
 }
 
 /* ---- the table ---- */
@@ -179,11 +192,11 @@ typedef enum owner { CONTACT, LAW } owner;
 
 typedef struct event_row {
   owner of;
-  double (*value)(const strut_model *model, const strut_event_stepper *l, const strut_step_end *end,
-                  int32_t i);
-  double (*rate)(const strut_event_stepper *l, const strut_step_end *end, int32_t i);
-  void (*effect)(const strut_model *model, strut_state *state, strut_event_stepper *l, int32_t i,
-                 double t);
+  double (*value)(const strut_model *model, const strut_event_stepper *stepper,
+                  const strut_step_end *end, int32_t i);
+  double (*rate)(const strut_event_stepper *stepper, const strut_step_end *end, int32_t i);
+  void (*effect)(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
+                 int32_t i, double t);
 } event_row;
 
 static const event_row rows[] = {
@@ -195,23 +208,23 @@ static const event_row rows[] = {
 
 bool strut_event_is_of_law(strut_event_kind kind) { return rows[kind].of == LAW; }
 
-double strut_event_value(const strut_model *model, const strut_event_stepper *l,
+double strut_event_value(const strut_model *model, const strut_event_stepper *stepper,
                          const strut_step_end *end, strut_event_kind kind, int32_t i) {
   assert(kind == STRUT_EVENT_NONE ||
-         i < (strut_event_is_of_law(kind) ? l->law_count : model->contacts.count));
-  return rows[kind].value(model, l, end, i);
+         i < (strut_event_is_of_law(kind) ? stepper->laws.count : model->contacts.count));
+  return rows[kind].value(model, stepper, end, i);
 }
 
-bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
+bool strut_event_rate(const strut_event_stepper *stepper, const strut_step_end *end,
                       strut_event_kind kind, int32_t i, double *rate) {
   assert(i >= 0);
   if (!rows[kind].rate) return false;
-  *rate = rows[kind].rate(l, end, i);
+  *rate = rows[kind].rate(stepper, end, i);
   return true;
 }
 
-void strut_event_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
+void strut_event_apply(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                        strut_event event, double t) {
-  rows[event.kind].effect(model, state, l, event.index, t);
-  strut_modes_derive(model, state, l, t);
+  rows[event.kind].effect(model, state, stepper, event.index, t);
+  strut_modes_derive(model, state, stepper, t);
 }

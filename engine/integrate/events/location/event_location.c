@@ -31,12 +31,13 @@ double strut_event_cubic_root(double g0, double d0, double g1, double d1) {
  * has its edge, but for rounding, where the step begins; so has one at whose edge the forces balance: it
  * is left when they cease to, not before.
  */
-static double room_to_leave(const strut_event_stepper *l, int32_t i, double room) {
-  const strut_contact_entry *e = &l->entry[i];
-  if (!l->stepper->exact && !strut_friction_drops(&e->friction)) return room;
+static double room_to_leave(const strut_event_stepper *stepper, int32_t i, double room) {
+  const strut_contact_entry *e = &stepper->contacts.entry[i];
+  if (!stepper->formula->exact && !strut_friction_drops(&e->friction)) return room;
   double faint = 1e-9 * stick_band_edge(e), rate = 0.0;
-  double balanced = STRUT_TIED * l->now->touch[i].normal * l->response[i].tangent;
-  strut_event_rate(l, l->now, STRUT_EVENT_LEAVES_STICK_BAND, i, &rate);
+  double balanced =
+      STRUT_TIED * stepper->now->touch[i].normal * stepper->contacts.compliance[i].tangent;
+  strut_event_rate(stepper, stepper->now, STRUT_EVENT_LEAVES_STICK_BAND, i, &rate);
   return room < faint && rate > -balanced ? faint : room;
 }
 
@@ -51,52 +52,55 @@ static double room_to_last(double least, double room, double rate, double after)
 }
 
 /* Rates of the event's value at both ends of the step; false where a secant must do. */
-static bool rates_of(const strut_model *model, const strut_event_stepper *l, strut_event_kind kind,
-                     int32_t i, double h, double *d0, double *d1) {
+static bool rates_of(const strut_model *model, const strut_event_stepper *stepper,
+                     strut_event_kind kind, int32_t i, double h, double *d0, double *d1) {
   if (kind == STRUT_EVENT_TOUCH) {
     strut_touch a, b;
-    measure_at_end(&model->contacts, l, l->now, i, STRUT_TERMS_ALL, &a);
-    measure_at_end(&model->contacts, l, l->next, i, STRUT_TERMS_ALL, &b);
+    measure_at_end(&model->contacts, &stepper->modes, stepper->now, i, STRUT_TERMS_ALL, &a);
+    measure_at_end(&model->contacts, &stepper->modes, stepper->next, i, STRUT_TERMS_ALL, &b);
     *d0 = h * a.into, *d1 = h * b.into;
     return true;
   }
-  if (!strut_event_rate(l, l->now, kind, i, d0) || !strut_event_rate(l, l->next, kind, i, d1))
+  if (!strut_event_rate(stepper, stepper->now, kind, i, d0) ||
+      !strut_event_rate(stepper, stepper->next, kind, i, d1))
     return false;
   *d0 *= h, *d1 *= h;
   return true;
 }
 
 /* Where between now and next the event's value passes 0. */
-static double fraction_of(const strut_model *model, const strut_event_stepper *l,
+static double fraction_of(const strut_model *model, const strut_event_stepper *stepper,
                           strut_event_kind kind, int32_t i, double h) {
-  double g0 = strut_event_value(model, l, l->now, kind, i), d0, d1;
-  double g1 = strut_event_value(model, l, l->next, kind, i);
-  bool rated = rates_of(model, l, kind, i, h, &d0, &d1), slips = kind == STRUT_EVENT_SLIP_ENDS;
-  double edge = slips ? stick_band_edge(&l->entry[i]) : 0.0;
+  double g0 = strut_event_value(model, stepper, stepper->now, kind, i), d0, d1;
+  double g1 = strut_event_value(model, stepper, stepper->next, kind, i);
+  bool rated = rates_of(model, stepper, kind, i, h, &d0, &d1),
+       slips = kind == STRUT_EVENT_SLIP_ENDS;
+  double edge = slips ? stick_band_edge(&stepper->contacts.entry[i]) : 0.0;
   if (kind == STRUT_EVENT_LEAVES_STICK_BAND)
-    g0 = room_to_leave(l, i, g0);
-  else if (rated && !strut_event_is_of_law(kind) && (l->stepper->exact || (slips && edge == 0.0)))
+    g0 = room_to_leave(stepper, i, g0);
+  else if (rated && !strut_event_is_of_law(kind) &&
+           (stepper->formula->exact || (slips && edge == 0.0)))
     g0 = room_to_last(1e-9 * edge, g0, d0, g1);
   if (!(g0 > 0.0)) return 0.0;
   return rated ? strut_event_cubic_root(g0, d0, g1, d1) : g0 / (g0 - g1);
 }
 
-static void keep_first(const strut_model *model, const strut_event_stepper *l,
+static void keep_first(const strut_model *model, const strut_event_stepper *stepper,
                        strut_event_kind kind, int32_t i, double h, strut_event *first) {
-  double fraction = fraction_of(model, l, kind, i, h);
+  double fraction = fraction_of(model, stepper, kind, i, h);
   if (first->kind && fraction >= first->fraction) return;
   *first = (strut_event){kind, i, fraction};
 }
 
 /* Cables `k`, STRUT_LANES of them side by side, with the bits of strut_member_pose_at. */
 STRUT_INLINE void measure_cables_group(const strut_model *model, const strut_state *state,
-                                       const strut_event_stepper *l, const strut_step_end *end,
-                                       const int32_t *k) {
+                                       const strut_event_stepper *stepper,
+                                       const strut_step_end *end, const int32_t *k) {
   const strut_member_table *t = &model->members;
   uint32_t from[STRUT_LANES], to[STRUT_LANES];
   strut_lanes rest, rest_rate, stiffness, damping;
   for (int n = 0; n < STRUT_LANES; n++) {
-    int32_t j = l->laws[k[n]].member;
+    int32_t j = stepper->laws.item[k[n]].member;
     from[n] = t->from[j], to[n] = t->to[j];
     rest[n] = state->latest.rest[j], rest_rate[n] = state->latest.rest_rate[j];
     stiffness[n] = t->stiffness[j], damping[n] = t->damping[j];
@@ -117,7 +121,7 @@ STRUT_INLINE void measure_cables_group(const strut_model *model, const strut_sta
 /* The first `count` laws, or those of a list, which all are cables; the last group repeats one. */
 STRUT_CLONES
 static void measure_cables(const strut_model *model, const strut_state *state,
-                           const strut_event_stepper *l, const strut_step_end *end,
+                           const strut_event_stepper *stepper, const strut_step_end *end,
                            const int32_t *list, int32_t count) {
   for (int32_t n = 0; n < count; n += STRUT_LANES) {
     int32_t k[STRUT_LANES];
@@ -125,7 +129,7 @@ static void measure_cables(const strut_model *model, const strut_state *state,
       int32_t place = n + m < count ? n + m : count - 1;
       k[m] = list ? list[place] : place;
     }
-    measure_cables_group(model, state, l, end, k);
+    measure_cables_group(model, state, stepper, end, k);
   }
 }
 
@@ -161,17 +165,18 @@ static void measure_relay(const strut_model *model, const strut_state *state,
 
 /* The rest lengths are those of the end. Laws of a list are all cables, or begin with all of them. */
 static void measure_laws(const strut_model *model, const strut_state *state,
-                         const strut_event_stepper *l, const strut_step_end *end) {
-  int32_t laws = strut_laws_of(l), cables = laws < l->cable_count ? laws : l->cable_count;
-  measure_cables(model, state, l, end, l->nearby_laws, cables);
+                         const strut_event_stepper *stepper, const strut_step_end *end) {
+  int32_t laws = strut_laws_of(&stepper->laws),
+          cables = laws < stepper->laws.cable_count ? laws : stepper->laws.cable_count;
+  measure_cables(model, state, stepper, end, stepper->laws.nearby, cables);
   for (int32_t n = cables; n < laws; n++) {
-    int32_t k = strut_law_of(l, n);
-    if (l->laws[k].event == STRUT_EVENT_RELAY)
-      measure_relay(model, state, &l->laws[k], end, k);
-    else if (l->laws[k].event >= STRUT_EVENT_SLIDER || l->laws[k].whole)
-      strut_history_measure(model, state, l, end, k);
+    int32_t k = strut_law_of(&stepper->laws, n);
+    if (stepper->laws.item[k].event == STRUT_EVENT_RELAY)
+      measure_relay(model, state, &stepper->laws.item[k], end, k);
+    else if (stepper->laws.item[k].event >= STRUT_EVENT_SLIDER || stepper->laws.item[k].whole)
+      strut_history_measure(model, state, stepper, end, k);
     else
-      measure_element(model, state, &l->laws[k], end, k);
+      measure_element(model, state, &stepper->laws.item[k], end, k);
   }
 }
 
@@ -180,125 +185,131 @@ static bool is_of_collision(const strut_model *model, const strut_law_switch *la
   return law->element >= 0 && model->elements.element[law->element].role == STRUT_ELEMENT_COLLISION;
 }
 
-/* Laws that may switch at `end`, in l->nearby_laws; those that have come near are measured at both ends. */
-static void list_nearby(const strut_model *model, strut_state *state, strut_event_stepper *l,
+/* Laws that may switch at `end`, in stepper->laws.nearby; those that have come near are measured at both ends. */
+static void list_nearby(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                         const strut_step_end *end) {
   const strut_nearby *near = strut_nearby_at(model, state, end->q);
-  if (l->nearby_made == near->made) return;
-  l->nearby_made = near->made;
-  l->nearby_count = 0;
+  if (stepper->laws.nearby_made == near->made) return;
+  stepper->laws.nearby_made = near->made;
+  stepper->laws.nearby_count = 0;
   int32_t next = 0;
-  for (int32_t k = 0; k < l->law_count; k++) {
-    const strut_law_switch *law = &l->laws[k];
+  for (int32_t k = 0; k < stepper->laws.count; k++) {
+    const strut_law_switch *law = &stepper->laws.item[k];
     if (is_of_collision(model, law)) {
       while (next < near->count && near->element[next] < law->element) next++;
       if (next == near->count || near->element[next] != law->element) continue;
-      measure_element(model, state, law, l->now, k);
-      measure_element(model, state, law, l->next, k);
+      measure_element(model, state, law, stepper->now, k);
+      measure_element(model, state, law, stepper->next, k);
     }
-    l->nearby_laws[l->nearby_count++] = k;
+    stepper->laws.nearby[stepper->laws.nearby_count++] = k;
   }
 }
 
-void strut_event_measure(const strut_model *model, strut_state *state, strut_event_stepper *l,
+void strut_event_measure(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                          const strut_step_end *end) {
-  if (!l->law_count) return;
-  if (l->nearby_laws) list_nearby(model, state, l, end);
-  measure_laws(model, state, l, end);
+  if (!stepper->laws.count) return;
+  if (stepper->laws.nearby) list_nearby(model, state, stepper, end);
+  measure_laws(model, state, stepper, end);
 }
 
-void strut_event_part_all(const strut_model *model, strut_state *state, strut_event_stepper *l) {
-  for (int32_t k = 0; k < l->law_count; k++)
-    if (is_of_collision(model, &l->laws[k])) strut_cable_set_acting(state, l, k, false);
-  l->nearby_made = 0;
-  list_nearby(model, state, l, l->now);
+void strut_event_part_all(const strut_model *model, strut_state *state,
+                          strut_event_stepper *stepper) {
+  strut_law_switches *laws = &stepper->laws;
+  for (int32_t k = 0; k < laws->count; k++)
+    if (is_of_collision(model, &laws->item[k])) strut_cable_set_acting(state, stepper, k, false);
+  laws->nearby_made = 0;
+  list_nearby(model, state, stepper, stepper->now);
 }
 
 /* Whether an open contact whose gap is below 0 at the step's end has come down to it. One that has just
    opened may stand below 0 by rounding, on its way up. */
-static bool closes(const strut_contact_table *c, int32_t i, const strut_event_stepper *l) {
+static bool closes(const strut_contact_table *c, int32_t i, const strut_event_stepper *stepper) {
   strut_touch to;
-  if (gap_at_end(c, l, i, l->now, STRUT_TERMS_ALL) > 0.0) return true;
-  measure_at_end(c, l, l->next, i, STRUT_TERMS_ALL, &to);
+  if (gap_at_end(c, &stepper->modes, i, stepper->now, STRUT_TERMS_ALL) > 0.0) return true;
+  measure_at_end(c, &stepper->modes, stepper->next, i, STRUT_TERMS_ALL, &to);
   return to.into < 0.0;
 }
 
 /* Has closed contact i left the ground by the end of the step, where it is at `o`, even if it is on its way down again?
    One that has just touched may be above the ground by rounding while it still moves down. */
-static bool opens(const strut_event_stepper *l, int32_t i, const strut_touch *o) {
-  return o->gap > 0.0 && (o->into > 0.0 || l->now->touch[i].gap < 0.0);
+static bool opens(const strut_event_stepper *stepper, int32_t i, const strut_touch *o) {
+  return o->gap > 0.0 && (o->into > 0.0 || stepper->now->touch[i].gap < 0.0);
 }
 
 /* What ends a mode of contact i, if it comes before `first`. */
-STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_stepper *l, int32_t i,
-                                double h, unsigned terms, strut_event *first) {
+STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_stepper *stepper,
+                                int32_t i, double h, unsigned terms, strut_event *first) {
+  const strut_contact_modes *modes = &stepper->modes;
   const strut_contact_table *c = &model->contacts;
-  if (l->mode[i] == STRUT_MODE_OPEN) {
-    if (gap_at_end(c, l, i, l->next, terms) < 0.0 && closes(c, i, l))
-      keep_first(model, l, STRUT_EVENT_TOUCH, i, h, first);
+  if (modes->of[i] == STRUT_MODE_OPEN) {
+    if (gap_at_end(c, modes, i, stepper->next, terms) < 0.0 && closes(c, i, stepper))
+      keep_first(model, stepper, STRUT_EVENT_TOUCH, i, h, first);
     return;
   }
-  const strut_touch *o = &l->next->touch[i];
-  const strut_contact_entry *entry = terms & STRUT_TERM_SURFACES ? l->entry : c->entry;
-  strut_event_kind kind = contradicting_event(&entry[i], o, l->mode[i], l->side[i]);
-  if (kind) keep_first(model, l, kind, i, h, first);
-  if (kind == STRUT_EVENT_LEAVES_STICK_BAND && l->stepper->exact) { /* it may be held before that */
-    kind = event_within_band(&entry[i], o, l->mode[i], l->side[i]);
-    if (kind) keep_first(model, l, kind, i, h, first);
+  const strut_touch *o = &stepper->next->touch[i];
+  const strut_contact_entry *entry =
+      terms & STRUT_TERM_SURFACES ? stepper->contacts.entry : c->entry;
+  strut_event_kind kind = contradicting_event(&entry[i], modes, i, o);
+  if (kind) keep_first(model, stepper, kind, i, h, first);
+  if (kind == STRUT_EVENT_LEAVES_STICK_BAND &&
+      stepper->formula->exact) { /* it may be held before that */
+    kind = event_within_band(&entry[i], modes, i, o);
+    if (kind) keep_first(model, stepper, kind, i, h, first);
   }
   int32_t nearest;
-  if (frames_of(l->next, terms) && strut_surface_facet_margin(c, l, l->next, i, &nearest) < 0.0)
-    keep_first(model, l, STRUT_EVENT_FACET, i, h, first);
-  if (!l->stepper->exact) return;
-  if (opens(l, i, o)) keep_first(model, l, STRUT_EVENT_OPEN, i, h, first);
-  if (l->damper[i] && (l->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
+  if (frames_of(stepper->next, terms) &&
+      strut_surface_facet_margin(c, modes, stepper->next, i, &nearest) < 0.0)
+    keep_first(model, stepper, STRUT_EVENT_FACET, i, h, first);
+  if (!stepper->formula->exact) return;
+  if (opens(stepper, i, o)) keep_first(model, stepper, STRUT_EVENT_OPEN, i, h, first);
+  if (modes->damper[i] && (modes->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
       c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
-    keep_first(model, l, STRUT_EVENT_DAMPER, i, h, first);
+    keep_first(model, stepper, STRUT_EVENT_DAMPER, i, h, first);
 }
 
 /*
  * Has law k, whose value at the end of the step is `after`, been switched a rounding too early, and comes to where it
  * belongs? Of two laws that switch at once it would otherwise be switched back while the other one is located.
  */
-static bool is_settling(const strut_model *model, const strut_event_stepper *l, int32_t k,
+static bool is_settling(const strut_model *model, const strut_event_stepper *stepper, int32_t k,
                         double after) {
-  const strut_law_switch *law = &l->laws[k];
-  double before = law_value(l, l->now, k);
+  const strut_law_switch *law = &stepper->laws.item[k];
+  double before = law_value(stepper, stepper->now, k);
   return law->event == STRUT_EVENT_ACTS && before < 0.0 && after >= before &&
          before > -FAINT * law->stiffness * model->size;
 }
 
 /* What switches a law, if it comes before `first`. */
-static void keep_first_of_laws(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                               double h, strut_event *first) {
-  strut_event_measure(model, state, l, l->next);
-  int32_t laws = strut_laws_of(l);
+static void keep_first_of_laws(const strut_model *model, strut_state *state,
+                               strut_event_stepper *stepper, double h, strut_event *first) {
+  strut_event_measure(model, state, stepper, stepper->next);
+  int32_t laws = strut_laws_of(&stepper->laws);
   for (int32_t k = 0; k < laws; k++) {
-    int32_t j = strut_law_of(l, k);
-    double after = law_value(l, l->next, j);
-    if (after < 0.0 && !is_settling(model, l, j, after))
-      keep_first(model, l, l->laws[j].event, j, h, first);
+    int32_t j = strut_law_of(&stepper->laws, k);
+    double after = law_value(stepper, stepper->next, j);
+    if (after < 0.0 && !is_settling(model, stepper, j, after))
+      keep_first(model, stepper, stepper->laws.item[j].event, j, h, first);
   }
 }
 
 /* Of `contacts` in a list and the laws of the stepper's list; NULL: of all contacts and laws. */
 STRUT_INLINE strut_event first_event(const strut_model *model, strut_state *state,
-                                     strut_event_stepper *l, double h, const int32_t *list,
+                                     strut_event_stepper *stepper, double h, const int32_t *list,
                                      int32_t contacts, unsigned terms) {
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
   for (int32_t k = 0; k < contacts; k++)
-    keep_first_of(model, l, list ? list[k] : k, h, terms, &first);
-  if (l->law_count) keep_first_of_laws(model, state, l, h, &first);
+    keep_first_of(model, stepper, list ? list[k] : k, h, terms, &first);
+  if (stepper->laws.count) keep_first_of_laws(model, state, stepper, h, &first);
   return first;
 }
 
-strut_event strut_event_first(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                              double h) {
+strut_event strut_event_first(const strut_model *model, strut_state *state,
+                              strut_event_stepper *stepper, double h) {
   if (model->contacts.surface)
-    return first_event(model, state, l, h, state->buffers.near,
-                       strut_surface_candidates(model, l, 0.0, state->buffers.near),
+    return first_event(model, state, stepper, h, state->buffers.near,
+                       strut_surface_candidates(model, stepper, 0.0, state->buffers.near),
                        STRUT_TERMS_ALL);
-  return first_event(model, state, l, h, NULL, model->contacts.count, STRUT_TERMS_COMMON);
+  return first_event(model, state, stepper, h, NULL, model->contacts.count, STRUT_TERMS_COMMON);
 }
 
 /* First fraction in [0, 1] where gap + speed x + bend x^2 falls below 0; 2 if it does not. */
@@ -312,35 +323,35 @@ static double parabola_root(double gap, double speed, double bend) {
 
 /* Where within the step contact i passes the ground, by the parabola that positions follow. */
 static double crossing(const strut_model *model, const strut_state *state,
-                       const strut_event_stepper *l, int32_t i, double sign, double h) {
+                       const strut_event_stepper *stepper, int32_t i, double sign, double h) {
   const strut_contact_table *c = &model->contacts;
-  const strut_step_end *now = l->now;
+  const strut_step_end *now = stepper->now;
   if (c->surface) {
     strut_touch o;
     strut_contact_frame frame;
-    strut_surface_measure(c, l, now->motion, i, now->q, now->v, &o, &frame);
+    strut_surface_measure(c, &stepper->modes, now->motion, i, now->q, now->v, &o, &frame);
     strut_surface_measure_rates(c, i, now->a, &o, &frame);
     return parabola_root(sign * o.gap, sign * h * o.into, sign * 0.5 * h * h * o.into_rate);
   }
   double gap = strut_contact_gap(c, i, state->q),
          speed = h * strut_contact_along_normal(c, i, state->v);
-  double bend = 0.5 * h * h * strut_contact_along_normal(c, i, l->now->a);
+  double bend = 0.5 * h * h * strut_contact_along_normal(c, i, stepper->now->a);
   return parabola_root(sign * gap, sign * speed, sign * bend);
 }
 
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
-                                const strut_event_stepper *l, double h) {
+                                const strut_event_stepper *stepper, double h) {
   const strut_contact_table *c = &model->contacts;
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
   bool surfaces = c->surface;
   int32_t count =
-      surfaces ? strut_surface_candidates(model, l, 0.0, state->buffers.near) : c->count;
+      surfaces ? strut_surface_candidates(model, stepper, 0.0, state->buffers.near) : c->count;
   for (int32_t k = 0; k < count; k++) {
     int32_t i = surfaces ? state->buffers.near[k] : k;
-    bool closed = l->mode[i] != STRUT_MODE_OPEN;
-    double gap = gap_at_end(c, l, i, l->next, STRUT_TERMS_ALL);
+    bool closed = stepper->modes.of[i] != STRUT_MODE_OPEN;
+    double gap = gap_at_end(c, &stepper->modes, i, stepper->next, STRUT_TERMS_ALL);
     if (closed ? gap <= 0.0 : gap >= 0.0) continue;
-    double fraction = crossing(model, state, l, i, closed ? -1.0 : 1.0, h);
+    double fraction = crossing(model, state, stepper, i, closed ? -1.0 : 1.0, h);
     if (fraction <= 1.0 && (!first.kind || fraction < first.fraction))
       first = (strut_event){closed ? STRUT_EVENT_OPEN : STRUT_EVENT_TOUCH, i, fraction};
   }

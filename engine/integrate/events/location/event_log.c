@@ -19,11 +19,12 @@ strut_event_log *strut_event_log_create(const strut_model *model, strut_arena *a
   return log->first && log->now && log->event ? log : NULL;
 }
 
-static int8_t contact_mode(const strut_event_stepper *l, int32_t i) {
-  switch ((strut_contact_mode)l->mode[i]) {
+static int8_t contact_mode(const strut_event_stepper *stepper, int32_t i) {
+  switch ((strut_contact_mode)stepper->modes.of[i]) {
     case STRUT_MODE_OPEN: return STRUT_LOGGED_OPEN;
     case STRUT_MODE_SLIDE: return STRUT_LOGGED_SLIDE;
-    case STRUT_MODE_SLIP: return l->side[i] > 0 ? STRUT_LOGGED_FORWARD : STRUT_LOGGED_BACKWARD;
+    case STRUT_MODE_SLIP:
+      return stepper->modes.side[i] > 0 ? STRUT_LOGGED_FORWARD : STRUT_LOGGED_BACKWARD;
     case STRUT_MODE_STICK:
     case STRUT_MODE_BAND:
     case STRUT_MODE_PUSH:
@@ -41,17 +42,17 @@ static void set_mode(strut_event_log *log, int32_t item, int8_t mode, double t) 
 }
 
 void strut_event_log_note(const strut_model *model, const strut_state *state,
-                          const strut_event_stepper *l, double t) {
+                          const strut_event_stepper *stepper, double t) {
   strut_event_log *log = state->watched.event_log;
-  for (int32_t i = 0; i < model->contacts.count; i++) set_mode(log, i, contact_mode(l, i), t);
-  int32_t laws = strut_laws_of(l);
+  for (int32_t i = 0; i < model->contacts.count; i++) set_mode(log, i, contact_mode(stepper, i), t);
+  int32_t laws = strut_laws_of(&stepper->laws);
   for (int32_t n = 0; n < laws; n++) {
-    int32_t k = strut_law_of(l, n);
-    const strut_law_switch *s = &l->laws[k];
+    int32_t k = strut_law_of(&stepper->laws, n);
+    const strut_law_switch *s = &stepper->laws.item[k];
     if (s->event == STRUT_EVENT_ACTS && s->member >= 0)
-      set_mode(log, log->contacts + s->member, (int8_t)l->acting[k], t);
+      set_mode(log, log->contacts + s->member, (int8_t)stepper->laws.acting[k], t);
     else if (s->event == STRUT_EVENT_ACTS)
-      set_mode(log, log->contacts + log->members + s->element, (int8_t)l->acting[k], t);
+      set_mode(log, log->contacts + log->members + s->element, (int8_t)stepper->laws.acting[k], t);
     else if (s->event == STRUT_EVENT_KINK && s->element >= 0)
       set_mode(log, log->contacts + log->members + log->elements + s->element,
                (int8_t)state->modes.element_piece[s->element], t);
@@ -59,10 +60,10 @@ void strut_event_log_note(const strut_model *model, const strut_state *state,
 }
 
 void strut_event_log_begin(const strut_model *model, const strut_state *state,
-                           const strut_event_stepper *l) {
+                           const strut_event_stepper *stepper) {
   strut_event_log *log = state->watched.event_log;
   for (int32_t i = 0; i < log->items; i++) log->now[i] = 0;
-  strut_event_log_note(model, state, l, 0.0);
+  strut_event_log_note(model, state, stepper, 0.0);
   for (int32_t i = 0; i < log->items; i++) log->first[i] = log->now[i];
   log->count = 0;
   log->full = false;

@@ -39,9 +39,9 @@ STRUT_API strut_event_log *strut_event_log_create(const strut_model *model, stru
 struct strut_event_stepper;
 /** The modes at the start of a run: empties the log. */
 void strut_event_log_begin(const strut_model *model, const strut_state *state,
-                           const struct strut_event_stepper *l);
+                           const struct strut_event_stepper *stepper);
 /** Notes what has changed at the time t. */
 void strut_event_log_note(const strut_model *model, const strut_state *state,
-                          const struct strut_event_stepper *l, double t);
+                          const struct strut_event_stepper *stepper, double t);
 
 #endif

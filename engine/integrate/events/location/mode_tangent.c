@@ -100,12 +100,13 @@ static void hold_contact(const strut_model *model, int32_t contact, strut_mode_t
   t->held++;
 }
 
-void strut_mode_tangent_hold(const strut_model *model, const strut_event_stepper *l,
+void strut_mode_tangent_hold(const strut_model *model, const strut_event_stepper *stepper,
                              strut_mode_tangent *t) {
   t->held = 0;
-  for (int32_t k = 0; k < l->closed_count; k++) {
-    uint8_t mode = l->mode[l->closed[k]];
-    if (mode == STRUT_MODE_STICK || mode == STRUT_MODE_CREEP) hold_contact(model, l->closed[k], t);
+  for (int32_t k = 0; k < stepper->active.closed_count; k++) {
+    uint8_t mode = stepper->modes.of[stepper->active.closed[k]];
+    if (mode == STRUT_MODE_STICK || mode == STRUT_MODE_CREEP)
+      hold_contact(model, stepper->active.closed[k], t);
   }
 }
 
@@ -170,10 +171,11 @@ STRUT_INLINE void add_member(const strut_model *model, const strut_state *state,
 
 /* The same of all forces but the ground's, by differences. */
 static void difference_forces(const strut_model *model, strut_state *state,
-                              const strut_event_stepper *l, double time, const double *q,
+                              const strut_event_stepper *stepper, double time, const double *q,
                               const double *v, strut_mode_tangent *t) {
   bool balance = state->balance;
-  const double unit[2] = {DIFFERENCE * model->size, DIFFERENCE * model->size / l->wanted_step};
+  const double unit[2] = {DIFFERENCE * model->size,
+                          DIFFERENCE * model->size / stepper->control.wanted_step};
   state->balance = false;
   memcpy(t->place, q, (size_t)model->length * sizeof(double));
   memcpy(t->speed, v, (size_t)model->length * sizeof(double));
@@ -198,35 +200,39 @@ typedef struct friction_slopes {
   double normal, slip, applied;
 } friction_slopes;
 
-static double slope_of(const strut_contact_entry *e, uint8_t mode, int8_t side, const double x[3],
-                       int argument, double step) {
-  assert(argument >= 0 && argument < 3 && step > 0.0);
-  double low[3] = {x[0], x[1], x[2]}, high[3] = {x[0], x[1], x[2]};
-  low[argument] -= step, high[argument] += step;
-  double more = friction_in_mode(e, mode, side, high[0], high[1], high[2]);
-  return (more - friction_in_mode(e, mode, side, low[0], low[1], low[2])) / (2.0 * step);
+/* By a number of the touch, which is put back. */
+static double slope_of(const strut_contact_entry *e, const strut_contact_modes *modes, int32_t i,
+                       const strut_touch *o, double *number, double step) {
+  assert(step > 0.0);
+  double value = *number;
+  *number = value + step;
+  double more = friction_in_mode(e, modes, i, o);
+  *number = value - step;
+  double less = friction_in_mode(e, modes, i, o);
+  *number = value;
+  return (more - less) / (2.0 * step);
 }
 
-static friction_slopes slopes_of(const strut_contact_entry *e, uint8_t mode, int8_t side,
-                                 double normal, double slip, double applied) {
-  switch ((strut_contact_mode)mode) {
+static friction_slopes slopes_of(const strut_contact_entry *e, const strut_contact_modes *modes,
+                                 int32_t i, strut_touch *o) {
+  int8_t side = modes->side[i];
+  switch ((strut_contact_mode)modes->of[i]) {
     case STRUT_MODE_SLIP:
     case STRUT_MODE_PUSH:
       return (friction_slopes){.normal = -side * strut_friction_kinetic(&e->friction, side)};
     case STRUT_MODE_BAND: {
-      double most = strut_friction_static(&e->friction, applied);
-      if (applied > most * normal) return (friction_slopes){.normal = -most};
-      if (applied < -most * normal) return (friction_slopes){.normal = most};
+      double most = strut_friction_static(&e->friction, o->applied);
+      if (o->applied > most * o->normal) return (friction_slopes){.normal = -most};
+      if (o->applied < -most * o->normal) return (friction_slopes){.normal = most};
       return (friction_slopes){.applied = -1.0};
     }
     case STRUT_MODE_SLIDE:
     case STRUT_MODE_YIELD: {
-      const double x[3] = {normal, slip, applied};
-      double force = DIFFERENCE * (fabs(normal) + fabs(applied)) + 1e-300;
-      double speed = DIFFERENCE * (fabs(slip) + e->friction.stick_velocity) + 1e-12;
-      return (friction_slopes){.normal = slope_of(e, mode, side, x, 0, force),
-                               .slip = slope_of(e, mode, side, x, 1, speed),
-                               .applied = slope_of(e, mode, side, x, 2, force)};
+      double force = DIFFERENCE * (fabs(o->normal) + fabs(o->applied)) + 1e-300;
+      double speed = DIFFERENCE * (fabs(o->slip) + e->friction.stick_velocity) + 1e-12;
+      return (friction_slopes){.normal = slope_of(e, modes, i, o, &o->normal, force),
+                               .slip = slope_of(e, modes, i, o, &o->slip, speed),
+                               .applied = slope_of(e, modes, i, o, &o->applied, force)};
     }
     case STRUT_MODE_OPEN:
     case STRUT_MODE_STICK:
@@ -236,9 +242,9 @@ static friction_slopes slopes_of(const strut_contact_entry *e, uint8_t mode, int
 }
 
 /* Does the friction of some closed contact depend on the other forces on its node? */
-static bool asks_applied(const strut_event_stepper *l) {
-  for (int32_t k = 0; k < l->closed_count; k++) {
-    uint8_t mode = l->mode[l->closed[k]];
+static bool asks_applied(const strut_event_stepper *stepper) {
+  for (int32_t k = 0; k < stepper->active.closed_count; k++) {
+    uint8_t mode = stepper->modes.of[stepper->active.closed[k]];
     if (mode == STRUT_MODE_BAND || mode == STRUT_MODE_YIELD || mode == STRUT_MODE_SLIDE)
       return true;
   }
@@ -246,8 +252,9 @@ static bool asks_applied(const strut_event_stepper *l) {
 }
 
 /* Does contact i stay where it is through the step, but for rounding? */
-static bool is_resting(const strut_contact_entry *e, const strut_event_stepper *l, int32_t i) {
-  const strut_touch *from = &l->now->touch[i], *to = &l->next->touch[i];
+static bool is_resting(const strut_contact_entry *e, const strut_event_stepper *stepper,
+                       int32_t i) {
+  const strut_touch *from = &stepper->now->touch[i], *to = &stepper->next->touch[i];
   double most = RESTING * fabs(to->normal);
   return e->damping * fabs(from->into) <= most && e->damping * fabs(to->into) <= most;
 }
@@ -267,11 +274,11 @@ static void differentiate_normal(const strut_contact_entry *e, int8_t damper, bo
 }
 
 static void add_contact(const strut_model *model, const strut_state *state,
-                        const strut_event_stepper *l, int32_t i, const double *q, const double *v,
-                        strut_mode_tangent *t) {
+                        const strut_event_stepper *stepper, int32_t i, const double *q,
+                        const double *v, strut_mode_tangent *t) {
   assert(i >= 0 && i < model->contacts.count);
   const strut_contact_table *c = &model->contacts;
-  const strut_contact_entry *e = &l->entry[i];
+  const strut_contact_entry *e = &stepper->contacts.entry[i];
   const int32_t *row = t->row_of + c->at[i];
   double gap, into, *pull = t->pull, *x[2] = {NULL, NULL};
   strut_touch o;
@@ -279,9 +286,9 @@ static void add_contact(const strut_model *model, const strut_state *state,
     if (row[k] >= 0) x[k] = t->force + row[k] * t->width;
   measure_on_line(c, i, q, v, &o);
   o.applied = strut_contact_along_ground(c, i, state->latest.force);
-  o.normal = contact_normal_force(e, l->damper[i], o.gap, o.into, true);
-  friction_slopes f = slopes_of(e, l->mode[i], l->side[i], o.normal, o.slip, o.applied);
-  differentiate_normal(e, l->damper[i], is_resting(e, l, i), &o, &gap, &into);
+  o.normal = contact_normal_force(e, stepper->modes.damper[i], o.gap, o.into, true);
+  friction_slopes f = slopes_of(e, &stepper->modes, i, &o);
+  differentiate_normal(e, stepper->modes.damper[i], is_resting(e, stepper, i), &o, &gap, &into);
   for (int32_t k = 0; k < t->width; k++) {
     double along = (x[0] ? c->tangent[0] * x[0][k] : 0.0) + (x[1] ? c->tangent[1] * x[1][k] : 0.0);
     pull[k] = f.applied * along;
@@ -318,17 +325,18 @@ static void divide_rows(int32_t n, int32_t width, const double *restrict inverse
 }
 
 void strut_mode_tangent_evaluate(const strut_model *model, strut_state *state,
-                                 const strut_event_stepper *l, double time, const double *q,
+                                 const strut_event_stepper *stepper, double time, const double *q,
                                  const double *v, strut_mode_tangent *t) {
   memset(t->force, 0, (size_t)(t->n * t->width) * sizeof(double));
-  if (!t->plain) difference_forces(model, state, l, time, q, v, t);
-  if (!t->plain || asks_applied(l))
+  if (!t->plain) difference_forces(model, state, stepper, time, q, v, t);
+  if (!t->plain || asks_applied(stepper))
     forces_of_structure(model, state, time, q, v, STRUT_TERMS_ALL, false);
   else if ((model->terms & STRUT_TERM_DRIVE) && time != state->latest.drive_time)
     strut_drive_apply(model, state, time);
   for (int32_t j = 0; j < model->members.count && t->plain; j++)
     add_member(model, state, j, q, v, t);
-  for (int32_t k = 0; k < l->closed_count; k++) add_contact(model, state, l, l->closed[k], q, v, t);
+  for (int32_t k = 0; k < stepper->active.closed_count; k++)
+    add_contact(model, state, stepper, stepper->active.closed[k], q, v, t);
   divide_rows(t->n, t->width, t->inverse, t->force, t->rate);
   strut_mode_tangent_project(t, t->rate, t->width);
 }

@@ -45,10 +45,10 @@ void strut_variation_reset(strut_variation *x) {
 static double *velocities(const strut_variation *x) { return x->columns + x->n * x->stride; }
 
 void strut_variation_begin(const strut_model *model, strut_state *state,
-                           const strut_event_stepper *l) {
+                           const strut_event_stepper *stepper) {
   strut_variation *x = state->watched.variation;
   memset(x->delay, 0, (size_t)x->stride * sizeof(double));
-  strut_mode_tangent_hold(model, l, x->tangent);
+  strut_mode_tangent_hold(model, stepper, x->tangent);
   strut_mode_tangent_project(x->tangent, velocities(x), x->stride);
 }
 
@@ -109,31 +109,31 @@ static void combine(int32_t all, double h, const double *weight, int count, doub
 }
 
 /* Positions and velocities of the motion itself at stage k. */
-static const double *place_stage(const strut_model *model, const strut_event_stepper *l, int k,
-                                 double h, double *q) {
-  const strut_tableau *t = l->stepper->tableau;
-  if (k == 0) return l->now->v;
+static const double *place_stage(const strut_model *model, const strut_event_stepper *stepper,
+                                 int k, double h, double *q) {
+  const strut_tableau *t = stepper->formula->tableau;
+  if (k == 0) return stepper->now->v;
   const double *weight = t->weight[k];
   for (int32_t i = 0; i < model->length; i++) {
-    double sum = weight[0] * l->now->v[i];
-    for (int j = 1; j < k; j++) sum += weight[j] * l->stage[j][i];
-    q[i] = l->now->q[i] + h * sum;
+    double sum = weight[0] * stepper->now->v[i];
+    for (int j = 1; j < k; j++) sum += weight[j] * stepper->stage[j][i];
+    q[i] = stepper->now->q[i] + h * sum;
   }
-  return l->stage[k];
+  return stepper->stage[k];
 }
 
 void strut_variation_step(const strut_model *model, strut_state *state,
-                          const strut_event_stepper *l, double t, double h) {
+                          const strut_event_stepper *stepper, double t, double h) {
   strut_variation *x = state->watched.variation;
-  const strut_tableau *tableau = l->stepper->tableau;
+  const strut_tableau *tableau = stepper->formula->tableau;
   int32_t half = x->n * x->stride;
   size_t bytes = (size_t)half * sizeof(double);
   for (int k = 0; k < tableau->stages; k++) {
     const double *z = k ? x->middle : x->columns;
-    const double *v = place_stage(model, l, k, h, x->stage_q);
+    const double *v = place_stage(model, stepper, k, h, x->stage_q);
     if (k) combine(2 * half, h, tableau->weight[k], k, x->slope, x->columns, x->middle);
-    strut_mode_tangent_evaluate(model, state, l, t + tableau->ahead[k] * h,
-                                k ? x->stage_q : l->now->q, v, x->tangent);
+    strut_mode_tangent_evaluate(model, state, stepper, t + tableau->ahead[k] * h,
+                                k ? x->stage_q : stepper->now->q, v, x->tangent);
     memcpy(x->slope[k], z + half, bytes);
     multiply(x->n, x->stride, x->tangent->rate, z, x->slope[k] + half);
   }
@@ -152,17 +152,19 @@ void strut_variation_step(const strut_model *model, strut_state *state,
  * Of events that positions and speeds of a contact decide: the value's slopes along normal and tangent,
  * which act on speeds, or with TOUCH and OPEN on positions. False of others.
  */
-static bool contact_slopes(const strut_event_stepper *l, const strut_event *e, double *normal,
+static bool contact_slopes(const strut_event_stepper *stepper, const strut_event *e, double *normal,
                            double *tangent, bool *positions) {
   *normal = *tangent = 0.0, *positions = false;
   switch (e->kind) {
     case STRUT_EVENT_TOUCH: *normal = 1.0, *positions = true; return true;
     case STRUT_EVENT_OPEN: *normal = -1.0, *positions = true; return true;
-    case STRUT_EVENT_SLIP_ENDS: *tangent = l->side[e->index]; return true;
+    case STRUT_EVENT_SLIP_ENDS: *tangent = stepper->modes.side[e->index]; return true;
     case STRUT_EVENT_LEAVES_STICK_BAND:
-      *tangent = l->now->touch[e->index].slip < 0.0 ? 1.0 : -1.0;
+      *tangent = stepper->now->touch[e->index].slip < 0.0 ? 1.0 : -1.0;
       return true;
-    case STRUT_EVENT_DAMPER: *normal = l->damper[e->index] > 0 ? -1.0 : 1.0; return true;
+    case STRUT_EVENT_DAMPER:
+      *normal = stepper->modes.damper[e->index] > 0 ? -1.0 : 1.0;
+      return true;
     case STRUT_EVENT_STICK_BREAKS:
     case STRUT_EVENT_CREEP_OUT:
     case STRUT_EVENT_CREEP_IN:
@@ -179,13 +181,13 @@ static bool contact_slopes(const strut_event_stepper *l, const strut_event *e, d
   return false;
 }
 
-static double contact_gradient(const strut_model *model, const strut_event_stepper *l,
+static double contact_gradient(const strut_model *model, const strut_event_stepper *stepper,
                                const strut_event *e, double normal, double tangent, bool positions,
                                strut_variation *x) {
   const strut_contact_table *c = &model->contacts;
   uint32_t at = c->at[e->index];
   const double *rows = positions ? x->columns : velocities(x);
-  const double *rate = positions ? l->now->v : l->now->a;
+  const double *rate = positions ? stepper->now->v : stepper->now->a;
   double sum = 0.0;
   for (uint32_t k = 0; k < 2; k++) {
     int32_t row = x->tangent->row_of[at + k];
@@ -197,28 +199,28 @@ static double contact_gradient(const strut_model *model, const strut_event_stepp
   return sum;
 }
 
-/* The event's value at l->next, after it has been moved, in the present modes. */
-static double value_beside(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                           const strut_event *e, double t) {
-  evaluate_step_end(model, state, l, t, l->next, STRUT_TERMS_ALL, false);
-  strut_event_measure(model, state, l, l->next);
-  return strut_event_value(model, l, l->next, e->kind, e->index);
+/* The event's value at stepper->next, after it has been moved, in the present modes. */
+static double value_beside(const strut_model *model, strut_state *state,
+                           strut_event_stepper *stepper, const strut_event *e, double t) {
+  evaluate_step_end(model, state, stepper, t, stepper->next, STRUT_TERMS_ALL, false);
+  strut_event_measure(model, state, stepper, stepper->next);
+  return strut_event_value(model, stepper, stepper->next, e->kind, e->index);
 }
 
 /* By central differences along the motion, which gives the rate, and along each column. */
 static double differenced_gradient(const strut_model *model, strut_state *state,
-                                   strut_event_stepper *l, const strut_event *e, double t,
+                                   strut_event_stepper *stepper, const strut_event *e, double t,
                                    double dt, strut_variation *x) {
-  const strut_step_end *now = l->now;
+  const strut_step_end *now = stepper->now;
   double value[2], step = TIME_DIFFERENCE * dt;
   double length = model->size, speed = model->size / dt;
   for (int side = 0; side < 2; side++) {
     double h = side ? step : -step;
     for (int32_t i = 0; i < model->length; i++) {
-      l->next->q[i] = now->q[i] + h * (now->v[i] + 0.5 * h * now->a[i]);
-      l->next->v[i] = now->v[i] + h * now->a[i];
+      stepper->next->q[i] = now->q[i] + h * (now->v[i] + 0.5 * h * now->a[i]);
+      stepper->next->v[i] = now->v[i] + h * now->a[i];
     }
-    value[side] = value_beside(model, state, l, e, t + h);
+    value[side] = value_beside(model, state, stepper, e, t + h);
   }
   double rate = (value[1] - value[0]) / (2.0 * step);
   for (int32_t j = 0; j < 2 * x->n; j++) {
@@ -229,13 +231,13 @@ static double differenced_gradient(const strut_model *model, strut_state *state,
     double part = DIFFERENCE / most;
     for (int side = 0; side < 2; side++) {
       double factor = side ? part : -part;
-      memcpy(l->next->q, now->q, (size_t)model->length * sizeof(double));
-      memcpy(l->next->v, now->v, (size_t)model->length * sizeof(double));
+      memcpy(stepper->next->q, now->q, (size_t)model->length * sizeof(double));
+      memcpy(stepper->next->v, now->v, (size_t)model->length * sizeof(double));
       for (int32_t i = 0; i < x->n; i++) {
-        l->next->q[x->place[i]] += factor * x->columns[i * x->stride + j];
-        l->next->v[x->place[i]] += factor * x->columns[(x->n + i) * x->stride + j];
+        stepper->next->q[x->place[i]] += factor * x->columns[i * x->stride + j];
+        stepper->next->v[x->place[i]] += factor * x->columns[(x->n + i) * x->stride + j];
       }
-      value[side] = value_beside(model, state, l, e, t);
+      value[side] = value_beside(model, state, stepper, e, t);
     }
     x->gradient[j] = (value[1] - value[0]) / (2.0 * part);
   }
@@ -244,17 +246,18 @@ static double differenced_gradient(const strut_model *model, strut_state *state,
   return rate;
 }
 
-void strut_variation_meet(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                          const strut_event *e, double t, double dt, bool stepped) {
+void strut_variation_meet(const strut_model *model, strut_state *state,
+                          strut_event_stepper *stepper, const strut_event *e, double t, double dt,
+                          bool stepped) {
   strut_variation *x = state->watched.variation;
   double normal, tangent;
   bool positions;
-  for (int32_t i = 0; i < x->n; i++) x->before[i] = l->now->a[x->place[i]];
+  for (int32_t i = 0; i < x->n; i++) x->before[i] = stepper->now->a[x->place[i]];
   if (!stepped) return;
   memset(x->gradient, 0, (size_t)x->stride * sizeof(double));
-  double rate = contact_slopes(l, e, &normal, &tangent, &positions)
-                    ? contact_gradient(model, l, e, normal, tangent, positions, x)
-                    : differenced_gradient(model, state, l, e, t, dt, x);
+  double rate = contact_slopes(stepper, e, &normal, &tangent, &positions)
+                    ? contact_gradient(model, stepper, e, normal, tangent, positions, x)
+                    : differenced_gradient(model, state, stepper, e, t, dt, x);
   for (int32_t j = 0; j < x->stride; j++) {
     double delay = -x->gradient[j] / rate;
     x->delay[j] = isfinite(delay) ? delay : 0.0;
@@ -262,15 +265,15 @@ void strut_variation_meet(const strut_model *model, strut_state *state, strut_ev
 }
 
 void strut_variation_pass(const strut_model *model, strut_state *state,
-                          const strut_event_stepper *l, bool event) {
+                          const strut_event_stepper *stepper, bool event) {
   strut_variation *x = state->watched.variation;
   double *v = velocities(x);
   if (!event) memset(x->delay, 0, (size_t)x->stride * sizeof(double));
   for (int32_t i = 0; i < x->n && event; i++) {
-    double jump = x->before[i] - l->now->a[x->place[i]];
+    double jump = x->before[i] - stepper->now->a[x->place[i]];
     for (int32_t j = 0; j < x->stride && jump != 0.0; j++)
       v[i * x->stride + j] += jump * x->delay[j];
   }
-  strut_mode_tangent_hold(model, l, x->tangent);
+  strut_mode_tangent_hold(model, stepper, x->tangent);
   strut_mode_tangent_project(x->tangent, v, x->stride);
 }
