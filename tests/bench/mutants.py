@@ -120,7 +120,7 @@ class Suite:
 
     def failures(self, wanted=None, stop=True, without=None):
         """Names of the tests that fail."""
-        command = ["ctest", "--preset", "tests", "-j", self.jobs, "--timeout", str(SECONDS)]
+        command = ["ctest", "--test-dir", str(self.folder), "-j", self.jobs, "--timeout", str(SECONDS)]
         command += ["-R", f"^({wanted})$"] if wanted else []
         command += ["-E", f"^({without})$"] if without else []
         command += ["--stop-on-failure"] if stop else []

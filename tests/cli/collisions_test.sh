@@ -61,10 +61,16 @@ near .measured.c.value 2 1e-6
 cat >rods.yaml <<'END'
 strut: 1
 mass_model: lumped
-nodes: {a: {position: [0, 0], mass: 1}, b: {position: [1, 0], mass: 2}, c: {position: [0.3, 0.5], mass: 0.5},
-        d: {position: [0.6, 1.4], mass: 1.5}}
-members: {ab: {kind: bar, nodes: [a, b], stiffness: 1e5}, cd: {kind: bar, nodes: [c, d], stiffness: 1e5}}
-collisions: {hit: {members: [ab, cd], thickness: 40 mm, stiffness: 1e5}}
+nodes:
+  a: {position: [0, 0], mass: 1}
+  b: {position: [1, 0], mass: 2}
+  c: {position: [0.3, 0.5], mass: 0.5}
+  d: {position: [0.6, 1.4], mass: 1.5}
+members:
+  ab: {kind: bar, nodes: [a, b], stiffness: 1e5}
+  cd: {kind: bar, nodes: [c, d], stiffness: 1e5}
+collisions:
+  hit: {members: [ab, cd], thickness: 40 mm, stiffness: 1e5}
 initial: {velocities: {c: [0.2, -3], d: [0.2, -3], a: [0, 0.5]}}
 solver: {integrator: rk4-events, step: 0.1 ms}
 run:
@@ -165,12 +171,18 @@ shows 0 "reached only through 'k'" equilibria held.yaml --plot held.svg
 # other side by a floppy shape that both sides have.
 cat >rods.yaml <<'YAML'
 strut: 1
-nodes: {a: {position: [-1, 0], fixed: both}, b: {position: [1, 0], fixed: both}, p: {position: [-0.5, 0.5], mass: 1},
-        q: {position: [0.5, 0.5], mass: 1}, u: {position: [-0.6, 0.2], fixed: both},
-        v: {position: [0.6, 0.2], fixed: both}}
-members: {wall: {kind: bar, nodes: [a, b], stiffness: 1e4}, rod: {kind: bar, nodes: [p, q], stiffness: 1e3},
-          s1: {kind: spring, nodes: [u, p], stiffness: 10, rest_length: 0.4},
-          s2: {kind: spring, nodes: [v, q], stiffness: 10, rest_length: 0.4}}
+nodes:
+  a: {position: [-1, 0], fixed: both}
+  b: {position: [1, 0], fixed: both}
+  p: {position: [-0.5, 0.5], mass: 1}
+  q: {position: [0.5, 0.5], mass: 1}
+  u: {position: [-0.6, 0.2], fixed: both}
+  v: {position: [0.6, 0.2], fixed: both}
+members:
+  wall: {kind: bar, nodes: [a, b], stiffness: 1e4}
+  rod: {kind: bar, nodes: [p, q], stiffness: 1e3}
+  s1: {kind: spring, nodes: [u, p], stiffness: 10, rest_length: 0.4}
+  s2: {kind: spring, nodes: [v, q], stiffness: 10, rest_length: 0.4}
 collisions: {k: {members: [wall, rod], thickness: 0.05, stiffness: 1e3}}
 YAML
 expect 0 equilibria rods.yaml --json
@@ -283,9 +295,15 @@ cat >reach.yaml <<'YAML'
 strut: 1
 study: An arm reaches around a post
 model: arm.yaml
-search: {minimise: miss, subject_to: ["clear >= 0 mm"],
-         over: {bend_1: {from: -2, to: 2}, bend_2: {from: -2.5, to: 2.5}, bend_3: {from: -2.5, to: 2.5}}, method: cma,
-         evaluations: 240}
+search:
+  minimise: miss
+  subject_to: ["clear >= 0 mm"]
+  over:
+    bend_1: {from: -2, to: 2}
+    bend_2: {from: -2.5, to: 2.5}
+    bend_3: {from: -2.5, to: 2.5}
+  method: cma
+  evaluations: 240
 keep: [miss, clear]
 YAML
 sed '/subject_to/d' reach.yaml >free.yaml
