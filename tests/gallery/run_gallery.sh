@@ -5,7 +5,7 @@
 #
 #   sh tests/gallery/run_gallery.sh ROOT STRUT [NAME...]     NAMEs: only these models
 #
-# A section of a file tests/gallery/*.answers belongs to the NAME.yaml of one of the two. Its lines:
+# A section of a file tests/gallery/*.answers belongs to the NAME.yaml of one of the two, or of models. Its lines:
 #
 #   [NAME]
 #   # a comment
@@ -165,6 +165,7 @@ for name in $(ls "$root"/models/gallery/*.yaml "$root"/models/parts/*.yaml | sed
   case " ${*:-$name} " in *" $name "*) ;; *) continue ;; esac
   model=$root/models/gallery/$name.yaml
   [ -e "$model" ] || model=$root/models/parts/$name.yaml
+  [ -e "$model" ] || model=$root/models/$name.yaml
   if [ ! -e "$model" ] || [ "$(grep -cx "$name" "$scratch/sections")" != 1 ]; then
     echo "$name: needs models/gallery or parts/$name.yaml and one section [$name] in tests/gallery"
     failures=$((failures + 1))

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the reader makes of a text: values, groups, parameters, --set, layers; memory; locale. */
-#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -296,46 +295,6 @@ TEST(memory_may_run_out_in_a_bad_file) {
   }
   assert_int_equal(status, STRUT_BAD_SCENE);
   free_faulty_cases(&cases);
-}
-
-/* Builds a German locale in a scratch folder and makes it current; false where that fails. */
-static bool become_german(char *folder, size_t size) {
-  char command[300];
-  snprintf(folder, size, "/tmp/strut-locale-XXXXXX");
-  if (!mkdtemp(folder)) return false;
-  snprintf(command, sizeof command, "localedef -i de_DE -f UTF-8 %s/de_DE.UTF-8 >/dev/null 2>&1",
-           folder);
-  if (system(command) == 0) setenv("LOCPATH", folder, 1);
-  return setlocale(LC_ALL, "de_DE.UTF-8") && strcmp(localeconv()->decimal_point, ",") == 0;
-}
-
-/* A locale with a decimal comma changes neither what is read nor what is written or said. */
-TEST(the_locale_does_not_matter) {
-  static const char bad[] = "strut: 1\nnodes: {a: {position: [0, 0], mass: -1.5}}\n" RUN;
-  char folder[64], command[100];
-  size_t length;
-  bool german = become_german(folder, sizeof folder);
-  snprintf(command, sizeof command, "rm -rf '%s'", folder);
-  if (system(command) != 0 || !german) skip();
-  char *text = read_path(STRUT_TESTS_DIR "/language/good/every-key.yaml", &length);
-  strut_setup s;
-  read_good(&s, text, NULL, 0);
-  assert_true(s.scene.nodes[1].position[0] == 0.101);
-  char *here = strut_setup_write(&s);
-  setlocale(LC_ALL, "C");
-  char *there = strut_setup_write(&s);
-  assert_string_equal(here, there);
-  strut_diagnostics diagnostics = {0};
-  setlocale(LC_ALL, "de_DE.UTF-8");
-  strut_setup refused;
-  strut_setup_read(&refused, "f", bad, strlen(bad), NULL, 0, STRUT_FOR_RUN, &diagnostics);
-  setlocale(LC_ALL, "C");
-  assert_non_null(strstr(diagnostics.items[0].message, "-1.5"));
-  strut_diagnostics_free(&diagnostics);
-  strut_release(here);
-  strut_release(there);
-  strut_release(text);
-  strut_setup_free(&s);
 }
 
 /* A chain of n members; `spoilt`: every member has a misspelt node. */

@@ -371,39 +371,6 @@ static void check_file(const char *path, int64_t points) {
   free(b);
 }
 
-/* Processes killed while they write, each going on from the last. */
-TEST(killed_and_resumed) {
-  enum { POINTS = 3000 };
-  scratch_make();
-  const char *path = scratch_path("a");
-  strut_slots_description plan = a_plan(POINTS);
-  int64_t missing = POINTS;
-  int kills = 0;
-  while (missing > 0) {
-    pid_t child = fork();
-    if (child == 0) {
-      strut_slots *slots = NULL;
-      if (strut_slots_open(path, &plan, &slots, NULL) != STRUT_OK) _exit(1);
-      for (int64_t i = 0; i < POINTS; i++)
-        if (!strut_slots_done(slots, i) && put(slots, i, NULL) != STRUT_OK) _exit(2);
-      _exit(0);
-    }
-    struct timespec pause = {0, 200000 + 50000 * (kills % 17)};
-    nanosleep(&pause, NULL);
-    kill(child, SIGKILL);
-    int how = 0;
-    waitpid(child, &how, 0);
-    assert_true(WIFSIGNALED(how) || WEXITSTATUS(how) == 0);
-    strut_slots *slots = open_slots(path, &plan);
-    assert_true(strut_slots_missing(slots) <= missing);
-    missing = strut_slots_missing(slots);
-    strut_slots_close(slots);
-    assert_true(++kills < 10000);
-  }
-  check_file(path, POINTS);
-  scratch_remove();
-}
-
 static strut_slots *share_slots(const char *path, const strut_slots_description *plan) {
   strut_slots *slots = NULL;
   return strut_slots_open_shared(path, plan, &slots, NULL) ? NULL : slots;
@@ -454,44 +421,6 @@ TEST(claims_end_with_their_process) {
   strut_slots_close(slots);
   close(ends[0]);
   close(ends[1]);
-  scratch_remove();
-}
-
-/* A worker: computes all that nobody else does. Returns how many points it left to others. */
-static int64_t share_work(const char *path, const strut_slots_description *plan) {
-  strut_slots *slots = share_slots(path, plan);
-  int64_t left = 0;
-  for (int64_t i = 0; slots && i < plan->count; i++) {
-    if (strut_slots_claim(slots, i) && put(slots, i, NULL)) return -1;
-    left += !strut_slots_done(slots, i);
-  }
-  strut_slots_close(slots);
-  return slots ? left : -1;
-}
-
-/* Three at once begin the same file, all killed again and again. */
-TEST(workers_killed_and_resumed) {
-  enum { POINTS = 3000, WORKERS = 3 };
-  scratch_make();
-  const char *path = scratch_path("a");
-  strut_slots_description plan = a_plan(POINTS);
-  for (int round = 0; round < 40; round++) {
-    pid_t child[WORKERS];
-    for (int k = 0; k < WORKERS; k++) {
-      child[k] = fork();
-      if (child[k] == 0) _exit(share_work(path, &plan) < 0 ? 1 : 0);
-    }
-    struct timespec pause = {0, 200000 + 100000 * (round % 17)};
-    nanosleep(&pause, NULL);
-    for (int k = 0; k < WORKERS; k++) {
-      int how = 0;
-      kill(child[k], SIGKILL);
-      waitpid(child[k], &how, 0);
-      assert_true(WIFSIGNALED(how) || WEXITSTATUS(how) == 0);
-    }
-  }
-  assert_int_equal(share_work(path, &plan), 0);
-  check_file(path, POINTS);
   scratch_remove();
 }
 
