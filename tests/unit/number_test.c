@@ -199,3 +199,36 @@ static const char *german(char *folder, size_t size) {
   const char *name = setlocale(LC_ALL, "de_DE.UTF-8");
   return name && strcmp(localeconv()->decimal_point, ",") == 0 ? name : NULL;
 }
+
+TEST(locale_does_not_matter) {
+  char folder[64], command[100];
+  const char *name = german(folder, sizeof folder);
+  double got = 0;
+  bool fast = false, slow = false, comma = true, quantity = false, shown = false;
+  if (name) {
+    static const char digits[] = "0.1000000000000000055511151231257827021181583404541015625";
+    strut_quantity q;
+    strut_expression_error error;
+    strut_diagnostics diagnostics = {0};
+    fast = strut_number_read_scaled("1.5", 3, 0, &got) && got == 1.5;
+    slow = strut_number_read_scaled(digits, strlen(digits), 0, &got) && got == 0.1;
+    comma = strut_number_read_scaled("1,5", 3, 0, &got);
+    quantity = strut_expression_evaluate("1234567.891011121314151617 mm", NULL, &q, &error) &&
+               q.value == 1234.567891011121314151617;
+    strut_diagnose(&diagnostics, (strut_place){0}, "%.1f", 0.5);
+    shown = strcmp(diagnostics.items[0].message, "0.5") == 0;
+    strut_diagnostics_free(&diagnostics);
+  }
+  setlocale(LC_ALL, "C");
+  snprintf(command, sizeof command, "rm -rf %s", folder);
+  if (system(command) != 0) print_message("could not remove %s\n", folder);
+  if (!name) {
+    print_message("no German locale here\n");
+    skip();
+  }
+  assert_true(fast);
+  assert_true(slow);
+  assert_false(comma);
+  assert_true(quantity);
+  assert_true(shown);
+}
