@@ -360,17 +360,6 @@ TEST(one_writer_at_a_time) {
   scratch_remove();
 }
 
-/* The bytes of the file are those of one process that is not disturbed. */
-static void check_file(const char *path, int64_t points) {
-  size_t first = 0, second = 0;
-  make_file(scratch_path("b"), points);
-  char *a = scratch_read(path, &first), *b = scratch_read(scratch_path("b"), &second);
-  assert_int_equal(first, second);
-  assert_memory_equal(a, b, first);
-  free(a);
-  free(b);
-}
-
 static strut_slots *share_slots(const char *path, const strut_slots_description *plan) {
   strut_slots *slots = NULL;
   return strut_slots_open_shared(path, plan, &slots, NULL) ? NULL : slots;
