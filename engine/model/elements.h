@@ -40,16 +40,6 @@ typedef enum strut_strain_kind {
       STRUT_STRAIN_COUNT
 } strut_strain_kind;
 
-/** Its name. */
-static inline const char *strut_strain_name(strut_strain_kind kind) {
-  static const char *const names[] = {
-#define STRUT_STRAIN_ROW(NAME, name, ...) #name,
-      STRUT_STRAINS(STRUT_STRAIN_ROW, )
-#undef STRUT_STRAIN_ROW
-  };
-  return names[kind];
-}
-
 /** What an element is in the scene. */
 typedef enum strut_element_role {
   STRUT_ELEMENT_MEMBER,   /* the force of a member */

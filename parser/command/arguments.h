@@ -118,8 +118,6 @@ typedef enum strut_option_id {
   STRUT_OPTION_LOWEST,
   STRUT_OPTION_LIMIT_EVALUATIONS,
   STRUT_OPTION_LIMIT_TIME,
-  STRUT_OPTION_REAL, /* of exported C: its numbers and names */
-  STRUT_OPTION_PREFIX,
   STRUT_OPTION_AND, /* of periodic motions: the second parameter, and where branches start */
   STRUT_OPTION_VALUES,
   STRUT_OPTION_TEXTS_END

@@ -5,10 +5,8 @@
 #include <string.h>
 
 #include "engine/forces/elements.h"
-#include "engine/output/code/code.h"
 #include "engine/output/exports.h"
 #include "engine/output/file.h"
-#include "engine/run/settle.h"
 #include "parser/command/analyses.h"
 #include "parser/program/commands.h"
 #include "parser/program/open_model.h"
@@ -80,51 +78,6 @@ static strut_status strut_export_mjcf(const strut_arguments *arguments) {
     return strut_print_usage_error(&strut_command_export,
                                    "--at is not for mjcf, which begins where a run does");
   return export_model(arguments, STRUT_OPEN_AS_RUN, write_mjcf);
-}
-
-/* The prefix that was asked for, or one of the model's file. */
-static strut_status choose_prefix(const strut_arguments *arguments, char prefix[65]) {
-  const char *asked = strut_option_text(arguments, STRUT_OPTION_PREFIX);
-  if (!asked) {
-    strut_code_prefix_of(strcmp(arguments->model, "-") ? arguments->model : "", prefix);
-    return STRUT_OK;
-  }
-  if (!strut_code_is_prefix(asked))
-    return strut_print_usage_error(&strut_command_export,
-                                   "--prefix expects a letter, then letters, digits and "
-                                   "underscores, 64 at most, not '%s'",
-                                   asked);
-  snprintf(prefix, 65, "%s", asked);
-  return STRUT_OK;
-}
-
-/* The code starts where the run does: settled, where the experiment asks for that. */
-static strut_status write_code(exported *x, strut_error *error) {
-  static const char *const reals[] = {"double", "float", NULL};
-  char prefix[65];
-  int real = 0;
-  strut_settled_start start = {.model = NULL};
-  strut_status status = choose_prefix(x->arguments, prefix);
-  if (!status && strut_option_text(x->arguments, STRUT_OPTION_REAL))
-    status =
-        strut_option_word(&strut_command_export, x->arguments, STRUT_OPTION_REAL, reals, &real);
-  if (!status) status = strut_code_check(x->model, error);
-  if (!status) status = strut_settle_model(x->model, &x->setup.experiment, NULL, &start, error);
-  if (!status) {
-    strut_code_options options = {prefix, real == 1, "strut " STRUT_VERSION};
-    status =
-        strut_code_write(x->arguments->output, start.model, &x->setup.experiment, &options, error);
-  }
-  strut_settled_start_free(&start);
-  return status;
-}
-
-/* --format code: the model as C that steps itself. */
-static strut_status strut_export_code(const strut_arguments *arguments) {
-  if (strut_option_text(arguments, STRUT_OPTION_AT))
-    return strut_print_usage_error(&strut_command_export,
-                                   "--at is not for code, which starts where a run does");
-  return export_model(arguments, STRUT_OPEN_AS_RUN, write_code);
 }
 
 /* ---- a motion or a shape for ParaView ---- */
@@ -213,8 +166,8 @@ static strut_status export_matrices(const strut_arguments *arguments) {
 }
 
 /* The formats, in the order of their words. */
-typedef enum export_format { SCENE, MATRICES, CODE, VTK, BUILD, MJCF } export_format;
-static const char *const formats[] = {"scene", "matrices", "code", "vtk", "build", "mjcf", NULL};
+typedef enum export_format { SCENE, MATRICES, VTK, BUILD, MJCF } export_format;
+static const char *const formats[] = {"scene", "matrices", "vtk", "build", "mjcf", NULL};
 
 /* Options of one format only. */
 static strut_status check_options(const strut_arguments *arguments, export_format format) {
@@ -224,8 +177,6 @@ static strut_status check_options(const strut_arguments *arguments, export_forma
     export_format format;
     const char *name;
   } rows[] = {{STRUT_OPTION_ALLOWANCE, BUILD, "allowance"},
-              {STRUT_OPTION_REAL, CODE, "real"},
-              {STRUT_OPTION_PREFIX, CODE, "prefix"},
               {STRUT_OPTION_INPUT, SCENE, "input"},
               {STRUT_OPTION_UNIT, SCENE, "unit"}};
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
@@ -253,7 +204,6 @@ static strut_status run_export(const strut_arguments *arguments) {
   switch ((export_format)word) {
     case SCENE: return strut_export_scene(arguments);
     case MATRICES: return export_matrices(arguments);
-    case CODE: return strut_export_code(arguments);
     case VTK: return export_vtk(command, arguments);
     case BUILD: return strut_export_build(arguments);
     case MJCF: return strut_export_mjcf(arguments);
@@ -263,7 +213,7 @@ static strut_status run_export(const strut_arguments *arguments) {
 
 static const strut_option options[] = {
     {STRUT_OPTION_FORMAT, "format", "FORMAT",
-     "scene (default), matrices, code, vtk, build or mjcf; see above"},
+     "scene (default), matrices, vtk, build or mjcf; see above"},
     {STRUT_OPTION_OUTPUT, "output", "PATH",
      "directory to write into; a file for mjcf and scene (default: print the scene)"},
     STRUT_SET_OPTION,
@@ -276,8 +226,6 @@ static const strut_option options[] = {
      "scene: unit of length of such a file (default: 1 dm of ntrt, otherwise 1 m)"},
     {STRUT_OPTION_ALLOWANCE, "allowance", "LENGTH",
      "build: what a cable needs at each end, such as 20 mm"},
-    {STRUT_OPTION_REAL, "real", "TYPE", "code: double (default) or float"},
-    {STRUT_OPTION_PREFIX, "prefix", "NAME", "code: begins all names (default: the file's name)"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -301,8 +249,6 @@ const strut_command strut_command_export = {
         "the\n"
         "            tangent stiffness) as Matrix Market files, with the names of rows and "
         "columns\n"
-        "  code      C99 that steps the model by rk4 or verlet with strut's bits, for controllers\n"
-        "            and other simulators: PREFIX.h, PREFIX.c and PREFIX_example.c\n"
         "  vtk       for ParaView: every frame of RUN, a directory of 'strut run -o', or a shape\n"
         "  build     to build it: lengths to cut, holes, and drawings (SVG, DXF) at true scale\n"
         "  mjcf      for MuJoCo; what it cannot express is refused or listed\n"

@@ -350,17 +350,7 @@ MUTANTS = [
     Mutant("reach-at-the-end", "engine/forces/strains/reach.h",
            "s = s < 0.0 ? 0.0 : s > 1.0 ? 1.0 : s;", "s = s < 0.0 ? 0.0 : s;",
            "a bar's second end goes on for collisions", "elements|world"),
-    # Code, orbits, sensitivity.
-    Mutant("code-slot", "engine/output/code/element_tables.c",
-           "return slot < members ? slot : slot - padded + members;", "return slot;",
-           "generated code drives another hinge than the scene", "code"),
-    Mutant("code-damper-of-drive", "engine/output/code/elements.c.in",
-           "    if (m->slot >= 0) rate = rate - s->rest_rate[m->slot];\n", "",
-           "dampers of driven elements do not feel the drive in generated code", "code"),
-    Mutant("code-expression-rate", "engine/output/code/duals.c.in",
-           "static dual dual_cos(dual a) { return chain(cos(a.value), -sin(a.value), a.rate); }",
-           "static dual dual_cos(dual a) { return chain(cos(a.value), sin(a.value), a.rate); }",
-           "the rate of a cosine in generated code has the wrong sign", "code"),
+    # Orbits, sensitivity.
     Mutant("unstable-orbits", "engine/run/orbit/orbit.c",
            "static const double GROWN = 1.02,", "static const double GROWN = 102.0,",
            "extrapolation ends on orbits that no motion stays on", "cli_accuracy"),

@@ -157,6 +157,5 @@ sed 's/presliding: 15 um/presliding: 0/' belt.yaml >bad.yaml
 expect 2 check bad.yaml
 sed 's/^run:/initial: {settle: {friction: kept}}\nrun:/' belt.yaml >bad.yaml
 tells 2 "not by bristles (lugre)" run bad.yaml
-tells 2 "friction with bristles" export belt.yaml --format code -o belt
 
 done_testing

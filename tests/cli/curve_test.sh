@@ -57,7 +57,6 @@ for method in rk4-events adaptive rk4 verlet; do
 done
 expect 0 run run.yaml --accuracy 0.1% --json
 tells 1 'yields or folds' run run.yaml --integrator midpoint
-tells 2 'law curve' export run.yaml --format code -o code
 shows 0 'jumps at folds' run run.yaml
 
 # A Bezier curve on both sides: x = t, F = 3 t (1 - t)^2 c1 + 3 t^2 (1 - t) c2 + t^3 c3 where x has no bend.

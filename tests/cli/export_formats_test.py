@@ -129,7 +129,7 @@ def built_or_refused():
             (("--format", "build"), 1, "missing -o DIR"),
             (("--format", "build", "-o", "y", "--allowance", "1 kg"), 1, "allowance"),
             (("--format", "build", "-o", "y", "--allowance", "-1 mm"), 1, "0 or more"),
-            (("--format", "build", "-o", "y", "--prefix", "z"), 1, "--prefix is for --format code"),
+            (("--format", "build", "-o", "y", "--unit", "1 m"), 1, "--unit is for --format scene"),
             (("--format", "mjcf", "-o", "y.xml", "--allowance", "1 mm"), 1, "for --format build"),
             (("--format", "mjcf", "-o", "y.xml", "--at", "x"), 1, "--at is not for mjcf"),
             (("--format", "mjcf"), 1, "missing -o FILE.xml"),

@@ -69,6 +69,5 @@ refused 's/node: n, radius/node: x, radius/' "unknown node 'x'"
 refused 's/law: smooth, mu: mu, width: 1 mm.s/law: coulomb, mu: 1/' "no friction that sticks exactly"
 refused 's/nodes: .n..$/nodes: [o]}/' "may touch no ground"
 refused 's/radius: 1 m/radius: -1 m/' "'radius' of foot 'f' must be above zero"
-tells 2 "feet" export rocker.yaml --format code -o code
 
 done_testing

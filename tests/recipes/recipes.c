@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * What docs/dev/recipes.md adds works: its friction law, its law of members and its strain in every method, alone
- * and in lanes, in subdomains, at rest, in the step limit and in exported code; its method of integration on a smooth scene; and all through the language and back.
+ * and in lanes, in subdomains, at rest and in the step limit; its method of integration on a smooth scene; and all
+ * through the language and back.
  */
 #include <math.h>
 #include <stdio.h>
@@ -13,7 +14,6 @@
 #include "engine/integrate/domain_parts.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/limit/step_limit.h"
-#include "engine/output/code/code.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "parser/read/read_scene.h"
@@ -152,30 +152,6 @@ static void run_all(run_plan *terms) {
   }
 }
 
-/*
- * Writes C code of the scene into the folder `name`, and into its file `expected` where rk4 leads: recipes.sh
- * compiles the code and compares.
- */
-static void export_code(const run_plan *terms, const char *name) {
-  strut_model *model = NULL;
-  strut_state *state = NULL;
-  strut_error error = {0};
-  char file[80];
-  const strut_code_options options = {.prefix = "model", .program = "recipes"};
-  bool good = !strut_model_compile(&terms->setup->scene, &model, &error) &&
-              !strut_code_write(name, model, &terms->setup->experiment, &options, &error) &&
-              !strut_state_create(model, &state, &error) &&
-              step(model, state, strut_integrator_find("rk4"), terms, GENERAL);
-  expect(good, error.message, name, 0);
-  snprintf(file, sizeof file, "%s/expected", name);
-  FILE *out = good ? fopen(file, "w") : NULL;
-  for (int32_t i = 0; out && i < 2 * model->node_count; i++)
-    fprintf(out, "%s%.17g", i ? "," : "", state->q[i]);
-  if (out) fprintf(out, "\n"), fclose(out);
-  strut_state_free(state);
-  strut_model_free(model);
-}
-
 static double limit_of(const strut_setup *setup) {
   strut_model *model = NULL;
   strut_step_limit limit = {.limit = (double)NAN};
@@ -240,8 +216,6 @@ static void test_the_friction_law(int count) {
   expect(strut_batch_widest() == 1 || terms.lanes == 2, "is not run in lanes", "friction law",
          terms.lanes);
   expect(limit_of(&setup) < 0.2, "is not known to the step limit", "the law's slope", 0);
-  snprintf(text, sizeof text, "code-friction-%d", count);
-  export_code(&terms, text);
   strut_setup_free(&setup);
 }
 
@@ -358,8 +332,6 @@ static void test_the_member_law(int count, const char *kind) {
   double limit = limit_of(&setup);
   expect(limit > 0 && limit < 2.83 / sqrt(4 * (1 + 0.75 / 0.09)) + 0.01,
          "is not known to the step limit", kind, limit);
-  snprintf(text, sizeof text, "code-%s-%d", kind, count);
-  export_code(&terms, text);
   strut_setup_free(&setup);
   test_at_rest(kind);
 }

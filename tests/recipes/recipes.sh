@@ -10,7 +10,6 @@ rm -rf "$scratch"
 mkdir -p "$scratch/tests"
 cp -R "$root/engine" "$root/parser" "$scratch/"
 cp -R "$root/tests/recipes" "$scratch/tests/"
-cp "$root/.cmake/EmbedFiles.cmake" "$scratch/"
 awk '/^```diff/ { inside = 1; blocks++; next } /^```/ { inside = 0 } inside { print }
   END { exit blocks == 0 }' "$root/docs/dev/recipes.md" >"$scratch/recipes.diff"
 cd "$scratch"
@@ -23,24 +22,11 @@ parser/read/read_things.c parser/write/write_scene.c "
 [ "$touched" = "$expected" ] || { echo "the recipes touch other files: $touched"; exit 1; }
 patch -s -p1 <recipes.diff
 
-# The texts of exported code, of which those of the laws are now others.
-embedded="strut_code_law_texts|engine/base/vec.h|engine/scene/law.h"
-for text in engine/scene/laws/*.h engine/forces/strains/*.h; do embedded="$embedded|$text"; done
-for name in $(grep -o 'strut_code_[a-z]*_template' engine/output/code/code.h); do
-  of=${name#strut_code_} of=${of%_template}
-  file=engine/output/code/$of.c.in
-  [ -e "$file" ] || file=engine/output/code/$of.h.in
-  embedded="$embedded;$name|$file"
-done
-cmake "-DSOURCE=templates.c" "-DHEADER=engine/output/code/code.h" "-DEMBED=$embedded" \
-  -P EmbedFiles.cmake
-sources="tests/recipes/recipes.c tests/recipes/things.c templates.c $(ls engine/base/*.c engine/scene/*.c \
-  engine/model/*.c engine/forces/*.c engine/statics/search/*.c engine/statics/equilibria/*.c \
-  engine/output/code/*.c) $(find engine/integrate parser/yaml parser/expression parser/language \
-  parser/read parser/write -name '*.c') $(ls engine/run/settle*.c engine/output/buffer.c \
-  engine/output/file.c engine/output/results.c)
-  engine/statics/curvature.c engine/statics/dense_algebra.c engine/statics/minimise.c
-  engine/statics/potential.c engine/statics/curvature.c engine/statics/spectrum.c"
+sources="tests/recipes/recipes.c tests/recipes/things.c $(ls engine/base/*.c engine/scene/*.c \
+  engine/model/*.c engine/forces/*.c engine/statics/search/*.c engine/statics/equilibria/*.c) \
+  $(find engine/integrate parser/yaml parser/expression parser/language parser/read parser/write -name '*.c')
+  engine/run/settle.c engine/statics/curvature.c engine/statics/dense_algebra.c
+  engine/statics/minimise.c engine/statics/potential.c engine/statics/spectrum.c"
 # shellcheck disable=SC2086
 printf '%s\n' $sources | xargs -P 2 -n 12 sh -c 'cc=$1 includes=$2; shift 2
   for file; do
@@ -51,13 +37,3 @@ printf '%s\n' $sources | xargs -P 2 -n 12 sh -c 'cc=$1 includes=$2; shift 2
 # shellcheck disable=SC2086
 $cc ./*.o -o recipes $libraries -lpthread -lm
 ./recipes
-
-# Exported code computes the same laws with the same bits.
-for folder in code-*; do
-  dt=1e-3 steps=1000
-  case $folder in code-friction-*) dt=1e-4 steps=3000 ;; esac
-  $cc -std=c99 -Wall -Wextra -Werror -ffp-contract=off -O1 "-DSTEP=$dt" "-DSTEPS=$steps" "-DEVERY=$steps" \
-    -DMETHOD=model_step_rk4 "$folder/model_example.c" "$folder/model.c" -lm -o "$folder/run"
-  "./$folder/run" | tail -1 | sed 's/^[^,]*,//' >"$folder/got"
-  cmp "$folder/expected" "$folder/got"
-done

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Directions of vectors, with the same bits on every machine; one text for all kernels and exported C code, see
+ * Directions of vectors, with the same bits on every machine; one text for all kernels, see
  * engine/scene/laws/words.h.
  */
 #include "engine/scene/laws/words.h"

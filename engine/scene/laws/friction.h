@@ -2,8 +2,8 @@
 /**
  * The laws of friction: for each a row of STRUT_FRICTION_LAWS and two functions, and nothing else.
  *
- * All kernels, methods, statics, the step limit and exported C code compile this text with a meaning of
- * their own for its words (laws/words.h); see docs/dev/recipes.md.
+ * All kernels, methods, statics and the step limit compile this text with a meaning of their own for its
+ * words (laws/words.h); see docs/dev/recipes.md.
  */
 #ifndef STRUT_FRICTION_LAWS
 

@@ -2,7 +2,7 @@
 /**
  * The law of the ground normal to it, equation (8), and what a contact exchanges with the structure.
  *
- * One text for all kernels, methods and exported C code; see laws/words.h. `gap` is a node's distance from the
+ * One text for all kernels and methods; see laws/words.h. `gap` is a node's distance from the
  * ground [m], negative inside; `into` its velocity along the normal out of the ground [m/s], negative on its
  * way in. `crossley`, a constant where it is inlined: some contact has the Hunt-Crossley law, which differs
  * from (8) by its dissipation.

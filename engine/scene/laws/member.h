@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * The law of a member, equations (1), (2) and (6): a spring, beside it a damper, and for a cable nothing where
- * it would push. One text for all kernels, statics and exported C code; see laws/words.h.
+ * it would push. One text for all kernels and statics; see laws/words.h.
  *
  * `damped`, `slack`, `driven`, constants where the text is inlined: some member has a damper, may go slack, has
  * a rest length that changes. What no member has is compiled out.

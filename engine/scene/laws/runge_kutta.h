@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The formulas of a step of the classical Runge-Kutta method, of which the loops of all kernels and exported
- * C code are made; one text for all of them, see laws/words.h.
+ * The formulas of a step of the classical Runge-Kutta method, of which the loops of all kernels are made; one
+ * text for all of them, see laws/words.h.
  */
 #ifndef STRUT_RK4_STAGES
 /** Its stages; X(time, weight): when in the step, and six times the share in it. */
