@@ -14,17 +14,16 @@ static const strut_option options[] = {
     {STRUT_OPTION_PLOT, "plot", "FILE", "write the figure into FILE (.svg, .pdf or .png)"},
     {STRUT_OPTION_WIDTH, "width", "WIDTH",
      "width of the figure: page (180 mm, default), column (88 mm) or a length"},
-    {STRUT_OPTION_KIND, "kind", "KIND", "curves (default), map or work-precision"},
+    {STRUT_OPTION_KIND, "kind", "KIND", "curves (default) or map"},
     {STRUT_OPTION_X, "x", "COLUMN", "column of the x axis (default: the first)"},
     {STRUT_OPTION_Y, "y", "COLUMN,...", "columns of the y axis (default: the second)"},
-    {STRUT_OPTION_BY, "by", "COLUMN", "one curve, or method, for each value of the column"},
+    {STRUT_OPTION_BY, "by", "COLUMN", "one curve for each value of the column"},
     {STRUT_OPTION_PANELS, "panels", "COLUMN", "one panel for each value of the column"},
     {STRUT_OPTION_BAND, "band", "COLUMN=TEXT", "grey background where COLUMN is TEXT"},
     {STRUT_OPTION_ONLY, "only", "COLUMN=TEXT", "only rows in which COLUMN is TEXT"},
     {STRUT_OPTION_DIFFERENCE, "difference", "COLUMN",
      "draw the column's second text minus its first; hatch maps where they differ"},
-    {STRUT_OPTION_LABEL, "label", "COLUMN",
-     "values of a map; labels of the Pareto front of work-precision"},
+    {STRUT_OPTION_LABEL, "label", "COLUMN", "values of a map"},
     {STRUT_OPTION_DOUBT, "doubt", "COLUMN", "hatch a map where COLUMN is not 0"},
     {STRUT_OPTION_LOG, "log", "AXES", "logarithmic axes: x, y or xy"},
     {STRUT_OPTION_TITLE, "title", "TEXT", "title above the figure"},
@@ -150,22 +149,6 @@ static strut_status draw_map(const strut_arguments *arguments, const strut_plot 
   return good ? strut_table_map(plot->path, &figure, table, error) : STRUT_USAGE;
 }
 
-static strut_status draw_work_precision(const strut_arguments *arguments, const strut_plot *plot,
-                                        const strut_table *table, strut_error *error) {
-  strut_table_savings_figure figure = {.title = strut_option_text(arguments, STRUT_OPTION_TITLE),
-                                       .width = plot->width,
-                                       .y = table->column_count > 1 ? 1 : 0,
-                                       .by = STRUT_NO_COLUMN,
-                                       .label = STRUT_NO_COLUMN};
-  bool good = read_column(arguments, table, STRUT_OPTION_X, "x", &figure.x) &&
-              read_column(arguments, table, STRUT_OPTION_Y, "y", &figure.y) &&
-              read_column(arguments, table, STRUT_OPTION_BY, "by", &figure.by) &&
-              read_column(arguments, table, STRUT_OPTION_LABEL, "label", &figure.label) &&
-              strut_axes_read(&strut_command_plot, arguments, true, true, &figure.x_axis,
-                              &figure.y_axis) == STRUT_OK;
-  return good ? strut_table_savings(plot->path, &figure, table, error) : STRUT_USAGE;
-}
-
 static strut_status draw_curves(const strut_arguments *arguments, const strut_plot *plot,
                                 const strut_table *table, strut_error *error) {
   strut_table_figure figure = {.title = strut_option_text(arguments, STRUT_OPTION_TITLE),
@@ -187,17 +170,17 @@ static strut_status draw_curves(const strut_arguments *arguments, const strut_pl
 }
 
 /* Kinds of diagrams, and the options that belong to some of them only. */
-static const char *const kinds[] = {"curves", "map", "work-precision", NULL};
+static const char *const kinds[] = {"curves", "map", NULL};
 static strut_status (*const draws[])(const strut_arguments *arguments, const strut_plot *plot,
-                                     const strut_table *table, strut_error *error) = {
-    draw_curves, draw_map, draw_work_precision};
+                                     const strut_table *table,
+                                     strut_error *error) = {draw_curves, draw_map};
 static const struct {
   strut_option_id id;
   const char *name;
   unsigned kinds; /* a bit for each that has it */
 } limited[] = {
-    {STRUT_OPTION_BY, "by", 5},         {STRUT_OPTION_PANELS, "panels", 3},
-    {STRUT_OPTION_BAND, "band", 1},     {STRUT_OPTION_LABEL, "label", 6},
+    {STRUT_OPTION_BY, "by", 1},         {STRUT_OPTION_PANELS, "panels", 3},
+    {STRUT_OPTION_BAND, "band", 1},     {STRUT_OPTION_LABEL, "label", 2},
     {STRUT_OPTION_DOUBT, "doubt", 2},   {STRUT_OPTION_LOG, "log", 1},
     {STRUT_OPTION_ONLY, "only", 3},     {STRUT_OPTION_DIFFERENCE, "difference", 3},
     {STRUT_OPTION_COLORS, "colors", 2},
@@ -237,7 +220,7 @@ static strut_status run_plot(const strut_arguments *arguments) {
 const strut_command strut_command_plot = {
     .name = "plot",
     .model = "TABLE",
-    .summary = "draws curves, a map or a work-precision diagram from a table",
+    .summary = "draws curves or a map from a table",
     .details =
         "\nTABLE is a CSV file with a header such as \"frequency [Hz],velocity [m/s],start\", as\n"
         "strut writes it, or - for the standard input. Units get prefixes, curves differ\n"

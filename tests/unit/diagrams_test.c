@@ -10,6 +10,7 @@
 #include "engine/output/draw/work_precision.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
+#include "tests/unit/scratch.h"
 
 /* 1, 2 or 5 times a power of ten. */
 static bool is_round(double step) {
@@ -197,6 +198,39 @@ TEST(front) {
       assert_int_equal(front[i], !beaten);
     }
   }
+}
+
+/* Two methods with the same step on the front: their labels differ. */
+TEST(labels_of_the_front) {
+  static const char *const groups[] = {"rk4", "verlet"};
+  static const strut_saving savings[] = {{0, "50 us", 1, 1e-3, (double)NAN, (double)NAN},
+                                         {1, "50 us", 2, 1e-4, (double)NAN, (double)NAN},
+                                         {1, "25 us", 3, 1e-5, (double)NAN, (double)NAN}};
+  static const char *const labels[] = {"50 \u00b5s, rk4", "50 \u00b5s, verlet", "25 \u00b5s"};
+  const strut_work_precision diagram = {.cost = {"cost", "", true, (double)NAN, (double)NAN},
+                                        .error = {"error", "m", true, (double)NAN, (double)NAN},
+                                        .group_count = 2,
+                                        .count = 3,
+                                        .groups = groups,
+                                        .bargains = savings};
+  strut_canvas *canvas;
+  strut_error error;
+  char label[40];
+  scratch_make();
+  const char *path = scratch_path("front.svg");
+  assert_int_equal(strut_canvas_open(path, 400, 300, "front", &canvas, &error), STRUT_OK);
+  assert_int_equal(strut_draw_work_precision(canvas, (strut_box){0, 0, 400, 300}, &diagram),
+                   STRUT_OK);
+  assert_int_equal(strut_canvas_commit(canvas, &error), STRUT_OK);
+  strut_canvas_free(canvas);
+  char *text = scratch_read(path, NULL);
+  assert_non_null(text);
+  for (size_t i = 0; i < 3; i++) { /* an SVG lists its texts */
+    snprintf(label, sizeof label, "%s<", labels[i]);
+    if (!strstr(text, label)) fail_msg("no label '%s'", labels[i]);
+  }
+  free(text);
+  scratch_remove();
 }
 
 static const unsigned char *pixel(strut_canvas *canvas, double x, double y) {

@@ -249,7 +249,7 @@ void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice) {
 }
 
 strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, strut_axis y,
-                            const strut_axis *second, const char *title) {
+                            const char *title) {
   double width, line, label, above = 0.5 * TICK_SIZE;
   strut_text_size(canvas, "0", (strut_font){.size = TICK_SIZE}, &width, &line);
   strut_text_size(canvas, "0", (strut_font){.size = LABEL_SIZE}, &width, &label);
@@ -262,22 +262,10 @@ strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, s
   double below = TICK + GAP + line + label;
   double height = fmax(box.height - above - below, 10);
   double left = fmax(widest_tick(canvas, &y, height) + TICK + GAP, LEAST_LEFT) + label + GAP;
-  double right = RIGHT;
-  if (second)
-    right = fmax(widest_tick(canvas, second, height) + TICK + GAP, LEAST_LEFT) + label + GAP;
   return (strut_axes){
       .x = x,
       .y = y,
-      .right = second ? *second : (strut_axis){0},
-      .has_right = second != NULL,
-      .frame = {box.x + left, box.y + above, fmax(box.width - left - right, 10), height}};
-}
-
-strut_axes strut_axes_right(const strut_axes *axes) {
-  assert(axes->has_right);
-  strut_axes swapped = *axes;
-  swapped.y = axes->right;
-  return swapped;
+      .frame = {box.x + left, box.y + above, fmax(box.width - left - RIGHT, 10), height}};
 }
 
 static double axis_fraction(const strut_axis *axis, double value) {
@@ -345,31 +333,6 @@ static void draw_y(strut_canvas *canvas, const strut_axes *axes, const strut_tic
                   (strut_font){.size = LABEL_SIZE, .across = 0.5, .down = 1, .upwards = true});
 }
 
-/* The second y axis; the grid is that of the left one. */
-static void draw_right(strut_canvas *canvas, const strut_axes *axes) {
-  const strut_box *f = &axes->frame;
-  const strut_axes own = strut_axes_right(axes);
-  const strut_pen tick = {.colour = strut_grey(0.25), .width = 0.6, .butt = true};
-  double widest = LEAST_LEFT - TICK - GAP, edge = f->x + f->width, point[2];
-  strut_tick_set set;
-  strut_axis_ticks(&axes->right, ticks_along_y(f->height), &set);
-  for (size_t i = 0; i < set.count; i++) {
-    double width, line;
-    strut_axes_point(&own, own.x.low, set.at[i], point);
-    strut_draw_segment(canvas, edge, point[1], edge + TICK, point[1], tick);
-    strut_draw_text(canvas, edge + TICK + GAP, point[1], set.text[i],
-                    (strut_font){.size = TICK_SIZE, .down = 0.5});
-    strut_text_size(canvas, set.text[i], (strut_font){.size = TICK_SIZE}, &width, &line);
-    widest = fmax(widest, width);
-  }
-  for (size_t i = 0; i < set.minor_count; i++) {
-    strut_axes_point(&own, own.x.low, set.minor[i], point);
-    strut_draw_segment(canvas, edge, point[1], edge + 0.6 * TICK, point[1], tick);
-  }
-  strut_draw_text(canvas, edge + TICK + 2 * GAP + widest, f->y + 0.5 * f->height, set.label,
-                  (strut_font){.size = LABEL_SIZE, .across = 0.5, .upwards = true});
-}
-
 void strut_draw_vertical_axis(strut_canvas *canvas, const strut_axes *axes) {
   const strut_box *f = &axes->frame;
   strut_tick_set set;
@@ -387,7 +350,6 @@ void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *t
   draw_x(canvas, axes, &set);
   strut_axis_ticks(&axes->y, ticks_along_y(f->height), &set);
   draw_y(canvas, axes, &set);
-  if (axes->has_right) draw_right(canvas, axes);
   strut_draw_box(canvas, *f, NULL, &frame);
   if (title && *title)
     strut_draw_text(

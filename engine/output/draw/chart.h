@@ -24,9 +24,7 @@ typedef struct strut_axis_choice {
 
 /** A pair of axes laid out in a box. strut_axes_place makes it. */
 typedef struct strut_axes {
-  strut_axis x, y;  /* ranges settled */
-  strut_axis right; /* a second y axis, on the right; where has_right */
-  bool has_right;
+  strut_axis x, y; /* ranges settled */
   strut_box frame; /* where data go [pt] */
 } strut_axes;
 
@@ -47,21 +45,19 @@ STRUT_API void strut_axis_settle(strut_axis *axis, double room);
 /** Replaces the name and, after strut_axis_settle, the range of an axis where `choice` has one. */
 STRUT_API void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice);
 /**
- * Lays out a frame for settled axes in `box`, leaving room for ticks, labels, a second y axis on
- * the right (NULL: none) and a title (NULL: none); panels side by side line up when their boxes do.
+ * Lays out a frame for settled axes in `box`, leaving room for ticks, labels and a title (NULL: none);
+ * panels side by side line up when their boxes do.
  */
 STRUT_API strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x,
-                                      strut_axis y, const strut_axis *right, const char *title);
+                                      strut_axis y, const char *title);
 /**
  * Frame, ticks, faint grid, labels and title: before the data, so that these lie above the grid.
  */
 STRUT_API void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *title);
 /** The y axis with its grid only, for diagrams whose x axis has no numbers. */
 STRUT_API void strut_draw_vertical_axis(strut_canvas *canvas, const strut_axes *axes);
-/** Maps a pair of values to the page, y on the left axis. */
+/** Maps a pair of values to the page. */
 STRUT_API void strut_axes_point(const strut_axes *axes, double x, double y, double point[2]);
-/** The same axes with the right one as their y, to place what belongs to it. */
-STRUT_API strut_axes strut_axes_right(const strut_axes *axes);
 
 enum { STRUT_MOST_TICKS = 40 };
 /** Round values in [low, high], about `wanted` of them: 1, 2 or 5 times a power of ten. */
@@ -154,10 +150,8 @@ static inline const char *strut_plot_title(const strut_plot *plot, const char *n
 typedef struct strut_series {
   const char *label; /* in the legend; NULL: not there */
   size_t count;
-  const double *x, *y;         /* (count) SI; a y that is not finite breaks the line */
-  int look;                    /* index of colour, dashes and marker; -1: the series' own index */
-  bool points, steps, no_line; /* markers at the points; a staircase; no line between */
-  bool right;                  /* y belongs to the right axis */
+  const double *x, *y; /* (count) SI; a y that is not finite breaks the line */
+  int look;            /* index of colour, dashes and marker; -1: the series' own index */
 } strut_series;
 
 /** A grey area from x = low to high, or y; its label goes into the legend, or is NULL. */
@@ -165,18 +159,15 @@ typedef struct strut_band {
   double low, high;
   bool level; /* from y = low to high */
   const char *label;
-  int look; /* index of grey and hatching */
 } strut_band;
 
 typedef struct strut_curves {
   const char *title; /* may be NULL */
   strut_axis x, y;
-  const strut_axis *right; /* a second y axis for series of another unit; NULL: none */
   size_t series_count, band_count;
   const strut_series *series;
   const strut_band *bands;
-  double cursor;    /* a vertical line at this x; NAN: none */
-  bool mark_beyond; /* points above or below the y axes are marked at the edge and counted */
+  bool mark_beyond; /* points above or below the y axis are marked at the edge and counted */
 } strut_curves;
 
 /**

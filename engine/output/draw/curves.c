@@ -29,57 +29,36 @@ static size_t style_of(const strut_curves *c, size_t series) {
   return c->series[series].look >= 0 ? (size_t)c->series[series].look : series;
 }
 
-static bool has_markers(const strut_curves *c, size_t i) {
-  const strut_series *s = &c->series[i];
-  return s->points || s->no_line || c->series_count > 1;
-}
-
-/* Settles axes = {x, y, right}: ranges that are not given come from the series. */
-static void settle_axes(const strut_curves *c, strut_axis axes[3]) {
-  bool fit[3];
-  axes[0] = c->x;
-  axes[1] = c->y;
-  axes[2] = c->right ? *c->right : (strut_axis){0};
-  for (int a = 0; a < 3; a++) fit[a] = isnan(axes[a].low) || isnan(axes[a].high);
+/* Settles x and y: ranges that are not given come from the series. */
+static void settle_axes(const strut_curves *c, strut_axis *x, strut_axis *y) {
+  *x = c->x;
+  *y = c->y;
+  bool fit_x = isnan(x->low) || isnan(x->high), fit_y = isnan(y->low) || isnan(y->high);
   for (size_t i = 0; i < c->series_count; i++) {
     const strut_series *s = &c->series[i];
-    int y = s->right ? 2 : 1;
-    assert(!s->right || c->right);
     for (size_t k = 0; k < s->count; k++) {
       if (!isfinite(s->x[k]) || !isfinite(s->y[k])) continue;
-      if (fit[0]) strut_axis_include(&axes[0], s->x[k]);
-      if (fit[y]) strut_axis_include(&axes[y], s->y[k]);
+      if (fit_x) strut_axis_include(x, s->x[k]);
+      if (fit_y) strut_axis_include(y, s->y[k]);
     }
   }
-  bool dots = c->series_count && (c->series[0].no_line || c->series[0].points);
-  strut_axis_settle(&axes[0], fit[0] && dots ? 0.03 : 0);
-  for (int a = 1; a < 3; a++) strut_axis_settle(&axes[a], fit[a] ? 0.06 : 0);
-}
-
-/* The axes that a series is drawn on. */
-static strut_axes axes_of(const plotter *p, const strut_series *s) {
-  return s->right ? strut_axes_right(&p->axes) : p->axes;
+  strut_axis_settle(x, 0);
+  strut_axis_settle(y, fit_y ? 0.06 : 0);
 }
 
 /* Places the points of a series on the page; a NAN point separates pieces. */
 static bool place_points(plotter *p, size_t i) {
   const strut_series *s = &p->curves->series[i];
-  const strut_axes axes = axes_of(p, s);
   size_t used = 0, start = 0;
   assert(!s->count || (s->x && s->y));
-  double(*points)[2] = strut_allocate(2 * s->count + 2, sizeof *points);
+  double(*points)[2] = strut_allocate(s->count + 1, sizeof *points);
   p->points[i] = points;
   if (!points) return false;
   for (size_t k = 0; k <= s->count; k++) {
     double at[2] = {(double)NAN, (double)NAN};
     if (k < s->count && isfinite(s->x[k]) && isfinite(s->y[k]))
-      strut_axes_point(&axes, s->x[k], s->y[k], at);
+      strut_axes_point(&p->axes, s->x[k], s->y[k], at);
     if (isfinite(at[0]) && isfinite(at[1])) {
-      if (s->steps && used > start) { /* corner of the stair */
-        points[used][0] = at[0];
-        points[used][1] = points[used - 1][1];
-        used++;
-      }
       points[used][0] = at[0];
       points[used++][1] = at[1];
     } else if (used > start) {
@@ -93,10 +72,9 @@ static bool place_points(plotter *p, size_t i) {
 }
 
 static bool place_curves(plotter *p, strut_box box) {
-  strut_axis axes[3];
-  settle_axes(p->curves, axes);
-  p->axes = strut_axes_place(p->canvas, box, axes[0], axes[1], p->curves->right ? &axes[2] : NULL,
-                             p->curves->title);
+  strut_axis x, y;
+  settle_axes(p->curves, &x, &y);
+  p->axes = strut_axes_place(p->canvas, box, x, y, p->curves->title);
   bool good = true;
   for (size_t i = 0; i < p->curves->series_count && good; i++) {
     strut_release(p->points[i]);
@@ -108,7 +86,7 @@ static bool place_curves(plotter *p, strut_box box) {
 static void draw_bands(const plotter *p) {
   for (size_t i = 0; i < p->curves->band_count; i++) {
     const strut_band *b = &p->curves->bands[i];
-    const strut_fill fill = strut_band_fill(b->look);
+    const strut_fill fill = strut_band_fill();
     const strut_axis *axis = b->level ? &p->axes.y : &p->axes.x;
     double from = fmax(b->low, axis->low), to = fmin(b->high, axis->high), low[2], high[2];
     if (!(to > from)) continue;
@@ -131,9 +109,8 @@ static bool is_inside(const strut_box *frame, const double at[2]) {
 /* Whole markers, on the frame too. */
 static void draw_markers(const plotter *p, size_t i) {
   const strut_series *s = &p->curves->series[i];
-  const strut_axes axes = axes_of(p, s);
   size_t look = style_of(p->curves, i);
-  bool all = s->count <= FEW_POINTS || s->points || s->no_line;
+  bool all = s->count <= FEW_POINTS;
   if (!all && !s->label) return;
   /* A few markers, at other points than those of the other curves. */
   size_t every = all ? 1 : s->count / MARKERS;
@@ -141,18 +118,16 @@ static void draw_markers(const plotter *p, size_t i) {
   for (size_t k = first; k < s->count; k += every) {
     double at[2];
     if (!isfinite(s->x[k]) || !isfinite(s->y[k])) continue;
-    strut_axes_point(&axes, s->x[k], s->y[k], at);
-    if (!is_inside(&axes.frame, at)) continue;
-    strut_draw_marker(p->canvas, look, at[0], at[1], s->count > 200 && all ? 1.0 : MARKER);
+    strut_axes_point(&p->axes, s->x[k], s->y[k], at);
+    if (is_inside(&p->axes.frame, at)) strut_draw_marker(p->canvas, look, at[0], at[1], MARKER);
   }
 }
 
 /* Draws the line of a series, which the caller clips. */
 static void draw_series(const plotter *p, size_t i) {
-  const strut_series *s = &p->curves->series[i];
   strut_pen pen = strut_series_pen(style_of(p->curves, i));
   double(*points)[2] = p->points[i];
-  for (size_t start = 0; start < p->counts[i] && !s->no_line;) {
+  for (size_t start = 0; start < p->counts[i];) {
     size_t end = start;
     while (end < p->counts[i] && !isnan(points[end][0])) end++;
     if (end - start == 1) { /* a line of one point would be invisible */
@@ -171,65 +146,60 @@ enum { MOST_LABELLED = 6 };
 /* Marks the farthest point k of an excursion of series i. */
 static void mark_point(const plotter *p, size_t i, size_t k, bool labelled) {
   const strut_series *s = &p->curves->series[i];
-  const strut_axes axes = axes_of(p, s);
-  bool above = s->y[k] > axes.y.high;
+  const strut_axes *axes = &p->axes;
+  bool above = s->y[k] > axes->y.high;
   double at[2];
-  strut_axes_point(&axes, s->x[k], above ? axes.y.high : axes.y.low, at);
+  strut_axes_point(axes, s->x[k], above ? axes->y.high : axes->y.low, at);
   strut_draw_beyond(p->canvas, at, above ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM);
   if (labelled)
     strut_draw_label(p->canvas,
-                     &(strut_label){.text = strut_drawn_quantity(s->y[k], 3, axes.y.unit).text,
+                     &(strut_label){.text = strut_drawn_quantity(s->y[k], 3, axes->y.unit).text,
                                     .font = {.size = 7, .halo = strut_grey(1)},
                                     .at = {at[0], at[1]},
                                     .gap = STRUT_BEYOND_SIZE + 1,
                                     .angle = (above ? -0.5 : 0.5) * STRUT_PI,
                                     .steady = 0.2,
-                                    .inside = axes.frame});
+                                    .inside = axes->frame});
 }
 
 /* Marks where curves leave the frame above or below, and says how many points are there. */
 static void mark_beyond(const plotter *p) {
   strut_beyond beyond = {0};
-  const char *unit = p->axes.y.unit;
+  const strut_axis *y = &p->axes.y;
   char text[STRUT_BEYOND_TEXT];
   size_t labelled = 0;
   for (size_t i = 0; i < p->curves->series_count; i++) {
     const strut_series *s = &p->curves->series[i];
-    const strut_axes axes = axes_of(p, s);
     size_t farthest = SIZE_MAX; /* of the excursion that k is in */
     for (size_t k = 0; k <= s->count; k++) {
-      bool out = k < s->count && (s->y[k] > axes.y.high || s->y[k] < axes.y.low);
+      bool out = k < s->count && (s->y[k] > y->high || s->y[k] < y->low);
       if (out && (farthest == SIZE_MAX || fabs(s->y[k]) > fabs(s->y[farthest]))) farthest = k;
       if (!out && farthest != SIZE_MAX) mark_point(p, i, farthest, labelled++ < MOST_LABELLED);
       if (!out) farthest = SIZE_MAX;
       if (!out) continue;
       beyond.above++;
-      if (fabs(s->y[k]) > fabs(beyond.farthest)) beyond.farthest = s->y[k], unit = axes.y.unit;
+      if (fabs(s->y[k]) > fabs(beyond.farthest)) beyond.farthest = s->y[k];
     }
   }
-  strut_draw_axis_note(p->canvas, &p->axes, strut_beyond_text(&beyond, "point", unit, text));
+  strut_draw_axis_note(p->canvas, &p->axes, strut_beyond_text(&beyond, "point", y->unit, text));
 }
 
-/* Collects the rows of the legend; equal names get one row. */
+/* Collects the rows of the legend; series of equal names get one row. */
 static void name_entries(plotter *p) {
   const strut_curves *c = p->curves;
-  for (size_t i = 0; i < c->series_count + c->band_count; i++) {
-    bool area = i >= c->series_count;
-    const char *label = area ? c->bands[i - c->series_count].label : c->series[i].label;
+  for (size_t i = 0; i < c->series_count; i++) {
+    const char *label = c->series[i].label;
     bool known = !label || !*label;
     for (size_t k = 0; k < p->entry_count && !known; k++)
-      known = p->entries[k].area == area && strcmp(p->entries[k].label, label) == 0;
+      known = strcmp(p->entries[k].label, label) == 0;
     if (known) continue;
-    strut_legend_entry *e = &p->entries[p->entry_count++];
-    *e = (strut_legend_entry){.label = label, .area = area};
-    if (area) {
-      e->fill = strut_band_fill(c->bands[i - c->series_count].look);
-    } else {
-      e->look = style_of(c, i);
-      e->line = !c->series[i].no_line;
-      e->marker = has_markers(c, i);
-    }
+    p->entries[p->entry_count++] = (strut_legend_entry){
+        .label = label, .look = style_of(c, i), .line = true, .marker = c->series_count > 1};
   }
+  for (size_t i = 0; i < c->band_count; i++)
+    if (c->bands[i].label)
+      p->entries[p->entry_count++] =
+          (strut_legend_entry){.label = c->bands[i].label, .area = true, .fill = strut_band_fill()};
 }
 
 /* Counts samples of the curves' lines that lie in a box. */
@@ -293,16 +263,9 @@ static bool draw_all(plotter *p, strut_box box) {
   strut_draw_axes(p->canvas, &p->axes, p->curves->title);
   strut_canvas_clip(p->canvas, p->axes.frame);
   for (size_t i = 0; i < p->curves->series_count; i++) draw_series(p, i);
-  if (isfinite(p->curves->cursor)) {
-    double at[2];
-    strut_axes_point(&p->axes, p->curves->cursor, p->axes.y.low, at);
-    strut_draw_segment(p->canvas, at[0], p->axes.frame.y, at[0],
-                       p->axes.frame.y + p->axes.frame.height,
-                       (strut_pen){.colour = strut_grey(0.3), .width = 0.8, .dash = {3, 2}});
-  }
   strut_canvas_unclip(p->canvas);
-  for (size_t i = 0; i < p->curves->series_count; i++)
-    if (has_markers(p->curves, i)) draw_markers(p, i);
+  for (size_t i = 0; i < p->curves->series_count && p->curves->series_count > 1; i++)
+    draw_markers(p, i);
   if (p->curves->mark_beyond) mark_beyond(p);
   if (p->entry_count)
     strut_draw_legend(p->canvas, p->entries, p->entry_count, width, corner[0], corner[1], inside);

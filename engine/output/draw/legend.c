@@ -171,14 +171,7 @@ void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, do
                      open ? &hollow : &full, open ? &edge : &rim);
 }
 
-strut_fill strut_band_fill(int look) {
-  static const strut_hatch hatches[] = {STRUT_HATCH_NONE, STRUT_HATCH_RISING, STRUT_HATCH_FALLING,
-                                        STRUT_HATCH_DOTS, STRUT_HATCH_CROSSED};
-  size_t i = look > 0 ? (size_t)look : 0;
-  return (strut_fill){.colour = strut_grey(i % 2 ? 0.94 : 0.86),
-                      .hatch = hatches[i % 5],
-                      .hatch_colour = strut_grey(0.7)};
-}
+strut_fill strut_band_fill(void) { return (strut_fill){.colour = strut_grey(0.86)}; }
 
 size_t strut_thin(double (*points)[2], size_t count, double grain) {
   size_t kept = 0;

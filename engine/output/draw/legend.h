@@ -12,8 +12,8 @@
 strut_pen strut_series_pen(size_t look);
 /** Draws the marker of a series at x, y. */
 void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, double size);
-/** The fill of the i-th grey area. */
-strut_fill strut_band_fill(int look);
+/** The fill of grey areas. */
+strut_fill strut_band_fill(void);
 
 /**
  * Thins (count) points of ascending x in place to at most four in each `grain` of x, which leaves

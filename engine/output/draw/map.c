@@ -186,7 +186,7 @@ strut_status strut_draw_map(strut_canvas *canvas, strut_box box, const strut_map
   double width = fmax(box.width - right, 60);
   if (m.entry_count) strut_legend_size(canvas, m.entries, m.entry_count, width - 40, legend);
   strut_box inner = {box.x, box.y + legend[1], width, box.height - legend[1]};
-  m.axes = strut_axes_place(canvas, inner, x, y, NULL, map->title);
+  m.axes = strut_axes_place(canvas, inner, x, y, map->title);
   strut_draw_axes(canvas, &m.axes, map->title);
   strut_canvas_clip(canvas, m.axes.frame);
   draw_cells(&m);

@@ -195,7 +195,7 @@ static void draw_diagram(diagram *d, strut_box box) {
   for (size_t i = 0; i < w->count; i++) some_diverged = some_diverged || diverged(&w->bargains[i]);
   double top = legend[1] + (some_diverged ? STRIP : 0);
   const strut_box below = {box.x, box.y + top, box.width, box.height - top};
-  d->axes = strut_axes_place(d->canvas, below, cost, error, NULL, NULL);
+  d->axes = strut_axes_place(d->canvas, below, cost, error, NULL);
   d->strip = d->axes.frame;
   d->strip.height = some_diverged ? STRIP : 0;
   d->strip.y -= d->strip.height;

@@ -174,7 +174,7 @@ strut_status strut_ladder_draw(strut_canvas *canvas, strut_box box, const strut_
   for (size_t k = 0; k < count; k++) l.zero = fmin(l.zero, all->list[chosen[k]].energy);
   strut_axis y = find_axis(&l, &h, &beyond);
   strut_release(h.top);
-  l.axes = strut_axes_place(canvas, box, x, y, NULL, NULL);
+  l.axes = strut_axes_place(canvas, box, x, y, NULL);
   l.axes.frame.height = box.y + box.height - l.axes.frame.y - 4; /* the x axis has no numbers */
   strut_draw_vertical_axis(canvas, &l.axes);
   strut_canvas_clip(canvas, l.axes.frame);

@@ -157,7 +157,7 @@ static strut_axes place_axes(path_picture *p, strut_box box, char labels[2][LABE
   strut_axis x = p->upright ? height : motion, y = p->upright ? motion : height;
   strut_axis_choose(&x, &p->plot->x);
   strut_axis_choose(&y, &p->plot->y);
-  return strut_axes_place(p->canvas, box, x, y, NULL, NULL);
+  return strut_axes_place(p->canvas, box, x, y, NULL);
 }
 
 /* Branches, faint where they are unstable. */

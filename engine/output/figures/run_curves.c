@@ -270,8 +270,7 @@ strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, st
   strut_curves curves = {.x = {"time", "s", false, time[first], time[run->frames - 1]},
                          .y = {p.name, p.unit, false, (double)NAN, (double)NAN},
                          .series_count = p.count,
-                         .series = series,
-                         .cursor = (double)NAN};
+                         .series = series};
   find_range(&p, frames, kind, &curves.y);
   return strut_draw_curves(canvas, box, &curves);
 }

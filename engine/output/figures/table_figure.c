@@ -90,9 +90,8 @@ typedef struct maker {
   const strut_table_figure *figure;
   const strut_table *table;
   strut_table_groups panels, curves;
-  strut_axis x, y, right;
-  bool two; /* y columns of two units: the second has the right axis */
-  char y_name[2][NAME];
+  strut_axis x, y;
+  char y_name[NAME];
   strut_legend_entry *entries;
   size_t entry_count;
   strut_arena arena;
@@ -104,12 +103,6 @@ strut_axis strut_table_axis_of(const strut_axis_choice *wanted, const char *name
                      (double)NAN};
   if (wanted->limited) axis.low = wanted->low, axis.high = wanted->high;
   return axis;
-}
-
-/* Does the k-th y column belong to the right axis? */
-static bool is_right(const maker *m, int k) {
-  const strut_table_column *columns = m->table->columns;
-  return strcmp(columns[m->figure->y[k]].unit, columns[m->figure->y[0]].unit) != 0;
 }
 
 /* Rows of one curve in one panel. Returns how many. */
@@ -152,8 +145,7 @@ static bool make_series(maker *m, const size_t *rows, size_t count, int k, size_
     x[i] = m->table->columns[m->figure->x].value[rows[i]];
     y[i] = m->table->columns[column].value[rows[i]];
   }
-  *series =
-      (strut_series){.count = count, .x = x, .y = y, .look = (int)look, .right = is_right(m, k)};
+  *series = (strut_series){.count = count, .x = x, .y = y, .look = (int)look};
   return true;
 }
 
@@ -181,41 +173,36 @@ static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box bo
   const strut_curves curves = {.title = title[0] ? title : NULL,
                                .x = m->x,
                                .y = m->y,
-                               .right = m->two ? &m->right : NULL,
                                .series_count = used,
                                .series = series,
                                .band_count = bands,
                                .bands = band,
-                               .cursor = (double)NAN,
                                .mark_beyond = !f->y_axis.limited};
   return strut_draw_curves(canvas, box, &curves);
 }
 
-/* The label of a y axis: the names of its columns, or "" where they are too long or too many. */
-static const char *name_y_axis(maker *m, bool right) {
+/* The label of the y axis: the names of its columns, or "" where they are too long or too many. */
+static const char *name_y_axis(maker *m) {
   const strut_table_figure *f = m->figure;
-  char *name = m->y_name[right];
-  size_t used = 0, count = 0;
+  size_t used = 0;
   if (f->y_count == 1) return m->table->columns[f->y[0]].name;
   for (int k = 0; k < f->y_count; k++) {
     const char *column = m->table->columns[f->y[k]].name;
-    if (is_right(m, k) != right) continue;
-    if (++count > MOST_NAMES || used + strlen(column) + 3 > NAME) return "";
-    used += (size_t)snprintf(name + used, NAME - used, "%s%s", count > 1 ? ", " : "", column);
+    if (k == MOST_NAMES || used + strlen(column) + 3 > NAME) return "";
+    used += (size_t)snprintf(m->y_name + used, NAME - used, "%s%s", k ? ", " : "", column);
   }
-  return name;
+  return m->y_name;
 }
 
-/* Narrows an axis to its values but for a few far away. False: out of memory. */
-static bool omit_outliers(maker *m, bool right, strut_axis *axis) {
+/* Narrows the y axis to its values but for a few far away. False: out of memory. */
+static bool omit_outliers(maker *m) {
   const strut_table_figure *f = m->figure;
   size_t rows = m->table->row_count, known = 0;
   strut_beyond beyond;
   double *values = strut_arena_allocate(&m->arena, rows * (size_t)f->y_count + 1, sizeof *values);
   for (int k = 0; k < f->y_count && values; k++)
-    for (size_t i = 0; i < rows && is_right(m, k) == right; i++)
-      values[known++] = m->table->columns[f->y[k]].value[i];
-  if (values) strut_range_without_outliers(values, known, &axis->low, &axis->high, &beyond);
+    for (size_t i = 0; i < rows; i++) values[known++] = m->table->columns[f->y[k]].value[i];
+  if (values) strut_range_without_outliers(values, known, &m->y.low, &m->y.high, &beyond);
   return values != NULL;
 }
 
@@ -223,47 +210,33 @@ static bool omit_outliers(maker *m, bool right, strut_axis *axis) {
 static bool find_axes(maker *m) {
   const strut_table_figure *f = m->figure;
   const strut_table_column *columns = m->table->columns, *x = &columns[f->x];
-  const strut_axis_choice own = {0};
   m->x = strut_table_axis_of(&f->x_axis, x->name, x->unit, f->log_x);
-  m->y = strut_table_axis_of(&f->y_axis, name_y_axis(m, false), columns[f->y[0]].unit, f->log_y);
-  for (int k = 0; k < f->y_count; k++) {
-    if (!is_right(m, k)) continue;
-    m->two = true;
-    m->right = strut_table_axis_of(&own, name_y_axis(m, true), columns[f->y[k]].unit, f->log_y);
-  }
+  m->y = strut_table_axis_of(&f->y_axis, name_y_axis(m), columns[f->y[0]].unit, f->log_y);
   for (size_t i = 0; i < m->table->row_count; i++)
     for (int k = 0; k < f->y_count; k++) {
       double value = columns[f->y[k]].value[i];
       if (!isfinite(value) || !isfinite(x->value[i])) continue;
       if (!f->x_axis.limited) strut_axis_include(&m->x, x->value[i]);
-      if (is_right(m, k))
-        strut_axis_include(&m->right, value);
-      else if (!f->y_axis.limited)
-        strut_axis_include(&m->y, value);
+      if (!f->y_axis.limited) strut_axis_include(&m->y, value);
     }
-  bool fine = (f->log_y || f->y_axis.limited || omit_outliers(m, false, &m->y)) &&
-              (f->log_y || !m->two || omit_outliers(m, true, &m->right));
+  bool fine = f->log_y || f->y_axis.limited || omit_outliers(m);
   strut_axis_settle(&m->x, 0);
   strut_axis_settle(&m->y, f->y_axis.limited ? 0 : 0.06);
-  strut_axis_settle(&m->right, 0.06);
   return fine;
 }
 
-/* Two axes suffice for two units. */
+/* All y have the unit of the axis. */
 static strut_status check_units(const strut_table *table, const strut_table_figure *f,
                                 strut_error *error) {
-  const strut_table_column *first = &table->columns[f->y[0]], *second = NULL;
+  const strut_table_column *first = &table->columns[f->y[0]];
   for (int k = 1; k < f->y_count; k++) {
     const strut_table_column *y = &table->columns[f->y[k]];
     if (strcmp(y->unit, first->unit) == 0) continue;
-    if (!second) second = y;
-    if (strcmp(y->unit, second->unit) == 0) continue;
-    return strut_fail(
-        error, STRUT_USAGE,
-        "a figure has two y axes, but columns '%.60s', '%.60s' and '%.60s' have three "
-        "units (%s, %s, %s): draw them in separate figures",
-        first->name, second->name, y->name, *first->unit ? first->unit : "none",
-        *second->unit ? second->unit : "none", *y->unit ? y->unit : "none");
+    return strut_fail(error, STRUT_USAGE,
+                      "columns '%.60s' and '%.60s' have different units (%s, %s): draw them in "
+                      "separate figures",
+                      first->name, y->name, *first->unit ? first->unit : "none",
+                      *y->unit ? y->unit : "none");
   }
   return STRUT_OK;
 }
@@ -277,14 +250,13 @@ static size_t name_entries(maker *m, char (*text)[200]) {
     for (int k = 0; k < f->y_count; k++) {
       const char *column = m->table->columns[f->y[k]].name, *group = m->curves.name[c];
       if (m->curves.count * (size_t)f->y_count < 2) continue;
-      const char *side = is_right(m, k) ? " (right)" : "";
       if (!group) {
-        snprintf(text[used], sizeof *text, "%s%s", column, side);
+        snprintf(text[used], sizeof *text, "%s", column);
       } else {
         const strut_table_column *by = &m->table->columns[f->by];
-        snprintf(text[used], sizeof *text, "%s%s%s%s %s%s%s", f->y_count > 1 ? column : "",
-                 f->y_count > 1 ? side : "", f->y_count > 1 ? ", " : "", by->name, group,
-                 by->value && *by->unit ? " " : "", by->value ? by->unit : "");
+        snprintf(text[used], sizeof *text, "%s%s%s %s%s%s", f->y_count > 1 ? column : "",
+                 f->y_count > 1 ? ", " : "", by->name, group, by->value && *by->unit ? " " : "",
+                 by->value ? by->unit : "");
       }
       entries[used] = (strut_legend_entry){.label = text[used],
                                            .look = c * (size_t)f->y_count + (size_t)k,
@@ -295,7 +267,7 @@ static size_t name_entries(maker *m, char (*text)[200]) {
   if (f->band != STRUT_NO_COLUMN) {
     snprintf(text[used], sizeof *text, "%s %s", axis_name(m->table, f->band), f->band_value);
     entries[used] =
-        (strut_legend_entry){.label = text[used], .area = true, .fill = strut_band_fill(0)};
+        (strut_legend_entry){.label = text[used], .area = true, .fill = strut_band_fill()};
     used++;
   }
   return used;
@@ -437,7 +409,7 @@ static void draw(scatter *s) {
   bool scale = s->high > s->low;
   strut_box left = {box.x, box.y, box.width - (scale ? SCALE_WIDTH : 0), box.height};
   s->axes = strut_axes_place(s->canvas, left, axis_of(s, f->x, &f->x_axis),
-                             axis_of(s, f->y, &f->y_axis), NULL, f->title);
+                             axis_of(s, f->y, &f->y_axis), f->title);
   strut_draw_axes(s->canvas, &s->axes, f->title);
   for (size_t i = 0; i < s->table->row_count; i++)
     if (!f->marked[i]) draw_point(s, i, false);

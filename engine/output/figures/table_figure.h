@@ -25,13 +25,13 @@ typedef struct strut_table_choice {
 
 /** Curves from the columns of a table. Columns by number, STRUT_NO_COLUMN for none. */
 typedef struct strut_table_figure {
-  const char *title;                /* may be NULL */
-  double width;                     /* [pt] */
-  int x, y[STRUT_MOST_Y], y_count;  /* y of two units: the second unit has the right axis */
-  strut_axis_choice x_axis, y_axis; /* y_axis: the left one */
-  int by;                           /* a curve for each of its texts */
-  int panels;                       /* a panel for each of its texts */
-  int band; /* grey where it has the text `band_value`, midway to the next points */
+  const char *title;               /* may be NULL */
+  double width;                    /* [pt] */
+  int x, y[STRUT_MOST_Y], y_count; /* all y of one unit */
+  strut_axis_choice x_axis, y_axis;
+  int by;     /* a curve for each of its texts */
+  int panels; /* a panel for each of its texts */
+  int band;   /* grey where it has the text `band_value`, midway to the next points */
   const char *band_value;
   bool log_x, log_y;
   strut_table_choice choice;
@@ -40,7 +40,7 @@ typedef struct strut_table_figure {
 
 /**
  * Draws curves into the file `path`. STRUT_USAGE for a column without numbers where numbers are
- * needed, more than two units of y, or too many panels; otherwise as strut_canvas_open and
+ * needed, y of different units, or too many panels; otherwise as strut_canvas_open and
  * strut_canvas_commit.
  */
 STRUT_API strut_status strut_table_curves(const char *path, const strut_table_figure *figure,
@@ -63,18 +63,5 @@ typedef struct strut_table_map_figure {
  */
 STRUT_API strut_status strut_table_map(const char *path, const strut_table_map_figure *figure,
                                        const strut_table *table, strut_error *error);
-
-/** x is the cost, y the error (a cell that is not finite: diverged). */
-typedef struct strut_table_savings_figure {
-  const char *title;
-  double width;
-  strut_axis_choice x_axis, y_axis;
-  int x, y, by, label; /* by: the method; label: text beside points of the front */
-} strut_table_savings_figure;
-
-/** Draws a work-precision diagram. */
-STRUT_API strut_status strut_table_savings(const char *path,
-                                           const strut_table_savings_figure *figure,
-                                           const strut_table *table, strut_error *error);
 
 #endif

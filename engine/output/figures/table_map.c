@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "engine/output/draw/chart.h"
-#include "engine/output/draw/work_precision.h"
 #include "engine/output/figures/table_figure.h"
 #include "engine/output/figures/table_parts.h"
 
@@ -207,72 +206,6 @@ strut_status strut_table_map(const char *path, const strut_table_map_figure *fig
     drawn.colours = STRUT_COLOURS_DIVERGING;
   if (status == STRUT_OK) status = draw_table(path, &drawn, chosen.table, error);
   strut_table_chosen_free(&chosen);
-  return status;
-}
-
-typedef struct diagram_source {
-  const strut_table_savings_figure *figure;
-  const strut_table *table;
-  strut_table_groups methods;
-  strut_saving *bargains;
-  size_t count;
-} diagram_source;
-
-static strut_status draw_savings(void *context, strut_canvas *canvas, strut_box box, size_t panel) {
-  const diagram_source *t = context;
-  const strut_table_column *x = &t->table->columns[t->figure->x];
-  const strut_table_column *y = &t->table->columns[t->figure->y];
-  (void)panel; /* the only one */
-  const strut_table_savings_figure *f = t->figure;
-  const strut_work_precision diagram = {
-      .cost = strut_table_axis_of(&f->x_axis, x->name, x->unit, true),
-      .error = strut_table_axis_of(&f->y_axis, y->name, y->unit, true),
-      .group_count = t->methods.count,
-      .groups = t->methods.name,
-      .count = t->count,
-      .bargains = t->bargains};
-  return strut_draw_work_precision(canvas, box, &diagram);
-}
-
-static void find_savings(diagram_source *t) {
-  const strut_table_savings_figure *f = t->figure;
-  const strut_table_column *columns = t->table->columns;
-  for (size_t i = 0; i < t->table->row_count; i++) {
-    int group = 0;
-    if (!(columns[f->x].value[i] > 0)) continue;
-    for (size_t g = 0; g < t->methods.count; g++)
-      if (strut_table_belongs(t->table, f->by, t->methods.name[g], i)) group = (int)g;
-    t->bargains[t->count++] =
-        (strut_saving){.group = group,
-                       .label = f->label == STRUT_NO_COLUMN ? NULL : columns[f->label].text[i],
-                       .cost = columns[f->x].value[i],
-                       .error = columns[f->y].value[i],
-                       .low = (double)NAN,
-                       .high = (double)NAN};
-  }
-}
-
-strut_status strut_table_savings(const char *path, const strut_table_savings_figure *figure,
-                                 const strut_table *table, strut_error *error) {
-  diagram_source t = {.figure = figure, .table = table};
-  strut_arena arena = {0};
-  strut_status status = strut_table_numbers(table, figure->x, error);
-  if (status == STRUT_OK) status = strut_table_numbers(table, figure->y, error);
-  if (status == STRUT_OK)
-    status = strut_table_groups_find(table, figure->by, STRUT_MOST_TABLE_GROUPS, "methods",
-                                     &t.methods, error);
-  if (status == STRUT_OK) {
-    t.bargains = strut_arena_allocate(&arena, table->row_count, sizeof *t.bargains);
-    if (!t.bargains) status = strut_no_memory(error, "while drawing");
-  }
-  if (status == STRUT_OK) {
-    if (figure->by == STRUT_NO_COLUMN) t.methods.name[0] = table->columns[figure->y].name;
-    find_savings(&t);
-    const strut_panel_page page = {
-        .width = figure->width, .least_width = PANEL_WIDTH, .aspect = ASPECT, .panels = 1};
-    status = strut_panel_page_draw(path, figure->title, &page, NULL, draw_savings, &t, error);
-  }
-  strut_arena_free(&arena);
   return status;
 }
 

@@ -77,8 +77,7 @@ strut_status strut_waves_figure(const strut_plot *plot, const strut_model *model
                          .series_count = (size_t)w->shown,
                          .series = p.series,
                          .band_count = p.gap_count,
-                         .bands = p.bands,
-                         .cursor = (double)NAN};
+                         .bands = p.bands};
   if (status == STRUT_OK) {
     strut_box box = strut_canvas_box(canvas);
     box.x += EDGE, box.y += EDGE, box.width -= 2 * EDGE, box.height -= 2 * EDGE;

@@ -124,7 +124,7 @@ static strut_status draw_on_canvas(drawing *d, const strut_plot *plot, strut_axi
     status = strut_canvas_open(plot->path, width, box.height + GAP + key + 2 * EDGE, title,
                                &d->canvas, error);
   if (status) return status;
-  d->axes = strut_axes_place(d->canvas, box, x, y, NULL, title);
+  d->axes = strut_axes_place(d->canvas, box, x, y, title);
   strut_draw_axes(d->canvas, &d->axes, title);
   strut_canvas_clip(d->canvas, d->axes.frame);
   for (size_t i = 0; i < p->line_count; i++) draw_line(d, &p->lines[i]);
