@@ -223,7 +223,8 @@ TEST(labels_of_the_front) {
                    STRUT_OK);
   assert_int_equal(strut_canvas_commit(canvas, &error), STRUT_OK);
   strut_canvas_free(canvas);
-  char *text = scratch_read(path, NULL);
+  size_t length;
+  char *text = scratch_read(path, &length);
   assert_non_null(text);
   for (size_t i = 0; i < 3; i++) { /* an SVG lists its texts */
     snprintf(label, sizeof label, "%s<", labels[i]);

@@ -5,6 +5,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "engine/base/c_locale.h"
@@ -17,12 +18,9 @@
 /* ---- flaws of shapes ---- */
 
 /*
- * Which nodes coincide and which members cross. Nodes and members are entered into the squares of a net over
- * the shape, and only those of one square are compared, so that the effort grows with their number alone.
+ * Which nodes coincide and which members cross. Only those are compared whose extents along x overlap: they
+ * are sorted by where these begin.
  */
-
-/* Fewer things are all compared; entries per thing on average. */
-enum { FEW = 64, ENTRIES_MOST = 8 };
 
 /* Twice the area of a, b, c: positive where they turn left. */
 static double turn(const double *a, const double *b, const double *c) {
@@ -42,13 +40,18 @@ static bool members_cross(const strut_model *model, const double *q, int32_t i, 
   return apart && (c_side > 0) != (d_side > 0) && (a_side > 0) != (b_side > 0);
 }
 
+typedef struct shape_flaws {
+  bool collapsed;    /* two nodes coincide, or a member has no length, within 1e-4 model sizes */
+  int32_t crossings; /* pairs of members that cross, away from their ends */
+} shape_flaws;
+
 /* What is compared: nodes, or members. */
 typedef struct things {
   const strut_model *model;
   const double *q;
   int32_t count;
   bool members;
-  strut_shape_flaws *flaws;
+  shape_flaws *flaws;
 } things;
 
 static double margin(const things *t) { return 1e-4 * t->model->size; }
@@ -63,112 +66,47 @@ static void compare(const things *t, int32_t i, int32_t j) {
 
 static bool is_done(const things *t) { return !t->members && t->flaws->collapsed; }
 
-static void compare_all(const things *t) {
-  for (int32_t i = 0; i < t->count; i++)
-    for (int32_t j = 0; j < i && !is_done(t); j++) compare(t, i, j);
-}
+/* The rectangle of a thing; two things whose rectangles do not touch have no flaw. */
+typedef struct extent {
+  double least[2], most[2];
+  int32_t thing;
+} extent;
 
-/* The rectangle of a thing; two things that do not touch with theirs have no flaw. */
-static void rectangle_of(const things *t, int32_t i, double least[2], double most[2]) {
+static extent extent_of(const things *t, int32_t i) {
   const strut_member_table *m = &t->model->members;
+  extent e = {.thing = i};
   for (int c = 0; c < 2; c++) {
     double a = t->q[t->members ? (int32_t)m->from[i] + c : 2 * i + c];
     double b = t->members ? t->q[(int32_t)m->to[i] + c] : a + margin(t);
-    least[c] = fmin(a, b);
-    most[c] = fmax(a, b);
+    e.least[c] = fmin(a, b);
+    e.most[c] = fmax(a, b);
   }
+  return e;
 }
 
-typedef struct net {
-  double origin[2], side; /* of a square */
-  int32_t squares[2];
-  int32_t *start, *thing; /* of each square, row by row: the things that reach into it */
-} net;
-
-static void squares_of(const net *n, const double least[2], const double most[2], int32_t from[2],
-                       int32_t to[2]) {
-  for (int c = 0; c < 2; c++) {
-    from[c] = (int32_t)((least[c] - n->origin[c]) / n->side);
-    to[c] = (int32_t)((most[c] - n->origin[c]) / n->side);
-  }
-}
-
-/* Counts the things of each square, or enters them; returns how many entries there are. */
-static int64_t enter(const things *t, const net *n, bool fill) {
-  int64_t entries = 0;
-  for (int32_t i = 0; i < t->count; i++) {
-    double least[2], most[2];
-    int32_t from[2], to[2];
-    rectangle_of(t, i, least, most);
-    squares_of(n, least, most, from, to);
-    entries += (int64_t)(to[0] - from[0] + 1) * (to[1] - from[1] + 1);
-    for (int32_t y = from[1]; y <= to[1] && n->start; y++)
-      for (int32_t x = from[0]; x <= to[0]; x++) {
-        int32_t *at = &n->start[y * n->squares[0] + x];
-        if (fill)
-          n->thing[--*at] = i;
-        else
-          ++*at;
-      }
-  }
-  return entries;
-}
-
-/* Chooses about as many squares as things, larger ones where things are long. False: it cannot. */
-static bool make_net(const things *t, net *n, strut_arena *arena) {
-  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-  for (int32_t i = 0; i < t->count; i++) {
-    double least[2], most[2];
-    rectangle_of(t, i, least, most);
-    for (int c = 0; c < 2; c++) low[c] = fmin(low[c], least[c]), high[c] = fmax(high[c], most[c]);
-  }
-  double width = high[0] - low[0], height = high[1] - low[1], longer = fmax(width, height);
-  if (!isfinite(longer) || !(longer > 0)) return false;
-  *n = (net){.origin = {low[0], low[1]}};
-  n->side = fmax(sqrt(width * height / t->count), longer / t->count);
-  int64_t entries;
-  for (;; n->side *= 2) {
-    n->squares[0] = (int32_t)(width / n->side) + 1;
-    n->squares[1] = (int32_t)(height / n->side) + 1;
-    entries = enter(t, n, false);
-    if (entries <= (int64_t)ENTRIES_MOST * t->count) break;
-  }
-  size_t squares = (size_t)n->squares[0] * (size_t)n->squares[1];
-  n->thing = strut_arena_allocate(arena, (size_t)entries, sizeof *n->thing);
-  n->start = strut_arena_allocate(arena, squares + 1, sizeof *n->start);
-  if (!n->thing || !n->start) return false;
-  enter(t, n, false);
-  for (size_t k = 0; k < squares; k++) n->start[k + 1] += n->start[k];
-  enter(t, n, true);
-  return true;
-}
-
-/* Two things that reach into several squares together are compared in the first one only. */
-static bool is_first_square(const things *t, const net *n, int32_t i, int32_t j, int32_t square) {
-  double least[2][2], most[2][2], corner[2];
-  int32_t from[2], to[2];
-  rectangle_of(t, i, least[0], most[0]);
-  rectangle_of(t, j, least[1], most[1]);
-  for (int c = 0; c < 2; c++) corner[c] = fmax(least[0][c], least[1][c]);
-  squares_of(n, corner, corner, from, to);
-  return from[1] * n->squares[0] + from[0] == square;
+static int by_left_edge(const void *a, const void *b) {
+  double x = ((const extent *)a)->least[0], y = ((const extent *)b)->least[0];
+  return (x > y) - (x < y);
 }
 
 static void find_flaws(const things *t) {
-  net n;
-  strut_arena arena = {0};
-  bool many = t->count > FEW && make_net(t, &n, &arena);
-  if (!many) compare_all(t);
-  int32_t squares = many ? n.squares[0] * n.squares[1] : 0;
-  for (int32_t s = 0; s < squares && !is_done(t); s++)
-    for (int32_t a = n.start[s]; a < n.start[s + 1]; a++)
-      for (int32_t b = n.start[s]; b < a; b++)
-        if (is_first_square(t, &n, n.thing[a], n.thing[b], s)) compare(t, n.thing[a], n.thing[b]);
-  strut_arena_free(&arena);
+  extent *e = strut_allocate((size_t)t->count + 1, sizeof *e);
+  if (!e) { /* memory is out */
+    for (int32_t i = 0; i < t->count; i++)
+      for (int32_t j = 0; j < i && !is_done(t); j++) compare(t, i, j);
+    return;
+  }
+  for (int32_t i = 0; i < t->count; i++) e[i] = extent_of(t, i);
+  qsort(e, (size_t)t->count, sizeof *e, by_left_edge);
+  for (int32_t i = 0; i < t->count && !is_done(t); i++)
+    for (int32_t j = i + 1; j < t->count && e[j].least[0] <= e[i].most[0]; j++)
+      if (e[j].least[1] <= e[i].most[1] && e[j].most[1] >= e[i].least[1])
+        compare(t, e[i].thing, e[j].thing);
+  strut_release(e);
 }
 
-strut_shape_flaws strut_find_shape_flaws(const strut_model *model, const double *q) {
-  strut_shape_flaws flaws = {0};
+static shape_flaws find_shape_flaws(const strut_model *model, const double *q) {
+  shape_flaws flaws = {0};
   find_flaws(&(things){model, q, model->node_count, false, &flaws});
   find_flaws(&(things){model, q, model->members.count, true, &flaws});
   return flaws;
@@ -272,7 +210,7 @@ static void put_equilibrium(strut_json *json, struct cJSON *to, const strut_equi
   strut_json_integer(json, to, "shape", p->shape);
   strut_json_integer(json, to, "congruent_copies", p->placements);
   strut_json_integer(json, to, "found", p->found);
-  strut_shape_flaws flaws = strut_find_shape_flaws(model, p->q);
+  shape_flaws flaws = find_shape_flaws(model, p->q);
   strut_json_bool(json, to, "collapsed", flaws.collapsed);
   strut_json_integer(json, to, "crossings", flaws.crossings);
   if (scene->collision_count) {
@@ -361,7 +299,7 @@ static void list_names(const strut_scene *scene, const strut_equilibrium *e, cha
 }
 
 /* "collapsed", "2 crossings" or "-". */
-static void describe_flaws(strut_shape_flaws flaws, char text[NAMES]) {
+static void describe_flaws(shape_flaws flaws, char text[NAMES]) {
   if (flaws.collapsed)
     snprintf(text, NAMES, "collapsed");
   else if (flaws.crossings)
@@ -407,7 +345,7 @@ static void add_row(strut_buffer *table, const strut_equilibria *all, const stru
                     const strut_equilibrium *e, double largest) {
   char names[NAMES], flaws[NAMES];
   list_names(model->scene, e, names);
-  describe_flaws(strut_find_shape_flaws(model, e->point.q), flaws);
+  describe_flaws(find_shape_flaws(model, e->point.q), flaws);
   int32_t first = e->point.label == STRUT_STABLE ? e->point.zero : 0; /* free motions apart */
   double lowest = first < e->point.eigenvalue_count ? e->point.eigenvalues[first] : (double)NAN;
   strut_buffer_add(table, "  %-18s %-12s %-8s %14s %13s %7" PRId64 "  %-*s", e->name, names,
