@@ -81,6 +81,48 @@ static const char *super_stability_words(const strut_rigidity *r,
   return words;
 }
 
+/* ---- elements beside members: columns of the equilibrium matrix behind those of members ---- */
+
+typedef enum element { HINGES, CELLS, DISTANCES, ELEMENTS } element;
+
+/* Key of their forces and of the list in JSON; words and units of a table. */
+static const struct {
+  const char *forces, *list, *word, *extent, *force, *extent_unit, *force_unit;
+} elements[ELEMENTS] = {
+    [HINGES] = {"moments", "hinges_at", "hinge", "angle", "moment", "rad", "N m"},
+    [CELLS] = {"pressures", "cells_at", "cell", "area", "pressure", "m^2", "N/m"},
+    [DISTANCES] = {"distance_forces", "distances_at", "distance", "distance", "force", "m", "N"}};
+
+static size_t count_of(const strut_scene *scene, element kind) {
+  const size_t counts[ELEMENTS] = {scene->hinge_count, scene->cell_count, scene->distance_count};
+  return counts[kind];
+}
+
+static size_t first_of(const strut_scene *scene, element kind) {
+  size_t first = scene->member_count;
+  for (element before = HINGES; before < kind; before++) first += count_of(scene, before);
+  return first;
+}
+
+static const char *name_of(const strut_scene *scene, element kind, size_t i) {
+  return kind == HINGES  ? scene->hinges[i].name
+         : kind == CELLS ? scene->cells[i].name
+                         : scene->distances[i].name;
+}
+
+/* Columns are forces [N] over lengths [m]; a cell presses outwards. */
+static double force_of(const strut_rigidity *r, element kind, double force) {
+  return kind == HINGES  ? force * r->matrix.size
+         : kind == CELLS ? -force / r->matrix.size + 0.0
+                         : force;
+}
+
+static double extent_of(const strut_rigidity *r, element kind, double length) {
+  return kind == HINGES  ? length / r->matrix.size
+         : kind == CELLS ? length * r->matrix.size
+                         : length;
+}
+
 /* A cable that does not pull in this shape. */
 static bool is_idle(const strut_rigidity *r, const strut_scene *scene, size_t j) {
   return scene->members[j].kind == STRUT_CABLE && !(r->force[j] > 0.0);
@@ -98,38 +140,18 @@ static void put_map(strut_json *json, struct cJSON *to, const char *key, const s
   }
 }
 
-/* Moments of hinges that go with forces of members: [N m] for forces in [N]. */
-static void put_moments(strut_json *json, struct cJSON *to, const char *key,
-                        const strut_rigidity *r, const strut_scene *scene, const double *force) {
-  if (scene->hinge_count == 0) return;
-  struct cJSON *map = strut_json_object(json, to, key);
-  for (size_t i = 0; i < scene->hinge_count; i++)
-    strut_json_number(json, map, scene->hinges[i].name,
-                      force[scene->member_count + i] * r->matrix.size);
-}
-
-/* Pressures of cells that go with forces of members: [N/m] for forces in [N]. */
-static void put_pressures(strut_json *json, struct cJSON *to, const char *key,
-                          const strut_rigidity *r, const strut_scene *scene, const double *force) {
-  if (scene->cell_count == 0) return;
-  struct cJSON *map = strut_json_object(json, to, key);
-  for (size_t i = 0; i < scene->cell_count; i++)
-    strut_json_number(json, map, scene->cells[i].name,
-                      -force[scene->member_count + scene->hinge_count + i] / r->matrix.size);
-}
-
-/* The column of the first distance. */
-static size_t first_distance(const strut_scene *scene) {
-  return scene->member_count + scene->hinge_count + scene->cell_count;
-}
-
-/* Forces of distances that go with those of members. */
-static void put_distances(strut_json *json, struct cJSON *to, const char *key,
-                          const strut_scene *scene, const double *force) {
-  if (scene->distance_count == 0) return;
-  struct cJSON *map = strut_json_object(json, to, key);
-  for (size_t i = 0; i < scene->distance_count; i++)
-    strut_json_number(json, map, scene->distances[i].name, force[first_distance(scene) + i]);
+/* Forces of elements beside members: moments of hinges [N m], pressures of cells [N/m], forces of distances [N]. */
+static void put_elements(strut_json *json, struct cJSON *to, const char *before,
+                         const strut_rigidity *r, const strut_scene *scene, const double *force) {
+  for (element kind = HINGES; kind < ELEMENTS; kind++) {
+    char key[60];
+    if (!count_of(scene, kind)) continue;
+    snprintf(key, sizeof key, "%s%s", before, elements[kind].forces);
+    struct cJSON *map = strut_json_object(json, to, key);
+    for (size_t i = 0; i < count_of(scene, kind); i++)
+      strut_json_number(json, map, name_of(scene, kind, i),
+                        force_of(r, kind, force[first_of(scene, kind) + i]));
+  }
 }
 
 static void put_head(strut_json *json, const strut_rigidity *r, const strut_model *model,
@@ -171,17 +193,13 @@ static void put_self_stress(strut_json *json, const strut_rigidity *r, const str
     struct cJSON *state = strut_json_object(json, states, NULL);
     put_map(json, state, "forces", scene, force, NULL);
     put_map(json, state, "force_densities", scene, force, r->matrix.length);
-    put_moments(json, state, "moments", r, scene, force);
-    put_pressures(json, state, "pressures", r, scene, force);
-    put_distances(json, state, "distance_forces", scene, force);
+    put_elements(json, state, "", r, scene, force);
     strut_json_bool(json, state, "feasible", r->states.cables_pull[i]);
   }
   if (r->states.count == 0) return;
   if (r->feasible) {
     put_map(json, stress, "feasible", scene, r->feasible, NULL);
-    put_moments(json, stress, "feasible_moments", r, scene, r->feasible);
-    put_pressures(json, stress, "feasible_pressures", r, scene, r->feasible);
-    put_distances(json, stress, "feasible_distance_forces", scene, r->feasible);
+    put_elements(json, stress, "feasible_", r, scene, r->feasible);
   } else {
     strut_json_text(json, stress, "feasible", NULL);
   }
@@ -234,9 +252,7 @@ static void put_mechanisms(strut_json *json, const strut_rigidity *r, const stru
   }
   if (!m->stiffener) return;
   put_map(json, to, "stiffened_by", scene, m->stiffener, NULL);
-  put_moments(json, to, "stiffened_by_moments", r, scene, m->stiffener);
-  put_pressures(json, to, "stiffened_by_pressures", r, scene, m->stiffener);
-  put_distances(json, to, "stiffened_by_distance_forces", scene, m->stiffener);
+  put_elements(json, to, "stiffened_by_", r, scene, m->stiffener);
 }
 
 static void put_verdicts(strut_json *json, const strut_rigidity *r) {
@@ -293,28 +309,15 @@ static void put_members(strut_json *json, const strut_rigidity *r, const strut_s
     strut_json_number(json, row, "force_density",
                       r->matrix.length[j] > 0 ? r->density[j] : (double)NAN);
   }
-  struct cJSON *cells = scene->cell_count ? strut_json_object(json, json->root, "cells_at") : NULL;
-  for (size_t i = 0; i < scene->cell_count; i++) {
-    struct cJSON *row = strut_json_object(json, cells, scene->cells[i].name);
-    size_t j = scene->member_count + scene->hinge_count + i;
-    strut_json_number(json, row, "area", r->matrix.length[j] * r->matrix.size);
-    strut_json_number(json, row, "pressure", -r->force[j] / r->matrix.size + 0.0);
-  }
-  struct cJSON *distances =
-      scene->distance_count ? strut_json_object(json, json->root, "distances_at") : NULL;
-  for (size_t i = 0; i < scene->distance_count; i++) {
-    struct cJSON *row = strut_json_object(json, distances, scene->distances[i].name);
-    size_t j = first_distance(scene) + i;
-    strut_json_number(json, row, "distance", r->matrix.length[j]);
-    strut_json_number(json, row, "force", r->force[j]);
-  }
-  if (scene->hinge_count == 0) return;
-  struct cJSON *hinges = strut_json_object(json, json->root, "hinges_at");
-  for (size_t i = 0; i < scene->hinge_count; i++) {
-    struct cJSON *row = strut_json_object(json, hinges, scene->hinges[i].name);
-    size_t j = scene->member_count + i;
-    strut_json_number(json, row, "angle", r->matrix.length[j] / r->matrix.size);
-    strut_json_number(json, row, "moment", r->force[j] * r->matrix.size);
+  for (element kind = HINGES; kind < ELEMENTS; kind++) {
+    size_t count = count_of(scene, kind), first = first_of(scene, kind);
+    struct cJSON *list = count ? strut_json_object(json, json->root, elements[kind].list) : NULL;
+    for (size_t i = 0; i < count; i++) {
+      struct cJSON *row = strut_json_object(json, list, name_of(scene, kind, i));
+      strut_json_number(json, row, elements[kind].extent,
+                        extent_of(r, kind, r->matrix.length[first + i]));
+      strut_json_number(json, row, elements[kind].force, force_of(r, kind, r->force[first + i]));
+    }
   }
 }
 
@@ -356,15 +359,14 @@ static void add_rank(strut_buffer *table, const strut_rigidity *r) {
 }
 
 static void add_counts(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
-  const size_t counts[] = {scene->hinge_count, scene->cell_count, scene->distance_count};
-  static const char *const words[] = {"hinges", "cells", "distances"};
   char others[60] = "";
   int left = 0;
-  for (int i = 0; i < 3; i++) left += counts[i] > 0;
-  for (int i = 0; i < 3; i++)
-    if (counts[i]) {
+  for (element kind = HINGES; kind < ELEMENTS; kind++) left += count_of(scene, kind) > 0;
+  for (element kind = HINGES; kind < ELEMENTS; kind++)
+    if (count_of(scene, kind)) {
       size_t used = strlen(others);
-      snprintf(others + used, sizeof others - used, "%s%s", --left ? ", " : " and ", words[i]);
+      snprintf(others + used, sizeof others - used, "%s%ss", --left ? ", " : " and ",
+               elements[kind].word);
     }
   const strut_mechanisms *m = &r->mechanisms;
   strut_buffer_add(table, "  self-stress        s = %d\n", r->states.count);
@@ -437,63 +439,26 @@ static void add_verdicts(strut_buffer *table, const strut_rigidity *r, const str
                      r->without_length);
 }
 
-/* Moments of the states go with forces of 1 N. */
-static void add_hinges(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene,
-                       int32_t states) {
-  size_t columns = (size_t)r->matrix.columns, first = scene->member_count;
-  double size = r->matrix.size;
-  if (scene->hinge_count)
-    strut_buffer_add(table, "  %-12s %-6s %12s %12s\n", "hinge", "", "angle", "moment");
-  for (size_t i = 0; i < scene->hinge_count && i < MOST_ROWS; i++) {
-    size_t j = first + i;
-    strut_buffer_add(table, "  %-12s %-6s %12s %12s %13s", scene->hinges[i].name, "",
-                     in(r->matrix.length[j] / size, "rad").text, in(r->force[j] * size, "N m").text,
-                     "");
+/* Forces of the states are those of elements where members have forces [N]. */
+static void add_elements(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene,
+                         element kind, int32_t states) {
+  size_t columns = (size_t)r->matrix.columns, count = count_of(scene, kind);
+  if (count)
+    strut_buffer_add(table, "  %-12s %-6s %12s %12s\n", elements[kind].word, "",
+                     elements[kind].extent, elements[kind].force);
+  for (size_t i = 0; i < count && i < MOST_ROWS; i++) {
+    size_t j = first_of(scene, kind) + i;
+    double extent = extent_of(r, kind, r->matrix.length[j]), force = force_of(r, kind, r->force[j]);
+    strut_buffer_add(table, "  %-12s %-6s %12s %12s %13s", name_of(scene, kind, i), "",
+                     strut_quantity_of_any(extent, DIGITS, elements[kind].extent_unit).text,
+                     in(force, elements[kind].force_unit).text, "");
     for (int32_t k = 0; k < states; k++)
-      strut_buffer_add(table, " %10.6g", r->states.force[(size_t)k * columns + j] * size);
+      strut_buffer_add(table, " %10.6g",
+                       force_of(r, kind, r->states.force[(size_t)k * columns + j]));
     strut_buffer_add(table, "\n");
   }
-  if (scene->hinge_count > MOST_ROWS)
-    strut_buffer_add(table, "  ... and %zu more; --json lists all\n",
-                     scene->hinge_count - MOST_ROWS);
-}
-
-/* Pressures of the states go with forces of 1 N. */
-static void add_cells(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene,
-                      int32_t states) {
-  size_t columns = (size_t)r->matrix.columns, first = scene->member_count + scene->hinge_count;
-  double size = r->matrix.size;
-  if (scene->cell_count)
-    strut_buffer_add(table, "  %-12s %-6s %12s %12s\n", "cell", "", "area", "pressure");
-  for (size_t i = 0; i < scene->cell_count && i < MOST_ROWS; i++) {
-    size_t j = first + i;
-    strut_buffer_add(table, "  %-12s %-6s %8.6g m^2 %12s %13s", scene->cells[i].name, "",
-                     r->matrix.length[j] * size, in(-r->force[j] / size + 0.0, "N/m").text, "");
-    for (int32_t k = 0; k < states; k++)
-      strut_buffer_add(table, " %10.6g", -r->states.force[(size_t)k * columns + j] / size + 0.0);
-    strut_buffer_add(table, "\n");
-  }
-  if (scene->cell_count > MOST_ROWS)
-    strut_buffer_add(table, "  ... and %zu more; --json lists all\n",
-                     scene->cell_count - MOST_ROWS);
-}
-
-static void add_distances(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene,
-                          int32_t states) {
-  size_t columns = (size_t)r->matrix.columns;
-  if (scene->distance_count)
-    strut_buffer_add(table, "  %-12s %-6s %12s %12s\n", "distance", "", "distance", "force");
-  for (size_t i = 0; i < scene->distance_count && i < MOST_ROWS; i++) {
-    size_t j = first_distance(scene) + i;
-    strut_buffer_add(table, "  %-12s %-6s %12s %12s %13s", scene->distances[i].name, "",
-                     in(r->matrix.length[j], "m").text, in(r->force[j], "N").text, "");
-    for (int32_t k = 0; k < states; k++)
-      strut_buffer_add(table, " %10.6g", r->states.force[(size_t)k * columns + j]);
-    strut_buffer_add(table, "\n");
-  }
-  if (scene->distance_count > MOST_ROWS)
-    strut_buffer_add(table, "  ... and %zu more; --json lists all\n",
-                     scene->distance_count - MOST_ROWS);
+  if (count > MOST_ROWS)
+    strut_buffer_add(table, "  ... and %zu more; --json lists all\n", count - MOST_ROWS);
 }
 
 static void add_members(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
@@ -515,9 +480,7 @@ static void add_members(strut_buffer *table, const strut_rigidity *r, const stru
   }
   if (members > MOST_ROWS)
     strut_buffer_add(table, "  ... and %zu more; --json lists all\n", members - MOST_ROWS);
-  add_hinges(table, r, scene, states);
-  add_cells(table, r, scene, states);
-  add_distances(table, r, scene, states);
+  for (element kind = HINGES; kind < ELEMENTS; kind++) add_elements(table, r, scene, kind, states);
   if (r->states.count > states)
     strut_buffer_add(table, "  %d more self-stress states%s\n", r->states.count - states,
                      r->states.force ? "; --json lists all" : ": too many to list");
