@@ -209,8 +209,7 @@ strut_status strut_table_map(const char *path, const strut_table_map_figure *fig
   return status;
 }
 
-/* A copy of the columns with the rows named (count) and room for one column more. */
-static strut_status copy_rows(const strut_table *table, const size_t *rows, size_t count,
+strut_status strut_table_rows(const strut_table *table, const size_t *rows, size_t count,
                               strut_table *some, strut_error *error) {
   some->row_count = count;
   some->column_count = table->column_count;
@@ -251,7 +250,7 @@ strut_status strut_table_only(const strut_table *table, int column, const char *
   if (!count)
     return strut_fail(error, STRUT_USAGE, "no row of the table has '%.60s' in column '%.60s'", text,
                       table->columns[column].name);
-  return copy_rows(table, rows, count, some, error);
+  return strut_table_rows(table, rows, count, some, error);
 }
 
 /* A row that knows where its keys are, to be sorted. */
@@ -391,7 +390,7 @@ strut_status strut_table_difference(const strut_table *table, const strut_table_
   sides s;
   *difference = (strut_table){0};
   strut_status status = find_sides(table, pairing, &s, &difference->arena, error);
-  if (!status) status = copy_rows(table, s.second, s.second_count, difference, error);
+  if (!status) status = strut_table_rows(table, s.second, s.second_count, difference, error);
   return status ? status : subtract_sides(table, pairing, &s, difference, error);
 }
 

@@ -76,6 +76,12 @@ typedef struct strut_table_pairing {
 } strut_table_pairing;
 
 /**
+ * A copy of (count) rows in the arena of `some`, with room for one column more; texts are shared.
+ * STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_table_rows(const strut_table *table, const size_t *rows, size_t count,
+                                        strut_table *some, strut_error *error);
+/**
  * The rows whose column has that text, in their order. `some` shares texts with `table` and has its
  * own arena, which frees it. STRUT_USAGE where there are none; STRUT_NO_MEMORY.
  */

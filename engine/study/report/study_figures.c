@@ -226,12 +226,6 @@ typedef struct tracker {
   size_t outer; /* columns of the axes before the searches */
 } tracker;
 
-static int find(const strut_table *table, const char *name) {
-  for (size_t i = 0; name && i < table->column_count; i++)
-    if (strcmp(table->columns[i].name, name) == 0) return (int)i;
-  return STRUT_NO_COLUMN;
-}
-
 static double value_at(const tracker *t, int column, size_t row) {
   const double *value = column >= 0 ? t->table->columns[column].value : NULL;
   return value ? value[row] : (double)NAN;
@@ -272,11 +266,11 @@ static double judge(const tracker *t, int column, size_t row, size_t *next) {
 static tracker track(const strut_sweep_plan *plan, const strut_table *table) {
   tracker t = {.search = plan->study->search,
                .table = table,
-               .number = find(table, "search"),
-               .evaluation = find(table, "evaluation"),
-               .objective = find(table, "objective"),
-               .second = find(table, "objective_2"),
-               .violation = find(table, "violation")};
+               .number = column_of(table, "search"),
+               .evaluation = column_of(table, "evaluation"),
+               .objective = column_of(table, "objective"),
+               .second = column_of(table, "objective_2"),
+               .violation = column_of(table, "violation")};
   for (size_t i = 0; i < t.search->axis; i++) t.outer += plan->study->axes[i].column_count;
   return t;
 }
@@ -326,45 +320,29 @@ static bool mark_front(const tracker *t, const bool *shown, bool *marked, strut_
   return goal != NULL;
 }
 
-/* A column of the rows that are shown. */
-static bool copy_column(const strut_table_column *from, const size_t *rows, size_t count,
-                        strut_arena *arena, strut_table_column *to) {
-  const char **text = from->text ? strut_arena_allocate(arena, count, sizeof *text) : NULL;
-  double *value = from->value ? strut_arena_allocate(arena, count, sizeof *value) : NULL;
-  *to = (strut_table_column){.name = from->name, .unit = from->unit, .text = text, .value = value};
-  for (size_t i = 0; i < count; i++) {
-    if (text) text[i] = from->text[rows[i]];
-    if (value) value[i] = from->value[rows[i]];
-  }
-  return (text || !from->text) && (value || !from->value);
-}
-
 /* The rows that are shown, with a further column. */
-static bool extend(const strut_table *from, const double *best, const bool *shown, const char *unit,
-                   strut_table *to) {
-  const strut_table_column last = {.name = "best so far", .unit = unit, .value = best};
-  size_t *rows = strut_arena_allocate(&to->arena, from->row_count, sizeof *rows);
-  to->column_count = from->column_count + 1;
-  to->columns = strut_arena_allocate(&to->arena, to->column_count, sizeof *to->columns);
-  if (!to->columns || !rows) return false;
+static strut_status extend(const strut_table *from, const double *best, const bool *shown,
+                           const char *unit, strut_table *to, strut_error *error) {
+  size_t count = 0, *rows = strut_allocate(from->row_count + 1, sizeof *rows);
+  if (!rows) return strut_no_memory(error, "while drawing");
   for (size_t i = 0; i < from->row_count; i++)
-    if (shown[i]) rows[to->row_count++] = i;
-  bool fine = true;
-  for (size_t i = 0; i < to->column_count && fine; i++)
-    fine = copy_column(i < from->column_count ? &from->columns[i] : &last, rows, to->row_count,
-                       &to->arena, &to->columns[i]);
-  return fine;
+    if (shown[i]) rows[count++] = i;
+  strut_status status = strut_table_rows(from, rows, count, to, error);
+  double *value = strut_arena_allocate(&to->arena, count, sizeof *value);
+  if (!status && !value) status = strut_no_memory(error, "while drawing");
+  for (size_t i = 0; i < count && !status; i++) value[i] = best[rows[i]];
+  if (!status)
+    to->columns[to->column_count++] =
+        (strut_table_column){.name = "best so far", .unit = unit, .value = value};
+  strut_release(rows);
+  return status;
 }
 
 /* Hides rows that `only`, COLUMN=TEXT, does not choose. */
-static int choose(const tracker *t, const char *only, const char **text, bool *shown) {
-  char name[60];
-  if (!only) return STRUT_NO_COLUMN;
-  snprintf(name, sizeof name, "%.*s", (int)strcspn(only, "="), only);
-  *text = only + strcspn(only, "=") + 1;
-  int column = find(t->table, name);
-  const char *const *cells = column >= 0 ? t->table->columns[column].text : NULL;
-  for (size_t i = 0; cells && i < t->table->row_count; i++)
+static int choose(const strut_table *table, const char *only, const char **text, bool *shown) {
+  int column = column_of_match(table, only, text);
+  const char *const *cells = column >= 0 ? table->columns[column].text : NULL;
+  for (size_t i = 0; cells && i < table->row_count; i++)
     shown[i] = shown[i] && cells[i] && strcmp(cells[i], *text) == 0;
   return column;
 }
@@ -390,12 +368,9 @@ strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study
     return strut_no_memory(error, "while drawing");
   }
   strut_table_choice choice = STRUT_TABLE_ALL;
-  choice.only = choose(&t, f->only, &choice.only_value, shown);
+  choice.only = choose(table, f->only, &choice.only_value, shown);
   if (f->kind == STRUT_FIGURE_BEST) {
-    if (!extend(table, best, shown, strcmp(unit, "1") == 0 ? "" : unit, &own)) {
-      strut_arena_free(&own.arena);
-      return strut_no_memory(error, "while drawing");
-    }
+    status = extend(table, best, shown, strcmp(unit, "1") == 0 ? "" : unit, &own, error);
     const char *series = f->series ? f->series : t.search->starts > 1 ? "search" : NULL;
     const strut_table_figure lines = {
         .title = f->title,
@@ -405,22 +380,23 @@ strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study
         .y_count = 1,
         .x_axis = axis_of(f->x_label, f->x_limits),
         .y_axis = axis_of(f->y_label ? f->y_label : t.search->goal.text, f->y_limits),
-        .by = find(table, series),
-        .panels = find(table, f->panels),
+        .by = column_of(table, series),
+        .panels = column_of(table, f->panels),
         .band = STRUT_NO_COLUMN,
         .choice = choice};
-    status = strut_table_curves(path, &lines, &own, error);
+    if (!status) status = strut_table_curves(path, &lines, &own, error);
   } else {
-    const strut_scatter_figure points = {.title = f->title,
-                                         .width = width,
-                                         .x = find(table, f->x),
-                                         .y = find(table, f->y),
-                                         .value = find(table, f->color ? f->color : "objective"),
-                                         .x_axis = axis_of(f->x_label, f->x_limits),
-                                         .y_axis = axis_of(f->y_label, f->y_limits),
-                                         .colours = (strut_colours)f->colours,
-                                         .shown = shown,
-                                         .marked = marked};
+    const strut_scatter_figure points = {
+        .title = f->title,
+        .width = width,
+        .x = column_of(table, f->x),
+        .y = column_of(table, f->y),
+        .value = column_of(table, f->color ? f->color : "objective"),
+        .x_axis = axis_of(f->x_label, f->x_limits),
+        .y_axis = axis_of(f->y_label, f->y_limits),
+        .colours = (strut_colours)f->colours,
+        .shown = shown,
+        .marked = marked};
     status = strut_table_scatter(path, &points, table, error);
   }
   strut_arena_free(&own.arena);
