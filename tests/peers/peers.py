@@ -5,10 +5,11 @@
     python3 peers.py STRUT            fails if a number is not met, or if the tables of the page differ
     python3 peers.py STRUT --write    writes the tables
 
-A section of examples.ini asks a model a question (ask: a command and its options; filter: jq, which may use
-tests/gallery/gallery.jq) and gives the number, who made it, and how far strut's may be from it, as a part of it.
+A section of examples.txt is of who made the numbers. An example is a line EXAMPLE: WHAT, and indented
+  MODEL COMMAND OPTIONS | FILTER | NUMBER | WITHIN
+with a jq filter, which may use tests/gallery/gallery.jq, and how far strut's number may be from theirs, as a part of
+it. A line that ends with a backslash goes on in the next.
 """
-import configparser
 import os
 import re
 import subprocess
@@ -22,6 +23,22 @@ BEGIN, END = "<!-- peers -->\n", "<!-- /peers -->\n"
 SAME = "<2e-8"
 TITLES = {"closed form": "Closed forms", "computed apart": "Independent computations",
           "stored results": "Results that the program stores"}
+
+
+def examples():
+    """All rows, in order."""
+    with open(os.path.join(HERE, "examples.txt"), encoding="utf-8") as file:
+        lines = re.sub(r" \\\n +", " ", file.read()).splitlines()
+    for line in lines:
+        if line.startswith("["):
+            by = line.strip("[]")
+        elif line.startswith("  "):
+            question, *filters, number, within = line.split("|")
+            model, ask = question.split(maxsplit=1)
+            yield {"by": by, "example": example, "what": what, "model": model, "ask": ask.strip(),
+                   "filter": "|".join(filters).strip(), "number": number.strip(), "within": within.strip()}
+        elif line and not line.startswith("#"):
+            example, what = line.split(": ", 1)
 
 
 def answer(strut, row):
@@ -48,12 +65,9 @@ def difference(got, want):
 
 def tables(strut):
     """The lines of the tables, one for each origin of numbers, how many numbers these have, and errors."""
-    rows = configparser.ConfigParser(interpolation=None, delimiters=("=",), comment_prefixes=("#",))
-    rows.optionxform = str
-    rows.read(os.path.join(HERE, "examples.ini"), encoding="utf-8")
     origins, wrong = {}, []
-    for name in rows.sections():
-        row, want = rows[name], float(rows[name]["number"])
+    for row in examples():
+        want, name = float(row["number"]), f"{row['example']}, {row['what']}"
         got = answer(strut, row)
         if not isinstance(got, float):
             wrong.append(f"{name}: {got}")
