@@ -69,8 +69,12 @@ holds '.messages[0] | (.file | endswith("part.yaml")) and .line == 3 and .column
 # A valid scene: nothing else has changed, and warnings have places.
 cat >w.yaml <<'END'
 strut: 1
-nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}
-members: {one: {nodes: [a, b], kind: bar, stiffness: 100}, two: {nodes: [a, b], kind: bar, stiffness: 100}}
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], mass: 1}
+members:
+  one: {nodes: [a, b], kind: bar, stiffness: 100}
+  two: {nodes: [a, b], kind: bar, stiffness: 100}
 END
 expect 0 check w.yaml --json
 holds '.valid and .nodes == 2 and .members.one.stiffness == 100'

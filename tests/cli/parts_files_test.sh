@@ -8,11 +8,20 @@ cat >cells/vertebra.yaml <<'END'
 strut: 1
 name: vertebra
 parameters: {height: 0.2 m, k: 1 kN/m}
-groups: {bone: {kind: bar, stiffness: 10*k, mass: 10 g}}
-nodes: {middle: [0, 0], lower: [0, -height], upper: [0, height], front: {position: [0.3 m, 0], mass: 5 g}}
-members: {b1: {group: bone, nodes: [middle, lower]}, b2: {group: bone, nodes: [middle, upper]},
-          b3: {group: bone, nodes: [middle, front]}, b4: {group: bone, nodes: [lower, upper]},
-          b5: {group: bone, nodes: [lower, front]}, b6: {group: bone, nodes: [upper, front]}}
+groups:
+  bone: {kind: bar, stiffness: 10*k, mass: 10 g}
+nodes:
+  middle: [0, 0]
+  lower: [0, -height]
+  upper: [0, height]
+  front: {position: [0.3 m, 0], mass: 5 g}
+members:
+  b1: {group: bone, nodes: [middle, lower]}
+  b2: {group: bone, nodes: [middle, upper]}
+  b3: {group: bone, nodes: [middle, front]}
+  b4: {group: bone, nodes: [lower, upper]}
+  b5: {group: bone, nodes: [lower, front]}
+  b6: {group: bone, nodes: [upper, front]}
 gravity: [0, -9.81]
 ground: {stiffness: 1 kN/m, height: -1 m, nodes: [lower], contacts: {lower: {stiffness: 2 kN/m}}}
 solver: {step: 1e-5 s}

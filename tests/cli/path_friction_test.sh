@@ -128,6 +128,6 @@ sed -e 's/^nodes:/parameters: {high: 0 m}\nnodes:/' -e 's/centre: \[0, 0\]/centr
 tells 1 "high moves the ground, and friction is kept" path moves.yaml --over high --until '0.1 m'
 tells 1 "--friction expects 'none' or 'kept', not 'some'" path pipe.yaml --friction some
 sed 's/friction: kept/friction: stuck/' pipe.yaml >word.yaml
-tells 2 "word.yaml:7:13: error:" path word.yaml
+tells 2 "word.yaml:6:18: error:" path word.yaml
 
 done_testing
