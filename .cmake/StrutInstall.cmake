@@ -4,7 +4,7 @@
 # other projects, one for CMake, one for pkg-config; pages and models.
 #
 # Every rule names its component, each of which becomes a package (StrutPackages): program, library,
-# development, python, octave, documentation. Rules elsewhere that name none belong to the program.
+# development, python, documentation. Rules elsewhere that name none belong to the program.
 include(CMakePackageConfigHelpers)
 
 set(strut_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/strut")

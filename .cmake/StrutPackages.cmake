@@ -71,7 +71,7 @@ strut_package(
   "This package holds the program."
   DEPENDS fonts-dejavu-core
   RECOMMENDS strut-doc
-  SUGGESTS ffmpeg python3-strut octave-strut)
+  SUGGESTS ffmpeg python3-strut)
 strut_package(
   library libstrut0 libs "simulator of planar tensegrity structures - shared library"
   "This package holds the shared library, whose binary interface is stable."
@@ -91,11 +91,6 @@ strut_package(
   DEPENDS "python3 (>= 3.11)"
   RECOMMENDS python3-numpy
   SUGGESTS python3-pandas python3-matplotlib)
-strut_package(
-  octave octave-strut math "simulator of planar tensegrity structures - Octave functions"
-  "This package holds the functions for GNU Octave."
-  ON library
-  DEPENDS octave)
 strut_package(
   documentation strut-doc doc "simulator of planar tensegrity structures - manual and models"
   "This package holds a tutorial, the reference, and the models they use."

@@ -77,7 +77,7 @@ endfunction()
 # that a new file does not stay out of the build unnoticed.
 function(strut_all_listed folder)
   file(GLOB_RECURSE there CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.c")
-  list(FILTER there EXCLUDE REGEX "/(octave|web)/") # built by mkoctfile and by the preset web
+  list(FILTER there EXCLUDE REGEX "/web/") # built by the preset web
   if(NOT TARGET strut_python) # a machine without python3-dev, or a build with sanitizers
     list(FILTER there EXCLUDE REGEX "/python/")
   endif()

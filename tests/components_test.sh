@@ -16,7 +16,7 @@ fail() { echo "$*" >&2; exit 1; }
 # list COMPONENT: its files.
 list() { (cd "$scratch/$1" && find . ! -type d | sort); }
 cmake --install "$build" --prefix "$scratch/all" >/dev/null
-for component in program library development python octave documentation license; do
+for component in program library development python documentation license; do
   mkdir "$scratch/$component"
   cmake --install "$build" --prefix "$scratch/$component" --component "$component" >/dev/null
   list "$component"

@@ -19,7 +19,7 @@ output=${1:-}
 
 # builder SUITE: makes $roots/SUITE-builder, with all that the packages are built and judged with.
 builder() {
-  tools="git file dpkg-dev help2man lintian diffutils octave-dev"
+  tools="git file dpkg-dev help2man lintian diffutils"
   wanted=$(sed -n '/^packages=/,/"$/p' "$source/tests/install.sh"; echo "$tools")
   [ "$(cat "$roots/$1-builder.complete" 2>/dev/null)" != "$wanted" ] || return 0
   [ -d "$roots/$1-builder" ] || cp -a "$roots/$1" "$roots/$1-builder"

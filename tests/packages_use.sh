@@ -94,12 +94,6 @@ print(strut.__version__, strut.load(strut.models / 'crawler/crawler.yaml').run()
   grep -q '^0\.1' said || { cat said; fail "Python says something else"; }
 fi
 
-if has octave-strut; then
-  octave-cli --eval "r = strut_run(strut_load('$model'), 'accuracy', '0.5 %');
-    printf('%.2f\n', 1000 * r.summary.velocity)" >said
-  grep -qx '10\.03' said || { cat said; fail "Octave has another velocity"; }
-fi
-
 apt purge -y '*strut*'
 apt autoremove -y --purge
 ! find /usr /etc -xdev -name '*strut*' | grep . || fail "files that stay behind"

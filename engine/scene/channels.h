@@ -3,7 +3,7 @@
  * Channels: what a run can record over time.
  *
  * A row of STRUT_CHANNEL_TABLE and the function record_NAME of engine/run/channels.c are all that there is of a
- * channel. The language, recording, CSV, HDF5, pages, the library, Python and Octave loop over the table.
+ * channel. The language, recording, CSV, HDF5, pages, the library and Python loop over the table.
  */
 #ifndef STRUT_ENGINE_SCENE_CHANNELS_H
 #define STRUT_ENGINE_SCENE_CHANNELS_H
