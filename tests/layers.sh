@@ -30,7 +30,7 @@ breaches() {
         "engine/statics/equilibria|" \
         "engine/statics/modes engine/statics/rigidity engine/statics/form engine/statics/path|" \
         "engine/output|engine/output/draw engine/output/report|" \
-        "engine/output/figures engine/output/film engine/output/page|engine/study/results|" \
+        "engine/output/figures engine/output/page|engine/study/results|" \
         "engine/study/sensitivity|" \
         "engine/study/cluster engine/study/tradeoff engine/study/sweep|" \
         "engine/study/compare engine/study/search engine/study/follow|engine/study/report", line, "|")

@@ -70,8 +70,7 @@ static void print_film(const strut_film *film, const strut_film_made *made) {
            strut_quantity_of(motion * fmax(2, better_speed(motion)), 2, "s").text);
   if (made->every > 1.5 * made->shown)
     printf(
-        "  recorded every %s but shown every %s, interpolated linearly; a shorter output.every "
-        "shows more detail\n",
+        "  recorded every %s but shown every %s; with a shorter output.every motion is smoother\n",
         strut_quantity_of(made->every, DIGITS, "s").text,
         strut_quantity_of(made->shown, DIGITS, "s").text);
 }

@@ -7,7 +7,7 @@
 
 #include "engine/base/number_text.h"
 #include "engine/output/figures/run_figure.h"
-#include "engine/output/film/film.h"
+#include "engine/output/figures/run_film.h"
 #include "parser/program/options.h"
 
 /** Rows for the table of options. */

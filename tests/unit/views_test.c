@@ -6,7 +6,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/exports.h"
-#include "engine/output/film/film.h"
+#include "engine/output/figures/run_film.h"
 #include "parser/read/read_scene.h"
 #include "tests/support/test.h"
 #include "tests/unit/scratch.h"
@@ -110,7 +110,7 @@ TEST(vtk_on_a_full_disk) {
 
 TEST(film_without_memory) {
   things t;
-  if (strut_encoder_find(NULL) != STRUT_OK) skip();
+  if (strut_film_check("a.gif", NULL) != STRUT_OK) skip();
   make(&t);
   const char *directory = scratch_make();
   strut_status status = STRUT_NO_MEMORY;
@@ -137,7 +137,7 @@ TEST(film_of_what_is_a_number) {
   things t;
   strut_error error = {0};
   strut_film_made made;
-  if (strut_encoder_find(NULL) != STRUT_OK) skip();
+  if (strut_film_check("a.gif", NULL) != STRUT_OK) skip();
   make(&t);
   const char *directory = scratch_make();
   const strut_film film = {

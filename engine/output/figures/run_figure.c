@@ -78,9 +78,7 @@ static double largest(const double *values, size_t count) {
   return most;
 }
 
-/* The scale of forces, from the largest of each frame, but for a few frames with far larger ones. False:
-   out of memory. */
-static bool find_force_limit(strut_run_scene *run) {
+bool strut_run_find_limits(strut_run_scene *run) {
   const strut_trajectory *m = run->motion;
   double *most = strut_arena_allocate(&run->arena, run->frames + 1, sizeof *most);
   if (!most) return false;
@@ -350,7 +348,7 @@ strut_status strut_run_figure_draw(const char *path, const strut_run_figure *fig
   strut_canvas *canvas = NULL;
   char note[STRUT_RUN_NOTE];
   strut_status status = strut_canvas_open_pixels(1, 1, 1, &run.ruler, error);
-  if (status == STRUT_OK && !find_force_limit(&run))
+  if (status == STRUT_OK && !strut_run_find_limits(&run))
     status = strut_no_memory(error, "while drawing");
   if (status == STRUT_OK) status = describe_run(&run, note, error);
   if (status == STRUT_OK)

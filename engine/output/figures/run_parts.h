@@ -39,6 +39,11 @@ enum { STRUT_RUN_NOTE = 600 };
 
 /** Sets frames and period, before anything is drawn. */
 void strut_run_count_frames(strut_run_scene *run);
+/**
+ * Finds the scale of forces, from the largest of each frame, but for a few frames with far larger ones.
+ * False: out of memory.
+ */
+bool strut_run_find_limits(strut_run_scene *run);
 /** Positions (nodes, 2) of a frame. */
 const double *strut_run_positions(const strut_run_scene *run, size_t frame);
 /** Those as the model's coordinates, padded, in the arena; NULL: no memory. */
