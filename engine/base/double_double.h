@@ -14,9 +14,6 @@ typedef struct strut_dd {
   double hi, lo; /* |lo| <= half of the last bit of hi */
 } strut_dd;
 
-/** Relative rounding error of such a number: 2^-104. */
-#define STRUT_DD_EPSILON 0x1p-104
-
 static inline strut_dd dd_of(double a) { return (strut_dd){a, 0.0}; }
 
 /** a + b exactly. */

@@ -164,8 +164,9 @@ static void write_title(const strut_mode *mode, size_t number, char title[TITLE]
                         strut_drawn_quantity(mode->angular_frequency / STRUT_TAU, 4, "Hz").text);
     if (isfinite(mode->damping_ratio) && mode->damping_ratio > 0 && used > 0)
       snprintf(title + used, TITLE - (size_t)used, ", \xCE\xB6 = %.2g", mode->damping_ratio);
-  } else if (mode->kind == STRUT_MODE_UNSTABLE) {
-    snprintf(title, TITLE, "mode %zu: unstable", number);
+  } else if (mode->kind == STRUT_MODE_UNSTABLE || mode->kind == STRUT_MODE_UNKNOWN) {
+    snprintf(title, TITLE, "mode %zu: %s", number,
+             mode->kind == STRUT_MODE_UNSTABLE ? "unstable" : "frequency not known");
   } else {
     int used = snprintf(title, TITLE, "mode %zu: %s", number,
                         mode->kind == STRUT_MODE_RIGID ? "rigid-body motion" : "mechanism");

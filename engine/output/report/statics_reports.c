@@ -137,8 +137,9 @@ static void add_head(strut_buffer *table, const strut_model *model, const strut_
 }
 
 static void add_row(strut_buffer *table, size_t i, const strut_mode *mode) {
-  char frequency[STRUT_QUANTITY_TEXT], ratio[STRUT_QUANTITY_TEXT] = "";
-  strut_quantity_text(mode->angular_frequency / STRUT_TAU, DIGITS, "Hz", frequency);
+  char frequency[STRUT_QUANTITY_TEXT] = "not known", ratio[STRUT_QUANTITY_TEXT] = "";
+  if (mode->kind != STRUT_MODE_UNKNOWN)
+    strut_quantity_text(mode->angular_frequency / STRUT_TAU, DIGITS, "Hz", frequency);
   if (isfinite(mode->damping_ratio)) snprintf(ratio, sizeof ratio, "%.4g", mode->damping_ratio);
   strut_buffer_add(table, "  %4zu %14s %10s %8.1e  %-10s %s\n", i + 1, frequency, ratio,
                    mode->error, strut_mode_kind_name(mode->kind), mode->description);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include <float.h>
+#include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -9,215 +9,116 @@
 #include "engine/statics/algebra.h"
 #include "engine/statics/modes/parts.h"
 
-/* All modes of a small structure, by GSL's dense eigensolvers. */
-
 /*
- * Two formulations, each accurate where the other is not: K x = z M x has errors of the last bit of
- * the largest eigenvalue, its inverse those of the last bit of the smallest. Where the range of
- * them is small the first will do; where some coordinates have no mass there is only the second,
- * which condenses them.
+ * All modes of a small structure, by GSL's dense eigensolver. Coordinates without mass are condensed:
+ * they follow those with mass, x0 = -K00^-1 K01 x1.
  */
 typedef struct dense {
   strut_modes_work *work;
   size_t n, massive;
-  size_t *row; /* (massive) coordinates with mass */
-  gsl_matrix *a, *b, *vector;
-  gsl_vector *value;
+  size_t *place;      /* (n) those with mass first */
+  gsl_matrix *k, *m;  /* (n, n), in that order */
+  gsl_matrix *follow; /* (n - massive, massive) K00^-1 K01 */
+  gsl_matrix *vector; /* (massive, massive) */
+  gsl_vector *value;  /* (massive) */
 } dense;
 
-static void fill_matrices(const strut_vibration *v, gsl_matrix *k, gsl_matrix *m) {
+static void fill_matrices(const dense *d) {
+  const strut_vibration *v = d->work->v;
   const strut_sparse *a = v->shape->pattern;
   for (int32_t j = 0; j < v->n; j++)
     for (int32_t at = a->start[j]; at < a->start[j + 1]; at++) {
-      size_t r = (size_t)a->row[at], c = (size_t)j;
-      gsl_matrix_set(k, r, c, v->k[at].hi);
-      gsl_matrix_set(k, c, r, v->k[at].hi);
-      gsl_matrix_set(m, r, c, v->m[at]);
-      gsl_matrix_set(m, c, r, v->m[at]);
+      size_t r = d->place[a->row[at]], c = d->place[j];
+      gsl_matrix_set(d->k, r, c, v->k[at]);
+      gsl_matrix_set(d->k, c, r, v->k[at]);
+      gsl_matrix_set(d->m, r, c, v->m[at]);
+      gsl_matrix_set(d->m, c, r, v->m[at]);
     }
 }
 
+/* K11 loses K10 K00^-1 K01. */
+static bool condense(dense *d) {
+  size_t light = d->n - d->massive;
+  if (light == 0) return true;
+  d->follow = gsl_matrix_alloc(light, d->massive);
+  gsl_permutation *order = gsl_permutation_alloc(light);
+  int sign = 0;
+  bool good = d->follow && order;
+  if (good) {
+    gsl_matrix_view k00 = gsl_matrix_submatrix(d->k, d->massive, d->massive, light, light);
+    gsl_matrix_view k01 = gsl_matrix_submatrix(d->k, d->massive, 0, light, d->massive);
+    gsl_matrix_view k11 = gsl_matrix_submatrix(d->k, 0, 0, d->massive, d->massive);
+    gsl_matrix_memcpy(d->follow, &k01.matrix);
+    good = gsl_linalg_LU_decomp(&k00.matrix, order, &sign) == 0;
+    for (size_t c = 0; c < d->massive && good; c++) {
+      gsl_vector_view column = gsl_matrix_column(d->follow, c);
+      good = gsl_linalg_LU_svx(&k00.matrix, order, &column.vector) == 0;
+    }
+    if (good)
+      gsl_blas_dgemm(CblasTrans, CblasNoTrans, -1.0, &k01.matrix, d->follow, 1.0, &k11.matrix);
+  }
+  gsl_permutation_free(order);
+  return good;
+}
+
 /* Vectors of unit length to such of x'Mx = 1, into the set. */
-static void store_eigenpairs(dense *d) {
+static void store_eigenpairs(const dense *d) {
   strut_eigen_set *set = &d->work->set;
-  double *product = (double *)d->work->v->work;
-  for (size_t i = 0; i < d->n; i++) {
+  double *product = d->work->v->work;
+  for (size_t i = 0; i < d->massive; i++) {
     double *x = set->vector + i * d->n, square = 0.0;
     set->value[i] = gsl_vector_get(d->value, i);
-    for (size_t r = 0; r < d->n; r++) x[r] = gsl_matrix_get(d->vector, r, i);
+    for (size_t r = 0; r < d->n; r++) {
+      size_t row = d->place[r];
+      x[r] = row < d->massive ? gsl_matrix_get(d->vector, row, i) : 0.0;
+      for (size_t c = 0; c < d->massive && row >= d->massive; c++)
+        x[r] -= gsl_matrix_get(d->follow, row - d->massive, c) * gsl_matrix_get(d->vector, c, i);
+    }
     strut_vibration_multiply(d->work->v, d->work->v->m, x, product);
     for (size_t r = 0; r < d->n; r++) square += x[r] * product[r];
     for (size_t r = 0; r < d->n; r++) x[r] /= sqrt(square);
   }
 }
 
-static bool solve_directly(dense *d) {
-  gsl_eigen_gensymmv_workspace *w = gsl_eigen_gensymmv_alloc(d->n);
+static bool allocate_dense(dense *d) {
+  strut_eigen_set *set = &d->work->set;
+  const strut_vibration *v = d->work->v;
+  d->n = (size_t)v->n, d->massive = (size_t)v->massive;
+  d->place = strut_arena_allocate(d->work->arena, d->n, sizeof *d->place);
+  set->n = v->n, set->count = v->massive;
+  set->value = strut_arena_allocate(d->work->arena, d->massive, sizeof *set->value);
+  set->vector = strut_arena_allocate(d->work->arena, d->massive * d->n, sizeof *set->vector);
+  d->k = gsl_matrix_calloc(d->n, d->n);
+  d->m = gsl_matrix_calloc(d->n, d->n);
+  d->vector = gsl_matrix_calloc(d->massive, d->massive);
+  d->value = gsl_vector_calloc(d->massive);
+  if (!d->place || !set->value || !set->vector || !d->k || !d->m || !d->vector || !d->value)
+    return false;
+  for (size_t i = 0, heavy = 0, light = d->massive; i < d->n; i++)
+    d->place[i] = v->mass[i] > 0 ? heavy++ : light++;
+  return true;
+}
+
+static bool solve_dense(dense *d) {
+  fill_matrices(d);
+  if (!condense(d)) return false;
+  gsl_eigen_gensymmv_workspace *w = gsl_eigen_gensymmv_alloc(d->massive);
   if (!w) return false;
-  gsl_matrix_set_zero(d->a);
-  gsl_matrix_set_zero(d->b);
-  fill_matrices(d->work->v, d->a, d->b);
-  bool good = gsl_eigen_gensymmv(d->a, d->b, d->value, d->vector, w) == 0 &&
+  gsl_matrix_view k = gsl_matrix_submatrix(d->k, 0, 0, d->massive, d->massive);
+  gsl_matrix_view m = gsl_matrix_submatrix(d->m, 0, 0, d->massive, d->massive);
+  bool good = gsl_eigen_gensymmv(&k.matrix, &m.matrix, d->value, d->vector, w) == 0 &&
               gsl_eigen_gensymmv_sort(d->value, d->vector, GSL_EIGEN_SORT_VAL_ASC) == 0;
   if (good) store_eigenpairs(d);
   gsl_eigen_gensymmv_free(w);
   return good;
 }
 
-/* Eigenvalues below z, by the signs of the factor of K - z M. */
-static int32_t count_below(strut_modes_work *work, double z) {
-  strut_modes_factorise(&work->solver, -z);
-  return work->solver.negative;
-}
-
-/* A shift well below the smallest eigenvalue, by size, that is above 1e-20 of the largest. */
-static double find_soft_shift(strut_modes_work *work) {
-  double z = 1e-20 * work->v->largest;
-  int32_t inside = count_below(work, z) - count_below(work, -z);
-  while (z < 1e-3 * work->v->largest &&
-         count_below(work, 100 * z) - count_below(work, -100 * z) == inside)
-    z *= 100;
-  return 1e-2 * z;
-}
-
-/* M = L L' of the coordinates with mass, into b. */
-static bool split_mass(dense *d) {
-  const strut_vibration *v = d->work->v;
-  const strut_sparse *p = v->shape->pattern;
-  gsl_matrix_view m = gsl_matrix_submatrix(d->b, 0, 0, d->massive, d->massive);
-  gsl_matrix_set_zero(d->b);
-  size_t *place = d->row + d->massive; /* where a coordinate stands among them */
-  for (size_t i = 0; i < d->massive; i++) place[d->row[i]] = i;
-  for (int32_t j = 0; j < v->n; j++)
-    for (int32_t at = p->start[j]; at < p->start[j + 1]; at++) {
-      if (!(v->m[at] > 0)) continue;
-      size_t r = place[p->row[at]], c = place[j];
-      gsl_matrix_set(&m.matrix, r, c, v->m[at]);
-      gsl_matrix_set(&m.matrix, c, r, v->m[at]);
-    }
-  return gsl_linalg_cholesky_decomp1(&m.matrix) == 0;
-}
-
-/* x (n, massive) = (K + soft M)^-1 L in d->vector, and L' x in d->a. */
-static void compute_inverse(dense *d) {
-  strut_dd *y = d->work->v->work;
-  for (size_t c = 0; c < d->massive; c++) {
-    for (size_t r = 0; r < d->n; r++) y[r] = dd_of(0.0);
-    for (size_t r = c; r < d->massive; r++) y[d->row[r]] = dd_of(gsl_matrix_get(d->b, r, c));
-    strut_modes_solve(&d->work->solver, y);
-    for (size_t r = 0; r < d->n; r++) gsl_matrix_set(d->vector, r, c, dd_double(y[r]));
-  }
-  for (size_t r = 0; r < d->massive; r++)
-    for (size_t c = 0; c < d->massive; c++) {
-      double sum = 0.0;
-      for (size_t i = r; i < d->massive; i++)
-        sum += gsl_matrix_get(d->b, i, r) * gsl_matrix_get(d->vector, d->row[i], c);
-      gsl_matrix_set(d->a, r, c, sum);
-    }
-}
-
-/* The i-th of the inverse's eigenpairs, t = 1 / (z + soft), into the set. */
-static void store_inverse_pair(dense *d, const gsl_matrix *small, size_t from, size_t i) {
-  double t = gsl_vector_get(d->value, from);
-  double *x = d->work->set.vector + i * d->n;
-  d->work->set.value[i] = 1.0 / t - d->work->soft;
-  memset(x, 0, d->n * sizeof *x);
-  for (size_t c = 0; c < d->massive; c++) {
-    double z = gsl_matrix_get(small, c, from) / t;
-    for (size_t r = 0; r < d->n; r++) x[r] += gsl_matrix_get(d->vector, r, c) * z;
-  }
-}
-
-/*
- * Ascending eigenvalues are 1/t: first the negative t from 0 down, then the positive from the
- * largest.
- * A negative one within the rounding of the largest is a huge eigenvalue.
- */
-static void sort_inverse(const dense *d, double top, size_t *order) {
-  double least = 1e-12 * top;
-  for (size_t i = 0; i < d->massive; i++) {
-    size_t rank = 0;
-    double t = gsl_vector_get(d->value, i);
-    for (size_t k = 0; k < d->massive; k++) {
-      double s = gsl_vector_get(d->value, k);
-      bool before = (s < -least) != (t < -least) ? s < -least : s > t;
-      rank += before || (s == t && k < i);
-    }
-    order[rank] = i;
-  }
-}
-
-/*
- * First eigenvalue for which the direct solution is more accurate: its relative error grows as the
- * largest eigenvalue over this one, that of the inverse as this one over the smallest. Equal
- * eigenvalues are kept together, because the two solutions choose different vectors among theirs.
- */
-static size_t find_cut(const dense *d, double top, const size_t *order) {
-  const double *value = d->work->set.value;
-  for (size_t i = 1; i < d->massive; i++) {
-    double inverse = top / fabs(gsl_vector_get(d->value, order[i]));
-    double direct = d->work->v->largest / fmax(fabs(value[i]), DBL_MIN);
-    if (direct <= inverse && value[i] - value[i - 1] > 1e-3 * fabs(value[i])) return i;
-  }
-  return d->massive;
-}
-
-static void merge_eigenpairs(dense *d, const gsl_matrix *small, size_t *order, bool alone) {
-  double top = 0.0;
-  for (size_t k = 0; k < d->massive; k++) top = fmax(top, fabs(gsl_vector_get(d->value, k)));
-  sort_inverse(d, top, order);
-  size_t cut = alone ? d->massive : find_cut(d, top, order);
-  for (size_t i = 0; i < cut; i++) store_inverse_pair(d, small, order[i], i);
-}
-
-static bool solve_inverse(dense *d, bool alone) {
-  gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(d->massive);
-  gsl_matrix *small = gsl_matrix_alloc(d->massive, d->massive);
-  size_t *order = strut_arena_allocate(d->work->arena, d->massive, sizeof *order);
-  bool good = w && small && order && split_mass(d);
-  if (good) {
-    strut_modes_factorise(&d->work->solver, d->work->soft);
-    compute_inverse(d);
-    gsl_matrix_view a = gsl_matrix_submatrix(d->a, 0, 0, d->massive, d->massive);
-    gsl_vector_view value = gsl_vector_subvector(d->value, 0, d->massive);
-    good = gsl_eigen_symmv(&a.matrix, &value.vector, small, w) == 0;
-    if (good) merge_eigenpairs(d, small, order, alone);
-  }
-  gsl_eigen_symmv_free(w);
-  gsl_matrix_free(small);
-  return good;
-}
-
-static bool allocate_dense(dense *d) {
-  strut_eigen_set *set = &d->work->set;
-  const strut_vibration *v = d->work->v;
-  d->n = (size_t)v->n, d->massive = (size_t)v->massive;
-  d->row = strut_arena_allocate(d->work->arena, d->massive + d->n, sizeof *d->row);
-  set->n = v->n, set->count = v->massive;
-  set->value = strut_arena_allocate(d->work->arena, d->n, sizeof *set->value);
-  set->vector = strut_arena_allocate(d->work->arena, d->n * d->n, sizeof *set->vector);
-  d->a = gsl_matrix_calloc(d->n, d->n);
-  d->b = gsl_matrix_calloc(d->n, d->n);
-  d->vector = gsl_matrix_calloc(d->n, d->n);
-  d->value = gsl_vector_calloc(d->n);
-  if (!d->row || !set->value || !set->vector || !d->a || !d->b || !d->vector || !d->value)
-    return false;
-  for (size_t i = 0, count = 0; i < d->n; i++)
-    if (v->mass[i] > 0) d->row[count++] = i;
-  return true;
-}
-
 strut_status strut_modes_dense(strut_modes_work *work, strut_error *error) {
   dense d = {.work = work};
-  bool good = allocate_dense(&d);
-  if (good) {
-    bool all = d.massive == d.n;
-    work->soft = find_soft_shift(work);
-    if (all) good = solve_directly(&d);
-    if (good && (!all || work->soft < 1e-10 * work->v->largest)) good = solve_inverse(&d, !all);
-  }
-  gsl_matrix_free(d.a);
-  gsl_matrix_free(d.b);
+  bool good = allocate_dense(&d) && solve_dense(&d);
+  gsl_matrix_free(d.k);
+  gsl_matrix_free(d.m);
+  gsl_matrix_free(d.follow);
   gsl_matrix_free(d.vector);
   gsl_vector_free(d.value);
   return good ? STRUT_OK : strut_no_memory(error, "for all modes");
@@ -226,8 +127,14 @@ strut_status strut_modes_dense(strut_modes_work *work, strut_error *error) {
 /* The lowest modes of a large structure: bracketed by counting, found by Lanczos's method. */
 
 enum { MOST_FACTORS = 80, MOST_ALIKE = 100 }; /* eigenvalues at one place */
-/* Of the largest eigenvalue: what is below has none of its own. */
-static const double NO_STIFFNESS = 1e-20;
+static const double LEAST =
+    1e-13; /* of the largest eigenvalue: less drowns in a factor's rounding */
+
+/* Eigenvalues below z, by the signs of the factor of K - z M. */
+static int32_t count_below(strut_modes_work *work, double z) {
+  strut_modes_factorise(&work->solver, -z);
+  return work->solver.inertia.negative;
+}
 
 /* Some z > 0 with at least `count` and a few more eigenvalues below; *below gets how many. */
 static double find_bound(strut_modes_work *work, int32_t count, int32_t *below) {
@@ -239,19 +146,17 @@ static double find_bound(strut_modes_work *work, int32_t count, int32_t *below) 
       low = z;
     else
       high = z, *below = found;
-    if (found >= least && (found <= most || z <= NO_STIFFNESS * work->v->largest)) break;
+    if (found >= least && (found <= most || z <= LEAST * work->v->largest)) break;
     if (low > 0 && high > 0 && high < 1.0001 * low) break; /* many at one place */
     z = low > 0 && high > 0 ? sqrt(low * high) : low > 0 ? 30.0 * low : 0.01 * high;
+    z = fmax(z, LEAST * work->v->largest);
   }
   return high;
 }
 
 static void apply_inverse(void *context, double *x) {
   strut_modes_work *work = context;
-  strut_dd *y = work->v->work;
-  for (int32_t i = 0; i < work->v->n; i++) y[i] = dd_of(x[i]);
-  strut_modes_solve(&work->solver, y);
-  for (int32_t i = 0; i < work->v->n; i++) x[i] = dd_double(y[i]);
+  strut_modes_solve(&work->solver, x);
 }
 
 static void apply_mass(void *context, const double *x, double *y) {
@@ -263,12 +168,14 @@ strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_err
   strut_vibration *v = work->v;
   int32_t below = 0;
   if (count > v->massive - 3) count = v->massive - 3; /* Lanczos's method wants a few to spare */
-  double bound = find_bound(work, count, &below), shift = -1e-3 * bound;
-  if (below > 2 * count + MOST_ALIKE && bound <= NO_STIFFNESS * v->largest)
-    return strut_fail(error, STRUT_SINGULAR,
-                      "%d modes have no stiffness, too many to tell apart in a structure of this "
-                      "size; cables that are only just taut have none: give them a prestress",
-                      (int)below);
+  double bound = find_bound(work, count, &below), shift = -fmax(1e-3 * bound, LEAST * v->largest);
+  if (below > 2 * count + MOST_ALIKE && bound <= LEAST * v->largest)
+    return strut_fail(
+        error, STRUT_SINGULAR,
+        "%d modes have no stiffness, or less than rounding leaves, too many to tell apart "
+        "in a structure of this size; cables that are only just taut have none: give "
+        "them a prestress",
+        (int)below);
   if (below >= v->massive) below = v->massive - 1;
   size_t room = (size_t)below;
   strut_eigen_set *set = &work->set;
@@ -319,7 +226,7 @@ typedef struct quadratic {
 static bool fill_damping(const strut_modes_work *work, gsl_matrix *damping) {
   const strut_eigen_set *set = &work->set;
   size_t n = (size_t)set->n, count = (size_t)set->count;
-  double *product = (double *)work->v->work;
+  double *product = work->v->work;
   bool any = false;
   for (size_t j = 0; j < count; j++) {
     strut_vibration_multiply(work->v, work->v->d, set->vector + j * n, product);
@@ -413,7 +320,7 @@ static void apply_modal_quotient(const strut_modes_work *work, size_t j, double 
 
 static void apply_modal_quotients(const strut_modes_work *work, strut_mode *list) {
   size_t n = (size_t)work->set.n;
-  double *product = (double *)work->v->work;
+  double *product = work->v->work;
   for (size_t j = 0; j < (size_t)work->set.count; j++) {
     const double *x = work->set.vector + j * n;
     double sum = 0.0;

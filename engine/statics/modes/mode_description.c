@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+
 /* The motions of the plane as a whole that supports and closed contacts leave free. */
 
 /* A motion (a, b, w): a - w (y - y0) / size in x, b + w (x - x0) / size in y. */
@@ -16,8 +18,7 @@ typedef struct pivot {
 
 static pivot middle_of(const strut_vibration *v) {
   pivot c = {0.0, 0.0, v->model->size > 0 ? v->model->size : 1.0};
-  for (int32_t i = 0; i < v->model->node_count; i++)
-    c.x += v->q[2 * i].hi, c.y += v->q[2 * i + 1].hi;
+  for (int32_t i = 0; i < v->model->node_count; i++) c.x += v->q[2 * i], c.y += v->q[2 * i + 1];
   c.x /= v->model->node_count;
   c.y /= v->model->node_count;
   return c;
@@ -26,7 +27,7 @@ static pivot middle_of(const strut_vibration *v) {
 /* Adds what holding direction (nx, ny) at coordinates `at` forbids: g += row row'. */
 static void add_constraint(const strut_vibration *v, const pivot *c, int32_t at, double nx,
                            double ny, gsl_matrix *g) {
-  double x = (v->q[at].hi - c->x) / c->size, y = (v->q[at + 1].hi - c->y) / c->size;
+  double x = (v->q[at] - c->x) / c->size, y = (v->q[at + 1] - c->y) / c->size;
   double row[3] = {nx, ny, ny * x - nx * y};
   for (size_t i = 0; i < 3; i++)
     for (size_t k = 0; k < 3; k++)
@@ -50,9 +51,9 @@ static void fill_motion(const strut_vibration *v, const pivot *c, const double m
   for (int32_t i = 0; i < v->n; i++) {
     int32_t at = v->shape->coordinate[i], node = at / 2;
     if (at % 2)
-      x[i] = motion[1] + motion[2] * (v->q[2 * node].hi - c->x) / c->size;
+      x[i] = motion[1] + motion[2] * (v->q[2 * node] - c->x) / c->size;
     else
-      x[i] = motion[0] - motion[2] * (v->q[2 * node + 1].hi - c->y) / c->size;
+      x[i] = motion[0] - motion[2] * (v->q[2 * node + 1] - c->y) / c->size;
   }
 }
 
@@ -93,7 +94,7 @@ strut_status strut_modes_rigid(strut_modes_work *work, strut_error *error) {
       double motion[3], *x = work->rigid + (size_t)work->rigid_count * (size_t)v->n;
       for (size_t k = 0; k < 3; k++) motion[k] = gsl_matrix_get(vector, k, i);
       fill_motion(v, &c, motion, x);
-      if (orthonormalise(work, x, (double *)v->work)) work->rigid_count++;
+      if (orthonormalise(work, x, v->work)) work->rigid_count++;
     }
   }
   gsl_matrix_free(g);
@@ -315,12 +316,18 @@ void strut_modes_describe(const strut_modes_work *work, const double *x, strut_m
     describe_idle(work, x, mode);
     return;
   }
+  if (mode->kind == STRUT_MODE_UNKNOWN) {
+    append_text(mode, "; rounding hides its frequency");
+    if (mode->angular_frequency > 0)
+      append_text(mode, ", about %.3g Hz", mode->angular_frequency / STRUT_TAU);
+    return;
+  }
   size_t items = (size_t)count_items(v->model);
   double *energy = strut_allocate(items + 1, sizeof *energy);
   if (!energy) return; /* the mode stays, with fewer words */
   fill_energies(v, x, energy);
   energies e = energies_of(v, x, energy);
-  double mass = 0.0, *product = (double *)v->work;
+  double mass = 0.0, *product = v->work;
   strut_vibration_multiply(v, v->m, x, product);
   for (int32_t i = 0; i < v->n; i++) mass += x[i] * product[i];
   double stiffness = mode->eigenvalue * mass;

@@ -30,10 +30,11 @@ strut_status strut_modes_shape(const strut_model *model, const strut_experiment 
 }
 
 static const double ENOUGH = 1e-8;   /* relative error of an eigenvalue that is worth printing */
+static const double HIDDEN = 1e-18;  /* error that could hide one, of the largest */
 static const double LARGEST = 1e150; /* eigenvalue; products of two of them are numbers */
 
 const char *strut_mode_kind_name(strut_mode_kind kind) {
-  static const char *const names[] = {"rigid-body", "mechanism", "elastic", "unstable"};
+  static const char *const names[] = {"rigid-body", "mechanism", "elastic", "unstable", "unknown"};
   assert((size_t)kind < sizeof names / sizeof names[0]);
   return names[kind];
 }
@@ -62,17 +63,17 @@ static strut_status check_problem(strut_modes_work *work, strut_error *error) {
                       "stiffnesses are so large beside the masses that frequencies cannot be "
                       "computed; check their units");
   if (v->massive == v->n) return STRUT_OK;
-  strut_modes_factorise(&work->solver, 1e-20 * v->largest);
-  int32_t weakest = work->solver.weakest;
-  if (work->solver.loss > 1e-26 || v->mass[weakest] > 0) return STRUT_OK;
+  strut_modes_factorise(&work->solver, STRUT_FIRM * v->largest);
+  const strut_inertia *inertia = &work->solver.inertia;
+  if (inertia->smallest > 1e-13 || v->mass[inertia->row] > 0) return STRUT_OK;
   return strut_fail(error, STRUT_SINGULAR,
                     "node '%s' has no mass and can move without stiffness, so it has no frequency; "
                     "give it a mass or hold it",
-                    v->model->scene->nodes[v->shape->coordinate[weakest] / 2].name);
+                    v->model->scene->nodes[v->shape->coordinate[inertia->row] / 2].name);
 }
 
 static double mass_product(const strut_modes_work *work, const double *x, const double *y) {
-  double *product = (double *)work->v->work, sum = 0.0;
+  double *product = work->v->work, sum = 0.0;
   strut_vibration_multiply(work->v, work->v->m, x, product);
   for (int32_t i = 0; i < work->v->n; i++) sum += y[i] * product[i];
   return sum;
@@ -125,16 +126,20 @@ static int32_t sort_zeros(strut_modes_work *work, double *zero, int32_t count) {
   return rigid;
 }
 
+/* Kinds by value. Zeros are mechanisms, unless they may as well be soft. */
 static strut_mode_kind *find_kinds(strut_modes_work *work, strut_error *error) {
   strut_eigen_set *set = &work->set;
   strut_mode_kind *kind = strut_arena_allocate(work->arena, (size_t)set->count, sizeof *kind);
   int32_t first = -1, zeros = 0;
+  double hidden = 0.0;
   for (int32_t i = 0; i < set->count && kind; i++) {
-    double nothing = 4.0 * set->noise[i] + 1e-22 * work->v->largest;
+    double value = fabs(set->value[i]), wrong = set->noise[i] + set->error[i];
     kind[i] = set->value[i] < 0 ? STRUT_MODE_UNSTABLE : STRUT_MODE_ELASTIC;
-    if (!(fabs(set->value[i]) <= nothing)) continue;
+    if (wrong > ENOUGH * value) kind[i] = STRUT_MODE_UNKNOWN;
+    if (value > 4.0 * wrong + 1e-22 * work->v->largest) continue;
     if (first < 0) first = i;
     zeros = i - first + 1;
+    hidden = fmax(hidden, set->error[i]);
   }
   int32_t rigid = 0;
   if (kind && zeros > 0)
@@ -143,9 +148,12 @@ static strut_mode_kind *find_kinds(strut_modes_work *work, strut_error *error) {
     strut_no_memory(error, "");
     return NULL;
   }
+  bool known = hidden <= HIDDEN * work->v->largest;
   for (int32_t i = first; i < first + zeros; i++) {
-    kind[i] = i - first < rigid ? STRUT_MODE_RIGID : STRUT_MODE_MECHANISM;
-    set->error[i] = fabs(set->value[i]);
+    kind[i] = i - first < rigid ? STRUT_MODE_RIGID
+              : known           ? STRUT_MODE_MECHANISM
+                                : STRUT_MODE_UNKNOWN;
+    set->error[i] = fmax(fabs(set->value[i]), set->error[i]);
     set->value[i] = 0.0;
   }
   return kind;
@@ -157,24 +165,6 @@ static double condition_of(const strut_modes_work *work, bool dense) {
   for (int32_t i = 0; i < set->count; i++)
     if (set->value[i] != 0) low = fmin(low, fabs(set->value[i]));
   return top / low;
-}
-
-static strut_status check_errors(const strut_modes_work *work, const strut_modes *modes,
-                                 strut_error *error) {
-  const strut_eigen_set *set = &work->set;
-  for (size_t i = 0; i < modes->count; i++) {
-    double value = set->value[i], wrong = (set->error[i] + set->noise[i]) / fabs(value);
-    if (value == 0 || wrong <= ENOUGH) continue;
-    return strut_fail(error, STRUT_SINGULAR,
-                      "mode %zu, about %.6g Hz, is known to %.1g only, not to 1e-8: the "
-                      "stiffnesses differ so much (condition about %.1g) that %s; bring them "
-                      "closer together, or request fewer modes with --count",
-                      i + 1, sqrt(fabs(value)) / STRUT_TAU, wrong, modes->condition,
-                      set->noise[i] > set->error[i]
-                          ? "the last bits of rest lengths and positions decide it"
-                          : "rounding decides it");
-  }
-  return STRUT_OK;
 }
 
 static strut_status fill_mode(strut_modes_work *work, int32_t i, strut_mode_kind kind,
@@ -200,6 +190,16 @@ static strut_status fill_mode(strut_modes_work *work, int32_t i, strut_mode_kind
   return STRUT_OK;
 }
 
+/* What rounding hides is not given. */
+static void hide_unknown(strut_modes *modes) {
+  for (size_t i = 0; i < modes->count; i++) {
+    strut_mode *m = &modes->list[i];
+    if (m->kind != STRUT_MODE_UNKNOWN) continue;
+    m->eigenvalue = m->angular_frequency = m->damping_ratio = (double)NAN;
+    m->damped_frequency = m->decay_rate = (double)NAN;
+  }
+}
+
 static strut_status fill_modes(strut_modes_work *work, int32_t wanted, strut_modes *modes,
                                strut_error *error) {
   strut_eigen_set *set = &work->set;
@@ -215,7 +215,8 @@ static strut_status fill_modes(strut_modes_work *work, int32_t wanted, strut_mod
   modes->damped_exactly =
       modes->dense && set->count <= STRUT_DAMPED_MODES && work->v->massive == work->v->n;
   strut_status status = strut_modes_damping(work, modes->damped_exactly, modes->list, error);
-  return status ? status : check_errors(work, modes, error);
+  hide_unknown(modes);
+  return status;
 }
 
 static strut_status solve_modes(strut_modes_work *work, int32_t wanted, strut_modes *modes,
@@ -242,7 +243,8 @@ static strut_status solve_modes(strut_modes_work *work, int32_t wanted, strut_mo
     return strut_no_memory(error, "");
   status = strut_modes_noise(work, modes->at_rest, error);
   if (status == STRUT_OK) status = strut_modes_rigid(work, error);
-  if (status == STRUT_OK) status = strut_modes_refine(work, error);
+  if (status == STRUT_OK) status = strut_modes_measure(work, error);
+  if (status == STRUT_OK && work->solver.no_memory) status = strut_no_memory(error, "");
   return status ? status : fill_modes(work, wanted, modes, error);
 }
 

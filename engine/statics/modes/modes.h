@@ -4,8 +4,8 @@
  *
  * K x = z M x, z = omega^2. Up to STRUT_DENSE_MODES free coordinates by GSL's dense eigensolver,
  * above by shift-invert Lanczos (ARPACK), which is checked against the number of eigenvalues below
- * the last one that a factor's signs count. Each mode is then improved by inverse iteration in
- * twice a double's precision until its eigenvalue is right to 1e-12 or cannot be.
+ * the last one that a factor's signs count. Each eigenvalue is then the quotient of its shape, with the
+ * stiffness summed from strains, and has a bound of its error; above 1e-8 it counts as unknown.
  *
  * Friction and drives do not act; a closed contact is a spring both ways, its damper too.
  */
@@ -22,10 +22,11 @@ typedef enum strut_mode_kind {
   STRUT_MODE_RIGID,     /* no stiffness: a rigid motion that supports and contacts leave */
   STRUT_MODE_MECHANISM, /* no stiffness, but not rigid */
   STRUT_MODE_ELASTIC,
-  STRUT_MODE_UNSTABLE /* eigenvalue below zero: it grows */
+  STRUT_MODE_UNSTABLE, /* eigenvalue below zero: it grows */
+  STRUT_MODE_UNKNOWN   /* rounding hides its eigenvalue */
 } strut_mode_kind;
 
-/** "rigid-body", "mechanism", "elastic", "unstable". */
+/** "rigid-body", "mechanism", "elastic", "unstable", "unknown". */
 STRUT_API const char *strut_mode_kind_name(strut_mode_kind kind);
 
 /** What a member that only pulls, or only pushes, does in the shape. */
@@ -36,15 +37,17 @@ typedef enum strut_idleness {
 } strut_idleness;
 
 typedef struct strut_mode {
-  double eigenvalue;        /* omega^2 [1/s^2]; 0 where there is no stiffness */
+  double eigenvalue;        /* omega^2 [1/s^2]; 0 where there is no stiffness; these five are NAN
+                               where unknown */
   double angular_frequency; /* [rad/s]; 0 where the eigenvalue is not above zero */
   double damping_ratio;     /* [1]; NAN where there is nothing to oscillate */
   double damped_frequency;  /* [rad/s]; 0 where it creeps */
   double decay_rate;        /* of the amplitude, the slower one where it creeps [1/s] */
   double residual;          /* |K x - z M x| / (|K x| + |z M x|); without stiffness, |K x| relative
                               to the largest there can be */
-  double error; /* of the eigenvalue, relative, estimated: of the method, and of the last
-                              bits of the scene's numbers */
+  double
+      error; /* of the eigenvalue, relative (without stiffness, to the largest there can be): a bound for
+                   the method, an estimate for the last bits of the scene's numbers */
   strut_mode_kind kind;
   int32_t just_taut;     /* of a mechanism: members without force that would resist it one way */
   double *shape;         /* (length) largest entry 1 */
@@ -76,9 +79,8 @@ typedef struct strut_modes_options {
 } strut_modes_options;
 
 /**
- * Fails with what strut_rest_state_find fails with; STRUT_SINGULAR where an elastic mode asked for
- * cannot be computed to 1e-8, with the condition, and where a node without mass is held by nothing;
- * STRUT_BAD_SCENE where nothing is free to move or nothing has mass; STRUT_NO_MEMORY.
+ * Fails with what strut_rest_state_find fails with; STRUT_SINGULAR where a node without mass is held by
+ * nothing, and where more modes have no stiffness than the sparse method can tell apart; STRUT_BAD_SCENE where nothing is free to move or nothing has mass; STRUT_NO_MEMORY.
  * strut_modes_free releases it, after a failure too. The model must outlive it.
  */
 STRUT_API strut_status strut_modes_find(const strut_model *model,

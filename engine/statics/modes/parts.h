@@ -3,7 +3,6 @@
 #ifndef STRUT_ENGINE_STATICS_MODES_PARTS_H
 #define STRUT_ENGINE_STATICS_MODES_PARTS_H
 
-#include "engine/base/double_double.h"
 #include "engine/base/flag.h"
 #include "engine/forces/elements.h"
 #include "engine/model/linear_solver.h"
@@ -13,37 +12,34 @@
 #include "engine/statics/potential.h"
 
 /*
- * Small motions about a shape: M x'' + D x' + K x = 0 on the free coordinates.
- *
- * K and the forces are computed in twice a double's precision, because the softest motions of a structure may
- * be 1e-16 times as stiff as its hardest; strains of elements in a double's. Drives are at rest, friction
- * does not act.
+ * Small motions about a shape: M x'' + D x' + K x = 0 on the free coordinates. Drives are at rest,
+ * friction does not act.
  */
 
 /** A member in the shape. */
 typedef struct strut_vibration_member {
-  strut_dd ux, uy;  /* from its first node to the second; 0 where it has no length */
-  strut_dd stretch; /* [m] */
-  strut_dd across;  /* force / length: stiffness across it [N/m] */
-  double length;    /* [m] */
-  bool taut;        /* pulls or pushes */
-  int8_t state;     /* 1: taut, -1: slack, whatever the stretch; 0: by the stretch */
+  double ux, uy;  /* from its first node to the second; 0 where it has no length */
+  double stretch; /* [m] */
+  double across;  /* force / length: stiffness across it [N/m] */
+  double length;  /* [m] */
+  bool taut;      /* pulls or pushes */
+  int8_t state;   /* 1: taut, -1: slack, whatever the stretch; 0: by the stretch */
 } strut_vibration_member;
 
 typedef struct strut_vibration {
   const strut_model *model;
   strut_potential *shape; /* coordinates, and the pattern of all matrices here; owned */
   int32_t n;
-  strut_dd *q;                    /* (length) [m] */
-  double *rounded;                /* (length) the same in a double: what elements use */
+  double *q,
+      *low; /* (length) positions, and how far from there to equilibrium: less than the last bits of q
+                      change forces of stiff members. To first order [m] */
   strut_vibration_member *member; /* (member_count) */
   uint8_t *closed;                /* (contacts) 1 where the ground pushes, there with stiffness */
-  strut_dd *k;                    /* K [N/m], in the pattern's places as the next two */
-  double *m, *d;                  /* M [kg], D [N s/m] */
+  double *k, *m, *d;              /* K [N/m], M [kg], D [N s/m] in the pattern's places */
   double *mass;                   /* (n) row sums of M: 0 where nothing has mass */
   int32_t massive;                /* rows with mass */
   double largest;                 /* an upper bound of the eigenvalues of K x = z M x [1/s^2] */
-  strut_dd *work;                 /* (n) */
+  double *work;                   /* (n) */
   strut_arena arena;
   double *own_mass; /* (n) diagonal of M without sliding masses */
   bool *idle;       /* (elements) it does not act, whatever its strain */
@@ -62,19 +58,15 @@ void strut_vibration_free(strut_vibration *vibration);
 /** Pose of contact i. */
 strut_contact_pose strut_vibration_contact(const strut_vibration *vibration, int32_t i);
 
-/** Computes members and K anew after a change of q. */
+/** Computes members and K anew after a change of q or low. */
 void strut_vibration_update(strut_vibration *vibration);
 
 /** force (n): net force of members, ground, gravity and constant loads on free coordinates [N]. */
-void strut_vibration_force(const strut_vibration *vibration, strut_dd *force);
+void strut_vibration_force(const strut_vibration *vibration, double *force);
 
-/** y = K x. */
-void strut_vibration_stiffness(const strut_vibration *vibration, const strut_dd *x, strut_dd *y);
-/** y = A x for M or D. */
+/** y = A x for K, M or D. */
 void strut_vibration_multiply(const strut_vibration *vibration, const double *matrix,
                               const double *x, double *y);
-/** y = M x. */
-void strut_vibration_mass(const strut_vibration *vibration, const strut_dd *x, strut_dd *y);
 
 /** Relative motion of the ends of member j in the motion x (n), along it and across it. */
 typedef struct strut_end_displacement {
@@ -91,8 +83,8 @@ bool strut_vibration_is_borderline(const strut_vibration *vibration, int32_t mem
 bool strut_vibration_element_is_borderline(const strut_vibration *vibration, int32_t element);
 
 /**
- * An element in the shape: strain, force and gradient with the digits of positions that a double does
- * not have, to first order. False where it does not act.
+ * An element in the shape: strain, force and gradient, with `low` to first order. False where it does
+ * not act.
  */
 bool strut_vibration_pose(const strut_vibration *vibration, int32_t element,
                           strut_element_pose *pose);
@@ -104,59 +96,32 @@ double strut_vibration_relative(const strut_vibration *vibration, int32_t elemen
 double strut_vibration_strain(const strut_vibration *vibration, int32_t element,
                               const strut_element_pose *pose, const double *x);
 
-/* (K + shift M) x = b: by a plain factor and corrections where the shift keeps the condition within
- * a double's reach, else by a factor L D L' of twice a double's precision.
- *
- * Either way solutions are good to far more than a double holds, and the signs of the factor count
- * the eigenvalues below -shift: a plain factor is one of a matrix that differs by 1e-15 of the
- * largest eigenvalue, which is nothing beside a shift of 1e-10 of it.
- *
- * For the extended factor CHOLMOD gives the order and the pattern; the arithmetic is in solver.c.
- * There is no pivoting: that D has as many negative entries as the matrix has negative eigenvalues
- * (Sylvester) holds as long as no pivot is lost in rounding; `weakest` and `loss` report that.
- */
-
-typedef struct strut_extended_factor {
-  int32_t n;
-  const strut_factor *pattern; /* order, and the places of L */
-  strut_dd *value;             /* L without its diagonal, in the pattern's places */
-  strut_dd *diagonal;          /* (n) D */
-  int32_t negative;            /* entries of D below zero */
-  int32_t weakest;             /* row of the matrix whose pivot lost most */
-  double loss;                 /* that pivot, relative to what it was computed from */
-  strut_factor *owned;
-  strut_dd *work;     /* (n) */
-  int32_t *inverse;   /* (n) the place of a row of the matrix in the order */
-  int32_t *next, *at; /* lists of columns while factorising */
-} strut_extended_factor;
-
-/** Order and memory for matrices of that pattern. STRUT_OK or STRUT_NO_MEMORY. */
-strut_status strut_extended_create(const strut_sparse *pattern, strut_extended_factor **factor,
-                                   strut_error *error);
-void strut_extended_free(strut_extended_factor *factor);
+/** x' B x of an element, B the second derivative of its strain, and the sum of its terms' sizes. */
+typedef struct strut_element_bow {
+  double sum, size;
+} strut_element_bow;
+strut_element_bow strut_vibration_bow(const strut_vibration *vibration, int32_t element,
+                                      const double *x);
 
 /**
- * Factorises K + shift M, both in the places of `pattern` (the one it was created with); M NULL: K
- * alone. A pivot of zero is replaced by one at the edge of rounding.
+ * x' K x from strains, and a bound of its rounding. Stiff members that a motion hardly strains add
+ * next to nothing to either, unlike in K, where they hide softer ones.
  */
-void strut_extended_factorise(strut_extended_factor *factor, const strut_sparse *pattern,
-                              const strut_dd *k, const double *m, double shift);
+typedef struct strut_vibration_energy {
+  double value, rounding;
+} strut_vibration_energy;
+strut_vibration_energy strut_vibration_energy_of(const strut_vibration *vibration, const double *x);
 
-/** x becomes the solution of A x = x. */
-void strut_extended_solve(const strut_extended_factor *factor, strut_dd *x);
-
+/*
+ * (K + shift M) x = b by a factor L D L'. Its signs count the eigenvalues below -shift, if the shift
+ * is larger than the rounding of K: that of the largest eigenvalue.
+ */
 typedef struct strut_modes_solver {
   const strut_vibration *v;
-  strut_ldl *plain;
-  strut_extended_factor *extended;
-  strut_sparse sum; /* K + shift M as doubles, in the pattern's places */
-  bool is_plain;    /* which of the two was factorised last */
-  double shift;
-  int32_t negative; /* eigenvalues below -shift */
-  int32_t weakest;  /* row whose pivot lost most, and what is left of it, relative */
-  double loss;
-  strut_dd *b, *r, *mx; /* (n) each */
-  double *step;         /* (n) */
+  strut_ldl *ldl;
+  strut_sparse sum; /* K + shift M, in the pattern's places */
+  strut_inertia inertia;
+  bool no_memory; /* once */
   strut_arena arena;
   const strut_flag *interrupt; /* once set, nothing more is factorised or solved; or NULL */
 } strut_modes_solver;
@@ -168,7 +133,10 @@ void strut_modes_solver_free(strut_modes_solver *solver);
 
 void strut_modes_factorise(strut_modes_solver *solver, double shift);
 /** x (n) becomes (K + shift M)^-1 x. */
-void strut_modes_solve(strut_modes_solver *solver, strut_dd *x);
+void strut_modes_solve(strut_modes_solver *solver, double *x);
+
+/** A shift with which solutions have some digits whatever the matrix, of the largest eigenvalue. */
+static const double STRUT_FIRM = 1e-10;
 
 /* Shared by the files of this folder: the eigenproblem from matrices to named modes. */
 
@@ -186,7 +154,6 @@ typedef struct strut_modes_work {
   strut_vibration *v;
   strut_modes_solver solver;
   strut_eigen_set set;
-  double soft; /* a shift well below the elastic eigenvalues, > 0 [1/s^2] */
   int32_t rigid_count;
   double *rigid;            /* (rigid_count, n) rigid motions left, x'Mx = 1, orthogonal */
   strut_idleness *idleness; /* (members) as in strut_modes */
@@ -210,14 +177,14 @@ strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_err
  */
 strut_status strut_modes_loosen(strut_modes_work *work, bool at_rest, strut_error *error);
 
-/** The shape to twice a double's precision, from one that is at rest as far as doubles tell. */
+/** The shape at rest to more than the last bits of its positions, from one at rest to these. */
 strut_status strut_modes_settle(strut_modes_work *work, strut_error *error);
 /**
  * Effect of the last bits of rest lengths, or of a shape that is not at rest, on the eigenvalues.
  */
 strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error *error);
-/** Improves the eigenpairs and estimates their errors. */
-strut_status strut_modes_refine(strut_modes_work *work, strut_error *error);
+/** Eigenvalues from strains, and their errors. */
+strut_status strut_modes_measure(strut_modes_work *work, strut_error *error);
 
 /** The rigid motions that supports and closed contacts leave. */
 strut_status strut_modes_rigid(strut_modes_work *work, strut_error *error);

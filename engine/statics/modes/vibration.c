@@ -14,45 +14,32 @@ static void place_member(strut_vibration *v, int32_t j) {
   const strut_member_table *t = &v->model->members;
   strut_vibration_member *m = &v->member[j];
   uint32_t a = t->from[j], b = t->to[j];
-  strut_dd dx = dd_sub(v->q[b], v->q[a]), dy = dd_sub(v->q[b + 1], v->q[a + 1]);
-  strut_dd length = dd_length(dx, dy);
-  bool any = length.hi > 0;
-  m->length = length.hi;
-  m->stretch = dd_sub(length, dd_of(t->rest[j]));
-  m->taut = m->state ? m->state > 0 : dd_double(m->stretch) > t->slack[j];
-  m->ux = any ? dd_div(dx, length) : dd_of(0.0);
-  m->uy = any ? dd_div(dy, length) : dd_of(0.0);
+  double dx = v->q[b] - v->q[a], dy = v->q[b + 1] - v->q[a + 1];
+  double x = v->low[b] - v->low[a], y = v->low[b + 1] - v->low[a + 1];
+  m->length = hypot(dx + x, dy + y);
+  bool any = m->length > 0;
+  m->ux = any ? (dx + x) / m->length : 0.0;
+  m->uy = any ? (dy + y) / m->length : 0.0;
+  m->stretch = hypot(dx, dy) - t->rest[j] + (m->ux * x + m->uy * y);
+  m->taut = m->state ? m->state > 0 : m->stretch > t->slack[j];
   /* of zero length and zero rest length: an isotropic spring */
   if (any)
-    m->across = dd_div(dd_scale(m->stretch, t->stiffness[j]), length);
+    m->across = m->stretch * t->stiffness[j] / m->length;
   else
-    m->across = dd_of(t->rest[j] > 0 ? 0.0 : t->stiffness[j]);
+    m->across = t->rest[j] > 0 ? 0.0 : t->stiffness[j];
 }
 
 static void add_member(strut_vibration *v, int32_t j) {
   const strut_vibration_member *m = &v->member[j];
+  const strut_member_table *t = &v->model->members;
   if (!m->taut) return;
-  strut_dd along = dd_sub(dd_of(v->model->members.stiffness[j]), m->across);
-  strut_dd block[3] = {dd_add(m->across, dd_mul(along, dd_mul(m->ux, m->ux))),
-                       dd_mul(along, dd_mul(m->ux, m->uy)),
-                       dd_add(m->across, dd_mul(along, dd_mul(m->uy, m->uy)))};
-  const strut_stiffness_block damper =
-      strut_block_of(v->model->members.damping[j], 0.0, (strut_vec2){m->ux.hi, m->uy.hi});
+  const strut_vec2 along = {m->ux, m->uy};
+  const strut_stiffness_block spring = strut_block_of(t->stiffness[j], m->across, along);
+  const strut_stiffness_block damper = strut_block_of(t->damping[j], 0.0, along);
   const int32_t *place = v->shape->place + STRUT_MEMBER_ENTRIES * j;
-  for (int i = 0; i < STRUT_MEMBER_ENTRIES; i++, place++) {
-    const strut_block_entry *e = &strut_block_entries[i];
-    if (*place < 0) continue;
-    strut_dd part = e->opposite ? dd_negative(block[e->part]) : block[e->part];
-    v->k[*place] = dd_add(v->k[*place], part);
-  }
-  strut_block_scatter(&damper, STRUT_MEMBER_ENTRIES, place - STRUT_MEMBER_ENTRIES, v->d);
+  strut_block_scatter(&spring, STRUT_MEMBER_ENTRIES, place, v->k);
+  strut_block_scatter(&damper, STRUT_MEMBER_ENTRIES, place, v->d);
 }
-
-/* Elements have strains and gradients in a double, which rounds their directions alone. */
-typedef struct element_sum {
-  strut_vibration *vibration;
-  strut_dd *force; /* NULL: stiffness and damping */
-} element_sum;
 
 bool strut_vibration_pose(const strut_vibration *v, int32_t i, strut_element_pose *pose) {
   const strut_element *e = &v->model->elements.element[i];
@@ -61,15 +48,15 @@ bool strut_vibration_pose(const strut_vibration *v, int32_t i, strut_element_pos
   double change = 0.0;
   int32_t n = 2 * e->nodes;
   bool any = false;
-  strut_element_evaluate(v->model, i, v->model->members.rest, v->rounded, (double)NAN, pose);
+  strut_element_evaluate(v->model, i, v->model->members.rest, v->q, (double)NAN, pose);
   if (v->idle[i]) pose->acts = false;
   for (int32_t k = 0; k < n; k++) {
-    low[k] = v->q[at[k / 2] + (uint32_t)(k % 2)].lo;
+    low[k] = v->low[at[k / 2] + (uint32_t)(k % 2)];
     any = any || low[k] != 0.0;
     change += pose->b[k] * low[k];
   }
   if (!any || !pose->acts) return pose->acts;
-  strut_element_bend(v->model, i, v->rounded, 1.0, bend);
+  strut_element_bend(v->model, i, v->q, 1.0, bend);
   for (int32_t r = 0; r < n; r++)
     for (int32_t c = 0; c < n; c++) pose->b[r] += bend[r * n + c] * low[c];
   pose->strain += change;
@@ -85,96 +72,41 @@ static bool is_at_edge(double stretch, double length, double natural) {
 bool strut_vibration_is_borderline(const strut_vibration *v, int32_t j) {
   const strut_vibration_member *m = &v->member[j];
   const strut_member_table *t = &v->model->members;
-  return t->slack[j] > -HUGE_VAL && is_at_edge(dd_double(m->stretch), m->length, t->rest[j]);
+  return t->slack[j] > -HUGE_VAL && is_at_edge(m->stretch, m->length, t->rest[j]);
 }
 
 bool strut_vibration_element_is_borderline(const strut_vibration *v, int32_t i) {
   const strut_element *e = &v->model->elements.element[i];
   strut_element_pose pose;
-  strut_element_evaluate(v->model, i, v->model->members.rest, v->rounded, (double)NAN, &pose);
+  strut_element_evaluate(v->model, i, v->model->members.rest, v->q, (double)NAN, &pose);
   return e->carries && is_at_edge(pose.strain - pose.natural, pose.strain, pose.natural);
 }
 
 /* Do the nodes of a strain alone decide it, so that it feels no shift? A foot's is one above the ground. */
 static bool is_relative(const strut_element *e) { return e->strain != STRUT_STRAIN_FOOT; }
 
-/* The gradient with a last node that makes its sum vanish to all digits: a shift costs nothing. */
-static void balance_gradient(const strut_element *e, const strut_element_pose *pose, strut_dd *b) {
-  int32_t nodes = e->nodes;
-  for (int32_t k = 0; k < 2 * nodes; k++) b[k] = dd_of(pose->b[k]);
-  for (int32_t c = 0; c < 2 && is_relative(e); c++) {
-    strut_dd sum = dd_of(0.0);
-    for (int32_t k = 0; k + 1 < nodes; k++) sum = dd_add(sum, b[2 * k + c]);
-    b[2 * (nodes - 1) + c] = dd_negative(sum);
-  }
-}
-
-/* Entry r, c of a second derivative, those of one node from the others', likewise. */
-static strut_dd balanced_entry(const double *k, int32_t n, int32_t r, int32_t c) {
-  if (r / 2 != c / 2) return dd_of(k[r * n + c]);
-  strut_dd sum = dd_of(0.0);
-  for (int32_t other = c % 2; other < n; other += 2)
-    if (other / 2 != c / 2) sum = dd_sub(sum, dd_of(k[r * n + other]));
-  return sum;
-}
-
-static void add_element(void *context, int32_t i, const strut_element_pose *rounded) {
-  strut_vibration *v = ((const element_sum *)context)->vibration;
-  strut_element_pose sharp, *pose = &sharp;
-  (void)rounded;
-  if (!strut_vibration_pose(v, i, pose)) return;
+static void add_element(strut_vibration *v, int32_t i) {
   const strut_element *e = &v->model->elements.element[i];
   const int32_t *place = v->shape->place + strut_places_of_elements(v->model);
-  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0};
+  double d[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  strut_element_pose pose;
+  if (!strut_vibration_pose(v, i, &pose)) return;
+  strut_element_bend(v->model, i, v->q, pose.force, k);
   int32_t n = 2 * e->nodes;
-  memset(k, 0, sizeof k);
-  strut_element_bend(v->model, i, v->rounded, pose->force, k);
-  const int32_t *own = place + e->place;
-  strut_dd b[STRUT_MOST_GRADIENT];
-  balance_gradient(e, pose, b);
-  const uint32_t *at = v->model->elements.at + e->first;
-  for (int32_t r = 0; r < n;
-       r++) /* a sum of squares to all digits, so that soft motions stay soft */
-    for (int32_t c = 0; c <= r; c++, own++) {
-      if (*own < 0) continue;
-      bool both = r != c && at[r / 2] == at[c / 2] && r % 2 == c % 2; /* a node met twice */
-      strut_dd entry = dd_scale(dd_mul(b[r], b[c]), pose->slope);
-      entry = dd_add(entry, balanced_entry(k, n, r, c));
-      v->k[*own] = dd_add(v->k[*own], both ? dd_add(entry, entry) : entry);
-    }
   for (int32_t r = 0; r < n; r++)
-    for (int32_t c = 0; c < n; c++) k[r * n + c] = e->damping * pose->b[r] * pose->b[c];
-  strut_element_scatter(v->model, i, k, place, v->d);
-}
-
-static void add_element_force(void *context, int32_t i, const strut_element_pose *rounded) {
-  const element_sum *s = context;
-  strut_element_pose sharp, *pose = &sharp;
-  (void)rounded;
-  if (!strut_vibration_pose(s->vibration, i, pose)) return;
-  const strut_element_table *t = &s->vibration->model->elements;
-  const strut_element *e = &t->element[i];
-  strut_dd b[STRUT_MOST_GRADIENT];
-  balance_gradient(e, pose, b);
-  for (int32_t k = 0; k < 2 * e->nodes; k++) {
-    int32_t row = s->vibration->shape->row_of[t->at[e->first + k / 2] + (uint32_t)(k % 2)];
-    if (row >= 0) s->force[row] = dd_sub(s->force[row], dd_scale(b[k], pose->force));
-  }
-}
-
-static void add_elements(strut_vibration *v) {
-  element_sum sum = {v, NULL};
-  if (!v->model->elements.count) return;
-  for (int32_t i = 0; i < v->model->length; i++) v->rounded[i] = dd_double(v->q[i]);
-  strut_elements_visit(v->model, v->model->members.rest, v->rounded, -HUGE_VAL, false, &sum,
-                       add_element);
+    for (int32_t c = 0; c < n; c++) {
+      d[r * n + c] = e->damping * pose.b[r] * pose.b[c];
+      k[r * n + c] += pose.slope * pose.b[r] * pose.b[c];
+    }
+  strut_element_scatter(v->model, i, k, place, v->k);
+  strut_element_scatter(v->model, i, d, place, v->d);
 }
 
 strut_contact_pose strut_vibration_contact(const strut_vibration *v, int32_t i) {
-  const strut_contact_table *c = &v->model->contacts;
-  double q[2] = {dd_double(v->q[c->at[i]]), dd_double(v->q[c->at[i] + 1])};
-  strut_contact_pose pose = {.axes = c->axes};
-  if (c->surface) strut_surface_find(&c->surface[c->surface_of[i]], q, -1, &pose);
+  strut_contact_pose pose = strut_contact_pose_at(&v->model->contacts, i, v->q, NULL, -1);
+  const double *low = v->low + v->model->contacts.at[i];
+  pose.gap += low[0] * pose.axes.normal[0] + low[1] * pose.axes.normal[1];
   return pose;
 }
 
@@ -189,11 +121,8 @@ static void add_contact(strut_vibration *v, int32_t i) {
   for (int a = 0; a < 2; a++)
     for (int b = 0; b <= a; b++, place++) {
       if (*place < 0) continue;
-      strut_dd nn = dd_product(n[a], n[b]);
-      v->k[*place] = dd_add(v->k[*place], dd_scale(nn, c->entry[i].stiffness));
-      if (pose.curvature != 0.0)
-        v->k[*place] = dd_add(v->k[*place], dd_scale(dd_product(t[a], t[b]), across));
-      v->d[*place] += c->entry[i].damping * nn.hi;
+      v->k[*place] += c->entry[i].stiffness * n[a] * n[b] + across * t[a] * t[b];
+      v->d[*place] += c->entry[i].damping * n[a] * n[b];
     }
 }
 
@@ -243,12 +172,12 @@ static void add_masses(strut_vibration *v) {
    masses. */
 static void bound_spectrum(strut_vibration *v) {
   const strut_sparse *a = v->shape->pattern;
-  double *sum = (double *)v->work;
+  double *sum = v->work;
   memset(sum, 0, (size_t)v->n * sizeof *sum);
   for (int32_t j = 0; j < v->n; j++)
     for (int32_t at = a->start[j]; at < a->start[j + 1]; at++) {
-      sum[j] += fabs(v->k[at].hi);
-      if (a->row[at] != j) sum[a->row[at]] += fabs(v->k[at].hi);
+      sum[j] += fabs(v->k[at]);
+      if (a->row[at] != j) sum[a->row[at]] += fabs(v->k[at]);
     }
   v->largest = 0.0;
   for (int32_t i = 0; i < v->n; i++) {
@@ -265,7 +194,7 @@ void strut_vibration_update(strut_vibration *v) {
     place_member(v, j);
     add_member(v, j);
   }
-  add_elements(v);
+  for (int32_t i = 0; i < v->model->elements.count; i++) add_element(v, i);
   for (int32_t i = 0; i < v->model->contacts.count; i++) add_contact(v, i);
   bound_spectrum(v);
 }
@@ -279,13 +208,13 @@ static bool allocate(strut_vibration *v) {
   v->k = strut_arena_allocate(&v->arena, entries, sizeof *v->k);
   v->m = strut_arena_allocate(&v->arena, entries, sizeof *v->m);
   v->d = strut_arena_allocate(&v->arena, entries, sizeof *v->d);
-  v->rounded = strut_arena_allocate(&v->arena, (size_t)model->length, sizeof *v->rounded);
+  v->low = strut_arena_allocate(&v->arena, (size_t)model->length, sizeof *v->low);
   v->mass = strut_arena_allocate(&v->arena, n, sizeof *v->mass);
   v->own_mass = strut_arena_allocate(&v->arena, n, sizeof *v->own_mass);
   v->work = strut_arena_allocate(&v->arena, n, sizeof *v->work);
   v->idle = strut_arena_allocate(&v->arena, (size_t)model->elements.count, sizeof *v->idle);
-  return v->idle && v->rounded && v->q && v->member && v->closed && v->k && v->m && v->d &&
-         v->mass && v->own_mass && v->work;
+  return v->idle && v->low && v->q && v->member && v->closed && v->k && v->m && v->d && v->mass &&
+         v->own_mass && v->work;
 }
 
 strut_status strut_vibration_create(const strut_model *model, const double *q,
@@ -303,7 +232,7 @@ strut_status strut_vibration_create(const strut_model *model, const double *q,
     *vibration = NULL;
     return status;
   }
-  for (int32_t i = 0; i < model->length; i++) v->q[i] = dd_of(q[i]);
+  memcpy(v->q, q, (size_t)model->length * sizeof *q);
   for (int32_t i = 0; i < model->contacts.count; i++)
     for (int32_t k = 0; k < closed_count; k++)
       if (model->contacts.entry[i].node == closed[k])
@@ -320,66 +249,38 @@ void strut_vibration_free(strut_vibration *vibration) {
   strut_release(vibration);
 }
 
-static void add_to(strut_dd *force, int32_t row, strut_dd value) {
-  if (row >= 0) force[row] = dd_add(force[row], value);
+static void add_to(double *force, int32_t row, double value) {
+  if (row >= 0) force[row] += value;
 }
 
-void strut_vibration_force(const strut_vibration *v, strut_dd *force) {
+void strut_vibration_force(const strut_vibration *v, double *force) {
   const strut_model *model = v->model;
   const strut_member_table *t = &model->members;
   const int32_t *row_of = v->shape->row_of;
-  for (int32_t i = 0; i < v->n; i++) force[i] = dd_of(v->shape->force[v->shape->coordinate[i]]);
+  for (int32_t i = 0; i < v->n; i++) force[i] = v->shape->force[v->shape->coordinate[i]];
   for (int32_t j = 0; j < t->count; j++) {
     const strut_vibration_member *m = &v->member[j];
     if (!m->taut) continue;
-    strut_dd pull = dd_scale(m->stretch, t->stiffness[j]);
-    strut_dd x = dd_mul(pull, m->ux), y = dd_mul(pull, m->uy);
+    double x = t->stiffness[j] * m->stretch * m->ux, y = t->stiffness[j] * m->stretch * m->uy;
     add_to(force, row_of[t->from[j]], x);
     add_to(force, row_of[t->from[j] + 1], y);
-    add_to(force, row_of[t->to[j]], dd_negative(x));
-    add_to(force, row_of[t->to[j] + 1], dd_negative(y));
+    add_to(force, row_of[t->to[j]], -x);
+    add_to(force, row_of[t->to[j] + 1], -y);
   }
-  element_sum elements = {(strut_vibration *)v, force};
-  strut_elements_visit(model, t->rest, v->rounded, -HUGE_VAL, false, &elements, add_element_force);
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    strut_element_pose pose;
+    if (!strut_vibration_pose(v, i, &pose)) continue;
+    for (int32_t k = 0; k < 2 * e->nodes; k++)
+      add_to(force, row_of[model->elements.at[e->first + k / 2] + (uint32_t)(k % 2)],
+             -pose.b[k] * pose.force);
+  }
   const strut_contact_table *c = &model->contacts;
   for (int32_t i = 0; i < c->count; i++) {
     if (!v->closed[i]) continue;
-    uint32_t at = c->at[i];
     const strut_contact_pose pose = strut_vibration_contact(v, i);
-    const double *n = pose.axes.normal;
-    strut_dd gap =
-        dd_add(dd_scale(v->q[at], n[0]), dd_scale(dd_sub(v->q[at + 1], dd_of(c->height)), n[1]));
-    if (c->surface) gap = dd_of(pose.gap);
-    strut_dd push = dd_scale(gap, -c->entry[i].stiffness);
-    add_to(force, row_of[at], dd_scale(push, n[0]));
-    add_to(force, row_of[at + 1], dd_scale(push, n[1]));
-  }
-}
-
-void strut_vibration_stiffness(const strut_vibration *v, const strut_dd *x, strut_dd *y) {
-  const strut_sparse *a = v->shape->pattern;
-  for (int32_t i = 0; i < v->n; i++) y[i] = dd_of(0.0);
-  for (int32_t j = 0; j < v->n; j++) {
-    strut_dd sum = dd_mul(v->k[a->start[j]], x[j]);
-    for (int32_t at = a->start[j] + 1; at < a->start[j + 1]; at++) {
-      y[a->row[at]] = dd_add(y[a->row[at]], dd_mul(v->k[at], x[j]));
-      sum = dd_add(sum, dd_mul(v->k[at], x[a->row[at]]));
-    }
-    y[j] = dd_add(y[j], sum);
-  }
-}
-
-void strut_vibration_mass(const strut_vibration *v, const strut_dd *x, strut_dd *y) {
-  const strut_sparse *a = v->shape->pattern;
-  for (int32_t i = 0; i < v->n; i++) y[i] = dd_of(0.0);
-  for (int32_t j = 0; j < v->n; j++) {
-    strut_dd sum = dd_scale(x[j], v->m[a->start[j]]);
-    for (int32_t at = a->start[j] + 1; at < a->start[j + 1]; at++) {
-      if (!(v->m[at] > 0)) continue;
-      y[a->row[at]] = dd_add(y[a->row[at]], dd_scale(x[j], v->m[at]));
-      sum = dd_add(sum, dd_scale(x[a->row[at]], v->m[at]));
-    }
-    y[j] = dd_add(y[j], sum);
+    for (uint32_t k = 0; k < 2; k++)
+      add_to(force, row_of[c->at[i] + k], -c->entry[i].stiffness * pose.gap * pose.axes.normal[k]);
   }
 }
 
@@ -399,7 +300,7 @@ strut_end_displacement strut_vibration_spread(const strut_vibration *v, int32_t 
     int32_t a = row_of[t->from[j] + c], b = row_of[t->to[j] + c];
     d[c] = (b >= 0 ? x[b] : 0.0) - (a >= 0 ? x[a] : 0.0);
   }
-  double ux = v->member[j].ux.hi, uy = v->member[j].uy.hi;
+  double ux = v->member[j].ux, uy = v->member[j].uy;
   return (strut_end_displacement){ux * d[0] + uy * d[1], ux * d[1] - uy * d[0]};
 }
 
@@ -420,5 +321,85 @@ double strut_vibration_strain(const strut_vibration *v, int32_t element,
   int32_t nodes = is_relative(e) ? e->nodes - 1 : e->nodes;
   for (int32_t k = 0; k < 2 * nodes; k++)
     sum += pose->b[k] * strut_vibration_relative(v, element, k, x);
+  return sum;
+}
+
+/* Relative rounding of a difference of coordinates, and of an energy made of it. */
+static const double BITS = 2.0 * DBL_EPSILON;
+
+/* Adds k along^2, where `along` was made of motions of size `far`. */
+static void add_square(double stiffness, double along, double far, strut_vibration_energy *sum) {
+  double bits = BITS * far;
+  sum->value += stiffness * along * along;
+  sum->rounding += fabs(stiffness) * bits * (2.0 * fabs(along) + bits);
+}
+
+static void add_member_energy(const strut_vibration *v, int32_t j, const double *x,
+                              strut_vibration_energy *sum) {
+  const strut_vibration_member *m = &v->member[j];
+  if (!m->taut) return;
+  const strut_end_displacement d = strut_vibration_spread(v, j, x);
+  double across = m->across * d.across * d.across;
+  add_square(v->model->members.stiffness[j], d.along, hypot(d.along, d.across), sum);
+  sum->value += across;
+  sum->rounding += BITS * fabs(across);
+}
+
+static void add_element_energy(const strut_vibration *v, int32_t i, const double *x,
+                               strut_vibration_energy *sum) {
+  const strut_element *e = &v->model->elements.element[i];
+  const uint32_t *at = v->model->elements.at + e->first;
+  strut_element_pose pose;
+  if (!strut_vibration_pose(v, i, &pose)) return;
+  double far = 0.0, blur = BITS; /* relative, of second derivatives */
+  for (int32_t k = 0; k < e->nodes && e->strain == STRUT_STRAIN_ANGLE; k++) {
+    const double *place = v->q + at[k];
+    blur += 2.0 * hypot(pose.b[2 * k], pose.b[2 * k + 1]) * strut_coordinate_rounding(place, place);
+  }
+  for (int32_t k = 0; k < 2 * e->nodes; k++)
+    far += fabs(pose.b[k] * strut_vibration_relative(v, i, k, x));
+  const strut_element_bow bow = strut_vibration_bow(v, i, x);
+  add_square(pose.slope, strut_vibration_strain(v, i, &pose, x), far, sum);
+  sum->value += pose.force * bow.sum;
+  sum->rounding += blur * fabs(pose.force) * bow.size;
+}
+
+static void add_contact_energy(const strut_vibration *v, int32_t i, const double *x,
+                               strut_vibration_energy *sum) {
+  const strut_contact_table *c = &v->model->contacts;
+  if (!v->closed[i]) return;
+  const strut_contact_pose pose = strut_vibration_contact(v, i);
+  const double *n = pose.axes.normal, *t = pose.axes.tangent;
+  double d[2], stiffness = c->entry[i].stiffness;
+  for (uint32_t k = 0; k < 2; k++) {
+    int32_t row = v->shape->row_of[c->at[i] + k];
+    d[k] = row >= 0 ? x[row] : 0.0;
+  }
+  add_square(stiffness, n[0] * d[0] + n[1] * d[1], hypot(d[0], d[1]), sum);
+  add_square(stiffness * pose.gap * pose.curvature, t[0] * d[0] + t[1] * d[1], hypot(d[0], d[1]),
+             sum);
+}
+
+strut_element_bow strut_vibration_bow(const strut_vibration *v, int32_t i, const double *x) {
+  const strut_element *e = &v->model->elements.element[i];
+  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0};
+  strut_element_bow bow = {0.0, 0.0};
+  strut_element_bend(v->model, i, v->q, 1.0, bend);
+  int32_t n = 2 * e->nodes;
+  for (int32_t r = 0; r < n; r++) {
+    double own = strut_vibration_relative(v, i, r, x);
+    for (int32_t c = 0; c < n; c++) {
+      double part = own * bend[r * n + c] * strut_vibration_relative(v, i, c, x);
+      bow.sum += part, bow.size += fabs(part);
+    }
+  }
+  return bow;
+}
+
+strut_vibration_energy strut_vibration_energy_of(const strut_vibration *v, const double *x) {
+  strut_vibration_energy sum = {0.0, 0.0};
+  for (int32_t j = 0; j < v->model->members.count; j++) add_member_energy(v, j, x, &sum);
+  for (int32_t i = 0; i < v->model->elements.count; i++) add_element_energy(v, i, x, &sum);
+  for (int32_t i = 0; i < v->model->contacts.count; i++) add_contact_energy(v, i, x, &sum);
   return sum;
 }

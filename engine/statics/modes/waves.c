@@ -70,7 +70,7 @@ static void fold(solver *s, const double phase[2]) {
     for (int32_t at = a->start[j]; at < a->start[j + 1]; at++) {
       int32_t from = coordinate[a->row[at]], to = coordinate[j];
       int32_t r = cell->row[from], c = cell->row[to];
-      double k = dd_double(s->v->k[at]), m = s->v->m[at], turns = 0.0;
+      double k = s->v->k[at], m = s->v->m[at], turns = 0.0;
       if (r < 0 || c < 0) continue;
       for (int d = 0; d < 2; d++)
         turns += (cell->shift[to / 2][d] - cell->shift[from / 2][d]) * phase[d];

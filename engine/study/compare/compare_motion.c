@@ -346,7 +346,7 @@ strut_status strut_compare_frequencies(strut_compare_work *work, const strut_mod
     strut_compare_leave(work, STRUT_COMPARE_FREQUENCY_1, STRUT_COMPARE_FREQUENCY_3,
                         "the model has fewer elastic modes");
     for (size_t i = 0; i < modes.count && found < STRUT_COMPARE_FREQUENCIES; i++)
-      if (modes.list[i].kind == STRUT_MODE_ELASTIC)
+      if (modes.list[i].kind == STRUT_MODE_ELASTIC || modes.list[i].kind == STRUT_MODE_UNKNOWN)
         strut_compare_put(work, (strut_compare_quantity)(STRUT_COMPARE_FREQUENCY_1 + found++),
                           modes.list[i].angular_frequency / STRUT_TAU);
   } else {

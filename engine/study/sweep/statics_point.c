@@ -75,10 +75,12 @@ static double count_modes(const strut_modes *modes, strut_mode_kind kind) {
   return count;
 }
 
-/* The i-th lowest elastic mode, or NULL. */
+/* The i-th lowest elastic mode, or NULL; unknown ones count. */
 static const strut_mode *elastic_mode(const strut_modes *modes, size_t i) {
   for (size_t k = 0; k < modes->count; k++)
-    if (modes->list[k].kind == STRUT_MODE_ELASTIC && i-- == 0) return &modes->list[k];
+    if ((modes->list[k].kind == STRUT_MODE_ELASTIC || modes->list[k].kind == STRUT_MODE_UNKNOWN) &&
+        i-- == 0)
+      return &modes->list[k];
   return NULL;
 }
 

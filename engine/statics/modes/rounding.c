@@ -1,0 +1,386 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/modes/parts.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/base/vec.h"
+#include "engine/model/pose.h"
+
+/* The shape below the last bits of its positions, and what last bits do to a stiffness. */
+
+enum { MOST_STEPS = 8, SAMPLES = 3 };
+
+static void move(strut_vibration *v, double *positions, const double *step, double sign) {
+  for (int32_t i = 0; i < v->n; i++) positions[v->shape->coordinate[i]] += sign * step[i];
+  strut_vibration_update(v);
+}
+
+/* -1 to 1, from an index. */
+static double stirred(uint64_t i) {
+  uint64_t z = (i + 1) * 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0;
+}
+
+/* Elements: the last bits of strain and natural strain, and of the positions they are made of. */
+static void sample_elements(const strut_modes_work *work, bool at_rest, uint64_t first,
+                            double *noise, double *x) {
+  const strut_vibration *v = work->v;
+  const strut_element_table *t = &v->model->elements;
+  strut_element_pose pose;
+  for (int32_t i = 0; i < t->count; i++) {
+    const strut_element *e = &t->element[i];
+    bool acts = strut_vibration_pose(v, i, &pose);
+    double bits = DBL_EPSILON * (fabs(pose.strain) + fabs(pose.natural));
+    if (e->strain == STRUT_STRAIN_ANGLE) bits += 4.0 * DBL_EPSILON; /* of directions */
+    for (int32_t k = 0; k < e->nodes && !at_rest; k++) {
+      const double *at = v->q + t->at[e->first + k];
+      bits += hypot(pose.b[2 * k], pose.b[2 * k + 1]) * strut_coordinate_rounding(at, at);
+    }
+    noise[i] = acts ? -pose.slope * bits * stirred(first + (uint64_t)i) : 0.0;
+    for (int32_t k = 0; k < 2 * e->nodes && at_rest; k++) {
+      int32_t row = v->shape->row_of[t->at[e->first + k / 2] + (uint32_t)(k % 2)];
+      if (row >= 0) x[row] -= noise[i] * pose.b[k];
+    }
+  }
+}
+
+/* How the forces of elements follow once the shape has come to rest again. */
+static void settle_elements(const strut_modes_work *work, const double *moved, double *noise) {
+  const strut_vibration *v = work->v;
+  strut_element_pose pose;
+  for (int32_t i = 0; i < v->model->elements.count; i++) {
+    if (strut_vibration_pose(v, i, &pose))
+      noise[i] += pose.slope * strut_vibration_strain(v, i, &pose, moved);
+  }
+}
+
+/*
+ * Rest lengths off by up to half of their last bit: how the forces follow once it has come to rest
+ * again; or, in a shape that is not at rest, lengths off by their last bits.
+ */
+static void sample_noise(strut_modes_work *work, bool at_rest, uint64_t sample, double *noise,
+                         double *elements, double *x) {
+  const strut_vibration *v = work->v;
+  const strut_member_table *t = &v->model->members;
+  uint64_t first = sample * (uint64_t)t->count;
+  memset(x, 0, (size_t)v->n * sizeof *x);
+  for (int32_t j = 0; j < t->count; j++) {
+    const strut_vibration_member *m = &v->member[j];
+    double bits = 0.5 * DBL_EPSILON * t->rest[j] * stirred(first + (uint64_t)j);
+    if (!at_rest) bits = DBL_EPSILON * (m->length + t->rest[j]) * stirred(first + (uint64_t)j);
+    noise[j] = m->taut ? -t->stiffness[j] * bits : 0.0;
+    if (!at_rest || !m->taut) continue;
+    double pull[2] = {noise[j] * m->ux, noise[j] * m->uy};
+    for (uint32_t c = 0; c < 2; c++) {
+      int32_t a = v->shape->row_of[t->from[j] + c], b = v->shape->row_of[t->to[j] + c];
+      if (a >= 0) x[a] += pull[c];
+      if (b >= 0) x[b] -= pull[c];
+    }
+  }
+  uint64_t behind = SAMPLES * (uint64_t)t->count + sample * (uint64_t)v->model->elements.count;
+  sample_elements(work, at_rest, behind, elements, x);
+  if (at_rest) {
+    strut_modes_solve(&work->solver, x);
+    for (int32_t j = 0; j < t->count; j++)
+      if (v->member[j].taut) noise[j] += t->stiffness[j] * strut_vibration_spread(v, j, x).along;
+    settle_elements(work, x, elements);
+  }
+  for (int32_t j = 0; j < t->count; j++)
+    noise[j] = v->member[j].length > 0 ? noise[j] / v->member[j].length : 0.0;
+}
+
+static void measure_noise(strut_modes_work *work, const double *noise, const double *elements) {
+  const strut_vibration *v = work->v;
+  strut_eigen_set *set = &work->set;
+  for (int32_t i = 0; i < set->count; i++) {
+    const double *x = set->vector + (size_t)i * (size_t)v->n;
+    double sum = 0.0;
+    for (int32_t j = 0; j < v->model->members.count; j++) {
+      if (noise[j] == 0) continue;
+      double across = strut_vibration_spread(v, j, x).across;
+      sum += noise[j] * across * across;
+    }
+    sum = fabs(sum);
+    for (int32_t j = 0; j < v->model->elements.count; j++)
+      if (elements[j] != 0) sum += fabs(elements[j] * strut_vibration_bow(v, j, x).sum);
+    set->noise[i] = fmax(set->noise[i], 2.0 * sum); /* twice: few samples */
+  }
+}
+
+/*
+ * Newton's method from the shape as doubles give it, whose last bits leave forces of c times a bit.
+ * It is that close already; a step that is not tiny, or does not help, is taken back.
+ */
+strut_status strut_modes_settle(strut_modes_work *work, strut_error *error) {
+  strut_vibration *v = work->v;
+  strut_arena scratch = {0};
+  double *step = strut_arena_allocate(&scratch, (size_t)v->n, sizeof *step);
+  if (!step) return strut_no_memory(error, "");
+  strut_vibration_force(v, step);
+  double force = strut_largest_magnitude(step, v->n);
+  for (int i = 0; i < MOST_STEPS && force > 0; i++) {
+    double *positions =
+        i == 0 ? v->q : v->low; /* then q stays, and with it the rounding of lengths */
+    strut_modes_factorise(&work->solver, STRUT_FIRM * v->largest);
+    strut_modes_solve(&work->solver, step);
+    if (!(strut_largest_magnitude(step, v->n) < 1e-6 * v->model->size)) break;
+    move(v, positions, step, 1.0);
+    strut_vibration_force(v, v->work);
+    bool helped = strut_largest_magnitude(v->work, v->n) < force;
+    if (!helped) move(v, positions, step, -1.0);
+    if (!helped && i > 0) break;
+    strut_vibration_force(v, step);
+    force = strut_largest_magnitude(step, v->n);
+  }
+  strut_arena_free(&scratch);
+  return STRUT_OK;
+}
+
+/* Of what last bits make of a force: it is known from here on. Of k times the length: it is more than
+   the rounding of positions and what is below their last bits. */
+static const double KNOWN = 1e3, SOME = 1e-22;
+
+/* Largest noise of the forces of members (members) and elements [N]. */
+static strut_status sample_forces(strut_modes_work *work, bool at_rest, double *members,
+                                  double *elements, strut_error *error) {
+  const strut_vibration *v = work->v;
+  size_t member_count = (size_t)v->model->members.count;
+  size_t element_count = (size_t)v->model->elements.count;
+  strut_arena scratch = {0};
+  double *x = strut_arena_allocate(&scratch, (size_t)v->n, sizeof *x);
+  double *one = strut_arena_allocate(&scratch, member_count, sizeof *one);
+  double *other = strut_arena_allocate(&scratch, element_count, sizeof *other);
+  bool good = x && one && other;
+  if (good && at_rest) strut_modes_factorise(&work->solver, STRUT_FIRM * v->largest);
+  for (uint64_t sample = 0; sample < SAMPLES && good; sample++) {
+    sample_noise(work, at_rest, sample, one, other, x);
+    for (size_t j = 0; j < member_count; j++)
+      members[j] = fmax(members[j], fabs(one[j]) * v->member[j].length);
+    for (size_t i = 0; i < element_count; i++) elements[i] = fmax(elements[i], fabs(other[i]));
+  }
+  strut_arena_free(&scratch);
+  return good ? STRUT_OK : strut_no_memory(error, "");
+}
+
+static bool is_known(double force, double noise, double largest) {
+  return fabs(force) > KNOWN * noise && fabs(force) > SOME * largest;
+}
+
+/* Borderline ones, which are made to act for now; their number. */
+static int32_t hold_borderline(strut_modes_work *work, uint8_t *member, uint8_t *element) {
+  strut_vibration *v = work->v;
+  int32_t count = 0;
+  for (int32_t j = 0; j < v->model->members.count; j++)
+    if ((member[j] = strut_vibration_is_borderline(v, j))) v->member[j].state = 1, count++;
+  for (int32_t i = 0; i < v->model->elements.count; i++)
+    if ((element[i] = strut_vibration_element_is_borderline(v, i))) count++;
+  return count;
+}
+
+static void release_borderline(strut_modes_work *work, const uint8_t *member,
+                               const uint8_t *element, const double *member_noise,
+                               const double *element_noise) {
+  strut_vibration *v = work->v;
+  const strut_member_table *t = &v->model->members;
+  for (int32_t j = 0; j < t->count; j++) {
+    strut_vibration_member *m = &v->member[j];
+    double force = t->stiffness[j] * m->stretch, most = t->stiffness[j] * m->length;
+    if (!member[j]) continue;
+    bool known = is_known(force, member_noise[j], most);
+    m->state = known ? 0 : -1;
+    if (!known) work->idleness[j] = STRUT_JUST_TAUT;
+  }
+  for (int32_t i = 0; i < v->model->elements.count; i++) {
+    const strut_element *e = &v->model->elements.element[i];
+    strut_element_pose pose;
+    if (!element[i]) continue;
+    bool acts = strut_vibration_pose(v, i, &pose);
+    v->idle[i] = !acts || !is_known(pose.force, element_noise[i], pose.slope * pose.strain);
+    if (v->idle[i] && e->role == STRUT_ELEMENT_MEMBER) work->idleness[e->item] = STRUT_JUST_TAUT;
+  }
+}
+
+static void find_slack(strut_modes_work *work) {
+  const strut_vibration *v = work->v;
+  strut_element_pose pose;
+  for (int32_t j = 0; j < v->model->members.count; j++)
+    if (!v->member[j].taut && v->model->members.stiffness[j] > 0 && work->idleness[j] == STRUT_ACTS)
+      work->idleness[j] = STRUT_SLACK;
+  for (int32_t i = 0; i < v->model->elements.count; i++) {
+    const strut_element *e = &v->model->elements.element[i];
+    if (e->role != STRUT_ELEMENT_MEMBER || work->idleness[e->item] != STRUT_ACTS) continue;
+    if (!strut_vibration_pose(v, i, &pose)) work->idleness[e->item] = STRUT_SLACK;
+  }
+}
+
+strut_status strut_modes_loosen(strut_modes_work *work, bool at_rest, strut_error *error) {
+  strut_vibration *v = work->v;
+  size_t members = (size_t)v->model->members.count, elements = (size_t)v->model->elements.count;
+  strut_arena scratch = {0};
+  uint8_t *member = strut_arena_allocate(&scratch, members, sizeof *member);
+  uint8_t *element = strut_arena_allocate(&scratch, elements, sizeof *element);
+  double *member_noise = strut_arena_allocate(&scratch, members, sizeof *member_noise);
+  double *element_noise = strut_arena_allocate(&scratch, elements, sizeof *element_noise);
+  work->idleness = strut_arena_allocate(work->arena, members, sizeof *work->idleness);
+  bool good = member && element && member_noise && element_noise && work->idleness;
+  strut_status status = good ? STRUT_OK : strut_no_memory(error, "");
+  if (good && hold_borderline(work, member, element) > 0) {
+    strut_vibration_update(v);
+    if (at_rest) status = strut_modes_settle(work, error);
+    if (status == STRUT_OK)
+      status = sample_forces(work, at_rest, member_noise, element_noise, error);
+    if (status == STRUT_OK) release_borderline(work, member, element, member_noise, element_noise);
+    strut_vibration_update(v);
+  }
+  if (status == STRUT_OK) find_slack(work);
+  strut_arena_free(&scratch);
+  return status;
+}
+
+strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error *error) {
+  strut_vibration *v = work->v;
+  double *step = strut_arena_allocate(work->arena, (size_t)v->n, sizeof *step);
+  double *noise = strut_arena_allocate(work->arena, (size_t)v->model->members.count, sizeof *noise);
+  double *elements =
+      strut_arena_allocate(work->arena, (size_t)v->model->elements.count, sizeof *elements);
+  if (!step || !noise || !elements) return strut_no_memory(error, "");
+  if (at_rest) strut_modes_factorise(&work->solver, STRUT_FIRM * v->largest);
+  strut_status status = STRUT_OK;
+  for (uint64_t sample = 0; sample < SAMPLES && status == STRUT_OK; sample++) {
+    status = strut_experiment_end(work->experiment, status, error);
+    sample_noise(work, at_rest, sample, noise, elements, step);
+    measure_noise(work, noise, elements);
+  }
+  return status;
+}
+
+/* How far off the eigenpairs are. */
+
+enum { MOST_ITERATIONS = 4 };
+
+/* Relative error that needs no improvement; of the shift from the eigenvalue, so that it stays invertible. */
+static const double GOOD = 1e-11, OFFSET = 1e-7;
+/* Eigenvalues are one where they differ by less than this, relative, or of the largest. */
+static const double CLUSTER = 1e-6, NOTHING = 1e-15;
+
+static bool together(const strut_modes_work *work, double a, double b) {
+  return fabs(a - b) <= fmax(CLUSTER * fmax(fabs(a), fabs(b)), NOTHING * work->v->largest);
+}
+
+/* To the nearest eigenvalue that is not in the same cluster; 0: none is known. */
+static double gap_of(const strut_modes_work *work, int32_t i) {
+  const strut_eigen_set *set = &work->set;
+  double gap = 0.0;
+  for (int32_t k = i - 1; k >= 0 && gap == 0.0; k--)
+    if (!together(work, set->value[k], set->value[i])) gap = set->value[i] - set->value[k];
+  for (int32_t k = i + 1; k < set->count; k++)
+    if (!together(work, set->value[k], set->value[i])) {
+      double above = set->value[k] - set->value[i];
+      return gap > 0 ? fmin(gap, above) : above;
+    }
+  return gap;
+}
+
+static void measure_value(strut_modes_work *work, int32_t i, double *mx) {
+  const strut_vibration *v = work->v;
+  strut_eigen_set *set = &work->set;
+  const double *x = set->vector + (size_t)i * (size_t)v->n;
+  const strut_vibration_energy energy = strut_vibration_energy_of(v, x);
+  strut_vibration_multiply(v, v->m, x, mx);
+  double size = strut_dot(x, mx, v->n);
+  set->value[i] = energy.value / size;
+  set->noise[i] = (set->noise[i] + energy.rounding) / size;
+}
+
+/*
+ * The distance of a quotient to an eigenvalue: at most |r|, and |r|^2 / gap, with the norm of M^-1,
+ * which is at most twice that of its diagonal without sliding masses. Rows without mass store energy
+ * |r|^2 / k.
+ */
+static void measure_error(strut_modes_work *work, int32_t i, double *kx, double *mx) {
+  const strut_vibration *v = work->v;
+  const strut_sparse *a = v->shape->pattern;
+  strut_eigen_set *set = &work->set;
+  const double *x = set->vector + (size_t)i * (size_t)v->n;
+  double rest = 0.0, idle = 0.0, r2 = 0.0, kx2 = 0.0, mx2 = 0.0, gap = gap_of(work, i);
+  strut_vibration_multiply(v, v->k, x, kx);
+  strut_vibration_multiply(v, v->m, x, mx);
+  double size = strut_dot(x, mx, v->n);
+  for (int32_t k = 0; k < v->n; k++) {
+    double inertia = set->value[i] * mx[k], r = kx[k] - inertia, own = fabs(v->k[a->start[k]]);
+    r2 += r * r, kx2 += kx[k] * kx[k], mx2 += inertia * inertia;
+    if (v->mass[k] > 0)
+      rest += 2.0 * r * r / v->own_mass[k];
+    else if (own > 0)
+      idle += r * r / own;
+  }
+  double norm = sqrt(rest / size);
+  set->error[i] = (gap > 0 ? fmin(norm, rest / size / gap) : norm) + idle / size;
+  set->residual[i] = kx2 + mx2 > 0 ? sqrt(r2) / (sqrt(kx2) + sqrt(mx2)) : 0.0;
+}
+
+/* Inverse iteration: takes out what the eigensolver left of stiffer motions, or of lighter nodes. */
+static void improve(strut_modes_work *work, int32_t i, double *kx, double *mx) {
+  const strut_vibration *v = work->v;
+  strut_eigen_set *set = &work->set;
+  double *x = set->vector + (size_t)i * (size_t)v->n, before = HUGE_VAL;
+  for (int k = 0; k < MOST_ITERATIONS; k++) {
+    double value = set->value[i], size = fabs(value), error = set->error[i];
+    if (size <= 4.0 * set->noise[i]) return; /* a zero */
+    if (error <= GOOD * size || error >= size || error > 0.5 * before) return;
+    before = error;
+    strut_modes_factorise(&work->solver, OFFSET * size - value);
+    strut_vibration_multiply(v, v->m, x, mx);
+    memcpy(x, mx, (size_t)v->n * sizeof *x);
+    strut_modes_solve(&work->solver, x);
+    for (int32_t j = i - 1; j >= 0 && together(work, set->value[j], value); j--) {
+      const double *y = set->vector + (size_t)j * (size_t)v->n;
+      strut_vibration_multiply(v, v->m, y, mx);
+      double share = strut_dot(x, mx, v->n);
+      for (int32_t r = 0; r < v->n; r++) x[r] -= share * y[r];
+    }
+    strut_vibration_multiply(v, v->m, x, mx);
+    double length = sqrt(strut_dot(x, mx, v->n));
+    for (int32_t r = 0; r < v->n; r++) x[r] /= length;
+    measure_value(work, i, mx);
+    measure_error(work, i, kx, mx);
+  }
+}
+
+static void swap(double *a, double *b) {
+  double c = *a;
+  *a = *b, *b = c;
+}
+
+/* Insertion: what was sorted stays nearly so. */
+static void sort(strut_eigen_set *set) {
+  size_t n = (size_t)set->n;
+  for (int32_t i = 1; i < set->count; i++)
+    for (int32_t k = i; k > 0 && set->value[k] < set->value[k - 1]; k--) {
+      swap(&set->value[k], &set->value[k - 1]);
+      swap(&set->noise[k], &set->noise[k - 1]);
+      double *x = set->vector + (size_t)k * n, *y = x - n;
+      for (size_t j = 0; j < n; j++) swap(&x[j], &y[j]);
+    }
+}
+
+strut_status strut_modes_measure(strut_modes_work *work, strut_error *error) {
+  size_t n = (size_t)work->v->n;
+  strut_arena scratch = {0};
+  double *kx = strut_arena_allocate(&scratch, n, sizeof *kx);
+  double *mx = strut_arena_allocate(&scratch, n, sizeof *mx);
+  strut_status status = kx && mx ? STRUT_OK : strut_no_memory(error, "");
+  for (int32_t i = 0; i < work->set.count && status == STRUT_OK; i++) measure_value(work, i, mx);
+  if (status == STRUT_OK) sort(&work->set);
+  for (int32_t i = 0; i < work->set.count && status == STRUT_OK; i++) {
+    measure_error(work, i, kx, mx);
+    improve(work, i, kx, mx);
+    status = strut_experiment_end(work->experiment, status, error);
+  }
+  strut_arena_free(&scratch);
+  return status;
+}
