@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scales that few values do not flatten. See chart.h. */
+#include <gsl/gsl_sort_double.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,17 +13,12 @@ static const double MOST_OF_RANGE = 0.75, FEW = 0.05;
 static const double NOTE_WIDTH = 0.6; /* of the frame; longer notes wrap */
 static const double INSET = 3.0;      /* of notes from the frame [pt] */
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* Sorts the finite values to the front. Returns how many there are. */
 static size_t sort_finite(double *values, size_t count) {
   size_t kept = 0;
   for (size_t i = 0; i < count; i++)
     if (isfinite(values[i])) values[kept++] = values[i];
-  if (kept) qsort(values, kept, sizeof *values, ascending);
+  if (kept) gsl_sort(values, 1, kept);
   return kept;
 }
 

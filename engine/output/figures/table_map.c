@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <assert.h>
+#include <gsl/gsl_sort_double.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -23,11 +24,6 @@ typedef struct mapper {
   strut_arena arena;
 } mapper;
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* The different finite values of a column, ascending; NULL: no memory. */
 static double *distinct_values(mapper *m, int column, size_t *count) {
   const double *value = m->table->columns[column].value;
@@ -35,7 +31,7 @@ static double *distinct_values(mapper *m, int column, size_t *count) {
   size_t used = 0, kept = 0;
   for (size_t i = 0; all && i < m->table->row_count; i++)
     if (isfinite(value[i])) all[used++] = value[i];
-  if (all && used) qsort(all, used, sizeof *all, ascending);
+  if (all && used) gsl_sort(all, 1, used);
   double grain = used ? 1e-9 * (all[used - 1] - all[0]) : 0; /* 0.1 + 0.2 equals 0.3 */
   for (size_t i = 0; i < used; i++)
     if (!kept || all[i] - all[kept - 1] > grain) all[kept++] = all[i];

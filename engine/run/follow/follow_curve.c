@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+
 /* Steps of arclength [1]: the first, the least, the most; of those near a cusp. */
 static const double FIRST = 0.01, LEAST = 2e-5, MOST = 0.3, CUSP = 0.01;
 /* Angles between the direction and the step [rad]: above, the step shrinks; below, it grows. */
@@ -31,14 +33,8 @@ typedef struct walk {
   bool backwards;
 } walk;
 
-static double dot(const double *a, const double *b, size_t n) {
-  double sum = 0.0;
-  for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 static double normalise(double *a, size_t n) {
-  double length = sqrt(dot(a, a, n));
+  double length = sqrt(strut_dot(a, a, (ptrdiff_t)n));
   for (size_t i = 0; i < n && length > 0.0; i++) a[i] /= length;
   return length;
 }
@@ -184,7 +180,8 @@ static bool find_root(walk *w, const strut_follow_surface_point *base, double h,
 /* Sets the direction to the vector's part in the tangent plane at p, and what is across it. */
 static bool set_direction(walk *w, const strut_follow_surface_point *p, const double *vector) {
   size_t m = w->u->m;
-  double c = dot(vector, p->basis[0], m), d = dot(vector, p->basis[1], m), length = hypot(c, d);
+  double c = strut_dot(vector, p->basis[0], (ptrdiff_t)m),
+         d = strut_dot(vector, p->basis[1], (ptrdiff_t)m), length = hypot(c, d);
   if (!(length > 1e-6)) return false;
   c /= length, d /= length;
   double turn = 0.0;
@@ -272,7 +269,8 @@ static double measure_step(walk *w, const strut_follow_surface_point *a,
 /* Does the curve turn back in the plane of the parameters between the step before and the latest? */
 static bool turns_back(const walk *w, bool stepped) {
   size_t n = w->u->s.n;
-  return stepped && w->curve->kind == STRUT_FOLLOW_FOLD && dot(w->step + n, w->before + n, 2) < 0.0;
+  return stepped && w->curve->kind == STRUT_FOLLOW_FOLD &&
+         strut_dot(w->step + n, w->before + n, 2) < 0.0;
 }
 
 /*
@@ -329,7 +327,7 @@ static const char *walk_on(walk *w, const strut_follow_surface_point *first) {
         find_root(w, here, h, ASIDE * h, next, &tries) && strut_follow_surface_complete(u, next);
     if (u->status) return "interrupted";
     double length = good ? measure_step(w, here, next) : 0.0;
-    double angle = good ? acos(fmin(1.0, dot(w->step, w->along, m))) : 0.0;
+    double angle = good ? acos(fmin(1.0, strut_dot(w->step, w->along, (ptrdiff_t)m))) : 0.0;
     bool back = good && turns_back(w, stepped);
     if (!good || angle > SHARP || (back && h > CUSP)) {
       if (h <= LEAST) return "no such motion was found beyond";

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/run/follow/follow.h"
 #include "engine/run/follow/follow_parts.h"
@@ -66,12 +67,6 @@ strut_follow_point *strut_follow_add(strut_follow_walk *w, const strut_follow_or
   return p;
 }
 
-static double dot(const double *a, const double *b, size_t n) {
-  double sum = 0.0;
-  for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 /*
  * A guess of the orbit one step h from o, along the parabola through o and the orbit before, whose tangents
  * turn by little; along the tangent of o otherwise.
@@ -82,7 +77,7 @@ static void predict(strut_follow_walk *w, const strut_follow_orbit *o, double h,
   const strut_follow_orbit *a = o->before;
   double bend = 0.0, *way = w->right;
   if (a && a->complete && h <= REACH * o->distance &&
-      dot(a->tangent, o->tangent, s->n + 1) > SMOOTH)
+      strut_dot(a->tangent, o->tangent, (ptrdiff_t)(s->n + 1)) > SMOOTH)
     bend = 0.5 * h * h / o->distance;
   for (size_t i = 0; i <= s->n; i++) {
     way[i] = h * o->tangent[i];
@@ -120,7 +115,7 @@ static double secant_of(const strut_follow_system *s, const strut_follow_orbit *
   for (size_t i = 0; i < n; i++)
     secant[i] = (b->y[s->place[i]] - a->y[s->place[i]]) / strut_follow_unit(s, i);
   secant[n] = (b->value - a->value) / (s->high - s->low);
-  double length = sqrt(dot(secant, secant, n + 1));
+  double length = sqrt(strut_dot(secant, secant, (ptrdiff_t)(n + 1)));
   for (size_t i = 0; i <= n && length > 0.0; i++) secant[i] /= length;
   return length;
 }
@@ -135,7 +130,7 @@ static bool straighten(strut_follow_walk *w, const strut_follow_orbit *a, strut_
   if (!secant) w->status = strut_no_memory(w->error, "");
   if (!secant) return false;
   secant_of(w->s, a, b, secant);
-  if (dot(secant, b->tangent, n + 1) >= STRAIGHT) return true;
+  if (strut_dot(secant, b->tangent, (ptrdiff_t)(n + 1)) >= STRAIGHT) return true;
   memcpy(b->tangent, secant, (n + 1) * sizeof(double));
   b->signature.turn = secant[n] < 0.0 ? -1 : 1;
   return true;
@@ -215,7 +210,7 @@ static bool is_closed(const strut_follow_walk *w, const strut_follow_orbit *begi
   double off = pow((o->value - begin->value) / (s->high - s->low), 2);
   for (size_t i = 0; i < s->n; i++)
     off += pow((o->y[s->place[i]] - begin->y[s->place[i]]) / strut_follow_unit(s, i), 2);
-  return sqrt(off) < 0.6 * h && dot(o->tangent, begin->tangent, s->n + 1) > 0.8;
+  return sqrt(off) < 0.6 * h && strut_dot(o->tangent, begin->tangent, (ptrdiff_t)(s->n + 1)) > 0.8;
 }
 
 /* Beyond a corner the branch may lead backwards: looks along the tangent that holds there. */
@@ -236,10 +231,10 @@ static strut_follow_orbit *turn_at_corner(strut_follow_walk *w, strut_follow_orb
     if (!tangent) return NULL;
     for (size_t i = 0; i <= s->n; i++) tangent[i] = side * beyond->tangent[i];
     from.tangent = tangent;
-    if (dot(tangent, o->tangent, s->n + 1) < -0.98) continue;
+    if (strut_dot(tangent, o->tangent, (ptrdiff_t)(s->n + 1)) < -0.98) continue;
     strut_follow_orbit *next = try_step(w, &from, 4.0 * h, &rounds, reason);
     if (w->status) return NULL;
-    if (!next || dot(next->tangent, o->tangent, s->n + 1) < -0.98) continue;
+    if (!next || strut_dot(next->tangent, o->tangent, (ptrdiff_t)(s->n + 1)) < -0.98) continue;
     return next;
   }
   return NULL;
@@ -265,7 +260,8 @@ static const char *walk_on(strut_follow_walk *w, strut_follow_orbit *o, double f
       reason = "no periodic motion was found beyond: the branch leads back";
       next = NULL;
     }
-    bool sharp = next && h > CORNER && dot(o->tangent, next->tangent, s->n + 1) < STRAIGHT;
+    bool sharp = next && h > CORNER &&
+                 strut_dot(o->tangent, next->tangent, (ptrdiff_t)(s->n + 1)) < STRAIGHT;
     if (!next || sharp || (rounds > MANY && h > CORNER)) {
       if (h > LEAST) {
         h = fmax(0.35 * h, LEAST);

@@ -2,6 +2,7 @@
 #include "engine/study/sensitivity/sensitivity.h"
 
 #include <gsl/gsl_rng.h>
+#include <gsl/gsl_sort_double.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -400,18 +401,13 @@ static bool estimate_indices(const samples *s, const size_t *pick, double *index
   return variance > 1e-12 * square / (2.0 * (double)n) && variance > 0.0;
 }
 
-static int ascending(const void *a, const void *b) {
-  double d = *(const double *)a - *(const double *)b;
-  return (d > 0) - (d < 0);
-}
-
 static strut_estimate describe(double value, double *drawn, size_t count) {
   double sum = 0.0, square = 0.0;
   if (count < BOOTSTRAPS / 2) return (strut_estimate){value, (double)NAN, (double)NAN, (double)NAN};
   for (size_t i = 0; i < count; i++) sum += drawn[i];
   double mean = sum / (double)count;
   for (size_t i = 0; i < count; i++) square += (drawn[i] - mean) * (drawn[i] - mean);
-  qsort(drawn, count, sizeof *drawn, ascending);
+  gsl_sort(drawn, 1, count);
   return (strut_estimate){value, sqrt(square / (double)(count - 1)),
                           drawn[(size_t)(0.025 * (double)(count - 1))],
                           drawn[(size_t)(0.975 * (double)(count - 1))]};

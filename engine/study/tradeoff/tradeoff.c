@@ -3,6 +3,7 @@
 #include "engine/study/tradeoff/tradeoff.h"
 
 #include <assert.h>
+#include <gsl/gsl_sort_double.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,15 +24,10 @@ double strut_tradeoff_level(const strut_tradeoff *r, size_t i) {
   return r->accuracy > 0 ? r->accuracy : levels[i];
 }
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 strut_spread strut_spread_of(const double *values, size_t count, double *scratch) {
   if (count == 0) return (strut_spread){(double)NAN, (double)NAN, (double)NAN};
   for (size_t i = 0; i < count; i++) scratch[i] = values[i];
-  qsort(scratch, count, sizeof *scratch, ascending);
+  gsl_sort(scratch, 1, count);
   size_t half = count / 2, rank = (9 * count + 9) / 10;
   double median = count % 2 ? scratch[half] : 0.5 * (scratch[half - 1] + scratch[half]);
   return (strut_spread){median, scratch[rank - 1], scratch[count - 1]};
