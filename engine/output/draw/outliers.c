@@ -3,7 +3,6 @@
 #include <gsl/gsl_sort_double.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "engine/base/vec.h"
 #include "engine/output/draw/chart.h"

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/forces/tangent.h"
+#include "engine/model/pose.h"
 
 static const double EDGE =
     8.0; /* last bits that a length and a rest length are known to, together */

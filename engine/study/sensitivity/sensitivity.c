@@ -5,7 +5,6 @@
 #include <gsl/gsl_sort_double.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "engine/base/c_locale.h"

@@ -6,7 +6,6 @@
 #include <gsl/gsl_sort_double.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "engine/model/model.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
