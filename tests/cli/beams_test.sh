@@ -17,8 +17,7 @@ for n in 2 4 10; do
   expect 0 modes column.yaml --json
   half=$(jq '.modes[0].eigenvalue' out)
   column $n 0.99 >column.yaml
-  expect 0 modes column.yaml --json
-  near "(.modes[0].eigenvalue) as \$most | (0.99 * $half - 0.5 * \$most) / ($half - \$most)" 1 1e-4
+  gives "(.modes[0].eigenvalue) as \$most | (0.99 * $half - 0.5 * \$most) / ($half - \$most)" 1 1e-4 modes column.yaml
 done
 
 # The tip of a cantilever under a small end force: P L^3 / 3 EI (1 + 1 / 2n^2), of second order in n.
@@ -32,19 +31,16 @@ END
 }
 for n in 1 3 10 40; do
   cantilever $n start "[a, b]" >tip.yaml
-  expect 0 path tip.yaml --load tip --until 1 --json
-  near '.points[-1].nodes.b[1] * 3 * 3 / (1e-5 * 8)' "1 + 1 / (2 * $n * $n)" 1e-6
+  gives '.points[-1].nodes.b[1] * 3 * 3 / (1e-5 * 8)' "1 + 1 / (2 * $n * $n)" 1e-6 path tip.yaml --load tip --until 1
   near '.points[-1].moments["rod.start"]' '2e-5' 1e-9
 done
 cantilever 10 end "[b, a]" >turned.yaml
-expect 0 path turned.yaml --load tip --until 1 --json
-near '.points[-1].nodes.b[1] * 3 * 3 / (1e-5 * 8)' '1 + 1 / 200' 1e-6
+gives '.points[-1].nodes.b[1] * 3 * 3 / (1e-5 * 8)' '1 + 1 / 200' 1e-6 path turned.yaml --load tip --until 1
 
 # Its first frequency, 3.516015 sqrt(EI / m L^3), with the consistent mass of bars; second order.
 for n in 10 20 40; do
   cantilever $n start "[a, b]" | sed '/loads/d' >tip.yaml
-  expect 0 modes tip.yaml --json
-  near '.modes[0].angular_frequency / (3 / (0.5 * 8) | sqrt) / 3.5160153' 1 "0.6 / ($n * $n)"
+  gives '.modes[0].angular_frequency / (3 / (0.5 * 8) | sqrt) / 3.5160153' 1 "0.6 / ($n * $n)" modes tip.yaml
   jq ".modes[0].angular_frequency / (3 / (0.5 * 8) | sqrt) / 3.5160153 - 1 | fabs" out >error.$n
 done
 jq -en "$(cat error.10) / $(cat error.20) | . > 3.5 and . < 4.5" >/dev/null || fail "not of second order"

@@ -21,8 +21,7 @@ for row in "rk4 1e-11" "rk4-events 1e-11" "adaptive 1e-8" "verlet 1e-5" "verlet-
   "euler 2e-2" "euler-events 2e-2"; do
   set -- $row; method=$1 tolerance=$2
   sed "s/integrator: rk4/integrator: $method/" pd.yaml >run.yaml
-  expect 0 run run.yaml --json
-  near '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance"
+  gives '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance" run run.yaml
   near '.measured.v.value' "$poles"'(-2*$a | exp) * ((2*$w | cos) - $a/$w * (2*$w | sin))' "$tolerance"
   near '.energy.residual' 0 "$tolerance"
 done
@@ -46,8 +45,7 @@ for row in "rk4 1e-10" "rk4-events 1e-10" "adaptive 1e-8" "verlet 4e-5" "verlet-
   "euler 2e-2" "euler-events 2e-2"; do
   set -- $row; method=$1 tolerance=$2
   sed "s/integrator: rk4/integrator: $method/" length.yaml >run.yaml
-  expect 0 run run.yaml --json
-  near '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance"
+  gives '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance" run run.yaml
   near '.measured.e.value' "$poles"'-(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance"
   near '.energy.residual' 0 "$tolerance"
 done
@@ -66,8 +64,7 @@ END
 for row in "rk4 1e-10" "rk4-events 1e-10" "adaptive 1e-8" "verlet 4e-5" "midpoint 4e-5" "euler 2e-2"; do
   set -- $row; method=$1 tolerance=$2
   sed "s/integrator: rk4/integrator: $method/" force.yaml >run.yaml
-  expect 0 run run.yaml --json
-  near '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance"
+  gives '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance" run run.yaml
   near '.energy.residual' 0 "$tolerance"
 done
 
@@ -91,8 +88,7 @@ expect 0 run functions.yaml --json
 want=$(jq .measured.x.value out)
 while read -r expression; do
   sed "s|signal: .*|signal: {expression: \"$expression\"}|" functions.yaml >run.yaml
-  expect 0 run run.yaml --json
-  near '.measured.x.value' "$want" 1e-8
+  gives '.measured.x.value' "$want" 1e-8 run run.yaml
 done <<'END'
 0.3 m*sin(2*pi*1 Hz*t)
 0.3 m*cos(360 deg*1 Hz*t - 90 deg)
@@ -133,8 +129,7 @@ want=$(jq .measured.y.value out)
 near '.energy.residual' 0 1e-6
 for method in adaptive verlet-events rk4; do
   sed "s/integrator: rk4-events/integrator: $method/" all.yaml >run.yaml
-  expect 0 run run.yaml --json
-  near '.measured.y.value' "$want" 2e-4
+  gives '.measured.y.value' "$want" 2e-4 run run.yaml
 done
 
 # A lag of a constant that begins at 0: 1 - e^{-t/tau}, by every method at its order.
@@ -151,8 +146,7 @@ for row in "rk4 1e-10" "rk4-events 1e-10" "adaptive 1e-10" "verlet 1e-6" "verlet
   "euler 1e-4" "euler-events 1e-4"; do
   set -- $row; method=$1 tolerance=$2
   sed "s/integrator: rk4/integrator: $method/" lag.yaml >run.yaml
-  expect 0 run run.yaml --json
-  near '.measured.z.value' '0.01 * (1 - (-2 | exp))' "$tolerance"
+  gives '.measured.z.value' '0.01 * (1 - (-2 | exp))' "$tolerance" run run.yaml
   near '.measured.f.value' '-40 * 0.01 * (1 - (-2 | exp)) - 0.3 * 0.02 * (-2 | exp)' \
     "(40 * $tolerance)"
   near '.energy.residual' 0 "$tolerance"
@@ -181,19 +175,16 @@ run:
 END
 for method in rk4 verlet euler midpoint rk4-events adaptive; do
   sed "s/integrator: rk4/integrator: $method/" oscillators.yaml >run.yaml
-  expect 0 run run.yaml --json
-  near '.measured.lag.value' '0.4 * 6.283185307179586 / 4 | asin' 1e-8
+  gives '.measured.lag.value' '0.4 * 6.283185307179586 / 4 | asin' 1e-8 run run.yaml
 done
 expect 0 run oscillators.yaml --set 'df=1 Hz' --json
 near '.measured.drift.value' '6.283185307179586 * 6.283185307179586 - 16 | sqrt' 0.05
 sed 's/coupling: {o2: 2 rad\/s}/coupling: {o2: 2 rad\/s}, bias: 90 deg/; s/coupling: {o1: 2 rad\/s}/coupling: {o1: 2 rad\/s}, bias: -90 deg/' \
   oscillators.yaml >run.yaml
-expect 0 run run.yaml --set 'df=0 Hz' --json
-near '.measured.lag.value' '1.5707963267948966' 1e-8
+gives '.measured.lag.value' '1.5707963267948966' 1e-8 run run.yaml --set 'df=0 Hz'
 sed 's/coupling: {o2: 2 rad\/s}/feedback: 0.5 rad\/s/; s/coupling: {o1: 2 rad\/s}/feedback: -0.5 rad\/s/' \
   oscillators.yaml >run.yaml
-expect 0 run run.yaml --json
-near '.measured.drift.value' '0.4 * 6.283185307179586 - 1' 1e-8
+gives '.measured.drift.value' '0.4 * 6.283185307179586 - 1' 1e-8 run run.yaml
 
 # Sampled P control of a damped mass by a load, x'' = -x' + u, u = -K x at the samples: with e = e^{-T}
 # stable below K = (1 - e) / (1 - e - T e), 4.362 for T = 0.5 s; each sample is that of the exact map.
@@ -214,8 +205,7 @@ map='(-0.5 | exp) as $e | reduce range(200) as $n ([0, 1];
 for method in rk4 rk4-events adaptive; do
   sed "s/integrator: rk4/integrator: $method/" sampled.yaml >run.yaml
   for gain in 4.2 4.5; do
-    expect 0 run run.yaml --set "K=$gain" --json
-    near '.measured.x.value' "$gain as \$K | $map" 1e-5
+    gives '.measured.x.value' "$gain as \$K | $map" 1e-5 run run.yaml --set "K=$gain"
   done
 done
 for gain in 4.2 4.5; do
@@ -230,8 +220,7 @@ sed 's/integrator: rk4/integrator: rk4-events/' run.yaml >events.yaml
 expect 0 run events.yaml --set K=1 --json
 want=$(jq .measured.x.value out)
 sed 's/step: 10 ms/step: 12.5 ms/' run.yaml >fine.yaml
-expect 0 run fine.yaml --set K=1 --json
-near '.measured.x.value' "$want" 1e-9
+gives '.measured.x.value' "$want" 1e-9 run fine.yaml --set K=1
 
 # A held rest length jumps at each sample; what that does to the elastic energy is work of the drive.
 cat >held.yaml <<'END'
@@ -250,8 +239,7 @@ for row in "rk4 1e-9" "rk4-events 1e-9" "adaptive 1e-9" "verlet 2e-5" "verlet-ev
   "euler 1e-2" "euler-events 1e-2"; do
   set -- $row; method=$1 tolerance=$2
   sed "s/integrator: rk4/integrator: $method/" held.yaml >run.yaml
-  expect 0 run run.yaml --json
-  near '.energy.residual' 0 "$tolerance"
+  gives '.energy.residual' 0 "$tolerance" run run.yaml
   near '.measured.x.value' "$want" "$tolerance"
 done
 
@@ -270,19 +258,16 @@ run: {duration: 40 s,
 END
 for method in rk4 midpoint rk4-events; do
   sed "s/integrator: rk4/integrator: $method/" pi.yaml >run.yaml
-  expect 0 run run.yaml --json
-  near '.measured.x.value' 1.1 1e-9
+  gives '.measured.x.value' 1.1 1e-9 run run.yaml
   near '.measured.i.value' 0.1 1e-9
 done
-expect 0 run pi.yaml --json
-near '.energy.residual' 0 1e-7
+gives '.energy.residual' 0 1e-7 run pi.yaml
 sed 's/target: 1.1 m/target: 1.6 m/' pi.yaml >run.yaml
 expect 0 run run.yaml --json
 near '.measured.s.value' 0.3 1e-12
 near '.measured.x.value' 1.3 1e-6
 sed 's/most: 0.3 m, least: -0.3 m/every: 50 ms, derivative: 0.01 s/' pi.yaml >run.yaml
-expect 0 run run.yaml --json
-near '.measured.x.value' 1.1 1e-6
+gives '.measured.x.value' 1.1 1e-6 run run.yaml
 
 # A state of one's own: van der Pol's oscillator, by all methods of high order alike.
 cat >state.yaml <<'END'
@@ -300,13 +285,11 @@ expect 2 check damped.yaml
 err_has "the rate of the rest length that actuator 'd' drives follows sensor 'f', the force of a member with a damper"
 sed 's/, damping: 0.3//' damped.yaml >free.yaml
 for scene in state free; do
-  expect 0 run $scene.yaml --json
-  near '.energy.residual' 0 1e-8
+  gives '.energy.residual' 0 1e-8 run $scene.yaml
   want=$(jq .measured.z.value out)
   for method in rk4 adaptive; do
     sed "s/integrator: rk4-events/integrator: $method/" $scene.yaml >run.yaml
-    expect 0 run run.yaml --json
-    near '.measured.z.value' "$want" 1e-7
+    gives '.measured.z.value' "$want" 1e-7 run run.yaml
   done
 done
 
@@ -323,8 +306,7 @@ for row in "rk4 1e-8" "rk4-events 1e-8" "adaptive 1e-8" "verlet 1e-4" "verlet-ev
   "euler 1e-2" "euler-events 1e-2"; do
   set -- $row; method=$1 tolerance=$2
   sed "s/integrator: rk4/integrator: $method/" maxwell.yaml >run.yaml
-  expect 0 run run.yaml --json
-  near '.measured.f.value' '2 * (-2 | exp)' "$tolerance"
+  gives '.measured.f.value' '2 * (-2 | exp)' "$tolerance" run run.yaml
   near '.measured.e.value' '4 * (-4 | exp) / 100' "$tolerance"
   near '.measured.l.value' '0.04 * (1 - (-4 | exp))' "$tolerance"
 done
@@ -343,8 +325,7 @@ near '.energy.residual' 0 1e-6
 want=$(jq .measured.cycle.value out)
 for method in midpoint rk4-events adaptive verlet; do
   sed "s/integrator: rk4/integrator: $method/; s/step: 10 ms/step: 1 ms/" loose.yaml >run.yaml
-  expect 0 run run.yaml --json
-  near '.measured.cycle.value' "$want" 4e-6
+  gives '.measured.cycle.value' "$want" 4e-6 run run.yaml
   near '.energy.residual' 0 1e-5
 done
 
@@ -366,13 +347,11 @@ run: {duration: 0.6 s, measure: {quantities: {kick: {of: kick, take: final}, lat
 END
 for method in rk4-events verlet-events adaptive; do
   sed "s/integrator: rk4-events/integrator: $method/" starts.yaml >run.yaml
-  expect 0 run run.yaml --json
-  near '.measured.kick.value' '0.01 * (6.283185307179586 * (0.6 - (2 / 9.81 | sqrt)) | sin)' 1e-12
+  gives '.measured.kick.value' '0.01 * (6.283185307179586 * (0.6 - (2 / 9.81 | sqrt)) | sin)' 1e-12 run run.yaml
   near '.measured.late.value' '0.005 * (0.6 - (1 / 9.81 | sqrt))' 5.1e-6
 done
 sed "s/integrator: rk4-events/integrator: rk4/" starts.yaml >run.yaml
-expect 0 run run.yaml --json
-near '.measured.kick.value' '0.01 * (6.283185307179586 * (0.6 - (2 / 9.81 | sqrt)) | sin)' 4e-5
+gives '.measured.kick.value' '0.01 * (6.283185307179586 * (0.6 - (2 / 9.81 | sqrt)) | sin)' 4e-5 run run.yaml
 # A node touches whichever of its grounds it falls on, not the first alone.
 cat >grounds.yaml <<'END'
 strut: 1
@@ -387,32 +366,26 @@ run: {duration: 1 s, measure: {quantities: {touch: {of: touch, take: final}, x: 
 END
 for method in rk4-events adaptive rk4; do
   sed "s/integrator: rk4-events/integrator: $method/" grounds.yaml >run.yaml
-  expect 0 run run.yaml --json
-  near '.measured.touch.value' 1 0
+  gives '.measured.touch.value' 1 0 run run.yaml
   near '.measured.x.value' '0.5 * (1 - (0.02 / 9.81 | sqrt)) * (1 - (0.02 / 9.81 | sqrt))' \
     "$([ $method = rk4 ] && echo 1e-3 || echo 1e-9)"
 done
 # With `each` it starts again at every touchdown; the energy of the jumps is work of the drive.
 sed 's/starts: {contact: a}/starts: {contact: a, each: yes}/; s/duration: 0.6 s/duration: 1.6 s/
   s/integrator: rk4-events/integrator: adaptive/; s/sine: {amplitude: 10 mm, frequency: 1 Hz}/constant: 10 mm/' starts.yaml >run.yaml
-expect 0 run run.yaml --json
-near '.energy.residual' 0 1e-4
+gives '.energy.residual' 0 1e-4 run run.yaml
 sed 's/starts: {contact: a}/starts: {contact: a, each: yes}/; s/duration: 0.6 s/duration: 1.6 s/
   s/integrator: rk4-events/integrator: adaptive/' starts.yaml >run.yaml
-expect 0 run run.yaml --json
-near '.measured.kick.value' '0.01 * (6.283185307179586 * (1.6 - 3 * (2 / 9.81 | sqrt)) | sin)' 1e-3
+gives '.measured.kick.value' '0.01 * (6.283185307179586 * (1.6 - 3 * (2 / 9.81 | sqrt)) | sin)' 1e-3 run run.yaml
 
 # Settling knows nothing of signals and states, whose time begins with the run; a Maxwell branch has
 # relaxed there, and begins with its own force.
 sed 's/^solver:/initial: {settle: true}\n&/; s/fixed: y/fixed: y, mass: 1 kg/; s/, mass: 1 kg, mass: 2 kg/, mass: 2 kg/' pi.yaml >run.yaml
-expect 0 run run.yaml --json
-near '.measured.x.value' 1.1 1e-9
+gives '.measured.x.value' 1.1 1e-9 run run.yaml
 sed 's/^solver:/initial: {settle: {limit: 1000 s}}\n&/' oscillators.yaml >run.yaml
-expect 0 run run.yaml --json
-near '.measured.lag.value' '0.4 * 6.283185307179586 / 4 | asin' 1e-8
+gives '.measured.lag.value' '0.4 * 6.283185307179586 / 4 | asin' 1e-8 run run.yaml
 sed 's/^solver:/initial: {settle: true}\n&/' maxwell.yaml >run.yaml
-expect 0 run run.yaml --json
-near '.measured.f.value' '2 * (-2 | exp)' 1e-8
+gives '.measured.f.value' '2 * (-2 | exp)' 1e-8 run run.yaml
 
 # Loops that are unstable, and states that run away, are stopped with name and time.
 sed 's/-0.3\*/-10*/; s/duration: 2.05 s/duration: 60 s/' held.yaml >run.yaml
@@ -451,8 +424,7 @@ initial: {velocities: {b: [0.1, 0]}}
 solver: {integrator: rk4, step: 20 ms}
 run: {duration: 1 s}
 END
-expect 0 run branch.yaml --json
-near .step_limit '8 / 10010 | sqrt' 1e-9
+gives .step_limit '8 / 10010 | sqrt' 1e-9 run branch.yaml
 sed 's/20 ms/29 ms/' branch.yaml >run.yaml
 tells 3 'is above the largest stable step of rk4, 0.02827 s' run run.yaml
 sed 's/time: 0.5 s/time: 5 ms/' branch.yaml >run.yaml
@@ -497,8 +469,7 @@ for what in area p d c n; do near ".measured.$what.value" 0 1e-12; done
 holds '.measured.pushed.value > 1 and .measured.hit.value > 1'
 y=$(jq .measured.y.value out)
 for method in rk4-events adaptive verlet; do
-  expect 0 run sensed.yaml --integrator $method --json
-  near .measured.y.value "$y" 1e-4
+  gives .measured.y.value "$y" 1e-4 run sensed.yaml --integrator $method
 done
 # a load that lifts a weight from the ground as the ground pushes: it carries half of it
 cat >half.yaml <<'END'
@@ -511,8 +482,7 @@ loads: {lift: {node: a, force: [0, 1 N], signal: {expression: n/(1 N)}}}
 solver: {integrator: rk4, step: 0.1 ms}
 run: {duration: 3 s, measure: {quantities: {n: {of: n, take: final}}}}
 END
-expect 0 run half.yaml --json
-near .measured.n.value 10 1e-6
+gives .measured.n.value 10 1e-6 run half.yaml
 
 # A network is its formula.
 cat >brain.csv <<'END'
@@ -547,8 +517,7 @@ near .measured.push.value 0 1e-12
 near .measured.pull.value 0 1e-12
 x=$(jq .measured.x.value out)
 for method in rk4-events adaptive verlet; do
-  expect 0 run brain.yaml --integrator $method --json
-  near .measured.x.value "$x" 1e-4
+  gives .measured.x.value "$x" 1e-4 run brain.yaml --integrator $method
 done
 broken() { # CSV of the first layer, message
   printf '%s\n' "$1" >brain.csv

@@ -20,8 +20,7 @@ YAML
 bound="(0.1 * $pi | exp)"
 for method in rk4-events adaptive verlet-events euler-events rk4 verlet euler; do
   sed "s/rk4-events/$method/" atwood.yaml >other.yaml
-  expect 0 run other.yaml --json
-  near .measured.ratio.value "$bound" 2e-10
+  gives .measured.ratio.value "$bound" 2e-10 run other.yaml
   near '.energy.residual / .energy.exchanged' 0 2e-3
 done
 expect 0 run atwood.yaml --set h='0.1 ms' --set c=1e7 --json
@@ -34,8 +33,7 @@ drop() {
 }
 best=$(drop '0.125 ms') whole=$(drop '2 ms') half=$(drop '1 ms')
 jq -ne "($whole - $best | fabs) / ($half - $best | fabs) > 14" >/dev/null || fail "order: $whole $half $best"
-expect 0 run atwood.yaml --json
-near .energy.residual 0 1e-6
+gives .energy.residual 0 1e-6 run atwood.yaml
 # Within the bound it sticks: both masses hang on springs of their own.
 expect 0 run atwood.yaml --set m2=1.15 --set h='0.2 ms' --json
 near .energy.dissipated_members 0 0
@@ -46,8 +44,7 @@ for method in rk4-events rk4; do
   sed "s/rk4-events/$method/" atwood.yaml >other.yaml
   expect 0 run other.yaml --set mu=0 --json
   free=$(jq .measured.down.value out)
-  expect 0 run other.yaml --set mu=1e-15 --json
-  near .measured.down.value "$free" 1e-12
+  gives .measured.down.value "$free" 1e-12 run other.yaml --set mu=1e-15
 done
 
 # A winch pulls in the rope at its first node, over two fixed posts that turn it by 90 deg each, against a
@@ -68,8 +65,7 @@ expect 0 run winch.yaml --json
 near .measured.ratio.value "(0.3 * $pi | exp)" 1e-9
 near '.energy.residual / .energy.exchanged' 0 1e-8
 sed 's/duration: 0.9/duration: 2.5/' winch.yaml >other.yaml
-expect 0 run other.yaml --json
-near .measured.ratio.value "(-0.3 * $pi | exp)" 1e-9
+gives .measured.ratio.value "(-0.3 * $pi | exp)" 1e-9 run other.yaml
 sed 's/rk4-events/rk4/' winch.yaml >other.yaml
 expect 0 run other.yaml --json
 near .measured.ratio.value "(0.3 * $pi | exp)" 1e-9
@@ -92,8 +88,7 @@ expect 0 run slack.yaml --json
 near .measured.low.value 0 0
 near '.energy.residual / .energy.exchanged' 0 1e-6
 sed 's/rk4-events/adaptive/' slack.yaml >other.yaml
-expect 0 run other.yaml --json
-near '.energy.residual / .energy.exchanged' 0 1e-6
+gives '.energy.residual / .energy.exchanged' 0 1e-6 run other.yaml
 sed 's/integrator: rk4-events/integrator: midpoint/' slack.yaml >other.yaml
 tells 1 'midpoint cannot step' run other.yaml
 sed 's/guide_friction: 0.2}/guide_friction: 0.2, damping: 2, breaks_at: 31 N}/' slack.yaml >other.yaml

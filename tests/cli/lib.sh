@@ -39,14 +39,16 @@ near() {
   jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
     fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
 }
+# gives FILTER EXPECTED TOLERANCE WORD...: runs strut WORD... --json, and the same.
+gives() { _got=$1 _want=$2 _near=$3 && shift 3 && expect 0 "$@" --json; near "$_got" "$_want" "$_near"; }
 # near_number ACTUAL EXPECTED TOLERANCE WHAT
 near_number() {
   awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { d = a - b; exit !(d <= t && -d <= t) }' ||
     fail "$4: $1, expected $2 within $3"
 }
 # shows CODE TEXT WORD..., tells CODE TEXT WORD...: the same, and stdout (stderr) has the text.
-shows() { has=$2 && expected=$1 && shift 2 && expect "$expected" "$@"; out_has "$has"; }
-tells() { has=$2 && expected=$1 && shift 2 && expect "$expected" "$@"; err_has "$has"; }
+shows() { _code=$1 _text=$2 && shift 2 && expect "$_code" "$@"; out_has "$_text"; }
+tells() { _code=$1 _text=$2 && shift 2 && expect "$_code" "$@"; err_has "$_text"; }
 # holds CONDITION: of the JSON in out, by jq.
 holds() { jq -e "$1" "$work/out" >"$work/jq.out" 2>&1 || fail "not so: $1"; }
 out_has() { grep -qF -- "$1" "$work/out" || fail "stdout lacks '$1'"; }

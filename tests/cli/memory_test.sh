@@ -22,13 +22,11 @@ near '.broken.latch.released | if . then 1 else 0 end' 1 0
 near .energy.residual 0 1e-8
 for method in adaptive verlet-events; do
   sed "s/rk4-events/$method/" latch.yaml >other.yaml
-  expect 0 run other.yaml --json
-  near .measured.v.value 2 2e-4
+  gives .measured.v.value 2 2e-4 run other.yaml
 done
 for method in rk4 verlet euler; do # at the end of the step, at rest until then
   sed "s/rk4-events/$method/" latch.yaml >other.yaml
-  expect 0 run other.yaml --set at='104 ms' --json
-  near .measured.v.value 2 1e-3
+  gives .measured.v.value 2 1e-3 run other.yaml --set at='104 ms'
   near .broken.latch.time 0.104 1e-15
   near .energy.dissipated_members 0.032 1e-12
 done
@@ -55,8 +53,7 @@ near .energy.dissipated_members 0.125 1e-9
 near .energy.elastic 0 0
 for method in adaptive verlet-events euler-events rk4 verlet euler; do
   sed "s/rk4-events/$method/" string.yaml >other.yaml
-  expect 0 run other.yaml --json
-  near .measured.v.value '-(0.75 | sqrt)' 0.02
+  gives .measured.v.value '-(0.75 | sqrt)' 0.02 run other.yaml
   near .broken.string.time '0.5 | asin / 10' 2.1e-3
   near '.energy.residual / .energy.exchanged' 0 0.03
 done
@@ -65,8 +62,7 @@ expect 0 view out-string -o string.html
 expect 0 export string.yaml
 cp out written.yaml
 out_has 'breaks_at: 5'
-expect 0 run written.yaml --json
-near .measured.v.value '-(0.75 | sqrt)' 1e-9
+gives .measured.v.value '-(0.75 | sqrt)' 1e-9 run written.yaml
 shows 0 'breaks and releases' check string.yaml
 out_has 'string                5 N            -'
 
@@ -110,8 +106,7 @@ near .measured.p.value '-(0.02 - 0.005)' 1e-9
 near .energy.residual 0 1e-9
 for method in adaptive verlet-events rk4 verlet euler; do
   sed "s/rk4-events/$method/" loop.yaml >other.yaml
-  expect 0 run other.yaml --json
-  near .energy.dissipated_members 0.975 2e-3
+  gives .energy.dissipated_members 0.975 2e-3 run other.yaml
   near .measured.f.value -5 1e-6
 done
 
@@ -131,8 +126,7 @@ run:
   measure: {quantities: {far: {of: b.x - 1, take: max}, x: {of: b.x, take: final}, p: {of: e.plastic, take: max}}}
 YAML
 far='0.01 + (-10 + (100 + 4 * 50 * (0.5 - 0.05) | sqrt)) / 100'
-expect 0 run catch.yaml --set h='10 us' --json
-near .measured.far.value "$far" 1e-7
+gives .measured.far.value "$far" 1e-7 run catch.yaml --set h='10 us'
 # The set at the turn: the elongation x less (yield + k2 (x - yield / k)) / k, which is elastic.
 near .measured.p.value "($far - 0.01) * 0.9" 1e-7
 x_of() {
@@ -151,8 +145,7 @@ order verlet-events '1 ms' '0.5 ms' 3
 order rk4 '2 ms' '0.5 ms' 4 # of second order on average, but not from step to step
 order verlet '2 ms' '0.5 ms' 4
 order euler '2 ms' '0.5 ms' 4
-expect 0 run catch.yaml --json
-near .energy.residual 0 1e-6
+gives .energy.residual 0 1e-6 run catch.yaml
 expect 0 run catch.yaml --set h='2 ms' --accuracy 0.1% --json
 near .measured.far.value "$far" 1e-4
 near .measured.x.value "$best" 1e-3
@@ -194,8 +187,7 @@ near .measured.p.value '0.125 - 0.005' 1e-4
 near .energy.dissipated_members '0.125 - 0.005' 1e-4
 # Stiffening as it yields: F z + k2 z^2/2 beyond the yield, of which (1 - k2/k) z remains.
 sed 's/yield: 1 N m/&, second_stiffness: 20/; s/take: final/take: max/' bend.yaml >stiff.yaml
-expect 0 run stiff.yaml --json
-near .measured.p.value '0.8 * (-1 + (1 + 40 * 0.12 | sqrt)) / 20' 1e-4
+gives .measured.p.value '0.8 * (-1 + (1 + 40 * 0.12 | sqrt)) / 20' 1e-4 run stiff.yaml
 
 # Statics take it as whole and elastic, and warn.
 cat >rest.yaml <<'YAML'

@@ -109,8 +109,7 @@ nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}}
 members: {s: {kind: cable, nodes: [a, b], stiffness: k, rest_length: 1}}
 END
 for k in 1e12 1e16 3e16; do
-  expect 0 modes hang.yaml --set k=$k --json
-  near '.just_taut | length' 0 0
+  gives '.just_taut | length' 0 0 modes hang.yaml --set k=$k
   near '.modes[0].angular_frequency' '10 | sqrt' 1e-10
 done
 

@@ -39,8 +39,7 @@ run:
     quantities: {speed_x: {of: com.vx, take: range}, speed_y: {of: com.vy, take: range},
                  way: {of: com.x, take: change}}
 END
-    expect 0 run free.yaml --json
-    near "$(value speed_x)" 0 "$(error $method 1e-2 1e-5 1e-9)"
+    gives "$(value speed_x)" 0 "$(error $method 1e-2 1e-5 1e-9)" run free.yaml
     near "$(value speed_y)" 0 "$(error $method 1e-2 1e-5 1e-9)"
     near "$(value way)" '1.25 * 0.5 * 0.2 * 2 * 3.14159265358979 / 3.3' "$(error $method 3e-3 1e-5 1e-9)"
     closes "$(error $method 0.1 1e-3 1e-7)"
@@ -77,8 +76,7 @@ sliders:
 solver: {integrator: $method, step: 0.1 ms}
 run: {duration: 0.5 s, measure: {quantities: {back: {of: a.x, take: final}, fastest: {of: com.vx, take: range}}}}
 END
-  expect 0 run ramp.yaml --json
-  near "$(value back)" '-0.6 * 0.5 / 3' "$(error $method 3e-5 1e-5 1e-5)"
+  gives "$(value back)" '-0.6 * 0.5 / 3' "$(error $method 3e-5 1e-5 1e-5)" run ramp.yaml
   near "$(value fastest)" 0 "$(error $method 1e-3 1e-3 1e-8)"
 done
 closes 1e-9
@@ -186,8 +184,7 @@ run:
   duration: 2 s
   measure: {quantities: {x: {of: tip.x, take: final}, y: {of: tip.y, take: final}, done: {of: work.drives, take: final}}}
 END
-  expect 0 run swing.yaml --json
-  near "$(value x)" "$swing_x" "$(error $method 3e-3 1e-4 1e-4)"
+  gives "$(value x)" "$swing_x" "$(error $method 3e-3 1e-4 1e-4)" run swing.yaml
   near "$(value y)" "$swing_y" "$(error $method 3e-3 1e-4 1e-4)"
   closes "$(error $method 1e-2 1e-4 1e-6)"
 done
@@ -223,14 +220,12 @@ END
 }
 crawler "law: coulomb" >crawler.yaml
 for method in rk4-events verlet-events euler-events adaptive; do
-  expect 0 run crawler.yaml --integrator $method --json
-  near "$(value x)" "$crawled" "$(error $method 2e-3 2e-4 2e-4)"
+  gives "$(value x)" "$crawled" "$(error $method 2e-3 2e-4 2e-4)" run crawler.yaml --integrator $method
   closes "$(error $method 1e-2 1e-4 1e-6)"
 done
 crawler "stick_velocity: 1 mm/s" >crawler.yaml
 for method in rk4 verlet euler rk4-events; do
-  expect 0 run crawler.yaml --integrator $method --json
-  near "$(value x)" "$crawled" 2e-3
+  gives "$(value x)" "$crawled" 2e-3 run crawler.yaml --integrator $method
 done
 
 # The file that strut writes runs to the same bits.
