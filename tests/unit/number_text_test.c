@@ -3,11 +3,11 @@
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/number_powers.h"
 #include "engine/base/number_text.h"
 #include "tests/support/test.h"
 
@@ -135,77 +135,5 @@ TEST(how_numbers_look) {
     char text[STRUT_NUMBER_TEXT];
     strut_number_text(expected[i].value, text);
     assert_string_equal(text, expected[i].text);
-  }
-}
-
-/* A 1152-bit integer, enough for 10^324: the table's rows are recomputed digit by digit. */
-enum { WORDS = 36 };
-
-static void multiply_by_ten(uint32_t big[WORDS]) {
-  uint64_t carry = 0;
-  for (int i = 0; i < WORDS; i++) {
-    carry += (uint64_t)big[i] * 10;
-    big[i] = (uint32_t)carry;
-    carry >>= 32;
-  }
-}
-
-static int top_bit(const uint32_t big[WORDS]) {
-  for (int bit = WORDS * 32 - 1; bit >= 0; bit--) {
-    if (big[bit / 32] >> (bit % 32) & 1) return bit;
-  }
-  return -1;
-}
-
-static uint64_t bits_below(const uint32_t big[WORDS], int top) { /* bits top .. top - 63 */
-  uint64_t value = 0;
-  for (int bit = top; bit > top - 64; bit--) {
-    value = value << 1 | (bit >= 0 ? big[bit / 32] >> (bit % 32) & 1 : 0);
-  }
-  return value;
-}
-
-TEST(positive_powers_of_the_table) {
-  uint32_t big[WORDS] = {1};
-  for (int k = 0; k <= STRUT_NUMBER_POWER_LAST; k++, multiply_by_ten(big)) {
-    int top = top_bit(big);
-    uint64_t high = bits_below(big, top), low = bits_below(big, top - 64);
-    bool cut = false;
-    for (int bit = top - 128; bit >= 0; bit--) cut = cut || (big[bit / 32] >> (bit % 32) & 1);
-    if (cut && ++low == 0) high++;
-    const uint64_t *row = strut_number_powers[k - STRUT_NUMBER_POWER_FIRST];
-    assert_true(row[0] == high && row[1] == low);
-  }
-}
-
-/* 10^-k times 10^k is one: the product of the rows, just above a power of two. */
-TEST(negative_powers_of_the_table) {
-  for (int k = 1; k <= -STRUT_NUMBER_POWER_FIRST; k++) {
-    const uint64_t *row = strut_number_powers[-k - STRUT_NUMBER_POWER_FIRST];
-    uint32_t big[WORDS] = {1}, product[WORDS + 4] = {0};
-    uint32_t g[4] = {(uint32_t)row[1], (uint32_t)(row[1] >> 32), (uint32_t)row[0],
-                     (uint32_t)(row[0] >> 32)};
-    for (int i = 0; i < k; i++) multiply_by_ten(big);
-    for (int i = 0; i < 4; i++) { /* product = row * 10^k, exactly */
-      uint64_t carry = 0;
-      for (int j = 0; j < WORDS; j++) {
-        carry += product[i + j] + (uint64_t)g[i] * big[j];
-        product[i + j] = (uint32_t)carry;
-        carry >>= 32;
-      }
-      product[i + WORDS] = (uint32_t)carry;
-    }
-    int top = top_bit(product); /* rounded up: 2^top < product < 2^top + 10^k */
-    product[top / 32] &= ~(UINT32_C(1) << (top % 32));
-    int rest = top_bit(product), power = top_bit(big);
-    assert_true(row[0] >> 63 == 1);
-    assert_true(rest >= 0 && rest <= power);
-    if (rest == power) {
-      for (int i = WORDS - 1; i >= 0; i--) {
-        if (product[i] == big[i]) continue;
-        assert_true(product[i] < big[i]);
-        break;
-      }
-    }
   }
 }
