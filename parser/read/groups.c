@@ -117,7 +117,7 @@ static void mark_users(strut_reader *reader, const strut_tree *map, bool hinges)
   if (!map || map->kind != STRUT_TREE_MAP) return;
   for (const strut_tree *key = strut_first_entry(reader, map); key;
        key = strut_following_entry(reader, key)) {
-    const strut_tree *value = strut_expand_value(reader, key->next);
+    const strut_tree *value = key->next;
     const strut_tree *named = strut_tree_find(value, "group", NULL);
     size_t count = named ? strut_groups_named(reader, named, groups) : 0;
     while (count-- > 0) *(hinges ? &groups[count]->of_hinges : &groups[count]->of_others) = true;

@@ -339,7 +339,7 @@ void strut_read_fields(strut_reader *reader, strut_section section, const strut_
 
 void strut_read_fields_of(strut_reader *reader, strut_section section, const strut_tree *key,
                           strut_owner owner, strut_fields *fields) {
-  strut_read_fields(reader, section, strut_expand_value(reader, key->next), owner, fields);
+  strut_read_fields(reader, section, key->next, owner, fields);
   fields->key = key;
 }
 

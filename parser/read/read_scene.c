@@ -10,7 +10,6 @@
 #include "parser/read/copies.h"
 #include "parser/read/reader.h"
 #include "parser/read/used_files.h"
-#include "parser/yaml/rows.h"
 
 void strut_require_nodes(strut_reader *reader) {
   char expected[100];
@@ -189,38 +188,18 @@ static void free_reader(strut_reader *reader) {
   strut_document_free(&reader->document);
 }
 
-/* Do other keys of the scene look into the entries of its nodes and members? */
-static bool has_copies(const strut_tree *root) {
-  static const char *const keys[] = {"base", "parts", "place", "merge"};
-  for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
-    if (strut_tree_find(root, keys[i], NULL)) return true;
-  return false;
-}
-
-/* The tree of the text and of all files that it names; rows in runs of `least` may be deferred. */
-static strut_status read_document(strut_document *document, uint32_t least,
-                                  strut_diagnostics *diagnostics) {
-  static const char *const deferred[] = {"nodes", "members", NULL};
-  strut_status status = least ? strut_document_read_rows(document, diagnostics, least, deferred)
-                              : strut_document_read(document, diagnostics);
+/* The tree of the text and of all files that it names. */
+static strut_status read_document(strut_document *document, strut_diagnostics *diagnostics) {
+  strut_status status = strut_document_read(document, diagnostics);
   if (status == STRUT_NO_MEMORY) return status;
-  if (document->deferred && has_copies(document->root) && !strut_document_expand(document))
-    return STRUT_NO_MEMORY;
   strut_status files = strut_read_used_files(document, diagnostics);
   return files ? files : status;
 }
 
-const strut_tree *strut_expand_value(const strut_reader *reader, const strut_tree *value) {
-  return reader->row_nodes ? strut_row_expand(value, reader->row_nodes) : value;
-}
-
-/*
- * Reads the scene from a tree that the caller owns, or from the text if `document` is NULL; `least`: of the
- * runs whose rows are deferred, or 0.
- */
-static strut_status read_from(const strut_document *document, uint32_t least,
-                              const strut_setting *settings, size_t count, strut_purpose purpose,
-                              strut_diagnostics *diagnostics, strut_setup *setup) {
+/* Reads the scene from a tree that the caller owns, or from the text if `document` is NULL. */
+static strut_status read_from(const strut_document *document, const strut_setting *settings,
+                              size_t count, strut_purpose purpose, strut_diagnostics *diagnostics,
+                              strut_setup *setup) {
   strut_reader *reader = strut_allocate(1, sizeof *reader);
   strut_status status = STRUT_OK;
   strut_setup_init(setup);
@@ -236,10 +215,7 @@ static strut_status read_from(const strut_document *document, uint32_t least,
   if (document)
     reader->document.root = document->root;
   else
-    status = read_document(&reader->document, least, diagnostics);
-  if (reader->document.deferred)
-    reader->row_nodes =
-        strut_reader_allocate(reader, &reader->scratch, 1, sizeof *reader->row_nodes);
+    status = read_document(&reader->document, diagnostics);
   if (reader->out_of_memory) status = STRUT_NO_MEMORY;
   reader->holes = status == STRUT_BAD_SCENE;
   if (status != STRUT_NO_MEMORY && reader->document.root) read_tree(reader, settings, count);
@@ -253,27 +229,18 @@ static strut_status read_from(const strut_document *document, uint32_t least,
   return status;
 }
 
-strut_status strut_setup_read_rows(strut_setup *setup, const char *file, const char *text,
-                                   size_t length, const strut_override *overrides,
-                                   size_t override_count, strut_purpose purpose, uint32_t least,
-                                   strut_diagnostics *diagnostics) {
+strut_status strut_setup_read(strut_setup *setup, const char *file, const char *text, size_t length,
+                              const strut_override *overrides, size_t override_count,
+                              strut_purpose purpose, strut_diagnostics *diagnostics) {
   strut_setting *settings = strut_allocate(override_count, sizeof *settings);
   strut_setup_init(setup);
   strut_diagnostics_source(diagnostics, file, text, length);
   if (!settings) return STRUT_NO_MEMORY;
   for (size_t i = 0; i < override_count; i++)
     settings[i] = (strut_setting){.name = overrides[i].name, .text = overrides[i].value};
-  strut_status status =
-      read_from(NULL, least, settings, override_count, purpose, diagnostics, setup);
+  strut_status status = read_from(NULL, settings, override_count, purpose, diagnostics, setup);
   strut_release(settings);
   return status;
-}
-
-strut_status strut_setup_read(strut_setup *setup, const char *file, const char *text, size_t length,
-                              const strut_override *overrides, size_t override_count,
-                              strut_purpose purpose, strut_diagnostics *diagnostics) {
-  return strut_setup_read_rows(setup, file, text, length, overrides, override_count, purpose,
-                               STRUT_RUN_LEAST, diagnostics);
 }
 
 struct strut_scene_source {
@@ -357,7 +324,7 @@ strut_status strut_scene_source_open(const char *file, const char *text, size_t 
   if (!source) return STRUT_NO_MEMORY;
   source->file = file, source->text = text, source->length = length;
   strut_c_locale locale = strut_c_locale_enter();
-  strut_status status = read_document(&source->document, 0, &unused);
+  strut_status status = read_document(&source->document, &unused);
   if (status == STRUT_OK) status = declare_parameters(source, &unused);
   if (status == STRUT_OK) status = keep_used(source, &unused);
   strut_c_locale_leave(locale);
@@ -412,7 +379,7 @@ strut_status strut_scene_source_read(const strut_scene_source *source,
                                      strut_setup *setup) {
   strut_diagnostics_source(diagnostics, source->file, source->text, source->length);
   enter_used(source, diagnostics);
-  return read_from(&source->document, 0, settings, setting_count, purpose, diagnostics, setup);
+  return read_from(&source->document, settings, setting_count, purpose, diagnostics, setup);
 }
 
 enum { FIRST_SIZE = 64 * 1024 };
@@ -486,7 +453,7 @@ static strut_group_item *group_item(strut_reader *reader, const strut_tree *map,
    value has a finding already. */
 static bool thing_place(strut_reader *reader, const strut_source *source, const char *key,
                         strut_place *place) {
-  const strut_tree *value = strut_expand_value(reader, source->value);
+  const strut_tree *value = source->value;
   bool map = value->kind == STRUT_TREE_MAP;
   strut_enter_scope(reader, source->key);
   const strut_tree *own = key && map ? strut_tree_find(value, key, NULL) : NULL;

@@ -51,7 +51,7 @@ static bool turn_support(strut_reader *reader, const strut_slot *slot, strut_nod
 
 /* `[x, y]`, or the keys of a node. */
 static bool read_place_and_keys(strut_reader *reader, const strut_tree *key, strut_node *node) {
-  const strut_tree *value = strut_expand_value(reader, key->next);
+  const strut_tree *value = key->next;
   strut_owner owner = {"node", node->name};
   node->position[0] = node->position[1] = (double)NAN;
   if (value->kind == STRUT_TREE_LIST) {

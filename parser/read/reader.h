@@ -18,7 +18,6 @@
 #include "parser/read/read_scene.h"
 #include "parser/yaml/diagnostics.h"
 #include "parser/yaml/document.h"
-#include "parser/yaml/rows.h"
 
 /** The subject of a message: "member 'm1'", or "the solver" where name is NULL. */
 typedef struct strut_owner {
@@ -168,22 +167,11 @@ typedef struct strut_reader {
   bool masses_unknown; /* some mass could not be read */
   bool groups_unknown; /* the groups of some thing could not be read */
   bool failed, out_of_memory;
-  strut_row_nodes *row_nodes; /* of the deferred value that was read last; NULL: none is deferred */
   strut_fields *grounds;      /* of each of the scene's grounds; of `ground` the one above */
   strut_copy *scope;          /* the copy of which a thing is being read; NULL: the scene's own */
   struct strut_copies *copies; /* NULL: the scene has no parts */
 } strut_reader;
 
-/**
- * As strut_setup_read; of nodes and members, rows in runs of at least `least` are deferred (rows.h; 0: none).
- * The same scene or messages, whatever `least` is.
- */
-strut_status strut_setup_read_rows(strut_setup *setup, const char *file, const char *text,
-                                   size_t length, const strut_override *overrides,
-                                   size_t override_count, strut_purpose purpose, uint32_t least,
-                                   strut_diagnostics *diagnostics);
-/** An entry's value with its children; those of a deferred one are good until the next one is expanded. */
-const strut_tree *strut_expand_value(const strut_reader *reader, const strut_tree *value);
 /** Reports a scene without nodes. */
 void strut_require_nodes(strut_reader *reader);
 /** Some things of the scene are missing: what refers to them is not reported. */

@@ -6,7 +6,6 @@
 #include <time.h>
 
 #include "parser/yaml/document_parts.h"
-#include "parser/yaml/rows.h"
 #include "parser/yaml/text.h"
 
 enum {
@@ -76,12 +75,6 @@ typedef struct frame {
   bool value_next; /* map: a key waits for its value */
 } frame;
 
-/* From libyaml's marks, which know nothing of the runs, to those of the text. */
-typedef struct run_marks {
-  size_t passed;       /* runs before the latest mark */
-  size_t lines, bytes; /* in them */
-} run_marks;
-
 typedef struct reader {
   yaml_parser_t yaml;
   strut_document *document;
@@ -96,13 +89,6 @@ typedef struct reader {
   strut_key_table keys;
   const char *recent[RECENT_SLOTS];
   bool ended, no_memory;
-  strut_row_runs runs;
-  run_marks marks;
-  size_t input;                     /* bytes of the text that libyaml was given, runs among them */
-  size_t input_run;                 /* runs among them */
-  size_t next_run;                  /* the first that is not in the tree yet */
-  size_t run_depth;                 /* its first row's key has come, at this depth; 0: not yet */
-  const char *const *deferred_keys; /* NULL: none */
 } reader;
 
 static strut_place place_of(const yaml_event_t *event) {
@@ -373,142 +359,18 @@ static bool handle_event(reader *r, const yaml_event_t *event) {
   }
 }
 
-/* ---- runs of rows, see rows.h ---- */
-
-static void translate(reader *r, yaml_mark_t *mark) {
-  run_marks *m = &r->marks;
-  const strut_row_run *run = r->runs.run;
-  while (m->passed < r->runs.count && mark->line + m->lines >= run[m->passed].line) {
-    m->lines += run[m->passed].lines;
-    m->bytes += run[m->passed].end - run[m->passed].begin;
-    m->passed++;
-  }
-  while (m->passed > 0 &&
-         mark->line + m->lines < run[m->passed - 1].line + run[m->passed - 1].lines) {
-    m->passed--;
-    m->lines -= run[m->passed].lines;
-    m->bytes -= run[m->passed].end - run[m->passed].begin;
-  }
-  mark->line += m->lines;
-  mark->index += m->bytes; /* rows are ASCII */
-}
-
-/* Nodes of a row, one after the other. They are as many values as the row has tokens, deferred or not. */
-static strut_tree *new_row_nodes(reader *r, size_t count, const strut_row *row, strut_place place) {
-  if (r->nodes + (uint64_t)row->count > NODES_MOST) {
-    over_limit(r, place, "values", NODES_MOST);
-    return NULL;
-  }
-  if (r->spare_count < count && !new_slab(r)) return NULL;
-  strut_tree *nodes = r->spare;
-  r->nodes += (uint64_t)row->count;
-  r->spare += count;
-  r->spare_count -= count;
-  return nodes;
-}
-
-static const char *keep_row_text(void *context, const char *text, size_t length) {
-  return keep_text(context, text, length);
-}
-
-/* Are rows of the open mapping deferred? An anchor's value is not, which an alias may put elsewhere. */
-static bool defers_rows(const reader *r) {
-  const char *const *key = r->deferred_keys;
-  if (!key || r->depth != 2 || r->anchors.count || !r->stack[0].value_next) return false;
-  while (*key && strcmp(*key, r->stack[0].last->text) != 0) key++;
-  return *key != NULL;
-}
-
-/* Appends a row, which `text` begins with, to the open mapping. */
-static bool append_row(reader *r, const char *text, uint32_t line, const strut_row *row,
-                       bool defers) {
-  const strut_row_token *value = &row->token[1];
-  bool deferred = defers && strut_row_is_deferrable(row);
-  int count = deferred ? 1 : row->count;
-  strut_place place = strut_place_at(line, value->at + 1, value->length);
-  strut_tree *nodes = new_row_nodes(r, deferred ? 2 : (size_t)count, row, place);
-  if (!nodes) return false;
-  if (!strut_row_build(row, count, text, line, nodes, keep_row_text, r)) return out_of_memory(r);
-  if (deferred) {
-    nodes[1] = (strut_tree){.kind = value->kind & 3u, .place = place};
-    strut_row_defer(row, text, &nodes[1]);
-    r->document->deferred = true;
-  }
-  attach(r, &nodes[0], 1, 0);
-  attach(r, &nodes[1], (uint64_t)row->count - 1, (size_t)row->levels);
-  return true;
-}
-
-/* Appends the rows of the next run to the open mapping, to which libyaml added the first one. */
-static bool append_run(reader *r) {
-  const strut_row_run *run = &r->runs.run[r->next_run++];
-  const char *text = r->diagnostics->text;
-  strut_row row;
-  size_t at = run->begin;
-  bool defers = defers_rows(r);
-  r->run_depth = 0;
-  for (uint32_t i = 0; i < run->lines; i++) {
-    if (!strut_row_read(text + at, run->end - at, &row)) return false;
-    if (!append_row(r, text + at, run->line + i + 1, &row, defers)) return false;
-    at += row.length;
-  }
-  return true;
-}
-
-/*
- * Is the first row of the next run what it seemed to be? Then its key begins where the row does, in a
- * mapping that is no bracketed one. False: the line has come as something else.
- */
-static bool meet_run(reader *r, const yaml_event_t *event) {
-  if (r->next_run == r->runs.count || r->run_depth) return true;
-  const strut_row_run *run = &r->runs.run[r->next_run];
-  const yaml_mark_t *mark = &event->start_mark;
-  if (mark->line + 1 < run->line) return true;
-  bool text = event->type == YAML_SCALAR_EVENT, here = mark->line + 1 == run->line;
-  if (here && !text && event->type != YAML_ALIAS_EVENT) return true; /* what begins or ends there */
-  if (!text || !here || mark->column != run->indent || !key_expected(r)) return false;
-  if (event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE || event->data.scalar.anchor)
-    return false;
-  if (r->stack[r->depth - 1].bracketed || r->depth + STRUT_ROW_LEVELS > DEPTH_MOST) return false;
-  r->run_depth = r->depth;
-  return true;
-}
-
-/* Gives libyaml the text without the runs. */
-static int give_input(void *context, unsigned char *buffer, size_t size, size_t *given) {
-  reader *r = context;
-  *given = 0;
-  while (*given < size && r->input < r->diagnostics->length) {
-    const strut_row_run *run = r->input_run < r->runs.count ? &r->runs.run[r->input_run] : NULL;
-    size_t end = run ? run->begin : r->diagnostics->length, left = end - r->input;
-    if (left > size - *given) left = size - *given;
-    memcpy(buffer + *given, r->diagnostics->text + r->input, left);
-    *given += left;
-    r->input += left;
-    if (run && r->input == run->begin) r->input = run->end, r->input_run++;
-  }
-  return 1;
-}
-
-static bool read_event(reader *r, yaml_event_t *event) {
-  translate(r, &event->start_mark);
-  translate(r, &event->end_mark);
-  if (!meet_run(r, event)) return false;
-  if (!handle_event(r, event)) return false;
-  bool appended = r->run_depth && r->depth == r->run_depth && key_expected(r);
-  return !appended || append_run(r);
-}
-
 static bool read_events(reader *r) {
   if (!yaml_parser_initialize(&r->yaml)) return out_of_memory(r);
   yaml_parser_set_encoding(&r->yaml, YAML_UTF8_ENCODING);
-  r->input = strut_text_mark(r->diagnostics->text, r->diagnostics->length);
-  yaml_parser_set_input(&r->yaml, give_input, r);
+  const char *text = r->diagnostics->text;
+  size_t mark = strut_text_mark(text, r->diagnostics->length);
+  yaml_parser_set_input_string(&r->yaml, (const unsigned char *)text + mark,
+                               r->diagnostics->length - mark);
   bool fine = true;
   while (fine && !r->ended) {
     yaml_event_t event;
     if (yaml_parser_parse(&r->yaml, &event)) {
-      fine = read_event(r, &event) && r->diagnostics->count < PROBLEMS_MOST;
+      fine = handle_event(r, &event) && r->diagnostics->count < PROBLEMS_MOST;
       yaml_event_delete(&event);
     } else {
       const frame *open = r->depth ? &r->stack[r->depth - 1] : NULL;
@@ -521,67 +383,29 @@ static bool read_events(reader *r) {
   return fine;
 }
 
-/* Reads the text with these runs; whether all of it, and every run, was read. */
-static bool read_with(strut_document *document, strut_diagnostics *diagnostics,
-                      const strut_row_runs *runs, const char *const *deferred_keys,
-                      bool *no_memory) {
+strut_status strut_document_read(strut_document *document, strut_diagnostics *diagnostics) {
+  size_t before = diagnostics->count;
+  document->root = NULL;
+  if (!strut_document_scan(diagnostics))
+    return diagnostics->out_of_memory ? STRUT_NO_MEMORY : STRUT_BAD_SCENE;
   reader *r = strut_allocate(1, sizeof *r);
-  *no_memory = !r;
-  if (!r) return false;
+  if (!r) return STRUT_NO_MEMORY;
   r->document = document;
   r->diagnostics = diagnostics;
   r->cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
   r->keys.seed = r->anchors.seed = (uint64_t)(uintptr_t)r ^ (uint64_t)time(NULL) << 20;
-  r->runs = *runs;
-  r->deferred_keys = deferred_keys;
-  bool fine = read_events(r) && r->next_run == r->runs.count;
-  if (!fine) document->root = NULL;
-  *no_memory = r->no_memory || diagnostics->out_of_memory;
+  bool fine = read_events(r), no_memory = r->no_memory || diagnostics->out_of_memory;
+  if (!fine || no_memory) document->root = NULL;
   free_anchors(&r->anchors);
   strut_release(r->keys.slots);
   strut_release(r);
-  if (*no_memory) document->root = NULL;
-  return fine && !*no_memory;
-}
-
-/* Reads runs of rows without libyaml. False: something is wrong; there is no message. */
-static bool read_rows(strut_document *document, const strut_diagnostics *diagnostics,
-                      uint32_t least, const char *const *keys, bool *no_memory) {
-  strut_row_runs runs = {0};
-  strut_diagnostics unused = {0};
-  strut_diagnostics_source(&unused, diagnostics->file, diagnostics->text, diagnostics->length);
-  *no_memory = !strut_row_runs_find(diagnostics->text, diagnostics->length, least, &runs);
-  bool fine = !*no_memory && runs.count && read_with(document, &unused, &runs, keys, no_memory) &&
-              !unused.count;
-  strut_row_runs_free(&runs);
-  strut_diagnostics_free(&unused);
-  if (!fine) strut_document_free(document);
-  return fine;
-}
-
-strut_status strut_document_read_rows(strut_document *document, strut_diagnostics *diagnostics,
-                                      uint32_t least, const char *const *keys) {
-  size_t before = diagnostics->count;
-  bool no_memory = false;
-  strut_row_runs none = {0};
-  document->root = NULL;
-  if (!strut_document_scan(diagnostics))
-    return diagnostics->out_of_memory ? STRUT_NO_MEMORY : STRUT_BAD_SCENE;
-  bool alone = !document->arena.chunk; /* what is not read well is released */
-  if (least && alone && read_rows(document, diagnostics, least, keys, &no_memory)) return STRUT_OK;
-  if (!no_memory) read_with(document, diagnostics, &none, NULL, &no_memory);
   if (no_memory) return STRUT_NO_MEMORY;
   return diagnostics->count > before ? STRUT_BAD_SCENE : STRUT_OK;
-}
-
-strut_status strut_document_read(strut_document *document, strut_diagnostics *diagnostics) {
-  return strut_document_read_rows(document, diagnostics, STRUT_RUN_LEAST, NULL);
 }
 
 void strut_document_free(strut_document *document) {
   strut_arena_free(&document->arena);
   document->root = NULL;
-  document->deferred = false;
 }
 
 strut_tree *strut_tree_find(const strut_tree *map, const char *key, strut_tree **key_node) {

@@ -29,7 +29,6 @@ typedef struct strut_tree {
   uint32_t kind : 2;               /* a strut_tree_kind */
   bool quoted : 1;                 /* scalar: written in quotes or as a block */
   bool placed : 1;                 /* it belongs to a copy of a part, see parser/read/copies.h */
-  bool deferred : 1;               /* list or map: its children are still text, see rows.h */
   const char *text;                /* scalar: NUL-terminated, no NUL inside, "" for nothing */
   struct strut_tree *first, *next; /* first child; next sibling */
 } strut_tree;
@@ -41,7 +40,6 @@ typedef struct strut_tree {
 typedef struct strut_document {
   strut_arena arena;
   strut_tree *root; /* NULL when the text could not be read to its end */
-  bool deferred;    /* some values of the tree are */
 } strut_document;
 
 /**
@@ -52,20 +50,6 @@ typedef struct strut_document {
  */
 STRUT_API strut_status strut_document_read(strut_document *document,
                                            strut_diagnostics *diagnostics);
-/** Shorter runs of rows (rows.h) are left to libyaml. */
-enum { STRUT_RUN_LEAST = 64 };
-/**
- * As strut_document_read, which reads runs of at least STRUT_RUN_LEAST rows without libyaml, with another least
- * length; 0: libyaml reads all. In the mappings under these `keys` of the root (NULL-terminated; NULL: none)
- * such rows may be deferred: a large file takes a third of the memory. Whoever looks into these mappings
- * expands their values one by one (strut_row_expand), or all for good; the text must outlive the tree. The
- * same tree, once expanded, or messages, whatever `least` and `keys` are.
- */
-STRUT_API strut_status strut_document_read_rows(strut_document *document,
-                                                strut_diagnostics *diagnostics, uint32_t least,
-                                                const char *const *keys);
-/** Expands all deferred values. False: memory is out. */
-STRUT_API bool strut_document_expand(strut_document *document);
 STRUT_API void strut_document_free(strut_document *document);
 
 /** Value of `key` in a map, or NULL; key_node (may be NULL) receives the key itself. */

@@ -45,10 +45,7 @@ bool strut_document_check_keys(strut_tree *map, strut_key_table *table,
  */
 STRUT_API double strut_document_needs(const char *text, size_t length);
 
-/**
- * STRUT_OK, or STRUT_NO_MEMORY with the needed and the available memory (memory_limit.h). Needed is what the tree
- * takes where rows are deferred (rows.h).
- */
+/** STRUT_OK, or STRUT_NO_MEMORY with the needed and the available memory (memory_limit.h). */
 STRUT_API strut_status strut_memory_check_document(const char *name, const char *text,
                                                    size_t length, strut_error *error);
 /** STRUT_NO_MEMORY with the same message, for memory that ran out in spite of the check. */

@@ -8,7 +8,6 @@
 
 #include "engine/base/memory_limit.h"
 #include "parser/yaml/document_parts.h"
-#include "parser/yaml/rows.h"
 
 static bool continues(unsigned char byte) { return (byte & 0xC0) == 0x80; }
 
@@ -163,34 +162,15 @@ static void count_values(scan_state *l, char c, char next) {
   if ((c == ']' || c == '}') && l->depth > 0) l->depth--;
 }
 
-/* Bytes of the row at the beginning of a line whose value may be deferred, or 0. */
-static size_t measure_deferrable(const scan_state *l, const char *text, size_t length) {
-  strut_row row;
-  bool begins = l->before == '\n' && l->depth == 0;
-  return begins && strut_row_read(text, length, &row) && strut_row_is_deferrable(&row) ? row.length
-                                                                                       : 0;
-}
-
-/* `deferred`: rows that may be are not read, so that they are two values each. */
-static double estimate_needs(const char *text, size_t length, bool deferred) {
+double strut_document_needs(const char *text, size_t length) {
   scan_state l = {.before = '\n'};
   for (size_t at = 0; at < length; at++) {
-    size_t row = deferred ? measure_deferrable(&l, text + at, length - at) : 0;
-    if (row) {
-      l.values += 2.0;
-      at += row - 1;
-      continue; /* a row ends in a line feed, as the character before it */
-    }
     at = skip_text(&l, text, length, at);
     if (at >= length) break;
     count_values(&l, text[at], at + 1 < length ? text[at + 1] : '\n');
     l.before = text[at];
   }
   return l.values * (double)sizeof(strut_tree) + (double)length;
-}
-
-double strut_document_needs(const char *text, size_t length) {
-  return estimate_needs(text, length, false);
 }
 
 static const char *name_text(const char *name, char words[WORDS]) {
@@ -204,11 +184,11 @@ strut_status strut_memory_check_document(const char *name, const char *text, siz
   const char *whose;
   if (length < SHORT || MOST_PER_BYTE * (double)length <= strut_memory_most(&whose))
     return STRUT_OK;
-  return strut_memory_check(estimate_needs(text, length, true), name_text(name, words), error);
+  return strut_memory_check(strut_document_needs(text, length), name_text(name, words), error);
 }
 
 strut_status strut_memory_fail_document(const char *name, const char *text, size_t length,
                                         strut_error *error) {
   char words[WORDS];
-  return strut_memory_fail(estimate_needs(text, length, true), name_text(name, words), error);
+  return strut_memory_fail(strut_document_needs(text, length), name_text(name, words), error);
 }

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * libFuzzer target: any text is read or refused, with the same messages whether rows are deferred or not; what
- * is read can be written, read again and written to the same text. Seeds: tests/language/good and
- * the cases of tests/language/bad, unpacked.
+ * libFuzzer target: any text is read or refused; what is read can be written, read again and written to
+ * the same text. Seeds: tests/language/good and the cases of tests/language/bad, unpacked.
  */
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "parser/read/reader.h"
+#include "parser/read/read_scene.h"
 #include "parser/write/write_scene.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -33,26 +32,6 @@ static strut_status read_text(strut_setup *setup, const char *text, size_t lengt
   return status;
 }
 
-/* The messages of reading with rows deferred in runs of at least `least`; free it. */
-static char *read_messages(const char *text, size_t length, uint32_t least) {
-  strut_setup setup;
-  strut_diagnostics diagnostics = {0};
-  strut_setup_read_rows(&setup, "fuzz.yaml", text, length, NULL, 0, STRUT_FOR_ANY, least,
-                        &diagnostics);
-  const char *messages = strut_diagnostics_render(&diagnostics, 50);
-  char *copy = messages ? strdup(messages) : NULL;
-  strut_diagnostics_free(&diagnostics);
-  strut_setup_free(&setup);
-  return copy;
-}
-
-static void check_deferred_rows(const char *text, size_t length) {
-  char *plain = read_messages(text, length, 0), *deferred = read_messages(text, length, 2);
-  if (!plain || !deferred || strcmp(plain, deferred) != 0) abort();
-  free(plain);
-  free(deferred);
-}
-
 static void check_purpose(const char *text, size_t length, strut_purpose purpose) {
   strut_setup first, second;
   if (read_text(&first, text, length, purpose) != STRUT_OK) return;
@@ -73,7 +52,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   text[size] = '\0';
   check_purpose(text, size, STRUT_FOR_RUN);
   check_purpose(text, size, STRUT_FOR_STATICS);
-  check_deferred_rows(text, size);
   free(text);
   return 0;
 }
