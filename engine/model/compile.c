@@ -6,7 +6,6 @@
 #include "engine/base/vec.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/mass.h"
-#include "engine/model/memory_estimate.h"
 #include "engine/model/model.h"
 
 _Static_assert(STRUT_FRICTION_LAW_COUNT <= 32 && STRUT_DAMPING_COUNT <= 32 &&
@@ -321,10 +320,8 @@ static void compile_contacts(strut_model *model, bool *failed) {
 strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
                                  strut_error *error) {
   *result = NULL;
-  strut_status room = strut_memory_check_model(scene, error);
-  if (room) return room;
   strut_model *model = strut_allocate(1, sizeof *model);
-  if (!model) return strut_memory_fail_model(scene, error);
+  if (!model) return strut_no_memory(error, "for the model");
   model->scene = scene;
   bool failed = false;
   void (*const passes[])(strut_model *, bool *) = {
@@ -334,9 +331,10 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
       compile_feedback,        compile_rubbing};
   for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
     passes[i](model, &failed);
-  strut_status status = failed ? strut_memory_fail_model(scene, error)
+  strut_status status = failed ? strut_no_memory(error, "for the model")
                                : strut_mass_create(model, &model->mass, error);
-  if (!status && strut_sliding_masses_solve(model)) status = strut_memory_fail_model(scene, error);
+  if (!status && strut_sliding_masses_solve(model))
+    status = strut_no_memory(error, "for the model");
   if (status) {
     strut_model_free(model);
     return status;

@@ -9,7 +9,6 @@
 #include "engine/base/memory.h"
 #include "engine/model/cholmod_factor.h"
 #include "engine/model/hot.h"
-#include "engine/model/memory_estimate.h"
 
 strut_status strut_linear_solver_load(strut_error *error) {
   const strut_cholmod_library *cholmod;
@@ -136,6 +135,15 @@ static int32_t bad_row(const strut_cholmod_columns *l) {
   return -1;
 }
 
+/* Columns of the factor begin at 32-bit indices. */
+static strut_status check_size(int32_t rows, double nonzeros, strut_error *error) {
+  if (nonzeros <= (double)INT32_MAX) return STRUT_OK;
+  return strut_fail(error, STRUT_NO_MEMORY,
+                    "the factor of a matrix of %d rows would have %.3g nonzeros, more than can be "
+                    "counted; lumped masses need none",
+                    (int)rows, nonzeros);
+}
+
 strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **factor,
                                  strut_error *error) {
   *factor = NULL;
@@ -147,7 +155,7 @@ strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **fact
   strut_cholmod_factor *analysed = cholmod->analyse(matrix, &nonzeros);
   if (!analysed)
     return strut_fail(error, STRUT_NO_MEMORY, "out of memory while factorising a matrix");
-  status = strut_memory_check_factor(matrix->n, nonzeros, error);
+  status = check_size(matrix->n, nonzeros, error);
   if (!status && cholmod->factorise(analysed, matrix, 0.0, &l)) {
     int32_t row = bad_row(&l);
     if (row < 0 && (*factor = copy_out(&l)) && !weave_parts(factor)) {
@@ -158,7 +166,7 @@ strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **fact
       status = strut_fail(error, STRUT_SINGULAR,
                           "the matrix is not positive definite (row %d of %d)", row, matrix->n);
   }
-  if (!*factor && !status) status = strut_memory_fail_factor(matrix->n, nonzeros, error);
+  if (!*factor && !status) status = strut_no_memory(error, "for the factor of a matrix");
   cholmod->free(analysed);
   return status;
 }
@@ -222,7 +230,7 @@ strut_status strut_ldl_create(const strut_sparse *pattern, strut_ldl **ldl, stru
   l->analysed = cholmod->analyse(pattern, &nonzeros);
   l->work = strut_allocate(3 * (size_t)pattern->n, sizeof *l->work);
   status = l->analysed && l->work
-               ? strut_memory_check_factor(pattern->n, nonzeros, error)
+               ? check_size(pattern->n, nonzeros, error)
                : strut_fail(error, STRUT_NO_MEMORY, "out of memory while analysing a matrix");
   if (status == STRUT_OK) return status;
   strut_ldl_free(l);

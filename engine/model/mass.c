@@ -5,7 +5,6 @@
 
 #include "engine/model/hot.h"
 #include "engine/model/mass_kernel.h"
-#include "engine/model/memory_estimate.h"
 #include "engine/model/model.h"
 #include "engine/model/sparse.h"
 
@@ -87,7 +86,7 @@ static strut_status make_blocks(strut_model *model, const sorting *s, strut_mass
   int32_t *size = strut_arena_allocate(&model->arena, (size_t)op->block_count, sizeof *size);
   uint32_t *at = strut_arena_allocate(&model->arena, nodes, sizeof *at);
   double *inverse = strut_arena_allocate(&model->arena, entries, sizeof *inverse);
-  if (!size || !at || !inverse) return strut_memory_fail_model(model->scene, error);
+  if (!size || !at || !inverse) return strut_no_memory(error, "for the model");
   op->block_size = size, op->block_at = at, op->block_inverse = inverse;
   mass->dense_entries += entries;
   for (int32_t first = 0; first < m->n;) {
@@ -139,7 +138,7 @@ static strut_status make_factor(strut_model *model, strut_arena *scratch, const 
   strut_sparse rest = {0};
   int32_t *node = NULL;
   if (take_rest(scratch, s, op->matrix, op->matrix_node, &rest, &node))
-    return strut_memory_fail_model(model->scene, error);
+    return strut_no_memory(error, "for the model");
   if (!rest.n) return STRUT_OK;
   strut_factor *factor = NULL;
   strut_status status = strut_factor_create(&rest, &factor, error);
@@ -148,7 +147,7 @@ static strut_status make_factor(strut_model *model, strut_arena *scratch, const 
   mass->factor_nonzeros += (size_t)factor->start[factor->n] + (size_t)factor->n;
   op->factor = factor;
   int32_t *ordered = strut_arena_allocate(&model->arena, (size_t)rest.n, sizeof *ordered);
-  if (!ordered) return strut_memory_fail_model(model->scene, error);
+  if (!ordered) return strut_no_memory(error, "for the model");
   for (int32_t i = 0; i < rest.n; i++) ordered[i] = node[factor->order[i]];
   op->factor_node = ordered;
   return STRUT_OK;
@@ -163,7 +162,7 @@ static strut_status make_operator(strut_model *model, strut_arena *scratch, stru
   strut_status status = strut_mass_matrix(model, coordinate, scratch, &matrix, &node);
   double *inverse = strut_arena_allocate(&model->arena, (size_t)model->length, sizeof *inverse);
   if (status || !inverse || !sort_rows(matrix, scratch, &s))
-    return strut_memory_fail_model(model->scene, error);
+    return strut_no_memory(error, "for the model");
   op->matrix = matrix, op->matrix_node = node, op->inverse = inverse;
   mass->matrix_nonzeros += (size_t)matrix->start[matrix->n];
   for (int32_t i = 0; i < matrix->n; i++)
@@ -208,7 +207,7 @@ strut_status strut_mass_create(strut_model *model, strut_mass **result, strut_er
   *result = NULL;
   if (has_massless_node(model)) return STRUT_OK;
   strut_mass *mass = strut_allocate(1, sizeof *mass);
-  if (!mass) return strut_memory_fail_model(model->scene, error);
+  if (!mass) return strut_no_memory(error, "for the model");
   strut_arena scratch = {0};
   strut_status status = make_operator(model, &scratch, mass, 0, error);
   if (!status && same_supports(model))

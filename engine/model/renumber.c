@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "engine/model/mass.h"
-#include "engine/model/memory_estimate.h"
 
 /* Terms whose tables are stored in another order. */
 static const unsigned STORED = STRUT_TERM_MEMBERS | STRUT_TERM_DAMPING | STRUT_TERM_SLACK |
@@ -340,7 +339,7 @@ static strut_model *copy_model(copier *c) {
 strut_status strut_renumbering_create(const strut_model *model, bool free_members,
                                       strut_renumbering **renumbering, strut_error *error) {
   strut_renumbering *r = *renumbering = strut_allocate(1, sizeof *r);
-  if (!r) return strut_memory_fail_model(model->scene, error);
+  if (!r) return strut_no_memory(error, "for the model");
   size_t nodes = (size_t)model->node_count;
   strut_arena scratch = {0};
   incidence at;
@@ -368,7 +367,7 @@ strut_status strut_renumbering_create(const strut_model *model, bool free_member
   if (r->model) return STRUT_OK;
   strut_renumbering_free(r);
   *renumbering = NULL;
-  return strut_memory_fail_model(model->scene, error);
+  return strut_no_memory(error, "for the model");
 }
 
 strut_status strut_member_order_create(const strut_model *model, strut_arena *arena,
@@ -384,7 +383,7 @@ strut_status strut_member_order_create(const strut_model *model, strut_arena *ar
   if (good) turn_as_listed(model, place, order);
   good = good && order_members(model, &at, order, *member);
   strut_arena_free(&scratch);
-  return good ? STRUT_OK : strut_memory_fail_model(model->scene, error);
+  return good ? STRUT_OK : strut_no_memory(error, "for the model");
 }
 
 void strut_renumbering_free(strut_renumbering *renumbering) {

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "engine/model/compile_parts.h"
-#include "engine/model/memory_estimate.h"
 
 /* What contacts need that are not with one straight line at rest. */
 static bool make_surfaces(const strut_model *model, strut_state *state) {
@@ -82,11 +81,11 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
                                 strut_error *error) {
   strut_state *state = strut_allocate(1, sizeof *state);
   *result = state;
-  if (!state) return strut_memory_fail_model(model->scene, error);
+  if (!state) return strut_no_memory(error, "for the model");
   if (!make_arrays(model, state)) {
     strut_state_free(state);
     *result = NULL;
-    return strut_memory_fail_model(model->scene, error);
+    return strut_no_memory(error, "for the model");
   }
   strut_state_reset(model, state);
   return STRUT_OK;

@@ -3,10 +3,7 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
-
-#include "engine/base/memory_limit.h"
 
 static const unsigned ALL_CHANNELS = ~0u;
 
@@ -96,17 +93,12 @@ strut_status strut_recording_create(const strut_model *model, const strut_experi
   double expected =
       (span.duration - span.record_start) / fmax(span.record_every, r->grid.step) + 1.0;
   r->layout.expected_rows = expected < 1e15 ? (size_t)expected : (size_t)1e15;
-  char what[80];
-  double bytes = sizeof(double) * (double)r->layout.width;
-  snprintf(what, sizeof what, "each row of a recording of %zu columns", r->layout.width);
-  strut_status status = strut_memory_check(bytes, what, error);
-  if (status) return status;
   if (ready) {
     r->capacity = 1 + 65536 / r->layout.width;
     r->rows = strut_arena_allocate(&r->arena, r->capacity * r->layout.width, sizeof(double));
     ready = r->rows && create_parts(experiment, r);
   }
-  if (!ready) return strut_memory_fail(bytes, what, error);
+  if (!ready) return strut_no_memory(error, "for the recording");
   return begin_sinks(r, error);
 }
 

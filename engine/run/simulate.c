@@ -14,7 +14,6 @@
 #include "engine/forces/support_motion.h"
 #include "engine/integrate/large_steps.h"
 #include "engine/integrate/limit/step_limit.h"
-#include "engine/model/memory_estimate.h"
 #include "engine/run/orbit/orbit.h"
 #include "engine/run/settle.h"
 #include "engine/run/simulate_parts.h"
@@ -72,7 +71,7 @@ static strut_status allocate_summary(strut_run *r) {
   if (e->quantity_count) s->measured = strut_allocate(e->quantity_count, sizeof *s->measured);
   if (!s->end.node_names || !s->end.positions || !s->end.contacts || !s->end.hinges ||
       !s->end.cells || !s->end.breaks || !s->end.jumps || (e->quantity_count && !s->measured))
-    return strut_memory_fail_model(r->model->scene, r->error);
+    return strut_no_memory(r->error, "for the model");
   s->end.node_count = scene->node_count;
   s->end.contact_count = contacts;
   s->end.hinge_count = scene->hinge_count;
@@ -197,11 +196,11 @@ static strut_status prepare_run(strut_run *r) {
                            &r->measure) ||
       (r->steady.wanted && strut_steady_detector_create(r->model, &r->experiment->steady,
                                                         span.period, begin, &r->steady.detector)))
-    return strut_memory_fail_model(r->model->scene, r->error);
+    return strut_no_memory(r->error, "for the model");
   if (r->measure.quantities && strut_quantities_need_pieces(r->measure.quantities) &&
       r->method->observe) {
     if (!r->method->observe(r->model, r->state, r->workspace))
-      return strut_memory_fail_model(r->model->scene, r->error);
+      return strut_no_memory(r->error, "for the model");
     strut_quantities_observe(r->measure.quantities);
   }
   if ((status = place_state(r))) return status;
@@ -215,7 +214,7 @@ static strut_status prepare_run(strut_run *r) {
   if (!strut_step_limit_monitor_create(r->model, r->state, r->method, r->dt, &r->watch.limit) ||
       !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->watch.band) ||
       !strut_motion_frequency_create(r->model, r->state, &r->watch.frequency))
-    return strut_memory_fail_model(r->model->scene, r->error);
+    return strut_no_memory(r->error, "for the model");
   strut_energy_reset_load_work(r->model, r->state);
   r->watch.initial = strut_energy_evaluate(r->model, r->state, begin);
   if (r->options->from && r->options->from->balance && r->state->balance)

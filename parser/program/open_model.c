@@ -14,7 +14,6 @@
 #include "parser/program/streams.h"
 #include "parser/read/read_scene.h"
 #include "parser/write/write_scene.h"
-#include "parser/yaml/document_parts.h"
 
 enum { MOST_MESSAGES = 50 };
 
@@ -50,19 +49,11 @@ static strut_status read_source(const strut_arguments *arguments, const source *
                                 strut_purpose purpose, strut_setup *setup,
                                 strut_diagnostics *report) {
   strut_diagnostics own = {0}, *diagnostics = report ? report : &own;
-  strut_error error = {0};
-  strut_status status = strut_memory_check_document(from->name, from->text, from->length, &error);
-  if (status == STRUT_NO_MEMORY) {
-    strut_print_error(&error);
-    return status;
-  }
-  status = strut_setup_read(setup, from->name, from->text, from->length, arguments->overrides,
-                            arguments->override_count, purpose, diagnostics);
+  strut_status status =
+      strut_setup_read(setup, from->name, from->text, from->length, arguments->overrides,
+                       arguments->override_count, purpose, diagnostics);
   if (!report) status = print_found(diagnostics, status, arguments->no_notes, setup);
-  if (status == STRUT_NO_MEMORY) {
-    strut_memory_fail_document(from->name, from->text, from->length, &error);
-    strut_print_error(&error);
-  }
+  if (status == STRUT_NO_MEMORY) strut_print_out_of_memory();
   strut_diagnostics_free(&own);
   return status;
 }

@@ -11,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/memory_limit.h"
 #include "parser/read/copies.h"
 
 /* ---- parts ---- */
@@ -502,18 +501,6 @@ static void report_unplaced(strut_reader *reader) {
                  parts->part[i].name);
 }
 
-/* Least memory of an entry while it is read, and as a thing of the scene [B]. */
-static const double ENTRY_NEEDS = 700.0;
-
-static bool check_memory(strut_expansion *e, const strut_slot *place) {
-  strut_error error = {0};
-  double needs = ENTRY_NEEDS * (double)e->copies->things;
-  if (needs < 1e8 || strut_memory_check(needs, "the copies of parts", &error) == STRUT_OK)
-    return true;
-  strut_report_error(e->reader, place->key->place, "%s", error.message);
-  return false;
-}
-
 static void read_limit(strut_reader *reader) {
   const strut_key *key = strut_key_at(STRUT_KEY_SCENE_LIMIT_THINGS);
   const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_LIMIT_THINGS);
@@ -541,7 +528,7 @@ static void expand_scene(strut_expansion *e) {
   const strut_slot *nodes = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES);
   e->weighing = true;
   expand_places(e, place, NULL);
-  if (e->stopped || reader->failed || !check_memory(e, place)) {
+  if (e->stopped || reader->failed) {
     e->copies->incomplete = true;
     return;
   }

@@ -3,11 +3,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
-
-#include "engine/base/memory_limit.h"
-#include "parser/yaml/document_parts.h"
 
 static bool continues(unsigned char byte) { return (byte & 0xC0) == 0x80; }
 
@@ -122,73 +118,4 @@ void strut_cursor_to_index(strut_cursor *cursor, size_t index) {
 
 void strut_cursor_to_line(strut_cursor *cursor, uint32_t line) {
   while (cursor->line < line && strut_cursor_step(cursor)) continue;
-}
-
-/* MOST_PER_BYTE: largest number of bytes of tree per byte of text, as in [1,2,3]. */
-enum { DEPTH_MOST = 64, WORDS = 400, SHORT = 100000, MOST_PER_BYTE = 1 + sizeof(strut_tree) / 2 };
-
-/* State of the scan: the open brackets and the previous character. */
-typedef struct scan_state {
-  uint64_t list; /* bit d: the bracket at depth d is a list's */
-  int depth;
-  double values;
-  char before;
-} scan_state;
-
-static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
-/* The end of the comment or quoted text that begins at `at`; `at` if none begins there. */
-static size_t skip_text(const scan_state *l, const char *text, size_t length, size_t at) {
-  char c = text[at];
-  bool begins = is_blank(l->before) || l->before == '[' || l->before == '{' || l->before == ',';
-  if (!begins || (c != '#' && c != '"' && c != '\'')) return at;
-  char end = c == '#' ? '\n' : c;
-  size_t i = at + 1;
-  while (i < length && text[i] != end) i += c == '"' && text[i] == '\\' ? 2 : 1;
-  return i < length ? i : length;
-}
-
-/* Two values per colon, and one per comma of a bracketed list and for its first item. */
-static void count_values(scan_state *l, char c, char next) {
-  bool listed = l->depth > 0 && l->depth < DEPTH_MOST && (l->list >> l->depth & 1);
-  if (c == ':' && is_blank(next)) l->values += 2.0;
-  if (c == ',' && listed) l->values += 1.0;
-  if (c == '[' || c == '{') {
-    if (++l->depth < DEPTH_MOST) {
-      l->list = (l->list & ~((uint64_t)1 << l->depth)) | (uint64_t)(c == '[') << l->depth;
-    }
-    if (c == '[' && next != ']') l->values += 1.0;
-  }
-  if ((c == ']' || c == '}') && l->depth > 0) l->depth--;
-}
-
-double strut_document_needs(const char *text, size_t length) {
-  scan_state l = {.before = '\n'};
-  for (size_t at = 0; at < length; at++) {
-    at = skip_text(&l, text, length, at);
-    if (at >= length) break;
-    count_values(&l, text[at], at + 1 < length ? text[at + 1] : '\n');
-    l.before = text[at];
-  }
-  return l.values * (double)sizeof(strut_tree) + (double)length;
-}
-
-static const char *name_text(const char *name, char words[WORDS]) {
-  snprintf(words, WORDS, "reading '%.300s'", name);
-  return words;
-}
-
-strut_status strut_memory_check_document(const char *name, const char *text, size_t length,
-                                         strut_error *error) {
-  char words[WORDS];
-  const char *whose;
-  if (length < SHORT || MOST_PER_BYTE * (double)length <= strut_memory_most(&whose))
-    return STRUT_OK;
-  return strut_memory_check(strut_document_needs(text, length), name_text(name, words), error);
-}
-
-strut_status strut_memory_fail_document(const char *name, const char *text, size_t length,
-                                        strut_error *error) {
-  char words[WORDS];
-  return strut_memory_fail(strut_document_needs(text, length), name_text(name, words), error);
 }

@@ -9,7 +9,6 @@
 #include "engine/forces/rigid.h"
 #include "engine/forces/tangent.h"
 #include "engine/integrate/limit/tangent_limits.h"
-#include "engine/model/memory_estimate.h"
 #include "engine/model/renumber.h"
 
 /* |R(z)| of RK4 for z = x + i y, R(z) = 1 + z (1 + z/2 (1 + z/3 (1 + z/4))). */
@@ -365,7 +364,7 @@ strut_status strut_step_limit_with_bound(const strut_model *model, const strut_i
   *limit = found.of[method->region];
   *bound = found.bound;
   strut_arena_free(&arena);
-  return status ? strut_memory_fail_model(model->scene, error) : STRUT_OK;
+  return status ? strut_no_memory(error, "for the model") : STRUT_OK;
 }
 
 strut_status strut_step_limit_for_method(const strut_model *model, const strut_integrator *method,
@@ -387,7 +386,7 @@ strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limi
     limit->of_implicit[region] = implicit.of[region];
   limit->bound = limit->bound || implicit.bound;
   strut_arena_free(&arena);
-  return status ? strut_memory_fail_model(model->scene, error) : STRUT_OK;
+  return status ? strut_no_memory(error, "for the model") : STRUT_OK;
 }
 
 /* Takes bytes, a whole number of words, into both hashes. */
@@ -507,7 +506,7 @@ strut_status strut_step_limit_at_shape(const strut_model *model, const double *q
   for (int region = 0; region < STRUT_REGIONS; region++)
     limit->of_implicit[region] = limit->of[region];
   strut_arena_free(&arena);
-  return status ? strut_memory_fail_model(model->scene, error) : STRUT_OK;
+  return status ? strut_no_memory(error, "for the model") : STRUT_OK;
 }
 
 double strut_step_limit_of_method(const strut_step_limit *limit, const strut_integrator *method) {

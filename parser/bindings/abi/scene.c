@@ -11,7 +11,6 @@
 #include "engine/statics/equilibria/equilibria.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/write/write_scene.h"
-#include "parser/yaml/document_parts.h"
 
 /* ---- names ---- */
 
@@ -289,19 +288,11 @@ static char *copy_of(const char *text, size_t length) {
   return copy;
 }
 
-static strut_status fail_of_memory(const abi_source *source, strutlib_error **error) {
-  strut_error what = {0};
-  strut_memory_fail_document(source->name, source->text, source->length, &what);
-  abi_fail_with(error, STRUT_NO_MEMORY, &what);
-  return STRUT_NO_MEMORY;
-}
-
 /* Takes ownership of the text, a block of strut_allocate that may be NULL. */
 static abi_source *read_source(const char *name, char *text, size_t length,
                                strutlib_error **error) {
   abi_source *source = strut_allocate(1, sizeof *source);
   strut_diagnostics found = {0};
-  strut_error what = {0};
   if (!source || !text) {
     strut_release(source);
     strut_release(text);
@@ -311,12 +302,10 @@ static abi_source *read_source(const char *name, char *text, size_t length,
   *source = (abi_source){.text = text, .length = length, .name = copy_of(name, strlen(name))};
   atomic_init(&source->users, 1);
   strut_status status = STRUT_NO_MEMORY;
-  if (source->name) status = strut_memory_check_document(name, text, length, &what);
-  if (status != STRUT_OK)
-    abi_fail_with(error, status, &what);
-  else if ((status = strut_scene_source_open(source->name, text, length, &found, &source->tree)) ==
-           STRUT_NO_MEMORY)
-    fail_of_memory(source, error);
+  if (source->name)
+    status = strut_scene_source_open(source->name, text, length, &found, &source->tree);
+  if (status == STRUT_NO_MEMORY)
+    abi_no_memory(error);
   else if (status != STRUT_OK)
     abi_fail_located(error, status, &found);
   strut_diagnostics_free(&found);
@@ -333,7 +322,7 @@ strut_status abi_setup(const strutlib_scene *scene, strut_purpose purpose, strut
   strut_status status = strut_scene_source_read(scene->source->tree, scene->settings,
                                                 scene->setting_count, purpose, &found, setup);
   if (status == STRUT_NO_MEMORY)
-    fail_of_memory(scene->source, error);
+    abi_no_memory(error);
   else if (status != STRUT_OK)
     abi_fail_located(error, status, &found);
   strut_diagnostics_free(&found);
@@ -379,7 +368,7 @@ static strut_status read_scene(strutlib_scene *scene, strutlib_error **error) {
   strut_status status =
       strut_scene_source_read(scene->source->tree, scene->settings, scene->setting_count,
                               STRUT_FOR_ANY, &found, &scene->setup);
-  if (status == STRUT_NO_MEMORY) fail_of_memory(scene->source, error);
+  if (status == STRUT_NO_MEMORY) abi_no_memory(error);
   if (status == STRUT_BAD_SCENE) abi_fail_located(error, status, &found);
   if (status == STRUT_OK) {
     status = add_warnings(scene, &found);
