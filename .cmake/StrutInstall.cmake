@@ -114,16 +114,6 @@ set(strut_data_dir "${CMAKE_INSTALL_DATADIR}/strut")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/models" DESTINATION "${strut_data_dir}"
         COMPONENT documentation)
 
-# The engine for browsers, which the preset `web` builds: installed with the program, and beside the uninstalled one.
-set(STRUT_LIVE_SCRIPT "" CACHE FILEPATH "strut-live.js of the preset web, for strut view --live")
-if(STRUT_LIVE_SCRIPT)
-  install(FILES "${STRUT_LIVE_SCRIPT}" DESTINATION "${strut_data_dir}" RENAME strut-live.js COMPONENT program)
-  file(CREATE_LINK "${STRUT_LIVE_SCRIPT}" "${PROJECT_BINARY_DIR}/strut-live.js" SYMBOLIC)
-  if(TARGET strut_python)
-    file(CREATE_LINK "${STRUT_LIVE_SCRIPT}" "${PROJECT_BINARY_DIR}/python/strut/strut-live.js" SYMBOLIC)
-  endif()
-endif()
-
 # strut_install_link(FOLDER NAME TARGET): FOLDER/NAME leads to TARGET, however the tree is moved.
 function(strut_install_link folder name target)
   file(RELATIVE_PATH path "/${folder}" "/${target}")

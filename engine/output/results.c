@@ -15,8 +15,8 @@
 #include "engine/output/file.h"
 
 static const char *const run_names[] = {
-    "summary.json", "scene.yaml", "nodes.csv",     "members.csv", "hinges.csv", "cells.csv",
-    "contacts.csv", "energy.csv", "trajectory.h5", "model.yaml",  NULL};
+    "summary.json", "scene.yaml",   "nodes.csv",  "members.csv",   "hinges.csv",
+    "cells.csv",    "contacts.csv", "energy.csv", "trajectory.h5", NULL};
 
 static strut_status trouble(strut_error *error, const char *path, int code) {
   char reason[128];

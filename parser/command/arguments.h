@@ -38,7 +38,6 @@ typedef enum strut_option_id {
   STRUT_OPTION_STUDY,    /* of keys --schema: that of a study */
   STRUT_OPTION_VERBOSE,  /* of check: what is omitted, too */
   STRUT_OPTION_BASINS,   /* of periodic motions */
-  STRUT_OPTION_LIVE,     /* of view: with the engine inside */
   STRUT_OPTION_SELECTOR, /* only selects a form of the command */
   /* kept as text: strut_option_text, and arguments.h for numbers */
   STRUT_OPTION_TEXTS,
@@ -150,7 +149,6 @@ typedef struct strut_arguments {
   bool verbose;
   const strut_listener *listener; /* hears what is wrong with an option, warnings and notes */
   bool basins;
-  bool live;
 } strut_arguments;
 
 /** What a command computes of one model: analyses.h. */

@@ -33,7 +33,6 @@ static const strut_option options[] = {
 typedef struct run_files {
   strut_results results;
   char *scene_text; /* the effective scene */
-  char *model_text; /* the scene with its parameters, or NULL */
   strut_sink *csv, *hdf5;
   strut_sink *sinks[3]; /* these two, and that of the pictures */
   size_t sink_count;
@@ -68,8 +67,6 @@ static strut_status complete_results(run_files *keep, const strut_summary *summa
   if (status == STRUT_OK) {
     status = strut_file_write_text(stage, "scene.yaml", keep->scene_text, error);
   }
-  if (status == STRUT_OK && keep->model_text)
-    status = strut_file_write_text(stage, "model.yaml", keep->model_text, error);
   return status == STRUT_OK ? strut_results_commit(&keep->results, error) : status;
 }
 
@@ -77,7 +74,6 @@ static void free_results(run_files *keep) {
   strut_csv_free(keep->csv);
   strut_hdf5_free(keep->hdf5);
   strut_release(keep->scene_text);
-  strut_release(keep->model_text);
   strut_results_abandon(&keep->results); /* nothing where they are complete */
 }
 
@@ -131,11 +127,9 @@ static strut_status make_film(strut_run_pictures *pictures, const strut_model *m
   return status;
 }
 
-/* `model_text` becomes the run's. */
 static strut_status run_model(const strut_arguments *arguments, const strut_setup *setup,
-                              const strut_model *model, strut_run_pictures *pictures,
-                              char *model_text) {
-  run_files keep = {.model_text = model_text};
+                              const strut_model *model, strut_run_pictures *pictures) {
+  run_files keep = {.scene_text = NULL};
   strut_summary summary = {0};
   strut_error error = {0}, late = {0};
   strut_status status = simulate(model, setup, arguments, &keep, pictures, &summary, &error);
@@ -159,35 +153,18 @@ static strut_status run_model(const strut_arguments *arguments, const strut_setu
   return status;
 }
 
-/* *model_text: the scene with its parameters, where files are written and there are any. */
-static strut_status open_scene(const strut_arguments *arguments, strut_setup *setup,
-                               char **model_text) {
-  char *text;
-  size_t length;
-  strut_status status =
-      strut_open_model_keeping(arguments, STRUT_OPEN_FOR_RUN, &text, &length, setup);
-  if (status != STRUT_OK) return status;
-  if (arguments->output) status = strut_write_adjustable(arguments, text, length, model_text);
-  strut_release(text);
-  if (status == STRUT_OK) return status;
-  strut_setup_free(setup);
-  return strut_print_out_of_memory();
-}
-
 static strut_status run_run(const strut_arguments *arguments) {
   strut_setup setup;
-  char *model_text = NULL;
   strut_model *model = NULL;
   strut_error error = {0};
   strut_run_pictures pictures = {0};
   strut_status status = strut_run_pictures_read(&strut_command_run, arguments, &pictures);
-  if (status == STRUT_OK) status = open_scene(arguments, &setup, &model_text);
+  if (status == STRUT_OK) status = strut_open_model(arguments, STRUT_OPEN_FOR_RUN, &setup);
   if (status != STRUT_OK) return status;
   status = strut_run_options_apply(&strut_command_run, arguments, &setup);
   if (status != STRUT_OK) {
     strut_run_pictures_free(&pictures);
     strut_setup_free(&setup);
-    strut_release(model_text);
     return status;
   }
   if (status == STRUT_OK) status = strut_warn_of_scene(&setup);
@@ -195,12 +172,10 @@ static strut_status run_run(const strut_arguments *arguments) {
   if (status == STRUT_OK) status = strut_model_compile(&setup.scene, &model, &error);
   if (status == STRUT_OK)
     status = strut_run_pictures_check(&pictures, &setup.experiment, model, &error);
-  if (status == STRUT_OK) {
-    status = run_model(arguments, &setup, model, &pictures, model_text);
-  } else {
+  if (status == STRUT_OK)
+    status = run_model(arguments, &setup, model, &pictures);
+  else
     strut_print_error(&error);
-    strut_release(model_text);
-  }
   strut_run_pictures_free(&pictures);
   strut_model_free(model);
   strut_setup_free(&setup);
@@ -215,11 +190,9 @@ const strut_command strut_command_run = {
         "\nPrints a short table at the end, or with --json the whole summary. With -o, DIR "
         "receives\n"
         "summary.json, scene.yaml (the scene as run: running it gives bit-identical results),\n"
-        "model.yaml (the same with adjustable parameters, if there are any), trajectory.h5 and, "
-        "as\n"
-        "CSV, nodes, members, contacts and energy, as the scene records them; either all files "
-        "are\n"
-        "written or none.\n"
+        "trajectory.h5 and, as CSV, nodes, members, contacts and energy, as the scene records "
+        "them;\n"
+        "either all files are written or none.\n"
         "--plot draws the final shape with curves of the last periods (overview), node\n"
         "trajectories over the last period, magnified by --scale (period), shapes at several\n"
         "instants (snapshots), or curves of everything recorded (curves). A run that diverged is\n"

@@ -3,14 +3,12 @@
 
 #include <limits.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
 #include "engine/output/page/page.h"
-#include "parser/program/installed.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
 #include "parser/program/progress.h"
@@ -30,7 +28,6 @@ static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "FILE.html", "the page to write (default RUN.html)"},
     {STRUT_OPTION_EQUILIBRIA, "equilibria", "WHICH",
      "all or none (default: all of a MODEL, none of a RUN); of two, those of the first"},
-    {STRUT_OPTION_LIVE, "live", NULL, "add sliders for the parameters, which compute it again"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter of MODEL; may be repeated"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
@@ -99,57 +96,6 @@ static void print_written(const strut_arguments *arguments, const strut_page_fra
   printf("%.1f MB\n", 1e-6 * (double)bytes);
 }
 
-/* ---- live pages ---- */
-
-/* The engine's script, or NULL with the error. */
-static char *read_live_script(strut_error *error) {
-  const char *given = getenv("STRUT_LIVE_SCRIPT");
-  char found[STRUT_LONGEST_PATH], *text = NULL;
-  size_t length;
-  if (given && *given)
-    strut_file_read(given, &text, &length, error);
-  else if (strut_find_installed("strut-live.js", "strut-live.js", found))
-    strut_file_read(found, &text, &length, error);
-  else
-    strut_fail(error, STRUT_USAGE,
-               "--live needs strut-live.js, which this installation does not have; build it with "
-               "'cmake --preset web && cmake --build --preset web' and set the environment "
-               "variable STRUT_LIVE_SCRIPT to build/web/strut-live.js, or configure strut with "
-               "-DSTRUT_LIVE_SCRIPT=FILE");
-  return text;
-}
-
-/* Refuses what a live page cannot be made of; in `live` what the page computes, without its script. */
-static strut_status describe_live(const strut_arguments *arguments, const strut_opened *opened,
-                                  int search, strut_page_live *live, strut_error *error) {
-  if (opened->setup.scene.parameter_count == 0)
-    return strut_fail(error, STRUT_USAGE, "--live needs a scene with parameters; '%s' has none",
-                      strut_model_name(arguments));
-  if (!opened->adjustable)
-    return strut_fail(error, STRUT_USAGE,
-                      opened->run ? "--live needs the file model.yaml in '%s': run the model again"
-                                  : "the parameters of '%s' cannot be kept in one file for --live",
-                      strut_model_name(arguments));
-  *live = (strut_page_live){.scene = opened->adjustable,
-                            .name = opened->run ? "model.yaml" : strut_model_name(arguments),
-                            .call = opened->run            ? "run"
-                                    : search == SEARCH_ALL ? "equilibria"
-                                                           : "start"};
-  return STRUT_OK;
-}
-
-/* Checks before anything is opened; the script is read, if one is needed. */
-static strut_status prepare_live(const strut_arguments *arguments, char **script) {
-  strut_error error = {0};
-  if (!arguments->live) return STRUT_OK;
-  if (arguments->model_count > 1)
-    return strut_print_usage_error(&strut_command_view, "--live shows one run or model, not two");
-  *script = read_live_script(&error);
-  if (*script) return STRUT_OK;
-  strut_print_error(&error);
-  return error.status;
-}
-
 static strut_status write_page(const strut_arguments *arguments, const strut_page *page,
                                const strut_flag *interrupt, strut_error *error) {
   strut_page_frames frames[MOST_RUNS] = {0};
@@ -188,19 +134,15 @@ static void label_pages(const strut_arguments *arguments, strut_page *pages,
   }
 }
 
-/* `script`: of a live page, or NULL. */
 static strut_status make_page(const strut_arguments *arguments, const strut_opened *opened,
-                              int search, const char *script) {
-  strut_page_live live = {0};
+                              int search) {
   strut_equilibria all = {0};
   strut_error error = {0}, remark = {0};
   strut_page pages[MOST_RUNS];
   char *yaml[MOST_RUNS] = {NULL}, labels[MOST_RUNS][PATH_MAX];
   const strut_flag *interrupt = strut_interrupt_watch();
   strut_status status = STRUT_OK;
-  if (script) status = describe_live(arguments, opened, search, &live, &error);
-  live.script = script;
-  if (status == STRUT_OK && search == SEARCH_ALL) {
+  if (search == SEARCH_ALL) {
     status = find_equilibria(arguments, opened, interrupt, &all, &remark);
     if (status != STRUT_OK) error = remark;
   }
@@ -210,7 +152,6 @@ static strut_status make_page(const strut_arguments *arguments, const strut_open
   }
   if (status == STRUT_OK) {
     label_pages(arguments, pages, labels);
-    if (script) pages->live = &live;
     if (remark.status == STRUT_OK) pages->equilibria = &all;
     pages->remark = search == SEARCH_NONE ? "No search for equilibria was made." : remark.message;
     status = write_page(arguments, pages, interrupt, &error);
@@ -240,7 +181,7 @@ static strut_status open_all(const strut_arguments *arguments, strut_opened *ope
 static strut_status run_view(const strut_arguments *given) {
   strut_opened opened[MOST_RUNS] = {0};
   strut_arguments with_output = *given, *arguments = &with_output;
-  char page[PATH_MAX], *script = NULL;
+  char page[PATH_MAX];
   if (arguments->model_count > MOST_RUNS)
     return strut_print_usage_error(&strut_command_view, "unexpected argument '%s'",
                                    arguments->models[MOST_RUNS]);
@@ -252,13 +193,11 @@ static strut_status run_view(const strut_arguments *given) {
   strut_status status =
       strut_option_word(&strut_command_view, arguments, STRUT_OPTION_EQUILIBRIA, searches, &search);
   if (status == STRUT_OK) status = check_output(arguments->output);
-  if (status == STRUT_OK) status = prepare_live(arguments, &script);
   if (status == STRUT_OK) status = open_all(arguments, opened);
   if (status == STRUT_OK) {
     if (search == SEARCH_OF_MODEL && !opened->run) search = SEARCH_ALL;
-    status = make_page(arguments, opened, search, script);
+    status = make_page(arguments, opened, search);
   }
-  strut_release(script);
   for (size_t i = 0; i < MOST_RUNS; i++) strut_opened_free(&opened[i]);
   return status;
 }
@@ -276,10 +215,7 @@ const strut_command strut_command_view = {
         "MODEL the page shows the shape at the start and the equilibria. The page is a single "
         "file\n"
         "that works offline; above about 4 MB it keeps an even selection of the frames, and says\n"
-        "so. With --live the page holds strut itself, compiled for browsers: moving a slider of a\n"
-        "parameter computes the run, or the equilibria of the model, again, and shows the result\n"
-        "beside the original. Without -o it is RUN.html or MODEL.html beside the input; a file "
-        "that strut did not\n"
+        "so. Without -o it is RUN.html or MODEL.html beside the input; a file that strut did not\n"
         "write is never overwritten.\n",
     .options = options,
     .run = run_view,

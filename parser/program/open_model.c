@@ -95,30 +95,18 @@ void strut_open_report_free(strut_open_report *report) {
   *report = (strut_open_report){.text = NULL};
 }
 
-strut_status strut_open_model_keeping(const strut_arguments *arguments, strut_open_purpose purpose,
-                                      char **text, size_t *length, strut_setup *setup) {
+strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
+                              strut_setup *setup) {
   source from;
   strut_error error = {0};
   strut_status status = open_text(arguments, scene_purpose(arguments, purpose), &from, setup, NULL);
-  *text = from.text;
-  *length = from.length;
+  strut_release(from.text);
   if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
   status = strut_resolve_start_equilibrium(setup, &error);
   if (status != STRUT_OK) {
     strut_print_error(&error);
     strut_setup_free(setup);
-    strut_release(*text);
-    *text = NULL;
   }
-  return status;
-}
-
-strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
-                              strut_setup *setup) {
-  char *text;
-  size_t length;
-  strut_status status = strut_open_model_keeping(arguments, purpose, &text, &length, setup);
-  strut_release(text);
   return status;
 }
 
@@ -171,46 +159,6 @@ strut_status strut_write_short(const strut_arguments *arguments, const char *tex
         "another one, for example if a node of a copy has moved\n",
         stderr);
   return STRUT_OK;
-}
-
-/* The scene as read again, and with the options of its run; flat before these. */
-static strut_status apply_run_options(const strut_arguments *arguments, strut_setup *setup,
-                                      char **before) {
-  strut_arguments quiet = *arguments;
-  quiet.listener = NULL;
-  *before = strut_setup_write(setup);
-  if (!*before) return STRUT_NO_MEMORY;
-  return strut_run_option_given(arguments, 0)
-             ? strut_run_options_apply(&strut_command_run, &quiet, setup)
-             : STRUT_OK;
-}
-
-strut_status strut_write_adjustable(const strut_arguments *arguments, const char *text,
-                                    size_t length, char **result) {
-  strut_diagnostics unused = {0};
-  strut_scene_source *tree = NULL;
-  strut_setup setup = {0};
-  char *before = NULL;
-  const char *name = strut_model_name(arguments);
-  size_t count = 0;
-  *result = NULL;
-  if (strncmp(text, STRUT_FLAT_SCENE, strlen(STRUT_FLAT_SCENE)) == 0) return STRUT_OK;
-  strut_status status = strut_scene_source_open(name, text, length, &unused, &tree);
-  if (status == STRUT_OK) strut_scene_source_parameters(tree, &count);
-  if (status == STRUT_OK && count > 0) {
-    status =
-        strut_setup_read(&setup, name, text, length, arguments->overrides,
-                         arguments->override_count, strut_run_options_purpose(arguments), &unused);
-    if (status == STRUT_OK) status = apply_run_options(arguments, &setup, &before);
-    if (status == STRUT_OK)
-      status = strut_short_write(tree, arguments->overrides, arguments->override_count, before,
-                                 &setup, result);
-    strut_setup_free(&setup);
-  }
-  strut_release(before);
-  strut_scene_source_free(tree);
-  strut_diagnostics_free(&unused);
-  return status == STRUT_NO_MEMORY ? status : STRUT_OK;
 }
 
 strut_status strut_check_output_writable(const strut_arguments *arguments,
@@ -287,8 +235,7 @@ static strut_status open_directory(const strut_arguments *arguments, size_t room
   char *scene = inside(arena, directory, "scene.yaml");
   char *trajectory = inside(arena, directory, "trajectory.h5");
   char *summary = inside(arena, directory, "summary.json");
-  char *model = inside(arena, directory, "model.yaml");
-  if (!scene || !trajectory || !summary || !model) return strut_no_memory(error, "");
+  if (!scene || !trajectory || !summary) return strut_no_memory(error, "");
   strut_status status = check_files(directory, scene, trajectory, error);
   if (status != STRUT_OK) return status;
   strut_arguments inner = *arguments;
@@ -301,24 +248,6 @@ static strut_status open_directory(const strut_arguments *arguments, size_t room
   struct stat found;
   if (status == STRUT_OK && stat(summary, &found) == 0)
     status = strut_file_read(summary, &opened->summary, &length, error);
-  if (status == STRUT_OK && stat(model, &found) == 0)
-    status = strut_file_read(model, &opened->adjustable, &length, error);
-  return status;
-}
-
-/* A model, whose text with parameters only a live page needs. */
-static strut_status open_scene(const strut_arguments *arguments, strut_open_purpose purpose,
-                               strut_opened *opened, strut_error *error) {
-  char *text = NULL;
-  size_t length = 0;
-  strut_status status =
-      strut_open_model_keeping(arguments, purpose, &text, &length, &opened->setup);
-  if (status == STRUT_OK) status = strut_model_compile(&opened->setup.scene, &opened->model, error);
-  if (status == STRUT_OK && arguments->live) {
-    status = strut_write_adjustable(arguments, text, length, &opened->adjustable);
-    if (status != STRUT_OK) strut_no_memory(error, "");
-  }
-  strut_release(text);
   return status;
 }
 
@@ -336,7 +265,9 @@ strut_status strut_open_run(const strut_command *command, const strut_arguments 
   if (opened->run) {
     status = open_directory(arguments, room, &arena, opened, &error);
   } else {
-    status = open_scene(arguments, purpose, opened, &error);
+    status = strut_open_model(arguments, purpose, &opened->setup);
+    if (status == STRUT_OK)
+      status = strut_model_compile(&opened->setup.scene, &opened->model, &error);
   }
   if (status != STRUT_OK && error.status != STRUT_OK) strut_print_error(&error);
   if (status != STRUT_OK) strut_opened_free(opened);
@@ -346,7 +277,6 @@ strut_status strut_open_run(const strut_command *command, const strut_arguments 
 
 void strut_opened_free(strut_opened *opened) {
   strut_release(opened->summary);
-  strut_release(opened->adjustable);
   strut_trajectory_free(&opened->motion);
   strut_model_free(opened->model);
   strut_setup_free(&opened->setup);

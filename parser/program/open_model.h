@@ -36,13 +36,9 @@ void strut_open_report_free(strut_open_report *report);
 strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
                               strut_setup *setup);
 
-/** As strut_open_model, and keeps the file's text[0..length), a block of strut_allocate; NULL after a failure. */
-strut_status strut_open_model_keeping(const strut_arguments *arguments, strut_open_purpose purpose,
-                                      char **text, size_t *length, strut_setup *setup);
-
 /**
- * The same, STRUT_OPEN_FOR_ANY, which keeps the file's text[0..length) for who reads it again; a block of
- * strut_allocate. *text is NULL after a failure.
+ * The same, STRUT_OPEN_FOR_ANY, which keeps the file's text[0..length), a block of strut_allocate that is
+ * NULL after a failure.
  */
 strut_status strut_open_model_text(const strut_arguments *arguments, char **text, size_t *length,
                                    strut_setup *setup);
@@ -55,14 +51,6 @@ strut_status strut_open_model_text(const strut_arguments *arguments, char **text
 strut_status strut_write_short(const strut_arguments *arguments, const char *text, size_t length,
                                const char *before, const strut_setup *setup, bool all,
                                char **result);
-
-/**
- * The scene of a run with its parameters adjustable, as `text` gives it, with the values of --set and the
- * options of the run. *result is NULL where it has no parameters or cannot be written so. Prints nothing;
- * STRUT_OK or STRUT_NO_MEMORY.
- */
-strut_status strut_write_adjustable(const strut_arguments *arguments, const char *text,
-                                    size_t length, char **result);
 
 /** The model's name in messages. */
 const char *strut_model_name(const strut_arguments *arguments);
@@ -86,7 +74,6 @@ typedef struct strut_opened {
   strut_model *model;
   strut_trajectory motion; /* of a run: positions of one frame or more */
   char *summary;           /* of a run: the text of its summary.json, or NULL */
-  char *adjustable; /* the scene's text with its parameters: strut_write_adjustable; or NULL */
 } strut_opened;
 
 /**

@@ -140,7 +140,6 @@ static strut_status store_option(const strut_command *command, int id, strut_arg
     case STRUT_OPTION_STUDY: to->study = true; break;
     case STRUT_OPTION_VERBOSE: to->verbose = true; break;
     case STRUT_OPTION_BASINS: to->basins = true; break;
-    case STRUT_OPTION_LIVE: to->live = true; break;
     case STRUT_OPTION_HELP: to->help = true; break;
     default: break;
   }

@@ -274,7 +274,7 @@ static void put_head_by_hand(strut_writer *writer, strut_mapping *mapping, int k
 
 static void put_head(strut_writer *writer) {
   strut_mapping mapping = STRUT_MAPPING_LINES("");
-  strut_put(writer, STRUT_FLAT_SCENE);
+  strut_put(writer, "# The scene as it was used, in SI units.");
   strut_put_fields(writer, &mapping, STRUT_SECTION_SCENE, writer->scene, &writer->usual,
                    put_head_by_hand);
   strut_put(writer, "\n");

@@ -10,10 +10,10 @@
 #include "parser/read/read_scene.h"
 #include "parser/yaml/document.h"
 
-/** The first line of that text: its parameters are a record, without effect. */
-#define STRUT_FLAT_SCENE "# The scene as it was used, in SI units."
-
-/** The effective scene and experiment as YAML text in a block of strut_allocate (release it); NULL: no memory. */
+/**
+ * The effective scene and experiment as YAML text in a block of strut_allocate (release it); NULL: no memory.
+ * Its parameters are a record, without effect.
+ */
 STRUT_API char *strut_setup_write(const strut_setup *setup);
 
 /**

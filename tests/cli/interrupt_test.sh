@@ -45,7 +45,7 @@ interrupt() {
 interrupt INT --json -o kept
 out_has '"status":	"interrupted"'
 err_has "interrupted at t = "
-files kept contacts.csv energy.csv members.csv model.yaml nodes.csv scene.yaml summary.json trajectory.h5
+files kept contacts.csv energy.csv members.csv nodes.csv scene.yaml summary.json trajectory.h5
 grep -q '"status":	"interrupted"' kept/summary.json || fail "summary.json is not marked"
 [ "$(wc -l <kept/nodes.csv)" -gt 1 ] || fail "nothing was kept"
 if command -v h5dump >/dev/null; then

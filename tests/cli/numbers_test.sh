@@ -15,7 +15,7 @@ err_has "t = "
 err_has "node '"
 out_has '"status":	"diverged"'
 out_has '"wall_time":'
-files kept contacts.csv energy.csv members.csv model.yaml nodes.csv scene.yaml summary.json trajectory.h5
+files kept contacts.csv energy.csv members.csv nodes.csv scene.yaml summary.json trajectory.h5
 grep -q '"status":	"diverged"' kept/summary.json || fail "summary.json is not marked"
 grep -q wall_time kept/summary.json && fail "summary.json knows the wall time"
 [ "$(wc -l <kept/nodes.csv)" -gt 1 ] || fail "nothing was kept"

@@ -3,7 +3,7 @@
 # What -o DIR holds, and that equal runs give equal bytes.
 . "$(dirname "$0")/lib.sh"
 hopper=$here/hopper.yaml
-all="contacts.csv energy.csv members.csv model.yaml nodes.csv scene.yaml summary.json trajectory.h5"
+all="contacts.csv energy.csv members.csv nodes.csv scene.yaml summary.json trajectory.h5"
 
 expect 0 run "$hopper" -o deep/er/one
 err_empty
@@ -19,11 +19,7 @@ same_directory deep/er/one two
 
 # The scene as it was run gives the same bits, in every file.
 expect 0 run two/scene.yaml -o three -q
-# Its parameters are a record: it has no model.yaml.
-cp -r two two-flat
-cp -r three three-flat
-rm two-flat/model.yaml two-flat/.strut-files three-flat/.strut-files
-same_directory two-flat three-flat
+same_directory two three
 
 # Headers and rows.
 expected='time [s],foot.x [m],foot.y [m],foot.vx [m/s],foot.vy [m/s],body.x [m],body.y [m],'
@@ -44,7 +40,7 @@ done
 sed 's/channels: .*/channels: [position]}/' "$hopper" >less.yaml
 echo mine >two/notes.txt
 expect 0 run less.yaml -o two -q
-files two model.yaml nodes.csv notes.txt scene.yaml summary.json trajectory.h5
+files two nodes.csv notes.txt scene.yaml summary.json trajectory.h5
 
 # Refusals leave everything as it was.
 cp -r two before

@@ -67,7 +67,7 @@ for size in 4 16 64 128 192 256 320 384 448 512 640 4000; do
   "$strut" run "$hopper" -o disk/out >out 2>err </dev/null
   code=$?
   if [ $code -eq 0 ]; then
-    files disk/out contacts.csv energy.csv members.csv model.yaml nodes.csv scene.yaml summary.json \
+    files disk/out contacts.csv energy.csv members.csv nodes.csv scene.yaml summary.json \
       trajectory.h5
     fitted=$size
   else

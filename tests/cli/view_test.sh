@@ -62,54 +62,7 @@ tells 4 "nowhere" view swing nowhere -o none.html
 tells 1 "--set needs a model" view swing swing -o none.html --set x=1
 absent none.html
 
-# Live pages: the scene and the script are inside; without script, parameters or model.yaml they are refused.
-cat >rocking.yaml <<'END'
-strut: 1
-name: Rocking
-parameters: {weight: 9.81 m/s^2, word: "here"}
-nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}
-members: {ab: {kind: bar, nodes: [a, b], stiffness: 1e4}}
-gravity: [0, -weight]
-configurations: {here: {shape: {}}}
-solver: {step: 1 ms}
-run: {duration: 0.2 s}
-output: {every: 1 ms, channels: [position, force]}
-END
-expect 0 run rocking.yaml --set weight=2 --step '2 ms' -q -o rocking
-tells 1 "--live needs strut-live.js" view rocking --live -o live.html
-err_has "STRUT_LIVE_SCRIPT"
-echo "window.strutLive = 1;" >live.js
-STRUT_LIVE_SCRIPT=nowhere.js expect 4 view rocking --live -o live.html
-err_has "nowhere.js"
-export STRUT_LIVE_SCRIPT=live.js
-tells 1 "--live shows one run or model, not two" view rocking rocking --live -o live.html
-tells 1 "--live needs a scene with parameters; 'swing' has none" view swing --live -o live.html
-tells 1 "'swing.yaml' has none" view swing.yaml --live -o live.html
-cp -r rocking older
-rm older/model.yaml
-tells 1 "--live needs the file model.yaml in 'older': run the model again" view older --live -o live.html
-absent live.html
-expect 0 view rocking --live -o live.html
-grep -q "script-src 'unsafe-inline' 'wasm-unsafe-eval'; worker-src blob:;" live.html || fail "policy of a live page"
-grep -q '^window.strutLive = 1;$' live.html || fail "no script"
-grep -o '"live":{.*' live.html >live
-grep -q '"call":"run"' live || fail "what a live run computes"
-grep -q '{"name":"weight", *"text":"2", *"value":2}' live || fail "no parameter: $(cat live)"
-grep -q '{"name":"word", *"text":"here", *"value":null}' live || fail "no word: $(cat live)"
-expect 0 view rocking.yaml --live --set weight=3 -o live.html
-grep -q '"call":"equilibria"' live.html || fail "what a live model computes"
-grep -q 'parameters: {weight: 3 m/s^2' live.html || fail "a setting is not in the scene"
-expect 0 view rocking.yaml --live --equilibria none -o live.html
-grep -q '"call":"start"' live.html || fail "what a live shape computes"
-unset STRUT_LIVE_SCRIPT
 grep -q "script-src 'unsafe-inline'; style-src" swing.html || fail "policy of a page"
-grep -q '"live":{' swing.html && fail "a page is live"
-
-# model.yaml: the same run with adjustable parameters, only where there are any.
-expect 0 run rocking/model.yaml -q -o again
-same rocking/nodes.csv again/nodes.csv
-expect 0 run rocking/model.yaml -q --set weight=4 -o again
-absent swing/model.yaml
 
 # The same page in any locale and with any number of threads.
 for locale in C C.UTF-8 de_DE.UTF-8; do

@@ -157,33 +157,6 @@ class Notebooks(unittest.TestCase):
         self.assertIn("2 more", _views.things([{"a": 1.0}] * 14, 14))
         self.assertNotIn("--", strut.load(MODELS / "basics/x-frame.yaml").run()._repr_html_().split("</iframe>")[1])
 
-    def test_live_pages_hold_scene_options_and_script(self):
-        scene = strut.load(MODELS / "crawler/crawler.yaml").with_(friction=0.2)
-        run = scene.run(accuracy="0.5 %", channels=["position"])
-        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.dict(os.environ):
-            os.environ["STRUT_LIVE_SCRIPT"] = f"{folder}/live.js"
-            with self.assertRaises(FileNotFoundError):
-                run.html(live=True)
-            pathlib.Path(folder, "live.js").write_text("window.strutLive = 1;\n")
-            page = run.html(live=True)
-            shape = scene.html(live=True)
-            shown = run.view(live=True)._repr_html_()
-            with self.assertRaisesRegex(ValueError, "needs a scene with parameters"):
-                strut.Scene.from_dict(BAR).html(live=True)
-        data = re.search(r'<script type="application/json" id="strut-data">(.*?)</script>', page, re.S)[1]
-        live = json.loads(data)["live"]
-        self.assertEqual(live["call"], "run")
-        self.assertEqual(live["options"]["accuracy"], "0.5 %")
-        self.assertIn("friction", [parameter["name"] for parameter in live["parameters"]])
-        again = strut.loads(live["scene"]).run(**live["options"])
-        self.assertEqual(again.velocity, run.velocity)
-        self.assertIn("window.strutLive = 1;", page)
-        self.assertIn("'wasm-unsafe-eval'; worker-src blob:", page)
-        self.assertIn('"call":"start"', shape)
-        self.assertTrue(shown.startswith("<iframe srcdoc="))
-        self.assertNotIn("wasm-unsafe-eval", run.html())
-        self.assertNotIn("wasm-unsafe-eval", run.view().html)
-
     def test_names_cannot_break_the_page(self):
         described = strut.load(MODELS / "basics/x-frame.yaml", load=1).to_dict()
         described["name"] = NAME

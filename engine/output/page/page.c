@@ -26,11 +26,9 @@ static void add_elements(strut_buffer *to, const strut_embedded *files, const ch
     strut_buffer_add(to, "<%s>\n%s</%s>\n", element, files->text, element);
 }
 
-/* A script of a live page comes last. */
-static void add_scripts(strut_buffer *to, const strut_page *page) {
+static void add_scripts(strut_buffer *to) {
   strut_buffer_add(to, "<!--\n%s-->\n", strut_page_notice->text);
   add_elements(to, strut_page_scripts, "script");
-  if (page->live) strut_buffer_add(to, "<script>\n%s</script>\n", page->live->script);
 }
 
 static void add_data(strut_buffer *to, const char *id, const char *data) {
@@ -42,9 +40,7 @@ static void add_data(strut_buffer *to, const char *id, const char *data) {
 static void add_part(strut_buffer *to, const strut_page *page, const char *name,
                      char *const data[2]) {
   const char *title = page->model->scene->name;
-  if (strncmp(name, "policy", 6) == 0) {
-    if (page->live) strut_buffer_add(to, " 'wasm-unsafe-eval'; worker-src blob:");
-  } else if (strncmp(name, "title", 5) == 0) {
+  if (strncmp(name, "title", 5) == 0) {
     add_text(to, *title ? title : "strut");
   } else if (strncmp(name, "style", 5) == 0) {
     add_elements(to, strut_page_styles, "style");
@@ -52,7 +48,7 @@ static void add_part(strut_buffer *to, const strut_page *page, const char *name,
     add_data(to, "strut-data", data[0]);
     if (data[1]) add_data(to, "strut-beside", data[1]);
   } else if (strncmp(name, "scripts", 7) == 0) {
-    add_scripts(to, page);
+    add_scripts(to);
   }
 }
 

@@ -32,11 +32,6 @@
  *   summary: [{label, value}]           rows of text, ready to show, measured quantities among them
  *   yaml: text of the scene
  *   study: null
- *   live: only on a live page, which computes the scene again with other parameters: {
- *     scene: text of the scene with its parameters, without other files; name: of its file
- *     call: run, equilibria, or start for the drawn shape
- *     parameters: [{name, text, value: number [SI] or null where it is a text}]
- *     options: {name: text} of the run; configurations: [name, ...] }
  *
  * Modes and paths are no part of it: JSON of their results has all their numbers. Data of such a
  * result are those of its structure, on which a page may draw them: as a motion with `made`:
@@ -60,15 +55,6 @@
 #include "engine/scene/experiment.h"
 #include "engine/statics/equilibria/equilibria.h"
 
-/** What makes a page live. Nothing is owned. */
-typedef struct strut_page_live {
-  const char *script; /* strut-live.js: the engine and the controls */
-  const char *scene;  /* see `live` above */
-  const char *name, *call;
-  size_t option_count; /* of a run, as its command or the library takes them */
-  const char *const *option_names, *const *option_values;
-} strut_page_live;
-
 /** The content of a page. Nothing is owned. */
 typedef struct strut_page {
   const strut_model *model;
@@ -79,7 +65,6 @@ typedef struct strut_page {
   const char *summary;                /* the text of summary.json, or NULL */
   const char *yaml;                   /* the scene as text */
   const char *label;                  /* see above, or NULL */
-  const strut_page_live *live;        /* NULL: the page only shows */
   const struct strut_page *beside;    /* a second run on the same page, or NULL */
   size_t most_bytes;                  /* of the data, about; 0: 4 million. Frames are left out
                                          evenly until they fit, down to two */

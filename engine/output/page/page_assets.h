@@ -9,10 +9,9 @@
 #include "engine/output/buffer.h"
 
 /*
- * Each ends with a row of NULL. In the template, page.html, five comments are replaced:
- * strut:policy by what a live page needs of the Content-Security-Policy, strut:title by the title's
- * text, strut:style by <style> elements, strut:data by the <script> element of the data, strut:scripts
- * by <script> elements.
+ * Each ends with a row of NULL. In the template, page.html, four comments are replaced:
+ * strut:title by the title's text, strut:style by <style> elements, strut:data by the <script> element of
+ * the data, strut:scripts by <script> elements.
  */
 extern const strut_embedded strut_page_template[];
 extern const strut_embedded strut_page_styles[];

@@ -314,27 +314,6 @@ static void add_parameters(strut_json *json, const strut_scene *scene,
     add_row(json, rows, "integration step", strut_quantity_of(experiment->step, 4, "s").text);
 }
 
-/* What the script of a live page computes. */
-static void add_live(strut_json *json, const strut_scene *scene, const strut_page_live *live) {
-  struct cJSON *to = strut_json_object(json, json->root, "live");
-  strut_json_text(json, to, "scene", live->scene);
-  strut_json_text(json, to, "name", live->name);
-  strut_json_text(json, to, "call", live->call);
-  struct cJSON *options = strut_json_object(json, to, "options");
-  for (size_t i = 0; i < live->option_count; i++)
-    strut_json_text(json, options, live->option_names[i], live->option_values[i]);
-  struct cJSON *parameters = strut_json_array(json, to, "parameters");
-  for (size_t i = 0; i < scene->parameter_count; i++) {
-    struct cJSON *parameter = strut_json_object(json, parameters, NULL);
-    strut_json_text(json, parameter, "name", scene->parameters[i].name);
-    strut_json_text(json, parameter, "text", scene->parameters[i].text);
-    strut_json_number(json, parameter, "value", scene->parameters[i].value);
-  }
-  struct cJSON *configurations = strut_json_array(json, to, "configurations");
-  for (size_t i = 0; i < scene->configuration_count; i++)
-    strut_json_text(json, configurations, NULL, scene->configurations[i].name);
-}
-
 /* The scene's text; of a very long one its beginning, up to the end of a line. */
 static bool add_yaml(strut_json *json, const char *yaml) {
   size_t length = strlen(yaml), kept = length;
@@ -376,7 +355,6 @@ static char *still_data(const strut_page *page) {
   strut_summary_rows(&json, rows, page->summary, page->experiment, scene);
   if (!add_yaml(&json, page->yaml)) json.failed = true;
   strut_json_text(&json, json.root, "study", NULL);
-  if (page->live) add_live(&json, scene, page->live);
   return strut_json_end(&json);
 }
 

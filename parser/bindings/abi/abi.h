@@ -272,13 +272,6 @@ STRUTLIB_API char *strutlib_scene_svg(const strutlib_scene *scene, strutlib_erro
 /** The page that `strut view MODEL` writes; where `equilibria` is 0 none are searched. */
 STRUTLIB_API char *strutlib_scene_html(const strutlib_scene *scene, int equilibria,
                                        strutlib_control *control, strutlib_error **error);
-/**
- * The same page with sliders for the scene's parameters, which compute it again in the browser. `script`: the text of
- * strut-live.js, which the preset `web` builds. STRUTLIB_USAGE where the scene has no parameters.
- */
-STRUTLIB_API char *strutlib_scene_html_live(const strutlib_scene *scene, int equilibria,
-                                            const char *script, strutlib_control *control,
-                                            strutlib_error **error);
 /** The data of that page alone, as a JSON object that engine/output/page/page.h describes. */
 STRUTLIB_API char *strutlib_scene_page_data(const strutlib_scene *scene, int equilibria,
                                             strutlib_control *control, strutlib_error **error);
@@ -461,14 +454,6 @@ STRUTLIB_API char *strutlib_result_svg(const strutlib_result *result, size_t cou
                                        strutlib_error **error);
 /** The page that `strut view` writes of a run, or of equilibria; others: NULL with the error. */
 STRUTLIB_API char *strutlib_result_html(const strutlib_result *result, strutlib_error **error);
-/**
- * Of a run the same page as strutlib_scene_html_live makes it; `scene` and the options are those that the run was
- * called with.
- */
-STRUTLIB_API char *strutlib_result_html_live(const strutlib_result *result,
-                                             const strutlib_scene *scene, size_t count,
-                                             const char *const *names, const char *const *values,
-                                             const char *script, strutlib_error **error);
 /**
  * The data of that page alone, as a JSON object that engine/output/page/page.h describes. Of modes, rigidity and a
  * path, which have no page, it is that of the structure: strutlib_result_json has their numbers.

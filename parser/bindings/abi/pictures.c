@@ -149,28 +149,13 @@ static char *write_page(strut_page *page, const strut_setup *setup, page_writer 
   return text;
 }
 
-/* What a live page of the scene computes, whose text is to be released; false with the error. */
-static bool describe_live(const strutlib_scene *scene, const char *script, const char *call,
-                          strut_page_live *live, strutlib_error **error) {
-  if (scene->setup.scene.parameter_count == 0) {
-    abi_fail(error, STRUTLIB_USAGE, "a live page needs a scene with parameters; '%s' has none",
-             scene->source->name);
-    return false;
-  }
-  char *text = strutlib_scene_yaml(scene, 1, error);
-  *live =
-      (strut_page_live){.script = script, .scene = text, .name = scene->source->name, .call = call};
-  return text != NULL;
-}
-
 /* `still`: a result without motion and equilibria shows its structure, if it has a model. */
-static char *result_page(const strutlib_result *result, bool still, const strut_page_live *live,
-                         page_writer *writer, strutlib_error **error) {
+static char *result_page(const strutlib_result *result, bool still, page_writer *writer,
+                         strutlib_error **error) {
   char *text = NULL;
   if (abi_lacks(error, result, "result")) return NULL;
   abi_enter(error);
   strut_page page = {.model = result->model,
-                     .live = live,
                      .motion = abi_result_motion(result),
                      .equilibria = abi_result_equilibria(result)};
   if (page.motion) page.summary = result->json;
@@ -186,32 +171,11 @@ static char *result_page(const strutlib_result *result, bool still, const strut_
 }
 
 char *strutlib_result_html(const strutlib_result *result, strutlib_error **error) {
-  return result_page(result, false, NULL, strut_page_html, error);
-}
-
-char *strutlib_result_html_live(const strutlib_result *result, const strutlib_scene *scene,
-                                size_t count, const char *const *names, const char *const *values,
-                                const char *script, strutlib_error **error) {
-  strut_page_live live;
-  if (abi_lacks(error, result, "result") || abi_lacks(error, scene, "scene") ||
-      abi_lacks_pairs(error, count, names, values) || abi_lacks(error, script, "script"))
-    return NULL;
-  if (result->command != &abi_run_command) {
-    abi_fail(error, STRUTLIB_USAGE, "there is no live page of %s, only of runs and scenes",
-             result->command->name);
-    return NULL;
-  }
-  if (!describe_live(scene, script, "run", &live, error)) return NULL;
-  live.option_count = count;
-  live.option_names = names;
-  live.option_values = values;
-  char *text = result_page(result, false, &live, strut_page_html, error);
-  strut_release((char *)live.scene);
-  return text;
+  return result_page(result, false, strut_page_html, error);
 }
 
 char *strutlib_result_page_data(const strutlib_result *result, strutlib_error **error) {
-  return result_page(result, true, NULL, strut_page_data, error);
+  return result_page(result, true, strut_page_data, error);
 }
 
 /* A page of a scene to be written, with the equilibria or a remark where they cannot be found. */
@@ -220,7 +184,6 @@ typedef struct scene_page {
   bool equilibria;
   strutlib_control *control;
   page_writer *writer;
-  const strut_page_live *live;
 } scene_page;
 
 static char *write_scene_page(const scene_page *wanted, const strut_setup *setup,
@@ -232,7 +195,7 @@ static char *write_scene_page(const scene_page *wanted, const strut_setup *setup
   char *text = NULL;
   if (wanted->equilibria)
     status = strut_equilibria_find(model, &setup->experiment, &options, &all, &remark);
-  strut_page page = {.model = model, .live = wanted->live};
+  strut_page page = {.model = model};
   if (wanted->equilibria && status == STRUT_OK) page.equilibria = &all;
   if (!page.equilibria)
     page.remark = wanted->equilibria ? remark.message : "No search for equilibria was made.";
@@ -267,23 +230,12 @@ static char *make_scene_page(const scene_page *wanted, strutlib_error **error) {
 
 char *strutlib_scene_html(const strutlib_scene *scene, int equilibria, strutlib_control *control,
                           strutlib_error **error) {
-  const scene_page wanted = {scene, equilibria != 0, control, strut_page_html, NULL};
+  const scene_page wanted = {scene, equilibria != 0, control, strut_page_html};
   return make_scene_page(&wanted, error);
-}
-
-char *strutlib_scene_html_live(const strutlib_scene *scene, int equilibria, const char *script,
-                               strutlib_control *control, strutlib_error **error) {
-  strut_page_live live;
-  if (abi_lacks(error, scene, "scene") || abi_lacks(error, script, "script")) return NULL;
-  if (!describe_live(scene, script, equilibria ? "equilibria" : "start", &live, error)) return NULL;
-  const scene_page wanted = {scene, equilibria != 0, control, strut_page_html, &live};
-  char *text = make_scene_page(&wanted, error);
-  strut_release((char *)live.scene);
-  return text;
 }
 
 char *strutlib_scene_page_data(const strutlib_scene *scene, int equilibria,
                                strutlib_control *control, strutlib_error **error) {
-  const scene_page wanted = {scene, equilibria != 0, control, strut_page_data, NULL};
+  const scene_page wanted = {scene, equilibria != 0, control, strut_page_data};
   return make_scene_page(&wanted, error);
 }

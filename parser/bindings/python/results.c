@@ -250,27 +250,6 @@ static PyObject *html(PyObject *self, PyObject *none) {
       return strut_py_own_text(text, error);
 }
 
-static PyObject *html_live(PyObject *self, PyObject *arguments) {
-  PyObject *scene, *names, *values;
-  const char *script;
-  strut_py_texts options[2];
-  const strutlib_result *result = handle(self);
-  if (result == NULL ||
-      !PyArg_ParseTuple(arguments, "O!OOs:html_live",
-                        strut_py_types_of(((strut_py_result *)self)->module)->scene, &scene, &names,
-                        &values, &script) ||
-      strut_py_pairs_read(names, values, options) != 0) {
-    return NULL;
-  }
-  strutlib_error *error = NULL;
-  const strutlib_scene *of = ((strut_py_scene *)scene)->scene;
-  char *text = strutlib_result_html_live(result, of, options[0].count, options[0].text,
-                                         options[1].text, script, &error);
-  strut_py_texts_free(&options[0]);
-  strut_py_texts_free(&options[1]);
-  return strut_py_own_text(text, error);
-}
-
 static PyMethodDef methods[] = {
     {"command", command, METH_NOARGS, "What made it: run, equilibria, ..."},
     {"status", status, METH_NOARGS, "A word: ok, diverged, interrupted, ..."},
@@ -285,8 +264,6 @@ static PyMethodDef methods[] = {
     {"yaml", yaml, METH_NOARGS, "The scene as it was run, or the model that a form is."},
     {"svg", svg, METH_VARARGS, "svg(names, values): the figure."},
     {"html", html, METH_NOARGS, "The page."},
-    {"html_live", html_live, METH_VARARGS,
-     "html_live(scene, names, values, script): the live page of a run with these options."},
     {NULL, NULL, 0, NULL}};
 
 static PyType_Slot slots[] = {{Py_tp_dealloc, (void *)delete_result},

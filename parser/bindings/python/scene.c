@@ -101,7 +101,6 @@ static PyObject *svg(PyObject *self, PyObject *none) {
 
 typedef struct {
   const strutlib_scene *scene;
-  const char *script; /* of a live page, or NULL */
   int equilibria;
   strutlib_control *control;
   strutlib_error *error;
@@ -110,16 +109,12 @@ typedef struct {
 
 static void write_page(void *context) {
   page *p = context;
-  if (p->script != NULL) {
-    p->text = strutlib_scene_html_live(p->scene, p->equilibria, p->script, p->control, &p->error);
-  } else {
-    p->text = strutlib_scene_html(p->scene, p->equilibria, p->control, &p->error);
-  }
+  p->text = strutlib_scene_html(p->scene, p->equilibria, p->control, &p->error);
 }
 
 static PyObject *html(PyObject *self, PyObject *arguments) {
   page p = {.scene = handle(self)};
-  if (!PyArg_ParseTuple(arguments, "pz:html", &p.equilibria, &p.script)) {
+  if (!PyArg_ParseTuple(arguments, "p:html", &p.equilibria)) {
     return NULL;
   }
   p.control = strutlib_control_create();
@@ -319,8 +314,7 @@ static PyMethodDef methods[] = {
     {"yaml", yaml, METH_O, "yaml(parts): the scene, resolved or with its parameters and parts."},
     {"json", json, METH_NOARGS, "The resolved scene."},
     {"svg", svg, METH_NOARGS, "The drawn structure."},
-    {"html", html, METH_VARARGS,
-     "html(equilibria, script): the page of a model, live with a script."},
+    {"html", html, METH_VARARGS, "html(equilibria): the page of a model."},
     {"call", call, METH_VARARGS, "call(result, command, names, values, progress)"},
     {"sweep", sweep, METH_VARARGS,
      "sweep(result, axes, count, points, words, keep, names, values, progress)"},

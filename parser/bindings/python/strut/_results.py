@@ -7,7 +7,7 @@ import json
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Iterator, Protocol, Sequence
 
-from . import _files, _plots, _strut, _views
+from . import _plots, _strut, _views
 from ._errors import Error, in_python
 from ._values import COMPONENTS, Frozen, Named, UnknownName, Value, Words
 from ._values import fixed, from_words, numpy, options, unknown, words
@@ -35,9 +35,6 @@ class _Raw(Protocol):
     def yaml(self) -> str: ...
     def svg(self, names: tuple[str, ...], values: tuple[str, ...]) -> str: ...
     def html(self) -> str: ...
-    def html_live(
-        self, scene: Any, names: tuple[str, ...], values: tuple[str, ...], script: str
-    ) -> str: ...
 
 
 class _Stored:
@@ -109,9 +106,6 @@ class _Stored:
     def html(self) -> str:
         raise ValueError("a result out of a pickle has no page")
 
-    def html_live(self, *arguments: object) -> str:
-        raise ValueError("a result out of a pickle has no page")
-
 
 class Result(Frozen):
     """What a computation returned; it does not change.
@@ -124,10 +118,8 @@ class Result(Frozen):
     _raw: _Raw
     _scene: Scene | None
 
-    _options: tuple[tuple[str, ...], tuple[str, ...]]  #: names and values that the library was called with
-
-    def __init__(self, raw: _Raw, scene: Scene | None, options: Any = ((), ())) -> None:
-        self.__dict__.update(_raw=raw, _scene=scene, _options=options)
+    def __init__(self, raw: _Raw, scene: Scene | None) -> None:
+        self.__dict__.update(_raw=raw, _scene=scene)
 
     @cached_property
     def summary(self) -> Words:
@@ -229,7 +221,7 @@ class Result(Frozen):
         return {"_raw": raw, "_scene": self._scene}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state, _options=((), ()))
+        self.__dict__.update(state)
 
 
 class _List(Result):
@@ -394,18 +386,13 @@ class Run(Result):
                     columns[f"{channel}.{name}"] = part
         return pandas.DataFrame(columns, index=pandas.Index(self.time, name="time"))
 
-    def html(self, *, live: bool = False) -> str:
-        """A page for any browser, which plays the motion.
+    def html(self) -> str:
+        """A page for any browser, which plays the motion."""
+        return self._raw.html()
 
-        With `live` it has sliders for the parameters, which compute the run again in the browser.
-        """
-        if not live:
-            return self._raw.html()
-        return self._raw.html_live(self._of()._raw, *self._options, _files.live_script())
-
-    def view(self, *, live: bool = False) -> _views.View:
+    def view(self) -> _views.View:
         """That page for a notebook."""
-        return _views.View(self.html(live=live))
+        return _views.View(self.html())
 
     def plot(self, name: str | None = None, *, ax: Any = None) -> Any:
         """Draws a recorded array over time by matplotlib, and returns the axes.

@@ -8,7 +8,7 @@ import os
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Literal, Mapping, Sequence
 
-from . import _files, _strut
+from . import _strut
 from ._errors import in_python
 from ._results import Equilibria, Form, Matrices, Modes, Path, Rigidity, Run
 from ._simulation import Simulation
@@ -148,16 +148,13 @@ class Scene(Frozen):
         """The drawn structure as an SVG picture."""
         return self._raw.svg()
 
-    def html(self, *, equilibria: bool = False, live: bool = False) -> str:
-        """A page for any browser that shows the structure, with `equilibria` all of these, too.
+    def html(self, *, equilibria: bool = False) -> str:
+        """A page for any browser that shows the structure, with `equilibria` all of these, too."""
+        return self._raw.html(equilibria)
 
-        With `live` it has sliders for the parameters, which compute it again in the browser.
-        """
-        return self._raw.html(equilibria, _files.live_script() if live else None)
-
-    def view(self, *, equilibria: bool = False, live: bool = False) -> View:
+    def view(self, *, equilibria: bool = False) -> View:
         """That page for a notebook."""
-        return View(self.html(equilibria=equilibria, live=live))
+        return View(self.html(equilibria=equilibria))
 
     def _repr_html_(self) -> str:
         return self.svg()
@@ -182,11 +179,11 @@ class Scene(Frozen):
             self._raw.call(raw, kind._command, *pairs, progress)
         except BaseException as error:
             if raw:
-                error.result = kind(raw, self, pairs)  # type: ignore[attr-defined]
+                error.result = kind(raw, self)  # type: ignore[attr-defined]
             raise
         if progress is not None:
             progress(1.0)
-        return kind(raw, self, pairs)
+        return kind(raw, self)
 
     def run(
         self,
