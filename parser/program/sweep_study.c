@@ -296,7 +296,7 @@ static strut_status find_places(char program[PATH_MAX], char folder[PATH_MAX]) {
 }
 
 static strut_status print_script(const strut_arguments *arguments, strut_cluster_script *script,
-                                 strut_cluster cluster, strut_arena *arena) {
+                                 strut_arena *arena) {
   strut_error error = {0};
   char program[PATH_MAX], folder[PATH_MAX], *text = NULL;
   strut_status status = find_places(program, folder);
@@ -305,7 +305,7 @@ static strut_status print_script(const strut_arguments *arguments, strut_cluster
   script->folder = folder;
   script->words = list_words(arguments, arena, &script->word_count);
   if (!script->words) return strut_print_out_of_memory();
-  status = strut_cluster_script_write(cluster, script, &text, &error);
+  status = strut_cluster_script_write(script, &text, &error);
   if (status == STRUT_USAGE) fprintf(stderr, "strut sweep: --emit: %s\n", error.message);
   if (status == STRUT_NO_MEMORY) strut_print_error(&error);
   if (status == STRUT_OK) status = strut_print(text);
@@ -314,14 +314,10 @@ static strut_status print_script(const strut_arguments *arguments, strut_cluster
 }
 
 /* Checks what does not depend on numbers. */
-static strut_status check_emit_options(const strut_arguments *arguments, strut_cluster cluster) {
+static strut_status check_emit_options(const strut_arguments *arguments) {
   const char *wrong = NULL;
   if (strcmp(arguments->model, "-") == 0)
     wrong = "--emit needs a file that the tasks can read, not standard input";
-  else if (cluster != STRUT_CLUSTER_SLURM && strut_option_text(arguments, STRUT_OPTION_TIME))
-    wrong = "--time is for --emit slurm";
-  else if (cluster == STRUT_CLUSTER_PARALLEL && strut_option_text(arguments, STRUT_OPTION_MEMORY))
-    wrong = "--memory is for --emit slurm and htcondor";
   else if (!strut_option_text(arguments, STRUT_OPTION_SHARDS))
     wrong = "--emit needs --shards N, the number of tasks";
   if (!wrong) return STRUT_OK;
@@ -330,7 +326,7 @@ static strut_status check_emit_options(const strut_arguments *arguments, strut_c
 }
 
 strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name) {
-  static const char *const kinds[] = {"slurm", "parallel", "htcondor", NULL};
+  static const char *const kinds[] = {"slurm", NULL};
   const strut_command *command = &strut_command_sweep;
   strut_cluster_script script = {.name = name,
                                  .study = arguments->model,
@@ -340,7 +336,7 @@ strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name
                                  .cpus = 1};
   int kind = 0;
   strut_status status = strut_option_word(command, arguments, STRUT_OPTION_EMIT, kinds, &kind);
-  if (status == STRUT_OK) status = check_emit_options(arguments, (strut_cluster)kind);
+  if (status == STRUT_OK) status = check_emit_options(arguments);
   if (status == STRUT_OK)
     status = strut_option_integer(command, arguments, STRUT_OPTION_SHARDS, 1, STRUT_MOST_SHARDS,
                                   &script.shards);
@@ -349,7 +345,7 @@ strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name
         strut_option_integer(command, arguments, STRUT_OPTION_CPUS, 1, MOST_CPUS, &script.cpus);
   if (status != STRUT_OK) return status;
   strut_arena arena = {0};
-  status = print_script(arguments, &script, (strut_cluster)kind, &arena);
+  status = print_script(arguments, &script, &arena);
   strut_arena_free(&arena);
   return status;
 }

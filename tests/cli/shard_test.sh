@@ -83,42 +83,6 @@ refused MINE=1 env:/6 "expected env:VARIABLE/N"
 refused MINE=1 env:OTHER/6 "OTHER is not set"
 refused MINE=1 oar/6 "kubernetes and env:VARIABLE with /N, not 'oar/6'"
 
-# HTCondor: the DAG that is submitted, and what its jobs run.
-mkdir condor-bin "a 'folder'"
-cat >condor-bin/condor_submit_dag <<'END'
-#!/bin/sh
-# The jobs of the description as HTCondor starts them: its quotes are undone, $(Process) is a number.
-echo "$@" >words
-arguments() { sed -n 's/^arguments = "\(.*\)"$/\1/p' "$1" | sed 's/""/"/g' | sed "s/''/'\\\\''/g"; }
-count=$(sed -n 's/^queue //p' shards.sub)
-[ "$(sed -n 's/^queue$/1/p' table.sub)" ] || exit 9
-for process in $(seq 0 $((count - 1))); do
-  eval "sh $(arguments shards.sub | sed "s/.(Process)/$process/")" || exit 8
-done
-eval "sh $(arguments table.sub)"
-END
-chmod +x condor-bin/condor_submit_dag
-(cd "a 'folder'" && cp ../study.yaml ../*.yaml . 2>/dev/null
-  "$strut" sweep study.yaml -o "it's here" --emit htcondor --shards 3 --cpus 2 --memory 2G >'job "1".sh' 2>../err ||
-    exit 1
-  sh -n 'job "1".sh' && PATH=$work/condor-bin:$PATH sh 'job "1".sh' -maxjobs 2 >../out 2>../err)
-code=$?
-[ "$code" -eq 0 ] || [ "$code" -eq 3 ] || fail "the script for HTCondor ends with $code"
-[ "$(cat "a 'folder'/it's here/condor/words")" = "-f -maxjobs 2 study.dag" ] || fail "words for HTCondor"
-grep -qx 'request_memory = 2G' "a 'folder'/it's here/condor/shards.sub" || fail "no memory asked for"
-[ -s "a 'folder'/it's here/table.csv" ] || fail "HTCondor's jobs leave no table"
-sed '/^axes:/,/friction/d' study.yaml >search.yaml
-cat >>search.yaml <<'END'
-search: {maximise: velocity, over: {stiffness: {from: 100 N/m, to: 800 N/m}}, method: cma, evaluations: 16}
-END
-expect 0 sweep search.yaml -o search --quiet
-expect 0 sweep search.yaml -o search-condor --emit htcondor --shards 2
-PATH=$work/condor-bin:$PATH sh out >said 2>err || fail "the script of a search ends with $?"
-grep -q 'search-condor/table.csv: the searches are finished' said || fail "HTCondor's merge of a search"
-rm -r search-condor/condor
-diff -r -x .strut-files search search-condor >out 2>&1 || fail "HTCondor's jobs find something else"
-tells 1 "--time is for --emit slurm" sweep study.yaml -o x --emit htcondor --shards 3 --time 10
-
 # The script: a shell can read it, and texts arrive as they were given.
 expect 0 sweep study.yaml -o "it's here" --emit slurm --shards 7 --cpus 3 --time 1-02:00:00 \
   --memory 1500M --set 'seconds=0.02'
@@ -129,11 +93,9 @@ sh -n out || fail "the script is none"
 absent "it's here"
 if command -v shellcheck >/dev/null; then
   shellcheck "$here"/../../engine/study/cluster/*.sh || fail "shellcheck objects to a template"
-  for kind in slurm parallel htcondor; do
-    "$strut" sweep study.yaml -o "it's here" --emit $kind --shards 7 >"$kind.sh"
-    grep -q '@[a-z]*@' "$kind.sh" && fail "a placeholder is left in $kind.sh"
-    shellcheck "$kind.sh" || fail "shellcheck objects to $kind.sh"
-  done
+  "$strut" sweep study.yaml -o "it's here" --emit slurm --shards 7 >slurm.sh
+  grep -q '@[a-z]*@' slurm.sh && fail "a placeholder is left in slurm.sh"
+  shellcheck slurm.sh || fail "shellcheck objects to slurm.sh"
 fi
 mkdir bin
 printf '#!/bin/sh\nprintf "%%s\\n" "$@" >>%s\necho 12\n' "$work/sent" >bin/sbatch

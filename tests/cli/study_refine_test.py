@@ -111,7 +111,7 @@ keep: [steps]
 
 
 def emitted():
-    done = run("sweep", "fine.yaml", "-o", "fine", "--emit", "parallel", "--shards", "3")
+    done = run("sweep", "fine.yaml", "-o", "fine", "--emit", "slurm", "--shards", "3")
     check("in rounds" in done.stderr, done.stderr)
 
 

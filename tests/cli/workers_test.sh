@@ -130,5 +130,5 @@ err_has "usual.yaml:6:3: error: workers cannot share a search by 'multistart'"
 out_empty
 absent no
 sed 's/evaluations: 10/starts: 2/' crs2.yaml >starts.yaml
-expect 0 sweep starts.yaml -o no --emit htcondor --shards 2
+expect 0 sweep starts.yaml -o no --emit slurm --shards 2
 done_testing

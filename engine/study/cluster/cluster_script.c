@@ -104,17 +104,8 @@ static char *fill(const strut_embedded *template, const placeholder *all) {
   return strut_buffer_take(&text);
 }
 
-static const strut_embedded *template_of(strut_cluster cluster) {
-  switch (cluster) {
-    case STRUT_CLUSTER_SLURM: return strut_slurm_template;
-    case STRUT_CLUSTER_PARALLEL: return strut_parallel_template;
-    case STRUT_CLUSTER_HTCONDOR: return strut_htcondor_template;
-  }
-  return NULL;
-}
-
-strut_status strut_cluster_script_write(strut_cluster cluster, const strut_cluster_script *s,
-                                        char **text, strut_error *error) {
+strut_status strut_cluster_script_write(const strut_cluster_script *s, char **text,
+                                        strut_error *error) {
   strut_arena arena = {0};
   *text = NULL;
   strut_status status = check(s, error);
@@ -134,7 +125,7 @@ strut_status strut_cluster_script_write(strut_cluster cluster, const strut_clust
       {NULL, NULL}};
   bool good = !s->word_count || all[8].value;
   for (size_t i = 0; i < 8; i++) good = good && all[i].value;
-  if (good) *text = fill(template_of(cluster), all);
+  if (good) *text = fill(strut_slurm_template, all);
   strut_arena_free(&arena);
   return *text ? STRUT_OK : strut_no_memory(error, "for the script");
 }

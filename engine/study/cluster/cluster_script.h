@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Shell scripts that run the shards of a study on a cluster and merge them: as a job array of Slurm,
- * with GNU parallel, or by HTCondor. Their texts are slurm.sh, parallel.sh and htcondor.sh, embedded at
- * build time.
+ * A shell script that runs the shards of a study as a job array of Slurm and merges them. Its text is
+ * slurm.sh, embedded at build time.
  */
 #ifndef STRUT_ENGINE_STUDY_CLUSTER_CLUSTER_SCRIPT_H
 #define STRUT_ENGINE_STUDY_CLUSTER_CLUSTER_SCRIPT_H
@@ -12,15 +11,9 @@
 
 #include "engine/base/status.h"
 
-typedef enum strut_cluster {
-  STRUT_CLUSTER_SLURM,
-  STRUT_CLUSTER_PARALLEL,
-  STRUT_CLUSTER_HTCONDOR
-} strut_cluster;
-
 /** The values of a template. Texts may hold any characters unless noted. */
 typedef struct strut_cluster_script {
-  const char *name;           /* of the study; not for parallel */
+  const char *name;           /* of the study */
   const char *program;        /* path of strut */
   const char *folder;         /* absolute path that the paths below are relative to */
   const char *study, *output; /* arguments of strut sweep */
@@ -36,8 +29,7 @@ typedef struct strut_cluster_script {
  * Writes the script into a text of strut_allocate. STRUT_USAGE where the number of shards, the time
  * or the memory is invalid.
  */
-STRUT_API strut_status strut_cluster_script_write(strut_cluster cluster,
-                                                  const strut_cluster_script *script, char **text,
+STRUT_API strut_status strut_cluster_script_write(const strut_cluster_script *script, char **text,
                                                   strut_error *error);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * slurm.sh, parallel.sh and htcondor.sh, embedded at build time: each followed by a row of NULL. @NAME@ is to be
+ * slurm.sh, embedded at build time and followed by a row of NULL. @NAME@ is to be
  * replaced, and a line whose NAME has no value left out.
  */
 #ifndef STRUT_ENGINE_STUDY_CLUSTER_CLUSTER_TEMPLATES_H
@@ -8,7 +8,6 @@
 
 #include "engine/output/buffer.h"
 
-extern const strut_embedded strut_slurm_template[], strut_parallel_template[],
-    strut_htcondor_template[];
+extern const strut_embedded strut_slurm_template[];
 
 #endif
