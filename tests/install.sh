@@ -17,7 +17,7 @@ case ${1:-} in
   python3-pandas python3-matplotlib python3-jsonschema python3-yaml patch
   python3-build python3-setuptools python3-wheel python3-venv patchelf mypy
   python3-myst-parser furo weasyprint" ;;
-  web) packages="$packages emscripten clang patch xz-utils ca-certificates nodejs npm node-acorn esbuild chromium" ;;
+  web) packages="$packages emscripten clang patch xz-utils ca-certificates nodejs npm node-acorn chromium" ;;
   *) echo "usage: sh tests/install.sh [tests|web]" >&2; exit 1 ;;
 esac
 
