@@ -1,27 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** Size of a model, its terms and its step limits. */
+/** Size of a model and its step limits. */
 #ifndef STRUT_ENGINE_RUN_COST_ESTIMATE_H
 #define STRUT_ENGINE_RUN_COST_ESTIMATE_H
 
 #include "engine/integrate/limit/step_limit.h"
 
-/** A term of the model, and whether the model evaluates it. */
-typedef struct strut_cost_term {
-  strut_term term;
-  const char *name; /* "member dampers" */
-  const char *why;  /* what in a scene requires it: "a member with damping" */
-  bool in;
-} strut_cost_term;
-
-enum { STRUT_COST_TERMS = 26 };
-
 typedef struct strut_cost_estimate {
   struct {
     size_t nodes, degrees_of_freedom, bars, springs, cables, contacts, actuators, loads;
     size_t hinges, running_cables, laws, stops; /* laws: members with another law than the linear */
-    size_t reeled; /* members with an axial_stiffness whose rest length is driven */
     size_t cells, collisions;
-    size_t breakables; /* members and hinges that may break or are released */
   } count;
   struct {
     size_t mass_nonzeros;   /* stored entries of M (lower triangle, each coordinate that differs) */
@@ -35,7 +23,6 @@ typedef struct strut_cost_estimate {
   double step_limit;        /* largest stable RK4 step, contact stiffness and damping counted [s] */
   strut_step_limit limits;  /* of every method: strut_step_limit_of_method */
   bool step_limit_exact;    /* from all eigenvalues; else within 1 %, or limits.bound */
-  strut_cost_term terms[STRUT_COST_TERMS];
 } strut_cost_estimate;
 
 /** Estimates the cost of a compiled model. */

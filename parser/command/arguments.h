@@ -36,7 +36,6 @@ typedef enum strut_option_id {
   STRUT_OPTION_RETRY,
   STRUT_OPTION_PARTS,    /* of exported scenes: the short one */
   STRUT_OPTION_STUDY,    /* of keys --schema: that of a study */
-  STRUT_OPTION_VERBOSE,  /* of check: what is omitted, too */
   STRUT_OPTION_BASINS,   /* of periodic motions */
   STRUT_OPTION_SELECTOR, /* only selects a form of the command */
   /* kept as text: strut_option_text, and arguments.h for numbers */
@@ -146,7 +145,6 @@ typedef struct strut_arguments {
   strut_override *varied; /* (varied_count) of --vary */
   size_t varied_count;
   bool parts, study;
-  bool verbose;
   const strut_listener *listener; /* hears what is wrong with an option, warnings and notes */
   bool basins;
 } strut_arguments;

@@ -27,7 +27,6 @@ static const strut_option options[] = {
     STRUT_RUN_SETTING_OPTIONS,
     STRUT_FIDELITY_OPTIONS,
     STRUT_JSON_OPTION,
-    {STRUT_OPTION_VERBOSE, "verbose", NULL, "list also what a step does not evaluate"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -121,17 +120,6 @@ static void print_bands(const strut_model *model, const strut_experiment *experi
           in(experiment->step, "s").text, in(needed, "m/s").text);
 }
 
-static void print_terms(const strut_cost_estimate *estimate, bool wanted, const char *title) {
-  bool any = false;
-  for (int i = 0; i < STRUT_COST_TERMS; i++) {
-    const strut_cost_term *term = &estimate->terms[i];
-    if (term->in != wanted) continue;
-    if (!any) printf("\n%s\n", title);
-    any = true;
-    printf("  %-20s %s %s\n", term->name, wanted ? "for" : "needs", term->why);
-  }
-}
-
 /* Positions of the drawn shape (length), or NULL. */
 static double *drawn_shape(const strut_model *model) {
   double *q = strut_allocate((size_t)model->length, sizeof *q);
@@ -143,7 +131,7 @@ static double *drawn_shape(const strut_model *model) {
 }
 
 /* Rest length, force and stiffness of a member as drawn; of one that is an element by its law. */
-static bool describe_member(const strut_model *model, const double *q, size_t j, strut_rest *rest) {
+static bool find_rest(const strut_model *model, const double *q, size_t j, strut_rest *rest) {
   if (!strut_member_rest(model->scene, j, rest)) return false;
   const strut_element *e = strut_element_of_member(&model->elements, (int32_t)j);
   if (!e || e->role != STRUT_ELEMENT_MEMBER) return true;
@@ -156,75 +144,32 @@ static bool describe_member(const strut_model *model, const double *q, size_t j,
   return true;
 }
 
-/* The width of the columns of names: of the longest, from 12 to 40. */
-static int name_width(const strut_scene *scene) {
-  size_t longest = 12;
-  const struct {
-    const void *first;
-    size_t count, size, offset;
-  } things[] = {
-      {scene->members, scene->member_count, sizeof *scene->members, offsetof(strut_member, name)},
-      {scene->hinges, scene->hinge_count, sizeof *scene->hinges, offsetof(strut_hinge, name)},
-      {scene->cells, scene->cell_count, sizeof *scene->cells, offsetof(strut_cell, name)},
-      {scene->collisions, scene->collision_count, sizeof *scene->collisions,
-       offsetof(strut_collision, name)},
-      {scene->distances, scene->distance_count, sizeof *scene->distances,
-       offsetof(strut_distance_spring, name)}};
-  for (size_t t = 0; t < sizeof things / sizeof things[0]; t++)
-    for (size_t i = 0; i < things[t].count && i < MOST_MEMBERS; i++) {
-      const char *thing = (const char *)things[t].first + i * things[t].size;
-      size_t length = strlen(*(const char *const *)(const void *)(thing + things[t].offset));
-      if (length > longest) longest = length;
-    }
-  return longest > 40 ? 40 : (int)longest;
+/* ---- things: each is described once, for a row of a table and for JSON ---- */
+
+enum { MOST_VALUES = 20 };
+
+/* Those with `column` are the table's columns; the others stand behind them, where there are any. */
+typedef struct description {
+  strut_report_value value[MOST_VALUES];
+  size_t count;
+  const strut_member *running; /* a cable over guides, or NULL */
+} description;
+
+static void add_number(description *d, const char *key, const char *unit, double number) {
+  d->value[d->count++] = (strut_report_value){key, unit, number, NULL, true};
 }
 
-/* Every member's rest length in the four forms that the language accepts. */
-static void print_members(const strut_model *model, const double *q, int names) {
-  const strut_scene *scene = model->scene;
-  if (scene->member_count == 0) return;
-  printf("\n  %-*s %-6s %12s %12s %10s %12s %13s %12s\n", names, "member", "kind", "drawn",
-         "rest length", "ratio", "pretension", "force density", "stiffness");
-  for (size_t i = 0; i < scene->member_count && i < MOST_MEMBERS; i++) {
-    strut_rest rest;
-    const strut_member *member = &scene->members[i];
-    if (!describe_member(model, q, i, &rest)) continue;
-    printf("  %-*s %-6s %12s %12s %10.5g %12s %13s %12s\n", names, member->name,
-           strut_member_kind_name(member->kind), in(rest.drawn_length, "m").text,
-           in(rest.length, "m").text, rest.ratio, in(rest.pretension, "N").text,
-           in(rest.force_density, "N/m").text, in(rest.stiffness, "N/m").text);
-  }
-  if (scene->member_count > MOST_MEMBERS) {
-    printf("  ... and %zu more; --json lists all\n", scene->member_count - MOST_MEMBERS);
-  }
+static void add_word(description *d, const char *key, const char *text, bool column) {
+  d->value[d->count++] = (strut_report_value){key, "1", 0.0, text, column};
 }
 
-static void print_running_cables(const strut_scene *scene, int names) {
-  size_t printed = 0;
-  for (size_t i = 0; i < scene->member_count && printed < MOST_MEMBERS; i++) {
-    const strut_member *m = &scene->members[i];
-    if (!m->guide_count) continue;
-    if (!printed++) printf("\n  %-*s over\n", names, "running");
-    printf("  %-*s ", names, m->name);
-    for (size_t k = 0; k < m->guide_count + 2; k++)
-      printf("%s%s", k ? ", " : "", scene->nodes[strut_member_node(m, k)].name);
-    printf("\n");
-  }
+static void add_extra(description *d, const char *key, const char *unit, double number) {
+  if (number > 0.0) d->value[d->count++] = (strut_report_value){key, unit, number, NULL, false};
 }
 
 static const char *carries_name(const strut_member *m) {
   static const char *const names[] = {"both", "tension", "compression"};
   return names[m->kind == STRUT_CABLE ? STRUT_CARRIES_TENSION : m->law.carries];
-}
-
-static void print_laws(const strut_scene *scene, int names) {
-  size_t printed = 0;
-  for (size_t i = 0; i < scene->member_count && printed < MOST_MEMBERS; i++) {
-    const strut_member *m = &scene->members[i];
-    if (m->law.kind == STRUT_LAW_LINEAR && m->law.carries == STRUT_CARRIES_BOTH) continue;
-    if (!printed++) printf("\n  %-*s %-12s carries\n", names, "law of", "kind");
-    printf("  %-*s %-12s %s\n", names, m->name, strut_law_at(m->law.kind)->word, carries_name(m));
-  }
 }
 
 /* The stiffness of a member's stops [N/m]. */
@@ -235,85 +180,62 @@ static double stop_stiffness(const strut_model *model, size_t j) {
   return e ? e->numbers.stiffness : 0.0;
 }
 
-static void print_stops(const strut_model *model, int names) {
-  const strut_scene *scene = model->scene;
-  size_t printed = 0;
-  for (size_t i = 0; i < scene->member_count && printed < MOST_MEMBERS; i++) {
-    const strut_member *m = &scene->members[i];
-    bool shortest = m->shortest > 0.0, longest = m->longest > 0.0;
-    if (!shortest && !longest) continue;
-    if (!printed++)
-      printf("\n  %-*s %12s %12s %12s %12s\n", names, "stops of", "shortest", "longest",
-             "stiffness", "damping");
-    printf("  %-*s %12s %12s %12s %12s\n", names, m->name,
-           shortest ? in(m->shortest, "m").text : "-", longest ? in(m->longest, "m").text : "-",
-           in(stop_stiffness(model, i), "N/m").text, in(m->stop_damping, "N s/m").text);
+/* Its rest length is given in the four forms that the language accepts. */
+static bool describe_member(const strut_model *model, const double *q, size_t i, description *d) {
+  const strut_member *m = &model->scene->members[i];
+  strut_rest rest;
+  if (!find_rest(model, q, i, &rest)) return false;
+  add_word(d, "kind", strut_member_kind_name(m->kind), true);
+  add_number(d, "drawn_length", "m", rest.drawn_length);
+  add_number(d, "rest_length", "m", rest.length);
+  add_number(d, "rest_length_ratio", "1", rest.ratio);
+  add_number(d, "pretension", "N", rest.pretension);
+  add_number(d, "force_density", "N/m", rest.force_density);
+  add_number(d, "stiffness", "N/m", rest.stiffness);
+  if (m->guide_count) d->running = m;
+  if (m->law.kind != STRUT_LAW_LINEAR || m->law.carries != STRUT_CARRIES_BOTH) {
+    add_word(d, "law", strut_law_at(m->law.kind)->word, false);
+    add_word(d, "carries", carries_name(m), false);
   }
+  add_extra(d, "guide_friction", "1", m->guide_friction);
+  add_extra(d, "guide_radius", "m", m->guide_radius);
+  add_extra(d, "breaks_at", "N", m->breaks_at);
+  add_extra(d, "released_at", "s", m->released_at);
+  add_extra(d, "shortest", "m", m->shortest);
+  add_extra(d, "longest", "m", m->longest);
+  if (!(m->shortest > 0.0) && !(m->longest > 0.0)) return true;
+  add_extra(d, "stop_stiffness", "N/m", stop_stiffness(model, i));
+  add_extra(d, "stop_damping", "N s/m", m->stop_damping);
+  return true;
 }
 
-static void print_end(int names, const char *name, double force, double time, const char *unit,
-                      size_t *printed) {
-  if (!(force > 0.0) && !(time > 0.0)) return;
-  if (!(*printed)++) printf("\n  %-*s %12s %12s\n", names, "end of", "breaks_at", "released_at");
-  printf("  %-*s %12s %12s\n", names, name, force > 0.0 ? in(force, unit).text : "-",
-         time > 0.0 ? in(time, "s").text : "-");
-}
-
-static void print_ends(const strut_scene *scene, int names) {
-  size_t printed = 0;
-  for (size_t i = 0; i < scene->member_count && printed < MOST_MEMBERS; i++) {
-    const strut_member *m = &scene->members[i];
-    print_end(names, m->name, m->breaks_at, m->released_at, "N", &printed);
-  }
-  for (size_t i = 0; i < scene->hinge_count && printed < MOST_MEMBERS; i++) {
-    const strut_hinge *h = &scene->hinges[i];
-    print_end(names, h->name, h->breaks_at, h->released_at, "N m", &printed);
-  }
-}
-
-/* A hinge as drawn. */
-static strut_element_pose describe_hinge(const strut_model *model, const double *q, size_t i,
-                                         double *stiffness) {
+static bool describe_hinge(const strut_model *model, const double *q, size_t i, description *d) {
+  const strut_hinge *h = &model->scene->hinges[i];
   int32_t element = strut_element_of_hinge(&model->elements, (int32_t)i);
   strut_element_pose pose;
   strut_element_evaluate(model, element, model->members.rest, q, (double)NAN, &pose);
-  *stiffness = model->elements.element[element].numbers.stiffness;
-  return pose;
+  add_number(d, "drawn_angle", "rad", pose.strain);
+  add_number(d, "rest_angle", "rad", pose.natural);
+  add_number(d, "moment", "N m", pose.force);
+  add_number(d, "stiffness", "N m/rad", model->elements.element[element].numbers.stiffness);
+  add_extra(d, "breaks_at", "N m", h->breaks_at);
+  add_extra(d, "released_at", "s", h->released_at);
+  return true;
 }
 
-static void print_hinges(const strut_model *model, const double *q, int names) {
-  const strut_scene *scene = model->scene;
-  for (size_t i = 0; i < scene->hinge_count && i < MOST_MEMBERS; i++) {
-    double stiffness, degree = STRUT_PI / 180.0;
-    strut_element_pose pose = describe_hinge(model, q, i, &stiffness);
-    if (!i)
-      printf("\n  %-*s %12s %12s %12s %14s\n", names, "hinge", "drawn", "rest angle", "moment",
-             "stiffness");
-    printf("  %-*s %8.5g deg %8.5g deg %12s %14s\n", names, scene->hinges[i].name,
-           pose.strain / degree, pose.natural / degree, in(pose.force, "N m").text,
-           in(stiffness, "N m/rad").text);
-  }
-  if (scene->hinge_count > MOST_MEMBERS)
-    printf("  ... and %zu more; --json lists all\n", scene->hinge_count - MOST_MEMBERS);
-}
-
-static const char *cell_content(const strut_cell *cell) {
-  return strut_cell_is_elastic(cell)         ? "elastic"
-         : cell->law == STRUT_LAW_PRESSURE   ? "given pressure"
-         : cell->law == STRUT_LAW_ISOTHERMAL ? "isothermal gas"
-                                             : "isentropic gas";
-}
-
-static void print_cells(const strut_scene *scene, int names) {
-  for (size_t i = 0; i < scene->cell_count && i < MOST_MEMBERS; i++) {
-    const strut_cell *cell = &scene->cells[i];
-    if (!i)
-      printf("\n  %-*s %12s %12s %12s  content\n", names, "cell", "drawn", "pressure", "outside");
-    printf("  %-*s %8.4g m^2 %12s %12s  %s\n", names, cell->name, fabs(strut_cell_drawn(scene, i)),
-           in(cell->pressure, "N/m").text, in(cell->outside, "N/m").text, cell_content(cell));
-  }
-  if (scene->cell_count > MOST_MEMBERS)
-    printf("  ... and %zu more; --json lists all\n", scene->cell_count - MOST_MEMBERS);
+static bool describe_cell(const strut_model *model, const double *q, size_t i, description *d) {
+  const strut_cell *cell = &model->scene->cells[i];
+  (void)q;
+  add_number(d, "drawn_area", "m^2", fabs(strut_cell_drawn(model->scene, i)));
+  add_number(d, "pressure", "N/m", cell->pressure);
+  add_number(d, "outside", "N/m", cell->outside);
+  add_word(d, "content",
+           strut_cell_is_elastic(cell)         ? "elastic"
+           : cell->law == STRUT_LAW_PRESSURE   ? "given pressure"
+           : cell->law == STRUT_LAW_ISOTHERMAL ? "isothermal gas"
+                                               : "isentropic gas",
+           true);
+  return true;
 }
 
 /* The least distance of the surfaces of a collision in the drawn shape. */
@@ -329,63 +251,144 @@ static double drawn_gap(const strut_model *model, const double *q, size_t i) {
   return gap;
 }
 
-static void print_collisions(const strut_model *model, const double *q, int names) {
-  const strut_scene *scene = model->scene;
-  for (size_t i = 0; i < scene->collision_count && i < MOST_MEMBERS; i++) {
-    const strut_collision *c = &scene->collisions[i];
-    if (!i)
-      printf("\n  %-*s %12s %12s %12s %14s\n", names, "collision", "thickness", "drawn gap",
-             "stiffness", "damping");
-    printf("  %-*s %12s %12s %12s %14s\n", names, c->name, in(c->thickness, "m").text,
-           in(drawn_gap(model, q, i), "m").text, in(c->stiffness, "N/m").text,
-           in(c->damping, "N s/m").text);
-  }
-  if (scene->collision_count > MOST_MEMBERS)
-    printf("  ... and %zu more; --json lists all\n", scene->collision_count - MOST_MEMBERS);
+static bool describe_collision(const strut_model *model, const double *q, size_t i,
+                               description *d) {
+  const strut_collision *c = &model->scene->collisions[i];
+  add_number(d, "thickness", "m", c->thickness);
+  add_number(d, "drawn_gap", "m", drawn_gap(model, q, i));
+  add_number(d, "stiffness", "N/m", c->stiffness);
+  add_number(d, "damping", "N s/m", c->damping);
+  return true;
 }
 
-/* The stiffness at rest, of a law that brings its own too. */
-static double distance_stiffness(const strut_model *model, size_t i) {
+static bool describe_distance(const strut_model *model, const double *q, size_t i, description *d) {
+  const strut_distance_spring *s = &model->scene->distances[i];
   int32_t element = strut_element_of_distance(&model->elements, (int32_t)i);
-  return model->elements.element[element].numbers.stiffness;
+  (void)q;
+  add_number(d, "drawn", "m", strut_distance_drawn(model->scene, i));
+  add_number(d, "rest", "m", strut_distance_rest(model->scene, i));
+  /* at rest, of a law that brings its own too */
+  add_number(d, "stiffness", "N/m", model->elements.element[element].numbers.stiffness);
+  add_number(d, "damping", "N s/m", s->damping);
+  add_word(d, "law", strut_law_at(s->law.kind)->word, true);
+  return true;
 }
 
-static void print_distances(const strut_model *model, int names) {
-  const strut_scene *scene = model->scene;
-  for (size_t i = 0; i < scene->distance_count && i < MOST_MEMBERS; i++) {
-    const strut_distance_spring *d = &scene->distances[i];
-    if (!i)
-      printf("\n  %-*s %12s %12s %14s %14s\n", names, "distance", "drawn", "rest", "stiffness",
-             "damping");
-    printf("  %-*s %12s %12s %14s %14s\n", names, d->name,
-           in(strut_distance_drawn(scene, i), "m").text,
-           in(strut_distance_rest(scene, i), "m").text,
-           in(distance_stiffness(model, i), "N/m").text, in(d->damping, "N s/m").text);
+/* The things of one kind, which have their names at an offset. */
+typedef struct kind {
+  const char *one, *all;
+  bool (*describe)(const strut_model *model, const double *q, size_t i, description *d);
+  const void *first;
+  size_t count, size, name;
+} kind;
+enum { KINDS = 5 };
+
+static void list_kinds(const strut_scene *s, kind kinds[KINDS]) {
+#define KIND(one, all, things, type)                                                               \
+  { #one, #all, describe_##one, s->things, s->one##_count, sizeof(type), offsetof(type, name) }
+  const kind list[KINDS] = {KIND(member, members, members, strut_member),
+                            KIND(hinge, hinges, hinges, strut_hinge),
+                            KIND(cell, cells, cells, strut_cell),
+                            KIND(collision, collisions, collisions, strut_collision),
+                            KIND(distance, distances, distances, strut_distance_spring)};
+#undef KIND
+  memcpy(kinds, list, sizeof list);
+}
+
+static const char *name_of(const kind *k, size_t i) {
+  return *(const char *const *)(const void *)((const char *)k->first + i * k->size + k->name);
+}
+
+/* The width of the columns of names: of the longest, from 12 to 40. */
+static int name_width(const kind kinds[KINDS]) {
+  size_t longest = 12;
+  for (int k = 0; k < KINDS; k++)
+    for (size_t i = 0; i < kinds[k].count && i < MOST_MEMBERS; i++) {
+      size_t length = strlen(name_of(&kinds[k], i));
+      if (length > longest) longest = length;
+    }
+  return longest > 40 ? 40 : (int)longest;
+}
+
+/* "rest_length" as "rest length". */
+static const char *title_of(const strut_report_value *value, char title[40]) {
+  snprintf(title, 40, "%s", value->key);
+  for (char *c = title; *c; c++)
+    if (*c == '_') *c = ' ';
+  return title;
+}
+
+static void print_value(const strut_report_value *value, int width) {
+  bool angle = strcmp(value->unit, "rad") == 0;
+  double number = angle ? value->number * 180.0 / STRUT_PI : value->number;
+  strut_rounded_quantity rounded =
+      strut_quantity_of_any(number, DIGITS, angle ? "deg" : value->unit);
+  printf("%*s", width, value->text ? value->text : rounded.text);
+}
+
+static void print_description(const strut_scene *scene, const char *name, int names,
+                              const description *d) {
+  char title[40];
+  printf("  %-*s", names, name);
+  for (size_t i = 0; i < d->count; i++) {
+    if (d->value[i].column) {
+      size_t length = strlen(d->value[i].key);
+      print_value(&d->value[i], length > 11 ? (int)length + 2 : 13);
+    } else {
+      printf(", %s ", title_of(&d->value[i], title));
+      print_value(&d->value[i], 0);
+    }
   }
-  if (scene->distance_count > MOST_MEMBERS)
-    printf("  ... and %zu more; --json lists all\n", scene->distance_count - MOST_MEMBERS);
+  for (size_t k = 0; d->running && k < d->running->guide_count + 2; k++)
+    printf("%s%s", k ? ", " : ", over ", scene->nodes[strut_member_node(d->running, k)].name);
+  printf("\n");
+}
+
+static void print_titles(const kind *k, int names, const description *d) {
+  char title[40];
+  printf("\n  %-*s", names, k->one);
+  for (size_t i = 0; i < d->count; i++)
+    if (d->value[i].column) printf("  %11s", title_of(&d->value[i], title));
+  printf("\n");
+}
+
+static void print_things(const strut_model *model, const double *q, const kind *k, int names) {
+  bool titled = false;
+  for (size_t i = 0; i < k->count && i < MOST_MEMBERS; i++) {
+    description d = {.count = 0};
+    if (!k->describe(model, q, i, &d)) continue;
+    if (!titled) print_titles(k, names, &d);
+    titled = true;
+    print_description(model->scene, name_of(k, i), names, &d);
+  }
+  if (k->count > MOST_MEMBERS)
+    printf("  ... and %zu more; --json lists all\n", k->count - MOST_MEMBERS);
+}
+
+static void add_things(strut_json *json, const strut_model *model, const double *q, const kind *k) {
+  struct cJSON *things = strut_json_object(json, json->root, k->all);
+  for (size_t i = 0; i < k->count; i++) {
+    description d = {.count = 0};
+    if (!k->describe(model, q, i, &d)) continue;
+    struct cJSON *thing = strut_json_object(json, things, name_of(k, i));
+    strut_json_cells(json, thing, d.value, d.count);
+    struct cJSON *nodes = d.running ? strut_json_array(json, thing, "nodes") : NULL;
+    for (size_t n = 0; d.running && n < d.running->guide_count + 2; n++)
+      strut_json_text(json, nodes, NULL, model->scene->nodes[strut_member_node(d.running, n)].name);
+  }
 }
 
 static strut_status print_estimate(const strut_cost_estimate *estimate, const strut_model *model,
-                                   const strut_experiment *experiment, bool verbose) {
+                                   const strut_experiment *experiment) {
   const strut_scene *scene = model->scene;
-  int names = name_width(scene);
+  kind kinds[KINDS];
   double *q = drawn_shape(model);
   if (!q) return strut_print_out_of_memory();
   printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
   print_counts(estimate);
   print_run(estimate, experiment);
-  print_terms(estimate, true, "each step evaluates");
-  if (verbose) print_terms(estimate, false, "omitted, as the scene does not need it");
-  print_members(model, q, names);
-  print_running_cables(scene, names);
-  print_laws(scene, names);
-  print_stops(model, names);
-  print_ends(scene, names);
-  print_hinges(model, q, names);
-  print_cells(scene, names);
-  print_collisions(model, q, names);
-  print_distances(model, names);
+  list_kinds(scene, kinds);
+  for (int k = 0; k < KINDS; k++) print_things(model, q, &kinds[k], name_width(kinds));
   strut_release(q);
   return STRUT_OK;
 }
@@ -426,111 +429,6 @@ static void add_estimate(strut_json *json, const strut_cost_estimate *estimate,
                       strut_step_limit_of_method(&estimate->limits, strut_integrator_at(i)));
 }
 
-static void add_terms(strut_json *json, const strut_cost_estimate *estimate) {
-  struct cJSON *terms = strut_json_object(json, json->root, "terms");
-  for (int i = 0; i < STRUT_COST_TERMS; i++) {
-    strut_json_bool(json, terms, estimate->terms[i].name, estimate->terms[i].in);
-  }
-}
-
-/* What a plain member has not: guides, a law, stops. */
-static void add_extras(strut_json *json, struct cJSON *row, const strut_model *model, size_t j) {
-  const strut_scene *scene = model->scene;
-  const strut_member *m = &scene->members[j];
-  if (m->guide_count) {
-    struct cJSON *nodes = strut_json_array(json, row, "nodes");
-    for (size_t k = 0; k < m->guide_count + 2; k++)
-      strut_json_text(json, nodes, NULL, scene->nodes[strut_member_node(m, k)].name);
-  }
-  if (m->law.kind != STRUT_LAW_LINEAR || m->law.carries != STRUT_CARRIES_BOTH) {
-    strut_json_text(json, row, "law", strut_law_at(m->law.kind)->word);
-    strut_json_text(json, row, "carries", carries_name(m));
-  }
-  if (m->guide_friction > 0.0) strut_json_number(json, row, "guide_friction", m->guide_friction);
-  if (m->guide_radius > 0.0) strut_json_number(json, row, "guide_radius", m->guide_radius);
-  if (m->breaks_at > 0.0) strut_json_number(json, row, "breaks_at", m->breaks_at);
-  if (m->released_at > 0.0) strut_json_number(json, row, "released_at", m->released_at);
-  if (m->shortest > 0.0) strut_json_number(json, row, "shortest", m->shortest);
-  if (m->longest > 0.0) strut_json_number(json, row, "longest", m->longest);
-  if (m->shortest > 0.0 || m->longest > 0.0)
-    strut_json_number(json, row, "stop_stiffness", stop_stiffness(model, j));
-}
-
-static void add_hinges(strut_json *json, const strut_model *model, const double *q) {
-  const strut_scene *scene = model->scene;
-  struct cJSON *hinges = strut_json_object(json, json->root, "hinges");
-  for (size_t i = 0; i < scene->hinge_count; i++) {
-    double stiffness;
-    strut_element_pose pose = describe_hinge(model, q, i, &stiffness);
-    struct cJSON *row = strut_json_object(json, hinges, scene->hinges[i].name);
-    strut_json_number(json, row, "drawn_angle", pose.strain);
-    strut_json_number(json, row, "rest_angle", pose.natural);
-    strut_json_number(json, row, "moment", pose.force);
-    strut_json_number(json, row, "stiffness", stiffness);
-    const strut_hinge *h = &scene->hinges[i];
-    if (h->breaks_at > 0.0) strut_json_number(json, row, "breaks_at", h->breaks_at);
-    if (h->released_at > 0.0) strut_json_number(json, row, "released_at", h->released_at);
-  }
-}
-
-static void add_cells(strut_json *json, const strut_scene *scene) {
-  struct cJSON *cells = strut_json_object(json, json->root, "cells");
-  for (size_t i = 0; i < scene->cell_count; i++) {
-    struct cJSON *row = strut_json_object(json, cells, scene->cells[i].name);
-    strut_json_number(json, row, "drawn_area", fabs(strut_cell_drawn(scene, i)));
-    strut_json_number(json, row, "pressure", scene->cells[i].pressure);
-    strut_json_number(json, row, "outside", scene->cells[i].outside);
-    strut_json_text(json, row, "content", cell_content(&scene->cells[i]));
-  }
-}
-
-static void add_collisions(strut_json *json, const strut_model *model, const double *q) {
-  const strut_scene *scene = model->scene;
-  struct cJSON *collisions = strut_json_object(json, json->root, "collisions");
-  for (size_t i = 0; i < scene->collision_count; i++) {
-    const strut_collision *c = &scene->collisions[i];
-    struct cJSON *row = strut_json_object(json, collisions, c->name);
-    strut_json_number(json, row, "thickness", c->thickness);
-    strut_json_number(json, row, "drawn_gap", drawn_gap(model, q, i));
-    strut_json_number(json, row, "stiffness", c->stiffness);
-    strut_json_number(json, row, "damping", c->damping);
-  }
-}
-
-static void add_distances(strut_json *json, const strut_model *model) {
-  const strut_scene *scene = model->scene;
-  if (!scene->distance_count) return;
-  struct cJSON *distances = strut_json_object(json, json->root, "distances");
-  for (size_t i = 0; i < scene->distance_count; i++) {
-    const strut_distance_spring *d = &scene->distances[i];
-    struct cJSON *row = strut_json_object(json, distances, d->name);
-    strut_json_number(json, row, "drawn", strut_distance_drawn(scene, i));
-    strut_json_number(json, row, "rest", strut_distance_rest(scene, i));
-    strut_json_number(json, row, "stiffness", distance_stiffness(model, i));
-    strut_json_number(json, row, "damping", d->damping);
-    strut_json_text(json, row, "law", strut_law_at(d->law.kind)->word);
-  }
-}
-
-static void add_members(strut_json *json, const strut_model *model, const double *q) {
-  const strut_scene *scene = model->scene;
-  struct cJSON *members = strut_json_object(json, json->root, "members");
-  for (size_t i = 0; i < scene->member_count; i++) {
-    strut_rest rest;
-    const strut_member *member = &scene->members[i];
-    if (!describe_member(model, q, i, &rest)) continue;
-    struct cJSON *row = strut_json_object(json, members, member->name);
-    strut_json_text(json, row, "kind", strut_member_kind_name(member->kind));
-    strut_json_number(json, row, "drawn_length", rest.drawn_length);
-    strut_json_number(json, row, "rest_length", rest.length);
-    strut_json_number(json, row, "rest_length_ratio", rest.ratio);
-    strut_json_number(json, row, "pretension", rest.pretension);
-    strut_json_number(json, row, "force_density", rest.force_density);
-    strut_json_number(json, row, "stiffness", rest.stiffness);
-    add_extras(json, row, model, i);
-  }
-}
-
 static bool add_warnings(strut_json *json, const strut_setup *setup, strut_open_report *report) {
   strut_findings found = {0};
   strut_status status = strut_setup_warn(setup, &found);
@@ -554,12 +452,9 @@ static strut_status print_json(const strut_cost_estimate *estimate, const strut_
   strut_json json = strut_json_begin();
   strut_json_bool(&json, json.root, "valid", true);
   add_estimate(&json, estimate, setup);
-  add_terms(&json, estimate);
-  add_members(&json, model, q);
-  add_hinges(&json, model, q);
-  add_cells(&json, model->scene);
-  add_collisions(&json, model, q);
-  add_distances(&json, model);
+  kind kinds[KINDS];
+  list_kinds(model->scene, kinds);
+  for (int k = 0; k < KINDS; k++) add_things(&json, model, q, &kinds[k]);
   strut_release(q);
   if (!add_warnings(&json, setup, report)) json.failed = true;
   return strut_print_block(strut_json_end(&json));
@@ -621,7 +516,7 @@ static strut_status check_model(const strut_arguments *arguments, strut_open_rep
   } else if (arguments->json) {
     status = print_json(&estimate, model, &setup, report);
   } else if (!arguments->quiet) {
-    status = print_estimate(&estimate, model, &setup.experiment, arguments->verbose);
+    status = print_estimate(&estimate, model, &setup.experiment);
   }
   strut_model_free(model);
   strut_setup_free(&setup);
@@ -647,13 +542,13 @@ const strut_command strut_command_check = {
     .model = "MODEL",
     .summary = "validates a model and describes what a run of it computes",
     .details =
-        "\nPrints the numbers of nodes and members, the terms of the equations that a step "
-        "evaluates and\n"
-        "those it omits, the largest stable step, and for each member its rest length in each of "
-        "the\n"
-        "four forms that the language accepts. Running cables, laws, stops and hinges have tables "
-        "of\n"
-        "their own.\n"
+        "
+Prints the numbers of nodes and members, the largest stable step, and for each member
+"
+        "its rest length in each of the four forms that the language accepts. Hinges, cells,
+"
+        "collisions and distances have tables of their own.
+"
         "--json lists all messages with their places, for editors; a study is checked, too.\n",
     .options = options,
     .run = run_check,

@@ -138,7 +138,6 @@ static strut_status store_option(const strut_command *command, int id, strut_arg
     case STRUT_OPTION_RETRY: to->retry = true; break;
     case STRUT_OPTION_PARTS: to->parts = true; break;
     case STRUT_OPTION_STUDY: to->study = true; break;
-    case STRUT_OPTION_VERBOSE: to->verbose = true; break;
     case STRUT_OPTION_BASINS: to->basins = true; break;
     case STRUT_OPTION_HELP: to->help = true; break;
     default: break;

@@ -88,7 +88,7 @@ run: {duration: 1 s, measure: {quantities: {v: {of: b.vy, take: final}}}}
 END
 gives "$(value v)" 1 1e-9 run run_over.yaml
 tells 1 "actuator 'winch' gives a force, which statics leaves out" path run_over.yaml --over winch --until 1
-shows 0 "actuator forces" check run_over.yaml
+expect 0 check run_over.yaml
 
 # A damping ratio: the free oscillation decays by exp(-zeta w t), of one mass and of two that are free,
 # with the reduced mass; a bar's own mass counts half at each end.
@@ -150,7 +150,7 @@ done
 expect 0 modes rayleigh.yaml --json
 near '.modes[0].damping_ratio' "$(rate "$slow")" 1e-9
 near '.modes[1].damping_ratio' "$(rate "$fast")" 1e-9
-shows 0 "damping by mass" check rayleigh.yaml
+expect 0 check rayleigh.yaml
 
 # A support that shakes a mass through a spring and a damper: in the steady state
 # |X/Y|^2 = (1 + (2 zeta r)^2) / ((1 - r^2)^2 + (2 zeta r)^2), and with the member's consistent mass m

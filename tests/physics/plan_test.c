@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * A term that the scene does not need is not in the plan; leaving it out changes no bit of the rest
+ * A term that the scene does not need is not in the model; leaving it out changes no bit of the rest
  * and costs no time.
  */
 #include <math.h>
 
-#include "engine/run/cost_estimate.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/instructions.h"
@@ -131,30 +130,6 @@ TEST(leaving_a_term_out_changes_no_bit) {
     }
     end_both(&b);
   }
-}
-
-TEST(the_plan_tells_its_terms) {
-  for (int i = 0; i < COMPARISONS; i++)
-    for (int with = 0; with < 2; with++) {
-      strut_scene scene;
-      strut_cost_estimate plan;
-      unsigned terms = comparisons[i].others | (with ? (unsigned)comparisons[i].term : 0),
-               reported = 0;
-      build_chain(&scene, terms, comparisons[i].touching);
-      strut_model *model = motion_compile(&scene);
-      assert_int_equal(strut_cost_estimate_describe(model, &plan, NULL), STRUT_OK);
-      for (int k = 0; k < STRUT_COST_TERMS; k++) {
-        assert_true(plan.terms[k].name[0] && plan.terms[k].why[0]);
-        if (plan.terms[k].in) reported |= (unsigned)plan.terms[k].term;
-      }
-      assert_int_equal(reported, terms);
-      assert_int_equal(plan.count.nodes, scene.node_count);
-      assert_int_equal(plan.count.bars + plan.count.springs + plan.count.cables,
-                       scene.member_count);
-      assert_int_equal(plan.count.contacts, scene.contact_count);
-      strut_model_free(model);
-      strut_scene_free(&scene);
-    }
 }
 
 /* The body that is looked at: masses on springs, which need neither a solve nor anything else. */
