@@ -39,14 +39,6 @@ void strut_json_settle(strut_json *json, cJSON *to, const strut_settle_summary *
   strut_json_text(json, object, "warning", unstable ? warning : NULL);
 }
 
-static void put_multipliers(strut_json *json, cJSON *to, const strut_steady_summary *s) {
-  double sizes[STRUT_MOST_MULTIPLIERS];
-  for (size_t i = 0; i < s->multiplier_count; i++)
-    sizes[i] = hypot(s->multiplier[i][0], s->multiplier[i][1]);
-  strut_json_numbers(json, to, "multipliers", &s->multiplier[0][0], 2 * s->multiplier_count);
-  strut_json_numbers(json, to, "multiplier_sizes", sizes, s->multiplier_count);
-}
-
 static void put_result(strut_json *json, cJSON *to, const strut_summary *s, strut_result_id id) {
   strut_result r = strut_summary_result(s, id);
   switch (r.type) {
@@ -56,7 +48,6 @@ static void put_result(strut_json *json, cJSON *to, const strut_summary *s, stru
     case STRUT_RESULT_TEXT: strut_json_text(json, to, r.key, r.text); break;
     case STRUT_RESULT_PART:
       if (id == STRUT_RESULT_run_settle) strut_json_settle(json, to, &s->settle);
-      if (id == STRUT_RESULT_steady_multipliers) put_multipliers(json, to, &s->steady);
   }
 }
 
@@ -235,19 +226,6 @@ static void add_claims(strut_buffer *table, const strut_summary *s) {
     strut_buffer_add(table,
                      "  creeping    over %" PRId64 " periods; mean velocity known within %s\n",
                      m->periods, in(m->interval, "m/s").text);
-  }
-  if (m->shot) {
-    double most = 0.0;
-    for (size_t i = 0; i < m->multiplier_count; i++)
-      most = fmax(most, hypot(m->multiplier[i][0], m->multiplier[i][1]));
-    const char *kind = most < 1.0 - 1e-6 ? "stable" : most > 1.0 + 1e-6 ? "unstable" : "neutral";
-    strut_buffer_add(table, "  orbit       closed within %.2g of the size; %s, multipliers of size",
-                     m->residual, kind);
-    for (size_t i = 0; i < m->multiplier_count; i++)
-      strut_buffer_add(table, " %.4g", hypot(m->multiplier[i][0], m->multiplier[i][1]));
-    strut_buffer_add(table, "\n");
-  } else if (m->reason[0]) {
-    strut_buffer_add(table, "  orbit       not computed: %s\n", m->reason);
   }
   add_worth(table, s);
 }

@@ -14,7 +14,6 @@
 #include "engine/forces/support_motion.h"
 #include "engine/integrate/large_steps.h"
 #include "engine/integrate/limit/step_limit.h"
-#include "engine/run/orbit/orbit.h"
 #include "engine/run/settle.h"
 #include "engine/run/simulate_parts.h"
 #include "engine/scene/signal_program.h"
@@ -226,14 +225,6 @@ static strut_status prepare_run(strut_run *r) {
   return strut_recording_create(r->model, r->experiment, begin, &r->recording, r->error);
 }
 
-/* Whoever changed the state has restarted the method, and steps it on from there. */
-static void restart(strut_run *r) {
-  if (r->large)
-    strut_large_steps_restart(r->large, r->state, r->dt);
-  else if (r->method->restart)
-    r->method->restart(r->model, r->state, r->workspace, r->dt);
-}
-
 static void advance(strut_run *r, double dt, int64_t count) {
   if (r->large)
     strut_large_steps_advance(r->large, r->state, dt, count);
@@ -247,89 +238,19 @@ static void advance(strut_run *r, double dt, int64_t count) {
 static int64_t asymmetric_phase(int64_t period) { return (int64_t)(0.382 * (double)period); }
 
 /*
- * Moves the state to the orbit. The change of the stored energies is added to the initial ones, so
- * that it does not count as an error of the balance.
- */
-static void jump_to_orbit(strut_run *r, const double *y) {
-  size_t bytes = (size_t)r->model->length * sizeof(double);
-  double t = (double)r->state->step * r->dt;
-  strut_energies before = strut_energy_evaluate(r->model, r->state, t);
-  double work = strut_support_motion_work(r->model, r->state);
-  memcpy(r->state->q, y, bytes);
-  memcpy(r->state->v, y + r->model->length, bytes);
-  r->state->refined_until = t + y[2 * r->model->length];
-  restart(r);
-  strut_energies after = strut_energy_evaluate(r->model, r->state, t);
-  r->state->support_work_origin += strut_support_motion_work(r->model, r->state) - work;
-  r->watch.initial.kinetic += after.kinetic - before.kinetic;
-  r->watch.initial.elastic += after.elastic - before.elastic;
-  r->watch.initial.gravity += after.gravity - before.gravity;
-  r->watch.initial.contact += after.contact - before.contact;
-}
-
-/* Completes a periodic motion by shooting; keeps the state where that fails. */
-static strut_status shoot_orbit(strut_run *r) {
-  size_t length = (size_t)r->model->length;
-  strut_steady_summary *found = &r->steady.detector.result;
-  strut_period_map map = {.model = NULL};
-  double travel = 0.0, *y = strut_allocate(2 * length + 1, sizeof *y);
-  if (!y) return strut_no_memory(r->error, "");
-  strut_status status =
-      strut_period_map_create(r->model, r->experiment, found->repeats, &map, r->error);
-  if (!status) {
-    map.time = (double)r->state->step * r->dt;
-    map.interrupt = r->options->interrupt;
-    memcpy(y, r->state->q, length * sizeof *y);
-    memcpy(y + length, r->state->v, length * sizeof *y);
-    y[2 * length] = fmax(0.0, r->state->refined_until - map.time);
-    status = strut_shoot(&map, y, &travel, found);
-    if (status == STRUT_INTERRUPTED)
-      strut_fail(r->error, status, "interrupted at t = %.9g s, during shooting", map.time);
-    else if (status)
-      strut_fail(r->error, status, "out of memory");
-  }
-  if (!status && found->shot) {
-    jump_to_orbit(r, y);
-    r->steady.detector.velocity = travel / (map.period * found->repeats);
-  }
-  r->steady.shooting_periods = map.applied;
-  found->periods += map.applied;
-  r->state->evaluations += map.evaluations;
-  strut_period_map_free(&map);
-  strut_release(y);
-  return status;
-}
-
-/*
  * Samples the detector at the end of each period and once within it. Once the motion is steady, the run
  * continues for at least one period, over which contacts are measured, and which ends the summary. It may go on
  * for more that are recorded, of which the summary knows nothing: an answer does not depend on recordings.
  */
-static strut_status detect_steady_motion(strut_run *r) {
+static void detect_steady_motion(strut_run *r) {
   int64_t n = r->state->step, past = (n - r->first) % r->steady.period_steps;
   if (past == asymmetric_phase(r->steady.period_steps))
     strut_steady_detector_half_period(r->state, &r->steady.detector);
-  if (past != 0) return STRUT_OK;
+  if (past != 0) return;
   double x, v;
   bool before = r->steady.detector.known;
   strut_measure_tracked_point(r->model, r->state, &r->measure, &x, &v);
-  if (!strut_steady_detector_period(r->state, x, &r->steady.detector) || before) return STRUT_OK;
-  bool internal = strut_feedback_remembers(&r->model->feedback);
-  bool memory = internal || (r->model->terms & STRUT_TERM_MEMORY) || r->model->contacts.grips;
-  if (memory && r->experiment->steady.shooting)
-    snprintf(
-        r->steady.detector.result.reason, sizeof r->steady.detector.result.reason,
-        internal
-            ? "internal states, samples, starts and relays are a memory that shooting does not "
-              "correct"
-        : r->model->contacts.grips
-            ? "shooting knows no derivatives of friction that follows a signal"
-            : "what breaks, is released, yields or folds has a memory that shooting does not "
-              "correct");
-  bool shoot =
-      r->experiment->steady.shooting && r->steady.detector.result.kind == STRUT_MOTION_PERIODIC;
-  strut_status status = shoot && !memory ? shoot_orbit(r) : STRUT_OK;
-  if (status) return status;
+  if (!strut_steady_detector_period(r->state, x, &r->steady.detector) || before) return;
   double now = (double)n * r->dt, period = r->steady.detector.period;
   int64_t periods = r->steady.answer_periods, repeats = r->steady.detector.result.repeats;
   if (r->measure.quantities && periods < repeats)
@@ -340,7 +261,6 @@ static strut_status detect_steady_motion(strut_run *r) {
   r->grid.last = r->measure.grid.last = r->recording.grid.last = -1;
   strut_measure_window(r->model, r->state, now, period, (size_t)periods, &r->measure);
   if (recorded > 0) r->recording.start = now + (double)(all - recorded) * period;
-  return STRUT_OK;
 }
 
 /* ---- stepping ---- */
@@ -489,8 +409,7 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   bool balance_due = n == r->answer.step || (n >= r->watch.balance.next && n < r->answer.step);
   strut_status balance_status = balance_due ? sample_balance(r) : STRUT_OK;
   if (balance_status) return balance_status;
-  strut_status steady_status = r->steady.wanted ? detect_steady_motion(r) : STRUT_OK;
-  if (steady_status) return steady_status;
+  if (r->steady.wanted) detect_steady_motion(r);
   if (n == strut_measure_first_step(&r->measure))
     strut_measure_begin(r->model, r->state, &r->measure);
   if (lost < 0 && (n == strut_recording_next_step(&r->recording) ||

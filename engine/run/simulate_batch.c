@@ -125,15 +125,12 @@ static void sample_batch(batch_state *h) {
   for (int32_t l = 0; l < h->width; l++) {
     batch_run *s = &h->slots[l];
     if (!s->taken || s->run.state->step < s->stop) continue;
-    int64_t shot = s->run.steady.shooting_periods;
     strut_status status = strut_run_sample(&s->run, &s->stop);
     if (status || s->stop == s->run.state->step) {
       release_slot(h, l);
       end_run(h, s, status);
     } else if (strut_run_is_short_step_due(&s->run)) {
       run_slot_to_end(h, l);
-    } else if (s->run.steady.shooting_periods != shot) {
-      strut_batch_put(h->batch, l, s->run.state); /* shooting moved the state to the orbit */
     }
   }
 }

@@ -46,7 +46,6 @@ typedef struct strut_run {
     int64_t period_steps;     /* per drive period */
     int64_t answer_periods;   /* least periods of the summary once the motion is steady */
     int64_t recorded_periods; /* and those that are recorded */
-    int64_t shooting_periods; /* drive periods run by shooting */
   } steady;
   /** When the summary is filled; later steps are recorded only. */
   struct {

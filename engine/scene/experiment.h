@@ -71,7 +71,6 @@ typedef struct strut_steady {
   int32_t successive; /* repetitions in a row that must agree; default 5 */
   double
       mean_tolerance; /* of an irregular motion's mean velocity [1], where the run continues one that was long enough; 0: tolerance */
-  bool shooting;      /* complete the orbit by shooting, with its Floquet multipliers */
   double
       creep; /* a motion without a period that stays slower ends as creeping [m/s]; 0: none does */
   int64_t creep_after; /* but not within so many periods */

@@ -450,8 +450,7 @@
 #define STRUT_STEADY_FIELDS(X) \
   X(STEADY, TOLERANCE, "tolerance", NUMBER, NONE, ABOVE_ZERO, "0.5 %", WRITTEN, 0, "", FIELD(strut_steady, tolerance), "Largest relative difference of the velocity between repetitions.") \
   X(STEADY, ABSOLUTE_TOLERANCE, "absolute_tolerance", NUMBER, VELOCITY, ABOVE_ZERO, "from the scene", OPTIONAL, 0, "", FIELD(strut_steady, floor), "Velocity differences below this value count as none.") \
-  X(STEADY, REPETITIONS, "repetitions", NUMBER, NONE, WHOLE(2, 16), "5", WRITTEN, 0, "", FIELD(strut_steady, successive), "Number of successive repetitions that must agree.") \
-  X(STEADY, SHOOTING, "shooting", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_steady, shooting), "`yes`: solves for the periodic orbit by Newton's method (shooting) and reports its Floquet multipliers; up to 48 degrees of freedom.")
+  X(STEADY, REPETITIONS, "repetitions", NUMBER, NONE, WHOLE(2, 16), "5", WRITTEN, 0, "", FIELD(strut_steady, successive), "Number of successive repetitions that must agree.")
 
 #define STRUT_OUTPUT_FIELDS(X) \
   X(OUTPUT, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "a thousandth of the recorded time", OPTIONAL, 0, "", FIELD(strut_experiment, output_every), "Time between two samples.") \

@@ -394,26 +394,6 @@ err_has 'look for a loop of sensors and drives that is unstable'
 sed 's/{rate: w, start/{rate: "z^2\/(1 m s)", start/; s/z\/(1 s^2)/w*0\/(1 s)/; s/0.05\*z/0.05*w*0*1 s/; s/1e-3\*f/0*f/' free.yaml >run.yaml
 tells 3 "state 'z' is no longer a finite number at t = " run run.yaml
 
-# Shooting knows nothing of internal states, and says so.
-sed 's/duration: 100 s/periods: 400\n  of: beat/; s/measure:/measure:\n    steady: {shooting: yes}/
-  s/^actuators:/signals: {beat: {sine: {amplitude: 1 mm, frequency: 1 Hz}}}\nactuators:/
-  s/d: {member.*/d: {member: m, signal: {sum: [beat, {expression: 10 mm*sin(o1)}]}}/' oscillators.yaml >run.yaml
-expect 0 run run.yaml --set 'df=0 Hz'
-
-# Starts are a memory, too.
-cat >begun.yaml <<'END'
-strut: 1
-nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
-members: {m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 4}}
-sensors: {l: {length: m}}
-signals: {beat: {sine: {amplitude: 10 mm, frequency: 1 Hz}},
-          more: {constant: 1 mm, starts: {sensor: l, above: 1.005 m}}}
-actuators: {d: {member: m, signal: {sum: [beat, more]}}}
-solver: {integrator: rk4-events, step: 1 ms}
-run: {periods: 40, of: beat, measure: {steady: {shooting: yes}, last: 1, node: b}}
-END
-shows 0 'internal states, samples, starts and relays are a memory that shooting does not correct' run begun.yaml
-
 # The largest step counts Maxwell branches, as stiff as they are in fast motions, sqrt((k + K)/m), and
 # what relaxes by itself; it knows nothing of feedback, and so do modes, and both say so.
 cat >branch.yaml <<'END'

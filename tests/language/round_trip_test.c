@@ -162,7 +162,6 @@ static void same_scene(const strut_setup *a, const strut_setup *b) {
   SAME(experiment.steady.tolerance);
   SAME(experiment.steady.floor);
   SAME(experiment.steady.successive);
-  SAME(experiment.steady.shooting);
   SAME(experiment.measure_node);
   SAME(experiment.output_every);
   SAME(experiment.output_last);

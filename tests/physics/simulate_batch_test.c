@@ -124,7 +124,6 @@ static void same_summary(const strut_summary *a, const strut_summary *b) {
   assert_int_equal(a->steady.periods, b->steady.periods);
   same_number(a->steady.interval, b->steady.interval);
   same_number(a->steady.residual, b->steady.residual);
-  assert_int_equal(a->steady.shot, b->steady.shot);
 }
 
 /* The crawler, sometimes as something that no lane takes, or that fails. */
@@ -151,7 +150,6 @@ static void make_scene(strut_setup *setup, int i, const char *method, uint64_t *
   e->steady.tolerance = 0.3;
   e->duration = 0, e->measure_last = 2;
   e->periods = 30, e->period_signal = 0;
-  e->steady.shooting = i % 2;
 }
 
 static void make_points(points *all, int count, const char *method, bool without_balance) {

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * What runs call steady, against the truth: closed forms, and equations of motion that are written
- * out and stepped here, with their variation for multipliers and Lyapunov exponents.
+ * out and stepped here, with their variation for Lyapunov exponents.
  */
 #include <math.h>
 #include <string.h>
 
-#include "engine/run/orbit/orbit.h"
 #include "tests/physics/driven_scenes.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
@@ -99,76 +98,6 @@ TEST(doubling_and_chaos) {
     strut_summary_free(&s);
     strut_setup_free(&setup);
   }
-}
-
-/* Of a motion that repeats itself every second period because it has doubled, not by its loads. */
-TEST(multipliers_of_a_doubled_motion) {
-  double z[6] = {RISE, 0, 1, 0, 0, 1};
-  for (int p = 0; p < 600; p++) {
-    snap_period(7, 2.6, p, z);
-    if (p < 598) z[2] = 1, z[3] = 0, z[4] = 0, z[5] = 1; /* the last two vary */
-  }
-  double trace = z[2] + z[5], product = z[2] * z[5] - z[3] * z[4];
-  double root = 0.25 * trace * trace - product;
-  strut_setup setup;
-  snap_scene(&setup, 7, 2.6);
-  setup.experiment.steady.shooting = true;
-  strut_summary s = motion_simulate(&setup);
-  assert_int_equal(s.steady.repeats, 2);
-  assert_true(s.steady.shot);
-  assert_int_equal(s.steady.multiplier_count, 2);
-  assert_true(root < 0); /* a pair */
-  for (int k = 0; k < 2; k++) {
-    assert_near(s.steady.multiplier[k][0], 0.5 * trace, 1e-5);
-    assert_near(fabs(s.steady.multiplier[k][1]), sqrt(-root), 1e-5);
-  }
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
-}
-
-/* ---- a mass that bounces on the pushed way down to the ground ---- */
-
-/*
- * An area of states shrinks by exp(-c/m t), t being how long the ground's damper works in a period:
- * touchdowns and take-offs leave it as it is. That is the product of the multipliers.
- */
-TEST(multipliers_of_a_bouncing_mass) {
-  const double stiffness = 1e4, damping = 20, push = 8, frequency = 7;
-  double y = 0.01, v = 0, works = 0;
-  enum { FINE = 20000, PERIODS = 200 };
-  double h = 1 / frequency / FINE;
-  for (int p = 0; p < PERIODS; p++) {
-    for (int n = 0; n < FINE; n++) { /* of its own: leapfrog in small steps */
-      double force = -9.81 + push * sin(2 * PI * frequency * (p / frequency + (n + 0.5) * h));
-      double half = y + 0.5 * h * v;
-      bool damped = half < 0 && v < 0;
-      if (half < 0) force += -stiffness * half - (damped ? damping * v : 0);
-      if (p == PERIODS - 1 && damped) works += h;
-      v += h * force;
-      y = half + 0.5 * h * v;
-    }
-  }
-  strut_setup setup;
-  strut_setup_init(&setup);
-  build_mass(&setup.scene, 0, 0.01, 1);
-  setup.scene.nodes[0].fixed[0] = true;
-  setup.scene.gravity[1] = -9.81;
-  build_contact(&setup.scene, 0, stiffness, damping);
-  build_load(&setup.scene, 0, 0, 1, build_sine(&setup.scene, push, frequency));
-  driven_watch(&setup, 1 / frequency / 2000, 400, 0.001);
-  setup.experiment.integrator = "rk4-events";
-  setup.experiment.steady.shooting = true;
-  strut_summary s = motion_simulate(&setup);
-  assert_int_equal(s.steady.repeats, 1);
-  assert_true(s.steady.shot);
-  assert_within(s.end.contacts[0].duty, 0.1, 0.5);
-  assert_int_equal(s.steady.multiplier_count, 2);
-  double product = 1;
-  for (int k = 0; k < 2; k++)
-    product *= hypot(s.steady.multiplier[k][0], s.steady.multiplier[k][1]);
-  assert_relative(product, exp(-damping * works), 2e-3);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 /* ---- an oscillator of 1 kg whose transient comes nearly or exactly back with the drive's periods ---- */
@@ -272,35 +201,5 @@ TEST(standing_still_under_its_weight) {
   assert_true(s.steady.periods < 60);
   assert_near(s.velocity, 0, 0);
   strut_summary_free(&s);
-  strut_setup_free(&setup);
-}
-
-/* ---- shooting that is told to stop ---- */
-
-TEST(shooting_can_be_interrupted) {
-  strut_setup setup;
-  snap_scene(&setup, 5, 1.1);
-  setup.experiment.steady.wanted = false;
-  strut_flag flag = 0;
-  strut_model *model = motion_compile(&setup.scene);
-  strut_period_map map;
-  strut_steady_summary found = {0};
-  strut_error error = {0};
-  assert_int_equal(strut_period_map_create(model, &setup.experiment, 1, &map, &error), STRUT_OK);
-  map.interrupt = &flag;
-  double y[40] = {0}, before[40], travel;
-  assert_true(2 * map.model->length + 1 <= 40);
-  memcpy(y, map.model->start, (size_t)map.model->length * sizeof *y);
-  for (int p = 0; p < 40; p++) assert_true(isfinite(strut_period_map_apply(&map, y)));
-  memcpy(before, y, sizeof y);
-  flag = 1;
-  assert_int_equal(strut_shoot(&map, y, &travel, &found), STRUT_INTERRUPTED);
-  assert_false(found.shot);
-  assert_memory_equal(y, before, sizeof y);
-  flag = 0;
-  assert_int_equal(strut_shoot(&map, y, &travel, &found), STRUT_OK);
-  assert_true(found.shot);
-  strut_period_map_free(&map);
-  strut_model_free(model);
   strut_setup_free(&setup);
 }

@@ -581,8 +581,7 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *a, bool *done) {
       0.5; /* the orbit will be corrected, so that a short refinement suffices */
   a->coarse.refine_memory = 3.0;
   a->coarse.steady.mean_tolerance = MEAN * a->target;
-  if (a->target >= FINE && !a->experiment.steady.shooting)
-    a->coarse.steady.creep = CREEP * a->scale;
+  if (a->target >= FINE) a->coarse.steady.creep = CREEP * a->scale;
   strut_status status = run_coarse(&solve, &steady);
   bool ran = !status && solve.coarse_run.status == STRUT_OK;
   if (ran && solve.coarse_run.steady.kind == STRUT_MOTION_CREEPING)

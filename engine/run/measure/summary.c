@@ -121,10 +121,6 @@ bool strut_settle_warning(const strut_settle_summary *how, char *text, size_t si
 
 /* ---- results by the rows of their table ---- */
 
-bool strut_summary_has_orbit(const strut_summary *s) {
-  return s->steady.kind != STRUT_MOTION_NOT_WATCHED && (s->steady.shot || s->steady.reason[0]);
-}
-
 const char *strut_balance_name(strut_balance balance) {
   static const char *const names[] = {NULL, "closed", "open"};
   return names[balance];

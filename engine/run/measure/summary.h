@@ -90,18 +90,12 @@ typedef enum strut_motion {
 /** "periodic", "irregular", "transient", "creeping", or "" where not watched. */
 STRUT_API const char *strut_motion_name(strut_motion motion);
 
-enum { STRUT_MOST_MULTIPLIERS = 8 };
 typedef struct strut_steady_summary {
   strut_motion kind;
   int32_t repeats; /* n of a period-n motion; 1: every drive period is the same */
   int64_t periods; /* drive periods until that was known */
   double interval; /* half-width of the confidence interval of the velocity [m/s] */
   double residual; /* change of the shape over one repetition, relative to the shape's motion */
-  bool shot;       /* completed by shooting; otherwise `reason` is the cause */
-  int iterations;  /* Newton steps; 0 without shooting */
-  char reason[200];
-  size_t multiplier_count;                      /* Floquet multipliers, the largest first */
-  double multiplier[STRUT_MOST_MULTIPLIERS][2]; /* real and imaginary part */
 } strut_steady_summary;
 
 /** Choice and check of the method for a wanted accuracy; `wanted` is 0 without. */
@@ -223,11 +217,6 @@ typedef struct strut_summary {
   X(steady, periods, "1", COUNT, s->steady.periods, s->steady.kind)                                \
   X(steady, velocity_interval, "m/s", NUMBER, s->steady.interval, s->steady.kind)                  \
   X(steady, residual, "1", NUMBER, s->steady.residual, s->steady.kind)                             \
-  X(steady, shot, "1", FLAG, s->steady.shot, strut_summary_has_orbit(s))                           \
-  X(steady, reason, "1", TEXT, *s->steady.reason ? s->steady.reason : NULL,                        \
-    strut_summary_has_orbit(s))                                                                    \
-  X(steady, iterations, "1", COUNT, s->steady.iterations, strut_summary_has_orbit(s))              \
-  X(steady, multipliers, "1", PART, 0.0, strut_summary_has_orbit(s))                               \
   X(accuracy, wanted, "1", NUMBER, s->accuracy.wanted, s->accuracy.wanted > 0.0)                   \
   X(accuracy, expected, "1", NUMBER, s->accuracy.expected, s->accuracy.wanted > 0.0)               \
   X(accuracy, kept, "1", FLAG, s->accuracy.kept, s->accuracy.wanted > 0.0)                         \
@@ -271,8 +260,6 @@ typedef struct strut_result {
 
 STRUT_API strut_result strut_summary_result(const strut_summary *summary, strut_result_id id);
 
-/** Was an orbit sought, and found or not? */
-STRUT_API bool strut_summary_has_orbit(const strut_summary *summary);
 /** "closed" or "open"; NULL: not kept. */
 STRUT_API const char *strut_balance_name(strut_balance balance);
 /** Net work of the drives over the distance that the measured point moves [N]; NAN where it stands. */

@@ -402,7 +402,7 @@ bool strut_steady_detector_period(const strut_state *state, double x, strut_stea
   if (w->result.kind == STRUT_MOTION_CREEPING) return true;
   int32_t n = w->known ? w->result.repeats : 1;
   int32_t rounds = n * ((w->rules.successive + n - 1) / n);
-  if (now >= rounds && !w->result.shot) w->velocity = mean_velocity(w, now, rounds);
+  if (now >= rounds) w->velocity = mean_velocity(w, now, rounds);
   return w->known;
 }
 

@@ -67,7 +67,6 @@ static strut_status run_start(follower *f, const strut_setup *setup, const strut
   e.accuracy = START_ACCURACY;
   e.steady.wanted = true;
   e.steady.tolerance = START_TOLERANCE;
-  e.steady.shooting = false;
   e.quantity_count = 0;
   e.periods = fmin(fmax(e.periods, LEAST_PERIODS), MOST_PERIODS);
   e.measure_last = fmin(e.measure_last, e.periods);

@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/run/orbit/orbit.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/base/vec.h"
+#include "engine/model/pose.h"
+
+/* Members and nodes times steps between two checks of the interrupt flag. */
+static const int64_t CHUNK_WORK = 200000;
+
+strut_status strut_period_map_create(const strut_model *model, const strut_experiment *experiment,
+                                     int32_t repeats, strut_period_map *map, strut_error *error) {
+  *map = (strut_period_map){.model = model, .repeats = repeats};
+  map->period = strut_experiment_span(experiment, model->scene).period;
+  assert(repeats >= 1 && map->period > 0.0 && experiment->step > 0.0);
+  map->steps = (int64_t)ceil(map->period / experiment->step * (1.0 - 1e-9));
+  map->dt = map->period / (double)map->steps;
+  const strut_time_grid grid = {.step = map->dt, .last = -1};
+  map->method = strut_integrator_find(experiment->integrator);
+  const strut_integrator_settings settings = strut_integrator_settings_of(experiment);
+  strut_status status = strut_state_create(model, &map->state, error);
+  if (!status) map->workspace = map->method->create(model, map->state, &settings);
+  if (!status &&
+      (!map->workspace || strut_measure_create(model, experiment, &grid, 0, 0, &map->measure)))
+    status = strut_no_memory(error, "");
+  if (status) {
+    strut_period_map_free(map);
+    return status;
+  }
+  map->travels = strut_contacts_allow_travel(&map->model->contacts);
+  for (int32_t i = 0; i < 2 * map->model->node_count; i++)
+    map->travels = map->travels && !map->model->fixed[i];
+  return STRUT_OK;
+}
+
+static double mean_along(const strut_model *model, const double *q) {
+  const double *t = model->contacts.tangent;
+  double sum = 0.0;
+  for (int32_t i = 0; i < model->node_count; i++) sum += q[2 * i] * t[0] + q[2 * i + 1] * t[1];
+  return sum / model->node_count;
+}
+
+bool strut_period_map_interrupted(const strut_period_map *map) {
+  return map->interrupt && *map->interrupt;
+}
+
+bool strut_period_map_spent(const strut_period_map *map) {
+  return map->most_evaluations > 0 && map->evaluations > map->most_evaluations;
+}
+
+/* Is the limit exceeded, the present application included? */
+static bool is_spent_now(const strut_period_map *map) {
+  return map->most_evaluations > 0 &&
+         map->evaluations + map->state->evaluations > map->most_evaluations;
+}
+
+/*
+ * Advances in chunks long enough for the checks to cost nothing, and short enough to interrupt
+ * promptly.
+ */
+static void advance_application(strut_period_map *map) {
+  const strut_model *model = map->model;
+  strut_state *state = map->state;
+  int64_t most = CHUNK_WORK / (model->members.count + model->node_count + 1) + 1;
+  int64_t left = map->steps * map->repeats;
+  state->limits.interrupt = map->interrupt;
+  if (map->most_evaluations > 0)
+    state->limits.most_evaluations =
+        map->most_evaluations > map->evaluations ? map->most_evaluations - map->evaluations : 1;
+  while (left > 0 && !state->trouble && !strut_period_map_interrupted(map) && !is_spent_now(map)) {
+    int64_t count = map->watch ? 1 : left < most ? left : most;
+    strut_integrator_advance(map->method, model, state, map->workspace, map->dt, count);
+    if (map->watch) map->watch(map->watch_context, state);
+    left -= count;
+  }
+}
+
+double strut_period_map_apply(strut_period_map *map, double *y) {
+  const strut_model *model = map->model;
+  strut_state *state = map->state;
+  size_t bytes = (size_t)model->length * sizeof(double);
+  double from, to, speed, before = mean_along(model, y);
+  strut_state_reset(model, state);
+  state->step = llround(map->time / map->dt);
+  memcpy(state->q, y, bytes);
+  memcpy(state->v, y + model->length, bytes);
+  state->refined_until = map->time + y[2 * model->length];
+  strut_measure_tracked_point(model, state, &map->measure, &from, &speed);
+  if (map->method->restart) map->method->restart(model, state, map->workspace, map->dt);
+  advance_application(map);
+  map->evaluations += state->evaluations;
+  map->events += state->events;
+  map->forced += state->forced.count;
+  map->applied += map->repeats;
+  strut_measure_tracked_point(model, state, &map->measure, &to, &speed);
+  memcpy(y, state->q, bytes);
+  memcpy(y + model->length, state->v, bytes);
+  y[2 * model->length] = fmax(0.0, state->refined_until - (double)state->step * map->dt);
+  double shift = map->travels ? mean_along(model, y) - before : 0.0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++)
+    y[i] -= shift * model->contacts.tangent[i % 2];
+  bool whole =
+      !state->trouble && !strut_period_map_interrupted(map) && !strut_period_map_spent(map);
+  return whole ? to - from : (double)NAN;
+}
+
+double strut_period_map_size(const strut_period_map *map, const double *d) {
+  const strut_model *model = map->model;
+  double speed = model->size * STRUT_TAU / map->period, most = 0.0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) {
+    most = fmax(most, fabs(d[i]) / model->size);
+    most = fmax(most, fabs(d[model->length + i]) / speed);
+  }
+  return most;
+}
+
+void strut_period_map_subtract(const strut_period_map *map, const double *from, const double *to,
+                               double *d) {
+  const strut_model *model = map->model;
+  const double *t = model->contacts.tangent;
+  double along = 0.0;
+  for (int32_t i = 0; i <= 2 * model->length; i++) d[i] = to[i] - from[i];
+  for (int32_t i = 0; i < model->node_count && map->travels; i++)
+    along += (d[2 * i] * t[0] + d[2 * i + 1] * t[1]) / model->node_count;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) d[i] -= along * t[i % 2];
+}
+
+void strut_period_map_free(strut_period_map *map) {
+  strut_measure_free(&map->measure);
+  strut_state_free(map->state);
+  *map = (strut_period_map){.model = NULL};
+}
+
+bool strut_solve_dense(double *a, double *x, size_t n, double least) {
+  for (size_t p = 0; p < n; p++) {
+    size_t best = p;
+    for (size_t i = p + 1; i < n; i++)
+      if (fabs(a[i * n + p]) > fabs(a[best * n + p])) best = i;
+    if (!(fabs(a[best * n + p]) > least)) return false;
+    for (size_t j = 0; j < n && best != p; j++) {
+      double keep = a[p * n + j];
+      a[p * n + j] = a[best * n + j], a[best * n + j] = keep;
+    }
+    double keep = x[p];
+    x[p] = x[best], x[best] = keep;
+    for (size_t i = p + 1; i < n; i++) {
+      double factor = a[i * n + p] / a[p * n + p];
+      for (size_t j = p; j < n; j++) a[i * n + j] -= factor * a[p * n + j];
+      x[i] -= factor * x[p];
+    }
+  }
+  for (size_t i = n; i-- > 0;) {
+    for (size_t j = i + 1; j < n; j++) x[i] -= a[i * n + j] * x[j];
+    x[i] /= a[i * n + i];
+  }
+  return true;
+}
