@@ -100,4 +100,9 @@ typedef struct strut_batch_source {
 /** Runs all points; calls back from this thread only. */
 STRUT_API void strut_simulate_batch(const strut_batch_source *source);
 
+/** Does a run that ended so have a summary? */
+static inline bool strut_run_has_results(strut_status status) {
+  return status == STRUT_OK || status == STRUT_DIVERGED || status == STRUT_INTERRUPTED;
+}
+
 #endif

@@ -13,6 +13,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "engine/base/status.h"
 #include "engine/scene/quantity.h"
@@ -257,6 +258,31 @@ typedef enum strut_keep {
 #undef STRUT_KEEP_ENUM
       STRUT_KEEP_COUNT
 } strut_keep;
+
+/** A word of `keep`, and the set of what has it. */
+typedef struct strut_kept_word {
+  const char *word;
+  unsigned of;
+} strut_kept_word;
+
+/** NULL beyond the last. */
+static inline const strut_kept_word *strut_kept_word_at(size_t i) {
+  static const strut_kept_word words[] = {
+#define STRUT_KEPT_WORD(name, word, of) {word, of},
+      STRUT_KEEP_TABLE(STRUT_KEPT_WORD)
+#undef STRUT_KEPT_WORD
+  };
+  return i < STRUT_KEEP_COUNT ? &words[i] : NULL;
+}
+
+/** The strut_keep that `word` names of what computes so, or -1. */
+static inline int strut_keep_find(const char *word, unsigned compute) {
+  for (int i = 0; i < STRUT_KEEP_COUNT; i++) {
+    const strut_kept_word *kept = strut_kept_word_at((size_t)i);
+    if (kept->of >> compute & 1u && strcmp(kept->word, word) == 0) return i;
+  }
+  return -1;
+}
 
 /** A set of them: bit k % 64 of bits[k / 64] is strut_keep k. */
 enum { STRUT_KEEP_WORDS = (STRUT_KEEP_COUNT + 63) / 64 };

@@ -38,10 +38,6 @@ typedef struct run_files {
   size_t sink_count;
 } run_files;
 
-static bool has_results(strut_status status) {
-  return status == STRUT_OK || status == STRUT_DIVERGED || status == STRUT_INTERRUPTED;
-}
-
 static strut_status begin_results(const strut_arguments *arguments, const strut_setup *setup,
                                   run_files *keep, strut_error *error) {
   if (!arguments->output) return STRUT_OK;
@@ -98,9 +94,7 @@ static strut_status simulate(const strut_model *model, const strut_setup *setup,
       .sinks = keep->sinks,
       .sink_count = keep->sink_count,
   };
-  status = setup->experiment.accuracy > 0.0
-               ? strut_simulate_accurately(model, &setup->experiment, &run, summary, error)
-               : strut_simulate(model, &setup->experiment, &run, summary, error);
+  status = strut_simulate_as_asked(model, &setup->experiment, &run, summary, error);
   strut_progress_end(&progress);
   return status;
 }
@@ -134,7 +128,7 @@ static strut_status run_model(const strut_arguments *arguments, const strut_setu
   strut_error error = {0}, late = {0};
   strut_status status = simulate(model, setup, arguments, &keep, pictures, &summary, &error);
   if (status != STRUT_OK) strut_print_error(&error);
-  if (has_results(status)) {
+  if (strut_run_has_results(status)) {
     print_warnings(&summary);
     strut_status written = complete_results(&keep, &summary, model->scene, &late);
     if (written == STRUT_OK) written = strut_run_pictures_draw(pictures, model, &summary, &late);

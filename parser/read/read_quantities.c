@@ -424,25 +424,10 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
   d->unit = is_moment(d) ? "N m" : *unit ? strut_keep_text(reader, unit) : "1";
 }
 
-/* Does `keep` of a study that runs its points mean something else by the word? */
-static bool is_kept_word(const char *name) {
-  static const struct {
-    const char *word;
-    unsigned of;
-  } words[] = {
-#define KEPT_WORD(id, word, of) {word, of},
-      STRUT_KEEP_TABLE(KEPT_WORD)
-#undef KEPT_WORD
-  };
-  for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
-    if (words[i].of & STRUT_OF_RUN && strcmp(words[i].word, name) == 0) return true;
-  return false;
-}
-
 /* The name becomes a column of a study's table and a word of `keep`. */
 static bool may_be_called(strut_reader *reader, const strut_tree *key) {
   if (!strut_read_name(reader, key, "quantity")) return false;
-  if (!is_kept_word(key->text)) return true;
+  if (strut_keep_find(key->text, STRUT_COMPUTE_RUN) < 0) return true;
   strut_report_error(
       reader, key->place,
       "a quantity cannot be called '%s', since 'keep' of a study means something else by it",

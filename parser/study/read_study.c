@@ -96,16 +96,6 @@ static const strut_tree *quantities_of(strut_scene_source *source) {
   return tree && tree->kind == STRUT_TREE_MAP ? tree : NULL;
 }
 
-/* The words of `keep`, in its order, and what has them. */
-static const struct {
-  const char *word;
-  unsigned of;
-} kept_words[] = {
-#define KEPT_WORD(name, word, of) {word, of},
-    STRUT_KEEP_TABLE(KEPT_WORD)
-#undef KEPT_WORD
-};
-
 /* The names that `keep` may contain: words, then the model's quantities. */
 typedef struct kept_names {
   const char *word[STRUT_KEEP_COUNT];
@@ -127,8 +117,8 @@ static const char *list_kept(const strut_study *study, kept_names *names, char *
   size_t used = 0;
   *text = '\0';
   for (int i = 0; i < STRUT_KEEP_COUNT; i++)
-    if (kept_words[i].of >> study->compute & 1u)
-      names->word[names->word_count++] = kept_words[i].word;
+    if (strut_kept_word_at((size_t)i)->of >> study->compute & 1u)
+      names->word[names->word_count++] = strut_kept_word_at((size_t)i)->word;
   for (size_t i = 0; i < names->word_count && used < size; i++) {
     const char *before = i == 0 ? "" : i + 1 < names->word_count ? ", " : " or ";
     int n = snprintf(text + used, size - used, "%s%s", before, names->word[i]);
@@ -161,7 +151,6 @@ static bool is_twice(const strut_tree *list, const strut_tree *item) {
 /* Words, and names of what the model measures. */
 static void read_keep(strut_study_reader *r, const strut_slot *slot) {
   strut_study *study = &r->file->study;
-  const char *words = strut_key_at(STRUT_KEY_STUDY_KEEP)->words;
   if (slot->state != STRUT_GIVEN) return;
   bool run = study->compute == STRUT_COMPUTE_RUN;
   const strut_tree *quantities =
@@ -171,11 +160,11 @@ static void read_keep(strut_study_reader *r, const strut_slot *slot) {
   if (!study->quantities) return;
   for (const strut_tree *item = slot->value->first; item; item = item->next) {
     bool scalar = item->kind == STRUT_TREE_SCALAR;
-    int word = scalar ? strut_word_find(words, item->text) : -1;
+    int word = scalar ? strut_keep_find(item->text, study->compute) : -1;
     if (scalar && is_twice(slot->value, item))
       strut_report_error(r->reader, item->place, "'%s' appears twice in 'keep' of the study",
                          item->text);
-    else if (word >= 0 && kept_words[word].of >> study->compute & 1u)
+    else if (word >= 0)
       strut_keep_add(&study->keep, (unsigned)word);
     else if (scalar && quantities && strut_tree_find(quantities, item->text, NULL))
       study->quantities[study->quantity_count++] = item->text;

@@ -213,3 +213,11 @@ double strut_track_distance(const strut_track *a, const strut_track *b, double p
   }
   return away / motion;
 }
+
+strut_status strut_simulate_as_asked(const strut_model *model, const strut_experiment *experiment,
+                                     const strut_run_options *options, strut_summary *summary,
+                                     strut_error *error) {
+  return experiment->accuracy > 0.0
+             ? strut_simulate_accurately(model, experiment, options, summary, error)
+             : strut_simulate(model, experiment, options, summary, error);
+}

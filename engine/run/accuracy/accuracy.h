@@ -28,6 +28,12 @@ STRUT_API strut_status strut_simulate_accurately(const strut_model *model,
                                                  const strut_run_options *options,
                                                  strut_summary *summary, strut_error *error);
 
+/** strut_simulate_accurately where the experiment asks for an accuracy, else strut_simulate. */
+STRUT_API strut_status strut_simulate_as_asked(const strut_model *model,
+                                               const strut_experiment *experiment,
+                                               const strut_run_options *options,
+                                               strut_summary *summary, strut_error *error);
+
 /* Shared by the strategies in accuracy_midpoint.c, accuracy_orbit.c and accuracy_ladder.c. */
 
 /** Part of the largest stable step that the coarse method takes. */

@@ -220,11 +220,9 @@ void strut_sweep_job_finish(const strut_sweep_worker *w, strut_sweep_job *job) {
     job->stage = STRUT_SWEEP_RUNNING;
     const strut_experiment *experiment = &job->setup.experiment;
     status = strut_sweep_job_compile(job);
-    if (!status && experiment->accuracy > 0.0)
+    if (!status)
       status =
-          strut_simulate_accurately(job->model, experiment, &job->options, &summary, &job->error);
-    else if (!status)
-      status = strut_simulate(job->model, experiment, &job->options, &summary, &job->error);
+          strut_simulate_as_asked(job->model, experiment, &job->options, &summary, &job->error);
     strut_sweep_job_take(w, job, status, &summary, &job->error);
   } while (job->stage == STRUT_SWEEP_WAITING);
 }

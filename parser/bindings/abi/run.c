@@ -114,9 +114,7 @@ static strut_status simulate(abi_call *call, const strutlib_result *result, run_
       .progress_context = call->control,
       .sinks = sinks,
       .sink_count = sink ? 1 : 0};
-  return experiment->accuracy > 0.0
-             ? strut_simulate_accurately(result->model, experiment, &options, &run->summary, what)
-             : strut_simulate(result->model, experiment, &options, &run->summary, what);
+  return strut_simulate_as_asked(result->model, experiment, &options, &run->summary, what);
 }
 
 /* ---- what it shows ---- */
@@ -159,10 +157,6 @@ static strut_status draw(const strutlib_result *result, const strut_arguments *a
   return strut_run_figure_draw(path, &figure, result->model, &run->motion, &run->summary, error);
 }
 
-static bool has_results(strut_status status) {
-  return status == STRUT_OK || status == STRUT_DIVERGED || status == STRUT_INTERRUPTED;
-}
-
 /* Runs what is open, and completes the result; sets the error of a run that ended early, too. */
 static strut_status run_model(abi_call *call, strutlib_result *result) {
   run_detail *run = strut_allocate(1, sizeof *run);
@@ -182,7 +176,7 @@ static strut_status run_model(abi_call *call, strutlib_result *result) {
   strut_trajectory_sink_free(sink);
   result->status = (int)status;
   if (status != STRUT_OK) abi_call_fail(call, status, &what);
-  if (!has_results(status) || complete(result, run)) return status;
+  if (!strut_run_has_results(status) || complete(result, run)) return status;
   if (call->error && *call->error) strutlib_error_free(*call->error);
   return (strut_status)abi_no_memory(call->error);
 }
@@ -200,7 +194,7 @@ strutlib_result *strutlib_run(const strutlib_scene *scene, size_t count, const c
   if (status == STRUT_OK) status = open_setup(&call, scene, result);
   bool begun = status == STRUT_OK;
   if (begun) status = run_model(&call, result);
-  if (!begun || !has_results(status)) {
+  if (!begun || !strut_run_has_results(status)) {
     strutlib_result_free(result);
     result = NULL;
   }

@@ -111,26 +111,17 @@ static strut_status add_axes(sweep *s, size_t axes, const char *const *names, si
   return status;
 }
 
-static const struct {
-  const char *word;
-  unsigned of;
-} kept_words[] = {
-#define KEPT_WORD(name, word, of) {word, of},
-    STRUT_KEEP_TABLE(KEPT_WORD)
-#undef KEPT_WORD
-};
-
 static const char *kept_word_at(const void *context, size_t i) {
   (void)context;
-  return i < STRUT_KEEP_COUNT ? kept_words[i].word : NULL;
+  return i < STRUT_KEEP_COUNT ? strut_kept_word_at(i)->word : NULL;
 }
 
 static strut_status add_kept(sweep *s, const char *word, strut_error *what) {
-  for (int i = 0; i < STRUT_KEEP_COUNT; i++)
-    if (strcmp(kept_words[i].word, word) == 0 && (kept_words[i].of >> s->study.compute & 1u)) {
-      strut_keep_add(&s->study.keep, (unsigned)i);
-      return STRUT_OK;
-    }
+  int found = strut_keep_find(word, s->study.compute);
+  if (found >= 0) {
+    strut_keep_add(&s->study.keep, (unsigned)found);
+    return STRUT_OK;
+  }
   if (s->study.compute == STRUT_COMPUTE_RUN && strutlib_index(s->scene, "quantities", word) >= 0) {
     s->study.quantities[s->study.quantity_count++] =
         strut_arena_text(&s->arena, word, strlen(word));
