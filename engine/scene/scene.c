@@ -70,6 +70,18 @@ static double turn_at(const strut_scene *scene, const strut_member *m, size_t k)
                    scene->nodes[strut_member_node(m, k + 1)].position);
 }
 
+double strut_scene_last_signal_event(const strut_scene *scene) {
+  double last = 0.0;
+  for (size_t i = 0; i < scene->signal_count; i++) {
+    const strut_signal *s = &scene->signals[i];
+    last = fmax(last, s->start);
+    if (isfinite(s->stop)) last = fmax(last, s->stop);
+    if (s->kind == STRUT_HALF_SINE) last = fmax(last, s->start + 0.5 / s->frequency);
+    if (s->kind == STRUT_TABLE) last = fmax(last, s->start + s->time[s->point_count - 1]);
+  }
+  return last;
+}
+
 bool strut_member_is_straight_at(const strut_scene *scene, const strut_member *m, size_t k) {
   return turn_at(scene, m, k) == 0.0;
 }

@@ -339,6 +339,8 @@ STRUT_API strut_cell strut_cell_default(void);
 STRUT_API strut_collision strut_collision_default(void);
 /** Frees the contents of the scene and zeroes it. */
 STRUT_API void strut_scene_free(strut_scene *scene);
+/** Time of the last start or end of a signal, after which motions may be steady [s]. */
+STRUT_API double strut_scene_last_signal_event(const strut_scene *scene);
 
 /**
  * The four equivalent descriptions of the prestress of a member, and its stiffness, in the drawn

@@ -42,9 +42,7 @@ static const strut_option options[] = {
 };
 
 enum { MOST_RUNS = 8 };
-static const char table_name[] = "table.csv", partial_name[] = "table-partial.csv";
-/* The table of a sweep that is running is written anew after these times, ever less often [s]. */
-static const double FIRST_PARTIAL = 2.0, RAREST_PARTIAL = 60.0;
+static const char table_name[] = "table.csv";
 
 /* DIR/name in the study's arena, or NULL. */
 static const char *inside(strut_sweep_study *study, const char *directory, const char *name) {
@@ -103,38 +101,6 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
   return status;
 }
 
-/* What a running sweep shows: progress, and now and then the rows that there are. */
-typedef struct display {
-  strut_sweep_progress progress;
-  strut_slots *slots;
-  const char *directory; /* NULL: no partial table, of a shard */
-  double next, interval; /* [s] since the sweep began */
-} display;
-
-static void show(void *context, const strut_sweep_state *state) {
-  display *d = context;
-  strut_sweep_progress_show(&d->progress, state);
-  if (!d->directory || state->seconds < d->next) return;
-  strut_slots *const sources[] = {d->slots};
-  strut_study_table_write_partial(d->directory, partial_name, sources, 1, NULL, NULL);
-  if (d->interval < RAREST_PARTIAL) d->interval *= 2.0;
-  d->next = state->seconds + d->interval;
-}
-
-/* The rows of a sweep that has ended before its last point. */
-static void write_partial(const char *directory, strut_slots *slots) {
-  int64_t rows = 0;
-  strut_error error = {0};
-  strut_slots *const sources[] = {slots};
-  strut_status status =
-      strut_study_table_write_partial(directory, partial_name, sources, 1, &rows, &error);
-  if (status)
-    strut_print_error(&error);
-  else
-    fprintf(stderr, "strut: %s/%s has the %lld rows that are done\n", directory, partial_name,
-            (long long)rows);
-}
-
 /* A study that is run, and where its results go. */
 typedef struct sweep_run {
   const strut_arguments *arguments;
@@ -150,15 +116,12 @@ static strut_status run_points(const sweep_run *r, const strut_refinement *refin
   strut_sweep_study *study = r->study;
   strut_slots *slots = r->slots;
   const bool partial = !r->shard.count;
-  display shown = {.progress = strut_sweep_progress_begin(&study->plan, arguments->quiet),
-                   .slots = slots,
-                   .directory = partial ? arguments->output : NULL,
-                   .next = FIRST_PARTIAL,
-                   .interval = FIRST_PARTIAL};
+  strut_sweep_display shown = strut_sweep_display_begin(&study->plan, arguments->quiet, slots,
+                                                        partial ? arguments->output : NULL);
   strut_sweep_options how = {.batch = (int)r->batch,
                              .interrupt = strut_interrupt_watch(),
                              .directory = arguments->output,
-                             .progress = show,
+                             .progress = strut_sweep_display_show,
                              .progress_context = &shown};
   if (refinement) {
     how.wants = strut_refinement_wants;
@@ -171,7 +134,7 @@ static strut_status run_points(const sweep_run *r, const strut_refinement *refin
   strut_error late = {0};
   strut_status synced = strut_slots_sync(slots, &late);
   if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
-  if (status && partial && state->done > 0) write_partial(arguments->output, slots);
+  if (status && partial && state->done > 0) strut_sweep_write_partial(arguments->output, slots);
   if (status == STRUT_INTERRUPTED)
     strut_fail(error, status, "interrupted after %lld of %lld points; the same command resumes",
                (long long)state->done, (long long)state->points);
@@ -237,7 +200,7 @@ static strut_status complete_sweep(const strut_arguments *arguments, strut_sweep
   else if (!shard.count)
     status = strut_study_table_write(arguments->output, table_name, sources, 1, &error);
   if (status) return strut_print_failure(status, &error);
-  if (!shard.count) strut_file_remove(arguments->output, partial_name);
+  if (!shard.count) strut_file_remove(arguments->output, STRUT_PARTIAL_TABLE);
   if (!shard.count)
     status = strut_sweep_figures_draw(&study->plan, arguments->output, table, refinement);
   if (status) return status;

@@ -93,6 +93,23 @@ strut_sweep_progress strut_sweep_progress_begin(const strut_sweep_plan *plan, bo
 void strut_sweep_progress_show(void *context, const strut_sweep_state *state);
 void strut_sweep_progress_end(strut_sweep_progress *progress);
 
+#define STRUT_PARTIAL_TABLE "table-partial.csv"
+
+/** What a running sweep or search shows: progress, and now and then the table of the rows that there are. */
+typedef struct strut_sweep_display {
+  strut_sweep_progress progress;
+  strut_slots *slots;
+  const char *directory; /* NULL: no partial table, of a shard */
+  double next, interval; /* [s] since it began */
+} strut_sweep_display;
+
+strut_sweep_display strut_sweep_display_begin(const strut_sweep_plan *plan, bool quiet,
+                                              strut_slots *slots, const char *directory);
+/** `context` is the strut_sweep_display. */
+void strut_sweep_display_show(void *context, const strut_sweep_state *state);
+/** Writes and reports the rows of a study that has ended before its last point. */
+void strut_sweep_write_partial(const char *directory, strut_slots *slots);
+
 /** Prints each warning of the runs once, with its count, on stderr. */
 void strut_sweep_print_warnings(const strut_sweep_state *state);
 /** Prints how many points failed or are inaccurate on stderr; the status that follows from it. */

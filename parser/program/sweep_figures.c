@@ -165,7 +165,7 @@ strut_status strut_sweep_figures_draw(const strut_sweep_plan *plan, const char *
 
 /* `strut sweep` of a study that follows motions. */
 
-static const char table_name[] = "table.csv", partial_name[] = "table-partial.csv";
+static const char table_name[] = "table.csv";
 static const char branches_name[] = "branches.csv";
 static const char partial_branches_name[] = "branches-partial.csv";
 static const double PAGE = 510.24; /* 180 mm [pt] */
@@ -187,8 +187,8 @@ static void write_partial(const strut_arguments *arguments, const strut_sweep_pl
   int64_t rows = 0, points = 0;
   strut_error error = {0};
   strut_slots *const sources[] = {slots};
-  strut_status status =
-      strut_study_table_write_partial(arguments->output, partial_name, sources, 1, &points, &error);
+  strut_status status = strut_study_table_write_partial(arguments->output, STRUT_PARTIAL_TABLE,
+                                                        sources, 1, &points, &error);
   if (!status)
     status = strut_follow_points_combine(plan, slots, arguments->output, partial_branches_name,
                                          true, &rows, &error);
@@ -249,7 +249,7 @@ static strut_status write_results(const strut_arguments *arguments, strut_sweep_
   if (!status) status = strut_file_write_text(directory, "report.json", *report, error);
   if (!status) status = strut_study_table_write(directory, table_name, sources, 1, error);
   if (status) return status;
-  strut_file_remove(directory, partial_name);
+  strut_file_remove(directory, STRUT_PARTIAL_TABLE);
   strut_file_remove(directory, partial_branches_name);
   return STRUT_OK;
 }

@@ -14,51 +14,17 @@
 #include "parser/program/sweep.h"
 #include "parser/yaml/diagnostics.h"
 
-static const char table_name[] = "table.csv", partial_name[] = "table-partial.csv";
+static const char table_name[] = "table.csv";
 static const double PAGE = 510.24; /* 180 mm [pt] */
-/* A running search writes its rows after these times, ever less often [s]. */
-static const double FIRST_PARTIAL = 2.0, RAREST_PARTIAL = 60.0;
-
-/* What a running search shows. */
-typedef struct display {
-  strut_sweep_progress progress;
-  strut_slots *slots;
-  const char *directory; /* NULL: no partial table, of one of several workers */
-  double next, interval; /* [s] since it began */
-} display;
-
-static void show(void *context, const strut_sweep_state *state) {
-  display *d = context;
-  strut_sweep_progress_show(&d->progress, state);
-  if (!d->directory || state->seconds < d->next) return;
-  strut_slots *const sources[] = {d->slots};
-  strut_study_table_write_partial(d->directory, partial_name, sources, 1, NULL, NULL);
-  if (d->interval < RAREST_PARTIAL) d->interval *= 2.0;
-  d->next = state->seconds + d->interval;
-}
-
-static void write_partial(const char *directory, strut_slots *slots) {
-  int64_t rows = 0;
-  strut_error error = {0};
-  strut_slots *const sources[] = {slots};
-  if (strut_study_table_write_partial(directory, partial_name, sources, 1, &rows, &error))
-    strut_print_error(&error);
-  else
-    fprintf(stderr, "strut: %s/%s has the %lld rows that are done\n", directory, partial_name,
-            (long long)rows);
-}
 
 static strut_status run_search(const strut_arguments *arguments, strut_sweep_study *study,
                                strut_sweep_options *how, strut_slots *slots,
                                strut_sweep_state *state, strut_search_result *result,
                                strut_error *error) {
-  display shown = {.progress = strut_sweep_progress_begin(&study->plan, arguments->quiet),
-                   .slots = slots,
-                   .directory = how->workers ? NULL : arguments->output,
-                   .next = FIRST_PARTIAL,
-                   .interval = FIRST_PARTIAL};
+  strut_sweep_display shown = strut_sweep_display_begin(&study->plan, arguments->quiet, slots,
+                                                        how->workers ? NULL : arguments->output);
   how->interrupt = strut_interrupt_watch();
-  how->progress = show;
+  how->progress = strut_sweep_display_show;
   how->progress_context = &shown;
   strut_status status = strut_sweep_texts_write(arguments, study, error);
   if (!status) status = strut_search_run(&study->plan, slots, how, state, result, error);
@@ -66,7 +32,8 @@ static strut_status run_search(const strut_arguments *arguments, strut_sweep_stu
   strut_error late = {0};
   strut_status synced = strut_slots_sync(slots, &late);
   if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
-  if (status && shown.directory && state->done > 0) write_partial(arguments->output, slots);
+  if (status && shown.directory && state->done > 0)
+    strut_sweep_write_partial(arguments->output, slots);
   if (status == STRUT_INTERRUPTED)
     strut_fail(error, status, "interrupted after %lld points; the same command resumes",
                (long long)state->done);
@@ -200,7 +167,7 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
     status =
         strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
   if (status) return strut_print_failure(status, &error);
-  strut_file_remove(arguments->output, partial_name);
+  strut_file_remove(arguments->output, STRUT_PARTIAL_TABLE);
   status = strut_sweep_figures_draw(&study->plan, arguments->output, table, NULL);
   if (!status) status = draw_winner(arguments, &study->plan, best);
   if (!status && (!arguments->quiet || arguments->json))

@@ -416,6 +416,39 @@ void strut_sweep_progress_end(strut_sweep_progress *progress) {
   strut_progress_end(&progress->bar);
 }
 
+/* The partial table is written anew after these times, ever less often [s]. */
+static const double FIRST_PARTIAL = 2.0, RAREST_PARTIAL = 60.0;
+
+strut_sweep_display strut_sweep_display_begin(const strut_sweep_plan *plan, bool quiet,
+                                              strut_slots *slots, const char *directory) {
+  return (strut_sweep_display){.progress = strut_sweep_progress_begin(plan, quiet),
+                               .slots = slots,
+                               .directory = directory,
+                               .next = FIRST_PARTIAL,
+                               .interval = FIRST_PARTIAL};
+}
+
+void strut_sweep_display_show(void *context, const strut_sweep_state *state) {
+  strut_sweep_display *d = context;
+  strut_sweep_progress_show(&d->progress, state);
+  if (!d->directory || state->seconds < d->next) return;
+  strut_slots *const sources[] = {d->slots};
+  strut_study_table_write_partial(d->directory, STRUT_PARTIAL_TABLE, sources, 1, NULL, NULL);
+  if (d->interval < RAREST_PARTIAL) d->interval *= 2.0;
+  d->next = state->seconds + d->interval;
+}
+
+void strut_sweep_write_partial(const char *directory, strut_slots *slots) {
+  int64_t rows = 0;
+  strut_error error = {0};
+  strut_slots *const sources[] = {slots};
+  if (strut_study_table_write_partial(directory, STRUT_PARTIAL_TABLE, sources, 1, &rows, &error))
+    strut_print_error(&error);
+  else
+    fprintf(stderr, "strut: %s/%s has the %lld rows that are done\n", directory,
+            STRUT_PARTIAL_TABLE, (long long)rows);
+}
+
 void strut_sweep_print_warnings(const strut_sweep_state *state) {
   for (size_t i = 0; i < state->warning_count; i++) {
     const strut_sweep_warning *w = &state->warnings[i];

@@ -493,19 +493,24 @@ void strut_study_read_goals(strut_study_reader *r, strut_fields *top) {
 
 static const strut_owner follow_owner = {"what is followed", NULL};
 
+void strut_study_exclude(strut_study_reader *r, strut_fields *top, const strut_slot *own,
+                         const int *keys, size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    const strut_slot *slot = strut_slot_of(top, keys[i]);
+    if (slot->state == STRUT_GIVEN)
+      strut_report_error(r->reader, slot->key->place,
+                         "'%s' and '%s' exclude each other: use two studies", slot->key->text,
+                         own->key->text);
+  }
+}
+
 /* Keys that choose or judge points in another way. */
 static void refuse_others(strut_study_reader *r, strut_fields *top, const strut_slot *own) {
   static const int others[] = {
       STRUT_KEY_STUDY_REFINE,      STRUT_KEY_STUDY_TRAJECTORIES, STRUT_KEY_STUDY_SEARCH,
       STRUT_KEY_STUDY_SENSITIVITY, STRUT_KEY_STUDY_KEEP,         STRUT_KEY_STUDY_CHECK,
       STRUT_KEY_STUDY_LIMIT,       STRUT_KEY_STUDY_SHAPE,        STRUT_KEY_STUDY_LIKE};
-  for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-    const strut_slot *slot = strut_slot_of(top, others[i]);
-    if (slot->state == STRUT_GIVEN)
-      strut_report_error(r->reader, slot->key->place,
-                         "'%s' and '%s' exclude each other: use two studies", slot->key->text,
-                         own->key->text);
-  }
+  strut_study_exclude(r, top, own, others, sizeof others / sizeof others[0]);
   const strut_slot *compute = strut_slot_of(top, STRUT_KEY_STUDY_COMPUTE);
   if (compute->state == STRUT_GIVEN && r->file->study.compute != STRUT_COMPUTE_RUN)
     strut_report_error(r->reader, compute->value->place,

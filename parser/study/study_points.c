@@ -397,19 +397,6 @@ static void read_of(strut_study_reader *r, const strut_slot *slot, strut_study_s
                        "expected columns of the table for 'of' of the sensitivity analysis");
 }
 
-/* Keys that choose points in another way. */
-static void refuse_others(strut_study_reader *r, strut_fields *top, const strut_slot *own) {
-  static const int others[] = {STRUT_KEY_STUDY_REFINE, STRUT_KEY_STUDY_TRAJECTORIES,
-                               STRUT_KEY_STUDY_SEARCH};
-  for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-    const strut_slot *slot = strut_slot_of(top, others[i]);
-    if (slot->state == STRUT_GIVEN)
-      strut_report_error(r->reader, slot->key->place,
-                         "'%s' and '%s' exclude each other: use two studies", slot->key->text,
-                         own->key->text);
-  }
-}
-
 /* The accuracy of the runs at the first point; 0 for that of rounding, or where no point can be read yet. */
 static double find_accuracy(strut_study_reader *r) {
   const strut_study *study = &r->file->study;
@@ -471,8 +458,10 @@ void strut_study_read_sensitivity(strut_study_reader *r, strut_fields *top) {
   const strut_slot *slot = strut_slot_of(top, STRUT_KEY_STUDY_SENSITIVITY);
   strut_distribution distributions[STRUT_SENSITIVITY_MOST] = {0};
   strut_fields fields;
+  static const int others[] = {STRUT_KEY_STUDY_REFINE, STRUT_KEY_STUDY_TRAJECTORIES,
+                               STRUT_KEY_STUDY_SEARCH};
   if (slot->state != STRUT_GIVEN) return;
-  refuse_others(r, top, slot);
+  strut_study_exclude(r, top, slot, others, sizeof others / sizeof others[0]);
   if (!study->axes) /* the study has no others */
     strut_study_read_axes(r, NULL, strut_slot_of(top, STRUT_KEY_STUDY_SEARCH));
   strut_read_fields(r->reader, STRUT_SECTION_SENSITIVITY, slot->value, sensitivity_owner, &fields);

@@ -104,6 +104,10 @@ void strut_study_read_sensitivity(strut_study_reader *r, strut_fields *top);
 /** Reads what is followed, after the axes. Nothing without it. */
 void strut_study_read_follow(strut_study_reader *r, strut_fields *top);
 
+/** Reports those of the keys that are given: the study has `own`, which excludes them. */
+void strut_study_exclude(strut_study_reader *r, strut_fields *top, const strut_slot *own,
+                         const int *keys, size_t count);
+
 /** Set in the line of every place of the study's text within the tree of the model. */
 #define STRUT_OVERLAY_LINE ((uint32_t)1 << 30)
 

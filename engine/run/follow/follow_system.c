@@ -21,18 +21,13 @@ enum { SAMPLES = 16 };
 
 /* Number of drive periods after which no signal starts or ends any more; -1: some signal never repeats. */
 static int64_t periods_before(const strut_scene *scene, double period) {
-  double last = 0.0;
   for (size_t i = 0; i < scene->signal_count; i++) {
     const strut_signal *s = &scene->signals[i];
-    last = fmax(last, s->start);
-    if (isfinite(s->stop)) last = fmax(last, s->stop);
-    if (s->kind == STRUT_HALF_SINE) last = fmax(last, s->start + 0.5 / s->frequency);
-    if (s->kind == STRUT_TABLE) last = fmax(last, s->start + s->time[s->point_count - 1]);
     if ((s->kind != STRUT_SINE && s->kind != STRUT_SQUARE) || isfinite(s->stop)) continue;
     double turns = period * s->frequency;
     if (fabs(turns - round(turns)) > 1e-9 * fmax(1.0, turns)) return -1;
   }
-  return (int64_t)ceil(last / period * (1.0 - 1e-12));
+  return (int64_t)ceil(strut_scene_last_signal_event(scene) / period * (1.0 - 1e-12));
 }
 
 static strut_status check_scene(const strut_follow_system *s, strut_error *error) {

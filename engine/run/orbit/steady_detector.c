@@ -39,19 +39,6 @@ static const double CREEP_DIFFERENCE = 0.025;
 /* Equal growth factors in a row that prove growth. */
 enum { GROWTH_FACTORS = 3 };
 
-/* Time of the last start or end of a signal: no motion is steady before. */
-static double last_signal_event(const strut_scene *scene) {
-  double last = 0.0;
-  for (size_t i = 0; i < scene->signal_count; i++) {
-    const strut_signal *s = &scene->signals[i];
-    last = fmax(last, s->start);
-    if (isfinite(s->stop)) last = fmax(last, s->stop);
-    if (s->kind == STRUT_HALF_SINE) last = fmax(last, s->start + 0.5 / s->frequency);
-    if (s->kind == STRUT_TABLE) last = fmax(last, s->start + s->time[s->point_count - 1]);
-  }
-  return last;
-}
-
 /* Do all unlimited signals repeat themselves after n drive periods? */
 static bool drives_repeat(const strut_steady_detector *w, int32_t n) {
   const strut_scene *scene = w->model->scene;
@@ -79,7 +66,7 @@ strut_status strut_steady_detector_create(const strut_model *model, const strut_
                                .rules.creep = wanted->creep,
                                .rules.creep_after = wanted->creep_after,
                                .drift.stride = 1};
-  w->rules.not_before = (last_signal_event(model->scene) - begin) / period;
+  w->rules.not_before = (strut_scene_last_signal_event(model->scene) - begin) / period;
   if (w->rules.successive < 2) w->rules.successive = 2;
   if (w->rules.successive > STRUT_RING / 2) w->rules.successive = STRUT_RING / 2;
   if (!(w->rules.floor > 0.0))
