@@ -99,17 +99,23 @@ void strut_csv_add_cells(strut_buffer *csv, const strut_report_value *cells, siz
   }
 }
 
-static char *end(strut_json *json, char *(*print)(const cJSON *)) {
-  char *printed = json->failed ? NULL : print(json->root), *text = NULL;
-  if (printed) {
-    size_t length = strlen(printed);
-    text = strut_allocate(length + 2, 1);
-    if (text) {
-      memcpy(text, printed, length);
-      text[length] = '\n';
-    }
-    cJSON_free(printed);
+/* What cJSON printed, which is released, with a newline in a block of strut_allocate; NULL for NULL. */
+static char *take_printed(char *printed) {
+  if (!printed) return NULL;
+  size_t length = strlen(printed);
+  char *text = strut_allocate(length + 2, 1);
+  if (text) {
+    memcpy(text, printed, length);
+    text[length] = '\n';
   }
+  cJSON_free(printed);
+  return text;
+}
+
+char *strut_json_print(const cJSON *tree) { return take_printed(cJSON_Print(tree)); }
+
+static char *end(strut_json *json, char *(*print)(const cJSON *)) {
+  char *text = json->failed ? NULL : take_printed(print(json->root));
   cJSON_Delete(json->root);
   *json = (strut_json){NULL, true};
   return text;

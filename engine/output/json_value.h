@@ -58,6 +58,8 @@ STRUT_API void strut_csv_add_cells(struct strut_buffer *csv, const strut_report_
 /** An empty object or array in `to`, to be filled; belongs to json. */
 STRUT_API struct cJSON *strut_json_object(strut_json *json, struct cJSON *to, const char *key);
 STRUT_API struct cJSON *strut_json_array(strut_json *json, struct cJSON *to, const char *key);
+/** The text of a tree with a final newline in a block of strut_allocate, or NULL. */
+STRUT_API char *strut_json_print(const struct cJSON *tree);
 /** Frees the tree; its text with a final newline in a block of strut_allocate, or NULL. */
 STRUT_API char *strut_json_end(strut_json *json);
 /** The same on one line. */

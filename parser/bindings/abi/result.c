@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/base/c_locale.h"
+#include "engine/output/json_value.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/write/write_scene.h"
 
@@ -21,16 +22,8 @@ void abi_tree_free(abi_tree *tree) { cJSON_Delete(tree); }
 
 char *abi_tree_write(const abi_tree *tree) {
   strut_c_locale locale = strut_c_locale_enter();
-  char *printed = cJSON_Print(tree), *text = NULL;
+  char *text = strut_json_print(tree);
   strut_c_locale_leave(locale);
-  if (!printed) return NULL;
-  size_t length = strlen(printed);
-  text = strut_allocate(length + 2, 1);
-  if (text) {
-    memcpy(text, printed, length);
-    text[length] = '\n';
-  }
-  cJSON_free(printed);
   return text;
 }
 
