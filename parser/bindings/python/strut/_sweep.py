@@ -9,12 +9,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, NamedTuple, Sequence
 
 from . import _plots, _strut, _views
-from ._results import _Raw, _Stored
+from ._results import _Stored
 from ._values import Frozen, UnknownName, numpy, refuse_bytes, unknown
 
 if TYPE_CHECKING:
     import numpy as np
 
+    from ._results import _Raw
     from ._scene import Scene
 
     Array = np.ndarray[Any, np.dtype[np.float64]]
