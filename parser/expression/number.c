@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Number literals, correctly rounded in any locale, and the units behind them. */
-#include <float.h>
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,15 +8,12 @@
 #include "engine/base/c_locale.h"
 #include "parser/expression/expression_parts.h"
 
-enum { EXPONENT_MOST = 99999, FAST_POWER = 22 };
+enum { EXPONENT_MOST = 99999 };
 
-/* A literal taken apart: mantissa * 10^exponent, where the mantissa fits 64 bits. */
+/* A literal taken apart: mantissa * 10^exponent. */
 typedef struct literal {
   size_t mantissa_length; /* bytes before the 'e' */
-  uint64_t mantissa;      /* its digits as one integer */
-  bool exact;             /* mantissa holds all digits */
   bool zero;
-  long fraction; /* digits behind the point */
   long exponent; /* the written one, cut to +-EXPONENT_MOST */
 } literal;
 
@@ -26,10 +21,7 @@ static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 static size_t read_digits(const char *text, size_t at, size_t left, literal *parts) {
   for (; at < left && is_digit(text[at]); at++) {
-    unsigned digit = (unsigned)(text[at] - '0');
-    if (digit) parts->zero = false;
-    if (parts->mantissa > (UINT64_MAX - 9) / 10) parts->exact = false;
-    if (parts->exact) parts->mantissa = parts->mantissa * 10 + digit;
+    if (text[at] != '0') parts->zero = false;
   }
   return at;
 }
@@ -52,12 +44,10 @@ static size_t read_exponent(const char *text, size_t at, size_t left, literal *p
 }
 
 static size_t take_apart(const char *text, size_t left, literal *parts) {
-  *parts = (literal){.exact = true, .zero = true};
+  *parts = (literal){.zero = true};
   size_t whole = read_digits(text, 0, left, parts), at = whole;
   if (at + 1 < left && text[at] == '.' && is_digit(text[at + 1])) {
-    size_t end = read_digits(text, at + 1, left, parts);
-    parts->fraction = (long)(end - at - 1);
-    at = end;
+    at = read_digits(text, at + 1, left, parts);
   }
   if (!at) return 0;
   parts->mantissa_length = at;
@@ -69,19 +59,7 @@ size_t strut_number_scan(const char *text, size_t left) {
   return take_apart(text, left, &parts);
 }
 
-/* Up to 2^53 and 10^22 both factors are exact doubles, so one operation rounds once. */
-static bool read_fast(const literal *parts, long exponent, double *value) {
-  static const double power[FAST_POWER + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                               1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                               1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-  if (FLT_EVAL_METHOD != 0 || !parts->exact || parts->mantissa > UINT64_C(1) << 53) return false;
-  if (exponent < -FAST_POWER || exponent > FAST_POWER) return false;
-  double mantissa = (double)parts->mantissa;
-  *value = exponent < 0 ? mantissa / power[-exponent] : mantissa * power[exponent];
-  return true;
-}
-
-static bool read_slow(const char *text, const literal *parts, long exponent, double *value) {
+static bool read_value(const char *text, const literal *parts, long exponent, double *value) {
   char buffer[STRUT_NUMBER_MOST + 32], *end;
   memcpy(buffer, text, parts->mantissa_length);
   int tail = 0;
@@ -100,9 +78,8 @@ bool strut_number_read_scaled(const char *text, size_t length, int decimal, doub
     return false;
   *value = 0;
   if (parts.zero) return true;
-  long exponent = parts.exponent + decimal;
-  if (read_fast(&parts, exponent - parts.fraction, value)) return true;
-  return read_slow(text, &parts, exponent, value) && isfinite(*value) && *value != 0;
+  return read_value(text, &parts, parts.exponent + decimal, value) && isfinite(*value) &&
+         *value != 0;
 }
 
 enum { UNIT_POWER_MOST = 12 };

@@ -12,7 +12,6 @@
 #include "engine/integrate/integrator.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
-#include "engine/output/report/reports.h"
 #include "engine/run/cost_estimate.h"
 #include "engine/run/measure/monitors.h"
 #include "parser/command/run_settings.h"

@@ -167,8 +167,8 @@ typedef struct strut_reader {
   bool masses_unknown; /* some mass could not be read */
   bool groups_unknown; /* the groups of some thing could not be read */
   bool failed, out_of_memory;
-  strut_fields *grounds;      /* of each of the scene's grounds; of `ground` the one above */
-  strut_copy *scope;          /* the copy of which a thing is being read; NULL: the scene's own */
+  strut_fields *grounds;       /* of each of the scene's grounds; of `ground` the one above */
+  strut_copy *scope;           /* the copy of which a thing is being read; NULL: the scene's own */
   struct strut_copies *copies; /* NULL: the scene has no parts */
 } strut_reader;
 

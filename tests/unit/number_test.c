@@ -204,14 +204,14 @@ TEST(locale_does_not_matter) {
   char folder[64], command[100];
   const char *name = german(folder, sizeof folder);
   double got = 0;
-  bool fast = false, slow = false, comma = true, quantity = false, shown = false;
+  bool brief = false, lengthy = false, comma = true, quantity = false, shown = false;
   if (name) {
     static const char digits[] = "0.1000000000000000055511151231257827021181583404541015625";
     strut_quantity q;
     strut_expression_error error;
     strut_diagnostics diagnostics = {0};
-    fast = strut_number_read_scaled("1.5", 3, 0, &got) && got == 1.5;
-    slow = strut_number_read_scaled(digits, strlen(digits), 0, &got) && got == 0.1;
+    brief = strut_number_read_scaled("1.5", 3, 0, &got) && got == 1.5;
+    lengthy = strut_number_read_scaled(digits, strlen(digits), 0, &got) && got == 0.1;
     comma = strut_number_read_scaled("1,5", 3, 0, &got);
     quantity = strut_expression_evaluate("1234567.891011121314151617 mm", NULL, &q, &error) &&
                q.value == 1234.567891011121314151617;
@@ -226,8 +226,8 @@ TEST(locale_does_not_matter) {
     print_message("no German locale here\n");
     skip();
   }
-  assert_true(fast);
-  assert_true(slow);
+  assert_true(brief);
+  assert_true(lengthy);
   assert_false(comma);
   assert_true(quantity);
   assert_true(shown);
