@@ -541,13 +541,9 @@ const strut_command strut_command_check = {
     .model = "MODEL",
     .summary = "validates a model and describes what a run of it computes",
     .details =
-        "
-Prints the numbers of nodes and members, the largest stable step, and for each member
-"
-        "its rest length in each of the four forms that the language accepts. Hinges, cells,
-"
-        "collisions and distances have tables of their own.
-"
+        "\nPrints the numbers of nodes and members, the largest stable step, and for each member\n"
+        "its rest length in each of the four forms that the language accepts. Hinges, cells,\n"
+        "collisions and distances have tables of their own.\n"
         "--json lists all messages with their places, for editors; a study is checked, too.\n",
     .options = options,
     .run = run_check,
