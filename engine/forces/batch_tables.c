@@ -219,7 +219,7 @@ void strut_batch_tables_put_elements(strut_batch_tables *t, int32_t slot,
                                      const strut_state *state) {
   for (int32_t i = 0; i < t->first->elements.count; i++) {
     int32_t at = i * t->width + slot;
-    t->elements.turn[at] = state->latest.element_turn[i];
+    t->elements.turn[at] = state->history.turn[i];
     t->elements.acts[at] = state->modes.element_acts[i];
     t->elements.piece[at] = state->modes.element_piece[i];
   }
@@ -228,7 +228,7 @@ void strut_batch_tables_put_elements(strut_batch_tables *t, int32_t slot,
 void strut_batch_tables_get_elements(const strut_batch_tables *t, int32_t slot,
                                      strut_state *state) {
   for (int32_t i = 0; i < t->first->elements.count; i++)
-    state->latest.element_turn[i] = t->elements.turn[i * t->width + slot];
+    state->history.turn[i] = t->elements.turn[i * t->width + slot];
 }
 
 void strut_batch_tables_fill(strut_batch_tables *t, int32_t slot, const strut_model *m) {

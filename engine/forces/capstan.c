@@ -44,8 +44,9 @@ static double bend_on_side(const cable *c, int k, int side) {
   return bend < -1.5 ? c->bend[k] : bend;
 }
 
-static void measure(const strut_model *model, const double *rest, int32_t i, const double *q,
-                    cable *c) {
+/* material (segments): as it was at earlier positions. */
+static void measure(const strut_model *model, const double *rest, const double *material, int32_t i,
+                    const double *q, cable *c) {
   assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
@@ -59,7 +60,7 @@ static void measure(const strut_model *model, const double *rest, int32_t i, con
     double x = q[at[k + 1]] - q[at[k]], y = q[at[k + 1] + 1] - q[at[k] + 1];
     double length = sqrt(x * x + y * y), inverse = length > 0.0 ? 1.0 / length : 0.0;
     c->length[k] = length, c->x[k] = x * inverse, c->y[k] = y * inverse;
-    c->material[k] = rest[e->slot + 1 + k];
+    c->material[k] = material[k];
     if (k) others += c->material[k];
   }
   for (int k = 0; k + 1 < c->n; k++) turn_at(c, k);
@@ -246,6 +247,12 @@ static double energy_of(const cable *c) {
   return sum;
 }
 
+static double *materials_of(const strut_model *model, const strut_state *state, int32_t i) {
+  assert(i >= 0 && i < model->elements.count);
+  const strut_element_table *t = &model->elements;
+  return state->history.material + (t->element[i].slot + 1 - t->history_slot);
+}
+
 static int8_t *modes_of(const strut_model *model, const strut_state *state, int32_t i) {
   assert(i >= 0 && i < model->elements.count);
   const strut_element_table *t = &model->elements;
@@ -264,11 +271,17 @@ static double *drops_of(const strut_model *model, const strut_state *state, int3
   return state->history.guide_drop + (t->element[i].slot + 1 - t->history_slot);
 }
 
+/* The cable at q with the materials that the state remembers. */
+static void measure_kept(const strut_model *model, const strut_state *state, int32_t i,
+                         const double *q, cable *c) {
+  measure(model, state->latest.rest, materials_of(model, state, i), i, q, c);
+}
+
 /* The cable at q in its modes; true where these are frozen. */
 static bool stand(const strut_model *model, const strut_state *state, int32_t i, const double *q,
                   cable *c) {
   const int8_t *mode = modes_of(model, state, i);
-  measure(model, state->latest.rest, i, q, c);
+  measure_kept(model, state, i, q, c);
   if (c->material[0] < 0.0) share_evenly(c);
   if (mode[0] == STRUT_GUIDE_FREE) {
     settle(c);
@@ -285,11 +298,18 @@ static bool stand(const strut_model *model, const strut_state *state, int32_t i,
   return true;
 }
 
-static void keep_materials(const strut_model *model, strut_state *state, int32_t i,
+/* Leaves the materials of an evaluation in the slots, where the energy is found by them. */
+static void show_materials(const strut_model *model, strut_state *state, int32_t i,
                            const cable *c) {
   assert(i >= 0 && i < model->elements.count);
   double *material = state->latest.rest + model->elements.element[i].slot + 1;
   memcpy(material, c->material, (size_t)c->n * sizeof *material);
+}
+
+static void keep_materials(const strut_model *model, strut_state *state, int32_t i,
+                           const cable *c) {
+  show_materials(model, state, i, c);
+  memcpy(materials_of(model, state, i), c->material, (size_t)c->n * sizeof *c->material);
 }
 
 /* Its damper works along the whole cable while that is taut, and does not push. */
@@ -322,8 +342,7 @@ void strut_capstan_add_forces(const strut_model *model, strut_state *state, int3
   const uint32_t *at = model->elements.at + e->first;
   cable c;
   bool frozen = stand(model, state, i, q, &c);
-  /* a step that is tried, and goes beyond where the cable is slack, must not share out what sticks */
-  if (frozen && !is_slack(&c)) keep_materials(model, state, i, &c);
+  if (frozen) show_materials(model, state, i, &c);
   find_rates(model, state, i, v, &c);
   double damper = e->damping > 0.0 ? damper_force(e, &c) : 0.0;
   for (int k = 0; k < c.n; k++) {
@@ -341,7 +360,7 @@ void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i
   const strut_element *e = &model->elements.element[i];
   cable c;
   if (strut_capstan_remembers(e, state->latest.rest)) return;
-  measure(model, state->latest.rest, i, q, &c);
+  measure_kept(model, state, i, q, &c);
   share_evenly(&c);
   keep_materials(model, state, i, &c);
   strut_capstan_thaw(model, state, i);
@@ -352,7 +371,7 @@ void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i
                          bool jumped) {
   cable c;
   double before[MOST], moved = 0.0, lost = 0.0, *drop = drops_of(model, state, i);
-  measure(model, state->latest.rest, i, q, &c);
+  measure_kept(model, state, i, q, &c);
   memcpy(before, c.material, sizeof before);
   double held = energy_of(&c);
   settle(&c);
@@ -368,6 +387,13 @@ void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i
   keep_materials(model, state, i, &c);
 }
 
+void strut_capstan_keep(const strut_model *model, strut_state *state, int32_t i, const double *q) {
+  cable c;
+  bool frozen = stand(model, state, i, q, &c);
+  if (frozen && !is_slack(&c))
+    keep_materials(model, state, i, &c); /* what sticks is not shared out */
+}
+
 void strut_capstan_thaw(const strut_model *model, strut_state *state, int32_t i) {
   assert(i >= 0 && i < model->elements.count);
   int8_t *mode = modes_of(model, state, i);
@@ -379,7 +405,7 @@ void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t 
   int8_t *mode = modes_of(model, state, i);
   cable c;
   strut_capstan_renew(model, state, i, q, true);
-  measure(model, state->latest.rest, i, q, &c);
+  measure_kept(model, state, i, q, &c);
   for (int k = 0; k < c.n; k++) c.mode[k] = STRUT_GUIDE_STICKS;
   solve(&c);
   for (int k = 0; k + 1 < c.n; k++) {
@@ -421,7 +447,7 @@ void strut_capstan_measure(const strut_model *model, const strut_state *state, i
 strut_capstan_stretch strut_capstan_stretch_of(const strut_model *model, const strut_state *state,
                                                int32_t i, const double *q, const double *v) {
   cable c;
-  measure(model, state->latest.rest, i, q, &c);
+  measure_kept(model, state, i, q, &c);
   find_rates(model, state, i, v, &c);
   strut_capstan_stretch found = {-c.whole, -c.winding};
   for (int k = 0; k < c.n; k++) found.stretch += c.length[k], found.rate += c.length_rate[k];
@@ -432,7 +458,7 @@ void strut_capstan_tauten(const strut_model *model, strut_state *state, int32_t 
                           const double *v, double soon) {
   int8_t *mode = modes_of(model, state, i);
   cable c;
-  measure(model, state->latest.rest, i, q, &c);
+  measure_kept(model, state, i, q, &c);
   share_evenly(&c);
   keep_materials(model, state, i, &c);
   find_rates(model, state, i, v, &c);
@@ -472,7 +498,7 @@ strut_capstan_ends strut_capstan_tensions(const strut_model *model, const strut_
 void strut_capstan_find_rest(const strut_model *model, int32_t i, const double *rest,
                              const double *q, strut_capstan_rest *found) {
   cable c;
-  measure(model, rest, i, q, &c);
+  measure(model, rest, rest + model->elements.element[i].slot + 1, i, q, &c);
   if (c.material[0] < 0.0) share_evenly(&c);
   settle(&c);
   memset(found->force, 0, sizeof found->force);
@@ -488,7 +514,7 @@ void strut_capstan_find_rest(const strut_model *model, int32_t i, const double *
 double strut_capstan_energy(const strut_model *model, int32_t i, const double *rest,
                             const double *q) {
   cable c;
-  measure(model, rest, i, q, &c);
+  measure(model, rest, rest + model->elements.element[i].slot + 1, i, q, &c);
   return energy_of(&c);
 }
 
@@ -498,7 +524,7 @@ void strut_capstan_stiffness(const strut_model *model, int32_t i, const double *
   int32_t rows = 2 * e->nodes;
   double whole = 0.0;
   cable c;
-  measure(model, model->members.rest, i, q, &c);
+  measure(model, model->members.rest, model->members.rest + e->slot + 1, i, q, &c);
   for (int s = 0; s < c.n; s++) whole += c.length[s];
   memset(k, 0, (size_t)rows * (size_t)rows * sizeof *k);
   for (int s = 0; s < c.n; s++) {

@@ -9,10 +9,10 @@
  * it slips. Segments joined by slipping guides share their material such that the tensions are at these
  * bounds: an equation for one tension, which has one root.
  *
- * The materials stand behind the element's own slot among the natural strains, below 0 where none are
- * remembered: the cable then slips freely, as statics and settling take it. Methods with events freeze
- * which guides slip, and where to; with others that follows from the tensions, and the materials are
- * renewed at the end of each step.
+ * The materials at the accepted positions are the state's history.material; those of the latest evaluation stand
+ * behind the element's own slot among the natural strains, below 0 where none are remembered: the cable then slips
+ * freely, as statics and settling take it. Methods with events freeze which guides slip, and where to; with others
+ * that follows from the tensions. Both kinds renew the materials at the end of each step.
  */
 #ifndef STRUT_ENGINE_FORCES_CAPSTAN_H
 #define STRUT_ENGINE_FORCES_CAPSTAN_H
@@ -38,6 +38,8 @@ void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i
     length has `jumped`, that is the energy set free. */
 void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i, const double *q,
                          bool jumped);
+/** Materials after a step in frozen modes, at q. */
+void strut_capstan_keep(const strut_model *model, strut_state *state, int32_t i, const double *q);
 /** Modes by the tensions and the flows at q and v, of which those of the tensions are renewed. */
 void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t i, const double *q,
                           const double *v);

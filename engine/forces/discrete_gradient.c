@@ -48,8 +48,8 @@ void strut_discrete_gradient_begin(const strut_model *model, strut_state *state,
   for (int32_t j = 0; j < t->count; j++) step->length0[j] = strut_member_length(t, j, q);
   for (int32_t i = 0; i < model->elements.count; i++) {
     strut_element_pose pose;
-    strut_element_evaluate(model, i, step->rest0, q, state->latest.element_turn[i], &pose);
-    step->strain0[i] = state->latest.element_turn[i] = pose.strain;
+    strut_element_evaluate(model, i, step->rest0, q, state->history.turn[i], &pose);
+    step->strain0[i] = pose.strain;
     step->energy0[i] = pose.energy;
   }
 }

@@ -217,10 +217,9 @@ static inline void add_powers(strut_state *state, const exertion *x, double rest
       const uint32_t *at = t->at + e->first;                                                       \
       double b[STRUT_MOST_GRADIENT], rate = 0.0;                                                   \
       double strain = strut_strain_##strain_name(                                                  \
-          at, e->nodes, q, STRUT_REFERENCE_##reference(e, state->latest.element_turn[i]), b);      \
+          at, e->nodes, q, STRUT_REFERENCE_##reference(e, state->history.turn[i]), b);             \
       double natural = strut_element_natural(e, state->latest.rest);                               \
       double rest_rate = e->slot >= 0 ? state->latest.rest_rate[e->slot] : 0.0;                    \
-      state->latest.element_turn[i] = strain;                                                      \
       if (e->damping > 0.0 || state->balance)                                                      \
         for (int32_t k = 0; k < e->nodes; k++)                                                     \
           rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];                               \
@@ -275,7 +274,6 @@ static void add_running_cables(const strut_model *model, strut_state *state,
     double strain = measure_path(at, e->nodes, q, b),
            natural = strut_element_natural(e, state->latest.rest);
     double rest_rate = e->slot >= 0 ? state->latest.rest_rate[e->slot] : 0.0, rate = 0.0;
-    state->latest.element_turn[i] = strain;
     if (e->damping > 0.0 || state->balance) rate = path_rate(at, e->nodes, v, b);
     strut_law_response r = strut_law_linear(&e->numbers, strain, natural, -1);
     exertion x = exert(e, state, i, &r, strain - natural, rate - rest_rate);
@@ -323,6 +321,15 @@ void strut_elements_add_forces(const strut_model *model, strut_state *state, con
       add_running_cables(model, state, block, q, v, force);
     else
       adders[block->strain][block->law](model, state, block, q, v, force);
+  }
+}
+
+void strut_elements_keep_turns(const strut_model *model, strut_state *state) {
+  double b[STRUT_MOST_GRADIENT];
+  for (int32_t k = 0; k < model->elements.block_count; k++) {
+    const strut_element_block *block = &model->elements.block[k];
+    for (int32_t i = block->begin; i < block->end && block->strain == STRUT_STRAIN_ANGLE; i++)
+      state->history.turn[i] = strut_element_strain(model, i, state->q, state->history.turn[i], b);
   }
 }
 
@@ -382,7 +389,7 @@ strut_element_motion strut_element_move(const strut_model *model, const strut_st
   const strut_element *e = &model->elements.element[element];
   const uint32_t *at = model->elements.at + e->first;
   double b[STRUT_MOST_GRADIENT], rate = 0.0;
-  double strain = strain_of(e, at, q, state->latest.element_turn[element], b);
+  double strain = strain_of(e, at, q, state->history.turn[element], b);
   double natural = e->remembers ? strut_history_natural(model, state, element, strain)
                                 : strut_element_natural(e, state->latest.rest);
   if (strut_element_is_gone(natural)) return (strut_element_motion){-e->carries, 0.0, -e->carries};
@@ -404,8 +411,7 @@ double strut_element_measure_at(const strut_model *model, const strut_state *sta
                                 const double *q, const double *v, strut_element_pose *pose) {
   assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
-  strut_element_evaluate(model, element, state->latest.rest, q, state->latest.element_turn[element],
-                         pose);
+  strut_element_evaluate(model, element, state->latest.rest, q, state->history.turn[element], pose);
   if (strut_element_is_gone(pose->natural)) return 0.0;
   if (strut_capstan_remembers(e, state->latest.rest))
     return strut_capstan_tensions(model, state, element, state->q, state->v).first;

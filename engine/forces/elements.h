@@ -61,6 +61,11 @@ void strut_element_stiffness(const strut_model *model, int32_t element,
 void strut_elements_add_forces(const strut_model *model, strut_state *state, const double *q,
                                const double *v, double *force);
 /**
+ * After a step has been accepted: the angles of hinges at the state's positions are those near which later ones are
+ * taken, so that they are continuous over whole turns.
+ */
+void strut_elements_keep_turns(const strut_model *model, strut_state *state);
+/**
  * The largest slope of an element's law near its natural strain, as a stiffness [N/m]: that of a hinge
  * over the square of the model's size.
  */

@@ -44,8 +44,7 @@ STRUT_INLINE void add_four_hinges(const strut_element_table *t, strut_state *sta
   strut_lanes iu = four_choose(u2 > zero, 1.0 / u2, zero);
   strut_lanes iv = four_choose(v2 > zero, 1.0 / v2, zero);
   strut_lanes strain = four_direction_near(four_direction_of(ux * vx + uy * vy, ux * vy - uy * vx),
-                                           strut_lanes_load(state->latest.element_turn + i));
-  strut_lanes_store(state->latest.element_turn + i, strain);
+                                           strut_lanes_load(state->history.turn + i));
   strut_lanes ax = iu * uy, ay = -iu * ux, cx = -iv * vy, cy = iv * vx, bx = -ax - cx,
               by = -ay - cy;
   strut_lanes natural, rest_rate;

@@ -54,7 +54,7 @@ static double elastic(const strut_model *model, const strut_state *state, const 
     sum += strut_member_elastic_energy(t, j, &pose);
   }
   if (model->elements.count)
-    sum += strut_elements_energy(model, state->latest.rest, state->latest.element_turn, q,
+    sum += strut_elements_energy(model, state->latest.rest, state->history.turn, q,
                                  strut_nearby_serving(model, state, q));
   return sum;
 }

@@ -24,7 +24,7 @@ static void sense_strain(const strut_model *model, const strut_state *state, int
                          const double *q, const double *v, double *value, double *rate) {
   assert(element >= 0 && element < model->elements.count);
   strut_element_pose pose;
-  strut_element_evaluate(model, element, state->latest.rest, q, state->latest.element_turn[element],
+  strut_element_evaluate(model, element, state->latest.rest, q, state->history.turn[element],
                          &pose);
   *value = pose.strain;
   *rate = strut_element_rate(model, element, &pose, v);

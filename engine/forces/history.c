@@ -64,8 +64,8 @@ strut_slider strut_slider_at(const strut_model *model, const strut_state *state,
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   double b[STRUT_MOST_GRADIENT], rate = -base_rate_of(e, state);
-  double x = strut_element_strain(model, i, q, state->latest.element_turn[i], b) -
-             base_of(e, state->latest.rest);
+  double x =
+      strut_element_strain(model, i, q, state->history.turn[i], b) - base_of(e, state->latest.rest);
   for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
   double p = state->history.plastic[e->memory], force = strut_slider_spring(e) * (x - p);
   return (strut_slider){.force = force,
@@ -82,7 +82,7 @@ void strut_slider_set(const strut_model *model, strut_state *state, int32_t i, i
   double b[STRUT_MOST_GRADIENT];
   int before = state->modes.element_piece[i];
   if (before >= 0 && before != STRUT_SLIDER_HOLDS) {
-    double strain = strut_element_strain(model, i, q, state->latest.element_turn[i], b);
+    double strain = strut_element_strain(model, i, q, state->history.turn[i], b);
     double x = strain - base_of(e, state->latest.rest);
     state->history.plastic[e->memory] = plastic_at(e, x, before - STRUT_SLIDER_HOLDS);
   }
@@ -123,7 +123,7 @@ void strut_curve_renew(const strut_model *model, strut_state *state, int32_t i, 
   const strut_element *e = &model->elements.element[i];
   double b[STRUT_MOST_GRADIENT], freed = 0.0;
   double *piece = &state->latest.rest[e->slot + STRUT_CURVE_PIECE];
-  double strain = strut_element_strain(model, i, q, state->latest.element_turn[i], b);
+  double strain = strut_element_strain(model, i, q, state->history.turn[i], b);
   double x = strain - base_of(e, state->latest.rest);
   *piece = strut_folding_follow(e->numbers.curve, (int)*piece, x, &freed);
   if (freed != 0.0) note_jump(state, e, freed, t);
@@ -177,14 +177,10 @@ static void add_element(const strut_model *model, strut_state *state, int32_t i,
     strut_capstan_add_forces(model, state, i, q, v, force);
     return;
   }
-  double strain = strut_element_strain(model, i, q, state->latest.element_turn[i], b);
-  state->latest.element_turn[i] = strain;
+  double strain = strut_element_strain(model, i, q, state->history.turn[i], b);
   double natural = strut_history_natural(model, state, i, strain), x = strain - natural;
   if (strut_element_is_gone(natural)) return;
   state->latest.rest[e->slot] = natural;
-  if (yields(e) && state->modes.element_piece[i] >= 0)
-    state->history.plastic[e->memory] =
-        (natural - base_of(e, state->latest.rest)) * e->numbers.stiffness / strut_slider_spring(e);
   for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
   rate -= base_rate_of(e, state); /* last, as of other elements: with their bits before it breaks */
   int piece = state->modes.element_piece[i];
@@ -225,6 +221,24 @@ void strut_history_follow(const strut_model *model, strut_state *state) {
   }
 }
 
+void strut_history_keep(const strut_model *model, strut_state *state) {
+  for (int32_t m = 0; m < model->elements.history_count; m++) {
+    int32_t i = model->elements.memory[m];
+    const strut_element *e = &model->elements.element[i];
+    double b[STRUT_MOST_GRADIENT], base = base_of(e, state->latest.rest);
+    int direction = direction_at(state, e, i, 0.0);
+    if (strut_element_is_gone(state->latest.rest[e->slot])) continue;
+    if (strut_capstan_remembers(e, state->latest.rest))
+      strut_capstan_keep(model, state, i, state->q);
+    if (!yields(e) || state->modes.element_piece[i] < 0) continue;
+    if (direction) {
+      double strain = strut_element_strain(model, i, state->q, state->history.turn[i], b);
+      state->history.plastic[m] = plastic_at(e, strain - base, direction);
+    }
+    state->latest.rest[e->slot] = base + shift_of(e, state->history.plastic[m]);
+  }
+}
+
 void strut_history_store(const strut_model *model, const strut_state *state, double *memory) {
   const strut_element_table *t = &model->elements;
   size_t slots = (size_t)t->history_slots, count = (size_t)t->history_count;
@@ -238,6 +252,7 @@ void strut_history_load(const strut_model *model, strut_state *state, const doub
   const strut_element_table *t = &model->elements;
   size_t slots = (size_t)t->history_slots, count = (size_t)t->history_count;
   memcpy(state->latest.rest + t->history_slot, memory, slots * sizeof(double));
+  memcpy(state->history.material, memory, slots * sizeof(double));
   memcpy(state->history.plastic, memory + slots, count * sizeof(double));
   memcpy(state->history.broken_at, memory + slots + count,
          (size_t)t->breakable_count * sizeof(double));
@@ -270,8 +285,7 @@ void strut_breakable_break(const strut_model *model, strut_state *state, int32_t
   strut_element_pose pose;
   double energy = 0.0;
   for (int32_t i = table->breakable[breakable].first; i >= 0; i = table->element[i].sibling) {
-    strut_element_evaluate(model, i, state->latest.rest, state->q, state->latest.element_turn[i],
-                           &pose);
+    strut_element_evaluate(model, i, state->latest.rest, state->q, state->history.turn[i], &pose);
     energy += pose.energy;
     state->latest.rest[table->element[i].slot] = HUGE_VAL;
     state->latest.rest_rate[table->element[i].slot] = 0.0;

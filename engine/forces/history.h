@@ -87,6 +87,9 @@ void strut_history_add_forces(const strut_model *model, strut_state *state,
 /** Own slots after the slots that they follow have changed. */
 void strut_history_follow(const strut_model *model, strut_state *state);
 
+/** After a step in frozen modes has been accepted: sliders that give way and cables at guides, at the state's q. */
+void strut_history_keep(const strut_model *model, strut_state *state);
+
 /** Size of what the elements of a model remember. */
 static inline size_t strut_history_count(const strut_model *model) {
   const strut_element_table *t = &model->elements;

@@ -446,6 +446,7 @@ static void finish(const strut_model *model, strut_state *state, midpoint_worksp
     strut_support_motion_place(model, state, w->step.begin + h, state->q, state->v);
   for (int p = 0; p < STRUT_POWER_COUNT && state->balance; p++)
     state->work[p] += h * state->latest.power[p];
+  strut_elements_keep_turns(model, state);
   memcpy(w->held, w->step.tension, (size_t)model->members.count * sizeof *w->held);
   w->before[1] = w->before[0], w->before[0] = w->u, w->u = oldest;
   if (w->known < 2) w->known++;

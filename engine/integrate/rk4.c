@@ -67,6 +67,7 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
     rk4_end_of_step(n, dt, v, w->a[0], w->a[1], w->a[2], w->a[3], v);
     if (moves) end_moving_step(model, state, dt);
     if (rigid) strut_rigid_project(model, state, q, v);
+    if (model->terms & STRUT_TERM_ELEMENTS) strut_elements_keep_turns(model, state);
     if (model->terms & terms & STRUT_TERM_MEMORY)
       strut_history_renew(model, state, ((double)state->step + 1.0) * dt);
   }

@@ -34,6 +34,7 @@ STRUT_INLINE void euler_steps(const strut_model *model, strut_state *state, doub
       strut_lanes_store(q + i, strut_lanes_load(q + i) + dt * next);
     }
     if (moves) end_moving_step(model, state, dt);
+    if (model->terms & STRUT_TERM_ELEMENTS) strut_elements_keep_turns(model, state);
     if (model->terms & terms & STRUT_TERM_MEMORY)
       strut_history_renew(model, state, ((double)state->step + 1.0) * dt);
   }
@@ -112,6 +113,7 @@ STRUT_INLINE void verlet_steps(const strut_model *model, strut_state *state, ver
       strut_lanes_store(v + i, strut_lanes_load(v + i) + half * (strut_lanes_load(a + i) +
                                                                  strut_lanes_load_pairs(next + i)));
     if (moves) end_moving_step(model, state, dt);
+    if (model->terms & STRUT_TERM_ELEMENTS) strut_elements_keep_turns(model, state);
     for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) {
       state->work[p] += half * (w->power[p] + state->latest.power[p]);
       w->power[p] = state->latest.power[p];

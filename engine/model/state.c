@@ -30,8 +30,10 @@ static bool make_surfaces(const strut_model *model, strut_state *state) {
   ARRAY(modes.slack_force_threshold, model->members.slots)                                         \
   ARRAY(modes.element_acts, model->elements.count)                                                 \
   ARRAY(modes.element_piece, model->elements.count)                                                \
+  ARRAY(history.turn, model->elements.count)                                                       \
   ARRAY(history.plastic, model->elements.history_count)                                            \
   ARRAY(history.broken_at, model->elements.breakable_count)                                        \
+  ARRAY(history.material, model->elements.history_slots)                                           \
   ARRAY(history.guide_mode, model->elements.history_slots)                                         \
   ARRAY(history.guide_side, model->elements.history_slots)                                         \
   ARRAY(history.guide_drop, model->elements.history_slots)                                         \
@@ -43,7 +45,6 @@ static bool make_surfaces(const strut_model *model, strut_state *state) {
   ARRAY(signals.relay_side, model->scene->signal_count)                                            \
   ARRAY(latest.rest, model->members.slots)                                                         \
   ARRAY(latest.rest_rate, model->members.slots)                                                    \
-  ARRAY(latest.element_turn, model->elements.count)                                                \
   ARRAY(latest.actuator_force, model->actuator_forces.count)                                       \
   ARRAY(latest.sensor, model->feedback.count)                                                      \
   ARRAY(latest.sensor_rate, model->feedback.count)                                                 \
@@ -113,7 +114,7 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
   for (int32_t i = 0; i < model->elements.count; i++) {
     state->modes.element_acts[i] = 0;
     state->modes.element_piece[i] = -1;
-    state->latest.element_turn[i] = strut_element_start(model, i);
+    state->history.turn[i] = strut_element_start(model, i);
   }
   for (size_t i = 0; i < model->scene->signal_count; i++) {
     state->signals.held[i] = (double)NAN;
@@ -125,9 +126,12 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
     state->latest.sliding[k] =
         (strut_sliding_motion){.share = model->sliding.item[model->sliding.moving[k]].start};
   for (int32_t i = 0; i < model->elements.history_count; i++) state->history.plastic[i] = 0.0;
-  for (int32_t i = 0; i < model->elements.history_slots; i++)
-    state->history.guide_mode[i] = 2, state->history.guide_side[i] = 1,
-    state->history.guide_drop[i] = 0.0; /* STRUT_GUIDE_FREE */
+  for (int32_t i = 0; i < model->elements.history_slots; i++) {
+    state->history.material[i] = state->latest.rest[model->elements.history_slot + i];
+    state->history.guide_mode[i] = 2; /* STRUT_GUIDE_FREE */
+    state->history.guide_side[i] = 1;
+    state->history.guide_drop[i] = 0.0;
+  }
   for (int32_t i = 0; i < model->elements.breakable_count; i++)
     state->history.broken_at[i] = HUGE_VAL;
   memset(state->work, 0, sizeof state->work);

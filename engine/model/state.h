@@ -75,13 +75,19 @@ typedef struct strut_frozen_modes {
   const double *held_friction; /* follow from q, v and t alone */
 } strut_frozen_modes;
 
-/** What elements remember, see forces/history.h; the slots of `rest` that belong to them follow from it. */
+/**
+ * What elements remember, see forces/history.h; the slots of `rest` that belong to them follow from it. Only an
+ * accepted step writes it: evaluations of the forces, of steps that are tried too, read it.
+ */
 typedef struct strut_history {
+  double *
+      turn; /* (elements) angle of hinges at the accepted positions, near which the next is taken [rad] */
   double *plastic; /* (history_count) slip of sliders */
   double
       *broken_at; /* (breakable_count) since when it carries nothing [s]; INFINITY: it does carry */
-  int8_t
-      *guide_mode; /* (history_slots) at the slots of cables with guide friction: see capstan.h */
+  double *
+      material; /* (history_slots) of the segments of cables with guide friction [m]: see capstan.h */
+  int8_t *guide_mode; /* (history_slots) likewise at the slots of these cables */
   int8_t *guide_side; /* (history_slots) the sign of the turning angles, frozen with the modes */
   double *guide_drop; /* (history_slots) what a length of cable loses as it slips [N] */
   double *kept;       /* what strut_history_store stores, as it was at an earlier time */
@@ -114,7 +120,6 @@ typedef struct strut_latest {
   strut_contact_pose *pose; /* (contacts) with STRUT_TERM_SURFACES */
   strut_contact_entry
       *grip; /* (contacts) the model's with the friction of drive_time; NULL: that rests */
-  double *element_turn;         /* (elements) strain, near which an angle is taken */
   double *actuator_force;       /* (actuator forces) [N], [N m] */
   double *sensor, *sensor_rate; /* (sensors) in SI units */
   double *force;                /* net force on each node [N] */
@@ -154,6 +159,7 @@ typedef struct strut_state_watched {
                                         integrate/events/location/variation.h */
   struct strut_observer *observer;   /* sees each piece of the motion of a method with events, see
                                         integrate/observer.h */
+  int rehearsals; /* a trial of a method with events is first taken so often and thrown away, which changes no bit */
 } strut_state_watched;
 
 typedef struct strut_state {

@@ -75,8 +75,7 @@ static void add_element_rounding(const strut_relaxation *r, double *force) {
   for (int32_t i = 0; i < t->count; i++) {
     const strut_element *e = &t->element[i];
     const uint32_t *at = t->at + e->first;
-    strut_element_evaluate(r->model, i, r->state->latest.rest, q, r->state->latest.element_turn[i],
-                           &pose);
+    strut_element_evaluate(r->model, i, r->state->latest.rest, q, r->state->history.turn[i], &pose);
     double bits = fabs(pose.strain) * DBL_EPSILON;
     for (int32_t k = 0; k < e->nodes; k++)
       bits +=

@@ -109,8 +109,8 @@ for name, part, most_events in (("up-and-down-again", 1e-9, 90), ("touches-again
                                 ("leaves-the-band-briefly", 2e-9, 15), ("guide-slips-briefly", 5e-9, 40),
                                 ("slack-in-a-try", 1e-9, 20)):
     u = unit_of(name)
-    compare(name, part, most_events, precise(u, 100, "1e-12"), precise(u, 1000, "1e-12"), adaptive(u, 100, "1e-12"))
-    compare(name, 50 * part, most_events, precise(u, 100, "1e-10"), precise(u, 1000, "1e-12"))
+    compare(name, part, most_events, precise(u, 100, "1e-13"), precise(u, 1000, "1e-13"), adaptive(u, 100, "1e-13"))
+    compare(name, 50 * part, most_events, precise(u, 100, "1e-10"), precise(u, 1000, "1e-13"))
 u = unit_of("released-at-once")
 compare("released-at-once", 1e-9, 120, *(precise(u, n, t) for n in (100, 300, 1000) for t in ("1e-10", "1e-12")),
         adaptive(u, 100, "1e-12"))

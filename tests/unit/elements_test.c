@@ -448,8 +448,8 @@ TEST(a_hinge_counts_its_turns) {
       strut_forces_evaluate(model, state, 0, state->q, state->v);
       assert_near(state->latest.force[4], moment / arm * sin(angle), 1e-11);
       assert_near(state->latest.force[5], -moment / arm * cos(angle), 1e-11);
-      double energy = strut_elements_energy(model, state->latest.rest, state->latest.element_turn,
-                                            state->q, NULL);
+      double energy =
+          strut_elements_energy(model, state->latest.rest, state->history.turn, state->q, NULL);
       assert_near(energy, 0.5 * kappa * (angle - 0.25) * (angle - 0.25), 1e-10);
     }
   }

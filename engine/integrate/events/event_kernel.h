@@ -11,6 +11,7 @@
 #include <math.h>
 
 #include "engine/forces/forces_kernel.h"
+#include "engine/forces/history.h"
 #include "engine/integrate/events/contacts/mode_law.h"
 #include "engine/integrate/events/contacts/surface_contacts.h"
 #include "engine/integrate/events/event_stepping.h"
@@ -184,6 +185,8 @@ STRUT_INLINE void accept_step(const strut_model *model, strut_state *state,
   now->q = next->q, now->v = next->v;
   next->q = q, next->v = v;
   stepper->now = now, stepper->next = next;
+  if (model->terms & STRUT_TERM_ELEMENTS) strut_elements_keep_turns(model, state);
+  if (model->terms & STRUT_TERM_MEMORY) strut_history_keep(model, state);
   stepper->fresh = true;
   for (int p = 0; p < STRUT_POWER_ROOM && balance; p += STRUT_LANES)
     strut_lanes_store(state->work + p,
@@ -228,7 +231,7 @@ STRUT_INLINE double next_step_size(const strut_state *state, const strut_event_s
 STRUT_INLINE double relative_error(const strut_model *model, const strut_step_control *control,
                                    double h, double position, double velocity) {
   double error = position / (0.01 * model->size * control->tolerance);
-  double allowed = control->fastest * control->tolerance, least = h * control->rounding;
+  double allowed = control->speed * control->tolerance, least = h * control->rounding;
   double other = velocity > 0.0 ? velocity / (allowed > least ? allowed : least) : 0.0;
   return other > error ? other : error;
 }
@@ -311,14 +314,22 @@ STRUT_INLINE double law_value(const strut_event_stepper *stepper, const strut_st
     take(model, state, stepper, t, h, STRUT_TERMS_ALL, state->balance);                            \
   }                                                                                                \
                                                                                                    \
-  static void name##_trial(const strut_model *model, strut_state *state,                           \
-                           strut_event_stepper *stepper, double t, double h) {                     \
+  static void name##_once(const strut_model *model, strut_state *state,                            \
+                          strut_event_stepper *stepper, double t, double h) {                      \
     if (model->terms & STRUT_TERMS_RARE)                                                           \
       name##_with_rare_terms(model, state, stepper, t, h);                                         \
     else if (state->balance)                                                                       \
       name##_with_balance(model, state, stepper, t, h);                                            \
     else                                                                                           \
       name##_without_balance(model, state, stepper, t, h);                                         \
+  }                                                                                                \
+                                                                                                   \
+  static void name##_trial(const strut_model *model, strut_state *state,                           \
+                           strut_event_stepper *stepper, double t, double h) {                     \
+    bool predicted = stepper->formula->predict;                                                    \
+    for (int k = 0; k < state->watched.rehearsals; k++)                                            \
+      name##_once(model, state, stepper, t, predicted ? h : 2.0 * h);                              \
+    name##_once(model, state, stepper, t, h);                                                      \
   }
 
 #endif

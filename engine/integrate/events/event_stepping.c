@@ -98,7 +98,7 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
   memcpy(stepper->next->v, state->v, (size_t)model->length * sizeof(double));
   stepper->control.h = 0.0;
   stepper->control.longest = dt;
-  stepper->control.fastest = 0.0;
+  stepper->control.fastest = stepper->control.speed = 0.0;
   stepper->done = 0.0;
   stepper->chatter.at_once = stepper->chatter.switches = 0;
   stepper->chatter.pushed = -1;
@@ -347,6 +347,7 @@ static void accept_piece(const strut_model *model, strut_state *state, strut_eve
   if (state->watched.variation) strut_variation_step(model, state, stepper, piece->t, piece->h);
   if (observed) keep_begin(model, state, stepper->view);
   accept_step(model, state, stepper, state->balance);
+  stepper->control.fastest = stepper->control.speed;
   if (observed) show_piece(model, state, stepper, piece);
   stepper->chatter.at_once = 0;
   if (piece->h > SEPARATES * (stepper->formula->adaptive ? stepper->control.h : piece->dt))
@@ -419,6 +420,7 @@ static bool given_up(const strut_model *model, strut_state *state, strut_event_s
     memcpy(state->q, kept[0], bytes);
     memcpy(state->v, kept[1], bytes);
     memcpy(state->work, stepper->control.work, sizeof stepper->control.work);
+    strut_elements_keep_turns(model, state);
     if (model->terms & STRUT_TERM_MEMORY) strut_history_load(model, state, state->history.kept);
   }
   if (wanted) state->trouble = spent ? STRUT_FAILURE_WORK : STRUT_FAILURE_INTERRUPT;
@@ -443,7 +445,7 @@ void strut_event_stepper_advance(const strut_model *model, strut_state *state, v
                      &stepper->drives);
   for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
     if (stepper->formula->advance_until_event && stepper->chatter.at_once == 0 &&
-        !model->contacts.surface && !state->watched.observer)
+        !model->contacts.surface && !state->watched.observer && !state->watched.rehearsals)
       stepper->formula->advance_until_event(model, state, stepper, dt, end);
     if (state->step == end || (stepper->formula->adaptive && given_up(model, state, stepper)))
       break;
