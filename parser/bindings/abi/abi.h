@@ -99,6 +99,12 @@ STRUTLIB_API const char *strutlib_version(void);
  * The language as a JSON Schema, as `strut keys --schema` prints it; with `study` other than 0 that of studies.
  */
 STRUTLIB_API char *strutlib_schema(int study, strutlib_error **error);
+/**
+ * Any YAML text as JSON with places: [line, column, value, ...] of a scalar with its text, of a list or a mapping with
+ * a list of such values, those of a mapping alternately keys and values, with true behind them. `name` stands for
+ * the file in messages.
+ */
+STRUTLIB_API char *strutlib_yaml_places(const char *name, const char *text, strutlib_error **error);
 /** Releases a text that belongs to the caller. NULL is allowed. */
 STRUTLIB_API void strutlib_release(char *text);
 /** A status as a word: "ok", "usage", "bad_scene", "diverged", ... Never NULL. */
@@ -341,11 +347,13 @@ STRUTLIB_API strutlib_result *strutlib_path(const strutlib_scene *scene, size_t 
                                             const char *const *names, const char *const *values,
                                             strutlib_control *control, strutlib_error **error);
 /**
- * The matrices of `strut export --format matrices`, in the shape that the option "at" names. Arrays of
- * each: "mass.row", "mass.column", "mass.value" (entries; indices from 0; symmetric ones in
+ * Matrices of the shape that the option "at" names (default drawn). Arrays of each: "mass.row", "mass.column", "mass.value" (entries; indices from 0; symmetric ones in
  * full), "mass.size" (2: rows, columns); likewise "connectivity", "equilibrium",
  * "stiffness_elastic", "stiffness_geometric", "damping" and "stiffness_contact"; and
- * "coordinates" (rows): of each row of all but connectivity 2 times its node, + 1 for y.
+ * "coordinates" (rows): of each row of all but connectivity 2 times its node, + 1 for y. Of the shape:
+ * "position" (nodes, 2) and "weight" (nodes), the mass with half of each member's; (members):
+ * "length", "rest_length" without drives, of a rigid bar its length at the start, "tension" of the spring
+ * alone, "damping_coefficient".
  */
 STRUTLIB_API strutlib_result *strutlib_matrices(const strutlib_scene *scene, size_t count,
                                                 const char *const *names, const char *const *values,

@@ -339,6 +339,44 @@ char *strutlib_schema(int study, strutlib_error **error) {
   return abi_give(strut_schema_write(study != 0), error);
 }
 
+static void put_places(strut_json_writer *json, const strut_tree *node) {
+  char number[24];
+  strut_json_open(json, '[');
+  for (int i = 0; i < 2; i++) {
+    snprintf(number, sizeof number, "%u", (unsigned)(i ? node->place.column : node->place.line));
+    strut_json_put_raw(json, number);
+  }
+  if (node->kind == STRUT_TREE_SCALAR) {
+    strut_json_put_text(json, node->text);
+  } else {
+    strut_json_open(json, '[');
+    for (const strut_tree *child = node->first; child; child = child->next) put_places(json, child);
+    strut_json_close(json, ']');
+  }
+  if (node->kind == STRUT_TREE_MAP) strut_json_put_raw(json, "true");
+  strut_json_close(json, ']');
+}
+
+char *strutlib_yaml_places(const char *name, const char *text, strutlib_error **error) {
+  if (abi_lacks(error, name, "name") || abi_lacks(error, text, "text")) return NULL;
+  strut_document document = {0};
+  strut_diagnostics found = {0};
+  strut_json_writer json = {.depth = 0};
+  char *answer = NULL;
+  abi_enter(error);
+  strut_diagnostics_source(&found, name, text, strlen(text));
+  strut_status status = strut_document_read(&document, &found);
+  if (!status) put_places(&json, document.root);
+  if (status == STRUT_BAD_SCENE)
+    abi_fail_located(error, status, &found);
+  else
+    answer = abi_give(status ? NULL : strut_json_finish(&json), error);
+  strut_document_free(&document);
+  strut_diagnostics_free(&found);
+  abi_leave();
+  return answer;
+}
+
 /* ---- codes ---- */
 
 _Static_assert(STRUTLIB_OK == (int)STRUT_OK && STRUTLIB_USAGE == (int)STRUT_USAGE &&

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+#include "engine/forces/elements.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/statics/rigidity/rigidity_parts.h"
 #include "parser/bindings/abi/handles.h"
@@ -65,7 +67,7 @@ static strut_status compute_and_report(abi_call *call, const strutlib_scene *sce
   return complete ? STRUT_OK : strut_no_memory(what, "");
 }
 
-/* ---- matrices: what `strut export --format matrices` writes, as arrays ---- */
+/* ---- matrices and the shape that they are of, as arrays ---- */
 
 /* Entries of a matrix, one after the other. */
 typedef struct entries {
@@ -147,6 +149,43 @@ static bool add_equilibrium(strutlib_result *result, const strut_equilibrium_mat
          abi_result_add_array(result, "coordinates", "1", coordinate, 1, &rows);
 }
 
+/* Of a rigid bar that of the start, otherwise the rest length without drives. */
+static double made_length(const strut_model *model, size_t i) {
+  const strut_scene *scene = model->scene;
+  const strut_member *m = &scene->members[i];
+  if (scene->bar_model != STRUT_BARS_RIGID || m->kind != STRUT_BAR) return model->members.rest[i];
+  return strut_distance(scene->nodes[m->node[0]].start, scene->nodes[m->node[1]].start);
+}
+
+/* What programs need to write the structure in other formats. */
+static bool add_shape(strutlib_result *result, const strut_model *model, const double *q) {
+  const strut_scene *scene = model->scene;
+  const size_t n = scene->node_count, m = scene->member_count, by_node[] = {n, 2};
+  strut_arena *arena = &result->arena;
+  double *position = strut_arena_allocate(arena, 2 * n, sizeof *position);
+  double *weight = strut_arena_allocate(arena, n, sizeof *weight);
+  double *length = strut_arena_allocate(arena, m, sizeof *length);
+  double *rest = strut_arena_allocate(arena, m, sizeof *rest);
+  double *tension = strut_arena_allocate(arena, m, sizeof *tension);
+  double *damping = strut_arena_allocate(arena, m, sizeof *damping);
+  if (!position || !weight || !length || !rest || !tension || !damping) return false;
+  memcpy(position, q, 2 * n * sizeof *position);
+  memcpy(weight, model->weight, n * sizeof *weight);
+  for (size_t i = 0; i < m; i++) {
+    bool running = scene->members[i].guide_count > 0;
+    length[i] = strut_member_path_length(model, (int32_t)i, q);
+    rest[i] = made_length(model, i);
+    tension[i] = strut_member_elastic_tension(model, model->members.rest, (int32_t)i, q);
+    damping[i] = running ? scene->members[i].damping : model->members.damping[i];
+  }
+  return abi_result_add_array(result, "position", "m", position, 2, by_node) &&
+         abi_result_add_array(result, "weight", "kg", weight, 1, &n) &&
+         abi_result_add_array(result, "length", "m", length, 1, &m) &&
+         abi_result_add_array(result, "rest_length", "m", rest, 1, &m) &&
+         abi_result_add_array(result, "tension", "N", tension, 1, &m) &&
+         abi_result_add_array(result, "damping_coefficient", "N s/m", damping, 1, &m);
+}
+
 static strut_status build_matrices(abi_call *call, strutlib_result *result, strut_error *what) {
   const strut_model *model = result->model;
   strut_arena arena = {0};
@@ -164,7 +203,8 @@ static strut_status build_matrices(abi_call *call, strutlib_result *result, stru
         add_symmetric(result, "stiffness_elastic", "N/m", linear.elastic) &&
         add_symmetric(result, "stiffness_geometric", "N/m", linear.geometric) &&
         add_symmetric(result, "stiffness_contact", "N/m", linear.contact) &&
-        add_symmetric(result, "damping", "N s/m", linear.damping)))
+        add_symmetric(result, "damping", "N s/m", linear.damping) &&
+        add_shape(result, model, shape.q)))
     status = STRUT_NO_MEMORY;
   strut_arena_free(&arena);
   return status;

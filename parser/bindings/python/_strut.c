@@ -408,6 +408,17 @@ static PyObject *channels(PyObject *module, PyObject *none) {
   return list;
 }
 
+static PyObject *yaml_places(PyObject *module, PyObject *arguments) {
+  const char *name, *text;
+  strutlib_error *error = NULL;
+  (void)module;
+  if (!PyArg_ParseTuple(arguments, "ss:yaml_places", &name, &text)) {
+    return NULL;
+  }
+  char *places = strutlib_yaml_places(name, text, &error);
+  return strut_py_own_text(places, error);
+}
+
 static PyObject *status_name(PyObject *module, PyObject *argument) {
   (void)module;
   int status = (int)PyLong_AsLong(argument);
@@ -432,6 +443,7 @@ static PyMethodDef functions[] = {
     {"with_", scene_with, METH_VARARGS, "with_(scene, names, values): further settings."},
     {"options", options, METH_O, "options(command): its options and what they mean."},
     {"channels", channels, METH_NOARGS, "channels(): (name, kind, components, columns) of each."},
+    {"yaml_places", yaml_places, METH_VARARGS, "yaml_places(name, text): a YAML text as JSON."},
     {"status_name", status_name, METH_O, "status_name(number): a status as a word."},
     {"status_text", status_text, METH_O, "status_text(number): a status as a few words."},
     {NULL, NULL, 0, NULL}};
