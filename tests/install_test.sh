@@ -131,5 +131,6 @@ if [ -e "$package/__init__.py" ]; then
   (cd / && env -u LD_LIBRARY_PATH PYTHONPATH="${package%/*}" PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c '
 import strut, sys
 assert strut.__file__.startswith(sys.argv[1])
-print(strut.load(sys.argv[2]).run(accuracy="1 %", record=False))' "$prefix" "$source/models/crawler/crawler.yaml")
+print(strut.load(sys.argv[2]).run(accuracy="1 %", record=False))
+import strut.formats.__main__' "$prefix" "$source/models/crawler/crawler.yaml")
 fi

@@ -39,7 +39,7 @@ breaches() {
         for (k = 1; k <= n; k++) floor[side[k]] = i
       }
       count = split("parser/yaml|parser/expression|parser/language|parser/read|parser/write|" \
-        "parser/import|parser/study|parser", line, "|")
+        "parser/study|parser", line, "|")
       for (i = 1; i <= count; i++) parser_floor[line[i]] = i
       # Foreign libraries live in one folder each; those of linear algebra even in one room.
       home["yaml.h"] = "parser/yaml"; home["hdf5.h"] = "engine/output"; home["hdf5_hl.h"] = "engine/output"

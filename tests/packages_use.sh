@@ -92,6 +92,7 @@ if has python3-strut; then
 import strut
 print(strut.__version__, strut.load(strut.models / 'crawler/crawler.yaml').run())" >said
   grep -q '^0\.1' said || { cat said; fail "Python says something else"; }
+  python3 -m strut.formats build "$model" -o parts >said || { cat said; fail "no formats of other programs"; }
 fi
 
 apt purge -y '*strut*'

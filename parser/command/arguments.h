@@ -65,7 +65,6 @@ typedef enum strut_option_id {
   STRUT_OPTION_ANIMATE, /* FILE.mp4|gif|webm */
   STRUT_OPTION_SPEED,
   STRUT_OPTION_FPS,
-  STRUT_OPTION_FORMAT,
   STRUT_OPTION_KIND, /* of a diagram from a table */
   STRUT_OPTION_X,
   STRUT_OPTION_Y,
@@ -110,9 +109,6 @@ typedef enum strut_option_id {
   STRUT_OPTION_CHANNELS, /* of the library's run, and whether it records */
   STRUT_OPTION_RECORD,
   STRUT_OPTION_COMPUTE,   /* of the library's sweep: what */
-  STRUT_OPTION_ALLOWANCE, /* of export: for the ends of cables */
-  STRUT_OPTION_INPUT, /* of export: the format of another program's file, and its unit of length */
-  STRUT_OPTION_UNIT,
   STRUT_OPTION_LOWEST,
   STRUT_OPTION_LIMIT_EVALUATIONS,
   STRUT_OPTION_LIMIT_TIME,

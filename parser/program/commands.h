@@ -39,9 +39,6 @@ const strut_command *strut_command_find(const char *name);
 /** Is it the name of a section or a key of the language, which `strut keys` explains? */
 bool strut_keys_know(const char *name);
 
-/** Writes a model that the arguments name as a scene, or makes a scene of another program's file. */
-strut_status strut_export_scene(const strut_arguments *arguments);
-
 /** Prints the help of the whole program on stdout. */
 void strut_program_help(void);
 

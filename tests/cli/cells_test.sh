@@ -202,8 +202,8 @@ same written.yaml again.yaml
 expect 0 run piston.yaml -o pictures --quiet --plot piston.svg
 expect 0 view pictures -o page.html
 grep -q "\"name\":\"air\",\"nodes\":\[0, 3, 2, 1\]" page.html || fail "no cell on the page"
-expect 0 export piston.yaml --format matrices -o matrices
-grep -q 'air,cell,a,b,d c' matrices/columns.csv || fail "no column of the cell"
+formats 0 matrices piston.yaml -o matrices &&
+  { grep -q 'air,cell,a,b,d c' matrices/columns.csv || fail "no column of the cell"; }
 tells 2 "bag is a cell" form bulge.yaml
 
 done_testing

@@ -267,8 +267,8 @@ done
 mkdir seen
 expect 0 run right.yaml --step '1 ms' --quiet -o seen/run --plot seen/run.svg
 expect 0 view seen/run -o seen/run.html
-expect 0 export --format vtk -o seen/vtk seen/run
-grep -q 'NumberOfLines="2"' seen/vtk/ground.vtp || fail "outlines for ParaView"
+formats 0 vtk -o seen/vtk seen/run &&
+  { grep -q 'NumberOfLines="2"' seen/vtk/ground.vtp || fail "outlines for ParaView"; }
 grep -q surfaces seen/run.html || fail "outlines on the page"
 expect 0 check right.yaml
 expect 0 export right.yaml

@@ -34,6 +34,17 @@ expect() {
   [ "$code" -eq "$expected_code" ] || fail "strut $*: exit code $code, expected $expected_code"
 }
 
+# formats CODE WORD...: as expect, of python3 -m strut.formats; false where the Python package was not built.
+formats() {
+  package=$(dirname "$strut")/python
+  [ -e "$package/strut/_strut.abi3.so" ] || return 1
+  expected_code=$1
+  shift
+  PYTHONPATH=$package /usr/bin/python3 -m strut.formats "$@" >"$work/out" 2>"$work/err" </dev/null
+  code=$?
+  [ "$code" -eq "$expected_code" ] || fail "formats $*: exit code $code, expected $expected_code"
+}
+
 # near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
 near() {
   jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||

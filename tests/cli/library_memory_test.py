@@ -29,11 +29,10 @@ CRASHING = WITH_HDF5 + ":libcairo"  # cairo 1.16 dereferences NULL while it fini
 COMMANDS = {  # name: (words, folders and files to remove before, libraries that are spared)
     "run": (["run", HOPPER, "--set", "seconds=0.1", "-o", "out", "--quiet"], WITH_HDF5),
     "sweep": (["sweep", "study.yaml", "-o", "out", "--threads", "1", "--quiet"], WITH_HDF5),
-    "export": (["export", "kept", "--format", "vtk", "-o", "out"], WITH_HDF5),
+    "export": (["export", PENTAGON], ABORTING),
     "view": (["view", "kept", "-o", "out.html", "--quiet"], WITH_HDF5),
     "path": (["path", f"{MODELS}/basics/von-mises-truss.yaml", "--set", "load=12", "-o", "out"],
              ABORTING),
-    "matrices": (["export", PENTAGON, "--format", "matrices", "-o", "out"], ABORTING),
     "modes": (["modes", PENTAGON, "-o", "out"], ABORTING),
     "rigidity": (["rigidity", PENTAGON, "-o", "out"], ABORTING + ":libgsl"),  # GSL checks none of its own
     "form": (["form", PENTAGON, "-o", "out.html", "--quiet"], ABORTING),

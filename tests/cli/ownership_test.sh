@@ -28,8 +28,6 @@ done
 refuses shapes/equilibria.json equilibria "$pentagon" -o shapes
 refuses shapes/rigidity.json rigidity "$pentagon" -o shapes
 refuses shapes/modes.csv modes "$pentagon" -o shapes
-refuses matrices/mass.mtx export "$pentagon" --format matrices -o matrices
-refuses frames/structure.pvd export "$pentagon" --format vtk -o frames
 refuses side/model-1.svg compare "$pentagon" "$hopper" -o side
 refuses ./picture.svg run "$hopper" --set seconds=1e9 --plot ./picture.svg
 refuses ./picture.pdf equilibria "$pentagon" --plot ./picture.pdf

@@ -121,7 +121,7 @@ for command in check modes equilibria rigidity path; do
 done
 expect 0 check "$hopper" -q
 out_empty
-for words in "run $hopper -o run" "view run -o p.html" "export run --format vtk -o vtk" \
+for words in "run $hopper -o run" "view run -o p.html" \
   "plot run/nodes.csv --plot p.svg" "compare snap.yaml snap.yaml" "form snap.yaml -o form.yaml"; do
   expect 0 $words -q
   out_empty

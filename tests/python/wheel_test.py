@@ -27,6 +27,16 @@ for line in open("/proc/self/maps"):
     if ".so" in line:
         print("loaded", line.split()[-1])
 """
+FORMATS = """
+import contextlib, io, strut
+from strut.formats.__main__ import main
+assert main(["build", str(strut.models / "gallery/x-frame.yaml"), "-o", "parts"]) == 0
+rows = open("parts/members.csv").read().splitlines()
+with open("members.csv", "w") as file:
+    file.write(rows[0] + ",stiffness [N/m]\\n" + "".join(row + ",1000\\n" for row in rows[1:]))
+with contextlib.redirect_stderr(io.StringIO()):  # columns that are not read
+    assert main(["import", "parts/nodes.csv", "members.csv", "-o", "again.yaml"]) == 0
+"""
 ARRAYS = """
 import numpy, scipy.linalg, strut, matplotlib
 matplotlib.use("agg")
@@ -84,6 +94,10 @@ class Wheel(unittest.TestCase):
         for path in loaded - own:
             outside = OUTSIDE.match(os.path.basename(path)) or "/lib-dynload/" in path or path in pythons
             self.assertTrue(outside, f"{path} is not of the wheel")
+
+    def test_formats_of_other_programs(self):
+        self.run_python(FORMATS)
+        self.assertIn("falling: {kind: bar", (self.here / "again.yaml").read_text())
 
     def test_every_library_that_a_file_needs_is_inside(self):
         (package,) = self.here.glob("venv/lib/python*/site-packages/strut")

@@ -64,6 +64,16 @@ def run(*words, code=0, timeout=120):
     return done
 
 
+def formats(*words, code=0, timeout=60):
+    """Runs `python3 -m strut.formats` of the same build in the folder of the test."""
+    environment = {**os.environ, "PYTHONPATH": path(os.path.dirname(strut), "python"), "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run([sys.executable, "-X", "dev", "-W", "error", "-m", "strut.formats", *words], cwd=work,
+                          env=environment, capture_output=True, text=True, timeout=timeout, check=False)
+    check(done.returncode == code and "Traceback" not in done.stderr,
+          f"formats {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
+    return done
+
+
 def copy_models():
     """A study names what is below its folder: models are then in `copied`."""
     shutil.copytree(models, path("copied"))

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The files for ParaView and films where memory or the disk is out. */
+/* Films where memory is out. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/exports.h"
 #include "engine/output/figures/run_film.h"
 #include "parser/read/read_scene.h"
 #include "tests/support/test.h"
@@ -64,48 +63,6 @@ static void make(things *t) {
 static void drop(things *t) {
   strut_model_free(t->model);
   strut_setup_free(&t->setup);
-}
-
-/* All files or none, and the reason. */
-TEST(vtk_without_memory) {
-  things t;
-  make(&t);
-  scratch_make();
-  strut_status status = STRUT_NO_MEMORY;
-  int failed = 0;
-  for (; failed < MOST && status != STRUT_OK; failed++) {
-    strut_error error = {0};
-    strut_vtk_written written;
-    strut_fail_allocation_after(failed);
-    status = strut_vtk_write(scratch_path("vtk"), t.model, &t.motion, &written, &error);
-    strut_fail_allocation_after(-1);
-    assert_int_equal(error.status, status);
-    assert_int_equal(scratch_count(scratch_path("vtk")), status == STRUT_OK ? FRAMES + 2 : -1);
-    if (status == STRUT_OK) assert_int_equal(written.frames, FRAMES);
-  }
-  assert_true(failed > 5 && failed < MOST);
-  scratch_remove();
-  drop(&t);
-}
-
-TEST(vtk_on_a_full_disk) {
-  things t;
-  strut_error error = {0};
-  strut_vtk_written written;
-  make(&t);
-  const char *directory = scratch_make();
-  if (!scratch_mount_small_disk(directory, 8)) {
-    scratch_remove();
-    drop(&t);
-    skip();
-  }
-  strut_status status = strut_vtk_write(scratch_path("vtk"), t.model, &t.motion, &written, &error);
-  assert_int_equal(status, STRUT_FILE_TROUBLE);
-  assert_non_null(strstr(error.message, "No space left"));
-  assert_int_equal(scratch_count(directory), 0);
-  scratch_unmount(directory);
-  scratch_remove();
-  drop(&t);
 }
 
 TEST(film_without_memory) {

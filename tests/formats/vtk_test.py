@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `strut export --format vtk` writes, read by VTK itself and compared with the run's CSV files.
+"""What `python3 -m strut.formats vtk` writes, read by VTK itself and compared with the run's CSV files.
 
 usage: vtk_test.py STRUT HOPPER
 """
@@ -7,7 +7,6 @@ import csv
 import math
 import os
 import shutil
-import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 
@@ -17,16 +16,10 @@ except ImportError:
     print("skipped: Python has no VTK (Debian: python3-vtk9)")
     sys.exit(77)
 
-from testing import check, files_in, finish, strut, work
+from testing import check, files_in, finish, formats, run, work
 
 hopper = os.path.abspath(sys.argv[2])
 os.chdir(work)
-
-
-def call(code, *words):
-    run = subprocess.run([strut, *words], capture_output=True, text=True, stdin=subprocess.DEVNULL)
-    check(run.returncode == code, f"strut {' '.join(words)}: exit code {run.returncode}: {run.stderr}")
-    return run
 
 
 def read(path):
@@ -66,8 +59,8 @@ def column(data, which):
 
 def test_run():
     """Every frame: the same bits as nodes.csv, members.csv and contacts.csv."""
-    call(0, "run", hopper, "--quiet", "-o", "run")
-    said = call(0, "export", "run", "--format", "vtk", "-o", "vtk").stdout
+    run("run", hopper, "--quiet", "-o", "run")
+    said = formats("vtk", "run", "-o", "vtk").stdout
     node_rows, member_rows = rows("run/nodes.csv"), rows("run/members.csv")
     contact_rows = rows("run/contacts.csv")
     check(said.startswith(f"{len(node_rows)} frames"), said)
@@ -118,7 +111,7 @@ def test_run():
 
 def test_model():
     """One frame, in the shape asked for; frames of an earlier export go."""
-    call(0, "export", hopper, "--format", "vtk", "-o", "vtk")
+    formats("vtk", hopper, "-o", "vtk")
     check(sorted(files_in("vtk")) == ["ground.vtp", "structure.pvd", "structure_00000.vtp"],
           "stale frames: " + str(len(files_in("vtk"))))
     data = read("vtk/structure_00000.vtp")
@@ -127,7 +120,7 @@ def test_model():
     check(abs(data.GetCellData().GetArray("length").GetValue(2) - stay) < 1e-17, "length")
     force = data.GetCellData().GetArray("force").GetValue(1)
     check(abs(force - 200 * (0.06 - 0.055)) < 1e-13, f"force {force}")
-    call(0, "export", hopper, "--format", "vtk", "-o", "rest", "--at", "start")
+    formats("vtk", hopper, "-o", "rest", "--at", "start")
     foot = read("rest/structure_00000.vtp").GetPoint(0)
     check(-1e-3 < foot[1] < 0, f"at rest the foot presses into the ground: {foot}")
 
@@ -136,7 +129,7 @@ def test_names_and_no_members():
     with open("ball.yaml", "w", encoding="utf-8") as file:
         file.write("strut: 1\nnodes:\n  כדור: {position: [1, 2], mass: 1}\n  ü-1: {position: [3, 4], "
                    "mass: 1}\n")
-    call(0, "export", "ball.yaml", "--format", "vtk", "-o", "ball")
+    formats("vtk", "ball.yaml", "-o", "ball")
     data = read("ball/structure_00000.vtp")
     check(names(data, "node_names") == ["כדור", "ü-1"], "names")
     check(data.GetNumberOfVerts() == 2 and data.GetPoint(1) == (3, 4, 0), "nodes alone")
@@ -149,8 +142,8 @@ def test_thinning():
                                                                            "step: 0.02 ms")
     with open("fine.yaml", "w", encoding="utf-8") as file:
         file.write(text.replace("velocity, length, force, contact, energy", "force"))
-    call(0, "run", "fine.yaml", "--quiet", "-o", "fine")
-    said = call(0, "export", "fine", "--format", "vtk", "-o", "thin").stdout
+    run("run", "fine.yaml", "--quiet", "-o", "fine")
+    said = formats("vtk", "fine", "-o", "thin").stdout
     listed = [d for d in datasets("thin") if d[1] == 0]
     check(len(listed) == 8334 and "8334 frames" in said and "from 25001 recorded" in said, said)
     times = [r["time"] for r in rows("fine/nodes.csv")]
@@ -161,40 +154,38 @@ def test_thinning():
 def test_trouble():
     before = sorted(files_in("vtk"))
     for code, words, message in [
-            (4, ["export", "vtk", "--format", "vtk", "-o", "x"], "holds no run"),
-            (4, ["export", "nowhere", "--format", "vtk", "-o", "x"], "nowhere"),
-            (1, ["export", "run", "--format", "vtk"], "-o DIR"),
-            (1, ["export", "run", "--format", "stl", "-o", "x"], "vtk"),
-            (1, ["export", "run", "-o", "x"], "--format"),
-            (1, ["export", "run", "--format", "vtk", "-o", "x", "--at", "drawn"], "--at"),
-            (1, ["export", "run", "--format", "vtk", "-o", "x", "--set", "a=1"], "--set"),
-            (4, ["export", "run", "--format", "vtk", "-o", hopper], hopper)]:
-        said = call(code, *words)
+            (4, ["vtk", "vtk", "-o", "x"], "holds no run"),
+            (4, ["vtk", "nowhere", "-o", "x"], "nowhere"),
+            (1, ["vtk", "run"], "-o"),
+            (1, ["stl", "run", "-o", "x"], "vtk"),
+            (1, ["vtk", "run", "-o", "x", "--at", "drawn"], "--at"),
+            (1, ["vtk", "run", "-o", "x", "--set", "a=1"], "--set"),
+            (4, ["vtk", "run", "-o", hopper], hopper)]:
+        said = formats(*words, code=code)
         check(message in said.stderr and not said.stdout, f"{words}: {said.stderr}")
         check(said.stderr.count("\n") <= 1, f"{words}: more than a sentence: {said.stderr}")
         check(not os.path.exists("x"), f"{words}: left something")
     os.mkdir("half")
     shutil.copy("run/scene.yaml", "half")
-    check("trajectory.h5" in call(4, "export", "half", "--format", "vtk", "-o", "x").stderr, "half")
-    with open("half/trajectory.h5", "wb") as file:
-        file.write(b"no HDF5")
-    call(4, "export", "half", "--format", "vtk", "-o", "x")
+    check("holds no run" in formats("vtk", "half", "-o", "x", code=4).stderr, "half")
+    shutil.copy("run/summary.json", "half")
+    for table in (b"no table", b"time [s],foot.x [m]\n0,zero\n", b"\xff"):
+        with open("half/nodes.csv", "wb") as file:
+            file.write(table)
+        check("nodes.csv" in formats("vtk", "half", "-o", "x", code=4).stderr, "half a table")
     os.mkdir("vtk/structure_00001.vtp")
     shutil.move("vtk/structure.pvd", "kept.pvd")
-    call(4, "export", "run", "--format", "vtk", "-o", "vtk")
+    formats("vtk", "run", "-o", "vtk", code=4)
     check(not os.path.exists("vtk/structure.pvd"), "a part of an export")
     with open("still.yaml", "w", encoding="utf-8") as file:
         with open(hopper, encoding="utf-8") as old:
             file.write(old.read().replace("position, velocity, length, force", "force"))
-    call(0, "run", "still.yaml", "--quiet", "-o", "still")
-    said = call(4, "export", "still", "--format", "vtk", "-o", "x").stderr
+    run("run", "still.yaml", "--quiet", "-o", "still")
+    said = formats("vtk", "still", "-o", "x", code=4).stderr
     check("position" in said, said)
 
 
-try:
-    for test in [test_run, test_model, test_names_and_no_members, test_thinning, test_trouble]:
-        test()
-finally:
-    os.chdir("/")
-    shutil.rmtree(work)
+for test in [test_run, test_model, test_names_and_no_members, test_thinning, test_trouble]:
+    test()
+os.chdir("/")
 finish()

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# strut export: the files, their names and numbers, all or none; and, where Octave is installed, that
+# Matrix Market: the files, their names and numbers, all or none; and, where Octave is installed, that
 # it gets the program's own frequencies and rank out of them.
-. "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/../cli/lib.sh"
 
 # Two points on a line, held in y: masses 2 and 3, stiffness 8, damping 11, tension 1 on length 4.
 cat >pair.yaml <<'YAML'
@@ -10,7 +10,7 @@ strut: 1
 nodes: {left: {position: [0, 0], mass: 2, fixed: y}, right: {position: [4, 0], mass: 3}}
 members: {one: {kind: spring, nodes: [left, right], stiffness: 8, damping: 11, pretension: 1}}
 YAML
-expect 0 export pair.yaml --format matrices -o m
+formats 0 matrices pair.yaml -o m
 out_empty
 err_empty
 files m node_names.csv rows.csv columns.csv connectivity.mtx equilibrium.mtx mass.mtx \
@@ -43,28 +43,30 @@ parameters: {depth: 1 mm}
 nodes: {ball: {position: [0, -depth], mass: 1}}
 ground: {nodes: [ball], stiffness: 500, damping: 3}
 YAML
-expect 0 export ball.yaml --format matrices -o m
+formats 0 matrices ball.yaml -o m
 is stiffness_contact.mtx "2 2 1" "2 2 500"
 is damping.mtx "2 2 1" "2 2 3"
-expect 0 export ball.yaml --format matrices -o m --set depth='-1 mm'
+formats 0 matrices ball.yaml -o m --set depth='-1 mm'
 absent m/stiffness_contact.mtx
 
 # All or none.
 cp -r m before
 mkdir m/blocked
-tells 1 "missing -o DIR" export ball.yaml --format matrices
-expect 1 export ball.yaml --format matrices -o m --at nowhere
-expect 4 export missing.yaml --format matrices -o m
+formats 1 matrices ball.yaml
+err_has "-o"
+formats 1 matrices ball.yaml -o m --at nowhere
+formats 4 matrices missing.yaml -o m
 rmdir m/blocked
 same_directory before m
 mkdir -p n/mass.mtx
-tells 4 "mass.mtx" export ball.yaml --format matrices -o n
+formats 4 matrices ball.yaml -o n
+err_has "mass.mtx"
 files n mass.mtx
 
 command -v octave-cli >/dev/null 2>&1 || { [ $failures -eq 0 ]; exit; }
 cp "$here/mm.m" .
 crawler=$here/../../models/crawler/crawler.yaml
-expect 0 export "$crawler" --format matrices -o c
+formats 0 matrices "$crawler" -o c
 expect 0 modes "$crawler" --at drawn --json
 grep -o '"angular_frequency":[^,]*' out | tail -n 6 | cut -d: -f2 >own
 octave-cli -q --no-gui --eval '
