@@ -108,7 +108,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_SHARD,
   STRUT_OPTION_CHANNELS, /* of the library's run, and whether it records */
   STRUT_OPTION_RECORD,
-  STRUT_OPTION_COMPUTE,   /* of the library's sweep: what */
+  STRUT_OPTION_COMPUTE, /* of the library's sweep: what */
   STRUT_OPTION_LOWEST,
   STRUT_OPTION_LIMIT_EVALUATIONS,
   STRUT_OPTION_LIMIT_TIME,

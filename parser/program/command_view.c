@@ -168,7 +168,7 @@ static strut_status open_all(const strut_arguments *arguments, strut_opened *ope
   for (size_t i = 0; i < arguments->model_count && status == STRUT_OK; i++) {
     strut_arguments one = *arguments;
     one.model = arguments->models[i];
-    status = strut_open_run(&strut_command_view, &one, STRUT_OPEN_AS_RUN, ROOM, &opened[i]);
+    status = strut_open_run(&strut_command_view, &one, ROOM, &opened[i]);
     if (status == STRUT_OK && arguments->model_count > 1 && !opened[i].run)
       status = strut_print_usage_error(&strut_command_view,
                                        "two runs can be shown side by side, but '%s' is a model",

@@ -252,7 +252,7 @@ static strut_status open_directory(const strut_arguments *arguments, size_t room
 }
 
 strut_status strut_open_run(const strut_command *command, const strut_arguments *arguments,
-                            strut_open_purpose purpose, size_t room, strut_opened *opened) {
+                            size_t room, strut_opened *opened) {
   strut_error error = {0};
   strut_arena arena = {0};
   *opened = (strut_opened){.run = is_directory(arguments->model)};
@@ -265,7 +265,7 @@ strut_status strut_open_run(const strut_command *command, const strut_arguments 
   if (opened->run) {
     status = open_directory(arguments, room, &arena, opened, &error);
   } else {
-    status = strut_open_model(arguments, purpose, &opened->setup);
+    status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &opened->setup);
     if (status == STRUT_OK)
       status = strut_model_compile(&opened->setup.scene, &opened->model, &error);
   }

@@ -79,10 +79,10 @@ typedef struct strut_opened {
 /**
  * Opens what the command's argument names. A directory is a run: its scene.yaml is read, and as
  * many frames of its trajectory.h5 as fit into `room` doubles; --set is refused then. Anything else is a
- * model, opened for `purpose`. Messages go to stderr; on failure nothing is left to free.
+ * model, opened STRUT_OPEN_AS_RUN. Messages go to stderr; on failure nothing is left to free.
  */
 strut_status strut_open_run(const strut_command *command, const strut_arguments *arguments,
-                            strut_open_purpose purpose, size_t room, strut_opened *opened);
+                            size_t room, strut_opened *opened);
 /** A zeroed struct is allowed. */
 void strut_opened_free(strut_opened *opened);
 

@@ -3,11 +3,9 @@
 
 from __future__ import annotations
 
-import ast
-import math
-import operator
+import json
 import re
-from typing import Any, NoReturn, Sequence
+from typing import NoReturn, Sequence
 
 from .. import SceneError, loads
 from . import number
@@ -15,11 +13,7 @@ from ._draft import Source, Wrong, own_name
 
 _WORDS = {"PI": "pi", "ARCSIN": "asin", "ARCCOS": "acos", "ARCTAN": "atan"}
 _WORDS |= {word: word.lower() for word in ("SIN", "COS", "TAN", "SQRT", "EXP", "LOG", "ABS")}
-_FUNCTIONS: dict[str, Any] = {own: getattr(math, own, abs) for own in _WORDS.values() if own != "pi"}
-_OPERATORS: dict[type, Any] = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul}
-_OPERATORS |= {ast.Div: operator.truediv, ast.Pow: operator.pow, ast.USub: operator.neg, ast.UAdd: operator.pos}
 _NOTHING = 1e-3  #: of the second stiffness: a first one below is that of a slack cable
-_FAULTS = (SyntaxError, ValueError, TypeError, LookupError, ArithmeticError, RecursionError, MemoryError)
 
 
 class Skip(Exception):
@@ -38,24 +32,13 @@ def split(text: str, separator: str) -> list[tuple[str, int]]:
     return parts
 
 
-def _evaluate(text: str, names: dict[str, float]) -> float:
-    def walk(node: Any) -> Any:
-        if isinstance(node, ast.Constant) and type(node.value) in (int, float):
-            return float(node.value)
-        if isinstance(node, ast.Name):
-            return names[node.id]
-        if isinstance(node, ast.UnaryOp):
-            return _OPERATORS[type(node.op)](walk(node.operand))
-        if isinstance(node, ast.BinOp):
-            return _OPERATORS[type(node.op)](walk(node.left), walk(node.right))
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and len(node.args) == 1:
-            return _FUNCTIONS[node.func.id](walk(node.args[0]))
-        raise ValueError("expected numbers, names and functions of one number")
-
-    value = walk(ast.parse(text.replace("^", "**"), mode="eval").body)
-    if isinstance(value, complex) or not math.isfinite(value):
-        raise ValueError("its value is no number")
-    return float(value)
+def _evaluate(text: str, parameters: dict[str, float]) -> float:
+    """As a scene does; SceneError where it cannot."""
+    lines = [f"  {name}: {number(value)}" for name, value in parameters.items()]
+    lines = ["parameters:", *lines] if lines else []
+    load = "loads: {l: {node: a, force: [%s, 0]}}" % json.dumps(text)
+    scene = loads("\n".join(["strut: 1", *lines, "nodes: {a: {position: [0, 0], mass: 1}}", load]))
+    return float(scene.to_dict()["loads"]["l"]["force"][0])
 
 
 def _refused(names: Sequence[str], lines: Sequence[str]) -> set[str]:
@@ -84,7 +67,7 @@ class Line:
         self.fields: list[tuple[str, int]] = []
         self.taken = _taken(source.text)
         self.own: dict[str, str] = {}  #: of parameters, by their names in the file
-        self.values = {"pi": math.pi}  #: by own names
+        self.values: dict[str, float] = {}  #: by own names
         self.points: dict[int, tuple[float, float, bool]] = {}  #: x, y, whether both are held
 
     def text(self, i: int) -> str:
@@ -116,11 +99,10 @@ class Line:
         own = re.sub(r"(?<![\d.])[A-Za-z_]\w*", word, text.replace("**", "^"), flags=re.ASCII)
         own = re.sub(r"\.(?!\d)", ".0", own)  # "1."
         try:
-            if not 0 < len(text) <= 400:
-                raise ValueError("it is too long" if text else "it is empty")
             value = _evaluate(own, self.values)
-        except _FAULTS as error:
-            self.error(i, f"'{text:.60}' is no expression of the parameters: {error}")
+        except SceneError as error:
+            why = error.messages[0].text if error.messages else error.message
+            self.error(i, f"'{text:.60}' is no expression of the parameters: {why}")
         return number(value) if fixed else own, value
 
     def stiffness(self) -> str | None:
