@@ -25,7 +25,7 @@ breaches() {
       # Folders in the order in which they may include each other; those of a line stand side by side.
       count = split("engine/base|engine/scene/laws|engine/scene|engine/model|engine/forces/strains|" \
         "engine/forces|engine/integrate|" \
-        "engine/integrate/events engine/integrate/limit|engine/integrate/batch|engine/run/measure|" \
+        "engine/integrate/events engine/integrate/limit|engine/run/measure|" \
         "engine/run/orbit|engine/run|engine/run/accuracy|engine/run/follow|engine/statics|engine/statics/search|" \
         "engine/statics/equilibria|" \
         "engine/statics/modes engine/statics/rigidity engine/statics/form engine/statics/path|" \

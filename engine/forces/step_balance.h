@@ -2,8 +2,7 @@
 /**
  * Hot: the energy balance of a Runge-Kutta step. The powers of its evaluations are added up lane by lane,
  * those with the same weight together; only at the end of the step are lanes added up, once for all
- * evaluations. batch_balance.h and domain_steps.c keep this order. Verlet and
- * Euler integrate the powers of single evaluations.
+ * evaluations. Verlet and Euler integrate the powers of single evaluations.
  */
 #ifndef STRUT_ENGINE_FORCES_STEP_BALANCE_H
 #define STRUT_ENGINE_FORCES_STEP_BALANCE_H

@@ -45,7 +45,6 @@ typedef struct strut_integrator {
   int evaluations; /* of the forces per step, where no event interrupts it */
   strut_region region;
   strut_integrator_role role; /* each at most once in the table */
-  bool batch;                 /* several runs can be stepped at once, see batch/batch.h */
   bool implicit_damper;       /* the ground's dampers do not limit the step */
   bool events;                /* locates events: modes of contacts are frozen within a step */
   bool rigid;                 /* keeps the lengths of rigid bars */

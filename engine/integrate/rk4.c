@@ -108,7 +108,6 @@ const strut_integrator strut_integrator_rk4 = {
     .evaluations = 4,
     .region = STRUT_REGION_RK4,
     .role = STRUT_ROLE_PLAIN,
-    .batch = true,
     .rigid = true,
     .create = rk4_create,
     .restart = rk4_restart,

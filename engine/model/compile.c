@@ -8,9 +8,7 @@
 #include "engine/model/mass.h"
 #include "engine/model/model.h"
 
-_Static_assert(STRUT_FRICTION_LAW_COUNT <= 32 && STRUT_DAMPING_COUNT <= 32 &&
-                   STRUT_LAW_COUNT <= 32 && STRUT_STRAIN_COUNT <= 32,
-               "a bit for each in strut_law_set");
+_Static_assert(STRUT_STRAIN_COUNT <= 32, "a bit for each in strut_model");
 
 /* Zeroed doubles in the model's arena; *failed remembers a refusal so that passes stay short. */
 static double *doubles(strut_model *model, size_t count, bool *failed) {
@@ -230,10 +228,9 @@ static const strut_ground *ground_of(const strut_scene *scene, const strut_conta
   return scene->ground_count ? &scene->grounds[contact->ground] : &scene->ground;
 }
 
-/* A law of damping is a choice of numbers, which all kernels of the ground distinguish by `dissipation`. */
+/* A law of damping is a choice of numbers, which the kernel of the ground distinguishes by `dissipation`. */
 static void set_damping(strut_model *model, strut_contact_entry *entry, strut_ground_damping law,
                         double dissipation) {
-  model->laws.damping |= UINT32_C(1) << law;
   switch (law) {
     case STRUT_DAMPING_APPROACH: return;
     case STRUT_DAMPING_HUNT_CROSSLEY:
@@ -281,7 +278,6 @@ static void compile_contacts(strut_model *model, bool *failed) {
                                      .stiffness = contact->stiffness,
                                      .damping = contact->damping};
     set_damping(model, &entry[i], ground_of(scene, contact)->damping_law, contact->dissipation);
-    model->laws.friction |= UINT32_C(1) << contact->friction.law;
     if (contact->friction.law == STRUT_FRICTION_NONE) continue;
     entry[i].friction = contact->friction;
     grips = grips || contact->friction.driven;

@@ -517,12 +517,9 @@ static bool sort_elements(compilation *c, strut_element_table *t) {
     block[t->block_count++] = (strut_element_block){
         e->strain, e->law, begin, t->count, both, e->remembers, collisions > 0};
     all += collisions;
-    c->model->laws.law |= UINT32_C(1) << e->law;
-    c->model->laws.strain |= UINT32_C(1) << e->strain;
+    c->model->strains |= UINT32_C(1) << e->strain;
   }
   for (int32_t i = 0; i < t->count; i++) {
-    if (sorted[i].law == STRUT_LAW_AXIAL)
-      c->model->laws.law |= UINT32_C(1) << sorted[i].numbers.material;
     int32_t rows = 2 * sorted[i].nodes;
     sorted[i].place = t->entries;
     t->entries += rows * (rows + 1) / 2;

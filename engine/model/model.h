@@ -18,7 +18,6 @@
 #include "engine/base/status.h"
 #include "engine/model/elements.h"
 #include "engine/model/feedback.h"
-#include "engine/model/law_set.h"
 #include "engine/model/pull_rows.h"
 #include "engine/model/rubbing.h"
 #include "engine/model/sliding_masses.h"
@@ -89,8 +88,7 @@ enum { STRUT_CONTACT_LANES = 8 };
 /** A contact, a node with a surface: a record, because most of them are only asked whether they do. */
 typedef struct strut_contact_entry {
   int32_t node;
-  int32_t
-      lane; /* of the energy balance: the scene's node, modulo STRUT_CONTACT_LANES, however nodes are stored */
+  int32_t lane;              /* of the energy balance: node modulo STRUT_CONTACT_LANES */
   double stiffness, damping; /* c_g [N/m], k_g [N s/m] */
   double dissipation;        /* chi of the Hunt-Crossley law [s/m]; 0 with the approach-only one */
   strut_friction friction;   /* its numbers are 0 without friction */
@@ -129,8 +127,8 @@ typedef struct strut_load_table {
 
 typedef struct strut_model {
   const strut_scene *scene;
-  unsigned terms;     /* strut_term bits */
-  strut_law_set laws; /* of its contacts and elements */
+  unsigned terms;   /* strut_term bits */
+  uint32_t strains; /* of its elements: a bit for each strut_strain_kind */
   int32_t node_count, length;
   double size;                  /* largest extent as drawn, or 1 [m]: the scale for "beyond" */
   const double *start;          /* (length) positions at t = 0 */
@@ -159,7 +157,7 @@ typedef struct strut_model {
 
 /** Does nothing but supports and the ground tell one direction in space from another? */
 static inline bool strut_model_may_turn(const strut_model *model) {
-  return !(model->laws.strain & 1u << STRUT_STRAIN_ALONG);
+  return !(model->strains & 1u << STRUT_STRAIN_ALONG);
 }
 
 /**

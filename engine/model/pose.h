@@ -3,7 +3,7 @@
  * Kinematics of members and contacts in a configuration q, (length) coordinates.
  *
  * This is the one place that says how long a member is, when it carries a force and how far a node is
- * above the ground. The step's vector kernels (members_kernel.h, batch_kernel.h, ground_kernel.h) repeat
+ * above the ground. The step's vector kernels (members_kernel.h, ground_kernel.h) repeat
  * it for several members at once; tests/unit/pose_test.c compares them.
  */
 #ifndef STRUT_ENGINE_MODEL_POSE_H

@@ -20,7 +20,7 @@
  * groups.
  */
 enum { STRUT_LANES = 4, STRUT_BLOCK = 64 };
-/** The energy balance adds up the powers of so many blocks, and then these sums: threads share the work. */
+/** The energy balance adds up the powers of so many blocks, and then these sums. */
 enum { STRUT_BALANCE_BLOCKS = 16 };
 
 enum {

@@ -430,13 +430,11 @@ enum { HALVINGS = 6, MOST_PERTURBATIONS = 8 };
 /* Perturbation of the node that moves most, in model sizes. */
 static const double PUSH = 1e-4;
 
-static strut_status choose_settle_step(strut_relaxation *r, strut_step_limits *limits,
-                                       strut_error *error) {
+static strut_status choose_settle_step(strut_relaxation *r, strut_error *error) {
   const strut_settle *settle = &r->experiment->settle;
   double given = settle->step == 0.0 ? r->experiment->step : settle->step, limit = 0.0;
   if (!r->model->mass) return strut_fail(error, STRUT_SINGULAR, "a free node has no mass");
-  strut_status status = limits ? strut_step_limit_cached(r->model, r->method, limits, &limit, error)
-                               : strut_step_limit_for_method(r->model, r->method, &limit, error);
+  strut_status status = strut_step_limit_for_method(r->model, r->method, &limit, error);
   if (status) return status;
   if (given > 0.0 && given <= limit)
     r->step = given;
@@ -493,14 +491,14 @@ static strut_status settle_and_perturb(strut_relaxation *r, double *q, strut_set
 }
 
 strut_status strut_settle_experiment(const strut_model *model, const strut_experiment *experiment,
-                                     strut_step_limits *limits, const strut_flag *interrupt,
-                                     double *q, strut_settle_summary *how, strut_error *error) {
+                                     const strut_flag *interrupt, double *q,
+                                     strut_settle_summary *how, strut_error *error) {
   strut_relaxation r;
   strut_status status = strut_relaxation_create(model, experiment, &r, error);
   *how = (strut_settle_summary){0};
   r.interrupt = interrupt;
   memcpy(q, model->start, (size_t)model->length * sizeof *q);
-  if (!status) status = choose_settle_step(&r, limits, error);
+  if (!status) status = choose_settle_step(&r, error);
   if (!status) status = settle_and_perturb(&r, q, how, error);
   how->time = r.time;
   strut_relaxation_free(&r);
@@ -532,7 +530,7 @@ strut_status strut_settle_model(const strut_model *model, const strut_experiment
   double *q = strut_arena_allocate(&start->arena, (size_t)model->length, sizeof *q);
   if (!q) return strut_no_memory(error, "");
   strut_status status =
-      strut_settle_experiment(model, experiment, NULL, interrupt, q, &start->how, error);
+      strut_settle_experiment(model, experiment, interrupt, q, &start->how, error);
   if (status) return status;
   if (move_start(model->scene, q, start)) return strut_no_memory(error, "");
   status = strut_model_compile(start->scene, &start->own, error);

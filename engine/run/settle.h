@@ -55,12 +55,10 @@ strut_status strut_settle_state(const strut_model *model, const strut_experiment
 /**
  * Settles the start of an experiment: q (length) are the positions [m], `how` the details. The step follows
  * from the stability limit where the scene gives no stable one, and is halved where it diverges. With
- * settle.perturb an unstable equilibrium is left. limits: cache of step limits, may be NULL. Fails as
- * strut_relaxation_run.
+ * settle.perturb an unstable equilibrium is left. Fails as strut_relaxation_run.
  */
 STRUT_API strut_status strut_settle_experiment(const strut_model *model,
                                                const strut_experiment *experiment,
-                                               strut_step_limits *limits,
                                                const strut_flag *interrupt, double *q,
                                                strut_settle_summary *how, strut_error *error);
 

@@ -12,7 +12,6 @@
 #include "engine/forces/forces.h"
 #include "engine/forces/history.h"
 #include "engine/forces/support_motion.h"
-#include "engine/integrate/large_steps.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/run/settle.h"
 #include "engine/run/simulate_parts.h"
@@ -132,9 +131,8 @@ static strut_status place_state(strut_run *r) {
   }
   if (!r->experiment->settle.wanted) return STRUT_OK;
   memset(r->state->v, 0, 2 * (size_t)r->model->node_count * sizeof(double));
-  strut_status status =
-      strut_settle_experiment(r->model, r->experiment, r->limits, r->options->interrupt,
-                              r->state->q, &r->summary->settle, r->error);
+  strut_status status = strut_settle_experiment(r->model, r->experiment, r->options->interrupt,
+                                                r->state->q, &r->summary->settle, r->error);
   r->summary->settle_time = r->summary->settle.time;
   return status;
 }
@@ -176,8 +174,7 @@ static strut_status prepare_run(strut_run *r) {
   r->summary->feedback = strut_scene_has_feedback(scene);
   double *limit = &r->summary->step_limit;
   bool bound = false;
-  status = r->limits ? strut_step_limit_cached(r->model, r->method, r->limits, limit, r->error)
-                     : strut_step_limit_with_bound(r->model, r->method, limit, &bound, r->error);
+  status = strut_step_limit_with_bound(r->model, r->method, limit, &bound, r->error);
   if (status) return status;
   if (!r->options->force &&
       (status = strut_step_limit_check_effort(r->model, r->method, r->dt, r->error)))
@@ -226,10 +223,7 @@ static strut_status prepare_run(strut_run *r) {
 }
 
 static void advance(strut_run *r, double dt, int64_t count) {
-  if (r->large)
-    strut_large_steps_advance(r->large, r->state, dt, count);
-  else
-    strut_integrator_advance(r->method, r->model, r->state, r->workspace, dt, count);
+  strut_integrator_advance(r->method, r->model, r->state, r->workspace, dt, count);
 }
 
 /* ---- steady motion ---- */
@@ -311,7 +305,8 @@ static void step_to(strut_run *r, int64_t stop) {
 
 double strut_run_time(const strut_run *r) { return strut_time_grid_real(&r->grid, r->state->step); }
 
-bool strut_run_is_short_step_due(const strut_run *r) {
+/* Is the next step the last one and shorter than the others? */
+static bool is_short_step_due(const strut_run *r) {
   return r->state->step == r->grid.last - 1 && strut_time_grid_rest(&r->grid) > 0.0;
 }
 
@@ -343,7 +338,7 @@ static void step_short(strut_run *r) {
 void strut_run_step(strut_run *r, int64_t stop) {
   assert(r->ready && stop > r->state->step);
   unsigned before = strut_subnormals_off();
-  if (strut_run_is_short_step_due(r))
+  if (is_short_step_due(r))
     step_short(r);
   else
     step_to(r, stop);
@@ -524,14 +519,13 @@ static void fill_summary(strut_run *r, strut_status status) {
 }
 
 strut_status strut_run_begin(const strut_model *model, const strut_experiment *experiment,
-                             const strut_run_options *options, strut_step_limits *limits,
-                             strut_summary *summary, strut_error *error, strut_run *r) {
+                             const strut_run_options *options, strut_summary *summary,
+                             strut_error *error, strut_run *r) {
   int64_t chunk = CHUNK_WORK / (model->members.count + model->node_count + 1);
   *summary = (strut_summary){.velocity = (double)NAN, .velocity_spread = (double)NAN};
   *r = (strut_run){.model = model,
                    .experiment = experiment,
                    .options = options,
-                   .limits = limits,
                    .summary = summary,
                    .error = error};
   if (model->scene->cell_count || model->scene->collision_count)
@@ -562,23 +556,7 @@ strut_status strut_run_end(strut_run *r, strut_status status) {
   strut_recording_free(&r->recording);
   strut_measure_free(&r->measure);
   strut_steady_detector_free(&r->steady.detector);
-  strut_large_steps_free(r->large);
   strut_state_free(r->state);
-  return status;
-}
-
-/* From here on a large model is stepped in another order and by several threads, where that pays. */
-static strut_status use_large_steps(strut_run *r) {
-  const strut_integrator_settings settings = strut_integrator_settings_of(r->experiment);
-  int64_t at_once = strut_large_steps_at_once(r->model, r->method);
-  if (r->chunk < at_once) r->chunk = at_once;
-  if (r->options->scene_order) return STRUT_OK;
-  strut_status status = strut_large_steps_create(r->model, r->method, &settings,
-                                                 strut_large_threads(), &r->large, r->error);
-  if (!r->large) return status;
-  int64_t evaluations = r->state->evaluations; /* the method's own start has been counted */
-  strut_large_steps_restart(r->large, r->state, r->dt);
-  r->state->evaluations = evaluations;
   return status;
 }
 
@@ -589,8 +567,7 @@ strut_status strut_simulate(const strut_model *model, const strut_experiment *ex
   strut_run r;
   int64_t stop = INT64_MAX;
   strut_status status =
-      strut_run_begin(model, experiment, options, NULL, summary, error ? error : &own, &r);
-  if (!status) status = use_large_steps(&r);
+      strut_run_begin(model, experiment, options, summary, error ? error : &own, &r);
   while (!status) {
     status = strut_run_sample(&r, &stop);
     if (status || stop == r.state->step) break;

@@ -41,7 +41,6 @@ typedef struct strut_run_options {
       most_evaluations; /* force evaluations after which the run ends with STRUT_WORK_LIMIT; 0: no limit */
   bool chosen;          /* method and step were chosen for a wanted accuracy */
   bool without_balance; /* leaves works and energy residual of the summary 0; cheaper */
-  bool scene_order;     /* steps the model as it is stored, however scattered its nodes are */
 } strut_run_options;
 
 /**
@@ -57,48 +56,6 @@ STRUT_API strut_status strut_simulate(const strut_model *model, const strut_expe
 
 /** Monotonic clock [s], for durations only, never for results. */
 STRUT_API double strut_run_clock(void);
-
-/*
- * Many runs on one core: similar ones side by side in the slots of a batch.
- *
- * A last step that is shorter than the others is made outside the batch.
- *
- * Every summary, row of a recording and failure is that of strut_simulate, bit for bit (except for
- * the sign of a NAN). Runs that do not fit a slot are made alone in between: methods other than rk4
- * and verlet-events, a topology other than that of the batch, rigid bars, ground laws other than
- * the default, mass groups too large for a dense inverse; with events also cables and slopes.
- */
-
-/** One run of many; owned by the caller until `result` returns it. */
-typedef struct strut_batch_point {
-  const strut_model *model;
-  const strut_experiment *experiment;
-  const strut_run_options *options;
-  void *context; /* for the caller */
-} strut_batch_point;
-
-typedef struct strut_batch_source {
-  void *context;
-  /** Fills the next point; false: none at present. Called again after each result. */
-  bool (*next)(void *context, strut_batch_point *point);
-  /**
-   * Receives the end of a point, in any order, as strut_simulate returned it. The summary passes to
-   * the callee, and the model, experiment and options return to it.
-   */
-  void (*result)(void *context, const strut_batch_point *point, strut_status status,
-                 strut_summary *summary, const strut_error *error);
-  /**
-   * A model of the topology that all slots share: points like it run in the batch. Must live until the end.
-   */
-  const strut_model *example;
-  const char *integrator; /* method of the points that run in the batch */
-  bool without_balance;   /* as in the options of those points */
-  int32_t width;          /* 1, 2, 4 or 8 slots; 0: chosen for the processor */
-  bool halves;            /* 8 slots in registers of 4 on every processor; see batch.h */
-} strut_batch_source;
-
-/** Runs all points; calls back from this thread only. */
-STRUT_API void strut_simulate_batch(const strut_batch_source *source);
 
 /** Does a run that ended so have a summary? */
 static inline bool strut_run_has_results(strut_status status) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** Parts of a run: simulate.c steps one run, simulate_batch.c several at once. */
+/** Parts of a run, which simulate.c steps to its end and stepping.c as it is asked. */
 #ifndef STRUT_ENGINE_RUN_SIMULATE_PARTS_H
 #define STRUT_ENGINE_RUN_SIMULATE_PARTS_H
 
@@ -17,12 +17,10 @@ typedef struct strut_run {
   const strut_experiment *experiment;
   const strut_run_options *options;
   const strut_integrator *method;
-  strut_step_limits *limits;
   strut_summary *summary;
   strut_error *error;
   strut_state *state;
   void *workspace;
-  struct strut_large_steps *large; /* what steps instead of the method; NULL: the method */
   double dt;
   strut_time_grid grid;
   int64_t first, steps; /* first step number; last step number */
@@ -70,12 +68,11 @@ typedef struct strut_run {
 
 /**
  * Prepares everything before the first step. `run` and all arguments must stay in place until
- * strut_run_end, which must be called whatever is returned. limits: cache of step limits; may be
- * NULL.
+ * strut_run_end, which must be called whatever is returned.
  */
 strut_status strut_run_begin(const strut_model *model, const strut_experiment *experiment,
-                             const strut_run_options *options, strut_step_limits *limits,
-                             strut_summary *summary, strut_error *error, strut_run *run);
+                             const strut_run_options *options, strut_summary *summary,
+                             strut_error *error, strut_run *run);
 /**
  * Between steps: checks, measures and records the state, which may change. *stop is the step at
  * which to sample next, or the present one where the run is over.
@@ -83,8 +80,6 @@ strut_status strut_run_begin(const strut_model *model, const strut_experiment *e
 strut_status strut_run_sample(strut_run *run, int64_t *stop);
 /** Steps up to `stop`. */
 void strut_run_step(strut_run *run, int64_t stop);
-/** Is the next step the last one and shorter than the others? Only strut_run_step handles it. */
-bool strut_run_is_short_step_due(const strut_run *run);
 /** Time reached [s]. */
 double strut_run_time(const strut_run *run);
 /** Fills the summary and frees the run; `status` is that of begin or sample. */

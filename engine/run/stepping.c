@@ -310,8 +310,7 @@ strut_status strut_stepping_create(strut_setup *setup, bool force, const strut_f
   if (status == STRUT_OK) status = inputs_prepare(setup, error);
   if (status == STRUT_OK) status = strut_model_compile(&setup->scene, &s->model, error);
   if (status == STRUT_OK) {
-    status =
-        strut_run_begin(s->model, &s->experiment, &s->options, NULL, &s->summary, error, &s->run);
+    status = strut_run_begin(s->model, &s->experiment, &s->options, &s->summary, error, &s->run);
     s->begun = true;
   }
   if (status == STRUT_OK)

@@ -99,7 +99,6 @@ typedef enum strut_option_id {
   STRUT_OPTION_POINTS,
   STRUT_OPTION_BUDGET,
   STRUT_OPTION_THREADS,
-  STRUT_OPTION_BATCH,
   STRUT_OPTION_EMIT, /* a script for a cluster, and what it asks for: see sweep_emit.h */
   STRUT_OPTION_SHARDS,
   STRUT_OPTION_CPUS,

@@ -21,8 +21,6 @@ static const strut_option options[] = {
      "results directory (default: named after STUDY); an unfinished sweep is resumed"},
     STRUT_RUN_SETTING_OPTIONS,
     STRUT_THREADS_OPTION,
-    {STRUT_OPTION_BATCH, "batch", "N",
-     "points per thread in lockstep: 1, 2, 4 or 8 (default automatic)"},
     {STRUT_OPTION_RETRY, "retry", NULL, "recompute points that failed"},
     {STRUT_OPTION_SHARD, "shard", "K/N",
      "only points K, K+N, K+2N, ... with K from 0 to N-1, of a search as one of N workers; or "
@@ -41,7 +39,6 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-enum { MOST_RUNS = 8 };
 static const char table_name[] = "table.csv";
 
 /* DIR/name in the study's arena, or NULL. */
@@ -105,7 +102,6 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
 typedef struct sweep_run {
   const strut_arguments *arguments;
   strut_sweep_study *study;
-  int64_t batch;     /* runs per thread at a time; 0: automatic */
   strut_shard shard; /* count 0: none */
   strut_slots *slots;
 } sweep_run;
@@ -118,8 +114,7 @@ static strut_status run_points(const sweep_run *r, const strut_refinement *refin
   const bool partial = !r->shard.count;
   strut_sweep_display shown = strut_sweep_display_begin(&study->plan, arguments->quiet, slots,
                                                         partial ? arguments->output : NULL);
-  strut_sweep_options how = {.batch = (int)r->batch,
-                             .interrupt = strut_interrupt_watch(),
+  strut_sweep_options how = {.interrupt = strut_interrupt_watch(),
                              .directory = arguments->output,
                              .progress = strut_sweep_display_show,
                              .progress_context = &shown};
@@ -213,8 +208,7 @@ static strut_status complete_sweep(const strut_arguments *arguments, strut_sweep
                 : strut_sweep_judge(state->points, state->failed, strut_slots_inaccurate(slots));
 }
 
-static strut_status compute_points(const strut_arguments *arguments, strut_sweep_study *study,
-                                   int64_t batch) {
+static strut_status compute_points(const strut_arguments *arguments, strut_sweep_study *study) {
   strut_slots *slots = NULL;
   strut_sweep_state state = {0};
   strut_error error = {0};
@@ -235,7 +229,7 @@ static strut_status compute_points(const strut_arguments *arguments, strut_sweep
     strut_file_remove(arguments->output, table_name); /* outdated */
   if (!status && study->plan.study->refine.depth)
     status = strut_refinement_create(&study->plan, &refinement, &error);
-  const sweep_run run = {arguments, study, batch, shard, slots};
+  const sweep_run run = {arguments, study, shard, slots};
   if (!status && refinement)
     status = run_refined(&run, refinement, &others, &state, &error);
   else if (!status)
@@ -278,20 +272,18 @@ static strut_status check_search(const strut_arguments *arguments, strut_sweep_s
   return several ? strut_sweep_search_check_workers(study) : STRUT_OK;
 }
 
-static strut_status compute_search(const strut_arguments *arguments, strut_sweep_study *study,
-                                   int batch) {
+static strut_status compute_search(const strut_arguments *arguments, strut_sweep_study *study) {
   strut_shard worker;
   const char *path;
   strut_status status = find_shard(arguments, study, &worker, &path);
-  return status ? status : strut_sweep_search(arguments, study, worker, batch);
+  return status ? status : strut_sweep_search(arguments, study, worker);
 }
 
 /* The branches of all points go into one folder. */
 static strut_status check_follow(const strut_arguments *arguments) {
-  const char *option = strut_option_text(arguments, STRUT_OPTION_SHARD)   ? "--shard"
-                       : strut_option_text(arguments, STRUT_OPTION_EMIT)  ? "--emit"
-                       : strut_option_text(arguments, STRUT_OPTION_BATCH) ? "--batch"
-                                                                          : NULL;
+  const char *option = strut_option_text(arguments, STRUT_OPTION_SHARD)  ? "--shard"
+                       : strut_option_text(arguments, STRUT_OPTION_EMIT) ? "--emit"
+                                                                         : NULL;
   if (!option) return STRUT_OK;
   fprintf(stderr,
           "strut sweep: %s cannot be used with a study that follows motions: its points run on the "
@@ -338,15 +330,12 @@ static strut_status run_sweep(const strut_arguments *given) {
   strut_arguments own = *given, *arguments = &own;
   char results[PATH_MAX];
   strut_sweep_study study = {0};
-  int64_t batch = 0;
-  strut_status status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_BATCH, 1,
-                                             MOST_RUNS, &batch);
-  if (!status && strut_option_text(arguments, STRUT_OPTION_PLOT) &&
+  if (strut_option_text(arguments, STRUT_OPTION_PLOT) &&
       (arguments->count_points || arguments->status ||
        strut_option_text(arguments, STRUT_OPTION_EMIT) ||
        strut_option_text(arguments, STRUT_OPTION_SHARD)))
-    status = strut_print_usage_error(&strut_command_sweep, "--plot needs the table of all points");
-  if (!status) status = strut_try_file(strut_option_text(arguments, STRUT_OPTION_PLOT));
+    return strut_print_usage_error(&strut_command_sweep, "--plot needs the table of all points");
+  strut_status status = strut_try_file(strut_option_text(arguments, STRUT_OPTION_PLOT));
   if (status) return status;
   if (!arguments->output && name_results(arguments->model, results)) own.output = results;
   if (!arguments->output && !arguments->count_points)
@@ -381,11 +370,11 @@ static strut_status run_sweep(const strut_arguments *given) {
   else if (!status && arguments->status)
     status = show_status(arguments, &study);
   else if (!status && study.plan.study->search)
-    status = compute_search(arguments, &study, (int)batch);
+    status = compute_search(arguments, &study);
   else if (!status && study.plan.study->follow)
     status = strut_sweep_follow(arguments, &study);
   else if (!status)
-    status = compute_points(arguments, &study, batch);
+    status = compute_points(arguments, &study);
   if (strut_option_text(arguments, STRUT_OPTION_PLOT) &&
       (status == STRUT_OK || status == STRUT_DIVERGED || status == STRUT_INACCURATE)) {
     strut_status plotted = plot_table(arguments, &study);

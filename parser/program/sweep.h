@@ -122,7 +122,7 @@ strut_status strut_sweep_search_check_workers(strut_sweep_study *study);
  * share the points at the same time, each of which writes all files at the end, with the same bytes.
  */
 strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
-                                strut_shard worker, int batch);
+                                strut_shard worker);
 /** Prints how far the searches in a directory are. */
 strut_status strut_sweep_search_status(strut_slots *slots, const char *directory, bool json);
 /** Adds the columns of a study that follows motions, and checks that its first point has some. */

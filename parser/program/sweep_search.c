@@ -230,14 +230,14 @@ strut_status strut_sweep_search_check_workers(strut_sweep_study *study) {
 }
 
 strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
-                                strut_shard worker, int batch) {
+                                strut_shard worker) {
   strut_slots *slots = NULL;
   strut_sweep_state state = {0};
   strut_search_result result = {0};
   strut_error error = {0};
   const char *path = strut_shard_path(arguments->output, (strut_shard){0}, &study->plan.arena);
   if (!path) return strut_print_out_of_memory();
-  strut_sweep_options how = {.batch = batch, .worker = worker.index, .workers = worker.count};
+  strut_sweep_options how = {.worker = worker.index, .workers = worker.count};
   strut_status status = strut_sweep_texts_check(arguments, study, &error);
   if (!status) status = strut_sweep_figures_check_files(&study->plan, arguments->output, &error);
   if (!status) status = strut_directory_create(arguments->output, &error);

@@ -4,8 +4,7 @@
  *
  *   strut_bench [--repeats N] [--members N]  the crawler in strut and elsewhere, then chains of
  *                                            X-frames of 10 to N (default 1000000) members
- *   strut_bench batch                        the crawler alone and in batches of 4 and 8
- *   strut_bench large [MEMBERS]              grids in order and shuffled, by one thread and several
+ *   strut_bench large [MEMBERS]              chains and grids in order and shuffled
  *   strut_bench methods [METHOD [FINER]]     what a force evaluation costs by each method, alone
  *   strut_bench rivals [--limit S] [-o DIR] [SCENE...]   error against cost, strut and other solvers; a table
  *                                            for each scene, CSV and figures into DIR, S of CPU time per cell
@@ -27,7 +26,6 @@
 #include "parser/read/read_scene.h"
 #include "tests/bench/precision.h"
 #endif
-#include "tests/bench/batch_runs.h"
 #include "tests/bench/large.h"
 #include "tests/bench/methods.h"
 #include "tests/bench/rivals.h"
@@ -213,7 +211,6 @@ static int load(const char *path) {
 static int usage(void) {
   fprintf(stderr,
           "usage: strut_bench [--repeats N] [--members N]\n"
-          "       strut_bench batch\n"
           "       strut_bench large [MEMBERS]\n"
           "       strut_bench methods [METHOD [FINER]]\n"
           "       strut_bench rivals [--limit S] [-o DIR] [SCENE...]\n"
@@ -246,10 +243,6 @@ int main(int argc, char **argv) {
 #ifdef BENCH_PARSER
   if (argc >= 2 && strcmp(argv[1], "rivals") == 0) return compare_rivals(argc, argv);
 #endif
-  if (argc == 2 && strcmp(argv[1], "batch") == 0) {
-    bench_batch(15);
-    return 0;
-  }
   if (argc >= 2 && strcmp(argv[1], "large") == 0) {
     bench_large(argc > 2 ? atol(argv[2]) : 0);
     return 0;
@@ -277,7 +270,6 @@ int main(int argc, char **argv) {
   }
   if (repeats < 1 || repeats > MOST_REPEATS) return usage();
   compare_crawlers(repeats);
-  bench_batch(repeats);
   bench_methods(repeats, NULL, 1.0);
   compare_chains(members, repeats);
   return 0;

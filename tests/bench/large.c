@@ -1,19 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Chains and grids of X-frames, in order and shuffled, by the method's own loop and by large_steps.h:
- * nanoseconds of processor time of the busiest thread per member and step, ratios with their spread, and what
- * the memory allows.
+ * Chains and grids of X-frames, in order and shuffled: nanoseconds of processor time per member and step, the
+ * ratio of both with its spread, and what the memory allows.
  */
 #include "tests/bench/large.h"
 
 #include <math.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "engine/integrate/large_steps.h"
+#include "engine/integrate/integrator.h"
 #include "tests/bench/scenes.h"
 
 static uint64_t noise = 1;
@@ -81,46 +79,39 @@ static bool make_grid(strut_setup *setup, int32_t side) {
   return true;
 }
 
-static double seconds(clockid_t clock) {
+static double seconds(void) {
   struct timespec t;
-  clock_gettime(clock, &t);
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static bool make_scene(strut_setup *setup, bool chain, long members, strut_mass_model mass) {
+  if (chain) return bench_chain_scene(setup, (size_t)members, mass) == STRUT_OK;
+  if (!make_grid(setup, (int32_t)lround(sqrt((double)members / 4.0) + 0.5))) return false;
+  setup->scene.mass_model = mass;
+  for (size_t j = 0; j < setup->scene.member_count && mass == STRUT_MASS_CONSISTENT; j++)
+    if (setup->scene.members[j].kind == STRUT_SPRING) setup->scene.members[j].mass = 0.05;
+  return true;
 }
 
 /* ---- memory ---- */
 
 enum { TRIAD = 4000000, TRIAD_TRIES = 10 };
 
-typedef struct triad {
-  double *a, *b, *c, rate; /* bytes per second */
-} triad;
-
-static void *run_triad(void *context) {
-  triad *t = context;
-  for (int k = 0; k < TRIAD_TRIES; k++) {
-    double begin = seconds(CLOCK_THREAD_CPUTIME_ID);
-    for (int i = 0; i < TRIAD; i++) t->a[i] = t->b[i] + 3.0 * t->c[i];
-    t->rate =
-        fmax(t->rate, 3.0 * sizeof(double) * TRIAD / (seconds(CLOCK_THREAD_CPUTIME_ID) - begin));
+/* Bytes per second of a = b + 3 c. */
+static double triad_rate(void) {
+  double *a = calloc(TRIAD, sizeof *a), *b = calloc(TRIAD, sizeof *b),
+         *c = calloc(TRIAD, sizeof *c);
+  double rate = 0.0;
+  bool good = a && b && c;
+  for (int i = 0; i < TRIAD && good; i++) a[i] = b[i] = c[i] = i;
+  for (int k = 0; k < TRIAD_TRIES && good; k++) {
+    double begin = seconds();
+    for (int i = 0; i < TRIAD; i++) a[i] = b[i] + 3.0 * c[i];
+    rate = fmax(rate, 3.0 * sizeof(double) * TRIAD / (seconds() - begin));
   }
-  return NULL;
-}
-
-/* a = b + 3 c on this thread while another does so as well, if `both`. */
-static double triad_rate(bool both) {
-  triad t[2] = {{NULL}};
-  pthread_t other;
-  bool good = true, beside = false;
-  for (int k = 0; k < 2; k++) {
-    double **all[] = {&t[k].a, &t[k].b, &t[k].c};
-    for (int i = 0; i < 3; i++) good = (*all[i] = calloc(TRIAD, sizeof(double))) && good;
-    for (int i = 0; i < TRIAD && good; i++) t[k].a[i] = t[k].b[i] = t[k].c[i] = i;
-  }
-  if (good && both) beside = pthread_create(&other, NULL, run_triad, &t[1]) == 0;
-  if (good) run_triad(&t[0]);
-  if (beside) pthread_join(other, NULL);
-  for (int k = 0; k < 2; k++) free(t[k].a), free(t[k].b), free(t[k].c);
-  return t[0].rate + (beside ? t[1].rate : 0.0);
+  free(a), free(b), free(c);
+  return rate;
 }
 
 /* What an evaluation of the forces and the stage behind it read and write once: per member ends, stiffness, rest
@@ -132,13 +123,7 @@ static double bytes_per_member(const strut_model *model) {
 
 /* ---- steps ---- */
 
-enum { TRIES = 15, WAYS = 3 };
-static const int threads_of[WAYS] = {0, 1, 2}; /* 0: the method's own loop */
-
-typedef struct timing {
-  double busiest[WAYS][TRIES]; /* ns per member and step */
-  bool large[WAYS], same;
-} timing;
+enum { TRIES = 15, ORDERS = 2 };
 
 static int ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
@@ -153,114 +138,67 @@ static void spread(const double *x, double *low, double *middle, double *high) {
   *low = sorted[TRIES / 4], *middle = sorted[TRIES / 2], *high = sorted[TRIES - 1 - TRIES / 4];
 }
 
-static bool time_steps(const strut_model *model, const char *name, timing *t) {
-  const strut_integrator_settings settings = {.step = 1e-4};
-  const strut_integrator *method = strut_integrator_find(name);
-  strut_state *state[WAYS] = {NULL};
-  strut_large_steps *large[WAYS] = {NULL};
-  void *workspace = NULL;
-  double members = (double)model->members.count;
-  int64_t steps = (int64_t)fmax(method->evaluations == 1 ? 16.0 : 4.0, 2e6 / members);
-  for (int w = 0; w < WAYS; w++) {
-    if (strut_state_create(model, &state[w], NULL)) return false;
-    state[w]->balance = true;
-    if (w == 0) workspace = method->create(model, state[w], &settings);
-    if (w > 0) strut_large_steps_create(model, method, &settings, threads_of[w], &large[w], NULL);
-    if (large[w]) strut_large_steps_restart(large[w], state[w], settings.step);
-    t->large[w] = w == 0 || large[w];
-  }
-  for (int i = 0; i < TRIES; i++)
-    for (int w = 0; w < WAYS; w++) {
-      if (!t->large[w]) continue;
-      double all = seconds(CLOCK_PROCESS_CPUTIME_ID), own = seconds(CLOCK_THREAD_CPUTIME_ID);
-      if (large[w])
-        strut_large_steps_advance(large[w], state[w], settings.step, steps);
-      else
-        method->advance(model, state[w], workspace, settings.step, steps);
-      own = seconds(CLOCK_THREAD_CPUTIME_ID) - own;
-      all = seconds(CLOCK_PROCESS_CPUTIME_ID) - all;
-      t->busiest[w][i] = 1e9 * fmax(own, all - own) / (double)steps / members;
-    }
-  t->same = true;
-  for (int w = 0; w < WAYS; w++) {
-    t->same = t->same && (!t->large[w] || memcmp(state[0]->q, state[w]->q,
-                                                 (size_t)model->length * sizeof(double)) == 0);
-  }
-  for (int w = 0; w < WAYS; w++) {
-    strut_large_steps_free(large[w]);
-    strut_state_free(state[w]);
-  }
-  return true;
-}
-
-static void print_ratio(const double *x, const double *y, bool known) {
-  double ratio[TRIES], low, middle, high;
-  if (!known) {
-    printf("  %16s", "-");
-    return;
-  }
-  for (int i = 0; i < TRIES; i++) ratio[i] = x[i] / y[i];
-  spread(ratio, &low, &middle, &high);
-  printf("  %4.2f (%4.2f-%4.2f)", middle, low, high);
-}
-
-static void print_time(const double *x, bool known) {
-  double low, middle, high;
-  spread(x, &low, &middle, &high);
-  if (known)
-    printf("  %7.1f", middle);
-  else
-    printf("  %7s", "-");
-}
-
-static bool make_scene(strut_setup *setup, bool chain, long members, strut_mass_model mass) {
-  if (chain) return bench_chain_scene(setup, (size_t)members, mass) == STRUT_OK;
-  if (!make_grid(setup, (int32_t)lround(sqrt((double)members / 4.0) + 0.5))) return false;
-  setup->scene.mass_model = mass;
-  for (size_t j = 0; j < setup->scene.member_count && mass == STRUT_MASS_CONSISTENT; j++)
-    if (setup->scene.members[j].kind == STRUT_SPRING) setup->scene.members[j].mass = 0.05;
-  return true;
-}
+/* A structure in one of the orders, being stepped. */
+typedef struct subject {
+  strut_setup setup;
+  strut_model *model;
+  strut_state *state;
+  void *workspace;
+  double time[TRIES]; /* ns per member and step */
+} subject;
 
 typedef struct row {
   const char *method;
   bool chain, lumped;
 } row;
 
-static void measure(const row *of, long members, double bandwidth) {
-  static timing ordered, shuffled;
-  double bytes = 1.0, nodes = 0.0;
-  for (int pass = 0; pass < 2; pass++) {
-    strut_setup setup;
-    strut_model *model = NULL;
-    timing *t = pass ? &shuffled : &ordered;
-    *t = (timing){.same = true};
-    if (!make_scene(&setup, of->chain, members,
-                    of->lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT) ||
-        (pass && !shuffle(&setup.scene)) || strut_model_compile(&setup.scene, &model, NULL) ||
-        !time_steps(model, of->method, t)) {
-      printf("out of memory\n");
-      return;
-    }
-    bytes = bytes_per_member(model), nodes = model->members.count;
-    strut_model_free(model);
-    strut_setup_free(&setup);
-  }
+static bool begin(subject *s, const row *of, long members, bool shuffled) {
   const strut_integrator *method = strut_integrator_find(of->method);
-  int best = ordered.large[1] ? 1 : 0;
-  double low, middle, high;
-  printf("%-6s %-5s %-10s %8.0f", of->method, of->chain ? "chain" : "grid",
-         of->lumped ? "lumped" : "consistent", nodes);
-  print_time(ordered.busiest[0], true);
-  print_time(ordered.busiest[1], ordered.large[1]);
-  print_time(ordered.busiest[2], ordered.large[2]);
-  print_ratio(ordered.busiest[best], ordered.busiest[2], ordered.large[2]);
-  print_ratio(shuffled.busiest[best], ordered.busiest[best], shuffled.large[best]);
-  print_ratio(shuffled.busiest[2], ordered.busiest[2], ordered.large[2] && shuffled.large[2]);
-  spread(ordered.busiest[best], &low, &middle, &high);
-  printf("  %5.2f%s\n", method->evaluations * bytes / bandwidth * 1e9 / middle,
-         ordered.same && shuffled.same ? "" : "  other bits!");
+  const strut_integrator_settings settings = {.step = 1e-4};
+  if (!make_scene(&s->setup, of->chain, members,
+                  of->lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT) ||
+      (shuffled && !shuffle(&s->setup.scene)) ||
+      strut_model_compile(&s->setup.scene, &s->model, NULL) ||
+      strut_state_create(s->model, &s->state, NULL))
+    return false;
+  s->state->balance = true;
+  return (s->workspace = method->create(s->model, s->state, &settings)) != NULL;
+}
+
+static void end(subject *s) {
+  strut_state_free(s->state);
+  strut_model_free(s->model);
+  strut_setup_free(&s->setup);
+}
+
+/* Both orders take turns. */
+static void measure(const row *of, long members, double bandwidth) {
+  static subject both[ORDERS];
+  const strut_integrator *method = strut_integrator_find(of->method);
+  double low, middle, high, count, ratio[TRIES];
+  memset(both, 0, sizeof both);
+  if (!begin(&both[0], of, members, false) || !begin(&both[1], of, members, true)) {
+    printf("out of memory\n");
+    return;
+  }
+  count = both[0].model->members.count;
+  int64_t steps = (int64_t)fmax(method->evaluations == 1 ? 16.0 : 4.0, 2e6 / count);
+  for (int i = 0; i < TRIES; i++) {
+    for (subject *s = both; s < both + ORDERS; s++) {
+      double begun = seconds();
+      method->advance(s->model, s->state, s->workspace, 1e-4, steps);
+      s->time[i] = 1e9 * (seconds() - begun) / (double)steps / count;
+    }
+    ratio[i] = both[1].time[i] / both[0].time[i];
+  }
+  spread(both[0].time, &low, &middle, &high);
+  printf("%-6s %-5s %-10s %8.0f  %7.1f", of->method, of->chain ? "chain" : "grid",
+         of->lumped ? "lumped" : "consistent", count, middle);
+  double share = method->evaluations * bytes_per_member(both[0].model) / bandwidth * 1e9 / middle;
+  spread(ratio, &low, &middle, &high);
+  printf("  %4.2f (%4.2f-%4.2f)  %5.2f\n", middle, low, high, share);
   fflush(stdout);
+  for (int k = 0; k < ORDERS; k++) end(&both[k]);
 }
 
 void bench_large(long members) {
@@ -268,22 +206,18 @@ void bench_large(long members) {
   static const row rows[] = {
       {"rk4", true, true},    {"rk4", false, true}, {"verlet", true, true}, {"verlet", false, true},
       {"euler", false, true}, {"rk4", true, false}, {"rk4", false, false}};
-  double one = triad_rate(false), two = triad_rate(true);
-  printf("triad: %.1f GB/s by one thread, %.1f by two\n", 1e-9 * one, 1e-9 * two);
+  double rate = triad_rate();
+  printf("triad: %.1f GB/s\n", 1e-9 * rate);
   printf(
-      "ns of processor time of the busiest thread per member and step, with the energy balance; "
-      "medians, "
-      "ratios with "
+      "ns of processor time per member and step, with the energy balance; shuffled: ratio with "
       "quartiles\n"
       "memory: time of a step at the triad's rate if each evaluation reads and writes all once, "
-      "over that of one "
-      "thread\n"
-      "%-6s %-5s %-10s %8s  %7s  %7s  %7s  %16s  %16s  %16s  %s\n",
-      "method", "", "masses", "members", "loop", "1", "2", "gain of 2", "shuffled, 1",
-      "shuffled, 2", "memory");
+      "over that time\n"
+      "%-6s %-5s %-10s %8s  %7s  %16s  %s\n",
+      "method", "", "masses", "members", "time", "shuffled", "memory");
   for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
       if (members && i > 0) break;
-      measure(&rows[r], members ? members : sizes[i], one);
+      measure(&rows[r], members ? members : sizes[i], rate);
     }
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** What the order of nodes and members costs a large structure, and what threads gain. */
+/** What the order of nodes and members costs a large structure. */
 #ifndef STRUT_TESTS_BENCH_LARGE_H
 #define STRUT_TESTS_BENCH_LARGE_H
 

@@ -41,7 +41,7 @@ for row in "adaptive step:~20~ms,~tolerance:~1e-6 law:~coulomb 0.002" \
   advances "$tolerance" "$method $law"
 done
 
-# Points of a study run side by side in batch: with the bits of single runs.
+# Points of a study have the bits of single runs.
 worm "$work/worm.yaml" rk4 "step: 0.5 ms" "law: karnopp, stick_velocity: 1e-4 m/s"
 cat >"$work/study.yaml" <<END
 strut: 1

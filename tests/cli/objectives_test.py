@@ -73,23 +73,6 @@ keep: [velocity, cost_of_transport]
     check(reported["accuracy"]["kept"] is True and reported["measured"]["never"]["value"] is None, str(reported))
 
 
-# Lanes give the same bits, with events and without, and so does the compared design of `strut compare`.
-def batch():
-    for method in ("rk4", "verlet-events"):
-        for n in ("1", "4"):
-            sweep(f"batch-{method}-{n}", f"""model: copied/crawler/crawler.yaml
-axes: [{{frequency: [9 Hz, 10 Hz, 11 Hz, 12 Hz, 13 Hz]}}]
-solver: {{integrator: {method}, step: 0.08 ms}}
-run: {{periods: 12, measure: {{last: 2}}}}
-keep: [velocity, cost_of_transport, work]
-""", "--batch", n, "--threads", "1")
-        tables = []
-        for n in ("1", "4"):
-            with open(os.path.join(work, f"batch-{method}-{n}", "table.csv")) as file:
-                tables.append(file.read())
-        check(tables[0] == tables[1] and ",," not in tables[0], f"batch of {method}: {tables}")
-
-
 def compared():
     row = sweep("steady", f"""model: copied/crawler/crawler.yaml
 axes: [{{frequency: [10 Hz]}}]
@@ -216,7 +199,6 @@ like: "II"
 
 moves()
 goals()
-batch()
 compared()
 at_rest()
 finish()

@@ -168,21 +168,21 @@ check(row["x_a"] == robot["nodes"]["a"]["position"][0], f"sweep: a at {row['x_a'
 power, steady = row["drive_work"] / row["duration"], robot["window_drive_work"] / robot["window_duration"]
 check(0.5 * steady < power < 2 * steady, f"power {power} W, that of the steady motion {steady} W")
 
-# In a sweep in lockstep, with trajectories and without, each point is that run.
+# In a sweep, with trajectories and without, each point is that run.
 tables = []
 for more in ("", "trajectories: yes\n"):
-    write("batch.yaml", "strut: 1\nstudy: batch\nmodel: fixed.yaml\naxes: [{friction: {from: 0.2, to: 0.5, step: 0.1}}]\n"
+    write("each.yaml", "strut: 1\nstudy: each\nmodel: fixed.yaml\naxes: [{friction: {from: 0.2, to: 0.5, step: 0.1}}]\n"
           "keep: [velocity, duration, work, losses, residual, force_evaluations, positions, contacts]\n" + more)
-    shutil.rmtree("batch", ignore_errors=True)
-    run("sweep", "batch.yaml", "-o", "batch", "--quiet", "--batch", "4")
-    with open("batch/table.csv", encoding="utf-8") as file:
+    shutil.rmtree("each", ignore_errors=True)
+    run("sweep", "each.yaml", "-o", "each", "--quiet")
+    with open("each/table.csv", encoding="utf-8") as file:
         tables.append(file.read())
 check(tables[0] == tables[1], "trajectories change the table")
 alone = json.loads(run("run", "fixed.yaml", "--json").stdout)
 for key, value in (("velocity", alone["velocity"]), ("duration", alone["duration"]),
                    ("drive_work", alone["energy"]["drive_work"]), ("residual", alone["energy"]["residual"]),
                    ("y_d", alone["nodes"]["d"]["position"][1]), ("duty_a", alone["contacts"]["a"]["duty"])):
-    check(float(column("batch/table.csv", key)[1]) == value, f"batch: {key} is not {value}")
+    check(float(column("each/table.csv", key)[1]) == value, f"each: {key} is not {value}")
 
 # One judgement of the balance: the caveat has none of its own.
 plain = json.loads(run("run", f"{models}/crawler/crawler.yaml", "--json").stdout)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Studies that search: an optimum with a formula, by each method; the same bytes whatever the threads, batch
+# Studies that search: an optimum with a formula, by each method; the same bytes whatever the threads
 # and kills; constraints, worst cases, choices; and searches that cannot find anything, which are reported.
 #
 #   python3 search_test.py STRUT [--long]
@@ -62,7 +62,7 @@ for threads in ("2", "8"):
         check(read("one", name) == read("several" + threads, name),
               f"{threads} threads change {name}")
 GENERATIONS = f"search: {{{GOAL}, {OVER}, method: cma, starts: 2, evaluations: 70}}\n"
-search("cma1", GENERATIONS, "--threads", "1", "--batch", "1")
+search("cma1", GENERATIONS, "--threads", "1")
 search("cma8", GENERATIONS, "--threads", "8")
 check(read("cma1", "table.csv") == read("cma8", "table.csv"), "threads change generations")
 before = read("one", "table.csv")

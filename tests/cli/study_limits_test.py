@@ -33,16 +33,16 @@ def study(name, rest):
 
 
 def evaluations():
-    """A budget of force evaluations: the same rows whatever the threads, batch and shards."""
+    """A budget of force evaluations: the same rows whatever the threads and shards."""
     study("budget", "axes: [{seconds: [10 ms, 1000 s, 20 ms, 10000 s, 0.3 s, 0.4 s, 5000 s, 1 s]}]\n"
                     "limit: {evaluations: 20000}\nkeep: [duration, steps]\ncheck: {half_step: yes}\n")
-    run("sweep", "budget.yaml", "-o", "one", "--threads", "1", "--batch", "1", code=3)
+    run("sweep", "budget.yaml", "-o", "one", "--threads", "1", code=3)
     table = rows("one/table.csv")
     good = [r["status"] == "completed" for r in table]
     check(good == [True, False, True, False, True, True, False, True], f"{good}")
     check(table[1]["status"] == "the work allowed was used up" and
           "work budget of 20000 force evaluations" in table[1]["message"], f"{table[1]}")
-    for words in (["--threads", "2"], ["--threads", "1", "--batch", "4"], ["--batch", "8"]):
+    for words in (["--threads", "2"], ["--threads", "8"]):
         run("sweep", "budget.yaml", "-o", "other", *words, code=3)
         check(lines("other/table.csv") == lines("one/table.csv"), f"{words}: another table")
         shutil.rmtree(path("other"))
@@ -68,16 +68,15 @@ def clock():
     """Wall time: the row says that it depends on the machine; --retry computes it again."""
     study("clock", "axes: [{seconds: [10 ms, 1e6 s, 20 ms, 1e6 s, 30 ms]}]\n"
                    "limit: {time: 0.2 s}\nkeep: [duration]\n")
-    for batch in ("1", "4"):
-        began = time.monotonic()
-        run("sweep", "clock.yaml", "-o", "clock" + batch, "--threads", "2", "--batch", batch, code=3)
-        check(time.monotonic() - began < 20, "it takes long")
-        table = rows(f"clock{batch}/table.csv")
-        for k in (1, 3):
-            check(table[k]["status"] == "the work allowed was used up" and
-                  "0.2 s by the clock" in table[k]["message"] and
-                  "another machine" in table[k]["message"], f"{table[k]}")
-        check(all(table[k]["status"] == "completed" for k in (0, 2, 4)), "the others")
+    began = time.monotonic()
+    run("sweep", "clock.yaml", "-o", "clock1", "--threads", "2", code=3)
+    check(time.monotonic() - began < 20, "it takes long")
+    table = rows("clock1/table.csv")
+    for k in (1, 3):
+        check(table[k]["status"] == "the work allowed was used up" and
+              "0.2 s by the clock" in table[k]["message"] and
+              "another machine" in table[k]["message"], f"{table[k]}")
+    check(all(table[k]["status"] == "completed" for k in (0, 2, 4)), "the others")
     study("clock", "axes: [{seconds: [10 ms, 1e6 s, 20 ms, 1e6 s, 30 ms]}]\n"
                    "limit: {time: 0.1 s}\nkeep: [duration]\n")
     run("sweep", "clock.yaml", "-o", "clock1", "--retry", code=3)

@@ -127,7 +127,7 @@ def same_bytes():
     axes = f"[{{sample: {{count: 40, scheme: lhs, over: {OVER}}}}}, {{place: [near, far]}}]"
     sweep("whole", axes)
     table = read("whole/table.csv")
-    for words in (["--threads", "1"], ["--threads", "3"], ["--batch", "1"]):
+    for words in (["--threads", "1"], ["--threads", "3"]):
         shutil.rmtree(path("whole"))
         sweep("whole", axes, *words)
         check(read("whole/table.csv") == table, f"{words}: another table")

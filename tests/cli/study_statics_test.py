@@ -77,7 +77,7 @@ def sizes():
     back = sweep("back", axes.replace("[2, 4, 20]", "[20, 4, 2]") + "keep: [positions]\n")
     check(back[0]["x_rod.7 [m]"] and not back[1]["x_rod.7 [m]"] and back[2]["x_rod.1 [m]"],
           "nodes that a point lacks are empty")
-    for other in (["--threads", "1"], ["--threads", "3"], ["--batch", "1"]):
+    for other in (["--threads", "1"], ["--threads", "3"]):
         shutil.rmtree(os.path.join(work, "back"))
         before = back
         back = sweep("back", axes.replace("[2, 4, 20]", "[20, 4, 2]") + "keep: [positions]\n", *other)

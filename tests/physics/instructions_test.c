@@ -8,7 +8,6 @@
  * compiler, its options and one set of registers; elsewhere there is nothing to compare with.
  */
 #include "tests/support/instructions.h"
-#include "engine/integrate/batch/batch.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
@@ -71,79 +70,6 @@ TEST(what_the_crawler_does_not_use_costs_it_nothing) {
     bool good = (double)count <= MORE * (double)b->instructions;
     print_message("%s: {\"%s\", %s, %ld}, budget %ld\n", good ? "ok" : "over", b->method,
                   b->balance ? "true" : "false", count, b->instructions);
-    over += !good;
-  }
-  assert_int_equal(over, 0);
-}
-
-/* ---- eight crawlers side by side ---- */
-
-typedef struct batch_budget {
-  const char *method;
-  bool balance, halves; /* in registers of AVX2 */
-  long instructions;    /* of STEPS steps of all lanes */
-} batch_budget;
-
-static const batch_budget batch_budgets[] = {{"rk4", true, false, 62476},
-                                             {"rk4", false, false, 48688}};
-enum { BATCH_BUDGETS = sizeof batch_budgets / sizeof batch_budgets[0] };
-
-typedef struct side_by_side {
-  motion lane[STRUT_BATCH_MOST];
-  strut_batch *batch;
-} side_by_side;
-
-static void step_lanes(side_by_side *all, int64_t steps) {
-  int64_t left[STRUT_BATCH_MOST];
-  for (int64_t end = all->lane[0].state->step + steps; all->lane[0].state->step < end;) {
-    for (int i = 0; i < STRUT_BATCH_MOST; i++) left[i] = end - all->lane[0].state->step;
-    strut_batch_advance(all->batch, left);
-    strut_batch_count(all->batch, 0, all->lane[0].state);
-  }
-}
-static void some_lane_steps(void *context) { step_lanes(context, STEPS); }
-
-static long count_of_lanes(const batch_budget *b) {
-  side_by_side all;
-  strut_setup setup = {.experiment = strut_experiment_default()};
-  setup.experiment.step = STEP;
-  strut_scene_init(&setup.scene);
-  structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
-  for (int i = 0; i < STRUT_BATCH_MOST; i++) {
-    motion_begin_by(&all.lane[i], &setup, b->method, STEP);
-    all.lane[i].state->balance = b->balance;
-    if (i == 0)
-      all.batch =
-          strut_batch_create(all.lane[0].model, all.lane[0].method, STRUT_BATCH_MOST, b->balance);
-    assert_non_null(all.batch);
-    strut_batch_fill(all.batch, i, all.lane[i].model, STEP);
-    strut_batch_put(all.batch, i, all.lane[i].state);
-  }
-  if (b->halves) strut_batch_halve(all.batch);
-  step_lanes(&all, BEFORE);
-  long count = count_instructions(some_lane_steps, &all);
-  strut_batch_free(all.batch);
-  for (int i = 0; i < STRUT_BATCH_MOST; i++) motion_end(&all.lane[i]);
-  strut_scene_free(&setup.scene);
-  return count;
-}
-
-/* Their budgets are of the day when they were first counted. */
-TEST(nor_does_it_cost_lanes) {
-  int over = 0;
-  if (!numbers_hold_here() || !__builtin_cpu_supports("avx512dq") ||
-      !__builtin_cpu_supports("avx512vl")) {
-    print_message("the numbers are of another compiler, build or processor\n");
-    skip();
-  }
-  for (int i = 0; i < BATCH_BUDGETS; i++) {
-    const batch_budget *b = &batch_budgets[i];
-    long count = count_of_lanes(b);
-    if (count < 0) skip();
-    bool good = (double)count <= MORE * (double)b->instructions;
-    print_message("%s: {\"%s\", %s, %s, %ld}, budget %ld\n", good ? "ok" : "over", b->method,
-                  b->balance ? "true" : "false", b->halves ? "true" : "false", count,
-                  b->instructions);
     over += !good;
   }
   assert_int_equal(over, 0);

@@ -34,7 +34,7 @@ static settled settle(const strut_setup *setup) {
   settled s = {.how.time = 0};
   strut_model *model = motion_compile(&setup->scene);
   assert_true(model->length <= 64);
-  s.status = strut_settle_experiment(model, &setup->experiment, NULL, NULL, s.q, &s.how, &s.error);
+  s.status = strut_settle_experiment(model, &setup->experiment, NULL, s.q, &s.how, &s.error);
   strut_model_free(model);
   return s;
 }

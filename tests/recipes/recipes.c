@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * What docs/dev/recipes.md adds works: its friction law, its law of members and its strain in every method, alone
- * and in lanes, in subdomains, at rest and in the step limit; its method of integration on a smooth scene; and all
- * through the language and back.
+ * What docs/dev/recipes.md adds works: its friction law, its law of members and its strain in every method, at
+ * rest and in the step limit; its method of integration on a smooth scene; and all through the language and back.
  */
 #include <math.h>
 #include <stdio.h>
@@ -10,8 +9,6 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/integrate/batch/batch.h"
-#include "engine/integrate/domain_parts.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/run/settle.h"
@@ -58,33 +55,17 @@ static bool read_setup(const char *text, strut_setup *setup, bool report) {
 typedef struct run_plan {
   const strut_setup *setup;
   double dt, time;
-  /* Compares a state at the end; `where` is the method and how it was stepped. */
+  /* Compares a state at the end. */
   void (*compare)(const strut_setup *setup, const strut_integrator *method, const double *q,
-                  const double *v, const char *where);
-  int domains, lanes, methods; /* runs made so */
+                  const double *v);
+  int methods; /* runs made */
 } run_plan;
 
-typedef enum run_way { GENERAL, DOMAINS, WAYS } run_way;
-static const char *const way_names[WAYS] = {"general", "subdomains"};
-
-/* Can the model be stepped so? */
-static bool is_possible(const strut_model *model, const strut_integrator *method, run_way way) {
-  return way != DOMAINS || strut_domain_steps_possible(model, method);
-}
-
 static bool step(const strut_model *model, strut_state *state, const strut_integrator *method,
-                 const run_plan *terms, run_way way) {
+                 const run_plan *terms) {
   strut_integrator_settings settings = strut_integrator_settings_of(&terms->setup->experiment);
   int64_t count = llround(terms->time / terms->dt);
   settings.step = terms->dt;
-  if (way == DOMAINS) {
-    strut_domain_steps *steps = strut_domain_steps_create(model, method, NULL, 2);
-    if (!steps) return false;
-    strut_domain_steps_restart(steps, state, terms->dt);
-    strut_domain_steps_advance(steps, state, terms->dt, count);
-    strut_domain_steps_free(steps);
-    return true;
-  }
   void *workspace = method->create(model, state, &settings);
   if (!workspace) return false;
   if (method->restart) method->restart(model, state, workspace, terms->dt);
@@ -92,52 +73,15 @@ static bool step(const strut_model *model, strut_state *state, const strut_integ
   return true;
 }
 
-static void run(run_plan *terms, const strut_integrator *method, run_way way) {
+static void run(run_plan *terms, const strut_integrator *method) {
   strut_model *model = NULL;
   strut_state *state = NULL;
-  char where[80];
-  snprintf(where, sizeof where, "%s, %s", method->name, way_names[way]);
-  if (strut_model_compile(&terms->setup->scene, &model, NULL)) {
-    expect(false, "the scene is not compiled", where, 0);
-  } else if (is_possible(model, method, way)) {
-    bool good = !strut_state_create(model, &state, NULL) && step(model, state, method, terms, way);
-    expect(good, "is not stepped", where, 0);
-    if (good) terms->compare(terms->setup, method, state->q, state->v, where);
-    terms->domains += way == DOMAINS;
-    terms->methods += way == GENERAL;
-  }
+  bool good = !strut_model_compile(&terms->setup->scene, &model, NULL) &&
+              !strut_state_create(model, &state, NULL) && step(model, state, method, terms);
+  expect(good, "is not stepped", method->name, 0);
+  if (good) terms->compare(terms->setup, method, state->q, state->v);
+  terms->methods++;
   strut_state_free(state);
-  strut_model_free(model);
-}
-
-/* All lanes of a batch have the same scene. */
-static void run_in_batch(run_plan *terms, const strut_integrator *method, int32_t width) {
-  strut_model *model = NULL;
-  strut_state *state[STRUT_BATCH_MOST] = {0};
-  int64_t left[STRUT_BATCH_MOST], count = llround(terms->time / terms->dt);
-  char where[80];
-  snprintf(where, sizeof where, "%s, %d lanes", method->name, width);
-  bool good = !strut_model_compile(&terms->setup->scene, &model, NULL);
-  strut_batch *batch = NULL;
-  if (good && strut_batch_possible(model, method)) {
-    good = (batch = strut_batch_create(model, method, width, true)) != NULL;
-    for (int32_t l = 0; l < width && good; l++) {
-      good = !strut_state_create(model, &state[l], NULL);
-      if (!good) break;
-      strut_batch_fill(batch, l, model, terms->dt);
-      strut_batch_put(batch, l, state[l]);
-      left[l] = count;
-    }
-    if (good) strut_batch_advance(batch, left);
-    for (int32_t l = 0; l < width && good; l++) {
-      strut_batch_get(batch, l, state[l]);
-      terms->compare(terms->setup, method, state[l]->q, state[l]->v, where);
-    }
-    terms->lanes++;
-  }
-  expect(good, "is not stepped", where, 0);
-  strut_batch_free(batch);
-  for (int32_t l = 0; l < width; l++) strut_state_free(state[l]);
   strut_model_free(model);
 }
 
@@ -146,9 +90,7 @@ static void run_all(run_plan *terms) {
   for (size_t i = 0; strut_integrator_at(i); i++) {
     const strut_integrator *method = strut_integrator_at(i);
     if (method->no_ground && ground) continue;
-    for (int way = 0; way < WAYS; way++) run(terms, method, (run_way)way);
-    for (int32_t width = 4; width <= strut_batch_widest(); width *= 2)
-      run_in_batch(terms, method, width);
+    run(terms, method);
   }
 }
 
@@ -162,8 +104,6 @@ static double limit_of(const strut_setup *setup) {
 }
 
 /* ---- the friction law ---- */
-
-enum { MOST_NODES = 12 };
 
 /* Blocks in a row, joined by springs that nothing stretches, slide as one does. */
 static void write_blocks(char *text, size_t size, int count) {
@@ -185,12 +125,12 @@ static void write_blocks(char *text, size_t size, int count) {
 
 /* u + w ln u falls at the rate mu g. */
 static void compare_blocks(const strut_setup *setup, const strut_integrator *method,
-                           const double *q, const double *v, const char *where) {
+                           const double *q, const double *v) {
   double t = 0.3, w = 0.1;
-  (void)method, (void)q;
+  (void)q;
   for (size_t i = 0; i < setup->scene.node_count; i++) {
     double u = v[2 * i], fell = (1 - u) - w * log(u);
-    expect(fabs(fell - 0.2 * 9.81 * t) < 2e-3, "a block slides by another law", where, u);
+    expect(fabs(fell - 0.2 * 9.81 * t) < 2e-3, "a block slides by another law", method->name, u);
   }
 }
 
@@ -211,10 +151,7 @@ static void test_the_friction_law(int count) {
   strut_release(written);
   run_plan terms = {.setup = &setup, .dt = 1e-4, .time = 0.3, .compare = compare_blocks};
   run_all(&terms);
-  expect(terms.methods >= 8 && (count == 1 || terms.domains == 3), "too few runs are made",
-         "friction law", terms.methods);
-  expect(strut_batch_widest() == 1 || terms.lanes == 2, "is not run in lanes", "friction law",
-         terms.lanes);
+  expect(terms.methods >= 8, "too few runs are made", "friction law", terms.methods);
   expect(limit_of(&setup) < 0.2, "is not known to the step limit", "the law's slope", 0);
   strut_setup_free(&setup);
 }
@@ -264,15 +201,15 @@ static double stiffened(double t) {
 static double stiffened_end;
 
 static void compare_pairs(const strut_setup *setup, const strut_integrator *method, const double *q,
-                          const double *v, const char *where) {
+                          const double *v) {
   double tolerance = method->order == 1 ? 1e-2 : 1e-5;
   bool across = setup->scene.members[0].kind == STRUT_BAR;
   (void)v;
   for (size_t i = 1; i < setup->scene.node_count; i += 2) {
     double x = q[2 * i] - 1 - stiffened_end;
     double y = q[2 * i + 1] - setup->scene.nodes[i].position[1] - (across ? 2.0 : 0.0);
-    expect(fabs(x) < tolerance, "a block swings by another law", where, x);
-    expect(fabs(y) < 1e-9, "a block is drawn across", where, y);
+    expect(fabs(x) < tolerance, "a block swings by another law", method->name, x);
+    expect(fabs(y) < 1e-9, "a block is drawn across", method->name, y);
   }
 }
 
@@ -300,7 +237,7 @@ static void test_at_rest(const char *kind) {
   strut_equilibria_free(&found);
   double *q = strut_allocate((size_t)model->length, sizeof *q);
   strut_settle_summary how = {0};
-  good = q && !strut_settle_experiment(model, &setup.experiment, NULL, NULL, q, &how, &error);
+  good = q && !strut_settle_experiment(model, &setup.experiment, NULL, q, &how, &error);
   expect(good, error.message, "settling", 0);
   expect(good && fabs(q[2] - 1 - x) < 1e-4, "settles elsewhere", kind, good ? q[2] : 0);
   strut_release(q);
@@ -311,7 +248,6 @@ static void test_at_rest(const char *kind) {
 static void test_the_member_law(int count, const char *kind) {
   char text[4000];
   strut_setup setup, again;
-  bool bar = !strcmp(kind, "bar");
   write_pairs(text, sizeof text, count, kind, false);
   if (!read_setup(text, &setup, true)) {
     expect(false, "is refused", "the member law's scene", 0);
@@ -326,8 +262,6 @@ static void test_the_member_law(int count, const char *kind) {
   run_plan terms = {.setup = &setup, .dt = 1e-3, .time = 1, .compare = compare_pairs};
   run_all(&terms);
   expect(terms.methods >= 9, "too few runs are made", kind, terms.methods);
-  expect(bar || strut_batch_widest() == 1 ? terms.lanes == 0 : terms.lanes == 2, "lanes", kind,
-         terms.lanes);
   /* about the start it is 4 (1 + 3 x^2 / s^2) = 37 N/m; rk4 is stable up to 2.83 over the rate */
   double limit = limit_of(&setup);
   expect(limit > 0 && limit < 2.83 / sqrt(4 * (1 + 0.75 / 0.09)) + 0.01,
@@ -350,8 +284,7 @@ static void test_the_method(void) {
     strut_state *state = NULL;
     run_plan terms = {.setup = &setup, .dt = k ? 1e-4 : 2e-4, .time = 1};
     bool good = !strut_model_compile(&setup.scene, &model, NULL) &&
-                !strut_state_create(model, &state, NULL) &&
-                step(model, state, method, &terms, GENERAL);
+                !strut_state_create(model, &state, NULL) && step(model, state, method, &terms);
     error[k] = good ? fabs(state->q[2] - (1 + 0.01 * cos(10.0))) : (double)NAN;
     strut_state_free(state);
     strut_model_free(model);
@@ -368,8 +301,6 @@ int main(void) {
   strut_setup setup;
   expect(!read_setup(LACKS_WIDTH, &setup, false), "is not missed", "the law's width", 0);
   test_the_friction_law(1);
-  test_the_friction_law(2);
-  test_the_friction_law(MOST_NODES);
   test_the_friction_law(5);
   stiffened_end = stiffened(1);
   test_the_member_law(1, "spring");

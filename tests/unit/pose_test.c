@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * The step's vector kernels against pose.h, on random poses: members_kernel.h and ground_kernel.h in
- * strut_forces_evaluate, batch_kernel.h in lanes_test.
+ * strut_forces_evaluate.
  */
 #include <math.h>
 #include <string.h>

@@ -91,60 +91,6 @@ TEST(limit_of_each_method_on_damped_ground) {
     }
 }
 
-/* Each number that a limit depends on, changed a little; false: there are no more. */
-static bool change(strut_setup *s, int which) {
-  double *const numbers[] = {&s->scene.nodes[1].mass,         &s->scene.members[0].stiffness,
-                             &s->scene.members[0].damping,    &s->scene.members[0].mass,
-                             &s->scene.contacts[0].stiffness, &s->scene.contacts[0].damping,
-                             &s->scene.members[0].rest_value, &s->scene.ground.slope};
-  const int count = sizeof numbers / sizeof numbers[0];
-  if (which == count) s->scene.mass_model = STRUT_MASS_LUMPED;
-  if (which == count + 1) s->scene.nodes[1].fixed[0] = true;
-  if (which == count + 2) s->scene.nodes[1].start[1] += 0.1;
-  if (which >= count) return which <= count + 2;
-  *numbers[which] = *numbers[which] * 1.25 + (*numbers[which] == 0.0 ? 0.1 : 0.0);
-  return true;
-}
-
-/* What was found for one model is told of another only where all is alike that matters. */
-TEST(limits_are_recalled_for_the_same_model_only) {
-  strut_step_limits kept = {0};
-  const strut_integrator *rk4 = strut_integrator_find("rk4"),
-                         *euler = strut_integrator_find("euler");
-  double first = 0, limit, own;
-  for (int which = -1;; which++) {
-    strut_setup setup;
-    strut_setup_init(&setup);
-    build_support(&setup.scene, 0, 1);
-    build_mass(&setup.scene, 0.6, 0.2, 2);
-    build_sized(&setup.scene, STRUT_SPRING, 0, 1, 400, 20, 1, 0.8);
-    build_contact(&setup.scene, 1, 900, 40);
-    if (which >= 0 && !change(&setup, which)) {
-      strut_setup_free(&setup);
-      break;
-    }
-    strut_model *model = motion_compile(&setup.scene);
-    assert_int_equal(strut_step_limit_cached(model, rk4, &kept, &limit, NULL), STRUT_OK);
-    assert_int_equal(strut_step_limit_for_method(model, rk4, &own, NULL), STRUT_OK);
-    assert_same_bits(limit, own);
-    if (which < 0)
-      first = limit;
-    else if (limit == first)
-      fail_msg("change %d changes no limit", which);
-    int64_t found = kept.count;
-    assert_int_equal(strut_step_limit_cached(model, rk4, &kept, &limit, NULL), STRUT_OK);
-    assert_int_equal(kept.count, found);
-    assert_same_bits(limit, own);
-    if (which < 0) {
-      assert_int_equal(strut_step_limit_cached(model, euler, &kept, &limit, NULL), STRUT_OK);
-      assert_int_equal(strut_step_limit_for_method(model, euler, &own, NULL), STRUT_OK);
-      assert_same_bits(limit, own);
-    }
-    strut_model_free(model);
-    strut_setup_free(&setup);
-  }
-}
-
 TEST(nothing_limits_free_masses) {
   strut_setup setup;
   strut_setup_init(&setup);

@@ -9,7 +9,6 @@
 #include "engine/forces/rigid.h"
 #include "engine/forces/tangent.h"
 #include "engine/integrate/limit/tangent_limits.h"
-#include "engine/model/renumber.h"
 
 /* |R(z)| of RK4 for z = x + i y, R(z) = 1 + z (1 + z/2 (1 + z/3 (1 + z/4))). */
 static double growth(double x, double y) {
@@ -331,25 +330,6 @@ static bool ground_damps(const strut_model *model) {
   return damped;
 }
 
-/*
- * The limits at the start. A structure that is scattered in memory and too large for more than a bound is
- * stored in another order first: every pass over its matrices would wait for memory.
- */
-static strut_status limits_at_start(const strut_model *model, strut_closed closed, bool rk4,
-                                    strut_arena *arena, strut_step_limit *limit) {
-  strut_renumbering *r = NULL;
-  const strut_model *stored = model;
-  *limit = (strut_step_limit){.limit = HUGE_VAL};
-  if (2 * model->node_count > TOO_LARGE && strut_model_is_scattered(model)) {
-    if (strut_renumbering_create(model, true, &r, NULL)) return STRUT_NO_MEMORY;
-    stored = r->model;
-  }
-  strut_status status =
-      limits(stored, stored->start, stored->members.rest, closed, rk4, arena, limit);
-  strut_renumbering_free(r);
-  return status;
-}
-
 strut_status strut_step_limit_with_bound(const strut_model *model, const strut_integrator *method,
                                          double *limit, bool *bound, strut_error *error) {
   strut_arena arena = {0};
@@ -358,9 +338,9 @@ strut_status strut_step_limit_with_bound(const strut_model *model, const strut_i
   *bound = false;
   if (strut_region_at(method->region)->sets == 0) return STRUT_OK;
   bool undamped = method->implicit_damper && ground_damps(model);
-  strut_status status =
-      limits_at_start(model, undamped ? STRUT_CLOSED_UNDAMPED : STRUT_CLOSED_ALL,
-                      strut_region_at(method->region)->by_eigenvalue, &arena, &found);
+  strut_status status = limits(model, model->start, model->members.rest,
+                               undamped ? STRUT_CLOSED_UNDAMPED : STRUT_CLOSED_ALL,
+                               strut_region_at(method->region)->by_eigenvalue, &arena, &found);
   *limit = found.of[method->region];
   *bound = found.bound;
   strut_arena_free(&arena);
@@ -377,125 +357,18 @@ strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limi
                                        strut_error *error) {
   strut_arena arena = {0};
   strut_step_limit implicit;
-  strut_status status = limits_at_start(model, STRUT_CLOSED_ALL, true, &arena, limit);
+  strut_status status =
+      limits(model, model->start, model->members.rest, STRUT_CLOSED_ALL, true, &arena, limit);
   implicit = *limit;
   strut_arena_free(&arena);
   if (!status && ground_damps(model))
-    status = limits_at_start(model, STRUT_CLOSED_UNDAMPED, false, &arena, &implicit);
+    status = limits(model, model->start, model->members.rest, STRUT_CLOSED_UNDAMPED, false, &arena,
+                    &implicit);
   for (int region = 0; region < STRUT_REGIONS; region++)
     limit->of_implicit[region] = implicit.of[region];
   limit->bound = limit->bound || implicit.bound;
   strut_arena_free(&arena);
   return status ? strut_no_memory(error, "for the model") : STRUT_OK;
-}
-
-/* Takes bytes, a whole number of words, into both hashes. */
-static void digest(uint64_t key[2], const void *data, size_t bytes) {
-  for (size_t i = 0; i + sizeof(uint64_t) <= bytes; i += sizeof(uint64_t)) {
-    uint64_t word;
-    memcpy(&word, (const char *)data + i, sizeof word);
-    key[0] = (key[0] ^ word) * 1099511628211u;
-    key[0] ^= key[0] >> 29;
-    key[1] = (key[1] + word) * 0x9e3779b97f4a7c15u;
-    key[1] ^= key[1] >> 32;
-  }
-}
-
-static void digest_number(uint64_t key[2], double x) { digest(key, &x, sizeof x); }
-
-static void digest_elements(const strut_element_table *t, uint64_t key[2]) {
-  for (int32_t i = 0; i < t->count; i++) {
-    const strut_element *e = &t->element[i];
-    const strut_law_numbers *n = &e->numbers;
-#define STRUT_LAW_ROW(NAME, field, ...) n->field,
-    const double numbers[] = {e->strain,
-                              e->law,
-                              e->slot,
-                              e->natural,
-                              e->carries,
-                              e->damping,
-                              STRUT_LAW_PARAMETERS(STRUT_LAW_ROW) n->stiffness,
-                              n->axial,
-                              n->material};
-#undef STRUT_LAW_ROW
-    digest(key, numbers, sizeof numbers);
-    digest(key, n->coefficient, n->count * sizeof(double));
-    for (int32_t k = 0; k < e->nodes; k++) digest_number(key, t->at[e->first + k]);
-    if (!n->curve) continue;
-    digest(key, n->curve->x, n->curve->count * sizeof(double));
-    digest(key, n->curve->piece, (n->curve->count - 1) * sizeof n->curve->piece[0]);
-  }
-}
-
-/* All that an estimate reads of a model. */
-static void digest_model(const strut_model *m, uint64_t key[2]) {
-  const strut_member_table *t = &m->members;
-  const strut_contact_table *c = &m->contacts;
-  const size_t slots = (size_t)t->slots * sizeof(double), both = (size_t)m->length * sizeof(double);
-  key[0] = 14695981039346656037u, key[1] = 1;
-  const double counts[] = {
-      m->terms, m->length, t->slots, t->count, c->count, m->scene->mass_model, m->scene->bar_model};
-  digest(key, counts, sizeof counts);
-  for (int32_t j = 0; j < t->count; j++) {
-    digest_number(key, t->from[j]);
-    digest_number(key, t->to[j]);
-  }
-  const double *const of_members[] = {t->stiffness, t->damping, t->rest, t->slack, t->mass};
-  for (size_t i = 0; i < sizeof of_members / sizeof of_members[0]; i++)
-    digest(key, of_members[i], slots);
-  digest_elements(&m->elements, key);
-  digest(key, m->start, both);
-  digest(key, m->point_mass, (size_t)m->node_count * sizeof(double));
-  for (int32_t i = 0; i < m->length; i++) digest_number(key, m->fixed[i]);
-  for (int32_t i = 0; i < m->sliding.count; i++) {
-    const strut_sliding_item *s = &m->sliding.item[i];
-    const double item[] = {s->at[0], s->at[1], s->mass, s->start, s->signal < 0};
-    digest(key, item, sizeof item);
-  }
-  digest(key, m->scene->gravity, sizeof m->scene->gravity);
-  for (int32_t i = 0; i < c->count; i++) {
-    const strut_contact_entry *e = &c->entry[i];
-    const double entry[] = {e->node, e->stiffness, e->damping, e->dissipation,
-                            strut_friction_slope(&e->friction, 1.0)};
-    digest(key, entry, sizeof entry);
-  }
-  const double ground[] = {c->normal[0], c->normal[1], c->height, c->belt_speed, m->mass_damping};
-  digest(key, ground, sizeof ground);
-  for (int32_t i = 0; i < m->rubbing.count; i++)
-    digest_number(key, strut_friction_slope(&m->rubbing.item[i].friction, 1.0) +
-                           strut_friction_stiffness(&m->rubbing.item[i].friction, 1.0));
-  digest_number(key, fastest_relaxation(m));
-  for (int32_t i = 0; i < m->feedback.maxwell_count; i++) {
-    digest_number(key, m->feedback.maxwell[i].member);
-    digest_number(key, m->feedback.maxwell[i].stiffness);
-  }
-  for (int32_t k = 0; k < c->surfaces; k++) {
-    const strut_surface *s = &c->surface[k];
-    const double surface[] = {s->facets,    s->before, s->beyond, s->centre[0],
-                              s->centre[1], s->radius, s->inside, s->belt_speed};
-    digest(key, surface, sizeof surface);
-    digest(key, s->facet, (size_t)s->facets * sizeof *s->facet);
-  }
-  for (int32_t i = 0; i < c->count && c->surface; i++) digest_number(key, c->surface_of[i]);
-}
-
-strut_status strut_step_limit_cached(const strut_model *model, const strut_integrator *method,
-                                     strut_step_limits *kept, double *limit, strut_error *error) {
-  uint64_t key[2];
-  digest_model(model, key);
-  digest_number(key, method->region);
-  digest_number(key, method->implicit_damper);
-  for (int i = 0; i < STRUT_LIMITS_KEPT && i < kept->count; i++)
-    if (kept->key[i][0] == key[0] && kept->key[i][1] == key[1]) {
-      *limit = kept->limit[i];
-      return STRUT_OK;
-    }
-  strut_status status = strut_step_limit_for_method(model, method, limit, error);
-  if (status) return status;
-  int64_t at = kept->count++ % STRUT_LIMITS_KEPT;
-  kept->key[at][0] = key[0], kept->key[at][1] = key[1];
-  kept->limit[at] = *limit;
-  return STRUT_OK;
 }
 
 strut_status strut_step_limit_at_shape(const strut_model *model, const double *q,

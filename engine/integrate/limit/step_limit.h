@@ -83,23 +83,6 @@ STRUT_API strut_status strut_step_limit_check_effort(const strut_model *model,
                                                      const strut_integrator *method, double dt,
                                                      strut_error *error);
 
-/** Limits found lately. Zero-initialise it. */
-enum { STRUT_LIMITS_KEPT = 16 };
-typedef struct strut_step_limits {
-  int64_t count; /* ever noted; the latest STRUT_LIMITS_KEPT of them are kept */
-  uint64_t key[STRUT_LIMITS_KEPT][2];
-  double limit[STRUT_LIMITS_KEPT]; /* [s] */
-} strut_step_limits;
-
-/**
- * strut_step_limit_for_method, or what it said of the same members, masses, supports, springs and dampers of
- * contacts, start and kind of method: identified by two independent hashes of all these numbers.
- */
-STRUT_API strut_status strut_step_limit_cached(const strut_model *model,
-                                               const strut_integrator *method,
-                                               strut_step_limits *kept, double *limit,
-                                               strut_error *error);
-
 /** The largest stable step of a method [s]. */
 STRUT_API double strut_step_limit_of_method(const strut_step_limit *limit,
                                             const strut_integrator *method);

@@ -353,8 +353,8 @@ static strut_status settle_start(strut_equilibrium_search *h, const strut_model 
   if (!h->experiment->settle.wanted || !model->mass || h->options->standing_only) return STRUT_OK;
   double *q = strut_arena_allocate(&h->out->arena, (size_t)model->length, sizeof *q);
   if (!q) return strut_no_memory(h->error, "");
-  strut_status status = strut_settle_experiment(model, h->experiment, NULL, h->options->interrupt,
-                                                q, &h->out->settle, &trouble);
+  strut_status status = strut_settle_experiment(model, h->experiment, h->options->interrupt, q,
+                                                &h->out->settle, &trouble);
   if (!status) h->out->start = find_nearest(model, h->out, q);
   if (!status) return STRUT_OK;
   if (status != STRUT_NOT_SETTLED && status != STRUT_DIVERGED)

@@ -47,7 +47,7 @@ static bool mirror_axis(const strut_model *model, const uint8_t *held, const dou
   double sum = 0.0;
   const uint32_t sided = 1u << STRUT_STRAIN_ANGLE | 1u << STRUT_STRAIN_AREA |
                          1u << STRUT_STRAIN_ALONG | 1u << STRUT_STRAIN_OFFSET;
-  if (model->laws.strain & sided) return false; /* they change their sign */
+  if (model->strains & sided) return false; /* they change their sign */
   for (int32_t i = 0; i < model->node_count; i++) {
     if (model->constant_force && model->constant_force[2 * i] != 0.0) return false;
     sum += q[2 * i];

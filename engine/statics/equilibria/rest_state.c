@@ -287,8 +287,8 @@ static strut_status find_rest(const strut_model *model, const strut_experiment *
  */
 static strut_status settle_scene(const strut_model *model, const strut_experiment *experiment,
                                  strut_arena *arena, strut_rest_state *rest, strut_error *error) {
-  strut_status status = strut_settle_experiment(model, experiment, NULL, experiment->interrupt,
-                                                rest->q, &rest->settle, error);
+  strut_status status = strut_settle_experiment(model, experiment, experiment->interrupt, rest->q,
+                                                &rest->settle, error);
   if (!status) status = judge_rest(model, arena, rest, error);
   if (!experiment->settle.friction) rest->at_rest = true;
   return status;

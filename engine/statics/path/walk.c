@@ -239,7 +239,7 @@ static bool try_step(strut_path_walk *w, double bend) {
 
 /* Cables that meet or leave a circle, or begin to rub, bend a path at once with no switch that says where. */
 static bool has_hidden_kinks(const strut_path_system *s) {
-  return strut_path_has_rubbing(s) || s->model->laws.strain >> STRUT_STRAIN_WRAP & 1u;
+  return strut_path_has_rubbing(s) || s->model->strains >> STRUT_STRAIN_WRAP & 1u;
 }
 
 /* Predictor and corrector, shorter until they succeed: the next point and its tangent. */

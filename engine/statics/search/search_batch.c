@@ -3,8 +3,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <pthread.h>
-#include <stdatomic.h>
 #include <string.h>
 
 #ifdef _OPENMP
@@ -163,35 +161,21 @@ static void run_task(strut_search_tasks *b, worker *w, const strut_task *task,
   result->hessian_count = hessians_of(w) - before;
 }
 
-/* What the threads of a batch share: each takes the next task as soon as it has finished one. */
-typedef struct batch_run {
-  strut_search_tasks *tasks;
-  const strut_task *task;
-  int count;
-  const strut_flag *interrupt;
-  atomic_int next, worker;
-} batch_run;
-
-static void *work(void *context) {
-  batch_run *run = context;
-  worker *w = &run->tasks->workers[atomic_fetch_add(&run->worker, 1)];
-  for (int i; (i = atomic_fetch_add(&run->next, 1)) < run->count;)
-    if (!run->interrupt || !*run->interrupt)
-      run_task(run->tasks, w, &run->task[i], &run->tasks->result[i]);
-  return NULL;
-}
-
-/* Threads of their own and not OpenMP's, which between the batches of a search wait by spinning: half again as
-   much processor time, on a busy machine taken from others. */
 const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task,
                                                 size_t count, const strut_flag *interrupt) {
   assert(count <= STRUT_BATCH);
-  batch_run run = {.tasks = batch, .task = task, .count = (int)count, .interrupt = interrupt};
-  pthread_t thread[STRUT_BATCH];
-  int most = batch->worker_count < run.count ? batch->worker_count : run.count, started = 0;
-  while (started + 1 < most && pthread_create(&thread[started], NULL, work, &run) == 0) started++;
-  work(&run);
-  for (int i = 0; i < started; i++) pthread_join(thread[i], NULL);
+#ifdef _OPENMP
+  int threads = (int)count < batch->worker_count ? (int)count : batch->worker_count;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
+#endif
+  for (size_t i = 0; i < count; i++) {
+#ifdef _OPENMP
+    worker *w = &batch->workers[omp_get_thread_num()];
+#else
+    worker *w = &batch->workers[0];
+#endif
+    if (!interrupt || !*interrupt) run_task(batch, w, &task[i], &batch->result[i]);
+  }
   return batch->result;
 }
 

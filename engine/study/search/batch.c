@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Points that searches ask for at the same time, on all threads and batch. See search_parts.h. */
+/* Points that searches ask for at the same time, on all threads. See search_parts.h. */
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <time.h>
 
 #include "engine/base/memory.h"
-#include "engine/integrate/batch/batch.h"
 #include "engine/study/search/search_parts.h"
 #include "engine/study/sweep/grid.h"
 
@@ -74,14 +73,13 @@ strut_status strut_search_batch_begin(strut_search_batch *b) {
   b->options.adjust = make_exact;
   b->options.point_context = b;
   b->threads = b->given->threads > 0 ? b->given->threads : strut_sweep_threads();
-  b->batch = strut_sweep_batch_size(b->given->batch, b->threads, INT64_MAX);
   b->first_check = search->starts * search->evaluations;
-  size_t jobs = (size_t)b->threads * (size_t)b->batch;
-  b->jobs = strut_sweep_make_jobs(b->plan, &b->arena, jobs);
+  b->jobs = strut_sweep_make_jobs(b->plan, &b->arena, (size_t)b->threads);
   b->worker = (strut_sweep_worker){
       .plan = b->plan, .options = &b->options, .standing = strut_equilibrium_cache_create()};
   if (b->jobs && seconds > 0.0)
-    b->worker.watch = strut_sweep_watch_create(seconds, b->jobs, jobs, b->options.interrupt);
+    b->worker.watch =
+        strut_sweep_watch_create(seconds, b->jobs, (size_t)b->threads, b->options.interrupt);
   if (b->jobs && b->worker.standing && (b->worker.watch || seconds <= 0.0)) return STRUT_OK;
   return strut_no_memory(b->error, "");
 }
@@ -197,7 +195,6 @@ static void compute_points(strut_search_batch *b) {
   size_t workers = b->options.workers > 0 ? (size_t)b->options.workers : 1;
   size_t share = (b->count + workers - 1) / workers;
   int threads = b->count < (size_t)b->threads ? (int)b->count : b->threads;
-  int32_t batch = strut_sweep_batch_size(b->batch, threads, (int64_t)share);
   b->next = 0;
   b->first = (size_t)b->options.worker * share;
 #ifdef _OPENMP
@@ -207,7 +204,7 @@ static void compute_points(strut_search_batch *b) {
 #ifdef _OPENMP
     omp_set_num_threads(1); /* of searches within a point */
 #endif
-    strut_sweep_work(&b->worker, &queue, b->jobs + i * b->batch, batch);
+    strut_sweep_work(&b->worker, &queue, &b->jobs[i]);
   }
 }
 

@@ -8,7 +8,7 @@
 #include "engine/base/memory.h"
 #include "engine/study/sweep/grid.h"
 
-/* Generations are multiples of this, on any machine, so that they fill batch or processors. */
+/* Generations are multiples of this, on any machine, so that they fill processors. */
 enum { SIDE_BY_SIDE = 8 };
 
 /* CMA-ES: asks for a generation at a time. */

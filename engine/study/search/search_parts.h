@@ -36,7 +36,6 @@ typedef struct strut_search_batch {
   strut_sweep_worker worker;
   strut_sweep_job *jobs;
   int threads;
-  int32_t batch;       /* at most */
   int64_t first_check; /* rows from here on are those of search 0 */
   double began, reported;
   size_t count, capacity, next,

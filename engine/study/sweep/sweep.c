@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One thread's points of a sweep: alone, or side by side in the batch of a batch. */
+/* The points of a sweep, shared out to threads. */
 #include "engine/study/sweep/sweep.h"
 
 #include <assert.h>
@@ -7,116 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/integrate/batch/batch.h"
 #include "engine/run/simulate.h"
 #include "engine/study/sweep/sweep_parts.h"
 
-/* ---- points in lockstep ---- */
-
-/* A new batch starts after this many consecutive points that do not fit the current one. */
-enum { MOST_UNLIKE = 4 };
-/* Steps below which setting up a batch costs more than its batch save. */
-static const double FEWEST_STEPS = 200.0;
-
-typedef struct desk {
-  const strut_sweep_worker *worker;
-  const strut_sweep_queue *queue;
-  strut_sweep_job *jobs; /* (batch) */
-  int32_t batch;
-  strut_setup setup; /* of the example */
-  strut_model *example;
-  int unlike;
-} desk;
-
-/* A waiting job, started with the next point of the queue if necessary; NULL: none is left. */
-static strut_sweep_job *next_job(desk *d) {
-  strut_sweep_job *idle = NULL;
-  int64_t point;
-  for (int32_t i = 0; i < d->batch; i++) {
-    if (d->jobs[i].stage == STRUT_SWEEP_WAITING) return &d->jobs[i];
-    if (d->jobs[i].stage == STRUT_SWEEP_IDLE) idle = &d->jobs[i];
-  }
-  while (idle && d->queue->next(d->queue->context, &point)) {
-    if (strut_sweep_job_begin(d->worker, point, idle)) return idle;
-    d->queue->over(d->queue->context, idle);
-  }
-  return NULL;
-}
-
-static void finish_alone(desk *d, strut_sweep_job *job) {
-  strut_sweep_job_finish(d->worker, job);
-  d->queue->over(d->queue->context, job);
-}
-
-/* Should its run be in batch, or can it be where they were asked for? Leaves it with a model then. */
-static bool suits_batch(strut_sweep_job *job) {
-  const strut_experiment *e = &job->setup.experiment;
-  const strut_integrator *method = strut_integrator_find(e->integrator);
-  if (e->accuracy > 0.0 || !method || !strut_batch_knows(method)) return false;
-  if (strut_experiment_span(e, &job->setup.scene).duration < FEWEST_STEPS * e->step) return false;
-  return !strut_sweep_job_compile(job) && strut_batch_possible(job->model, method);
-}
-
-/* The next run for the batch. Points that the batch cannot take are run on the way. */
-static bool next_run(void *context, strut_batch_point *run) {
-  desk *d = context;
-  for (strut_sweep_job *job; (job = next_job(d));) {
-    if (!suits_batch(job)) {
-      finish_alone(d, job);
-      continue;
-    }
-    bool alike = strut_batch_takes_both(d->example, job->model);
-    d->unlike = alike ? 0 : d->unlike + 1;
-    if (d->unlike > MOST_UNLIKE) return false; /* it waits for the next batch */
-    job->stage = STRUT_SWEEP_RUNNING;
-    *run = (strut_batch_point){job->model, &job->setup.experiment, &job->options, job};
-    return true;
-  }
-  return false;
-}
-
-static void take_result(void *context, const strut_batch_point *run, strut_status status,
-                        strut_summary *summary, const strut_error *error) {
-  desk *d = context;
-  strut_sweep_job *job = run->context;
-  if (!strut_sweep_job_take(d->worker, job, status, summary, error))
-    d->queue->over(d->queue->context, job);
-}
-
-/* A model like the job's that stays. False: no memory for it. */
-static bool make_example(desk *d, const strut_sweep_job *job) {
-  const strut_sweep_scenes *scenes = &d->worker->plan->scenes;
-  d->unlike = 0;
-  if (scenes->setup(scenes->context, job->cells.values, &d->setup, NULL)) return false;
-  if (!strut_model_compile(&d->setup.scene, &d->example, NULL)) return true;
-  strut_setup_free(&d->setup);
-  return false;
-}
-
-static void run_batch(desk *d) {
-  strut_simulate_batch(&(strut_batch_source){.context = d,
-                                             .next = next_run,
-                                             .result = take_result,
-                                             .example = d->example,
-                                             .integrator = d->setup.experiment.integrator,
-                                             .width = d->batch});
-  strut_model_free(d->example);
-  strut_setup_free(&d->setup);
-  d->example = NULL;
-}
-
 void strut_sweep_work(const strut_sweep_worker *worker, const strut_sweep_queue *queue,
-                      strut_sweep_job *jobs, int32_t batch) {
-  desk d = {.worker = worker, .queue = queue, .jobs = jobs, .batch = batch};
-  for (strut_sweep_job *job; (job = next_job(&d));) {
-    if (batch > 1 && suits_batch(job) && make_example(&d, job))
-      run_batch(&d);
-    else
-      finish_alone(&d, job);
+                      strut_sweep_job *job) {
+  for (int64_t point; queue->next(queue->context, &point);) {
+    strut_sweep_compute(worker, point, job);
+    queue->over(queue->context, job);
   }
 }
-
-/* ---- threads ---- */
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -253,7 +153,7 @@ static void store_point(void *context, const strut_sweep_job *job) {
     count_point(s, job);
 }
 
-static void run_threads(sweep *s, int threads, int32_t batch, strut_sweep_job *jobs) {
+static void run_threads(sweep *s, int threads, strut_sweep_job *jobs) {
   const strut_sweep_queue queue = {s, next_point, store_point};
   (void)threads;
 #ifdef _OPENMP
@@ -263,15 +163,8 @@ static void run_threads(sweep *s, int threads, int32_t batch, strut_sweep_job *j
 #ifdef _OPENMP
     omp_set_num_threads(1); /* of searches within a point: the points are what goes side by side */
 #endif
-    strut_sweep_work(&s->worker, &queue, jobs + i * batch, batch);
+    strut_sweep_work(&s->worker, &queue, &jobs[i]);
   }
-}
-
-int32_t strut_sweep_batch_size(int wanted, int threads, int64_t points) {
-  int32_t widest = strut_batch_widest(), batch = 1;
-  if (wanted > 0 && wanted < widest) widest = wanted;
-  while (2 * batch <= widest && (int64_t)batch * threads < points) batch *= 2;
-  return batch < 4 ? 1 : batch; /* two runs take as long one after the other */
 }
 
 strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena *arena,
@@ -294,10 +187,7 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
       .state = state,
       .began = strut_run_clock(),
       .error = error ? error : &own};
-  int64_t missing =
-      options->wants ? options->wanted - options->wanted_done : strut_slots_missing(slots);
-  int32_t batch = strut_sweep_batch_size(options->batch, threads, missing);
-  strut_sweep_job *jobs = strut_sweep_make_jobs(plan, &arena, (size_t)threads * (size_t)batch);
+  strut_sweep_job *jobs = strut_sweep_make_jobs(plan, &arena, (size_t)threads);
   int64_t count = strut_slots_description_of(slots)->count;
   *state = (strut_sweep_state){.points = count,
                                .done = count - strut_slots_missing(slots),
@@ -310,10 +200,9 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
   if (options->directory) strut_sweep_records_clear(options->directory);
   double seconds = plan->study->limit.time;
   if (jobs && seconds > 0.0)
-    s.worker.watch = strut_sweep_watch_create(seconds, jobs, (size_t)threads * (size_t)batch,
-                                              options->interrupt);
+    s.worker.watch = strut_sweep_watch_create(seconds, jobs, (size_t)threads, options->interrupt);
   if (jobs && s.worker.standing && (s.worker.watch || seconds <= 0.0))
-    run_threads(&s, threads, batch, jobs);
+    run_threads(&s, threads, jobs);
   else
     s.status = strut_fail(s.error, STRUT_NO_MEMORY, "out of memory");
   if (!s.status && options->interrupt && *options->interrupt && state->done < count)

@@ -74,8 +74,7 @@ typedef struct strut_sweep_state {
 } strut_sweep_state;
 
 typedef struct strut_sweep_options {
-  int threads; /* 0: strut_sweep_threads */
-  int batch;   /* points per thread in lockstep, if their structures agree; 0: automatic */
+  int threads;                 /* 0: strut_sweep_threads */
   const strut_flag *interrupt; /* may be NULL */
   const char *directory;       /* of runs, where trajectories are wanted */
   /** A few times a second, one thread at a time; may be NULL. */

@@ -53,19 +53,11 @@ typedef struct strut_sweep_worker {
 
 struct strut_sweep_watch;
 
-typedef enum strut_sweep_stage {
-  STRUT_SWEEP_IDLE,    /* no point */
-  STRUT_SWEEP_WAITING, /* for the run of `setup` with `options` */
-  STRUT_SWEEP_RUNNING
-} strut_sweep_stage;
-
 /** A point being computed. Must not move in memory meanwhile. */
 typedef struct strut_sweep_job {
-  strut_sweep_stage stage;
   int64_t point;
   strut_row_buffer cells;
   strut_setup setup;
-  strut_model *model; /* of the scene, where someone has compiled it */
   strut_run_options options;
   strut_sink *sinks[1];
   struct strut_sweep_record *files;
@@ -83,15 +75,8 @@ typedef struct strut_sweep_job {
 /** What ends the job's computation early; may be NULL. */
 const strut_flag *strut_sweep_interrupt_of(const strut_sweep_worker *worker,
                                            const strut_sweep_job *job);
-/** Starts a point on an idle job. True: it waits for its run. False: it has ended already. */
-bool strut_sweep_job_begin(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job);
-/** Stores the result of the run and frees the summary. True: the job waits for another run. */
-bool strut_sweep_job_take(const strut_sweep_worker *worker, strut_sweep_job *job,
-                          strut_status status, strut_summary *summary, const strut_error *error);
-/** The model of a waiting job, if it has none yet. */
-strut_status strut_sweep_job_compile(strut_sweep_job *job);
-/** All runs that a waiting job wants, one after the other. */
-void strut_sweep_job_finish(const strut_sweep_worker *worker, strut_sweep_job *job);
+/** Computes a point, with the run for the check where the study wants one. */
+void strut_sweep_compute(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job);
 
 /* statics_point.c */
 
@@ -117,7 +102,7 @@ void strut_sweep_watch_free(struct strut_sweep_watch *watch);
 void strut_sweep_watch_begin(struct strut_sweep_watch *watch, strut_sweep_job *job);
 bool strut_sweep_watch_end(struct strut_sweep_watch *watch, strut_sweep_job *job);
 
-/* sweep_lanes.c */
+/* sweep.c */
 
 /** Input and output of one thread's points. */
 typedef struct strut_sweep_queue {
@@ -126,15 +111,10 @@ typedef struct strut_sweep_queue {
   void (*over)(void *context, const strut_sweep_job *job);
 } strut_sweep_queue;
 
-/** Works on the queue until it is empty, `batch` points at a time where they can go side by side. */
+/** Works on the queue until it is empty. */
 void strut_sweep_work(const strut_sweep_worker *worker, const strut_sweep_queue *queue,
-                      strut_sweep_job *jobs, int32_t batch);
-
-/* sweep.c */
-
-/** No more batch on each of the threads than there are points for it; wanted 0: as many as fit. */
-int32_t strut_sweep_batch_size(int wanted, int threads, int64_t points);
-/** Idle jobs with room for their rows; NULL: no memory. */
+                      strut_sweep_job *job);
+/** Jobs with room for their rows; NULL: no memory. */
 strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena *arena,
                                        size_t count);
 /** Counts the warnings of a run by their code, and keeps the text of the first point. */

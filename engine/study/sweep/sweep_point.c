@@ -47,12 +47,11 @@ static strut_status explain_interrupt(const strut_sweep_worker *w, strut_sweep_j
 }
 
 /* Ends the point with its row, or with an error that stops the sweep. */
-static bool finish_point(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status) {
+static void finish_point(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status) {
   strut_row_buffer *cells = &job->cells;
   status = explain_interrupt(w, job, status);
-  job->stage = STRUT_SWEEP_IDLE;
   job->status = stops(status) ? status : STRUT_OK;
-  if (job->status) return false;
+  if (job->status) return;
   if (status) {
     pad_cells(w->plan, cells);
     snprintf(cells->message, sizeof cells->message, "%.*s", (int)sizeof cells->message - 1,
@@ -62,14 +61,13 @@ static bool finish_point(const strut_sweep_worker *w, strut_sweep_job *job, stru
                                    .numbers = cells->numbers,
                                    .words = (const char(*)[STRUT_SLOT_WORD])cells->words,
                                    .message = cells->message};
-  return false;
 }
 
 /* The same where the point has a scene. */
-static bool finish_with_scene(const strut_sweep_worker *w, strut_sweep_job *job,
+static void finish_with_scene(const strut_sweep_worker *w, strut_sweep_job *job,
                               strut_status status) {
   strut_setup_free(&job->setup);
-  return finish_point(w, job, status);
+  finish_point(w, job, status);
 }
 
 static void set_options(const strut_sweep_worker *w, strut_sweep_job *job) {
@@ -93,14 +91,13 @@ static strut_status begin_record(const strut_sweep_worker *w, strut_sweep_job *j
   return STRUT_OK;
 }
 
-bool strut_sweep_job_begin(const strut_sweep_worker *w, int64_t point, strut_sweep_job *job) {
+/* False: the point has ended already. True: it has a scene to be run with its options. */
+static bool begin_job(const strut_sweep_worker *w, int64_t point, strut_sweep_job *job) {
   const strut_sweep_plan *plan = w->plan;
   strut_row_buffer *cells = &job->cells;
   cells->number_count = cells->word_count = 0;
   cells->message[0] = '\0';
   job->point = point;
-  job->model = NULL;
-  job->second = false;
   job->warning_count = 0;
   job->error = (strut_error){0};
   strut_sweep_watch_begin(w->watch, job);
@@ -115,15 +112,20 @@ bool strut_sweep_job_begin(const strut_sweep_worker *w, int64_t point, strut_swe
   }
   strut_status status =
       plan->scenes.setup(plan->scenes.context, cells->values, &job->setup, &job->error);
-  if (status) return finish_point(w, job, status);
+  if (status) {
+    finish_point(w, job, status);
+    return false;
+  }
+  bool run = plan->study->compute == STRUT_COMPUTE_RUN;
   if (options->adjust) options->adjust(options->point_context, point, &job->setup);
-  if (plan->study->compute != STRUT_COMPUTE_RUN)
-    return finish_with_scene(w, job, strut_statics_point(w, job));
-  status = strut_equilibrium_cache_resolve(w->standing, &job->setup, &job->error);
-  if (!status) status = begin_record(w, job);
-  if (status) return finish_with_scene(w, job, status);
-  job->stage = STRUT_SWEEP_WAITING;
-  return true;
+  if (!run)
+    status = strut_statics_point(w, job);
+  else
+    status = strut_equilibrium_cache_resolve(w->standing, &job->setup, &job->error);
+  if (run && !status) status = begin_record(w, job);
+  if (run && !status) return true;
+  finish_with_scene(w, job, status);
+  return false;
 }
 
 /* The configuration that the run ended near; name: (STRUT_SLOT_WORD) */
@@ -156,6 +158,7 @@ static const char *outcome_word(const strut_sweep_worker *w, const strut_summary
   return w->plan->flips ? outcome : strut_motion_name(summary->steady.kind);
 }
 
+/* True: another run is to check it. */
 static bool finish_first_run(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status,
                              const strut_summary *summary) {
   char outcome[STRUT_SLOT_WORD] = "";
@@ -167,22 +170,24 @@ static bool finish_first_run(const strut_sweep_worker *w, strut_sweep_job *job, 
     if (written) status = strut_fail(&job->error, written, "%s", late.message);
   }
   if (!status) status = name_outcome(w, job, summary, outcome);
-  if (status) return finish_with_scene(w, job, status);
-  job->warning_count = summary->warning_count;
-  memcpy(job->warnings, summary->warnings, sizeof job->warnings);
-  strut_sweep_fill(w->plan, &job->setup, summary, outcome, &job->cells);
-  if (!w->plan->check) return finish_with_scene(w, job, STRUT_OK);
+  if (!status) {
+    job->warning_count = summary->warning_count;
+    memcpy(job->warnings, summary->warnings, sizeof job->warnings);
+    strut_sweep_fill(w->plan, &job->setup, summary, outcome, &job->cells);
+  }
+  if (status || !w->plan->check) {
+    finish_with_scene(w, job, status);
+    return false;
+  }
   snprintf(job->first, sizeof job->first, "%s", outcome_word(w, summary, outcome));
   refine_experiment(w->plan->study, &job->setup.experiment);
   set_options(w, job);
-  job->second = true;
   job->error = (strut_error){0};
-  job->stage = STRUT_SWEEP_WAITING;
   return true;
 }
 
 /* A second run that fails counts as another outcome. */
-static bool finish_second_run(const strut_sweep_worker *w, strut_sweep_job *job,
+static void finish_second_run(const strut_sweep_worker *w, strut_sweep_job *job,
                               strut_status status, const strut_summary *summary) {
   char outcome[STRUT_SLOT_WORD] = "";
   strut_row_buffer *cells = &job->cells;
@@ -194,37 +199,32 @@ static bool finish_second_run(const strut_sweep_worker *w, strut_sweep_job *job,
   strut_sweep_word(cells, word);
   strut_sweep_number(cells, same ? 0.0 : 1.0);
   if (stops(status)) strut_fail(&job->error, status, "%s", strut_status_text(status));
-  return finish_with_scene(w, job, stops(status) ? status : STRUT_OK);
+  finish_with_scene(w, job, stops(status) ? status : STRUT_OK);
 }
 
-bool strut_sweep_job_take(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status,
-                          strut_summary *summary, const strut_error *error) {
-  if (error != &job->error) job->error = *error;
-  if (!job->second) strut_sweep_fill_counts(w->plan, job->model, &job->cells);
-  strut_model_free(job->model);
-  job->model = NULL;
-  bool more = job->second ? finish_second_run(w, job, status, summary)
-                          : finish_first_run(w, job, status, summary);
-  strut_summary_free(summary);
-  return more;
+/* Runs the scene of the job; its counts go before the cells of a first run. */
+static strut_status run_scene(const strut_sweep_worker *w, strut_sweep_job *job, bool first,
+                              strut_summary *summary) {
+  const strut_experiment *experiment = &job->setup.experiment;
+  strut_model *model = NULL;
+  strut_status status = strut_model_compile(&job->setup.scene, &model, &job->error);
+  if (!status)
+    status = strut_simulate_as_asked(model, experiment, &job->options, summary, &job->error);
+  if (first) strut_sweep_fill_counts(w->plan, model, &job->cells);
+  strut_model_free(model);
+  return status;
 }
 
-strut_status strut_sweep_job_compile(strut_sweep_job *job) {
-  return job->model ? STRUT_OK : strut_model_compile(&job->setup.scene, &job->model, &job->error);
-}
-
-void strut_sweep_job_finish(const strut_sweep_worker *w, strut_sweep_job *job) {
-  do {
-    strut_summary summary = {0};
-    strut_status status;
-    job->stage = STRUT_SWEEP_RUNNING;
-    const strut_experiment *experiment = &job->setup.experiment;
-    status = strut_sweep_job_compile(job);
-    if (!status)
-      status =
-          strut_simulate_as_asked(job->model, experiment, &job->options, &summary, &job->error);
-    strut_sweep_job_take(w, job, status, &summary, &job->error);
-  } while (job->stage == STRUT_SWEEP_WAITING);
+void strut_sweep_compute(const strut_sweep_worker *w, int64_t point, strut_sweep_job *job) {
+  strut_summary summary = {0}, second = {0};
+  if (!begin_job(w, point, job)) return;
+  strut_status status = run_scene(w, job, true, &summary);
+  if (finish_first_run(w, job, status, &summary)) {
+    status = run_scene(w, job, false, &second);
+    finish_second_run(w, job, status, &second);
+  }
+  strut_summary_free(&summary);
+  strut_summary_free(&second);
 }
 
 /* Records one run of a sweep as `strut run -o` does. The HDF5 library is not thread-safe. */

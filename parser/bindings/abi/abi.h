@@ -30,8 +30,8 @@
  * that do not exist are NAN. Arrays of scenes and results never change; those of a simulation are live.
  *
  * Threads: scenes and results are constant, and any number of threads may use one at the same
- * time. A simulation belongs to one thread at a time. strutlib_sweep and strutlib_equilibria use
- * OpenMP inside; after fork() without exec the child must not call these two. While a call
+ * time. A simulation belongs to one thread at a time. Sweeps and searches for equilibria use
+ * OpenMP inside; after fork() without exec the child must not start them. While a call
  * computes, GSL's error handler is off; the host's is put back. Figures and sweeps use a
  * temporary folder below TMPDIR or /tmp, which is gone when the call returns; figures are drawn
  * by Pango and GLib, which abort where memory is out.
@@ -374,7 +374,7 @@ typedef int (*strutlib_row)(void *context, size_t point, int status);
  * point, the scene as it is.
  * keep[0..keep_count): columns to keep, words as in a study's `keep`, or names of measured
  * quantities; none: the usual ones.
- * Options: "compute" (run, equilibria, modes, rigidity, path or form), "threads", "batch"
+ * Options: "compute" (run, equilibria, modes, rigidity, path or form), "threads"
  * (default automatic), "limit_evaluations", "limit_time", "at", "lowest" as in a study, and those
  * of method and model as of strutlib_run: "accuracy", "step", "integrator", "bars", ...
  * Arrays: each column of numbers by its name, of the axes first, (points) [SI]; "status"

@@ -551,7 +551,6 @@ static const strut_option sweep_options[] = {
      "force evaluations after which a point fails"},
     {STRUT_OPTION_LIMIT_TIME, "limit_time", "TIME", "time after which a point fails"},
     {STRUT_OPTION_THREADS, "threads", "N", "number of threads (default automatic)"},
-    {STRUT_OPTION_BATCH, "batch", "N", "points in lockstep in a thread (default automatic)"},
     STRUT_RUN_SETTING_OPTIONS,
     STRUT_FIDELITY_OPTIONS,
     END};

@@ -12,7 +12,7 @@
 #include "parser/command/run_settings.h"
 #include "parser/write/write_scene.h"
 
-enum { MOST_THREADS = 4096, MOST_RUNS = 8 };
+enum { MOST_THREADS = 4096 };
 static const char slots_name[] = "points.slots", table_name[] = "table.csv";
 static const char *const files[] = {slots_name, table_name, NULL};
 
@@ -27,7 +27,7 @@ typedef struct sweep {
   const strut_declared **declared; /* (axis.column_count) */
   strut_sweep_plan plan;
   strut_slots *slots;
-  int64_t threads, batch;
+  int64_t threads;
   strutlib_control *control, own;
   strutlib_row row;
   void *context;
@@ -149,8 +149,6 @@ static strut_status read_options(abi_call *call, sweep *s, strut_error *what) {
   if (!status)
     status = strut_option_integer(command, a, STRUT_OPTION_THREADS, 1, MOST_THREADS, &s->threads);
   if (!status)
-    status = strut_option_integer(command, a, STRUT_OPTION_BATCH, 1, MOST_RUNS, &s->batch);
-  if (!status)
     status =
         strut_option_integer(command, a, STRUT_OPTION_LOWEST, 1, STRUT_STUDY_MOST_LOWEST, &lowest);
   if (!status)
@@ -271,7 +269,6 @@ static strut_status run_points(sweep *s, const abi_scratch *scratch, strut_sweep
                                         .columns = s->plan.columns,
                                         .column_count = s->plan.column_count};
   const strut_sweep_options how = {.threads = (int)s->threads,
-                                   .batch = (int)s->batch,
                                    .interrupt = &s->control->interrupt,
                                    .progress = show_progress,
                                    .progress_context = s};

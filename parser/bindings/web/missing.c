@@ -2,10 +2,6 @@
 /* What strut does not have in a browser, refused by name: it stands for the files that use these libraries. */
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 
-#include <assert.h>
-
-#include "engine/integrate/batch/batch.h"
-#include "engine/integrate/domain_parts.h"
 #include "engine/output/draw/structure.h"
 #include "engine/output/figures/run_figure.h"
 #include "engine/output/figures/statics_figures.h"
@@ -92,26 +88,6 @@ bool strut_search_optimise_by_nlopt(const strut_search_task *task,
                                     const strut_search_asker *asker) {
   return false; /* no call of the library searches */
 }
-
-/* Runs side by side in wide registers: strut_batch_widest says that there are none. */
-static void no_batch(const strut_batch *b) { assert(false); }
-void strut_batch_rk4_4(strut_batch *b, int64_t count) { no_batch(b); }
-void strut_batch_rk4_8(strut_batch *b, int64_t count) { no_batch(b); }
-void strut_batch_rk4_8_halves(strut_batch *b, int64_t count) { no_batch(b); }
-
-/* Parts of a large structure for threads of their own, of which there is one: the plain steps have the same bits. */
-bool strut_domain_steps_possible(const strut_model *model, const strut_integrator *method) {
-  return false;
-}
-strut_domain_steps *strut_domain_steps_create(const strut_model *model,
-                                              const strut_integrator *method, const int32_t *member,
-                                              int threads) {
-  return NULL;
-}
-void strut_domain_steps_free(strut_domain_steps *steps) {}
-void strut_domain_steps_restart(strut_domain_steps *steps, strut_state *state, double dt) {}
-void strut_domain_steps_advance(strut_domain_steps *steps, strut_state *state, double dt,
-                                int64_t count) {}
 
 /* ---- of GLPK the presolver and the dual simplex method, for which linear_program.c does not ask ---- */
 

@@ -332,7 +332,6 @@ class Scene(Frozen):
         limit_evaluations: int | None = None,
         limit_time: Value | None = None,
         threads: int | None = None,
-        batch: int | None = None,
         accuracy: Value | None = None,
         budget: float | None = None,
         integrator: str | None = None,
@@ -354,8 +353,8 @@ class Scene(Frozen):
         `compute` is "run" (default), "equilibria", "modes", "rigidity", "path" or "form"; `keep` names the columns,
         as in a study. `at` is the equilibrium of modes, rigidity and path, and `lowest` the number of
         frequencies, energies and barriers in a row. A point fails after `limit_evaluations` force evaluations or
-        `limit_time` [s]. `threads` is the number of threads, `batch` that of points in lockstep in each (default
-        automatic). The others are arguments of `run`. A failed point is a row with its status and message.
+        `limit_time` [s]. `threads` is the number of threads (default automatic). The others are arguments of
+        `run`. A failed point is a row with its status and message.
         """
         given = {name: value for name, value in locals().items() if name not in _NO_OPTIONS}
         own = self.names("parameters")
