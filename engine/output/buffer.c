@@ -75,16 +75,6 @@ size_t strut_csv_quote(const char *text, size_t length, char *cell) {
   return written;
 }
 
-void strut_csv_write(FILE *stream, const char *text) {
-  bool quoted = needs_quotes(text, strlen(text));
-  if (quoted) fputc('"', stream);
-  for (; *text; text++) {
-    if (*text == '"') fputc('"', stream);
-    fputc(*text, stream);
-  }
-  if (quoted) fputc('"', stream);
-}
-
 void strut_csv_add_text(strut_buffer *csv, const char *format, ...) {
   strut_buffer text = {0};
   va_list arguments;

@@ -7,7 +7,6 @@
 
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdio.h>
 
 #include "engine/base/status.h"
 
@@ -31,8 +30,6 @@ STRUT_API char *strut_buffer_take(strut_buffer *buffer);
  * with a comma, a quote or a break. Writes up to 2 length + 2 bytes to `cell`; returns their number.
  */
 STRUT_API size_t strut_csv_quote(const char *text, size_t length, char *cell);
-/** Writes a text to a stream as such a cell. */
-STRUT_API void strut_csv_write(FILE *stream, const char *text);
 /** Appends a cell with a printf-style text. */
 STRUT_API void strut_csv_add_text(strut_buffer *csv, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
