@@ -2,15 +2,11 @@
 #include "engine/output/figures/run_film.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "engine/base/c_locale.h"
 #include "engine/output/draw/canvas.h"
@@ -23,14 +19,14 @@ static const struct {
   double fps;
 } formats[] = {
     {".mp4", "-c:v libx264 -preset fast -crf 18 -pix_fmt yuv420p -movflags +faststart -f mp4", 1280,
-     720, STRUT_FILM_FPS},
+     720, 30},
     {".webm", "-c:v libvpx-vp9 -crf 30 -b:v 0 -cpu-used 5 -row-mt 0 -pix_fmt yuv420p -f webm", 1280,
-     720, STRUT_FILM_FPS},
+     720, 30},
     {".gif",
-     "-filter_complex split[a][b];[a]palettegen=stats_mode=single[p];"
-     "[b][p]paletteuse=dither=none:new=1 -loop 0 -f gif",
-     640, 360, STRUT_FILM_GIF_FPS}};
-enum { FORMATS = sizeof formats / sizeof *formats };
+     "-filter_complex 'split[a][b];[a]palettegen=stats_mode=single[p];"
+     "[b][p]paletteuse=dither=none:new=1' -loop 0 -f gif",
+     640, 360, 25}};
+enum { FORMATS = sizeof formats / sizeof *formats, LONGEST = 1800 /* film [s] */ };
 
 static strut_status find_format(const char *path, int *format, strut_error *error) {
   for (*format = 0; *format < FORMATS; (*format)++) {
@@ -45,82 +41,34 @@ static strut_status find_format(const char *path, int *format, strut_error *erro
 
 typedef struct encoder {
   strut_file file;
-  FILE *messages; /* standard error of ffmpeg */
-  pid_t process;  /* 0: not running */
-  int pipe;       /* for pixels */
+  FILE *messages, *pipe; /* standard error of ffmpeg, and its pixels */
 } encoder;
 
-extern char **environ;
-
-/* In a process group of its own, since this program handles Ctrl-C. Returns 0 or an errno. */
-static int spawn(encoder *e, char *const *words) {
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-  sigset_t plain;
-  int ends[2];
-  if (pipe(ends)) return errno;
-  sigemptyset(&plain);
-  sigaddset(&plain, SIGPIPE);
-  int code = posix_spawn_file_actions_init(&actions);
-  if (!code) code = posix_spawnattr_init(&attributes);
-  if (!code) {
-    posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
-    posix_spawn_file_actions_addclose(&actions, ends[1]);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, fileno(e->messages), STDERR_FILENO);
-    posix_spawnattr_setsigdefault(&attributes, &plain);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
-    code = posix_spawnp(&e->process, words[0], &actions, &attributes, words, environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&actions);
-  }
-  close(ends[0]);
-  e->pipe = ends[1];
-  if (code) close(e->pipe), e->process = 0;
-  return code;
-}
-
-/* One thread and no dates, so that the same film has the same bytes. */
+/* One thread and no dates, so that the same film has the same bytes. Its name is in a variable, not in the command. */
 static strut_status start(encoder *e, const char *path, int format, const strut_film_made *made,
                           strut_error *error) {
-  char text[1024], target[4096], *words[64], *rest = text;
-  size_t count = 0;
+  char command[1024];
   strut_status status = strut_file_open_path(&e->file, path, error);
   if (status != STRUT_OK) return status;
-  snprintf(text, sizeof text,
-           "ffmpeg -nostdin -hide_banner -v error -f rawvideo -pixel_format bgr0 -video_size %dx%d "
-           "-framerate %.6f -i pipe:0 %s -an -threads 1 -map_metadata -1 -fflags +bitexact "
-           "-flags:v +bitexact -y",
-           made->width, made->height, made->fps, formats[format].words);
-  while ((words[count] = strtok_r(rest, " ", &rest))) count++;
-  /* the prefix keeps ffmpeg from reading a protocol or an option in the name */
-  snprintf(target, sizeof target, "file:%s", e->file.part);
-  words[count++] = target;
-  words[count] = NULL;
   e->messages = tmpfile();
-  int code = e->messages ? spawn(e, words) : errno;
-  if (!code) return STRUT_OK;
-  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot start ffmpeg: %s", strerror(code));
+  snprintf(
+      command, sizeof command,
+      "exec ffmpeg -nostdin -hide_banner -v error -f rawvideo -pixel_format bgr0 -video_size %dx%d "
+      "-framerate %.6f -i pipe:0 %s -an -threads 1 -map_metadata -1 -fflags +bitexact "
+      "-flags:v +bitexact -y \"file:$STRUT_FILM\" >/dev/null 2>&%d",
+      made->width, made->height, made->fps, formats[format].words,
+      e->messages ? fileno(e->messages) : 2);
+  if (e->messages && !setenv("STRUT_FILM", e->file.part, 1)) e->pipe = popen(command, "w");
+  if (e->pipe) return STRUT_OK;
+  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot start ffmpeg: %s", strerror(errno));
 }
 
-static bool write_all(int descriptor, const unsigned char *bytes, size_t count) {
-  for (ssize_t written; count > 0; bytes += written, count -= (size_t)written) {
-    written = write(descriptor, bytes, count);
-    if (written < 0 && errno == EINTR) written = 0;
-    if (written < 0) return false;
-  }
-  return true;
-}
-
-/* Whether ffmpeg, which has no more to read, was content; else its first message is the error. */
-static strut_status wait_for(encoder *e, strut_error *error) {
+/* Ends the pixels; where ffmpeg is not content, its first message is the error. */
+static strut_status finish(encoder *e, strut_error *error) {
   char text[300] = "";
-  int result = -1;
-  close(e->pipe);
-  while (waitpid(e->process, &result, 0) < 0)
-    if (errno != EINTR) break;
-  e->process = 0;
-  if (WIFEXITED(result) && WEXITSTATUS(result) == 0) return STRUT_OK;
+  int result = pclose(e->pipe);
+  e->pipe = NULL;
+  if (result == 0) return STRUT_OK;
   rewind(e->messages);
   if (!fgets(text, sizeof text, e->messages)) strcpy(text, "it gave no reason");
   text[strcspn(text, "\r\n")] = '\0';
@@ -129,19 +77,10 @@ static strut_status wait_for(encoder *e, strut_error *error) {
 }
 
 strut_status strut_film_check(const char *path, strut_error *error) {
-  const char *folder = getenv("PATH");
   int format;
   strut_file file = {0};
   strut_status status = find_format(path, &format, error);
-  bool found = false;
-  while (folder && !found) {
-    char name[4096];
-    size_t length = strcspn(folder, ":");
-    snprintf(name, sizeof name, "%.*s%sffmpeg", (int)length, folder, length ? "/" : "");
-    found = access(name, X_OK) == 0;
-    folder = folder[length] ? folder + length + 1 : NULL;
-  }
-  if (status == STRUT_OK && !found)
+  if (status == STRUT_OK && system("command -v ffmpeg >/dev/null") != 0)
     status =
         strut_fail(error, STRUT_FILE_TROUBLE,
                    "cannot find ffmpeg, which makes films: install it (Debian: apt-get install "
@@ -154,16 +93,15 @@ strut_status strut_film_check(const char *path, strut_error *error) {
 /* ---- frames ---- */
 
 static const double PAGE = 512, HEAD = 30, FOOT = 40, EDGE = 14, MARGIN = 18, ARROW = 26; /* [pt] */
-static const double STAYS = 2.05; /* sizes of the structure within which the window stands */
-static const double LOOK_AHEAD =
-    0.6; /* over which a moving window's middle is averaged [s of film] */
+static const double STAYS = 2.05;     /* sizes of the structure within which the window stands */
+static const double LOOK_AHEAD = 0.6; /* over which a moving window's middle is averaged [s] */
 
 typedef struct making {
   const strut_film *film;
   strut_film_made *made;
   strut_run_scene run;
   strut_bounds
-      all; /* of all frames, or of the largest one about 0 along an axis that is followed */
+      all; /* of all frames, or along an axis that is followed of the largest one about 0 */
   bool follows[2];
 } making;
 
@@ -237,8 +175,7 @@ static bool draw(making *m, strut_canvas *canvas, size_t i) {
   strut_run_scene run = m->run; /* with an arena for this frame alone */
   size_t frame = frame_at(m, i);
   char text[160], fitted[STRUT_FITTED_TEXT];
-  const strut_font bold = {.size = 11, .bold = true},
-                   right = {.size = 12, .bold = true, .across = 1};
+  const strut_font bold = {.size = 11, .bold = true}, right = {.size = 12, .across = 1};
   run.arena = (strut_arena){0};
   strut_canvas_clear(canvas, strut_grey(1));
   strut_canvas_clip(canvas, window.box);
@@ -247,9 +184,8 @@ static bool draw(making *m, strut_canvas *canvas, size_t i) {
   strut_run_draw_reactions(&run, canvas, &window, frame);
   strut_canvas_unclip(canvas);
   strut_arena_free(&run.arena);
-  const char *name = run.model->scene->name;
-  strut_draw_text(canvas, EDGE, EDGE - 4, strut_text_fit(canvas, name, bold, 0.7 * PAGE, 0, fitted),
-                  bold);
+  strut_text_fit(canvas, run.model->scene->name, bold, 0.7 * PAGE, 0, fitted);
+  strut_draw_text(canvas, EDGE, EDGE - 4, fitted, bold);
   double digits = fmin(fmax(ceil(-log10(m->made->shown) - 1e-6), 0), 6);
   snprintf(text, sizeof text, "%.*f s", (int)digits, run.motion->time[frame]);
   strut_draw_text(canvas, PAGE - EDGE, EDGE - 4, text, right);
@@ -270,10 +206,10 @@ static strut_status draw_all(making *m, strut_canvas *canvas, encoder *e, strut_
       return strut_fail(error, STRUT_INTERRUPTED, "interrupted; no film was written");
     const unsigned char *pixels = draw(m, canvas, i) ? strut_canvas_pixels(canvas, &stride) : NULL;
     if (!pixels) return strut_no_memory(error, "while making a film");
-    if (!write_all(e->pipe, pixels, stride * (size_t)m->made->height)) break; /* it says why */
+    if (!fwrite(pixels, stride * (size_t)m->made->height, 1, e->pipe)) break; /* ffmpeg says why */
     if (film->progress) film->progress(film->progress_context, (double)i / (double)m->made->frames);
   }
-  return wait_for(e, error);
+  return finish(e, error);
 }
 
 static strut_status encode(making *m, int format, strut_error *error) {
@@ -287,10 +223,7 @@ static strut_status encode(making *m, int format, strut_error *error) {
   if (status == STRUT_OK) status = start(&e, m->film->path, format, made, error);
   if (status == STRUT_OK) status = draw_all(m, canvas, &e, error);
   if (status == STRUT_OK) status = strut_file_commit(&e.file, error);
-  if (e.process > 0) {
-    kill(e.process, SIGKILL);
-    wait_for(&e, NULL);
-  }
+  if (e.pipe) finish(&e, NULL);
   if (e.messages) fclose(e.messages);
   strut_file_abandon(&e.file);
   strut_canvas_free(canvas);
@@ -301,12 +234,12 @@ static strut_status encode(making *m, int format, strut_error *error) {
 
 strut_status strut_film_check_length(const strut_film *film, double motion, strut_error *error) {
   double lasts = motion / film->speed;
-  if (!film->path || lasts <= STRUT_FILM_LONGEST) return STRUT_OK;
+  if (!film->path || lasts <= LONGEST) return STRUT_OK;
   return strut_fail(
       error, STRUT_USAGE,
       "the film would last %.4g s, at most %d s are allowed: give a higher --speed, or "
       "record less of the run (output: last)",
-      lasts, STRUT_FILM_LONGEST);
+      lasts, LONGEST);
 }
 
 strut_status strut_film_make(const strut_film *film, const strut_model *model,
@@ -317,26 +250,24 @@ strut_status strut_film_make(const strut_film *film, const strut_model *model,
   m.run = (strut_run_scene){.figure = &figure, .model = model, .motion = motion, .arrow = ARROW};
   int format;
   strut_status status = find_format(film->path, &format, error);
-  if (status == STRUT_OK && motion->position) strut_run_count_frames(&m.run);
-  if (status == STRUT_OK && m.run.frames == 0)
-    status = strut_fail(error, STRUT_DIVERGED, "the recording holds no motion to film");
-  if (status == STRUT_OK) {
-    double lasts = strut_run_time_from(&m.run, 0);
-    *made = (strut_film_made){.width = formats[format].width,
-                              .height = formats[format].height,
-                              .fps = film->fps > 0 ? film->fps : formats[format].fps,
-                              .lasts = lasts / film->speed};
-    made->frames = 1 + (size_t)floor(made->lasts * made->fps + 1e-9);
-    made->shown = film->speed / made->fps;
-    made->every = m.run.frames > 1 ? lasts / (double)(m.run.frames - 1) : 0;
-    status = strut_film_check_length(film, lasts, error);
-  }
-  if (status == STRUT_OK) {
-    for (size_t i = 0; i < m.run.frames; i++) strut_run_expect_frame(&m.run, i);
-    find_window(&m);
-    status = strut_run_find_limits(&m.run) ? encode(&m, format, error)
-                                           : strut_no_memory(error, "while making a film");
-  }
+  if (status != STRUT_OK) return status;
+  if (motion->position) strut_run_count_frames(&m.run);
+  if (!m.run.frames)
+    return strut_fail(error, STRUT_DIVERGED, "the recording holds no motion to film");
+  double lasts = strut_run_time_from(&m.run, 0);
+  *made = (strut_film_made){.width = formats[format].width,
+                            .height = formats[format].height,
+                            .fps = film->fps > 0 ? film->fps : formats[format].fps,
+                            .lasts = lasts / film->speed};
+  made->frames = 1 + (size_t)floor(made->lasts * made->fps + 1e-9);
+  made->shown = film->speed / made->fps;
+  made->every = m.run.frames > 1 ? lasts / (double)(m.run.frames - 1) : 0;
+  status = strut_film_check_length(film, lasts, error);
+  if (status != STRUT_OK) return status;
+  for (size_t i = 0; i < m.run.frames; i++) strut_run_expect_frame(&m.run, i);
+  find_window(&m);
+  status = strut_run_find_limits(&m.run) ? encode(&m, format, error)
+                                         : strut_no_memory(error, "while making a film");
   strut_arena_free(&m.run.arena);
   return status;
 }

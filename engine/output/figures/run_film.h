@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Films of a recorded motion: its frames as figures draw them, encoded by the program ffmpeg.
- */
+/** Films of a recorded motion: its frames as figures draw them, encoded by the program ffmpeg. */
 #ifndef STRUT_ENGINE_OUTPUT_FIGURES_RUN_FILM_H
 #define STRUT_ENGINE_OUTPUT_FIGURES_RUN_FILM_H
 
@@ -13,11 +11,6 @@
 /** Channels that a film needs from strut_trajectory_sink. */
 #define STRUT_FILM_CHANNELS                                                                        \
   ((unsigned)STRUT_CHANNEL_POSITION | STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT)
-
-/** Longest film [s], and the default frames per second. */
-enum { STRUT_FILM_LONGEST = 1800 };
-#define STRUT_FILM_FPS 30
-#define STRUT_FILM_GIF_FPS 25
 
 typedef struct strut_film {
   const strut_experiment *experiment; /* of the run: whose travel is shown */
@@ -39,17 +32,13 @@ typedef struct strut_film_made {
   double shown; /* time of the motion between frames of the film [s] */
 } strut_film_made;
 
-/** Before anything is computed: STRUT_USAGE for another ending, STRUT_FILE_TROUBLE where nothing can be
-    written or ffmpeg is not on the PATH. */
+/** Before a run: STRUT_USAGE for another ending, STRUT_FILE_TROUBLE where nothing can be written or ffmpeg is missing. */
 STRUT_API strut_status strut_film_check(const char *path, strut_error *error);
-/** Checks the length of a film of a motion of this duration [s]; STRUT_USAGE. */
+/** STRUT_USAGE where a film of a motion of this duration [s] is too long. */
 STRUT_API strut_status strut_film_check_length(const strut_film *film, double motion,
                                                strut_error *error);
-/**
- * Makes the film from the recorded frames nearest in time. The file appears whole or not at all.
- * STRUT_USAGE as above, STRUT_FILE_TROUBLE with what ffmpeg says, STRUT_DIVERGED without a frame to
- * show, STRUT_INTERRUPTED, STRUT_NO_MEMORY.
- */
+/** Makes the film from the recorded frames nearest in time; whole or not at all. STRUT_USAGE as above,
+    STRUT_FILE_TROUBLE with what ffmpeg says, STRUT_DIVERGED without a frame, STRUT_INTERRUPTED, STRUT_NO_MEMORY. */
 STRUT_API strut_status strut_film_make(const strut_film *film, const strut_model *model,
                                        const strut_trajectory *motion, strut_film_made *made,
                                        strut_error *error);
