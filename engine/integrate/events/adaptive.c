@@ -72,8 +72,9 @@ STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *step
     speed = larger_of(speed, strut_lanes_load(stepper->now->v + i));
     speed = larger_of(speed, strut_lanes_load(stepper->next->v + i));
   }
-  double fast = largest_of(speed), off = largest_of(velocity), before = stepper->control.fastest;
-  stepper->control.speed = fast > before ? fast : before;
+  double fast = largest_of(speed), off = largest_of(velocity);
+  stepper->control.own_speed = fast;
+  if (fast > stepper->control.speed) stepper->control.speed = fast;
   return relative_error(model, &stepper->control, h, largest_of(position), off);
 }
 
@@ -278,8 +279,9 @@ STRUT_INLINE double earliest_dip(const strut_model *model, const strut_state *st
                                  const strut_event_stepper *stepper, double h, unsigned terms) {
   const strut_contact_table *c = &model->contacts;
   double first = 0.0, part = fmax(0.1 * stepper->control.tolerance, 1e-12);
-  double faint[2] = {0.01 * part * model->size,
-                     part * stepper->control.speed}; /* of a gap, of a speed */
+  const strut_step_control *control = &stepper->control;
+  double faint[2] = {0.01 * part * model->size, /* of a gap, of a speed */
+                     fmax(part * control->speed, h * control->rounding)};
   bool surfaces = frames_of(stepper->next, terms);
   int32_t count =
       surfaces ? strut_surface_candidates(model, stepper, h, state->buffers.near) : c->count;

@@ -98,7 +98,7 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
   memcpy(stepper->next->v, state->v, (size_t)model->length * sizeof(double));
   stepper->control.h = 0.0;
   stepper->control.longest = dt;
-  stepper->control.fastest = stepper->control.speed = 0.0;
+  stepper->control.fastest = stepper->control.speed = stepper->control.own_speed = 0.0;
   stepper->done = 0.0;
   stepper->chatter.at_once = stepper->chatter.switches = 0;
   stepper->chatter.pushed = -1;
@@ -347,7 +347,8 @@ static void accept_piece(const strut_model *model, strut_state *state, strut_eve
   if (state->watched.variation) strut_variation_step(model, state, stepper, piece->t, piece->h);
   if (observed) keep_begin(model, state, stepper->view);
   accept_step(model, state, stepper, state->balance);
-  stepper->control.fastest = stepper->control.speed;
+  stepper->control.fastest = fmax(stepper->control.fastest, stepper->control.own_speed);
+  stepper->control.speed = stepper->control.fastest;
   if (observed) show_piece(model, state, stepper, piece);
   stepper->chatter.at_once = 0;
   if (piece->h > SEPARATES * (stepper->formula->adaptive ? stepper->control.h : piece->dt))

@@ -247,9 +247,12 @@ typedef struct strut_step_control {
   double refine, refine_time, refine_memory; /* after a touchdown [1], [s], [1] */
   /* with error control: */
   double tolerance, h, error; /* relative, step to try [s], relative to what is allowed [1] */
-  double fastest, speed; /* largest of accepted steps, and of these and the latest trial [m/s] */
-  double longest;        /* a step of the grid [s] */
-  double rounding;       /* of what the pair says of accelerations [m/s^2] */
+  double fastest;             /* speed of the steps accepted so far [m/s] */
+  double
+      speed; /* of these and of all trials of the next one: what errors of velocities are compared with */
+  double own_speed;          /* of the latest trial */
+  double longest;            /* a step of the grid [s] */
+  double rounding;           /* of what the pair says of accelerations [m/s^2] */
   strut_least_margin *least; /* (contacts, laws) in the latest step, of closed ones and memory */
   double work[STRUT_POWER_ROOM]; /* at the begin of the grid step [J] */
 } strut_step_control;
