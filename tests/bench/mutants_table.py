@@ -432,7 +432,7 @@ MUTANTS = [
            "  if (f->mu_static >= 0.0 && f->mu_static < f->mu_kinetic) return 1;\n", "",
            "static friction below kinetic friction is accepted", "ground_laws|corpus"),
     Mutant("materials-of-a-try", "engine/forces/capstan.c",
-           "if (frozen && !is_slack(&c)) keep_materials", "if (frozen) keep_materials",
+           "if (frozen && !is_slack(&c))\n", "if (frozen)\n",
            "a step that is not taken shares out a running cable as if it were slack", "switches"),
     Mutant("bands-left-briefly", "engine/integrate/events/adaptive.c",
            "if (s != 0.0 && left > 0.0)", "if (s != 0.0 && left > 0.0 && bound >= 0.0)",
