@@ -326,10 +326,7 @@ STRUT_INLINE double law_value(const strut_event_stepper *stepper, const strut_st
                                                                                                    \
   static void name##_trial(const strut_model *model, strut_state *state,                           \
                            strut_event_stepper *stepper, double t, double h) {                     \
-    const strut_step_control control = stepper->control;                                           \
-    double far = stepper->formula->predict ? h : 2.0 * h;                                          \
-    for (int k = 0; k < state->watched.rehearsals; k++, stepper->control = control)                \
-      name##_once(model, state, stepper, t, far);                                                  \
+    if (state->watched.rehearsals) strut_event_rehearse(name##_once, model, state, stepper, t, h); \
     name##_once(model, state, stepper, t, h);                                                      \
   }
 

@@ -171,6 +171,14 @@ static void switch_relay(const strut_model *model, strut_state *state, strut_eve
   strut_modes_after_jump(model, state, stepper, t);
 }
 
+void strut_event_rehearse(strut_event_trial *trial, const strut_model *model, strut_state *state,
+                          strut_event_stepper *stepper, double t, double h) {
+  const strut_step_control control = stepper->control;
+  double far = stepper->formula->predict ? h : 2.0 * h;
+  for (int k = 0; k < state->watched.rehearsals; k++) trial(model, state, stepper, t, far);
+  stepper->control = control;
+}
+
 /* ---- a piece of a step ---- */
 
 /** A piece of a step from stepper->now, and what ends it. */

@@ -171,11 +171,13 @@ typedef struct strut_tableau {
       difference[STRUT_MOST_STAGES + 1]; /* weights of the local error; 0 without error control */
 } strut_tableau;
 
+/** A step from stepper->now at time t over h to stepper->next, with the works of it in stepper->gained. */
+typedef void strut_event_trial(const strut_model *model, strut_state *state,
+                               strut_event_stepper *stepper, double t, double h);
+
 /** What a method adds: how one step goes while nothing happens. */
 typedef struct strut_step_formula {
-  /** From stepper->now at time t over h to stepper->next, with the works of it in stepper->gained. */
-  void (*trial)(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                double t, double h);
+  strut_event_trial *trial;
   int stages; /* (length) arrays it needs in stepper->stage */
   bool exact; /* iterate roots to rounding, and locate kinks as well as jumps */
   /** Fills stepper->next->q and what trial needs beside it, where positions are known before forces are:
@@ -312,6 +314,9 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
                                  double dt);
 /** Prepares for an observer; see strut_integrator. */
 bool strut_event_stepper_observe(const strut_model *model, strut_state *state, void *workspace);
+/** Takes the trial as often as state->watched.rehearsals says, twice as far where positions are not predicted. */
+void strut_event_rehearse(strut_event_trial *trial, const strut_model *model, strut_state *state,
+                          strut_event_stepper *stepper, double t, double h);
 /** `count` steps of dt. */
 void strut_event_stepper_advance(const strut_model *model, strut_state *state, void *workspace,
                                  double dt, int64_t count);
