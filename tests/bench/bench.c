@@ -3,14 +3,11 @@
  * strut_bench: how long a step takes.
  *
  *   strut_bench [--repeats N] [--members N]  the crawler in strut and elsewhere, then chains of
- *                                            X-frames of 10 to N (default 1000000) members
- *   strut_bench large [MEMBERS]              chains and grids in order and shuffled
+ *                                            X-frames of 10, 100, ... and N (default 1000000) members
  *   strut_bench methods [METHOD [FINER]]     what a force evaluation costs by each method, alone
  *   strut_bench rivals [--limit S] [-o DIR] [SCENE...]   error against cost, strut and other solvers; a table
  *                                            for each scene, CSV and figures into DIR, S of CPU time per cell
  *   strut_bench rivals --check               whether all of them converge to one answer
- *   strut_bench chain MEMBERS [lumped|consistent]   writes such a chain as a scene file to stdout
- *   strut_bench load FILE                    reads and compiles a scene file; seconds and memory
  *
  * Competitors take turns, so that a change of the machine's speed meets all of them. Times are the thread's CPU
  * times, the least of all turns; ratios are of each turn, the median with both quartiles.
@@ -23,10 +20,8 @@
 
 #include "engine/integrate/integrator.h"
 #ifdef BENCH_PARSER
-#include "parser/read/read_scene.h"
 #include "tests/bench/precision.h"
 #endif
-#include "tests/bench/large.h"
 #include "tests/bench/methods.h"
 #include "tests/bench/rivals.h"
 #include "tests/bench/scenes.h"
@@ -170,53 +165,18 @@ static void time_chain(size_t members, int repeats) {
 static void compare_chains(size_t largest, int repeats) {
   printf("\nchains of X-frames, RK4, 0.1 ms: ns per member and step\n  %10s %12s %12s\n", "members",
          "lumped", "consistent");
-  for (size_t members = 10; members <= largest; members *= 10)
+  for (size_t members = 10; members < largest; members *= 10)
     time_chain(members, members >= 100000 && repeats > 5 ? 5 : repeats);
+  time_chain(largest, repeats > 5 ? 5 : repeats);
   printf("  peak memory %.0f MB\n", peak_megabytes());
-}
-
-static int load(const char *path) {
-#ifdef BENCH_PARSER
-  char *text = NULL;
-  size_t length = 0;
-  strut_error error = {0};
-  strut_setup setup;
-  strut_model *model = NULL;
-  strut_diagnostics diagnostics = {0};
-  double start = bench_seconds();
-  strut_status status = strut_file_read(path, &text, &length, &error);
-  if (status == STRUT_OK)
-    status = strut_setup_read(&setup, path, text, length, NULL, 0, STRUT_FOR_ANY, &diagnostics);
-  double read = bench_seconds();
-  if (status == STRUT_OK) {
-    status = strut_model_compile(&setup.scene, &model, &error);
-    printf(
-        "%zu members: read in %.2f s, compiled in %.2f s, together %.2f s, peak memory %.0f MB\n",
-        setup.scene.member_count, read - start, bench_seconds() - read, bench_seconds() - start,
-        peak_megabytes());
-    strut_model_free(model);
-    strut_setup_free(&setup);
-  }
-  if (status != STRUT_OK)
-    fprintf(stderr, "strut_bench: %s: %s %s\n", path, strut_status_text(status), error.message);
-  strut_diagnostics_free(&diagnostics);
-  strut_release(text);
-  return strut_status_exit_code(status);
-#else
-  fprintf(stderr, "strut_bench: built without the parser, cannot read %s\n", path);
-  return 1;
-#endif
 }
 
 static int usage(void) {
   fprintf(stderr,
           "usage: strut_bench [--repeats N] [--members N]\n"
-          "       strut_bench large [MEMBERS]\n"
           "       strut_bench methods [METHOD [FINER]]\n"
           "       strut_bench rivals [--limit S] [-o DIR] [SCENE...]\n"
-          "       strut_bench rivals --check\n"
-          "       strut_bench chain MEMBERS [lumped|consistent] > FILE\n"
-          "       strut_bench load FILE\n");
+          "       strut_bench rivals --check\n");
   return 1;
 }
 
@@ -243,20 +203,9 @@ int main(int argc, char **argv) {
 #ifdef BENCH_PARSER
   if (argc >= 2 && strcmp(argv[1], "rivals") == 0) return compare_rivals(argc, argv);
 #endif
-  if (argc >= 2 && strcmp(argv[1], "large") == 0) {
-    bench_large(argc > 2 ? atol(argv[2]) : 0);
-    return 0;
-  }
   if (argc >= 2 && strcmp(argv[1], "methods") == 0) {
     bench_methods(31, argc > 2 ? argv[2] : NULL, argc > 3 ? atof(argv[3]) : 1.0);
     return 0;
-  }
-  if (argc == 3 && strcmp(argv[1], "load") == 0) return load(argv[2]);
-  if (argc >= 3 && strcmp(argv[1], "chain") == 0) {
-    bool consistent = argc > 3 && strcmp(argv[3], "consistent") == 0;
-    bench_chain_write(stdout, strtoul(argv[2], NULL, 10),
-                      consistent ? STRUT_MASS_CONSISTENT : STRUT_MASS_LUMPED);
-    return fflush(stdout) == 0 ? 0 : 4;
   }
   int repeats = 15;
   size_t members = 1000000;

@@ -103,8 +103,7 @@ def row_of_masses(masses, springs, start):
     members = {}
     for i, (mass, stiffness) in enumerate(zip(masses, springs), 1):
         nodes[f"n{i}"] = {"position": [i, 0], "mass": mass, "fixed": "y"}
-        members[f"s{i}"] = {"kind": "spring", "nodes": [f"n{i - 1}", f"n{i}"], "stiffness": stiffness,
-                            "rest_length": 1}
+        members[f"s{i}"] = {"kind": "spring", "nodes": [f"n{i - 1}", f"n{i}"], "stiffness": stiffness, "rest_length": 1}
     positions = {f"n{i}": [i + x, 0] for i, x in enumerate(start, 1)}
     return {"strut": 1, "nodes": nodes, "members": members, "initial": {"positions": positions}}
 

@@ -55,8 +55,7 @@ def reference(file, grid, wanted, scale):
     right = one["velocity"]
     enough = 0.05 * wanted * max(abs(right), scale)
     for options in (["adaptive", "--step", repr(grid / 3), "--tolerance", "1e-9"],
-                    ["rk4-events", "--step", repr(min(grid, 0.2 * one["step_limit"]
-                                                      if one["step_limit"] else grid))]):
+                    ["rk4-events", "--step", repr(min(grid, 0.2 * one["step_limit"] if one["step_limit"] else grid))]):
         two, why = run(file, "--integrator", *options)
         if two and abs(two["velocity"] - right) <= enough:
             return right, ""

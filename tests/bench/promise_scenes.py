@@ -81,8 +81,7 @@ def chain(random, ratio=None):
                             "damping": random.choice([0, 0.02, 0.2]) * math.sqrt(soft * mass)}
         before = f"n{i}"
     scene = {"strut": 1, "nodes": nodes, "members": members, "gravity": [0, -GRAVITY]}
-    return timed(scene, random.uniform(0.5, 2) * 2 * math.pi * math.sqrt(length / GRAVITY), before,
-                 part(random))
+    return timed(scene, random.uniform(0.5, 2) * 2 * math.pi * math.sqrt(length / GRAVITY), before, part(random))
 
 
 def net(random):
@@ -111,8 +110,7 @@ def net(random):
              "loads": {"blow": {"node": "n11", "force": [random.uniform(0.1, 0.5) * pull,
                                                          random.uniform(-0.5, 0.5) * pull],
                                 "signal": {"half_sine": {"amplitude": 1, "frequency": slow}}}}}
-    return timed(scene, random.uniform(1, 4) * 2 * math.pi / slow, random.choice(["n11", "n12"]),
-                 part(random))
+    return timed(scene, random.uniform(1, 4) * 2 * math.pi / slow, random.choice(["n11", "n12"]), part(random))
 
 
 def tumbling(random, ratio=1.0):
@@ -124,8 +122,7 @@ def tumbling(random, ratio=1.0):
     swing = math.sqrt(soft / mass)
     scene = {"strut": 1, "nodes": nodes, "members": members, "gravity": [0, -GRAVITY],
              "initial": {"velocities": thrown(random, nodes, swing * radius, 0.5 * swing)}}
-    return timed(scene, random.uniform(2, 6) * 2 * math.pi / swing, random.choice([None, "n0"]),
-                 part(random))
+    return timed(scene, random.uniform(2, 6) * 2 * math.pi / swing, random.choice([None, "n0"]), part(random))
 
 
 def shaken(random, ratio=1.0):
@@ -196,13 +193,10 @@ def tethered(random):
                                   "stiffness": k, "rest_length": length,
                                   "damping": random.uniform(0, 0.1) * math.sqrt(k * mass)}},
              "gravity": [0, -GRAVITY],
-             "ground": {**ground(random, mass * GRAVITY, length * random.uniform(3e-4, 1e-2)),
-                        "nodes": ["bob"]}}
+             "ground": {**ground(random, mass * GRAVITY, length * random.uniform(3e-4, 1e-2)), "nodes": ["bob"]}}
     pin = scene["nodes"]["pin"]["position"]
-    scene["nodes"]["bob"]["position"] = [length * math.sin(lean),
-                                         max(0.05 * length, pin[1] - length * math.cos(lean))]
-    return timed(scene, random.uniform(0.5, 2) * 2 * math.pi * math.sqrt(length / GRAVITY), "bob",
-                 part(random))
+    scene["nodes"]["bob"]["position"] = [length * math.sin(lean), max(0.05 * length, pin[1] - length * math.cos(lean))]
+    return timed(scene, random.uniform(0.5, 2) * 2 * math.pi * math.sqrt(length / GRAVITY), "bob", part(random))
 
 
 def hopper(random):
@@ -210,8 +204,7 @@ def hopper(random):
     count, radius, mass = random.randint(3, 4), random.uniform(0.05, 0.2), random.uniform(0.05, 0.2)
     frequency, weight = random.uniform(3, 15), mass * count * GRAVITY
     soft = weight / radius * random.uniform(50, 300)
-    nodes, members = frame(random, count, radius, soft,
-                           random.uniform(0.1, 0.3) * math.sqrt(soft * mass), mass, 0.001)
+    nodes, members = frame(random, count, radius, soft, random.uniform(0.1, 0.3) * math.sqrt(soft * mass), mass, 0.001)
     g = ground(random, weight, radius * random.uniform(0.002, 0.02))
     g["slope"] = random.choice([0, random.uniform(-0.05, 0.05)])
     scene = {"strut": 1, "nodes": nodes, "members": members, "gravity": [0, -GRAVITY], "ground": g,
@@ -245,8 +238,7 @@ def belt(random):
              "ground": {"stiffness": normal / deep, "damping": 0.3 * math.sqrt(normal / deep * mass),
                         "belt_speed": speed, "nodes": ["block"], "friction": friction},
              "initial": {"velocities": {"block": [random.choice([0, speed]), 0]}}}
-    return timed(scene, random.uniform(2, 6) * 2 * math.pi * math.sqrt(mass / stiffness), "block",
-                 part(random))
+    return timed(scene, random.uniform(2, 6) * 2 * math.pi * math.sqrt(mass / stiffness), "block", part(random))
 
 
 def block(random):
@@ -274,15 +266,12 @@ def crawler(random):
     count, radius, mass = random.randint(3, 5), random.uniform(0.03, 0.2), random.uniform(0.02, 0.2)
     frequency, weight = random.uniform(4, 20), mass * count * GRAVITY
     soft = weight / radius * random.uniform(100, 1000)
-    nodes, members = frame(random, count, radius, soft,
-                           random.uniform(0.05, 0.2) * math.sqrt(soft * mass), mass, 0.0)
+    nodes, members = frame(random, count, radius, soft, random.uniform(0.05, 0.2) * math.sqrt(soft * mass), mass, 0.0)
     scene = {"strut": 1, "nodes": nodes, "members": members, "gravity": [0, -GRAVITY],
-             "ground": {**ground(random, weight, radius * random.uniform(0.001, 0.01)),
-                        "friction": law(random, 1e-4)},
+             "ground": {**ground(random, weight, radius * random.uniform(0.001, 0.01)), "friction": law(random, 1e-4)},
              "actuators": {"drive": {"member": random.choice(list(members)), "signal": {"sine": {
                  "amplitude": radius * random.uniform(0.002, 0.03), "frequency": frequency}}}}}
-    scene["ground"]["damping"] = max(scene["ground"]["damping"],
-                                     0.2 * math.sqrt(scene["ground"]["stiffness"] * mass))
+    scene["ground"]["damping"] = max(scene["ground"]["damping"], 0.2 * math.sqrt(scene["ground"]["stiffness"] * mass))
     return periodic(scene, frequency, random.choice([30, 60, 120]), 5, "drive")
 
 
@@ -303,8 +292,7 @@ def two_masses(random):
                         "contacts": {"right": {"stiffness": light * GRAVITY / deep}}},
              "actuators": {"drive": {"member": "link", "signal": {"sum": [
                  {"sine": {"amplitude": first, "frequency": frequency}},
-                 {"sine": {"amplitude": first * random.uniform(0.3, 0.7),
-                           "frequency": 2 * frequency}}]}}}}
+                 {"sine": {"amplitude": first * random.uniform(0.3, 0.7), "frequency": 2 * frequency}}]}}}}
     return periodic(scene, frequency, random.choice([30, 60]), 10, "drive")
 
 

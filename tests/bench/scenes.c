@@ -119,32 +119,3 @@ strut_status bench_chain_scene(strut_setup *setup, size_t members, strut_mass_mo
   setup->experiment.step = 1e-4, setup->experiment.duration = 1e-3;
   return STRUT_OK;
 }
-
-void bench_chain_write(FILE *file, size_t members, strut_mass_model mass) {
-  size_t frames = frames_of(members);
-  fprintf(file,
-          "strut: 1\n"
-          "name: Chain of %zu X-frames\n"
-          "mass_model: %s\n"
-          "groups:\n"
-          "  rod: {kind: bar, stiffness: %g N/m, damping: %g N s/m, mass: %g kg}\n"
-          "  rope: {kind: cable, stiffness: %g N/m, damping: %g N s/m, rest_length_ratio: %g}\n"
-          "nodes:\n"
-          "  a0: {position: [0, 0], fixed: both}\n"
-          "  b0: {position: [0, %g], fixed: both}\n",
-          frames, mass == STRUT_MASS_LUMPED ? "lumped" : "consistent", BAR_STIFFNESS, DAMPING,
-          BAR_MASS, CABLE_STIFFNESS, DAMPING, CABLE_RATIO, SIDE);
-  for (size_t i = 1; i <= frames; i++)
-    fprintf(file, "  a%zu: [%.17g, 0]\n  b%zu: [%.17g, %g]\n", i, SIDE * (double)i, i,
-            SIDE * (double)i, SIDE);
-  fprintf(file, "members:\n");
-  for (size_t i = 0; i < frames; i++) {
-    size_t j = i + 1;
-    fprintf(file, "  p%zu: {group: rod, nodes: [a%zu, b%zu]}\n", i, i, j);
-    fprintf(file, "  q%zu: {group: rod, nodes: [b%zu, a%zu]}\n", i, i, j);
-    fprintf(file, "  r%zu: {group: rope, nodes: [a%zu, a%zu]}\n", i, i, j);
-    fprintf(file, "  s%zu: {group: rope, nodes: [b%zu, b%zu]}\n", i, i, j);
-    fprintf(file, "  t%zu: {group: rope, nodes: [a%zu, b%zu]}\n", i, j, j);
-  }
-  fprintf(file, "solver: {step: 0.1 ms}\nrun: {duration: 1 ms}\n");
-}

@@ -3,8 +3,6 @@
 #ifndef STRUT_TESTS_BENCH_SCENES_H
 #define STRUT_TESTS_BENCH_SCENES_H
 
-#include <stdio.h>
-
 #include "engine/scene/experiment.h"
 
 /**
@@ -19,8 +17,5 @@ strut_status bench_crawler_scene(strut_setup *setup, double f, double a, double 
  * so it vibrates. Free with strut_scene_free.
  */
 strut_status bench_chain_scene(strut_setup *setup, size_t members, strut_mass_model mass);
-
-/** The same chain as a scene file. */
-void bench_chain_write(FILE *file, size_t members, strut_mass_model mass);
 
 #endif

@@ -108,8 +108,7 @@ def make(random):
     for k, name in enumerate(driven):
         amplitude = round(pitch * random.uniform(0.01, 0.12), 5)
         times = 1 if k == 0 else random.choice([1, 1, 2])
-        scene["actuators"][f"d{k}"] = {"member": name,
-                                       "signal": make_signal(random, amplitude, times * frequency)}
+        scene["actuators"][f"d{k}"] = {"member": name, "signal": make_signal(random, amplitude, times * frequency)}
     if random.random() < 0.2:
         scene["loads"] = {"push": {"node": f"n{count - 1}",
                                    "force": [round(random.uniform(-0.2, 0.2) * weight, 3), 0],

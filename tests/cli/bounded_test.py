@@ -42,8 +42,7 @@ def profiles():
               f"profile: [{points}]}}\n")
 
     generator = random.Random(1)
-    for name, height in (("hill", lambda x: -0.001 * x * x - 1),
-                         ("rough", lambda x: -1 + 1e-6 * generator.random())):
+    for name, height in (("hill", lambda x: -0.001 * x * x - 1), ("rough", lambda x: -1 + 1e-6 * generator.random())):
         scene(f"{name}.yaml", 100000, height, "rk4")
         _, seconds = run("check", f"{name}.yaml")
         check(seconds < 10, f"{name}: checked in {seconds:.2f} s")

@@ -50,8 +50,7 @@ def same(what, found, wanted, relative=1e-12):
 
 def check_counts(path, v):
     reported = read("check", path)
-    for key in ("nodes", "bars", "springs", "cables", "contacts", "actuators",
-                "degrees_of_freedom", "step_limit"):
+    for key in ("nodes", "bars", "springs", "cables", "contacts", "actuators", "degrees_of_freedom", "step_limit"):
         same(f"{path}: {key}", v[key], reported[key])
     same(f"{path}: members", v["members"], len(reported["members"]))
 
@@ -67,8 +66,7 @@ def check_rigidity(path, v):
     force = [m["force"] for m in reported.values()]
     same(f"{path}: tension", v["largest_tension"], max(0, *force), 1e-9)
     same(f"{path}: compression", v["largest_compression"], max(0, *[-f for f in force]), 1e-9)
-    same(f"{path}: prestress", v["prestress"], math.sqrt(sum(f * f for f in force) / len(force)),
-         1e-9)
+    same(f"{path}: prestress", v["prestress"], math.sqrt(sum(f * f for f in force) / len(force)), 1e-9)
 
 
 def check_states(path, model):
@@ -91,8 +89,7 @@ def check_states(path, model):
 def check_frequencies(path, v):
     elastic = [m["frequency"] for m in read("modes", path)["modes"] if m["kind"] == "elastic"]
     for i in range(3):
-        same(f"{path}: frequency {i + 1}", v[f"frequency_{i + 1}"],
-             elastic[i] if i < len(elastic) else None)
+        same(f"{path}: frequency {i + 1}", v[f"frequency_{i + 1}"], elastic[i] if i < len(elastic) else None)
 
 
 def check_motion(path, model, *options):
@@ -108,8 +105,7 @@ def check_motion(path, model, *options):
     work = reported["window_drive_work"] / reported["window_duration"] * period
     same(f"{path}: energy", v["drive_energy_per_period"], work, 2e-3)
     same(f"{path}: power", v["drive_power"], v["drive_energy_per_period"] / period)
-    same(f"{path}: transport", v["cost_of_transport"],
-         v["drive_power"] / (v["mass"] * 9.81 * abs(v["velocity"])))
+    same(f"{path}: transport", v["cost_of_transport"], v["drive_power"] / (v["mass"] * 9.81 * abs(v["velocity"])))
     duty = {n: c["duty"] for n, c in reported["contacts"].items()}
     for node, c in model["contacts"].items():
         if abs(c["duty"] - duty[node]) > 0.03:
@@ -195,8 +191,7 @@ if crawler["values"]["lowest_energy"] is not None or \
     fail("states that were not asked for")
 
 # ---- unlike structures, settings, CSV ----
-both = read("compare", "--set", "frequency=10.5 Hz", "--set", "start=II", CRAWLER, X, TWO,
-            PENDULUM, "--no-states")
+both = read("compare", "--set", "frequency=10.5 Hz", "--set", "start=II", CRAWLER, X, TWO, PENDULUM, "--no-states")
 by = {m["model"]: m for m in both["models"]}
 if list(by) != ["crawler", "x-frame", "two-mass-crawler", "pendulum"]:
     fail(f"labels {list(by)}")
@@ -244,8 +239,7 @@ members:
     reported = {d["where"]: (d["change"], d["was"], d["is"]) for d in found["models"][1]["differences"]}
     if reported != {"parameters.unlike": ("removed", "1", None),
                 "members.ab.stiffness": ("changed", "100", "200"),
-                "members.ac": ("added", None, "{nodes: [a, b], kind: cable, stiffness: 1, "
-                               "rest_length_ratio: 1}")}:
+                "members.ac": ("added", None, "{nodes: [a, b], kind: cable, stiffness: 1, " "rest_length_ratio: 1}")}:
         fail(f"differences: {reported}")
     if found["models"][2]["differences"] or found["models"][2]["model"] != "one.yaml":
         fail("the same model twice has differences, or no label of its own")
@@ -256,16 +250,14 @@ members:
     if found["models"][0]["reasons"].get("stiffness_y") is None:
         fail("a spring without tension resists across")
     out = run("compare", "one.yaml", "two.yaml", "--no-states", "--no-motion").stdout
-    for line in ("two against one", "+ members.ac", "- parameters.unlike",
-                 "~ members.ab.stiffness: 100 -> 200"):
+    for line in ("two against one", "+ members.ac", "- parameters.unlike", "~ members.ab.stiffness: 100 -> 200"):
         if line not in out:
             fail(f"the table lacks '{line}'")
 
     # ---- files ----
     run("compare", "one.yaml", "two.yaml", SQUARE, "--no-motion", "-q", "-o", "kept")
     names = sorted(files_in("kept"))
-    if names != ["compare.csv", "compare.json", "compare.svg", "model-1.svg", "model-2.svg",
-                 "model-3.svg"]:
+    if names != ["compare.csv", "compare.json", "compare.svg", "model-1.svg", "model-2.svg", "model-3.svg"]:
         fail(f"files: {names}")
     for name in names:
         if name.endswith(".svg"):
@@ -322,8 +314,7 @@ members:
         if own[label]["parameters"]["stiff"] != stiffness or \
                 own[label]["values"]["stiffness_x"] == first:
             fail(f"{label} is not set: {own[label]['parameters']}")
-    done = run("compare", "--set", "stiff=1e6", "one.yaml", "one.yaml", "--no-states",
-               "--no-motion")
+    done = run("compare", "--set", "stiff=1e6", "one.yaml", "one.yaml", "--no-states", "--no-motion")
     if done.stderr.count("note:") != 1:
         fail(f"not one note on --set: {done.stderr}")
     done = run("compare", CRAWLER, PENDULUM, "--no-states", "--no-motion")

@@ -69,11 +69,9 @@ SHAPES = {
         (lambda: chain(MODEL, "parameters:\n", each(200000, "  p{i}: p{n}\n"), "  p200000: p0\n"),
          "more than 200 deep", None),
     "parameters that depend on themselves":
-        (lambda: chain(MODEL, "parameters:\n", each(200000, "  p{i}: p{i}\n")),
-         "'p0' depends on itself", 200000),
+        (lambda: chain(MODEL, "parameters:\n", each(200000, "  p{i}: p{i}\n")), "'p0' depends on itself", 200000),
     "expressions that are none":
-        (lambda: chain(MODEL, "parameters:\n", each(180000, "  p{i}: 1 +* {i}\n")),
-         r"unexpected '\*'", 180000),
+        (lambda: chain(MODEL, "parameters:\n", each(180000, "  p{i}: 1 +* {i}\n")), r"unexpected '\*'", 180000),
     "unknown units":
         (lambda: chain(MODEL, "parameters:\n", each(150000, "  p{i}: {i} furlong\n")),
          "unknown unit 'furlong'", 150000),
@@ -81,14 +79,11 @@ SHAPES = {
         (lambda: chain(MODEL, "parameters:\n", each(180000, "  p{i}: sine(1)\n")),
          "unknown function 'sine'; did you mean 'sin'", 180000),
     "nodes that are numbers":
-        (lambda: chain(HEAD, "nodes:\n", each(270000, "  n{i}: 5\n")),
-         "expected a position", 270000),
+        (lambda: chain(HEAD, "nodes:\n", each(270000, "  n{i}: 5\n")), "expected a position", 270000),
     "nodes that are empty":
-        (lambda: chain(HEAD, "nodes:\n", each(240000, "  n{i}: {{}}\n")),
-         "node 'n0' lacks 'position'", 240000),
+        (lambda: chain(HEAD, "nodes:\n", each(240000, "  n{i}: {{}}\n")), "node 'n0' lacks 'position'", 240000),
     "loads on unknown nodes":
-        (lambda: chain(MODEL, "loads:\n", each(140000, "  l{i}: {{node: x{i}}}\n")),
-         "unknown node 'x0'", None),
+        (lambda: chain(MODEL, "loads:\n", each(140000, "  l{i}: {{node: x{i}}}\n")), "unknown node 'x0'", None),
     "configurations of unknown nodes":
         (lambda: chain(MODEL, "configurations:\n", each(130000, "  c{i}: {{x: [0, 0]}}\n")),
          "unknown node 'x'", 130000),

@@ -22,8 +22,7 @@ def find(columns, rows, *options):
 
 def choice(equilibrium, columns, rows):
     """Which apexes are below the feet of their arches."""
-    return tuple(equilibrium["nodes"][f"cell.{i}.{j}.apex"][1] < 2 * j
-                 for i in range(columns) for j in range(rows))
+    return tuple(equilibrium["nodes"][f"cell.{i}.{j}.apex"][1] < 2 * j for i in range(columns) for j in range(rows))
 
 
 for columns, rows in ((2, 2), (2, 3)):

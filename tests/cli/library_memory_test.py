@@ -31,8 +31,7 @@ COMMANDS = {  # name: (words, folders and files to remove before, libraries that
     "sweep": (["sweep", "study.yaml", "-o", "out", "--threads", "1", "--quiet"], WITH_HDF5),
     "export": (["export", PENTAGON], ABORTING),
     "view": (["view", "kept", "-o", "out.html", "--quiet"], WITH_HDF5),
-    "path": (["path", f"{MODELS}/basics/von-mises-truss.yaml", "--set", "load=12", "-o", "out"],
-             ABORTING),
+    "path": (["path", f"{MODELS}/basics/von-mises-truss.yaml", "--set", "load=12", "-o", "out"], ABORTING),
     "modes": (["modes", PENTAGON, "-o", "out"], ABORTING),
     "rigidity": (["rigidity", PENTAGON, "-o", "out"], ABORTING + ":libgsl"),  # GSL checks none of its own
     "form": (["form", PENTAGON, "-o", "out.html", "--quiet"], ABORTING),
@@ -72,8 +71,7 @@ def fails_everywhere(name, words, spared):
         done = call(words, LD_PRELOAD=PRELOAD, STRUT_SPARE=spared, STRUT_FAIL_AT=str(n))
         codes[done.returncode] = codes.get(done.returncode, 0) + 1
         check(done.returncode >= 0, f"{name}: allocation {n} of {total}: signal {-done.returncode}")
-        check(done.returncode == 0 or done.stderr or name == "form",
-              f"{name}: allocation {n} of {total}: not a word")
+        check(done.returncode == 0 or done.stderr or name == "form", f"{name}: allocation {n} of {total}: not a word")
     print(f"{name}: {total} allocations, exit codes {codes}", flush=True)
     check(codes.get(4, 0) > 0, f"{name}: nothing failed")
 
@@ -97,8 +95,7 @@ os.chdir(work)
 for model in (HOPPER, f"{MODELS}/basics/oscillator.yaml"):
     shutil.copy(model, ".")
 with open("study.yaml", "w", encoding="utf-8") as study:
-    study.write(f"strut: 1\nstudy: s\nmodel: hopper.yaml\naxes:\n  - seconds: [0.1, 0.2]\n"
-                "trajectories: yes\n")
+    study.write(f"strut: 1\nstudy: s\nmodel: hopper.yaml\naxes:\n  - seconds: [0.1, 0.2]\ntrajectories: yes\n")
 with open("map.yaml", "w", encoding="utf-8") as study:  # two threads ask for the same equilibria
     study.write(f"strut: 1\nstudy: s\nmodel: {MODELS}/crawler/switch.yaml\naxes:\n  - amplitude: [0.1 mm, 0.5 mm, 1 mm]\n"
                 "  - frequency: [10 Hz, 11 Hz, 12 Hz, 13 Hz]\nrun: {duration: 20 ms}\nkeep: [outcome]\n")

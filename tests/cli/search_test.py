@@ -41,8 +41,7 @@ for method, evaluations, within in (("multistart", 120, 1e-6), ("crs2", 120, 1e-
                                     ("direct", 120, 1e-4), ("isres", 200, 0.05),
                                     ("cobyla", 80, 1e-5), ("bobyqa", 80, 0.01), ("sbplx", 80, 1e-5),
                                     ("neldermead", 80, 1e-5), ("cma", 150, 1e-4)):
-    found = search(method, f"search: {{{GOAL}, {OVER}, method: {method}, "
-                   f"evaluations: {evaluations}}}\n")["best"][0]
+    found = search(method, f"search: {{{GOAL}, {OVER}, method: {method}, " f"evaluations: {evaluations}}}\n")["best"][0]
     value = found["values"]["stiffness"]
     check(abs(value / wanted - 1) < within, f"{method} found {value}, expected {wanted}")
     check(found["objective"] == min(float(r["objective [Hz]"]) for r in rows(method, "table.csv")
@@ -59,8 +58,7 @@ search("one", SEVERAL, "--threads", "1")
 for threads in ("2", "8"):
     search("several" + threads, SEVERAL, "--threads", threads)
     for name in ("table.csv", "best.csv", "best.yaml", "points.slots"):
-        check(read("one", name) == read("several" + threads, name),
-              f"{threads} threads change {name}")
+        check(read("one", name) == read("several" + threads, name), f"{threads} threads change {name}")
 GENERATIONS = f"search: {{{GOAL}, {OVER}, method: cma, starts: 2, evaluations: 70}}\n"
 search("cma1", GENERATIONS, "--threads", "1")
 search("cma8", GENERATIONS, "--threads", "8")
@@ -182,8 +180,7 @@ for name in ("best.svg", "points.svg", "beside.svg"):
 
 # ---- what cannot be found is reported ----
 
-found = search("never", f"search: {{{GOAL}, {OVER}, subject_to: [frequency_1 < 0.1 Hz], "
-               "evaluations: 40}\n", code=3)
+found = search("never", f"search: {{{GOAL}, {OVER}, subject_to: [frequency_1 < 0.1 Hz], " "evaluations: 40}\n", code=3)
 check(not found["best"][0]["feasible"] and found["best"][0]["bounds"] == {"stiffness": "lower"},
       f"infeasible everywhere: {found['best'][0]}")
 found = search("constant", "search: {minimise: 0*frequency_1, " + OVER + ", evaluations: 30}\n")
@@ -207,8 +204,7 @@ refuse("search: {minimise: frequence_1, " + OVER + "}\n", "refused.yaml:6:20: ",
 refuse("search: {minimise: at, " + OVER + "}\n", "refused.yaml:6:20: ", "holds texts")
 refuse("search: {minimise: 2 Hz, " + OVER + "}\n", "refused.yaml:6:20: ", "names no column")
 refuse("search: {minimise: frequency_1 + 1 kg, " + OVER + "}\n", "refused.yaml:6:")
-refuse("search: {minimise: frequency_1, maximise: frequency_1, " + OVER + "}\n", "refused.yaml:6:",
-       "maximise")
+refuse("search: {minimise: frequency_1, maximise: frequency_1, " + OVER + "}\n", "refused.yaml:6:", "maximise")
 refuse("search: {" + OVER + "}\n", "refused.yaml:6:9: ", "lacks 'maximise' or 'minimise'")
 refuse("search: {" + GOAL + "}\n", "refused.yaml:6:9: ", "lacks 'over'")
 for range_, text in (("{from: 1, to: 1}", "one value"), ("{from: 2, to: 1}", "reversed"),
@@ -225,10 +221,8 @@ for condition, text in (("frequency_1 < 1 kg", "compared"), ("at < 2", "texts"),
                         ("at = ", "missing"), ("where = II", "no such column"),
                         ("frequency_1 = 2", "numbers are compared"), ("frequency_1", "comparison"),
                         ("1 < frequency_1 < 2", "comparison"), ("1 < 2", "neither side")):
-    refuse("search: {" + GOAL + ", " + OVER + f", subject_to: [\"{condition}\"]}}\n",
-           "refused.yaml:6:", text)
-refuse("search: {" + GOAL + ", " + OVER + ", method: direct, starts: 3}\n", "refused.yaml:6:",
-       "no seed")
+    refuse("search: {" + GOAL + ", " + OVER + f", subject_to: [\"{condition}\"]}}\n", "refused.yaml:6:", text)
+refuse("search: {" + GOAL + ", " + OVER + ", method: direct, starts: 3}\n", "refused.yaml:6:", "no seed")
 refuse("search: {minimise: [at], " + OVER + "}\n", "a list of two")
 refuse("search: {minimise: [frequency_1, frequency_2], " + OVER + ", method: cma}\n", "nsga2")
 refuse("search: {" + GOAL + ", " + OVER + ", method: nsga2}\n", "two goals")
@@ -238,8 +232,7 @@ refuse("axes: [{stiffness: [1, 2]}]\nsearch: {" + GOAL + ", " + OVER + "}\n", "g
 refuse("axes: [{mass: [1, 2]}]\nrefine: {where: at, depth: 1}\nsearch: {" + GOAL + ", " + OVER +
        "}\n", "no grid to refine")
 refuse("trajectories: yes\ncompute: run\nsearch: {" + GOAL + ", " + OVER + "}\n", "refused.yaml")
-write("fine.yaml", "strut: 1\nstudy: x\nmodel: spring.yaml\ncompute: modes\nsearch: {" + GOAL + ", " +
-      OVER + "}\n")
+write("fine.yaml", "strut: 1\nstudy: x\nmodel: spring.yaml\ncompute: modes\nsearch: {" + GOAL + ", " + OVER + "}\n")
 done = run("sweep", "fine.yaml", "-o", "fine", "--retry", code=1)
 check("depends on those before" in done.stderr, f"--retry: {done.stderr}")
 check(run("sweep", "fine.yaml", "--count").stdout.startswith("at most 203 points"), "--count")

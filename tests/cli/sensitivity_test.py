@@ -30,8 +30,7 @@ def pick(rows, of, measure, parameter="", **others):
 
 
 def near(row, wanted, relative):
-    check(math.isclose(float(row["value"]), wanted, rel_tol=relative),
-          f"{row}: expected {wanted}")
+    check(math.isclose(float(row["value"]), wanted, rel_tol=relative), f"{row}: expected {wanted}")
 
 
 def within(row, wanted, errors=4.0):
@@ -94,8 +93,7 @@ sensitivity:
     # a threshold: shares of a lognormal mass below and above its median; a line for each point of an axis
     report, cut = sweep("cut", text.replace("samples: 512", "samples: 64\n  threshold: 2").replace(
         "sensitivity:", "axes: [{long: [1 m, 2 m]}]\nsensitivity:"))
-    for condition, share in (("total_mass > 2", 0.5), ("|total_mass| <= 2", 0.5),
-                             ("total_mass < -2", 0.0)):
+    for condition, share in (("total_mass > 2", 0.5), ("|total_mass| <= 2", 0.5), ("total_mass < -2", 0.0)):
         row = pick(cut, condition, "share", **{"long [m]": "2"})
         check(abs(float(row["value"]) - share) < 0.05 and row["used"] == "128", str(row))
         check(condition in report, report)
@@ -228,8 +226,7 @@ keep: [frequencies]
             ("sensitivity: {of: [frequency_1], over: {}}\n", "expected 1 to 20 parameters"),
             ("sensitivity: {of: [frequency_1], over: {stif: {uniform: [1 N/m, 2 N/m]}}}\n",
              "no parameter 'stif'; did you mean 'stiff'"),
-            ("sensitivity: {of: [frequency_1], over: {stiff: {uniform: [2 N/m, 1 N/m]}}}\n",
-             "two ascending numbers"),
+            ("sensitivity: {of: [frequency_1], over: {stiff: {uniform: [2 N/m, 1 N/m]}}}\n", "two ascending numbers"),
             ("sensitivity: {of: [frequency_1], over: {stiff: {uniform: [1 N/m, 2 N/m]}}, "
              "samples: 0, derivatives: no}\n", "neither samples nor derivatives"),
             ("axes: [{stiff: [1 N/m]}]\nsensitivity: {of: [frequency_1], over: "

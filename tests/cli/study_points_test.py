@@ -101,8 +101,7 @@ def samples():
         for column, values in shares.items():
             check(all(0 < u < 1 for u in values), f"{scheme}: shares of {column}")
             ordered = sorted(values)
-            far[scheme, column] = max(max(abs(u - i / count), abs(u - (i + 1) / count))
-                                      for i, u in enumerate(ordered))
+            far[scheme, column] = max(max(abs(u - i / count), abs(u - (i + 1) / count)) for i, u in enumerate(ordered))
             strata = len({int(u * count) for u in values})
             if scheme == "lhs":
                 check(strata == count, f"lhs: {column} meets {strata} strata")

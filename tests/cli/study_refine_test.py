@@ -82,8 +82,7 @@ def same_bytes():
     for _ in range(12):
         order = [0, 1, 2]
         rounds.shuffle(order)
-        waits = [run("sweep", "fine.yaml", "-o", "parts", "--quiet", "--shard", f"{k}/3").stderr
-                 for k in order]
+        waits = [run("sweep", "fine.yaml", "-o", "parts", "--quiet", "--shard", f"{k}/3").stderr for k in order]
         if not any("run this shard again" in text for text in waits):
             break
         if os.path.exists(path("parts/shards")) and len(os.listdir(path("parts/shards"))) == 3 and \

@@ -71,8 +71,7 @@ def sizes():
     check(errors[0] > errors[1] > errors[2] and errors[2] < 2e-3, f"errors {errors}")
     # A run keeps the names of the first point; what a point does not have is empty, and the reverse.
     rows = sweep("run", axes + kept + ", positions, contacts, velocity]\n")
-    check([int(row["node_count"]) for row in rows] == [int(r["node_count"]) for r in rows],
-          "counts of runs")
+    check([int(row["node_count"]) for row in rows] == [int(r["node_count"]) for r in rows], "counts of runs")
     check(all(row["x_right [m]"] and row["x_rod.1 [m]"] for row in rows), f"positions: {rows[0]}")
     back = sweep("back", axes.replace("[2, 4, 20]", "[20, 4, 2]") + "keep: [positions]\n")
     check(back[0]["x_rod.7 [m]"] and not back[1]["x_rod.7 [m]"] and back[2]["x_rod.1 [m]"],

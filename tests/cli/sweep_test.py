@@ -70,8 +70,7 @@ keep: [duration]
     for n, row in enumerate(table):
         i = np.unravel_index(n, (2, 7, 11, len(seconds)))
         wanted = [stiffness[i[1]], mass[i[2]], step[i[2]], seconds[i[3]]]
-        found = [float(row[k]) for k in
-                 ("stiffness [N/m]", "mass [kg]", "step [s]", "seconds [s]")]
+        found = [float(row[k]) for k in ("stiffness [N/m]", "mass [kg]", "step [s]", "seconds [s]")]
         good = (np.allclose(found, wanted, rtol=1e-14, atol=0) and
                 row["place"] == ("near", "far")[i[0]] and int(row["point"]) == n)
         check(good, f"point {n}: {row}, expected {wanted}")
@@ -113,17 +112,14 @@ axes: [{mass: [1 kg, 2 kg, 3 kg]}]
 """)
     done = run("sweep", "rods.yaml", "-o", "rods", "--json", "--threads", "2")
     warnings = json.loads(done.stdout)["warnings"]
-    check(len(warnings) == 1 and warnings[0]["runs"] == 3 and warnings[0]["point"] == 0,
-          f"warnings {warnings}")
+    check(len(warnings) == 1 and warnings[0]["runs"] == 3 and warnings[0]["point"] == 0, f"warnings {warnings}")
     check(done.stderr.count("warning") == 1 and "3 of 3 runs, first point 0: " in done.stderr,
           f"warnings on stderr: {done.stderr}")
-    check([row["start_unstable"] for row in rows("rods/table.csv")] == ["1"] * 3,
-          "the column of unstable starts")
+    check([row["start_unstable"] for row in rows("rods/table.csv")] == ["1"] * 3, "the column of unstable starts")
     write("rod.yaml", ROD.replace("settle: true", "settle: {perturb: yes}"))
     done = run("sweep", "rods.yaml", "-o", "hanging", "--json")
     check(not json.loads(done.stdout)["warnings"] and not done.stderr, "warnings of nothing")
-    check([row["start_unstable"] for row in rows("hanging/table.csv")] == ["0"] * 3,
-          "the column of stable starts")
+    check([row["start_unstable"] for row in rows("hanging/table.csv")] == ["0"] * 3, "the column of stable starts")
 
 
 def rows_are_single_runs():
@@ -153,8 +149,7 @@ def the_same_bytes():
     for threads in ("2", "4"):
         run("sweep", "crawler.yaml", "-o", threads, "--threads", threads, "--quiet")
         check(read(f"{threads}/table.csv") == read("one/table.csv"), f"{threads} threads: table")
-        check(read(f"{threads}/points.slots") == read("one/points.slots"),
-              f"{threads} threads: slots")
+        check(read(f"{threads}/points.slots") == read("one/points.slots"), f"{threads} threads: slots")
     for shard in ("0/2", "1/2"):
         run("sweep", "crawler.yaml", "-o", "shards", "--shard", shard, "--quiet")
     run("sweep", "--merge", "shards")
@@ -247,8 +242,7 @@ def killed_while_recording():
     run("sweep", "motions.yaml", "-o", "recorded", "--quiet")
     left = 0
     for n in range(kills):
-        child = subprocess.Popen([strut, "sweep", "motions.yaml", "-o", "cut", "--threads", "2",
-                                  "--quiet"], cwd=work)
+        child = subprocess.Popen([strut, "sweep", "motions.yaml", "-o", "cut", "--threads", "2", "--quiet"], cwd=work)
         deadline = time.monotonic() + 60
         while child.poll() is None and not stages("cut") and time.monotonic() < deadline:
             time.sleep(0.002)
@@ -265,8 +259,7 @@ def killed_while_recording():
         os.makedirs(f"{work}/{folder}", exist_ok=True)
         write(f"{folder}/{name}", "mine\n")
     run("sweep", "motions.yaml", "-o", "cut", "--quiet")
-    check(sorted(stages("cut")) == [f"{work}/{folder}" for folder in others],
-          f"after kills: {stages('cut')}")
+    check(sorted(stages("cut")) == [f"{work}/{folder}" for folder in others], f"after kills: {stages('cut')}")
     for folder, name in zip(others, ("notes", ".strut-stage")):
         check(read(f"{folder}/{name}") == b"mine\n", f"{folder} was touched")
     check(read("cut/table.csv") == read("recorded/table.csv"), "after kills: table")
@@ -354,8 +347,7 @@ def a_directory_stands_for_itself():
         run("sweep", f"{place}/study.yaml", "-o", f"again{n}", "--set", "seconds=0.1 s", "--quiet")
         check(read(f"again{n}/table.csv") == read(f"{place}/table.csv"), f"{way}: table")
         before = read(f"{place}/study.yaml"), read(f"{place}/model.yaml")
-        end = json.loads(run("sweep", f"{place}/study.yaml", "-o", place, "--set", "seconds=0.1 s",
-                             "--json").stdout)
+        end = json.loads(run("sweep", f"{place}/study.yaml", "-o", place, "--set", "seconds=0.1 s", "--json").stdout)
         check(end["computed"] == 0, f"{way}: not the same study")
         check((read(f"{place}/study.yaml"), read(f"{place}/model.yaml")) == before, "copies of copies")
     # A copy of a copy is the same text; a model that has changed is another study.
@@ -428,8 +420,7 @@ trajectories: yes
 """)
     run("sweep", "motion.yaml", "-o", "motion", "--threads", "2", "--quiet")
     for n in range(2):
-        run("run", "block.yaml", "-o", "alone", "--set", f"mass={n + 1} kg", "--set", "place=far",
-            "--quiet")
+        run("run", "block.yaml", "-o", "alone", "--set", f"mass={n + 1} kg", "--set", "place=far", "--quiet")
         folder = f"motion/runs/{n:09d}"
         check(sorted(os.listdir(f"{work}/{folder}")) ==
               [".strut-files", "scene.yaml", "summary.json", "trajectory.h5"], "files of a run")
@@ -476,8 +467,7 @@ def two_at_once():
     """The second is informed of the first, and what the first makes is the table."""
     write("two.yaml", read("crawler.yaml").decode())
     words = [strut, "sweep", "two.yaml", "-o", "two", "--threads", "1", "--quiet"]
-    children = [subprocess.Popen(words, cwd=work, stderr=subprocess.PIPE, text=True)
-                for _ in range(2)]
+    children = [subprocess.Popen(words, cwd=work, stderr=subprocess.PIPE, text=True) for _ in range(2)]
     said = [child.communicate()[1] for child in children]
     codes = sorted(child.returncode for child in children)
     check(codes in ([0, 4], [0, 0]), f"two at once: exit codes {codes}")  # [0, 0]: one after another
@@ -556,8 +546,7 @@ keep: [velocity]
         while child.poll() is None:
             try:
                 with open(f"/proc/{child.pid}/status") as file:
-                    most = max([most] + [int(line.split()[1]) for line in file
-                                         if line.startswith("VmHWM")])
+                    most = max([most] + [int(line.split()[1]) for line in file if line.startswith("VmHWM")])
             except (OSError, ValueError):
                 pass
             time.sleep(0.002)

@@ -22,8 +22,7 @@ models = json.loads(run("compare", *files, "--no-states", "--json"))["models"]
 ours = 0
 for path, model in zip(files, models):
     v, text = model["values"], open(path, encoding="utf-8").read()
-    for key, wanted in (("mass", 0.14), ("friction", 0.1), ("drive_frequency", 10),
-                        ("drive_amplitude", 1e-4)):
+    for key, wanted in (("mass", 0.14), ("friction", 0.1), ("drive_frequency", 10), ("drive_amplitude", 1e-4)):
         if not abs(v[key] - wanted) < 1e-9:
             fail(f"{path}: {key} is {v[key]}: it cannot be compared with the others")
     found = 1e-3 * float(re.search(r"^# Found: ([-+\d.]+) mm/s", text, re.M).group(1))
@@ -34,8 +33,7 @@ for path, model in zip(files, models):
     if "nine-member.yaml" not in path and found > 5e-3:
         ours += 1
         # The classical method with small steps, which shares only the forces with what was used.
-        by_rk4 = json.loads(run("run", path, "--integrator", "rk4", "--step", "20 us", "--json",
-                                "--quiet"))
+        by_rk4 = json.loads(run("run", path, "--integrator", "rk4", "--step", "20 us", "--json", "--quiet"))
         if abs(by_rk4["velocity"] - v["velocity"]) > 0.02 * found:
             fail(f"{path}: {by_rk4['velocity']} m/s by rk4, not {v['velocity']}")
 if len(files) < 4 or ours < 2:

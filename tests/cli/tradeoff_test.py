@@ -76,8 +76,7 @@ def check_front(what, answer):
         cost, error = row["evaluations"], row["step_error"]["worst"]
         others = [(r["evaluations"], r["step_error"]["worst"]) for r in answer["settings"]
                   if r["model"] == row["model"] and r["step_error"]["worst"] is not None]
-        wanted = error is not None and not any(
-            c <= cost and e <= error and (c < cost or e < error) for c, e in others)
+        wanted = error is not None and not any(c <= cost and e <= error and (c < cost or e < error) for c, e in others)
         if row["front"] != wanted:
             fail(f"{what}: {row['group']} {row['step']}: front is {row['front']}")
 
@@ -89,8 +88,7 @@ def check_advice(what, answer):
         keepers = []
         for row in own:
             finer = [r for r in own if r["group"] == row["group"] and
-                     (r["tolerance"] <= row["tolerance"] if row["tolerance"] is not None
-                      else r["step"] <= row["step"])]
+                     (r["tolerance"] <= row["tolerance"] if row["tolerance"] is not None else r["step"] <= row["step"])]
             if len(finer) > 1 and not row["above_limit"] and all(
                     r["total_error"]["worst"] is not None and
                     r["total_error"]["worst"] <= advice["error"] for r in finer):
@@ -112,8 +110,7 @@ def check_errors(what, answer):
                 if value is None:
                     wanted = None
                 else:
-                    wanted = max(abs(value - reference) / max(abs(reference), answer["scale"]),
-                                 m["floor"]["points"][p])
+                    wanted = max(abs(value - reference) / max(abs(reference), answer["scale"]), m["floor"]["points"][p])
                 if (reported is None) != (wanted is None) or (reported is not None and
                                                           not close(reported, wanted, 1e-9)):
                     fail(f"{what}: {row['group']} {row['step']}: {kind} {reported}, not {wanted}")
@@ -204,8 +201,7 @@ if answer:
         fail("another seed gives the same points")
 
 # ---- Words are drawn too; other models of a block that slides.
-answer = read("models/basics/sliding-block.yaml", "--step-sizes", "3", "--vary", "mu=0.2,0.3",
-              "--points", "6")
+answer = read("models/basics/sliding-block.yaml", "--step-sizes", "3", "--vary", "mu=0.2,0.3", "--points", "6")
 if answer:
     if {round(p["mu"], 9) for p in answer["points"]} != {0.2, 0.3}:
         fail(f"words: {answer['points']}")

@@ -63,8 +63,7 @@ for name, keys in KEYS.items():
             if column != "point":
                 check(one[column] == other[column],
                       f"{name}: {column}: alone {one[column]}, as a variant {other[column]}")
-check(len({row["velocity [m/s]"] for row in table}) == 13,
-      "variants are alike, but for those that begin at rest")
+check(len({row["velocity [m/s]"] for row in table}) == 13, "variants are alike, but for those that begin at rest")
 
 # Their names and their keys decide results, their figures do not.
 said, _ = sweep("all", variants.replace("  rk4:", "  other:"), code=1)

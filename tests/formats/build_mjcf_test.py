@@ -133,8 +133,7 @@ def built_or_refused():
     formats("build", "bare.yaml", "-o", "y", code=2)
     write("zero.yaml", "strut: 1\nnodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0]}}\n"
           "members: {m: {kind: cable, nodes: [a, b], stiffness: 10 N/m, rest_length: 0 m}}\n")
-    check("'m' cannot be made" in formats("build", "zero.yaml", "-o", "y",
-                                      code=2).stderr, "a rest length of 0")
+    check("'m' cannot be made" in formats("build", "zero.yaml", "-o", "y", code=2).stderr, "a rest length of 0")
     check(not os.path.exists(path("y")), "nothing is left")
 
 
@@ -228,8 +227,7 @@ def moves_alike(simulate, text, seconds, tolerance, name):
         check(abs(moved - value) < tolerance, f"{name}: {joint} moved {value} in MuJoCo, {moved} in strut")
 
 
-START = {"hanging.yaml": {"m": (0.1, -1)}, "frame-cables.yaml": {
-    "n2": (1, 0), "n3": (1, 1), "n4": (0, 1)}}
+START = {"hanging.yaml": {"m": (0.1, -1)}, "frame-cables.yaml": {"n2": (1, 0), "n3": (1, 1), "n4": (0, 1)}}
 
 HANGING = """strut: 1
 gravity: [0, -9.81 m/s^2]
@@ -297,8 +295,7 @@ def mjcf_says_or_tells():
         check(word in done.stderr, f"{part}: {done.stderr}")
     write("light.yaml", "strut: 1\nnodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0]}}\n"
           "members: {m: {kind: bar, nodes: [a, b], stiffness: 1 N/m}}\n")
-    check("'b' has no mass" in formats("mjcf", "light.yaml", "-o", "odd.xml",
-                                   code=2).stderr, "a node without mass")
+    check("'b' has no mass" in formats("mjcf", "light.yaml", "-o", "odd.xml", code=2).stderr, "a node without mass")
     check(not os.path.exists(path("odd.xml")), "nothing is written")
     write("mine.xml", "<precious/>")
     write("string.yaml", string_text("spring"))

@@ -35,8 +35,7 @@ def stable_energies(model):
 
 
 def same_numbers(got, want, tolerance, what):
-    near = len(got) == len(want) and all(abs(a - b) <= tolerance * max(1e-12, abs(b))
-                                         for a, b in zip(got, want))
+    near = len(got) == len(want) and all(abs(a - b) <= tolerance * max(1e-12, abs(b)) for a, b in zip(got, want))
     check(near, f"{what}: {got}, expected {want}")
 
 

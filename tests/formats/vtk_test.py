@@ -35,15 +35,13 @@ def read(path):
 def rows(path):
     """The rows of a CSV file as {column without its unit: float}."""
     with open(path, newline="", encoding="utf-8") as file:
-        return [{key.rsplit(" [", 1)[0]: float(value) for key, value in row.items()}
-                for row in csv.DictReader(file)]
+        return [{key.rsplit(" [", 1)[0]: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
 
 
 def datasets(directory):
     root = ElementTree.parse(os.path.join(directory, "structure.pvd")).getroot()
     check(root.tag == "VTKFile" and root.get("type") == "Collection", "the .pvd is no collection")
-    return [(float(d.get("timestep")), int(d.get("part")), d.get("file"))
-            for d in root.iter("DataSet")]
+    return [(float(d.get("timestep")), int(d.get("part")), d.get("file")) for d in root.iter("DataSet")]
 
 
 def names(data, which):
@@ -76,8 +74,7 @@ def test_run():
     start = node_rows[0]
     touched = slack = 0
     for i in range(0, len(frames), 7):
-        data, node, member, contact = (read("vtk/" + frames[i][2]), node_rows[i], member_rows[i],
-                                       contact_rows[i])
+        data, node, member, contact = (read("vtk/" + frames[i][2]), node_rows[i], member_rows[i], contact_rows[i])
         points, cells = data.GetPointData(), data.GetCellData()
         check(data.GetFieldData().GetArray("TimeValue").GetValue(0) == frames[i][0], "TimeValue")
         speed, moved = column(points, "velocity"), column(points, "displacement")
@@ -127,8 +124,7 @@ def test_model():
 
 def test_names_and_no_members():
     with open("ball.yaml", "w", encoding="utf-8") as file:
-        file.write("strut: 1\nnodes:\n  כדור: {position: [1, 2], mass: 1}\n  ü-1: {position: [3, 4], "
-                   "mass: 1}\n")
+        file.write("strut: 1\nnodes:\n  כדור: {position: [1, 2], mass: 1}\n  ü-1: {position: [3, 4], " "mass: 1}\n")
     formats("vtk", "ball.yaml", "-o", "ball")
     data = read("ball/structure_00000.vtp")
     check(names(data, "node_names") == ["כדור", "ü-1"], "names")
@@ -138,8 +134,7 @@ def test_names_and_no_members():
 def test_thinning():
     """Above ten thousand frames every so many-th is written, and that is said."""
     with open(hopper, encoding="utf-8") as file:
-        text = file.read().replace("every: 1 ms", "every: 0.02 ms").replace("step: 0.1 ms",
-                                                                           "step: 0.02 ms")
+        text = file.read().replace("every: 1 ms", "every: 0.02 ms").replace("step: 0.1 ms", "step: 0.02 ms")
     with open("fine.yaml", "w", encoding="utf-8") as file:
         file.write(text.replace("velocity, length, force, contact, energy", "force"))
     run("run", "fine.yaml", "--quiet", "-o", "fine")

@@ -124,8 +124,7 @@ def test_said():
     said = call(0, hopper, "--animate", "d.gif").stdout
     check(re.search(r"lasts only 500 ms; --speed 1/10 makes a film of 5 s", said), said[-300:])
     with open(hopper, encoding="utf-8") as file:
-        text = file.read().replace("every: 1 ms", "every: 100 ms").replace("seconds: 0.5",
-                                                                           "seconds: 3")
+        text = file.read().replace("every: 1 ms", "every: 100 ms").replace("seconds: 0.5", "seconds: 3")
     with open("seldom.yaml", "w", encoding="utf-8") as file:
         file.write(text)
     said = call(0, "seldom.yaml", "--animate", "d.gif").stdout
@@ -145,8 +144,7 @@ def fake(text):
 
 def left(*allowed):
     """Names of the work's files that are neither known nor allowed."""
-    return [n for n in os.listdir(".") if n not in before and n not in allowed and
-            n not in ("fake", ".strut-files")]
+    return [n for n in os.listdir(".") if n not in before and n not in allowed and n not in ("fake", ".strut-files")]
 
 
 def test_without():
@@ -207,8 +205,7 @@ def test_interrupt():
 
 
 try:
-    for test in [test_formats, test_motion, test_many_frames, test_same_bytes, test_names,
-                 test_said]:
+    for test in [test_formats, test_motion, test_many_frames, test_same_bytes, test_names, test_said]:
         test()
     before = set(os.listdir("."))
     for test in [test_without, test_usage, test_interrupt]:

@@ -131,8 +131,7 @@ check("models/gallery/arm.yaml", ["--count", "3"], 3)
 check("models/gallery/double-pendulum.yaml", [], 4)
 
 for bad, code in (("x.gif", 1), ("nowhere/x.svg", 4)):
-    run = subprocess.run([strut, "modes", "models/gallery/x-frame.yaml", "--plot", bad],
-                         capture_output=True)
+    run = subprocess.run([strut, "modes", "models/gallery/x-frame.yaml", "--plot", bad], capture_output=True)
     if run.returncode != code or run.stdout or not run.stderr:
         fail(f"--plot {bad}: exit code {run.returncode}, {run.stdout}, {run.stderr}")
 finish()

@@ -40,8 +40,7 @@ def browser(width, height):
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
     driver.set_script_timeout(60)
-    driver.execute_cdp_cmd("Browser.setDownloadBehavior",
-                           {"behavior": "allow", "downloadPath": str(saved)})
+    driver.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(saved)})
     if width < 500:  # narrower than Chromium's windows can be
         driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
             "width": width, "height": height, "deviceScaleFactor": 2, "mobile": True})
@@ -96,8 +95,7 @@ def ink(driver):
 
 
 def wait_for_drawing(driver):
-    driver.execute_async_script(
-        "requestAnimationFrame(() => requestAnimationFrame(() => arguments[0]()))")
+    driver.execute_async_script("requestAnimationFrame(() => requestAnimationFrame(() => arguments[0]()))")
 
 
 def files_of(ending):

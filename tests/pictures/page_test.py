@@ -30,8 +30,7 @@ def check_numbers(driver, name, rows, nodes):
               f"{name}: frame {frame} is at {run(driver, 'strut.time')}, recorded at {row[0]}")
         shown = clock(driver)
         digits = len(shown.partition(".")[2])
-        check(abs(float(shown) - row[0]) <= 0.50001 * 10 ** -digits,
-              f"{name}: the clock shows {shown} at {row[0]}")
+        check(abs(float(shown) - row[0]) <= 0.50001 * 10 ** -digits, f"{name}: the clock shows {shown} at {row[0]}")
         columns = len(row) // nodes  # x, y and perhaps velocities, after the time
         expected = [row[1 + columns * i + d] for i in range(nodes) for d in range(2)]
         shown = run(driver, "strut.positions()")
@@ -80,8 +79,7 @@ def check_player(driver, name):
     time.sleep(0.3)
     check(frame == run(driver, "strut.frame"), f"{name}: goes on after a pause")
     scrub = driver.find_element(By.ID, "scrub")
-    driver.execute_script("arguments[0].value = 7; arguments[0].dispatchEvent(new Event('input'))",
-                          scrub)
+    driver.execute_script("arguments[0].value = 7; arguments[0].dispatchEvent(new Event('input'))", scrub)
     check(run(driver, "strut.frame") == 7, f"{name}: the slider does not scrub")
     body = driver.find_element(By.TAG_NAME, "body")
     for key, frame in ((Keys.ARROW_RIGHT, 8), (Keys.ARROW_LEFT, 7), (Keys.HOME, 0),

@@ -29,8 +29,7 @@ def alike(column, one, other):
         return math.isnan(a) == math.isnan(b)
     if re.match(r"(x|y|height)_", column):
         return abs(a - b) < 1e-3
-    if column.startswith("velocity_spread") or column in ("kinetic [J]", "force_evaluations",
-                                                          "periods"):
+    if column.startswith("velocity_spread") or column in ("kinetic [J]", "force_evaluations", "periods"):
         return a >= 0 and b >= 0  # of last bits
     return abs(a - b) <= (0.02 if column.startswith("velocity") else 0.05) * max(abs(a), 1e-6)
 
@@ -49,8 +48,7 @@ if size > MOST_BYTES:
     fail(f"docs/paper has {size} bytes")
 
 with tempfile.TemporaryDirectory() as now:
-    subprocess.run(["sh", "docs/paper.sh", strut, now, *numbers], check=True,
-                   stdout=subprocess.DEVNULL)
+    subprocess.run(["sh", "docs/paper.sh", strut, now, *numbers], check=True, stdout=subprocess.DEVNULL)
     for number in numbers:
         name = f"figure-{number}"
         old = list(csv.DictReader(open(f"docs/paper/{name}.csv", newline="")))

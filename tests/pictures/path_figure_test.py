@@ -47,10 +47,8 @@ def check_curve(what, paths, rows, column, sign, height="factor", upright=False)
     values = [over, [-v for v in motion]] if upright else [motion, [-v for v in over]]
     low = [min(v) for v in values]
     corner = [min(p[d] for line, _ in pieces for p in line) for d in (0, 1)]
-    scale = [(max(p[d] for line, _ in pieces for p in line) - corner[d]) / (max(values[d]) - low[d])
-             for d in (0, 1)]
-    drawn = [tuple(corner[d] + scale[d] * (values[d][k] - low[d]) for d in (0, 1))
-             for k in range(len(rows))]
+    scale = [(max(p[d] for line, _ in pieces for p in line) - corner[d]) / (max(values[d]) - low[d]) for d in (0, 1)]
+    drawn = [tuple(corner[d] + scale[d] * (values[d][k] - low[d]) for d in (0, 1)) for k in range(len(rows))]
     for k in range(len(rows) - 1):
         middle = [(drawn[k][d] + drawn[k + 1][d]) / 2 for d in (0, 1)]
         # An event's edge is as stable as the point at its other end.
@@ -91,13 +89,11 @@ def check_shapes(what, paths, answer, members, larger):
                 return fail(f"{what}: {a}-{b} of shape {i} is not drawn where it is")
 
 
-def check(model, arguments, column, sign, larger, width="page", shapes=True, height="factor",
-          upright=False):
+def check(model, arguments, column, sign, larger, width="page", shapes=True, height="factor", upright=False):
     what = f"{model} {' '.join(arguments)}"
     with tempfile.TemporaryDirectory() as here:
         file = os.path.join(here, "a.svg")
-        command = [strut, "path", model, *arguments, "--json", "--plot", file, "--width", width,
-                   "-o", here]
+        command = [strut, "path", model, *arguments, "--json", "--plot", file, "--width", width, "-o", here]
         run = subprocess.run(command, capture_output=True)
         if run.returncode != 0:
             return fail(f"{command}: {run.stderr}")
@@ -124,16 +120,13 @@ check("models/gallery/von-mises.yaml", ["--set", "load=0.1"], "apex.y [m]", -1, 
 check("models/gallery/von-mises.yaml", ["--set", "load=0.1"], "apex.y [m]", -1, 1, "column")
 check("models/gallery/half-t-bar.yaml", ["--set", "force=1", "--until", "100"], "n4.x [m]", 1, 200)
 check("models/gallery/x-frame.yaml", ["--set", "down=1", "--until", "10"], "n3.y [m]", -1, 1)
-check("models/gallery/x-frame.yaml", ["--set", "right=1", "--load", "push", "--until", "10"],
-      "n3.x [m]", 1, 1)
-check("models/gallery/x-joint.yaml", ["--set", "load=1", "--until", "15"], "top_right.y [m]", -1,
-      500)
+check("models/gallery/x-frame.yaml", ["--set", "right=1", "--load", "push", "--until", "10"], "n3.x [m]", 1, 1)
+check("models/gallery/x-joint.yaml", ["--set", "load=1", "--until", "15"], "top_right.y [m]", -1, 500)
 
 # Pushed through by the apex, which draws its reaction; and over a number, which runs to the right.
 check("models/gallery/von-mises.yaml", ["--over", "apex.y", "--until", "-0.5 m"], "apex.y [m]", -1,
       1, height="apex.reaction_y [N]")
-check("models/gallery/von-mises.yaml", ["--set", "load=0.01", "--over", "load", "--until",
-                                       "0.1 N"],
+check("models/gallery/von-mises.yaml", ["--set", "load=0.01", "--over", "load", "--until", "0.1 N"],
       "apex.y [m]", -1, 1, height="value [N]", upright=True, shapes=False)
 
 # What moves by rounding alone is not enlarged, and no second row of the key says so.

@@ -122,8 +122,7 @@ for way, order in (("slow", 1), ("fast", -1)):
 write("ways.csv", table)
 plot("ways.csv", "--only", "way=slow", "--plot", "only.svg")
 kept = [i for i, f in enumerate(fs) if f != 11.0]
-check_curve("only.svg", [fs[i] for i in kept], [values["slow"][i] for i in kept],
-            curves(read("only.svg")[2], FIRST)[0])
+check_curve("only.svg", [fs[i] for i in kept], [values["slow"][i] for i in kept], curves(read("only.svg")[2], FIRST)[0])
 plot("ways.csv", "--panels", "mu", "--difference", "way", "--plot", "less.svg")
 found = curves(read("less.svg")[2], FIRST)
 less = [b - a for a, b in zip(values["slow"], values["fast"])]
@@ -144,8 +143,7 @@ def hatched(name):  # the lines of the hatching are as long as nothing else in t
 
 
 check(hatched("differs.svg") > hatched("fast.svg"), "differs.svg: where they differ it is hatched")
-write("same.csv", "f,v,way\n" + "".join(f"{i},{'I' if i % 2 else 'II'},{w}\n"
-                                       for w in "ab" for i in range(6)))
+write("same.csv", "f,v,way\n" + "".join(f"{i},{'I' if i % 2 else 'II'},{w}\n" for w in "ab" for i in range(6)))
 SAME = ("same.csv", "--kind", "map", "--y", "f", "--label", "v")
 plot(*SAME, "--difference", "way", "--plot", "same.svg")
 plot(*SAME, "--only", "way=b", "--plot", "b.svg")
@@ -153,15 +151,13 @@ check(hatched("same.svg") == hatched("b.svg"), "same.svg: nothing differs, yet i
 
 # Logarithmic axes. Zigzag, since Cairo makes one line of pieces that go on straight.
 logs = [-3.0 * i + 0.3 * (i % 2) for i in range(12)]
-write("log.csv", "step [s],error\n" + "".join(f"{2.0 ** -i!r},{2.0 ** y!r}\n"
-                                              for i, y in enumerate(logs)))
+write("log.csv", "step [s],error\n" + "".join(f"{2.0 ** -i!r},{2.0 ** y!r}\n" for i, y in enumerate(logs)))
 plot("log.csv", "--log", "xy", "--plot", "log.svg")
 line = curves(read("log.svg")[2], FIRST)[0]
 check_curve("log.svg", [-float(i) for i in range(12)][::-1], logs[::-1], line[::-1])
 
 # Columns share the y axis, so that they need one unit.
-write("two.csv", "f [Hz],v [m/s],w [J]\n" + "".join(
-    f"{x!r},{a!r},{2e-3 * x * x!r}\n" for x, a in zip(xs, one)))
+write("two.csv", "f [Hz],v [m/s],w [J]\n" + "".join(f"{x!r},{a!r},{2e-3 * x * x!r}\n" for x, a in zip(xs, one)))
 plot("two.csv", "--y", "v,w", "--plot", "a.svg", code=1, err="different units (m/s, J)")
 
 # Limits and labels that are given.
@@ -172,8 +168,7 @@ found = check_curve("limits.svg", xs, one, curves(paths, FIRST)[0])
 frames = [path.lines[0] for path in paths if near(path.stroke, FRAME) and len(path.lines[0]) >= 4]
 if found and frames:
     low, high = (f(p[0] for p in frames[0]) for f in (min, max))
-    check(abs(found[1] - low) < 0.05 and abs(10 * found[0] + found[1] - high) < 0.05,
-          "limits.svg: x from 0 to 10")
+    check(abs(found[1] - low) < 0.05 and abs(10 * found[0] + found[1] - high) < 0.05, "limits.svg: x from 0 to 10")
     top, bottom = (f(p[1] for p in frames[0]) for f in (min, max))
     check(abs(0.02 * found[2] + found[3] - top) < 0.05, "limits.svg: y up to 0.02")
 for words, err in ((["--x-limits", "3,1"], "two ascending numbers"),
@@ -195,13 +190,11 @@ write("noise.csv", "t [s],y [m],c [N]\n" + "".join(
     f"{i},{1e-16 * (-1) ** i!r},{0.1 + 1e-16 * (i * i % 7)!r}\n" for i in range(30)))
 for name in "yc":
     plot("noise.csv", "--y", name, "--plot", "noise.svg")
-    heights = [p[1] for path in read("noise.svg")[2] if near(path.stroke, FIRST)
-               for line in path.lines for p in line]
+    heights = [p[1] for path in read("noise.svg")[2] if near(path.stroke, FIRST) for line in path.lines for p in line]
     check(heights and max(heights) - min(heights) < 0.01, f"noise.svg, {name}: it is no level line")
 
 # A map: every cell where its row says.
-write("map.csv", "a,b,c\n" + "".join(f"{i},{k},{'x' if (i + k) % 3 else 'y'}\n"
-                                     for i in range(5) for k in range(4)))
+write("map.csv", "a,b,c\n" + "".join(f"{i},{k},{'x' if (i + k) % 3 else 'y'}\n" for i in range(5) for k in range(4)))
 plot("map.csv", "--kind", "map", "--plot", "map.svg")
 width, height, paths = read("map.svg")
 cells = [path for path in paths if path.fill and not near(path.fill, (1, 1, 1)) and not path.curved
@@ -248,8 +241,7 @@ dots = [path for path in read("lone.svg")[2] if path.curved and near(path.fill, 
 check(len(dots) == 1, f"lone.svg: {len(dots)} dots of 1")
 for name in ("map.svg", "panels.svg"):
     first = open(name, "rb").read()
-    words = ["--kind", "map"] if name == "map.svg" else ["--by", "start", "--panels", "mu", "--band",
-                                                         "outcome=III"]
+    words = ["--kind", "map"] if name == "map.svg" else ["--by", "start", "--panels", "mu", "--band", "outcome=III"]
     plot(name.replace("svg", "csv"), *words, "--plot", name)
     check(open(name, "rb").read() == first, f"{name}: other bytes the second time")
 

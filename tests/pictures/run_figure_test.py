@@ -46,8 +46,7 @@ def circles(paths, stroke):
     for path in paths:
         if path.curved and near(path.stroke, stroke) and near(path.fill, WHITE):
             for line in path.lines:
-                found.append(tuple((min(p[d] for p in line) + max(p[d] for p in line)) / 2
-                                   for d in (0, 1)))
+                found.append(tuple((min(p[d] for p in line) + max(p[d] for p in line)) / 2 for d in (0, 1)))
     return found
 
 
@@ -159,8 +158,7 @@ def check_period(here, model, factors):
     if at != 4:
         return fail(f"period {factors}: {at + 1} ways are drawn")
     for i in range(5):
-        wanted = [placed(window, [rest[i][d] + factors[d] * (f[i][d] - rest[i][d]) for d in (0, 1)])
-                  for f in last]
+        wanted = [placed(window, [rest[i][d] + factors[d] * (f[i][d] - rest[i][d]) for d in (0, 1)]) for f in last]
         for point in ways[i]:
             if min(math.dist(point, w) for w in wanted) > 0.03:
                 return fail(f"period {factors}: the way of node {i + 1} goes through {point}")
@@ -218,8 +216,7 @@ def check_refusals(here, model):
     refuse("two numbers above 0", "--plot", file, "--draw", "period", "--scale", "10")
     refuse("two numbers above 0", "--plot", file, "--draw", "period", "--scale", "0,1")
     refuse("--times expects", "--plot", file, "--draw", "snapshots", "--times", "1 N")
-    refuse("nothing is recorded at 3 s", "--plot", file, "--draw", "snapshots", "--times",
-           "1.5 s,3 s")
+    refuse("nothing is recorded at 3 s", "--plot", file, "--draw", "snapshots", "--times", "1.5 s,3 s")
     refuse("", "--plot", os.path.join(here, "nowhere", "x.svg"), code=4)
     coarse = os.path.join(here, "coarse.yaml")
     open(coarse, "w").write(open(model).read().replace("every: 1/(100*frequency)", "every: 20 ms"))
@@ -273,8 +270,7 @@ with tempfile.TemporaryDirectory() as here:
     text = re.sub(r"^run:.*", "run: {duration: 1 s}", text, flags=re.M)
     open(tilt, "w").write(re.sub(r"^output:.*", "output: {every: 1 ms}", text, flags=re.M))
     check_snapshots(here, tilt, [], [0, 0.2, 0.4, 0.6, 0.8, 1.0], True)
-    check_snapshots(here, tilt, ["--times", "0 s, 50 ms,100 ms,0.15 s, 1"],
-                    [0, 0.05, 0.1, 0.15, 1.0], True)
+    check_snapshots(here, tilt, ["--times", "0 s, 50 ms,100 ms,0.15 s, 1"], [0, 0.05, 0.1, 0.15, 1.0], True)
     check_snapshots(here, tilt, ["--times", "300.4 ms", "--width", "column"], [0.3], True)
     check_snapshots(here, short, [], [1.4, 1.52, 1.64, 1.76, 1.88, 2.0], True)
     check_ground(here)

@@ -31,8 +31,7 @@ def circles(paths):
     for path in paths:
         if path.curved and near(path.stroke, EDGE) and near(path.fill, WHITE):
             for line in path.lines:
-                found.append(tuple((min(p[d] for p in line) + max(p[d] for p in line)) / 2
-                                   for d in (0, 1)))
+                found.append(tuple((min(p[d] for p in line) + max(p[d] for p in line)) / 2 for d in (0, 1)))
     return found
 
 
@@ -48,8 +47,7 @@ def check_shape(what, places, drawn):
     scale = scale_of(places, drawn)
     left = drawn[0][0] - scale * places[0][0]
     top = drawn[0][1] + scale * places[0][1]
-    worst = max(math.dist((left + scale * x, top - scale * y), at)
-                for (x, y), at in zip(places, drawn))
+    worst = max(math.dist((left + scale * x, top - scale * y), at) for (x, y), at in zip(places, drawn))
     check(worst < 0.05, f"{what}: a node is {worst} pt from its place")
     return scale
 
@@ -138,8 +136,7 @@ check_shape("form", list(said["nodes"].values()), centres)
 check_members("form", members, centres, paths, said["forces"])
 
 # More states and mechanisms than there is room for: the rest is counted.
-run("rigidity", os.path.join(root, "models/parts/michell-wheel.yaml"), "--plot", "m.svg", "--width",
-    "column")
+run("rigidity", os.path.join(root, "models/parts/michell-wheel.yaml"), "--plot", "m.svg", "--width", "column")
 run("rigidity", os.path.join(root, "models/parts/michell-wheel.yaml"), "--plot", "m.svg")
 
 # Names of other scripts and a title that looks like markup: nothing of it becomes part of the file.

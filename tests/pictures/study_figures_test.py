@@ -15,8 +15,7 @@ FIRST, DASHED = (0, 0x60 / 255, 0xA8 / 255), (0.25, 0.25, 0.25)
 
 def sweep(text, code=0):
     write("study.yaml", text)
-    done = subprocess.run([strut, "sweep", "study.yaml", "-o", "out", "--quiet"],
-                          capture_output=True, text=True)
+    done = subprocess.run([strut, "sweep", "study.yaml", "-o", "out", "--quiet"], capture_output=True, text=True)
     check(done.returncode == code, f"exit code {done.returncode}: {done.stderr}")
     return done.stderr
 
@@ -38,8 +37,7 @@ def close(name, end, wanted, tolerance):
     values = [wanted(t) for t in times]
     low, high = values.index(min(values)), values.index(max(values))
     scale = (line[high][1] - line[low][1]) / (values[high] - values[low])
-    worst = max(abs(line[low][1] + scale * (v - values[low]) - p[1])
-                for v, p in zip(values, line))
+    worst = max(abs(line[low][1] + scale * (v - values[low]) - p[1]) for v, p in zip(values, line))
     height = abs(line[high][1] - line[low][1])
     check(scale < 0 and worst < tolerance * height, f"{name}: off by {worst / height:.2g}")
 
@@ -84,8 +82,7 @@ check(len(dashed) == 2, f"seen.svg: {len(dashed)} dashed members of 2")
 if len(dashed) == 2:
     lengths = [math.dist(line[0], line[-1]) for line in dashed]
     ratio = (1 + 0.1 * math.sin(10 * 0.096))  # the frame nearest to 0.096 s, which is drawn
-    check(abs(lengths[1] / lengths[0] - ratio) < 2e-3,
-          f"seen.svg: {lengths[1] / lengths[0]}, expected {ratio}")
+    check(abs(lengths[1] / lengths[0] - ratio) < 2e-3, f"seen.svg: {lengths[1] / lengths[0]}, expected {ratio}")
 check(not [p for p in read("out/alone.svg")[2] if p.dash and near(p.stroke, DASHED)],
       "alone.svg: there is no other motion")
 late = [line for path in read("out/late.svg")[2] if near(path.stroke, FIRST) and not path.curved
@@ -114,8 +111,7 @@ sweep(STUDY.replace("block.yaml", "driven.yaml").replace("[1 kg]", "[1 kg, 2 kg]
       "  one: {kind: period, only: variant=out}\n")
 names = sorted(name for name in os.listdir("out") if name.startswith(("way", "one-")))
 check(names == ["one-1.svg", "one-2.svg", "way-1.svg", "way-2.svg"], f"pictures: {names}")
-ways = [path.lines[0] for path in read("out/way-2.svg")[2]
-        if path.dash and near(path.stroke, DASHED)]
+ways = [path.lines[0] for path in read("out/way-2.svg")[2] if path.dash and near(path.stroke, DASHED)]
 check(ways and max(abs(a[1] - b[1]) for way in ways for a, b in zip(way, way[1:])) < 0.01,
       "way-2.svg: the other's way lies along x")
 

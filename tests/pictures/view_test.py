@@ -87,8 +87,7 @@ def table(path, keep=lambda name: True):
     """Times and columns of a CSV file."""
     with open(path, encoding="utf-8", newline="") as file:
         head, *rows = csv.reader(file)
-    return [[float(row[i]) for row in rows] for i, name in enumerate(head)
-            if i == 0 or keep(name)]
+    return [[float(row[i]) for row in rows] for i, name in enumerate(head) if i == 0 or keep(name)]
 
 
 def same(block, frames, wanted, what):
@@ -132,8 +131,7 @@ def crawler():
     check(parameters == {"frequency": "10 Hz", "amplitude": "0.1 mm", "friction": "0.1", "start": "I",
                          "step": "0.1 ms", "integration method": "rk4",
                          "integration step": "100 us"}, f"parameters: {parameters}")
-    check(page.data["equilibria"] is None and not page.data["equilibria_remark"],
-          "equilibria that nobody asked for")
+    check(page.data["equilibria"] is None and not page.data["equilibria_remark"], "equilibria that nobody asked for")
     run("view", "crawl", "--equilibria", "all", "-o", "all.html")
     cards(Page("all.html").data, "crawl/scene.yaml")
 
@@ -158,8 +156,7 @@ def cards(data, scene):
         if card["stands"]: # what presses on the ground carries the whole
             check(abs(sum(card["normal"]) - 0.14 * 9.81) < 1e-5, f"normals of {card['name']}")
     for barrier in data["barriers"]:
-        check(0 <= barrier["from"] < 40 and 0 <= barrier["to"] < 40 and barrier["height"] > 0,
-              f"barrier {barrier}")
+        check(0 <= barrier["from"] < 40 and 0 <= barrier["to"] < 40 and barrier["height"] > 0, f"barrier {barrier}")
 
 
 def everything(name, *changes):
@@ -212,8 +209,7 @@ def hostile():
     quoted = [json.dumps(text, ensure_ascii="\u2028" in text) for text in HOSTILE]
     lines = ["strut: 1", f"name: {quoted[0]}", f"description: {quoted[1]}", f"source: {quoted[2]}",
              "nodes:", f"  {NAMES[0]}: {{position: [0, 0], fixed: both}}"]
-    lines += [f"  {name}: {{position: [{i + 1}, {i % 2}], mass: 1}}"
-              for i, name in enumerate(NAMES[1:])]
+    lines += [f"  {name}: {{position: [{i + 1}, {i % 2}], mass: 1}}" for i, name in enumerate(NAMES[1:])]
     lines += ["members:"]
     for one, two in zip(NAMES, NAMES[1:]):
         lines.append(f"  {one}: {{kind: bar, nodes: [{one}, {two}], stiffness: 1000}}")
@@ -229,8 +225,7 @@ def hostile():
     check([m["name"] for m in page.data["members"]] == NAMES[:-1], "names of members")
     check([(m["from"], m["to"]) for m in page.data["members"]] ==
           [(i, i + 1) for i in range(len(NAMES) - 1)], "ends of members")
-    check([node["fixed"] for node in page.data["nodes"][:2]] == [[True, True], [False, False]],
-          "supports")
+    check([node["fixed"] for node in page.data["nodes"][:2]] == [[True, True], [False, False]], "supports")
     check(not any(c in page.raw for c in "<>&\u2028\u2029"), "the data are not escaped")
     check(page.data["motion"] is None and page.data["study"] is None, "a model does not move")
     check("alert(1)" in page.data["yaml"], "the scene's text")
@@ -239,8 +234,7 @@ def hostile():
 def diverged():
     """A step too large: frames end where the structure leaves all bounds, and the page says so."""
     everything("wild.yaml")
-    run("run", "wild.yaml", "--set", "step=0.5 ms", "--set", "friction=0", "--force", "-o", "wild",
-        "-q", code=3)
+    run("run", "wild.yaml", "--set", "step=0.5 ms", "--set", "friction=0", "--force", "-o", "wild", "-q", code=3)
     run("view", "wild", "-o", "wild.html")
     data = Page("wild.html").data
     motion = data["motion"]

@@ -41,10 +41,7 @@ def without_wall_time(text: str) -> dict:
 def columns_of(path: pathlib.Path) -> dict:
     with open(path, newline="") as file:
         rows = list(csv.reader(line for line in file if not line.startswith("#")))
-    return {
-        name: np.array([float(row[i] or "nan") for row in rows[1:]])
-        for i, name in enumerate(rows[0])
-    }
+    return {name: np.array([float(row[i] or "nan") for row in rows[1:]]) for i, name in enumerate(rows[0])}
 
 
 class Runs(unittest.TestCase):

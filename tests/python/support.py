@@ -17,9 +17,7 @@ PROGRAM = sys.argv[1] if len(sys.argv) > 1 else ""
 
 def program(*words: object, code: int = 0) -> str:
     """What the program prints; it must return `code`."""
-    done = subprocess.run(
-        [PROGRAM, *map(os.fspath, map(str, words))], capture_output=True, text=True, check=False
-    )
+    done = subprocess.run([PROGRAM, *map(os.fspath, map(str, words))], capture_output=True, text=True, check=False)
     if done.returncode != code:
         raise AssertionError(f"strut {words}: {done.returncode}, expected {code}: {done.stderr}")
     return done.stdout

@@ -132,10 +132,7 @@ class Sweeps(unittest.TestCase):
 
         threading.Timer(1.5, press).start()
         with self.assertRaises(KeyboardInterrupt) as caught:
-            scene.sweep(
-                frequency=np.linspace(8, 12, 1000), step=["0.1 ms"], keep="velocity",
-                progress=seen.append,
-            )
+            scene.sweep(frequency=np.linspace(8, 12, 1000), step=["0.1 ms"], keep="velocity", progress=seen.append)
         took = time.monotonic() - sent[0]
         print(f"sweep: {took:.3f} s")
         self.assertLess(took, 1.0)
