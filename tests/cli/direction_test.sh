@@ -12,10 +12,7 @@ parameters: {forward: 0.1, slowly: 0.05 Hz}
 nodes: {a: {position: [0, 0], mass: 1 kg}, b: {position: [1 m, 0], mass: 1 kg}}
 members: {s: {nodes: [a, b], kind: spring, stiffness: 1000 N/m, damping: 20 N s/m}}
 gravity: [0, -9.81]
-ground:
-  stiffness: 1e5 N/m
-  damping: 600 N s/m
-  friction: {$4, mu_forward: forward, mu_backward: 0.6}
+ground: {stiffness: 1e5 N/m, damping: 600 N s/m, friction: {$4, mu_forward: forward, mu_backward: 0.6}}
 actuators: {d: {member: s, signal: {sine: {amplitude: 25 mm, frequency: slowly}}}}
 solver: {integrator: $2, $3}
 run: {periods: 3, of: d, measure: {last: 1}}
@@ -24,8 +21,7 @@ END
 
 # advances TOLERANCE: the run's velocity is (D - 2 mu N / k) f within that part
 advances() {
-  jq -e --argjson p "$1" \
-    '(.velocity / ((0.05 - 2 * 0.1 * 9.81 / 1000) * 0.05) - 1 | fabs) <= $p' \
+  jq -e --argjson p "$1" '(.velocity / ((0.05 - 2 * 0.1 * 9.81 / 1000) * 0.05) - 1 | fabs) <= $p' \
     "$work/out" >"$work/value" || fail "$2: velocity $(jq .velocity "$work/out")"
 }
 

@@ -12,8 +12,7 @@ nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: both},
 members: {string: {kind: cable, nodes: [a, ring, b], stiffness: 1e8, rest_length: 1.4}}
 loads: {weight: {node: ring, force: [0, -10 N]}}
 END
-expect 0 equilibria ring.yaml --json
-near '.equilibria | length' 1 0
+gives '.equilibria | length' 1 0 equilibria ring.yaml
 near '.equilibria[0].nodes.ring[0]' 0.5 1e-6
 near '.equilibria[0].nodes.ring[1]' '-(0.49 - 0.25 | sqrt)' 1e-6
 near '.equilibria[0].forces.string' '10 / (2 * (1 - 1 / (1.4 * 1.4) | sqrt))' 1e-6
@@ -30,8 +29,7 @@ members: {ab: {group: rod, nodes: [a, b]}, bc: {group: rod, nodes: [b, c]}}
 hinges: {h: {nodes: [a, b, c], stiffness: 2, rest_angle: 180 deg}}
 loads: {press: {node: c, force: [-10, 0]}}
 END
-expect 0 equilibria links.yaml --all --json
-near '[.equilibria[] | select(.label == "saddle")] | length' 1 0
+gives '[.equilibria[] | select(.label == "saddle")] | length' 1 0 equilibria links.yaml --all
 near '[.equilibria[] | select(.label == "saddle")][0].nodes.b[0]' 0.5 1e-6
 near '.equilibria[] | select(.label == "stable" and .nodes.c[0] > 0) | .nodes.b |
   atan2(.[1] | fabs; .[0]) as $angle | 2 * 2 * $angle / (0.5 * ($angle | sin))' \
@@ -70,8 +68,7 @@ members: {rod: {kind: bar, nodes: [pivot, bob], stiffness: 1e9}}
 hinges: {h: {nodes: [top, pivot, bob], stiffness: 3, rest_angle: 180 deg}}
 gravity: [0, -9.81]
 END
-expect 0 modes pendulum.yaml --json
-near '.modes[0].angular_frequency' '(3 / (2 * 0.25) + 9.81 / 0.5) | sqrt' 1e-6
+gives '.modes[0].angular_frequency' '(3 / (2 * 0.25) + 9.81 / 0.5) | sqrt' 1e-6 modes pendulum.yaml
 out_has "geometric"
 sed '/gravity/d' pendulum.yaml >weightless.yaml
 shows 0 "h 100 % of the energy" modes weightless.yaml
@@ -110,8 +107,7 @@ members: {log: {kind: spring, nodes: [a, b], stiffness: 10, rest_length: 1, law:
           exp: {kind: cable, nodes: [c, d], stiffness: 10, rest_length: 1, law: {kind: exponential, scale: 0.2}}}
 loads: {one: {node: b, force: [0, -5]}, two: {node: d, force: [0, -5]}}
 END
-expect 0 equilibria weights.yaml --json
-near '.equilibria[] | select(.label == "stable") | .nodes.b[1]' '-(0.5 | exp)' 1e-9
+gives '.equilibria[] | select(.label == "stable") | .nodes.b[1]' '-(0.5 | exp)' 1e-9 equilibria weights.yaml
 near '.equilibria[] | select(.label == "stable") | .nodes.d[1]' '-1 - 0.2 * (3.5 | log)' 1e-9
 near '.equilibria[] | select(.label == "stable") | .forces.log' 5 1e-9
 near '.equilibria[] | select(.label == "stable") | .forces.exp' 5 1e-9

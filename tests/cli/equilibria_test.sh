@@ -126,16 +126,13 @@ out_has_not "fJ"
   for k in 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15; do
     fix=", mass: 0.1 kg"
     [ $k = 0 ] && fix=", fixed: both"
-    printf '  a%s: {position: [0, 0.5*%s]%s}\n  b%s: {position: [0.6, 0.5*%s]%s}\n' \
-      $k $k "$fix" $k $k "$fix"
+    printf '  a%s: {position: [0, 0.5*%s]%s}\n  b%s: {position: [0.6, 0.5*%s]%s}\n' $k $k "$fix" $k $k "$fix"
   done
   printf 'members:\n'
   for k in 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14; do
     n=$((k + 1))
-    printf '  x%s: {group: bar, nodes: [a%s, b%s]}\n  y%s: {group: bar, nodes: [b%s, a%s]}\n' \
-      $k $k $n $k $k $n
-    printf '  l%s: {group: cable, nodes: [a%s, a%s]}\n  r%s: {group: cable, nodes: [b%s, b%s]}\n' \
-      $k $k $n $k $k $n
+    printf '  x%s: {group: bar, nodes: [a%s, b%s]}\n  y%s: {group: bar, nodes: [b%s, a%s]}\n' $k $k $n $k $k $n
+    printf '  l%s: {group: cable, nodes: [a%s, a%s]}\n  r%s: {group: cable, nodes: [b%s, b%s]}\n' $k $k $n $k $k $n
     printf '  t%s: {group: cable, nodes: [a%s, b%s]}\n' $k $n $n
   done
 } >tower.yaml

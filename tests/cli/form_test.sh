@@ -16,8 +16,7 @@ holds() {
   model=$1
   size=$2
   shift 2
-  expect 0 form "$model" "$@" -o form.yaml
-  out_has "residual force"
+  shows 0 "residual force" form "$model" "$@" -o form.yaml
   grep -qF 'run: {duration: 10}' form.yaml || fail "$model: no run of 10 s was added"
   expect 0 run form.yaml -o results --quiet
   moved=$(drift results/nodes.csv)
@@ -69,12 +68,10 @@ same once.yaml "$work/out"
 err_empty
 expect 0 check once.yaml
 # What it found it finds again: the shape is in equilibrium, to the last bits of its forces.
-expect 0 form once.yaml --given lengths -o again.yaml
-out_has "displacement"
+shows 0 "displacement" form once.yaml --given lengths -o again.yaml
 
 # The same as JSON: tiso's spine, least squares of densities of at least 0.5 N/m.
-expect 0 form "$models/gallery/spine.yaml" --given prestress --objective squares \
-  --least-density "0.5 N/m" --json
+expect 0 form "$models/gallery/spine.yaml" --given prestress --objective squares --least-density "0.5 N/m" --json
 jq -e '.from == "prestress" and .moved == 0 and (.densities.lower - 4.149565 | fabs) < 5e-7 and
   .densities.front_upper >= 0.4999999 and (.forces | length) == 16 and (.nodes | length) == 8 and
   .rest_lengths.lower < .lengths.lower' "$work/out" >jq.out || fail "the form in JSON"
@@ -87,23 +84,16 @@ done
 # Refusals.
 expect 1 form frame.yaml --given densitis
 err_has "expects densities, lengths or prestress, not 'densitis'; did you mean 'densities'?"
-expect 1 form frame.yaml --least-tension "3 m"
-err_has "--least-tension expects a force, such as"
-expect 1 form frame.yaml --least-tension -3
-err_has "must not be negative"
-expect 3 form frame.yaml --given densities
-err_has "no member has a force density"
-expect 3 form frame.yaml --least-tension 1e6
-err_has "stiffness does not allow"
+tells 1 "--least-tension expects a force, such as" form frame.yaml --least-tension "3 m"
+tells 1 "must not be negative" form frame.yaml --least-tension -3
+tells 3 "no member has a force density" form frame.yaml --given densities
+tells 3 "stiffness does not allow" form frame.yaml --least-tension 1e6
 sed '/b24/d' frame.yaml >lacking.yaml
-expect 3 form lacking.yaml
-err_has "no forces with every cable at"
+tells 3 "no forces with every cable at" form lacking.yaml
 err_has "are missing"
 out_empty
 sed '/^ground/d' frame.yaml >falling.yaml
-expect 3 form falling.yaml --given lengths
-err_has "nothing holds the structure"
-expect 4 form frame.yaml -o "$work/nowhere/form.yaml"
-err_has "nowhere"
+tells 3 "nothing holds the structure" form falling.yaml --given lengths
+tells 4 "nowhere" form frame.yaml -o "$work/nowhere/form.yaml"
 absent "$work/nowhere"
 done_testing

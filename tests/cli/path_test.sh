@@ -43,8 +43,7 @@ tells 1 "unknown load 'wait'; the scene's loads are: weight, wind" path arch.yam
 tells 1 "acts on nothing that can move" path arch.yaml --load wind
 tells 1 "--until expects" path arch.yaml --until "3 N"
 tells 1 "a whole number from 1 to" path arch.yaml --steps 0
-sed '/right: {pos/s/, fixed: both//; s/left: {position: \[-1, 0\], fixed: both}/left: [-1, 0]/' \
-  arch.yaml >loose.yaml
+sed '/right: {pos/s/, fixed: both//; s/left: {position: \[-1, 0\], fixed: both}/left: [-1, 0]/' arch.yaml >loose.yaml
 tells 3 "nothing holds the structure" path loose.yaml --load weight
 sed '/^loads/,$d; /^parameters/d' arch.yaml >idle.yaml
 tells 1 "no constant load" path idle.yaml
@@ -115,8 +114,7 @@ tells 1 "unknown configuration 'upright'" path over.yaml --at upright
 tells 3 "'drawn' is no equilibrium where the path starts" path over.yaml --at drawn --from 1 --until 2
 
 # Where Zeeman's machine folds: first and second derivative zero on the circle of a rigid bar, to 30 digits.
-expect 0 path "$here/../../models/gallery/zeeman.yaml" --set "rod=1e11 N/m" --over control_y \
-  --until "-0.1 m" --json
+expect 0 path "$here/../../models/gallery/zeeman.yaml" --set "rod=1e11 N/m" --over control_y --until "-0.1 m" --json
 jq -e '[.events[] | .kind] == ["limit point", "limit point"] and
   (.events[0].value - -0.144560047338849 | fabs) < 2e-11 and
   (.events[1].value - -0.343357043537997 | fabs) < 2e-11' \
@@ -164,8 +162,7 @@ jq -e '(.branches | length) == 2 and
   fail "two links that buckle"
 # Von Mises' truss, steep: off the middle each bar with its force leaves no residual, and both halves of
 # the branch meet on the other side.
-expect 0 path "$here/../../models/gallery/von-mises.yaml" --set load=1 --set span=0.15 --until 1 \
-  --branches 2 --json
+expect 0 path "$here/../../models/gallery/von-mises.yaml" --set load=1 --set span=0.15 --until 1 --branches 2 --json
 jq -e 'def pull($dx; $dy): (($dx * $dx + $dy * $dy) | sqrt) as $l |
     ((0.2725 | sqrt) / $l - 1) as $s | [$s * $dx, $s * $dy];
   (.branches | length) == 6 and

@@ -43,11 +43,8 @@ def within(row, wanted, errors=4.0):
 OSCILLATOR = """strut: 1
 name: A mass on a spring
 parameters: {stiff: 100 N/m, heavy: 2 kg, idle: 0.5, long: 1 m}
-nodes:
-  wall: {position: [0, 0], fixed: both}
-  mass: {position: [1, 0], mass: heavy, fixed: y}
-members:
-  spring: {nodes: [wall, mass], kind: spring, stiffness: stiff, rest_length: long + 0 m*idle}
+nodes: {wall: {position: [0, 0], fixed: both}, mass: {position: [1, 0], mass: heavy, fixed: y}}
+members: {spring: {nodes: [wall, mass], kind: spring, stiffness: stiff, rest_length: long + 0 m*idle}}
 solver: {step: 1 ms}
 run: {duration: 1 s}
 """
@@ -60,10 +57,9 @@ def products():
 compute: modes
 lowest: 1
 keep: [frequencies, total_mass]
-sensitivity:
-  of: [frequency_1, total_mass]
-  over: {stiff: {lognormal: [100 N/m, 0.6]}, heavy: {lognormal: [2 kg, 0.4]}, idle: {uniform: [0, 1]}}
-  samples: 512
+sensitivity: {of: [frequency_1, total_mass],
+              over: {stiff: {lognormal: [100 N/m, 0.6]}, heavy: {lognormal: [2 kg, 0.4]}, idle: {uniform: [0, 1]}},
+              samples: 512}
 """
     said, rows = sweep("product", text)
     a, b = math.exp(0.3 ** 2) - 1, math.exp(0.2 ** 2) - 1  # squared variations of both factors
@@ -91,7 +87,7 @@ sensitivity:
     check(pick(rows, "total_mass > 0", "share")["value"] == "1", "share of a sign")
     check(pick(rows, "total_mass > 0", "total", "heavy")["value"] == "", "index without variance")
     # a threshold: shares of a lognormal mass below and above its median; a line for each point of an axis
-    report, cut = sweep("cut", text.replace("samples: 512", "samples: 64\n  threshold: 2").replace(
+    report, cut = sweep("cut", text.replace("samples: 512", "samples: 64, threshold: 2").replace(
         "sensitivity:", "axes: [{long: [1 m, 2 m]}]\nsensitivity:"))
     for condition, share in (("total_mass > 2", 0.5), ("|total_mass| <= 2", 0.5), ("total_mass < -2", 0.0)):
         row = pick(cut, condition, "share", **{"long [m]": "2"})
@@ -112,7 +108,7 @@ sensitivity:
     sweep("alone", text)
     check(read("product/sensitivity.csv") == read("alone/sensitivity.csv"), "resumed")
     # another seed, and the rows of a wider study at each point of an axis
-    _, other = sweep("other", text.replace("samples: 512", "samples: 64\n  seed: 2"))
+    _, other = sweep("other", text.replace("samples: 512", "samples: 64, seed: 2"))
     check(pick(other, of, "total", "stiff")["value"] != pick(rows, of, "total", "stiff")["value"],
           "the seed changes nothing")
     _, wide = sweep("wide", text.replace("sensitivity:", "axes: [{long: [1 m, 2 m]}]\nsensitivity:")
@@ -132,9 +128,7 @@ def errors():
 name: A mass that falls
 parameters: {start: 1 m/s, pull: 9.81 m/s^2}
 gravity: [0, -pull]
-nodes:
-  top: {position: [0, 0], fixed: both}
-  mass: {position: [0, 1], mass: 1 kg}
+nodes: {top: {position: [0, 0], fixed: both}, mass: {position: [0, 1], mass: 1 kg}}
 members: {idle: {nodes: [top, mass], kind: cable, stiffness: 1 N/m, rest_length: 100 m}}
 initial: {velocities: {mass: [start, start]}}
 solver: {integrator: rk4-events, step: 1 ms}
@@ -142,17 +136,12 @@ run:
   duration: 0.5 s
   measure:
     last: 0.5 s
-    quantities:
-      height: {of: mass.y, take: max}
-      right: {of: mass.vx, take: final}
-      late: {of: mass.y, take: arrival, target: 1.05 m}
+    quantities: {height: {of: mass.y, take: max}, right: {of: mass.vx, take: final},
+                 late: {of: mass.y, take: arrival, target: 1.05 m}}
 """)
     text = """model: fall.yaml
 keep: [quantities]
-sensitivity:
-  of: [height, right, late]
-  over: {start: {uniform: [-1 m/s, 3 m/s]}}
-  samples: 64
+sensitivity: {of: [height, right, late], over: {start: {uniform: [-1 m/s, 3 m/s]}}, samples: 64}
 """
     _, rows = sweep("fall", text)  # height: 1 + start^2/(2 pull) above start = 0
     row = pick(rows, "height", "derivative", "start")
@@ -180,13 +169,10 @@ def texts():
     write("truss.yaml", """strut: 1
 name: A shallow arch
 parameters: {load: 5 N, idle: 0}
-nodes:
-  left: {position: [-1, 0], fixed: both}
-  right: {position: [1, 0], fixed: both}
-  apex: {position: [0, 0.3], mass: 1 kg}
-members:
-  falling: {kind: bar, nodes: [apex, left], stiffness: 1000 N/m}
-  rising: {kind: bar, nodes: [apex, right], stiffness: 1000 N/m}
+nodes: {left: {position: [-1, 0], fixed: both}, right: {position: [1, 0], fixed: both},
+        apex: {position: [0, 0.3], mass: 1 kg}}
+members: {falling: {kind: bar, nodes: [apex, left], stiffness: 1000 N/m},
+          rising: {kind: bar, nodes: [apex, right], stiffness: 1000 N/m}}
 loads: {weight: {node: apex, force: [0 N*idle, -load]}}
 initial: {settle: true}
 solver: {step: 1 ms}
@@ -195,11 +181,8 @@ configurations: {up: {apex: [0, 0.3]}, down: {apex: [0, -0.3]}}
 """)
     _, rows = sweep("arch", """model: truss.yaml
 keep: [outcome]
-sensitivity:
-  of: [outcome]
-  over: {load: {uniform: [5 N, 15 N]}, idle: {uniform: [0, 1]}}
-  samples: 32
-  derivatives: no
+sensitivity: {of: [outcome], over: {load: {uniform: [5 N, 15 N]}, idle: {uniform: [0, 1]}}, samples: 32,
+              derivatives: no}
 """)
     up = 0.4949917  # it snaps through above 9.949917 N
     names = {r["of"] for r in rows}

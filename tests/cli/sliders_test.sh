@@ -61,8 +61,7 @@ run:
     quantities: {spin: {of: a.x*a.vy - a.y*a.vx + 1.5*(b.x*b.vy - b.y*b.vx) + 0.5*(s.x*s.vy - s.y*s.vx), take: range},
                  turned: {of: bar.angle, take: change}}
 END
-expect 0 run turning.yaml --json
-near "$(value spin)" 0 1e-9
+gives "$(value spin)" 0 1e-9 run turning.yaml
 near "$(value turned) > 3 | if . then 1 else 0 end" 1 0
 
 # Corners are impulses: a mass that sets off and stops. While it moves by u the bar goes back by m u / (all).
@@ -71,8 +70,7 @@ for method in $methods; do
 strut: 1
 nodes: {a: {position: [0, 0], mass: 1, fixed: y}, b: {position: [1, 0], mass: 1.5, fixed: y}}
 members: {bar: {kind: bar, nodes: [a, b], stiffness: 100 kN/m, damping: 200 N s/m}}
-sliders:
-  s: {member: bar, mass: 0.5, position: 100 mm, travel: {ramp: {amplitude: 600 mm, start: 0.1 s, stop: 0.4 s}}}
+sliders: {s: {member: bar, mass: 0.5, position: 100 mm, travel: {ramp: {amplitude: 600 mm, start: 0.1 s, stop: 0.4 s}}}}
 solver: {integrator: $method, step: 0.1 ms}
 run: {duration: 0.5 s, measure: {quantities: {back: {of: a.x, take: final}, fastest: {of: com.vx, take: range}}}}
 END
@@ -150,8 +148,7 @@ solver: {step: 0.1 ms}
 run: {duration: 0.1 ms, measure: {quantities: {a: {of: a.y, take: min}, b: {of: b.y, take: min}}}}
 initial: {settle: true}
 END
-expect 0 run bridge.yaml --json
-near "$(value a)" '-9.81e-4 * (1 + 2 * 0.65)' 1e-7
+gives "$(value a)" '-9.81e-4 * (1 + 2 * 0.65)' 1e-7 run bridge.yaml
 near "$(value b)" '-9.81e-4 * (1 + 2 * 0.35)' 1e-7
 expect 0 modes bridge.yaml --json
 near '.modes[0].frequency' '(10000 / (1 + 2 * (0.65 * 0.65 + 0.35 * 0.35)) | sqrt) / 6.283185307179586' 1e-9

@@ -88,11 +88,8 @@ tells 2 "stage 2 releases 'apex.x', which nothing holds" path free.yaml
 # wire loses is that the beam gains, 2 (1/cos t - 1), and balances the hinge and the load on it.
 cat >sheath.yaml <<'YAML'
 strut: 1
-nodes:
-  far: {position: [-2, 0], fixed: y}
-  base: {position: [0, 0], fixed: both}
-  middle: {position: [1, 0]}
-  end: {position: [2, 0], fixed: both}
+nodes: {far: {position: [-2, 0], fixed: y}, base: {position: [0, 0], fixed: both}, middle: {position: [1, 0]},
+        end: {position: [2, 0], fixed: both}}
 members: {wire: {kind: spring, nodes: [far, base, middle, end], stiffness: 1e6}}
 hinges: {h: {nodes: [base, middle, end], stiffness: 2 N m/rad}}
 loads: {aside: {node: middle, force: [0, -1e-3]}, push: {node: far, force: [100, 0]}}

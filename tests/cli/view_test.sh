@@ -43,8 +43,7 @@ expect 0 view beside/model.yaml -q
 echo mine >beside/swing.html
 tells 4 "strut did not write it" view beside/swing
 [ "$(cat beside/swing.html)" = mine ] || fail "overwrote a file"
-expect 1 view - </dev/null
-err_has "missing -o FILE.html"
+tells 1 "missing -o FILE.html" view - </dev/null
 
 # Two runs on one page, named by their paths; the first is that of the page alone.
 sed 's/duration: 0.2/duration: 0.1/' swing.yaml >short.yaml
@@ -74,8 +73,7 @@ expect 0 view swing.yaml --equilibria all -o again.html
 same model.html again.html
 
 # Ctrl-C while it searches: no page.
-timeout --preserve-status -s INT 0.1 "$strut" view "$here/../../models/crawler/crawler.yaml" \
-  -o stopped.html >out 2>err
+timeout --preserve-status -s INT 0.1 "$strut" view "$here/../../models/crawler/crawler.yaml" -o stopped.html >out 2>err
 [ $? -eq 130 ] || fail "Ctrl-C"
 absent stopped.html
 

@@ -28,9 +28,8 @@ def diatomic_chain():
 strut: 1
 lattice: [[0.2, 0]]
 nodes: {{a: {{position: [0, 0], mass: {light}}}, b: {{position: [0.1, 0], mass: {heavy}}}, next: [0.2, 0]}}
-members:
-  left: {{kind: spring, nodes: [a, b], stiffness: {c}, pretension: {pull}}}
-  right: {{kind: spring, nodes: [b, next], stiffness: {c}, pretension: {pull}}}
+members: {{left: {{kind: spring, nodes: [a, b], stiffness: {c}, pretension: {pull}}},
+          right: {{kind: spring, nodes: [b, next], stiffness: {c}, pretension: {pull}}}}}
 """)
 
     def formula(phase):
@@ -56,11 +55,10 @@ def square_lattice():
 strut: 1
 lattice: [[{side}, 0], [0, {side}]]
 nodes: {{a: {{position: [0, 0], mass: {mass}}}, r: [{side}, 0], u: [0, {side}], d: [{side}, {side}]}}
-members:
-  x: {{kind: spring, nodes: [a, r], stiffness: {c}, pretension: {pull}}}
-  y: {{kind: spring, nodes: [a, u], stiffness: {c}, pretension: {pull}}}
-  up: {{kind: spring, nodes: [a, d], stiffness: {diagonal}}}
-  down: {{kind: spring, nodes: [r, u], stiffness: {diagonal}}}
+members: {{x: {{kind: spring, nodes: [a, r], stiffness: {c}, pretension: {pull}}},
+          y: {{kind: spring, nodes: [a, u], stiffness: {c}, pretension: {pull}}},
+          up: {{kind: spring, nodes: [a, d], stiffness: {diagonal}}},
+          down: {{kind: spring, nodes: [r, u], stiffness: {diagonal}}}}}
 """)
     for wave in found["waves"]:
         x, y = (TAU * p for p in wave["phase"])
@@ -146,9 +144,8 @@ strut: 1
 gravity: [0, -10]
 lattice: [[1, 0]]
 nodes: {a: {position: [0, -1], mass: 2}, next: [1, -1], top: {position: [0, 0], fixed: both}}
-members:
-  s: {kind: spring, nodes: [a, next], stiffness: 30, pretension: 3}
-  hang: {kind: cable, nodes: [top, a], stiffness: 100}
+members: {s: {kind: spring, nodes: [a, next], stiffness: 30, pretension: 3},
+          hang: {kind: cable, nodes: [top, a], stiffness: 100}}
 """)
     sag = 20 / 100
     close("sag", -1 - found["nodes"]["a"][1], sag)
