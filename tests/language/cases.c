@@ -192,6 +192,12 @@ static void read_statement(document *d, char *line) {
 
 /* ---- documents ---- */
 
+/* Whether the line is of another case than the messages before it. */
+static bool begins_next(const document *d, const char *line) {
+  return d->now && d->now->message_count > 0 && strncmp(line, "expect", 6) != 0 &&
+         strncmp(line, "note", 4) != 0;
+}
+
 static void read_document(faulty_cases *cases, const char *folder, const char *name) {
   size_t length;
   document *d = allocate(sizeof *d);
@@ -204,7 +210,7 @@ static void read_document(faulty_cases *cases, const char *folder, const char *n
     next = line + strcspn(line, "\n");
     if (*next) *next++ = '\0';
     d->line_number++;
-    if (!*line) finish_case(d);
+    if (!*line || begins_next(d, line)) finish_case(d);
     if (!*line || *line == '#') continue;
     if (!d->now && strncmp(line, "base", 4) != 0 && strncmp(line, "case ", 5) != 0)
       begin_case(d, NULL, false);
