@@ -15,7 +15,12 @@
 #include <strut/abi.h>
 #include <time.h>
 
+#include "tests/abi/triangle.h"
 #include "tests/support/test.h"
+
+FREED_BY(strutlib_result_free, strutlib_result)
+FREED_BY(strutlib_close, strutlib_scene)
+FREED_BY(strutlib_simulation_close, strutlib_simulation)
 
 static const char crawler[] = "models/crawler/crawler.yaml";
 
@@ -30,22 +35,7 @@ static strutlib_scene *open_crawler(void) {
 
 /* A falling, bouncing triangle: small, with a duration of its own. */
 static const char triangle[] =
-    "strut: 1\n"
-    "name: triangle\n"
-    "parameters: {drop: 20 mm}\n"
-    "gravity: [0, -9.81]\n"
-    "nodes:\n"
-    "  a: [0, drop]\n"
-    "  b: [100 mm, drop]\n"
-    "  c: {position: [50 mm, drop + 80 mm], mass: 10 g}\n"
-    "members:\n"
-    "  ab: {nodes: [a, b], kind: bar, stiffness: 100 kN/m, damping: 1 N s/m, mass: 30 g}\n"
-    "  bc: {nodes: [b, c], kind: spring, stiffness: 1 kN/m, damping: 0.3 N s/m, mass: 10 g}\n"
-    "  ca: {nodes: [c, a], kind: spring, stiffness: 1 kN/m, damping: 0.3 N s/m, mass: 10 g}\n"
-    "ground: {stiffness: 20 kN/m, damping: 5 N s/m, nodes: all}\n"
-    "solver: {integrator: rk4-events, step: 0.1 ms}\n"
-    "run: {duration: 0.2 s}\n"
-    "output: {every: 1 ms, channels: [position, velocity, length, force, contact, energy]}\n";
+    TRIANGLE("0.2 s", ", channels: [position, velocity, length, force, contact, energy]");
 
 static strutlib_scene *open_triangle(void) {
   strutlib_error *error;
@@ -103,7 +93,7 @@ TEST(versions_and_codes_are_reported) {
 /* ---- scenes ---- */
 
 TEST(a_scene_shows_names_and_values) {
-  strutlib_scene *scene = open_crawler();
+  OWN_POINTER(strutlib_scene) scene = open_crawler();
   const double *data;
   int dimensions, flag;
   size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
@@ -141,7 +131,6 @@ TEST(a_scene_shows_names_and_values) {
   assert_true(dimensions == 1 && data[7] == 0.01);
   assert_int_equal(strutlib_scene_array(scene, "members.colour", &data, &dimensions, shape, stride),
                    0);
-  strutlib_close(scene);
 }
 
 TEST(a_setting_changes_a_scene) {
@@ -174,7 +163,7 @@ TEST(json_is_a_scene_too) {
       "  \"stiffness\": \"4 N/cm\", \"mass\": 2}}}";
   strutlib_error *error;
   double value;
-  strutlib_scene *scene =
+  OWN_POINTER(strutlib_scene) scene =
       strutlib_open_text("dictionary", json, sizeof json - 1, 0, NULL, NULL, &error);
   if (!scene) print_message("%s", strutlib_error_report(error));
   assert_non_null(scene);
@@ -182,7 +171,8 @@ TEST(json_is_a_scene_too) {
   assert_true(value == 400.0);
   char *again = strutlib_scene_json(scene, &error);
   assert_non_null(again);
-  strutlib_scene *second = strutlib_open_text("again", again, strlen(again), 0, NULL, NULL, &error);
+  OWN_POINTER(strutlib_scene) second =
+      strutlib_open_text("again", again, strlen(again), 0, NULL, NULL, &error);
   if (!second) print_message("%s", strutlib_error_report(error));
   assert_non_null(second);
   char *yaml = strutlib_scene_yaml(scene, 0, &error),
@@ -191,13 +181,11 @@ TEST(json_is_a_scene_too) {
   strutlib_release(again);
   strutlib_release(yaml);
   strutlib_release(copy);
-  strutlib_close(second);
-  strutlib_close(scene);
 }
 
 TEST(a_scene_is_written_short_too) {
   strutlib_error *error;
-  strutlib_scene *scene = open_triangle();
+  OWN_POINTER(strutlib_scene) scene = open_triangle();
   char *flat = strutlib_scene_yaml(scene, 0, &error), *text = strutlib_scene_yaml(scene, 1, &error);
   assert_non_null(flat);
   assert_non_null(text);
@@ -205,7 +193,6 @@ TEST(a_scene_is_written_short_too) {
   assert_null(strstr(flat, "drop + 80 mm"));
   strutlib_release(flat);
   strutlib_release(text);
-  strutlib_close(scene);
 }
 
 /* ---- errors ---- */
@@ -246,7 +233,7 @@ TEST(an_error_knows_all_its_places) {
 
 TEST(options_are_checked_as_on_the_command_line) {
   strutlib_error *error;
-  strutlib_scene *scene = open_crawler();
+  OWN_POINTER(strutlib_scene) scene = open_crawler();
   static const struct {
     const char *name, *value, *words;
   } wrong[] = {{"acuracy", "1 %", "did you mean 'accuracy'?"},
@@ -277,7 +264,6 @@ TEST(options_are_checked_as_on_the_command_line) {
   assert_non_null(strutlib_option_help("path", 0));
   assert_null(strutlib_option_name("run", 100));
   assert_null(strutlib_option_name("ride", 0));
-  strutlib_close(scene);
 }
 
 /* ---- runs ---- */
@@ -285,7 +271,7 @@ TEST(options_are_checked_as_on_the_command_line) {
 TEST(a_run_has_its_channels) {
   strutlib_error *error;
   strutlib_scene *scene = open_triangle();
-  strutlib_result *result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
+  OWN_POINTER(strutlib_result) result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
   assert_non_null(result);
   assert_null(error);
   strutlib_close(scene); /* a result stays */
@@ -330,7 +316,6 @@ TEST(a_run_has_its_channels) {
   assert_non_null(strstr(strutlib_result_table(result), "completed"));
   assert_null(strutlib_result_cell(result, "outcome", 0));
   assert_null(strutlib_result_column(result, 0));
-  strutlib_result_free(result);
 }
 
 /* A page's data: one JSON object with that text in it, which is released. */
@@ -343,7 +328,7 @@ static void check_page_data(char *data, const char *wanted) {
 
 TEST(a_run_records_what_is_asked_for) {
   strutlib_error *error;
-  strutlib_scene *scene = open_triangle();
+  OWN_POINTER(strutlib_scene) scene = open_triangle();
   const char *names[] = {"channels"}, *values[] = {"force,energy"};
   const double *data;
   int dimensions;
@@ -363,22 +348,19 @@ TEST(a_run_records_what_is_asked_for) {
   assert_refused(error, STRUTLIB_USAGE, "without a recorded motion");
   check_page_data(strutlib_result_page_data(result, &error), "\"motion\":null");
   strutlib_result_free(result);
-  strutlib_close(scene);
 }
 
 TEST(a_run_that_diverges_is_there_up_to_then) {
   strutlib_error *error;
-  strutlib_scene *scene = open_triangle();
+  OWN_POINTER(strutlib_scene) scene = open_triangle();
   const char *names[] = {"force", "step", "integrator"}, *values[] = {"yes", "5 ms", "rk4"};
   assert_null(strutlib_run(scene, 2, names + 1, values + 1, NULL, &error));
   assert_refused(error, STRUTLIB_STEP_TOO_LARGE, "largest stable step");
-  strutlib_result *result = strutlib_run(scene, 3, names, values, NULL, &error);
+  OWN_POINTER(strutlib_result) result = strutlib_run(scene, 3, names, values, NULL, &error);
   assert_non_null(result);
   assert_int_equal(strutlib_result_status(result), STRUTLIB_DIVERGED);
   assert_string_equal(strutlib_result_text(result, "status"), "diverged");
   assert_refused(error, STRUTLIB_DIVERGED, "");
-  strutlib_result_free(result);
-  strutlib_close(scene);
 }
 
 /* ---- statics, pictures ---- */
@@ -407,10 +389,12 @@ TEST(pictures_of_paths_outlive_the_options) {
     char name[] = "push    ";
     const char *values[] = {name, "9", "2 kN/m"};
     strcpy(name, i == 0 ? "push" : "softness");
-    strutlib_scene *scene = strutlib_open_text("s", text, strlen(text), 0, NULL, NULL, &error);
+    OWN_POINTER(strutlib_scene) scene =
+        strutlib_open_text("s", text, strlen(text), 0, NULL, NULL, &error);
     if (!scene) print_message("%s\n", strutlib_error_message(error));
     assert_non_null(scene);
-    strutlib_result *result = strutlib_path(scene, 2 + i, names[i], values, NULL, &error);
+    OWN_POINTER(strutlib_result) result =
+        strutlib_path(scene, 2 + i, names[i], values, NULL, &error);
     if (!result) print_message("%s\n", strutlib_error_message(error));
     assert_non_null(result);
     char *before = strutlib_result_svg(result, 0, NULL, NULL, &error);
@@ -419,14 +403,12 @@ TEST(pictures_of_paths_outlive_the_options) {
     assert_string_equal(before, after);
     strutlib_release(before);
     strutlib_release(after);
-    strutlib_result_free(result);
-    strutlib_close(scene);
   }
 }
 
 TEST(statics_have_arrays_and_pictures) {
   strutlib_error *error;
-  strutlib_scene *scene = open_crawler();
+  OWN_POINTER(strutlib_scene) scene = open_crawler();
   const char *names[] = {"title", "width"}, *values[] = {"A title", "column"};
   strutlib_result *result = strutlib_equilibria(scene, 0, NULL, NULL, NULL, &error);
   assert_non_null(result);
@@ -489,7 +471,6 @@ TEST(statics_have_arrays_and_pictures) {
   assert_null(strutlib_result_svg(result, 0, NULL, NULL, &error));
   assert_refused(error, STRUTLIB_USAGE, "no figure of matrices");
   strutlib_result_free(result);
-  strutlib_close(scene);
 }
 
 TEST(the_language_is_a_schema) {
@@ -519,9 +500,10 @@ TEST(nothing_of_the_host_is_changed) {
   fesetround(FE_TONEAREST);
   fenv_t mode;
   fegetenv(&mode);
-  strutlib_scene *scene = open_triangle();
-  strutlib_result *result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
-  strutlib_simulation *simulation = strutlib_simulation_open(scene, 0, NULL, NULL, NULL, &error);
+  OWN_POINTER(strutlib_scene) scene = open_triangle();
+  OWN_POINTER(strutlib_result) result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
+  OWN_POINTER(strutlib_simulation) simulation =
+      strutlib_simulation_open(scene, 0, NULL, NULL, NULL, &error);
   strutlib_simulation_advance(simulation, 100, &error);
   volatile double tiny = 1e-310; /* flushed to zero where the mode were left on */
   assert_true(tiny * 1.0 != 0.0);
@@ -531,9 +513,6 @@ TEST(nothing_of_the_host_is_changed) {
   assert_ptr_equal(gsl_set_error_handler(of_test), host_handler);
   assert_string_equal(setlocale(LC_ALL, NULL), kept);
   setlocale(LC_ALL, "C");
-  strutlib_simulation_close(simulation);
-  strutlib_result_free(result);
-  strutlib_close(scene);
 }
 
 /* ---- threads and interrupts ---- */
@@ -553,20 +532,17 @@ static void *run_once(void *scene) {
 TEST(eight_threads_get_the_bytes_of_one) {
   enum { THREADS = 8 };
   pthread_t thread[THREADS];
-  strutlib_scene *scene = open_triangle();
-  char *alone = run_once(scene);
+  OWN_POINTER(strutlib_scene) scene = open_triangle();
+  FREED char *alone = run_once(scene);
   assert_non_null(alone);
   for (int i = 0; i < THREADS; i++)
     assert_int_equal(pthread_create(&thread[i], NULL, run_once, scene), 0);
   for (int i = 0; i < THREADS; i++) {
-    void *text;
+    FREED void *text;
     pthread_join(thread[i], &text);
     assert_non_null(text);
     assert_string_equal(text, alone);
-    free(text);
   }
-  free(alone);
-  strutlib_close(scene);
 }
 
 static double processor_time(void) {
@@ -608,14 +584,14 @@ TEST(an_interrupt_returns_what_there_is) {
   strutlib_control_on_progress(control, NULL, NULL);
   strutlib_close(scene);
   scene = open_triangle();
-  strutlib_simulation *simulation = strutlib_simulation_open(scene, 0, NULL, NULL, control, &error);
+  OWN_POINTER(strutlib_simulation) simulation =
+      strutlib_simulation_open(scene, 0, NULL, NULL, control, &error);
   assert_non_null(simulation);
   strutlib_interrupt(control);
   assert_int_equal(strutlib_simulation_advance(simulation, 5, &error), STRUTLIB_INTERRUPTED);
   strutlib_error_free(error);
   strutlib_control_reset(control);
   assert_int_equal(strutlib_simulation_advance(simulation, 5, &error), STRUTLIB_OK);
-  strutlib_simulation_close(simulation);
   strutlib_close(scene);
   strutlib_control_free(control);
 }
@@ -629,7 +605,7 @@ static void *interrupt_later(void *control) {
 
 TEST(another_thread_interrupts_searches_and_sweeps) {
   strutlib_error *error;
-  strutlib_scene *scene = open_crawler();
+  OWN_POINTER(strutlib_scene) scene = open_crawler();
   strutlib_control *control = strutlib_control_create();
   pthread_t thread;
   const char *names[] = {"starts"}, *values[] = {"10000000"};
@@ -642,17 +618,15 @@ TEST(another_thread_interrupts_searches_and_sweeps) {
   double points[400];
   for (int i = 0; i < 400; i++) points[i] = 8.0 + 0.01 * i;
   pthread_create(&thread, NULL, interrupt_later, control);
-  strutlib_result *result = strutlib_sweep(scene, 1, axes, 400, points, NULL, 1, keep, 0, NULL,
-                                           NULL, NULL, NULL, control, &error);
+  OWN_POINTER(strutlib_result) result = strutlib_sweep(scene, 1, axes, 400, points, NULL, 1, keep,
+                                                       0, NULL, NULL, NULL, NULL, control, &error);
   pthread_join(thread, NULL);
   assert_non_null(result);
   assert_int_equal(strutlib_result_status(result), STRUTLIB_INTERRUPTED);
   assert_refused(error, STRUTLIB_INTERRUPTED, "of 400 points");
   array status = array_of(result, "status");
   assert_true(status.data[399] == (double)STRUTLIB_INTERRUPTED);
-  strutlib_result_free(result);
   strutlib_control_free(control);
-  strutlib_close(scene);
 }
 
 /* Statics look at the interrupt between factorisations, and within a linear programme of 40 s. */
@@ -663,7 +637,8 @@ TEST(statics_end_too) {
   strutlib_error *error;
   strutlib_control *control = strutlib_control_create();
   const char *names[] = {"cells"}, *values[] = {"4000"};
-  strutlib_scene *scene = strutlib_open("models/parts/x-chain.yaml", 1, names, values, &error);
+  OWN_POINTER(strutlib_scene) scene =
+      strutlib_open("models/parts/x-chain.yaml", 1, names, values, &error);
   assert_non_null(scene);
   for (size_t i = 0; i < sizeof find / sizeof *find; i++) {
     pthread_t thread;
@@ -676,5 +651,4 @@ TEST(statics_end_too) {
     pthread_join(thread, NULL);
   }
   strutlib_control_free(control);
-  strutlib_close(scene);
 }

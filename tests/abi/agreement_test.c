@@ -14,6 +14,8 @@
 
 #include "tests/support/test.h"
 
+FREED_BY(strutlib_close, strutlib_scene)
+
 static const char *program;
 static char folder[] = "/tmp/strut-agreement-XXXXXX";
 
@@ -124,14 +126,12 @@ static void check_run(const char *model, const strutlib_scene *scene) {
   assert_int_equal(code, error ? strutlib_exit_code(strutlib_error_status(error)) : 0);
   strutlib_error_free(error);
   if (!result) return;
-  char *json = read_file("summary.json"), *yaml = read_file("scene.yaml");
+  FREED char *json = read_file("summary.json"), *yaml = read_file("scene.yaml");
   char *as_run = strutlib_result_yaml(result, &error);
   assert_string_equal(json, strutlib_result_json(result));
   assert_string_equal(yaml, as_run);
   for (size_t i = 0; i < 4; i++) compared += compare_file(result, files[i]);
   assert_true(compared > 100);
-  free(json);
-  free(yaml);
   strutlib_release(as_run);
   strutlib_result_free(result);
 }
@@ -192,7 +192,7 @@ TEST(the_library_agrees_with_the_program) {
   size_t agreed = 0;
   for (size_t i = 0; i < MODELS; i++) {
     strutlib_error *error;
-    strutlib_scene *scene = strutlib_open(models[i], 0, NULL, NULL, &error);
+    OWN_POINTER(strutlib_scene) scene = strutlib_open(models[i], 0, NULL, NULL, &error);
     if (!scene) print_message("%s", strutlib_error_report(error));
     assert_non_null(scene);
     print_message("%s\n", models[i]);
@@ -204,7 +204,6 @@ TEST(the_library_agrees_with_the_program) {
     check_run(models[i], scene);
     for (size_t c = 0; c < sizeof commands / sizeof commands[0]; c++)
       agreed += check_statics(models[i], scene, commands[c].command, commands[c].compute);
-    strutlib_close(scene);
   }
   assert_true(agreed > 2 * MODELS);
 }

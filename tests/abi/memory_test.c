@@ -9,24 +9,14 @@
 
 #include "engine/base/memory.h"
 #include "parser/bindings/abi/abi.h"
+#include "tests/abi/triangle.h"
 #include "tests/support/test.h"
 
-static const char text[] =
-    "strut: 1\n"
-    "parameters: {drop: 20 mm}\n"
-    "gravity: [0, -9.81]\n"
-    "nodes:\n"
-    "  a: [0, drop]\n"
-    "  b: [100 mm, drop]\n"
-    "  c: {position: [50 mm, drop + 80 mm], mass: 10 g}\n"
-    "members:\n"
-    "  ab: {nodes: [a, b], kind: bar, stiffness: 100 kN/m, mass: 30 g}\n"
-    "  bc: {nodes: [b, c], kind: spring, stiffness: 1 kN/m, mass: 10 g}\n"
-    "  ca: {nodes: [c, a], kind: spring, stiffness: 1 kN/m, mass: 10 g}\n"
-    "ground: {stiffness: 20 kN/m, nodes: all}\n"
-    "solver: {integrator: rk4-events, step: 0.1 ms}\n"
-    "run: {duration: 5 ms}\n"
-    "output: {every: 1 ms}\n";
+FREED_BY(strutlib_result_free, strutlib_result)
+FREED_BY(strutlib_close, strutlib_scene)
+FREED_BY(strutlib_simulation_close, strutlib_simulation)
+
+static const char text[] = TRIANGLE("5 ms", "");
 
 typedef bool (*attempt)(strutlib_scene *scene, strutlib_error **error);
 
@@ -51,14 +41,13 @@ static bool open_wrong(strutlib_scene *scene, strutlib_error **error) {
 
 static bool show_scene(strutlib_scene *scene, strutlib_error **error) {
   const char *names[] = {"drop"}, *values[] = {"30 mm"};
-  strutlib_scene *other = strutlib_scene_with(scene, 1, names, values, error);
+  OWN_POINTER(strutlib_scene) other = strutlib_scene_with(scene, 1, names, values, error);
   char *json = other ? strutlib_scene_json(other, error) : NULL;
   char *yaml = json ? strutlib_scene_yaml(other, 0, error) : NULL;
   char *parts = yaml ? strutlib_scene_yaml(other, 1, error) : NULL;
   strutlib_release(json);
   strutlib_release(yaml);
   strutlib_release(parts);
-  strutlib_close(other);
   return parts != NULL;
 }
 
@@ -66,10 +55,9 @@ static bool run(strutlib_scene *scene, strutlib_error **error) {
   const double *data;
   int dimensions;
   size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
-  strutlib_result *result = strutlib_run(scene, 0, NULL, NULL, NULL, error);
+  OWN_POINTER(strutlib_result) result = strutlib_run(scene, 0, NULL, NULL, NULL, error);
   bool good =
       result && strutlib_result_array(result, "nodes", &data, &dimensions, shape, stride) == 1;
-  strutlib_result_free(result);
   return good;
 }
 
@@ -88,7 +76,7 @@ static bool simulate(strutlib_scene *scene, strutlib_error **error) {
   const double *force;
   int dimensions, status = STRUTLIB_NO_MEMORY;
   size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
-  strutlib_simulation *s = strutlib_simulation_open(scene, 0, NULL, NULL, NULL, error);
+  OWN_POINTER(strutlib_simulation) s = strutlib_simulation_open(scene, 0, NULL, NULL, NULL, error);
   strutlib_snapshot *snapshot = s ? strutlib_simulation_snapshot(s, error) : NULL;
   if (snapshot && strutlib_simulation_input(s, "load", &load, &dimensions, shape, stride) &&
       strutlib_simulation_array(s, "force", &force, &dimensions, shape, stride)) {
@@ -97,7 +85,6 @@ static bool simulate(strutlib_scene *scene, strutlib_error **error) {
     strutlib_simulation_restore(s, snapshot, NULL);
   }
   strutlib_snapshot_free(snapshot);
-  strutlib_simulation_close(s);
   return status == STRUTLIB_OK;
 }
 
@@ -105,11 +92,9 @@ static bool sweep(strutlib_scene *scene, strutlib_error **error) {
   const char *axes[] = {"drop"}, *keep[] = {"velocity", "method"};
   const char *names[] = {"threads"}, *values[] = {"1"};
   const double points[] = {0.01, 0.02};
-  strutlib_result *result = strutlib_sweep(scene, 1, axes, 2, points, NULL, 2, keep, 1, names,
-                                           values, NULL, NULL, NULL, error);
-  bool good = result != NULL;
-  strutlib_result_free(result);
-  return good;
+  OWN_POINTER(strutlib_result) result = strutlib_sweep(scene, 1, axes, 2, points, NULL, 2, keep, 1,
+                                                       names, values, NULL, NULL, NULL, error);
+  return result != NULL;
 }
 
 /* Returns how many allocations could fail. */
@@ -140,12 +125,12 @@ TEST(memory_that_is_out_is_an_error) {
     attempt call;
   } calls[] = {{"open", open_text},  {"wrong text", open_wrong}, {"show", show_scene}, {"run", run},
                {"statics", analyse}, {"simulation", simulate},   {"sweep", sweep}};
-  strutlib_scene *scene = strutlib_open_text("memory", text, sizeof text - 1, 0, NULL, NULL, NULL);
+  OWN_POINTER(strutlib_scene) scene =
+      strutlib_open_text("memory", text, sizeof text - 1, 0, NULL, NULL, NULL);
   assert_non_null(scene);
   for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++) {
     int64_t count = fail_each(scene, calls[i].call);
     print_message("%s: %lld allocations failed in turn\n", calls[i].name, (long long)count);
     assert_true(count > 3);
   }
-  strutlib_close(scene);
 }

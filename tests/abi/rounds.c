@@ -4,22 +4,9 @@
 #include <stdlib.h>
 #include <strut/abi.h>
 
-static const char text[] =
-    "strut: 1\n"
-    "parameters: {drop: 20 mm}\n"
-    "gravity: [0, -9.81]\n"
-    "nodes:\n"
-    "  a: [0, drop]\n"
-    "  b: [100 mm, drop]\n"
-    "  c: {position: [50 mm, drop + 80 mm], mass: 10 g}\n"
-    "members:\n"
-    "  ab: {nodes: [a, b], kind: bar, stiffness: 100 kN/m, mass: 30 g}\n"
-    "  bc: {nodes: [b, c], kind: spring, stiffness: 1 kN/m, mass: 10 g}\n"
-    "  ca: {nodes: [c, a], kind: spring, stiffness: 1 kN/m, mass: 10 g}\n"
-    "ground: {stiffness: 20 kN/m, nodes: all}\n"
-    "solver: {integrator: rk4-events, step: 0.1 ms}\n"
-    "run: {duration: 2 ms}\n"
-    "output: {every: 1 ms}\n";
+#include "tests/abi/triangle.h"
+
+static const char text[] = TRIANGLE("2 ms", "");
 
 static int failed(strutlib_error *error) {
   fprintf(stderr, "%s", strutlib_error_report(error));

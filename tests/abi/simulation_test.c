@@ -15,6 +15,10 @@
 
 #include "tests/support/test.h"
 
+FREED_BY(strutlib_result_free, strutlib_result)
+FREED_BY(strutlib_close, strutlib_scene)
+FREED_BY(strutlib_simulation_close, strutlib_simulation)
+
 static const char *const methods[] = {"rk4",          "euler",         "verlet",   "rk4-events",
                                       "euler-events", "verlet-events", "adaptive", "midpoint"};
 enum { METHODS = sizeof methods / sizeof methods[0] };
@@ -73,8 +77,8 @@ TEST(steps_do_not_depend_on_their_division) {
   for (int m = 0; m < METHODS; m++) {
     size_t n, k;
     strutlib_scene *scene = open_for(methods[m]);
-    strutlib_simulation *whole = open_with(scene, methods[m]);
-    strutlib_simulation *parts = open_with(scene, methods[m]);
+    OWN_POINTER(strutlib_simulation) whole = open_with(scene, methods[m]);
+    OWN_POINTER(strutlib_simulation) parts = open_with(scene, methods[m]);
     strutlib_close(scene); /* simulations stay */
     advance(whole, 1500);
     for (long done = 0, i = 0; done < 1500; i++) {
@@ -88,8 +92,6 @@ TEST(steps_do_not_depend_on_their_division) {
     assert_memory_equal(a, b, n * sizeof *a);
     a = channel(whole, "force", &k), b = channel(parts, "force", &k);
     assert_memory_equal(a, b, k * sizeof *a);
-    strutlib_simulation_close(whole);
-    strutlib_simulation_close(parts);
   }
 }
 
@@ -105,12 +107,12 @@ TEST(steps_are_those_of_a_run) {
     int dimensions;
     size_t n, shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
     const char *names[] = {"integrator", "step"}, *values[] = {methods[m], "0.025 ms"};
-    strutlib_scene *scene =
+    OWN_POINTER(strutlib_scene) scene =
         strutlib_open_text("short.yaml", text, sizeof text - 1, 0, NULL, NULL, &error);
     if (!scene) print_message("%s", strutlib_error_report(error));
     assert_non_null(scene);
-    strutlib_result *run = strutlib_run(scene, 2, names, values, NULL, &error);
-    strutlib_simulation *simulation =
+    OWN_POINTER(strutlib_result) run = strutlib_run(scene, 2, names, values, NULL, &error);
+    OWN_POINTER(strutlib_simulation) simulation =
         strutlib_simulation_open(scene, 2, names, values, NULL, &error);
     assert_non_null(run);
     assert_non_null(simulation);
@@ -121,9 +123,6 @@ TEST(steps_are_those_of_a_run) {
       assert_int_equal(strutlib_result_array(run, name, &last, &dimensions, shape, stride), 1);
       assert_memory_equal(here, last + (shape[0] - 1) * stride[0], n * sizeof *here);
     }
-    strutlib_result_free(run);
-    strutlib_simulation_close(simulation);
-    strutlib_close(scene);
   }
 }
 
@@ -131,14 +130,15 @@ TEST(a_snapshot_goes_on_with_the_same_bits) {
   for (int m = 0; m < METHODS; m++) {
     size_t n, k;
     strutlib_error *error;
-    strutlib_scene *scene = open_for(methods[m]);
-    strutlib_simulation *a = open_with(scene, methods[m]), *b = open_with(scene, methods[m]);
+    OWN_POINTER(strutlib_scene) scene = open_for(methods[m]);
+    OWN_POINTER(strutlib_simulation) a = open_with(scene, methods[m]),
+                                     *b = open_with(scene, methods[m]);
     const double *position = channel(a, "position", &n);
     double *rest = input(a, "rest", &k), drawn = rest[k - 1];
     advance(a, 500);
     strutlib_snapshot *snapshot = strutlib_simulation_snapshot(a, &error);
     assert_non_null(snapshot);
-    double *there = malloc(n * sizeof *there), *then = malloc(n * sizeof *then);
+    FREED double *there = malloc(n * sizeof *there), *then = malloc(n * sizeof *then);
     memcpy(there, position, n * sizeof *there);
     advance(a, 333);
     memcpy(then, position, n * sizeof *then);
@@ -153,11 +153,6 @@ TEST(a_snapshot_goes_on_with_the_same_bits) {
     assert_int_equal(strutlib_simulation_restore(b, snapshot, &error), STRUTLIB_USAGE);
     strutlib_error_free(error);
     strutlib_snapshot_free(snapshot);
-    strutlib_simulation_close(a);
-    strutlib_simulation_close(b);
-    strutlib_close(scene);
-    free(there);
-    free(then);
   }
 }
 
@@ -171,8 +166,9 @@ static double open_balance(const char *step, double *worked) {
   strutlib_error *error;
   size_t n, k, q, l;
   const char *names[] = {"integrator", "step"}, *values[] = {"rk4-events", step};
-  strutlib_scene *scene = open_for("rk4-events");
-  strutlib_simulation *s = strutlib_simulation_open(scene, 2, names, values, NULL, &error);
+  OWN_POINTER(strutlib_scene) scene = open_for("rk4-events");
+  OWN_POINTER(strutlib_simulation) s =
+      strutlib_simulation_open(scene, 2, names, values, NULL, &error);
   assert_non_null(s);
   const double *energy = channel(s, "energy", &n);
   double *rest = input(s, "rest", &k), *hold = input(s, "actuators", &q),
@@ -188,8 +184,6 @@ static double open_balance(const char *step, double *worked) {
   }
   *worked = strutlib_simulation_input_work(s);
   double gap = balance(energy) - begin;
-  strutlib_simulation_close(s);
-  strutlib_close(scene);
   return fabs(gap);
 }
 
@@ -222,22 +216,20 @@ static void check_held_input(const char *member) {
   strutlib_error *error;
   const char *names[] = {"rest", "pull"}, *values[] = {"0.8 m", "7 N"};
   size_t n;
-  strutlib_scene *plain = strutlib_open_text("spring", text, (size_t)length, 0, NULL, NULL, &error);
+  OWN_POINTER(strutlib_scene) plain =
+      strutlib_open_text("spring", text, (size_t)length, 0, NULL, NULL, &error);
   if (!plain) print_message("%s", strutlib_error_report(error));
-  strutlib_scene *changed =
+  OWN_POINTER(strutlib_scene) changed =
       strutlib_open_text("spring", text, (size_t)length, 2, names, values, &error);
-  strutlib_simulation *a = strutlib_simulation_open(plain, 0, NULL, NULL, NULL, &error);
-  strutlib_simulation *b = strutlib_simulation_open(changed, 0, NULL, NULL, NULL, &error);
+  OWN_POINTER(strutlib_simulation) a = strutlib_simulation_open(plain, 0, NULL, NULL, NULL, &error);
+  OWN_POINTER(strutlib_simulation) b =
+      strutlib_simulation_open(changed, 0, NULL, NULL, NULL, &error);
   assert_int_equal(strutlib_simulation_set(a, "rest", "m", 0.8, &error), STRUTLIB_OK);
   assert_int_equal(strutlib_simulation_set(a, "load", "b.x", 7.0, &error), STRUTLIB_OK);
   advance(a, 400);
   advance(b, 400);
   const double *qa = channel(a, "position", &n), *qb = channel(b, "position", &n);
   assert_memory_equal(qa, qb, n * sizeof *qa);
-  strutlib_simulation_close(a);
-  strutlib_simulation_close(b);
-  strutlib_close(plain);
-  strutlib_close(changed);
 }
 
 /* A rest length that is held changes the motion as a scene with that rest length: EA is over it, too. */
@@ -251,7 +243,7 @@ TEST(a_held_input_is_as_if_the_scene_had_it) {
 TEST(inputs_are_checked) {
   strutlib_error *error;
   size_t k;
-  strutlib_scene *scene = open_for("rk4");
+  OWN_POINTER(strutlib_scene) scene = open_for("rk4");
   strutlib_simulation *s = open_with(scene, "rk4");
   double *rest = input(s, "rest", &k), drawn = rest[0];
   rest[0] = -1.0;
@@ -274,14 +266,14 @@ TEST(inputs_are_checked) {
   assert_null(strutlib_simulation_open(scene, 1, names, values, NULL, &error));
   assert_int_equal(strutlib_error_status(error), STRUTLIB_STEP_TOO_LARGE);
   strutlib_error_free(error);
-  strutlib_close(scene);
 }
 
 TEST(a_divergence_stays_until_a_restore) {
   strutlib_error *error;
-  strutlib_scene *scene = open_for("rk4");
+  OWN_POINTER(strutlib_scene) scene = open_for("rk4");
   const char *names[] = {"step", "force", "integrator"}, *values[] = {"2 ms", "yes", "rk4"};
-  strutlib_simulation *s = strutlib_simulation_open(scene, 3, names, values, NULL, &error);
+  OWN_POINTER(strutlib_simulation) s =
+      strutlib_simulation_open(scene, 3, names, values, NULL, &error);
   assert_non_null(s);
   strutlib_snapshot *snapshot = strutlib_simulation_snapshot(s, &error);
   assert_int_equal(strutlib_simulation_advance(s, 100000, &error), STRUTLIB_DIVERGED);
@@ -293,8 +285,6 @@ TEST(a_divergence_stays_until_a_restore) {
   assert_int_equal(strutlib_simulation_restore(s, snapshot, &error), STRUTLIB_OK);
   advance(s, 1);
   strutlib_snapshot_free(snapshot);
-  strutlib_simulation_close(s);
-  strutlib_close(scene);
 }
 
 static strutlib_control *control;
@@ -307,9 +297,10 @@ static void interrupt(int signal) {
 /* The largest number of steps is a number of steps, which an interrupt ends. */
 TEST(an_endless_advance_can_be_interrupted) {
   strutlib_error *error;
-  strutlib_scene *scene = open_for("rk4");
+  OWN_POINTER(strutlib_scene) scene = open_for("rk4");
   control = strutlib_control_create();
-  strutlib_simulation *s = strutlib_simulation_open(scene, 0, NULL, NULL, control, &error);
+  OWN_POINTER(strutlib_simulation) s =
+      strutlib_simulation_open(scene, 0, NULL, NULL, control, &error);
   assert_non_null(s);
   advance(s, 3);
   double before = strutlib_simulation_time(s);
@@ -318,7 +309,5 @@ TEST(an_endless_advance_can_be_interrupted) {
   assert_int_equal(strutlib_simulation_advance(s, LONG_MAX, &error), STRUTLIB_INTERRUPTED);
   strutlib_error_free(error);
   assert_true(strutlib_simulation_time(s) > before);
-  strutlib_simulation_close(s);
   strutlib_control_free(control);
-  strutlib_close(scene);
 }

@@ -7,8 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
@@ -81,12 +79,12 @@ static double parted(double a, double b, double seconds, strut_bar_model bars) {
     strut_scene_init(&scene[k]);
     scene[k].bar_model = bars;
     structure_pendulum(&scene[k], 1e9, k ? a + APART : a, true, b);
-    motion_begin(&m[k], &scene[k], step);
+    m[k] = motion_begin(&scene[k], step);
     motion_steps(&m[k], llround(seconds / step));
   }
   double apart = between(angles_of(&m[0]), angles_of(&m[1]));
   for (int k = 0; k < 2; k++) {
-    motion_end(&m[k]);
+    motion_free(&m[k]);
     strut_scene_free(&scene[k]);
   }
   return log(apart / APART);

@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 static const double PI = 3.14159265358979323846, GRAVITY = 9.81;
@@ -26,21 +24,16 @@ static double hurry(double zeta) { return zeta > 1 ? zeta + sqrt(zeta * zeta - 1
  */
 static double bounce(const char *method, double zeta, double z) {
   const double k = 2500, mass = 0.04, omega = sqrt(k / mass) * hurry(zeta), speed = 3;
-  strut_setup setup;
-  motion m;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   build_mass(&setup.scene, 0, 1.37 * speed * 0.01 / omega, mass);
   setup.scene.nodes[0].velocity[1] = -speed;
   build_contact(&setup.scene, 0, k, 2 * zeta * sqrt(k * mass));
   setup.experiment.tolerance = 1e-11;
-  motion_begin_by(&m, &setup, method, z / omega);
+  OWN(motion) m = motion_begin_by(&setup, method, z / omega);
   double touching = (zeta < 1 ? PI : PI + 4 * zeta) * hurry(zeta);
   motion_steps(&m, (int64_t)ceil((touching + 0.1) / z) + 2);
   assert_true(m.state->q[1] > 0);
-  double e = m.state->v[1] / speed;
-  motion_end(&m);
-  strut_setup_free(&setup);
-  return e;
+  return m.state->v[1] / speed;
 }
 
 TEST(restitution_of_the_one_sided_damper) {
@@ -70,17 +63,18 @@ TEST(order_through_a_bounce) {
 }
 
 /* One block of 1 kg on level ground that carries it already, on a spring to a wall. */
-static void spring_block(strut_setup *setup, double stiffness, double mu_static, double mu_kinetic,
-                         double stretch) {
+static strut_setup spring_block(double stiffness, double mu_static, double mu_kinetic,
+                                double stretch) {
   const double g = 9.81, ground = 1e5;
-  strut_setup_init(setup);
-  setup->scene.gravity[1] = -g;
-  int32_t block = build_mass(&setup->scene, 0, -g / ground, 1);
-  int32_t wall = build_support(&setup->scene, -1, -g / ground);
-  build_member(&setup->scene, STRUT_SPRING, block, wall, stiffness, 0, 0);
-  setup->scene.nodes[0].start[0] = stretch;
-  build_rough_contact(&setup->scene, 0, ground, 0, mu_static, mu_kinetic, 1e-4);
-  setup->scene.contacts[0].friction.law = STRUT_FRICTION_COULOMB;
+  strut_setup setup = build_setup();
+  setup.scene.gravity[1] = -g;
+  int32_t block = build_mass(&setup.scene, 0, -g / ground, 1);
+  int32_t wall = build_support(&setup.scene, -1, -g / ground);
+  build_member(&setup.scene, STRUT_SPRING, block, wall, stiffness, 0, 0);
+  setup.scene.nodes[0].start[0] = stretch;
+  build_rough_contact(&setup.scene, 0, ground, 0, mu_static, mu_kinetic, 1e-4);
+  setup.scene.contacts[0].friction.law = STRUT_FRICTION_COULOMB;
+  return setup;
 }
 
 /* Time within the latest step at which the velocity fell through 0, by Newton on its expansion. */
@@ -115,17 +109,13 @@ TEST(belt_stick_slip_period) {
   const double gap = (most - kinetic) / k;
   const double period = 2 * gap / belt + (PI + 2 * atan(belt / (omega * gap))) / omega;
   for (int i = 0; i < LOCATED_COUNT; i++) {
-    strut_setup setup;
-    motion m;
-    spring_block(&setup, k, most / weight, kinetic / weight, 0);
+    OWN(strut_setup) setup = spring_block(k, most / weight, kinetic / weight, 0);
     setup.scene.ground.belt_speed = setup.scene.nodes[0].velocity[0] = belt;
     setup.experiment.tolerance = 1e-10;
-    motion_begin_by(&m, &setup, LOCATED[i], 3e-4);
+    OWN(motion) m = motion_begin_by(&setup, LOCATED[i], 3e-4);
     double found = turning_period(&m, k, kinetic, 6);
     print_message("%s: stick-slip period %.10f s, exactly %.10f s\n", LOCATED[i], found, period);
     assert_relative(found, period, 1e-6);
-    motion_end(&m);
-    strut_setup_free(&setup);
   }
 }
 
@@ -133,18 +123,14 @@ TEST(belt_stick_slip_period) {
 TEST(no_stick_slip_with_equal_coefficients) {
   const double k = 100, belt = 0.1, weight = 9.81, kinetic = 1, omega = 10;
   for (int i = 0; i < LOCATED_COUNT; i++) {
-    strut_setup setup;
-    motion m;
-    spring_block(&setup, k, kinetic / weight, kinetic / weight, 0);
+    OWN(strut_setup) setup = spring_block(k, kinetic / weight, kinetic / weight, 0);
     setup.scene.ground.belt_speed = setup.scene.nodes[0].velocity[0] = belt;
     setup.experiment.tolerance = 1e-10;
-    motion_begin_by(&m, &setup, LOCATED[i], 3e-4);
+    OWN(motion) m = motion_begin_by(&setup, LOCATED[i], 3e-4);
     double found = turning_period(&m, k, kinetic, 30);
     assert_relative(found, 2 * PI / omega, 1e-6);
     double way = hypot(m.state->q[0] - kinetic / k, m.state->v[0] / omega);
     assert_relative(way, belt / omega, 1e-6);
-    motion_end(&m);
-    strut_setup_free(&setup);
   }
 }
 
@@ -158,12 +144,10 @@ TEST(coulomb_oscillator) {
   const double k = 100, omega = 10, weight = 9.81, start = 0.1;
   static const double mus[] = {0.05, 0.0813, 0.2};
   for (int i = 0; i < LOCATED_COUNT * 3; i++) {
-    strut_setup setup;
-    motion m;
     double mu = mus[i / LOCATED_COUNT], shift = mu * weight / k, step = 2e-4;
-    spring_block(&setup, k, mu, mu, start);
+    OWN(strut_setup) setup = spring_block(k, mu, mu, start);
     setup.experiment.tolerance = 1e-12;
-    motion_begin_by(&m, &setup, LOCATED[i % LOCATED_COUNT], step);
+    OWN(motion) m = motion_begin_by(&setup, LOCATED[i % LOCATED_COUNT], step);
     int halves = (int)ceil((start - shift) / (2 * shift));
     double last = start + shift, worst = 0;
     for (int half = 0; half < halves; half++) {
@@ -182,21 +166,19 @@ TEST(coulomb_oscillator) {
     assert_true(m.state->q[0] == stood && m.state->v[0] == 0);
     print_message("%s, mu %g: drop of a half-cycle off by %.1e m, stopping place by %.1e m\n",
                   LOCATED[i % LOCATED_COUNT], mu, worst, fabs(stood - rest));
-    motion_end(&m);
-    strut_setup_free(&setup);
   }
 }
 
 /* A block of 1 kg on ground, at height y above it, under a load along the ground. */
-static void loaded_block(strut_setup *setup, double ground, double y, double mu, double load,
-                         double frequency) {
-  strut_setup_init(setup);
-  setup->scene.gravity[1] = -GRAVITY;
-  int32_t block = build_mass(&setup->scene, 0, y, 1);
-  int32_t signal = frequency > 0 ? build_sine(&setup->scene, 1, frequency) : -1;
-  build_load(&setup->scene, block, load, 0, signal);
-  build_rough_contact(&setup->scene, 0, ground, 0, mu, mu, 1e-2);
-  setup->experiment.tolerance = 1e-11;
+static strut_setup loaded_block(double ground, double y, double mu, double load, double frequency) {
+  strut_setup setup = build_setup();
+  setup.scene.gravity[1] = -GRAVITY;
+  int32_t block = build_mass(&setup.scene, 0, y, 1);
+  int32_t signal = frequency > 0 ? build_sine(&setup.scene, 1, frequency) : -1;
+  build_load(&setup.scene, block, load, 0, signal);
+  build_rough_contact(&setup.scene, 0, ground, 0, mu, mu, 1e-2);
+  setup.experiment.tolerance = 1e-11;
+  return setup;
 }
 
 /* Pulled by more than friction from rest: uniformly accelerated, and no part of a step is lost at the edge. */
@@ -204,17 +186,13 @@ TEST(the_band_is_left_where_its_edge_is) {
   const double ground = 1e5, mu = 0.1, load = 2;
   for (int i = 0; i < LOCATED_COUNT; i++) {
     for (double step = 1e-3; step < 6e-3; step += 1.3e-3) {
-      strut_setup setup;
-      motion m;
-      loaded_block(&setup, ground, -GRAVITY / ground, mu, load, 0);
-      motion_begin_by(&m, &setup, LOCATED[i], step);
+      OWN(strut_setup) setup = loaded_block(ground, -GRAVITY / ground, mu, load, 0);
+      OWN(motion) m = motion_begin_by(&setup, LOCATED[i], step);
       motion_steps(&m, 20);
       double expected = 20 * step * (load - mu * GRAVITY);
       print_message("%s, step %g: speed off by %.1e m/s\n", LOCATED[i], step,
                     m.state->v[0] - expected);
       assert_near(m.state->v[0], expected, 1e-12 * expected);
-      motion_end(&m);
-      strut_setup_free(&setup);
     }
   }
 }
@@ -227,11 +205,9 @@ TEST(the_edge_of_the_band_is_left_where_balance_ends) {
   const double ground = 1e5, mu = 0.1, load = 4, frequency = 0.05, edge = 1e-2, most = mu * GRAVITY;
   const double omega = 2 * PI * frequency, leaves = asin(most / load) / omega, end = 1.5;
   for (int i = 0; i < LOCATED_COUNT; i++) {
-    strut_setup setup;
-    motion m;
-    loaded_block(&setup, ground, -GRAVITY / ground, mu, load, frequency);
+    OWN(strut_setup) setup = loaded_block(ground, -GRAVITY / ground, mu, load, frequency);
     setup.scene.nodes[0].velocity[0] = 0.05;
-    motion_begin_by(&m, &setup, LOCATED[i], 5e-3);
+    OWN(motion) m = motion_begin_by(&setup, LOCATED[i], 5e-3);
     motion_steps(&m, 120);
     assert_near(m.state->v[0], edge, 1e-9 * edge);
     motion_steps(&m, 180);
@@ -240,8 +216,6 @@ TEST(the_edge_of_the_band_is_left_where_balance_ends) {
     print_message("%s: speed off by %.1e m/s, %lld events\n", LOCATED[i], m.state->v[0] - expected,
                   (long long)m.state->events);
     assert_near(m.state->v[0], expected, 1e-8 * edge); /* speeds at the edge are known to that */
-    motion_end(&m);
-    strut_setup_free(&setup);
   }
 }
 
@@ -253,19 +227,15 @@ TEST(friction_is_against_a_push_that_begins) {
   const double ground = 1000, omega = sqrt(ground), mu = 0.3, load = -400, frequency = 0.5;
   const double drive = 2 * PI * frequency, step = 1e-3, t = 50 * step;
   for (int i = 0; i < LOCATED_COUNT; i++) {
-    strut_setup setup;
-    motion m;
-    loaded_block(&setup, ground, 0, mu, load, frequency);
+    OWN(strut_setup) setup = loaded_block(ground, 0, mu, load, frequency);
     setup.scene.contacts[0].friction.mu_static = 1.2 * mu;
-    motion_begin_by(&m, &setup, LOCATED[i], step);
+    OWN(motion) m = motion_begin_by(&setup, LOCATED[i], step);
     motion_steps(&m, 50);
     double expected =
         load / drive * (1 - cos(drive * t)) + mu * GRAVITY * (t - sin(omega * t) / omega);
     print_message("%s: speed %.9g m/s, off by %.1e m/s\n", LOCATED[i], expected,
                   m.state->v[0] - expected);
     assert_near(m.state->v[0], expected, 1e-7);
-    motion_end(&m);
-    strut_setup_free(&setup);
   }
 }
 
@@ -280,16 +250,12 @@ TEST(a_slip_may_end_in_the_step_in_which_it_begins) {
     t -= (load * t - most * (t - sin(omega * t) / omega)) / (load - most * (1 - cos(omega * t)));
   double expected = load * t * t / 2 - most * (t * t / 2 + (cos(omega * t) - 1) / (omega * omega));
   for (int i = 0; i < LOCATED_COUNT; i++) {
-    strut_setup setup;
-    motion m;
-    loaded_block(&setup, ground, 0, mu, load, 0);
+    OWN(strut_setup) setup = loaded_block(ground, 0, mu, load, 0);
     setup.scene.contacts[0].friction.law = STRUT_FRICTION_COULOMB;
-    motion_begin_by(&m, &setup, LOCATED[i], 0.5 / omega);
+    OWN(motion) m = motion_begin_by(&setup, LOCATED[i], 0.5 / omega);
     motion_steps(&m, 6);
     print_message("%s: slipped %.9g m, closed form %.9g m\n", LOCATED[i], m.state->q[0], expected);
     assert_near(m.state->q[0], expected, 1e-3 * expected);
     assert_true(m.state->v[0] == 0);
-    motion_end(&m);
-    strut_setup_free(&setup);
   }
 }

@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
@@ -20,18 +18,19 @@ static const x_frame FRAME = {.side = 0.2,
 static double times = 1; /* how much longer the runs are in the long version */
 
 /* The frame above ground on which all its nodes may land. */
-static void frame_on_ground(strut_setup *setup, double above, double mu, strut_friction_law law) {
-  strut_setup_init(setup);
-  structure_x_frame(&setup->scene, &FRAME);
-  setup->scene.gravity[1] = -G;
-  setup->scene.ground.height = -0.5 * FRAME.side - above;
+static strut_setup frame_on_ground(double above, double mu, strut_friction_law law) {
+  strut_setup setup = build_setup();
+  structure_x_frame(&setup.scene, &FRAME);
+  setup.scene.gravity[1] = -G;
+  setup.scene.ground.height = -0.5 * FRAME.side - above;
   for (int32_t i = 0; i < 4; i++) {
     if (law == STRUT_FRICTION_NONE)
-      build_contact(&setup->scene, i, 1e4, 20);
+      build_contact(&setup.scene, i, 1e4, 20);
     else
-      build_rough_contact(&setup->scene, i, 1e4, 20, mu, mu, 1e-4);
-    setup->scene.contacts[i].friction.law = law;
+      build_rough_contact(&setup.scene, i, 1e4, 20, mu, mu, 1e-4);
+    setup.scene.contacts[i].friction.law = law;
   }
+  return setup;
 }
 
 static double momentum(const motion *m) {
@@ -46,12 +45,10 @@ BEFORE_ALL { times = test_number(1, times); }
 TEST(without_friction_horizontal_momentum_stays) {
   static const char *const methods[] = {"rk4", "rk4-events", "verlet-events"};
   for (int k = 0; k < 3; k++) {
-    strut_setup setup;
-    motion m;
-    frame_on_ground(&setup, 0.1, 0, STRUT_FRICTION_NONE);
+    OWN(strut_setup) setup = frame_on_ground(0.1, 0, STRUT_FRICTION_NONE);
     for (int c = 0; c < 4; c++) setup.scene.members[c].damping = 0;
     structure_throw(&setup.scene, 0.7, 0, 3);
-    motion_begin_by(&m, &setup, methods[k], 1e-4);
+    OWN(motion) m = motion_begin_by(&setup, methods[k], 1e-4);
     double before = momentum(&m), worst = 0, low = HUGE_VAL;
     for (int part = 0; part < 100; part++) {
       motion_steps(&m, (int64_t)(times * 1000));
@@ -62,26 +59,20 @@ TEST(without_friction_horizontal_momentum_stays) {
     print_message("%s: momentum changed by %.1e of itself in %lld steps\n", methods[k], worst,
                   (long long)m.state->step);
     assert_true(worst <= 1e-13);
-    motion_end(&m);
-    strut_setup_free(&setup);
   }
 }
 
 /* Way along x of the standing nodes from 1 s, when all has calmed down, to the end. */
 static double creep(const char *method, strut_friction_law law, double mu, double seconds) {
-  strut_setup setup;
-  motion m;
   /* the ground carries it already */
-  frame_on_ground(&setup, -0.5 * 0.24 * G / 1e4, mu, law);
-  motion_begin_by(&m, &setup, method, 5e-5);
+  OWN(strut_setup) setup = frame_on_ground(-0.5 * 0.24 * G / 1e4, mu, law);
+  OWN(motion) m = motion_begin_by(&setup, method, 5e-5);
   motion_steps(&m, 20000);
   double x[2] = {m.state->q[0], m.state->q[2]}, way = 0;
   motion_steps(&m, (int64_t)((seconds - 1) / 5e-5));
   for (int i = 0; i < 2; i++) way = fmax(way, fabs(m.state->q[2 * i] - x[i]));
   assert_true(m.state->q[1] < setup.scene.ground.height &&
               m.state->q[3] < setup.scene.ground.height);
-  motion_end(&m);
-  strut_setup_free(&setup);
   return way;
 }
 
@@ -110,27 +101,23 @@ TEST(karnopps_band_creeps_at_most_at_its_edge) {
 }
 
 /* One block that the slope already carries; the weight stays upright. */
-static void block(strut_setup *setup, double slope, double mu) {
+static strut_setup block(double slope, double mu) {
   const double stiffness = 1e5, depth = G * cos(slope) / stiffness;
-  strut_setup_init(setup);
-  setup->scene.gravity[1] = -G;
-  build_mass(&setup->scene, depth * sin(slope), -depth * cos(slope), 1);
-  build_rough_contact(&setup->scene, 0, stiffness, 100, mu, mu, 1e-4);
-  setup->scene.contacts[0].friction.law = STRUT_FRICTION_COULOMB;
-  setup->scene.ground.slope = slope;
+  strut_setup setup = build_setup();
+  setup.scene.gravity[1] = -G;
+  build_mass(&setup.scene, depth * sin(slope), -depth * cos(slope), 1);
+  build_rough_contact(&setup.scene, 0, stiffness, 100, mu, mu, 1e-4);
+  setup.scene.contacts[0].friction.law = STRUT_FRICTION_COULOMB;
+  setup.scene.ground.slope = slope;
+  return setup;
 }
 
 static double way_down(const char *method, double slope, double mu, double seconds) {
-  strut_setup setup;
-  motion m;
-  block(&setup, slope, mu);
-  motion_begin_by(&m, &setup, method, 1e-3);
+  OWN(strut_setup) setup = block(slope, mu);
+  OWN(motion) m = motion_begin_by(&setup, method, 1e-3);
   double x = m.state->q[0], y = m.state->q[1];
   motion_steps(&m, (int64_t)llround(seconds / 1e-3));
-  double way = (x - m.state->q[0]) * cos(slope) + (y - m.state->q[1]) * sin(slope);
-  motion_end(&m);
-  strut_setup_free(&setup);
-  return way;
+  return (x - m.state->q[0]) * cos(slope) + (y - m.state->q[1]) * sin(slope);
 }
 
 /* tan(slope) = mu (1 -+ 1e-6): one holds, the other slides as the closed form says. */

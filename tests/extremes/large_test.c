@@ -11,8 +11,6 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/run/measure/measure.h"
 #include "tests/support/allocations.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
@@ -32,13 +30,14 @@ static long resident(void) {
 }
 
 /* A grid of about n nodes that falls at 1 m/s, and drifts where it may slide. */
-static void falling(strut_setup *setup, int32_t n, strut_mass_model mass, double mu) {
-  strut_setup_init(setup);
-  structure_grid(&setup->scene, n / ROWS, ROWS, mass, HEIGHT, 0.2, mu);
-  for (size_t i = 0; i < setup->scene.node_count; i++) {
-    setup->scene.nodes[i].velocity[0] = 0.3;
-    setup->scene.nodes[i].velocity[1] = -FALL;
+static strut_setup falling(int32_t n, strut_mass_model mass, double mu) {
+  strut_setup setup = build_setup();
+  structure_grid(&setup.scene, n / ROWS, ROWS, mass, HEIGHT, 0.2, mu);
+  for (size_t i = 0; i < setup.scene.node_count; i++) {
+    setup.scene.nodes[i].velocity[0] = 0.3;
+    setup.scene.nodes[i].velocity[1] = -FALL;
   }
+  return setup;
 }
 
 /* Sum of mass times velocity along x, and of its sizes; sums of rods do not hang on the mass model. */
@@ -70,7 +69,7 @@ static double residual(const motion *m, const strut_energies *begin) {
 }
 
 static void begin(motion *m, const strut_setup *setup, double step, strut_energies *stored) {
-  motion_begin(m, &setup->scene, step);
+  *m = motion_begin(&setup->scene, step);
   m->state->balance = true;
   strut_energy_reset_load_work(m->model, m->state);
   *stored = strut_energy_evaluate(m->model, m->state, 0);
@@ -97,11 +96,10 @@ static void march(motion *m, int64_t count) {
 }
 
 static void land(int32_t n, int64_t count, strut_mass_model mass, double mu) {
-  strut_setup setup;
-  motion m;
+  OWN(motion) m;
   strut_energies stored;
   double size, start = seconds();
-  falling(&setup, n, mass, mu);
+  OWN(strut_setup) setup = falling(n, mass, mu);
   begin(&m, &setup, mu > 0 ? ROUGH_STEP : STEP, &stored);
   double before = momentum(&m, &size);
   print_message("%s mass, friction %g, %d nodes, %zu members, %lld steps; made in %.2f s\n",
@@ -118,8 +116,6 @@ static void land(int32_t n, int64_t count, strut_mass_model mass, double mu) {
     assert_true(fabs(after - before) < 1e-13 * before * sqrt((double)count));
   else
     assert_true(fabs(after) < 0.9 * before);
-  motion_end(&m);
-  strut_setup_free(&setup);
 }
 
 BEFORE_ALL {
@@ -143,8 +139,7 @@ TEST(many_steps) {
 /* Grids beside each other in one scene, each where the one alone is, know nothing of each other. */
 TEST(copies) {
   enum { COPIES = 50, EACH = 100 };
-  strut_setup one, all;
-  motion a, b;
+  OWN(strut_setup) one, all;
   strut_setup_init(&all);
   for (int copy = 0; copy < COPIES; copy++) {
     structure_grid(&all.scene, EACH / ROWS, ROWS, STRUT_MASS_LUMPED, HEIGHT, 0.2, 0.3);
@@ -156,16 +151,14 @@ TEST(copies) {
   }
   strut_setup_init(&one);
   structure_grid(&one.scene, EACH / ROWS, ROWS, STRUT_MASS_LUMPED, HEIGHT, 0.2, 0.3);
-  motion_begin(&a, &one.scene, STEP);
-  motion_begin(&b, &all.scene, STEP);
+  OWN(motion) a = motion_begin(&one.scene, STEP);
+  OWN(motion) b = motion_begin(&all.scene, STEP);
   motion_steps(&a, 400), motion_steps(&b, 400);
   for (int32_t copy = 0; copy < COPIES; copy++)
     for (int32_t i = 0; i < 2 * EACH; i++) {
       assert_same_bits(b.state->q[2 * copy * EACH + i], a.state->q[i]);
       assert_same_bits(b.state->v[2 * copy * EACH + i], a.state->v[i]);
     }
-  motion_end(&a), motion_end(&b);
-  strut_setup_free(&one), strut_setup_free(&all);
 }
 
 /* A step above the bound is refused, and the one reported in its place is below. */
@@ -185,14 +178,13 @@ static void refuse_above(strut_setup *setup, const strut_model *model, double li
 
 /* Compiled, its step bounded, and a few steps taken by the run itself. */
 static void take_largest(strut_mass_model mass) {
-  strut_setup setup;
   strut_run_options options = {0};
   strut_summary summary;
   strut_step_limit limit;
-  falling(&setup, largest_nodes, mass, 0.3);
+  OWN(strut_setup) setup = falling(largest_nodes, mass, 0.3);
   motion_experiment(&setup, STEP, 10 * STEP);
   double start = seconds();
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   double compiled = seconds() - start;
   assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
   double bounded = seconds() - start - compiled;
@@ -210,8 +202,6 @@ static void take_largest(strut_mass_model mass) {
   assert_true(fabs(summary.energy.residual) < 1e-3 * summary.energy.moved);
   strut_summary_free(&summary);
   refuse_above(&setup, model, limit.limit);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 TEST(the_largest) {

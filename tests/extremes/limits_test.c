@@ -5,8 +5,6 @@
 #include <stdlib.h>
 
 #include "engine/integrate/limit/step_limit.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 /* Widening is the point here; clang counts it as promotion. */
@@ -56,14 +54,15 @@ enum { METHOD_COUNT = sizeof METHODS / sizeof METHODS[0] };
 
 static const double K = 300, MASS = 0.7;
 
-static void oscillator(strut_setup *setup, double zeta) {
-  strut_setup_init(setup);
-  build_support(&setup->scene, 0, 0);
-  build_mass(&setup->scene, 1, 0, MASS);
+static strut_setup oscillator(double zeta) {
+  strut_setup setup = build_setup();
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 1, 0, MASS);
   /* of rest length zero, so that it is linear at any amplitude */
-  build_sized(&setup->scene, STRUT_SPRING, 0, 1, K, 2 * zeta * sqrt(K * MASS), 0, 0);
-  setup->scene.nodes[1].velocity[0] = 6.5;
-  setup->scene.nodes[1].fixed[1] = true;
+  build_sized(&setup.scene, STRUT_SPRING, 0, 1, K, 2 * zeta * sqrt(K * MASS), 0, 0);
+  setup.scene.nodes[1].velocity[0] = 6.5;
+  setup.scene.nodes[1].fixed[1] = true;
+  return setup;
 }
 
 /* The largest z with growth 1, from the map alone: by doubling and halving. */
@@ -96,10 +95,8 @@ static map measured(double s[3][2]) {
 static void check_growth(const explicit_method *method, double zeta, double part) {
   const double omega = sqrt(K / MASS);
   double z = part * limit_of(method, zeta), expected = growth(method->map(zeta, z));
-  strut_setup setup;
-  motion m;
-  oscillator(&setup, zeta);
-  motion_begin_by(&m, &setup, method->name, z / omega);
+  OWN(strut_setup) setup = oscillator(zeta);
+  OWN(motion) m = motion_begin_by(&setup, method->name, z / omega);
   double worst = 0;
   for (int n = 0; n < 12; n++) {
     double s[3][2];
@@ -113,8 +110,6 @@ static void check_growth(const explicit_method *method, double zeta, double part
                 zeta, part, expected, worst);
   assert_true(part < 1 ? expected < 1 + 1e-15 : expected > 1.001);
   assert_true(worst <= 1e-6);
-  motion_end(&m);
-  strut_setup_free(&setup);
 }
 
 TEST(growth_beside_the_limit) {
@@ -131,14 +126,11 @@ TEST(the_limit_is_predicted) {
   static const double zeta[] = {0, 0.1, 1, 10};
   for (int k = 0; k < METHOD_COUNT; k++)
     for (int i = 0; i < (METHODS[k].damped ? 4 : 1); i++) {
-      strut_setup setup;
       strut_step_limit limit;
-      oscillator(&setup, zeta[i]);
-      strut_model *model = motion_compile(&setup.scene);
+      OWN(strut_setup) setup = oscillator(zeta[i]);
+      OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
       assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
       double predicted = strut_step_limit_of_method(&limit, strut_integrator_find(METHODS[k].name));
       assert_relative(predicted * sqrt(K / MASS), limit_of(&METHODS[k], zeta[i]), 1e-2);
-      strut_model_free(model);
-      strut_setup_free(&setup);
     }
 }

@@ -6,8 +6,6 @@
 
 #include "engine/forces/energy.h"
 #include "tests/support/allocations.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 /* Widening is the point here; clang counts it as promotion. */
@@ -16,12 +14,13 @@
 static int64_t steps = 1000000;
 static const double K = 300, MASS = 0.7;
 
-static void oscillator(strut_setup *setup) {
-  strut_setup_init(setup);
-  build_support(&setup->scene, 0, 0);
-  build_mass(&setup->scene, 1, 0, MASS);
-  build_member(&setup->scene, STRUT_SPRING, 0, 1, K, 0, 0);
-  setup->scene.nodes[1].start[0] = 1.25, setup->scene.nodes[1].velocity[0] = 1.5;
+static strut_setup oscillator(void) {
+  strut_setup setup = build_setup();
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 1, 0, MASS);
+  build_member(&setup.scene, STRUT_SPRING, 0, 1, K, 0, 0);
+  setup.scene.nodes[1].start[0] = 1.25, setup.scene.nodes[1].velocity[0] = 1.5;
+  return setup;
 }
 
 static double energy(const motion *m) {
@@ -41,11 +40,9 @@ BEFORE_ALL { steps = (int64_t)test_number(1, (double)steps); }
 TEST(energy_of_rk4) {
   static const double zs[] = {0.01, 0.1};
   for (int k = 0; k < 2; k++) {
-    strut_setup setup;
-    motion m;
     double z = zs[k];
-    oscillator(&setup);
-    motion_begin(&m, &setup.scene, z / sqrt(K / MASS));
+    OWN(strut_setup) setup = oscillator();
+    OWN(motion) m = motion_begin(&setup.scene, z / sqrt(K / MASS));
     motion_steps(&m, 10);
     double before = energy(&m);
     uint64_t calls = allocations_so_far();
@@ -58,18 +55,14 @@ TEST(energy_of_rk4) {
     print_message("rk4, z = %g, %lld steps: energy %.12f, theory %.12f\n", z, (long long)steps,
                   ratio, expected);
     assert_relative(ratio, expected, 1e-9);
-    motion_end(&m);
-    strut_setup_free(&setup);
   }
 }
 
 /* Verlet's energy stays within z^2 / 4 of what it was, for ever. */
 TEST(energy_of_verlet) {
-  strut_setup setup;
-  motion m;
   double z = 0.1, low = HUGE_VAL, high = 0;
-  oscillator(&setup);
-  motion_begin_by(&m, &setup, "verlet-events", z / sqrt(K / MASS));
+  OWN(strut_setup) setup = oscillator();
+  OWN(motion) m = motion_begin_by(&setup, "verlet-events", z / sqrt(K / MASS));
   double before = energy(&m);
   for (int part = 0; part < 2000; part++) {
     motion_steps(&m, part % 20 ? 1 : steps / 100 - 19); /* in every phase of a period */
@@ -81,18 +74,14 @@ TEST(energy_of_verlet) {
   assert_within(low, 1 - z * z / 4, 1 + z * z / 4);
   assert_within(high, 1 - z * z / 4, 1 + z * z / 4);
   assert_true(high - low > z * z / 8); /* so that the bound means something */
-  motion_end(&m);
-  strut_setup_free(&setup);
 }
 
 /* The drive tells the time: its phase after so many steps of 1e-4 s, whose sum would drift. */
 TEST(the_clock) {
   const double frequency = 12.70003, amplitude = 0.01, dt = 1e-4, pi = 3.14159265358979323846;
-  strut_setup setup;
-  motion m;
-  oscillator(&setup);
+  OWN(strut_setup) setup = oscillator();
   build_actuator(&setup.scene, 0, build_sine(&setup.scene, amplitude, frequency));
-  motion_begin(&m, &setup.scene, dt);
+  OWN(motion) m = motion_begin(&setup.scene, dt);
   motion_steps(&m, steps);
   long double turns = (long double)frequency * ((long double)steps / 10000);
   double angle = (double)(2 * acosl(-1) * (turns - floorl(turns)));
@@ -103,6 +92,4 @@ TEST(the_clock) {
   double late = (sine - sin(angle)) / rate;
   print_message("after %.0f s the clock is off by %.1e s\n", (double)steps * dt, late);
   assert_true(fabs(late) < 1e-9);
-  motion_end(&m);
-  strut_setup_free(&setup);
 }

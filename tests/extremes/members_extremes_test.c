@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
@@ -16,12 +14,13 @@ static const char *const METHODS[] = {"rk4", "rk4-events", "verlet-events", "ada
 enum { METHOD_COUNT = sizeof METHODS / sizeof METHODS[0] };
 
 /* A mass that swings through a support, missing it by `miss`. */
-static void through(strut_setup *setup, double rest, double miss) {
-  strut_setup_init(setup);
-  build_support(&setup->scene, 0, 0);
-  build_mass(&setup->scene, 1, 0, MASS);
-  build_sized(&setup->scene, STRUT_SPRING, 0, 1, K, 0, 0, rest);
-  setup->scene.nodes[1].velocity[1] = miss * sqrt(K / MASS);
+static strut_setup through(double rest, double miss) {
+  strut_setup setup = build_setup();
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 1, 0, MASS);
+  build_sized(&setup.scene, STRUT_SPRING, 0, 1, K, 0, 0, rest);
+  setup.scene.nodes[1].velocity[1] = miss * sqrt(K / MASS);
+  return setup;
 }
 
 /* Without a rest length the orbit is an ellipse: cos w t, miss sin w t. */
@@ -29,13 +28,11 @@ TEST(orbits_of_zero_rest_length_close) {
   static const double misses[] = {0, 1e-300, 1e-12, 1e-6, 0.5};
   const double omega = sqrt(K / MASS), step = 2 * PI / omega / 2000;
   for (int k = 0; k < METHOD_COUNT * 5; k++) {
-    strut_setup setup;
-    motion m;
     const char *method = METHODS[k % METHOD_COUNT];
     double miss = misses[k / METHOD_COUNT], late = method[0] == 'v' ? 5e-7 : 1e-11;
-    through(&setup, 0, miss);
+    OWN(strut_setup) setup = through(0, miss);
     setup.experiment.tolerance = 1e-13;
-    motion_begin_by(&m, &setup, method, step);
+    OWN(motion) m = motion_begin_by(&setup, method, step);
     motion_steps(&m, 500); /* a quarter: nearest to the support */
     assert_int_equal(m.state->trouble, STRUT_FAILURE_NONE);
     assert_near(m.state->q[2], 0, 2 * PI * late + 1e-15);
@@ -43,8 +40,6 @@ TEST(orbits_of_zero_rest_length_close) {
     motion_steps(&m, 19500); /* ten periods in all */
     assert_near(m.state->q[2], 1, 20 * PI * late);
     assert_near(m.state->q[3], 0, miss * 20 * PI * late + 1e-300);
-    motion_end(&m);
-    strut_setup_free(&setup);
   }
 }
 
@@ -59,12 +54,12 @@ TEST(bars_through_no_length_keep_their_balance) {
     strut_setup setup;
     double step = 1e-4, worst = 0;
     for (int half = 0; half < 4; half++, step /= 2) {
-      through(&setup, rest, misses[k / METHOD_COUNT]);
+      setup = through(rest, misses[k / METHOD_COUNT]);
       motion_experiment(&setup, step, 1.05);
       setup.experiment.integrator = METHODS[k % METHOD_COUNT];
-      strut_model *model = motion_compile(&setup.scene);
+      OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
       strut_run_options options = {0};
-      strut_summary s;
+      OWN(strut_summary) s;
       strut_error error = {0};
       strut_status status = strut_simulate(model, &setup.experiment, &options, &s, &error);
       if (status) { /* a named stop */
@@ -78,8 +73,6 @@ TEST(bars_through_no_length_keep_their_balance) {
         assert_true(fabs(kept) <= allowed);
         worst = fmax(worst, fabs(kept) / s.energy.initial / step);
       }
-      strut_summary_free(&s);
-      strut_model_free(model);
       strut_setup_free(&setup);
     }
     print_message("%s, missed by %g: energy off by %.2g of itself times the step\n",
@@ -88,7 +81,7 @@ TEST(bars_through_no_length_keep_their_balance) {
 }
 
 /* A frame of springs, so that nothing is discontinuous. */
-static void springs(strut_setup *setup, double damping) {
+static strut_setup springs(double damping) {
   const x_frame frame = {.side = 0.2,
                          .cable_stiffness = 800,
                          .bar_stiffness = 2000,
@@ -97,10 +90,10 @@ static void springs(strut_setup *setup, double damping) {
                          .bar_mass = 0.1,
                          .cable_damping = damping,
                          .bar_damping = damping};
-  strut_setup_init(setup);
-  structure_x_frame(&setup->scene, &frame);
-  for (size_t j = 0; j < setup->scene.member_count; j++)
-    setup->scene.members[j].kind = STRUT_SPRING;
+  strut_setup setup = build_setup();
+  structure_x_frame(&setup.scene, &frame);
+  for (size_t j = 0; j < setup.scene.member_count; j++) setup.scene.members[j].kind = STRUT_SPRING;
+  return setup;
 }
 
 /* Twice the area, with its sign: negative once the frame is inside out. */
@@ -110,24 +103,20 @@ static double area(const double *q) {
 
 /* The least area on the way, over that of the square, and what the balance leaves open [J]. */
 static double shaken(uint64_t seed, double step, int steps, double *residual) {
-  strut_setup setup;
-  motion m;
   uint64_t r = seed;
   double least = 1;
-  springs(&setup, 0.3);
+  OWN(strut_setup) setup = springs(0.3);
   for (int i = 0; i < 8; i++)
     setup.scene.nodes[i / 2].velocity[i % 2] = random_between(&r, -120, 120);
   motion_experiment(&setup, step, steps * step);
-  motion_begin(&m, &setup.scene, step);
+  motion m = motion_begin(&setup.scene, step);
   for (int n = 0; n < steps; n++) {
     motion_steps(&m, 1);
     least = fmin(least, area(m.state->q) / 0.08);
   }
-  motion_end(&m);
-  strut_summary s = motion_simulate(&setup);
+  motion_free(&m);
+  OWN(strut_summary) s = motion_simulate(&setup);
   *residual = fabs(s.energy.residual) / s.energy.moved;
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
   return least;
 }
 
@@ -159,15 +148,14 @@ TEST(frames_turned_inside_out_keep_their_balance) {
 /* Up to a million times its size and down again: the centre of mass on its parabola. */
 TEST(a_throw_of_a_million_sizes) {
   const double g = 9.81, way = 2e5, speed = sqrt(2 * g * way), seconds = 2 * speed / g;
-  strut_setup setup;
-  springs(&setup, 0.3);
+  OWN(strut_setup) setup = springs(0.3);
   setup.scene.gravity[1] = -g;
   structure_throw(&setup.scene, 3, speed, 40);
   double step = seconds / 1e6;
   motion_experiment(&setup, step, seconds);
   setup.scene.nodes[0].velocity[0] += 5; /* and shaken */
-  strut_summary s = motion_simulate(&setup);
-  strut_model *model = motion_compile(&setup.scene);
+  OWN(strut_summary) s = motion_simulate(&setup);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   double mass = 0, x = 0, y = 0, start = 0, drift = 0, rise = 0;
   for (int32_t i = 0; i < 4; i++) {
     double weight = model->weight[i];
@@ -185,7 +173,4 @@ TEST(a_throw_of_a_million_sizes) {
   assert_near(x / mass, drift / mass * seconds, 1e-11 * way);
   assert_near(y / mass, expected, 1e-11 * way);
   assert_true(fabs(s.energy.residual) <= 1e-10 * s.energy.initial);
-  strut_model_free(model);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }

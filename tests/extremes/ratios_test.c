@@ -5,20 +5,19 @@
 
 #include "engine/model/mass.h"
 #include "engine/statics/minimise.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
+
+FREED_BY(strut_potential_free, strut_potential)
 
 /* A row of springs along x, pulled at its end: it gives by the sum of pull / stiffness. */
 TEST(statics_of_a_stiffness_ratio) {
   for (int links = 3; links <= 200; links += 197) { /* a dense Hessian, and a sparse one */
     const double pull = 0.01;
-    strut_scene scene;
-    strut_potential *potential;
+    OWN(strut_scene) scene = build_scene();
+    OWN_POINTER(strut_potential) potential;
     strut_minimiser *minimiser;
     double stretch = 0;
-    strut_scene_init(&scene);
     build_support(&scene, 0, 0);
     for (int32_t i = 1; i <= links; i++) {
       double stiffness = i % 3 == 1 ? 1e12 : i % 3 == 2 ? 1 : 1e3;
@@ -28,21 +27,17 @@ TEST(statics_of_a_stiffness_ratio) {
       stretch += pull / stiffness;
     }
     build_load(&scene, links, pull, 0, -1);
-    strut_model *model = motion_compile(&scene);
+    OWN_POINTER(strut_model) model = motion_compile(&scene);
     assert_int_equal(strut_potential_create(model, NULL, false, &potential, NULL), STRUT_OK);
     assert_int_equal(strut_minimiser_create(potential, &minimiser, NULL), STRUT_OK);
-    double *q = calloc((size_t)model->length, sizeof *q);
+    FREED double *q = calloc((size_t)model->length, sizeof *q);
     assert_non_null(q);
     for (int32_t i = 0; i < model->length; i++) q[i] = model->start[i];
     strut_descent end = strut_minimise(minimiser, q, 0);
     print_message("%d springs of 1 to 1e12 N/m: gives %.9f m, closed form %.9f m, %d iterations\n",
                   links, q[2 * links] - links, stretch, (int)end.iterations);
     assert_relative(q[2 * links] - links, stretch, 1e-9);
-    free(q);
     strut_minimiser_free(minimiser);
-    strut_potential_free(potential);
-    strut_model_free(model);
-    strut_scene_free(&scene);
   }
 }
 
@@ -54,41 +49,36 @@ TEST(dynamics_of_a_stiffness_ratio) {
   double omega = sqrt(2 * product / (sum + sqrt(sum * sum - 4 * product)));
   int64_t steps = 2600000;
   double period = 2 * pi / omega, ratio = soft / (stiff + soft - omega * omega);
-  strut_scene scene;
-  motion m;
-  strut_scene_init(&scene);
+  OWN(strut_scene) scene = build_scene();
   build_support(&scene, 0, 0);
   build_mass(&scene, 1, 0, 1);
   build_mass(&scene, 2, 0, 1);
   build_member(&scene, STRUT_BAR, 0, 1, stiff, 0, 0);
   build_member(&scene, STRUT_SPRING, 1, 2, soft, 0, 0);
   scene.nodes[1].start[0] = 1 + 0.25 * ratio, scene.nodes[2].start[0] = 2.25;
-  motion_begin(&m, &scene, period / (double)steps);
+  OWN(motion) m = motion_begin(&scene, period / (double)steps);
   motion_steps(&m, steps / 4 * 5);
   print_message("1e12 against 1 N/m: off by %.1e m after 5/4 periods of %lld steps\n",
                 fabs(m.state->q[4] - 2), (long long)steps);
   assert_near(m.state->q[4], 2, 1e-9);
   assert_near(m.state->q[2], 1, 1e-12);
-  motion_end(&m);
-  strut_scene_free(&scene);
 }
 
 /* Bars of 1 kg and 1e-9 kg by turns in one connected body of 1e5 nodes: M a = f, both ways. */
 TEST(masses_of_a_ratio_on_many_nodes) {
   enum { NODES = 100000 };
-  strut_scene scene;
+  OWN(strut_scene) scene = build_scene();
   uint64_t r = 5;
-  strut_scene_init(&scene);
   for (int32_t i = 0; i < NODES; i++) {
     build_node(&scene, i / 2, i % 2);
     double mass = random_once_in(&r, 2) ? 1 : random_scale(&r, 1e-9, 1);
     if (i > 0) build_member(&scene, STRUT_BAR, i - 1, i, 1, 0, mass);
     if (i > 1) build_member(&scene, STRUT_BAR, i - 2, i, 1, 0, 1e-9);
   }
-  strut_model *model = motion_compile(&scene);
+  OWN_POINTER(strut_model) model = motion_compile(&scene);
   assert_non_null(model->mass);
   size_t length = (size_t)model->length;
-  double *force = calloc(5 * length, sizeof *force);
+  FREED double *force = calloc(5 * length, sizeof *force);
   assert_non_null(force);
   double *a = force + length, *work = a + length, *back = work + length, *scale = back + length;
   for (size_t i = 0; i < 2 * NODES; i++) force[i] = random_between(&r, -1, 1);
@@ -109,7 +99,4 @@ TEST(masses_of_a_ratio_on_many_nodes) {
     worst = fmax(worst, fabs(back[i] - force[i]) / (scale[i] + fabs(force[i])));
   print_message("masses of 1e-9 to 1 kg on 1e5 nodes: M a = f to %.1e of its terms\n", worst);
   assert_true(worst <= 1e-13);
-  free(force);
-  strut_model_free(model);
-  strut_scene_free(&scene);
 }

@@ -7,13 +7,11 @@
 #include <time.h>
 
 #include "engine/scene/check.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 
-static void shaken_frame(strut_setup *setup, double shift) {
+static strut_setup shaken_frame(double shift) {
   const x_frame frame = {.side = 1,
                          .cable_stiffness = 800,
                          .bar_stiffness = 2000,
@@ -22,14 +20,14 @@ static void shaken_frame(strut_setup *setup, double shift) {
                          .bar_mass = 0.1,
                          .cable_damping = 0.3,
                          .bar_damping = 0.3};
-  strut_setup_init(setup);
-  structure_x_frame(&setup->scene, &frame);
-  for (size_t j = 0; j < setup->scene.member_count; j++)
-    setup->scene.members[j].kind = STRUT_SPRING;
-  structure_throw(&setup->scene, 0.5, 0.25, 2);
-  setup->scene.nodes[0].velocity[0] += 5;
-  for (size_t i = 0; i < setup->scene.node_count; i++)
-    setup->scene.nodes[i].position[0] += shift, setup->scene.nodes[i].start[0] += shift;
+  strut_setup setup = build_setup();
+  structure_x_frame(&setup.scene, &frame);
+  for (size_t j = 0; j < setup.scene.member_count; j++) setup.scene.members[j].kind = STRUT_SPRING;
+  structure_throw(&setup.scene, 0.5, 0.25, 2);
+  setup.scene.nodes[0].velocity[0] += 5;
+  for (size_t i = 0; i < setup.scene.node_count; i++)
+    setup.scene.nodes[i].position[0] += shift, setup.scene.nodes[i].start[0] += shift;
+  return setup;
 }
 
 /* Each step rounds a position by half of 1.2e-10 m out there. */
@@ -40,23 +38,17 @@ BEFORE_ALL {
 TEST(a_million_metres_from_the_origin) {
   static const char *const methods[] = {"rk4", "verlet-events", "adaptive"};
   for (int k = 0; k < 3; k++) {
-    strut_setup near, far;
-    motion a, b;
     double worst = 0;
-    shaken_frame(&near, 0);
-    shaken_frame(&far, 1e6);
-    motion_begin_by(&a, &near, methods[k], 1e-3);
-    motion_begin_by(&b, &far, methods[k], 1e-3);
+    OWN(strut_setup) near = shaken_frame(0);
+    OWN(strut_setup) far = shaken_frame(1e6);
+    OWN(motion) a = motion_begin_by(&near, methods[k], 1e-3);
+    OWN(motion) b = motion_begin_by(&far, methods[k], 1e-3);
     motion_steps(&a, 1000);
     motion_steps(&b, 1000);
     for (int i = 0; i < 8; i++)
       worst = fmax(worst, fabs(b.state->q[i] - (i % 2 ? 0 : 1e6) - a.state->q[i]));
     print_message("%s, 1e6 m from the origin: 1 m off by %.1e m after 1 s\n", methods[k], worst);
     assert_true(worst <= 1e-8);
-    motion_end(&a);
-    motion_end(&b);
-    strut_setup_free(&near);
-    strut_setup_free(&far);
   }
 }
 
@@ -68,42 +60,43 @@ static double any(uint64_t *r) {
 
 static double either(uint64_t *r) { return random_once_in(r, 2) ? any(r) : -any(r); }
 
-static void wild_scene(strut_setup *setup, uint64_t seed) {
+static strut_setup wild_scene(uint64_t seed) {
   uint64_t state = seed, *r = &state;
   int32_t nodes = 2 + random_below(r, 4);
-  strut_setup_init(setup);
-  setup->scene.mass_model = random_once_in(r, 2) ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
+  strut_setup setup = build_setup();
+  setup.scene.mass_model = random_once_in(r, 2) ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
   for (int32_t i = 0; i < nodes; i++) {
     double mass = any(r), y = either(r), x = either(r);
-    build_mass(&setup->scene, x, y, mass);
+    build_mass(&setup.scene, x, y, mass);
     for (int c = 0; c < 2; c++) {
-      setup->scene.nodes[i].fixed[c] = random_once_in(r, 4);
-      if (random_once_in(r, 3)) setup->scene.nodes[i].velocity[c] = either(r);
+      setup.scene.nodes[i].fixed[c] = random_once_in(r, 4);
+      if (random_once_in(r, 3)) setup.scene.nodes[i].velocity[c] = either(r);
     }
   }
   for (int32_t j = 1; j < nodes; j++) {
     double rest = any(r), mass = any(r), damping = any(r), stiffness = any(r);
     int32_t from = random_below(r, j), kind = random_below(r, 3);
-    build_sized(&setup->scene, (strut_member_kind)kind, from, j, stiffness, damping, mass, rest);
+    build_sized(&setup.scene, (strut_member_kind)kind, from, j, stiffness, damping, mass, rest);
   }
-  setup->scene.gravity[1] = -any(r);
+  setup.scene.gravity[1] = -any(r);
   for (int32_t i = 0; i < nodes && random_once_in(r, 2); i++) {
     double width = any(r), mu_kinetic = any(r), mu_static = any(r), damping = any(r);
-    build_rough_contact(&setup->scene, i, any(r), damping, mu_static, mu_kinetic, width);
-    if (random_once_in(r, 2)) setup->scene.contacts[i].friction.law = STRUT_FRICTION_COULOMB;
+    build_rough_contact(&setup.scene, i, any(r), damping, mu_static, mu_kinetic, width);
+    if (random_once_in(r, 2)) setup.scene.contacts[i].friction.law = STRUT_FRICTION_COULOMB;
   }
-  setup->scene.ground.height = either(r);
-  if (random_once_in(r, 2)) setup->scene.ground.belt_speed = either(r);
+  setup.scene.ground.height = either(r);
+  if (random_once_in(r, 2)) setup.scene.ground.belt_speed = either(r);
   const strut_integrator *method = NULL;
   size_t methods = 0;
   while (strut_integrator_at(methods)) methods++;
   do /* those that choose their steps take as many as such numbers need */
     method = strut_integrator_at((size_t)random_below(r, (int32_t)methods));
   while (!strncmp(method->name, "adaptive", 8));
-  setup->experiment.integrator = method->name;
-  setup->experiment.refine = 1;
-  setup->experiment.step = any(r);
-  setup->experiment.duration = setup->experiment.step * 50;
+  setup.experiment.integrator = method->name;
+  setup.experiment.refine = 1;
+  setup.experiment.step = any(r);
+  setup.experiment.duration = setup.experiment.step * 50;
+  return setup;
 }
 
 typedef struct tally {
@@ -111,11 +104,10 @@ typedef struct tally {
 } tally;
 
 static void run_wild(uint64_t seed, tally *t) {
-  strut_setup setup;
   strut_findings findings = {0};
-  strut_model *model = NULL;
+  OWN_POINTER(strut_model) model = NULL;
   strut_error error = {0};
-  wild_scene(&setup, seed);
+  OWN(strut_setup) setup = wild_scene(seed);
   strut_status status = strut_setup_check(&setup, STRUT_FOR_RUN, &findings);
   bool valid = !status && !findings.count;
   if (status && findings.count) assert_true(strlen(findings.items[0].message) > 10);
@@ -128,18 +120,15 @@ static void run_wild(uint64_t seed, tally *t) {
       assert_true(strlen(error.message) > 10);
     } else {
       strut_run_options options = {.force = seed % 2};
-      strut_summary s = {0};
+      OWN(strut_summary) s = {0};
       status = strut_simulate(model, &setup.experiment, &options, &s, &error);
       if (status) assert_true(strlen(error.message) > 10);
       *(!status ? &t->answered : s.spent.steps ? &t->stopped : &t->refused) += 1;
       for (size_t i = 0; !status && i < 2 * s.end.node_count; i++) {
         assert_true(isfinite(s.end.positions[i]));
       }
-      strut_summary_free(&s);
     }
   }
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 TEST(parameters_of_any_size) {
@@ -163,22 +152,22 @@ static double time_of(strut_setup *setup, const char *method, int steps) {
   motion_experiment(setup, 1e-3, steps * 1e-3);
   for (int k = 0; k < 7; k++) {
     double begin = cpu_seconds();
-    strut_summary s = motion_simulate(setup);
+    OWN(strut_summary) s = motion_simulate(setup);
     least = fmin(least, cpu_seconds() - begin);
-    strut_summary_free(&s);
   }
   return least;
 }
 
 /* A damped row of springs without rest length about its support: it decays to zero itself. */
-static void dying(strut_setup *setup, double amplitude) {
-  strut_setup_init(setup);
-  build_support(&setup->scene, 0, 0);
+static strut_setup dying(double amplitude) {
+  strut_setup setup = build_setup();
+  build_support(&setup.scene, 0, 0);
   for (int32_t i = 1; i <= 12; i++) {
-    build_mass(&setup->scene, 0, 0, 1);
-    setup->scene.nodes[i].start[0] = amplitude * i, setup->scene.nodes[i].start[1] = -amplitude;
-    build_sized(&setup->scene, STRUT_SPRING, i - 1, i, 100, 0.01, 0.1, 0);
+    build_mass(&setup.scene, 0, 0, 1);
+    setup.scene.nodes[i].start[0] = amplitude * i, setup.scene.nodes[i].start[1] = -amplitude;
+    build_sized(&setup.scene, STRUT_SPRING, i - 1, i, 100, 0.01, 0.1, 0);
   }
+  return setup;
 }
 
 /* Amplitudes whose squares, or which themselves, are subnormal. */
@@ -188,11 +177,9 @@ TEST(motion_that_dies_is_not_slow) {
   for (int k = 0; k < 3; k++) {
     double alive = 0, slowest = 0;
     for (int i = 0; i < 7; i++) {
-      strut_setup setup;
-      dying(&setup, amplitude[i]);
+      OWN(strut_setup) setup = dying(amplitude[i]);
       double seconds = time_of(&setup, methods[k], 4000);
       *(i ? &slowest : &alive) = fmax(i ? slowest : 0, seconds);
-      strut_setup_free(&setup);
     }
     print_message("%s: subnormal motion takes %.2f times as long\n", methods[k], slowest / alive);
     assert_true(slowest <= 2 * alive);

@@ -36,8 +36,7 @@ static strut_status end(void *context, strut_status status, strut_error *error) 
   return STRUT_OK;
 }
 
-void model_read_text(model_run *run, const char *name, const char *text,
-                     const char *const *settings) {
+model_run model_read_text(const char *name, const char *text, const char *const *settings) {
   char names[MOST_SETTINGS][NAME_ROOM];
   strut_override overrides[MOST_SETTINGS];
   size_t count = 0;
@@ -47,24 +46,26 @@ void model_read_text(model_run *run, const char *name, const char *text,
     snprintf(names[count], NAME_ROOM, "%.*s", (int)(sign - settings[count]), settings[count]);
     overrides[count] = (strut_override){names[count], sign + 1};
   }
-  *run = (model_run){.model = NULL};
+  model_run run = {.model = NULL};
   strut_diagnostics diagnostics = {0};
-  strut_status status = strut_setup_read(&run->setup, name, text, strlen(text), overrides, count,
+  strut_status status = strut_setup_read(&run.setup, name, text, strlen(text), overrides, count,
                                          STRUT_FOR_RUN, &diagnostics);
   for (size_t i = 0; i < diagnostics.count; i++)
     print_error("%s:%u: %s\n", name, diagnostics.items[i].place.line, diagnostics.items[i].message);
   if (status) fail_msg("%s is not valid: %s", name, strut_status_text(status));
   strut_diagnostics_free(&diagnostics);
+  return run;
 }
 
-void model_read(model_run *run, const char *name, const char *const *settings) {
+model_run model_read(const char *name, const char *const *settings) {
   char path[256], *text = NULL;
   size_t length = 0;
   snprintf(path, sizeof path, "models/%s.yaml", name);
   strut_error error = {0};
   if (strut_file_read(path, &text, &length, &error)) fail_msg("%s: %s", path, error.message);
-  model_read_text(run, path, text, settings);
+  model_run run = model_read_text(path, text, settings);
   strut_release(text);
+  return run;
 }
 
 void model_simulate(model_run *run) {
@@ -78,9 +79,10 @@ void model_simulate(model_run *run) {
   run->layout.channels = run->channels;
 }
 
-void model_run_file(model_run *run, const char *name, const char *const *settings) {
-  model_read(run, name, settings);
-  model_simulate(run);
+model_run model_run_file(const char *name, const char *const *settings) {
+  model_run run = model_read(name, settings);
+  model_simulate(&run);
+  return run;
 }
 
 void model_run_free(model_run *run) {

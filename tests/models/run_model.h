@@ -8,6 +8,7 @@
 #include "engine/run/recorder.h"
 #include "engine/run/simulate.h"
 #include "parser/read/read_scene.h"
+#include "tests/support/own.h"
 
 typedef struct model_run {
   strut_setup setup;
@@ -25,14 +26,13 @@ typedef struct model_run {
 #define set_to(...) ((const char *const[]){__VA_ARGS__, NULL})
 
 /** Reads models/NAME.yaml; fails the test if it is not valid. */
-void model_read(model_run *run, const char *name, const char *const *settings);
+model_run model_read(const char *name, const char *const *settings);
 /** Reads a scene from its text; `name` is for messages. */
-void model_read_text(model_run *run, const char *name, const char *text,
-                     const char *const *settings);
+model_run model_read_text(const char *name, const char *text, const char *const *settings);
 /** Compiles and runs what was read (and perhaps changed); fails the test unless it completes. */
 void model_simulate(model_run *run);
 /** Both. */
-void model_run_file(model_run *run, const char *name, const char *const *settings);
+model_run model_run_file(const char *name, const char *const *settings);
 void model_run_free(model_run *run);
 
 /** Position of a node at the end, [m]; fails the test if there is none of that name. */

@@ -12,8 +12,6 @@
 
 #include "engine/run/settle.h"
 #include "tests/paper/reference_crawler.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
@@ -27,22 +25,23 @@ static const struct {
 };
 enum { CASES = sizeof cases / sizeof cases[0] };
 
-static void make(strut_setup *setup, double frequency, double mu, bool state_two, double periods,
-                 double window) {
-  strut_setup_init(setup);
-  structure_crawler(&setup->scene, frequency, STROKE, mu, state_two);
-  setup->experiment.settle.wanted = true;
-  setup->experiment.step = STEP;
-  setup->experiment.periods = periods;
-  setup->experiment.period_signal = 0;
-  setup->experiment.measure_last = window;
+static strut_setup make(double frequency, double mu, bool state_two, double periods,
+                        double window) {
+  strut_setup setup = build_setup();
+  structure_crawler(&setup.scene, frequency, STROKE, mu, state_two);
+  setup.experiment.settle.wanted = true;
+  setup.experiment.step = STEP;
+  setup.experiment.periods = periods;
+  setup.experiment.period_signal = 0;
+  setup.experiment.measure_last = window;
+  return setup;
 }
 
 /* The independent program's rest, and strut's own. */
 static void settle_both(const strut_setup *setup, motion *m, reference_crawler *it, bool state_two,
                         double *z) {
   double time;
-  motion_begin(m, &setup->scene, STEP);
+  *m = motion_begin(&setup->scene, STEP);
   assert_int_equal(strut_settle_state(m->model, &setup->experiment, m->state, NULL, &time, NULL),
                    STRUT_OK);
   assert_true(time > 0);
@@ -52,29 +51,24 @@ static void settle_both(const strut_setup *setup, motion *m, reference_crawler *
 
 TEST(it_comes_to_rest_where_the_other_program_does) {
   for (int two = 0; two < 2; two++) {
-    strut_setup setup;
-    motion m;
+    OWN(motion) m;
     double z[REFERENCE_STATE];
     reference_crawler it = {.frequency = 10, .mu = 0.1, .amplitude = STROKE};
-    make(&setup, 10, 0.1, two, 10, 1);
+    OWN(strut_setup) setup = make(10, 0.1, two, 10, 1);
     settle_both(&setup, &m, &it, two, z);
     for (int i = 0; i < 10; i++) {
       assert_near(m.state->q[i], z[i], 1e-11);
       assert_true(m.state->v[i] == 0);
     }
-    motion_end(&m);
-    strut_setup_free(&setup);
   }
 }
 
 /* The first 0.05 s from one and the same rest, coordinate by coordinate. */
 static void follow(double f, double mu, bool two, const double *rest) {
-  strut_setup setup;
-  motion m;
   double z[REFERENCE_STATE];
   reference_crawler it = {.frequency = f, .mu = mu, .amplitude = STROKE};
-  make(&setup, f, mu, two, 10, 1);
-  motion_begin(&m, &setup.scene, STEP);
+  OWN(strut_setup) setup = make(f, mu, two, 10, 1);
+  OWN(motion) m = motion_begin(&setup.scene, STEP);
   reference_prepare(&it, two, z);
   for (int i = 0; i < REFERENCE_STATE; i++) z[i] = rest[i];
   for (int i = 0; i < 10; i++) m.state->q[i] = z[i], m.state->v[i] = z[10 + i];
@@ -83,8 +77,6 @@ static void follow(double f, double mu, bool two, const double *rest) {
     reference_step(&it, n, STEP, z);
     for (int i = 0; i < 10; i++) assert_near(m.state->q[i], z[i], 1e-9);
   }
-  motion_end(&m);
-  strut_setup_free(&setup);
 }
 
 TEST(the_first_trajectories_are_the_same) {
@@ -99,14 +91,13 @@ TEST(the_first_trajectories_are_the_same) {
 
 TEST(velocities_agree_in_the_mean) {
   for (int c = 0; c < 2 * CASES; c++) {
-    strut_setup setup;
     reference_figures figures;
     double z[REFERENCE_STATE];
     bool two = c >= CASES;
     double f = cases[c % CASES].frequency, mu = cases[c % CASES].mu;
     reference_crawler it = {.frequency = f, .mu = mu, .amplitude = STROKE};
-    make(&setup, f, mu, two, 150, 50);
-    strut_summary s = motion_simulate(&setup);
+    OWN(strut_setup) setup = make(f, mu, two, 150, 50);
+    OWN(strut_summary) s = motion_simulate(&setup);
     reference_prepare(&it, two, z);
     assert_true(reference_settle(&it, STEP, z));
     reference_run(&it, STEP, 150, 50, z, &figures);
@@ -120,17 +111,14 @@ TEST(velocities_agree_in_the_mean) {
       assert_near(s.end.contacts[i].duty, figures.duty[i], deviation > 0 ? 0.01 : 1e-3);
       assert_near(s.end.contacts[i].max_height, figures.highest[i], deviation > 0 ? 2e-5 : 1e-6);
     }
-    strut_summary_free(&s);
-    strut_setup_free(&setup);
   }
 }
 
 /* The paper's own setting: 1100 periods, measured over the last 100. */
 TEST(the_papers_velocities) {
   for (int two = 0; two < 2; two++) {
-    strut_setup setup;
-    make(&setup, 10, 0.1, two, 1100, 100);
-    strut_summary s = motion_simulate(&setup);
+    OWN(strut_setup) setup = make(10, 0.1, two, 1100, 100);
+    OWN(strut_summary) s = motion_simulate(&setup);
     print_message("start %s: %.4f mm/s, spread %.3f\n", two ? "II" : "I", 1e3 * s.velocity,
                   1e3 * s.velocity_spread);
     assert_near(1e3 * s.velocity, two ? -10.10 : 9.78, 0.05);
@@ -140,21 +128,16 @@ TEST(the_papers_velocities) {
     assert_near(s.duration, 110, 1e-9);
     assert_true(s.step_limit > STEP && s.step_limit < 1.5e-4);
     assert_true(fabs(s.energy.residual) < 1e-3 * s.energy.moved);
-    strut_summary_free(&s);
-    strut_setup_free(&setup);
   }
 }
 
 TEST(the_papers_contacts) {
-  strut_setup setup;
-  make(&setup, 10, 0.2, false, 1100, 100);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_setup) setup = make(10, 0.2, false, 1100, 100);
+  OWN(strut_summary) s = motion_simulate(&setup);
   assert_near(s.end.contacts[3].duty, 0.73, 0.01);
   assert_near(s.end.contacts[3].max_height, 1.1e-3, 0.05e-3);
   assert_near(s.end.contacts[0].duty, 0.90, 0.02);
   assert_within(s.end.contacts[0].max_height, 5e-6, 25e-6);
   assert_true(s.end.contacts[1].duty == 0 && s.end.contacts[2].duty == 0 &&
               s.end.contacts[4].duty == 0);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }

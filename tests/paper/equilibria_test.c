@@ -37,7 +37,7 @@ static strut_equilibria all;
 BEFORE_ALL {
   strut_error error = {0};
   strut_equilibria_options options = {0};
-  model_read(&crawler, "crawler/crawler", set_none);
+  crawler = model_read("crawler/crawler", set_none);
   strut_status status = strut_model_compile(&crawler.setup.scene, &crawler.model, &error);
   if (!status)
     status =
@@ -331,7 +331,7 @@ TEST(saddles_lead_down) {
 TEST(shapes_to_stand_in) {
   static const char *const names[] = {"I", "II", "III"};
   for (int i = 0; i < 3; i++) {
-    strut_arena arena = {0};
+    OWN(strut_arena) arena = {0};
     strut_rest_state stand;
     strut_error error = {0};
     if (strut_rest_state_find(crawler.model, &crawler.setup.experiment, names[i], &arena, &stand,
@@ -346,6 +346,5 @@ TEST(shapes_to_stand_in) {
       assert_int_equal(stand.closed[k], e->contacts[k]);
       assert_near(stand.normal[k], e->normal[k], 1e-6);
     }
-    strut_arena_free(&arena);
   }
 }

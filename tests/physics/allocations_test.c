@@ -5,8 +5,6 @@
 #include "engine/model/mass.h"
 #include "tests/physics/random_scene.h"
 #include "tests/support/allocations.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
@@ -24,8 +22,7 @@ TEST(the_count_counts) {
 }
 
 static void check_steps(const strut_setup *setup, bool balance) {
-  motion m;
-  motion_begin(&m, &setup->scene, 1e-5);
+  OWN(motion) m = motion_begin(&setup->scene, 1e-5);
   m.state->balance = balance;
   uint64_t before = allocations_so_far(), own = strut_allocation_count();
   motion_steps(&m, 1000);
@@ -33,26 +30,25 @@ static void check_steps(const strut_setup *setup, bool balance) {
   assert_int_equal(strut_allocation_count(), own);
   assert_int_equal(m.state->step, 1000);
   assert_int_equal(m.state->evaluations, 4000);
-  motion_end(&m);
 }
 
 /* Everything at once on top of a chain: contacts, friction, drive, loads. */
-static void busy_chain(strut_setup *setup, size_t frames, strut_mass_model mass_model) {
-  strut_setup_init(setup);
-  structure_chain(&setup->scene, frames, mass_model);
-  int32_t sine = build_sine(&setup->scene, 1e-3, 12);
-  build_actuator(&setup->scene, 1, sine);
-  build_load(&setup->scene, 3, 1, 2, sine);
-  build_load(&setup->scene, 2, 0, -3, -1);
-  setup->scene.ground.height = -0.001, setup->scene.ground.slope = 0.01;
-  setup->scene.gravity[1] = -9.81;
-  for (int32_t i = 0; i < (int32_t)setup->scene.node_count; i++)
-    build_rough_contact(&setup->scene, i, 1e4, 10, 0.5, 0.3, 1e-3);
+static strut_setup busy_chain(size_t frames, strut_mass_model mass_model) {
+  strut_setup setup = build_setup();
+  structure_chain(&setup.scene, frames, mass_model);
+  int32_t sine = build_sine(&setup.scene, 1e-3, 12);
+  build_actuator(&setup.scene, 1, sine);
+  build_load(&setup.scene, 3, 1, 2, sine);
+  build_load(&setup.scene, 2, 0, -3, -1);
+  setup.scene.ground.height = -0.001, setup.scene.ground.slope = 0.01;
+  setup.scene.gravity[1] = -9.81;
+  for (int32_t i = 0; i < (int32_t)setup.scene.node_count; i++)
+    build_rough_contact(&setup.scene, i, 1e4, 10, 0.5, 0.3, 1e-3);
+  return setup;
 }
 
 static void check_kind(size_t frames, strut_mass_model mass_model, bool blocks, bool factor) {
-  strut_setup setup;
-  busy_chain(&setup, frames, mass_model);
+  OWN(strut_setup) setup = busy_chain(frames, mass_model);
   strut_model *model = motion_compile(&setup.scene);
   assert_int_equal(model->mass->coordinate[0].block_count > 0, blocks);
   assert_int_equal(model->mass->coordinate[0].factor != NULL, factor);
@@ -60,7 +56,6 @@ static void check_kind(size_t frames, strut_mass_model mass_model, bool blocks, 
   strut_model_free(model);
   check_steps(&setup, false);
   check_steps(&setup, true);
-  strut_setup_free(&setup);
 }
 
 TEST(steps_with_a_diagonal_mass_allocate_nothing) {
@@ -77,11 +72,9 @@ TEST(steps_with_a_sparse_factor_allocate_nothing) {
 
 TEST(steps_of_random_scenes_allocate_nothing) {
   for (uint64_t seed = 1; seed <= 40; seed++) {
-    strut_setup setup;
-    strut_setup_init(&setup);
+    OWN(strut_setup) setup = build_setup();
     random_scene(&setup.scene, seed);
     check_steps(&setup, seed % 2);
-    strut_setup_free(&setup);
   }
 }
 
@@ -109,24 +102,20 @@ static strut_status take_end(void *context, strut_status status, strut_error *er
 
 /* Allocations of a whole run of so many steps, with measuring and a row every 10 steps. */
 static uint64_t whole_run(int64_t steps) {
-  strut_setup setup;
-  strut_summary summary;
+  OWN(strut_summary) summary;
   size_t rows = 0;
   strut_sink sink = {&rows, take_nothing, take_rows, take_end, 0}, *sinks[] = {&sink};
   strut_run_options options = {.sinks = sinks, .sink_count = 1};
-  busy_chain(&setup, 10, STRUT_MASS_CONSISTENT);
+  OWN(strut_setup) setup = busy_chain(10, STRUT_MASS_CONSISTENT);
   motion_experiment(&setup, 1e-5, 1e-5 * (double)steps);
   setup.experiment.output_every = 1e-4;
   setup.experiment.channels = 63;
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   uint64_t before = allocations_so_far();
   assert_int_equal(strut_simulate(model, &setup.experiment, &options, &summary, NULL), STRUT_OK);
   uint64_t count = allocations_so_far() - before;
   assert_int_equal(summary.spent.steps, steps);
   assert_int_equal(rows, steps / 10 + 1);
-  strut_summary_free(&summary);
-  strut_model_free(model);
-  strut_setup_free(&setup);
   return count;
 }
 

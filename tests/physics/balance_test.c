@@ -4,8 +4,6 @@
 #include <string.h>
 
 #include "engine/run/measure/measure.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 static const char *said(const strut_summary *s) {
@@ -23,15 +21,13 @@ static void assert_says(const strut_summary *s, const char *words) {
 
 /* A mass that bounces on hard ground: 1 J comes down. */
 static strut_summary bounce(const char *method, double step) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   setup.scene.gravity[1] = -10;
   build_mass(&setup.scene, 0, 0.1, 1);
   build_contact(&setup.scene, 0, 1e5, 0);
   motion_experiment(&setup, step, 1);
   setup.experiment.integrator = method;
   strut_summary s = motion_simulate(&setup);
-  strut_setup_free(&setup);
   return s;
 }
 
@@ -53,10 +49,9 @@ TEST(steps_over_touchdowns) {
 
 /* A cable that lets go at 0.2 s: within one step, or in 0.1 s. */
 static strut_summary let_go(double takes) {
-  strut_setup setup;
+  OWN(strut_setup) setup = build_setup();
   double time[] = {0, 0.2, 0.2 + takes}, value[] = {0, 0, 0.3};
   strut_signal signal = strut_signal_default(STRUT_TABLE);
-  strut_setup_init(&setup);
   build_support(&setup.scene, 0, 0);
   build_mass(&setup.scene, 0.2, 0, 0.1);
   build_sized(&setup.scene, STRUT_SPRING, 0, 1, 200, 0.01, 0, 0.4);
@@ -67,7 +62,6 @@ static strut_summary let_go(double takes) {
   build_actuator(&setup.scene, 1, build_signal(&setup.scene, signal));
   motion_experiment(&setup, 1e-4, 1);
   strut_summary s = motion_simulate(&setup);
-  strut_setup_free(&setup);
   return s;
 }
 
@@ -89,9 +83,8 @@ TEST(a_run_that_ends_at_a_jump) {
   static const char *const methods[] = {"rk4-events", "adaptive"};
   for (size_t i = 0; i < 2; i++)
     for (int periods = 1; periods < 12; periods++) {
-      strut_setup setup;
+      OWN(strut_setup) setup = build_setup();
       strut_signal signal = strut_signal_default(STRUT_SQUARE);
-      strut_setup_init(&setup);
       build_support(&setup.scene, 0, 0);
       build_mass(&setup.scene, 1, 0, 1);
       build_member(&setup.scene, STRUT_SPRING, 0, 1, 1000, 3, 0);
@@ -101,29 +94,24 @@ TEST(a_run_that_ends_at_a_jump) {
       motion_experiment(&setup, 1e-3, periods / signal.frequency);
       setup.experiment.integrator = methods[i];
       setup.experiment.tolerance = 1e-9;
-      strut_summary s = motion_simulate(&setup);
+      OWN(strut_summary) s = motion_simulate(&setup);
       assert_near(s.energy.residual, 0, 1e-7);
-      strut_summary_free(&s);
-      strut_setup_free(&setup);
     }
 }
 
 /* A free swing that ends where it began: nothing seems to have moved, and the error is small. */
 TEST(a_swing_that_ends_as_it_began) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   build_support(&setup.scene, 0, 0);
   build_mass(&setup.scene, 1.1, 0, 1);
   build_sized(&setup.scene, STRUT_SPRING, 0, 1, 100, 0, 0, 1);
   double period = 2 * acos(-1) / 10;
   motion_experiment(&setup, period / 40, 10 * period);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_summary) s = motion_simulate(&setup);
   assert_within(fabs(s.energy.residual), 1e-5 * 0.5, 1e-3 * 0.5);
   assert_within(s.energy.moved, 0.45, 0.51); /* half of 100 N/m times 0.1 m squared */
   assert_int_equal(s.balance, STRUT_BALANCE_CLOSED);
   assert_int_equal(s.warning_count, 0);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 /* What stands still loses or gains what rounding does, which is all that moves. */
@@ -139,21 +127,17 @@ TEST(rest_is_no_open_balance) {
 }
 
 TEST(without_a_balance_nothing_is_said) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   setup.scene.gravity[1] = -10;
   build_mass(&setup.scene, 0, 0.1, 1);
   build_contact(&setup.scene, 0, 1e5, 0);
   motion_experiment(&setup, 2e-3, 1);
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   const strut_run_options options = {.without_balance = true};
-  strut_summary s;
+  OWN(strut_summary) s;
   assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, NULL), STRUT_OK);
   assert_int_equal(s.balance, STRUT_BALANCE_NOT_KEPT);
   assert_int_equal(s.warning_count, 0);
-  strut_summary_free(&s);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 /* ---- losses ---- */
@@ -193,11 +177,10 @@ TEST(a_loss_that_gives_ends_the_run) {
                                       "friction gave"};
   for (int k = 0; k < 3; k++)
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
-      strut_setup setup;
+      OWN(strut_setup) setup = build_setup();
       strut_model *model;
       strut_summary s;
       strut_error error = {0};
-      strut_setup_init(&setup);
       builders[k](&setup.scene);
       motion_experiment(&setup, 5e-4, 1);
       setup.experiment.integrator = methods[i];
@@ -213,7 +196,6 @@ TEST(a_loss_that_gives_ends_the_run) {
         strut_summary_free(&s);
         strut_model_free(model);
       }
-      strut_setup_free(&setup);
     }
 }
 
@@ -224,8 +206,7 @@ TEST(friction_of_any_size_only_takes) {
   double right = 0;
   for (size_t i = 0; i < 3; i++)
     for (size_t k = 0; k < 3; k++) {
-      strut_setup setup;
-      strut_setup_init(&setup);
+      OWN(strut_setup) setup = build_setup();
       strut_scene *scene = &setup.scene;
       scene->gravity[1] = -9.81;
       build_support(scene, 0, 0);
@@ -236,12 +217,10 @@ TEST(friction_of_any_size_only_takes) {
       scene->contacts[0].friction.law = STRUT_FRICTION_COULOMB;
       motion_experiment(&setup, 1e-4, 1);
       setup.experiment.integrator = methods[i];
-      strut_summary s = motion_simulate(&setup);
+      OWN(strut_summary) s = motion_simulate(&setup);
       if (right == 0) right = s.energy.dissipated_friction;
       assert_within(s.energy.dissipated_friction, 0, 0.5 * 0.1 * 0.1);
       assert_relative(s.energy.dissipated_friction, right, 1e-4);
       assert_near(s.energy.residual, 0, 1e-6);
-      strut_summary_free(&s);
-      strut_setup_free(&setup);
     }
 }

@@ -16,7 +16,7 @@ static const unsigned ALL = (1u << STRUT_CHANNEL_COUNT) - 1;
 static void record(const char *text, const char *const *settings, const char *directory,
                    model_run *run, strut_trajectory *t) {
   strut_error error = {0};
-  model_read_text(run, "a scene", text, settings);
+  *run = model_read_text("a scene", text, settings);
   run->setup.experiment.channels = ALL;
   strut_sink *sinks[] = {strut_trajectory_sink(t, &run->setup.scene, ALL, STRUT_TRAJECTORY_ROOM),
                          directory ? strut_hdf5_create(directory, "strut: 1\n") : NULL,
@@ -61,8 +61,8 @@ static const char FREE[] =
     "output: {every: 20 ms}\n";
 
 static void assert_conserved(const char *text, const char *what) {
-  model_run run;
-  strut_trajectory t = {0};
+  OWN(model_run) run;
+  OWN(strut_trajectory) t = {0};
   record(text, set_none, NULL, &run, &t);
   size_t n = t.node_count;
   double begin = row_of(&t, 0)[n], moved = 0.0;
@@ -78,8 +78,6 @@ static void assert_conserved(const char *text, const char *what) {
     moved = fmax(moved, fabs(row[0] - row_of(&t, 0)[0]));
   }
   assert_true(moved > 0.01); /* what a node has changes */
-  strut_trajectory_free(&t);
-  model_run_free(&run);
 }
 
 TEST(a_free_structure_keeps_its_angular_momentum) {
@@ -96,8 +94,8 @@ TEST(a_free_structure_keeps_its_angular_momentum) {
    however fast it flies; with lumped masses m l^2 w / 4. */
 static void assert_closed_form(const char *model, double part) {
   char text[600];
-  model_run run;
-  strut_trajectory t = {0};
+  OWN(model_run) run;
+  OWN(strut_trajectory) t = {0};
   const double m = 1.2, l = 0.8, w = 3.0;
   snprintf(text, sizeof text,
            "strut: 1\nmass_model: %s\n"
@@ -112,8 +110,6 @@ static void assert_closed_form(const char *model, double part) {
     for (int i = 0; i < 2; i++)
       assert_relative(row_of(&t, f)[i], 0.5 * part * m * l * l * w, f ? 1e-11 : 1e-15);
   }
-  strut_trajectory_free(&t);
-  model_run_free(&run);
 }
 
 TEST(a_bar_that_turns_has_the_closed_form) {
@@ -147,8 +143,8 @@ static const char EVERYTHING[] =
 
 /* All of them at once, more than any one scene had before: every one comes back with the same bits. */
 TEST(every_channel_comes_back_out_of_its_file) {
-  model_run run;
-  strut_trajectory t = {0}, read = {0};
+  OWN(model_run) run;
+  OWN(strut_trajectory) t = {0}, read = {0};
   strut_error error = {0};
   scratch_make();
   record(EVERYTHING, set_none, scratch_path(""), &run, &t);
@@ -172,8 +168,4 @@ TEST(every_channel_comes_back_out_of_its_file) {
   assert_true(t.hinge_count == 1 && t.cell_count == 1 && t.contact_count == 5);
   for (int k = 0; k < STRUT_OWNER_COUNT; k++)
     assert_true(scratch_exists(scratch_path(strut_owner_row_of((strut_channel_owner)k)->file)));
-  strut_trajectory_free(&t);
-  strut_trajectory_free(&read);
-  model_run_free(&run);
-  scratch_remove();
 }

@@ -2,8 +2,6 @@
 /* The ground's reaction (8): restitution, contact time, rest. The damper works on approach only. */
 #include <math.h>
 
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 static const double K = 1e4, MASS = 0.5, SPEED = 1.5;
@@ -14,14 +12,12 @@ typedef struct bounce {
 
 /* A node without weight hits the ground a fraction of a step after one of its steps. */
 static bounce hit(double zeta, double step, double fraction) {
-  strut_scene scene;
-  motion m;
+  OWN(strut_scene) scene = build_scene();
   bounce seen = {0, 0, 0};
-  strut_scene_init(&scene);
   int32_t node = build_mass(&scene, 0, SPEED * step * (2 + fraction), MASS);
   scene.nodes[node].velocity[1] = -SPEED;
   build_contact(&scene, node, K, 2 * zeta * sqrt(K * MASS));
-  motion_begin(&m, &scene, step);
+  OWN(motion) m = motion_begin(&scene, step);
   do {
     motion_steps(&m, 1);
     seen.deepest = fmax(seen.deepest, -m.state->q[1]);
@@ -29,8 +25,6 @@ static bounce hit(double zeta, double step, double fraction) {
   } while (m.state->q[1] < 0 || m.state->v[1] < 0);
   motion_steps(&m, 1); /* away, freely */
   seen.restitution = m.state->v[1] / SPEED;
-  motion_end(&m);
-  strut_scene_free(&scene);
   return seen;
 }
 
@@ -67,22 +61,18 @@ TEST(without_damping_nothing_is_lost) {
 
 /* Left alone a node comes to rest where the spring carries its weight, on flat and sloping ground. */
 static void rest(double slope) {
-  strut_scene scene;
-  motion m;
-  strut_scene_init(&scene);
+  OWN(strut_scene) scene = build_scene();
   scene.ground.slope = slope, scene.ground.height = 0.1;
   int32_t node = build_mass(&scene, 0.2, 0.1 + 0.2 * tan(slope) + 0.001, MASS);
   build_contact(&scene, node, K, 2 * 0.5 * sqrt(K * MASS));
   scene.gravity[0] = 9.81 * sin(slope), scene.gravity[1] = -9.81 * cos(slope);
-  motion_begin(&m, &scene, 1e-4);
+  OWN(motion) m = motion_begin(&scene, 1e-4);
   motion_steps(&m, 20000);
   double depth = -(m.state->q[1] - 0.1) * cos(slope) + m.state->q[0] * sin(slope);
   strut_forces_evaluate(m.model, m.state, 2, m.state->q, m.state->v);
   assert_relative(depth, MASS * 9.81 / K, 1e-12);
   assert_relative(m.state->latest.normal[0], MASS * 9.81, 1e-12);
   assert_true(m.state->latest.friction[0] == 0);
-  motion_end(&m);
-  strut_scene_free(&scene);
 }
 
 TEST(rest_is_where_the_ground_carries_the_weight) {
@@ -93,16 +83,14 @@ TEST(rest_is_where_the_ground_carries_the_weight) {
 
 /* A rod that falls on a smooth ground turns, but its middle does not move sideways. */
 TEST(a_falling_rod_does_not_move_sideways) {
-  strut_scene scene;
-  motion m;
-  strut_scene_init(&scene);
+  OWN(strut_scene) scene = build_scene();
   scene.gravity[1] = -9.81;
   build_node(&scene, 0, 0.05);
   build_node(&scene, 0.3, 0.35);
   build_member(&scene, STRUT_BAR, 0, 1, 1e4, 1, 0.5);
   build_contact(&scene, 0, K, 10);
   build_contact(&scene, 1, K, 10);
-  motion_begin(&m, &scene, 1e-4);
+  OWN(motion) m = motion_begin(&scene, 1e-4);
   bool fell = false;
   for (int i = 0; i < 1000; i++) {
     motion_steps(&m, 10);
@@ -110,6 +98,4 @@ TEST(a_falling_rod_does_not_move_sideways) {
     assert_near(m.state->q[0] + m.state->q[2], 0.3, 1e-13);
   }
   assert_true(fell && fabs(m.state->q[2] - m.state->q[0]) > 0.35); /* it has fallen over */
-  motion_end(&m);
-  strut_scene_free(&scene);
 }

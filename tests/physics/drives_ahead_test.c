@@ -2,7 +2,6 @@
 /* Drives that are computed for many evaluations at once have the bits of those computed one by one. */
 #include "engine/forces/drives.h"
 
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
@@ -20,13 +19,13 @@ static void begin(crawlers *c, double start, double stop) {
   structure_crawler(&c->setup.scene, 10, 1e-4, 0.1, false);
   assert_int_equal(c->setup.scene.signal_count, 1);
   c->setup.scene.signals[0].start = start, c->setup.scene.signals[0].stop = stop;
-  motion_begin_by(&c->together, &c->setup, "rk4", STEP);
-  motion_begin_by(&c->alone, &c->setup, "rk4", STEP);
+  c->together = motion_begin_by(&c->setup, "rk4", STEP);
+  c->alone = motion_begin_by(&c->setup, "rk4", STEP);
 }
 
 static void end(crawlers *c) {
-  motion_end(&c->together);
-  motion_end(&c->alone);
+  motion_free(&c->together);
+  motion_free(&c->alone);
   strut_scene_free(&c->setup.scene);
 }
 

@@ -9,10 +9,11 @@
 
 #include "engine/base/vec.h"
 #include "engine/statics/search/critical.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
+
+FREED_BY(gsl_vector_free, gsl_vector)
+FREED_BY(strut_potential_free, strut_potential)
 
 enum {
   ANCHORS = 3,
@@ -222,7 +223,7 @@ static void search_brutely(const structure *s, minima *found) {
   brute b = {.s = s};
   for (int i = 0; i < NODES; i++)
     memcpy(b.q + 2 * i, s->setup.scene.nodes[i].position, 2 * sizeof(double));
-  gsl_vector *x = gsl_vector_alloc(UNKNOWNS);
+  OWN_POINTER(gsl_vector) x = gsl_vector_alloc(UNKNOWNS);
   gsl_multimin_fdfminimizer *m =
       gsl_multimin_fdfminimizer_alloc(gsl_multimin_fdfminimizer_vector_bfgs2, UNKNOWNS);
   for (int k = 0; k < BRUTE; k++) {
@@ -230,18 +231,17 @@ static void search_brutely(const structure *s, minima *found) {
     if (descend(&b, m, x) && is_lowest(&b, x->data, &r)) remember(found, x->data);
   }
   gsl_multimin_fdfminimizer_free(m);
-  gsl_vector_free(x);
 }
 
 /* Every minimum that brute force met is among those of the search, and each of those is one. */
 static void check_structure(uint64_t seed) {
   structure s;
   strut_critical_set set;
-  strut_potential *potential;
+  OWN_POINTER(strut_potential) potential;
   strut_error error;
   static minima known;
   make(&s, seed);
-  strut_model *model = motion_compile(&s.setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&s.setup.scene);
   assert_int_equal(strut_potential_create(model, NULL, false, &potential, &error), STRUT_OK);
   strut_critical_effort effort = {.seed = 1, .saddles = true};
   assert_int_equal(strut_critical_search(potential, &effort, &set, &error), STRUT_OK);
@@ -267,8 +267,6 @@ static void check_structure(uint64_t seed) {
                 stable, known.count, set.count);
   assert_true(stable >= known.count);
   strut_critical_free(&set);
-  strut_potential_free(potential);
-  strut_model_free(model);
   strut_setup_free(&s.setup);
 }
 

@@ -8,18 +8,16 @@
 
 #include "engine/base/vec.h"
 #include "engine/statics/rigidity/rigidity.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 
 enum { NODES = 6 };
 
 /* Two supports, four free nodes, bars, a cable that meets a node twice, two hinges. */
-static void make(strut_setup *setup, uint64_t *r) {
+static strut_setup make(uint64_t *r) {
   static int32_t guides[3] = {2, 3, 2};
-  strut_setup_init(setup);
-  strut_scene *scene = &setup->scene;
+  strut_setup setup = build_setup();
+  strut_scene *scene = &setup.scene;
   build_support(scene, -1, 0);
   build_support(scene, 1, 0);
   for (int i = 2; i < NODES; i++) {
@@ -38,6 +36,7 @@ static void make(strut_setup *setup, uint64_t *r) {
     h->node[0] = i, h->node[1] = 3 + i, h->node[2] = 5 - i * 3;
     h->stiffness = 1;
   }
+  return setup;
 }
 
 /* What a column measures at positions q: a length, or an angle times the model's size. */
@@ -72,10 +71,9 @@ TEST(columns_and_forms_are_derivatives) {
   uint64_t r = 4;
   const double h = 1e-3;
   for (int round = 0; round < 20; round++) {
-    strut_setup setup;
     strut_arena arena = {0};
     strut_equilibrium_matrix a;
-    make(&setup, &r);
+    strut_setup setup = make(&r);
     strut_model *model = motion_compile(&setup.scene);
     assert_int_equal(strut_equilibrium_matrix_build(model, model->start, &arena, &a), STRUT_OK);
     assert_int_equal(a.columns, 7);

@@ -3,26 +3,25 @@
 #include <math.h>
 #include <string.h>
 
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 static const double PI = 3.14159265358979323846;
 static const double SPEED = 0.3, PUSH = 5, MASS = 2, FREQUENCY = 7.3, STEP = 1e-3;
 
 /* A mass that a load pushes to and fro, beside one on a driven spring. */
-static void pushed(strut_setup *setup, const char *method, double step, double duration) {
-  strut_setup_init(setup);
-  build_mass(&setup->scene, 0, 0, MASS);
-  build_support(&setup->scene, 0, 1);
-  build_mass(&setup->scene, 1, 1, 1);
-  build_member(&setup->scene, STRUT_SPRING, 1, 2, 100, 1, 0);
-  setup->scene.nodes[0].velocity[0] = SPEED;
-  build_load(&setup->scene, 0, PUSH, 0, build_sine(&setup->scene, 1, FREQUENCY));
-  build_actuator(&setup->scene, 0, build_sine(&setup->scene, 0.1, 1.3 * FREQUENCY));
-  motion_experiment(setup, step, duration);
-  setup->experiment.integrator = method;
-  setup->experiment.tolerance = 1e-10;
+static strut_setup pushed(const char *method, double step, double duration) {
+  strut_setup setup = build_setup();
+  build_mass(&setup.scene, 0, 0, MASS);
+  build_support(&setup.scene, 0, 1);
+  build_mass(&setup.scene, 1, 1, 1);
+  build_member(&setup.scene, STRUT_SPRING, 1, 2, 100, 1, 0);
+  setup.scene.nodes[0].velocity[0] = SPEED;
+  build_load(&setup.scene, 0, PUSH, 0, build_sine(&setup.scene, 1, FREQUENCY));
+  build_actuator(&setup.scene, 0, build_sine(&setup.scene, 0.1, 1.3 * FREQUENCY));
+  motion_experiment(&setup, step, duration);
+  setup.experiment.integrator = method;
+  setup.experiment.tolerance = 1e-10;
+  return setup;
 }
 
 static double place_at(double t) {
@@ -64,11 +63,10 @@ static strut_summary record(const strut_setup *setup, strut_run_options options,
   strut_sink *sinks[] = {&sink};
   strut_summary s;
   strut_error error = {0};
-  strut_model *model = motion_compile(&setup->scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   options.sinks = sinks, options.sink_count = 1;
   if (strut_simulate(model, &setup->experiment, &options, &s, &error))
     fail_msg("%s", error.message);
-  strut_model_free(model);
   return s;
 }
 
@@ -78,19 +76,16 @@ typedef struct places {
 } places;
 
 static places places_after(const char *method, double step, double duration) {
-  strut_setup setup;
   rows r;
-  pushed(&setup, method, step, duration);
+  OWN(strut_setup) setup = pushed(method, step, duration);
   setup.experiment.output_every = 7e-3; /* does not divide it */
-  strut_summary s = record(&setup, (strut_run_options){0}, &r);
+  OWN(strut_summary) s = record(&setup, (strut_run_options){0}, &r);
   places p = {s.end.positions[0], s.end.positions[4]};
   assert_same_bits(s.duration, duration);
   assert_same_bits(r.time, duration);
   assert_same_bits(r.place, p.forced);
   if (step == STEP) assert_int_equal(r.count, (size_t)ceil(duration / 7e-3 - 1e-9) + 1);
   assert_int_equal(s.spent.steps, (int64_t)ceil(duration / step - 1e-6));
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
   return p;
 }
 
@@ -115,8 +110,7 @@ TEST(every_method_ends_on_time) {
 TEST(velocity_to_the_end) {
   for (size_t i = 0; strut_integrator_at(i); i++) {
     const strut_integrator *method = strut_integrator_at(i);
-    strut_setup setup;
-    strut_setup_init(&setup);
+    OWN(strut_setup) setup = build_setup();
     build_mass(&setup.scene, 0, 0, MASS);
     setup.scene.nodes[0].velocity[0] = SPEED;
     build_load(&setup.scene, 0, PUSH, 0, build_sine(&setup.scene, 1, FREQUENCY));
@@ -124,47 +118,39 @@ TEST(velocity_to_the_end) {
     setup.experiment.integrator = method->name;
     setup.experiment.tolerance = 1e-10;
     setup.experiment.measure_last = 0.0003; /* within the last step, which has 0.969 ms */
-    strut_summary s = motion_simulate(&setup);
+    OWN(strut_summary) s = motion_simulate(&setup);
     double from = 0.049969 - 0.0003;
     double mean = (place_at(0.049969) - place_at(from)) / 0.0003;
     assert_relative(s.velocity, mean, method->order > 2 ? 1e-6 : method->order > 1 ? 1e-4 : 0.02);
-    strut_summary_free(&s);
-    strut_setup_free(&setup);
   }
 }
 
 /* A run of whole steps has the bits of its steps, and its last sample where it always was. */
 TEST(whole_steps_are_not_cut) {
-  strut_setup setup;
-  motion m;
   rows r;
-  pushed(&setup, "rk4", STEP, 0.05);
-  motion_begin_by(&m, &setup, "rk4", STEP);
+  OWN(strut_setup) setup = pushed("rk4", STEP, 0.05);
+  OWN(motion) m = motion_begin_by(&setup, "rk4", STEP);
   motion_steps(&m, 50);
-  strut_summary s = record(&setup, (strut_run_options){0}, &r);
+  OWN(strut_summary) s = record(&setup, (strut_run_options){0}, &r);
   assert_int_equal(s.spent.steps, 50);
   for (int i = 0; i < 6; i++) assert_same_bits(s.end.positions[i], m.state->q[i]);
   assert_int_equal(r.count, 51); /* every step: a thousandth of it is less */
   assert_same_bits(r.time, 0.05);
-  motion_end(&m);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 /* What goes on from the end of a run does so at its time, and with the drives as they are then. */
 TEST(going_on_between_steps) {
   for (size_t i = 0; strut_integrator_at(i); i++) {
     const strut_integrator *method = strut_integrator_at(i);
-    strut_setup setup;
     double q[8], v[8];
     strut_snapshot kept = {.q = q, .v = v};
     rows r;
-    pushed(&setup, method->name, STEP, 0.0256);
-    strut_summary first = record(&setup, (strut_run_options){.to = &kept}, &r);
+    OWN(strut_setup) setup = pushed(method->name, STEP, 0.0256);
+    OWN(strut_summary) first = record(&setup, (strut_run_options){.to = &kept}, &r);
     assert_same_bits(kept.time, 0.0256);
     motion_experiment(&setup, STEP, 0.0247);
     strut_snapshot then = kept;
-    strut_summary second = record(&setup, (strut_run_options){.from = &then, .to = &kept}, &r);
+    OWN(strut_summary) second = record(&setup, (strut_run_options){.from = &then, .to = &kept}, &r);
     assert_near(kept.time, 0.0503, 1e-15);
     assert_near(r.time, 0.0503, 1e-15);
     places exact = places_after("adaptive", 0.0503 / 51, 0.0503);
@@ -173,8 +159,5 @@ TEST(going_on_between_steps) {
                 2 * fabs(whole.forced - exact.forced) + 1e-9);
     assert_near(second.end.positions[4], exact.driven,
                 2 * fabs(whole.driven - exact.driven) + 1e-9);
-    strut_summary_free(&first);
-    strut_summary_free(&second);
-    strut_setup_free(&setup);
   }
 }

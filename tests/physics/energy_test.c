@@ -5,20 +5,15 @@
 #include <sys/time.h>
 
 #include "tests/physics/smooth_scenes.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static strut_energy balance(void (*make)(strut_scene *), double step, double duration) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   make(&setup.scene);
   motion_experiment(&setup, step, duration);
-  strut_summary summary = motion_simulate(&setup);
+  OWN(strut_summary) summary = motion_simulate(&setup);
   strut_energy energy = summary.energy;
-  strut_summary_free(&summary);
-  strut_setup_free(&setup);
   return energy;
 }
 
@@ -110,14 +105,13 @@ TEST(scenes_with_jumps_close_as_the_step_falls) {
 
 /* The parts by hand where they are known. */
 TEST(the_parts_of_a_sliding_block) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   setup.scene.gravity[1] = -9.81;
   build_mass(&setup.scene, 0, -9.81e-5 * 2, 2);
   build_rough_contact(&setup.scene, 0, 1e5, 100, 0.3, 0.3, 1e-4);
   setup.scene.nodes[0].velocity[0] = 3;
   motion_experiment(&setup, 1e-4, 0.5);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_summary) s = motion_simulate(&setup);
   double v = 3 - 0.3 * 9.81 * 0.5, way = 0.5 * (3 + v) * 0.5;
   assert_relative(s.energy.kinetic, v * v, 1e-12);
   assert_relative(s.energy.dissipated_friction, 0.3 * 2 * 9.81 * way, 1e-12);
@@ -125,40 +119,32 @@ TEST(the_parts_of_a_sliding_block) {
   assert_relative(s.energy.gravity, -2 * 9.81 * 9.81e-5 * 2, 1e-12);
   assert_near(s.energy.residual, 0, 1e-12 * s.energy.moved);
   assert_true(s.energy.elastic == 0 && s.energy.drive_work == 0 && s.energy.load_work == 0);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 TEST(the_parts_of_a_loaded_mass) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   build_mass(&setup.scene, 0, 0, 2);
   build_load(&setup.scene, 0, 3, 4, -1);
   motion_experiment(&setup, 1e-3, 1);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_summary) s = motion_simulate(&setup);
   assert_relative(s.energy.load_work, 0.5 * 25 / 2, 1e-12); /* F^2 t^2 / 2 m */
   assert_relative(s.energy.kinetic, 0.5 * 25 / 2, 1e-12);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 /* A slack cable stores nothing, a taut one c s^2 / 2. */
 TEST(a_slack_cable_stores_nothing) {
   for (int slack = 0; slack < 2; slack++) {
-    strut_setup setup;
-    strut_setup_init(&setup);
+    OWN(strut_setup) setup = build_setup();
     build_support(&setup.scene, 0, 0);
     build_support(&setup.scene, 0.7, 0);
     build_mass(&setup.scene, 5, 5, 2);
     build_sized(&setup.scene, STRUT_CABLE, 0, 1, 300, 1, 0, slack ? 0.9 : 0.5);
     setup.scene.nodes[2].velocity[0] = 3;
     motion_experiment(&setup, 1e-3, 0.1);
-    strut_summary s = motion_simulate(&setup);
+    OWN(strut_summary) s = motion_simulate(&setup);
     double stored = slack ? 0 : 0.5 * 300 * 0.2 * 0.2;
     assert_near(s.energy.elastic, stored, 1e-14);
     assert_near(s.energy.initial, 9 + stored, 1e-14);
-    strut_summary_free(&s);
-    strut_setup_free(&setup);
   }
 }
 
@@ -173,16 +159,14 @@ static void note_ring(int number) {
 TEST(an_interrupted_step_is_undone_with_its_works) {
   const struct itimerval soon = {.it_value = {.tv_usec = 50000}};
   struct sigaction before, action = {.sa_handler = note_ring};
-  strut_setup setup;
-  motion m;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   build_support(&setup.scene, 0, 0);
   build_mass(&setup.scene, 1, 0, 0.1);
   build_member(&setup.scene, STRUT_SPRING, 0, 1, 1e6, 0.01, 0);
   build_load(&setup.scene, 1, 1, 0, build_sine(&setup.scene, 1, 300));
   setup.scene.nodes[1].start[0] = 1.01;
   motion_experiment(&setup, 1e9, 1e9);
-  motion_begin_by(&m, &setup, "adaptive", 1e9);
+  OWN(motion) m = motion_begin_by(&setup, "adaptive", 1e9);
   m.state->balance = true;
   m.state->limits.interrupt = &ring;
   ring = 0;
@@ -195,6 +179,4 @@ TEST(an_interrupted_step_is_undone_with_its_works) {
   assert_int_equal(m.state->step, 0);
   assert_true(m.state->q[2] == 1.01 && m.state->v[2] == 0);
   for (int p = 0; p < STRUT_POWER_COUNT; p++) assert_true(m.state->work[p] == 0);
-  motion_end(&m);
-  strut_setup_free(&setup);
 }

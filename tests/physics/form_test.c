@@ -4,9 +4,8 @@
 #include <string.h>
 
 #include "engine/statics/form/form.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
+#include "tests/support/refused.h"
 
 static strut_status find(strut_setup *setup, strut_form_options options, strut_form *form,
                          strut_error *error) {
@@ -41,16 +40,14 @@ static double length_of(const strut_setup *setup, size_t j) {
 
 /* Runs the scene's own experiment step by step; no node may leave its place by 1e-9 of `size`. */
 static void check_holds(const strut_setup *setup, double size) {
-  motion m;
   const strut_experiment *e = &setup->experiment;
   assert_true(e->duration >= 10 && e->step > 0);
-  motion_begin(&m, &setup->scene, e->step);
+  OWN(motion) m = motion_begin(&setup->scene, e->step);
   for (int part = 0; part < 50; part++) {
     motion_steps(&m, (int64_t)(e->duration / e->step / 50));
     for (size_t i = 0; i < 2 * setup->scene.node_count; i++)
       assert_near(m.state->q[i], setup->scene.nodes[i / 2].start[i % 2], 1e-9 * size);
   }
-  motion_end(&m);
 }
 
 static void give_density(strut_setup *setup, int32_t member, double density) {
@@ -60,8 +57,7 @@ static void give_density(strut_setup *setup, int32_t member, double density) {
 
 /* A cable net between supports with weights: sum of q (x_j - x_i) + f = 0 at every free node. */
 TEST(net) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   setup.scene.gravity[1] = -9.81;
   int32_t a = build_support(&setup.scene, 0, 0), b = build_mass(&setup.scene, 1, 0, 0.1);
   int32_t c = build_mass(&setup.scene, 2, 0, 0.2), d = build_support(&setup.scene, 3, 0.5);
@@ -84,26 +80,25 @@ TEST(net) {
   for (size_t j = 0; j < 4; j++)
     assert_relative(force_of(&setup, j) / length_of(&setup, j), density[j], 1e-10);
   check_holds(&setup, 3);
-  strut_setup_free(&setup);
 }
 
 /* A hexagon of cables (q) and diagonals (-q / 2), drawn badly; standing by itself. */
-static void hexagon(strut_setup *setup, double diagonal) {
+static strut_setup hexagon(double diagonal) {
   static const double drawn[6][2] = {{1.02, 0.03}, {0.5, 0.9},   {-0.45, 0.8},
                                      {-1.1, 0},    {-0.5, -0.9}, {0.5, -0.8}};
-  strut_setup_init(setup);
-  for (int i = 0; i < 6; i++) build_mass(&setup->scene, drawn[i][0], drawn[i][1], 1);
+  strut_setup setup = build_setup();
+  for (int i = 0; i < 6; i++) build_mass(&setup.scene, drawn[i][0], drawn[i][1], 1);
   for (int i = 0; i < 6; i++)
-    give_density(setup, build_member(&setup->scene, STRUT_CABLE, i, (i + 1) % 6, 100, 0, 0), 1);
+    give_density(&setup, build_member(&setup.scene, STRUT_CABLE, i, (i + 1) % 6, 100, 0, 0), 1);
   for (int i = 0; i < 3; i++)
-    give_density(setup, build_member(&setup->scene, STRUT_BAR, i, i + 3, 1000, 0, 0), diagonal);
+    give_density(&setup, build_member(&setup.scene, STRUT_BAR, i, i + 3, 1000, 0, 0), diagonal);
+  return setup;
 }
 
 TEST(standing_hexagon) {
   for (int i = 0; i < 2; i++) {
     double diagonal = i ? -0.4 : -0.5, q[9];
-    strut_setup setup;
-    hexagon(&setup, diagonal);
+    OWN(strut_setup) setup = hexagon(diagonal);
     strut_form form = form_of(&setup, (strut_form_options){0});
     for (size_t j = 0; j < 9; j++) q[j] = force_of(&setup, j) / length_of(&setup, j);
     /* nearest to (1 x 6, diagonal x 3) along (1 x 6, -1/2 x 3) */
@@ -123,7 +118,6 @@ TEST(standing_hexagon) {
       }
     }
     check_holds(&setup, 2);
-    strut_setup_free(&setup);
   }
 }
 
@@ -145,7 +139,7 @@ static void frame(strut_setup *setup, bool ground) {
 
 static void check_prestress(strut_form_objective objective, bool ground) {
   const double least = 3;
-  strut_setup setup;
+  OWN(strut_setup) setup;
   frame(&setup, ground);
   strut_form form =
       form_of(&setup, (strut_form_options){.objective = objective, .least_tension = least});
@@ -158,7 +152,6 @@ static void check_prestress(strut_form_objective objective, bool ground) {
     assert_near(setup.scene.nodes[i].start[1], setup.scene.nodes[i].position[1],
                 ground && i < 2 ? 0.8 * 9.81 / 1e5 : 1e-12);
   check_holds(&setup, 1.2);
-  strut_setup_free(&setup);
 }
 
 TEST(prestress_under_weight) {
@@ -169,7 +162,7 @@ TEST(prestress_under_weight) {
 
 /* The shape of lengths that fit together is the one drawn from them; of those that do not, rest. */
 TEST(lengths) {
-  strut_setup setup;
+  OWN(strut_setup) setup;
   frame(&setup, false);
   setup.scene.gravity[1] = 0;
   for (size_t j = 0; j < 6; j++) {
@@ -188,7 +181,6 @@ TEST(lengths) {
                      setup.scene.nodes[i / 2].start[i % 2]);
   for (size_t j = 0; j < 4; j++) assert_true(force_of(&setup, j) > 10);
   check_holds(&setup, 1.2);
-  strut_setup_free(&setup);
 }
 
 TEST(refusals) {
@@ -206,12 +198,12 @@ TEST(refusals) {
   setup.scene.members[4].kind = STRUT_CABLE; /* and nothing to push n2 from n4 */
   assert_int_equal(find(&setup, (strut_form_options){0}, &form, &error), STRUT_NOT_SETTLED);
   strut_setup_free(&setup);
-  hexagon(&setup, -0.5); /* cables that push */
+  setup = hexagon(-0.5); /* cables that push */
   setup.scene.members[0].rest_value = -1;
   assert_int_equal(find(&setup, (strut_form_options){0}, &form, &error), STRUT_NOT_SETTLED);
   assert_non_null(strstr(error.message, "cables only pull"));
   strut_setup_free(&setup);
-  hexagon(&setup, -0.5); /* held by its diagonals pulling: it folds */
+  setup = hexagon(-0.5); /* held by its diagonals pulling: it folds */
   for (int32_t j = 0; j < 9; j++) setup.scene.members[j].kind = STRUT_SPRING;
   for (int32_t j = 0; j < 9; j++) setup.scene.members[j].rest_value *= -1;
   assert_int_equal(find(&setup, (strut_form_options){0}, &form, &error), STRUT_NOT_SETTLED);
@@ -223,18 +215,14 @@ TEST(memory) {
   strut_status status = STRUT_NO_MEMORY;
   int64_t n = 0;
   for (; status != STRUT_OK && n < 10000; n++) {
-    strut_setup setup;
+    OWN(strut_setup) setup;
     strut_form form;
     strut_form_options options = {.objective = STRUT_FORM_SQUARES};
     if (n % 2)
       frame(&setup, true);
     else
-      hexagon(&setup, -0.4);
-    strut_fail_allocation_after(n);
-    status = strut_form_find(&setup, &options, &form, NULL);
-    strut_fail_allocation_after(-1);
-    if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
-    strut_setup_free(&setup);
+      setup = hexagon(-0.4);
+    status = refused(n, strut_form_find(&setup, &options, &form, NULL));
   }
   assert_true(n > 20);
   assert_int_equal(status, STRUT_OK);

@@ -8,21 +8,19 @@
  */
 #include <math.h>
 
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 static const double G = 9.81, K = 1e5, MASS = 1;
 
 /* One block that the ground already carries; the slope is in the ground, the weight stays upright. */
-static void block(strut_scene *scene, double slope, double mu_static, double mu_kinetic,
-                  double band) {
+static strut_scene block(double slope, double mu_static, double mu_kinetic, double band) {
   double depth = MASS * G * cos(slope) / K;
-  strut_scene_init(scene);
-  scene->gravity[1] = -G;
-  build_mass(scene, depth * sin(slope), -depth * cos(slope), MASS);
-  build_rough_contact(scene, 0, K, 100, mu_static, mu_kinetic, band);
-  scene->ground.slope = slope;
+  strut_scene scene = build_scene();
+  scene.gravity[1] = -G;
+  build_mass(&scene, depth * sin(slope), -depth * cos(slope), MASS);
+  build_rough_contact(&scene, 0, K, 100, mu_static, mu_kinetic, band);
+  scene.ground.slope = slope;
+  return scene;
 }
 
 /* The band follows the step, as it must: four times the change of speed in one step. */
@@ -30,12 +28,10 @@ TEST(a_block_slides_to_rest) {
   const double mu = 0.2, speed = 0.3, way = speed * speed / (2 * mu * G), time = speed / (mu * G);
   double last_bound = 1;
   for (int k = 0; k < 5; k++) {
-    strut_scene scene;
-    motion m;
     double step = ldexp(1e-4, -k), band = 4 * mu * G * step;
-    block(&scene, 0, mu, mu, band);
+    OWN(strut_scene) scene = block(0, mu, mu, band);
     scene.nodes[0].velocity[0] = k % 2 ? -speed : speed;
-    motion_begin(&m, &scene, step);
+    OWN(motion) m = motion_begin(&scene, step);
     motion_steps(&m, (int64_t)ceil(2 * time / step));
     double creep = m.state->v[0];
     assert_true(fabs(creep) < band);
@@ -45,38 +41,27 @@ TEST(a_block_slides_to_rest) {
     assert_true(m.state->v[0] == creep);
     assert_true(band * 2 * time < 0.6 * last_bound);
     last_bound = band * 2 * time;
-    motion_end(&m);
-    strut_scene_free(&scene);
   }
 }
 
 /* Before it comes near the band the block is uniformly decelerated, which RK4 follows exactly. */
 TEST(sliding_is_uniformly_decelerated) {
-  strut_scene scene;
-  motion m;
-  block(&scene, 0, 0.9, 0.25, 1e-4);
+  OWN(strut_scene) scene = block(0, 0.9, 0.25, 1e-4);
   scene.nodes[0].velocity[0] = 2;
-  motion_begin(&m, &scene, 1e-4);
+  OWN(motion) m = motion_begin(&scene, 1e-4);
   motion_steps(&m, 5000);
   double t = 0.5;
   assert_near(m.state->q[0], 2 * t - 0.5 * 0.25 * G * t * t, 1e-12);
   assert_near(m.state->v[0], 2 - 0.25 * G * t, 1e-12);
-  motion_end(&m);
-  strut_scene_free(&scene);
 }
 
 /* Way along the slope after 1 s from rest. */
 static double way_down(double slope, double mu_static, double mu_kinetic) {
-  strut_scene scene;
-  motion m;
-  block(&scene, slope, mu_static, mu_kinetic, 1e-4);
-  motion_begin(&m, &scene, 1e-4);
+  OWN(strut_scene) scene = block(slope, mu_static, mu_kinetic, 1e-4);
+  OWN(motion) m = motion_begin(&scene, 1e-4);
   double x = m.state->q[0], y = m.state->q[1];
   motion_steps(&m, 10000);
-  double way = -((m.state->q[0] - x) * cos(slope) + (m.state->q[1] - y) * sin(slope));
-  motion_end(&m);
-  strut_scene_free(&scene);
-  return way;
+  return -((m.state->q[0] - x) * cos(slope) + (m.state->q[1] - y) * sin(slope));
 }
 
 TEST(a_slope_below_the_friction_angle_holds) {
@@ -98,17 +83,13 @@ TEST(a_slope_above_the_friction_angle_lets_go) {
 /* Between the two coefficients a block at rest stays and a moving one slides on. */
 TEST(a_moving_block_meets_kinetic_friction_only) {
   double slope = atan(0.3), a = G * (sin(slope) - 0.2 * cos(slope));
-  strut_scene scene;
-  motion m;
   assert_near(way_down(slope, 0.4, 0.2), 0, 1e-12);
-  block(&scene, slope, 0.4, 0.2, 1e-4);
+  OWN(strut_scene) scene = block(slope, 0.4, 0.2, 1e-4);
   scene.nodes[0].velocity[0] = -0.1 * cos(slope), scene.nodes[0].velocity[1] = -0.1 * sin(slope);
-  motion_begin(&m, &scene, 1e-4);
+  OWN(motion) m = motion_begin(&scene, 1e-4);
   double x = m.state->q[0];
   motion_steps(&m, 10000);
   assert_relative((x - m.state->q[0]) / cos(slope), 0.1 + 0.5 * a, 1e-9);
-  motion_end(&m);
-  strut_scene_free(&scene);
 }
 
 /*
@@ -120,14 +101,12 @@ typedef struct belt_cycle {
 } belt_cycle;
 
 static belt_cycle ride(double step, double band, double mu_static, double speed) {
-  strut_scene scene;
-  motion m;
-  block(&scene, 0, mu_static / G, 1 / G, band);
+  OWN(strut_scene) scene = block(0, mu_static / G, 1 / G, band);
   build_support(&scene, -1, scene.nodes[0].start[1]);
   build_sized(&scene, STRUT_SPRING, 1, 0, 100, 0, 0, 1);
   scene.ground.belt_speed = speed;
   scene.nodes[0].velocity[0] = speed;
-  motion_begin(&m, &scene, step);
+  OWN(motion) m = motion_begin(&scene, step);
   belt_cycle cycle = {0, 1, -1};
   double before = 0, crossed[4] = {0}, level = 0.01 * (speed < 0 ? -1 : 1);
   for (int passes = 0; passes < 4 && (double)m.state->step * step < 10;) {
@@ -139,8 +118,6 @@ static belt_cycle ride(double step, double band, double mu_static, double speed)
       crossed[passes++] = ((double)m.state->step - (x - level) / (x - before)) * step;
   }
   cycle.period = (crossed[3] - crossed[1]) / 2;
-  motion_end(&m);
-  strut_scene_free(&scene);
   return cycle;
 }
 

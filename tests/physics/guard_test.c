@@ -5,8 +5,6 @@
 #include <string.h>
 
 #include "engine/integrate/limit/step_limit.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 static const double STIFFNESS = 1000, MASS = 2, REST = 0.6, STROKE = 0.3, FREQUENCY = 0.002;
@@ -17,19 +15,20 @@ static const double PI = 3.14159265358979323846;
  * tension t. Actuators shorten the springs' rest lengths slowly, so that w grows from 20 to 26.5
  * rad/s within a quarter of their period.
  */
-static void tightening(strut_setup *setup, const char *method, double step) {
-  strut_setup_init(setup);
-  build_support(&setup->scene, -1, 0);
-  build_support(&setup->scene, 1, 0);
-  build_mass(&setup->scene, 0, 0, MASS);
-  setup->scene.nodes[2].fixed[0] = true;
-  setup->scene.nodes[2].velocity[1] = 1e-3;
-  int32_t signal = build_sine(&setup->scene, -STROKE, FREQUENCY);
+static strut_setup tightening(const char *method, double step) {
+  strut_setup setup = build_setup();
+  build_support(&setup.scene, -1, 0);
+  build_support(&setup.scene, 1, 0);
+  build_mass(&setup.scene, 0, 0, MASS);
+  setup.scene.nodes[2].fixed[0] = true;
+  setup.scene.nodes[2].velocity[1] = 1e-3;
+  int32_t signal = build_sine(&setup.scene, -STROKE, FREQUENCY);
   for (int32_t i = 0; i < 2; i++)
-    build_actuator(&setup->scene,
-                   build_sized(&setup->scene, STRUT_SPRING, i, 2, STIFFNESS, 0, 0, REST), signal);
-  setup->experiment.integrator = method;
-  motion_experiment(setup, step, 0.5 / FREQUENCY);
+    build_actuator(&setup.scene,
+                   build_sized(&setup.scene, STRUT_SPRING, i, 2, STIFFNESS, 0, 0, REST), signal);
+  setup.experiment.integrator = method;
+  motion_experiment(&setup, step, 0.5 / FREQUENCY);
+  return setup;
 }
 
 /* When w has reached so much [s]. */
@@ -40,11 +39,9 @@ static double when(double omega) {
 
 static strut_status run(const strut_setup *setup, bool force, strut_summary *s, strut_error *e) {
   strut_run_options options = {.force = force};
-  strut_model *model = motion_compile(&setup->scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   *e = (strut_error){0};
-  strut_status status = strut_simulate(model, &setup->experiment, &options, s, e);
-  strut_model_free(model);
-  return status;
+  return strut_simulate(model, &setup->experiment, &options, s, e);
 }
 
 static const char *const METHODS[] = {"rk4",        "verlet",        "euler",
@@ -54,10 +51,9 @@ static void check(const char *name) {
   const strut_integrator *method = strut_integrator_find(name);
   double reach = method->region == STRUT_REGION_RK4 ? 2 * sqrt(2) : 2, step = reach / 23.5;
   double looks = 2 * 256 / method->evaluations * step, crossing = when(23.5);
-  strut_setup setup;
   strut_summary s;
   strut_error error;
-  tightening(&setup, name, step);
+  OWN(strut_setup) setup = tightening(name, step);
   assert_int_equal(run(&setup, false, &s, &error), STRUT_DIVERGED);
   print_message("%s: %s\n", name, error.message);
   assert_non_null(strstr(error.message, "t = "));
@@ -83,7 +79,6 @@ static void check(const char *name) {
   assert_int_equal(run(&setup, false, &s, &error), STRUT_OK);
   assert_true(s.limit_fell.limit == 0);
   strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 TEST(a_structure_that_tightens) {

@@ -31,8 +31,7 @@ TEST(an_arm_turns_several_times_against_its_hinge) {
   const double omega = sqrt(0.3 / (2 * 0.25)), amplitude = 4 / 0.5 / omega;
   assert_true(amplitude > 10);
   for (int i = 0; i < 5; i++) {
-    model_run run;
-    model_read_text(&run, "rotor", rotor, set_none);
+    OWN(model_run) run = model_read_text("rotor", rotor, set_none);
     run.setup.experiment.integrator = methods[i];
     run.setup.experiment.duration =
         1.5 * PI / omega; /* all the way back, and on to the other side */
@@ -43,7 +42,6 @@ TEST(an_arm_turns_several_times_against_its_hinge) {
     assert_near(model_position(&run, "tip")[1], 0.5 * sin(angle), 1e-3);
     assert_relative(run.summary.energy.elastic, 0.5 * 0.3 * angle * angle, 1e-3);
     assert_near(run.summary.energy.residual, 0, 1e-5 * run.summary.energy.moved);
-    model_run_free(&run);
   }
 }
 
@@ -65,13 +63,11 @@ static const char pendulum[] =
 
 TEST(a_pendulum_with_a_hinge) {
   const double omega = sqrt(3 / (2 * 0.25) + G / 0.5);
-  model_run run;
-  model_read_text(&run, "pendulum", pendulum, set_none);
+  OWN(model_run) run = model_read_text("pendulum", pendulum, set_none);
   run.setup.experiment.duration = 2.25 * 2 * PI / omega;
   run.setup.experiment.step = run.setup.experiment.duration / 1e5;
   model_simulate(&run);
   assert_near(model_position(&run, "bob")[0], 0, 5e-5 * 1e-4);
-  model_run_free(&run);
 }
 
 /* Both arms held: the drive works against the hinge alone, and in a whole period not at all. */
@@ -95,8 +91,7 @@ TEST(a_driven_hinge_between_held_arms) {
   for (int damped = 0; damped < 2; damped++)
     for (int quarter = 1; quarter <= 4; quarter++) {
       const double c = damped ? 0.02 : 0, w = 4 * PI, t = quarter * 0.125;
-      model_run run;
-      model_read_text(&run, "held", held, set_to(damped ? "c=0.02" : "c=0"));
+      OWN(model_run) run = model_read_text("held", held, set_to(damped ? "c=0.02" : "c=0"));
       run.setup.experiment.duration = t;
       model_simulate(&run);
       const strut_energy *e = &run.summary.energy;
@@ -107,7 +102,6 @@ TEST(a_driven_hinge_between_held_arms) {
       assert_near(e->dissipated_members, lost, 1e-11);
       assert_near(e->drive_work, 1.5 * (after * after - before * before) + lost, 1e-11);
       assert_near(e->residual, 0, 1e-11);
-      model_run_free(&run);
     }
 }
 
@@ -142,8 +136,7 @@ TEST(the_balance_of_a_driven_leg_closes) {
                {"verlet-events", 1e-4},
                {"midpoint", 1e-9}};
   for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-    model_run run;
-    model_read_text(&run, "leg", leg, set_none);
+    OWN(model_run) run = model_read_text("leg", leg, set_none);
     run.setup.experiment.integrator = known[i].method;
     model_simulate(&run);
     const strut_energy *e = &run.summary.energy;
@@ -151,6 +144,5 @@ TEST(the_balance_of_a_driven_leg_closes) {
                   e->moved);
     assert_true(e->drive_work > 0.01 && e->dissipated_members > 0.01);
     assert_near(e->residual, 0, known[i].tolerance * e->moved);
-    model_run_free(&run);
   }
 }

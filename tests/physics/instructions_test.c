@@ -8,7 +8,6 @@
  * compiler, its options and one set of registers; elsewhere there is nothing to compare with.
  */
 #include "tests/support/instructions.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
@@ -41,15 +40,13 @@ static void some_steps(void *context) { motion_steps(context, STEPS); }
 
 static long count_of(const budget *b) {
   strut_setup setup = {.experiment = strut_experiment_default()};
-  motion m;
   setup.experiment.step = STEP;
   strut_scene_init(&setup.scene);
   structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
-  motion_begin_by(&m, &setup, b->method, STEP);
+  OWN(motion) m = motion_begin_by(&setup, b->method, STEP);
   m.state->balance = b->balance;
   motion_steps(&m, BEFORE);
   long count = count_instructions(some_steps, &m);
-  motion_end(&m);
   strut_scene_free(&setup.scene);
   return count;
 }

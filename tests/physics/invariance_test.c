@@ -6,8 +6,6 @@
 
 #include "engine/integrate/limit/step_limit.h"
 #include "tests/physics/random_scene.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
@@ -41,18 +39,17 @@ static void make(strut_setup *setup, uint64_t number) {
 /* A power of two well below the step limit: the random scenes are stiffer than one another. */
 static double stable_step(const strut_setup *setup) {
   strut_step_limit limit;
-  strut_model *model = motion_compile(&setup->scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
-  strut_model_free(model);
   return exp2(floor(log2(0.3 * limit.limit)));
 }
 
-static void run(motion *m, const strut_setup *setup, const char *method, double step,
-                int64_t steps) {
-  motion_begin_by(m, setup, method, step);
-  m->state->balance = true;
-  motion_steps(m, steps);
-  for (size_t i = 0; i < 2 * setup->scene.node_count; i++) assert_true(isfinite(m->state->q[i]));
+static motion run(const strut_setup *setup, const char *method, double step, int64_t steps) {
+  motion m = motion_begin_by(setup, method, step);
+  m.state->balance = true;
+  motion_steps(&m, steps);
+  for (size_t i = 0; i < 2 * setup->scene.node_count; i++) assert_true(isfinite(m.state->q[i]));
+  return m;
 }
 
 static void scale_lengths(strut_setup *s, double by) {
@@ -149,18 +146,17 @@ static void compare_bits(const motion *a, const motion *b, size_t nodes, factors
 static void check_scene(void (*change)(strut_setup *), factors f, const char *method,
                         uint64_t number, int64_t steps) {
   strut_setup first, second;
-  motion a, b;
   make(&first, number);
   make(&second, number);
   change(&second);
   double step = number ? stable_step(&first) : 1e-4;
   if (strcmp(method, "rk4") != 0) step /= 16; /* the least stable of them is half as stable */
   first.experiment.step = step, second.experiment.step = step * f.time;
-  run(&a, &first, method, step, steps);
-  run(&b, &second, method, step * f.time, steps);
+  motion a = run(&first, method, step, steps);
+  motion b = run(&second, method, step * f.time, steps);
   compare_bits(&a, &b, first.scene.node_count, f);
-  motion_end(&a);
-  motion_end(&b);
+  motion_free(&a);
+  motion_free(&b);
   strut_setup_free(&first);
   strut_setup_free(&second);
 }
@@ -253,16 +249,15 @@ static void shuffle(const strut_setup *from, strut_setup *to, int32_t *new_of, u
 TEST(another_order_agrees_to_rounding) {
   uint64_t r = 7;
   for (uint64_t number = 0; number <= RANDOM_SCENES; number++) {
-    strut_setup first, second;
-    motion a, b;
+    OWN(strut_setup) first, second;
     make(&first, number);
     make(&second, number);
-    int32_t *new_of = calloc(first.scene.node_count, sizeof *new_of);
+    FREED int32_t *new_of = calloc(first.scene.node_count, sizeof *new_of);
     assert_non_null(new_of);
     shuffle(&first, &second, new_of, &r);
     double step = number ? stable_step(&first) : 1e-4;
-    run(&a, &first, "rk4", step, 100);
-    run(&b, &second, "rk4", step, 100);
+    OWN(motion) a = run(&first, "rk4", step, 100);
+    OWN(motion) b = run(&second, "rk4", step, 100);
     double length = 0, speed = 0;
     for (size_t i = 0; i < 2 * first.scene.node_count; i++) {
       length = fmax(length, fabs(a.state->q[i]));
@@ -273,11 +268,6 @@ TEST(another_order_agrees_to_rounding) {
       assert_near(b.state->q[k], a.state->q[i], 1e-12 * length);
       assert_near(b.state->v[k], a.state->v[i], 1e-10 * speed);
     }
-    free(new_of);
-    motion_end(&a);
-    motion_end(&b);
-    strut_setup_free(&first);
-    strut_setup_free(&second);
   }
 }
 
@@ -290,18 +280,14 @@ static double drive(double frequency, double step, double n) {
 /* One step after a million periods, none of which was a whole number of steps. */
 TEST(a_drive_does_not_drift) {
   const double frequency = 7.3, step = 1e-4, n = 1369863014; /* 1e6 periods and a little */
-  strut_setup setup;
-  motion m;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   build_mass(&setup.scene, 0, 0, 1);
   build_load(&setup.scene, 0, 1, 0, build_sine(&setup.scene, 1, frequency));
-  motion_begin(&m, &setup.scene, step);
+  OWN(motion) m = motion_begin(&setup.scene, step);
   m.state->step = (int64_t)n;
   motion_steps(&m, 1);
   double expected = drive(frequency, step, n) + 4 * drive(frequency, step, n + 0.5) +
                     drive(frequency, step, n + 1);
   assert_near(m.state->v[0], expected * step / 6, 1e-9 * step);
   assert_int_equal(m.state->step, (int64_t)n + 1);
-  motion_end(&m);
-  strut_setup_free(&setup);
 }

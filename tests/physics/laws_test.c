@@ -34,10 +34,11 @@ static const char oscillator[] =
     "run: {duration: 1 s}\n"
     "output: {channels: [position, velocity, force]}\n";
 
-static void read_oscillator(model_run *run, const char *member, const char *out) {
+static model_run read_oscillator(const char *member, const char *out) {
   char text[1200];
   assert_true(snprintf(text, sizeof text, oscillator, member) < (int)sizeof text);
-  model_read_text(run, "oscillator", text, set_to(out));
+  model_run run = model_read_text("oscillator", text, set_to(out));
+  return run;
 }
 
 /* k x + k3 x^3: T = 4 K(m) / omega_r with omega_r^2 = (k + k3 A^2) / M, m = k3 A^2 / 2 / (k + k3 A^2). */
@@ -48,9 +49,8 @@ TEST(duffings_oscillator_keeps_its_period) {
   const double k = 50, k3 = 4000, out = 0.2, hard = k + k3 * out * out;
   const double period = 4 * complete_elliptic(0.5 * k3 * out * out / hard) / sqrt(hard / 2);
   for (int i = 0; i < 5; i++) {
-    model_run run;
-    read_oscillator(&run, "law: {kind: polynomial, coefficients: [50 N/m, 0, 4000 N/m^3]}",
-                    "out=0.2");
+    OWN(model_run) run = read_oscillator(
+        "law: {kind: polynomial, coefficients: [50 N/m, 0, 4000 N/m^3]}", "out=0.2");
     run.setup.experiment.integrator = methods[i];
     run.setup.experiment.duration = 2.25 * period;
     run.setup.experiment.step = run.setup.experiment.duration / 9000;
@@ -58,7 +58,6 @@ TEST(duffings_oscillator_keeps_its_period) {
     assert_near(model_position(&run, "block")[0], 1, tolerance[i]);
     assert_near(run.summary.energy.kinetic, 0.5 * k * out * out + 0.25 * k3 * pow(out, 4),
                 tolerance[i]);
-    model_run_free(&run);
   }
 }
 
@@ -77,13 +76,12 @@ TEST(bilinear_springs_and_free_play_keep_their_period) {
   double top_play = (out - knee) * w1, quarter_play = PI / 2 / w1 + knee / top_play;
   for (int law = 0; law < 2; law++)
     for (int i = 0; i < 4; i++) {
-      model_run run;
       double quarter = law ? quarter_play : quarter_bilinear;
-      read_oscillator(&run,
-                      law ? "stiffness: 50, law: {kind: play, gap: 50 mm}"
-                          : "stiffness: 50, law: {kind: bilinear, knee: 50 mm, "
-                            "second_stiffness: 300 N/m}",
-                      "out=0.2");
+      OWN(model_run) run =
+          read_oscillator(law ? "stiffness: 50, law: {kind: play, gap: 50 mm}"
+                              : "stiffness: 50, law: {kind: bilinear, knee: 50 mm, "
+                                "second_stiffness: 300 N/m}",
+                          "out=0.2");
       run.setup.experiment.integrator = events[i];
       run.setup.experiment.duration = 9 * quarter;
       run.setup.experiment.step = run.setup.experiment.duration / 9000;
@@ -92,7 +90,6 @@ TEST(bilinear_springs_and_free_play_keep_their_period) {
       assert_near(run.summary.energy.kinetic, pow(law ? top_play : top_bilinear, 2),
                   10 * tolerance[i]);
       assert_true(run.summary.spent.events >= 8);
-      model_run_free(&run);
     }
 }
 
@@ -101,17 +98,15 @@ TEST(a_table_is_the_spring_that_it_lists) {
   for (int i = 0; i < 4; i++) {
     double at[2];
     for (int table = 0; table < 2; table++) {
-      model_run run;
-      read_oscillator(&run,
-                      table ? "law: {kind: table, points: [[-1, -287.5], [-50 mm, -2.5], [50 mm, "
-                              "2.5], [1, 287.5]]}"
-                            : "stiffness: 50, law: {kind: bilinear, knee: 50 mm, "
-                              "second_stiffness: 300 N/m}",
-                      "out=0.2");
+      OWN(model_run) run = read_oscillator(
+          table ? "law: {kind: table, points: [[-1, -287.5], [-50 mm, -2.5], [50 mm, "
+                  "2.5], [1, 287.5]]}"
+                : "stiffness: 50, law: {kind: bilinear, knee: 50 mm, "
+                  "second_stiffness: 300 N/m}",
+          "out=0.2");
       run.setup.experiment.integrator = events[i];
       model_simulate(&run);
       at[table] = model_position(&run, "block")[0];
-      model_run_free(&run);
     }
     assert_near(at[1], at[0], 1e-9);
   }
@@ -127,14 +122,12 @@ TEST(a_tables_energy_is_its_integral) {
                {"out=0.5", 14, 0.1 + 1.0 + 2.2},
                {"out=-0.5", -10, 2.5}};
   for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-    model_run run;
-    read_oscillator(&run, "law: {kind: table, points: [[-1, -20], [0, 0], [0.1, 2], [0.3, 8]]}",
-                    known[i].out);
+    OWN(model_run) run = read_oscillator(
+        "law: {kind: table, points: [[-1, -20], [0, 0], [0.1, 2], [0.3, 8]]}", known[i].out);
     run.setup.experiment.duration = run.setup.experiment.step;
     model_simulate(&run);
     assert_relative(model_value(&run, 0, STRUT_CHANNEL_FORCE, "m", 0), known[i].force, 1e-13);
     assert_relative(run.summary.energy.initial, known[i].energy, 1e-13);
-    model_run_free(&run);
   }
 }
 
@@ -170,8 +163,7 @@ TEST(a_stop_gives_back_what_its_damper_leaves) {
         char text[1200], c[40];
         snprintf(text, sizeof text, against_stop, side ? "0.9" : "1.1", side ? "-3" : "3");
         snprintf(c, sizeof c, "c=%.17g", 2 * zeta * sqrt(800 * 0.5));
-        model_run run;
-        model_read_text(&run, "against_stop", text, set_to(c));
+        OWN(model_run) run = model_read_text("against_stop", text, set_to(c));
         run.setup.experiment.integrator = methods[i];
         model_simulate(&run);
         double kept = exp(-2 * zeta * acos(zeta) / sqrt(1 - zeta * zeta));
@@ -182,7 +174,6 @@ TEST(a_stop_gives_back_what_its_damper_leaves) {
           print_error("%s, zeta %g, side %d\n", methods[i], zeta, side);
         assert_relative(exit, 3 * kept, tolerance[i]);
         assert_true(run.summary.energy.dissipated_members >= 0);
-        model_run_free(&run);
       }
 }
 
@@ -205,8 +196,7 @@ TEST(stops_keep_the_momentum_of_two_masses) {
   const double spin = 0.5 * (1 * 0.5 - 0.3 * 3);
   static const double tolerance[] = {1e-5, 1e-5, 1e-4, 0.05};
   for (int i = 0; i < 4; i++) {
-    model_run run;
-    model_read_text(&run, "two_masses", two_masses, set_none);
+    OWN(model_run) run = model_read_text("two_masses", two_masses, set_none);
     run.setup.experiment.integrator = events[i];
     model_simulate(&run);
     assert_true(run.summary.spent.events >= 4);
@@ -222,7 +212,6 @@ TEST(stops_keep_the_momentum_of_two_masses) {
     double turning = 2 * (x[0] * v[1] - x[1] * v[0]) + 0.5 * (x[2] * v[3] - x[3] * v[2]);
     assert_near(turning, spin, i == 3 ? 1e-3 : 1e-7);
     assert_near(run.summary.energy.residual, 0, tolerance[i] * run.summary.energy.moved);
-    model_run_free(&run);
   }
 }
 
@@ -258,8 +247,7 @@ TEST(a_cable_of_any_law_throws_its_block_back) {
     for (int i = 0; i < 4; i++) {
       char text[1200];
       snprintf(text, sizeof text, thrown, laws[law]);
-      model_run run;
-      model_read_text(&run, laws[law], text, set_none);
+      OWN(model_run) run = model_read_text(laws[law], text, set_none);
       run.setup.experiment.integrator = events[i];
       model_simulate(&run);
       const strut_energy *e = &run.summary.energy;
@@ -268,7 +256,6 @@ TEST(a_cable_of_any_law_throws_its_block_back) {
       assert_near(e->elastic, 0, 0);
       assert_near(e->dissipated_members, 0, tolerance[i]);
       assert_true(model_position(&run, "block")[0] < 1.1 && run.summary.spent.events >= 2);
-      model_run_free(&run);
     }
 }
 
@@ -307,8 +294,7 @@ TEST(the_balance_of_driven_laws_closes) {
         if (kind && !law) continue;
         char text[1200];
         snprintf(text, sizeof text, driven, kinds[kind], laws[law]);
-        model_run run;
-        model_read_text(&run, laws[law], text, set_none);
+        OWN(model_run) run = model_read_text(laws[law], text, set_none);
         run.setup.experiment.integrator = methods[i];
         model_simulate(&run);
         const strut_energy *e = &run.summary.energy;
@@ -316,6 +302,5 @@ TEST(the_balance_of_driven_laws_closes) {
           print_error("%s, %s, %s\n", methods[i], kinds[kind], laws[law]);
         assert_near(e->residual / e->moved, 0, tolerance[i]);
         assert_true(e->dissipated_members > 0 && e->drive_work != 0);
-        model_run_free(&run);
       }
 }

@@ -5,8 +5,6 @@
 #include <string.h>
 
 #include "engine/forces/energy.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 
@@ -43,25 +41,25 @@ static double block_at(double width, double t) {
   return side * (less + (width - less) * cos(sqrt(SPRING) * t));
 }
 
-static void make_blocks(strut_scene *scene) {
-  strut_scene_init(scene);
-  scene->gravity[1] = -G;
+static strut_scene make_blocks(void) {
+  strut_scene scene = build_scene();
+  scene.gravity[1] = -G;
   for (int32_t i = 0; i < BLOCKS; i++) {
     double y = -G / GROUND, x = width_of(i);
-    int32_t block = build_mass(scene, x, y, 1.0), wall = build_support(scene, -1.0, y);
-    int32_t contact = build_contact(scene, block, GROUND, 0.0);
-    scene->contacts[contact].friction =
+    int32_t block = build_mass(&scene, x, y, 1.0), wall = build_support(&scene, -1.0, y);
+    int32_t contact = build_contact(&scene, block, GROUND, 0.0);
+    scene.contacts[contact].friction =
         (strut_friction){.law = STRUT_FRICTION_COULOMB, .mu_static = MU, .mu_kinetic = MU};
-    build_sized(scene, STRUT_SPRING, block, wall, SPRING, 0.0, 0.0, 1.0);
+    build_sized(&scene, STRUT_SPRING, block, wall, SPRING, 0.0, 0.0, 1.0);
   }
+  return scene;
 }
 
 TEST(blocks_stop_where_coulomb_says) {
   static const char *const methods[] = {"rk4-events", "adaptive", "adaptive8"};
   for (int k = 0; k < 3; k++) {
-    strut_scene scene;
-    motion m;
-    make_blocks(&scene);
+    OWN(motion) m;
+    OWN(strut_scene) scene = make_blocks();
     begin(&m, &scene, methods[k], 1e-3, 1e-9);
     for (int n = 0; n < 25; n++) {
       motion_steps(&m, 70);
@@ -69,8 +67,6 @@ TEST(blocks_stop_where_coulomb_says) {
         assert_near(m.state->q[4 * i], block_at(width_of(i), (double)m.state->step * m.step), 1e-9);
     }
     for (int32_t i = 0; i < BLOCKS; i++) assert_true(m.state->v[4 * i] == 0.0);
-    motion_end(&m);
-    strut_scene_free(&scene);
   }
 }
 
@@ -85,9 +81,8 @@ TEST(blocks_that_touch_at_once_move_as_one) {
   for (int k = 0; k < 4; k++) {
     double alone[2] = {0.0, 0.0};
     for (int blocks = 1; blocks <= BLOCKS; blocks += BLOCKS - 1) {
-      strut_scene scene;
-      motion m;
-      strut_scene_init(&scene);
+      OWN(strut_scene) scene = build_scene();
+      OWN(motion) m;
       scene.gravity[1] = -G;
       for (int i = 0; i < blocks; i++)
         build_contact(&scene, build_mass(&scene, i, 0.0123, 1.0), GROUND, 20.0);
@@ -98,8 +93,6 @@ TEST(blocks_that_touch_at_once_move_as_one) {
         assert_near(m.state->q[2 * i + 1], alone[0], TOLERANCE);
         assert_near(m.state->v[2 * i + 1], alone[1], 1e3 * TOLERANCE);
       }
-      motion_end(&m);
-      strut_scene_free(&scene);
     }
   }
 }
@@ -129,31 +122,32 @@ static void add_contact(strut_scene *scene, uint64_t *random, int32_t node, int 
 /* A grid that falls on its lowest nodes and slides; law: of friction, 0: none. */
 enum { COLUMNS = 36, ROWS = 3, NODES = COLUMNS * ROWS, LAWS = 3 };
 
-static void make_grid(strut_scene *scene, uint64_t seed, int law, bool lumped) {
+static strut_scene make_grid(uint64_t seed, int law, bool lumped) {
   uint64_t random = seed;
-  strut_scene_init(scene);
-  scene->gravity[1] = -G;
-  scene->mass_model = lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
+  strut_scene scene = build_scene();
+  scene.gravity[1] = -G;
+  scene.mass_model = lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
   for (int32_t c = 0; c < COLUMNS; c++)
     for (int32_t r = 0; r < ROWS; r++) {
       double up = random_between(&random, 0.0005, 0.008),
              right = random_between(&random, -0.01, 0.01);
-      int32_t i = build_mass(scene, 0.1 * c + right, 0.1 * r + up, 0.05);
-      scene->nodes[i].velocity[0] = 0.2 + random_between(&random, -0.1, 0.1);
-      scene->nodes[i].velocity[1] = -0.8;
-      if (r == 0) add_contact(scene, &random, i, law);
+      int32_t i = build_mass(&scene, 0.1 * c + right, 0.1 * r + up, 0.05);
+      scene.nodes[i].velocity[0] = 0.2 + random_between(&random, -0.1, 0.1);
+      scene.nodes[i].velocity[1] = -0.8;
+      if (r == 0) add_contact(&scene, &random, i, law);
     }
   for (int32_t c = 0; c < COLUMNS; c++)
     for (int32_t r = 0; r < ROWS; r++) {
       int32_t i = c * ROWS + r;
-      if (c + 1 < COLUMNS) add_member(scene, &random, i, i + ROWS, true);
-      if (r + 1 < ROWS) add_member(scene, &random, i, i + 1, true);
+      if (c + 1 < COLUMNS) add_member(&scene, &random, i, i + ROWS, true);
+      if (r + 1 < ROWS) add_member(&scene, &random, i, i + 1, true);
       if (c + 1 == COLUMNS || r + 1 == ROWS) continue;
-      add_member(scene, &random, i, i + ROWS + 1, false);
-      add_member(scene, &random, i + 1, i + ROWS, false);
+      add_member(&scene, &random, i, i + ROWS + 1, false);
+      add_member(&scene, &random, i + 1, i + ROWS, false);
     }
-  if (law) build_actuator(scene, COLUMNS, build_sine(scene, 1e-3, 40.0));
-  if (law == 1) scene->ground.slope = -0.002;
+  if (law) build_actuator(&scene, COLUMNS, build_sine(&scene, 1e-3, 40.0));
+  if (law == 1) scene.ground.slope = -0.002;
+  return scene;
 }
 
 typedef struct fall {
@@ -179,7 +173,7 @@ static void let_fall(const strut_scene *scene, const char *method, double step, 
   memcpy(f->v, m.state->v, sizeof f->v);
   f->residual = total_energy(&m) - before;
   f->events = m.state->events;
-  motion_end(&m);
+  motion_free(&m);
 }
 
 static double distance(const double *a, const double *b) {
@@ -195,8 +189,7 @@ TEST(grids_fall_alike_by_every_method_with_events) {
   static fall exact, other;
   for (int lumped = 0; lumped < 2; lumped++)
     for (int law = 0; law < LAWS; law++) {
-      strut_scene scene;
-      make_grid(&scene, 1 + (uint64_t)law, law, lumped);
+      OWN(strut_scene) scene = make_grid(1 + (uint64_t)law, law, lumped);
       let_fall(&scene, "adaptive", 4e-5, 1e-11, &exact);
       for (int k = 0; k < 2; k++) {
         let_fall(&scene, k ? "adaptive" : "rk4-events", 1e-4, 1e-6, &other);
@@ -206,6 +199,5 @@ TEST(grids_fall_alike_by_every_method_with_events) {
         if (law < 2)
           assert_int_equal(other.events, exact.events); /* else a contact may yield to and fro */
       }
-      strut_scene_free(&scene);
     }
 }

@@ -9,16 +9,13 @@
 #include "engine/forces/energy.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "tests/physics/random_scene.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static double explicit_limit(const strut_setup *setup) {
   strut_step_limit limit;
-  strut_model *model = motion_compile(&setup->scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
-  strut_model_free(model);
   return limit.of[STRUT_REGION_RK4];
 }
 
@@ -36,11 +33,12 @@ static double farthest(const strut_summary *a, const strut_summary *b) {
 }
 
 /* A uniform rod let go horizontally, T = 4 sqrt(2 L / 3 g) K(sin 45 deg) where it is rigid. */
-static void pendulum(strut_setup *setup, double stiffness) {
-  strut_setup_init(setup);
-  setup->scene.gravity[1] = -9.81;
-  int32_t pin = build_support(&setup->scene, 0, 0), tip = build_node(&setup->scene, 1, 0);
-  build_member(&setup->scene, STRUT_BAR, pin, tip, stiffness, 0, 1);
+static strut_setup pendulum(double stiffness) {
+  strut_setup setup = build_setup();
+  setup.scene.gravity[1] = -9.81;
+  int32_t pin = build_support(&setup.scene, 0, 0), tip = build_node(&setup.scene, 1, 0);
+  build_member(&setup.scene, STRUT_BAR, pin, tip, stiffness, 0, 1);
+  return setup;
 }
 
 TEST(stiff_pendulum_is_the_rigid_one) {
@@ -48,16 +46,13 @@ TEST(stiff_pendulum_is_the_rigid_one) {
   for (double stiffness = 1e8; stiffness < 2e12; stiffness *= 100) {
     double error[3];
     for (int k = 0; k < 3; k++) {
-      strut_setup setup;
-      pendulum(&setup, stiffness);
-      strut_summary s = run_by(&setup, "midpoint", period / (100 << k), 10.25 * period);
+      OWN(strut_setup) setup = pendulum(stiffness);
+      OWN(strut_summary) s = run_by(&setup, "midpoint", period / (100 << k), 10.25 * period);
       error[k] = hypot(s.end.positions[2], s.end.positions[3] + 1.0);
       assert_near(s.energy.residual, 0.0, 1e-9 * s.energy.moved + 1e-9);
       print_message(
           "stiffness %g, %d steps a period, %.0f times RK4's limit: %.2g m off after ten\n",
           stiffness, 100 << k, s.step / explicit_limit(&setup), error[k]);
-      strut_summary_free(&s);
-      strut_setup_free(&setup);
     }
     assert_within(observed_order(error, 3), 1.9, 2.1);
   }
@@ -65,7 +60,7 @@ TEST(stiff_pendulum_is_the_rigid_one) {
 
 /* A closed frame, spinning and vibrating, at 100 times the largest step of RK4. */
 TEST(energy_of_a_stiff_frame) {
-  strut_setup setup;
+  OWN(strut_setup) setup;
   const x_frame frame = {.side = 1,
                          .cable_stiffness = 1e7,
                          .bar_stiffness = 1e9,
@@ -77,8 +72,7 @@ TEST(energy_of_a_stiff_frame) {
   structure_throw(&setup.scene, 1.0, -2.0, 0.5);
   setup.scene.nodes[0].velocity[0] += 0.1;
   double step = 100.0 * explicit_limit(&setup), most = 0.0;
-  motion m;
-  motion_begin_by(&m, &setup, "midpoint", step);
+  OWN(motion) m = motion_begin_by(&setup, "midpoint", step);
   strut_energies start = strut_energy_evaluate(m.model, m.state, 0.0);
   double whole = start.kinetic + start.elastic;
   for (int k = 0; k < 1000; k++) {
@@ -94,43 +88,37 @@ TEST(energy_of_a_stiff_frame) {
   /* rounding of the bars' forces, c L eps, times the way of a step, at random over all steps */
   double rounding = 1e9 * 1.4 * 0x1p-52 * step * 2.3 * sqrt(1e5);
   assert_near(most, 0.0, rounding);
-  motion_end(&m);
-  strut_setup_free(&setup);
 }
 
 /* Masses in a row on soft springs and, every other one, on bars a million times as stiff. */
-static void chain(strut_setup *setup, double ratio) {
-  strut_setup_init(setup);
-  setup->scene.gravity[1] = -9.81;
-  int32_t last = build_support(&setup->scene, 0, 0);
+static strut_setup chain(double ratio) {
+  strut_setup setup = build_setup();
+  setup.scene.gravity[1] = -9.81;
+  int32_t last = build_support(&setup.scene, 0, 0);
   for (int i = 1; i <= 20; i++) {
-    int32_t next = build_mass(&setup->scene, 0.1 * i, 0.02 * (i % 2), 0.1);
-    build_member(&setup->scene, i % 2 ? STRUT_SPRING : STRUT_BAR, last, next,
+    int32_t next = build_mass(&setup.scene, 0.1 * i, 0.02 * (i % 2), 0.1);
+    build_member(&setup.scene, i % 2 ? STRUT_SPRING : STRUT_BAR, last, next,
                  i % 2 ? 100.0 : 100.0 * ratio, 0, 0);
     last = next;
   }
+  return setup;
 }
 
 TEST(stiff_chain_against_rk4) {
-  strut_setup setup;
   const double duration = 0.5;
-  chain(&setup, 1e6);
+  OWN(strut_setup) setup = chain(1e6);
   double limit = explicit_limit(&setup), error[3];
-  strut_summary exact = run_by(&setup, "rk4", 0.25 * limit, duration);
-  strut_summary usual = run_by(&setup, "rk4", 0.95 * limit, duration);
+  OWN(strut_summary) exact = run_by(&setup, "rk4", 0.25 * limit, duration);
+  OWN(strut_summary) usual = run_by(&setup, "rk4", 0.95 * limit, duration);
   for (int k = 0; k < 3; k++) {
-    strut_summary s = run_by(&setup, "midpoint", ldexp(100.0 * limit, -k), duration);
+    OWN(strut_summary) s = run_by(&setup, "midpoint", ldexp(100.0 * limit, -k), duration);
     error[k] = farthest(&s, &exact);
     double saving = (double)usual.spent.evaluations / (double)s.spent.evaluations;
     print_message("stiffness ratio 1e6, %d times RK4's limit: %.2g m off, a %.0fth of its forces\n",
                   100 >> k, error[k], saving);
     if (k == 0) assert_true(saving > 20.0);
-    strut_summary_free(&s);
   }
   assert_true(error[0] < 0.04 && error[1] < 0.6 * error[0] && error[2] < 0.6 * error[1]);
-  strut_summary_free(&exact);
-  strut_summary_free(&usual);
-  strut_setup_free(&setup);
 }
 
 /*
@@ -145,8 +133,7 @@ TEST(random_scenes) {
   int better = 0;
   int64_t evaluations = 0, steps = 0;
   for (uint64_t seed = 1; seed <= SCENES; seed++) {
-    strut_setup setup;
-    strut_setup_init(&setup);
+    OWN(strut_setup) setup = build_setup();
     random_scene(&setup.scene, seed);
     setup.scene.contact_count = 0;
     setup.scene.ground.present = false;
@@ -155,18 +142,14 @@ TEST(random_scenes) {
       if (setup.scene.members[i].stiffness > 0.0 && setup.scene.members[i].rest_value == 0.0)
         setup.scene.members[i].damping = 0.0;
     double fine = fmin(5e-6, 0.2 * explicit_limit(&setup));
-    strut_summary exact = run_by(&setup, "rk4", fine, duration);
-    strut_summary coarse = run_by(&setup, "midpoint", 1.6e-3, duration);
-    strut_summary s = run_by(&setup, "midpoint", 1e-4, duration);
+    OWN(strut_summary) exact = run_by(&setup, "rk4", fine, duration);
+    OWN(strut_summary) coarse = run_by(&setup, "midpoint", 1.6e-3, duration);
+    OWN(strut_summary) s = run_by(&setup, "midpoint", 1e-4, duration);
     double before = farthest(&coarse, &exact), error = farthest(&s, &exact);
     balance = fmax(balance, fabs(coarse.energy.residual) / (coarse.energy.moved + 1.0));
     balance = fmax(balance, fabs(s.energy.residual) / (s.energy.moved + 1.0));
     better += error < 0.25 * before;
     evaluations += coarse.spent.evaluations, steps += coarse.spent.steps;
-    strut_summary_free(&exact);
-    strut_summary_free(&coarse);
-    strut_summary_free(&s);
-    strut_setup_free(&setup);
   }
   print_message(
       "%d scenes: %d better by 4 with 0.1 ms than with 1.6 ms; balance of all within %.2g; "
@@ -200,23 +183,19 @@ TEST(order_on_random_scenes) {
   const double duration = 0.016;
   double least = HUGE_VAL, most = 0.0;
   for (uint64_t seed = 1; seed <= SCENES; seed++) {
-    strut_setup setup;
-    strut_setup_init(&setup);
+    OWN(strut_setup) setup = build_setup();
     random_scene(&setup.scene, seed);
     take_jumps_out(&setup);
-    strut_summary exact = run_by(&setup, "rk4", 1e-6, duration);
+    OWN(strut_summary) exact = run_by(&setup, "rk4", 1e-6, duration);
     double error[3];
     for (int k = 0; k < 3; k++) {
-      strut_summary s = run_by(&setup, "midpoint", ldexp(8e-5, -k), duration);
+      OWN(strut_summary) s = run_by(&setup, "midpoint", ldexp(8e-5, -k), duration);
       error[k] = farthest(&s, &exact);
-      strut_summary_free(&s);
     }
     for (int k = 0; k < 2; k++) {
       double factor = error[k] / error[k + 1];
       least = fmin(least, factor), most = fmax(most, factor);
     }
-    strut_summary_free(&exact);
-    strut_setup_free(&setup);
   }
   print_message("%d scenes without jumps: errors fall by %.3f to %.3f\n", SCENES, least, most);
   assert_within(least, 3.9, 4.0);
@@ -225,80 +204,66 @@ TEST(order_on_random_scenes) {
 
 /* A mass on a cable with a damper, thrown through its slack length again and again: 1000 steps. */
 TEST(cable_in_large_steps) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   setup.scene.gravity[1] = -9.81;
   int32_t hook = build_support(&setup.scene, 0, 0), mass = build_mass(&setup.scene, 0.4, -0.2, 1);
   build_sized(&setup.scene, STRUT_CABLE, hook, mass, 1e8, 100, 0, 1.0);
-  strut_summary s = run_by(&setup, "midpoint", 100 * sqrt(8.0 / 1e8), 30.0);
+  OWN(strut_summary) s = run_by(&setup, "midpoint", 100 * sqrt(8.0 / 1e8), 30.0);
   print_message("cable: energy off by %.2g of %.2g J moved; %.2f J lost\n", s.energy.residual,
                 s.energy.moved, s.energy.dissipated_members);
   assert_near(s.energy.residual, 0.0, 1e-9 * s.energy.moved);
   assert_true(hypot(s.end.positions[2], s.end.positions[3]) < 1.01);
   assert_true(s.energy.dissipated_members > 0.0);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 /* A swing of small amplitude: midpoint turns by 2 atan(omega h / 2) in a step. */
 TEST(frequency_is_that_of_midpoint) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   int32_t wall = build_support(&setup.scene, 0, 0), mass = build_mass(&setup.scene, 1, 0, 2);
   build_sized(&setup.scene, STRUT_SPRING, wall, mass, 50, 0, 0, 0.9);
   setup.scene.nodes[mass].fixed[1] = true;
   double turn = 2.0 * atan(0.5 * 5.0 * 0.3);
-  motion m;
-  motion_begin_by(&m, &setup, "midpoint", 0.3);
+  OWN(motion) m = motion_begin_by(&setup, "midpoint", 0.3);
   for (int n = 1; n <= 1000; n++) {
     motion_steps(&m, 1);
     assert_near(m.state->q[2 * mass], 0.9 + 0.1 * cos(n * turn), 1e-12);
     assert_near(m.state->v[2 * mass], -0.5 * sin(n * turn), 1e-11);
   }
-  motion_end(&m);
-  strut_setup_free(&setup);
 }
 
 static void expect_refusal(strut_setup *setup, const char *word) {
   strut_error error = {0};
-  strut_model *model = motion_compile(&setup->scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   setup->experiment.integrator = "midpoint";
   assert_int_equal(strut_integrator_check(model, &setup->experiment, &error), STRUT_USAGE);
   assert_non_null(strstr(error.message, word));
-  strut_model_free(model);
 }
 
 TEST(refusals) {
-  strut_setup setup;
-  pendulum(&setup, 1e6);
+  OWN(strut_setup) setup = pendulum(1e6);
   setup.scene.bar_model = STRUT_BARS_RIGID;
   expect_refusal(&setup, "rigid");
   setup.scene.bar_model = STRUT_BARS_ELASTIC;
   build_contact(&setup.scene, 1, 1e4, 0);
   expect_refusal(&setup, "'n2' may touch the ground");
-  strut_setup_free(&setup);
 }
 
 /* A force that no number of metres a second goes with. */
 TEST(no_solution_is_named) {
-  strut_setup setup;
-  strut_summary s;
+  OWN(strut_summary) s;
   strut_error error = {0};
   strut_run_options options = {0};
-  pendulum(&setup, 1e6);
+  OWN(strut_setup) setup = pendulum(1e6);
   strut_signal late = strut_signal_default(STRUT_CONSTANT);
   late.amplitude = 1e300, late.start = 0.5;
   build_load(&setup.scene, 1, 1e9, 0, build_signal(&setup.scene, late));
   setup.experiment.integrator = "midpoint";
   motion_experiment(&setup, 0.01, 1.0);
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, &error), STRUT_DIVERGED);
   print_message("%s\n", error.message);
   assert_non_null(strstr(error.message, "no solution of its step at t = 0.5 s"));
   assert_non_null(strstr(error.message, "node 'n2'"));
   assert_non_null(strstr(error.message, "smaller step"));
   assert_int_equal(s.spent.steps, 50);
-  strut_summary_free(&s);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }

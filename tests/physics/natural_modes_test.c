@@ -6,10 +6,12 @@
 #include <string.h>
 
 #include "engine/statics/modes/modes.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
+#include "tests/support/refused.h"
 #include "tests/support/structures.h"
+
+FREED_BY(gsl_matrix_free, gsl_matrix)
+FREED_BY(gsl_vector_free, gsl_vector)
 
 static const double PI = 3.14159265358979323846;
 
@@ -100,15 +102,14 @@ static void assemble(const strut_setup *setup, gsl_matrix *k, gsl_matrix *m) {
 }
 
 TEST(x_frame_with_unequal_members) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  strut_setup setup = build_setup();
   structure_x_frame(&setup.scene, &FRAME);
   for (size_t j = 0; j < setup.scene.member_count; j++) {
     setup.scene.members[j].stiffness *= 1 + 0.37 * (double)(j + 1);
     setup.scene.members[j].mass *= 1 + 0.61 * (double)(6 - j);
   }
-  gsl_matrix *k = gsl_matrix_calloc(8, 8), *m = gsl_matrix_calloc(8, 8);
-  gsl_vector *value = gsl_vector_alloc(8);
+  OWN_POINTER(gsl_matrix) k = gsl_matrix_calloc(8, 8), *m = gsl_matrix_calloc(8, 8);
+  OWN_POINTER(gsl_vector) value = gsl_vector_alloc(8);
   gsl_eigen_gensymm_workspace *w = gsl_eigen_gensymm_alloc(8);
   assemble(&setup, k, m);
   assert_int_equal(gsl_eigen_gensymm(k, m, value, w), 0);
@@ -122,17 +123,13 @@ TEST(x_frame_with_unequal_members) {
       assert_relative(modes.list[below].eigenvalue, gsl_vector_get(value, i), 1e-10);
   }
   gsl_eigen_gensymm_free(w);
-  gsl_vector_free(value);
-  gsl_matrix_free(m);
-  gsl_matrix_free(k);
   free_modes(&setup);
 }
 
 static void check_chain(strut_mass_model mass_model, bool sparse) {
   enum { N = 20 };
   const double k = 700, m = 0.03;
-  strut_setup setup;
-  strut_setup_init(&setup);
+  strut_setup setup = build_setup();
   setup.scene.mass_model = mass_model;
   for (int i = 0; i <= N; i++) build_node(&setup.scene, 0.1 * i, 0);
   for (int i = 0; i <= N; i++) setup.scene.nodes[i].fixed[1] = true;
@@ -159,8 +156,7 @@ TEST(chain_of_twenty) {
 
 TEST(free_bar) {
   for (int lumped = 0; lumped < 2; lumped++) {
-    strut_setup setup;
-    strut_setup_init(&setup);
+    strut_setup setup = build_setup();
     setup.scene.mass_model = lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
     build_node(&setup.scene, 0.3, -2), build_node(&setup.scene, 1.7, 0.4);
     build_member(&setup.scene, STRUT_BAR, 0, 1, 3e4, 0, 0.7);
@@ -177,8 +173,7 @@ TEST(double_pendulum_goes_to_the_rigid_limit) {
   double limit[2] = {9.81 * (3 - 6 / sqrt(7)), 9.81 * (3 + 6 / sqrt(7))}, error[2][6];
   size_t count = 0;
   for (double k = 1e5; k < 2e10; k *= 10, count++) {
-    strut_setup setup;
-    strut_setup_init(&setup);
+    strut_setup setup = build_setup();
     structure_pendulum(&setup.scene, k, 0, true, 0);
     setup.scene.gravity[0] = 0, setup.scene.gravity[1] = -9.81;
     find(&setup);
@@ -201,8 +196,7 @@ TEST(damped_oscillator) {
   const double k = 90, m = 2.5;
   for (int i = 0; i < 3; i++) {
     double zeta = (double[]){0.03, 0.6, 1.7}[i], omega = sqrt(k / m);
-    strut_setup setup;
-    strut_setup_init(&setup);
+    strut_setup setup = build_setup();
     build_support(&setup.scene, 0, 0), build_mass(&setup.scene, 1, 0, m);
     setup.scene.nodes[1].fixed[1] = true;
     build_member(&setup.scene, STRUT_SPRING, 0, 1, k, 2 * zeta * m * omega, 0);
@@ -221,8 +215,7 @@ TEST(damped_oscillator) {
 /* Two masses in a row, only one of them damped: det(z^2 M + z D + K) = 0 at what is reported. */
 TEST(damping_that_couples_modes) {
   const double k[3] = {50, 80, 20}, m[2] = {1, 3}, d = 4;
-  strut_setup setup;
-  strut_setup_init(&setup);
+  strut_setup setup = build_setup();
   build_support(&setup.scene, 0, 0), build_mass(&setup.scene, 1, 0, m[0]),
       build_mass(&setup.scene, 2, 0, m[1]);
   build_support(&setup.scene, 3, 0);
@@ -245,8 +238,7 @@ TEST(damping_that_couples_modes) {
 
 /* Four bars in a square: it may move, turn, and shear. */
 TEST(mechanism_beside_rigid_motions) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  strut_setup setup = build_setup();
   for (int i = 0; i < 4; i++)
     build_node(&setup.scene, 5 + (i == 1 || i == 2), i >= 2), setup.scene.nodes[i].mass = 0.2;
   for (int i = 0; i < 4; i++) build_member(&setup.scene, STRUT_BAR, i, (i + 1) % 4, 1e6, 0, 0.1);
@@ -266,8 +258,7 @@ TEST(mechanism_beside_rigid_motions) {
 
 /* A weight on top of a rod falls over: one unstable motion, of the pendulum turned round. */
 TEST(unstable) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  strut_setup setup = build_setup();
   build_support(&setup.scene, 0, 0), build_mass(&setup.scene, 0, 2, 3);
   double k = 1e6, down = 3 * 9.81 / k;
   build_sized(&setup.scene, STRUT_BAR, 0, 1, k, 0, 0, 2 + down);
@@ -282,11 +273,10 @@ TEST(unstable) {
 
 /* Frames in a row: 240 coordinates by both ways. */
 TEST(sparse_is_dense) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  strut_setup setup = build_setup();
   structure_chain(&setup.scene, 60, STRUT_MASS_CONSISTENT);
-  strut_model *kept_model;
-  strut_modes kept;
+  OWN_POINTER(strut_model) kept_model;
+  OWN(strut_modes) kept;
   find_with(&setup, (strut_modes_options){.at = "drawn", .count = 12});
   assert_int_equal(modes.coordinates, 240);
   assert_true(modes.dense);
@@ -303,15 +293,12 @@ TEST(sparse_is_dense) {
     }
     assert_relative(fabs(same), size, 1e-8);
   }
-  strut_modes_free(&kept);
-  strut_model_free(kept_model);
   free_modes(&setup);
 }
 
 /* The sparse way without supports, where K has zeros: rigid motions are named there too. */
 TEST(sparse_with_rigid_motions) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  strut_setup setup = build_setup();
   structure_chain(&setup.scene, 30, STRUT_MASS_CONSISTENT);
   for (size_t i = 0; i < setup.scene.node_count; i++)
     setup.scene.nodes[i].fixed[0] = setup.scene.nodes[i].fixed[1] = false,
@@ -328,8 +315,7 @@ TEST(sparse_with_rigid_motions) {
  * soft modes are those of the stiff pairs taken as rigid, but for parts of 1 / stiff.
  */
 static void check_stiffness_ratio(double stiff, bool known) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  strut_setup setup = build_setup();
   setup.scene.mass_model = STRUT_MASS_LUMPED;
   for (int i = 0; i < 8; i++)
     build_mass(&setup.scene, i, 0, i ? 1 : 0), setup.scene.nodes[i].fixed[1] = true;
@@ -338,13 +324,13 @@ static void check_stiffness_ratio(double stiff, bool known) {
     build_member(&setup.scene, STRUT_SPRING, i, i + 1, i % 2 ? stiff : 1, 0, 0);
   find(&setup);
   /* Pairs of mass 2 in a chain of 4 soft springs: 3 pairs and a mass of 1 at the end, K = chain. */
-  gsl_matrix *k = gsl_matrix_calloc(4, 4), *m = gsl_matrix_calloc(4, 4);
+  OWN_POINTER(gsl_matrix) k = gsl_matrix_calloc(4, 4), *m = gsl_matrix_calloc(4, 4);
   for (size_t i = 0; i < 4; i++) {
     gsl_matrix_set(k, i, i, i < 3 ? 2 : 1);
     gsl_matrix_set(m, i, i, i < 3 ? 2 : 1);
     if (i < 3) gsl_matrix_set(k, i, i + 1, -1), gsl_matrix_set(k, i + 1, i, -1);
   }
-  gsl_vector *value = gsl_vector_alloc(4);
+  OWN_POINTER(gsl_vector) value = gsl_vector_alloc(4);
   gsl_eigen_gensymm_workspace *w = gsl_eigen_gensymm_alloc(4);
   assert_int_equal(gsl_eigen_gensymm(k, m, value, w), 0);
   for (size_t i = 0; i < 4; i++) {
@@ -362,9 +348,6 @@ static void check_stiffness_ratio(double stiff, bool known) {
   }
   for (size_t i = 4; i < 7; i++) assert_relative(modes.list[i].eigenvalue, 2 * stiff, 10 / stiff);
   gsl_eigen_gensymm_free(w);
-  gsl_vector_free(value);
-  gsl_matrix_free(m);
-  gsl_matrix_free(k);
   free_modes(&setup);
 }
 
@@ -376,12 +359,11 @@ TEST(stiffness_ratios) {
 
 /* Soft cables around bars 1e9 times as stiff: their stretch decides, which is known. */
 TEST(stiff_bars_in_soft_cables) {
-  strut_setup setup;
+  strut_setup setup = build_setup();
   double kc = 1, kb = 1e9, q = 0.1, mc = 0.02, mb = 0.3;
   x_frame frame = FRAME;
   frame.cable_stiffness = kc, frame.bar_stiffness = kb, frame.force_density = q;
   frame.side = 1.0 / 3;
-  strut_setup_init(&setup);
   structure_x_frame(&setup.scene, &frame);
   find(&setup);
   double expected[5] = {8 * (kc + q) / (4 * mc / 3 + 2 * mb), 8 * (kc + q) / (4 * mc / 3 + 2 * mb),
@@ -394,8 +376,7 @@ TEST(stiff_bars_in_soft_cables) {
 
 /* A mass in the middle of a stiff string whose tension is some last bits of its length. */
 TEST(what_the_last_bits_decide_is_unknown) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  strut_setup setup = build_setup();
   build_support(&setup.scene, -1, 0), build_mass(&setup.scene, 0, 0, 1),
       build_support(&setup.scene, 1, 0);
   for (int i = 0; i < 2; i++)
@@ -417,9 +398,8 @@ TEST(what_the_last_bits_decide_is_unknown) {
 
 /* A node without mass between two springs: condensed, as one spring of half the stiffness. */
 TEST(node_without_mass) {
-  strut_setup setup;
+  strut_setup setup = build_setup();
   strut_error error = {0};
-  strut_setup_init(&setup);
   build_support(&setup.scene, 0, 0), build_node(&setup.scene, 1, 0),
       build_mass(&setup.scene, 2, 0, 4);
   for (int i = 1; i < 3; i++) setup.scene.nodes[i].fixed[1] = true;
@@ -443,8 +423,7 @@ TEST(node_without_mass) {
 
 /* The crawler in state I: a bending mode just above the paper's critical band, 8 to 10 Hz. */
 TEST(crawler_bends_near_its_critical_band) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  strut_setup setup = build_setup();
   structure_crawler(&setup.scene, 10, 0, 0.1, false);
   find(&setup);
   assert_int_equal(modes.count, 10);
@@ -463,8 +442,7 @@ TEST(crawler_bends_near_its_critical_band) {
 
 /* Every refusal of memory is an error without a leak (the sanitizers look at that). */
 TEST(out_of_memory) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   structure_x_frame(&setup.scene, &FRAME);
   model = motion_compile(&setup.scene);
   strut_status status = STRUT_NO_MEMORY;
@@ -472,13 +450,9 @@ TEST(out_of_memory) {
   for (; status != STRUT_OK && allowed < 1000; allowed++) {
     strut_error error = {0};
     strut_modes_options options = {.at = "drawn"};
-    strut_fail_allocation_after(allowed);
-    status = strut_modes_find(model, &setup.experiment, &options, &modes, &error);
-    strut_fail_allocation_after(-1);
-    if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
+    status = refused(allowed, strut_modes_find(model, &setup.experiment, &options, &modes, &error));
     strut_modes_free(&modes);
   }
   assert_within((double)allowed, 10, 999);
   strut_model_free(model);
-  strut_setup_free(&setup);
 }

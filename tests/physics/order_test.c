@@ -6,22 +6,18 @@
 #include "engine/base/vec.h"
 #include "engine/integrate/events/tableaus.h"
 #include "tests/physics/smooth_scenes.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 enum { HALVINGS = 4, MOST = 200, REFERENCE = 8 };
 
 /* Ends a scene by a method with 2^-halvings of its step: places, then speeds times the duration. */
 static size_t reach(const smooth_scene *smooth, const char *method, int halvings, double *q) {
-  strut_setup setup;
-  motion m;
+  OWN(strut_setup) setup = build_setup();
   double step = ldexp(smooth->step, -halvings);
-  strut_setup_init(&setup);
   smooth->make(&setup.scene);
   size_t count = 2 * setup.scene.node_count;
   assert_true(2 * count <= MOST);
-  motion_begin_by(&m, &setup, method, step);
+  OWN(motion) m = motion_begin_by(&setup, method, step);
   if (m.method->restart) m.method->restart(m.model, m.state, m.workspace, step);
   motion_steps(&m, llround(smooth->duration / step));
   assert_int_equal(m.state->trouble, 0);
@@ -29,8 +25,6 @@ static size_t reach(const smooth_scene *smooth, const char *method, int halvings
     q[i] = m.state->q[i];
     q[count + i] = smooth->duration * m.state->v[i];
   }
-  motion_end(&m);
-  strut_setup_free(&setup);
   return 2 * count;
 }
 
@@ -72,9 +66,7 @@ TEST(every_method_has_its_order) {
 
 /* A ball on a driven cable that catches it and lets it go again: where it is after half a second. */
 static double caught_ball(const char *method, double step, double tolerance) {
-  strut_setup setup;
-  motion m;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   build_support(&setup.scene, 0, 0);
   build_mass(&setup.scene, 0.8, 0, 0.5);
   int32_t cable = build_sized(&setup.scene, STRUT_CABLE, 0, 1, 400, 2, 0, 1);
@@ -82,13 +74,10 @@ static double caught_ball(const char *method, double step, double tolerance) {
   setup.scene.nodes[1].velocity[0] = 1;
   motion_experiment(&setup, step, 1);
   if (tolerance > 0) setup.experiment.tolerance = tolerance;
-  motion_begin_by(&m, &setup, method, step);
+  OWN(motion) m = motion_begin_by(&setup, method, step);
   motion_steps(&m, llround(0.5 / step));
   assert_true(m.state->events == 2);
-  double x = m.state->q[2];
-  motion_end(&m);
-  strut_setup_free(&setup);
-  return x;
+  return m.state->q[2];
 }
 
 /* Methods with events keep their order across them, drives that go on meanwhile included. */
@@ -160,18 +149,14 @@ TEST(pairs_have_their_orders) {
 /* Fast, but small beside the structure: it is the error of the velocity that error control must see. */
 TEST(error_control_sees_velocities) {
   const double size = 1e-6, omega = 1000, time = 0.1;
-  strut_setup setup;
-  motion m;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   build_support(&setup.scene, 0, 0);
   build_mass(&setup.scene, 1, 0, 1);
   build_member(&setup.scene, STRUT_SPRING, 0, 1, omega * omega, 0, 0);
   setup.scene.nodes[1].velocity[0] = size * omega;
   motion_experiment(&setup, 0.01, time);
   setup.experiment.tolerance = 1e-6;
-  motion_begin_by(&m, &setup, "adaptive", 0.01);
+  OWN(motion) m = motion_begin_by(&setup, "adaptive", 0.01);
   motion_steps(&m, 10);
   assert_near(m.state->v[2], size * omega * cos(omega * time), 1e-3 * size * omega);
-  motion_end(&m);
-  strut_setup_free(&setup);
 }

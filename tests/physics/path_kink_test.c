@@ -6,9 +6,9 @@
 
 #include "engine/statics/path/path.h"
 #include "engine/statics/potential.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
+
+FREED_BY(strut_potential_free, strut_potential)
 
 typedef struct walk {
   strut_model *model;
@@ -45,17 +45,18 @@ static const double STOP = 0.1, ANCHOR = 0.5, REST = 0.7, SPRING = 500, STOP_SPR
  * A slider at (x, 0) under a compressed spring from (0, ANCHOR), which drives it from the middle;
  * cables stop it beyond -STOP and STOP. It begins at the left and is pushed to the right by 1 N.
  */
-static void toggle(strut_setup *setup) {
-  strut_setup_init(setup);
-  int32_t anchor = build_support(&setup->scene, 0, ANCHOR);
-  int32_t left = build_support(&setup->scene, -1, 0), right = build_support(&setup->scene, 1, 0);
-  int32_t tip = build_node(&setup->scene, -0.12, 0);
+static strut_setup toggle(void) {
+  strut_setup setup = build_setup();
+  int32_t anchor = build_support(&setup.scene, 0, ANCHOR);
+  int32_t left = build_support(&setup.scene, -1, 0), right = build_support(&setup.scene, 1, 0);
+  int32_t tip = build_node(&setup.scene, -0.12, 0);
   assert_int_equal(tip, TIP);
-  setup->scene.nodes[tip].fixed[1] = true;
-  build_sized(&setup->scene, STRUT_SPRING, anchor, tip, SPRING, 0, 0, REST);
-  build_sized(&setup->scene, STRUT_CABLE, left, tip, STOP_SPRING, 0, 0, 1 + STOP);
-  build_sized(&setup->scene, STRUT_CABLE, right, tip, STOP_SPRING, 0, 0, 1 + STOP);
-  build_load(&setup->scene, tip, 1, 0, -1);
+  setup.scene.nodes[tip].fixed[1] = true;
+  build_sized(&setup.scene, STRUT_SPRING, anchor, tip, SPRING, 0, 0, REST);
+  build_sized(&setup.scene, STRUT_CABLE, left, tip, STOP_SPRING, 0, 0, 1 + STOP);
+  build_sized(&setup.scene, STRUT_CABLE, right, tip, STOP_SPRING, 0, 0, 1 + STOP);
+  build_load(&setup.scene, tip, 1, 0, -1);
+  return setup;
 }
 
 static double toggle_load(double x) {
@@ -67,8 +68,7 @@ static double toggle_load(double x) {
 
 /* The load turns at both kinks, where the stiffness jumps from one sign to the other. */
 TEST(limit_points_at_kinks) {
-  strut_setup setup;
-  toggle(&setup);
+  OWN(strut_setup) setup = toggle();
   double turn = toggle_load(-STOP),
          hard = SPRING * (1 - REST * ANCHOR * ANCHOR / pow(hypot(STOP, ANCHOR), 3));
   assert_true(hard < 0 && hard + STOP_SPRING > 0); /* the tangents on the two sides */
@@ -94,13 +94,11 @@ TEST(limit_points_at_kinks) {
   assert_true(unstable > 3);
   assert_int_equal(w.path.end, STRUT_PATH_UNTIL);
   finish(&w);
-  strut_setup_free(&setup);
 }
 
 /* The other way along it: the same points, each side judged as before. */
 TEST(kinks_backwards) {
-  strut_setup setup;
-  toggle(&setup);
+  OWN(strut_setup) setup = toggle();
   setup.scene.nodes[TIP].start[0] = 0.12;
   double turn = toggle_load(-STOP);
   walk w = follow(&setup, -2 * turn);
@@ -108,7 +106,6 @@ TEST(kinks_backwards) {
   check_event(&w.path.events[1], STRUT_PATH_KINK_LIMIT, -turn, 0, 1);
   check_event(&w.path.events[3], STRUT_PATH_KINK_LIMIT, turn, 1, 0);
   finish(&w);
-  strut_setup_free(&setup);
 }
 
 /*
@@ -117,8 +114,7 @@ TEST(kinks_backwards) {
  */
 TEST(bifurcation_at_kink) {
   const double mast = 5e3, top = 0.9;
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   int32_t base = build_support(&setup.scene, 0, 0);
   int32_t left = build_support(&setup.scene, -1, 0), right = build_support(&setup.scene, 1, 0);
   int32_t tip = build_node(&setup.scene, 0, 1);
@@ -138,14 +134,12 @@ TEST(bifurcation_at_kink) {
     assert_near(p->q[2 * tip], 0, 1e-12);
   }
   finish(&w);
-  strut_setup_free(&setup);
 }
 
 /* Von Mises' truss falls on the ground between its limit points: stable from there, the load grows. */
 TEST(touchdown_restores_stability) {
   const double a = 1, h = 0.3, k = 1000, floor = 0.05;
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   int32_t left = build_support(&setup.scene, -a, 0), right = build_support(&setup.scene, a, 0);
   int32_t apex = build_node(&setup.scene, 0, h);
   build_member(&setup.scene, STRUT_BAR, apex, left, k, 0, 0);
@@ -165,7 +159,6 @@ TEST(touchdown_restores_stability) {
   assert_near(end->contact[0], 1e4 * (floor - y), 1e-9);
   assert_near(end->contact[0] + push, 15, 1e-9);
   finish(&w);
-  strut_setup_free(&setup);
 }
 
 /*
@@ -189,8 +182,7 @@ static double buckling_load(double bar, double spring, double length) {
 
 /* Along (x, y), a Pythagorean pair of length l: nothing is rounded as drawn. */
 static double found_buckling_load(double bar, double spring, double x, double y) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   int32_t base = build_support(&setup.scene, 0, 0), tip = build_node(&setup.scene, x, y);
   int32_t one = build_support(&setup.scene, x - y, y + x),
           other = build_support(&setup.scene, x + y, y - x);
@@ -208,7 +200,6 @@ static double found_buckling_load(double bar, double spring, double x, double y)
       assert_int_equal(w.path.events[i].after, 1);
     }
   finish(&w);
-  strut_setup_free(&setup);
   return load;
 }
 
@@ -232,24 +223,25 @@ static double draw(uint64_t *seed) {
 }
 
 /* Five nodes, two of them supports, each pair joined by a bar, a cable or nothing, loaded anyhow. */
-static void random_net(strut_setup *setup, uint64_t seed) {
-  strut_setup_init(setup);
-  build_support(&setup->scene, 0, 0);
-  build_support(&setup->scene, 1 + draw(&seed), 0);
+static strut_setup random_net(uint64_t seed) {
+  strut_setup setup = build_setup();
+  build_support(&setup.scene, 0, 0);
+  build_support(&setup.scene, 1 + draw(&seed), 0);
   for (int i = 0; i < 3; i++) {
     double y = 0.3 + draw(&seed), x = 2 * draw(&seed);
-    build_node(&setup->scene, x, y);
+    build_node(&setup.scene, x, y);
   }
   for (int32_t i = 0; i < 5; i++)
     for (int32_t k = i > 1 ? i + 1 : 2; k < 5; k++) {
       double kind = draw(&seed), slack = 0.9 + 0.2 * draw(&seed);
       if (kind > 0.9) continue;
-      const double *a = setup->scene.nodes[i].position, *b = setup->scene.nodes[k].position;
-      build_sized(&setup->scene, kind < 0.5 ? STRUT_BAR : STRUT_CABLE, i, k,
-                  100 * (1 + draw(&seed)), 0, 0, slack * hypot(b[0] - a[0], b[1] - a[1]));
+      const double *a = setup.scene.nodes[i].position, *b = setup.scene.nodes[k].position;
+      build_sized(&setup.scene, kind < 0.5 ? STRUT_BAR : STRUT_CABLE, i, k, 100 * (1 + draw(&seed)),
+                  0, 0, slack * hypot(b[0] - a[0], b[1] - a[1]));
     }
   double fy = -draw(&seed), fx = draw(&seed) - 0.5;
-  build_load(&setup->scene, 2 + (int32_t)(3 * draw(&seed)), fx, fy, -1);
+  build_load(&setup.scene, 2 + (int32_t)(3 * draw(&seed)), fx, fy, -1);
+  return setup;
 }
 
 /* Negative eigenvalues of the potential's own second derivatives; -1 where one is about zero. */
@@ -307,8 +299,8 @@ static double find_steepest(const strut_model *model, const strut_path_point *p)
  * account for every change of it. Up to where a part hangs loose: neutral, with no sign.
  */
 static void check_points(const strut_model *model, const strut_path *path, size_t *kinks) {
-  strut_potential *potential;
-  strut_arena arena = {0};
+  OWN_POINTER(strut_potential) potential;
+  OWN(strut_arena) arena = {0};
   int32_t before = path->points[0].negative;
   size_t at = 0;
   assert_int_equal(strut_potential_create(model, NULL, true, &potential, NULL), STRUT_OK);
@@ -334,26 +326,20 @@ static void check_points(const strut_model *model, const strut_path *path, size_
     }
     assert_int_equal(p->negative, before);
   }
-  strut_arena_free(&arena);
-  strut_potential_free(potential);
 }
 
 TEST(random_nets) {
   size_t kinks = 0, followed = 0;
   for (uint64_t seed = 1; seed <= 200; seed++) {
-    strut_setup setup;
-    random_net(&setup, seed * 0x9e3779b97f4a7c15u);
-    strut_model *model;
+    OWN(strut_setup) setup = random_net(seed * 0x9e3779b97f4a7c15u);
+    OWN_POINTER(strut_model) model;
     assert_int_equal(strut_model_compile(&setup.scene, &model, NULL), STRUT_OK);
-    strut_path path;
+    OWN(strut_path) path;
     strut_path_options options = {.until = 60, .steps = 150};
     if (strut_path_follow(model, &setup.experiment, &options, &path, NULL) == STRUT_OK) {
       check_points(model, &path, &kinks);
       followed++;
     }
-    strut_path_free(&path);
-    strut_model_free(model);
-    strut_setup_free(&setup);
   }
   assert_true(followed > 100 && kinks > 5);
 }

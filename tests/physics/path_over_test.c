@@ -4,21 +4,21 @@
 #include <string.h>
 
 #include "engine/statics/path/path.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
+#include "tests/support/refused.h"
 
 static const double SPAN = 1, HEIGHT = 0.3; /* of von Mises' truss: half its width, its height */
 enum { APEX = 2 };
 
 /* Supports at (-+SPAN, 0), apex at (0, HEIGHT), without a load. */
-static void arch(strut_setup *setup, double k) {
-  strut_setup_init(setup);
-  int32_t left = build_support(&setup->scene, -SPAN, 0),
-          right = build_support(&setup->scene, SPAN, 0);
-  int32_t apex = build_node(&setup->scene, 0, HEIGHT);
-  build_member(&setup->scene, STRUT_BAR, apex, left, k, 0, 0);
-  build_member(&setup->scene, STRUT_BAR, apex, right, k, 0, 0);
+static strut_setup arch(double k) {
+  strut_setup setup = build_setup();
+  int32_t left = build_support(&setup.scene, -SPAN, 0),
+          right = build_support(&setup.scene, SPAN, 0);
+  int32_t apex = build_node(&setup.scene, 0, HEIGHT);
+  build_member(&setup.scene, STRUT_BAR, apex, left, k, 0, 0);
+  build_member(&setup.scene, STRUT_BAR, apex, right, k, 0, 0);
+  return setup;
 }
 
 /* What holds the apex at y, downwards, and its derivative. */
@@ -56,11 +56,10 @@ static size_t count(const strut_path *path, strut_path_event_kind kind) {
 /* The apex is pushed through: its reaction draws the curve past both limit points, which are none. */
 static void check_displaced_apex(bool supported, double from) {
   const double k = 1000, until = -0.6;
-  strut_setup setup;
-  arch(&setup, k);
+  OWN(strut_setup) setup = arch(k);
   setup.scene.nodes[APEX].fixed[1] = supported;
-  strut_model *model = motion_compile(&setup.scene);
-  strut_path path = follow(
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
+  OWN(strut_path) path = follow(
       model,
       &(strut_path_options){
           .over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .from = from, .until = until});
@@ -85,9 +84,6 @@ static void check_displaced_apex(bool supported, double from) {
   double limit = arch_load(k, limit_height());
   assert_near(most, limit, 0.01 * limit);
   assert_near(least, -limit, 0.01 * limit);
-  strut_path_free(&path);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 TEST(displacement_of_a_node) {
@@ -100,11 +96,10 @@ TEST(displacement_of_a_node) {
 /* A free node that carries a load: displaced from where that holds it. */
 TEST(displacement_under_load) {
   const double k = 1000, load = 5;
-  strut_setup setup;
-  arch(&setup, k);
+  OWN(strut_setup) setup = arch(k);
   build_load(&setup.scene, APEX, 0, -load, -1);
-  strut_model *model = motion_compile(&setup.scene);
-  strut_path path =
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
+  OWN(strut_path) path =
       follow(model, &(strut_path_options){
                         .over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .until = -0.5});
   double start = path.points[0].q[2 * APEX + 1];
@@ -113,23 +108,19 @@ TEST(displacement_under_load) {
     const strut_path_point *p = &path.points[i];
     assert_near(p->reaction[2 * APEX + 1], load - arch_load(k, start + p->factor), 1e-10);
   }
-  strut_path_free(&path);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 /* A support pulls a slack cable taut, and then a spring behind it. */
 TEST(displacement_of_a_support) {
   const double spring = 300, cable = 600, slack = 0.1;
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   int32_t wall = build_support(&setup.scene, 0, 0), node = build_node(&setup.scene, 1, 0);
   int32_t hand = build_support(&setup.scene, 2, 0);
   setup.scene.nodes[node].fixed[1] = true;
   build_member(&setup.scene, STRUT_SPRING, wall, node, spring, 0, 0);
   build_sized(&setup.scene, STRUT_CABLE, node, hand, cable, 0, 0, 1 + slack);
-  strut_model *model = motion_compile(&setup.scene);
-  strut_path path = follow(
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
+  OWN(strut_path) path = follow(
       model,
       &(strut_path_options){.over = STRUT_PATH_OVER_COORDINATE, .index = 2 * hand, .until = 0.5});
   assert_int_equal(path.event_count, 1);
@@ -142,9 +133,6 @@ TEST(displacement_of_a_support) {
     assert_near(p->reaction[2 * wall], -pull, 1e-11);
     assert_near(p->force[1], pull, 1e-11);
   }
-  strut_path_free(&path);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 /* The lever that presses the apex down through a spring: how long it is where the truss is at y. */
@@ -171,14 +159,13 @@ static double turning_height(double k) {
 /* An actuator of a bistable truss: it snaps where length over height has its limit points. */
 TEST(actuator_snaps) {
   const double k = 1000;
-  strut_setup setup;
-  arch(&setup, k);
+  OWN(strut_setup) setup = arch(k);
   setup.scene.nodes[APEX].fixed[0] = true;
   int32_t above = build_support(&setup.scene, 0, HEIGHT + LEVER);
   int32_t member = build_sized(&setup.scene, STRUT_SPRING, above, APEX, LEVER_SPRING, 0, 0, LEVER);
   build_actuator(&setup.scene, member, build_sine(&setup.scene, 0.1, 1));
-  strut_model *model = motion_compile(&setup.scene);
-  strut_path path = follow(
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
+  OWN(strut_path) path = follow(
       model, &(strut_path_options){.over = STRUT_PATH_OVER_ACTUATOR, .index = 0, .until = 1.2});
   double turn = turning_height(k);
   assert_int_equal(count(&path, STRUT_PATH_LIMIT), 2);
@@ -198,9 +185,6 @@ TEST(actuator_snaps) {
     assert_near(p->force[2], -arch_load(k, y), 1e-10);
     assert_int_equal(p->negative, LEVER_SPRING - arch_stiffness(k, y) < 0 ? 1 : 0);
   }
-  strut_path_free(&path);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 /* Scenes of a number: the truss's stiffness, with a load of 1 N; what is not positive is refused. */
@@ -214,7 +198,7 @@ static strut_status scene_of_stiffness(void *context, double value, strut_setup 
   family *f = context;
   f->calls++;
   if (value < 50) return strut_fail(error, STRUT_BAD_SCENE, "k must be 50 N/m at least");
-  arch(setup, f->idle ? 1000 : value);
+  *setup = arch(f->idle ? 1000 : value);
   if (f->more_nodes && value > f->more_nodes) build_support(&setup->scene, 5, 5);
   build_load(&setup->scene, APEX, 0, f->unloaded ? 0 : -1, -1);
   return STRUT_OK;
@@ -233,12 +217,12 @@ static strut_path_options over_stiffness(family *f, double from, double until) {
 /* Softer and softer: the truss gives way where its limit load is the load that it carries. */
 TEST(stiffness_of_a_scene) {
   family f = {0};
-  strut_setup setup;
+  OWN(strut_setup) setup;
   assert_int_equal(scene_of_stiffness(&f, 1000, &setup, NULL), STRUT_OK);
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   strut_path_options options = over_stiffness(&f, 1000, 60);
   options.steps = 60;
-  strut_path path = follow(model, &options);
+  OWN(strut_path) path = follow(model, &options);
   assert_int_equal(path.events[0].kind, STRUT_PATH_LIMIT);
   double soft = 1 / arch_load(1, limit_height());
   assert_relative(path.events[0].factor, soft, 1e-11);
@@ -250,17 +234,14 @@ TEST(stiffness_of_a_scene) {
     assert_near(arch_load(p->factor, y), 1, 1e-11);
     assert_int_equal(p->negative, y < limit_height() ? 1 : 0);
   }
-  strut_path_free(&path);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 /* It ends where the scene means nothing any more, with what the scene says. */
 TEST(end_of_validity) {
   family f = {.unloaded = true};
-  strut_setup setup;
+  OWN(strut_setup) setup;
   assert_int_equal(scene_of_stiffness(&f, 1000, &setup, NULL), STRUT_OK);
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   strut_path_options options = over_stiffness(&f, 1000, -10);
   strut_path path = follow(model, &options);
   assert_int_equal(path.end, STRUT_PATH_INVALID);
@@ -274,8 +255,6 @@ TEST(end_of_validity) {
                    STRUT_BAD_SCENE);
   assert_string_equal(error.message, "k must be 50 N/m at least");
   strut_path_free(&path);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 /* A ground that is raised under a node on an upright spring: a scene's number again. */
@@ -293,15 +272,15 @@ static strut_status scene_of_ground(void *context, double value, strut_setup *se
 }
 
 TEST(rising_ground) {
-  strut_setup setup;
+  OWN(strut_setup) setup;
   assert_int_equal(scene_of_ground(NULL, -0.2, &setup, NULL), STRUT_OK);
-  strut_model *model = motion_compile(&setup.scene);
-  strut_path path = follow(model, &(strut_path_options){.over = STRUT_PATH_OVER_SCENE,
-                                                        .name = "height",
-                                                        .unit = "m",
-                                                        .scene_at = scene_of_ground,
-                                                        .from = -0.2,
-                                                        .until = 0.1});
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
+  OWN(strut_path) path = follow(model, &(strut_path_options){.over = STRUT_PATH_OVER_SCENE,
+                                                             .name = "height",
+                                                             .unit = "m",
+                                                             .scene_at = scene_of_ground,
+                                                             .from = -0.2,
+                                                             .until = 0.1});
   assert_int_equal(path.event_count, 1);
   assert_int_equal(path.events[0].kind, STRUT_PATH_TOUCHDOWN);
   assert_near(path.events[0].factor, 0, 1e-13);
@@ -313,19 +292,16 @@ TEST(rising_ground) {
     assert_near(p->reaction[1], 100 * -y, 1e-10);
     assert_near(p->force[0], -100 * y, 1e-10);
   }
-  strut_path_free(&path);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 /* A number that does nothing, or that changes what the structure is made of. */
 TEST(refusals) {
   family idle = {.idle = true}, grows = {.more_nodes = 1500};
-  strut_setup setup;
+  OWN(strut_setup) setup;
   strut_error error = {0};
   strut_path path;
   assert_int_equal(scene_of_stiffness(&idle, 1000, &setup, NULL), STRUT_OK);
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   strut_path_options options = over_stiffness(&idle, 1000, 2000);
   assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
                    STRUT_USAGE);
@@ -342,15 +318,13 @@ TEST(refusals) {
   assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
                    STRUT_USAGE);
   strut_path_free(&path);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 TEST(memory) {
   family f = {0};
-  strut_setup setup;
+  OWN(strut_setup) setup;
   assert_int_equal(scene_of_stiffness(&f, 1000, &setup, NULL), STRUT_OK);
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   const strut_path_options all[] = {
       {.over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .until = -0.05, .at = "start"},
       {.over = STRUT_PATH_OVER_COORDINATE, .index = 0, .from = 0.001, .until = -0.05}};
@@ -358,16 +332,10 @@ TEST(memory) {
     strut_status status = STRUT_NO_MEMORY;
     int64_t n = 0;
     for (; status != STRUT_OK && n < 10000; n++) {
-      strut_path path = {0};
-      strut_fail_allocation_after(n);
-      status = strut_path_follow(model, &setup.experiment, &all[i], &path, NULL);
-      strut_fail_allocation_after(-1);
-      strut_path_free(&path);
-      if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
+      OWN(strut_path) path = {0};
+      status = refused(n, strut_path_follow(model, &setup.experiment, &all[i], &path, NULL));
     }
     assert_true(n > 10);
     assert_int_equal(status, STRUT_OK);
   }
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }

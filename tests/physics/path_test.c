@@ -5,9 +5,8 @@
 #include <string.h>
 
 #include "engine/statics/path/path.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
+#include "tests/support/refused.h"
 
 typedef struct walk {
   strut_model *model;
@@ -49,13 +48,14 @@ static size_t count(const walk *w, strut_path_event_kind kind) {
 }
 
 /* Von Mises' truss: supports at (-+a, 0), apex at (0, h), pressed by 1 N times the factor. */
-static void arch(strut_setup *setup, double a, double h, double k) {
-  strut_setup_init(setup);
-  int32_t left = build_support(&setup->scene, -a, 0), right = build_support(&setup->scene, a, 0);
-  int32_t apex = build_mass(&setup->scene, 0, h, 1.0);
-  build_member(&setup->scene, STRUT_BAR, apex, left, k, 0, 0);
-  build_member(&setup->scene, STRUT_BAR, apex, right, k, 0, 0);
-  build_load(&setup->scene, apex, 0, -1, -1);
+static strut_setup arch(double a, double h, double k) {
+  strut_setup setup = build_setup();
+  int32_t left = build_support(&setup.scene, -a, 0), right = build_support(&setup.scene, a, 0);
+  int32_t apex = build_mass(&setup.scene, 0, h, 1.0);
+  build_member(&setup.scene, STRUT_BAR, apex, left, k, 0, 0);
+  build_member(&setup.scene, STRUT_BAR, apex, right, k, 0, 0);
+  build_load(&setup.scene, apex, 0, -1, -1);
+  return setup;
 }
 
 static double arch_load(double a, double h, double k, double y) {
@@ -66,8 +66,7 @@ static double arch_load(double a, double h, double k, double y) {
 static void check_arch(double a, double h, double k, double expected, double digits) {
   double rest = hypot(a, h), length = cbrt(rest * a * a), top = sqrt(length * length - a * a);
   double limit = arch_load(a, h, k, top);
-  strut_setup setup;
-  arch(&setup, a, h, k);
+  OWN(strut_setup) setup = arch(a, h, k);
   walk w = follow(&setup, 1.5 * limit);
   assert_near(limit, expected, digits);
   assert_int_equal(count(&w, STRUT_PATH_LIMIT), 2);
@@ -86,7 +85,6 @@ static void check_arch(double a, double h, double k, double expected, double dig
   assert_true(last(&w)->factor == 1.5 * limit);
   assert_true(last(&w)->q[5] < -h);
   finish(&w);
-  strut_setup_free(&setup);
 }
 
 TEST(limit_points) {
@@ -98,23 +96,23 @@ TEST(limit_points) {
 }
 
 /* Snelson's X: a square of cables of 0.95 with two bars, on a pin and a roller. */
-static void snelson(strut_setup *setup) {
-  strut_setup_init(setup);
-  int32_t n1 = build_support(&setup->scene, 0, 0), n2 = build_node(&setup->scene, 1, 0);
-  int32_t n3 = build_node(&setup->scene, 1, 1), n4 = build_node(&setup->scene, 0, 1);
+static strut_setup snelson(void) {
+  strut_setup setup = build_setup();
+  int32_t n1 = build_support(&setup.scene, 0, 0), n2 = build_node(&setup.scene, 1, 0);
+  int32_t n3 = build_node(&setup.scene, 1, 1), n4 = build_node(&setup.scene, 0, 1);
   const int32_t ring[5] = {n1, n2, n3, n4, n1};
-  setup->scene.nodes[n2].fixed[1] = true;
+  setup.scene.nodes[n2].fixed[1] = true;
   for (int i = 0; i < 4; i++)
-    build_sized(&setup->scene, STRUT_CABLE, ring[i], ring[i + 1], 100, 0, 0, 0.95);
-  build_member(&setup->scene, STRUT_BAR, n2, n4, 1000, 0, 0);
-  build_member(&setup->scene, STRUT_BAR, n1, n3, 1000, 0, 0);
+    build_sized(&setup.scene, STRUT_CABLE, ring[i], ring[i + 1], 100, 0, 0, 0.95);
+  build_member(&setup.scene, STRUT_BAR, n2, n4, 1000, 0, 0);
+  build_member(&setup.scene, STRUT_BAR, n1, n3, 1000, 0, 0);
+  return setup;
 }
 
 /* A node on an upright spring above the ground, pressed onto it and let off again. */
 TEST(touchdown) {
   const double k = 100, ground = 1000, gap = 0.1;
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   int32_t top = build_support(&setup.scene, 0, 1 + gap), node = build_node(&setup.scene, 0, gap);
   setup.scene.nodes[node].fixed[0] = true;
   build_member(&setup.scene, STRUT_SPRING, top, node, k, 0, 0);
@@ -134,13 +132,11 @@ TEST(touchdown) {
   assert_relative(event(&w, STRUT_PATH_LIFT_OFF, 0)->factor, k * 0.05, 1e-10);
   assert_near(last(&w)->q[3], 20 / k - 0.05, 1e-12);
   finish(&w);
-  strut_setup_free(&setup);
 }
 
 /* A box lifted at one corner tips when the load is half its weight: the others leave together. */
 TEST(lift_off) {
-  strut_setup setup;
-  snelson(&setup);
+  OWN(strut_setup) setup = snelson();
   setup.scene.gravity[1] = -9.81;
   for (int32_t i = 0; i < 4; i++) {
     setup.scene.nodes[i].mass = 0.1;
@@ -152,7 +148,7 @@ TEST(lift_off) {
   assert_int_equal(w.path.event_count, 0);
   finish(&w);
   strut_path path = {0};
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   strut_path_options options = {.until = 3, .steps = 60};
   assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, NULL), STRUT_OK);
   assert_int_equal(path.events[0].kind, STRUT_PATH_LIFT_OFF);
@@ -163,38 +159,31 @@ TEST(lift_off) {
   assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, NULL),
                    STRUT_NOT_SETTLED);
   strut_path_free(&path);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 /* A load with a signal is followed by its name, with its force alone; the others stay. */
 TEST(named_load) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   int32_t a = build_support(&setup.scene, 0, 0), b = build_node(&setup.scene, 1, 0);
   setup.scene.nodes[b].fixed[1] = true;
   build_member(&setup.scene, STRUT_SPRING, a, b, 100, 0, 0);
   build_load(&setup.scene, b, 5, 0, build_sine(&setup.scene, 0.1, 1));
   build_load(&setup.scene, b, -3, 0, -1);
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   for (int i = 0; i < 2; i++) {
-    strut_path path = {0};
+    OWN(strut_path) path = {0};
     strut_path_options options = {.load = i ? NULL : "l1"};
     assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, NULL), STRUT_OK);
     assert_near(path.points[0].q[2 * b], i ? 1 : 0.97, 1e-14);
     assert_near(path.points[path.point_count - 1].q[2 * b], i ? 0.97 : 1.02, 1e-14);
-    strut_path_free(&path);
   }
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 TEST(refusals) {
-  strut_setup setup;
   strut_path path = {0};
   strut_error error = {0};
   strut_path_options options = {.load = "push"};
-  arch(&setup, 1, 0.3, 1000);
+  OWN(strut_setup) setup = arch(1, 0.3, 1000);
   strut_model *model = motion_compile(&setup.scene);
   assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
                    STRUT_USAGE);
@@ -214,26 +203,18 @@ TEST(refusals) {
                    STRUT_USAGE);
   strut_path_free(&path);
   strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 TEST(memory) {
-  strut_setup setup;
-  arch(&setup, 1, 0.3, 1000);
-  strut_model *model = motion_compile(&setup.scene);
+  OWN(strut_setup) setup = arch(1, 0.3, 1000);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   strut_path_options options = {.until = 100};
   strut_status status = STRUT_NO_MEMORY;
   int64_t n = 0;
   for (; status != STRUT_OK && n < 10000; n++) {
-    strut_path path = {0};
-    strut_fail_allocation_after(n);
-    status = strut_path_follow(model, &setup.experiment, &options, &path, NULL);
-    strut_fail_allocation_after(-1);
-    strut_path_free(&path);
-    if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
+    OWN(strut_path) path = {0};
+    status = refused(n, strut_path_follow(model, &setup.experiment, &options, &path, NULL));
   }
   assert_true(n > 10);
   assert_int_equal(status, STRUT_OK);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }

@@ -5,8 +5,6 @@
  */
 #include <math.h>
 
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/instructions.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
@@ -39,26 +37,27 @@ static void build_ground(strut_scene *scene, unsigned terms, bool touching) {
  * A long chain that needs exactly these terms, all of them without effect: dampers of 1e-300 N s/m,
  * cables that stay taut, strokes and loads of nothing, friction of nothing, a slope of 1e-300.
  */
-static void build_chain(strut_scene *scene, unsigned terms, bool touching) {
-  strut_scene_init(scene);
+static strut_scene build_chain(unsigned terms, bool touching) {
+  strut_scene scene = build_scene();
   if (terms & STRUT_TERM_MEMBERS)
-    structure_chain(scene, FRAMES,
+    structure_chain(&scene, FRAMES,
                     terms & STRUT_TERM_SOLVE ? STRUT_MASS_CONSISTENT : STRUT_MASS_LUMPED);
   else
-    build_nodes(scene);
-  for (size_t j = 0; j < scene->member_count; j++) {
-    strut_member *member = &scene->members[j];
+    build_nodes(&scene);
+  for (size_t j = 0; j < scene.member_count; j++) {
+    strut_member *member = &scene.members[j];
     member->damping = terms & STRUT_TERM_DAMPING ? 1e-300 : 0;
     if (member->kind == STRUT_CABLE && !(terms & STRUT_TERM_SLACK)) member->kind = STRUT_SPRING;
   }
-  int32_t nothing = build_sine(scene, 0, 10);
-  for (int32_t j = 0; j < (int32_t)scene->member_count && (terms & STRUT_TERM_DRIVE); j++)
-    build_actuator(scene, j, nothing);
-  if (terms & STRUT_TERM_CONSTANT) build_loads(scene, -1);
-  if (terms & STRUT_TERM_LOADS) build_loads(scene, nothing);
-  if (terms & STRUT_TERM_CONTACT) build_ground(scene, terms, touching);
-  for (size_t i = 2; i < scene->node_count; i++) /* nothing stands still, so no sum is only zeros */
-    scene->nodes[i].velocity[0] = 0.01 * sin((double)i), scene->nodes[i].velocity[1] = 0.02;
+  int32_t nothing = build_sine(&scene, 0, 10);
+  for (int32_t j = 0; j < (int32_t)scene.member_count && (terms & STRUT_TERM_DRIVE); j++)
+    build_actuator(&scene, j, nothing);
+  if (terms & STRUT_TERM_CONSTANT) build_loads(&scene, -1);
+  if (terms & STRUT_TERM_LOADS) build_loads(&scene, nothing);
+  if (terms & STRUT_TERM_CONTACT) build_ground(&scene, terms, touching);
+  for (size_t i = 2; i < scene.node_count; i++) /* nothing stands still, so no sum is only zeros */
+    scene.nodes[i].velocity[0] = 0.01 * sin((double)i), scene.nodes[i].velocity[1] = 0.02;
+  return scene;
 }
 
 /* A term, and the others that are in the scene with and without it. */
@@ -104,15 +103,15 @@ typedef struct both {
 static void begin_both(const comparison *c, both *b) {
   for (int with = 0; with < 2; with++) {
     unsigned terms = c->others | (with ? (unsigned)c->term : 0);
-    build_chain(&b->scene[with], terms, c->touching);
-    motion_begin(&b->motion[with], &b->scene[with], 1e-5);
+    b->scene[with] = build_chain(terms, c->touching);
+    b->motion[with] = motion_begin(&b->scene[with], 1e-5);
     assert_int_equal(b->motion[with].model->terms, terms);
   }
 }
 
 static void end_both(both *b) {
   for (int with = 0; with < 2; with++) {
-    motion_end(&b->motion[with]);
+    motion_free(&b->motion[with]);
     strut_scene_free(&b->scene[with]);
   }
 }
@@ -171,7 +170,7 @@ TEST(what_others_need_changes_no_bit) {
       strut_scene_init(&scene[with]);
       add_body(&scene[with], term != STRUT_TERM_MEMBERS);
       if (with) add_stranger(&scene[with], (strut_term)term);
-      motion_begin(&m[with], &scene[with], 1e-3);
+      m[with] = motion_begin(&scene[with], 1e-3);
       motion_steps(&m[with], 500);
     }
     assert_false(m[0].model->terms & term);
@@ -181,7 +180,7 @@ TEST(what_others_need_changes_no_bit) {
       assert_same_bits(m[1].state->v[k], m[0].state->v[k]);
     }
     for (int with = 0; with < 2; with++) {
-      motion_end(&m[with]);
+      motion_free(&m[with]);
       strut_scene_free(&scene[with]);
     }
   }

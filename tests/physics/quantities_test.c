@@ -6,8 +6,8 @@
 
 #include "engine/integrate/integrator.h"
 #include "parser/read/read_scene.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
+#include "tests/support/refused.h"
 
 static const double PI = 3.14159265358979323846, GRAVITY = 9.81;
 
@@ -21,7 +21,7 @@ static void read_scene(const char *text, const strut_override *set, size_t count
   strut_diagnostics_free(&diagnostics);
 }
 
-/* The scene and the summary of its run; end_run frees both. */
+/* The scene and the summary of its run; measured_run_free frees both. */
 typedef struct measured_run {
   strut_setup setup;
   strut_summary summary;
@@ -37,7 +37,7 @@ static measured_run run_with(const char *text, const strut_override *set, size_t
 
 static measured_run run_text(const char *text) { return run_with(text, NULL, 0); }
 
-static void end_run(measured_run *r) {
+static void measured_run_free(measured_run *r) {
   strut_summary_free(&r->summary);
   strut_setup_free(&r->setup);
 }
@@ -84,18 +84,18 @@ TEST(a_mass_caught_by_a_cable) {
   const strut_quantity_definition *q = r.setup.experiment.quantities;
   assert_true(q[0].accuracy == 0.005 && q[0].accuracy_absolute == 0);
   assert_true(q[2].accuracy == 0 && q[2].accuracy_absolute == 1e-4);
-  end_run(&r);
+  measured_run_free(&r);
   const strut_override set[] = {{"drop", "0.2 m"}, {"stiff", "500 N/m"}};
   r = run_with(text, set, 2);
   peak = weight + sqrt(weight * weight + 2 * 500 * weight * 0.2);
   assert_relative(value(&r, "peak"), peak, 1e-6);
   assert_relative(value(&r, "factor"), peak / (500 * 0.2), 1e-6);
-  end_run(&r);
+  measured_run_free(&r);
 }
 
 /* An undamped oscillator of 50 rad/s about x = 1 m, amplitude 0.1 m, over ten whole periods. */
 TEST(an_oscillator) {
-  measured_run r = run_text(
+  OWN(measured_run) r = run_text(
       "strut: 1\n"
       "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 2 kg, fixed: "
       "y}}\n"
@@ -139,7 +139,6 @@ TEST(an_oscillator) {
   assert_relative(value(&r, "pace"), 3, 1e-12);
   assert_string_equal(get(&r, "pace")->unit, "1");
   assert_true(isnan(get(&r, "range")->spread)); /* a run in seconds has no periods */
-  end_run(&r);
 }
 
 /* Extremes between steps where the window has a peak at a fraction of a step. */
@@ -158,16 +157,15 @@ TEST(peaks_between_steps) {
     char late[16];
     snprintf(late, sizeof late, "%g", 3 + 0.013 * i);
     const strut_override set[] = {{"late", late}};
-    measured_run r = run_with(text, set, 1);
+    OWN(measured_run) r = run_with(text, set, 1);
     assert_relative(value(&r, "peak"), 0.1, 1e-5);
     assert_relative(value(&r, "dip"), -0.1, 1e-5);
-    end_run(&r);
   }
 }
 
 /* A force that jumps has no vertex between its steps: nothing is larger than what was there. */
 TEST(a_jump_is_no_peak) {
-  measured_run r = run_text(
+  OWN(measured_run) r = run_text(
       "strut: 1\n"
       "nodes: {ball: {position: [0, 0.3], mass: 1 kg}}\n"
       "gravity: [0, -9.81]\n"
@@ -177,12 +175,11 @@ TEST(a_jump_is_no_peak) {
   /* of this damping the force is largest at touchdown, and falls by 1.5 % in a step from there */
   double jump = 400 * sqrt(2 * GRAVITY * 0.3);
   assert_within(value(&r, "top"), 0.98 * jump, jump * (1 + 1e-6));
-  end_run(&r);
 }
 
 /* A rigid pendulum released at 60 degrees: tension m g (3 - 2 cos) at the bottom. */
 TEST(a_pendulum) {
-  measured_run r = run_text(
+  OWN(measured_run) r = run_text(
       "strut: 1\n"
       "bars: rigid\n"
       "gravity: [0, -9.81]\n"
@@ -209,12 +206,11 @@ TEST(a_pendulum) {
   assert_relative(value(&r, "fall"), 3 * GRAVITY * 2 * 0.5, 1e-6);
   assert_relative(value(&r, "quick"), sqrt(2 * GRAVITY * 2 * 0.5), 1e-6);
   assert_string_equal(get(&r, "swing")->unit, "rad");
-  end_run(&r);
 }
 
 /* Angles go on beyond a turn: a spoke that spins at 7 rad/s for 10 s. */
 TEST(an_angle_beyond_a_turn) {
-  measured_run r = run_text(
+  OWN(measured_run) r = run_text(
       "strut: 1\n"
       "bars: rigid\n"
       "nodes: {hub: {position: [0, 0], fixed: both}, rim: {position: [1, 0], mass: 1 kg}}\n"
@@ -226,12 +222,11 @@ TEST(an_angle_beyond_a_turn) {
   assert_relative(value(&r, "turned"), -70, 1e-8);
   assert_relative(value(&r, "spin"), -7, 1e-8);
   assert_string_equal(get(&r, "spin")->unit, "rad/s");
-  end_run(&r);
 }
 
 /* Free fall above a slope of 30 degrees, over the last second of two. */
 TEST(a_falling_mass) {
-  measured_run r = run_text(
+  OWN(measured_run) r = run_text(
       "strut: 1\n"
       "nodes: {ball: {position: [1, 50], mass: 2 kg}, other: {position: [5, 60], mass: 1 kg}}\n"
       "gravity: [0, -9.81]\n"
@@ -260,7 +255,6 @@ TEST(a_falling_mass) {
   assert_true(value(&r, "push") == 0 && get(&r, "push")->zero);
   assert_same_bits(value(&r, "side"), r.summary.velocity);
   assert_relative(value(&r, "centre"), 7.0 / 3, 1e-12);
-  end_run(&r);
 }
 
 static void rest_on_slope(const char *method) {
@@ -276,13 +270,12 @@ static void rest_on_slope(const char *method) {
            " along: {of: foot.friction, take: final}, deep: {of: -foot.height, take: max},"
            " spring: {of: energy.contact, take: final}}}}\n",
            method);
-  measured_run r = run_text(text);
+  OWN(measured_run) r = run_text(text);
   double normal = 4 * GRAVITY * cos(PI / 18);
   assert_relative(value(&r, "up"), normal, 1e-6);
   assert_relative(value(&r, "along"), 4 * GRAVITY * sin(PI / 18), 1e-6);
   assert_relative(value(&r, "deep"), normal / 1e5, 1e-6);
   assert_relative(value(&r, "spring"), normal * normal / 2e5, 1e-6);
-  end_run(&r);
 }
 
 TEST(contact_forces_at_rest_carry_the_weight) {
@@ -292,7 +285,7 @@ TEST(contact_forces_at_rest_carry_the_weight) {
 
 /* x = A sin in the drive's own frame: works and losses of a damper that an actuator pulls. */
 TEST(works_and_periods) {
-  measured_run r = run_text(
+  OWN(measured_run) r = run_text(
       "strut: 1\n"
       "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 1e9 kg}}\n"
       "members: {piston: {nodes: [wall, block], kind: spring, damping: 30 N s/m}}\n"
@@ -323,7 +316,6 @@ TEST(works_and_periods) {
   assert_relative(get(&r, "clock")->spread, sqrt(5.0 / 3) / 5, 1e-9);
   assert_relative(get(&r, "mean")->spread, sqrt(5.0 / 3) / 5, 1e-9);
   assert_string_equal(get(&r, "power")->unit, "W");
-  end_run(&r);
 }
 
 /* Nothing cancels in a short way: a block at 1 m/s slides v^2 / (2 mu g), and its steps may be too long for that. */
@@ -341,16 +333,15 @@ TEST(a_short_way_is_not_rounding) {
              "solver: {step: 0.1 ms, integrator: %s}\n"
              "run: {duration: 1 s, measure: {quantities: {way: {of: n.x, take: final}}}}\n",
              mu[k], methods[k]);
-    measured_run r = run_text(text);
+    OWN(measured_run) r = run_text(text);
     if (k == 0) assert_relative(value(&r, "way"), 1 / (2 * mu[k] * GRAVITY), 1e-6);
     assert_false(get(&r, "way")->zero || r.summary.velocity_zero);
-    end_run(&r);
   }
 }
 
 /* Two masses that swing against each other: the centre stays, to rounding. */
 TEST(zero_by_symmetry) {
-  measured_run r = run_text(
+  OWN(measured_run) r = run_text(
       "strut: 1\n"
       "nodes: {a: {position: [-1/3, 0.2], mass: 0.7}, b: {position: [1/3, 0.2], mass: 0.7}}\n"
       "members: {spring: {nodes: [a, b], kind: spring, stiffness: 777, damping: 0.1}}\n"
@@ -363,7 +354,6 @@ TEST(zero_by_symmetry) {
   assert_true(get(&r, "tilt")->zero);
   assert_false(get(&r, "one")->zero);
   assert_true(get(&r, "all")->scale > 0.01);
-  end_run(&r);
 }
 
 static const char HOPPER[] =
@@ -390,8 +380,8 @@ static strut_summary hop(const char *method, const char *quantities, strut_setup
 TEST(measuring_changes_nothing) {
   static const char *const methods[] = {"rk4", "verlet", "verlet-events", "rk4-events", "adaptive"};
   for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
-    strut_setup plain, more;
-    strut_summary s = hop(methods[i], "", &plain), m = hop(methods[i], ALL, &more);
+    OWN(strut_setup) plain, more;
+    OWN(strut_summary) s = hop(methods[i], "", &plain), m = hop(methods[i], ALL, &more);
     assert_true(s.measured_count == 0 && !s.measured && m.measured_count == 6);
     assert_int_equal(s.spent.evaluations, m.spent.evaluations);
     assert_same_bits(s.velocity, m.velocity);
@@ -399,62 +389,52 @@ TEST(measuring_changes_nothing) {
     assert_same_bits(s.energy.residual, m.energy.residual);
     for (size_t k = 0; k < 4; k++) assert_same_bits(s.end.positions[k], m.end.positions[k]);
     for (size_t k = 0; k < 6; k++) assert_true(isfinite(m.measured[k].value));
-    strut_summary_free(&s), strut_summary_free(&m);
-    strut_setup_free(&plain), strut_setup_free(&more);
   }
 }
 
 /* Works are there where the run keeps no balance for itself. */
 TEST(works_without_the_balance) {
-  strut_setup setup;
-  strut_summary with = hop("rk4", ALL, &setup), without;
+  OWN(strut_setup) setup;
+  OWN(strut_summary) with = hop("rk4", ALL, &setup), without;
   strut_error error = {0};
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   strut_run_options options = {.without_balance = true};
   assert_int_equal(strut_simulate(model, &setup.experiment, &options, &without, &error), STRUT_OK);
   assert_same_bits(without.measured[2].value, with.measured[2].value);
   assert_true(with.measured[2].value > 0);
-  strut_summary_free(&with), strut_summary_free(&without);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 /* A stopped window gives no number, and no crash. */
 TEST(a_run_that_is_interrupted) {
-  strut_setup setup;
+  OWN(strut_setup) setup;
   strut_error error = {0};
   strut_summary full = hop("rk4", ALL, &setup), s;
   strut_summary_free(&full);
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   strut_flag stop = 1;
   strut_run_options options = {.interrupt = &stop};
   assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, &error),
                    STRUT_INTERRUPTED);
   for (size_t k = 0; k < 6; k++) assert_true(isnan(s.measured[k].value) && !s.measured[k].zero);
   strut_summary_free(&s);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 /* Twice as many steps take as many allocations. */
 TEST(steps_allocate_nothing) {
   uint64_t count[2];
   for (int i = 0; i < 2; i++) {
-    strut_setup setup;
+    OWN(strut_setup) setup;
     strut_error error = {0};
-    strut_summary s;
+    OWN(strut_summary) s;
     char text[1400];
     snprintf(text, sizeof text, HOPPER, "rk4", ALL);
     read_scene(text, NULL, 0, &setup);
     setup.experiment.step /= 1 + i;
-    strut_model *model = motion_compile(&setup.scene);
+    OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
     uint64_t before = strut_allocation_count();
     strut_run_options options = {0};
     assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, &error), STRUT_OK);
     count[i] = strut_allocation_count() - before;
-    strut_summary_free(&s);
-    strut_model_free(model);
-    strut_setup_free(&setup);
   }
   assert_int_equal(count[0], count[1]);
 }
@@ -467,38 +447,30 @@ TEST(memory_that_runs_out) {
   int64_t n = 0;
   for (; status == STRUT_NO_MEMORY && n < 5000; n++) {
     strut_setup setup;
-    strut_diagnostics diagnostics = {0};
-    strut_fail_allocation_after(n);
-    status =
-        strut_setup_read(&setup, "test", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics);
-    strut_fail_allocation_after(-1);
-    strut_diagnostics_free(&diagnostics);
+    OWN(strut_diagnostics) diagnostics = {0};
+    status = refused(n, strut_setup_read(&setup, "test", text, strlen(text), NULL, 0, STRUT_FOR_RUN,
+                                         &diagnostics));
     if (status == STRUT_OK) strut_setup_free(&setup);
   }
   assert_int_equal(status, STRUT_OK);
   assert_true(n > 20);
-  strut_setup setup;
+  OWN(strut_setup) setup;
   read_scene(text, NULL, 0, &setup);
   setup.experiment.step = 1e-4;
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   for (status = STRUT_NO_MEMORY, n = 0; status == STRUT_NO_MEMORY && n < 5000; n++) {
     strut_run_options options = {0};
     strut_error error = {0};
-    strut_summary s;
-    strut_fail_allocation_after(n);
-    status = strut_simulate(model, &setup.experiment, &options, &s, &error);
-    strut_fail_allocation_after(-1);
-    strut_summary_free(&s);
+    OWN(strut_summary) s;
+    status = refused(n, strut_simulate(model, &setup.experiment, &options, &s, &error));
   }
   assert_int_equal(status, STRUT_OK);
   assert_true(n > 5);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 /* Driven at 1 Hz and 0.5 Hz, of which the first counts: a motion of two periods. */
 TEST(a_steady_run_measures_its_whole_orbit) {
-  measured_run r = run_text(
+  OWN(measured_run) r = run_text(
       "strut: 1\n"
       "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 1 kg, fixed: "
       "y}}\n"
@@ -517,12 +489,11 @@ TEST(a_steady_run_measures_its_whole_orbit) {
   assert_near(value(&r, "mean"), 0, 1e-5);
   assert_relative(get(&r, "clock")->spread + 1, 1, 1e-9);
   assert_true(get(&r, "high")->spread > 1e-3); /* the two periods differ */
-  end_run(&r);
 }
 
 /* A mass on an arm with a hinge: sqrt(kappa/(m l^2)) = 2 rad/s, 0.3 rad about the rest angle. */
 TEST(a_hinge_swings) {
-  measured_run r = run_text(
+  OWN(measured_run) r = run_text(
       "strut: 1\n"
       "nodes: {a: {position: [-1, 0], fixed: both}, o: {position: [0, 0], fixed: both},"
       " c: {position: [1, 0], mass: 0.5 kg}}\n"
@@ -539,12 +510,11 @@ TEST(a_hinge_swings) {
   assert_near(value(&r, "mean"), 0, 1e-6);
   assert_string_equal(get(&r, "rate")->unit, "rad/s");
   assert_string_equal(get(&r, "moment")->unit, "N m");
-  end_run(&r);
 }
 
 /* A running cable's length is its path's; its stretch is the tension over the stiffness. */
 TEST(a_running_cable) {
-  measured_run r = run_text(
+  OWN(measured_run) r = run_text(
       "strut: 1\n"
       "nodes: {low: {position: [0, -1], mass: 3 kg}, left: {position: [0, 0], fixed: both},"
       " right: {position: [1, 0], fixed: both}, high: {position: [1, -2], mass: 1 kg}}\n"
@@ -560,7 +530,6 @@ TEST(a_running_cable) {
   assert_relative(value(&r, "length"), 4, 1e-12);
   assert_near(value(&r, "rate"), 0, 1e-12);
   assert_relative(value(&r, "fall"), -0.4, 1e-12); /* 5 m/s^2 */
-  end_run(&r);
 }
 
 /*
@@ -598,7 +567,7 @@ TEST(a_blow_between_steps) {
     const char *step = !adaptive ? "0.31 ms" : method->order > 5 ? "1 ms" : "10 ms";
     snprintf(filled, sizeof filled, text, method->name, step);
     if (method->no_ground) continue;
-    measured_run r = run_text(filled);
+    OWN(measured_run) r = run_text(filled);
     assert_relative(value(&r, "blow"), peak, close);
     assert_relative(value(&r, "span"), peak, close);
     assert_relative(value(&r, "mean") * time, 2 * m * v, close);
@@ -609,7 +578,6 @@ TEST(a_blow_between_steps) {
     assert_true(fabs(value(&r, "slow")) < 0.01 * close * v);
     assert_relative(value(&r, "half"), 0.5 / v + asin(0.5) / w, 0.1 * close);
     assert_int_equal(r.summary.warning_count, 0);
-    end_run(&r);
   }
 }
 
@@ -629,12 +597,12 @@ TEST(a_step_too_coarse_for_a_peak) {
   measured_run r = run_text(text);
   assert_relative(value(&r, "p"), 0.5 * 5000 * 0.1 * 0.1 * 50, 1e-5);
   assert_int_equal(r.summary.warning_count, 0);
-  end_run(&r);
+  measured_run_free(&r);
   r = run_with(text, coarse, 1);
   bool warned = false;
   for (size_t i = 0; i < r.summary.warning_count; i++)
     warned = warned || (strcmp(r.summary.warnings[i].code, "coarse_step") == 0 &&
                         strstr(r.summary.warnings[i].text, "'p'"));
   assert_true(warned);
-  end_run(&r);
+  measured_run_free(&r);
 }

@@ -7,7 +7,6 @@
 #include "engine/model/mass.h"
 #include "tests/physics/random_scene.h"
 #include "tests/physics/slow_model.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 /* Widening is the point here; clang counts it as promotion. */
@@ -36,7 +35,7 @@ static void check_mass(const strut_scene *scene, const strut_model *model, const
   for (size_t c = 0; c < 2; c++) {
     const strut_mass_operator *op = &model->mass->coordinate[c];
     const strut_sparse *m = op->matrix;
-    double *dense = calloc(slow->n * slow->n + 1, sizeof *dense);
+    FREED double *dense = calloc(slow->n * slow->n + 1, sizeof *dense);
     size_t row_count = 0;
     assert_non_null(dense);
     for (int32_t j = 0; j < m->n; j++)
@@ -55,7 +54,6 @@ static void check_mass(const strut_scene *scene, const strut_model *model, const
       }
     }
     assert_int_equal(m->n, row_count);
-    free(dense);
   }
 }
 
@@ -155,12 +153,12 @@ static void cover_forces(coverage *seen, const strut_scene *scene, const slow_mo
 }
 
 static void recompute(uint64_t seed, coverage *seen) {
-  strut_scene scene;
-  strut_state *state;
+  OWN(strut_scene) scene;
+  OWN_POINTER(strut_state) state;
   slow_model slow;
   double t;
   random_scene(&scene, seed);
-  strut_model *model = motion_compile(&scene);
+  OWN_POINTER(strut_model) model = motion_compile(&scene);
   assert_non_null(model->mass);
   assert_int_equal(strut_state_create(model, &state, NULL), STRUT_OK);
   random_motion(&scene, seed, &t, state->q, state->v);
@@ -173,9 +171,6 @@ static void recompute(uint64_t seed, coverage *seen) {
   for (unsigned term = 1; term <= STRUT_TERM_SOLVE; term <<= 1)
     seen->terms[term] += (model->terms & term) != 0;
   slow_free(&slow);
-  strut_state_free(state);
-  strut_model_free(model);
-  strut_scene_free(&scene);
 }
 
 TEST(random_scenes_agree_with_a_slow_recomputation) {

@@ -4,8 +4,6 @@
 #include <string.h>
 
 #include "engine/forces/energy.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
@@ -62,13 +60,11 @@ static strut_status run(const strut_setup *setup, strut_error *error) {
                         {&second, begin, rows, end, second_wants}};
   strut_sink *all[] = {&sinks[0], &sinks[1]};
   strut_run_options options = {.sinks = all, .sink_count = 2, .force = true};
-  strut_model *model = motion_compile(&setup->scene);
-  strut_summary summary;
+  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
+  OWN(strut_summary) summary;
   *error = (strut_error){0};
   strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, error);
   assert_int_equal(summary.status, status);
-  strut_summary_free(&summary);
-  strut_model_free(model);
   return status;
 }
 
@@ -81,21 +77,21 @@ static void clean(void) {
 BEFORE_EACH { clean(); }
 
 /* x = 1 + 0.5 t for the mass, which nothing moves. */
-static void gliding(strut_setup *setup, double step, double duration, double every) {
-  strut_setup_init(setup);
-  build_support(&setup->scene, 0, 0);
-  build_mass(&setup->scene, 1, 0, 1);
-  build_sized(&setup->scene, STRUT_CABLE, 0, 1, 10, 1, 0, 1000);
-  setup->scene.nodes[1].velocity[0] = 0.5;
-  motion_experiment(setup, step, duration);
-  setup->experiment.output_every = every;
+static strut_setup gliding(double step, double duration, double every) {
+  strut_setup setup = build_setup();
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 1, 0, 1);
+  build_sized(&setup.scene, STRUT_CABLE, 0, 1, 10, 1, 0, 1000);
+  setup.scene.nodes[1].velocity[0] = 0.5;
+  motion_experiment(&setup, step, duration);
+  setup.experiment.output_every = every;
+  return setup;
 }
 
 static void check_rows(double step, double duration, double last, double every, size_t count) {
-  strut_setup setup;
   strut_error error;
   clean();
-  gliding(&setup, step, duration, every);
+  OWN(strut_setup) setup = gliding(step, duration, every);
   setup.experiment.output_last = last;
   assert_int_equal(run(&setup, &error), STRUT_OK);
   assert_int_equal(first.count, count);
@@ -114,7 +110,6 @@ static void check_rows(double step, double duration, double last, double every, 
     assert_near(row[first.offset[1]], 1 + 0.5 * row[0], 1e-12 + 1e-10 * row[0]);
     assert_true(row[first.offset[2]] == 0);
   }
-  strut_setup_free(&setup);
 }
 
 TEST(rows_come_at_their_times) {
@@ -126,32 +121,26 @@ TEST(rows_come_at_their_times) {
 }
 
 TEST(rows_are_a_thousandth_apart_if_nothing_is_said) {
-  strut_setup setup;
   strut_error error;
-  gliding(&setup, 1e-4, 2, 0);
+  OWN(strut_setup) setup = gliding(1e-4, 2, 0);
   assert_int_equal(run(&setup, &error), STRUT_OK);
   assert_int_equal(first.count, 1001);
   assert_near(first.row[1][0], 0.002, 1e-15);
-  strut_setup_free(&setup);
 }
 
 /* More often than there are steps: each step once. */
 TEST(no_step_is_recorded_twice) {
-  strut_setup setup;
   strut_error error;
-  gliding(&setup, 0.01, 1, 0.001);
+  OWN(strut_setup) setup = gliding(0.01, 1, 0.001);
   assert_int_equal(run(&setup, &error), STRUT_OK);
   assert_int_equal(first.count, 101);
   for (size_t i = 0; i < 101; i++) assert_near(first.row[i][0], 0.01 * (double)i, 1e-14);
-  strut_setup_free(&setup);
 }
 
 /* Every channel of the crawler against the state that a motion by hand has at the same step. */
 TEST(every_channel_holds_what_it_says) {
-  strut_setup setup;
+  OWN(strut_setup) setup = build_setup();
   strut_error error;
-  motion m;
-  strut_setup_init(&setup);
   structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
   motion_experiment(&setup, 1e-4, 0.1);
   setup.experiment.output_every = 0.01;
@@ -160,7 +149,7 @@ TEST(every_channel_holds_what_it_says) {
   assert_int_equal(first.channel_count, 6);
   assert_int_equal(first.count, 11);
   assert_int_equal(first.width, 1 + 10 + 10 + 9 + 9 + 10 + 11);
-  motion_begin(&m, &setup.scene, 1e-4);
+  OWN(motion) m = motion_begin(&setup.scene, 1e-4);
   m.state->balance = true;
   for (size_t i = 0; i < first.count; i++) {
     const double *row = first.row[i], *energy = row + first.offset[5];
@@ -183,8 +172,6 @@ TEST(every_channel_holds_what_it_says) {
     assert_same_bits(energy[10], m.state->work[STRUT_POWER_FRICTION]);
     motion_steps(&m, 100);
   }
-  motion_end(&m);
-  strut_setup_free(&setup);
 }
 
 /* Columns of a part that are those of the whole. */
@@ -215,9 +202,8 @@ TEST(each_sink_gets_the_channels_it_wants) {
       {STRUT_CHANNEL_ENERGY, STRUT_CHANNEL_FORCE | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_CONTACT},
       {63, STRUT_CHANNEL_POSITION}};
   static memory whole;
-  strut_setup setup;
+  OWN(strut_setup) setup = build_setup();
   strut_error error;
-  strut_setup_init(&setup);
   structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
   motion_experiment(&setup, 1e-4, 0.1);
   setup.experiment.output_every = 5e-4;
@@ -233,14 +219,12 @@ TEST(each_sink_gets_the_channels_it_wants) {
     check_part(&first, &whole, pairs[p][0] ? pairs[p][0] : setup.experiment.channels);
     check_part(&second, &whole, pairs[p][1] ? pairs[p][1] : setup.experiment.channels);
   }
-  strut_setup_free(&setup);
 }
 
 /* Recording looks on: a run with sinks ends with the bits of one without. */
 TEST(recording_changes_no_bit) {
-  strut_setup setup;
+  OWN(strut_setup) setup = build_setup();
   strut_error error;
-  strut_setup_init(&setup);
   structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
   motion_experiment(&setup, 1e-4, 0.5);
   setup.experiment.output_every = 0.5;
@@ -250,53 +234,44 @@ TEST(recording_changes_no_bit) {
   clean();
   setup.experiment.output_every = 0.0007, setup.experiment.channels = 63;
   assert_int_equal(run(&setup, &error), STRUT_OK);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_summary) s = motion_simulate(&setup);
   assert_memory_equal(coarse, s.end.positions, sizeof coarse);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 TEST(a_sink_that_fails_stops_the_run) {
-  strut_setup setup;
   strut_error error;
-  gliding(&setup, 1e-3, 1e4, 1e-3); /* ten million rows if nobody stops it */
+  OWN(strut_setup) setup = gliding(1e-3, 1e4, 1e-3); /* ten million rows if nobody stops it */
   second.fail_rows = STRUT_FILE_TROUBLE;
   assert_int_equal(run(&setup, &error), STRUT_FILE_TROUBLE);
   assert_string_equal(error.message, "rows fail");
   assert_int_equal(second.calls, 1);
   assert_true(first.ended == 1 && second.ended == 1);
   assert_int_equal(first.ended_with, STRUT_FILE_TROUBLE);
-  strut_setup_free(&setup);
 }
 
 TEST(a_sink_that_cannot_begin) {
-  strut_setup setup;
   strut_error error;
-  gliding(&setup, 1e-3, 1, 0.1);
+  OWN(strut_setup) setup = gliding(1e-3, 1, 0.1);
   second.fail_begin = STRUT_FILE_TROUBLE;
   assert_int_equal(run(&setup, &error), STRUT_FILE_TROUBLE);
   assert_string_equal(error.message, "begin fails");
   assert_true(first.begun == 1 && first.ended == 1 && first.ended_with == STRUT_FILE_TROUBLE);
   assert_true(second.ended == 0 && first.count == 0);
-  strut_setup_free(&setup);
 }
 
 TEST(a_sink_that_cannot_end) {
-  strut_setup setup;
   strut_error error;
-  gliding(&setup, 1e-3, 1, 0.1);
+  OWN(strut_setup) setup = gliding(1e-3, 1, 0.1);
   first.fail_end = STRUT_FILE_TROUBLE;
   assert_int_equal(run(&setup, &error), STRUT_FILE_TROUBLE);
   assert_string_equal(error.message, "end fails");
   assert_true(first.ended == 1 && second.ended == 1 && second.count == 11);
-  strut_setup_free(&setup);
 }
 
 /* What was recorded before a divergence is handed over, and marked. */
 TEST(rows_of_a_run_that_diverges_are_kept) {
-  strut_setup setup;
   strut_error error;
-  gliding(&setup, 0.01, 1000, 0.01);
+  OWN(strut_setup) setup = gliding(0.01, 1000, 0.01);
   setup.scene.members[0].kind = STRUT_BAR, setup.scene.members[0].rest_value = 1;
   setup.scene.members[0].stiffness = 2e5; /* w dt = 4.5 */
   assert_int_equal(run(&setup, &error), STRUT_DIVERGED);
@@ -304,31 +279,30 @@ TEST(rows_of_a_run_that_diverges_are_kept) {
   assert_int_equal(first.ended_with, STRUT_DIVERGED);
   assert_true(first.count > 2 && first.count < 200);
   assert_near(first.row[1][0], 0.01, 1e-15);
-  strut_setup_free(&setup);
 }
 
 /* Everything that asks for memory: blocks, a factor, contacts, drives, loads, settling, sinks. */
-static void demanding(strut_setup *setup) {
-  strut_setup_init(setup);
-  structure_chain(&setup->scene, 12, STRUT_MASS_CONSISTENT);
-  setup->scene.nodes[0].fixed[0] = false; /* x and y differ */
-  int32_t a = build_mass(&setup->scene, 3, 3, 1), b = build_node(&setup->scene, 4, 3),
-          c = build_node(&setup->scene, 4, 4);
-  build_member(&setup->scene, STRUT_BAR, a, b, 1e3, 10, 1);
-  build_member(&setup->scene, STRUT_BAR, b, c, 1e3, 10, 1);
-  build_actuator(&setup->scene, 3, build_sine(&setup->scene, 1e-4, 10));
-  build_load(&setup->scene, b, 1e-3, 0, 0);
-  for (int32_t i = 0; i < 10; i++) build_rough_contact(&setup->scene, i, 10, 1, 0.1, 0.1, 1e-3);
-  setup->scene.ground.height = -1;
-  setup->experiment.settle.wanted = true;
-  setup->experiment.settle.speed = setup->experiment.settle.acceleration =
+static strut_setup demanding(void) {
+  strut_setup setup = build_setup();
+  structure_chain(&setup.scene, 12, STRUT_MASS_CONSISTENT);
+  setup.scene.nodes[0].fixed[0] = false; /* x and y differ */
+  int32_t a = build_mass(&setup.scene, 3, 3, 1), b = build_node(&setup.scene, 4, 3),
+          c = build_node(&setup.scene, 4, 4);
+  build_member(&setup.scene, STRUT_BAR, a, b, 1e3, 10, 1);
+  build_member(&setup.scene, STRUT_BAR, b, c, 1e3, 10, 1);
+  build_actuator(&setup.scene, 3, build_sine(&setup.scene, 1e-4, 10));
+  build_load(&setup.scene, b, 1e-3, 0, 0);
+  for (int32_t i = 0; i < 10; i++) build_rough_contact(&setup.scene, i, 10, 1, 0.1, 0.1, 1e-3);
+  setup.scene.ground.height = -1;
+  setup.experiment.settle.wanted = true;
+  setup.experiment.settle.speed = setup.experiment.settle.acceleration =
       1e9; /* at rest from the first step on */
-  motion_experiment(setup, 1e-5, 1e-3);
+  motion_experiment(&setup, 1e-5, 1e-3);
+  return setup;
 }
 
 TEST(every_allocation_may_fail) {
-  strut_setup setup;
-  demanding(&setup);
+  OWN(strut_setup) setup = demanding();
   int64_t n = 0;
   for (;; n++) {
     strut_sink sink = {&first, begin, rows, end, 0}, *all[] = {&sink};
@@ -351,7 +325,6 @@ TEST(every_allocation_may_fail) {
     assert_true(n < 1000);
   }
   assert_true(n > 30);
-  strut_setup_free(&setup);
 }
 
 /* A block that exact friction holds against a push: what is recorded is what holds it. */
@@ -359,10 +332,9 @@ TEST(contact_forces_of_methods_with_events) {
   static const char *const methods[] = {"rk4-events", "verlet-events", "euler-events", "adaptive"};
   const double mass = 2, g = 9.81, k = 1e4, push = 0.2 * mass * g;
   for (int i = 0; i < 4; i++) {
-    strut_setup setup;
+    OWN(strut_setup) setup = build_setup();
     strut_error error;
     clean();
-    strut_setup_init(&setup);
     build_contact(&setup.scene, build_mass(&setup.scene, 0, -mass * g / k, mass), k, 10);
     setup.scene.contacts[0].friction =
         (strut_friction){.law = STRUT_FRICTION_COULOMB, .mu_static = 0.5, .mu_kinetic = 0.4};
@@ -378,6 +350,5 @@ TEST(contact_forces_of_methods_with_events) {
       assert_near(first.row[r][1], mass * g, 1e-9);
       assert_near(first.row[r][2], -push, 1e-9);
     }
-    strut_setup_free(&setup);
   }
 }

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "tests/models/run_model.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 static const char *const methods[] = {"rk4",        "euler",    "verlet",        "midpoint",
@@ -25,11 +24,12 @@ static const char reel[] =
     "run: {duration: 1 s}\n"
     "output: {channels: [force], last: 0.01}\n";
 
-static void read_reel(model_run *run, const char *kind, const char *nodes, const char *more,
-                      const char *amplitude) {
+static model_run read_reel(const char *kind, const char *nodes, const char *more,
+                           const char *amplitude) {
   char text[1200];
   assert_true(snprintf(text, sizeof text, reel, kind, nodes, more, amplitude) < (int)sizeof text);
-  model_read_text(run, "reel", text, set_none);
+  model_run run = model_read_text("reel", text, set_none);
+  return run;
 }
 
 static double last_force(const model_run *run) {
@@ -41,9 +41,8 @@ static void check_reel(const char *kind, const char *nodes, const char *more, do
                        double work) {
   bool remembers = strstr(more, "breaks_at") || strstr(more, "guide_friction");
   for (int i = 0; i < METHODS; i++) {
-    model_run run;
     if (remembers && !strcmp(methods[i], "midpoint")) continue; /* which refuses that */
-    read_reel(&run, kind, nodes, more, "-0.5");
+    model_run run = read_reel(kind, nodes, more, "-0.5");
     run.setup.experiment.integrator = methods[i];
     model_simulate(&run);
     assert_relative(last_force(&run), force, 1e-12);
@@ -78,13 +77,12 @@ TEST(laws_follow_the_length_too) {
 
 /* What is let out pulls less than k (l - L0) would, and a slack rope nothing. */
 TEST(letting_out) {
-  model_run run;
-  read_reel(&run, "cable", "[a, b]", ", rest_length: 0.5", "0.3");
+  model_run run = read_reel("cable", "[a, b]", ", rest_length: 0.5", "0.3");
   model_simulate(&run);
   assert_relative(last_force(&run), 100 * 0.2 / 0.8, 1e-12);
   assert_relative(run.summary.energy.drive_work, 50 * 0.04 / 0.8 - 50 * 0.25 / 0.5, 1e-8);
   model_run_free(&run);
-  read_reel(&run, "cable", "[a, b]", ", rest_length: 0.5", "0.6");
+  run = read_reel("cable", "[a, b]", ", rest_length: 0.5", "0.6");
   model_simulate(&run);
   assert_near(last_force(&run), 0, 0);
   assert_relative(run.summary.energy.drive_work, -25, 1e-8);
@@ -111,8 +109,7 @@ TEST(energy_in_motion) {
       "output: {channels: [position], last: 0.01}\n";
   double x = NAN;
   for (int i = 0; i < METHODS; i++) {
-    model_run run;
-    model_read_text(&run, "swing", swing, set_none);
+    OWN(model_run) run = model_read_text("swing", swing, set_none);
     run.setup.experiment.integrator = methods[i];
     model_simulate(&run);
     const strut_energy *e = &run.summary.energy;
@@ -120,7 +117,6 @@ TEST(energy_in_motion) {
     assert_near(e->residual / e->moved, 0, open[i]);
     if (isnan(x)) x = model_position(&run, "c")[0];
     assert_near(model_position(&run, "c")[0], x, strstr(methods[i], "euler") ? 0.05 : 1e-3);
-    model_run_free(&run);
   }
 }
 
@@ -138,10 +134,10 @@ TEST(a_step_that_becomes_too_large_is_noticed) {
                                       "the rest length of member 'rope' reached zero"};
   for (int i = 0; i < 3; i++) {
     char scene[800];
-    model_run run = {.model = NULL};
+    OWN(model_run) run = {.model = NULL};
     strut_error error = {0};
     snprintf(scene, sizeof scene, text, amplitudes[i]);
-    model_read_text(&run, "winch", scene, set_none);
+    run = model_read_text("winch", scene, set_none);
     if (i == 2) run.setup.experiment.integrator = "adaptive", run.setup.experiment.step = 1e-3;
     run.model = motion_compile(&run.setup.scene);
     strut_run_options options = {.interrupt = NULL};
@@ -149,7 +145,6 @@ TEST(a_step_that_becomes_too_large_is_noticed) {
         strut_simulate(run.model, &run.setup.experiment, &options, &run.summary, &error);
     assert_int_equal(status, words[i] ? STRUT_DIVERGED : STRUT_OK);
     if (words[i] && !strstr(error.message, words[i])) fail_msg("said: %s", error.message);
-    model_run_free(&run);
   }
 }
 
@@ -159,7 +154,6 @@ TEST(others_pay_nothing) {
   static const char *const driven[] = {"tail", "rope", "rope"};
   for (int i = 0; i < 3; i++) {
     char text[600];
-    model_run run;
     snprintf(text, sizeof text,
              "strut: 1\n"
              "nodes: {a: {position: [0, 0], fixed: both}, c: {position: [1, 0], mass: 1}}\n"
@@ -169,7 +163,7 @@ TEST(others_pay_nothing) {
              "actuators: {reel: {member: %s, signal: {ramp: {amplitude: -0.1, stop: 1 s}}}}\n"
              "solver: {step: 1 ms}\nrun: {duration: 1 s}\n",
              members[i == 1], driven[i]);
-    model_read_text(&run, "plain", text, set_none);
+    model_run run = model_read_text("plain", text, set_none);
     strut_model *model = motion_compile(&run.setup.scene);
     assert_int_equal(model->elements.count, i == 2);
     strut_model_free(model);

@@ -29,9 +29,9 @@ TEST(two_weights_over_a_guide) {
   const double rest = 2 * G * m1 * m2 / (m1 + m2) / k, w = sqrt(k * (1 / m1 + 1 / m2));
   for (int start = 0; start < 2; start++)
     for (int i = 0; i < 4; i++) {
-      model_run run;
-      model_read_text(&run, "atwood", atwood,
-                      set_to("k=1e4", start ? "stretch=9.81*2*6/5/1e4" : "stretch=9.81*6/5/1e4"));
+      OWN(model_run) run = model_read_text(
+          "atwood", atwood,
+          set_to("k=1e4", start ? "stretch=9.81*2*6/5/1e4" : "stretch=9.81*6/5/1e4"));
       run.setup.experiment.integrator = methods[i];
       model_simulate(&run);
       double stretch = rest - (start ? 0 : rest / 2 * cos(w * t)),
@@ -41,7 +41,6 @@ TEST(two_weights_over_a_guide) {
       assert_near(model_position(&run, "left")[1], -left, tolerance[i]);
       assert_near(model_position(&run, "right")[1], left - sum, tolerance[i]);
       assert_near(run.summary.energy.residual, 0, tolerance[i] * run.summary.energy.moved * 100);
-      model_run_free(&run);
     }
 }
 
@@ -49,13 +48,11 @@ TEST(two_weights_over_a_guide) {
 TEST(stiffer_strings_fall_as_atwoods) {
   static const char *const k[] = {"k=1e3", "k=1e4", "k=1e5", "k=1e6"};
   for (int i = 0; i < 4; i++) {
-    model_run run;
-    model_read_text(&run, "atwood", atwood, set_to(k[i]));
+    OWN(model_run) run = model_read_text("atwood", atwood, set_to(k[i]));
     model_simulate(&run);
     double fallen = -1 - model_position(&run, "left")[1], stiffness = pow(10, 3 + i);
     double stretch = 2 * G * 6 / 5 / stiffness; /* at rest; twice that at most */
     assert_within(fallen - 0.5 * G / 5 * 0.16, 0, 2 * stretch * 2 / 5 * 1.0000001);
-    model_run_free(&run);
   }
 }
 
@@ -77,15 +74,13 @@ static const char swing[] =
     "run: {duration: 1 s}\n";
 
 static double residual_of(const char *method, double step) {
-  model_run run;
-  model_read_text(&run, "swing", swing, set_none);
+  OWN(model_run) run = model_read_text("swing", swing, set_none);
   run.setup.experiment.integrator = method;
   run.setup.experiment.step = step;
   model_simulate(&run);
   double residual = fabs(run.summary.energy.residual);
   assert_true(run.summary.energy.dissipated_members == 0);
   assert_true(run.summary.spent.events == 0); /* so that no method has a kink to step over */
-  model_run_free(&run);
   return residual;
 }
 
@@ -124,8 +119,7 @@ static const char ring[] =
     "output: {channels: [force, length]}\n";
 
 TEST(a_ring_rests_at_the_bottom_of_its_ellipse) {
-  model_run run;
-  model_read_text(&run, "ring", ring, set_none);
+  OWN(model_run) run = model_read_text("ring", ring, set_none);
   model_simulate(&run);
   double force = model_value(&run, 0, STRUT_CHANNEL_FORCE, "string", 0);
   double length = model_value(&run, 0, STRUT_CHANNEL_LENGTH, "string", 0);
@@ -133,5 +127,4 @@ TEST(a_ring_rests_at_the_bottom_of_its_ellipse) {
   assert_relative(force, G / (2 * sqrt(1 - 1 / (length * length))), 1e-7);
   assert_near(model_position(&run, "ring")[0], 0.5, 1e-6);
   assert_near(model_position(&run, "ring")[1], -0.5 * sqrt(length * length - 1), 1e-6);
-  model_run_free(&run);
 }

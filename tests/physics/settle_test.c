@@ -6,21 +6,20 @@
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibria.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 static const double G = 9.81;
 
 /* A mass of 1 kg on a rod of 1 m, its pin in the origin, `angle` from upright. */
-static void rod(strut_setup *setup, double stiffness, double angle) {
-  strut_setup_init(setup);
-  build_support(&setup->scene, 0, 0);
-  build_mass(&setup->scene, sin(angle), cos(angle), 1);
-  build_sized(&setup->scene, STRUT_BAR, 0, 1, stiffness, 10, 0, 1);
-  setup->scene.gravity[1] = -G;
-  setup->experiment.settle.wanted = true;
-  motion_experiment(setup, 1e-3, 0.1);
+static strut_setup rod(double stiffness, double angle) {
+  strut_setup setup = build_setup();
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, sin(angle), cos(angle), 1);
+  build_sized(&setup.scene, STRUT_BAR, 0, 1, stiffness, 10, 0, 1);
+  setup.scene.gravity[1] = -G;
+  setup.experiment.settle.wanted = true;
+  motion_experiment(&setup, 1e-3, 0.1);
+  return setup;
 }
 
 typedef struct settled {
@@ -32,16 +31,14 @@ typedef struct settled {
 
 static settled settle(const strut_setup *setup) {
   settled s = {.how.time = 0};
-  strut_model *model = motion_compile(&setup->scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   assert_true(model->length <= 64);
   s.status = strut_settle_experiment(model, &setup->experiment, NULL, s.q, &s.how, &s.error);
-  strut_model_free(model);
   return s;
 }
 
 TEST(an_upright_rod_is_unstable) {
-  strut_setup setup;
-  rod(&setup, 1e5, 0);
+  OWN(strut_setup) setup = rod(1e5, 0);
   settled s = settle(&setup);
   double length = 1 - G / 1e5;
   assert_int_equal(s.status, STRUT_OK);
@@ -53,24 +50,20 @@ TEST(an_upright_rod_is_unstable) {
   char text[300];
   assert_true(strut_settle_warning(&s.how, text, sizeof text));
   assert_non_null(strstr(text, setup.scene.nodes[1].name));
-  strut_setup_free(&setup);
 }
 
 /* A rod 1e6 times as stiff: the same instability beside a stiffness that is 1e10 times larger. */
 TEST(a_stiff_rod_is_as_unstable) {
-  strut_setup setup;
-  rod(&setup, 1e11, 0);
+  OWN(strut_setup) setup = rod(1e11, 0);
   setup.experiment.step = 1e-7;
   settled s = settle(&setup);
   assert_int_equal(s.status, STRUT_OK);
   assert_true(s.how.unstable);
   assert_relative(s.how.growth_rate, sqrt(G), 1e-6);
-  strut_setup_free(&setup);
 }
 
 TEST(a_perturbed_rod_hangs) {
-  strut_setup setup;
-  rod(&setup, 1e5, 0);
+  OWN(strut_setup) setup = rod(1e5, 0);
   setup.experiment.settle.perturb = true;
   settled s = settle(&setup);
   assert_int_equal(s.status, STRUT_OK);
@@ -82,26 +75,22 @@ TEST(a_perturbed_rod_hangs) {
   assert_memory_equal(s.q, again.q, sizeof s.q);
   char text[300];
   assert_false(strut_settle_warning(&s.how, text, sizeof text));
-  strut_setup_free(&setup);
 }
 
 /* Nothing is perturbed that is stable: the bits are those without the key. */
 TEST(a_stable_rest_is_left_alone) {
-  strut_setup setup;
-  rod(&setup, 1e5, 3.0);
+  OWN(strut_setup) setup = rod(1e5, 3.0);
   settled s = settle(&setup);
   setup.experiment.settle.perturb = true;
   settled perturbed = settle(&setup);
   assert_false(s.how.unstable);
   assert_int_equal(perturbed.how.perturbations, 0);
   assert_memory_equal(s.q, perturbed.q, sizeof s.q);
-  strut_setup_free(&setup);
 }
 
 /* Motions without stiffness are none that grow: two masses that float, a block that slides. */
 TEST(free_motions_are_not_unstable) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   for (int i = 0; i < 3; i++) build_mass(&setup.scene, 0.3 * i, 0.4 * (i % 2), 1 + i);
   for (int32_t i = 0; i < 3; i++)
     build_sized(&setup.scene, STRUT_BAR, i, (i + 1) % 3, 1e4, 1, 0, 0.5);
@@ -115,13 +104,11 @@ TEST(free_motions_are_not_unstable) {
   s = settle(&setup);
   assert_int_equal(s.status, STRUT_OK);
   assert_false(s.how.unstable);
-  strut_setup_free(&setup);
 }
 
 /* A block that friction keeps on a slope is held there. */
 TEST(what_friction_holds_is_not_unstable) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   build_rough_contact(&setup.scene, build_mass(&setup.scene, 0, 0, 1), 1e4, 10, 0.5, 0.5, 1e-3);
   setup.scene.gravity[1] = -G;
   setup.scene.ground.slope = 0.2;
@@ -131,13 +118,11 @@ TEST(what_friction_holds_is_not_unstable) {
   settled s = settle(&setup);
   assert_int_equal(s.status, STRUT_OK);
   assert_false(s.how.unstable);
-  strut_setup_free(&setup);
 }
 
 /* A node that a spring above it presses on the ground: Karnopp's law keeps it there, a smooth one does not. */
 TEST(smooth_friction_holds_nothing) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   int32_t above = build_support(&setup.scene, 0, 1), node = build_mass(&setup.scene, 0, 0, 1);
   build_sized(&setup.scene, STRUT_SPRING, above, node, 100, 10, 0, 1.1);
   build_rough_contact(&setup.scene, node, 1e4, 10, 0.5, 0.5, 1e-3);
@@ -151,14 +136,12 @@ TEST(smooth_friction_holds_nothing) {
   assert_int_equal(s.status, STRUT_OK);
   assert_true(s.how.unstable);
   assert_relative(s.how.stiffness, -100 * (1.1 - length) / length, 1e-6);
-  strut_setup_free(&setup);
 }
 
 /* What method, step or accuracy a run has: it starts from the same bits. */
 TEST(every_method_starts_from_the_same_bits) {
   static const char *const method[] = {"verlet", "verlet-events", "adaptive", "midpoint", "euler"};
-  strut_setup setup;
-  rod(&setup, 1e5, 2.5);
+  OWN(strut_setup) setup = rod(1e5, 2.5);
   setup.experiment.settle.step = 1e-3; /* as the parser takes it from the file's solver.step */
   settled first = settle(&setup);
   assert_int_equal(first.status, STRUT_OK);
@@ -170,7 +153,6 @@ TEST(every_method_starts_from_the_same_bits) {
     assert_memory_equal(s.q, first.q, sizeof s.q);
     assert_int_equal(s.how.evaluations, first.how.evaluations);
   }
-  strut_setup_free(&setup);
 }
 
 /* The first row of a run: where it starts. */
@@ -198,13 +180,12 @@ static strut_status end(void *context, strut_status status, strut_error *error) 
 }
 
 TEST(an_accurate_run_starts_where_the_plain_one_does) {
-  strut_setup setup;
   first_row plain = {.taken = false}, accurate = {.taken = false};
   strut_sink sink = {&plain, begin, rows, end, STRUT_CHANNEL_POSITION}, *sinks[] = {&sink};
   strut_run_options options = {.sinks = sinks, .sink_count = 1};
-  strut_summary s, t;
-  rod(&setup, 1e5, 0);
-  strut_model *model = motion_compile(&setup.scene);
+  OWN(strut_summary) s, t;
+  OWN(strut_setup) setup = rod(1e5, 0);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, NULL), STRUT_OK);
   sink.context = &accurate;
   setup.experiment.accuracy = 0.01;
@@ -215,21 +196,16 @@ TEST(an_accurate_run_starts_where_the_plain_one_does) {
   assert_true(s.settle.unstable && t.settle.unstable);
   assert_int_equal(s.settle.evaluations, t.settle.evaluations); /* of one settling */
   assert_same_bits(s.settle_time, t.settle_time);
-  strut_summary_free(&s);
-  strut_summary_free(&t);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 /* `start` of statics is that state too; its list of equilibria knows it as the saddle it is. */
 TEST(statics_start_from_the_same_bits) {
   for (int perturb = 0; perturb < 2; perturb++) {
-    strut_setup setup;
-    rod(&setup, 1e5, 0);
+    OWN(strut_setup) setup = rod(1e5, 0);
     setup.experiment.settle.perturb = perturb;
     settled s = settle(&setup);
-    strut_model *model = motion_compile(&setup.scene);
-    strut_arena arena = {0};
+    OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
+    OWN(strut_arena) arena = {0};
     strut_rest_state stand;
     assert_int_equal(strut_rest_state_find(model, &setup.experiment, NULL, &arena, &stand, NULL),
                      STRUT_OK);
@@ -237,22 +213,17 @@ TEST(statics_start_from_the_same_bits) {
     assert_true(stand.at_rest);
     assert_int_equal(stand.settle.unstable, !perturb);
     strut_equilibria_options options = {0};
-    strut_equilibria all;
+    OWN(strut_equilibria) all;
     assert_int_equal(strut_equilibria_find(model, &setup.experiment, &options, &all, NULL),
                      STRUT_OK);
     assert_true(all.start >= 0);
     assert_int_equal(all.list[all.start].point.label, perturb ? STRUT_STABLE : STRUT_SADDLE);
-    strut_equilibria_free(&all);
-    strut_arena_free(&arena);
-    strut_model_free(model);
-    strut_setup_free(&setup);
   }
 }
 
 /* A mass that falls for ever: it ends after so many evaluations, and says who moves and how fast. */
 TEST(settling_is_bounded_in_work) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   build_mass(&setup.scene, 0, 0, 1);
   setup.scene.gravity[1] = -G;
   motion_experiment(&setup, 1e-3, 0.1);
@@ -264,20 +235,17 @@ TEST(settling_is_bounded_in_work) {
   assert_non_null(strstr(s.error.message, setup.scene.nodes[0].name));
   assert_non_null(strstr(s.error.message, "9.81 m/s")); /* after 1000 steps of 1 ms */
   assert_non_null(strstr(s.error.message, "initial.settle.evaluations"));
-  strut_setup_free(&setup);
 }
 
 /* A step above the stability limit, and none at all: it is chosen. */
 TEST(a_step_that_is_not_stable_is_replaced) {
   static const double step[] = {0.1, -1};
   for (size_t i = 0; i < 2; i++) {
-    strut_setup setup;
-    rod(&setup, 1e5, 2.5);
+    OWN(strut_setup) setup = rod(1e5, 2.5);
     setup.experiment.settle.step = step[i];
     settled s = settle(&setup);
     assert_int_equal(s.status, STRUT_OK);
     assert_within(s.how.step, 1e-3, 2.83 / sqrt(1e5));
     assert_near(s.q[3], -1 - G / 1e5, 1e-9);
-    strut_setup_free(&setup);
   }
 }

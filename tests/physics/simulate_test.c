@@ -4,78 +4,67 @@
 #include <string.h>
 #include <time.h>
 
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static const double PI = 3.14159265358979323846;
 
 /* A free mass of 2 kg that drifts at 0.3 m/s and is pushed by 5 N at 7.3 Hz, and by `steady` N. */
-static void drifting(strut_setup *setup, double steady) {
-  strut_setup_init(setup);
-  build_mass(&setup->scene, 0, 0, 2);
-  setup->scene.nodes[0].velocity[0] = 0.3;
-  build_load(&setup->scene, 0, 5, 0, build_sine(&setup->scene, 1, 7.3));
-  if (steady != 0) build_load(&setup->scene, 0, steady, 0, -1);
-  setup->experiment.step = 1e-3; /* 136.986 steps in a period */
-  setup->experiment.periods = 50;
-  setup->experiment.period_signal = 0;
-  setup->experiment.measure_last = 8;
+static strut_setup drifting(double steady) {
+  strut_setup setup = build_setup();
+  build_mass(&setup.scene, 0, 0, 2);
+  setup.scene.nodes[0].velocity[0] = 0.3;
+  build_load(&setup.scene, 0, 5, 0, build_sine(&setup.scene, 1, 7.3));
+  if (steady != 0) build_load(&setup.scene, 0, steady, 0, -1);
+  setup.experiment.step = 1e-3; /* 136.986 steps in a period */
+  setup.experiment.periods = 50;
+  setup.experiment.period_signal = 0;
+  setup.experiment.measure_last = 8;
+  return setup;
 }
 
 TEST(velocity_over_periods_that_the_step_does_not_divide) {
-  strut_setup setup;
-  drifting(&setup, 0);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_setup) setup = drifting(0);
+  OWN(strut_summary) s = motion_simulate(&setup);
   assert_near(s.velocity, 0.3 + 5 / (2 * 2 * PI * 7.3), 1e-9);
   assert_within(s.velocity_spread, 0, 1e-8);
   assert_relative(s.window.start, 42 / 7.3, 1e-15);
   assert_int_equal(s.spent.steps, (int64_t)ceil(50 / 7.3 / 1e-3));
   assert_same_bits(s.duration, 50 / 7.3);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 TEST(spread_of_an_accelerated_mass) {
-  strut_setup setup;
   const double steady = 0.4, period = 1 / 7.3, a = steady / 2;
-  drifting(&setup, steady);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_setup) setup = drifting(steady);
+  OWN(strut_summary) s = motion_simulate(&setup);
   double middle = 46 * period; /* of the window */
   assert_near(s.velocity, 0.3 + 5 / (2 * 2 * PI * 7.3) + a * middle, 1e-9);
   assert_near(s.velocity_spread, a * period * sqrt(8 * 9 / 12.0), 1e-8);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 /* Two masses that fly apart: of one node, or of their centre. */
 TEST(velocity_of_a_node_or_of_the_centre_of_mass) {
   for (int32_t node = -1; node < 2; node++) {
-    strut_setup setup;
-    strut_setup_init(&setup);
+    OWN(strut_setup) setup = build_setup();
     build_mass(&setup.scene, 0, 0, 1);
     build_mass(&setup.scene, 1, 0, 3);
     setup.scene.nodes[0].velocity[0] = -2, setup.scene.nodes[1].velocity[0] = 1;
     motion_experiment(&setup, 0.01, 1);
     setup.experiment.measure_node = node;
     setup.experiment.measure_last = 0.333;
-    strut_summary s = motion_simulate(&setup);
+    OWN(strut_summary) s = motion_simulate(&setup);
     assert_near(s.velocity, node < 0 ? 0.25 : node ? 1 : -2, 1e-12);
     assert_true(isnan(s.velocity_spread));
     assert_near(s.window.start, 0.667, 1e-15);
     assert_int_equal(s.end.node_count, 2);
     assert_string_equal(s.end.node_names[1], "n2");
     assert_near(s.end.positions[2], 2, 1e-13);
-    strut_summary_free(&s);
-    strut_setup_free(&setup);
   }
 }
 
 /* A mass that swings by 0.1 m about a ground too soft to be felt, 0.04 m above its middle. */
 TEST(duty_and_height_of_a_contact) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   build_support(&setup.scene, 0, -1);
   build_mass(&setup.scene, 0, 0, 1);
   build_member(&setup.scene, STRUT_SPRING, 0, 1, 4 * PI * PI, 0, 0); /* 1 Hz */
@@ -84,13 +73,11 @@ TEST(duty_and_height_of_a_contact) {
   setup.scene.ground.height = 0.04;
   motion_experiment(&setup, 1e-4, 5);
   setup.experiment.measure_last = 3;
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_summary) s = motion_simulate(&setup);
   assert_int_equal(s.end.contact_count, 1);
   assert_string_equal(s.end.contacts[0].node, "n2");
   assert_near(s.end.contacts[0].duty, 1 - acos(0.4) / PI, 3e-4);
   assert_near(s.end.contacts[0].max_height, 0.06, 1e-7);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 /* A mass that flies off sloping ground: its height is measured across the ground. */
@@ -98,30 +85,28 @@ TEST(height_above_sloping_ground) {
   static const double slopes[] = {0.4, -0.7, 0};
   for (int i = 0; i < 3; i++) {
     const double x = 0.3, y = 1.5, vx = 3, vy = 2.5, height = 0.25;
-    strut_setup setup;
-    strut_setup_init(&setup);
+    OWN(strut_setup) setup = build_setup();
     build_mass(&setup.scene, x, y, 1);
     setup.scene.nodes[0].velocity[0] = vx, setup.scene.nodes[0].velocity[1] = vy;
     build_contact(&setup.scene, 0, 1e4, 0);
     setup.scene.ground.height = height, setup.scene.ground.slope = slopes[i];
     motion_experiment(&setup, 1e-3, 1);
-    strut_summary s = motion_simulate(&setup);
+    OWN(strut_summary) s = motion_simulate(&setup);
     double up = (y + vy - height) * cos(slopes[i]) - (x + vx) * sin(slopes[i]);
     assert_near(s.end.contacts[0].max_height, up, 1e-12);
     assert_near(s.end.contacts[0].duty, 0, 0);
-    strut_summary_free(&s);
-    strut_setup_free(&setup);
   }
 }
 
 /* w = 20 rad/s: RK4 bears a step of 0.1414 s. */
-static void stiff(strut_setup *setup, double step, double duration) {
-  strut_setup_init(setup);
-  build_support(&setup->scene, 0, 0);
-  build_mass(&setup->scene, 1, 0, 0.5);
-  build_member(&setup->scene, STRUT_SPRING, 0, 1, 200, 0, 0);
-  setup->scene.nodes[1].start[0] = 1.1;
-  motion_experiment(setup, step, duration);
+static strut_setup stiff(double step, double duration) {
+  strut_setup setup = build_setup();
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 1, 0, 0.5);
+  build_member(&setup.scene, STRUT_SPRING, 0, 1, 200, 0, 0);
+  setup.scene.nodes[1].start[0] = 1.1;
+  motion_experiment(&setup, step, duration);
+  return setup;
 }
 
 static strut_status simulate(const strut_setup *setup, const strut_run_options *options,
@@ -136,11 +121,10 @@ static strut_status simulate(const strut_setup *setup, const strut_run_options *
 }
 
 TEST(a_step_above_the_limit_is_refused) {
-  strut_setup setup;
   strut_summary s;
   strut_error error;
   strut_run_options options = {0};
-  stiff(&setup, 0.142, 1);
+  OWN(strut_setup) setup = stiff(0.142, 1);
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_STEP_TOO_LARGE);
   assert_non_null(strstr(error.message, "0.142 s"));
   assert_non_null(strstr(error.message, "0.1414 s"));
@@ -150,15 +134,13 @@ TEST(a_step_above_the_limit_is_refused) {
   setup.experiment.step = 0.141;
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_OK);
   strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 TEST(force_runs_above_the_limit_until_it_diverges) {
-  strut_setup setup;
   strut_summary s;
   strut_error error;
   strut_run_options options = {.force = true};
-  stiff(&setup, 0.142, 0.142 * 20);
+  OWN(strut_setup) setup = stiff(0.142, 0.142 * 20);
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_OK); /* a short run survives */
   assert_int_equal(s.spent.steps, 20);
   strut_summary_free(&s);
@@ -174,16 +156,14 @@ TEST(force_runs_above_the_limit_until_it_diverges) {
   assert_int_equal(s.end.node_count, 2);
   assert_string_equal(s.end.node_names[1], "n2");
   strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 /* A mass that is blown away without any instability: beyond 1e10 sizes it is lost. */
 TEST(a_mass_that_flies_beyond_all_bounds_is_lost) {
-  strut_setup setup;
-  strut_summary s;
+  OWN(strut_summary) s;
   strut_error error;
   strut_run_options options = {0};
-  stiff(&setup, 0.01, 100);
+  OWN(strut_setup) setup = stiff(0.01, 100);
   build_mass(&setup.scene, 0, 1, 1);
   setup.scene.nodes[2].velocity[1] = 1e9;
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_DIVERGED);
@@ -191,8 +171,6 @@ TEST(a_mass_that_flies_beyond_all_bounds_is_lost) {
   assert_null(strstr(error.message, "use a smaller step"));
   assert_within(s.duration, 10, 10 + 64 * 0.01 + 1e-9);
   assert_true(isfinite(s.end.positions[2]));
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 static strut_flag stop;
@@ -206,46 +184,43 @@ static void stop_at_once(void *context, double fraction) {
 }
 
 TEST(an_interrupt_stops_within_a_second) {
-  strut_setup setup;
-  strut_summary s;
+  OWN(strut_summary) s;
   strut_error error;
   strut_run_options options = {
       .interrupt = &stop, .progress = stop_at_once, .progress_context = &reported};
   stop = 0;
   reported = 0;
-  stiff(&setup, 1e-3, 1e9);
+  OWN(strut_setup) setup = stiff(1e-3, 1e9);
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_INTERRUPTED);
   assert_int_equal(reported, 1);
   assert_within(s.spent.wall_time, 0, 1);
   assert_true(s.spent.steps > 0);
   assert_near(s.duration, 1e-3 * (double)s.spent.steps, 1e-9 * s.duration);
   assert_true(isfinite(s.end.positions[2]) && isfinite(s.energy.residual));
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 /* A weight on a spring, with everything on that settling must leave aside. */
-static void hanging(strut_setup *setup) {
-  strut_setup_init(setup);
-  build_support(&setup->scene, 0, 0);
-  build_mass(&setup->scene, 0.1, -1, 2);
-  int32_t spring = build_sized(&setup->scene, STRUT_SPRING, 0, 1, 300, 1, 0, 1);
-  setup->scene.gravity[1] = -9.81;
-  build_actuator(&setup->scene, spring, build_sine(&setup->scene, 0.1, 3));
-  build_load(&setup->scene, 1, 100, 0, build_sine(&setup->scene, 1, 2));
-  build_load(&setup->scene, 1, 0, -4, -1);
-  build_rough_contact(&setup->scene, 1, 1e3, 0, 0.5, 0.5, 1e-3);
-  setup->scene.ground.height = -5;
-  setup->scene.nodes[1].velocity[1] = 1;
-  setup->experiment.settle.wanted = true;
-  motion_experiment(setup, 1e-3, 1e-3);
+static strut_setup hanging(void) {
+  strut_setup setup = build_setup();
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 0.1, -1, 2);
+  int32_t spring = build_sized(&setup.scene, STRUT_SPRING, 0, 1, 300, 1, 0, 1);
+  setup.scene.gravity[1] = -9.81;
+  build_actuator(&setup.scene, spring, build_sine(&setup.scene, 0.1, 3));
+  build_load(&setup.scene, 1, 100, 0, build_sine(&setup.scene, 1, 2));
+  build_load(&setup.scene, 1, 0, -4, -1);
+  build_rough_contact(&setup.scene, 1, 1e3, 0, 0.5, 0.5, 1e-3);
+  setup.scene.ground.height = -5;
+  setup.scene.nodes[1].velocity[1] = 1;
+  setup.experiment.settle.wanted = true;
+  motion_experiment(&setup, 1e-3, 1e-3);
+  return setup;
 }
 
 TEST(settling_finds_the_static_equilibrium) {
-  strut_setup setup;
-  hanging(&setup);
-  strut_model *model = motion_compile(&setup.scene);
-  strut_summary s;
+  OWN(strut_setup) setup = hanging();
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
+  OWN(strut_summary) s;
   strut_run_options options = {0};
   assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, NULL), STRUT_OK);
   assert_true(s.settle_time > 0);
@@ -256,39 +231,32 @@ TEST(settling_finds_the_static_equilibrium) {
   assert_near(s.end.positions[3], -1 - (2 * 9.81 + 4) / 300, 1e-5);
   assert_relative(s.energy.initial,
                   150 * pow((2 * 9.81 + 4) / 300, 2) - 2 * 9.81 * (1 + (2 * 9.81 + 4) / 300), 1e-8);
-  strut_summary_free(&s);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 TEST(settling_gives_up_at_its_limit) {
-  strut_setup setup;
-  strut_summary s;
+  OWN(strut_summary) s;
   strut_error error;
   strut_run_options options = {0};
-  hanging(&setup);
+  OWN(strut_setup) setup = hanging();
   setup.experiment.settle.limit = 0.05;
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_NOT_SETTLED);
   assert_non_null(strstr(error.message, "0.05 s"));
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 /* On a slope of 0.2 rad a block rests with mu 0.5 if friction is kept, and without it never. */
 TEST(settling_on_a_slope_needs_friction) {
   for (int kept = 0; kept < 2; kept++) {
-    strut_setup setup;
-    strut_setup_init(&setup);
+    OWN(strut_setup) setup = build_setup();
     build_rough_contact(&setup.scene, build_mass(&setup.scene, 0, 0, 1), 1e4, 10, 0.5, 0.5, 1e-3);
     setup.scene.gravity[1] = -9.81;
     setup.scene.ground.slope = 0.2;
     setup.experiment.step = 1e-4, setup.experiment.duration = 0.01;
     setup.experiment.settle = (strut_settle){
         .wanted = true, .friction = kept, .speed = 1e-8, .acceleration = 1e-6, .limit = 3};
-    strut_summary s;
+    OWN(strut_summary) s;
     strut_error error = {0};
     strut_run_options options = {0};
-    strut_model *model = NULL;
+    OWN_POINTER(strut_model) model = NULL;
     assert_int_equal(strut_model_compile(&setup.scene, &model, &error), STRUT_OK);
     strut_status status = strut_simulate(model, &setup.experiment, &options, &s, &error);
     assert_int_equal(status, kept ? STRUT_OK : STRUT_NOT_SETTLED);
@@ -297,18 +265,14 @@ TEST(settling_on_a_slope_needs_friction) {
                   9.81 * cos(0.2) / 1e4, 1e-9);
     else
       assert_non_null(strstr(error.message, "initial.settle.friction"));
-    strut_summary_free(&s);
-    strut_model_free(model);
-    strut_setup_free(&setup);
   }
 }
 
 TEST(settling_can_be_interrupted) {
-  strut_setup setup;
   strut_summary s;
   strut_error error;
   strut_run_options options = {.interrupt = &stop};
-  hanging(&setup);
+  OWN(strut_setup) setup = hanging();
   setup.experiment.settle.limit = 1e9,
   setup.experiment.settle.speed = setup.experiment.settle.acceleration = 1e-30;
   stop = 1;
@@ -319,15 +283,13 @@ TEST(settling_can_be_interrupted) {
   setup.scene.members[0].rest_value = 1e30; /* a free fall, in which nothing ever slows down */
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_INTERRUPTED);
   strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 TEST(a_scene_without_mass_or_method_does_not_run) {
-  strut_setup setup;
   strut_summary s;
   strut_error error;
   strut_run_options options = {0};
-  stiff(&setup, 1e-3, 1);
+  OWN(strut_setup) setup = stiff(1e-3, 1);
   setup.experiment.integrator = "leapfrog";
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_USAGE);
   assert_non_null(strstr(error.message, "leapfrog"));
@@ -336,5 +298,4 @@ TEST(a_scene_without_mass_or_method_does_not_run) {
   setup.scene.nodes[1].mass = 0;
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_SINGULAR);
   strut_summary_free(&s);
-  strut_setup_free(&setup);
 }

@@ -2,8 +2,6 @@
 /* A free bar and a free frame: lengths, frequencies, centre of mass and angular momentum. */
 #include <math.h>
 
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/oscillation.h"
 #include "tests/support/structures.h"
@@ -15,14 +13,12 @@ static const double K = 1000, MASS = 0.1, L0 = 0.5;
  * of both ends, m W^2/12 (consistent) or m W^2/4 (lumped) per unit of length, against the spring.
  */
 static void steady_length(strut_mass_model mass_model, double share) {
-  strut_scene scene;
-  motion m;
-  strut_scene_init(&scene);
+  OWN(strut_scene) scene = build_scene();
   scene.mass_model = mass_model;
   int32_t a = build_node(&scene, -L0 / 2, 0), b = build_node(&scene, L0 / 2, 0);
   build_member(&scene, STRUT_BAR, a, b, K, 2, MASS);
   structure_throw(&scene, 3, -1, 40);
-  motion_begin(&m, &scene, 2e-5);
+  OWN(motion) m = motion_begin(&scene, 2e-5);
   motion_steps(&m, 100000);
   const double *q = m.state->q, *v = m.state->v;
   double x = q[2] - q[0], y = q[3] - q[1], vx = v[2] - v[0], vy = v[3] - v[1];
@@ -31,8 +27,6 @@ static void steady_length(strut_mass_model mass_model, double share) {
   assert_relative(length, L0 / (1 - share * MASS * spin * spin / K), 1e-10);
   assert_true(length > 1.005 * L0);
   assert_near(v[0] + v[2], 2 * 3.0, 1e-10);
-  motion_end(&m);
-  strut_scene_free(&scene);
 }
 
 TEST(a_consistent_bar_spins_at_its_steady_length) {
@@ -43,22 +37,18 @@ TEST(a_lumped_bar_spins_at_its_steady_length) { steady_length(STRUT_MASS_LUMPED,
 
 /* Along its axis a bar is a linear oscillator, so every step of RK4 is known. */
 static void vibrate(strut_mass_model mass_model, double factor) {
-  strut_scene scene;
-  motion m;
+  OWN(strut_scene) scene = build_scene();
   double omega = sqrt(factor * K / MASS), step = 0.05 / omega, re, im, stretch = 0.01;
-  strut_scene_init(&scene);
   scene.mass_model = mass_model;
   int32_t a = build_node(&scene, 0, 0), b = build_node(&scene, 0.3, 0.4);
   build_member(&scene, STRUT_BAR, a, b, K, 0, MASS);
   scene.nodes[1].start[0] += 0.6 * stretch;
   scene.nodes[1].start[1] += 0.8 * stretch;
-  motion_begin(&m, &scene, step);
+  OWN(motion) m = motion_begin(&scene, step);
   motion_steps(&m, 5000);
   const double *q = m.state->q;
   rk4_oscillation(step * omega, 5000, &re, &im);
   assert_near(hypot(q[2] - q[0], q[3] - q[1]), 0.5 + stretch * re, 1e-13);
-  motion_end(&m);
-  strut_scene_free(&scene);
 }
 
 TEST(a_free_bar_vibrates_at_its_frequency) {
@@ -66,7 +56,7 @@ TEST(a_free_bar_vibrates_at_its_frequency) {
   vibrate(STRUT_MASS_LUMPED, 4);
 }
 
-static void tumbling_frame(strut_scene *scene, strut_mass_model mass_model, double damping) {
+static strut_scene tumbling_frame(strut_mass_model mass_model, double damping) {
   x_frame frame = {.side = 1,
                    .cable_stiffness = 400,
                    .bar_stiffness = 2000,
@@ -75,12 +65,13 @@ static void tumbling_frame(strut_scene *scene, strut_mass_model mass_model, doub
                    .bar_mass = 0.4,
                    .cable_damping = damping,
                    .bar_damping = 0.1 * damping};
-  strut_scene_init(scene);
-  scene->mass_model = mass_model;
-  structure_x_frame(scene, &frame);
-  scene->nodes[2].mass = 0.3; /* so that the middle is nowhere special */
-  structure_throw(scene, 2, 5, 6);
-  scene->nodes[0].velocity[0] += 1;
+  strut_scene scene = build_scene();
+  scene.mass_model = mass_model;
+  structure_x_frame(&scene, &frame);
+  scene.nodes[2].mass = 0.3; /* so that the middle is nowhere special */
+  structure_throw(&scene, 2, 5, 6);
+  scene.nodes[0].velocity[0] += 1;
+  return scene;
 }
 
 /* Point masses and both halves of every member. */
@@ -100,12 +91,10 @@ static void centre(const strut_scene *scene, const double *p, double out[2]) {
 }
 
 static void follow_the_parabola(strut_mass_model mass_model) {
-  strut_scene scene;
-  motion m;
   double at[2], speed[2], end[2], step = 1e-3;
-  tumbling_frame(&scene, mass_model, 2);
+  OWN(strut_scene) scene = tumbling_frame(mass_model, 2);
   scene.gravity[0] = 0.5, scene.gravity[1] = -9.81;
-  motion_begin(&m, &scene, step);
+  OWN(motion) m = motion_begin(&scene, step);
   centre(&scene, m.state->q, at);
   centre(&scene, m.state->v, speed);
   for (int n = 1; n <= 10; n++) {
@@ -115,8 +104,6 @@ static void follow_the_parabola(strut_mass_model mass_model) {
     for (int c = 0; c < 2; c++)
       assert_near(end[c], at[c] + t * (speed[c] + 0.5 * t * scene.gravity[c]), 1e-12 * path);
   }
-  motion_end(&m);
-  strut_scene_free(&scene);
 }
 
 TEST(the_centre_of_mass_follows_its_parabola) {
@@ -145,15 +132,11 @@ static double angular_momentum(const strut_scene *scene, const double *q, const 
 static void keep_turning(strut_mass_model mass_model) {
   double error[5];
   for (int k = 0; k < 5; k++) {
-    strut_scene scene;
-    motion m;
-    tumbling_frame(&scene, mass_model, 0.5);
-    motion_begin(&m, &scene, ldexp(2e-3, -k));
+    OWN(strut_scene) scene = tumbling_frame(mass_model, 0.5);
+    OWN(motion) m = motion_begin(&scene, ldexp(2e-3, -k));
     double before = angular_momentum(&scene, m.state->q, m.state->v);
     motion_steps(&m, 1000 << k);
     error[k] = fabs(angular_momentum(&scene, m.state->q, m.state->v) / before - 1);
-    motion_end(&m);
-    strut_scene_free(&scene);
   }
   assert_true(error[0] < 1e-3 && error[4] < 1e-8);
   assert_true(observed_order(error, 5) > 3.9);

@@ -3,8 +3,6 @@
 #include <math.h>
 
 #include "tests/physics/driven_scenes.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 static const double PI = 3.14159265358979323846;
@@ -14,18 +12,16 @@ static const double PI = 3.14159265358979323846;
  * commensurable. When a run calls it steady the transient must have died to what the tolerance says.
  */
 static void slow(double zeta, double tolerance, double periods) {
-  strut_setup setup;
+  OWN(strut_setup) setup;
   double w = 2 * PI * sqrt(1.5);
   driven_oscillator(&setup, w, zeta);
   driven_watch(&setup, 0.005, periods, tolerance);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_summary) s = motion_simulate(&setup);
   double left = exp(-zeta * w * s.duration);
   if (s.steady.kind == STRUT_MOTION_PERIODIC)
     assert_within(left, 0, 10 * tolerance);
   else
     assert_int_equal(s.steady.kind, STRUT_MOTION_TRANSIENT);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 TEST(slow_transients_are_not_steady) {
@@ -38,15 +34,13 @@ TEST(slow_transients_are_not_steady) {
 }
 
 TEST(a_damped_oscillator_becomes_steady) {
-  strut_setup setup;
+  OWN(strut_setup) setup;
   driven_oscillator(&setup, 2 * PI * sqrt(1.5), 0.05);
   driven_watch(&setup, 0.005, 400, 0.005);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_summary) s = motion_simulate(&setup);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   assert_int_equal(s.steady.repeats, 1);
   assert_true(s.steady.periods < 60);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 /*
@@ -55,9 +49,8 @@ TEST(a_damped_oscillator_becomes_steady) {
  * tolerance of the speed; the speed reported is that of the latest five periods, so older by half of them.
  */
 static void creeping(double tolerance) {
-  strut_setup setup;
+  OWN(strut_setup) setup = build_setup();
   const double mu = 0.5, width = 100, damper = mu * 9.81 / width, speed = 1;
-  strut_setup_init(&setup);
   build_mass(&setup.scene, 0, -9.81 / 1e4, 1); /* where the ground carries it */
   setup.scene.gravity[1] = -9.81;
   build_contact(&setup.scene, 0, 1e4, 0);
@@ -66,15 +59,13 @@ static void creeping(double tolerance) {
   build_load(&setup.scene, 0, 1, 0, build_sine(&setup.scene, 1, 1));
   build_load(&setup.scene, 0, damper * speed, 0, -1);
   driven_watch(&setup, 0.005, 400, tolerance);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_summary) s = motion_simulate(&setup);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   double left = exp(-damper * s.duration); /* of the speed, after the latest period */
   assert_within(left, 0.25 * tolerance, 1.05 * tolerance);
   /* the sine's first push leaves a speed of its own, 1 / (2 pi), that dies alike */
   double reported = speed - (speed - 1 / (2 * PI)) * exp(-damper * (s.duration - 2.5));
   assert_near(s.velocity, reported, 0.1 * tolerance);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 TEST(what_is_steady_is_so_within_the_tolerance) {
@@ -85,36 +76,31 @@ TEST(what_is_steady_is_so_within_the_tolerance) {
 
 /* The drive\'s phase matters only every other period: forced at 1 Hz and 0.5 Hz. */
 TEST(a_motion_that_repeats_every_second_period) {
-  strut_setup setup;
+  OWN(strut_setup) setup;
   driven_oscillator(&setup, 2 * PI * sqrt(1.5), 0.1);
   build_load(&setup.scene, 1, 1, 0, build_sine(&setup.scene, 1, 0.5));
   driven_watch(&setup, 0.005, 400, 0.001);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_summary) s = motion_simulate(&setup);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   assert_int_equal(s.steady.repeats, 2);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 /* A shallow truss pushed through its flat shape, regularly or not: what is claimed holds later. */
 static void claim_holds(double amplitude, double frequency) {
-  strut_setup setup;
+  OWN(strut_setup) setup;
   driven_snap(&setup, 0.4, amplitude, frequency);
   driven_watch(&setup, 0.002 / frequency, 1500, 0.005);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_summary) s = motion_simulate(&setup);
   if (s.steady.kind == STRUT_MOTION_PERIODIC) { /* 480 is a multiple of all n */
     setup.experiment.steady.wanted = false;
     double y[2], at = s.duration * frequency;
     for (int k = 0; k < 2; k++) {
       setup.experiment.periods = round(at) + 480.0 * k;
-      strut_summary later = motion_simulate(&setup);
+      OWN(strut_summary) later = motion_simulate(&setup);
       y[k] = later.end.positions[5];
-      strut_summary_free(&later);
     }
     assert_near(y[1], y[0], 0.02);
   }
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 TEST(what_a_snapping_truss_is_said_to_do_it_does) {
@@ -125,38 +111,33 @@ TEST(what_a_snapping_truss_is_said_to_do_it_does) {
 /* A second load begins at t = 100 s, or has a period that never meets the drive's. */
 TEST(late_loads_and_beats_are_not_steady) {
   for (int k = 0; k < 3; k++) {
-    strut_setup setup;
+    OWN(strut_setup) setup;
     driven_oscillator(&setup, 2 * PI * sqrt(1.5), 0.1);
     int32_t signal = build_sine(&setup.scene, 0.3, k == 0 ? 1 : k == 1 ? 1.001 : 1.37);
     if (k == 0) setup.scene.signals[signal].start = 100;
     build_load(&setup.scene, 1, 1, 0, signal);
     driven_watch(&setup, 0.005, 250, 0.005);
-    strut_summary s = motion_simulate(&setup);
+    OWN(strut_summary) s = motion_simulate(&setup);
     if (k == 0) {
       assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
       assert_true(s.steady.periods > 105 && s.steady.periods < 200);
     } else {
       assert_int_equal(s.steady.kind, STRUT_MOTION_TRANSIENT);
     }
-    strut_summary_free(&s);
-    strut_setup_free(&setup);
   }
 }
 
 /* A driven block that friction holds: it stands still, and the run stops. */
 TEST(standing_still_is_steady) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   build_mass(&setup.scene, 0, 0, 1);
   setup.scene.gravity[1] = -9.81;
   build_rough_contact(&setup.scene, 0, 1e5, 300, 0.5, 0.5, 1e-3);
   build_load(&setup.scene, 0, 1, 0, build_sine(&setup.scene, 1, 5));
   driven_watch(&setup, 1e-4, 1000, 0.005);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_summary) s = motion_simulate(&setup);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   assert_int_equal(s.steady.repeats, 1);
   assert_true(s.steady.periods <= 60);
   assert_within(s.velocity, 0, 1e-4);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }

@@ -7,8 +7,6 @@
 #include <string.h>
 
 #include "tests/physics/driven_scenes.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 static const double PI = 3.14159265358979323846;
@@ -86,17 +84,15 @@ TEST(doubling_and_chaos) {
     int period = snap_truth(cases[i].push, cases[i].frequency, &lyapunov);
     assert_int_equal(period, cases[i].period);
     assert_true(period ? lyapunov < -0.02 : lyapunov > 0.2);
-    strut_setup setup;
+    OWN(strut_setup) setup;
     snap_scene(&setup, cases[i].push, cases[i].frequency);
-    strut_summary s = motion_simulate(&setup);
+    OWN(strut_summary) s = motion_simulate(&setup);
     if (period) {
       assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
       assert_int_equal(s.steady.repeats, period);
     } else {
       assert_int_not_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
     }
-    strut_summary_free(&s);
-    strut_setup_free(&setup);
   }
 }
 
@@ -104,19 +100,17 @@ TEST(doubling_and_chaos) {
 
 /* Parts of the steady motion that are left of the transient when it is called steady; else 0. */
 static double left_over(double ratio, double zeta, double tolerance, double periods) {
-  strut_setup setup;
+  OWN(strut_setup) setup;
   double w = 2 * PI * ratio, drive = 2 * PI;
   driven_oscillator(&setup, w, zeta);
   driven_watch(&setup, 0.01, periods, tolerance);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_summary) s = motion_simulate(&setup);
   assert_int_not_equal(s.steady.kind, STRUT_MOTION_IRREGULAR);
   double re = w * w - drive * drive, im = 2 * zeta * w * drive, size = hypot(re, im);
   double own = w * sqrt(1 - zeta * zeta), x = im / (size * size);
   double v = (-drive * re / (size * size) + zeta * w * x) / own;
   double left = exp(-zeta * w * s.duration) * hypot(x, v) * fmax(1, ratio) * size;
   bool steady = s.steady.kind == STRUT_MOTION_PERIODIC;
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
   return steady ? left : 0;
 }
 
@@ -143,19 +137,16 @@ TEST(transients_in_tune_with_the_drive) {
  */
 TEST(a_swing_that_grows_from_almost_nothing) {
   for (int power = 4; power <= 10; power += 2) {
-    strut_setup setup;
-    strut_setup_init(&setup);
+    OWN(strut_setup) setup = build_setup();
     build_support(&setup.scene, 0, 0);
     build_mass(&setup.scene, pow(10, -power), -1, 1);
     build_member(&setup.scene, STRUT_SPRING, 0, 1, 400, 6, 0);
     setup.scene.gravity[1] = -9.81;
     build_load(&setup.scene, 1, 0, 1, build_sine(&setup.scene, 20, 0.985));
     driven_watch(&setup, 0.005 / 0.985, 300, 0.005);
-    strut_summary s = motion_simulate(&setup);
+    OWN(strut_summary) s = motion_simulate(&setup);
     assert_int_not_equal(s.steady.kind,
                          STRUT_MOTION_PERIODIC); /* it is so at the earliest at 500 */
-    strut_summary_free(&s);
-    strut_setup_free(&setup);
   }
 }
 
@@ -165,8 +156,7 @@ TEST(a_swing_that_grows_from_almost_nothing) {
  * is beside the one before it.
  */
 TEST(a_drift_that_ends_in_a_jolt) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   const double stiffness = 0.04, damping = 500 * stiffness, drift = 0.3, push = 0.2;
   build_support(&setup.scene, 0, 0);
   build_mass(&setup.scene, 1 - drift, 0, 1);
@@ -176,30 +166,25 @@ TEST(a_drift_that_ends_in_a_jolt) {
   setup.scene.nodes[1].fixed[1] = true;
   build_load(&setup.scene, 1, 1, 0, build_sine(&setup.scene, push, 1));
   driven_watch(&setup, 0.01, 4000, 0.005);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_summary) s = motion_simulate(&setup);
   double sway = push / (2 * PI * hypot(damping, 2 * PI)),
          when = log(drift / (0.05 * drift + 2 * sway));
   assert_true((double)s.steady.periods > 500 * when);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }
 
 /* A frame at rest under its weight that nothing moves: it stands still, and the run ends at once. */
 TEST(standing_still_under_its_weight) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   build_support(&setup.scene, 0, 0);
   build_mass(&setup.scene, 0, -1, 1);
   build_member(&setup.scene, STRUT_SPRING, 0, 1, 981, 20, 0);
   setup.scene.gravity[1] = -9.81;
   build_load(&setup.scene, 1, 1, 0, build_sine(&setup.scene, 0, 2));
   driven_watch(&setup, 1e-3, 1000, 0.005);
-  strut_summary s = motion_simulate(&setup);
+  OWN(strut_summary) s = motion_simulate(&setup);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   assert_int_equal(s.steady.repeats, 1);
   assert_true(s.steady.periods < 60);
   assert_near(s.velocity, 0, 0);
-  strut_summary_free(&s);
-  strut_setup_free(&setup);
 }

@@ -5,7 +5,6 @@
  */
 #include <string.h>
 
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
@@ -34,13 +33,12 @@ static void expect_works(const motion *m, double *works) {
 
 TEST(works_are_powers_with_the_weights_of_the_stages) {
   strut_setup setup = {.experiment = strut_experiment_default()};
-  motion m;
   double works[STRUT_POWER_ROOM], before[STRUT_POWER_ROOM], most[STRUT_POWER_ROOM] = {0};
   setup.experiment.step = STEP;
   strut_scene_init(&setup.scene);
   structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
   setup.scene.ground.belt_speed = 0.05;
-  motion_begin_by(&m, &setup, "rk4", STEP);
+  OWN(motion) m = motion_begin_by(&setup, "rk4", STEP);
   m.state->balance = true;
   motion_steps(&m, SETTLED);
   for (int n = 0; n < STEPS; n++) {
@@ -57,6 +55,5 @@ TEST(works_are_powers_with_the_weights_of_the_stages) {
   assert_true(most[STRUT_POWER_DRIVE] > 0 && most[STRUT_POWER_BELT] > 0 &&
               most[STRUT_POWER_MEMBERS] > 0 && most[STRUT_POWER_CONTACT] > 0 &&
               most[STRUT_POWER_FRICTION] > 0);
-  motion_end(&m);
   strut_scene_free(&setup.scene);
 }

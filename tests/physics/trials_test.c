@@ -11,7 +11,6 @@
 #include "tests/physics/random_world.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
-#include "tests/support/test.h"
 
 enum { STEPS = 150, SCENES = 4, LEAST_RUNS = 12, ROOM = SLOW_PLACES + 64 };
 
@@ -37,11 +36,9 @@ static bool is_finite(const motion *m) {
 
 /* Fills q, v and the works after STEPS steps. False: the run has ended before. */
 static bool run(const random_world *world, const char *method, bool disturbed, double *end) {
-  model_run run;
-  motion m;
-  model_read_text(&run, "random.yaml", world->text, set_none);
+  OWN(model_run) run = model_read_text("random.yaml", world->text, set_none);
   motion_experiment(&run.setup, 1e-3, 0.2);
-  motion_begin_by(&m, &run.setup, method, 1e-3);
+  OWN(motion) m = motion_begin_by(&run.setup, method, 1e-3);
   m.state->balance = true;
   for (int n = 0; n < STEPS && is_finite(&m); n++) {
     m.state->watched.rehearsals = disturbed ? 2 : 0;
@@ -54,8 +51,6 @@ static bool run(const random_world *world, const char *method, bool disturbed, d
   memcpy(end, m.state->q, n * sizeof *end);
   memcpy(end + ROOM, m.state->v, n * sizeof *end);
   memcpy(end + 2 * ROOM, m.state->work, sizeof m.state->work);
-  motion_end(&m);
-  model_run_free(&run);
   return whole;
 }
 

@@ -10,8 +10,6 @@
 
 #include "engine/base/memory.h"
 #include "tests/physics/driven_scenes.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
@@ -95,39 +93,35 @@ static const char *const methods[] = {"rk4-events", "adaptive"};
 TEST(a_damped_oscillator_shrinks_volumes_by_its_damping) {
   const double w = 9.0, zeta = 0.05;
   for (size_t k = 0; k < 2; k++) {
-    strut_setup setup;
-    motion m;
+    OWN(strut_setup) setup;
     driven_oscillator(&setup, w, zeta);
-    motion_begin_by(&m, &setup, methods[k], 1e-3);
+    OWN(motion) m = motion_begin_by(&setup, methods[k], 1e-3);
     double *z = strut_allocate(2 * (size_t)m.model->length, sizeof *z), jacobian[4];
     memcpy(z, m.model->start, (size_t)m.model->length * sizeof *z);
     advance(&m, 1000, z, jacobian);
     assert_relative(determinant(2, jacobian), exp(-2.0 * zeta * w), 1e-6);
     strut_release(z);
-    motion_end(&m);
-    strut_setup_free(&setup);
   }
 }
 
 /* A mass of 1 kg on a spring that strikes the ground, damped there while it comes down. */
-static void striking_mass(strut_setup *setup, double ground_damping) {
-  strut_setup_init(setup);
-  build_support(&setup->scene, 0, 1.01);
-  build_mass(&setup->scene, 0, 0.01, 1);
-  build_member(&setup->scene, STRUT_SPRING, 0, 1, 100, 0.5, 0);
-  build_load(&setup->scene, 1, 0, 3, build_sine(&setup->scene, 1, 1.4));
-  build_contact(&setup->scene, 1, 2000, ground_damping);
-  setup->scene.nodes[1].fixed[0] = true;
+static strut_setup striking_mass(double ground_damping) {
+  strut_setup setup = build_setup();
+  build_support(&setup.scene, 0, 1.01);
+  build_mass(&setup.scene, 0, 0.01, 1);
+  build_member(&setup.scene, STRUT_SPRING, 0, 1, 100, 0.5, 0);
+  build_load(&setup.scene, 1, 0, 3, build_sine(&setup.scene, 1, 1.4));
+  build_contact(&setup.scene, 1, 2000, ground_damping);
+  setup.scene.nodes[1].fixed[0] = true;
+  return setup;
 }
 
 TEST(strikes_on_a_damped_ground_shrink_volumes_while_they_go_down) {
   const double damping = 8.0, step = 2e-5;
   enum { COUNT = 50000 };
   for (size_t k = 0; k < 2; k++) {
-    strut_setup setup;
-    motion m;
-    striking_mass(&setup, damping);
-    motion_begin_by(&m, &setup, methods[k], step);
+    OWN(strut_setup) setup = striking_mass(damping);
+    OWN(motion) m = motion_begin_by(&setup, methods[k], step);
     double *z = strut_allocate(2 * (size_t)m.model->length, sizeof *z), jacobian[4], down = 0.0;
     memcpy(z, m.model->start, (size_t)m.model->length * sizeof *z);
     strut_state_reset(m.model, m.state);
@@ -140,8 +134,6 @@ TEST(strikes_on_a_damped_ground_shrink_volumes_while_they_go_down) {
     advance(&m, COUNT, z, jacobian);
     assert_relative(determinant(2, jacobian), exp(-0.5 * COUNT * step - damping * down), 2e-3);
     strut_release(z);
-    motion_end(&m);
-    strut_setup_free(&setup);
   }
 }
 
@@ -159,11 +151,12 @@ static double largest(int32_t n, const double *a, const double *b, const double 
   return most;
 }
 
-static void begin_crawler(motion *m, strut_setup *setup, const char *method, int64_t steps) {
+static motion begin_crawler(strut_setup *setup, const char *method, int64_t steps) {
   strut_setup_init(setup);
   structure_crawler(&setup->scene, 10, 1e-4, 0.2, false);
   setup->experiment.tolerance = 1e-7;
-  motion_begin_by(m, setup, method, 0.1 / (double)steps);
+  motion m = motion_begin_by(setup, method, 0.1 / (double)steps);
+  return m;
 }
 
 /* Its derivative over a period from a steady motion against differences of runs with 30000 steps, relative to its
@@ -173,11 +166,10 @@ TEST(a_period_of_the_crawler_is_differentiated_through_all_its_events) {
   const double unit[2] = {1e-3, 1e-3 * 2.0 * 3.14159265358979 * 10.0};
   const double small[2] = {1e-7 * unit[0], 1e-7 * unit[1]};
   strut_setup setup;
-  motion m;
   double jacobian[4][MOST * MOST];
-  begin_crawler(&m, &setup, "rk4-events", STEPS);
+  motion m = begin_crawler(&setup, "rk4-events", STEPS);
   size_t both = 2 * (size_t)m.model->length;
-  double *z = strut_allocate(both, sizeof *z), *end = strut_allocate(both, sizeof *end);
+  RELEASED double *z = strut_allocate(both, sizeof *z), *end = strut_allocate(both, sizeof *end);
   memcpy(z, m.model->start, both / 2 * sizeof *z);
   for (int i = 0; i < PERIODS; i++) advance(&m, STEPS, z, NULL);
   memcpy(end, z, both * sizeof *end);
@@ -185,23 +177,21 @@ TEST(a_period_of_the_crawler_is_differentiated_through_all_its_events) {
   assert_true(n <= MOST);
   advance(&m, STEPS, end, jacobian[0]);
   assert_true(m.state->events > 50);
-  motion_end(&m);
+  motion_free(&m);
   strut_setup_free(&setup);
-  begin_crawler(&m, &setup, "rk4-events", FINE);
+  m = begin_crawler(&setup, "rk4-events", FINE);
   memcpy(end, z, both * sizeof *end);
   advance(&m, FINE, end, jacobian[1]);
   difference(&m, FINE, z, small, jacobian[2]);
-  motion_end(&m);
+  motion_free(&m);
   strut_setup_free(&setup);
-  begin_crawler(&m, &setup, "adaptive", 50);
+  m = begin_crawler(&setup, "adaptive", 50);
   memcpy(end, z, both * sizeof *end);
   advance(&m, 50, end, jacobian[3]);
   double whole = largest(n, jacobian[2], NULL, unit);
   assert_within(largest(n, jacobian[0], jacobian[2], unit) / whole, 0.0, 0.15);
   assert_within(largest(n, jacobian[1], jacobian[2], unit) / whole, 0.0, 3e-3);
   assert_within(largest(n, jacobian[3], jacobian[2], unit) / whole, 0.0, 3e-3);
-  motion_end(&m);
+  motion_free(&m);
   strut_setup_free(&setup);
-  strut_release(z);
-  strut_release(end);
 }

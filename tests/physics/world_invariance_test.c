@@ -10,8 +10,6 @@
 #include "engine/scene/profile.h"
 #include "tests/models/run_model.h"
 #include "tests/physics/random_world.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 
@@ -161,41 +159,41 @@ static void enlarge_numbers(strut_scene *scene) {
 
 /* ---- both ---- */
 
-static void read_scene(model_run *run, uint64_t seed, unsigned parts) {
+static model_run read_scene(uint64_t seed, unsigned parts) {
   static random_world world;
   uint64_t r = seed;
   random_world_make(&world, seed, parts);
-  model_read_text(run, "random.yaml", world.text, set_none);
-  strut_scene *scene = &run->setup.scene;
+  model_run run = model_read_text("random.yaml", world.text, set_none);
+  strut_scene *scene = &run.setup.scene;
   for (size_t i = 0; i < scene->ground_count; i++) /* along x and y */
     scene->grounds[i].moves[0] = scene->grounds[i].moves[1] = false;
   for (size_t i = 1; i < scene->node_count; i++)
     for (int c = 0; c < 2; c++) scene->nodes[i].velocity[c] = random_between(&r, -1, 1);
+  return run;
 }
 
-static void advance(motion *m, const strut_setup *setup, const char *method) {
-  motion_begin_by(m, setup, method, STEP);
-  strut_history_begin(m->model, m->state, 0);
-  motion_steps(m, STEPS);
+static motion advance(const strut_setup *setup, const char *method) {
+  motion m = motion_begin_by(setup, method, STEP);
+  strut_history_begin(m.model, m.state, 0);
+  motion_steps(&m, STEPS);
+  return m;
 }
 
 static double compare(uint64_t seed, unsigned parts, const char *method, void move(double *),
                       void change(strut_scene *)) {
-  model_run one, other;
-  motion a, b;
   double worst = 0;
-  read_scene(&one, seed, parts), read_scene(&other, seed, parts);
+  model_run one = read_scene(seed, parts), other = read_scene(seed, parts);
   change(&other.setup.scene);
   move_points(&other.setup.scene, move);
-  advance(&a, &one.setup, method);
-  advance(&b, &other.setup, method);
+  motion a = advance(&one.setup, method);
+  motion b = advance(&other.setup, method);
   for (size_t i = 0; i < one.setup.scene.node_count && !a.state->trouble; i++) {
     move(a.state->q + 2 * i);
     for (size_t c = 0; c < 2; c++)
       worst = fmax(worst, fabs(a.state->q[2 * i + c] - b.state->q[2 * i + c]));
   }
   if (a.state->trouble != b.state->trouble) worst = HUGE_VAL;
-  motion_end(&a), motion_end(&b);
+  motion_free(&a), motion_free(&b);
   model_run_free(&one), model_run_free(&other);
   return worst;
 }

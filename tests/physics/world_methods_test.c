@@ -9,7 +9,6 @@
 
 #include "tests/models/run_model.h"
 #include "tests/physics/random_world.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 static uint64_t scenes = 8; /* of each kind; more of them: test_world_methods SCENES */
@@ -25,13 +24,12 @@ typedef struct outcome {
 static outcome run(uint64_t seed, unsigned parts, const char *method, double step,
                    double tolerance) {
   static random_world world;
-  model_run run;
   outcome o = {.n = 0};
   strut_summary s;
   strut_error error = {0};
   const strut_run_options options = {0};
   random_world_make(&world, seed, parts);
-  model_read_text(&run, "random.yaml", world.text, set_none);
+  model_run run = model_read_text("random.yaml", world.text, set_none);
   motion_experiment(&run.setup, step, 0.2);
   run.setup.experiment.integrator = method;
   run.setup.experiment.tolerance = tolerance;
@@ -121,7 +119,7 @@ TEST(methods_keep_their_promises) {
 
 /* A whole run with so many allocations. */
 static strut_status run_with(int64_t allocations, const strut_setup *setup) {
-  strut_model *model = NULL;
+  OWN_POINTER(strut_model) model = NULL;
   strut_summary s = {.end.node_count = 0};
   const strut_run_options options = {0};
   strut_fail_allocation_after(allocations);
@@ -129,7 +127,6 @@ static strut_status run_with(int64_t allocations, const strut_setup *setup) {
   if (status == STRUT_OK) status = strut_simulate(model, &setup->experiment, &options, &s, NULL);
   strut_fail_allocation_after(-1);
   if (model) strut_summary_free(&s);
-  strut_model_free(model);
   return status;
 }
 
@@ -137,9 +134,8 @@ static strut_status run_with(int64_t allocations, const strut_setup *setup) {
 TEST(refused_memory) {
   static random_world world;
   static const char *const methods[] = {"rk4", "rk4-events", "adaptive"};
-  model_run run;
   random_world_make(&world, 1, WORLD_ALL | WORLD_LIGHT);
-  model_read_text(&run, "random.yaml", world.text, set_none);
+  OWN(model_run) run = model_read_text("random.yaml", world.text, set_none);
   for (int m = 0; m < 3; m++) {
     int64_t n = 0;
     motion_experiment(&run.setup, 1e-3, 2e-3);
@@ -149,5 +145,4 @@ TEST(refused_memory) {
     print_message("%s: %d allocations\n", methods[m], (int)n);
     assert_true(n >= 10);
   }
-  model_run_free(&run);
 }

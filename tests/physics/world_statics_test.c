@@ -10,7 +10,6 @@
 #include "engine/statics/potential.h"
 #include "tests/models/run_model.h"
 #include "tests/physics/random_world.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 
@@ -28,14 +27,14 @@ typedef struct fixture {
 static void begin(fixture *f, uint64_t seed, unsigned parts) {
   uint64_t r = seed + 99;
   random_world_make(&f->world, seed, parts);
-  model_read_text(&f->run, "random.yaml", f->world.text, set_none);
+  f->run = model_read_text("random.yaml", f->world.text, set_none);
   strut_scene *scene = &f->run.setup.scene;
   for (size_t i = 0; i < scene->ground_count; i++)
     scene->grounds[i].moves[0] = scene->grounds[i].moves[1] = false;
   for (size_t i = 0; i < scene->contact_count; i++)
     scene->contacts[i].friction.law = STRUT_FRICTION_NONE;
   scene->actuator_count = 0;
-  motion_begin(&f->m, scene, 1e-3);
+  f->m = motion_begin(scene, 1e-3);
   assert_int_equal(strut_potential_create(f->m.model, NULL, true, &f->potential, NULL), STRUT_OK);
   assert_true(f->m.model->length <= 2 * MOST);
   memcpy(f->q, f->m.model->start, (size_t)f->m.model->length * sizeof *f->q);
@@ -45,7 +44,7 @@ static void begin(fixture *f, uint64_t seed, unsigned parts) {
 
 static void end(fixture *f) {
   strut_potential_free(f->potential);
-  motion_end(&f->m);
+  motion_free(&f->m);
   model_run_free(&f->run);
 }
 

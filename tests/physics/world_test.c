@@ -11,7 +11,6 @@
 #include "engine/forces/support_motion.h"
 #include "tests/models/run_model.h"
 #include "tests/physics/random_world.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 
@@ -42,13 +41,13 @@ typedef struct fixture {
 
 static void begin(fixture *f, uint64_t seed, unsigned parts) {
   random_world_make(&f->world, seed, parts);
-  model_read_text(&f->run, "random.yaml", f->world.text, set_none);
-  motion_begin_by(&f->m, &f->run.setup, "rk4", STEP);
+  f->run = model_read_text("random.yaml", f->world.text, set_none);
+  f->m = motion_begin_by(&f->run.setup, "rk4", STEP);
   slow_world_begin(&f->slow, &f->run.setup.scene, f->world.texts, f->world.text_count, &f->at);
 }
 
 static void end(fixture *f) {
-  motion_end(&f->m);
+  motion_free(&f->m);
   model_run_free(&f->run);
 }
 
@@ -208,45 +207,42 @@ TEST(motions) {
 }
 
 /* A mass of 1 kg in the corner of two sides, pushed along them; `rest` begins with its depth. */
-static void rest_in_corner(model_run *run, motion *m, const char *rest) {
+static model_run rest_in_corner(motion *m, const char *rest) {
   char text[512];
   snprintf(text, sizeof text,
            "strut: 1\ngravity: [0, -9.81]\nsolver: {step: 1 ms}\nrun: {duration: 0.2}\n"
            "nodes: {a: {mass: 1, position: [0, %s}\n",
            rest);
-  model_read_text(run, "corner.yaml", text, set_none);
-  motion_begin(m, &run->setup.scene, STEP);
+  model_run run = model_read_text("corner.yaml", text, set_none);
+  *m = motion_begin(&run.setup.scene, STEP);
   strut_forces_evaluate(m->model, m->state, 0, m->state->q, m->state->v);
+  return run;
 }
 
 /* Frictions of two sides that meet flatly: found in turns they would take hundreds of turns. */
 TEST(a_node_rests_in_a_flat_corner) {
-  model_run run;
-  motion m;
-  rest_in_corner(&run, &m,
-                 "-4.96 mm]}}\nloads: {push: {node: a, force: [1, 0]}}\n"
-                 "ground: {profile: [[-1, 0.05], [0, 0], [1, 0.05]], stiffness: 1000,"
-                 " friction: {mu: 0.5, stick_velocity: 0.1}");
+  OWN(motion) m;
+  OWN(model_run) run =
+      rest_in_corner(&m,
+                     "-4.96 mm]}}\nloads: {push: {node: a, force: [1, 0]}}\n"
+                     "ground: {profile: [[-1, 0.05], [0, 0], [1, 0.05]], stiffness: 1000,"
+                     " friction: {mu: 0.5, stick_velocity: 0.1}");
   assert_near(m.state->latest.force[0], 0, 1e-13);
   assert_near(m.state->latest.force[1], 0, 1e-13);
   assert_within(m.state->latest.friction[0], 0.3, 0.4);
   assert_within(m.state->latest.friction[1], -1.4, -1.3);
-  motion_end(&m);
-  model_run_free(&run);
 }
 
 /* Too deep to be held by both: the first side breaks loose, and the second holds the rest. */
 TEST(one_side_of_a_flat_corner_breaks_loose) {
-  model_run run;
-  motion m;
-  rest_in_corner(&run, &m,
-                 "-10 mm]}}\nloads: {push: {node: a, force: [2, 0]}}\n"
-                 "ground: {profile: [[-1, 0.0159], [0, 0], [1, -0.015]], stiffness: 1000,"
-                 " friction: {mu_forward: 0.5, mu_backward: 0.2, stick_velocity: 0.1}");
+  OWN(motion) m;
+  OWN(model_run) run =
+      rest_in_corner(&m,
+                     "-10 mm]}}\nloads: {push: {node: a, force: [2, 0]}}\n"
+                     "ground: {profile: [[-1, 0.0159], [0, 0], [1, -0.015]], stiffness: 1000,"
+                     " friction: {mu_forward: 0.5, mu_backward: 0.2, stick_velocity: 0.1}");
   const double *f = m.state->latest.force, *t = m.state->latest.pose[1].axes.tangent;
   assert_near(m.state->latest.friction[0], 0.2 * m.state->latest.normal[0], 1e-13);
   assert_near(f[0] * t[0] + f[1] * t[1], 0, 1e-13);
   assert_within(m.state->latest.friction[1], -4.2, -4.1);
-  motion_end(&m);
-  model_run_free(&run);
 }

@@ -5,6 +5,18 @@
 
 #include "tests/support/check.h"
 
+strut_scene build_scene(void) {
+  strut_scene scene;
+  strut_scene_init(&scene);
+  return scene;
+}
+
+strut_setup build_setup(void) {
+  strut_setup setup;
+  strut_setup_init(&setup);
+  return setup;
+}
+
 /* Room for one more in an array of `count` things: it doubles at 8, 16, 32, ... */
 static void *grown(strut_scene *scene, void *array, size_t count, size_t size) {
   bool full = count == 0 || (count >= 8 && (count & (count - 1)) == 0);

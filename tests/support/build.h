@@ -2,14 +2,16 @@
 /**
  * Scenes made by hand, thing by thing. Each function that adds returns the new thing's index.
  *
- * Begin with strut_scene_init and end with strut_scene_free. Things are called n1, n2, ..., m1, ...
+ * Begin with build_scene or build_setup and end with strut_scene_free or strut_setup_free. Things are called n1, n2, ..., m1, ...
  * A function that is refused memory fails the test.
  */
 #ifndef STRUT_TESTS_SUPPORT_BUILD_H
 #define STRUT_TESTS_SUPPORT_BUILD_H
 
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 
+strut_scene build_scene(void);
+strut_setup build_setup(void);
 /** A free node, drawn and starting at x, y [m], without mass and at rest. */
 int32_t build_node(strut_scene *scene, double x, double y);
 /** The same with a point mass [kg]. */

@@ -23,33 +23,33 @@ strut_model *motion_compile(const strut_scene *scene) {
   return model;
 }
 
-static void begin(motion *m, const strut_scene *scene, const strut_experiment *experiment,
-                  const char *method, double step) {
+static motion begin(const strut_scene *scene, const strut_experiment *experiment,
+                    const char *method, double step) {
   const strut_integrator_settings settings = strut_integrator_settings_of(experiment);
-  m->model = motion_compile(scene);
-  assert_non_null(m->model->mass);
-  assert_int_equal(strut_state_create(m->model, &m->state, NULL), STRUT_OK);
-  m->method = strut_integrator_find(method);
-  assert_non_null(m->method);
-  m->workspace = m->method->create(m->model, m->state, &settings);
-  assert_non_null(m->workspace);
-  m->step = step;
+  motion m = {
+      .model = motion_compile(scene), .method = strut_integrator_find(method), .step = step};
+  assert_non_null(m.model->mass);
+  assert_int_equal(strut_state_create(m.model, &m.state, NULL), STRUT_OK);
+  assert_non_null(m.method);
+  m.workspace = m.method->create(m.model, m.state, &settings);
+  assert_non_null(m.workspace);
+  return m;
 }
 
-void motion_begin(motion *m, const strut_scene *scene, double step) {
+motion motion_begin(const strut_scene *scene, double step) {
   const strut_experiment experiment = strut_experiment_default();
-  begin(m, scene, &experiment, "rk4", step);
+  return begin(scene, &experiment, "rk4", step);
 }
 
-void motion_begin_by(motion *m, const strut_setup *setup, const char *method, double step) {
-  begin(m, &setup->scene, &setup->experiment, method, step);
+motion motion_begin_by(const strut_setup *setup, const char *method, double step) {
+  return begin(&setup->scene, &setup->experiment, method, step);
 }
 
 void motion_steps(motion *m, int64_t count) {
   m->method->advance(m->model, m->state, m->workspace, m->step, count);
 }
 
-void motion_end(motion *m) {
+void motion_free(motion *m) {
   strut_state_free(m->state);
   strut_model_free(m->model);
 }

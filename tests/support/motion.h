@@ -1,14 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * A compiled scene on its way through time: model, state and a method's workspace in one.
+ * A compiled scene on its way through time: model, state and a method's workspace in one. With it come
+ * scenes made by hand and assertions about numbers.
  */
 #ifndef STRUT_TESTS_SUPPORT_MOTION_H
 #define STRUT_TESTS_SUPPORT_MOTION_H
 
+#include "engine/base/memory.h"
 #include "engine/forces/forces.h"
 #include "engine/integrate/integrator.h"
 #include "engine/run/simulate.h"
 #include "engine/scene/experiment.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+
+FREED_BY(strut_model_free, strut_model)
+FREED_BY(strut_state_free, strut_state)
+/** As FREED, by strut_release. */
+#define RELEASED __attribute__((cleanup(own_release)))
+static inline void own_release(void *pointer) { strut_release(*(void **)pointer); }
 
 typedef struct motion {
   strut_model *model;
@@ -19,11 +29,11 @@ typedef struct motion {
 } motion;
 
 /** Checks and compiles the scene and stands at its start; whatever fails, fails the test. */
-void motion_begin(motion *m, const strut_scene *scene, double step);
+motion motion_begin(const strut_scene *scene, double step);
 /** The same by the method of that name, with the settings of the experiment. */
-void motion_begin_by(motion *m, const strut_setup *setup, const char *method, double step);
+motion motion_begin_by(const strut_setup *setup, const char *method, double step);
 void motion_steps(motion *m, int64_t count);
-void motion_end(motion *m);
+void motion_free(motion *m);
 
 /** Checks and compiles; whatever fails, fails the test. Free it with strut_model_free. */
 strut_model *motion_compile(const strut_scene *scene);

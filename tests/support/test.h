@@ -18,6 +18,8 @@
 
 #include <cmocka.h>
 
+#include "tests/support/own.h"
+
 /** When a function runs: as a test, before each test, before the first, after the last. */
 typedef enum test_moment {
   TEST_ITSELF,

@@ -4,7 +4,6 @@
 
 #include "engine/scene/law.h"
 #include "tests/support/check.h"
-#include "tests/support/test.h"
 
 static const strut_law_numbers numbers = {.area = 2.0, .exponent = 1.4, .outside = 3.0};
 

@@ -98,6 +98,10 @@ static void expect(sample *s, strut_subject subject, size_t index, const char *k
   fill(s);
 }
 
+static sample s;
+
+BEFORE_EACH { fill(&s); }
+
 /* The same of the sample after a change. */
 #define EXPECT(change, subject, index, key, word)                                                  \
   do {                                                                                             \
@@ -106,18 +110,13 @@ static void expect(sample *s, strut_subject subject, size_t index, const char *k
   } while (0)
 
 TEST(a_valid_scene_has_no_findings) {
-  sample s;
-  strut_findings findings = {0};
-  fill(&s);
+  OWN(strut_findings) findings = {0};
   assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings), STRUT_OK);
   assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_STATICS, &findings), STRUT_OK);
   assert_int_equal(findings.count, 0);
-  strut_findings_free(&findings);
 }
 
 TEST(nodes) {
-  sample s;
-  fill(&s);
   EXPECT(s.nodes[1].name = "a", NODE, 1, NULL, "two nodes 'a'");
   EXPECT(s.nodes[1].name = NULL, NODE, 1, NULL, "no name");
   EXPECT(s.nodes[1].name = "", NODE, 1, NULL, "no name");
@@ -134,8 +133,6 @@ TEST(nodes) {
 }
 
 TEST(members) {
-  sample s;
-  fill(&s);
   for (int32_t bad = -1; bad <= 3; bad += 4) {
     s.members[0].node[1] = bad;
     expect(&s, STRUT_ON_MEMBER, 0, "nodes", "does not exist");
@@ -171,17 +168,13 @@ TEST(members) {
 }
 
 TEST(a_spring_of_no_length_may_begin_in_one_place) {
-  sample s;
   strut_findings findings = {0};
-  fill(&s);
   s.nodes[1].position[0] = s.nodes[1].start[0] = 0;
   s.members[0].rest_kind = STRUT_REST_LENGTH, s.members[0].rest_value = 0;
   assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings), STRUT_OK);
 }
 
 TEST(ground) {
-  sample s;
-  fill(&s);
   EXPECT(s.setup.scene.ground.height = (double)NAN, GROUND, 0, "height", "finite");
   EXPECT(s.setup.scene.ground.belt_speed = (double)INFINITY, GROUND, 0, "belt_speed", "finite");
   EXPECT(s.setup.scene.ground.slope = 1.5707963267948966, GROUND, 0, "slope", "90 deg");
@@ -201,8 +194,6 @@ TEST(ground) {
 }
 
 TEST(signals) {
-  sample s;
-  fill(&s);
   EXPECT((s.setup.experiment.periods = 0, s.setup.experiment.duration = 20,
           s.signals[0].frequency = 0),
          SIGNAL, 0, "frequency", "signal 'wave'");
@@ -225,8 +216,7 @@ TEST(sums_cannot_explode) {
   static strut_signal signals[101];
   static int32_t terms[101][2];
   for (int wide = 0; wide < 2; wide++) {
-    sample s;
-    strut_findings findings = {0};
+    OWN(strut_findings) findings = {0};
     fill(&s);
     signals[0] = strut_signal_default(STRUT_CONSTANT);
     for (int i = 1; i <= 100; i++) {
@@ -241,13 +231,10 @@ TEST(sums_cannot_explode) {
     assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings), STRUT_BAD_SCENE);
     assert_int_equal(findings.count, 1);
     assert_non_null(strstr(findings.items[0].message, "more than 10000 terms"));
-    strut_findings_free(&findings);
   }
 }
 
 TEST(drives) {
-  sample s;
-  fill(&s);
   EXPECT(s.actuators[0].member = 2, ACTUATOR, 0, "member", "does not exist");
   EXPECT(s.actuators[0].signal = -1, ACTUATOR, 0, "signal", "no signal");
   EXPECT(s.actuators[0].signal = 4, ACTUATOR, 0, "signal", "no signal");
@@ -257,63 +244,37 @@ TEST(drives) {
 }
 
 TEST(shapes) {
-  sample s;
   int32_t nodes[2] = {1, 2};
   double position[3][2] = {{0, 0}, {1, 0}, {2, 0}};
   strut_node_set set = {2, nodes};
   strut_configuration configuration = {"I", true, position, 1, &set};
   strut_configuration two[2] = {configuration, configuration};
-  fill(&s);
-  for (int spoilt = 0; spoilt < 12; spoilt++) {
-    s.setup.scene.configurations = two;
-    s.setup.scene.configuration_count = 1;
-    two[0] = configuration;
-    set = (strut_node_set){2, nodes};
-    nodes[0] = 1, nodes[1] = 2, position[2][1] = 0;
-    if (spoilt == 0) {
-      s.setup.scene.configuration_count = 2;
-      expect(&s, STRUT_ON_CONFIGURATION, 1, NULL, "two configurations 'I'");
-    } else if (spoilt == 1) {
-      nodes[1] = 0;
-      expect(&s, STRUT_ON_CONFIGURATION, 0, "contacts", "'nodes' of the ground lacks it");
-    } else if (spoilt == 2) {
-      nodes[1] = 3;
-      expect(&s, STRUT_ON_CONFIGURATION, 0, "contacts", "does not exist");
-    } else if (spoilt == 3) {
-      nodes[1] = 1;
-      expect(&s, STRUT_ON_CONFIGURATION, 0, "contacts", "twice");
-    } else if (spoilt == 4) {
-      set.count = 0;
-      expect(&s, STRUT_ON_CONFIGURATION, 0, "contacts", "empty");
-    } else if (spoilt == 5) {
-      position[2][1] = (double)NAN;
-      expect(&s, STRUT_ON_CONFIGURATION, 0, NULL, "not finite");
-    } else if (spoilt == 6) {
-      s.setup.experiment.search.supports = &set, s.setup.experiment.search.support_count = 1;
-      s.setup.scene.configuration_count = 0, nodes[0] = -1;
-      expect(&s, STRUT_ON_EQUILIBRIA, 0, "supports", "does not exist");
-    } else if (spoilt == 7) {
-      s.setup.experiment.search.starts = -1;
-      expect(&s, STRUT_ON_EQUILIBRIA, 0, "starts", "from 0");
-    } else if (spoilt == 8) {
-      s.setup.experiment.search.seed = UINT64_MAX;
-      expect(&s, STRUT_ON_EQUILIBRIA, 0, "seed", "at most");
-    } else if (spoilt == 9) {
-      s.setup.scene.start_equilibrium = 1;
-      expect(&s, STRUT_ON_INITIAL, 0, NULL, "does not exist");
-    } else if (spoilt == 10) {
-      s.setup.scene.start_equilibrium = 0;
-      expect(&s, STRUT_ON_INITIAL, 0, NULL, "nothing to settle");
-    } else {
-      s.setup.scene.ground.present = false, s.setup.scene.contact_count = 0;
-      expect(&s, STRUT_ON_CONFIGURATION, 0, "contacts", "need a ground");
-    }
-  }
+#define SPOILT(change, subject, index, key, word)                                                  \
+  do {                                                                                             \
+    s.setup.scene.configurations = two, s.setup.scene.configuration_count = 1;                     \
+    two[0] = configuration, set = (strut_node_set){2, nodes};                                      \
+    nodes[0] = 1, nodes[1] = 2, position[2][1] = 0;                                                \
+    EXPECT(change, subject, index, key, word);                                                     \
+  } while (0)
+  SPOILT(s.setup.scene.configuration_count = 2, CONFIGURATION, 1, NULL, "two configurations 'I'");
+  SPOILT(nodes[1] = 0, CONFIGURATION, 0, "contacts", "'nodes' of the ground lacks it");
+  SPOILT(nodes[1] = 3, CONFIGURATION, 0, "contacts", "does not exist");
+  SPOILT(nodes[1] = 1, CONFIGURATION, 0, "contacts", "twice");
+  SPOILT(set.count = 0, CONFIGURATION, 0, "contacts", "empty");
+  SPOILT(position[2][1] = (double)NAN, CONFIGURATION, 0, NULL, "not finite");
+  SPOILT((s.setup.experiment.search.supports = &set, s.setup.experiment.search.support_count = 1,
+          s.setup.scene.configuration_count = 0, nodes[0] = -1),
+         EQUILIBRIA, 0, "supports", "does not exist");
+  SPOILT(s.setup.experiment.search.starts = -1, EQUILIBRIA, 0, "starts", "from 0");
+  SPOILT(s.setup.experiment.search.seed = UINT64_MAX, EQUILIBRIA, 0, "seed", "at most");
+  SPOILT(s.setup.scene.start_equilibrium = 1, INITIAL, 0, NULL, "does not exist");
+  SPOILT(s.setup.scene.start_equilibrium = 0, INITIAL, 0, NULL, "nothing to settle");
+  SPOILT((s.setup.scene.ground.present = false, s.setup.scene.contact_count = 0), CONFIGURATION, 0,
+         "contacts", "need a ground");
+#undef SPOILT
 }
 
 TEST(experiment) {
-  sample s;
-  fill(&s);
   strut_experiment *e = &s.setup.experiment;
   EXPECT(s.setup.experiment.settle.speed = 0, INITIAL, 0, "speed", "above zero");
   EXPECT(s.setup.experiment.settle.limit = (double)NAN, INITIAL, 0, "limit", "finite");
@@ -338,36 +299,29 @@ TEST(experiment) {
 }
 
 TEST(statics_need_neither_mass_nor_run) {
-  sample s;
-  strut_findings findings = {0};
-  fill(&s);
+  OWN(strut_findings) findings = {0};
   s.nodes[2].mass = s.members[0].mass = s.members[1].mass = 0;
   s.setup.experiment.step = s.setup.experiment.periods = 0;
   s.setup.experiment.measure_last = s.setup.experiment.output_last = 0;
   assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_STATICS, &findings), STRUT_OK);
   assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings), STRUT_BAD_SCENE);
   assert_int_equal(findings.count, 4); /* nodes b and c, the step, the run */
-  strut_findings_free(&findings);
 }
 
 TEST(no_memory) {
-  sample s;
   strut_status status = STRUT_NO_MEMORY;
-  fill(&s);
   s.nodes[2].mass = -1;
   for (int n = 0; status == STRUT_NO_MEMORY && n < 100; n++) {
-    strut_findings findings = {0};
+    OWN(strut_findings) findings = {0};
     strut_fail_allocation_after(n);
     status = strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings);
     strut_fail_allocation_after(-1);
-    strut_findings_free(&findings);
   }
   assert_int_equal(status, STRUT_BAD_SCENE);
 }
 
 /* A valid cell and a valid collision, each spoilt in turn. */
 TEST(cells_and_collisions) {
-  sample s;
   int32_t corners[3], *node = corners;
   strut_cell cell;
   strut_collision collision;

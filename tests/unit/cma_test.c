@@ -10,6 +10,8 @@
 #include "engine/study/search/optimisers.h"
 #include "tests/support/test.h"
 
+FREED_BY(strut_cma_free, strut_cma)
+
 enum { MOST = 10, SEEDS = 15 };
 
 typedef double function(const double *x, size_t n);
@@ -112,11 +114,10 @@ static double measure(const char *name, function *f, size_t n, size_t population
                                        .evaluations = 30000,
                                        .target = 1e-10,
                                        .has_target = 1};
-    strut_cma *c = search(&options, f);
+    OWN_POINTER(strut_cma) c = search(&options, f);
     bool reached = strut_cma_stopped(c) == STRUT_CMA_TARGET;
     *failures += !reached;
     counts[seed - 1] = reached ? (double)strut_cma_evaluations(c) : 1e9;
-    strut_cma_free(c);
   }
   qsort(counts, SEEDS, sizeof *counts, ascending);
   printf("%s, %zu numbers: %g evaluations, %d of %d failed\n", name, n, counts[SEEDS / 2],
@@ -139,21 +140,19 @@ TEST(evaluations_are_those_of_others) {
 
 TEST(a_minimum_on_a_bound_is_found) {
   const strut_cma_options options = {.dimension = 4, .seed = 3, .evaluations = 20000};
-  strut_cma *c = search(&options, ramp);
+  OWN_POINTER(strut_cma) c = search(&options, ramp);
   double value;
   const double *best = strut_cma_best(c, &value);
   for (size_t i = 0; i < 4; i++) assert_true(best[i] < 1e-8);
   assert_true(strut_cma_evaluations(c) < 3000);
   assert_int_equal(strut_cma_stopped(c), STRUT_CMA_POINT);
-  strut_cma_free(c);
 }
 
 TEST(failed_points_are_worst) {
   const strut_cma_options options = {
       .dimension = 3, .seed = 4, .evaluations = 5000, .target = 1e-10, .has_target = 1};
-  strut_cma *c = search(&options, half);
+  OWN_POINTER(strut_cma) c = search(&options, half);
   assert_int_equal(strut_cma_stopped(c), STRUT_CMA_TARGET);
-  strut_cma_free(c);
 }
 
 TEST(nothing_to_find_ends) {
@@ -172,10 +171,9 @@ TEST(nothing_to_find_ends) {
 
 TEST(one_number_is_searched) {
   const strut_cma_options options = {.dimension = 1, .seed = 1, .target = 1e-12, .has_target = 1};
-  strut_cma *c = search(&options, sphere);
+  OWN_POINTER(strut_cma) c = search(&options, sphere);
   assert_int_equal(strut_cma_stopped(c), STRUT_CMA_TARGET);
   assert_true(strut_cma_evaluations(c) < 600);
-  strut_cma_free(c);
 }
 
 TEST(seeds_decide_the_bits) {
@@ -183,9 +181,8 @@ TEST(seeds_decide_the_bits) {
   double value[3];
   for (int i = 0; i < 3; i++) {
     options.seed = i < 2 ? 8 : 9;
-    strut_cma *c = search(&options, rosenbrock);
+    OWN_POINTER(strut_cma) c = search(&options, rosenbrock);
     strut_cma_best(c, &value[i]);
-    strut_cma_free(c);
   }
   assert_true(value[0] == value[1]);
   assert_true(value[0] != value[2]);
@@ -218,7 +215,7 @@ TEST(an_angle_wraps) {
                                        .seed = seed,
                                        .evaluations = 600,
                                        .wraps = wraps};
-    strut_cma *c;
+    OWN_POINTER(strut_cma) c;
     double values[100], value;
     assert_int_equal(strut_cma_create(&options, &c, NULL), STRUT_OK);
     while (!strut_cma_stopped(c)) {
@@ -235,7 +232,6 @@ TEST(an_angle_wraps) {
     }
     assert_non_null(strut_cma_best(c, &value));
     assert_true(value < 1e-12);
-    strut_cma_free(c);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "engine/study/compare/compare.h"
 #include "parser/read/overlay.h"
 #include "parser/read/read_scene.h"
+#include "tests/support/refused.h"
 #include "tests/support/test.h"
 
 static const char hopper[] =
@@ -21,11 +22,10 @@ static const char hopper[] =
     "run: {periods: 20, of: d, measure: {last: 5}}\n";
 
 static void read_hopper(strut_setup *setup) {
-  strut_diagnostics diagnostics = {0};
+  OWN(strut_diagnostics) diagnostics = {0};
   assert_int_equal(strut_setup_read(setup, "hopper", hopper, strlen(hopper), NULL, 0, STRUT_FOR_ANY,
                                     &diagnostics),
                    STRUT_OK);
-  strut_diagnostics_free(&diagnostics);
 }
 
 TEST(differences) {
@@ -36,7 +36,7 @@ TEST(differences) {
                                             {"a.e", "{f: 3}", NULL},
                                             {"g", "1", NULL},
                                             {"new", NULL, "[1]"}};
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   strut_difference *list;
   size_t count;
   assert_int_equal(strut_text_differences(first, second, &arena, &list, &count), STRUT_OK);
@@ -51,20 +51,17 @@ TEST(differences) {
   assert_int_equal(strut_text_differences(first, first, &arena, &list, &count), STRUT_OK);
   assert_int_equal(count, 0);
   assert_int_equal(strut_text_differences(first, "a: [", &arena, &list, &count), STRUT_BAD_SCENE);
-  strut_arena_free(&arena);
 }
 
 TEST(differences_without_memory) {
   strut_status status = STRUT_NO_MEMORY;
   int64_t n = 0;
   for (; status == STRUT_NO_MEMORY && n < 1000; n++) {
-    strut_arena arena = {0};
+    OWN(strut_arena) arena = {0};
     strut_difference *list;
     size_t count;
-    strut_fail_allocation_after(n);
-    status = strut_text_differences("a: {b: 1, c: 2}\n", "a: {b: 3}\n", &arena, &list, &count);
-    strut_fail_allocation_after(-1);
-    strut_arena_free(&arena);
+    status = refused(
+        n, strut_text_differences("a: {b: 1, c: 2}\n", "a: {b: 3}\n", &arena, &list, &count));
   }
   assert_int_equal(status, STRUT_OK);
   assert_true(n > 3);
@@ -75,7 +72,7 @@ static strut_status make(const strut_compare_options *options, bool tell) {
   static const strut_difference changed = {"members.leg.stiffness", "1", "2"};
   static const char *const without[] = {"friction"};
   strut_setup scenes[2];
-  strut_compare result;
+  OWN(strut_compare) result;
   strut_error error = {0};
   for (int i = 0; i < 2; i++) read_hopper(&scenes[i]);
   const strut_compare_input inputs[2] = {{.label = "one", .setup = &scenes[0]},
@@ -95,7 +92,6 @@ static strut_status make(const strut_compare_options *options, bool tell) {
       strut_release(texts[i]);
     }
   }
-  strut_compare_free(&result);
   for (int i = 0; i < 2; i++) strut_setup_free(&scenes[i]);
   return status;
 }
@@ -130,8 +126,8 @@ TEST(interrupted) {
 }
 
 TEST(what_is_reported) {
-  strut_setup setup;
-  strut_compare result;
+  OWN(strut_setup) setup;
+  OWN(strut_compare) result;
   strut_error error = {0};
   read_hopper(&setup);
   const strut_compare_input input = {.label = "one", .setup = &setup};
@@ -151,6 +147,4 @@ TEST(what_is_reported) {
   assert_int_equal(strut_compare_figure(&(strut_plot){.path = "/nowhere/at/all.svg", .width = 200},
                                         &result, 0, 1, &error),
                    STRUT_FILE_TROUBLE);
-  strut_compare_free(&result);
-  strut_setup_free(&setup);
 }

@@ -20,27 +20,24 @@ static strut_diagnostics about(const char *text) {
 
 /* One message "wrong" at the place is shown like this. */
 static void expect_shown(const char *text, strut_place place, const char *expected) {
-  strut_diagnostics diagnostics = about(text);
+  OWN(strut_diagnostics) diagnostics = about(text);
   strut_diagnose(&diagnostics, place, "wrong");
   assert_string_equal(strut_diagnostics_render(&diagnostics, 50), expected);
-  strut_diagnostics_free(&diagnostics);
 }
 
 TEST(nothing_is_shown_of_nothing) {
-  strut_diagnostics diagnostics = about("a: 1\n");
+  OWN(strut_diagnostics) diagnostics = about("a: 1\n");
   assert_string_equal(strut_diagnostics_render(&diagnostics, 50), "");
-  strut_diagnostics_free(&diagnostics);
 }
 
 TEST(a_message_has_place_line_and_caret) {
-  strut_diagnostics diagnostics = about("members:\n  m1: {group: rod, stifness: 3}\n");
+  OWN(strut_diagnostics) diagnostics = about("members:\n  m1: {group: rod, stifness: 3}\n");
   strut_diagnose(&diagnostics, at(2, 20, 8), "unknown key '%s' in member '%s'", "stifness", "m1");
   assert_int_equal(diagnostics.count, 1);
   assert_string_equal(strut_diagnostics_render(&diagnostics, 50),
                       "a.yaml:2:20: error: unknown key 'stifness' in member 'm1'\n"
                       "    2 |   m1: {group: rod, stifness: 3}\n"
                       "      |                    ^~~~~~~~\n");
-  strut_diagnostics_free(&diagnostics);
 }
 
 TEST(the_caret_stands_right) {
@@ -77,10 +74,9 @@ TEST(places_outside_show_no_line) {
   expect_shown("a: 1\n", at(9, 1, 1), "a.yaml:9:1: error: wrong\n");
   expect_shown("a\n\nb", at(2, 1, 1), "a.yaml:2:1: error: wrong\n");
   expect_shown("", at(1, 1, 1), "a.yaml:1:1: error: wrong\n");
-  strut_diagnostics none = {0};
+  OWN(strut_diagnostics) none = {0};
   strut_diagnose(&none, at(3, 4, 1), "wrong");
   assert_string_equal(strut_diagnostics_render(&none, 1), "<text>:3:4: error: wrong\n");
-  strut_diagnostics_free(&none);
 }
 
 TEST(lines_end_where_libyaml_ends_them) {
@@ -127,10 +123,9 @@ TEST(bytes_of_the_source_are_made_harmless) {
   expect_shown(
       "a\x1B[31m\xFF", at(1, 7, 1),
       "a.yaml:1:7: error: wrong\n    1 | a\xEF\xBF\xBD[31m\xEF\xBF\xBD\n      |       ^\n");
-  strut_diagnostics diagnostics = about("a");
+  OWN(strut_diagnostics) diagnostics = about("a");
   strut_diagnose(&diagnostics, at(0, 0, 0), "bad '%s'", "x\ny\x1B\x7F");
   assert_string_equal(diagnostics.items[0].message, "bad 'x y  '");
-  strut_diagnostics_free(&diagnostics);
 }
 
 TEST(long_messages_are_cut_between_characters) {
@@ -138,19 +133,18 @@ TEST(long_messages_are_cut_between_characters) {
   for (int shift = 0; shift < 4; shift++) {
     for (int i = 0; i + 1 < 2000; i += 2) memcpy(word + i, "\xC3\xA4", 2);
     word[2000] = '\0';
-    strut_diagnostics diagnostics = about("a");
+    OWN(strut_diagnostics) diagnostics = about("a");
     strut_diagnose(&diagnostics, at(1, 1, 1), "%.*s%s", shift, "abcd", word);
     const char *message = diagnostics.items[0].message;
     size_t length = strlen(message);
     assert_in_range(length, 890, 900);
     assert_string_equal(message + length - 3, "...");
     assert_int_equal((unsigned char)message[length - 4], 0xA4);
-    strut_diagnostics_free(&diagnostics);
   }
 }
 
 TEST(messages_are_sorted_by_place) {
-  strut_diagnostics diagnostics = about("");
+  OWN(strut_diagnostics) diagnostics = about("");
   strut_diagnose(&diagnostics, at(3, 1, 1), "e");
   strut_diagnose(&diagnostics, at(1, 9, 1), "c");
   strut_diagnose(&diagnostics, at(1, 2, 1), "b");
@@ -163,17 +157,15 @@ TEST(messages_are_sorted_by_place) {
   assert_string_equal(strut_diagnostics_render(&diagnostics, 2),
                       "a.yaml: error: a\na.yaml:1:2: error: b\n... and 3 more\n");
   assert_string_equal(strut_diagnostics_render(&diagnostics, 0), "... and 5 more\n");
-  strut_diagnostics_free(&diagnostics);
 }
 
 TEST(millions_of_messages_are_only_counted) {
-  strut_diagnostics diagnostics = about("");
+  OWN(strut_diagnostics) diagnostics = about("");
   for (uint32_t i = 0; i < 100000; i++) strut_diagnose(&diagnostics, at(i + 1, 1, 1), "x");
   assert_int_equal(diagnostics.count, STRUT_DIAGNOSTICS_MOST);
   assert_int_equal(diagnostics.unstored, 100000 - STRUT_DIAGNOSTICS_MOST);
   assert_string_equal(strut_diagnostics_render(&diagnostics, 1),
                       "a.yaml:1:1: error: x\n... and 99999 more\n");
-  strut_diagnostics_free(&diagnostics);
 }
 
 TEST(lost_memory_is_noticed) {

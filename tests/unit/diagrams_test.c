@@ -224,14 +224,12 @@ TEST(labels_of_the_front) {
   assert_int_equal(strut_canvas_commit(canvas, &error), STRUT_OK);
   strut_canvas_free(canvas);
   size_t length;
-  char *text = scratch_read(path, &length);
+  FREED char *text = scratch_read(path, &length);
   assert_non_null(text);
   for (size_t i = 0; i < 3; i++) { /* an SVG lists its texts */
     snprintf(label, sizeof label, "%s<", labels[i]);
     if (!strstr(text, label)) fail_msg("no label '%s'", labels[i]);
   }
-  free(text);
-  scratch_remove();
 }
 
 static const unsigned char *pixel(strut_canvas *canvas, double x, double y) {

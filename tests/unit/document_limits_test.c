@@ -11,18 +11,18 @@
 #include "engine/base/memory.h"
 #include "parser/read/read_scene.h"
 #include "parser/yaml/document.h"
+#include "tests/support/motion.h"
 #include "tests/support/sanitized.h"
-#include "tests/support/test.h"
 #include "tests/unit/document_support.h"
 
 TEST(depth_is_limited) {
   static const char *const kinds[][2] = {{"[", "]"}, {"{a: ", "}"}, {"- ", ""}};
   for (size_t i = 0; i < 3; i++) {
     for (size_t depth = 64; depth <= 65; depth++) {
-      char *open = repeat("", kinds[i][0], depth, i == 2 ? "1" : "");
-      char *text = repeat(open, kinds[i][1], i == 2 ? 0 : depth, "");
-      strut_document document = {0};
-      strut_diagnostics diagnostics = {0};
+      FREED char *open = repeat("", kinds[i][0], depth, i == 2 ? "1" : "");
+      FREED char *text = repeat(open, kinds[i][1], i == 2 ? 0 : depth, "");
+      OWN(strut_document) document = {0};
+      OWN(strut_diagnostics) diagnostics = {0};
       strut_diagnostics_source(&diagnostics, "t", text, strlen(text));
       strut_status status = strut_document_read(&document, &diagnostics);
       assert_int_equal(status, depth == 64 ? STRUT_OK : STRUT_BAD_SCENE);
@@ -31,10 +31,6 @@ TEST(depth_is_limited) {
         assert_int_equal(diagnostics.items[0].place.column, 64 * strlen(kinds[i][0]) + 1);
         assert_null(document.root);
       }
-      strut_document_free(&document);
-      strut_diagnostics_free(&diagnostics);
-      free(open);
-      free(text);
     }
   }
 }
@@ -60,7 +56,7 @@ TEST(anchors_and_aliases_are_limited) {
   char *most = repeat(thousand, "- *a999\n", 3, "- *a0\n"),
        *more = repeat(thousand, "- &z x\n", 1, "");
   strut_document document = {0};
-  strut_diagnostics diagnostics = {0};
+  OWN(strut_diagnostics) diagnostics = {0};
   strut_diagnostics_source(&diagnostics, "t", most, strlen(most));
   assert_int_equal(strut_document_read(&document, &diagnostics), STRUT_OK);
   assert_int_equal(document.root->count, 1004);
@@ -80,20 +76,16 @@ TEST(anchors_and_aliases_are_limited) {
   expect_error(fits, "2:305: more than 1000000 values repeated by aliases");
   free(fits);
   free(list);
-  strut_diagnostics_free(&diagnostics);
 }
 
 TEST(a_thousand_problems_are_enough) {
-  char *text = repeat("a: [", "!x 1, ", 5000, "]");
-  strut_document document = {0};
-  strut_diagnostics diagnostics = {0};
+  FREED char *text = repeat("a: [", "!x 1, ", 5000, "]");
+  OWN(strut_document) document = {0};
+  OWN(strut_diagnostics) diagnostics = {0};
   strut_diagnostics_source(&diagnostics, "t", text, strlen(text));
   assert_int_equal(strut_document_read(&document, &diagnostics), STRUT_BAD_SCENE);
   assert_int_equal(diagnostics.count, 1000);
   assert_null(document.root);
-  strut_document_free(&document);
-  strut_diagnostics_free(&diagnostics);
-  free(text);
 }
 
 /* Reads in a child process: seconds of processor time and MiB of memory beyond the text itself. */
@@ -194,9 +186,9 @@ TEST(bombs_are_refused_at_once) {
 
 /* A good big text, at a tenth of the size that must be readable. */
 TEST(big_texts_are_read) {
-  char *text = numbered("members:\n", "  m#: {group: rod, nodes: [n#, k#]}\n", 100000);
-  strut_document document = {0};
-  strut_diagnostics diagnostics = {0};
+  FREED char *text = numbered("members:\n", "  m#: {group: rod, nodes: [n#, k#]}\n", 100000);
+  OWN(strut_document) document = {0};
+  OWN(strut_diagnostics) diagnostics = {0};
   strut_diagnostics_source(&diagnostics, "t", text, strlen(text));
   clock_t begin = clock();
   assert_int_equal(strut_document_read(&document, &diagnostics), STRUT_OK);
@@ -205,9 +197,6 @@ TEST(big_texts_are_read) {
   print_message("%.2f s for %.1f MB, %.1f MB of tree\n", seconds, (double)strlen(text) * 1e-6,
                 (double)document.arena.bytes * 1e-6);
   assert_true(document.arena.bytes < 60u * 100000 * 8);
-  strut_document_free(&document);
-  strut_diagnostics_free(&diagnostics);
-  free(text);
 }
 
 /* Each allocation fails in turn: the answer is STRUT_NO_MEMORY or the right one, and nothing leaks. */
@@ -258,16 +247,14 @@ TEST(random_texts_are_survived) {
       seed = seed * UINT64_C(6364136223846793005) + 1442695040888963407u;
       strcat(text, parts[(seed >> 33) % (sizeof parts / sizeof parts[0])]);
     }
-    strut_document document = {0};
-    strut_diagnostics diagnostics = {0};
+    OWN(strut_document) document = {0};
+    OWN(strut_diagnostics) diagnostics = {0};
     strut_diagnostics_source(&diagnostics, "t", text, strlen(text));
     strut_status status = strut_document_read(&document, &diagnostics);
     assert_true((status == STRUT_OK) == (diagnostics.count == 0));
     assert_true(status != STRUT_OK || document.root);
     assert_non_null(strut_diagnostics_render(&diagnostics, 50));
     good += status == STRUT_OK;
-    strut_document_free(&document);
-    strut_diagnostics_free(&diagnostics);
   }
   assert_true(good > 1000);
 }
@@ -319,7 +306,7 @@ TEST(standard_input_is_read) {
   close(pipes[1]);
   dup2(pipes[0], 0);
   close(pipes[0]);
-  char *text = NULL;
+  RELEASED char *text = NULL;
   size_t length = 0;
   strut_error error = {0};
   strut_status status = strut_file_read("-", &text, &length, &error);
@@ -328,5 +315,4 @@ TEST(standard_input_is_read) {
   assert_int_equal(status, STRUT_OK);
   assert_int_equal(length, 5);
   assert_string_equal(text, "a: 1\n");
-  strut_release(text);
 }

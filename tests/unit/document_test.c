@@ -103,12 +103,11 @@ TEST(bad_characters_are_refused) {
   char many[41];
   memset(many, 1, 40);
   many[40] = '\0';
-  strut_diagnostics diagnostics = {0};
+  OWN(strut_diagnostics) diagnostics = {0};
   strut_document document = {0};
   strut_diagnostics_source(&diagnostics, "t", many, 40);
   assert_int_equal(strut_document_read(&document, &diagnostics), STRUT_BAD_SCENE);
   assert_int_equal(diagnostics.count, 10);
-  strut_diagnostics_free(&diagnostics);
 }
 
 TEST(escapes_do_not_smuggle) {
@@ -143,7 +142,7 @@ TEST(many_keys_are_compared_alike) {
   enum { MOST = 3000 };
   uint32_t seed = 5;
   for (int count = 5; count < MOST; count = count * 2 + 1) {
-    char *text = calloc(MOST, 16);
+    FREED char *text = calloc(MOST, 16);
     int *number = calloc(MOST, sizeof *number), doubles = 0;
     for (int i = 0; i < count; i++) {
       seed = seed * 1664525 + 1013904223;
@@ -153,16 +152,13 @@ TEST(many_keys_are_compared_alike) {
       doubles += again;
       sprintf(shown_end(text + (i ? strlen(text) : 0)), "k%d: 1\n", number[i]);
     }
-    strut_document document = {0};
-    strut_diagnostics diagnostics = {0};
+    OWN(strut_document) document = {0};
+    OWN(strut_diagnostics) diagnostics = {0};
     strut_diagnostics_source(&diagnostics, "t", text, strlen(text));
     strut_document_read(&document, &diagnostics);
     assert_int_equal(diagnostics.count, doubles);
     assert_int_equal(document.root->count, count - doubles);
-    strut_document_free(&document);
-    strut_diagnostics_free(&diagnostics);
     free(number);
-    free(text);
   }
 }
 
@@ -254,8 +250,8 @@ TEST(common_mistakes_have_words) {
 
 TEST(finding_is_by_text) {
   const char *text = "a: 1\nb: {c: 2}\nd: b\n";
-  strut_document document = {0};
-  strut_diagnostics diagnostics = {0};
+  OWN(strut_document) document = {0};
+  OWN(strut_diagnostics) diagnostics = {0};
   strut_tree *key = NULL;
   strut_diagnostics_source(&diagnostics, "t", text, strlen(text));
   assert_int_equal(strut_document_read(&document, &diagnostics), STRUT_OK);
@@ -264,6 +260,4 @@ TEST(finding_is_by_text) {
   assert_int_equal(strut_tree_find(document.root, "b", NULL)->count, 1);
   assert_null(strut_tree_find(document.root, "c", NULL));
   assert_null(strut_tree_find(strut_tree_find(document.root, "a", NULL), "1", NULL));
-  strut_document_free(&document);
-  strut_diagnostics_free(&diagnostics);
 }

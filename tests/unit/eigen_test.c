@@ -90,7 +90,7 @@ TEST(awkward) {
 /* A x = b with A = Q (T + shift) Q' - shift, signs of pivots against eigenvalues, and what is left of Q. */
 TEST(tridiagonal_form) {
   uint32_t seed = 7;
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   for (int32_t n = 1; n <= MOST; n += n < 12 ? 1 : 7) {
     strut_tridiagonal t;
     double x[MOST], b[MOST], largest = 0.0;
@@ -128,5 +128,4 @@ TEST(tridiagonal_form) {
     for (int32_t i = 0; i < n; i++) assert_true(value[i] == x[i]);
     for (int32_t i = 0; i < n * n; i++) assert_true(t.z[i] == z[i]);
   }
-  strut_arena_free(&arena);
 }

@@ -16,8 +16,6 @@
 #include "engine/forces/strains/reach.h"
 #include "engine/forces/strains/wrap.h"
 #include "tests/physics/random_elements.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 
@@ -430,15 +428,14 @@ TEST(a_smooth_table_has_no_kinks_and_does_not_overshoot) {
 /* An arm that turns round and round against a hinge: its moment grows with every turn. */
 TEST(a_hinge_counts_its_turns) {
   const double kappa = 3, arm = 0.5;
-  strut_scene scene;
-  strut_state *state;
-  strut_scene_init(&scene);
+  OWN(strut_scene) scene = build_scene();
+  OWN_POINTER(strut_state) state;
   build_support(&scene, 1, 0);
   build_support(&scene, 0, 0);
   build_mass(&scene, arm, 0, 1);
   int32_t i = build_hinge(&scene, 0, 1, 2, kappa, 0);
   scene.hinges[i].rest_angle = 0.25;
-  strut_model *model = motion_compile(&scene);
+  OWN_POINTER(strut_model) model = motion_compile(&scene);
   assert_int_equal(strut_state_create(model, &state, NULL), STRUT_OK);
   for (int sign = 1; sign >= -1; sign -= 2) {
     strut_state_reset(model, state);
@@ -454,14 +451,11 @@ TEST(a_hinge_counts_its_turns) {
       assert_near(energy, 0.5 * kappa * (angle - 0.25) * (angle - 0.25), 1e-10);
     }
   }
-  strut_state_free(state);
-  strut_model_free(model);
-  strut_scene_free(&scene);
 }
 
 /* A refusal of memory at any place is passed on. */
 TEST(refused_memory) {
-  strut_scene scene;
+  OWN(strut_scene) scene;
   random_elements(&scene, 3, 1);
   for (int64_t n = 0;; n++) {
     strut_model *model = NULL;
@@ -476,7 +470,6 @@ TEST(refused_memory) {
     assert_int_equal(status, STRUT_NO_MEMORY);
     assert_true(n < 200);
   }
-  strut_scene_free(&scene);
 }
 
 /* In all directions and beside the axes, against the library's, to four units in the last place. */
@@ -502,10 +495,9 @@ TEST(hinges_in_vectors_have_the_forces_of_single_ones) {
   enum { HINGES = 7 };
   double together[2 * (HINGES + 2)], alone[2 * (HINGES + 2)] = {0};
   for (int only = -1; only < HINGES; only++) {
-    strut_scene scene;
+    strut_scene scene = build_scene();
     strut_model *model = NULL;
     strut_state *state = NULL;
-    strut_scene_init(&scene);
     for (int i = 0; i < HINGES + 2; i++) build_mass(&scene, 0.1 * i, 0.03 * (i * i % 5), 1);
     scene.hinges = strut_arena_allocate(&scene.arena, HINGES, sizeof *scene.hinges);
     for (int i = 0; i < HINGES; i++) {

@@ -11,6 +11,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
+#include "tests/support/refused.h"
 #include "tests/support/test.h"
 #include "tests/unit/scratch.h"
 
@@ -49,11 +50,12 @@ int __wrap_rename(const char *from, const char *to) {
 
 static void assert_content(const char *path, const char *expected) {
   size_t length = 0;
-  char *text = scratch_read(path, &length);
+  FREED char *text = scratch_read(path, &length);
   assert_non_null(text);
   assert_string_equal(text, expected);
-  free(text);
 }
+
+BEFORE_EACH { scratch_make(); }
 
 TEST(a_file_appears_on_commit_only) {
   strut_file file = {0};
@@ -70,7 +72,6 @@ TEST(a_file_appears_on_commit_only) {
   assert_null(file.stream);
   strut_file_abandon(&file); /* nothing happens */
   assert_true(scratch_exists(scratch_path("a.txt")));
-  scratch_remove();
 }
 
 TEST(abandon_keeps_the_old_file) {
@@ -84,7 +85,6 @@ TEST(abandon_keeps_the_old_file) {
   assert_int_equal(scratch_count(directory), 1);
   assert_int_equal(strut_file_write_text(directory, "a.txt", "new", NULL), STRUT_OK);
   assert_content(scratch_path("a.txt"), "new");
-  scratch_remove();
 }
 
 TEST(permissions_follow_the_umask) {
@@ -95,7 +95,6 @@ TEST(permissions_follow_the_umask) {
   umask(before);
   assert_int_equal(stat(scratch_path("a.txt"), &found), 0);
   assert_int_equal(found.st_mode & 0777, 0640);
-  scratch_remove();
 }
 
 /* A file's bytes are on the disk before its name is, and the name before it is told to be there. */
@@ -113,7 +112,6 @@ TEST(the_disk_has_a_file_before_its_name) {
   assert_true(!asked[0].renames && asked[0].file == file.st_ino && asked[0].size == 5000);
   assert_true(asked[1].renames && asked[1].file == file.st_ino);
   assert_true(!asked[2].renames && asked[2].file == folder.st_ino);
-  scratch_remove();
 }
 
 TEST(a_disk_that_cannot_keep_it_is_reported) {
@@ -125,7 +123,6 @@ TEST(a_disk_that_cannot_keep_it_is_reported) {
   assert_int_equal(status, STRUT_FILE_TROUBLE);
   assert_non_null(strstr(error.message, "a.txt"));
   assert_int_equal(scratch_count(directory), 0);
-  scratch_remove();
 }
 
 TEST(two_writers_do_not_meet) {
@@ -139,7 +136,6 @@ TEST(two_writers_do_not_meet) {
   assert_int_equal(strut_file_commit(&second, NULL), STRUT_OK);
   assert_content(scratch_path("a.txt"), "second");
   assert_int_equal(scratch_count(directory), 1);
-  scratch_remove();
 }
 
 /* What a killed process left is written over; what another one writes stays. */
@@ -168,25 +164,21 @@ TEST(left_files_go) {
   assert_content(scratch_path("a.txt"), "newer\n");
   close(ready[0]);
   close(ready[1]);
-  scratch_remove();
 }
 
 TEST(messages_name_the_file_and_the_reason) {
   strut_file file = {0};
   strut_error error = {0};
-  scratch_make();
   assert_int_equal(strut_file_open(&file, scratch_path("no"), "a.txt", &error), STRUT_FILE_TROUBLE);
   assert_non_null(strstr(error.message, "no/a.txt': No such file or directory"));
   assert_int_equal(mkdir(scratch_path("a.txt"), 0777), 0);
   assert_int_equal(strut_file_open(&file, scratch_path("."), "a.txt", &error), STRUT_FILE_TROUBLE);
   assert_non_null(strstr(error.message, "Is a directory"));
   assert_int_equal(error.status, STRUT_FILE_TROUBLE);
-  scratch_remove();
 }
 
 TEST(directories) {
   strut_error error = {0};
-  scratch_make();
   assert_int_equal(strut_directory_create(scratch_path("a/b//c/"), &error), STRUT_OK);
   assert_int_equal(scratch_count(scratch_path("a/b/c")), 0);
   assert_int_equal(strut_directory_create(scratch_path("a/b"), &error), STRUT_OK);
@@ -195,16 +187,12 @@ TEST(directories) {
   assert_int_equal(strut_directory_create(scratch_path("a/f/g"), &error), STRUT_FILE_TROUBLE);
   assert_non_null(strstr(error.message, "cannot create directory"));
   assert_int_equal(strut_directory_create("", &error), STRUT_FILE_TROUBLE);
-  scratch_remove();
 }
 
 TEST(a_full_disk_leaves_nothing) {
   strut_error error = {0};
   const char *disk = scratch_make();
-  if (!scratch_mount_small_disk(disk, 16)) {
-    scratch_remove();
-    skip();
-  }
+  if (!scratch_mount_small_disk(disk, 16)) skip();
   char *text = calloc(100001, 1);
   memset(text, 'x', 100000);
   assert_int_equal(strut_file_write_text(disk, "big", text, &error), STRUT_FILE_TROUBLE);
@@ -220,7 +208,6 @@ TEST(a_full_disk_leaves_nothing) {
   assert_int_equal(scratch_count(disk), 0);
   free(text);
   scratch_unmount(disk);
-  scratch_remove();
 }
 
 TEST(no_memory_leaves_nothing) {
@@ -228,16 +215,12 @@ TEST(no_memory_leaves_nothing) {
   strut_status status = STRUT_NO_MEMORY;
   int64_t n = 0;
   for (; status != STRUT_OK; n++) {
-    strut_fail_allocation_after(n);
-    status = strut_file_write_text(directory, "a", "text", NULL);
-    strut_fail_allocation_after(-1);
+    status = refused(n, strut_file_write_text(directory, "a", "text", NULL));
     if (status != STRUT_OK) {
-      assert_int_equal(status, STRUT_NO_MEMORY);
       assert_int_equal(scratch_count(directory), 0);
     }
   }
   assert_true(n > 3);
-  scratch_remove();
 }
 
 static void write_results(strut_results *results, const char *directory, const char *text,
@@ -251,7 +234,6 @@ static void write_results(strut_results *results, const char *directory, const c
 
 TEST(results_appear_together) {
   strut_results results = {0};
-  scratch_make();
   write_results(&results, scratch_path("out/one"), "1", true);
   assert_false(scratch_exists(scratch_path("out/one/summary.json")));
   assert_int_equal(strut_results_commit(&results, NULL), STRUT_OK);
@@ -270,23 +252,19 @@ TEST(results_appear_together) {
   assert_false(scratch_exists(scratch_path("out/one/energy.csv")));
   assert_content(scratch_path("out/one/mine"), "m");
   assert_int_equal(scratch_count(scratch_path("out/one")), 2);
-  scratch_remove();
 }
 
 TEST(abandoned_results_leave_no_directory) {
   strut_results results = {0};
-  scratch_make();
   write_results(&results, scratch_path("new"), "1", true);
   strut_results_abandon(&results);
   assert_int_equal(scratch_count(scratch_path("new")), -1);
   strut_results_abandon(&results);
-  scratch_remove();
 }
 
 TEST(results_know_early_what_will_fail) {
   strut_results results = {0};
   strut_error error = {0};
-  scratch_make();
   assert_int_equal(strut_directory_create(scratch_path("out/nodes.csv"), NULL), STRUT_OK);
   assert_int_equal(strut_results_begin(&results, scratch_path("out"), &error), STRUT_FILE_TROUBLE);
   assert_non_null(strstr(error.message, "out/nodes.csv': Is a directory"));
@@ -295,12 +273,10 @@ TEST(results_know_early_what_will_fail) {
   assert_non_null(strstr(error.message, "/proc/strut"));
   assert_int_equal(strut_results_begin(&results, "/proc", &error), STRUT_FILE_TROUBLE);
   assert_non_null(strstr(error.message, "'/proc'"));
-  scratch_remove();
 }
 
 TEST(results_without_memory) {
   strut_results results = {0};
-  scratch_make();
   strut_status status = STRUT_NO_MEMORY;
   for (int64_t n = 0; status != STRUT_OK; n++) {
     strut_fail_allocation_after(n);
@@ -310,7 +286,6 @@ TEST(results_without_memory) {
     if (status != STRUT_OK) assert_false(scratch_exists(scratch_path("out")));
     assert_true(n < 200);
   }
-  scratch_remove();
 }
 
 /* A process that ends without removing its stage, as one that is killed. */
@@ -328,8 +303,7 @@ static void leave_a_stage(const char *directory) {
 
 TEST(stages_of_dead_processes_go) {
   strut_results alive = {0}, next = {0};
-  scratch_make();
-  char *out = strdup(scratch_path("out"));
+  FREED char *out = strdup(scratch_path("out"));
   assert_int_equal(strut_results_begin(&alive, out, NULL), STRUT_OK);
   assert_int_equal(strut_file_write_text(alive.stage, "nodes.csv", "mine", NULL), STRUT_OK);
   leave_a_stage(out);
@@ -345,8 +319,6 @@ TEST(stages_of_dead_processes_go) {
   assert_content(scratch_path("out/nodes.csv"), "mine");
   strut_results_abandon(&next);
   assert_int_equal(scratch_count(out), 2);
-  free(out);
-  scratch_remove();
 }
 
 enum { WRITERS = 6 }; /* more than processors, so that the reader is interrupted now and then */
@@ -384,5 +356,4 @@ TEST(a_file_that_other_processes_write_is_struts_own) {
     running--;
   }
   assert_int_equal(refused, 0);
-  scratch_remove();
 }

@@ -11,7 +11,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
 #include "engine/output/run_report.h"
-#include "tests/support/test.h"
+#include "tests/support/motion.h"
 
 static strut_node node = {.name = "n1"};
 static strut_parameter parameters[] = {
@@ -96,7 +96,7 @@ static void assert_energy(const cJSON *energy, const strut_energy *e) {
 TEST(every_field) {
   strut_scene scene = make_scene();
   strut_summary summary = make_summary();
-  char *text = strut_summary_json(&summary, &scene, true);
+  RELEASED char *text = strut_summary_json(&summary, &scene, true);
   assert_non_null(strstr(text, "\"steps\":\t9007199254740993,")); /* all digits */
   cJSON *json = cJSON_Parse(text);
   assert_non_null(json);
@@ -126,19 +126,16 @@ TEST(every_field) {
   assert_number(at(at(json, "contacts"), "n1"), "max_height", 1.1e-3);
   assert_energy(at(json, "energy"), &summary.energy);
   cJSON_Delete(json);
-  strut_release(text);
 }
 
 TEST(files_know_no_wall_time) {
   strut_scene scene = make_scene();
   strut_summary summary = make_summary();
-  char *first = strut_summary_json(&summary, &scene, false);
+  RELEASED char *first = strut_summary_json(&summary, &scene, false);
   summary.spent.wall_time = 17.0;
-  char *second = strut_summary_json(&summary, &scene, false);
+  RELEASED char *second = strut_summary_json(&summary, &scene, false);
   assert_null(strstr(first, "wall_time"));
   assert_string_equal(first, second);
-  strut_release(first);
-  strut_release(second);
 }
 
 TEST(a_run_that_stopped_says_why) {
@@ -195,7 +192,7 @@ TEST(the_table) {
   summary.spent.steps = 1100000;
   summary.step_limit = 5.123456e-4;
   summary.velocity_spread = 2e-6;
-  char *text = strut_summary_table(&summary, &scene);
+  RELEASED char *text = strut_summary_table(&summary, &scene);
   static const char *const expected[] = {
       "Cr\xc3\xa4wler: completed\n",
       "  velocity    +9.781 mm/s along x, of the centre of mass, spread 2 um/s, from 100 s\n",
@@ -210,7 +207,6 @@ TEST(the_table) {
   for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
     if (!strstr(text, expected[i])) fail_msg("'%s' is not in:\n%s", expected[i], text);
   }
-  strut_release(text);
 }
 
 TEST(a_long_table_is_cut) {
@@ -218,19 +214,17 @@ TEST(a_long_table_is_cut) {
   strut_scene scene = make_scene();
   strut_summary summary = make_summary();
   const char **many = calloc(NODES, sizeof *many);
-  double *places = calloc(2 * NODES, sizeof *places);
+  FREED double *places = calloc(2 * NODES, sizeof *places);
   for (size_t i = 0; i < NODES; i++) many[i] = "n";
   summary.end.node_names = many;
   summary.end.positions = places;
   summary.end.node_count = NODES;
-  char *text = strut_summary_table(&summary, &scene);
+  RELEASED char *text = strut_summary_table(&summary, &scene);
   assert_non_null(strstr(text, "  ... and 4990 more\n"));
   int lines = 0;
   for (const char *c = text; *c; c++) lines += *c == '\n';
   assert_in_range(lines, 20, 45);
-  strut_release(text);
   free(many);
-  free(places);
 }
 
 TEST(quantities) {
@@ -276,13 +270,11 @@ TEST(the_locale_does_not_matter) {
     strut_release(table);
     skip();
   }
-  char *json_there = strut_summary_json(&summary, &scene, true);
-  char *table_there = strut_summary_table(&summary, &scene);
+  RELEASED char *json_there = strut_summary_json(&summary, &scene, true);
+  RELEASED char *table_there = strut_summary_table(&summary, &scene);
   setlocale(LC_ALL, "C");
   assert_string_equal(json_there, json);
   assert_string_equal(table_there, table);
   strut_release(json);
   strut_release(table);
-  strut_release(json_there);
-  strut_release(table_there);
 }

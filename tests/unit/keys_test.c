@@ -169,8 +169,8 @@ static bool is_spelled_otherwise(const strut_key *key) {
 
 TEST(defaults_are_those_of_the_fields) {
   strut_setup setup;
-  size_t compared = 0;
   strut_setup_init(&setup);
+  size_t compared = 0;
   for (int i = 0; i < STRUT_KEY_COUNT; i++) {
     const strut_key *key = strut_key_at(i);
     const char *object = default_object(key->section, &setup);

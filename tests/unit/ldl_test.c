@@ -9,6 +9,10 @@
 #include "tests/support/check.h"
 #include "tests/support/random.h"
 
+FREED_BY(gsl_matrix_free, gsl_matrix)
+FREED_BY(gsl_vector_free, gsl_vector)
+FREED_BY(strut_ldl_free, strut_ldl)
+
 enum { N = 40 };
 
 static strut_sparse *random_matrix(uint64_t *r, double lift, strut_arena *arena) {
@@ -36,21 +40,19 @@ static gsl_matrix *dense_of(const strut_sparse *m, double shift) {
 
 static int negative_eigenvalues(const strut_sparse *m, double shift) {
   int32_t n = m->n, count = 0;
-  gsl_matrix *a = dense_of(m, shift);
-  gsl_vector *values = gsl_vector_alloc((size_t)n);
+  OWN_POINTER(gsl_matrix) a = dense_of(m, shift);
+  OWN_POINTER(gsl_vector) values = gsl_vector_alloc((size_t)n);
   gsl_eigen_symm_workspace *w = gsl_eigen_symm_alloc((size_t)n);
   gsl_eigen_symm(a, values, w);
   for (int32_t i = 0; i < n; i++) count += gsl_vector_get(values, (size_t)i) < 0;
   gsl_eigen_symm_free(w);
-  gsl_vector_free(values);
-  gsl_matrix_free(a);
   return count;
 }
 
 /* 1 / (|A| |A^-1|) in the 1-norm, from the inverse itself. */
 static double true_rcond(const strut_sparse *m) {
   size_t n = (size_t)m->n;
-  gsl_matrix *a = dense_of(m, 0), *inverse = gsl_matrix_alloc(n, n);
+  OWN_POINTER(gsl_matrix) a = dense_of(m, 0), *inverse = gsl_matrix_alloc(n, n);
   gsl_permutation *order = gsl_permutation_alloc(n);
   double norm = 0, inverse_norm = 0;
   int sign;
@@ -67,8 +69,6 @@ static double true_rcond(const strut_sparse *m) {
     inverse_norm = fmax(inverse_norm, sum);
   }
   gsl_permutation_free(order);
-  gsl_matrix_free(inverse);
-  gsl_matrix_free(a);
   return 1 / (norm * inverse_norm);
 }
 
@@ -99,16 +99,14 @@ TEST(it_solves_and_counts_signs) {
 TEST(its_condition_is_estimated) {
   uint64_t r = 12;
   for (int turn = 0; turn < 40; turn++) {
-    strut_arena arena = {0};
+    OWN(strut_arena) arena = {0};
     strut_sparse *m = random_matrix(&r, 5, &arena);
-    strut_ldl *ldl;
+    OWN_POINTER(strut_ldl) ldl;
     strut_inertia inertia;
     assert_int_equal(strut_ldl_create(m, &ldl, NULL), STRUT_OK);
     assert_int_equal(strut_ldl_factorise(ldl, m, 0, &inertia), STRUT_OK);
     double known = true_rcond(m), estimate = strut_ldl_rcond(ldl);
     assert_within(estimate, 0.999 * known, 4 * known);
-    strut_ldl_free(ldl);
-    strut_arena_free(&arena);
   }
 }
 
@@ -136,9 +134,9 @@ TEST(an_ill_conditioned_chain_shows) {
 }
 
 TEST(a_zero_pivot_is_refused_and_a_shift_helps) {
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   strut_triplets triplets = {0};
-  strut_ldl *ldl;
+  OWN_POINTER(strut_ldl) ldl;
   strut_inertia inertia;
   double b[2] = {1, 2};
   assert_true(strut_triplets_reserve(&triplets, 2, &arena));
@@ -153,12 +151,10 @@ TEST(a_zero_pivot_is_refused_and_a_shift_helps) {
   assert_near(b[1], 2, 0);
   assert_int_equal(strut_ldl_factorise(ldl, m, -0.5, &inertia), STRUT_OK);
   assert_int_equal(inertia.negative, 1);
-  strut_ldl_free(ldl);
-  strut_arena_free(&arena);
 }
 
 TEST(refused_memory) {
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   uint64_t r = 13;
   strut_sparse *m = random_matrix(&r, 5, &arena);
   for (int64_t n = 0;; n++) {
@@ -173,5 +169,4 @@ TEST(refused_memory) {
     assert_int_equal(status, STRUT_NO_MEMORY);
     assert_true(n < 100);
   }
-  strut_arena_free(&arena);
 }

@@ -23,7 +23,7 @@ static void make_known(strut_linear_program *p, strut_arena *arena) {
 }
 
 TEST(optimum) {
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   strut_linear_program p;
   strut_linear_program_end end;
   double x[2], sum;
@@ -37,11 +37,10 @@ TEST(optimum) {
   assert_int_equal(strut_linear_program_solve(&p, x, &sum, &end), STRUT_OK);
   assert_near(x[0], 1.5, 1e-12);
   assert_near(sum, -7.5, 1e-12);
-  strut_arena_free(&arena);
 }
 
 TEST(no_optimum) {
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   strut_linear_program p;
   strut_linear_program_end end = STRUT_PROGRAM_OPTIMAL;
   double x[2], sum;
@@ -52,7 +51,6 @@ TEST(no_optimum) {
   p.low[1] = 0, p.row_high[0] = p.row_high[1] = p.high[0] = HUGE_VAL;
   assert_int_equal(strut_linear_program_solve(&p, x, &sum, &end), STRUT_OK);
   assert_int_equal(end, STRUT_PROGRAM_UNBOUNDED);
-  strut_arena_free(&arena);
 }
 
 enum { COUNT = 5, ROWS = 2 };

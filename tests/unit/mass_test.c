@@ -4,8 +4,6 @@
 #include <stdlib.h>
 
 #include "engine/model/mass.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
@@ -20,11 +18,10 @@ static void build_row(strut_scene *scene, int32_t count, double mass, double rat
 }
 
 TEST(sets_are_sorted_by_size) {
-  strut_scene scene;
-  strut_scene_init(&scene);
+  OWN(strut_scene) scene = build_scene();
   build_mass(&scene, 0, -1, 3);
   for (int32_t size = 2; size <= 10; size++) build_row(&scene, size, 1, 1);
-  strut_model *model = motion_compile(&scene);
+  OWN_POINTER(strut_model) model = motion_compile(&scene);
   const strut_mass *mass = model->mass;
   const strut_mass_operator *op = &mass->coordinate[0];
   assert_true(mass->shared && !mass->diagonal);
@@ -37,46 +34,37 @@ TEST(sets_are_sorted_by_size) {
   assert_int_equal(mass->factor_nonzeros, 19 + 17); /* rows fill nothing in */
   assert_true(mass->inverse[0] == 1.0 / 3 && mass->inverse[1] == 1.0 / 3);
   for (size_t i = 2; i < 2 * scene.node_count; i++) assert_true(mass->inverse[i] == 0);
-  strut_model_free(model);
-  strut_scene_free(&scene);
 }
 
 /* A support cuts a row in two: 11 nodes become 5 and 5, in one coordinate or in both. */
 TEST(supports_cut_sets) {
   for (int both = 0; both < 2; both++) {
-    strut_scene scene;
-    strut_scene_init(&scene);
+    OWN(strut_scene) scene = build_scene();
     build_row(&scene, 11, 1, 1);
     scene.nodes[5].fixed[1] = true, scene.nodes[5].fixed[0] = both;
-    strut_model *model = motion_compile(&scene);
+    OWN_POINTER(strut_model) model = motion_compile(&scene);
     const strut_mass *mass = model->mass;
     assert_int_equal(mass->shared, both);
     assert_int_equal(mass->coordinate[1].block_count, 2);
     assert_null(mass->coordinate[1].factor);
     assert_int_equal(mass->coordinate[0].block_count, both ? 2 : 0);
     assert_int_equal(mass->coordinate[0].factor != NULL, !both);
-    strut_model_free(model);
-    strut_scene_free(&scene);
   }
 }
 
 TEST(lumped_masses_are_diagonal) {
-  strut_scene scene;
-  strut_scene_init(&scene);
+  OWN(strut_scene) scene = build_scene();
   scene.mass_model = STRUT_MASS_LUMPED;
   build_row(&scene, 20, 2, 1);
-  strut_model *model = motion_compile(&scene);
+  OWN_POINTER(strut_model) model = motion_compile(&scene);
   assert_true(model->mass->diagonal);
   assert_false(model->terms & STRUT_TERM_SOLVE);
   for (int i = 0; i < 20; i++)
     assert_true(model->mass->inverse[2 * i] == (i == 0 || i == 19 ? 1 : 0.5));
-  strut_model_free(model);
-  strut_scene_free(&scene);
 }
 
 TEST(a_node_without_mass_is_for_statics_only) {
-  strut_scene scene;
-  strut_scene_init(&scene);
+  OWN(strut_scene) scene = build_scene();
   build_row(&scene, 3, 1, 1);
   int32_t light = build_node(&scene, 0, 1);
   build_member(&scene, STRUT_SPRING, 0, light, 1, 0, 0);
@@ -91,7 +79,6 @@ TEST(a_node_without_mass_is_for_statics_only) {
   model = motion_compile(&scene);
   assert_non_null(model->mass);
   strut_model_free(model);
-  strut_scene_free(&scene);
 }
 
 /* M (M^-1 f) is f, to rounding in what the rows add up. */
@@ -129,42 +116,35 @@ TEST(the_inverse_is_one_at_any_mass_ratio) {
   static const int32_t sizes[] = {2, 5, 8, 9, 100, 10000};
   for (int k = 0; k < 4; k++)
     for (int s = 0; s < 6; s++) {
-      strut_scene scene;
-      strut_scene_init(&scene);
+      OWN(strut_scene) scene = build_scene();
       build_row(&scene, sizes[s], 0.3, ratios[k]);
       if (s % 2) scene.nodes[1].fixed[0] = true;
       check_inverse(&scene);
-      strut_scene_free(&scene);
     }
 }
 
 TEST(the_inverse_of_a_meshed_structure) {
-  strut_scene scene;
-  strut_scene_init(&scene);
+  OWN(strut_scene) scene = build_scene();
   structure_chain(&scene, 500, STRUT_MASS_CONSISTENT);
   for (size_t j = 0; j < scene.member_count; j++) scene.members[j].mass = 0.1; /* cables too */
   check_inverse(&scene);
-  strut_scene_free(&scene);
 }
 
 /* A uniform rigid rod: the inertia about its centre and about its end are exact. */
 TEST(a_consistent_bar_has_the_inertia_of_a_rod) {
-  strut_scene scene;
+  OWN(strut_scene) scene = build_scene();
   const double m = 0.6, l = 2;
-  strut_scene_init(&scene);
   build_node(&scene, 0, 0);
   build_node(&scene, l, 0);
   build_member(&scene, STRUT_BAR, 0, 1, 1, 0, m);
   for (int pinned = 0; pinned < 2; pinned++) {
     scene.nodes[0].fixed[0] = scene.nodes[0].fixed[1] = pinned;
-    strut_model *model = motion_compile(&scene);
+    OWN_POINTER(strut_model) model = motion_compile(&scene);
     double f[16] = {0}, a[16] = {0}, work[16];
     f[1] = pinned ? 0 : -1, f[3] = 1; /* a couple, or a force at the end */
     strut_mass_solve(model, f, a, work);
     double moment = l, inertia = pinned ? m * l * l / 3 : m * l * l / 12;
     assert_relative((a[3] - a[1]) / l, moment / inertia, 1e-14);
     assert_true(!pinned || (a[0] == 0 && a[1] == 0));
-    strut_model_free(model);
   }
-  strut_scene_free(&scene);
 }

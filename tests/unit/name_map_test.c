@@ -33,7 +33,7 @@ TEST(many_names) {
 
 TEST(reserved_room_holds_its_names) {
   static char names[MANY][16];
-  strut_name_map map = {0};
+  OWN(strut_name_map) map = {0};
   assert_true(strut_name_map_reserve(&map, 3)); /* few begin as ever */
   assert_int_equal(map.slots, 0);
   for (int32_t first = 0, end = MANY / 2; first < MANY; first = end, end = MANY) {
@@ -47,11 +47,10 @@ TEST(reserved_room_holds_its_names) {
   }
   for (int32_t i = 0; i < MANY; i++) assert_int_equal(strut_name_map_find(&map, names[i]), i);
   assert_int_equal(strut_name_map_find(&map, "n"), -1);
-  strut_name_map_free(&map);
 }
 
 TEST(no_memory) {
-  strut_name_map map = {0};
+  OWN(strut_name_map) map = {0};
   strut_fail_allocation_after(0);
   assert_int_equal(strut_name_map_add(&map, "a", 0), -2);
   assert_false(strut_name_map_reserve(&map, MANY));
@@ -59,5 +58,4 @@ TEST(no_memory) {
   assert_int_equal(strut_name_map_find(&map, "a"), -1);
   assert_int_equal(strut_name_map_add(&map, "a", 7), -1);
   assert_int_equal(strut_name_map_find(&map, "a"), 7);
-  strut_name_map_free(&map);
 }

@@ -10,7 +10,7 @@
 #include "engine/forces/elements.h"
 #include "engine/integrate/integrator.h"
 #include "tests/models/run_model.h"
-#include "tests/support/check.h"
+#include "tests/support/motion.h"
 #include "tests/support/random.h"
 
 enum { RODS = 49, ROW = 7 };
@@ -37,7 +37,7 @@ static void read_crowd(uint64_t *r, double mu, model_run *run) {
     at += sprintf(at, "    a%d: [%g, %g]\n", k, vx, vy);
   }
   sprintf(at, "solver: {step: 0.2 ms}\nrun: {duration: 1 s}\n");
-  model_read_text(run, "crowd.yaml", text, set_none);
+  *run = model_read_text("crowd.yaml", text, set_none);
   strut_error error = {0};
   assert_int_equal(strut_model_compile(&run->setup.scene, &run->model, &error), STRUT_OK);
   free(text);
@@ -47,7 +47,7 @@ static void read_crowd(uint64_t *r, double mu, model_run *run) {
 static void fly(const model_run *run, const char *method, double *end, int64_t *events) {
   const strut_integrator *by = strut_integrator_find(method);
   strut_integrator_settings settings = strut_integrator_settings_of(&run->setup.experiment);
-  strut_state *state = NULL;
+  OWN_POINTER(strut_state) state = NULL;
   size_t length = (size_t)run->model->length;
   assert_int_equal(strut_state_create(run->model, &state, NULL), STRUT_OK);
   state->balance = true;
@@ -59,19 +59,18 @@ static void fly(const model_run *run, const char *method, double *end, int64_t *
   memcpy(end + length, state->v, length * sizeof *end);
   *events = state->events;
   if (run->model->elements.scattered) assert_true(state->nearby[0].made > 1);
-  strut_state_free(state);
 }
 
 TEST(bits_are_those_of_all_collisions) {
   static const char *const methods[] = {"rk4", "verlet", "rk4-events", "verlet-events", "adaptive"};
   for (size_t m = 0; m < 2 * sizeof methods / sizeof *methods; m++) {
     uint64_t r = 11 + m;
-    model_run run = {0};
+    OWN(model_run) run = {0};
     read_crowd(&r, m % 2 ? 0.3 : 0.0, &run);
     strut_element_table *t = (strut_element_table *)&run.model->elements;
     assert_true(t->scattered);
     size_t count = 2 * (size_t)run.model->length;
-    double *few = calloc(count, sizeof *few), *all = calloc(count, sizeof *all);
+    FREED double *few = calloc(count, sizeof *few), *all = calloc(count, sizeof *all);
     int64_t events[2] = {0};
     fly(&run, methods[m / 2], few, &events[0]);
     t->scattered = false;
@@ -79,18 +78,16 @@ TEST(bits_are_those_of_all_collisions) {
     assert_memory_equal(few, all, count * sizeof *few);
     assert_true(events[0] == events[1]);
     if (m / 2 > 1) assert_true(events[0] > 10);
-    free(few), free(all);
-    model_run_free(&run);
   }
 }
 
 /* Whoever touches is listed, few others are, and bodies that jump are found as well. */
 TEST(lists_have_whoever_touches) {
   uint64_t r = 3;
-  model_run run = {0};
+  OWN(model_run) run = {0};
   read_crowd(&r, 0.0, &run);
   const strut_model *model = run.model;
-  strut_state *state = NULL;
+  OWN_POINTER(strut_state) state = NULL;
   assert_int_equal(strut_state_create(model, &state, NULL), STRUT_OK);
   double *q = calloc((size_t)model->length, sizeof *q), b[STRUT_MOST_GRADIENT];
   int64_t listed = 0, touching = 0, times = 300;
@@ -114,14 +111,12 @@ TEST(lists_have_whoever_touches) {
   assert_true(listed < times * model->elements.count / 10);
   assert_true(state->nearby[1].made < times / 3);
   free(q);
-  strut_state_free(state);
-  model_run_free(&run);
 }
 
 /* The largest stable step takes as many bodies as may be packed together to touch, not all of them. */
 TEST(few_crowd_at_a_node) {
   uint64_t r = 5;
-  model_run run = {0};
+  OWN(model_run) run = {0};
   read_crowd(&r, 0.0, &run);
   int32_t at_node[2 * RODS] = {0};
   for (int32_t i = 0; i < run.model->elements.count; i++) {
@@ -130,5 +125,4 @@ TEST(few_crowd_at_a_node) {
       at_node[run.model->elements.at[e->first + k] / 2]++;
   }
   for (int n = 0; n < 2 * RODS; n++) assert_in_range(at_node[n], 1, 8);
-  model_run_free(&run);
 }

@@ -81,11 +81,10 @@ TEST(other_texts_are_refused) {
   for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) expect_refusal(texts[i]);
   double got;
   assert_false(strut_number_read_scaled("1\0", 2, 0, &got));
-  char *longest = calloc(1, STRUT_NUMBER_MOST + 2);
+  FREED char *longest = calloc(1, STRUT_NUMBER_MOST + 2);
   memset(longest, '0', STRUT_NUMBER_MOST + 1);
   assert_true(strut_number_read_scaled(longest, STRUT_NUMBER_MOST, 0, &got));
   assert_false(strut_number_read_scaled(longest, STRUT_NUMBER_MOST + 1, 0, &got));
-  free(longest);
 }
 
 TEST(length_bounds_the_literal) {
@@ -209,7 +208,7 @@ TEST(locale_does_not_matter) {
     static const char digits[] = "0.1000000000000000055511151231257827021181583404541015625";
     strut_quantity q;
     strut_expression_error error;
-    strut_diagnostics diagnostics = {0};
+    OWN(strut_diagnostics) diagnostics = {0};
     brief = strut_number_read_scaled("1.5", 3, 0, &got) && got == 1.5;
     lengthy = strut_number_read_scaled(digits, strlen(digits), 0, &got) && got == 0.1;
     comma = strut_number_read_scaled("1,5", 3, 0, &got);
@@ -217,7 +216,6 @@ TEST(locale_does_not_matter) {
                q.value == 1234.567891011121314151617;
     strut_diagnose(&diagnostics, (strut_place){0}, "%.1f", 0.5);
     shown = strcmp(diagnostics.items[0].message, "0.5") == 0;
-    strut_diagnostics_free(&diagnostics);
   }
   setlocale(LC_ALL, "C");
   snprintf(command, sizeof command, "rm -rf %s", folder);

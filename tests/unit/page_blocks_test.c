@@ -10,8 +10,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/page/page.h"
-#include "tests/support/build.h"
-#include "tests/support/test.h"
+#include "tests/support/motion.h"
 
 static uint64_t seed = 1;
 static double uniform(void) { /* -1 to 1 */
@@ -106,14 +105,13 @@ TEST(the_largest_numbers_fit) {
 
 TEST(motion_takes_few_bytes) {
   enum { FRAMES = 100001 };
-  double *values = malloc(2 * FRAMES * sizeof *values);
+  FREED double *values = malloc(2 * FRAMES * sizeof *values);
   assert_non_null(values);
   for (size_t i = 0; i < 2 * FRAMES; i++)
     values[i] = (i % 2 ? 0.01 : 0.1) * sin(6.283185307179586e-2 * (double)(i / 2));
   assert_true(check(values, FRAMES, 2, 1, 1e-7) < 2 * FRAMES * 3 / 2);
   for (size_t i = 0; i < 2 * FRAMES; i++) values[i] = 1e-4 * (double)(i / 2) - 3;
   assert_true(check(values, FRAMES, 2, 1, 1e-7) < 2000);
-  free(values);
 }
 
 /* Whether a number is 1, 2 or 5 times a power of ten, by its text. */
@@ -146,15 +144,13 @@ TEST(whole_steps_are_exact) {
   static double time[FRAMES];
   for (size_t i = 0; i < FRAMES; i++) time[i] = (double)(1000000 + 7 * i) * 1e-4;
   strut_rows rows = {time, FRAMES, 1, 3};
-  strut_block block;
+  OWN(strut_block) block;
   assert_true(strut_rows_multiples(&rows, 1e-4));
   assert_false(strut_rows_multiples(&rows, 2e-4));
   assert_false(strut_rows_multiples(&rows, 0));
   assert_true(strut_block_encode(&rows, 1e-4, &block));
-  double *back = decode(&block, strut_rows_taken(&rows));
+  FREED double *back = decode(&block, strut_rows_taken(&rows));
   for (size_t i = 0; i + 1 < strut_rows_taken(&rows); i++) assert_true(back[i] == time[3 * i]);
-  free(back);
-  strut_block_free(&block);
 }
 
 /* A weight on a spring. */
@@ -171,19 +167,18 @@ static strut_model *weight(strut_setup *setup) {
 }
 
 /* A page of a motion of it; NULL: none. */
-static char *page_of(strut_trajectory *motion, size_t most, strut_page_frames *frames) {
-  strut_setup setup;
+static char *page_of(strut_trajectory *moved, size_t most, strut_page_frames *frames) {
+  OWN(strut_setup) setup;
   strut_error error = {0};
   strut_model *model = weight(&setup);
   strut_page page = {.model = model,
                      .experiment = &setup.experiment,
-                     .motion = motion,
+                     .motion = moved,
                      .yaml = "strut: 1\n",
                      .most_bytes = most};
   char *html = strut_page_html(&page, frames, &error);
   assert_non_null(html);
   strut_model_free(model);
-  strut_setup_free(&setup);
   return html;
 }
 
@@ -215,15 +210,15 @@ static void has(const char *html, const char *text) {
 TEST(a_motion_ends_where_it_is_no_motion) {
   static const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, 1e300, -1e300};
   strut_page_frames frames;
-  strut_trajectory motion = swing();
-  strut_release(page_of(&motion, 0, &frames));
+  strut_trajectory moved = swing();
+  strut_release(page_of(&moved, 0, &frames));
   assert_int_equal(frames.shown, FRAMES);
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     for (int what = 0; what < 2; what++) {
-      motion = swing();
+      moved = swing();
       if (what == 1 && isfinite(bad[i])) continue; /* a force may be anything */
       *(what ? &forces[700] : &positions[4 * 700 + 3]) = bad[i];
-      char *html = page_of(&motion, 0, &frames);
+      char *html = page_of(&moved, 0, &frames);
       assert_int_equal(frames.shown, 700);
       assert_int_equal(frames.recorded, FRAMES);
       has(html, "\"frames\":700,\"recorded\":1000,\"every\":1,\"status\":\"diverged\"");
@@ -231,9 +226,9 @@ TEST(a_motion_ends_where_it_is_no_motion) {
       strut_release(html);
     }
   }
-  motion = swing();
+  moved = swing();
   positions[3] = (double)NAN;
-  char *html = page_of(&motion, 0, &frames);
+  char *html = page_of(&moved, 0, &frames);
   assert_int_equal(frames.shown, 0);
   has(html, "\"motion\":null");
   strut_release(html);
@@ -254,9 +249,9 @@ static size_t count_data(const char *html) {
 TEST(frames_are_left_out_until_they_fit) {
   strut_page_frames frames;
   size_t previous = FRAMES + 1;
-  strut_trajectory motion = swing();
+  strut_trajectory moved = swing();
   for (size_t most = 16000; most >= 250; most /= 2) {
-    char *html = page_of(&motion, most, &frames), head[80];
+    char *html = page_of(&moved, most, &frames), head[80];
     assert_true(frames.shown <= previous && frames.shown >= 2);
     assert_true(frames.shown == 2 || count_data(html) <= most);
     const char *at = strstr(html, "\"every\":");
@@ -274,23 +269,23 @@ TEST(frames_are_left_out_until_they_fit) {
 
 /* The data alone are those in the page, and what is beside it follows. */
 TEST(a_page_has_its_data_and_those_beside_it) {
-  strut_setup setup;
+  OWN(strut_setup) setup;
   strut_error error = {0};
   strut_page_frames frames[2];
-  strut_trajectory motion = swing();
+  strut_trajectory moved = swing();
   strut_model *model = weight(&setup);
   strut_page second = {.model = model,
                        .experiment = &setup.experiment,
-                       .motion = &motion,
+                       .motion = &moved,
                        .yaml = "strut: 1\n",
                        .label = "</second>",
                        .most_bytes = 1000};
   strut_page page = second;
   page.label = NULL, page.most_bytes = 0, page.beside = &second;
-  char *data = strut_page_data(&page, NULL, &error);
-  char *other = strut_page_data(&second, &frames[1], &error);
+  RELEASED char *data = strut_page_data(&page, NULL, &error);
+  RELEASED char *other = strut_page_data(&second, &frames[1], &error);
   assert_true(data && other && frames[1].shown < FRAMES);
-  char *html = strut_page_html(&page, frames, &error);
+  RELEASED char *html = strut_page_html(&page, frames, &error);
   assert_non_null(html);
   assert_int_equal(frames[0].shown, FRAMES);
   assert_true(frames[1].shown < FRAMES && frames[1].recorded == FRAMES);
@@ -299,20 +294,16 @@ TEST(a_page_has_its_data_and_those_beside_it) {
   has(html, other);
   has(data, "\"label\":\"\"");
   has(other, "\"label\":\"\\u003c/second\\u003e\"");
-  strut_release(html);
-  strut_release(other);
-  strut_release(data);
   strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 TEST(memory_that_is_out_is_reported) {
-  strut_setup setup;
+  OWN(strut_setup) setup;
   strut_error error = {0};
-  strut_trajectory motion = swing();
+  strut_trajectory moved = swing();
   strut_model *model = weight(&setup);
   strut_page page = {
-      .model = model, .experiment = &setup.experiment, .motion = &motion, .yaml = "strut: 1\n"};
+      .model = model, .experiment = &setup.experiment, .motion = &moved, .yaml = "strut: 1\n"};
   const strut_page beside = page;
   page.beside = &beside;
   int64_t failed = 0;
@@ -329,7 +320,6 @@ TEST(memory_that_is_out_is_reported) {
   }
   assert_true(failed > 5);
   strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 static size_t count(const char *html, const char *text) {
@@ -341,15 +331,15 @@ static size_t count(const char *html, const char *text) {
 /* A program that builds its own scene may give things names that the language refuses. */
 TEST(no_name_becomes_markup) {
   static const char evil[] = "</script><!--<script>&\"\\\xe2\x80\xa8\n";
-  strut_setup setup;
+  OWN(strut_setup) setup;
   strut_error error = {0};
   strut_model *model = weight(&setup);
   strut_page page = {.model = model, .experiment = &setup.experiment, .yaml = "strut: 1\n"};
-  char *plain = strut_page_html(&page, NULL, &error);
+  RELEASED char *plain = strut_page_html(&page, NULL, &error);
   setup.scene.nodes[0].name = setup.scene.members[0].name = setup.scene.name =
       setup.scene.description = evil;
   page.yaml = page.remark = page.summary = evil;
-  char *html = strut_page_html(&page, NULL, &error);
+  RELEASED char *html = strut_page_html(&page, NULL, &error);
   assert_true(plain && html);
   assert_int_equal(count(html, "<script"), count(plain, "<script"));
   assert_int_equal(count(html, "</script"), count(plain, "</script"));
@@ -358,8 +348,5 @@ TEST(no_name_becomes_markup) {
   has(html,
       "{\"name\":\"\\u003c/"
       "script\\u003e\\u003c!--\\u003cscript\\u003e\\u0026\\\"\\\\\\u2028\\n\",");
-  strut_release(plain);
-  strut_release(html);
   strut_model_free(model);
-  strut_setup_free(&setup);
 }

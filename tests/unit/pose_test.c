@@ -8,8 +8,7 @@
 
 #include "engine/forces/forces.h"
 #include "engine/model/pose.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
+#include "tests/support/motion.h"
 #include "tests/support/random.h"
 
 enum { NODES = 7, MEMBERS = 13, POSES = 2000 };
@@ -65,9 +64,9 @@ static void add_forces(const strut_model *model, const double *q, const double *
 static void compare_forces(double slope) {
   uint64_t r = 7;
   for (int round = 0; round < 20; round++) {
-    strut_scene scene;
-    strut_model *model = NULL;
-    strut_state *state = NULL;
+    OWN(strut_scene) scene;
+    OWN_POINTER(strut_model) model = NULL;
+    OWN_POINTER(strut_state) state = NULL;
     double force[2 * NODES + 2 * STRUT_LANES];
     build(&scene, &r, slope);
     assert_int_equal(strut_model_compile(&scene, &model, NULL), STRUT_OK);
@@ -86,9 +85,6 @@ static void compare_forces(double slope) {
       for (int32_t i = 0; i < 2 * NODES; i++)
         assert_near(state->latest.force[i], force[i], 1e-13 * scale);
     }
-    strut_state_free(state);
-    strut_model_free(model);
-    strut_scene_free(&scene);
   }
 }
 

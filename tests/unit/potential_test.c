@@ -8,9 +8,11 @@
 #include "engine/forces/energy.h"
 #include "engine/forces/tangent.h"
 #include "tests/physics/random_scene.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
+#include "tests/support/motion.h"
 #include "tests/support/random.h"
+#include "tests/support/refused.h"
+
+FREED_BY(strut_potential_free, strut_potential)
 
 enum { SCENES = 120 };
 
@@ -76,9 +78,9 @@ TEST(it_agrees_with_the_engine) {
       tear_down(&f);
       continue;
     }
-    strut_arena arena = {0};
+    OWN(strut_arena) arena = {0};
     strut_tangent tangent;
-    strut_potential *all;
+    OWN_POINTER(strut_potential) all;
     assert_int_equal(strut_potential_create(f.model, NULL, true, &all, NULL), STRUT_OK);
     strut_sparse *k = strut_potential_matrix(all, &arena);
     strut_potential_hessian(all, f.q, k);
@@ -95,8 +97,8 @@ TEST(it_agrees_with_the_engine) {
     for (int32_t i = 0; i < all->n; i++) assert_near(y[i], z[i], 1e-9 * (1 + fabs(z[i])));
 
     f.scene.actuator_count = 0;
-    strut_model *quiet;
-    strut_state *still;
+    OWN_POINTER(strut_model) quiet;
+    OWN_POINTER(strut_state) still;
     assert_int_equal(strut_model_compile(&f.scene, &quiet, NULL), STRUT_OK);
     assert_int_equal(strut_state_create(quiet, &still, NULL), STRUT_OK);
     memcpy(still->q, f.q, (size_t)f.model->length * sizeof *f.q);
@@ -110,21 +112,16 @@ TEST(it_agrees_with_the_engine) {
     strut_potential_gradient(all, f.q, f.g);
     strut_potential_force(all, f.q, f.up);
     for (int32_t i = 0; i < all->n; i++) assert_same_bits(0 - f.g[i], 0 + f.up[all->coordinate[i]]);
-    strut_state_free(still);
-    strut_model_free(quiet);
-    strut_potential_free(all);
-    strut_arena_free(&arena);
     tear_down(&f);
   }
 }
 
 /* A spring of no length and no rest length pulls alike everywhere; one with a rest length not. */
 TEST(members_of_zero_length) {
-  strut_scene scene;
-  strut_model *model;
-  strut_potential *p;
-  strut_arena arena = {0};
-  strut_scene_init(&scene);
+  OWN(strut_scene) scene = build_scene();
+  OWN_POINTER(strut_model) model;
+  OWN_POINTER(strut_potential) p;
+  OWN(strut_arena) arena = {0};
   build_support(&scene, 0, 0);
   build_node(&scene, 0, 0);
   build_node(&scene, 1, 0);
@@ -146,18 +143,13 @@ TEST(members_of_zero_length) {
   strut_potential_hessian(p, q, k);
   assert_near(k->value[k->start[2]], 0, 0);
   assert_near(k->value[k->start[3]], 0, 0);
-  strut_arena_free(&arena);
-  strut_potential_free(p);
-  strut_model_free(model);
-  strut_scene_free(&scene);
 }
 
 /* A weight on a soft ground that slopes: the force is the load's plus the ground's push. */
 TEST(a_slope_pushes_along_its_normal) {
-  strut_scene scene;
-  strut_model *model;
+  OWN(strut_scene) scene = build_scene();
+  OWN_POINTER(strut_model) model;
   strut_potential *p;
-  strut_scene_init(&scene);
   build_mass(&scene, 1, 0.4, 2);
   build_contact(&scene, 0, 1000, 5);
   build_load(&scene, 0, 3, 4, -1);
@@ -177,26 +169,19 @@ TEST(a_slope_pushes_along_its_normal) {
   assert_near(force[0], 3, 0);
   assert_near(force[1], -16, 0);
   strut_potential_free(p);
-  strut_model_free(model);
-  strut_scene_free(&scene);
 }
 
 /* A refusal of memory at any place is passed on. */
 TEST(refused_memory) {
-  strut_scene scene;
-  strut_model *model;
+  OWN(strut_scene) scene;
+  OWN_POINTER(strut_model) model;
   random_scene(&scene, 3);
   assert_int_equal(strut_model_compile(&scene, &model, NULL), STRUT_OK);
   for (int64_t n = 0;; n++) {
     strut_potential *p;
-    strut_fail_allocation_after(n);
-    strut_status status = strut_potential_create(model, NULL, true, &p, NULL);
-    strut_fail_allocation_after(-1);
+    strut_status status = refused(n, strut_potential_create(model, NULL, true, &p, NULL));
     strut_potential_free(p);
     if (status == STRUT_OK) break;
-    assert_int_equal(status, STRUT_NO_MEMORY);
     assert_true(n < 100);
   }
-  strut_model_free(model);
-  strut_scene_free(&scene);
 }

@@ -61,7 +61,7 @@ TEST(bounds_do_not_change_the_nearest_facet) {
   uint64_t r = 1;
   for (int round = 0; round < 300; round++) {
     strut_facet facet[400];
-    strut_arena arena = {0};
+    OWN(strut_arena) arena = {0};
     strut_surface plain, bounded;
     int32_t count = 9 + random_below(&r, 390);
     make_convex(&r, count, facet, &plain);
@@ -79,7 +79,6 @@ TEST(bounds_do_not_change_the_nearest_facet) {
       compare_poses(&plain, &bounded, p);
       compare_poses(&plain, &bounded, f->point);
     }
-    strut_arena_free(&arena);
   }
 }
 
@@ -96,7 +95,7 @@ static void read_terrain(uint64_t *r, size_t count, model_run *run) {
   for (size_t k = 0; k < count; k++)
     at += sprintf(at, ", [%.17g, %.17g]", (double)k, random_between(r, 0, 0.3));
   sprintf(at, ", [%zu, 0]]}\n", count + 1);
-  model_read_text(run, "terrain.yaml", text, set_none);
+  *run = model_read_text("terrain.yaml", text, set_none);
   strut_error error = {0};
   assert_int_equal(strut_model_compile(&run->setup.scene, &run->model, &error), STRUT_OK);
   free(text);
@@ -106,7 +105,7 @@ static void read_terrain(uint64_t *r, size_t count, model_run *run) {
 TEST(only_pieces_nearby_are_looked_at) {
   uint64_t r = 7;
   enum { POINTS = 1000 };
-  model_run run = {0};
+  OWN(model_run) run = {0};
   read_terrain(&r, POINTS, &run);
   const strut_contact_table *c = &run.model->contacts;
   int32_t end = strut_contacts_end_of_node(c, 0), *list = malloc((size_t)c->count * sizeof *list);
@@ -139,7 +138,6 @@ TEST(only_pieces_nearby_are_looked_at) {
   }
   assert_within((double)looked / (double)times, 0.0, 120.0);
   free(list);
-  model_run_free(&run);
 }
 
 /* ---- crossings and reaches ---- */
@@ -194,7 +192,7 @@ TEST(crossings_are_those_of_all_pairs) {
     assert_int_equal(fault, crosses ? STRUT_PROFILE_CROSSES : STRUT_PROFILE_FINE);
     crossed += crosses;
     if (crosses) assert_true(segment == k && other == j);
-    strut_arena arena = {0};
+    OWN(strut_arena) arena = {0};
     strut_profile_index index;
     assert_true(strut_profile_index_create(&arena, &g, &index));
     for (size_t at = 1; at + 1 < POINTS; at++)
@@ -203,7 +201,6 @@ TEST(crossings_are_those_of_all_pairs) {
         const strut_stretch ray = {points[at], way ? d : (strut_vec2){-d.x, -d.y}, 0.0, HUGE_VAL};
         assert_same_bits(strut_profile_cast_ray(&index, &ray, at), cast_at_all(&g, &ray, at));
       }
-    strut_arena_free(&arena);
   }
   assert_within(crossed, 0.2 * rounds, 0.9 * rounds);
 }

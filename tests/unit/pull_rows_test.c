@@ -67,10 +67,9 @@ TEST(random_structures) {
 /* Nodes of a crawler have three or four members: one row each. */
 TEST(rows_are_as_long_as_nodes_want_them) {
   static const uint32_t from[9] = {0, 4, 6, 0, 2, 2, 0, 0, 2}, to[9] = {2, 8, 8, 4, 4, 6, 6, 8, 8};
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   const strut_pull_rows *rows = strut_pull_rows_create(&arena, 9, from, to);
   assert_non_null(rows);
   assert_int_equal(rows->rows, 5);
   assert_int_equal(rows->width, 4);
-  strut_arena_free(&arena);
 }

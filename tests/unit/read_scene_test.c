@@ -9,7 +9,8 @@
 #include "parser/read/read_scene.h"
 #include "parser/write/write_scene.h"
 #include "tests/language/cases.h"
-#include "tests/support/test.h"
+#include "tests/support/motion.h"
+#include "tests/support/refused.h"
 
 /* What every scene here ends with. */
 #define RUN "solver: {step: 1 ms}\nrun: {duration: 10 s}\n"
@@ -43,7 +44,7 @@ static char *read_path(const char *path, size_t *length) {
 
 TEST(the_crawler_page) {
   size_t length;
-  strut_setup s;
+  OWN(strut_setup) s;
   char *text = read_path(STRUT_TESTS_DIR "/language/good/crawler.yaml", &length);
   read_good(&s, text, NULL, 0);
   strut_release(text); /* the scene owns all it needs */
@@ -78,7 +79,6 @@ TEST(the_crawler_page) {
   assert_int_equal(s.scene.parameter_count, 4);
   assert_string_equal(s.scene.parameters[0].text, "10 Hz");
   assert_true(s.scene.parameters[0].value == 10 && isnan(s.scene.parameters[3].value));
-  strut_setup_free(&s);
 }
 
 TEST(overrides) {
@@ -159,7 +159,7 @@ TEST(groups_give_defaults) {
       "  m2: {group: [two, one], nodes: [a, b]}\n"
       "  m3: {group: one, nodes: [a, b], axial_stiffness: 9, rest_length_ratio: 0.5, mass: "
       "0}\n" RUN;
-  strut_setup s;
+  OWN(strut_setup) s;
   read_good(&s, text, NULL, 0);
   const strut_member *m = s.scene.members;
   assert_true(s.scene.nodes[0].fixed[0] && s.scene.nodes[0].fixed[1] && s.scene.nodes[0].mass == 8);
@@ -172,7 +172,6 @@ TEST(groups_give_defaults) {
   assert_true(m[1].rest_kind == STRUT_REST_LENGTH && m[1].rest_value == 2 && m[1].damping == 7);
   assert_true(m[2].stiffness == 0 && m[2].axial_stiffness == 9 && m[2].mass == 0);
   assert_true(m[2].rest_kind == STRUT_REST_RATIO && m[2].rest_value == 0.5);
-  strut_setup_free(&s);
 }
 
 TEST(friction_comes_in_layers) {
@@ -188,7 +187,7 @@ TEST(friction_comes_in_layers) {
       "  contacts:\n"
       "    c: {group: [ice, wet], friction: {stick_velocity: 2 mm/s}}\n"
       "    d: {stiffness: 2e4, friction: {law: none}}\n" RUN;
-  strut_setup s;
+  OWN(strut_setup) s;
   read_good(&s, text, NULL, 0);
   assert_int_equal(s.scene.contact_count, 3);
   const strut_contact *c = s.scene.contacts;
@@ -197,7 +196,6 @@ TEST(friction_comes_in_layers) {
   assert_true(c[1].friction.mu_static == 0.2 && c[1].friction.mu_kinetic == 0.01);
   assert_true(c[1].friction.stick_velocity == 0.002 && c[1].damping == 9 && c[1].stiffness == 1e4);
   assert_true(c[2].friction.law == STRUT_FRICTION_NONE && c[2].stiffness == 2e4);
-  strut_setup_free(&s);
 }
 
 TEST(signals_and_their_names) {
@@ -216,7 +214,7 @@ TEST(signals_and_their_names) {
       "solver: {step: 1 ms}\n"
       "run: {periods: 3, of: two, measure: {node: b}}\n"
       "output: {channels: [energy, position]}\n";
-  strut_setup s;
+  OWN(strut_setup) s;
   read_good(&s, text, NULL, 0);
   assert_int_equal(s.scene.signal_count, 4);
   assert_string_equal(s.scene.signals[0].name, "early"); /* terms come before their sum */
@@ -233,35 +231,33 @@ TEST(signals_and_their_names) {
   assert_true(s.scene.nodes[0].velocity[0] == 0 &&
               s.scene.nodes[0].velocity[1] == 2); /* held in x */
   assert_true(s.scene.nodes[1].velocity[0] == 3 && s.scene.nodes[1].velocity[1] == 4);
-  strut_setup_free(&s);
 }
 
 TEST(statics_need_no_run) {
   static const char text[] =
       "strut: 1\nnodes: {a: {position: [0, 0], fixed: both}, b: [1, 0]}\n"
       "members: {m: {nodes: [a, b], kind: bar, stiffness: 1}}\n";
-  strut_diagnostics diagnostics = {0};
+  OWN(strut_diagnostics) diagnostics = {0};
   strut_setup s;
   assert_int_equal(
       strut_setup_read(&s, "f", text, strlen(text), NULL, 0, STRUT_FOR_STATICS, &diagnostics),
       STRUT_OK);
   strut_setup_free(&s);
   assert_int_equal(read_text(&s, text, NULL, 0), STRUT_BAD_SCENE);
-  strut_diagnostics_free(&diagnostics);
 }
 
 /* Fails each allocation in turn: no crash, no leak, and never a scene that is only half there. */
 TEST(memory_may_run_out_anywhere) {
   size_t length;
-  char *text = read_path(STRUT_TESTS_DIR "/language/good/every-key.yaml", &length);
+  RELEASED char *text = read_path(STRUT_TESTS_DIR "/language/good/every-key.yaml", &length);
   strut_status status = STRUT_NO_MEMORY;
   int64_t n = 0;
   for (; status != STRUT_OK && n < 5000; n++) {
-    strut_setup s;
-    strut_diagnostics diagnostics = {0};
+    OWN(strut_setup) s;
+    OWN(strut_diagnostics) diagnostics = {0};
     strut_fail_allocation_after(n);
     status = strut_setup_read(&s, "f", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
-    char *written = status == STRUT_OK ? strut_setup_write(&s) : NULL;
+    RELEASED char *written = status == STRUT_OK ? strut_setup_write(&s) : NULL;
     strut_fail_allocation_after(-1);
     if (status != STRUT_OK) {
       assert_int_equal(status, STRUT_NO_MEMORY);
@@ -269,13 +265,9 @@ TEST(memory_may_run_out_anywhere) {
     } else if (!written) {
       status = STRUT_NO_MEMORY;
     }
-    strut_release(written);
-    strut_setup_free(&s);
-    strut_diagnostics_free(&diagnostics);
   }
   assert_int_equal(status, STRUT_OK);
   assert_true(n > 20);
-  strut_release(text);
 }
 
 TEST(memory_may_run_out_in_a_bad_file) {
@@ -285,13 +277,12 @@ TEST(memory_may_run_out_in_a_bad_file) {
   assert_non_null(many);
   for (int64_t n = 0; status == STRUT_NO_MEMORY && n < 5000; n++) {
     strut_setup s;
-    strut_diagnostics diagnostics = {0};
+    OWN(strut_diagnostics) diagnostics = {0};
     strut_fail_allocation_after(n);
     status =
         strut_setup_read(&s, "f", many->text, many->length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
     strut_fail_allocation_after(-1);
     assert_null(s.scene.nodes);
-    strut_diagnostics_free(&diagnostics);
   }
   assert_int_equal(status, STRUT_BAD_SCENE);
   free_faulty_cases(&cases);
@@ -318,17 +309,14 @@ static char *chain(int n, bool spoilt, size_t *length) {
 
 static double seconds_to_read(int n, bool spoilt, strut_status expected) {
   size_t length;
-  char *text = chain(n, spoilt, &length);
-  strut_setup s;
-  strut_diagnostics diagnostics = {0};
+  FREED char *text = chain(n, spoilt, &length);
+  OWN(strut_setup) s;
+  OWN(strut_diagnostics) diagnostics = {0};
   clock_t begin = clock();
   assert_int_equal(strut_setup_read(&s, "f", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics),
                    expected);
   double seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
   assert_int_equal(diagnostics.count + diagnostics.unstored, spoilt ? n : 0);
-  strut_setup_free(&s);
-  strut_diagnostics_free(&diagnostics);
-  free(text);
   return seconds;
 }
 
@@ -351,8 +339,8 @@ TEST(other_spellings) {
       "ground: {height: -1, stiffness: 10, damping_law: printed}\n"
       "solver: {step: 1 ms}\n"
       "run: {periods: 9, of: d, measure: {steady: {floor: 1e-3, successive: 3}}}\n";
-  strut_setup s;
-  strut_diagnostics diagnostics = {0};
+  OWN(strut_setup) s;
+  OWN(strut_diagnostics) diagnostics = {0};
   assert_int_equal(
       strut_setup_read(&s, "test.yaml", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics),
       STRUT_OK);
@@ -367,8 +355,6 @@ TEST(other_spellings) {
   assert_non_null(
       strstr(notes, "test.yaml:8:58: note: 'successive' is now called 'repetitions'\n"));
   assert_int_equal(diagnostics.note_count, 3);
-  strut_diagnostics_free(&diagnostics);
-  strut_setup_free(&s);
 }
 
 /* A key by both of its names is given twice. */
@@ -381,12 +367,11 @@ TEST(both_spellings_of_a_key) {
       "solver: {step: 1 ms}\n"
       "run: {periods: 9, of: d, measure: {steady: {floor: 1e-3, absolute_tolerance: 1e-3}}}\n";
   strut_setup s;
-  strut_diagnostics diagnostics = {0};
+  OWN(strut_diagnostics) diagnostics = {0};
   assert_int_equal(
       strut_setup_read(&s, "test.yaml", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics),
       STRUT_BAD_SCENE);
   assert_non_null(strstr(strut_diagnostics_render(&diagnostics, 9),
                          "the steady state gives both 'floor' and 'absolute_tolerance', expected "
                          "one of them"));
-  strut_diagnostics_free(&diagnostics);
 }

@@ -6,9 +6,8 @@
 #include <string.h>
 
 #include "engine/output/figures/run_figure.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
+#include "tests/support/refused.h"
 #include "tests/support/structures.h"
 #include "tests/unit/scratch.h"
 
@@ -39,7 +38,6 @@ AFTER_ALL {
   strut_summary_free(&summary);
   strut_model_free(model);
   strut_setup_free(&setup);
-  scratch_remove();
 }
 
 static strut_status draw(strut_run_view view, const strut_trajectory *frames, strut_error *error) {
@@ -62,22 +60,17 @@ TEST(no_memory) {
     strut_error error;
     for (int64_t n = 0; status != STRUT_OK; n += 1 + n / 4) {
       assert_int_equal(scratch_count(scratch_path("")), 0);
-      strut_fail_allocation_after(n);
-      status = draw((strut_run_view)view, &taken, &error);
-      strut_fail_allocation_after(-1);
-      if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
+      status = refused(n, draw((strut_run_view)view, &taken, &error));
       if (status != STRUT_OK) assert_true(error.message[0]);
       assert_true(n < 100000);
     }
     assert_int_equal(scratch_count(scratch_path("")), 1);
     size_t length, full_length;
-    char *picture = scratch_read(scratch_path("a.svg"), &length);
+    FREED char *picture = scratch_read(scratch_path("a.svg"), &length);
     assert_int_equal(draw((strut_run_view)view, &taken, &error), STRUT_OK);
-    char *full = scratch_read(scratch_path("a.svg"), &full_length);
+    FREED char *full = scratch_read(scratch_path("a.svg"), &full_length);
     assert_int_equal(length, full_length);
     assert_memory_equal(picture, full, length);
-    free(picture);
-    free(full);
     assert_int_equal(remove(scratch_path("a.svg")), 0);
   }
   beside = NULL;
@@ -115,7 +108,8 @@ TEST(frames_that_are_no_shapes) {
   strut_error error;
   strut_trajectory few = taken, wild = taken;
   few.frames = 20;
-  double *positions = strut_allocate(2 * taken.frames * taken.node_count, sizeof *positions);
+  RELEASED double *positions =
+      strut_allocate(2 * taken.frames * taken.node_count, sizeof *positions);
   assert_non_null(positions);
   memcpy(positions, taken.position, 2 * taken.frames * taken.node_count * sizeof *positions);
   wild.position = positions;
@@ -123,14 +117,11 @@ TEST(frames_that_are_no_shapes) {
   positions[2 * 25 * taken.node_count] = (double)NAN;
   summary.status = STRUT_DIVERGED;
   assert_int_equal(draw(STRUT_RUN_PERIOD, &few, &error), STRUT_OK);
-  char *one = scratch_read(scratch_path("a.svg"), &length);
+  FREED char *one = scratch_read(scratch_path("a.svg"), &length);
   assert_int_equal(draw(STRUT_RUN_PERIOD, &wild, &error), STRUT_OK);
-  char *two = scratch_read(scratch_path("a.svg"), &other_length);
+  FREED char *two = scratch_read(scratch_path("a.svg"), &other_length);
   summary.status = STRUT_OK;
   assert_int_equal(length, other_length);
   assert_memory_equal(one, two, length);
-  free(one);
-  free(two);
-  strut_release(positions);
   assert_int_equal(remove(scratch_path("a.svg")), 0);
 }

@@ -131,19 +131,17 @@ TEST(all_else_is_refused) {
 
 TEST(every_failed_allocation_is_said) {
   for (int n = 0;; n++) {
-    strut_safe_text file;
+    OWN(strut_safe_text) file;
     strut_error error = {0};
     strut_fail_allocation_after(n);
     strut_status status = read_from("top", "top/study.yaml", "points.csv", 8, &file, &error);
     strut_fail_allocation_after(-1);
     assert_true(status == STRUT_OK || (status == STRUT_NO_MEMORY && !file.text && !file.path));
-    strut_safe_text_free(&file);
     if (status == STRUT_OK) break;
   }
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   assert_string_equal(strut_folder_of("a/b/c.yaml", &arena), "a/b");
   assert_string_equal(strut_folder_of("c.yaml", &arena), ".");
   assert_string_equal(strut_folder_of("-", &arena), ".");
   assert_string_equal(strut_folder_of("/c.yaml", &arena), "/");
-  strut_arena_free(&arena);
 }

@@ -9,17 +9,21 @@
 #include <unistd.h>
 
 static char directory[64];
+static pid_t owner; /* the process that made it; a child that exits leaves it */
 
-const char *scratch_make(void) {
-  strcpy(directory, "/tmp/strut-test-XXXXXX");
-  if (!mkdtemp(directory)) abort();
-  return directory;
-}
-
-void scratch_remove(void) {
+static void scratch_remove(void) {
   char command[128];
   snprintf(command, sizeof command, "rm -rf '%s'", directory);
-  if (system(command) != 0) abort();
+  if (getpid() == owner && system(command) != 0) abort();
+}
+
+const char *scratch_make(void) {
+  if (!directory[0]) atexit(scratch_remove);
+  scratch_remove();
+  strcpy(directory, "/tmp/strut-test-XXXXXX");
+  owner = getpid();
+  if (!mkdtemp(directory)) abort();
+  return directory;
 }
 
 const char *scratch_path(const char *name) {

@@ -6,10 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/** Makes an empty directory and returns its path, good until scratch_remove. */
+/** Makes an empty directory and returns its path; it goes with all in it at the next call or the end. */
 const char *scratch_make(void);
-/** Removes it with all that is in it. */
-void scratch_remove(void);
 /** Path of a name in the directory; the last four results stay good. */
 const char *scratch_path(const char *name);
 /** Files and directories in `directory`, hidden ones too; -1 where there is no such directory. */

@@ -86,12 +86,11 @@ TEST(motions_are_checked) {
                {{1, 0, 0}, "not fixed"}, {{7, 0, 0}, "does not exist"},
                {{0, 2, 0}, "axis"},      {{0, 1, 3}, "a signal that does not exist"}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    strut_findings findings = {0};
+    OWN(strut_findings) findings = {0};
     motions[1] = cases[i].second;
     strut_status status = strut_setup_check(&setup, STRUT_FOR_STATICS, &findings);
     assert_int_equal(status, cases[i].words ? STRUT_BAD_SCENE : STRUT_OK);
     assert_int_equal(findings.count, cases[i].words != NULL);
     if (cases[i].words) assert_non_null(strstr(findings.items[0].message, cases[i].words));
-    strut_findings_free(&findings);
   }
 }

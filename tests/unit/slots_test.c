@@ -14,6 +14,7 @@
 #include "engine/base/memory.h"
 #include "engine/study/results/slots.h"
 #include "tests/support/check.h"
+#include "tests/support/refused.h"
 #include "tests/unit/scratch.h"
 
 static const strut_slot_column columns[] = {
@@ -87,8 +88,9 @@ static void make_file(const char *path, int64_t points) {
   strut_slots_close(slots);
 }
 
+BEFORE_EACH { scratch_make(); }
+
 TEST(rows_come_back) {
-  scratch_make();
   const char *path = scratch_path("a.slots");
   strut_slots_description plan = a_plan(1000), there;
   strut_slots *slots = open_slots(path, &plan);
@@ -118,11 +120,9 @@ TEST(rows_come_back) {
   assert_true(there.columns[1].word);
   assert_int_equal(there.points, 1000);
   strut_slots_close(slots);
-  scratch_remove();
 }
 
 TEST(some_points_only) {
-  scratch_make();
   strut_error error = {0};
   strut_slots_description plan = a_plan(100);
   plan.first = 3, plan.stride = 8, plan.count = 13; /* 3, 11, ..., 99 */
@@ -145,11 +145,9 @@ TEST(some_points_only) {
   assert_int_equal(strut_slots_missing(slots), 0);
   assert_int_equal(put(slots, 5, NULL), STRUT_USAGE);
   strut_slots_close(slots);
-  scratch_remove();
 }
 
 TEST(the_bytes_do_not_depend_on_the_order) {
-  scratch_make();
   size_t first = 0, second = 0;
   make_file(scratch_path("a"), 20);
   strut_slots_description plan = a_plan(20);
@@ -158,20 +156,17 @@ TEST(the_bytes_do_not_depend_on_the_order) {
     assert_int_equal(put(slots, i, NULL), STRUT_OK);
     strut_slots_close(slots);
   }
-  char *a = scratch_read(scratch_path("a"), &first), *b = scratch_read(scratch_path("b"), &second);
+  FREED char *a = scratch_read(scratch_path("a"), &first),
+             *b = scratch_read(scratch_path("b"), &second);
   assert_int_equal(first, second);
   assert_memory_equal(a, b, first);
-  free(a);
-  free(b);
-  scratch_remove();
 }
 
 /* Cut at many lengths, close by all ends of slots and fields: rows are whole or missing, and the rest can be computed again. */
 TEST(a_file_that_is_cut) {
-  scratch_make();
   size_t length = 0;
   make_file(scratch_path("a"), 5);
-  char *bytes = scratch_read(scratch_path("a"), &length);
+  FREED char *bytes = scratch_read(scratch_path("a"), &length);
   strut_slots_description plan = a_plan(5);
   int64_t slot = 24 + 2 * 8 + 24 + STRUT_SLOT_MESSAGE, header = (int64_t)length - 5 * slot;
   assert_true(header > 0 && header % 64 == 0);
@@ -192,18 +187,14 @@ TEST(a_file_that_is_cut) {
     }
     strut_slots_close(slots);
     size_t again = 0;
-    char *now = scratch_read(scratch_path("b"), &again);
+    FREED char *now = scratch_read(scratch_path("b"), &again);
     assert_int_equal(again, length);
     assert_memory_equal(now, bytes, length);
-    free(now);
   }
-  free(bytes);
-  scratch_remove();
 }
 
 /* One bit turned anywhere: a slot is missing then, a header is refused, nothing else changes. */
 TEST(a_bit_flipped_anywhere) {
-  scratch_make();
   size_t length = 0;
   make_file(scratch_path("a"), 3);
   char *bytes = scratch_read(scratch_path("a"), &length);
@@ -229,18 +220,16 @@ TEST(a_bit_flipped_anywhere) {
       strut_slots_close(slots);
     }
   free(bytes);
-  scratch_remove();
 }
 
 /* A slot of the right bytes in the wrong place, or of another study, is none. */
 TEST(slots_of_elsewhere) {
-  scratch_make();
   size_t length = 0, other_length = 0;
   make_file(scratch_path("a"), 3);
-  char *bytes = scratch_read(scratch_path("a"), &length);
+  FREED char *bytes = scratch_read(scratch_path("a"), &length);
   size_t slot = 24 + 2 * 8 + 24 + STRUT_SLOT_MESSAGE, header = length - 3 * slot;
   strut_slots_description plan = a_plan(3);
-  char *copy = malloc(length);
+  FREED char *copy = malloc(length);
   memcpy(copy, bytes, length);
   memcpy(copy + header, bytes + header + slot, slot);
   write_bytes(scratch_path("b"), copy, length);
@@ -252,17 +241,13 @@ TEST(slots_of_elsewhere) {
   slots = open_slots(scratch_path("c"), &plan);
   assert_int_equal(put(slots, 2, NULL), STRUT_OK);
   strut_slots_close(slots);
-  char *other = scratch_read(scratch_path("c"), &other_length);
+  FREED char *other = scratch_read(scratch_path("c"), &other_length);
   assert_int_equal(other_length, length);
   memcpy(other + header, bytes + header, slot);
   write_bytes(scratch_path("c"), other, length);
   slots = open_slots(scratch_path("c"), &plan);
   assert_false(strut_slots_done(slots, 0));
   strut_slots_close(slots);
-  free(other);
-  free(copy);
-  free(bytes);
-  scratch_remove();
 }
 
 /* expect PLAN: the file at `path` is refused with a sentence that has these words. */
@@ -277,11 +262,10 @@ static void expect_refused(const char *path, const strut_slots_description *plan
 }
 
 TEST(other_studies_are_refused) {
-  scratch_make();
   const char *path = scratch_path("a");
   size_t length = 0, after = 0;
   make_file(path, 9);
-  char *bytes = scratch_read(path, &length);
+  FREED char *bytes = scratch_read(path, &length);
   strut_slots_description plan = a_plan(9);
   plan.hash[15] = 1;
   expect_refused(path, &plan, STRUT_USAGE, "differs in the model, its parameters or the axes:");
@@ -296,16 +280,12 @@ TEST(other_studies_are_refused) {
   plan = a_plan(9);
   plan.stride = 2, plan.count = 5;
   expect_refused(path, &plan, STRUT_USAGE, "their points");
-  char *now = scratch_read(path, &after);
+  FREED char *now = scratch_read(path, &after);
   assert_int_equal(after, length);
   assert_memory_equal(now, bytes, length);
-  free(now);
-  free(bytes);
-  scratch_remove();
 }
 
 TEST(foreign_files_are_refused) {
-  scratch_make();
   strut_slots_description plan = a_plan(9);
   const char *path = scratch_path("a");
   size_t length = 0;
@@ -331,11 +311,9 @@ TEST(foreign_files_are_refused) {
   free(bytes);
   expect_refused(scratch_path("no/such"), &plan, STRUT_FILE_TROUBLE, "No such file");
   expect_refused(scratch_path("."), &plan, STRUT_FILE_TROUBLE, "Is a directory");
-  scratch_remove();
 }
 
 TEST(one_writer_at_a_time) {
-  scratch_make();
   const char *path = scratch_path("a");
   strut_slots_description plan = a_plan(9);
   strut_slots *slots = open_slots(path, &plan);
@@ -357,7 +335,6 @@ TEST(one_writer_at_a_time) {
   assert_int_equal(WEXITSTATUS(how), 0);
   strut_slots_close(slots);
   strut_slots_close(open_slots(path, &plan));
-  scratch_remove();
 }
 
 static strut_slots *share_slots(const char *path, const strut_slots_description *plan) {
@@ -376,7 +353,6 @@ static void hold_points(const char *path, const strut_slots_description *plan, i
 }
 
 TEST(claims_end_with_their_process) {
-  scratch_make();
   const char *path = scratch_path("a");
   strut_slots_description plan = a_plan(9);
   char told = 0;
@@ -410,7 +386,6 @@ TEST(claims_end_with_their_process) {
   strut_slots_close(slots);
   close(ends[0]);
   close(ends[1]);
-  scratch_remove();
 }
 
 typedef struct worker {
@@ -428,7 +403,6 @@ static void *work(void *context) {
 }
 
 TEST(threads) {
-  scratch_make();
   strut_slots_description plan = a_plan(8000);
   strut_slots *slots = open_slots(scratch_path("a"), &plan);
   pthread_t threads[4];
@@ -447,12 +421,10 @@ TEST(threads) {
   slots = read_slots(scratch_path("a"));
   for (int64_t i = 0; i < 8000; i++) check_row(slots, i);
   strut_slots_close(slots);
-  scratch_remove();
 }
 
 /* Texts that are too long are cut between characters; nothing breaks a line of the table. */
 TEST(texts_that_do_not_fit) {
-  scratch_make();
   strut_slots_description plan = a_plan(2);
   strut_slots *slots = open_slots(scratch_path("a"), &plan);
   char message[401] = "", words[1][STRUT_SLOT_WORD];
@@ -471,12 +443,10 @@ TEST(texts_that_do_not_fit) {
   assert_true(strut_slots_get(slots, 1, &row));
   assert_string_equal(row.message, "two lines of text");
   strut_slots_close(slots);
-  scratch_remove();
 }
 
 /* No room: a complaint, a missing point, and all well when there is room again. */
 TEST(a_full_disk) {
-  scratch_make();
   strut_slots_description plan = a_plan(200);
   strut_slots *slots = open_slots(scratch_path("a"), &plan);
   struct rlimit before, small;
@@ -499,15 +469,11 @@ TEST(a_full_disk) {
   for (int64_t i = put_well; i < 200; i++) assert_int_equal(put(slots, i, NULL), STRUT_OK);
   for (int64_t i = 0; i < 200; i++) check_row(slots, i);
   strut_slots_close(slots);
-  scratch_remove();
 }
 
 TEST(a_full_small_disk) {
   const char *disk = scratch_make();
-  if (!scratch_mount_small_disk(disk, 64)) {
-    scratch_remove();
-    skip();
-  }
+  if (!scratch_mount_small_disk(disk, 64)) skip();
   strut_slots_description plan = a_plan(1000);
   strut_slots *slots = open_slots(scratch_path("a"), &plan);
   strut_error error = {0};
@@ -520,34 +486,27 @@ TEST(a_full_small_disk) {
   assert_int_equal(strut_slots_missing(slots), 1000 - put_well);
   strut_slots_close(slots);
   scratch_unmount(disk);
-  scratch_remove();
 }
 
 TEST(no_memory) {
-  scratch_make();
   strut_slots_description plan = a_plan(100), there;
   make_file(scratch_path("a"), 100);
   for (int mode = 0; mode < 3; mode++) {
     strut_status status = STRUT_NO_MEMORY;
     for (int64_t n = 0; status != STRUT_OK; n++) {
       strut_slots *slots = NULL;
-      strut_fail_allocation_after(n);
-      status = mode == 0   ? strut_slots_open(scratch_path("a"), &plan, &slots, NULL)
-               : mode == 1 ? strut_slots_read(scratch_path("a"), &slots, &there, NULL)
-                           : strut_slots_open(scratch_path("new"), &plan, &slots, NULL);
-      strut_fail_allocation_after(-1);
-      if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
+      status = refused(n, mode == 0   ? strut_slots_open(scratch_path("a"), &plan, &slots, NULL)
+                          : mode == 1 ? strut_slots_read(scratch_path("a"), &slots, &there, NULL)
+                                      : strut_slots_open(scratch_path("new"), &plan, &slots, NULL));
       if (status == STRUT_OK) assert_int_equal(strut_slots_missing(slots), mode < 2 ? 0 : 100);
       strut_slots_close(slots);
       assert_true(n < 100);
     }
   }
-  scratch_remove();
 }
 
 /* Rows that failed are missing until they have others; in the file they stay till then. */
 TEST(failed_rows_once_more) {
-  scratch_make();
   const char *path = scratch_path("a.slots");
   const double numbers[] = {1.0, 2.0};
   const char words[1][STRUT_SLOT_WORD] = {"well"};
@@ -577,5 +536,4 @@ TEST(failed_rows_once_more) {
   check_row(slots, 9);
   check_row(slots, 14);
   strut_slots_close(slots);
-  scratch_remove();
 }

@@ -8,9 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
+#include "tests/support/refused.h"
 #include "tests/support/structures.h"
 
 static const double G = 9.81;
@@ -29,7 +28,7 @@ static void search(found *f) {
     fail_msg("%s", error.message);
 }
 
-static void done(found *f) {
+static void found_free(found *f) {
   strut_equilibria_free(&f->all);
   strut_model_free(f->model);
   strut_setup_free(&f->setup);
@@ -53,22 +52,23 @@ static void assert_says(const char *text, const char *part) {
 }
 
 /* A triangle of bars, 1 kg/m, every node a contact; n3 above at x. */
-static void triangle(strut_setup *setup, double x) {
+static strut_setup triangle(double x) {
   double at[3][2] = {{0, 0}, {1, 0}, {x, 1}};
-  strut_setup_init(setup);
-  for (int i = 0; i < 3; i++) build_node(&setup->scene, at[i][0], at[i][1]);
+  strut_setup setup = build_setup();
+  for (int i = 0; i < 3; i++) build_node(&setup.scene, at[i][0], at[i][1]);
   for (int i = 0; i < 3; i++) {
     int k = (i + 1) % 3;
     double length = hypot(at[k][0] - at[i][0], at[k][1] - at[i][1]);
-    build_member(&setup->scene, STRUT_BAR, i, k, 1e6, 10, length);
+    build_member(&setup.scene, STRUT_BAR, i, k, 1e6, 10, length);
   }
-  for (int i = 0; i < 3; i++) build_contact(&setup->scene, i, 1e5, 100);
-  setup->scene.gravity[1] = -G;
+  for (int i = 0; i < 3; i++) build_contact(&setup.scene, i, 1e5, 100);
+  setup.scene.gravity[1] = -G;
+  return setup;
 }
 
 TEST(a_triangle_stands_on_every_side) {
   found f;
-  triangle(&f.setup, 0.4);
+  f.setup = triangle(0.4);
   search(&f);
   double weight = (1 + hypot(0.4, 1) + hypot(0.6, 1)) * G;
   assert_int_equal(count(&f, STRUT_OUTCOME_STANDS), 3);
@@ -87,12 +87,12 @@ TEST(a_triangle_stands_on_every_side) {
     assert_near(below, weight, 1e-8);
   }
   assert_string_equal(f.all.list[0].name, "n1-n2-1");
-  done(&f);
+  found_free(&f);
 }
 
 TEST(it_tips_over_its_foot) {
-  found f;
-  triangle(&f.setup, 2.5);
+  OWN(found) f;
+  f.setup = triangle(2.5);
   search(&f);
   const strut_equilibrium *e = first(&f, STRUT_OUTCOME_TIPS);
   assert_int_equal(e->supports->node[0], 0);
@@ -103,22 +103,22 @@ TEST(it_tips_over_its_foot) {
   assert_int_equal(e->contacts[0], 1);
   assert_int_equal(e->contacts[1], 2);
   assert_int_equal(f.all.list[e->ends_as].outcome, STRUT_OUTCOME_STANDS);
-  done(&f);
 }
 
 /* Two bars over a span, held at both ends: nothing else is needed to hold it. */
-static void truss(strut_setup *setup) {
-  strut_setup_init(setup);
-  build_support(&setup->scene, 0, 0);
-  build_mass(&setup->scene, 1, 0.3, 1);
-  build_support(&setup->scene, 2, 0);
-  build_member(&setup->scene, STRUT_BAR, 0, 1, 1000, 0, 0);
-  build_member(&setup->scene, STRUT_BAR, 1, 2, 1000, 0, 0);
+static strut_setup truss(void) {
+  strut_setup setup = build_setup();
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 1, 0.3, 1);
+  build_support(&setup.scene, 2, 0);
+  build_member(&setup.scene, STRUT_BAR, 0, 1, 1000, 0, 0);
+  build_member(&setup.scene, STRUT_BAR, 1, 2, 1000, 0, 0);
+  return setup;
 }
 
 TEST(a_truss_snaps) {
-  found f;
-  truss(&f.setup);
+  OWN(found) f;
+  f.setup = truss();
   search(&f);
   assert_int_equal(count(&f, STRUT_OUTCOME_STANDS), 2);
   double flat = 1000 * pow(hypot(1, 0.3) - 1, 2);
@@ -130,12 +130,11 @@ TEST(a_truss_snaps) {
     assert_true(f.all.barriers[i].from != f.all.barriers[i].to);
   }
   assert_near(f.all.list[f.all.barriers[0].saddle].point.q[3], 0, 1e-9);
-  done(&f);
 }
 
 /* A bar on a pin leaves one motion: its contact node alone is held. */
 TEST(one_motion_needs_one_support) {
-  found f;
+  OWN(found) f;
   strut_setup_init(&f.setup);
   build_support(&f.setup.scene, 0, 0.6);
   build_node(&f.setup.scene, 0.7, 0.1);
@@ -149,12 +148,11 @@ TEST(one_motion_needs_one_support) {
   assert_near(e->point.q[3], 0, 0);
   assert_near(e->reaction[1][1], G, 1e-3);
   assert_near(e->normal[0], G, 1e-3);
-  done(&f);
 }
 
 TEST(what_falls) {
-  found f;
-  strut_arena arena = {0};
+  OWN(found) f;
+  OWN(strut_arena) arena = {0};
   strut_rest_state stand;
   strut_error error = {0};
   strut_setup_init(&f.setup);
@@ -169,24 +167,21 @@ TEST(what_falls) {
       strut_rest_state_find(f.model, &f.setup.experiment, NULL, &arena, &stand, &error),
       STRUT_NOT_SETTLED);
   assert_says(error.message, "it falls freely, all nodes");
-  strut_arena_free(&arena);
-  done(&f);
 }
 
 TEST(a_part_that_falls) {
-  found f;
-  truss(&f.setup);
+  OWN(found) f;
+  f.setup = truss();
   build_mass(&f.setup.scene, 5, 5, 1);
   f.setup.scene.gravity[1] = -G;
   search(&f);
   assert_int_equal(f.all.count, 0);
   assert_says(f.all.remark, "a part of the structure");
   assert_says(f.all.remark, "n4");
-  done(&f);
 }
 
 TEST(a_mechanism) {
-  found f;
+  OWN(found) f;
   strut_setup_init(&f.setup);
   build_support(&f.setup.scene, 0, 0);
   build_support(&f.setup.scene, 1, 0);
@@ -199,48 +194,42 @@ TEST(a_mechanism) {
   assert_int_equal(e->point.label, STRUT_FLOPPY);
   assert_string_equal(e->verdict, "nodes n3 and n4 move together without stiffness");
   assert_says(f.all.remark, "nodes n3 and n4 move together without stiffness");
-  done(&f);
 }
 
 /* What friction would have to hold is a matter of all forces, not of the slope alone. */
 TEST(a_push_along_the_ground) {
-  found f;
-  triangle(&f.setup, 0.4);
+  OWN(found) f;
+  f.setup = triangle(0.4);
   double weight = (1 + hypot(0.4, 1) + hypot(0.6, 1)) * G;
   build_load(&f.setup.scene, 2, 2.5 * weight, 0, -1);
   search(&f);
   assert_int_equal(count(&f, STRUT_OUTCOME_STANDS), 0);
   assert_says(f.all.remark, "a friction coefficient of at least 2.5 holds it");
-  done(&f);
 }
 
 /* One node has no extent to measure distances by; it rests all the same. */
 TEST(one_node) {
-  strut_setup setup;
-  strut_arena arena = {0};
+  OWN(strut_setup) setup = build_setup();
+  OWN(strut_arena) arena = {0};
   strut_rest_state stand;
   strut_error error = {0};
-  strut_setup_init(&setup);
   build_node(&setup.scene, 0, 0);
   setup.scene.nodes[0].mass = 1;
   build_contact(&setup.scene, 0, 1e5, 10);
   setup.scene.gravity[1] = -G;
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   assert_int_equal(strut_rest_state_find(model, &setup.experiment, "start", &arena, &stand, &error),
                    STRUT_OK);
   assert_near(stand.q[1], -G / 1e5, 1e-15);
-  strut_arena_free(&arena);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 /* A slope is level ground with gravity turned: the same solutions, but nothing rests. */
 TEST(a_slope) {
   const double slope = 0.1, c = cos(slope), s = sin(slope);
-  found level, steep;
-  triangle(&level.setup, 0.4);
+  OWN(found) level, steep;
+  level.setup = triangle(0.4);
   level.setup.scene.gravity[0] = -G * s, level.setup.scene.gravity[1] = -G * c;
-  triangle(&steep.setup, 0.4);
+  steep.setup = triangle(0.4);
   steep.setup.scene.ground.slope = slope;
   for (int i = 0; i < 3; i++) {
     double *p = steep.setup.scene.nodes[i].position, x = p[0], y = p[1];
@@ -263,50 +252,44 @@ TEST(a_slope) {
       assert_near(b[2 * n + 1], s * a[2 * n] + c * a[2 * n + 1], 1e-9);
     }
   }
-  done(&level);
-  done(&steep);
 }
 
 TEST(supports_must_touch) {
-  strut_setup setup;
-  strut_equilibria all;
+  OWN(strut_equilibria) all;
   strut_error error = {0};
-  triangle(&setup, 0.4);
+  OWN(strut_setup) setup = triangle(0.4);
   setup.scene.contact_count = 2;
   int32_t nodes[2] = {0, 2};
   strut_node_set set = {2, nodes};
   strut_equilibria_options options = {.supports = &set};
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   assert_int_equal(strut_equilibria_find(model, &setup.experiment, &options, &all, &error),
                    STRUT_USAGE);
   assert_says(error.message, "node 'n3' is no contact node");
-  strut_equilibria_free(&all);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 /* The crawler's drawn state I as a configuration; II by its contacts alone. */
-static void with_configurations(strut_setup *setup) {
+static strut_setup with_configurations(void) {
   static int32_t one[2] = {0, 3}, two[2] = {1, 3};
   static strut_node_set on_one = {2, one}, on_two = {2, two};
   static strut_configuration both[2];
   static double drawn[5][2];
-  strut_setup_init(setup);
-  structure_crawler(&setup->scene, 10, 1e-4, 0.1, false);
-  for (int i = 0; i < 5; i++) memcpy(drawn[i], setup->scene.nodes[i].position, sizeof drawn[i]);
+  strut_setup setup = build_setup();
+  structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
+  for (int i = 0; i < 5; i++) memcpy(drawn[i], setup.scene.nodes[i].position, sizeof drawn[i]);
   both[0] = (strut_configuration){"I", true, drawn, 1, &on_one};
   both[1] = (strut_configuration){"II", false, drawn, 1, &on_two};
-  setup->scene.configurations = both;
-  setup->scene.configuration_count = 2;
+  setup.scene.configurations = both;
+  setup.scene.configuration_count = 2;
+  return setup;
 }
 
 TEST(stands) {
-  strut_setup setup;
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   strut_rest_state drawn, start, one, two;
   strut_error error = {0};
-  with_configurations(&setup);
-  strut_model *model = motion_compile(&setup.scene);
+  OWN(strut_setup) setup = with_configurations();
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   assert_int_equal(strut_rest_state_find(model, &setup.experiment, "drawn", &arena, &drawn, &error),
                    STRUT_OK);
   assert_int_equal(strut_rest_state_find(model, &setup.experiment, NULL, &arena, &start, &error),
@@ -332,17 +315,13 @@ TEST(stands) {
   assert_int_equal(strut_rest_state_find(model, &setup.experiment, "III", &arena, &two, &error),
                    STRUT_USAGE);
   assert_says(error.message, "choose one of: start, drawn, I, II");
-  strut_arena_free(&arena);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 TEST(a_run_wants_it_resolved) {
-  strut_setup setup;
   strut_error error = {0};
   strut_summary summary;
   strut_run_options options = {0};
-  with_configurations(&setup);
+  OWN(strut_setup) setup = with_configurations();
   motion_experiment(&setup, 1e-4, 0.01);
   setup.scene.start_equilibrium = 1;
   strut_model *model = motion_compile(&setup.scene);
@@ -360,42 +339,30 @@ TEST(a_run_wants_it_resolved) {
   for (size_t k = 0; k < 10; k++) /* it stays */
     assert_near(summary.end.positions[k], setup.scene.nodes[k / 2].start[k % 2], 1e-11);
   strut_summary_free(&summary);
-  strut_setup_free(&setup);
 }
 
 TEST(no_such_equilibrium) {
-  strut_setup setup;
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   strut_rest_state stand;
   strut_error error = {0};
-  with_configurations(&setup);
+  OWN(strut_setup) setup = with_configurations();
   int32_t nodes[2] = {2, 3}; /* it does not stand on these two */
   setup.scene.configurations[1].sets[0].node = nodes;
-  strut_model *model = motion_compile(&setup.scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   assert_int_equal(strut_rest_state_find(model, &setup.experiment, "II", &arena, &stand, &error),
                    STRUT_NOT_SETTLED);
   assert_says(error.message, "no equilibrium fits configuration 'II'");
-  strut_arena_free(&arena);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }
 
 TEST(refused_memory) {
-  strut_setup setup;
   strut_equilibria_options options = {.starts = 4};
-  triangle(&setup, 2.5);
-  strut_model *model = motion_compile(&setup.scene);
+  OWN(strut_setup) setup = triangle(2.5);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   int64_t n = 0, step = 1;
   for (strut_status status = STRUT_NO_MEMORY; status != STRUT_OK; n += step, step += 1 + n / 20) {
-    strut_equilibria all;
+    OWN(strut_equilibria) all;
     strut_error error = {0};
-    strut_fail_allocation_after(n);
-    status = strut_equilibria_find(model, &setup.experiment, &options, &all, &error);
-    strut_fail_allocation_after(-1);
-    if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
-    strut_equilibria_free(&all);
+    status = refused(n, strut_equilibria_find(model, &setup.experiment, &options, &all, &error));
   }
   assert_true(n > 100);
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }

@@ -11,27 +11,28 @@
 enum { NODES = 3 };
 
 /* A weight on two springs that also presses a soft ground; its configuration is its only shape. */
-static void hanging(strut_setup *setup) {
-  strut_setup_init(setup);
-  build_support(&setup->scene, -1, 0);
-  build_support(&setup->scene, 1, 0.1);
-  build_mass(&setup->scene, 0.1, -0.6, 2);
-  for (int32_t i = 0; i < 2; i++) build_sized(&setup->scene, STRUT_SPRING, i, 2, 60, 1, 0.1, 0.9);
-  build_contact(&setup->scene, 2, 40, 3);
-  build_load(&setup->scene, 2, 1.5, -0.5, -1);
-  setup->scene.ground.height = -0.45;
-  setup->scene.gravity[1] = -9.81;
-  setup->experiment.search.starts = 20;
-  setup->scene.configurations =
-      strut_arena_allocate(&setup->scene.arena, 1, sizeof *setup->scene.configurations);
-  assert_non_null(setup->scene.configurations);
-  double(*shape)[2] = strut_arena_allocate(&setup->scene.arena, NODES, sizeof *shape);
+static strut_setup hanging(void) {
+  strut_setup setup = build_setup();
+  build_support(&setup.scene, -1, 0);
+  build_support(&setup.scene, 1, 0.1);
+  build_mass(&setup.scene, 0.1, -0.6, 2);
+  for (int32_t i = 0; i < 2; i++) build_sized(&setup.scene, STRUT_SPRING, i, 2, 60, 1, 0.1, 0.9);
+  build_contact(&setup.scene, 2, 40, 3);
+  build_load(&setup.scene, 2, 1.5, -0.5, -1);
+  setup.scene.ground.height = -0.45;
+  setup.scene.gravity[1] = -9.81;
+  setup.experiment.search.starts = 20;
+  setup.scene.configurations =
+      strut_arena_allocate(&setup.scene.arena, 1, sizeof *setup.scene.configurations);
+  assert_non_null(setup.scene.configurations);
+  double(*shape)[2] = strut_arena_allocate(&setup.scene.arena, NODES, sizeof *shape);
   assert_non_null(shape);
-  for (int i = 0; i < NODES; i++) memcpy(shape[i], setup->scene.nodes[i].position, sizeof *shape);
-  setup->scene.configurations[0] =
+  for (int i = 0; i < NODES; i++) memcpy(shape[i], setup.scene.nodes[i].position, sizeof *shape);
+  setup.scene.configurations[0] =
       (strut_configuration){.name = "rest", .shaped = true, .position = shape};
-  setup->scene.configuration_count = 1;
-  setup->scene.start_equilibrium = 0;
+  setup.scene.configuration_count = 1;
+  setup.scene.start_equilibrium = 0;
+  return setup;
 }
 
 /* Where the scene stands, by equilibria that may be known already. */
@@ -63,10 +64,9 @@ TEST(each_structure_has_equilibria_of_its_own) {
   double first[2], again[2];
   assert_non_null(shared);
   for (int which = -1;; which++) {
-    strut_setup setup, copy;
     double found[2], alone[2];
-    hanging(&setup);
-    hanging(&copy);
+    strut_setup setup = hanging();
+    strut_setup copy = hanging();
     if (which >= 0 && !(change(&setup, which) && change(&copy, which))) {
       resolve(shared, &setup, again); /* the first one, unchanged */
       strut_setup_free(&setup);
@@ -95,9 +95,8 @@ TEST(points_that_stand_alike_share) {
   strut_equilibrium_cache *shared = strut_equilibrium_cache_create();
   double at[2], other[2];
   assert_non_null(shared);
-  strut_setup setup, rough;
-  hanging(&setup);
-  hanging(&rough);
+  OWN(strut_setup) setup = hanging();
+  OWN(strut_setup) rough = hanging();
   rough.scene.contacts[0].friction =
       (strut_friction){.law = STRUT_FRICTION_KARNOPP, .mu_static = 0.3, .mu_kinetic = 0.2};
   rough.experiment.step = 1e-5;
@@ -107,6 +106,4 @@ TEST(points_that_stand_alike_share) {
   assert_true(strut_allocation_count() - before < 20); /* no search */
   for (int c = 0; c < 2; c++) assert_same_bits(other[c], at[c]);
   strut_equilibrium_cache_free(shared);
-  strut_setup_free(&setup);
-  strut_setup_free(&rough);
 }

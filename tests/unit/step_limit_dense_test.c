@@ -11,8 +11,6 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/integrate/limit/tangent_limits.h"
 #include "engine/model/mass.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
@@ -44,7 +42,7 @@ static void fill(const strut_model *model, const strut_tangent *t, const strut_s
 }
 
 static dense dense_of(const strut_model *model, strut_closed closed) {
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   strut_tangent t;
   assert_int_equal(
       strut_tangent_assemble(model, model->start, model->members.rest, closed, &arena, &t),
@@ -54,7 +52,6 @@ static dense dense_of(const strut_model *model, strut_closed closed) {
   assert_true(s.k && s.d);
   fill(model, &t, t.stiffness, s.k);
   fill(model, &t, t.damping, s.d);
-  strut_arena_free(&arena);
   return s;
 }
 
@@ -197,14 +194,13 @@ static void check_implicit(const strut_model *model, const strut_step_limit *lim
 
 static void check(const char *name, strut_scene *scene) {
   strut_step_limit limit;
-  strut_model *model = motion_compile(scene);
+  OWN_POINTER(strut_model) model = motion_compile(scene);
   assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
   assert_false(limit.exact);
   print_message("%s: %.4g s, %.4g s, %.4g s\n", name, limit.of[STRUT_REGION_RK4],
                 limit.of[STRUT_REGION_VERLET], limit.of[STRUT_REGION_EULER]);
   check_plain(model, &limit);
   if (model->contacts.count > 0) check_implicit(model, &limit);
-  strut_model_free(model);
   strut_scene_free(scene);
 }
 
@@ -215,17 +211,18 @@ static double damping_of(double ratio, double stiffness, double mass) {
 static const double RATIOS[] = {0, 0.1, 1, 10};
 
 /* Bars in a row that zigzags, alike or with random stiffness; every member damped, or one in five. */
-static void chain(strut_scene *scene, double ratio, bool random, bool few, strut_mass_model mass) {
+static strut_scene chain(double ratio, bool random, bool few, strut_mass_model mass) {
   uint64_t r = 3;
-  strut_scene_init(scene);
-  scene->mass_model = mass;
-  build_support(scene, 0, 0);
+  strut_scene scene = build_scene();
+  scene.mass_model = mass;
+  build_support(&scene, 0, 0);
   for (int32_t i = 1; i <= 33; i++) {
     double c = random ? random_scale(&r, 1e3, 1e5) : 1e4;
-    build_node(scene, i, 0.3 * (i % 2));
+    build_node(&scene, i, 0.3 * (i % 2));
     double k = few && i % 5 ? 0 : damping_of(ratio, c, 0.2);
-    build_member(scene, STRUT_BAR, i - 1, i, c, k, 0.2);
+    build_member(&scene, STRUT_BAR, i - 1, i, c, k, 0.2);
   }
+  return scene;
 }
 
 BEFORE_ALL { nodes = (int32_t)test_number(1, nodes); }
@@ -233,10 +230,9 @@ BEFORE_ALL { nodes = (int32_t)test_number(1, nodes); }
 TEST(chains) {
   for (int k = 0; k < 4; k++)
     for (int kind = 0; kind < 4; kind++) {
-      strut_scene scene;
       char name[80];
-      chain(&scene, RATIOS[k], kind & 1, kind & 2,
-            kind == 3 ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT);
+      strut_scene scene = chain(RATIOS[k], kind & 1, kind & 2,
+                                kind == 3 ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT);
       snprintf(name, sizeof name, "chain, %s, damping ratio %g in %s", kind & 1 ? "random" : "even",
                RATIOS[k], kind & 2 ? "some" : "all");
       check(name, &scene);
@@ -244,31 +240,31 @@ TEST(chains) {
 }
 
 /* A grid with diagonals, standing on ground whose damper is strong or weak. */
-static void grid(strut_scene *scene, double ratio, double ground, bool touch, double bar_mass) {
+static strut_scene grid(double ratio, double ground, bool touch, double bar_mass) {
   enum { COLUMNS = 9, ROWS = 4 };
-  strut_scene_init(scene);
-  scene->gravity[1] = -9.81;
+  strut_scene scene = build_scene();
+  scene.gravity[1] = -9.81;
   for (int32_t y = 0; y < ROWS; y++)
-    for (int32_t x = 0; x < COLUMNS; x++) build_mass(scene, x, y, 0.1);
+    for (int32_t x = 0; x < COLUMNS; x++) build_mass(&scene, x, y, 0.1);
   for (int32_t y = 0; y < ROWS; y++)
     for (int32_t x = 0; x < COLUMNS; x++) {
       int32_t i = y * COLUMNS + x;
       double k = damping_of(ratio, 1e4, 0.3);
-      if (x + 1 < COLUMNS) build_member(scene, STRUT_BAR, i, i + 1, 1e4, k, bar_mass);
-      if (y + 1 < ROWS) build_member(scene, STRUT_BAR, i, i + COLUMNS, 1e4, k, bar_mass);
+      if (x + 1 < COLUMNS) build_member(&scene, STRUT_BAR, i, i + 1, 1e4, k, bar_mass);
+      if (y + 1 < ROWS) build_member(&scene, STRUT_BAR, i, i + COLUMNS, 1e4, k, bar_mass);
       if (x + 1 < COLUMNS && y + 1 < ROWS)
-        build_member(scene, STRUT_SPRING, i, i + COLUMNS + 1, 3e3, 0, 0);
+        build_member(&scene, STRUT_SPRING, i, i + COLUMNS + 1, 3e3, 0, 0);
     }
   for (int32_t x = 0; touch && x < COLUMNS; x++)
-    build_rough_contact(scene, x, 5e4, damping_of(ground, 5e4, 0.3), 0.3, 0.3, 1e-3);
+    build_rough_contact(&scene, x, 5e4, damping_of(ground, 5e4, 0.3), 0.3, 0.3, 1e-3);
+  return scene;
 }
 
 TEST(grids) {
   for (int k = 0; k < 4; k++)
     for (int kind = 0; kind < 3; kind++) {
-      strut_scene scene;
       char name[80];
-      grid(&scene, RATIOS[k], RATIOS[(k + kind) % 4], kind > 0, kind == 1 ? 0 : 0.2);
+      strut_scene scene = grid(RATIOS[k], RATIOS[(k + kind) % 4], kind > 0, kind == 1 ? 0 : 0.2);
       snprintf(name, sizeof name, "grid, damping ratio %g, %s ground of %g", RATIOS[k],
                kind > 0 ? "on a" : "without", RATIOS[(k + kind) % 4]);
       check(name, &scene);
@@ -278,9 +274,8 @@ TEST(grids) {
 /* Prestressed X-frames in a row, in which one cable is far stiffer, and one far more damped. */
 TEST(frames) {
   for (int k = 0; k < 4; k++) {
-    strut_scene scene;
+    strut_scene scene = build_scene();
     char name[80];
-    strut_scene_init(&scene);
     structure_chain(&scene, 17, STRUT_MASS_CONSISTENT);
     for (size_t j = 0; j < scene.member_count; j++)
       scene.members[j].damping = damping_of(RATIOS[k] / 10, scene.members[j].stiffness, 0.1);
@@ -295,16 +290,15 @@ TEST(frames) {
 /* The limit of a long even row is known; and it takes seconds. */
 TEST(time_of_many_nodes) {
   for (int k = 0; k < 3; k++) {
-    strut_scene scene;
+    OWN(strut_scene) scene = build_scene();
     strut_step_limit limit;
-    strut_scene_init(&scene);
     double omega = sqrt(12 * 1e4 / 0.2), zeta = RATIOS[k], damping = 2 * zeta * 1e4 / omega;
     for (int32_t i = 0; i < nodes; i++) {
       build_node(&scene, i, 0);
       scene.nodes[i].fixed[1] = k != 0;
       if (i) build_member(&scene, STRUT_BAR, i - 1, i, 1e4, damping, 0.2);
     }
-    strut_model *model = motion_compile(&scene);
+    OWN_POINTER(strut_model) model = motion_compile(&scene);
     clock_t begin = clock();
     assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
     print_message("%d nodes, damping ratio %g: %.2f s\n", (int)nodes, zeta,
@@ -314,7 +308,5 @@ TEST(time_of_many_nodes) {
     assert_relative(limit.of[STRUT_REGION_EULER] * omega, 2 * (sqrt(zeta * zeta + 1) - zeta), 1e-2);
     if (k == 0) assert_relative(limit.limit * omega, 2.8284271, 1e-2);
     if (k == 2) assert_relative(limit.limit * omega, 2.7852936, 1e-2);
-    strut_model_free(model);
-    strut_scene_free(&scene);
   }
 }

@@ -5,8 +5,6 @@
 #include <math.h>
 
 #include "tests/physics/random_scene.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
@@ -33,9 +31,8 @@ TEST(limits_of_damped_modes) {
 
 static strut_step_limit limit_of(const strut_setup *setup) {
   strut_step_limit limit;
-  strut_model *model = motion_compile(&setup->scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
-  strut_model_free(model);
   return limit;
 }
 
@@ -46,8 +43,7 @@ TEST(limit_of_a_damped_oscillator) {
   for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
     for (int grounded = 0; grounded < 2; grounded++) {
       const double k = 900, mass = 4, omega = 15;
-      strut_setup setup;
-      strut_setup_init(&setup);
+      OWN(strut_setup) setup = build_setup();
       build_mass(&setup.scene, 1, 0.5, mass);
       double damping = known[i][0] * 2 * sqrt(k * mass);
       if (grounded)
@@ -59,7 +55,6 @@ TEST(limit_of_a_damped_oscillator) {
       assert_true(limit.exact);
       assert_relative(limit.largest_frequency, omega, 1e-9);
       assert_relative(limit.limit * omega, known[i][1], 1e-4);
-      strut_setup_free(&setup);
     }
 }
 
@@ -71,11 +66,10 @@ TEST(limit_of_each_method_on_damped_ground) {
   for (int z = 0; z < 2; z++)
     for (size_t i = 0; (method = strut_integrator_at(i)); i++) {
       double zeta = zetas[z], limit, expected = INFINITY;
-      strut_setup setup;
-      strut_setup_init(&setup);
+      OWN(strut_setup) setup = build_setup();
       build_mass(&setup.scene, 0, 0.5, mass);
       build_contact(&setup.scene, 0, k, zeta * 2 * sqrt(k * mass));
-      strut_model *model = motion_compile(&setup.scene);
+      OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
       assert_int_equal(strut_step_limit_for_method(model, method, &limit, NULL), STRUT_OK);
       if (method->region == STRUT_REGION_RK4) expected = rk4[z] / omega;
       if (method->region == STRUT_REGION_EULER) expected = 2 / omega * (hypot(zeta, 1) - zeta);
@@ -86,29 +80,25 @@ TEST(limit_of_each_method_on_damped_ground) {
         assert_true(isinf(limit));
       else
         assert_relative(limit, expected, 1e-4);
-      strut_model_free(model);
-      strut_setup_free(&setup);
     }
 }
 
 TEST(nothing_limits_free_masses) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   build_mass(&setup.scene, 0, 0, 1);
   strut_step_limit limit = limit_of(&setup);
   assert_true(isinf(limit.limit) && limit.largest_frequency == 0);
-  strut_setup_free(&setup);
 }
 
 /* A row of bars between supports that can only move along itself: its frequencies are known. */
-static void row_of_bars(strut_setup *setup, int bars, strut_mass_model mass_model, double damping) {
-  strut_setup_init(setup);
-  setup->scene.mass_model = mass_model;
-  for (int i = 0; i <= bars; i++) build_node(&setup->scene, i, 0);
-  for (int i = 0; i <= bars; i++) setup->scene.nodes[i].fixed[1] = true;
-  setup->scene.nodes[0].fixed[0] = setup->scene.nodes[bars].fixed[0] = true;
-  for (int i = 0; i < bars; i++)
-    build_member(&setup->scene, STRUT_BAR, i, i + 1, 1e4, damping, 0.2);
+static strut_setup row_of_bars(int bars, strut_mass_model mass_model, double damping) {
+  strut_setup setup = build_setup();
+  setup.scene.mass_model = mass_model;
+  for (int i = 0; i <= bars; i++) build_node(&setup.scene, i, 0);
+  for (int i = 0; i <= bars; i++) setup.scene.nodes[i].fixed[1] = true;
+  setup.scene.nodes[0].fixed[0] = setup.scene.nodes[bars].fixed[0] = true;
+  for (int i = 0; i < bars; i++) build_member(&setup.scene, STRUT_BAR, i, i + 1, 1e4, damping, 0.2);
+  return setup;
 }
 
 static double highest(int bars, strut_mass_model mass_model) {
@@ -122,8 +112,7 @@ TEST(limit_of_rows_of_bars) {
   static const int sizes[] = {5, 30, 61, 62, 200, 2000};
   for (int s = 0; s < 12; s++) {
     strut_mass_model mass_model = s % 2 ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
-    strut_setup setup;
-    row_of_bars(&setup, sizes[s / 2], mass_model, 0);
+    OWN(strut_setup) setup = row_of_bars(sizes[s / 2], mass_model, 0);
     strut_step_limit limit = limit_of(&setup);
     double omega = highest(sizes[s / 2], mass_model), expected = IMAGINARY / omega;
     assert_int_equal(limit.exact, sizes[s / 2] <= 61);
@@ -132,7 +121,6 @@ TEST(limit_of_rows_of_bars) {
     else
       assert_within(limit.limit, 0.99 * expected, expected);
     assert_within(limit.largest_frequency, 0.9999 * omega, 1.01 * omega);
-    strut_setup_free(&setup);
   }
 }
 
@@ -140,24 +128,21 @@ TEST(limit_of_rows_of_bars) {
 TEST(limit_of_damped_rows) {
   static const int sizes[] = {20, 100};
   for (int s = 0; s < 2; s++) {
-    strut_setup setup;
     double omega = highest(sizes[s], STRUT_MASS_CONSISTENT), zeta = 3;
-    row_of_bars(&setup, sizes[s], STRUT_MASS_CONSISTENT, 2 * zeta * 1e4 / omega);
+    OWN(strut_setup) setup = row_of_bars(sizes[s], STRUT_MASS_CONSISTENT, 2 * zeta * 1e4 / omega);
     double expected = 2.7852935634 / (omega * (zeta + sqrt(zeta * zeta - 1)));
     strut_step_limit limit = limit_of(&setup);
     if (limit.exact)
       assert_relative(limit.limit, expected, 1e-6);
     else
       assert_within(limit.limit, 0.99 * expected, 1.001 * expected);
-    strut_setup_free(&setup);
   }
 }
 
 /* Kinetic energy of small motions about the start after many steps, as a factor. */
 static double growth(const strut_setup *setup, const char *method, double step, int64_t steps) {
-  motion m;
   double before = 0, after = 0;
-  motion_begin_by(&m, setup, method, step);
+  motion m = motion_begin_by(setup, method, step);
   for (size_t i = 0; i < 2 * setup->scene.node_count; i++) {
     if (setup->scene.nodes[i / 2].fixed[i % 2]) continue;
     m.state->v[i] = 1e-9 * sin(1.3 * (double)i + 1);
@@ -165,7 +150,7 @@ static double growth(const strut_setup *setup, const char *method, double step, 
   }
   motion_steps(&m, steps);
   for (size_t i = 0; i < 2 * setup->scene.node_count; i++) after += m.state->v[i] * m.state->v[i];
-  motion_end(&m);
+  motion_free(&m);
   return after / before;
 }
 
@@ -183,8 +168,7 @@ TEST(the_limit_is_where_motions_begin_to_grow) {
     const strut_integrator *method = strut_integrator_at((size_t)(i / 2));
     int lumped = i % 2;
     if (!method || method->region == STRUT_REGION_ALL) continue;
-    strut_setup setup;
-    strut_setup_init(&setup);
+    OWN(strut_setup) setup = build_setup();
     setup.scene.mass_model = lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
     structure_x_frame(&setup.scene, &frame);
     for (int j = 0; j < 4; j++) setup.scene.members[j].kind = STRUT_SPRING;
@@ -195,27 +179,23 @@ TEST(the_limit_is_where_motions_begin_to_grow) {
     print_message("%s: %.3g below the limit, %.3g above\n", method->name, below, above);
     assert_true(below < 100);
     assert_true(above > 1e4);
-    strut_setup_free(&setup);
   }
 }
 
 TEST(the_crawler) {
-  strut_setup setup;
-  strut_setup_init(&setup);
+  OWN(strut_setup) setup = build_setup();
   structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
   strut_step_limit limit = limit_of(&setup);
   assert_true(limit.exact);
   assert_within(limit.limit, 1.2e-4, 1.45e-4); /* the paper's step of 1e-4 s is just below it */
   assert_within(limit.largest_frequency, 1.95e4, 2.3e4);
-  strut_setup_free(&setup);
 }
 
 /* Above 60 coordinates the estimate, below all eigenvalues: two copies of a scene tell them apart. */
 TEST(the_estimate_is_within_a_percent) {
   int compared = 0;
   for (uint64_t seed = 1; seed <= 150; seed++) {
-    strut_setup setup;
-    strut_setup_init(&setup);
+    strut_setup setup = build_setup();
     random_scene(&setup.scene, seed);
     strut_step_limit exact = limit_of(&setup);
     if (!exact.exact || isinf(exact.limit)) {

@@ -8,6 +8,7 @@
 #include "parser/program/streams.c" /* the program is no library to link with */
 #include "parser/program/table_file.c"
 #include "tests/support/heap.h"
+#include "tests/support/refused.h"
 #include "tests/support/test.h"
 #include "tests/unit/scratch.h"
 
@@ -44,7 +45,6 @@ TEST(cells_and_numbers) {
   assert_true(table.columns[0].value[0] == 1.5 && table.columns[0].value[1] == 0.25);
   assert_true(table.columns[2].value[0] == -2000 && isnan(table.columns[2].value[1]));
   strut_arena_free(&table.arena);
-  scratch_remove();
 }
 
 /* Each way to fail gives everything back, whether the table had begun or not. */
@@ -61,7 +61,6 @@ TEST(a_table_with_errors_leaves_nothing) {
     }
   }
   assert_in_range(heap_in_use(), 0, before + 500);
-  scratch_remove();
 }
 
 /* The same where memory is out, within a table of several pieces of memory. */
@@ -77,9 +76,7 @@ TEST(no_memory_leaves_nothing) {
     if (round == 8) before = heap_in_use();
     for (; status != STRUT_OK; n++) {
       strut_table table;
-      strut_fail_allocation_after(n);
-      status = read_text_as_file(text, &table);
-      strut_fail_allocation_after(-1);
+      status = refused(n, read_text_as_file(text, &table));
       if (status == STRUT_OK)
         strut_arena_free(&table.arena);
       else
@@ -89,5 +86,4 @@ TEST(no_memory_leaves_nothing) {
     assert_true(n >= 3);
   }
   assert_in_range(heap_in_use(), 0, before + 500);
-  scratch_remove();
 }

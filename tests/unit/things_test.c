@@ -103,12 +103,11 @@ static void try_section(change *c, strut_section section, char *object, size_t s
 
 static strut_setup read_scene(void) {
   strut_setup setup;
-  strut_diagnostics diagnostics = {0};
+  OWN(strut_diagnostics) diagnostics = {0};
   strut_status status = strut_setup_read(&setup, "things", text, sizeof text - 1, NULL, 0,
                                          STRUT_FOR_STATICS, &diagnostics);
   if (status) print_error("%s\n", diagnostics.items[0].message);
   assert_int_equal(status, STRUT_OK);
-  strut_diagnostics_free(&diagnostics);
   return setup;
 }
 
@@ -125,7 +124,7 @@ TEST(every_number_at_rest_counts) {
       {STRUT_THING_SLIDER, STRUT_SECTION_SLIDER},  {STRUT_THING_GROUND, STRUT_SECTION_GROUND},
       {STRUT_THING_CONTACT, STRUT_SECTION_CONTACT}};
   static change c;
-  strut_setup setup = read_scene();
+  OWN(strut_setup) setup = read_scene();
   c.setup = &setup;
   c.before.count = 0;
   strut_setup_at_rest(&setup, add, &c.before);
@@ -144,16 +143,14 @@ TEST(every_number_at_rest_counts) {
   try_section(&c, STRUT_SECTION_SETTLE, (char *)&setup.experiment.settle,
               sizeof setup.experiment.settle, false);
   assert_true(c.changed > 150);
-  strut_setup_free(&setup);
 }
 
 TEST(names_follow_the_arrays) {
-  strut_setup setup = read_scene();
+  OWN(strut_setup) setup = read_scene();
   assert_int_equal(strut_thing_count(&setup.scene, STRUT_THING_MEMBER), 3);
   assert_string_equal(strut_thing_name(&setup.scene, STRUT_THING_MEMBER, 2), "r");
   assert_null(strut_thing_name(&setup.scene, STRUT_THING_MEMBER, 3));
   assert_string_equal(strut_thing_name(&setup.scene, STRUT_THING_SLIDER, 0), "s");
   assert_string_equal(strut_thing_name(&setup.scene, STRUT_THING_GROUND, 1), "pipe");
   assert_ptr_equal(strut_thing_object(&setup.scene, STRUT_THING_CELL, 0), setup.scene.cells);
-  strut_setup_free(&setup);
 }

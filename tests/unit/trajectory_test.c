@@ -5,20 +5,19 @@
 
 #include "engine/output/record_files.h"
 #include "engine/output/trajectory.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 #include "tests/unit/scratch.h"
 
 enum { ALL = 63 };
 
-static void crawler(strut_setup *setup, double every) {
-  strut_setup_init(setup);
-  structure_crawler(&setup->scene, 10, 1e-4, 0.1, false);
-  motion_experiment(setup, 1e-4, 0.1);
-  setup->experiment.output_every = every;
-  setup->experiment.channels = ALL;
+static strut_setup crawler(double every) {
+  strut_setup setup = build_setup();
+  structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
+  motion_experiment(&setup, 1e-4, 0.1);
+  setup.experiment.output_every = every;
+  setup.experiment.channels = ALL;
+  return setup;
 }
 
 /* Runs with a file in the scratch directory where `file` says so, and fills the trajectory. */
@@ -62,12 +61,12 @@ static void assert_same_motion(const strut_trajectory *a, const strut_trajectory
   assert_same(a->energy, b->energy, n * STRUT_ENERGIES);
 }
 
+BEFORE_EACH { scratch_make(); }
+
 TEST(the_file_gives_back_what_the_run_had) {
-  strut_trajectory taken = {0}, read = {0};
-  strut_setup setup;
+  OWN(strut_trajectory) taken = {0}, read = {0};
   strut_error error = {0};
-  scratch_make();
-  crawler(&setup, 1e-3);
+  OWN(strut_setup) setup = crawler(1e-3);
   assert_int_equal(record(&setup, ALL, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
   assert_int_equal(taken.frames, 101);
   assert_int_equal(taken.recorded, 101);
@@ -79,18 +78,12 @@ TEST(the_file_gives_back_what_the_run_had) {
       strut_trajectory_read(scratch_path(""), &setup.scene, STRUT_TRAJECTORY_ROOM, &read, &error),
       STRUT_OK);
   assert_same_motion(&taken, &read);
-  strut_trajectory_free(&read);
-  strut_trajectory_free(&taken);
-  strut_setup_free(&setup);
-  scratch_remove();
 }
 
 /* A sink takes what it asks for, whatever the scene records; the file has what the scene says. */
 TEST(channels_of_its_own) {
-  strut_trajectory taken = {0}, read = {0};
-  strut_setup setup;
-  scratch_make();
-  crawler(&setup, 1e-3);
+  OWN(strut_trajectory) taken = {0}, read = {0};
+  OWN(strut_setup) setup = crawler(1e-3);
   setup.experiment.channels = STRUT_CHANNEL_LENGTH;
   unsigned wanted = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_ENERGY;
   assert_int_equal(record(&setup, wanted, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
@@ -100,10 +93,6 @@ TEST(channels_of_its_own) {
       strut_trajectory_read(scratch_path(""), &setup.scene, STRUT_TRAJECTORY_ROOM, &read, NULL),
       STRUT_OK);
   assert_true(read.length && !read.position && !read.energy);
-  strut_trajectory_free(&read);
-  strut_trajectory_free(&taken);
-  strut_setup_free(&setup);
-  scratch_remove();
 }
 
 /* Every so many-th sample from the first on, and the last: the same frames as without a limit. */
@@ -126,10 +115,8 @@ static void check_thinned(const strut_trajectory *few, const strut_trajectory *a
 
 TEST(thinned_to_the_room) {
   static const size_t rooms[] = {200, 1000, 5000, 12345, 19000};
-  strut_trajectory all = {0};
-  strut_setup setup;
-  scratch_make();
-  crawler(&setup, 1e-4);
+  OWN(strut_trajectory) all = {0};
+  OWN(strut_setup) setup = crawler(1e-4);
   setup.experiment.channels = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_FORCE;
   assert_int_equal(record(&setup, 0, STRUT_TRAJECTORY_ROOM, true, &all), STRUT_OK);
   assert_int_equal(all.frames, 1001);
@@ -143,16 +130,11 @@ TEST(thinned_to_the_room) {
     check_thinned(&few, &all, rooms[i]);
     strut_trajectory_free(&few);
   }
-  strut_trajectory_free(&all);
-  strut_setup_free(&setup);
-  scratch_remove();
 }
 
 TEST(a_run_that_diverged_is_marked) {
-  strut_trajectory taken = {0}, read = {0};
-  strut_setup setup;
-  scratch_make();
-  strut_setup_init(&setup);
+  OWN(strut_trajectory) taken = {0}, read = {0};
+  OWN(strut_setup) setup = build_setup();
   build_support(&setup.scene, 0, 0);
   build_mass(&setup.scene, 1.1, 0, 1);
   build_sized(&setup.scene, STRUT_BAR, 0, 1, 2e5, 1, 0, 1);
@@ -165,28 +147,21 @@ TEST(a_run_that_diverged_is_marked) {
       strut_trajectory_read(scratch_path(""), &setup.scene, STRUT_TRAJECTORY_ROOM, &read, NULL),
       STRUT_OK);
   assert_same_motion(&taken, &read);
-  strut_trajectory_free(&read);
-  strut_trajectory_free(&taken);
-  strut_setup_free(&setup);
-  scratch_remove();
 }
 
 static void refused(const strut_setup *setup, const char *directory, const char *why) {
-  strut_trajectory t = {0};
+  OWN(strut_trajectory) t = {0};
   strut_error error = {0};
   assert_int_equal(
       strut_trajectory_read(directory, &setup->scene, STRUT_TRAJECTORY_ROOM, &t, &error),
       STRUT_FILE_TROUBLE);
   if (!strstr(error.message, why)) fail_msg("'%s' does not say '%s'", error.message, why);
   assert_non_null(strstr(error.message, "trajectory.h5"));
-  strut_trajectory_free(&t);
 }
 
 TEST(refusals) {
-  strut_trajectory taken = {0};
-  strut_setup setup;
-  scratch_make();
-  crawler(&setup, 1e-3);
+  OWN(strut_trajectory) taken = {0};
+  OWN(strut_setup) setup = crawler(1e-3);
   refused(&setup, scratch_path("nowhere"), "No such file");
   assert_int_equal(record(&setup, ALL, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
   const char *name = setup.scene.nodes[2].name;
@@ -206,19 +181,15 @@ TEST(refusals) {
   FILE *file = fopen(scratch_path("trajectory.h5"), "r+b"); /* its first bytes */
   assert_true(file && fputs("this is no HDF5 file", file) > 0 && fclose(file) == 0);
   refused(&setup, scratch_path(""), "not an HDF5 file");
-  strut_trajectory_free(&taken);
-  strut_setup_free(&setup);
-  scratch_remove();
 }
 
 TEST(every_allocation_may_fail) {
-  strut_setup setup;
-  crawler(&setup, 1e-4);
-  strut_model *model = motion_compile(&setup.scene);
+  OWN(strut_setup) setup = crawler(1e-4);
+  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   strut_status status = STRUT_NO_MEMORY;
   for (int64_t n = 0; status != STRUT_OK; n++) {
-    strut_trajectory t = {0};
-    strut_summary summary = {0};
+    OWN(strut_trajectory) t = {0};
+    OWN(strut_summary) summary = {0};
     strut_error error = {0};
     strut_fail_allocation_after(n);
     strut_sink *sink = strut_trajectory_sink(&t, &setup.scene, ALL, 20000);
@@ -227,11 +198,7 @@ TEST(every_allocation_may_fail) {
                   : STRUT_NO_MEMORY;
     strut_fail_allocation_after(-1);
     if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
-    strut_summary_free(&summary);
     strut_trajectory_sink_free(sink);
-    strut_trajectory_free(&t);
     assert_true(n < 1000);
   }
-  strut_model_free(model);
-  strut_setup_free(&setup);
 }

@@ -85,7 +85,6 @@ TEST(film_without_memory) {
     if (status == STRUT_OK) assert_int_equal(made.frames, 3);
   }
   assert_true(failed > 5 && failed < MOST);
-  scratch_remove();
   drop(&t);
 }
 
@@ -106,6 +105,5 @@ TEST(film_of_what_is_a_number) {
   t.position[0][0] = (double)INFINITY;
   assert_int_equal(strut_film_make(&film, t.model, &t.motion, &made, &error), STRUT_DIVERGED);
   assert_int_equal(scratch_count(directory), 1);
-  scratch_remove();
   drop(&t);
 }
