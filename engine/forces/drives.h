@@ -95,11 +95,11 @@ STRUT_INLINE void drives_ahead_begin(const strut_model *model, unsigned terms,
  * row[j] = x, by a store as wide as the loads of members: a wider load than the store before it would have to
  * wait.
  */
-STRUT_INLINE void drives_ahead_put(double *row, int32_t j, double x) {
+STRUT_INLINE void drives_ahead_put(double *row, uint32_t j, double x) {
   const strut_lane_mask place = {0, 1, 2, 3};
   double *group = row + j / STRUT_LANES * STRUT_LANES;
   strut_lanes all = {x, x, x, x};
-  strut_lanes_store(group, four_choose(place == j % STRUT_LANES, all, strut_lanes_load(group)));
+  strut_lanes_store(group, four_choose(place == (long long)(j % STRUT_LANES), all, strut_lanes_load(group)));
 }
 
 /* Rest lengths at the next instant, which is time t of the state. */
@@ -108,7 +108,7 @@ STRUT_INLINE void drives_ahead_place(const strut_model *model, strut_state *stat
   const strut_drive_table *d = &model->drives;
   int32_t h = drives->next++;
   for (int32_t i = 0; i < d->count; i++) {
-    int32_t j = d->member[i];
+    uint32_t j = (uint32_t)d->member[i];
     /* the first actuator of a member starts from its own rest length, further ones add */
     double rest = d->first[i] ? model->members.rest[j] : state->latest.rest[j];
     double rate = drives->rate[i][h];

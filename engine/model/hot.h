@@ -15,15 +15,14 @@
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(STRUT_NO_CLONES) &&                  \
     !defined(__AVX2__) && defined(__OPTIMIZE__)
 #define STRUT_CLONES __attribute__((target_clones("avx2", "default")))
-/** Is a strut_lanes one register in the clone that runs here? */
-#define STRUT_WIDE_REGISTERS __builtin_cpu_supports("avx2")
 #else
 #define STRUT_CLONES
-#ifdef __AVX2__
-#define STRUT_WIDE_REGISTERS 1
-#else
-#define STRUT_WIDE_REGISTERS 0
 #endif
+/** Is a strut_lanes one register, or are there clones, of which processors of today take that for which it is one? */
+#if defined(__x86_64__)
+#define STRUT_WIDE_REGISTERS true
+#else
+#define STRUT_WIDE_REGISTERS false
 #endif
 #define STRUT_INLINE static inline __attribute__((always_inline))
 /**

@@ -30,14 +30,31 @@ STRUT_INLINE strut_lanes weighted(double *const *k, const double *weight, int co
 }
 
 /* Stage k, or the end: q = q0 + h sum v, v[k] = v0 + h sum a, over the stages before it. */
-STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *const *v,
-                        double *const *a, const double *weight, int k, double *restrict q) {
+STRUT_INLINE void stage_of(int32_t n, double h, const strut_step_end *now, double *const *v,
+                           double *const *a, const double *weight, int k, double *restrict q) {
   double *restrict speed = v[k];
   for (int32_t i = 0; i < n; i += STRUT_LANES) {
     strut_lanes_store(q + i, strut_lanes_load(now->q + i) + h * weighted(v, weight, k, false, i));
     strut_lanes_store(speed + i,
                       strut_lanes_load(now->v + i) + h * weighted(a, weight, k, true, i));
   }
+}
+
+/* The same; the stages of the usual pair with the weights as constants. */
+STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *const *v,
+                        double *const *a, const strut_tableau *tableau, int k, double *restrict q) {
+#define STRUT_CASE(k)                                                                              \
+  case k: stage_of(n, h, now, v, a, strut_dormand_prince.weight[k], k, q); break
+  switch (tableau == &strut_dormand_prince ? k : 0) {
+    STRUT_CASE(1);
+    STRUT_CASE(2);
+    STRUT_CASE(3);
+    STRUT_CASE(4);
+    STRUT_CASE(5);
+    STRUT_CASE(6);
+    default: stage_of(n, h, now, v, a, tableau->weight[k], k, q);
+  }
+#undef STRUT_CASE
 }
 
 /* The largest magnitude seen so far, lane by lane; `poison` is no number once one was none. */
@@ -59,23 +76,37 @@ STRUT_INLINE double largest_of(largest x) {
   return poison == 0.0 ? most : HUGE_VAL;
 }
 
+/* The pair's differences of positions and velocities, and the fastest speed at an end. */
+typedef struct difference {
+  largest position, velocity, speed;
+} difference;
+
+STRUT_INLINE difference difference_of(int32_t n, double h, const strut_event_stepper *stepper,
+                                      double *const *v, double *const *a, const double *weight,
+                                      int count) {
+  difference d = {.speed = {.most = {0}}};
+  for (int32_t i = 0; i < n; i += STRUT_LANES) {
+    d.position = larger_of(d.position, h * weighted(v, weight, count, false, i));
+    d.velocity = larger_of(d.velocity, h * weighted(a, weight, count, true, i));
+    d.speed = larger_of(d.speed, strut_lanes_load(stepper->now->v + i));
+    d.speed = larger_of(d.speed, strut_lanes_load(stepper->next->v + i));
+  }
+  return d;
+}
+
 /* Local error over what is allowed, by the difference of the pair. */
 STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *stepper, double h,
                              double *const *v, double *const *a) {
-  const strut_tableau *tableau = stepper->formula->tableau;
-  int count = tableau->stages + 1;
-  const double *difference = tableau->difference;
-  largest position = {0}, velocity = {0}, speed = {0};
-  for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
-    position = larger_of(position, h * weighted(v, difference, count, false, i));
-    velocity = larger_of(velocity, h * weighted(a, difference, count, true, i));
-    speed = larger_of(speed, strut_lanes_load(stepper->now->v + i));
-    speed = larger_of(speed, strut_lanes_load(stepper->next->v + i));
-  }
-  double fast = largest_of(speed), off = largest_of(velocity);
+  const strut_tableau *tableau = stepper->formula->tableau, *usual = &strut_dormand_prince;
+  int32_t n = model->length;
+  difference d =
+      tableau == usual
+          ? difference_of(n, h, stepper, v, a, usual->difference, STRUT_DORMAND_PRINCE_STAGES + 1)
+          : difference_of(n, h, stepper, v, a, tableau->difference, tableau->stages + 1);
+  double fast = largest_of(d.speed), off = largest_of(d.velocity);
   stepper->control.own_speed = fast;
   if (fast > stepper->control.speed) stepper->control.speed = fast;
-  return relative_error(model, &stepper->control, h, largest_of(position), off);
+  return relative_error(model, &stepper->control, h, largest_of(d.position), off);
 }
 
 /*
@@ -340,7 +371,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
     stepper->gained[p] = last[0] * h * stepper->now->power[p];
   for (int k = 1; k <= end; k++) {
     double *q = k == end ? stepper->next->q : stepper->stage[0];
-    stage(model->length, h, stepper->now, v, a, tableau->weight[k], k, q);
+    stage(model->length, h, stepper->now, v, a, tableau, k, q);
     if (model->terms & terms & STRUT_TERM_SUPPORT_MOTION)
       strut_support_motion_place(model, state, t + ahead[k] * h, q, v[k]);
     if (k == end) break;

@@ -49,14 +49,15 @@ STRUT_LOOP void add_contact_forces(const strut_model *model, const strut_event_s
                                    const double *restrict q, const double *restrict v,
                                    double *restrict force, bool damped, strut_step_end *end,
                                    unsigned terms) {
-  const strut_contact_table *c = &model->contacts;
-  strut_touch *restrict touch = end->touch;
   if (frames_of(end, terms)) {
     strut_surface_add_forces(model, stepper, q, v, force, damped, end);
     return;
   }
-  for (int32_t k = 0; k < stepper->active.closed_count; k++) {
-    int32_t i = stepper->active.closed[k];
+  const strut_contact_table table = model->contacts, *c = &table; /* which no store can change */
+  strut_touch *restrict touch = end->touch;
+  const int32_t *restrict closed = stepper->active.closed;
+  for (int32_t k = 0, count = stepper->active.closed_count; k < count; k++) {
+    int32_t i = closed[k];
     uint32_t at = c->at[i];
     strut_touch *o = &touch[i];
     measure_on_line(c, i, q, v, o);
@@ -93,19 +94,21 @@ STRUT_INLINE void add_contact_powers(const strut_model *model, strut_state *stat
   const strut_contact_table *c = &model->contacts;
   const strut_touch *restrict touch = end->touch;
   const strut_contact_frame *frame = frames_of(end, terms);
+  double *power = state->latest.power, contact = power[STRUT_POWER_CONTACT],
+         friction = power[STRUT_POWER_FRICTION], belt = power[STRUT_POWER_BELT],
+         exchanged = power[STRUT_POWER_EXCHANGED];
   for (int32_t k = 0; k < active->closed_count; k++) {
-    const strut_touch *o = &touch[active->closed[k]];
-    double damper = o->normal + c->entry[active->closed[k]].stiffness * o->gap;
-    double damped = -damper * o->into, rubbed = -o->friction * o->slip;
-    double belt = o->friction * c->belt_speed;
+    int32_t i = active->closed[k];
+    const strut_touch *o = &touch[i];
+    double damped = -(o->normal + c->entry[i].stiffness * o->gap) * o->into;
+    double rubbed = -o->friction * o->slip, carried = o->friction * c->belt_speed;
     if (frame)
-      belt = o->friction * strut_contact_belt(c, active->closed[k]) +
-             strut_surface_moving_power(o, &frame[active->closed[k]]);
-    state->latest.power[STRUT_POWER_CONTACT] += damped;
-    state->latest.power[STRUT_POWER_FRICTION] += rubbed;
-    state->latest.power[STRUT_POWER_BELT] += belt;
-    state->latest.power[STRUT_POWER_EXCHANGED] += fabs(damped) + fabs(rubbed) + fabs(belt);
+      carried = o->friction * strut_contact_belt(c, i) + strut_surface_moving_power(o, &frame[i]);
+    contact += damped, friction += rubbed, belt += carried;
+    exchanged += fabs(damped) + fabs(rubbed) + fabs(carried);
   }
+  power[STRUT_POWER_CONTACT] = contact, power[STRUT_POWER_FRICTION] = friction;
+  power[STRUT_POWER_BELT] = belt, power[STRUT_POWER_EXCHANGED] = exchanged;
 }
 
 /* Notes the forces of the structure at an end of a step. */

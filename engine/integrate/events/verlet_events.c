@@ -83,19 +83,13 @@ STRUT_EVENT_TRIAL(verlet_events, take)
 STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_event_stepper *stepper,
                           const double *restrict q) {
   const uint32_t *restrict at = c->at;
-  const double *restrict outward = stepper->modes.outward;
-  const double slope = c->normal[0], rise = c->normal[1], height = c->height;
+  const double *restrict outward = stepper->modes.outward, *restrict height = q + 1;
+  const double slope = c->normal[0], rise = c->normal[1], ground = c->height;
   double lowest = 0.0;
-  if (slope == 0.0) {
-    for (int32_t i = 0, count = c->count; i < count; i++) {
-      double gap = outward[i] * (q[at[i] + 1] - height);
-      lowest = gap < lowest ? gap : lowest;
-    }
-  } else {
-    for (int32_t i = 0, count = c->count; i < count; i++) {
-      double gap = outward[i] * (q[at[i]] * slope + (q[at[i] + 1] - height) * rise);
-      lowest = gap < lowest ? gap : lowest;
-    }
+  for (int32_t i = 0, count = c->count; i < count; i++) {
+    double above = height[at[i]] - ground;
+    double gap = outward[i] * (slope == 0.0 ? above : q[at[i]] * slope + above * rise);
+    lowest = gap < lowest ? gap : lowest;
   }
   return lowest < 0.0;
 }

@@ -205,14 +205,19 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
   return status ? status : find_bodies(model, stepper);
 }
 
+STRUT_INLINE void push(const strut_contact_compliance *r, const strut_contact_axes *axes,
+                       double normal, double tangential, double *restrict a) {
+  const strut_pair force = {tangential * axes->tangent[0] + normal * axes->normal[0],
+                            tangential * axes->tangent[1] + normal * axes->normal[1]};
+  for (int32_t k = 0, count = r->count; k < count; k++) {
+    double *node = a + r->at[k];
+    strut_pair_store(node, strut_pair_load(node) + strut_pair_load(r->xy + 2 * k) * force);
+  }
+}
+
 void strut_apply_contact_impulse(const strut_contact_compliance *r, const strut_contact_axes *axes,
                                  double normal, double tangential, double *a) {
-  double fx = tangential * axes->tangent[0] + normal * axes->normal[0];
-  double fy = tangential * axes->tangent[1] + normal * axes->normal[1];
-  for (int32_t k = 0; k < r->count; k++) {
-    a[r->at[k]] += r->xy[2 * k] * fx;
-    a[r->at[k] + 1] += r->xy[2 * k + 1] * fy;
-  }
+  push(r, axes, normal, tangential, a);
 }
 
 /* In place, lower triangle; false if it is not positive definite. */
@@ -392,8 +397,7 @@ STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *step
   for (int32_t k = 0; k < n; k++) {
     int32_t i = stepper->active.stuck[k];
     if (!together)
-      strut_apply_contact_impulse(&stepper->contacts.compliance[i],
-                                  strut_axes_of_contact(c, frame, i), 0.0, x[k], a);
+      push(&stepper->contacts.compliance[i], strut_axes_of_contact(c, frame, i), 0.0, x[k], a);
     end->touch[i].friction += x[k];
     still(c, i, a, frame);
   }
