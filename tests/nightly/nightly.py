@@ -17,6 +17,7 @@ import os
 import pathlib
 import re
 import signal
+import shutil
 import subprocess
 import sys
 import time
@@ -36,6 +37,8 @@ td, th {{ border-bottom: 1px solid #ccc; padding: .3em .6em; text-align: left; v
 
 
 def commit():
+    if not shutil.which("git"):
+        return "no commit"
     text = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True,
                           check=False)
     return text.stdout.strip() or "no commit"
