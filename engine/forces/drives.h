@@ -99,7 +99,8 @@ STRUT_INLINE void drives_ahead_put(double *row, uint32_t j, double x) {
   const strut_lane_mask place = {0, 1, 2, 3};
   double *group = row + j / STRUT_LANES * STRUT_LANES;
   strut_lanes all = {x, x, x, x};
-  strut_lanes_store(group, four_choose(place == (long long)(j % STRUT_LANES), all, strut_lanes_load(group)));
+  strut_lanes_store(
+      group, four_choose(place == (long long)(j % STRUT_LANES), all, strut_lanes_load(group)));
 }
 
 /* Rest lengths at the next instant, which is time t of the state. */
