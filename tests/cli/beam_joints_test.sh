@@ -4,8 +4,7 @@
 . "$(dirname "$0")/lib.sh"
 
 # An L frame: the tip sinks by P (b^2 h / EI_1 + b^3 / 3 EI_2), of second order in the parts.
-cat >corner.yaml <<'END'
-strut: 1
+yaml corner.yaml <<'END'
 parameters: {n: 10}
 nodes: {foot: {position: [0, 0], fixed: both}, corner: [0, 1 m], tip: [2 m, 1 m]}
 beams:
@@ -41,8 +40,7 @@ gives '.energy.residual / .energy.exchanged' 0 1e-6 run run.yaml --set n=3
 # A T frame of three beams at one joint, which turns with the stiffness 4 EI_1/l_1 + 4 EI_2/l_2, less what
 # its free rise gives way, (6 EI_1/l_1^2 - 6 EI_2/l_2^2)^2 / (12 EI_1/l_1^3 + 12 EI_2/l_2^3): the tip of the
 # third moves by P (h^3 / 3 EI_3 + h^2 / stiffness). The mesh of hinges is of second order, too.
-cat >tee.yaml <<'END'
-strut: 1
+yaml tee.yaml <<'END'
 parameters: {n: 10}
 nodes: {left: {position: [-1 m, 0], fixed: both}, right: {position: [2 m, 0], fixed: both}, joint: [0, 0],
         tip: [0, 1.5 m]}
@@ -67,8 +65,7 @@ done
 
 # A rigid bar on a pin, whose end carries a beam with a roller at its other end: the beam holds it by
 # 3 EI / l, so that it swings with the frequency sqrt(3 EI / l / (m a^2)) of the masses that go along.
-cat >bar.yaml <<'END'
-strut: 1
+yaml bar.yaml <<'END'
 parameters: {n: 20}
 nodes: {pin: {position: [0, 0], fixed: both}, corner: {position: [0, 0.5 m], mass: 3 kg},
         roller: {position: [2 m, 0.5 m], mass: 1 kg, fixed: y}}
@@ -83,8 +80,7 @@ expect 0 export bar.yaml
 grep -q '  arm.start: {nodes: \[pin, corner, arm.1\], stiffness: 120}' out || fail "no hinge at the bar"
 
 # At a fixed clamp of the other beam an end is held in that direction.
-cat >held.yaml <<'END'
-strut: 1
+yaml held.yaml <<'END'
 nodes: {a: {position: [0, 0], fixed: both}, b: [1, 0], c: [0, 1]}
 beams: {rod: {nodes: [a, b], bending_stiffness: 3, axial_stiffness: 1e7, clamped: start},
         mast: {nodes: [a, c], bending_stiffness: 3, axial_stiffness: 1e7, clamped_to: {start: rod}}}
@@ -93,5 +89,3 @@ END
 expect 0 path held.yaml --load tip --until 1 --json
 near '.points[-1].nodes.c[0] * 1e5' '1/9 * (1 + 1 / 200)' 1e-6
 near '.points[-1].nodes.b[1]' 0 1e-12
-
-done_testing

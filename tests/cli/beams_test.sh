@@ -22,8 +22,7 @@ done
 
 # The tip of a cantilever under a small end force: P L^3 / 3 EI (1 + 1 / 2n^2), of second order in n.
 cantilever() {
-  cat <<END
-strut: 1
+  yaml <<END
 nodes: {a: {position: [0, 0], fixed: both}, b: [2, 0]}
 beams: {rod: {nodes: $3, bending_stiffness: 3 N m^2, axial_stiffness: 1e6, parts: $1, mass: 0.5, clamped: $2}}
 loads: {tip: {node: b, force: [0, 1e-5]}}
@@ -48,8 +47,7 @@ jq -en "$(cat error.20) / $(cat error.40) | . > 3.5 and . < 4.5" >/dev/null || f
 
 # An end moment, by two forces on a stiff cross-bar, bends it into a circle: every
 # hinge turns by M h / EI, the one at the clamp by half of it.
-cat >moment.yaml <<'END'
-strut: 1
+yaml moment.yaml <<'END'
 nodes: {a: {position: [0, 0], fixed: both}, b: [1, 0], u: [1, 0.2], w: [1, -0.2]}
 beams: {rod: {nodes: [a, b], bending_stiffness: 1 N m^2, axial_stiffness: 1e9, parts: 8, clamped: start}}
 members: {ub: {kind: bar, nodes: [u, b], stiffness: 1e9}, wb: {kind: bar, nodes: [w, b], stiffness: 1e9}}
@@ -67,8 +65,7 @@ for k in 0 3 6; do near ".turns[$k]" "$(jq .moment bent) / 8" 1e-6; done
 near .first "$(jq .moment bent) / 16" 1e-6
 
 # A frame corner by a plain hinge: it stays square, and a run keeps its energy balance.
-cat >frame.yaml <<'END'
-strut: 1
+yaml frame.yaml <<'END'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, 1], mass: 0.1}, c: {position: [1, 1], mass: 0.1}}
 beams:
   post: {nodes: [a, b], bending_stiffness: 5, axial_stiffness: 1e4, parts: 4, mass: 0.2, clamped: start, damping: 1 ms}
@@ -85,8 +82,7 @@ near .measured.bent.value 0 0.05
 holds '.measured.root.value < -0.5 or .measured.root.value > 0.5'
 
 # A clamp on a shaken support moves with it.
-cat >shaken.yaml <<'END'
-strut: 1
+yaml shaken.yaml <<'END'
 nodes: {a: {position: [0, 0], fixed: both, moves: {y: {sine: {amplitude: 10 mm, frequency: 3 Hz}}}},
         b: {position: [1, 0], mass: 0.1}}
 beams: {rod: {nodes: [a, b], bending_stiffness: 5, axial_stiffness: 1e4, parts: 4, mass: 0.2, clamped: start}}
@@ -109,5 +105,3 @@ grep -q '  beam.4: {nodes: \[beam.3, c\], kind: bar, axial_stiffness: 10000, dam
 expect 0 run flat.yaml -o flat --quiet
 same frame/members.csv flat/members.csv
 shows 0 "post.start" check frame.yaml
-
-done_testing

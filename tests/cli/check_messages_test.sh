@@ -6,8 +6,7 @@ bad=$(realpath "$(dirname "$0")/../language/bad")
 studies=$(realpath "$(dirname "$0")/../language/studies")
 . "$(dirname "$0")/lib.sh"
 
-cat >b.yaml <<'END'
-strut: 1
+yaml b.yaml <<'END'
 nodes: {a: [0, 0], ä: [1 kg, 2]}
 members: {ab: {nodes: [a, c], kind: bar, stifness: 3}}
 END
@@ -67,8 +66,7 @@ expect 2 check used.yaml --json
 holds '.messages[0] | (.file | endswith("part.yaml")) and .line == 3 and .column == 21'
 
 # A valid scene: nothing else has changed, and warnings have places.
-cat >w.yaml <<'END'
-strut: 1
+yaml w.yaml <<'END'
 nodes:
   a: {position: [0, 0], fixed: both}
   b: {position: [1, 0], mass: 1}
@@ -83,8 +81,7 @@ jq -e '.messages[0] | .severity == "warning" and (.line == 6 or .line == 7) and 
   out >/dev/null || fail "the place of a warning"
 holds '.messages[0].message == .warnings[0].text'
 # What has no place stands at the beginning of the file.
-cat >f.yaml <<'END'
-strut: 1
+yaml f.yaml <<'END'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}}
 members: {m: {nodes: [a, b], kind: spring, stiffness: 100}}
 ground: {height: -2, stiffness: 1000, friction: {law: coulomb, mu: 0.1}}
@@ -129,4 +126,3 @@ for study in studies/bad/*.yaml; do
   holds ".valid == false and (.messages | length > 0)"
 done
 tells 1 "--step needs a model, not the study" check studies/good/path.yaml --step 1ms
-done_testing

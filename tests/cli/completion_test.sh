@@ -121,5 +121,3 @@ END
 else
   echo "no bash"
 fi
-
-done_testing

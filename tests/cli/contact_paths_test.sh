@@ -4,8 +4,7 @@ peers=$(cd "$(dirname "$0")/../peers" && pwd)
 . "$(dirname "$0")/lib.sh"
 
 # ---- inside of a circle: the ground pushes against weight and load, so that both set the angle ----
-cat >pipe.yaml <<'END'
-strut: 1
+yaml pipe.yaml <<'END'
 parameters: {radius: 1 m}
 nodes: {a: {position: [0, -1 m], mass: 1 kg}}
 ground: {circle: {centre: [0, 0], radius: radius, inside: yes}, stiffness: 10 kN/m, nodes: [a]}
@@ -21,8 +20,7 @@ jq -e '[.points[] | (101 | sqrt) as $n | .contacts.a - $n, .nodes.a[0] - (.value
   "$work/out" >/dev/null || fail "a pipe that widens"
 
 # ---- on top of a circle: springs of 20 N/m sideways hold until the normal force by the radius is as much ----
-cat >ball.yaml <<'END'
-strut: 1
+yaml ball.yaml <<'END'
 nodes: {l: {position: [-3 m, 1 m], fixed: both}, r: {position: [3 m, 1 m], fixed: both}, a: [0, 1.2 m]}
 members: {sl: {kind: spring, nodes: [l, a], stiffness: 10 N/m, rest_length: 2.5 m},
           sr: {kind: spring, nodes: [r, a], stiffness: 10 N/m, rest_length: 2.5 m}}
@@ -35,8 +33,7 @@ jq -e '.events | length == 1 and .[0].kind == "bifurcation" and
    20 * (9 + (1 - 2.5 / $l) * $d * $d) / ($l * $l) - 1e5 * $d / .nodes.a[1] | fabs < 1e-7)' "$work/out" >/dev/null || fail "a node on a ball: $(jq -c .events "$work/out")"
 
 # ---- over a convex corner: on each of its sides the forces along the facet balance ----
-cat >hill.yaml <<'END'
-strut: 1
+yaml hill.yaml <<'END'
 nodes:
   l: {position: [-3 m, 1 m], fixed: both}
   r: {position: [3 m, 1 m], fixed: both}
@@ -77,8 +74,7 @@ jq -e --slurpfile m moved.last '(.points[0].nodes.a | .[0] - $m[0][0], .[1] - $m
   fail "a hill that moves"
 
 # ---- form finding in a pipe and between a floor and walls: the forces drawn for hold the shape ----
-cat >hung.yaml <<'END'
-strut: 1
+yaml hung.yaml <<'END'
 nodes: {a: {position: [-0.6, -0.8], mass: 1}, b: {position: [0.6, -0.8], mass: 1}, c: {position: [0, -0.4], mass: 1}}
 members: {ab: {kind: bar, nodes: [a, b], stiffness: 10 kN/m}, ac: {kind: bar, nodes: [a, c], stiffness: 10 kN/m},
           bc: {kind: bar, nodes: [b, c], stiffness: 10 kN/m}}
@@ -101,5 +97,3 @@ for until in 0.9 1 1.1 3; do
   near '.events | length' 22 0
 done
 gives '.points[-1].factor' 0.5110687 2e-6 path "$peers/gripper.yaml" --stop n22.x=0.39954 --steps 3000
-
-done_testing

@@ -3,8 +3,7 @@
 # Laws that fold back: paths through the folds and motions that jump, against the points of the law themselves.
 . "$(dirname "$0")/lib.sh"
 
-cat >single.yaml <<'YAML'
-strut: 1
+yaml single.yaml <<'YAML'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [5, 0], fixed: y, mass: 1}}
 members:
   s: {kind: spring, nodes: [a, b], law: {kind: curve,
@@ -23,8 +22,7 @@ jq -e 'def near($a; $b): ($a - $b | fabs) < 1e-13;
   ([.points[].negative_eigenvalues] | max) == 1 and .points[-1].negative_eigenvalues == 0' "$work/out" >jq.out || fail "a path along a curve that folds"
 
 # Along a displacement the way between the folds is what is unstable; energies differ by the area between.
-sed '/^loads/d' single.yaml >free.yaml
-expect 0 path free.yaml --over b.x --until 4 --json
+edit '/^loads/d' single.yaml expect 0 path --over b.x --until 4 --json
 jq -e '[.points[] | select(.negative_eigenvalues > 0) | .nodes.b[0] - 5] | length > 2 and min > 0.8 - 1e-12 and max < 3.4 + 1e-12' \
   "$work/out" >jq.out || fail "stability of a curve along a displacement"
 
@@ -60,37 +58,32 @@ tells 1 'yields or folds' run run.yaml --integrator midpoint
 shows 0 'jumps at folds' run run.yaml
 
 # A Bezier curve on both sides: x = t, F = 3 t (1 - t)^2 c1 + 3 t^2 (1 - t) c2 + t^3 c3 where x has no bend.
-cat >bezier.yaml <<'YAML'
-strut: 1
+yaml bezier.yaml <<'YAML'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [5, 0], fixed: y, mass: 1}}
 members:
   s: {kind: spring, nodes: [a, b], law: {kind: curve, mirrored: yes,
       control_points: [[0, 0], [0.333333333333333333, 2], [0.666666666666666667, -1], [1, 1]]}}
 loads: {f: {node: b, force: [-1, 0]}}
 YAML
-sed '/^loads/d' bezier.yaml >free.yaml
-expect 0 path free.yaml --over b.x --until -0.9 --json
+edit '/^loads/d' bezier.yaml expect 0 path --over b.x --until -0.9 --json
 jq -e '[.points[] | (5 - .nodes.b[0]) as $t | .forces.s + (6 * $t * (1 - $t) * (1 - $t) - 3 * $t * $t * (1 - $t) + $t * $t * $t) |
   fabs] | max < 1e-13' "$work/out" >jq.out || fail "a Bezier curve"
 # Rounded corners: between the parabolas the law is straight, at a corner half way between chord and corner.
-cat >round.yaml <<'YAML'
-strut: 1
+yaml round.yaml <<'YAML'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [5, 0], fixed: y, mass: 1}}
 members:
   s: {kind: spring, nodes: [a, b], law: {kind: curve, rounding: 0.5, points: [[0, 0], [2, 2], [1, 1], [4, 2]]}}
 loads: {f: {node: b, force: [2, 0]}}
 YAML
 expect 2 path round.yaml # folds back upon itself: the force does not fall on the way
-sed 's/\[1, 1\]/[1, 0]/' round.yaml >fold.yaml
-expect 0 path fold.yaml --json
+edit 's/\[1, 1\]/[1, 0]/' round.yaml expect 0 path --json
 # The corner (2, 2) becomes P(t) = (2, 2) + (1-t)^2 (-0.5, -0.5) + t^2 (-0.25, -0.5): its x is largest at t = 2/3.
 jq -e '[.events[] | select(.detail | test("fold"))] as $folds | ($folds | length) == 2 and
   ($folds[0].nodes.b[0] - 5 - (2 - 0.5 / 9 - 0.25 * 4 / 9) | fabs) < 1e-14' \
   "$work/out" >jq.out || fail "rounded corners"
 
 # A driven spring with a memory: its path moves as the springs share what is driven, 2/3 to 1/3, until the fold.
-cat >driven.yaml <<'YAML'
-strut: 1
+yaml driven.yaml <<'YAML'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [5, 0], fixed: y, mass: 1}, c: {position: [9, 0], fixed: both}}
 members:
   s: {kind: spring, nodes: [a, b], law: {kind: curve, mirrored: yes, points: [[0, 0], [1, 2], [0.8, 0.4], [4, 3]]}}
@@ -111,8 +104,7 @@ gives '.points[-1].nodes.b[0]' '5 - 2 / 3' 1e-13 path yielding.yaml --over pull 
 gives '.points[-1].nodes.b[0] - 5' '0.8 + 0.4 * 1.2 / 1.4' 1e-12 path rest.yaml
 
 # A circle's worth of folds: the extremes of x of a Bezier curve are where x' = 0, and the path turns there.
-cat >turning.yaml <<'YAML'
-strut: 1
+yaml turning.yaml <<'YAML'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [5, 0], fixed: y, mass: 1}}
 members: {s: {kind: spring, nodes: [a, b], law: {kind: curve, control_points: [[0, 0], [3, 4], [-2, -4], [1, 0]]}}}
 loads: {f: {node: b, force: [3, 0]}}
@@ -126,4 +118,3 @@ holds '[.points[] | .nodes.b[0] - 5] | max >= 1 and min >= -1e-12'
 # A search says that it takes one branch; scenes are written as they were read.
 tells 0 "may fold back" equilibria single.yaml
 shows 0 'mirrored: yes' export "$here/../language/good/elements.yaml"
-done_testing

@@ -6,8 +6,7 @@
 
 # worm FILE INTEGRATOR SOLVER-KEYS LAW: the scene
 worm() {
-  cat >"$1" <<END
-strut: 1
+  yaml "$1" <<END
 parameters: {forward: 0.1, slowly: 0.05 Hz}
 nodes: {a: {position: [0, 0], mass: 1 kg}, b: {position: [1 m, 0], mass: 1 kg}}
 members: {s: {nodes: [a, b], kind: spring, stiffness: 1000 N/m, damping: 20 N s/m}}
@@ -39,8 +38,7 @@ done
 
 # Points of a study have the bits of single runs.
 worm "$work/worm.yaml" rk4 "step: 0.5 ms" "law: karnopp, stick_velocity: 1e-4 m/s"
-cat >"$work/study.yaml" <<END
-strut: 1
+yaml "$work/study.yaml" <<END
 study: worm
 model: worm.yaml
 axes: [{forward: [0, 0.1, 0.2, 0.3, 0.6]}]
@@ -65,12 +63,10 @@ jq -e '(.velocity | fabs) < 1e-6' "$work/out" >"$work/value" || fail "it advance
 
 # What it needs and does not have.
 bad() {
-  sed "s/mu_forward: forward, mu_backward: 0.6/$1/" "$work/worm.yaml" >"$work/bad.yaml"
-  expect 2 check "$work/bad.yaml"
+  edit "s/mu_forward: forward, mu_backward: 0.6/$1/" "$work/worm.yaml" expect 2 check
   grep -q "$2" "$work/err" || fail "$1: $(cat "$work/err")"
 }
 bad 'mu_forward: forward' "lacks 'mu_backward'"
 bad 'mu: forward, mu_forward: 0.1, mu_backward: 1' "gives both 'mu' and 'mu_forward'"
 bad 'mu: forward, mu_backward: -1' "mu_backward"
 bad 'mu: forward, mu_backwards: 1' "did you mean 'mu_backward'"
-done_testing

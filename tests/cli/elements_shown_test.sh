@@ -3,8 +3,7 @@
 # Running cables, laws, stops and hinges in what is printed, recorded, drawn, exported and written.
 . "$(dirname "$0")/lib.sh"
 
-cat >all.yaml <<'YAML'
-strut: 1
+yaml all.yaml <<'YAML'
 name: all elements
 nodes: {a: {position: [0, 0], fixed: both}, p: {position: [0.1, -0.06], mass: 0.1},
         b: {position: [0.3, 0], fixed: both}, d: {position: [0.1, -0.16], mass: 0.1}}
@@ -84,5 +83,3 @@ for what in equilibria "modes --at start" rigidity; do
   shift
   expect 0 "$command" all.yaml "$@" --quiet --plot "$command.svg"
 done
-
-[ $failures -eq 0 ]

@@ -79,8 +79,7 @@ expect 1 equilibria "$crawler" --friction
 expect 4 equilibria missing.yaml
 printf 'strut: 1\nnodez: {}\n' >bad.yaml
 tells 2 "did you mean 'nodes'?" equilibria bad.yaml
-cat >bar.yaml <<'YAML'
-strut: 1
+yaml bar.yaml <<'YAML'
 nodes: {a: [0, 0], b: [1, 0]}
 members: {ab: {nodes: [a, b], kind: bar, stiffness: 1000, mass: 1}}
 gravity: [0, -9.81]
@@ -90,8 +89,7 @@ shows 3 '"equilibria":	[]' equilibria bar.yaml --json
 out_has '"remark":	"nothing holds the structure'
 tells 1 "supports" equilibria bar.yaml --supports a,b
 # Cables that lie straight along their struts at rest: nodes off the line stretch them, if by little.
-cat >hexagon.yaml <<'YAML'
-strut: 1
+yaml hexagon.yaml <<'YAML'
 groups: {cable: {kind: cable, stiffness: 1 N/m, rest_length: 0.9 m},
          strut: {kind: bar, stiffness: 10 N/m, rest_length: 1.8 m}, j: {mass: 1 kg}}
 nodes: {n1: {position: [1, 0], group: j}, n2: {position: [cos(60 deg), sin(60 deg)], group: j},
@@ -108,8 +106,7 @@ shows 0 "nodes n2, n4 and n6 meet no stiffness to second order" equilibria hexag
 out_has_not "one of many shapes"
 
 # What rounding leaves of an energy is 0.
-cat >four-bars.yaml <<'END'
-strut: 1
+yaml four-bars.yaml <<'END'
 nodes: {a: {position: [0.269, 1.695], fixed: both}, b: {position: [1.528, 0.51], fixed: both},
         c: {position: [0.991, 0.899], mass: 1}, d: {position: [1.303, 1.577], mass: 1}}
 members: {p: {kind: bar, nodes: [a, c], stiffness: 3 kN/m}, q: {kind: bar, nodes: [b, c], stiffness: 7 kN/m},
@@ -140,8 +137,7 @@ shows 0 "cut short: a search of all shapes, bounded to some ten seconds of work"
 expect 0 equilibria "$crawler" --starts 20
 out_has_not "cut short"
 # A configuration without contacts lies on the side on which it is drawn, though others are alike but for a turn.
-cat >sides.yaml <<'YAML'
-strut: 1
+yaml sides.yaml <<'YAML'
 groups: {rod: {kind: bar, stiffness: 100 kN/m, damping: 1 N s/m, mass: 50 g},
          cable: {kind: cable, stiffness: 500 N/m, damping: 0.5 N s/m, rest_length_ratio: 0.94}}
 nodes: {a: [0, 0], b: [100 mm, 0], c: [80 mm, 60 mm], d: [0, 90 mm]}
@@ -154,4 +150,3 @@ configurations: {standing: {}}
 YAML
 shows 0 "standing           a,b " equilibria sides.yaml
 shows 0 "modes at standing, on a, b" modes sides.yaml --at standing
-done_testing

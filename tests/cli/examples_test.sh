@@ -69,4 +69,3 @@ cp -R "$models" moved/share/strut/models
 moved/bin/strut examples >out 2>err </dev/null || fail "the models of an installed program"
 cut -d' ' -f1 out >got
 same wanted got
-done_testing

@@ -5,8 +5,7 @@
 
 # A rocker with feet of 1 m and its centre of mass 0.4 m high swings about the point of contact where it rolls,
 # I = 1.92 + 4 * 0.4^2 kg m^2, and about its centre where nothing rubs; m g (r - h) is its stiffness.
-cat >rocker.yaml <<'YAML'
-strut: 1
+yaml rocker.yaml <<'YAML'
 gravity: [0, -10]
 parameters: {tilt: 0.005, mu: 2}
 nodes: {n: {position: ["-sin(tilt)", "1 - cos(tilt)"], mass: 3},
@@ -33,8 +32,7 @@ near '.modes[1].frequency' '(24 / 1.92 | sqrt) / 6.283185307179586' 1e-4
 gives '[.equilibria[] | select(.outcome == "stands") | .energy] | min' 16 1e-2 equilibria rocker.yaml
 
 # A wheel of two feet rolls down a slope without slipping: 2/3 g sin(slope) of a disc becomes g sin / (1 + I / m r^2).
-cat >wheel.yaml <<'YAML'
-strut: 1
+yaml wheel.yaml <<'YAML'
 parameters: {slope: 10 deg}
 gravity: [10*sin(slope), -10*cos(slope)]
 nodes: {a: {position: [0, 0], mass: 1}, b: {position: [0, 2], mass: 1}, top: {position: [0, 1], mass: 2}}
@@ -51,20 +49,14 @@ gives .measured.x.value '0.5 * 10 * 0.17364817766693033 / (1 + 2 / 4)' 5e-3 run 
 # Pictures, writing, parts, and what cannot be.
 expect 0 run rocker.yaml -o out-rocker --quiet --plot rocker.svg
 expect 0 view out-rocker -o page.html
-expect 0 export rocker.yaml
-cp out written.yaml
-expect 0 export written.yaml
-same out written.yaml
+writes_back rocker.yaml
 grep -q "f: {member: body, node: n, radius: 1}" written.yaml || fail "the foot was not written"
 expect 1 run rocker.yaml --integrator midpoint
 refused() { # sed command, message
-  sed "$1" rocker.yaml >bad.yaml
-  tells 2 "$2" check bad.yaml
+  edit "$1" rocker.yaml tells 2 "$2" check
 }
 refused 's/radius: 1 m/radius: 2 m/' "more than member 'body' is long"
 refused 's/node: n, radius/node: x, radius/' "unknown node 'x'"
 refused 's/law: smooth, mu: mu, width: 1 mm.s/law: coulomb, mu: 1/' "no friction that sticks exactly"
 refused 's/nodes: .n..$/nodes: [o]}/' "may touch no ground"
 refused 's/radius: 1 m/radius: -1 m/' "'radius' of foot 'f' must be above zero"
-
-done_testing

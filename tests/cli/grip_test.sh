@@ -4,8 +4,7 @@
 . "$(dirname "$0")/lib.sh"
 
 # A block that slides: v = u - g int mu dt, with mu = 0.2 sin(2 pi t), and 0 where that is negative.
-cat >slide.yaml <<'YAML'
-strut: 1
+yaml slide.yaml <<'YAML'
 gravity: [0, -9.81]
 nodes: {a: {position: [0, -9.81e-5], mass: 1}}
 ground: {stiffness: 1e5, friction: {law: coulomb, mu: {sine: {amplitude: 0.2, frequency: 1}}}}
@@ -23,14 +22,12 @@ sed 's/law: coulomb/law: karnopp, stick_velocity: 1e-6/' slide.yaml >band.yaml
 for method in rk4 rk4-events verlet verlet-events euler; do
   gives .measured.v.value "2 - $loss * 3" 2e-3 run band.yaml --integrator $method
 done
-sed 's/law: coulomb/law: smooth, width: 1e-2/' slide.yaml >smooth.yaml
-gives .measured.v.value "2 - $loss * 3" 5e-5 run smooth.yaml
+edit 's/law: coulomb/law: smooth, width: 1e-2/' slide.yaml gives .measured.v.value "2 - $loss * 3" 5e-5 run
 expect 0 run slide.yaml --accuracy 0.01%
 
 # On a slope it begins to slide when mu = 0.6 (1 - t) falls below the slope, and is then x = g cos 0.6 (t - t0)^3 / 6
 # further down.
-cat >slope.yaml <<'YAML'
-strut: 1
+yaml slope.yaml <<'YAML'
 gravity: [0, -9.81]
 nodes: {a: {position: [0, -9.81e-5], mass: 1}}
 ground: {stiffness: 1e5, damping: 300, slope: 20 deg, friction: {law: coulomb, mu: fading}}
@@ -42,8 +39,7 @@ tangent='(0.3490658503988659 | sin) / (0.3490658503988659 | cos)'
 way="(0.9 - (1 - ($tangent) / 0.6)) as \$t | (0.3490658503988659 | cos) as \$c | 9.81 * \$c * 0.6 * \$t * \$t * \$t / 6 * \$c"
 expect 0 run slope.yaml --integrator adaptive --json
 begin=$(jq '.measured.x.value' "$work/out")
-sed 's/duration: 0.9/duration: 0.1/' slope.yaml >still.yaml
-expect 0 run still.yaml --json
+edit 's/duration: 0.9/duration: 0.1/' slope.yaml expect 0 run --json
 rest=$(jq '.measured.x.value' "$work/out")
 jq -n -e --argjson x "$begin" --argjson x0 "$rest" "($way) as \$way | (\$x0 - \$x - \$way | fabs) < 1e-10" >jq.out ||
   fail "a block that begins to slide: from $rest to $begin"
@@ -52,8 +48,7 @@ for method in rk4-events verlet-events; do
 done
 
 # Feet that hold in turn: a link that swells by a sine advances by its stroke in each period.
-cat >walk.yaml <<'YAML'
-strut: 1
+yaml walk.yaml <<'YAML'
 gravity: [0, -9.81]
 nodes: {a: {position: [0, 0], mass: 1}, b: {position: [1, 0], mass: 1}}
 members: {s: {kind: spring, nodes: [a, b], stiffness: 2e4, damping: 200}}
@@ -71,4 +66,3 @@ gives .velocity '2 * 0.02 * 0.2 * 2 / 2' 1e-4 run walk.yaml
 # A scene is written as it was read.
 "$strut" export walk.yaml >written.yaml
 "$strut" export written.yaml | cmp -s - written.yaml || fail "writing friction that follows a signal"
-done_testing

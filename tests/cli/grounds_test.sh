@@ -21,8 +21,7 @@ plain="rk4 euler verlet"
 located="rk4-events verlet-events euler-events adaptive"
 
 # ---- a ball in a V of slopes 40 and 60 degrees: N_left sin 40 = N_right sin 60, no sideways force ----
-cat >v.yaml <<'END'
-strut: 1
+yaml v.yaml <<'END'
 gravity: [0, -10]
 nodes: {ball: {position: [0, 1 mm], mass: 2}}
 grounds:
@@ -60,8 +59,7 @@ for method in rk4 rk4-events verlet-events; do
 done
 
 # ---- a wall at 45 degrees turns horizontal motion into vertical motion ----
-cat >wall.yaml <<'END'
-strut: 1
+yaml wall.yaml <<'END'
 nodes: {ball: {position: [0, 0.2], mass: 1}}
 grounds: {floor: {stiffness: 1e4}, wall: {normal: [-1, 1], through: [1, 0.2], stiffness: 1e6}}
 initial: {velocity: [3, 0]}
@@ -80,8 +78,7 @@ near_number "$(last nodes ball.x)" 1.00471238898 1e-9 "place behind the wall by 
 near_number "$(last nodes ball.y)" 2.19528761102 1e-9 "height behind the wall by adaptive"
 
 # ---- a mass slides off a step: at rest at depth d = m g / k; the corner pushes it on by k d^2 / m ----
-cat >step.yaml <<'END'
-strut: 1
+yaml step.yaml <<'END'
 gravity: [0, -9.81]
 nodes: {m: {position: [-0.5, -9.81e-6], mass: 1}}
 ground: {profile: [[-1, 0], [0, 0], [0, -1], [1, -1]], stiffness: 1e6, damping: 2000}
@@ -100,8 +97,7 @@ go step.yaml adaptive --tolerance 1e-9
 closes 1e-7 "the step"
 
 # ---- without friction in a circular pipe: a pendulum, by elliptic functions ----
-cat >pipe.yaml <<'END'
-strut: 1
+yaml pipe.yaml <<'END'
 gravity: [0, -9.81]
 nodes: {m: {position: [0.5, -0.8660254037844386], mass: 1}}
 ground: {circle: {centre: [0, 0], radius: 1, inside: yes}, stiffness: 1e9}
@@ -119,8 +115,7 @@ expect 0 modes pipe.yaml --json
 near_number "$(jq -r '.modes[0].eigenvalue' "$work/out")" 9.81 1e-6 "small swings in a pipe"
 
 # ---- on a turning drum: held until g sin(theta) = mu (g cos(theta) - v^2 / R) ----
-cat >drum.yaml <<'END'
-strut: 1
+yaml drum.yaml <<'END'
 parameters: {speed: 0.5 m/s}
 gravity: [0, -9.81]
 nodes: {m: {position: [0, 0.99999999], mass: 1}}
@@ -142,8 +137,7 @@ go drum.yaml adaptive --set speed=4
 near_number "$(last contacts m.normal)" 0 0 "a drum that turns faster than sqrt(g R) throws off"
 
 # ---- a shaken table: held by friction, or bouncing once a period beyond pi (1 - e) / (1 + e) ----
-cat >held.yaml <<'END'
-strut: 1
+yaml held.yaml <<'END'
 gravity: [0, -9.81]
 nodes: {m: {position: [0, -9.81e-6], mass: 1}}
 ground: {motion: {x: {sine: {amplitude: 2 mm, frequency: 5 Hz}}}, stiffness: 1e6, damping: 500,
@@ -161,8 +155,7 @@ for method in rk4-events verlet-events adaptive; do
 done
 [ "$(jq -r '.energy.belt_work > 0' run/summary.json)" = true ] || fail "the table's work"
 # e = exp(-zeta acos(zeta) / sqrt(1 - zeta^2)) = 0.45, so that the threshold is 1.1916.
-cat >bounce.yaml <<'END'
-strut: 1
+yaml bounce.yaml <<'END'
 parameters: {shake: 1.3, phase: 23.56 deg, start: 1.2912 mm}
 gravity: [0, -9.81]
 nodes: {m: {position: [0, start], mass: 1}}
@@ -184,8 +177,7 @@ duty=$(bounce 1.17 0 0)
 awk -v d="$duty" 'BEGIN { exit !(d > 0.3) }' || fail "rests below the threshold: $duty in contact"
 
 # ---- a block on an incline that is given by its normal: g (sin - mu cos), or held ----
-cat >incline.yaml <<'END'
-strut: 1
+yaml incline.yaml <<'END'
 parameters: {mu: 0.5}
 gravity: [0, -10]
 nodes: {m: {position: [0, 0], mass: 1}}
@@ -205,8 +197,7 @@ near_number "$(last nodes m.vx)" -1.6 1e-3 "the same as one of several grounds"
 head -n 1 run/contacts.csv | grep -qF 'm.normal [N]' || fail "one surface, so contacts are named by nodes"
 
 # ---- a wheel of bars rolls over a bump; its mirror image does so the other way ----
-cat >wheel.yaml <<'END'
-strut: 1
+yaml wheel.yaml <<'END'
 parameters: {way: 1}
 gravity: [0, -9.81]
 groups: {rim: {kind: bar, stiffness: 2e4, damping: 4}}
@@ -236,8 +227,7 @@ go left.yaml adaptive
 near_number "$(last nodes hub.x)" "-$x" 1e-6 "mirror image of the wheel"
 
 # ---- a path against a ceiling and a wall: as against the floor, mirrored and turned ----
-cat >floor.yaml <<'YAML'
-strut: 1
+yaml floor.yaml <<'YAML'
 parameters: {gap: 0.2}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, -0.1], mass: 1}, c: {position: [2, 0], fixed: both}}
 members: {l: {kind: spring, nodes: [a, b], stiffness: 100}, r: {kind: spring, nodes: [b, c], stiffness: 100}}
@@ -271,13 +261,9 @@ formats 0 vtk -o seen/vtk seen/run &&
   { grep -q 'NumberOfLines="2"' seen/vtk/ground.vtp || fail "outlines for ParaView"; }
 grep -q surfaces seen/run.html || fail "outlines on the page"
 expect 0 check right.yaml
-expect 0 export right.yaml
-cp "$work/out" again.yaml
-expect 0 export again.yaml
-same "$work/out" again.yaml
+writes_back right.yaml
 # A path between a wall, a ceiling and a floor: each is touched where it is, and takes what springs leave of the load.
-cat >walls.yaml <<'END'
-strut: 1
+yaml walls.yaml <<'END'
 nodes: {left: {position: [-1, 0], fixed: both}, right: {position: [1, 0], fixed: both}, pin: [0, 0]}
 members: {a: {kind: spring, nodes: [left, pin], stiffness: 10, pretension: 5},
           b: {kind: spring, nodes: [right, pin], stiffness: 10, pretension: 5}}
@@ -297,7 +283,4 @@ expect 0 path walls.yaml --until -2 --json
 holds '[.events[].detail] | any(test("pin touches floor"))'
 sed -e 's/^gravity/bars: rigid\ngravity/' -e 's/, friction: [^}]*}//' right.yaml >rigid.yaml
 tells 1 "rigid bars need a ground that is one straight line at rest" run rigid.yaml --integrator rk4
-sed 's/0.01339746\], mass: 0.05}/-0.05], mass: 0.05}/' right.yaml >deep.yaml
-tells 0 "nodes n4, n5 start inside the ground" check deep.yaml
-
-done_testing
+edit 's/0.01339746\], mass: 0.05}/-0.05], mass: 0.05}/' right.yaml tells 0 "nodes n4, n5 start inside the ground" check

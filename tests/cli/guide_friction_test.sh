@@ -7,8 +7,7 @@ pi=3.141592653589793
 
 # Atwood's machine over a fixed guide, theta = pi. While it slips the tensions are exactly e^(mu pi) apart; on
 # average, but for the rope's own oscillation, a = g (m2 - m1 e^(mu pi)) / (m2 + m1 e^(mu pi)).
-cat >atwood.yaml <<'YAML'
-strut: 1
+yaml atwood.yaml <<'YAML'
 parameters: {mu: 0.1, m2: 2, h: 1 ms, c: 1e5}
 gravity: [0, -9.81]
 nodes: {a: {position: [0, -1], mass: 1}, g: {position: [0, 0], fixed: both}, b: {position: [0, -0.5], mass: m2}}
@@ -19,8 +18,7 @@ run: {duration: 0.3,
 YAML
 bound="(0.1 * $pi | exp)"
 for method in rk4-events adaptive verlet-events euler-events rk4 verlet euler; do
-  sed "s/rk4-events/$method/" atwood.yaml >other.yaml
-  gives .measured.ratio.value "$bound" 2e-10 run other.yaml
+  edit "s/rk4-events/$method/" atwood.yaml gives .measured.ratio.value "$bound" 2e-10 run
   near '.energy.residual / .energy.exchanged' 0 2e-3
 done
 expect 0 run atwood.yaml --set h='0.1 ms' --set c=1e7 --json
@@ -49,8 +47,7 @@ done
 # A winch pulls in the rope at its first node, over two fixed posts that turn it by 90 deg each, against a
 # spring: the tension that arrives is e^(-mu pi) of that at the winch while it pulls, and the inverse as it
 # pays out far enough.
-cat >winch.yaml <<'YAML'
-strut: 1
+yaml winch.yaml <<'YAML'
 parameters: {mu: 0.3}
 nodes: {w: {position: [0, 0], fixed: both}, p: {position: [0, 1], fixed: both}, q: {position: [1, 1], fixed: both},
         m: {position: [1, 0.5], mass: 0.1, fixed: x}, e: {position: [1, -1], fixed: both}}
@@ -62,15 +59,12 @@ run: {duration: 0.9, measure: {quantities: {ratio: {of: rope.force / rope.last_f
 YAML
 gives .measured.ratio.value "(0.3 * $pi | exp)" 1e-9 run winch.yaml
 near '.energy.residual / .energy.exchanged' 0 1e-8
-sed 's/duration: 0.9/duration: 2.5/' winch.yaml >other.yaml
-gives .measured.ratio.value "(-0.3 * $pi | exp)" 1e-9 run other.yaml
-sed 's/rk4-events/rk4/' winch.yaml >other.yaml
-gives .measured.ratio.value "(0.3 * $pi | exp)" 1e-9 run other.yaml
+edit 's/duration: 0.9/duration: 2.5/' winch.yaml gives .measured.ratio.value "(-0.3 * $pi | exp)" 1e-9 run
+edit 's/rk4-events/rk4/' winch.yaml gives .measured.ratio.value "(0.3 * $pi | exp)" 1e-9 run
 near '.energy.residual / .energy.exchanged' 0 1e-4
 
 # A swinging net of it goes slack and taut, over a free guide that passes straight: the balance closes.
-cat >slack.yaml <<'YAML'
-strut: 1
+yaml slack.yaml <<'YAML'
 gravity: [0, -9.81]
 nodes: {a: {position: [-1, 0], fixed: both}, g1: {position: [0, 0.3], fixed: both},
         g2: {position: [1, 0.2], fixed: both}, g3: {position: [1.5, 0.4], mass: 0.1, fixed: x},
@@ -83,12 +77,9 @@ run: {duration: 1, measure: {quantities: {low: {of: rope.force, take: min}}}}
 YAML
 gives .measured.low.value 0 0 run slack.yaml
 near '.energy.residual / .energy.exchanged' 0 1e-6
-sed 's/rk4-events/adaptive/' slack.yaml >other.yaml
-gives '.energy.residual / .energy.exchanged' 0 1e-6 run other.yaml
-sed 's/integrator: rk4-events/integrator: midpoint/' slack.yaml >other.yaml
-tells 1 'midpoint cannot step' run other.yaml
-sed 's/guide_friction: 0.2}/guide_friction: 0.2, damping: 2, breaks_at: 31 N}/' slack.yaml >other.yaml
-gives '.broken.rope.time | if . then 1 else 0 end' 1 0 run other.yaml
+edit 's/rk4-events/adaptive/' slack.yaml gives '.energy.residual / .energy.exchanged' 0 1e-6 run
+edit 's/integrator: rk4-events/integrator: midpoint/' slack.yaml tells 1 'midpoint cannot step' run
+edit 's/guide_friction: 0.2}/guide_friction: 0.2, damping: 2, breaks_at: 31 N}/' slack.yaml gives '.broken.rope.time | if . then 1 else 0 end' 1 0 run
 near '.energy.residual / .energy.exchanged' 0 1e-4
 
 # Statics take the guides without friction; everything else shows and writes it.
@@ -102,5 +93,3 @@ cp out written.yaml
 expect 0 run written.yaml --quiet --plot slack.svg -o slack
 expect 0 view slack -o slack.html
 expect 0 run slack.yaml --accuracy 1% --json
-
-done_testing

@@ -27,4 +27,3 @@ out_empty
 err_has "Sections:"
 grep -q ' scene, part, ' err || fail "the sections are not listed"
 expect 0 keys --quiet solver
-done_testing

@@ -13,4 +13,3 @@ sh "$bench/xchain.sh" 1000 >chain.yaml
 gives '.equilibria[0].crossings' 200 0 equilibria chain.yaml
 
 shows 0 "200 crossings" equilibria chain.yaml
-done_testing

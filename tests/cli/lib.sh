@@ -9,9 +9,10 @@ work=$(mktemp -d)
 failures=0
 mounted=
 
-finish() {
+finish() { # of every test, whose last command succeeds: it fails where a check has failed
   [ -z "$mounted" ] || umount "$mounted"
   rm -rf "$work"
+  [ "$failures" -eq 0 ] || { echo "$failures failed" && exit 1; }
 }
 trap finish EXIT
 cd "$work" || exit 1
@@ -24,6 +25,13 @@ fail() {
   [ ! -s "$work/out" ] || head -c 600 "$work/out" | sed 's/^/    out| /'
   [ ! -s "$work/err" ] || head -c 600 "$work/err" | sed 's/^/    err| /'
 }
+
+# yaml [FILE]: writes a scene or a study, whose first line is that of all, and the rest the standard input.
+yaml() (
+  [ $# -eq 0 ] || exec >"$1"
+  echo 'strut: 1'
+  cat
+)
 
 # expect CODE WORD...: runs strut WORD..., keeps stdout in out and stderr in err, compares the code.
 expect() {
@@ -60,6 +68,19 @@ near_number() {
 # shows CODE TEXT WORD..., tells CODE TEXT WORD...: the same, and stdout (stderr) has the text.
 shows() { _code=$1 _text=$2 && shift 2 && expect "$_code" "$@"; out_has "$_text"; }
 tells() { _code=$1 _text=$2 && shift 2 && expect "$_code" "$@"; err_has "$_text"; }
+# edit PROGRAM FILE CHECK...: what sed makes of the file, checked: the last word of the check is its name.
+edit() {
+  sed "$1" "$2" >edited.yaml
+  shift 2
+  "$@" edited.yaml
+}
+# writes_back FILE: what strut export writes, in written.yaml, reads back as the same.
+writes_back() {
+  expect 0 export "$1"
+  cp "$work/out" written.yaml
+  expect 0 export written.yaml
+  same "$work/out" written.yaml
+}
 # holds CONDITION: of the JSON in out, by jq.
 holds() { jq -e "$1" "$work/out" >"$work/jq.out" 2>&1 || fail "not so: $1"; }
 out_has() { grep -qF -- "$1" "$work/out" || fail "stdout lacks '$1'"; }
@@ -89,10 +110,4 @@ small_disk() {
 no_disk() {
   umount "$work/disk"
   mounted=
-}
-
-# done_testing: the last line of every test.
-done_testing() {
-  [ "$failures" -eq 0 ] || echo "$failures failed"
-  [ "$failures" -eq 0 ]
 }

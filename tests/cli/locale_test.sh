@@ -27,5 +27,4 @@ same_directory one two
 # A host program that has chosen the locale.
 german "$json_test" >out 2>err || fail "the JSON writer"
 cat out err >both
-grep -q SKIPPED both && fail "the locale was not tried"
-done_testing
+! grep -q SKIPPED both || fail "the locale was not tried"

@@ -5,8 +5,7 @@
 
 # A latch K holds a spring k pressed by d. Released, the spring's energy goes into the mass, v = d sqrt(k/m);
 # that of the latch, F^2 / 2K, is lost.
-cat >latch.yaml <<'YAML'
-strut: 1
+yaml latch.yaml <<'YAML'
 parameters: {at: 103.7 ms}
 nodes: {wall: {position: [0, 0], fixed: both}, m: {position: [0.9, 0], mass: 2, fixed: y}}
 members: {push: {kind: spring, nodes: [wall, m], stiffness: 800, rest_length: 1, law: compression_only},
@@ -20,25 +19,21 @@ near .broken.latch.time 0.1037 1e-15
 near '.broken.latch.released | if . then 1 else 0 end' 1 0
 near .energy.residual 0 1e-8
 for method in adaptive verlet-events; do
-  sed "s/rk4-events/$method/" latch.yaml >other.yaml
-  gives .measured.v.value 2 2e-4 run other.yaml
+  edit "s/rk4-events/$method/" latch.yaml gives .measured.v.value 2 2e-4 run
 done
 for method in rk4 verlet euler; do # at the end of the step, at rest until then
-  sed "s/rk4-events/$method/" latch.yaml >other.yaml
-  gives .measured.v.value 2 1e-3 run other.yaml --set at='104 ms'
+  edit "s/rk4-events/$method/" latch.yaml gives .measured.v.value 2 1e-3 run --set at='104 ms'
   near .broken.latch.time 0.104 1e-15
   near .energy.dissipated_members 0.032 1e-12
 done
 shows 0 'latch                  103.7 ms   released' run latch.yaml
 expect 0 run latch.yaml --set at='10 s' --json # not within the run
 near '.broken | if . then 1 else 0 end' 0 0
-sed 's/rk4-events/midpoint/' latch.yaml >other.yaml
-expect 1 run other.yaml
+edit 's/rk4-events/midpoint/' latch.yaml expect 1 run
 err_has 'midpoint cannot step over what breaks, is released, yields or folds; use solver.integrator rk4-events'
 
 # A mass at the end of a string at speed u: it breaks at the force F, F^2 / 2k is lost.
-cat >string.yaml <<'YAML'
-strut: 1
+yaml string.yaml <<'YAML'
 nodes: {top: {position: [0, 0], fixed: both}, m: {position: [0, -1], mass: 1}}
 members: {string: {kind: cable, nodes: [top, m], stiffness: 100, rest_length: 1, breaks_at: 5 N, longest: 1.5}}
 initial: {velocities: {m: [0, -1]}}
@@ -50,8 +45,7 @@ near .broken.string.time '0.5 | asin / 10' 1e-9
 near .energy.dissipated_members 0.125 1e-9
 near .energy.elastic 0 0
 for method in adaptive verlet-events euler-events rk4 verlet euler; do
-  sed "s/rk4-events/$method/" string.yaml >other.yaml
-  gives .measured.v.value '-(0.75 | sqrt)' 0.02 run other.yaml
+  edit "s/rk4-events/$method/" string.yaml gives .measured.v.value '-(0.75 | sqrt)' 0.02 run
   near .broken.string.time '0.5 | asin / 10' 2.1e-3
   near '.energy.residual / .energy.exchanged' 0 0.03
 done
@@ -64,14 +58,12 @@ gives .measured.v.value '-(0.75 | sqrt)' 1e-9 run written.yaml
 shows 0 'breaks at 5 N' check string.yaml
 
 # The stop carries its share of what breaks a member: 5 N = k e + 100 k (e - 20 mm).
-sed 's/longest: 1.5/longest: 1.02/' string.yaml >stopped.yaml
-expect 0 run stopped.yaml --json
+edit 's/longest: 1.5/longest: 1.02/' string.yaml expect 0 run --json
 near .energy.dissipated_members '(205 / 10100) as $e | 50 * $e * $e + 5000 * ($e - 0.02) * ($e - 0.02)' 1e-9
 near .energy.residual 0 1e-9
 
 # A hinge breaks by its moment, on either side: the arm flies on with what is left of its speed.
-cat >hinge.yaml <<'YAML'
-strut: 1
+yaml hinge.yaml <<'YAML'
 nodes: {a: {position: [-1, 0], fixed: both}, b: {position: [0, 0], fixed: both}, c: {position: [1, 0], mass: 1}}
 members: {bc: {kind: bar, nodes: [b, c], stiffness: 1e5}}
 hinges: {h: {nodes: [a, b, c], stiffness: 4, rest_angle: 180 deg, breaks_at: 1 N m}}
@@ -84,8 +76,7 @@ near .energy.dissipated_members 0.125 1e-9
 near .hinges.h.moment 0 0
 
 # Elastic-plastic, driven by its rest length: each cycle of amplitude D loses 4 Fy (D - Fy/k).
-cat >loop.yaml <<'YAML'
-strut: 1
+yaml loop.yaml <<'YAML'
 parameters: {h: 1 ms}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: both}, c: {position: [0, 1], mass: 1},
         d: {position: [1, 1], fixed: both}}
@@ -100,15 +91,13 @@ near .measured.f.value -5 1e-9
 near .measured.p.value '-(0.02 - 0.005)' 1e-9
 near .energy.residual 0 1e-9
 for method in adaptive verlet-events rk4 verlet euler; do
-  sed "s/rk4-events/$method/" loop.yaml >other.yaml
-  gives .energy.dissipated_members 0.975 2e-3 run other.yaml
+  edit "s/rk4-events/$method/" loop.yaml gives .energy.dissipated_members 0.975 2e-3 run
   near .measured.f.value -5 1e-6
 done
 
 # A mass that is caught: force, permanent set and losses of a bilinear hysteresis. Until it turns the work
 # of the spring takes all the energy: k y^2/2 + F (x - y) + k2 (x - y)^2/2 with y = F/k.
-cat >catch.yaml <<'YAML'
-strut: 1
+yaml catch.yaml <<'YAML'
 parameters: {h: 2 ms}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 1}}
 members:
@@ -125,8 +114,7 @@ gives .measured.far.value "$far" 1e-7 run catch.yaml --set h='10 us'
 # The set at the turn: the elongation x less (yield + k2 (x - yield / k)) / k, which is elastic.
 near .measured.p.value "($far - 0.01) * 0.9" 1e-7
 x_of() {
-  sed "s/rk4-events/$1/" catch.yaml >other.yaml
-  expect 0 run other.yaml --set h="$2" --json
+  edit "s/rk4-events/$1/" catch.yaml expect 0 run --set h="$2" --json
   jq '.measured.x.value' out
 }
 best=$(x_of rk4-events '0.1 ms')
@@ -145,15 +133,13 @@ gives .measured.far.value "$far" 1e-4 run catch.yaml --set h='2 ms' --accuracy 0
 near .measured.x.value "$best" 1e-3
 
 # A cable that yields is longer afterwards; it is slack then, and pulls again only beyond its set.
-sed 's/kind: spring/kind: cable/; s/second_stiffness: 100/second_stiffness: 0/' catch.yaml >cable.yaml
-expect 0 run cable.yaml --json
+edit 's/kind: spring/kind: cable/; s/second_stiffness: 100/second_stiffness: 0/' catch.yaml expect 0 run --json
 near .energy.dissipated_members '0.5 - 0.05' 1e-8 # it flies back with what the spring gave, 10^2 / 2k
 near .energy.kinetic 0.05 1e-8
 near .measured.p.value 0.045 1e-8
 
 # Pulled by 4 N and let go slowly, it keeps the set it had: 4 N are just twice the yield, no more.
-cat >set.yaml <<'YAML'
-strut: 1
+yaml set.yaml <<'YAML'
 nodes: {wall: {position: [0, 0], fixed: both}, hand: {position: [1, 0], mass: 1e-3, fixed: y}}
 members:
   e: {kind: spring, nodes: [wall, hand], stiffness: 1000, damping: 1,
@@ -166,8 +152,7 @@ gives .measured.left.value 0.002 5e-6 run set.yaml
 near .measured.p.value "$(jq .measured.left.value out)" 1e-9
 
 # A hinge likewise.
-cat >bend.yaml <<'YAML'
-strut: 1
+yaml bend.yaml <<'YAML'
 nodes: {a: {position: [-1, 0], fixed: both}, b: {position: [0, 0], fixed: both}, c: {position: [1, 0], mass: 1}}
 members: {bc: {kind: bar, nodes: [b, c], stiffness: 1e6}}
 hinges: {h: {nodes: [a, b, c], stiffness: 100, rest_angle: 180 deg, law: {kind: elastic_plastic, yield: 1 N m}}}
@@ -182,8 +167,7 @@ sed 's/yield: 1 N m/&, second_stiffness: 20/; s/take: final/take: max/' bend.yam
 gives .measured.p.value '0.8 * (-1 + (1 + 40 * 0.12 | sqrt)) / 20' 1e-4 run stiff.yaml
 
 # Statics take it as whole and elastic, and warn.
-cat >rest.yaml <<'YAML'
-strut: 1
+yaml rest.yaml <<'YAML'
 gravity: [0, -10]
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}}
 members: {e: {kind: spring, nodes: [a, b], stiffness: 1000, rest_length: 1, breaks_at: 8 N, damping: 5}}
@@ -203,5 +187,3 @@ near .energy.residual 0 1e-9
 sed 's/breaks_at: 8 N/law: {kind: elastic_plastic, yield: 8}/' rest.yaml >yields.yaml
 tells 0 "above the 8 N at which it yields; statics take it as elastic" modes yields.yaml
 tells 0 'above the 8 N at which it yields; it does so at once' run yields.yaml --json
-
-done_testing

@@ -3,8 +3,7 @@
 # strut modes: the table, JSON, files, options and refusals.
 . "$(dirname "$0")/lib.sh"
 
-cat >frame.yaml <<'END'
-strut: 1
+yaml frame.yaml <<'END'
 name: Frame
 groups:
   cable: {kind: cable, stiffness: 1000, mass: 0.02, damping: 0.1, force_density: 120}
@@ -55,18 +54,15 @@ tells 1 "--count" modes frame.yaml --count 0
 expect 1 modes frame.yaml --count many
 tells 1 "nowhere" modes frame.yaml --at nowhere
 tells 1 "missing MODEL" modes
-sed 's/stiffness: 1000/stifness: 1000/' frame.yaml >bad.yaml
-tells 2 "did you mean 'stiffness'?" modes bad.yaml
-sed 's/mass: 0.02, //; s/mass: 0.3, //' frame.yaml >light.yaml
-tells 2 "mass" modes light.yaml
+edit 's/stiffness: 1000/stifness: 1000/' frame.yaml tells 2 "did you mean 'stiffness'?" modes
+edit 's/mass: 0.02, //; s/mass: 0.3, //' frame.yaml tells 2 "mass" modes
 out_empty
 sed 's/, force_density: -*120//' frame.yaml | sed 's/mass: 0.02, //; s/mass: 0.3, //; s/d: \[0, 1\]/d: {position: [0, 1], mass: 1}/' |
   sed '/  bd: /d; /  cd: /d; /  da: /d' >loose.yaml
 tells 3 "has no mass and can move without stiffness" modes loose.yaml
 printf 'strut: 1\nnodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: both}}\nmembers: {m: {kind: bar, nodes: [a, b], stiffness: 1, mass: 1}}\n' >held.yaml
 tells 2 "no node is free to move" modes held.yaml
-cat >string.yaml <<'END'
-strut: 1
+yaml string.yaml <<'END'
 nodes: {a: {position: [-1, 0], fixed: both}, b: {position: [0, 0], mass: 1}, c: {position: [1, 0], fixed: both}}
 members: {ab: {kind: cable, nodes: [a, b], stiffness: 1e13, rest_length: 1 - 1e-13},
           bc: {kind: cable, nodes: [b, c], stiffness: 1e13, rest_length: 1 - 1e-13}}
@@ -90,16 +86,14 @@ out_has "members are just taut"
 shows 0 "without force      foot and 48 more" rigidity "$arch" --set cells=16
 tells 3 "396 modes have no stiffness" modes "$arch" --set cells=200 --count 4
 # Two ropes as one running cable, and a spring that only pulls, likewise.
-cat >vee.yaml <<'END'
-strut: 1
+yaml vee.yaml <<'END'
 nodes: {a: {position: [-1, 1], fixed: both}, b: {position: [1, 1], fixed: both}, c: {position: [0, 0], mass: 1}}
 members: {l: {kind: cable, nodes: [a, b, c], stiffness: 100}, r: {kind: spring, law: tension_only, nodes: [b, c], stiffness: 100}}
 END
 gives '[.modes[] | select(.frequency == 0)] | length' 2 0 modes vee.yaml
 near '.just_taut | length' 2 0
 # Loads decide it, even where a cable's stretch is below the last bit of its length.
-cat >hang.yaml <<'END'
-strut: 1
+yaml hang.yaml <<'END'
 gravity: [0, -10]
 parameters: {k: 1e3}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}}
@@ -111,8 +105,7 @@ for k in 1e12 1e16 3e16; do
 done
 
 # Contacts that touch are closed; --stuck holds them along the ground.
-cat >standing.yaml <<'END'
-strut: 1
+yaml standing.yaml <<'END'
 nodes: {a: {position: [0, 0], mass: 1}, b: {position: [1, 0], mass: 1}, top: {position: [0.5, 1], mass: 1}}
 members: {ab: {kind: bar, nodes: [a, b], stiffness: 1e5}, at: {kind: bar, nodes: [a, top], stiffness: 1e5},
           bt: {kind: bar, nodes: [b, top], stiffness: 1e5}}
@@ -128,4 +121,3 @@ grep -q rigid-body out && fail "held along the ground it has no rigid motion"
 shows 0 "modes at a-b-1, on" modes standing.yaml --at a-b-1
 tells 1 "unknown equilibrium 'a-b-99'" modes standing.yaml --at a-b-99
 tells 1 "choose one of: start, drawn" modes standing.yaml --at top-1
-done_testing

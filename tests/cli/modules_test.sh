@@ -70,5 +70,3 @@ expect 0 run "$models/basics/pendulum.yaml" -o pendulum --plot pendulum.svg
 [ -s pendulum/trajectory.h5 ] || fail "no trajectory.h5"
 [ -s pendulum.svg ] || fail "no pendulum.svg"
 expect 0 modes "$models/basics/x-frame.yaml"
-
-done_testing

@@ -77,4 +77,3 @@ tells 2 "check their units" modes stiff.yaml
 tells 3 "moves away without end, n" modes under.yaml
 tells 3 "nodes 'n1' and 'n3', the ends of 'taut', coincide" form "$models/gallery/d-bar.yaml" --given densities
 out_empty
-done_testing

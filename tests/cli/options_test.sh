@@ -4,8 +4,7 @@
 # studies whose runs the command line changes.
 . "$(dirname "$0")/lib.sh"
 
-cat >hop.yaml <<'YAML'
-strut: 1
+yaml hop.yaml <<'YAML'
 parameters: {seconds: 50 ms, mass: 1 kg}
 nodes: {ball: {position: [0, 0], mass: mass}, top: {position: [0, 1 m], fixed: both}}
 members: {spring: {kind: spring, nodes: [ball, top], stiffness: 400 N/m, damping: 1 N s/m}}
@@ -13,15 +12,13 @@ gravity: [0, -9.81]
 solver: {step: 1 ms}
 run: {duration: seconds}
 YAML
-cat >truss.yaml <<'YAML'
-strut: 1
+yaml truss.yaml <<'YAML'
 parameters: {load: 1 N}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0.3], mass: 1}, c: {position: [2, 0], fixed: both}}
 members: {ab: {nodes: [a, b], kind: bar, stiffness: 1000}, bc: {nodes: [b, c], kind: bar, stiffness: 1000}}
 loads: {push: {node: b, force: [0, -load]}}
 YAML
-cat >masses.yaml <<'YAML'
-strut: 1
+yaml masses.yaml <<'YAML'
 study: Mass and time
 model: hop.yaml
 axes: [{mass: [1 kg, 2 kg]}]
@@ -66,8 +63,7 @@ sed 's/^keep: .*/compute: modes/' masses.yaml >modes.yaml
 tells 1 "--accuracy is for studies of runs" sweep modes.yaml -o modes --accuracy 1%
 expect 0 sweep masses.yaml -o drawn --plot drawn.svg --quiet
 grep -q '<svg' drawn.svg || fail "no figure of a study"
-cat >best.yaml <<'YAML'
-strut: 1
+yaml best.yaml <<'YAML'
 study: The lightest
 model: hop.yaml
 search: {over: {mass: {from: 1 kg, to: 2 kg}}, minimise: steps, evaluations: 4}
@@ -105,4 +101,3 @@ tells 1 "or --over NAME, --from and --until" path hop.yaml --periodic --over mas
 tells 1 "--over: expected a value such as " path truss.yaml --over load=1..3kg
 expect 0 tradeoff hop.yaml --cpu-time 1s --step-sizes 2 --own-model --quiet --plot trade.svg
 grep -q '<svg' trade.svg || fail "no figure of a tradeoff"
-done_testing

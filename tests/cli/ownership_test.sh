@@ -36,8 +36,7 @@ refuses ./new.yaml form "$pentagon" -o ./new.yaml
 
 # A file of a study is refused before a point is computed; so is one of its pictures.
 cp "$hopper" hopper.yaml
-cat >study.yaml <<END
-strut: 1
+yaml study.yaml <<END
 study: heights
 model: hopper.yaml
 axes: [{seconds: [0.1, 0.2]}]
@@ -88,4 +87,3 @@ expect 4 run "$hopper" --set seconds=0.2 -o odd --quiet
 mkdir linked && echo "untouched" >target && ln -s ../target linked/.strut-files
 expect 0 run "$hopper" --set seconds=0.2 -o linked --quiet
 [ "$(cat target)" = untouched ] || fail "a link was followed"
-done_testing

@@ -3,8 +3,7 @@
 . "$(dirname "$0")/lib.sh"
 
 # ---- a block that a spring pulls over a floor: 10 N of weight, 0.5 and 0.3 ----
-cat >block.yaml <<'END'
-strut: 1
+yaml block.yaml <<'END'
 parameters: {grip: 0.5}
 nodes: {hand: {position: [2 m, 0], fixed: both}, block: {position: [0, 0], mass: 1 kg}}
 members: {s: {kind: spring, nodes: [hand, block], stiffness: 10 N/m, rest_length: 2 m}}
@@ -25,13 +24,11 @@ jq -e '
 expect 0 path block.yaml --json --over hand.x --until '1 m' --friction none
 holds '(.points[-1].nodes.block[0] - 1 | fabs < 1e-8) and (.points[0] | has("friction") | not)'
 # below the limit it holds
-sed 's/\[2 m, 0\]/[2.4 m, 0]/; s/rest_length: 2 m/rest_length: 2.4 m/' block.yaml >hold.yaml
-expect 0 path hold.yaml --json --over hand.x --until '0.45 m'
+edit 's/\[2 m, 0\]/[2.4 m, 0]/; s/rest_length: 2 m/rest_length: 2.4 m/' block.yaml expect 0 path --json --over hand.x --until '0.45 m'
 holds '.events == []'
 
 # ---- two that push each other off, with more grip backwards: 100 mm less twice 2 N of the spring a cycle ----
-cat >worm.yaml <<'END'
-strut: 1
+yaml worm.yaml <<'END'
 nodes: {rear: {position: [0, 0], mass: 1}, front: {position: [1, 0], mass: 1}}
 members: {s: {kind: spring, nodes: [rear, front], stiffness: 100, rest_length: 1}}
 ground: {stiffness: 1e5, friction: {law: karnopp, stick_velocity: 1 mm/s, mu_forward: 0.2, mu_backward: 0.6}}
@@ -49,8 +46,7 @@ expect 0 path worm.yaml -o made --quiet --plot made.svg
 grep -q 'rear.friction \[N\]' made/path.csv || fail "friction in the CSV"
 
 # ---- in a pipe: sliding begins where load and weight lie on the cone of friction, there and back ----
-cat >pipe.yaml <<'END'
-strut: 1
+yaml pipe.yaml <<'END'
 nodes: {a: {position: [0, -1], mass: 1}}
 ground: {circle: {centre: [0, 0], radius: 1, inside: yes}, stiffness: 1e4, nodes: [a], friction: {law: coulomb, mu: 0.3}}
 loads: {p: {node: a, force: [1, 0]}}
@@ -63,8 +59,7 @@ jq -e '(0.7 / 1.3) as $t | (.earlier_stages[0] | (.events[0].factor - 3 | fabs <
   (.events[0].factor - 10 * ($t - 0.3) / (1 + 0.3 * $t) | fabs < 1e-5) and
   (.points[-1].nodes.a | .[0] / .[1] - $t | fabs < 1e-6)' "$work/out" >/dev/null || fail "in a pipe: $(jq -c .events "$work/out")"
 # on a straight path past where the load turns: it sticks where its place turns back
-cat >turn.yaml <<'END'
-strut: 1
+yaml turn.yaml <<'END'
 nodes: {hand: {position: [2, -2], fixed: both}, block: {position: [0, 0], mass: 1}}
 members: {s: {kind: spring, nodes: [hand, block], stiffness: 20, rest_length: 2.828427}}
 ground: {stiffness: 1e9, nodes: [block], friction: {law: coulomb, mu: 0.3}}
@@ -82,8 +77,7 @@ jq -e --slurpfile x lowest '([.events[] | .kind] == ["slips", "sticks"]) and
   "$work/out" >/dev/null || fail "sticks at $(jq -c .events[1].nodes.block "$work/out"), not $(cat lowest)"
 
 # ---- a block that friction alone holds on a slope of 20 degrees: it settles there, and a push downwards lets it go ----
-cat >slope.yaml <<'END'
-strut: 1
+yaml slope.yaml <<'END'
 nodes: {block: {position: [0, 0], mass: 1}}
 ground: {slope: 20 deg, stiffness: 1e5, damping: 100, friction: {mu: 0.37, stick_velocity: 0.1 mm/s}}
 gravity: [0, -9.81]
@@ -99,8 +93,7 @@ jq -e '(20 * 3.141592653589793 / 180) as $s | (($s | sin) / ($s | cos)) as $t |
   (.events[0].factor - 9.81 * ($t - 0.37) / (1 + 0.37 * $t) | fabs < 1e-6)' "$work/out" >/dev/null || fail "on a slope: $(jq -c .events "$work/out")"
 
 # ---- a rope over a post, turning by a right angle: its tensions differ by exp(0.3 pi/2) at most, there and back ----
-cat >rope.yaml <<'END'
-strut: 1
+yaml rope.yaml <<'END'
 nodes: {weight: {position: [0, -1], fixed: x, mass: 1}, post: {position: [0, 0], fixed: both},
         hand: {position: [0.5, 0], fixed: both}}
 members: {rope: {kind: cable, nodes: [weight, post, hand], stiffness: 1000, rest_length: 1.48, guide_friction: 0.3}}
@@ -129,5 +122,3 @@ tells 1 "high moves the ground, and friction is kept" path moves.yaml --over hig
 tells 1 "--friction expects 'none' or 'kept', not 'some'" path pipe.yaml --friction some
 sed 's/friction: kept/friction: stuck/' pipe.yaml >word.yaml
 tells 2 "word.yaml:6:18: error:" path word.yaml
-
-done_testing

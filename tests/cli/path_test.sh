@@ -3,8 +3,7 @@
 # strut path: the curve, its events, its files, and what it refuses.
 . "$(dirname "$0")/lib.sh"
 
-cat >arch.yaml <<'END'
-strut: 1
+yaml arch.yaml <<'END'
 name: Arch
 parameters: {side: 0}
 nodes:
@@ -45,11 +44,9 @@ tells 1 "--until expects" path arch.yaml --until "3 N"
 tells 1 "a whole number from 1 to" path arch.yaml --steps 0
 sed '/right: {pos/s/, fixed: both//; s/left: {position: \[-1, 0\], fixed: both}/left: [-1, 0]/' arch.yaml >loose.yaml
 tells 3 "nothing holds the structure" path loose.yaml --load weight
-sed '/^loads/,$d; /^parameters/d' arch.yaml >idle.yaml
-tells 1 "no constant load" path idle.yaml
+edit '/^loads/,$d; /^parameters/d' arch.yaml tells 1 "no constant load" path
 # Stiffnesses that span twelve decades do not make a held chain one that moves as a whole.
-cat >chain.yaml <<'END'
-strut: 1
+yaml chain.yaml <<'END'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y}, c: {position: [2, 0], fixed: y},
         d: {position: [3, 0], fixed: y}}
 members: {ab: {kind: spring, nodes: [a, b], stiffness: 1}, bc: {kind: spring, nodes: [b, c], stiffness: 1e12},
@@ -59,8 +56,7 @@ END
 shows 0 "2 m             0 m  stable" path chain.yaml
 
 # Over something else than a load: closed forms of the arch, held at y by 2 k y (l0 / l - 1).
-cat >over.yaml <<'END'
-strut: 1
+yaml over.yaml <<'END'
 name: Arch
 parameters: {k: 1000 N/m, span: 1 m, load: 1 N}
 nodes: {left: {position: [-span, 0], fixed: both}, right: {position: [span, 0], fixed: both},
@@ -128,8 +124,7 @@ jq -e '([.events[] | .kind] | index("lift-off")) as $lift |
   "$work/out" >jq.out || fail "the crawler over its drive"
 
 # EA is over the present rest length L: EA (x/L - 1) = k (1 - x), so that x = 2 L / (1 + L) for EA = k.
-cat >reel.yaml <<END
-strut: 1
+yaml reel.yaml <<END
 parameters: {L: 1 m}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1, fixed: y}, c: {position: [2, 0], fixed: both}}
 members: {rope: {kind: cable, nodes: [a, b], axial_stiffness: 100 N, rest_length: L},
@@ -196,4 +191,3 @@ tells 1 "speed changes nothing that matters at rest" path idle.yaml --over speed
 tells 1 "parameter 'shape' is a text, expected a number" path idle.yaml --over shape --until 5
 sed -i 's/speed: 3/speed: 3, unused: 4/' idle.yaml
 tells 2 "nothing in the scene uses parameter 'unused'" path idle.yaml --over unused --until 5
-done_testing

@@ -61,6 +61,5 @@ if script -qec true /dev/null >/dev/null 2>&1 </dev/null; then
   out_has "left"
   grep -q "$(printf '\033')" out && fail "colour in spite of NO_COLOR"
   on_terminal --quiet
-  grep -q "left" out && fail "a bar in spite of --quiet"
+  ! grep -q "left" out || fail "a bar in spite of --quiet"
 fi
-done_testing

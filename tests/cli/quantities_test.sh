@@ -3,8 +3,7 @@
 # Measured quantities as people meet them: the table, JSON, studies and their figures, --set, write.
 . "$(dirname "$0")/lib.sh"
 
-cat >catch.yaml <<'END'
-strut: 1
+yaml catch.yaml <<'END'
 name: catch
 parameters: {drop: 0.5 m}
 gravity: [0, -9.81]
@@ -41,8 +40,7 @@ cmp -s all/summary.json again/summary.json || {
 }
 
 # Studies keep all quantities, or those that are named; figures follow.
-cat >study.yaml <<'END'
-strut: 1
+yaml study.yaml <<'END'
 study: drops
 model: catch.yaml
 axes: [{drop: {from: 0.1 m, to: 0.5 m, count: 5}}]
@@ -81,4 +79,3 @@ head -1 axis/table.csv | grep -qF 'run_peak [N]' || fail "the axis has the quant
 # What else runs the model goes on as before.
 expect 0 tradeoff catch.yaml --json
 expect 0 compare catch.yaml --json
-done_testing

@@ -5,8 +5,7 @@
 
 # A thermostat: T' = (u - T) / tau, u = U until T rises to its upper threshold, then 0 until it falls to
 # the lower one. A cycle lasts tau (ln((U - low) / (U - high)) + ln(high / low)), 0.884 s.
-cat >thermostat.yaml <<'END'
-strut: 1
+yaml thermostat.yaml <<'END'
 parameters: {low: 18, high: 22, full: 60, tau: 3 s}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: both}}
 members: {m: {nodes: [a, b], kind: spring, stiffness: 1}}
@@ -22,8 +21,7 @@ cycle='(3 * ((42/38 | log) + (22/18 | log))) as $p | (3 * (42/38 | log)) as $up
 for row in "rk4-events 1e-9" "adaptive 1e-10" "verlet-events 3e-3" "euler-events 0.3" "rk4 0.5" "verlet 0.5" \
   "midpoint 0.5" "euler 0.5"; do
   set -- $row; method=$1 tolerance=$2
-  sed "s/rk4-events/$method/" thermostat.yaml >run.yaml
-  gives .measured.T.value "$cycle" "$tolerance" run run.yaml
+  edit "s/rk4-events/$method/" thermostat.yaml gives .measured.T.value "$cycle" "$tolerance" run
   near .measured.top.value 22 0.2
 done
 # Off at the start it cools to the lower threshold first, which is where it starts.
@@ -37,15 +35,13 @@ map='(-0.2/3 | exp) as $e | reduce range(50) as $n ([18, 60];
   (if .[0] < 18 then 60 elif .[0] > 22 then 0 else .[1] end) as $u
   | [$u + (.[0] - $u) * $e, $u]) | .[0]'
 for method in rk4 rk4-events adaptive midpoint; do
-  sed "s/rk4-events/$method/" run.yaml >sampled.yaml
-  gives .measured.T.value "$map" 1e-3 run sampled.yaml
+  edit "s/rk4-events/$method/" run.yaml gives .measured.T.value "$map" 1e-3 run
 done
 
 # A mass on a spring whose rest length a relay moves by d to either side, when the mass has passed h beyond
 # the middle. About the present rest length it swings with an amplitude A, which each of the 8 switches
 # turns into sqrt(A^2 + 4 h d): the drive does the work 2 k h d, at once.
-cat >swing.yaml <<'END'
-strut: 1
+yaml swing.yaml <<'END'
 parameters: {k: 40 N/m, h: 0.1 m, d: 0.02 m}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
 members: {m: {nodes: [a, b], kind: spring, stiffness: k}}
@@ -59,14 +55,12 @@ END
 for row in "rk4-events 1e-10" "adaptive 1e-9" "verlet-events 1e-5" "euler-events 1e-2" "rk4 1e-2" "verlet 1e-2" \
   "midpoint 1e-2" "euler 1e-2"; do
   set -- $row; method=$1 tolerance=$2
-  sed "s/rk4-events/$method/" swing.yaml >run.yaml
-  gives .measured.e.value '0.648 + 8 * 0.16' "$tolerance" run run.yaml
+  edit "s/rk4-events/$method/" swing.yaml gives .measured.e.value '0.648 + 8 * 0.16' "$tolerance" run
   near .measured.w.value '8 * 0.16' "$tolerance"
   near .energy.residual 0 "$tolerance"
 done
 # The same by a force, which does its work along the path: 2 k d between the two values.
-sed 's/on_value: -d, off_value: d/on_value: k*d, off_value: -k*d/; s/signal: kick/force: kick/' swing.yaml >force.yaml
-gives .energy.residual 0 1e-10 run force.yaml
+edit 's/on_value: -d, off_value: d/on_value: k*d, off_value: -k*d/; s/signal: kick/force: kick/' swing.yaml gives .energy.residual 0 1e-10 run
 # As written it is the same scene.
 expect 0 export swing.yaml
 cp out written.yaml
@@ -82,8 +76,7 @@ expect 0 modes swing.yaml
 gives .measured.e.value '0.648 + 8 * 0.16' 2e-3 run swing.yaml --accuracy '0.1 %'
 # What a relay drives may take its own input past the other threshold at once: that is refused where it
 # happens, unless the relay is sampled.
-cat >chatter.yaml <<'END'
-strut: 1
+yaml chatter.yaml <<'END'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 2 kg}}
 members: {m: {nodes: [a, b], kind: spring, stiffness: 40}}
 sensors: {f: {force: m}}
@@ -94,20 +87,16 @@ solver: {integrator: rk4-events, step: 1 ms}
 run: {duration: 1 s}
 END
 for method in rk4-events rk4 adaptive; do
-  sed "s/rk4-events/$method/" chatter.yaml >run.yaml
-  tells 3 "relay 'hold' switches at t = 0.09" run run.yaml
+  edit "s/rk4-events/$method/" chatter.yaml tells 3 "relay 'hold' switches at t = 0.09" run
   err_has "what it drives takes its own input past the other threshold at once"
 done
-sed 's/0.1 m}/0.1 m, every: 10 ms}/' chatter.yaml >run.yaml
-expect 0 run run.yaml
-sed 's/off_below: 2 N/off_below: -2 N/' chatter.yaml >run.yaml
-expect 0 run run.yaml
+edit 's/0.1 m}/0.1 m, every: 10 ms}/' chatter.yaml expect 0 run
+edit 's/off_below: 2 N/off_below: -2 N/' chatter.yaml expect 0 run
 
 # A bang-bang crawler: its muscle follows the relay with a lag of 1 s between +-20 mm, and the relay turns
 # at +-10 mm. Its feet slide forward only: each cycle is one stroke of 20 mm. Friction of a foot, 98 mN,
 # bends the muscle by 0.2 mm and damping by 0.04 mm, so that a cycle lasts 2 ln(30.24 / 9.76) s.
-cat >crawler.yaml <<'END'
-strut: 1
+yaml crawler.yaml <<'END'
 name: a crawler with a bang-bang drive
 gravity: [0, -9.81]
 nodes: {rear: {position: [0, 0], mass: 0.1 kg}, front: {position: [100 mm, 0], mass: 0.1 kg}}
@@ -123,9 +112,7 @@ run:
   measure: {last: 4*2*log(3)*1 s, quantities: {rear: {of: rear.x, take: change}, front: {of: front.x, take: change}, back: {of: rear.vx, take: min}}}
 END
 for method in rk4-events verlet-events; do
-  sed "s/rk4-events/$method/" crawler.yaml >run.yaml
-  gives '.measured | (.rear.value + .front.value) / 2' '4 * 0.02 * (3 | log) / (30.24/9.76 | log)' 8e-4 run run.yaml
+  edit "s/rk4-events/$method/" crawler.yaml gives '.measured | (.rear.value + .front.value) / 2' '4 * 0.02 * (3 | log) / (30.24/9.76 | log)' 8e-4 run
   near .measured.back.value 0 2e-5
   near .energy.residual 0 1e-5
 done
-done_testing

@@ -60,4 +60,3 @@ if command -v h5dump >/dev/null; then
   out_has '"completed"'
   out_has 'strut: 1'
 fi
-done_testing

@@ -3,8 +3,7 @@
 # Settling: one state for all commands, unstable ones reported and left, once for an accurate run.
 . "$(dirname "$0")/lib.sh"
 
-cat >rod.yaml <<'END'
-strut: 1
+yaml rod.yaml <<'END'
 name: Upright rod
 gravity: [0, -9.81]
 nodes: {pin: {position: [0, 0], fixed: both}, tip: {position: [0, 1], mass: 1}}
@@ -47,8 +46,7 @@ expect 0 modes hangs.yaml --json
 holds '.modes[0].kind == "elastic"'
 
 # A jumper: any method, any step and any accuracy start it from the same bits.
-cat >jumper.yaml <<'END'
-strut: 1
+yaml jumper.yaml <<'END'
 name: Rhombus jumper
 parameters: {a: 100 mm, b: 50 mm, ks: 800 N/m, release: 0.2 s}
 gravity: [0, -9.81 m/s^2]
@@ -80,8 +78,7 @@ for way in "--accuracy 1%" "--integrator verlet-events --step 50us" "--integrato
 done
 
 # An accurate run settles once. It took minutes, each of its runs settling by its own method.
-cat >cell.yaml <<'END'
-strut: 1
+yaml cell.yaml <<'END'
 name: Leaning X-cell crawler
 parameters: {f: 14 Hz, A: 3.5 mm, mu: 0.3, T: 6 N, lean: 20 mm}
 gravity: [0, -9.81 m/s^2]
@@ -106,8 +103,7 @@ expect 5 run cell.yaml --accuracy 5% --json
 holds '.force_evaluations + .accuracy.check_evaluations < 1e7'
 
 # What never rests ends, and says what moves, how fast, and what to do.
-cat >falls.yaml <<'END'
-strut: 1
+yaml falls.yaml <<'END'
 nodes: {stone: {position: [0, 0], mass: 1 kg}}
 gravity: [0, -9.81]
 initial: {settle: {evaluations: 4000}}
@@ -124,4 +120,3 @@ shows 3 "the start does not settle" equilibria falls.yaml
 out_has "4000 evaluations"
 sed -i 's/evaluations: 4000/speed: 1e-9/' falls.yaml
 tells 3 "did not come to rest" run falls.yaml
-done_testing

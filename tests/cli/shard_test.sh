@@ -3,8 +3,7 @@
 # A study in shards, merged, and the script for a cluster.
 . "$(dirname "$0")/lib.sh"
 cp "$here/hopper.yaml" model.yaml
-cat >study.yaml <<'END'
-strut: 1
+yaml study.yaml <<'END'
 study: hops
 model: model.yaml
 set: {seconds: 10 ms}
@@ -114,4 +113,3 @@ for wrong in "--time soon" "--memory much" "--shards 0" "--cpus 0"; do
 done
 tells 1 "--shards" sweep study.yaml -o x --emit slurm
 expect 1 sweep study.yaml -o x --emit pbs --shards 3
-done_testing

@@ -25,8 +25,7 @@ error() {
 # back by the mass's part of the whole. Mass 0.5 of 1 + 1.5 + 0.3 + 0.5 kg, 0.2 of 1 m there and back.
 for method in $methods; do
   for masses in consistent lumped; do
-    cat >free.yaml <<END
-strut: 1
+    yaml free.yaml <<END
 mass_model: $masses
 nodes: {a: {position: [0, 0], mass: 1}, b: {position: [1, 0], mass: 1.5}}
 members: {bar: {kind: bar, nodes: [a, b], stiffness: 100 kN/m, mass: 0.3}}
@@ -47,8 +46,7 @@ END
 done
 
 # Nothing turns it: the moment of momentum stays, while the mass goes along and comes back.
-cat >turning.yaml <<'END'
-strut: 1
+yaml turning.yaml <<'END'
 mass_model: lumped
 nodes: {a: {position: [0.5, 0.2], mass: 1}, b: {position: [1.5, 0], mass: 1.5}}
 members: {bar: {kind: bar, nodes: [a, b], stiffness: 100 kN/m, damping: 10 N s/m}}
@@ -66,8 +64,7 @@ near "$(value turned) > 3 | if . then 1 else 0 end" 1 0
 
 # Corners are impulses: a mass that sets off and stops. While it moves by u the bar goes back by m u / (all).
 for method in $methods; do
-  cat >ramp.yaml <<END
-strut: 1
+  yaml ramp.yaml <<END
 nodes: {a: {position: [0, 0], mass: 1, fixed: y}, b: {position: [1, 0], mass: 1.5, fixed: y}}
 members: {bar: {kind: bar, nodes: [a, b], stiffness: 100 kN/m, damping: 200 N s/m}}
 sliders: {s: {member: bar, mass: 0.5, position: 100 mm, travel: {ramp: {amplitude: 600 mm, start: 0.1 s, stop: 0.4 s}}}}
@@ -82,8 +79,7 @@ closes 1e-9
 # Where the signal is constant a moving mass is one at rest: in M, or by its update. With the ground, friction
 # that sticks, and a second mass on a member that shares a node.
 ground() {
-  cat <<END
-strut: 1
+  yaml <<END
 gravity: [1, -9.81]
 nodes: {a: {position: [0, 0], mass: 0.1}, b: {position: [0.3, 0], mass: 0.2}, c: {position: [0.1, 0.2], mass: 0.1}}
 members: {ab: {kind: bar, nodes: [a, b], stiffness: 10 kN/m, damping: 5 N s/m, mass: 0.1},
@@ -120,8 +116,7 @@ for friction in "law: coulomb, mu: 0.3" "mu: 0.3, stick_velocity: 1 mm/s"; do
 done
 
 # A compound pendulum: rod 0.6 kg of 0.8 m, its tip 0.3 kg, the mass 0.5 kg at 50 %.
-cat >pendulum.yaml <<'END'
-strut: 1
+yaml pendulum.yaml <<'END'
 gravity: [0, -9.81]
 nodes: {pin: {position: [0, 0], fixed: both}, tip: {position: [0, -0.8], mass: 0.3}}
 members: {rod: {kind: bar, nodes: [pin, tip], stiffness: 1e9 N/m, mass: 0.6}}
@@ -135,8 +130,7 @@ expect 0 modes pendulum.yaml --json
 near '.modes[0].frequency' "(9.81 * (0.6 * 0.4 + 0.3 * 0.8 + 0.5 * 0.4) / $inertia | sqrt) / 6.283185307179586" 1e-7
 
 # Statics: a supported bar sinks by the levers of the weight, where the mass is at t = 0.
-cat >bridge.yaml <<'END'
-strut: 1
+yaml bridge.yaml <<'END'
 gravity: [0, -9.81]
 nodes: {l: {position: [0, -1], fixed: both}, r: {position: [1, -1], fixed: both},
         a: {position: [0, 0], mass: 1, fixed: x}, b: {position: [1, 0], mass: 1, fixed: x}}
@@ -170,8 +164,7 @@ awk 'BEGIN {
   printf "%.12g %.12g\n", sin(p), -cos(p) }' >swing.txt
 read -r swing_x swing_y <swing.txt
 for method in $methods; do
-  cat >swing.yaml <<END
-strut: 1
+  yaml swing.yaml <<END
 gravity: [0, -9.81]
 nodes: {pin: {position: [0, 0], fixed: both}, tip: {position: [sin(0.5), -cos(0.5)], mass: 0.1}}
 members: {rod: {kind: bar, nodes: [pin, tip], stiffness: 1e7 N/m, damping: 100 N s/m, rest_length: 1 m}}
@@ -203,8 +196,7 @@ awk 'BEGIN {
   printf "%.9g\n", x }' >crawler.txt
 read -r crawled <crawler.txt
 crawler() {
-  cat <<END
-strut: 1
+  yaml <<END
 gravity: [0, -9.81]
 nodes: {a: {position: [0, 0], mass: 0.1}, b: {position: [0.3, 0], mass: 0.1}}
 members: {bar: {kind: bar, nodes: [a, b], stiffness: 100 kN/m, damping: 20 N s/m, mass: 0.1}}
@@ -226,10 +218,7 @@ for method in rk4 verlet euler rk4-events; do
 done
 
 # The file that strut writes runs to the same bits.
-expect 0 export swing.yaml
-cp out written.yaml
-expect 0 export written.yaml
-same out written.yaml
+writes_back swing.yaml
 expect 0 run written.yaml --json
 jq .measured out >first.json
 expect 0 run swing.yaml --json
@@ -242,5 +231,3 @@ tells 1 "slider 'swinger' moves; use solver.integrator rk4, verlet or adaptive" 
 # A figure and a film's frame show the mass.
 expect 0 run swing.yaml --step '1 ms' --plot swing.svg
 [ -s swing.svg ] || fail "no figure"
-
-done_testing

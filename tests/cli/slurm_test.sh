@@ -110,8 +110,7 @@ fi
 # The study: 24 points, some of which fail, and what it is without a cluster.
 mkdir "a folder" && cd "a folder" || exit 1
 cp "$here/hopper.yaml" "it's a model.yaml"
-cat >study.yaml <<'END'
-strut: 1
+yaml study.yaml <<'END'
 study: hops & falls
 model: it's a model.yaml
 axes:
@@ -177,8 +176,7 @@ out_has "out/table.csv: 24 points of 4 shards"
 same out/table.csv whole/table.csv
 [ "$(state "$table")" = "FAILED 3:0 " ] || fail "the merge: $(state "$table")"
 
-cat >search.yaml <<'END'
-strut: 1
+yaml search.yaml <<'END'
 study: best hops
 model: it's a model.yaml
 set: {seconds: 150}
@@ -200,4 +198,3 @@ done
 [ "$(state "$table")" = "COMPLETED 0:0 " ] || fail "the last job: $(state "$table")"
 rm best/slurm-*.log
 diff -r -x .strut-files best-alone best >"$work/out" 2>&1 || fail "the workers find something else"
-done_testing

@@ -17,8 +17,7 @@ awk '/^<!-- Snakefile -->$/ { next_one = 1; next }
   next_one && /^```/ { inside = 1 }' "$document" >Snakefile
 [ -s Snakefile ] || fail "the document has no Snakefile"
 cp "$here/hopper.yaml" model.yaml
-cat >grounds.yaml <<'END'
-strut: 1
+yaml grounds.yaml <<'END'
 study: hops
 model: model.yaml
 axes: [{stiffness: [100 N/m, 200 N/m, 300 N/m]}, {seconds: [0.2, 1e-9, 0.3]}]
@@ -30,4 +29,3 @@ same speeds/table.csv whole/table.csv
 rm speeds/table.csv speeds-done/1 speeds/shards/shard-0001-of-0004.slots
 snakemake --cores 2 --quiet >out 2>err || fail "snakemake fails when it resumes"
 same speeds/table.csv whole/table.csv
-done_testing

@@ -65,8 +65,7 @@ jq -e '.earlier_stages[0].end == "stop" and (.points[0].nodes.apex[1] + 0.1 | fa
 { sed 's/  a: {/  a: {breaks_at: 0.1 N, /' plain.yaml
   echo 'path: {stages: [{over: apex.y, until: 0.3 m}, {release: apex.y}]}'; } >broken.yaml
 tells 0 "on 'a' carries more than it can" path broken.yaml
-sed 's/until: 0.3 m/until: 0.1 m/' broken.yaml >whole.yaml
-expect 0 path whole.yaml
+edit 's/until: 0.3 m/until: 0.1 m/' broken.yaml expect 0 path
 ! grep -q 'carries more' "$work/err" || fail "a warning without a reason"
 
 # Files, the table, branches of the last stage, and what the command says itself.
@@ -86,8 +85,7 @@ tells 2 "stage 2 releases 'apex.x', which nothing holds" path free.yaml
 
 # A wire in a sheath that is pushed bends a beam of two links: it turns by the angle t where the length that the
 # wire loses is that the beam gains, 2 (1/cos t - 1), and balances the hinge and the load on it.
-cat >sheath.yaml <<'YAML'
-strut: 1
+yaml sheath.yaml <<'YAML'
 nodes: {far: {position: [-2, 0], fixed: y}, base: {position: [0, 0], fixed: both}, middle: {position: [1, 0]},
         end: {position: [2, 0], fixed: both}}
 members: {wire: {kind: spring, nodes: [far, base, middle, end], stiffness: 1e6}}
@@ -115,16 +113,14 @@ expect 0 path together.yaml --load q,p --json
 holds '.load == "q,p"'
 
 # A study follows the stages of its model, unless it says what to follow.
-cat >varied.yaml <<'END'
-strut: 1
+yaml varied.yaml <<'END'
 parameters: {k: 10 N/m}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1 m, 0], fixed: y, mass: 1}}
 members: {s: {kind: spring, nodes: [a, b], stiffness: k}}
 loads: {p: {node: b, force: [1 N, 0]}}
 path: {stages: [{load: p, until: 2}, {over: b.x, until: 50 mm}]}
 END
-cat >study.yaml <<'END'
-strut: 1
+yaml study.yaml <<'END'
 study: Stages
 model: varied.yaml
 compute: path
@@ -137,5 +133,3 @@ grep -q 'last_factor \[m\]' staged/table.csv || fail "unit of the last stage: $(
 echo 'path: {load: p, until: 3}' >>study.yaml
 expect 0 sweep study.yaml -o told --quiet
 [ "$(grep -c ',3,until' told/table.csv)" = 2 ] || fail "a study that says what to follow: $(cat told/table.csv)"
-
-done_testing

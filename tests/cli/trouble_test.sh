@@ -79,4 +79,3 @@ for size in 4 16 64 128 192 256 320 384 448 512 640 4000; do
   no_disk
 done
 [ "$size" -lt 4000 ] || [ "${fitted:-}" = 4000 ] || fail "no disk was large enough"
-done_testing

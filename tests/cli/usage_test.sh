@@ -107,8 +107,7 @@ err_has ":2:1: error: "
 for command in $(awk '{print $1}' list); do
   shows 0 "-q, --quiet" $command --help
 done
-cat >snap.yaml <<'YAML'
-strut: 1
+yaml snap.yaml <<'YAML'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0.3], mass: 1}, c: {position: [2, 0], fixed: both}}
 members: {ab: {nodes: [a, b], kind: bar, stiffness: 1000}, bc: {nodes: [b, c], kind: bar, stiffness: 1000}}
 loads: {push: {node: b, force: [0, -1 N]}}
@@ -153,12 +152,10 @@ shows 0 '"degrees_of_freedom":	6,' check "$hopper" --json
 out_has '"rest_length":	0.055,'
 
 # A scene for statics: check takes it, run does not.
-cat >truss.yaml <<'EOF'
-strut: 1
+yaml truss.yaml <<'EOF'
 nodes: {a: {position: [0, 0], fixed: both}, b: [1, 0.1], c: {position: [2, 0], fixed: both}}
 members: {ab: {nodes: [a, b], kind: bar, stiffness: 1000}, bc: {nodes: [b, c], kind: bar, stiffness: 1000}}
 EOF
 shows 0 "statics only" check truss.yaml
 shows 0 '"runnable":	false' check truss.yaml --json
 tells 2 "truss.yaml" run truss.yaml
-done_testing

@@ -3,8 +3,7 @@
 # strut view: what it says, files that appear whole or not at all, and refusals.
 . "$(dirname "$0")/lib.sh"
 
-cat >swing.yaml <<'END'
-strut: 1
+yaml swing.yaml <<'END'
 name: Swing
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}
 members: {ab: {kind: bar, nodes: [a, b], stiffness: 1e4}}
@@ -116,5 +115,3 @@ if small_disk 16; then
   [ -z "$(ls -A disk)" ] || fail "left on a full disk: $(ls -A disk)"
   no_disk
 fi
-
-done_testing

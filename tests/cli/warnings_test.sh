@@ -134,8 +134,7 @@ done
 
 # Fixed steps lose the phase of an oscillator of 1 rad/s: 629 rad z^2/24 by verlet and euler and twice that by
 # midpoint, z^4/120 by rk4. With damping of 0.02 it is gone long before that, as 100 rad z^2/24 exp(-1).
-cat >sway.yaml <<'EOF'
-strut: 1
+yaml sway.yaml <<'EOF'
 parameters: {damping: 0}
 nodes: {wall: {position: [0, 0], fixed: both}, n: {position: [1, 0], mass: 1, fixed: y}}
 members: {s: {kind: spring, nodes: [wall, n], stiffness: 1, rest_length: 1, damping: damping}}
@@ -162,8 +161,7 @@ expect 3 run sway.yaml --integrator verlet --step 2.01
 err_has "the step 2.01 s is above the largest stable step of verlet, 2 s"
 
 # What adaptive loses is due to its tolerance, not to its step. (This one is five fast periods, at whose ends all rests.)
-cat >slow.yaml <<'EOF'
-strut: 1
+yaml slow.yaml <<'EOF'
 nodes: {wall: {position: [0, 0], fixed: both}, a: {position: [1, 0], mass: 1, fixed: y}, b: {position: [2, 0], mass: 1, fixed: y}}
 members: {soft: {kind: spring, nodes: [wall, a], stiffness: 1e-6, rest_length: 1}, hard: {kind: spring, nodes: [a, b], stiffness: 1, rest_length: 1}}
 initial: {positions: {b: [2.25, 0]}}
@@ -183,8 +181,7 @@ for model in "$models"/*/*.yaml; do
 done
 # The residual of the balance and what it means are one statement: a residual beyond 1 % of what little was
 # exchanged may be rounding of what is stored.
-cat >stored.yaml <<'END'
-strut: 1
+yaml stored.yaml <<'END'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 1}, c: {position: [3, 0], fixed: both}}
 members: {m: {nodes: [a, b], kind: spring, stiffness: 1e9, rest_length: 0.7}, n: {nodes: [c, b], kind: spring, stiffness: 1e9, rest_length: 1.7}}
 initial: {velocities: {b: [3e-4, 0]}}
@@ -193,5 +190,3 @@ run: {duration: 1 ms}
 END
 shows 0 'nJ   balance closed up to the rounding of the stored energy' run stored.yaml
 out_has_not 'within 1 %'
-
-done_testing

@@ -8,8 +8,7 @@ sed 's/^  seconds: 0.5/&\n  friction: 0.3/; s/mu: 0.3/mu: friction/' "$here/hopp
 
 # study METHOD GOAL REST: a search over two numbers as METHOD.yaml.
 study() {
-  cat >"$1.yaml" <<END
-strut: 1
+  yaml "$1.yaml" <<END
 study: hops by $1
 model: model.yaml
 set: {seconds: 12}
@@ -131,4 +130,3 @@ out_empty
 absent no
 sed 's/evaluations: 10/starts: 2/' crs2.yaml >starts.yaml
 expect 0 sweep starts.yaml -o no --emit slurm --shards 2
-done_testing
