@@ -189,7 +189,7 @@ static void find_rates(const strut_model *model, const strut_state *state, int32
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   double spin[MOST];
-  c->winding = state->latest.rest_rate[e->base];
+  c->winding = state->latest->rest_rate[e->base];
   for (int k = 0; k < c->n; k++) {
     double x = v[at[k + 1]] - v[at[k]], y = v[at[k + 1] + 1] - v[at[k] + 1];
     c->length_rate[k] = c->x[k] * x + c->y[k] * y;
@@ -274,7 +274,7 @@ static double *drops_of(const strut_model *model, const strut_state *state, int3
 /* The cable at q with the materials that the state remembers. */
 static void measure_kept(const strut_model *model, const strut_state *state, int32_t i,
                          const double *q, cable *c) {
-  measure(model, state->latest.rest, materials_of(model, state, i), i, q, c);
+  measure(model, state->latest->rest, materials_of(model, state, i), i, q, c);
 }
 
 /* The cable at q in its modes; true where these are frozen. */
@@ -299,10 +299,10 @@ static bool stand(const strut_model *model, const strut_state *state, int32_t i,
 }
 
 /* Leaves the materials of an evaluation in the slots, where the energy is found by them. */
-static void show_materials(const strut_model *model, strut_state *state, int32_t i,
+static void show_materials(const strut_model *model, const strut_state *state, int32_t i,
                            const cable *c) {
   assert(i >= 0 && i < model->elements.count);
-  double *material = state->latest.rest + model->elements.element[i].slot + 1;
+  double *material = state->latest->rest + model->elements.element[i].slot + 1;
   memcpy(material, c->material, (size_t)c->n * sizeof *material);
 }
 
@@ -322,7 +322,7 @@ static double damper_force(const strut_element *e, const cable *c) {
   return least > 0.0 ? fmax(e->damping * rate, -least) : 0.0;
 }
 
-static void add_powers(strut_state *state, const cable *c, double damper, bool frozen) {
+static void add_powers(const strut_state *state, const cable *c, double damper, bool frozen) {
   double rate = -c->winding, lost = 0.0;
   for (int k = 0; k < c->n; k++) rate += c->length_rate[k];
   double stiffer = c->axial ? 0.0 : energy_of(c) / c->whole; /* E grows with the rest length */
@@ -330,12 +330,12 @@ static void add_powers(strut_state *state, const cable *c, double damper, bool f
   for (int k = 0; k + 1 < c->n && frozen; k++)
     lost += (carried(c, k) - carried(c, k + 1)) * c->flow[k];
   lost += damper * rate;
-  state->latest.power[STRUT_POWER_DRIVE] += drive;
-  state->latest.power[STRUT_POWER_MEMBERS] += lost;
-  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(drive) + fabs(lost);
+  state->latest->power[STRUT_POWER_DRIVE] += drive;
+  state->latest->power[STRUT_POWER_MEMBERS] += lost;
+  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(drive) + fabs(lost);
 }
 
-void strut_capstan_add_forces(const strut_model *model, strut_state *state, int32_t i,
+void strut_capstan_add_forces(const strut_model *model, const strut_state *state, int32_t i,
                               const double *q, const double *v, double *force) {
   assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
@@ -359,7 +359,7 @@ void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i
   assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   cable c;
-  if (strut_capstan_remembers(e, state->latest.rest)) return;
+  if (strut_capstan_remembers(e, state->latest->rest)) return;
   measure_kept(model, state, i, q, &c);
   share_evenly(&c);
   keep_materials(model, state, i, &c);

@@ -30,7 +30,7 @@ static inline bool strut_capstan_remembers(const strut_element *e, const double 
 }
 
 /** Adds its forces at q and v, and its powers. */
-void strut_capstan_add_forces(const strut_model *model, strut_state *state, int32_t i,
+void strut_capstan_add_forces(const strut_model *model, const strut_state *state, int32_t i,
                               const double *q, const double *v, double *force);
 /** Materials from q where none are remembered: equal tensions. */
 void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i, const double *q);

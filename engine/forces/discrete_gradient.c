@@ -31,18 +31,19 @@ bool strut_discrete_gradient_create(const strut_model *model, strut_state *state
          step->element_slope;
 }
 
-void strut_discrete_gradient_begin(const strut_model *model, strut_state *state, const double *q,
-                                   double begin, double h, strut_discrete_gradient *step) {
+void strut_discrete_gradient_begin(const strut_model *model, const strut_state *state,
+                                   const double *q, double begin, double h,
+                                   strut_discrete_gradient *step) {
   const strut_member_table *t = &model->members;
   step->begin = begin, step->h = h;
   if (model->terms & STRUT_TERM_FEEDBACK) {
     strut_feedback_apply(model, state, begin, q, state->v);
-    memcpy(step->rest0, state->latest.rest, (size_t)t->slots * sizeof(double));
+    memcpy(step->rest0, state->latest->rest, (size_t)t->slots * sizeof(double));
   } else if (model->terms & STRUT_TERM_DRIVE) {
-    if (begin != state->latest.drive_time) strut_drive_apply(model, state, begin);
-    memcpy(step->rest0, state->latest.rest, (size_t)t->slots * sizeof(double));
+    if (begin != state->latest->drive_time) strut_drive_apply(model, state, begin);
+    memcpy(step->rest0, state->latest->rest, (size_t)t->slots * sizeof(double));
     strut_drive_apply(model, state, begin + 0.5 * h);
-    memcpy(step->rest_rate, state->latest.rest_rate, (size_t)t->slots * sizeof(double));
+    memcpy(step->rest_rate, state->latest->rest_rate, (size_t)t->slots * sizeof(double));
     strut_drive_apply(model, state, begin + h);
   }
   for (int32_t j = 0; j < t->count; j++) step->length0[j] = strut_member_length(t, j, q);
@@ -89,25 +90,26 @@ static average of_cable(const stretching *m) {
 }
 
 /* The drive moves the spring's rest length by all of its change, the damper's by its rate. */
-static void add_powers(strut_state *state, const average *a, const stretching *m, double change,
-                       double rest_rate) {
+static void add_powers(const strut_state *state, const average *a, const stretching *m,
+                       double change, double rest_rate) {
   double damped = a->tension - a->elastic, lost = damped * m->rate;
   double drive = -a->elastic * change / m->h - damped * rest_rate;
-  state->latest.power[STRUT_POWER_DRIVE] += drive;
-  state->latest.power[STRUT_POWER_MEMBERS] += lost;
-  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
+  state->latest->power[STRUT_POWER_DRIVE] += drive;
+  state->latest->power[STRUT_POWER_MEMBERS] += lost;
+  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
 }
 
-static void add_members(const strut_model *model, strut_state *state, strut_discrete_gradient *step,
-                        const double *restrict q0, const double *restrict q1) {
+static void add_members(const strut_model *model, const strut_state *state,
+                        strut_discrete_gradient *step, const double *restrict q0,
+                        const double *restrict q1) {
   const strut_member_table *t = &model->members;
-  double *restrict force = state->latest.force;
+  double *restrict force = state->latest->force;
   for (int32_t j = 0; j < t->count; j++) {
     uint32_t a = t->from[j], b = t->to[j];
     strut_vec2 d = strut_member_span(t, j, q1);
     double length = strut_vec2_length(d);
     const stretching m = {.s0 = step->length0[j] - step->rest0[j],
-                          .s1 = length - state->latest.rest[j],
+                          .s1 = length - state->latest->rest[j],
                           .stiffness = t->stiffness[j],
                           .damping = t->damping[j],
                           .rate = (length - step->length0[j]) / step->h - step->rest_rate[j],
@@ -121,7 +123,7 @@ static void add_members(const strut_model *model, strut_state *state, strut_disc
     force[a] += density * x, force[a + 1] += density * y;
     force[b] -= density * x, force[b + 1] -= density * y;
     if (state->balance)
-      add_powers(state, &now, &m, state->latest.rest[j] - step->rest0[j], step->rest_rate[j]);
+      add_powers(state, &now, &m, state->latest->rest[j] - step->rest0[j], step->rest_rate[j]);
   }
 }
 
@@ -192,14 +194,15 @@ static double part_beyond(const strut_element *e, double stretch0, double stretc
  * Gonzalez's discrete gradient of a strain: that half-way, corrected along the displacement so that its
  * work is the change of the strain.
  */
-static void add_element(const strut_model *model, strut_state *state, strut_discrete_gradient *step,
-                        int32_t i, const double *restrict q0, const double *restrict q1) {
+static void add_element(const strut_model *model, const strut_state *state,
+                        strut_discrete_gradient *step, int32_t i, const double *restrict q0,
+                        const double *restrict q1) {
   assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   strut_element_pose end, middle;
-  strut_element_evaluate(model, i, state->latest.rest, q1, step->strain0[i], &end);
-  strut_element_evaluate(model, i, state->latest.rest, step->middle, step->strain0[i], &middle);
+  strut_element_evaluate(model, i, state->latest->rest, q1, step->strain0[i], &end);
+  strut_element_evaluate(model, i, state->latest->rest, step->middle, step->strain0[i], &middle);
   double natural0 = e->slot >= 0 ? step->rest0[e->slot] : e->natural, square = 0.0, work = 0.0;
   double rest_rate = e->slot >= 0 ? step->rest_rate[e->slot] : 0.0;
   double origin0 = strut_element_origin(e, natural0),
@@ -224,7 +227,7 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
   step->element_slope[i] = none ? 0.0 : fmax(slope, 0.0);
   for (int32_t k = 0; k < 2 * e->nodes; k++) {
     uint32_t c = at[k / 2] + (uint32_t)(k % 2);
-    state->latest.force[c] -= force * (middle.b[k] + more * (q1[c] - q0[c]));
+    state->latest->force[c] -= force * (middle.b[k] + more * (q1[c] - q0[c]));
   }
   if (!state->balance) return;
   const average now = {.tension = force, .elastic = elastic};
@@ -232,11 +235,11 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
   add_powers(state, &now, &m, origin1 - origin0, rest_rate);
   /* what the drive does to the energy at the same stretch, of a law that depends on more */
   double excess = (energy0 - step->energy0[i] + (end.energy - at1.energy)) / step->h;
-  state->latest.power[STRUT_POWER_DRIVE] += excess;
-  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(excess);
+  state->latest->power[STRUT_POWER_DRIVE] += excess;
+  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(excess);
 }
 
-static void add_elements(const strut_model *model, strut_state *state,
+static void add_elements(const strut_model *model, const strut_state *state,
                          strut_discrete_gradient *step, const double *restrict q0,
                          const double *restrict q1) {
   for (int32_t i = 0; i < model->elements.count; i++) add_element(model, state, step, i, q0, q1);
@@ -244,32 +247,32 @@ static void add_elements(const strut_model *model, strut_state *state,
 
 /* Drives that follow the motion: their rates half-way, with the loads and the rates of internal states
    there, and their values at the end. */
-static void follow(const strut_model *model, strut_state *state, strut_discrete_gradient *step,
-                   const double *q1, const double *u) {
+static void follow(const strut_model *model, const strut_state *state,
+                   strut_discrete_gradient *step, const double *q1, const double *u) {
   for (int32_t i = 0; i < model->length; i++) {
     step->middle[i] = 0.5 * (state->q[i] + q1[i]);
     step->end_velocity[i] = 2.0 * u[i] - state->v[i];
   }
   double middle = step->begin + 0.5 * step->h;
   strut_feedback_apply(model, state, middle, step->middle, u);
-  memcpy(step->rest_rate, state->latest.rest_rate, (size_t)model->members.slots * sizeof(double));
-  strut_feedback_add_rates(model, state, middle, u, state->latest.force);
+  memcpy(step->rest_rate, state->latest->rest_rate, (size_t)model->members.slots * sizeof(double));
+  strut_feedback_add_rates(model, state, middle, u, state->latest->force);
   if (model->terms & STRUT_TERM_LOADS) strut_loads_apply(model, state, middle, u);
   strut_actuator_forces_apply(model, state, middle, step->middle, u);
-  strut_maxwell_apply(model, state, step->middle, u, state->latest.force);
+  strut_maxwell_apply(model, state, step->middle, u, state->latest->force);
   strut_feedback_apply(model, state, step->begin + step->h, q1, step->end_velocity);
 }
 
-void strut_discrete_gradient_forces(const strut_model *model, strut_state *state,
+void strut_discrete_gradient_forces(const strut_model *model, const strut_state *state,
                                     strut_discrete_gradient *step, const double *q1,
                                     const double *u) {
   size_t bytes = (size_t)model->length * sizeof(double);
-  state->evaluations++;
-  memset(state->latest.power, 0, sizeof state->latest.power);
+  state->latest->evaluations++;
+  memset(state->latest->power, 0, sizeof state->latest->power);
   if (model->terms & STRUT_TERM_CONSTANT)
-    memcpy(state->latest.force, model->constant_force, bytes);
+    memcpy(state->latest->force, model->constant_force, bytes);
   else
-    memset(state->latest.force, 0, bytes);
+    memset(state->latest->force, 0, bytes);
   if (model->terms & STRUT_TERM_FEEDBACK)
     follow(model, state, step, q1, u);
   else if (model->terms & STRUT_TERM_LOADS)
@@ -289,7 +292,7 @@ void strut_discrete_gradient_tensions(const strut_model *model, const strut_stat
                                       double *tension) {
   const strut_member_table *t = &model->members;
   for (int32_t j = 0; j < t->count; j++) {
-    strut_member_pose pose = strut_member_pose_at(t, state->latest.rest, j, state->q);
+    strut_member_pose pose = strut_member_pose_at(t, state->latest->rest, j, state->q);
     tension[j] = strut_member_elastic_force(t, j, &pose);
   }
 }

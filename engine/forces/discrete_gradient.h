@@ -36,14 +36,15 @@ typedef struct strut_discrete_gradient {
 bool strut_discrete_gradient_create(const strut_model *model, strut_state *state,
                                     strut_discrete_gradient *step);
 /** Sets the step off at positions q (length), and rest lengths to those at its end. */
-void strut_discrete_gradient_begin(const strut_model *model, strut_state *state, const double *q,
-                                   double begin, double h, strut_discrete_gradient *step);
+void strut_discrete_gradient_begin(const strut_model *model, const strut_state *state,
+                                   const double *q, double begin, double h,
+                                   strut_discrete_gradient *step);
 /**
  * Net forces on the nodes over the step that ends at q1 with velocity u on average, (length) both,
- * into state->latest.force; with the energy balance powers, which times h are the works. Loads are taken at the
+ * into state->latest->force; with the energy balance powers, which times h are the works. Loads are taken at the
  * middle of the step. Counts as an evaluation.
  */
-void strut_discrete_gradient_forces(const strut_model *model, strut_state *state,
+void strut_discrete_gradient_forces(const strut_model *model, const strut_state *state,
                                     strut_discrete_gradient *step, const double *q1,
                                     const double *u);
 /** Tensions as (1) gives them at the state's q, with its rest lengths, into `tension` (count). */

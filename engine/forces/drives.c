@@ -14,8 +14,8 @@
 
 strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
                                        const double *v) {
-  return (strut_signal_inputs){.sensor = state->latest.sensor,
-                               .sensor_rate = state->latest.sensor_rate,
+  return (strut_signal_inputs){.sensor = state->latest->sensor,
+                               .sensor_rate = state->latest->sensor_rate,
                                .state = v + model->feedback.base,
                                .states = model->scene->states,
                                .lag_of = model->feedback.lag_of,
@@ -44,11 +44,11 @@ double strut_drive_signal(const strut_model *model, const strut_state *state, co
 }
 
 /* Rest lengths as the signals ask; `sensed`: they may read sensors. */
-static inline void drive_rest_lengths(const strut_model *model, strut_state *state, double t,
+static inline void drive_rest_lengths(const strut_model *model, const strut_state *state, double t,
                                       const double *v, bool sensed) {
   const strut_drive_table *d = &model->drives;
   const strut_signal *signals = model->scene->signals;
-  double *restrict rest = state->latest.rest, *restrict rest_rate = state->latest.rest_rate;
+  double *restrict rest = state->latest->rest, *restrict rest_rate = state->latest->rest_rate;
   for (int32_t i = 0; i < d->count; i++) {
     double value, rate;
     int32_t member = d->member[i];
@@ -62,9 +62,9 @@ static inline void drive_rest_lengths(const strut_model *model, strut_state *sta
   }
 }
 
-void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
+void strut_drive_apply(const strut_model *model, const strut_state *state, double t) {
   if (!(model->terms & STRUT_TERMS_RARE)) {
-    state->latest.drive_time = t;
+    state->latest->drive_time = t;
     drive_rest_lengths(model, state, t, NULL, false);
   } else if (model->terms & STRUT_TERM_FEEDBACK) {
     strut_feedback_apply(model, state, t, state->q, state->v);
@@ -74,22 +74,23 @@ void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
 }
 
 /* Friction as the signals ask. */
-static void drive_grips(const strut_model *model, strut_state *state, double t, const double *v) {
+static void drive_grips(const strut_model *model, const strut_state *state, double t,
+                        const double *v) {
   for (int32_t i = 0; i < model->contacts.count; i++) {
-    strut_friction *f = &state->latest.grip[i].friction;
+    strut_friction *f = &state->latest->grip[i].friction;
     if (f->driven)
       strut_friction_drive(f,
                            strut_drive_signal(model, state, v, f->signal, t + state->time_offset));
   }
 }
 
-void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t,
+void strut_drive_apply_sensed(const strut_model *model, const strut_state *state, double t,
                               const double *v) {
-  state->latest.drive_time = t;
+  state->latest->drive_time = t;
   if (model->terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
-  if (state->latest.ground_motion)
-    strut_grounds_move(model, t + state->time_offset, state->latest.ground_motion);
-  if (state->latest.grip) drive_grips(model, state, t, v);
+  if (state->latest->ground_motion)
+    strut_grounds_move(model, t + state->time_offset, state->latest->ground_motion);
+  if (state->latest->grip) drive_grips(model, state, t, v);
   drive_rest_lengths(model, state, t, v, true);
   if (model->terms & STRUT_TERM_MEMORY) strut_history_follow(model, state);
 }
@@ -107,7 +108,7 @@ void strut_grounds_move(const strut_model *model, double t, strut_ground_motion 
     }
 }
 
-void strut_loads_apply(const strut_model *model, strut_state *state, double t,
+void strut_loads_apply(const strut_model *model, const strut_state *state, double t,
                        const double *restrict v) {
   const strut_load_table *loads = &model->loads;
   for (int32_t i = 0; i < loads->count; i++) {
@@ -115,12 +116,12 @@ void strut_loads_apply(const strut_model *model, strut_state *state, double t,
     evaluate(model, state, v, loads->signal[i], t + state->time_offset, &factor, &rate);
     int32_t at = 2 * loads->node[i];
     double px = factor * loads->x[i], py = factor * loads->y[i];
-    state->latest.force[at] += px;
-    state->latest.force[at + 1] += py;
+    state->latest->force[at] += px;
+    state->latest->force[at + 1] += py;
     if (!state->balance) continue;
     double power = px * v[at] + py * v[at + 1];
-    state->latest.power[STRUT_POWER_LOAD] += power;
-    state->latest.power[STRUT_POWER_EXCHANGED] += fabs(power);
+    state->latest->power[STRUT_POWER_LOAD] += power;
+    state->latest->power[STRUT_POWER_EXCHANGED] += fabs(power);
   }
 }
 
@@ -171,7 +172,7 @@ static void gradient_of(const strut_actuator_force *a, const uint32_t *at, const
     strut_strain_path(at, a->nodes, q, 0.0, b);
 }
 
-void strut_actuator_forces_apply(const strut_model *model, strut_state *state, double t,
+void strut_actuator_forces_apply(const strut_model *model, const strut_state *state, double t,
                                  const double *q, const double *v) {
   const strut_actuator_force_table *table = &model->actuator_forces;
   for (int32_t i = 0; i < table->count; i++) {
@@ -180,15 +181,15 @@ void strut_actuator_forces_apply(const strut_model *model, strut_state *state, d
     double b[2 * STRUT_MOST_ELEMENT_NODES], size, speed = 0.0;
     size = strut_drive_signal(model, state, v, a->signal, t + state->time_offset);
     gradient_of(a, at, q, b);
-    state->latest.actuator_force[i] = size;
+    state->latest->actuator_force[i] = size;
     for (int32_t k = 0; k < a->nodes; k++) {
-      state->latest.force[at[k]] -= size * b[2 * k];
-      state->latest.force[at[k] + 1] -= size * b[2 * k + 1];
+      state->latest->force[at[k]] -= size * b[2 * k];
+      state->latest->force[at[k] + 1] -= size * b[2 * k + 1];
       speed += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
     }
     if (!state->balance) continue;
-    state->latest.power[STRUT_POWER_DRIVE] -= size * speed;
-    state->latest.power[STRUT_POWER_EXCHANGED] += fabs(size * speed);
+    state->latest->power[STRUT_POWER_DRIVE] -= size * speed;
+    state->latest->power[STRUT_POWER_EXCHANGED] += fabs(size * speed);
   }
 }
 
@@ -197,7 +198,7 @@ double strut_actuator_force_on_member(const strut_model *model, const strut_stat
   const strut_actuator_force_table *table = &model->actuator_forces;
   double sum = 0.0;
   for (int32_t i = 0; i < table->count; i++)
-    if (table->item[i].member == member) sum += state->latest.actuator_force[i];
+    if (table->item[i].member == member) sum += state->latest->actuator_force[i];
   return sum;
 }
 
@@ -206,7 +207,7 @@ double strut_actuator_moment_on_hinge(const strut_model *model, const strut_stat
   const strut_actuator_force_table *table = &model->actuator_forces;
   double sum = 0.0;
   for (int32_t i = 0; i < table->count; i++)
-    if (table->item[i].hinge == hinge) sum += state->latest.actuator_force[i];
+    if (table->item[i].hinge == hinge) sum += state->latest->actuator_force[i];
   return sum;
 }
 
@@ -214,7 +215,8 @@ void strut_actuator_forces_add_tensions(const strut_model *model, const strut_st
                                         double *force) {
   const strut_actuator_force_table *table = &model->actuator_forces;
   for (int32_t i = 0; i < table->count; i++)
-    if (table->item[i].member >= 0) force[table->item[i].member] += state->latest.actuator_force[i];
+    if (table->item[i].member >= 0)
+      force[table->item[i].member] += state->latest->actuator_force[i];
 }
 
 STRUT_CLONES

@@ -11,12 +11,12 @@
 /* Forces' terms that change with time alone; those of members and ground are in *_kernel.h. */
 
 /**
- * Driven rest lengths and their rates (6): state->latest.rest, rest_rate. Drives that follow sensors do so at
+ * Driven rest lengths and their rates (6): state->latest->rest, rest_rate. Drives that follow sensors do so at
  * the state's positions and velocities.
  */
-void strut_drive_apply(const strut_model *model, strut_state *state, double t);
+void strut_drive_apply(const strut_model *model, const strut_state *state, double t);
 /** The same with the sensors as they were evaluated last: the second half of strut_feedback_apply. */
-void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t,
+void strut_drive_apply_sensed(const strut_model *model, const strut_state *state, double t,
                               const double *v);
 /** Inputs of signals: the sensors as they were evaluated last, and the states at velocities v. */
 strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
@@ -25,7 +25,7 @@ strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_sta
 double strut_drive_signal(const strut_model *model, const strut_state *state, const double *v,
                           int32_t signal, double t);
 /** Adds the loads that change with time at velocities v (for their power). */
-void strut_loads_apply(const strut_model *model, strut_state *state, double t,
+void strut_loads_apply(const strut_model *model, const strut_state *state, double t,
                        const double *restrict v);
 
 /** Motion of every ground (grounds) at time t of the signals: 0 of those at rest. */
@@ -40,10 +40,10 @@ double strut_drive_next_break(const strut_model *model, const strut_state *state
 /* Forces and moments of actuators; see engine/model/elements.h. */
 
 /**
- * Adds the actuators' forces at time t [s] and positions q to state->latest.force, and their power at
- * velocities v to the drive's. Notes their sizes in state->latest.actuator_force.
+ * Adds the actuators' forces at time t [s] and positions q to state->latest->force, and their power at
+ * velocities v to the drive's. Notes their sizes in state->latest->actuator_force.
  */
-void strut_actuator_forces_apply(const strut_model *model, strut_state *state, double t,
+void strut_actuator_forces_apply(const strut_model *model, const strut_state *state, double t,
                                  const double *q, const double *v);
 
 /** Sum of the forces that actuators add to a member's own, when last applied; tension positive [N]. */
@@ -104,20 +104,20 @@ STRUT_INLINE void drives_ahead_put(double *row, uint32_t j, double x) {
 }
 
 /* Rest lengths at the next instant, which is time t of the state. */
-STRUT_INLINE void drives_ahead_place(const strut_model *model, strut_state *state,
+STRUT_INLINE void drives_ahead_place(const strut_model *model, const strut_state *state,
                                      strut_drives_ahead *drives, double t) {
   const strut_drive_table *d = &model->drives;
   int32_t h = drives->next++;
   for (int32_t i = 0; i < d->count; i++) {
     uint32_t j = (uint32_t)d->member[i];
     /* the first actuator of a member starts from its own rest length, further ones add */
-    double rest = d->first[i] ? model->members.rest[j] : state->latest.rest[j];
+    double rest = d->first[i] ? model->members.rest[j] : state->latest->rest[j];
     double rate = drives->rate[i][h];
-    drives_ahead_put(state->latest.rest, j, rest + drives->value[i][h]);
-    drives_ahead_put(state->latest.rest_rate, j,
-                     d->first[i] ? rate : state->latest.rest_rate[j] + rate);
+    drives_ahead_put(state->latest->rest, j, rest + drives->value[i][h]);
+    drives_ahead_put(state->latest->rest_rate, j,
+                     d->first[i] ? rate : state->latest->rest_rate[j] + rate);
   }
-  state->latest.drive_time = t;
+  state->latest->drive_time = t;
 }
 
 /**
@@ -125,10 +125,10 @@ STRUT_INLINE void drives_ahead_place(const strut_model *model, strut_state *stat
  * them are still to come. Does nothing where the state has them already, or where drives cannot be known
  * beforehand.
  */
-STRUT_INLINE void drives_ahead_apply(const strut_model *model, strut_state *state,
+STRUT_INLINE void drives_ahead_apply(const strut_model *model, const strut_state *state,
                                      strut_drives_ahead *drives, double t, double step, double part,
                                      double dt, int64_t most) {
-  if (!drives->used || t == state->latest.drive_time) return;
+  if (!drives->used || t == state->latest->drive_time) return;
   if (drives->next == drives->count || drives->time[drives->next] != t + state->time_offset) {
     for (int32_t h = 0; h < STRUT_INSTANTS_AHEAD; h++)
       drives->time[h] = (step + part * (double)h) * dt + state->time_offset;
@@ -165,9 +165,9 @@ STRUT_INLINE void drives_ahead_ends(const strut_model *model, const strut_state 
 }
 
 /** Rest lengths at time t, if that is the next stage; else strut_drive_apply will do it. */
-STRUT_INLINE void drives_ahead_meet(const strut_model *model, strut_state *state,
+STRUT_INLINE void drives_ahead_meet(const strut_model *model, const strut_state *state,
                                     strut_drives_ahead *drives, double t) {
-  if (!drives->used || t == state->latest.drive_time || drives->next == drives->count) return;
+  if (!drives->used || t == state->latest->drive_time || drives->next == drives->count) return;
   if (drives->time[drives->next] == t + state->time_offset)
     drives_ahead_place(model, state, drives, t);
 }

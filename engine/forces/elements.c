@@ -199,16 +199,16 @@ static inline exertion exert(const strut_element *e, const strut_state *state, i
   return (exertion){force, r->force, own_rate, r->excess};
 }
 
-static inline void add_powers(strut_state *state, const exertion *x, double rest_rate) {
+static inline void add_powers(const strut_state *state, const exertion *x, double rest_rate) {
   double drive = (x->excess - x->force) * rest_rate, lost = (x->force - x->elastic) * x->own_rate;
-  state->latest.power[STRUT_POWER_DRIVE] += drive;
-  state->latest.power[STRUT_POWER_MEMBERS] += lost;
-  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
+  state->latest->power[STRUT_POWER_DRIVE] += drive;
+  state->latest->power[STRUT_POWER_MEMBERS] += lost;
+  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
 }
 
 /* One element; `strain` and `law` are inlined, so that a block's loop tests neither. */
 #define STRUT_ADD_ELEMENT(strain_name, law_name, reference)                                        \
-  static void add_##strain_name##_##law_name(const strut_model *model, strut_state *state,         \
+  static void add_##strain_name##_##law_name(const strut_model *model, const strut_state *state,   \
                                              const strut_element_block *block, const double *q,    \
                                              const double *v, double *force) {                     \
     const strut_element_table *t = &model->elements;                                               \
@@ -218,8 +218,8 @@ static inline void add_powers(strut_state *state, const exertion *x, double rest
       double b[STRUT_MOST_GRADIENT], rate = 0.0;                                                   \
       double strain = strut_strain_##strain_name(                                                  \
           at, e->nodes, q, STRUT_REFERENCE_##reference(e, state->history.turn[i]), b);             \
-      double natural = strut_element_natural(e, state->latest.rest);                               \
-      double rest_rate = e->slot >= 0 ? state->latest.rest_rate[e->slot] : 0.0;                    \
+      double natural = strut_element_natural(e, state->latest->rest);                              \
+      double rest_rate = e->slot >= 0 ? state->latest->rest_rate[e->slot] : 0.0;                   \
       if (e->damping > 0.0 || state->balance)                                                      \
         for (int32_t k = 0; k < e->nodes; k++)                                                     \
           rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];                               \
@@ -244,7 +244,7 @@ static inline void add_powers(strut_state *state, const exertion *x, double rest
 STRUT_STRAINS(STRUT_ADD_ROW, )
 
 STRUT_CLONES
-static void add_hinges(const strut_model *model, strut_state *state,
+static void add_hinges(const strut_model *model, const strut_state *state,
                        const strut_element_block *block, const double *q, const double *v,
                        double *force) {
   strut_element_block rest = *block;
@@ -254,16 +254,16 @@ static void add_hinges(const strut_model *model, strut_state *state,
   for (; rest.end - rest.begin >= STRUT_LANES; rest.begin += STRUT_LANES, at += 3 * STRUT_LANES)
     add_four_hinges(&t, state, rest.begin, at, q, v, force, &powers);
   for (int l = 0; l < STRUT_LANES && state->balance; l++) {
-    state->latest.power[STRUT_POWER_DRIVE] += powers.drive[l];
-    state->latest.power[STRUT_POWER_MEMBERS] += powers.lost[l];
-    state->latest.power[STRUT_POWER_EXCHANGED] += powers.exchanged[l];
+    state->latest->power[STRUT_POWER_DRIVE] += powers.drive[l];
+    state->latest->power[STRUT_POWER_MEMBERS] += powers.lost[l];
+    state->latest->power[STRUT_POWER_EXCHANGED] += powers.exchanged[l];
   }
   add_angle_linear(model, state, &rest, q, v, force);
 }
 
 /* What add_path_linear does, with the segments in vectors. */
 STRUT_CLONES
-static void add_running_cables(const strut_model *model, strut_state *state,
+static void add_running_cables(const strut_model *model, const strut_state *state,
                                const strut_element_block *block, const double *q, const double *v,
                                double *force) {
   const strut_element_table *t = &model->elements;
@@ -272,8 +272,8 @@ static void add_running_cables(const strut_model *model, strut_state *state,
     const uint32_t *at = t->at + e->first;
     strut_pair b[STRUT_MOST_GRADIENT / 2 + 1];
     double strain = measure_path(at, e->nodes, q, b),
-           natural = strut_element_natural(e, state->latest.rest);
-    double rest_rate = e->slot >= 0 ? state->latest.rest_rate[e->slot] : 0.0, rate = 0.0;
+           natural = strut_element_natural(e, state->latest->rest);
+    double rest_rate = e->slot >= 0 ? state->latest->rest_rate[e->slot] : 0.0, rate = 0.0;
     if (e->damping > 0.0 || state->balance) rate = path_rate(at, e->nodes, v, b);
     strut_law_response r = strut_law_linear(&e->numbers, strain, natural, -1);
     exertion x = exert(e, state, i, &r, strain - natural, rate - rest_rate);
@@ -282,7 +282,7 @@ static void add_running_cables(const strut_model *model, strut_state *state,
   }
 }
 
-typedef void add_block(const strut_model *model, strut_state *state,
+typedef void add_block(const strut_model *model, const strut_state *state,
                        const strut_element_block *block, const double *q, const double *v,
                        double *force);
 
@@ -292,7 +292,7 @@ static add_block *const adders[STRUT_STRAIN_COUNT][STRUT_LAW_COUNT] = {
     STRUT_STRAINS(STRUT_NAME_ROW, )};
 
 /* Of a block with collisions, those that may act. */
-static void add_nearby(const strut_model *model, strut_state *state,
+static void add_nearby(const strut_model *model, const strut_state *state,
                        const strut_element_block *block, const double *q, const double *v,
                        double *force) {
   const strut_nearby *near = strut_nearby_at(model, state, q);
@@ -305,7 +305,7 @@ static void add_nearby(const strut_model *model, strut_state *state,
   }
 }
 
-void strut_elements_add_forces(const strut_model *model, strut_state *state, const double *q,
+void strut_elements_add_forces(const strut_model *model, const strut_state *state, const double *q,
                                const double *v, double *force) {
   for (int32_t b = 0; b < model->elements.block_count; b++) {
     const strut_element_block *block = &model->elements.block[b];
@@ -391,13 +391,13 @@ strut_element_motion strut_element_move(const strut_model *model, const strut_st
   double b[STRUT_MOST_GRADIENT], rate = 0.0;
   double strain = strain_of(e, at, q, state->history.turn[element], b);
   double natural = e->remembers ? strut_history_natural(model, state, element, strain)
-                                : strut_element_natural(e, state->latest.rest);
+                                : strut_element_natural(e, state->latest->rest);
   if (strut_element_is_gone(natural)) return (strut_element_motion){-e->carries, 0.0, -e->carries};
   for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
   int32_t slot = e->remembers ? e->base : e->slot;
-  if (slot >= 0) rate -= state->latest.rest_rate[slot];
+  if (slot >= 0) rate -= state->latest->rest_rate[slot];
   int piece = state->modes.element_piece[element];
-  if (piece < 0) piece = strut_element_piece(e, state->latest.rest, strain - natural);
+  if (piece < 0) piece = strut_element_piece(e, state->latest->rest, strain - natural);
   strut_law_response r = strut_law_respond(e->law, &e->numbers, strain, natural, piece);
   return (strut_element_motion){strain - natural, rate, r.force + e->damping * rate};
 }
@@ -411,15 +411,16 @@ double strut_element_measure_at(const strut_model *model, const strut_state *sta
                                 const double *q, const double *v, strut_element_pose *pose) {
   assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
-  strut_element_evaluate(model, element, state->latest.rest, q, state->history.turn[element], pose);
+  strut_element_evaluate(model, element, state->latest->rest, q, state->history.turn[element],
+                         pose);
   if (strut_element_is_gone(pose->natural)) return 0.0;
-  if (strut_capstan_remembers(e, state->latest.rest))
+  if (strut_capstan_remembers(e, state->latest->rest))
     return strut_capstan_tensions(model, state, element, state->q, state->v).first;
   int32_t slot = e->remembers ? e->base : e->slot;
-  double rest_rate = slot >= 0 ? state->latest.rest_rate[slot] : 0.0;
+  double rest_rate = slot >= 0 ? state->latest->rest_rate[slot] : 0.0;
   strut_law_response r =
       strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural,
-                        strut_element_piece(e, state->latest.rest, pose->strain - pose->natural));
+                        strut_element_piece(e, state->latest->rest, pose->strain - pose->natural));
   double own = strut_element_rate(model, element, pose, v) - rest_rate;
   double force = exert(e, state, element, &r, pose->strain - pose->natural, own).force;
   /* where a step ends a little beyond the end of a frozen mode */

@@ -58,7 +58,7 @@ void strut_element_stiffness(const strut_model *model, int32_t element,
  * Adds the forces of all elements at q and v to `force`, with the state's natural strains and frozen
  * modes; with the state's balance their powers.
  */
-void strut_elements_add_forces(const strut_model *model, strut_state *state, const double *q,
+void strut_elements_add_forces(const strut_model *model, const strut_state *state, const double *q,
                                const double *v, double *force);
 /**
  * After a step has been accepted: the angles of hinges at the state's positions are those near which later ones are

@@ -33,7 +33,7 @@ typedef struct hinge_powers {
 } hinge_powers;
 
 /* Four linear hinges that carry both signs, from element i on: what add_angle_linear does. */
-STRUT_INLINE void add_four_hinges(const strut_element_table *t, strut_state *state, int32_t i,
+STRUT_INLINE void add_four_hinges(const strut_element_table *t, const strut_state *state, int32_t i,
                                   const uint32_t *restrict at, const double *restrict q,
                                   const double *restrict v, double *restrict force,
                                   hinge_powers *powers) {
@@ -49,8 +49,8 @@ STRUT_INLINE void add_four_hinges(const strut_element_table *t, strut_state *sta
               by = -ay - cy;
   strut_lanes natural, rest_rate;
   for (int l = 0; l < STRUT_LANES; l++)
-    natural[l] = state->latest.rest[t->slot[i + l]],
-    rest_rate[l] = state->latest.rest_rate[t->slot[i + l]];
+    natural[l] = state->latest->rest[t->slot[i + l]],
+    rest_rate[l] = state->latest->rest_rate[t->slot[i + l]];
   hinge_nodes wa = gather_hinges(v, at, 0), wo = gather_hinges(v, at, 1),
               wc = gather_hinges(v, at, 2);
   strut_lanes own =

@@ -50,11 +50,11 @@ static double elastic(const strut_model *model, const strut_state *state, const 
   double sum = 0.0;
   for (int32_t j = 0; j < t->count; j++) {
     if (rigid && member[j].kind == STRUT_BAR) continue;
-    strut_member_pose pose = strut_member_pose_at(t, state->latest.rest, j, q);
+    strut_member_pose pose = strut_member_pose_at(t, state->latest->rest, j, q);
     sum += strut_member_elastic_energy(t, j, &pose);
   }
   if (model->elements.count)
-    sum += strut_elements_energy(model, state->latest.rest, state->history.turn, q,
+    sum += strut_elements_energy(model, state->latest->rest, state->history.turn, q,
                                  strut_nearby_serving(model, state, q));
   return sum;
 }
@@ -72,17 +72,17 @@ static double contact(const strut_model *model, const strut_state *state, const 
   const strut_contact_table *c = &model->contacts;
   double sum = 0.0;
   int32_t count =
-      c->surface ? strut_contacts_all_near(c, q, state->latest.ground_motion, state->buffers.near)
+      c->surface ? strut_contacts_all_near(c, q, state->latest->ground_motion, state->buffers->near)
                  : c->count;
   for (int32_t k = 0; k < count; k++) {
-    int32_t i = c->surface ? state->buffers.near[k] : k;
-    double gap = strut_contact_gap_at(c, i, q, state->latest.ground_motion);
+    int32_t i = c->surface ? state->buffers->near[k] : k;
+    double gap = strut_contact_gap_at(c, i, q, state->latest->ground_motion);
     if (gap < 0.0) sum += 0.5 * c->entry[i].stiffness * gap * gap;
   }
   return sum;
 }
 
-strut_energies strut_energy_evaluate(const strut_model *model, strut_state *state, double t) {
+strut_energies strut_energy_evaluate(const strut_model *model, const strut_state *state, double t) {
   strut_drive_apply(model, state, t);
   return strut_energy_evaluate_at(model, state, state->q, state->v);
 }
@@ -121,11 +121,11 @@ void strut_energy_reset_load_work(const strut_model *model, strut_state *state) 
 }
 
 void strut_impulse_apply(const strut_model *model, strut_state *state, strut_power power) {
-  double work = 0.0, *change = state->buffers.support_answer;
-  strut_mass_solve(model, state->latest.force, change, state->buffers.mass_solve);
+  double work = 0.0, *change = state->buffers->support_answer;
+  strut_mass_solve(model, state->latest->force, change, state->buffers->mass_solve);
   if (model->terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_correct(model, state, change);
   for (int32_t i = 0; i < model->length; i++) {
-    work += state->latest.force[i] * (state->v[i] + 0.5 * change[i]);
+    work += state->latest->force[i] * (state->v[i] + 0.5 * change[i]);
     state->v[i] += change[i];
   }
   if (!state->balance) return;

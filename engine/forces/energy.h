@@ -16,7 +16,7 @@ typedef struct strut_energies {
 } strut_energies;
 
 /** Energies at the state's q and v, with the driven rest lengths at time t [s]. */
-STRUT_API strut_energies strut_energy_evaluate(const strut_model *model, strut_state *state,
+STRUT_API strut_energies strut_energy_evaluate(const strut_model *model, const strut_state *state,
                                                double t);
 
 /** The same at positions q and velocities v, with the state's rest lengths as they are. */
@@ -38,8 +38,8 @@ STRUT_API void strut_energy_reset_load_work(const strut_model *model, strut_stat
 /* Velocities that jump, where something changes its speed at once. */
 
 /**
- * The velocities answer to the impulses that state->latest.force holds [N s]; with the energy balance the
- * work that these do is that of `power`. Needs state->buffers.support_answer.
+ * The velocities answer to the impulses that state->latest->force holds [N s]; with the energy balance the
+ * work that these do is that of `power`. Needs state->buffers->support_answer.
  */
 void strut_impulse_apply(const strut_model *model, strut_state *state, strut_power power);
 

@@ -24,7 +24,7 @@ static void sense_strain(const strut_model *model, const strut_state *state, int
                          const double *q, const double *v, double *value, double *rate) {
   assert(element >= 0 && element < model->elements.count);
   strut_element_pose pose;
-  strut_element_evaluate(model, element, state->latest.rest, q, state->history.turn[element],
+  strut_element_evaluate(model, element, state->latest->rest, q, state->history.turn[element],
                          &pose);
   *value = pose.strain;
   *rate = strut_element_rate(model, element, &pose, v);
@@ -67,7 +67,7 @@ static bool touches(const strut_model *model, const strut_state *state, int32_t 
       if (strut_element_strain(model, element, q, 0.0, b) < natural) return true;
       continue;
     }
-    if (strut_contact_gap_at(c, i, q, state->latest.ground_motion) < 0.0) return true;
+    if (strut_contact_gap_at(c, i, q, state->latest->ground_motion) < 0.0) return true;
   }
   return false;
 }
@@ -84,9 +84,10 @@ static double sense_contact_force(const strut_model *model, const strut_state *s
       sum -= strut_element_measure_at(model, state, element, q, v, &pressed);
       continue;
     }
-    const strut_contact_pose pose = strut_contact_pose_at(c, i, q, state->latest.ground_motion, -1);
+    const strut_contact_pose pose =
+        strut_contact_pose_at(c, i, q, state->latest->ground_motion, -1);
     if (!(pose.gap < 0.0)) continue;
-    strut_vec2 u = strut_contact_velocity(c, i, v, state->latest.ground_motion);
+    strut_vec2 u = strut_contact_velocity(c, i, v, state->latest->ground_motion);
     const strut_law_ground_numbers numbers = strut_contact_numbers(&c->entry[i]);
     double spring = strut_law_ground_spring(&numbers, pose.gap);
     double into = strut_component(pose.axes.normal, u.x, u.y);
@@ -119,17 +120,17 @@ static void sense(const strut_model *model, const strut_state *state, strut_sens
   }
 }
 
-static void sense_all(const strut_model *model, strut_state *state, bool driven, const double *q,
-                      const double *v) {
+static void sense_all(const strut_model *model, const strut_state *state, bool driven,
+                      const double *q, const double *v) {
   const strut_feedback_table *f = &model->feedback;
   for (int32_t i = 0; i < f->count; i++)
     if (strut_sensor_needs_drives(f->sensor[i].kind) == driven)
-      sense(model, state, f->sensor[i], q, v, &state->latest.sensor[i],
-            &state->latest.sensor_rate[i]);
+      sense(model, state, f->sensor[i], q, v, &state->latest->sensor[i],
+            &state->latest->sensor_rate[i]);
 }
 
-static void apply_drives(const strut_model *model, strut_state *state, double t, const double *q,
-                         const double *v) {
+static void apply_drives(const strut_model *model, const strut_state *state, double t,
+                         const double *q, const double *v) {
   const strut_feedback_table *f = &model->feedback;
   sense_all(model, state, false, q, v);
   strut_drive_apply_sensed(model, state, t, v);
@@ -166,8 +167,8 @@ static bool lacks_memory(const strut_model *model, const strut_state *state) {
 }
 
 /* The first samples and the sides of relays, at rest lengths without drives; parts before their users. */
-static void begin_history(const strut_model *model, strut_state *state, double t, const double *q,
-                          const double *v) {
+static void begin_history(const strut_model *model, const strut_state *state, double t,
+                          const double *q, const double *v) {
   const strut_signal *signals = model->scene->signals;
   const strut_signal_inputs in = strut_drive_inputs(model, state, v);
   double rate;
@@ -180,13 +181,13 @@ static void begin_history(const strut_model *model, strut_state *state, double t
   }
 }
 
-void strut_feedback_apply(const strut_model *model, strut_state *state, double t, const double *q,
-                          const double *v) {
+void strut_feedback_apply(const strut_model *model, const strut_state *state, double t,
+                          const double *q, const double *v) {
   if (lacks_memory(model, state)) begin_history(model, state, t + state->time_offset, q, v);
   apply_drives(model, state, t, q, v);
 }
 
-void strut_feedback_add_rates(const strut_model *model, strut_state *state, double t,
+void strut_feedback_add_rates(const strut_model *model, const strut_state *state, double t,
                               const double *v, double *force) {
   const strut_feedback_table *f = &model->feedback;
   const strut_scene *scene = model->scene;
@@ -249,9 +250,9 @@ static bool condition_holds(const strut_model *model, const strut_state *state,
   for (int32_t i = 0; i < model->contacts.count && trigger->kind == STRUT_TRIGGER_CONTACT; i++)
     if (model->contacts.entry[i].node == trigger->item) return touches(model, state, i, state->q);
   if (trigger->kind == STRUT_TRIGGER_ABOVE)
-    return state->latest.sensor[trigger->item] > trigger->level;
+    return state->latest->sensor[trigger->item] > trigger->level;
   return trigger->kind == STRUT_TRIGGER_BELOW &&
-         state->latest.sensor[trigger->item] < trigger->level;
+         state->latest->sensor[trigger->item] < trigger->level;
 }
 
 bool strut_feedback_watch(const strut_model *model, strut_state *state, double t, bool contacts) {
@@ -281,8 +282,8 @@ static double input_of(const strut_model *model, const strut_state *state, int32
   return input;
 }
 
-void strut_relay_start(const strut_model *model, strut_state *state, int32_t signal, double now,
-                       const double *v) {
+void strut_relay_start(const strut_model *model, const strut_state *state, int32_t signal,
+                       double now, const double *v) {
   assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
   const strut_relay *r = &model->scene->signals[signal].relay;
   double input = input_of(model, state, signal, now, v);

@@ -7,13 +7,14 @@
 
 /**
  * Measures all sensors at time t [s], positions q and velocities v, and sets the driven rest lengths
- * and their rates from them. For models with STRUT_TERM_FEEDBACK.
+ * and their rates from them. For models with STRUT_TERM_FEEDBACK. The first evaluation since the reset, which is at
+ * the start of the motion, takes the first samples and the sides of relays; no later one writes signal memory.
  */
-void strut_feedback_apply(const strut_model *model, strut_state *state, double t, const double *q,
-                          const double *v);
+void strut_feedback_apply(const strut_model *model, const strut_state *state, double t,
+                          const double *q, const double *v);
 
 /** Rates of the internal states at velocities v into `force`, after strut_feedback_apply. */
-void strut_feedback_add_rates(const strut_model *model, strut_state *state, double t,
+void strut_feedback_add_rates(const strut_model *model, const strut_state *state, double t,
                               const double *v, double *force);
 
 /** The first sample after t [s]; INFINITY: there is none. */
@@ -46,8 +47,8 @@ bool strut_feedback_watch(const strut_model *model, strut_state *state, double t
  */
 
 /** Sets the side of a relay at t = 0. */
-void strut_relay_start(const strut_model *model, strut_state *state, int32_t signal, double now,
-                       const double *v);
+void strut_relay_start(const strut_model *model, const strut_state *state, int32_t signal,
+                       double now, const double *v);
 /** How far the input is from the threshold that switches the relay; negative beyond it. */
 double strut_relay_margin(const strut_model *model, const strut_state *state, int32_t signal,
                           double now, const double *v);

@@ -10,10 +10,10 @@
 #include "engine/forces/rigid.h"
 #include "engine/forces/rubbing.h"
 
-void strut_forces_add_rare(const strut_model *model, strut_state *state, double t, const double *q,
-                           const double *v) {
+void strut_forces_add_rare(const strut_model *model, const strut_state *state, double t,
+                           const double *q, const double *v) {
   unsigned terms = model->terms;
-  if (terms & STRUT_TERM_FEEDBACK) strut_maxwell_apply(model, state, q, v, state->latest.force);
+  if (terms & STRUT_TERM_FEEDBACK) strut_maxwell_apply(model, state, q, v, state->latest->force);
   if (terms & STRUT_TERM_ACTUATOR_FORCES) strut_actuator_forces_apply(model, state, t, q, v);
   if (terms & STRUT_TERM_UNBALANCE) strut_unbalance_apply(model, state, t, v);
   if (terms & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);
@@ -23,7 +23,7 @@ void strut_forces_add_rare(const strut_model *model, strut_state *state, double 
 }
 
 STRUT_CLONES
-static void sum_once(const strut_model *model, strut_state *state, double t,
+static void sum_once(const strut_model *model, const strut_state *state, double t,
                      const double *restrict q, const double *restrict v) {
   if (state->balance)
     forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, STRUT_ACCUMULATE_POWERS);
@@ -31,34 +31,34 @@ static void sum_once(const strut_model *model, strut_state *state, double t,
     forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, STRUT_ACCUMULATE_NOTHING);
 }
 
-void strut_forces_evaluate(const strut_model *model, strut_state *state, double t,
+void strut_forces_evaluate(const strut_model *model, const strut_state *state, double t,
                            const double *restrict q, const double *restrict v) {
   for (int32_t i = 0; i < model->contacts.count; i++)
-    state->latest.normal[i] = state->latest.friction[i] =
+    state->latest->normal[i] = state->latest->friction[i] =
         0.0; /* the sum fills those that touch, and only them */
   sum_once(model, state, t, q, v);
   if (model->rubbing.count) strut_rubbing_show_feet(model, state, q, v);
   if (state->rigid) strut_rigid_constrain(model, state, q, v);
 }
 
-bool strut_forces_show_held(const strut_model *model, strut_state *state) {
+bool strut_forces_show_held(const strut_model *model, const strut_state *state) {
   if (!state->modes.held_normal) return false;
   for (int32_t i = 0; i < model->contacts.count; i++) {
-    state->latest.normal[i] = state->modes.held_normal[i];
-    state->latest.friction[i] = state->modes.held_friction[i];
+    state->latest->normal[i] = state->modes.held_normal[i];
+    state->latest->friction[i] = state->modes.held_friction[i];
   }
   if (model->rubbing.count) strut_rubbing_show_feet(model, state, state->q, state->v);
   return true;
 }
 
-void strut_forces_observe(const strut_model *model, strut_state *state, double t) {
-  int64_t evaluations = state->evaluations;
+void strut_forces_observe(const strut_model *model, const strut_state *state, double t) {
+  int64_t evaluations = state->latest->evaluations;
   strut_forces_evaluate(model, state, t, state->q, state->v);
-  state->evaluations = evaluations; /* observing is not part of the run's cost */
+  state->latest->evaluations = evaluations; /* observing is not part of the run's cost */
   strut_forces_show_held(model, state);
 }
 
-void strut_forces_acceleration(const strut_model *model, strut_state *state, double t,
+void strut_forces_acceleration(const strut_model *model, const strut_state *state, double t,
                                const double *restrict q, const double *restrict v,
                                double *restrict a) {
   assert(model->mass && "a model without mass is for statics only");
@@ -95,10 +95,10 @@ static double damp_sliding_masses(const strut_model *model, const double *v, dou
   return lost;
 }
 
-void strut_mass_damping_apply(const strut_model *model, strut_state *state, const double *v) {
+void strut_mass_damping_apply(const strut_model *model, const strut_state *state, const double *v) {
   const strut_member_table *t = &model->members;
   const mass_shares share = shares_of(model);
-  double alpha = model->mass_damping, lost = 0.0, *force = state->latest.force;
+  double alpha = model->mass_damping, lost = 0.0, *force = state->latest->force;
   for (int c = 0; c < 2; c++, v++, force++) {
     for (int32_t i = 0; i < model->node_count; i++) {
       double drag = alpha * model->point_mass[i] * v[2 * i];
@@ -116,8 +116,8 @@ void strut_mass_damping_apply(const strut_model *model, strut_state *state, cons
   }
   if (model->sliding.count) lost += damp_sliding_masses(model, v - 2, force - 2);
   if (!state->balance) return;
-  state->latest.power[STRUT_POWER_MEMBERS] += lost;
-  state->latest.power[STRUT_POWER_EXCHANGED] += lost;
+  state->latest->power[STRUT_POWER_MEMBERS] += lost;
+  state->latest->power[STRUT_POWER_EXCHANGED] += lost;
 }
 
 void strut_mass_damping_add(const strut_model *model, const int32_t *row_of, strut_triplets *sum) {

@@ -11,25 +11,25 @@
 
 /**
  * a = M^-1 (constant + loads - K - C + contact), equation (10), at time t [s], positions q [m] and
- * velocities v [m/s], which need not be the state's own. Fills state->latest.force, normal, friction, rest
+ * velocities v [m/s], which need not be the state's own. Fills state->latest->force, normal, friction, rest
  * and, with the energy balance, power. The model must have a mass.
  */
-STRUT_API void strut_forces_acceleration(const strut_model *model, strut_state *state, double t,
-                                         const double *restrict q, const double *restrict v,
-                                         double *restrict a);
+STRUT_API void strut_forces_acceleration(const strut_model *model, const strut_state *state,
+                                         double t, const double *restrict q,
+                                         const double *restrict v, double *restrict a);
 
-/** The same without the mass: leaves the net forces in state->latest.force. */
-STRUT_API void strut_forces_evaluate(const strut_model *model, strut_state *state, double t,
+/** The same without the mass: leaves the net forces in state->latest->force. */
+STRUT_API void strut_forces_evaluate(const strut_model *model, const strut_state *state, double t,
                                      const double *restrict q, const double *restrict v);
 
 /**
  * The forces at the state itself at time t [s], for recording and measuring: contact forces are those
  * that a method with events holds, and the evaluation is not counted.
  */
-STRUT_API void strut_forces_observe(const strut_model *model, strut_state *state, double t);
+STRUT_API void strut_forces_observe(const strut_model *model, const strut_state *state, double t);
 
 /** Shows the contact forces that a method with events holds in normal and friction; false: it holds none. */
-STRUT_API bool strut_forces_show_held(const strut_model *model, strut_state *state);
+STRUT_API bool strut_forces_show_held(const strut_model *model, const strut_state *state);
 
 /** One member at the state: length [m], its rate [m/s], force [N] (tension positive). */
 typedef struct strut_member_values {

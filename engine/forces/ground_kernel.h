@@ -28,11 +28,11 @@ STRUT_INLINE void ground_accumulate_lanes(strut_power_lanes *restrict to, int32_
   to->turnover[lane] += fabs(p.friction) + fabs(p.belt);
 }
 
-STRUT_INLINE void ground_balance(strut_state *state, strut_law_contact_powers p) {
-  state->latest.power[STRUT_POWER_CONTACT] -= p.damper;
-  state->latest.power[STRUT_POWER_FRICTION] -= p.friction;
-  state->latest.power[STRUT_POWER_BELT] += p.belt;
-  state->latest.power[STRUT_POWER_EXCHANGED] += -p.damper + fabs(p.friction) + fabs(p.belt);
+STRUT_INLINE void ground_balance(const strut_state *state, strut_law_contact_powers p) {
+  state->latest->power[STRUT_POWER_CONTACT] -= p.damper;
+  state->latest->power[STRUT_POWER_FRICTION] -= p.friction;
+  state->latest->power[STRUT_POWER_BELT] += p.belt;
+  state->latest->power[STRUT_POWER_EXCHANGED] += -p.damper + fabs(p.friction) + fabs(p.belt);
 }
 
 /* Within Karnopp's band at the ends of rigid bars friction is found with their forces: 0 here. */
@@ -45,7 +45,7 @@ STRUT_INLINE double ground_friction(const strut_contact_entry *e, double normal,
 }
 
 /* One node in contact; f, v: its force and velocity; gap < 0. */
-STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state, int32_t i,
+STRUT_INLINE void ground_touch(const strut_contact_table *c, const strut_state *state, int32_t i,
                                double gap, double *restrict f, const double *restrict v,
                                bool sloped, bool rough, bool laws, strut_accumulation balance,
                                strut_power_lanes *lanes, bool moves) {
@@ -69,22 +69,22 @@ STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state,
   else
     reaction = (strut_pair){friction, normal};
   strut_pair_store(f, sum + reaction);
-  state->latest.normal[i] = normal;
-  state->latest.friction[i] = friction;
+  state->latest->normal[i] = normal;
+  state->latest->friction[i] = friction;
   strut_law_contact_powers powers =
       strut_law_contact_power(damper, into, friction, slip, c->belt_speed);
   if (balance == STRUT_ACCUMULATE_POWERS) ground_balance(state, powers);
   if (balance == STRUT_ACCUMULATE_LANES) ground_accumulate_lanes(lanes, e->lane, moves, powers);
 }
 
-STRUT_INLINE void ground_all(const strut_model *model, strut_state *state, const double *restrict q,
-                             const double *restrict v, double *restrict force, int32_t begin,
-                             int32_t end, bool sloped, bool rough, bool laws,
-                             strut_accumulation balance) {
+STRUT_INLINE void ground_all(const strut_model *model, const strut_state *state,
+                             const double *restrict q, const double *restrict v,
+                             double *restrict force, int32_t begin, int32_t end, bool sloped,
+                             bool rough, bool laws, strut_accumulation balance) {
   const strut_contact_table *c = &model->contacts;
   const uint32_t *restrict at = c->at;
   const double height = c->height;
-  strut_power_lanes *lanes = state->latest.accumulated;
+  strut_power_lanes *lanes = state->latest->accumulated;
   bool moves = c->belt_speed != 0.0;
   for (int32_t i = begin; i < end; i++) {
     double gap = q[at[i] + 1] - height;
@@ -97,7 +97,7 @@ STRUT_INLINE void ground_all(const strut_model *model, strut_state *state, const
 
 /* Adds the ground's forces on contacts begin to end; slope and friction are compiled out where the scene has
    none. */
-STRUT_LOOP void ground_kernel_range(const strut_model *model, strut_state *state,
+STRUT_LOOP void ground_kernel_range(const strut_model *model, const strut_state *state,
                                     const double *restrict q, const double *restrict v,
                                     double *restrict force, int32_t begin, int32_t end,
                                     strut_accumulation balance) {
@@ -116,7 +116,7 @@ STRUT_LOOP void ground_kernel_range(const strut_model *model, strut_state *state
 }
 
 /* Those on all contacts. */
-STRUT_INLINE void ground_kernel(const strut_model *model, strut_state *state,
+STRUT_INLINE void ground_kernel(const strut_model *model, const strut_state *state,
                                 const double *restrict q, const double *restrict v,
                                 double *restrict force, strut_accumulation balance) {
   ground_kernel_range(model, state, q, v, force, 0, model->contacts.count, balance);

@@ -15,7 +15,7 @@ static double base_of(const strut_element *e, const double *rest) {
 }
 
 static double base_rate_of(const strut_element *e, const strut_state *state) {
-  return e->base >= 0 ? state->latest.rest_rate[e->base] : 0.0;
+  return e->base >= 0 ? state->latest->rest_rate[e->base] : 0.0;
 }
 
 static bool yields(const strut_element *e) { return e->law == STRUT_LAW_ELASTIC_PLASTIC; }
@@ -43,8 +43,8 @@ double strut_history_natural(const strut_model *model, const strut_state *state,
                              double strain) {
   assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
-  double base = base_of(e, state->latest.rest);
-  if (strut_element_is_gone(state->latest.rest[e->slot])) return state->latest.rest[e->slot];
+  double base = base_of(e, state->latest->rest);
+  if (strut_element_is_gone(state->latest->rest[e->slot])) return state->latest->rest[e->slot];
   if (!yields(e)) return base;
   int direction = direction_at(state, e, i, strain - base);
   double plastic =
@@ -64,8 +64,8 @@ strut_slider strut_slider_at(const strut_model *model, const strut_state *state,
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   double b[STRUT_MOST_GRADIENT], rate = -base_rate_of(e, state);
-  double x =
-      strut_element_strain(model, i, q, state->history.turn[i], b) - base_of(e, state->latest.rest);
+  double x = strut_element_strain(model, i, q, state->history.turn[i], b) -
+             base_of(e, state->latest->rest);
   for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
   double p = state->history.plastic[e->memory], force = strut_slider_spring(e) * (x - p);
   return (strut_slider){.force = force,
@@ -83,7 +83,7 @@ void strut_slider_set(const strut_model *model, strut_state *state, int32_t i, i
   int before = state->modes.element_piece[i];
   if (before >= 0 && before != STRUT_SLIDER_HOLDS) {
     double strain = strut_element_strain(model, i, q, state->history.turn[i], b);
-    double x = strain - base_of(e, state->latest.rest);
+    double x = strain - base_of(e, state->latest->rest);
     state->history.plastic[e->memory] = plastic_at(e, x, before - STRUT_SLIDER_HOLDS);
   }
   state->modes.element_piece[i] = (int16_t)mode;
@@ -104,12 +104,12 @@ void strut_slider_return(const strut_model *model, strut_state *state, int32_t i
   double *p = &state->history.plastic[e->memory], slip = fabs(s.plastic - *p);
   accumulate_loss(state, slip * (jumped ? 0.5 * (fabs(s.force) + s.yield) : s.yield));
   *p = s.plastic;
-  state->latest.rest[e->slot] = base_of(e, state->latest.rest) + shift_of(e, *p);
+  state->latest->rest[e->slot] = base_of(e, state->latest->rest) + shift_of(e, *p);
 }
 
 /* Notes that element i has jumped over folds at time t, and loses the energy that this set free. */
 static void note_jump(strut_state *state, const strut_element *e, double freed, double t) {
-  double *own = &state->latest.rest[e->slot];
+  double *own = &state->latest->rest[e->slot];
   if (isnan(t)) return; /* on the way to the start */
   own[STRUT_CURVE_JUMPS] += 1.0;
   own[STRUT_CURVE_LAST] = t + state->time_offset;
@@ -122,9 +122,9 @@ void strut_curve_renew(const strut_model *model, strut_state *state, int32_t i, 
   assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   double b[STRUT_MOST_GRADIENT], freed = 0.0;
-  double *piece = &state->latest.rest[e->slot + STRUT_CURVE_PIECE];
+  double *piece = &state->latest->rest[e->slot + STRUT_CURVE_PIECE];
   double strain = strut_element_strain(model, i, q, state->history.turn[i], b);
-  double x = strain - base_of(e, state->latest.rest);
+  double x = strain - base_of(e, state->latest->rest);
   *piece = strut_folding_follow(e->numbers.curve, (int)*piece, x, &freed);
   if (freed != 0.0) note_jump(state, e, freed, t);
 }
@@ -137,7 +137,7 @@ int strut_curve_pass(const strut_model *model, strut_state *state, int32_t i, st
   double freed = strut_law_curve_piece(c, (size_t)from, at.x).energy -
                  strut_law_curve_piece(c, (size_t)to, at.x).energy;
   if (to != from + at.way) note_jump(state, e, freed, at.time);
-  state->latest.rest[e->slot + STRUT_CURVE_PIECE] = to;
+  state->latest->rest[e->slot + STRUT_CURVE_PIECE] = to;
   return to;
 }
 
@@ -154,37 +154,37 @@ static bool element_acts(const strut_element *e, const strut_state *state, int32
  * gives way, that of the spring beside it; the rest is lost. Without modes that loss is found when p is
  * renewed.
  */
-static void add_powers(const strut_element *e, strut_state *state, int32_t i, double force,
+static void add_powers(const strut_element *e, const strut_state *state, int32_t i, double force,
                        double elastic, double x, double rate) {
   int piece = state->modes.element_piece[i];
   double drive = -force * base_rate_of(e, state), lost = force - elastic;
   if (yields(e) && piece >= 0 && piece != STRUT_SLIDER_HOLDS && !state->forgetful)
     lost = force - e->numbers.second_stiffness * x;
   lost *= rate;
-  state->latest.power[STRUT_POWER_DRIVE] += drive;
-  state->latest.power[STRUT_POWER_MEMBERS] += lost;
-  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(drive) + fabs(lost);
+  state->latest->power[STRUT_POWER_DRIVE] += drive;
+  state->latest->power[STRUT_POWER_MEMBERS] += lost;
+  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(drive) + fabs(lost);
 }
 
-static void add_element(const strut_model *model, strut_state *state, int32_t i, const double *q,
-                        const double *v, double *force) {
+static void add_element(const strut_model *model, const strut_state *state, int32_t i,
+                        const double *q, const double *v, double *force) {
   assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   double b[STRUT_MOST_GRADIENT], rate = 0.0;
-  if (strut_capstan_remembers(e, state->latest.rest) &&
-      !strut_element_is_gone(state->latest.rest[e->slot])) {
+  if (strut_capstan_remembers(e, state->latest->rest) &&
+      !strut_element_is_gone(state->latest->rest[e->slot])) {
     strut_capstan_add_forces(model, state, i, q, v, force);
     return;
   }
   double strain = strut_element_strain(model, i, q, state->history.turn[i], b);
   double natural = strut_history_natural(model, state, i, strain), x = strain - natural;
   if (strut_element_is_gone(natural)) return;
-  state->latest.rest[e->slot] = natural;
+  state->latest->rest[e->slot] = natural;
   for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
   rate -= base_rate_of(e, state); /* last, as of other elements: with their bits before it breaks */
   int piece = state->modes.element_piece[i];
-  if (piece < 0) piece = strut_element_piece(e, state->latest.rest, x);
+  if (piece < 0) piece = strut_element_piece(e, state->latest->rest, x);
   strut_law_response r = strut_law_respond(e->law, &e->numbers, strain, natural, piece);
   double whole = r.force + e->damping * rate;
   if (!element_acts(e, state, i, x, whole)) {
@@ -198,26 +198,26 @@ static void add_element(const strut_model *model, strut_state *state, int32_t i,
     force[at[k] + 1] -= whole * b[2 * k + 1];
   }
   if (!state->balance) return;
-  add_powers(e, state, i, whole, r.force, strain - base_of(e, state->latest.rest), rate);
+  add_powers(e, state, i, whole, r.force, strain - base_of(e, state->latest->rest), rate);
   double excess = r.excess * base_rate_of(e, state);
-  state->latest.power[STRUT_POWER_DRIVE] += excess;
-  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(excess);
+  state->latest->power[STRUT_POWER_DRIVE] += excess;
+  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(excess);
 }
 
-void strut_history_add_forces(const strut_model *model, strut_state *state,
+void strut_history_add_forces(const strut_model *model, const strut_state *state,
                               const strut_element_block *block, const double *q, const double *v,
                               double *force) {
   for (int32_t i = block->begin; i < block->end; i++) add_element(model, state, i, q, v, force);
 }
 
-void strut_history_follow(const strut_model *model, strut_state *state) {
+void strut_history_follow(const strut_model *model, const strut_state *state) {
   for (int32_t m = 0; m < model->elements.history_count; m++) {
     const strut_element *e = &model->elements.element[model->elements.memory[m]];
-    double *own = &state->latest.rest[e->slot];
+    double *own = &state->latest->rest[e->slot];
     if (strut_element_is_gone(*own)) continue;
-    *own =
-        base_of(e, state->latest.rest) + (yields(e) ? shift_of(e, state->history.plastic[m]) : 0.0);
-    state->latest.rest_rate[e->slot] = base_rate_of(e, state);
+    *own = base_of(e, state->latest->rest) +
+           (yields(e) ? shift_of(e, state->history.plastic[m]) : 0.0);
+    state->latest->rest_rate[e->slot] = base_rate_of(e, state);
   }
 }
 
@@ -225,24 +225,24 @@ void strut_history_keep(const strut_model *model, strut_state *state) {
   for (int32_t m = 0; m < model->elements.history_count; m++) {
     int32_t i = model->elements.memory[m];
     const strut_element *e = &model->elements.element[i];
-    double b[STRUT_MOST_GRADIENT], base = base_of(e, state->latest.rest);
+    double b[STRUT_MOST_GRADIENT], base = base_of(e, state->latest->rest);
     int direction = direction_at(state, e, i, 0.0);
-    if (strut_element_is_gone(state->latest.rest[e->slot])) continue;
-    if (strut_capstan_remembers(e, state->latest.rest))
+    if (strut_element_is_gone(state->latest->rest[e->slot])) continue;
+    if (strut_capstan_remembers(e, state->latest->rest))
       strut_capstan_keep(model, state, i, state->q);
     if (!yields(e) || state->modes.element_piece[i] < 0) continue;
     if (direction) {
       double strain = strut_element_strain(model, i, state->q, state->history.turn[i], b);
       state->history.plastic[m] = plastic_at(e, strain - base, direction);
     }
-    state->latest.rest[e->slot] = base + shift_of(e, state->history.plastic[m]);
+    state->latest->rest[e->slot] = base + shift_of(e, state->history.plastic[m]);
   }
 }
 
 void strut_history_store(const strut_model *model, const strut_state *state, double *memory) {
   const strut_element_table *t = &model->elements;
   size_t slots = (size_t)t->history_slots, count = (size_t)t->history_count;
-  memcpy(memory, state->latest.rest + t->history_slot, slots * sizeof(double));
+  memcpy(memory, state->latest->rest + t->history_slot, slots * sizeof(double));
   memcpy(memory + slots, state->history.plastic, count * sizeof(double));
   memcpy(memory + slots + count, state->history.broken_at,
          (size_t)t->breakable_count * sizeof(double));
@@ -251,7 +251,7 @@ void strut_history_store(const strut_model *model, const strut_state *state, dou
 void strut_history_load(const strut_model *model, strut_state *state, const double *memory) {
   const strut_element_table *t = &model->elements;
   size_t slots = (size_t)t->history_slots, count = (size_t)t->history_count;
-  memcpy(state->latest.rest + t->history_slot, memory, slots * sizeof(double));
+  memcpy(state->latest->rest + t->history_slot, memory, slots * sizeof(double));
   memcpy(state->history.material, memory, slots * sizeof(double));
   memcpy(state->history.plastic, memory + slots, count * sizeof(double));
   memcpy(state->history.broken_at, memory + slots + count,
@@ -268,7 +268,7 @@ double strut_breakable_load(const strut_model *model, const strut_state *state, 
   const strut_breakable *b = &t->breakable[breakable];
   double sum = 0.0;
   for (int32_t i = b->first; i >= 0; i = t->element[i].sibling) {
-    if (strut_capstan_remembers(&t->element[i], state->latest.rest)) {
+    if (strut_capstan_remembers(&t->element[i], state->latest->rest)) {
       sum += strut_capstan_tensions(model, state, i, q, v).most;
       continue;
     }
@@ -285,10 +285,10 @@ void strut_breakable_break(const strut_model *model, strut_state *state, int32_t
   strut_element_pose pose;
   double energy = 0.0;
   for (int32_t i = table->breakable[breakable].first; i >= 0; i = table->element[i].sibling) {
-    strut_element_evaluate(model, i, state->latest.rest, state->q, state->history.turn[i], &pose);
+    strut_element_evaluate(model, i, state->latest->rest, state->q, state->history.turn[i], &pose);
     energy += pose.energy;
-    state->latest.rest[table->element[i].slot] = HUGE_VAL;
-    state->latest.rest_rate[table->element[i].slot] = 0.0;
+    state->latest->rest[table->element[i].slot] = HUGE_VAL;
+    state->latest->rest_rate[table->element[i].slot] = 0.0;
   }
   accumulate_loss(state, energy);
   state->history.broken_at[breakable] = t;
@@ -313,16 +313,16 @@ static bool renew(const strut_model *model, strut_state *state, double t, bool j
   double now = t + state->time_offset;
   bool broken = false;
   if (state->forgetful) return false;
-  if (model->terms & STRUT_TERM_DRIVE && t != state->latest.drive_time)
+  if (model->terms & STRUT_TERM_DRIVE && t != state->latest->drive_time)
     strut_drive_apply(model, state, t);
   for (int32_t m = 0; m < table->history_count; m++) {
     int32_t i = table->memory[m];
     if (strut_has_capstan(&table->element[i]) &&
-        !strut_element_is_gone(state->latest.rest[table->element[i].slot])) {
+        !strut_element_is_gone(state->latest->rest[table->element[i].slot])) {
       strut_capstan_begin(model, state, i, state->q);
       strut_capstan_renew(model, state, i, state->q, jumped);
     }
-    if (strut_element_is_gone(state->latest.rest[table->element[i].slot])) continue;
+    if (strut_element_is_gone(state->latest->rest[table->element[i].slot])) continue;
     if (yields(&table->element[i])) strut_slider_return(model, state, i, state->q, jumped);
     if (table->element[i].law == STRUT_LAW_FOLDING)
       strut_curve_renew(model, state, i, state->q, jumped ? (double)NAN : t);
@@ -351,8 +351,8 @@ double strut_element_last_force(const strut_model *model, const strut_state *sta
   assert(i >= 0 && i < model->elements.count);
   strut_element_pose pose;
   const strut_element *e = &model->elements.element[i];
-  if (strut_capstan_remembers(e, state->latest.rest) &&
-      !strut_element_is_gone(state->latest.rest[e->slot]))
+  if (strut_capstan_remembers(e, state->latest->rest) &&
+      !strut_element_is_gone(state->latest->rest[e->slot]))
     return strut_capstan_tensions(model, state, i, state->q, state->v).last;
   return strut_element_measure(model, state, i, &pose);
 }
@@ -400,14 +400,14 @@ bool strut_history_overload(const strut_model *model, const double *q, strut_ove
   return worst->name;
 }
 
-void strut_maxwell_apply(const strut_model *model, strut_state *state, const double *q,
+void strut_maxwell_apply(const strut_model *model, const strut_state *state, const double *q,
                          const double *v, double *force) {
   const strut_feedback_table *f = &model->feedback;
   const strut_member_table *t = &model->members;
   for (int32_t i = 0; i < f->maxwell_count; i++) {
     const strut_maxwell_entry *m = &f->maxwell[i];
-    strut_member_pose pose = strut_member_pose_at(t, state->latest.rest, m->member, q);
-    double rest_rate = state->latest.rest_rate[m->member], tension = v[f->base + m->state];
+    strut_member_pose pose = strut_member_pose_at(t, state->latest->rest, m->member, q);
+    double rest_rate = state->latest->rest_rate[m->member], tension = v[f->base + m->state];
     double rate = strut_member_rate(t, m->member, &pose, v) - rest_rate;
     uint32_t a = t->from[m->member], b = t->to[m->member];
     force[a] += tension * pose.unit.x, force[a + 1] += tension * pose.unit.y;
@@ -415,9 +415,9 @@ void strut_maxwell_apply(const strut_model *model, strut_state *state, const dou
     force[f->base + m->state] = m->stiffness * (rate - tension / m->damping);
     if (!state->balance) continue;
     double drive = -tension * rest_rate, lost = tension * tension / m->damping;
-    state->latest.power[STRUT_POWER_DRIVE] += drive;
-    state->latest.power[STRUT_POWER_MEMBERS] += lost;
-    state->latest.power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
+    state->latest->power[STRUT_POWER_DRIVE] += drive;
+    state->latest->power[STRUT_POWER_MEMBERS] += lost;
+    state->latest->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
   }
 }
 

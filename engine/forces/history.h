@@ -81,11 +81,11 @@ double strut_history_natural(const strut_model *model, const strut_state *state,
 double strut_history_locked_energy(const strut_element *e, const double *rest);
 
 /** As strut_elements_add_forces, for a block of elements with memory. */
-void strut_history_add_forces(const strut_model *model, strut_state *state,
+void strut_history_add_forces(const strut_model *model, const strut_state *state,
                               const strut_element_block *block, const double *q, const double *v,
                               double *force);
 /** Own slots after the slots that they follow have changed. */
-void strut_history_follow(const strut_model *model, strut_state *state);
+void strut_history_follow(const strut_model *model, const strut_state *state);
 
 /** After a step in frozen modes has been accepted: sliders that give way and cables at guides, at the state's q. */
 void strut_history_keep(const strut_model *model, strut_state *state);
@@ -146,7 +146,7 @@ STRUT_API void strut_history_begin(const strut_model *model, strut_state *state,
  * Adds the forces of all branches at q and v and the rates of these forces to `force`, and with the
  * balance their powers. The driven rest lengths must be those of this instant.
  */
-void strut_maxwell_apply(const strut_model *model, strut_state *state, const double *q,
+void strut_maxwell_apply(const strut_model *model, const strut_state *state, const double *q,
                          const double *v, double *force);
 /** Force of the branch of a member, tension positive [N]; 0 without one. */
 double strut_maxwell_force(const strut_model *model, const double *v, int32_t member);

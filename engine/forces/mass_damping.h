@@ -6,8 +6,8 @@
 #include "engine/model/sparse.h"
 #include "engine/model/state.h"
 
-/** Subtracts alpha M v from state->latest.force and accumulates what that takes as lost in members. */
-void strut_mass_damping_apply(const strut_model *model, strut_state *state, const double *v);
+/** Subtracts alpha M v from state->latest->force and accumulates what that takes as lost in members. */
+void strut_mass_damping_apply(const strut_model *model, const strut_state *state, const double *v);
 
 /** Contributions of strut_mass_damping_add at most. */
 static inline size_t strut_mass_damping_entries(const strut_model *model) {

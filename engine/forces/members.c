@@ -29,10 +29,10 @@ strut_member_values strut_member_measure_at(const strut_model *model, const stru
                                             int32_t j, const double *q, const double *v) {
   assert(j >= 0 && j < model->members.count);
   const strut_member_table *t = &model->members;
-  strut_member_pose pose = strut_member_pose_at(t, state->latest.rest, j, q);
+  strut_member_pose pose = strut_member_pose_at(t, state->latest->rest, j, q);
   double rate = strut_member_rate(t, j, &pose, v);
   double force =
-      t->stiffness[j] * pose.stretch + t->damping[j] * (rate - state->latest.rest_rate[j]);
+      t->stiffness[j] * pose.stretch + t->damping[j] * (rate - state->latest->rest_rate[j]);
   bool pulls = pose.taut && force > t->slack[j];
   strut_member_values values = {pose.length, rate, pulls ? force : t->slack[j]};
   const strut_element *element = strut_element_of_member(&model->elements, j);

@@ -47,8 +47,8 @@ STRUT_INLINE four_member_values members_values(const strut_member_table *t,
   return (four_member_values){
       .length = length,
       .rate = rate,
-      .rest = strut_lanes_load((driven ? state->latest.rest : t->rest) + j),
-      .rest_rate = driven ? strut_lanes_load(state->latest.rest_rate + j) : (strut_lanes){0},
+      .rest = strut_lanes_load((driven ? state->latest->rest : t->rest) + j),
+      .rest_rate = driven ? strut_lanes_load(state->latest->rest_rate + j) : (strut_lanes){0},
       .stiffness = strut_lanes_load(t->stiffness + j),
       .damping = strut_lanes_load(t->damping + j),
       .slack_length_threshold = strut_lanes_load(state->modes.slack_length_threshold + j),
@@ -203,7 +203,7 @@ void strut_many_members_add_forces(const strut_model *model, const strut_state *
                                    four_member_powers *powers);
 
 /* Adds the forces of all members. */
-STRUT_INLINE void members_kernel(const strut_model *model, strut_state *state,
+STRUT_INLINE void members_kernel(const strut_model *model, const strut_state *state,
                                  const double *restrict q, const double *restrict v,
                                  double *restrict force, bool balance, four_member_powers *powers) {
   const strut_member_table t = model->members;

@@ -24,7 +24,7 @@ static slide slide_at(const strut_model *model, const strut_state *state, int32_
                       const double *q, const double *v) {
   assert(k >= 0 && k < model->sliding.moving_count);
   const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
-  const strut_sliding_motion *at = &state->latest.sliding[k];
+  const strut_sliding_motion *at = &state->latest->sliding[k];
   return (slide){.item = s,
                  .at = at,
                  .near = 1.0 - at->share,
@@ -73,14 +73,14 @@ static void fill(const strut_sliding_table *t, const strut_sliding_motion *at,
     }
 }
 
-void strut_sliding_masses_place(const strut_model *model, strut_state *state, double t) {
+void strut_sliding_masses_place(const strut_model *model, const strut_state *state, double t) {
   const strut_sliding_table *table = &model->sliding;
   const strut_signal *signals = model->scene->signals;
   int32_t n = table->moving_count;
   double when = t + state->time_offset;
   for (int32_t k = 0; k < n; k++) {
     const strut_sliding_item *s = &table->item[table->moving[k]];
-    strut_sliding_motion *at = &state->latest.sliding[k];
+    strut_sliding_motion *at = &state->latest->sliding[k];
     double value, rate;
     strut_signal_evaluate(signals, s->signal, when, &value, &rate);
     at->share = s->base + s->scale * value;
@@ -88,8 +88,8 @@ void strut_sliding_masses_place(const strut_model *model, strut_state *state, do
     at->bend = s->scale * strut_signal_acceleration(signals, s->signal, when);
   }
   for (int c = 0; c < 2 && table->between; c++) {
-    double *matrix = state->buffers.sliding_factor + c * n * n;
-    fill(table, state->latest.sliding, table->between + 4 * c * n * n, matrix);
+    double *matrix = state->buffers->sliding_factor + c * n * n;
+    fill(table, state->latest->sliding, table->between + 4 * c * n * n, matrix);
     if (!strut_cholesky_factor(n, NULL, matrix)) matrix[0] = NAN; /* as the motion is by then */
   }
 }
@@ -97,17 +97,17 @@ void strut_sliding_masses_place(const strut_model *model, strut_state *state, do
 void strut_sliding_masses_correct(const strut_model *model, const strut_state *state, double *a) {
   const strut_sliding_table *table = &model->sliding;
   int32_t n = table->moving_count;
-  double *push[2] = {state->buffers.sliding_push, state->buffers.sliding_push + n};
+  double *push[2] = {state->buffers->sliding_push, state->buffers->sliding_push + n};
   for (int32_t k = 0; k < n; k++) {
     const strut_sliding_item *s = &table->item[table->moving[k]];
-    double far = state->latest.sliding[k].share, near = 1.0 - far;
+    double far = state->latest->sliding[k].share, near = 1.0 - far;
     for (uint32_t c = 0; c < 2; c++) push[c][k] = near * a[s->at[0] + c] + far * a[s->at[1] + c];
   }
   for (int c = 0; c < 2; c++)
-    strut_cholesky_solve(n, state->buffers.sliding_factor + c * n * n, push[c]);
+    strut_cholesky_solve(n, state->buffers->sliding_factor + c * n * n, push[c]);
   for (int32_t k = 0; k < n; k++) {
     const strut_sliding_answer *r = &table->answer[k];
-    double far = state->latest.sliding[k].share, near = 1.0 - far;
+    double far = state->latest->sliding[k].share, near = 1.0 - far;
     for (int32_t i = 0; i < r->count; i++) {
       const double *xy = r->xy + 4 * i;
       a[r->at[i]] -= push[0][k] * (near * xy[0] + far * xy[2]);
@@ -116,7 +116,7 @@ void strut_sliding_masses_correct(const strut_model *model, const strut_state *s
   }
 }
 
-void strut_sliding_masses_apply(const strut_model *model, strut_state *state, double t,
+void strut_sliding_masses_apply(const strut_model *model, const strut_state *state, double t,
                                 const double *q, const double *v) {
   const double *g = model->scene->gravity, alpha = model->mass_damping;
   strut_sliding_masses_place(model, state, t);
@@ -125,28 +125,28 @@ void strut_sliding_masses_apply(const strut_model *model, strut_state *state, do
     const strut_sliding_item *item = s.item;
     double m = item->mass, moved = s.at->share - item->start;
     strut_vec2 d = drift(&s), u = velocity(&s, v);
-    spread(&s, -m * (d.x + alpha * u.x), -m * (d.y + alpha * u.y), state->latest.force);
+    spread(&s, -m * (d.x + alpha * u.x), -m * (d.y + alpha * u.y), state->latest->force);
     for (uint32_t c = 0; c < 2; c++) { /* the weights have its own where it started */
-      state->latest.force[item->at[0] + c] -= m * moved * g[c];
-      state->latest.force[item->at[1] + c] += m * moved * g[c];
+      state->latest->force[item->at[0] + c] -= m * moved * g[c];
+      state->latest->force[item->at[1] + c] += m * moved * g[c];
     }
     if (!state->balance || alpha == 0.0) continue;
     double lost = alpha * m * (u.x * u.x + u.y * u.y);
-    state->latest.power[STRUT_POWER_MEMBERS] += lost;
-    state->latest.power[STRUT_POWER_EXCHANGED] += lost;
+    state->latest->power[STRUT_POWER_MEMBERS] += lost;
+    state->latest->power[STRUT_POWER_EXCHANGED] += lost;
   }
 }
 
-void strut_sliding_masses_add_power(const strut_model *model, strut_state *state, const double *q,
-                                    const double *v, const double *a) {
+void strut_sliding_masses_add_power(const strut_model *model, const strut_state *state,
+                                    const double *q, const double *v, const double *a) {
   const double *g = model->scene->gravity, alpha = model->mass_damping;
   for (int32_t k = 0; k < model->sliding.moving_count; k++) {
     slide s = slide_at(model, state, k, q, v);
     strut_vec2 d = drift(&s), u = velocity(&s, v), bend = interpolate(&s, a);
     double x = bend.x + d.x + alpha * u.x - g[0], y = bend.y + d.y + alpha * u.y - g[1];
     double power = s.item->mass * s.at->rate * (x * s.span.x + y * s.span.y);
-    state->latest.power[STRUT_POWER_DRIVE] += power;
-    state->latest.power[STRUT_POWER_EXCHANGED] += fabs(power);
+    state->latest->power[STRUT_POWER_DRIVE] += power;
+    state->latest->power[STRUT_POWER_EXCHANGED] += fabs(power);
   }
 }
 
@@ -177,17 +177,18 @@ static double jump_of_rate(const strut_model *model, const strut_sliding_item *s
   return sum * s->scale;
 }
 
-/* Impulses of the jumps into state->latest.force, the jumps into their motions. True if there are any. */
-static bool find_impulses(const strut_model *model, strut_state *state, double from, double to) {
+/* Impulses of the jumps into state->latest->force, the jumps into their motions. True if there are any. */
+static bool find_impulses(const strut_model *model, const strut_state *state, double from,
+                          double to) {
   bool any = false;
-  memset(state->latest.force, 0, (size_t)model->length * sizeof *state->latest.force);
+  memset(state->latest->force, 0, (size_t)model->length * sizeof *state->latest->force);
   for (int32_t k = 0; k < model->sliding.moving_count; k++) {
     slide s = slide_at(model, state, k, state->q, state->v);
     double jump = jump_of_rate(model, s.item, from + state->time_offset, to + state->time_offset);
     double push = -s.item->mass * jump;
-    state->latest.sliding[k].jump = jump;
+    state->latest->sliding[k].jump = jump;
     any = any || jump != 0.0;
-    spread(&s, push * s.span.x, push * s.span.y, state->latest.force);
+    spread(&s, push * s.span.x, push * s.span.y, state->latest->force);
   }
   return any;
 }
@@ -208,11 +209,11 @@ static double work_of_jumps(const strut_model *model, const strut_state *state,
 
 bool strut_sliding_masses_kick(const strut_model *model, strut_state *state, double from,
                                double to) {
-  double *change = state->buffers.support_answer;
+  double *change = state->buffers->support_answer;
   if (!(model->terms & STRUT_TERM_SLIDING_MASS)) return false;
   strut_sliding_masses_place(model, state, to);
   if (!model->sliding.corners || !find_impulses(model, state, from, to)) return false;
-  strut_mass_solve(model, state->latest.force, change, state->buffers.mass_solve);
+  strut_mass_solve(model, state->latest->force, change, state->buffers->mass_solve);
   strut_sliding_masses_correct(model, state, change);
   double work = work_of_jumps(model, state, change);
   for (int32_t i = 0; i < model->length; i++) state->v[i] += change[i];
@@ -228,7 +229,7 @@ double strut_sliding_masses_moment(const strut_model *model, const strut_state *
   for (int32_t k = 0; k < model->sliding.moving_count; k++) {
     const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
     double span = q[s->at[1] + (uint32_t)axis] - q[s->at[0] + (uint32_t)axis];
-    sum += s->mass * (state->latest.sliding[k].share - s->start) * span;
+    sum += s->mass * (state->latest->sliding[k].share - s->start) * span;
   }
   return sum;
 }
@@ -238,7 +239,7 @@ double strut_sliding_masses_momentum(const strut_model *model, const strut_state
   double sum = strut_sliding_masses_moment(model, state, axis, v);
   for (int32_t k = 0; k < model->sliding.moving_count; k++) {
     const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
-    sum += s->mass * state->latest.sliding[k].rate *
+    sum += s->mass * state->latest->sliding[k].rate *
            (q[s->at[1] + (uint32_t)axis] - q[s->at[0] + (uint32_t)axis]);
   }
   return sum;
@@ -265,18 +266,18 @@ static rotation rotate(const strut_signal *signals, const strut_unbalance *u, do
   return r;
 }
 
-static void push(strut_state *state, const strut_unbalance *u, double fx, double fy,
+static void push(const strut_state *state, const strut_unbalance *u, double fx, double fy,
                  const double *v) {
   int32_t at = 2 * u->node;
-  state->latest.force[at] += fx;
-  state->latest.force[at + 1] += fy;
+  state->latest->force[at] += fx;
+  state->latest->force[at + 1] += fy;
   if (!state->balance) return;
   double power = fx * v[at] + fy * v[at + 1];
-  state->latest.power[STRUT_POWER_DRIVE] += power;
-  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(power);
+  state->latest->power[STRUT_POWER_DRIVE] += power;
+  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(power);
 }
 
-void strut_unbalance_apply(const strut_model *model, strut_state *state, double t,
+void strut_unbalance_apply(const strut_model *model, const strut_state *state, double t,
                            const double *v) {
   const strut_scene *scene = model->scene;
   for (size_t i = 0; i < scene->unbalance_count; i++) {
@@ -288,8 +289,8 @@ void strut_unbalance_apply(const strut_model *model, strut_state *state, double 
   }
 }
 
-void strut_unbalance_apply_mean(const strut_model *model, strut_state *state, double t, double h,
-                                const double *v) {
+void strut_unbalance_apply_mean(const strut_model *model, const strut_state *state, double t,
+                                double h, const double *v) {
   const strut_scene *scene = model->scene;
   for (size_t i = 0; i < scene->unbalance_count; i++) {
     const strut_unbalance *u = &scene->unbalances[i];
@@ -301,9 +302,9 @@ void strut_unbalance_apply_mean(const strut_model *model, strut_state *state, do
   }
 }
 
-/* Adds to state->latest.force the impulses of one mass. True if there are any. */
-static bool add_impulses(const strut_model *model, strut_state *state, const strut_unbalance *u,
-                         double from, double to) {
+/* Adds to state->latest->force the impulses of one mass. True if there are any. */
+static bool add_impulses(const strut_model *model, const strut_state *state,
+                         const strut_unbalance *u, double from, double to) {
   const strut_signal *signals = model->scene->signals;
   bool any = false;
   double at = u->signal >= 0 ? strut_signal_next_break(signals, u->signal, from) : HUGE_VAL;
@@ -311,8 +312,8 @@ static bool add_impulses(const strut_model *model, strut_state *state, const str
     double moment = 8.0 * DBL_EPSILON * fmax(fabs(at), to - from);
     rotation before = rotate(signals, u, at - moment), after = rotate(signals, u, at + moment);
     double jump = u->mass * u->radius * (after.rate - before.rate);
-    state->latest.force[2 * u->node] += jump * after.sine;
-    state->latest.force[2 * u->node + 1] -= jump * after.cosine;
+    state->latest->force[2 * u->node] += jump * after.sine;
+    state->latest->force[2 * u->node + 1] -= jump * after.cosine;
     any = any || jump != 0.0;
   }
   return any;
@@ -322,7 +323,7 @@ bool strut_unbalance_kick(const strut_model *model, strut_state *state, double f
   const strut_scene *scene = model->scene;
   bool any = false;
   if (!model->unbalance_corners) return false;
-  memset(state->latest.force, 0, (size_t)model->length * sizeof *state->latest.force);
+  memset(state->latest->force, 0, (size_t)model->length * sizeof *state->latest->force);
   for (size_t i = 0; i < scene->unbalance_count; i++)
     any = add_impulses(model, state, &scene->unbalances[i], from + state->time_offset,
                        to + state->time_offset) ||

@@ -14,15 +14,15 @@
  */
 
 /** Puts the moving masses where they are at time t [s], and factors what the acceleration needs. */
-void strut_sliding_masses_place(const strut_model *model, strut_state *state, double t);
-/** Does that, and adds their forces at positions q and velocities v to state->latest.force. */
-void strut_sliding_masses_apply(const strut_model *model, strut_state *state, double t,
+void strut_sliding_masses_place(const strut_model *model, const strut_state *state, double t);
+/** Does that, and adds their forces at positions q and velocities v to state->latest->force. */
+void strut_sliding_masses_apply(const strut_model *model, const strut_state *state, double t,
                                 const double *q, const double *v);
 /** From a = M^-1 f (length) to the acceleration with the moving masses, as they have been placed. */
 void strut_sliding_masses_correct(const strut_model *model, const strut_state *state, double *a);
 /** Adds the power of what drives them along their members, with the acceleration a. */
-void strut_sliding_masses_add_power(const strut_model *model, strut_state *state, const double *q,
-                                    const double *v, const double *a);
+void strut_sliding_masses_add_power(const strut_model *model, const strut_state *state,
+                                    const double *q, const double *v, const double *a);
 /** Adds what kinetic and gravity energies of the moving masses are more than at their start. */
 void strut_sliding_masses_add_energies(const strut_model *model, const strut_state *state,
                                        const double *q, const double *v, double *kinetic,
@@ -47,11 +47,12 @@ double strut_sliding_masses_momentum(const strut_model *model, const strut_state
  * on the structure, not on the rotor itself.
  */
 
-/** Adds the forces at time t [s] to state->latest.force, and their power at velocities v. */
-void strut_unbalance_apply(const strut_model *model, strut_state *state, double t, const double *v);
+/** Adds the forces at time t [s] to state->latest->force, and their power at velocities v. */
+void strut_unbalance_apply(const strut_model *model, const strut_state *state, double t,
+                           const double *v);
 /** Adds the forces on average over the time from t on for h [s], impulses within it too; u: mean velocity. */
-void strut_unbalance_apply_mean(const strut_model *model, strut_state *state, double t, double h,
-                                const double *u);
+void strut_unbalance_apply_mean(const strut_model *model, const strut_state *state, double t,
+                                double h, const double *u);
 /**
  * The impulses of angular velocities that jump after the time `from` and up to `to` [s], on state->v.
  * True if there were any.

@@ -55,7 +55,7 @@ bool strut_nearby_is_far(const strut_model *model, int32_t element, const double
   return is_beyond(model, element, q, way_of(model, 0));
 }
 
-static void make(const strut_model *model, strut_state *state, const double *q, int level) {
+static void make(const strut_model *model, const strut_state *state, const double *q, int level) {
   strut_nearby *near = &state->nearby[level];
   const strut_nearby *from = level + 1 < STRUT_NEARBY_LISTS ? near + 1 : NULL;
   double way = way_of(model, level);
@@ -76,7 +76,8 @@ const strut_nearby *strut_nearby_serving(const strut_model *model, const strut_s
   return serves(model, state->nearby, q, way_of(model, 0), 0.0) ? state->nearby : NULL;
 }
 
-const strut_nearby *strut_nearby_at(const strut_model *model, strut_state *state, const double *q) {
+const strut_nearby *strut_nearby_at(const strut_model *model, const strut_state *state,
+                                    const double *q) {
   strut_nearby *near = state->nearby;
   if (serves(model, near, q, way_of(model, 0), 0.0)) return near;
   int level = 1; /* the first list that serves for as long as the one below will */

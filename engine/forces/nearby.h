@@ -13,7 +13,8 @@
 #include "engine/model/state.h"
 
 /** The elements that may act at q, for a model with elements.scattered. Until the next call with the same state. */
-const strut_nearby *strut_nearby_at(const strut_model *model, strut_state *state, const double *q);
+const strut_nearby *strut_nearby_at(const strut_model *model, const strut_state *state,
+                                    const double *q);
 /** The list that serves at q already; or NULL, which stands for all elements. */
 const strut_nearby *strut_nearby_serving(const strut_model *model, const strut_state *state,
                                          const double *q);

@@ -87,7 +87,7 @@ static strut_rigid *create(const strut_model *model, strut_arena *arena, double 
 }
 
 bool strut_rigid_create(const strut_model *model, strut_state *state) {
-  state->rigid = create(model, &state->arena, state->buffers.mass_solve);
+  state->rigid = create(model, &state->arena, state->buffers->mass_solve);
   if (state->rigid) strut_rigid_begin(model, state);
   return state->rigid;
 }
@@ -127,11 +127,12 @@ void strut_rigid_begin(const strut_model *model, strut_state *state) {
   strut_rigid *g = state->rigid;
   for (int32_t r = 0; r < g->bars; r++) g->length[r] = distance(g, r, state->q);
   memset(g->tension, 0, (size_t)g->bars * sizeof(double));
+  g->failed = false;
   strut_rigid_rows(g, state->q);
   if (strut_rigid_factorise(g) >= 0)
     state->trouble = STRUT_FAILURE_RIGID;
   else
-    strut_rigid_filter(model, g, state->v, state->buffers.mass_solve);
+    strut_rigid_filter(model, g, state->v, state->buffers->mass_solve);
 }
 
 strut_status strut_rigid_check(const strut_model *model, strut_error *error) {
@@ -192,68 +193,67 @@ static bool hold(const strut_model *model, strut_rigid *g, const double *q, cons
 }
 
 /* The contact whose stick is overtaxed most slides instead, pushed by what held it. */
-static bool release(const strut_model *model, strut_state *state, strut_rigid *g, int32_t *stuck) {
+static bool release(const strut_model *model, const strut_state *state, strut_rigid *g,
+                    int32_t *stuck) {
   const strut_contact_table *c = &model->contacts;
   int32_t worst = -1;
   double most = 0.0;
   for (int32_t k = 0; k < *stuck; k++) {
     int32_t i = g->stuck[k];
     double held = g->right[g->bars + k];
-    double limit = strut_friction_static(&c->entry[i].friction, -held) * state->latest.normal[i];
+    double limit = strut_friction_static(&c->entry[i].friction, -held) * state->latest->normal[i];
     double excess = fabs(held) - limit;
     if (excess >= 0.0 && (worst < 0 || excess > most)) worst = k, most = excess;
   }
   if (worst < 0) return false;
   int32_t i = g->stuck[worst];
   double hold = g->right[g->bars + worst],
-         slide = strut_friction_kinetic(&c->entry[i].friction, -hold) * state->latest.normal[i];
+         slide = strut_friction_kinetic(&c->entry[i].friction, -hold) * state->latest->normal[i];
   double friction = hold > 0.0 ? slide : hold < 0.0 ? -slide : 0.0;
-  state->latest.friction[i] = friction;
+  state->latest->friction[i] = friction;
   for (int k = 0; k < 2; k++)
-    state->latest.force[c->at[i] + (uint32_t)k] += friction * c->tangent[k];
+    state->latest->force[c->at[i] + (uint32_t)k] += friction * c->tangent[k];
   g->stuck[worst] = g->stuck[--*stuck];
   return true;
 }
 
 /* Friction's powers of the contacts within the band, which the kernel has left out. */
-static void accumulate(const strut_model *model, strut_state *state, const double *q,
+static void accumulate(const strut_model *model, const strut_state *state, const double *q,
                        const double *v) {
   const strut_contact_table *c = &model->contacts;
   strut_rigid *g = state->rigid;
   int32_t count = find_stuck(model, g, q, v);
   for (int32_t k = 0; k < count; k++) {
     int32_t i = g->stuck[k];
-    double slip = strut_contact_slip(c, i, v), rubbed = -state->latest.friction[i] * slip;
-    double belt = state->latest.friction[i] * c->belt_speed;
-    state->latest.power[STRUT_POWER_FRICTION] += rubbed;
-    state->latest.power[STRUT_POWER_BELT] += belt;
-    state->latest.power[STRUT_POWER_EXCHANGED] += fabs(rubbed) + fabs(belt);
+    double slip = strut_contact_slip(c, i, v), rubbed = -state->latest->friction[i] * slip;
+    double belt = state->latest->friction[i] * c->belt_speed;
+    state->latest->power[STRUT_POWER_FRICTION] += rubbed;
+    state->latest->power[STRUT_POWER_BELT] += belt;
+    state->latest->power[STRUT_POWER_EXCHANGED] += fabs(rubbed) + fabs(belt);
   }
 }
 
-void strut_rigid_accelerate(const strut_model *model, strut_state *state, const double *q,
+void strut_rigid_accelerate(const strut_model *model, const strut_state *state, const double *q,
                             const double *v, double *a) {
   strut_rigid *g = state->rigid;
   int32_t stuck = find_stuck(model, g, q, v), before = stuck;
   for (;;) {
-    if (!hold(model, g, q, v, a, stuck)) {
-      state->trouble = STRUT_FAILURE_RIGID;
-      return;
-    }
+    g->failed = !hold(model, g, q, v, a, stuck) || g->failed;
+    if (g->failed) return;
     if (!release(model, state, g, &stuck)) break;
-    strut_mass_solve(model, state->latest.force, a, state->buffers.mass_solve);
+    strut_mass_solve(model, state->latest->force, a, state->buffers->mass_solve);
   }
   for (int32_t r = 0; r < g->bars; r++) g->tension[r] = -g->right[r];
-  for (int32_t k = 0; k < stuck; k++) state->latest.friction[g->stuck[k]] = g->right[g->bars + k];
-  strut_rigid_spread(g, state->latest.force);
-  strut_mass_solve(model, state->latest.force, a, state->buffers.mass_solve);
+  for (int32_t k = 0; k < stuck; k++) state->latest->friction[g->stuck[k]] = g->right[g->bars + k];
+  strut_rigid_spread(g, state->latest->force);
+  strut_mass_solve(model, state->latest->force, a, state->buffers->mass_solve);
   if (state->balance && before) accumulate(model, state, q, v);
 }
 
-void strut_rigid_constrain(const strut_model *model, strut_state *state, const double *q,
+void strut_rigid_constrain(const strut_model *model, const strut_state *state, const double *q,
                            const double *v) {
   memset(state->rigid->free, 0, (size_t)model->length * sizeof(double));
-  strut_mass_solve(model, state->latest.force, state->rigid->free, state->buffers.mass_solve);
+  strut_mass_solve(model, state->latest->force, state->rigid->free, state->buffers->mass_solve);
   strut_rigid_accelerate(model, state, q, v, state->rigid->free);
 }
 
@@ -279,15 +279,15 @@ bool strut_rigid_project(const strut_model *model, strut_state *state, double *q
     if (strut_rigid_factorise(g) >= 0) break;
     departure(g, q);
     strut_rigid_solve(g);
-    move(model, state->buffers.mass_solve, g, q);
+    move(model, state->buffers->mass_solve, g, q);
     left = departure(g, q);
   }
   strut_rigid_rows(g, q);
-  if (!(left <= FAR) || strut_rigid_factorise(g) >= 0) {
+  if (g->failed || !(left <= FAR) || strut_rigid_factorise(g) >= 0) {
     state->trouble = STRUT_FAILURE_RIGID;
     return false;
   }
-  strut_rigid_filter(model, g, v, state->buffers.mass_solve);
+  strut_rigid_filter(model, g, v, state->buffers->mass_solve);
   return true;
 }
 

@@ -34,6 +34,7 @@ typedef struct strut_rigid {
   double *right;             /* (most) right-hand side, then the multipliers */
   int32_t *stuck;            /* (contacts) those within the band */
   double *free, *push;       /* (length) scratch */
+  bool failed; /* an evaluation since strut_rigid_begin had bars that depend on each other */
 } strut_rigid;
 
 /** Into the state's arena, with the lengths of the state's q. False: out of memory. */
@@ -48,13 +49,13 @@ STRUT_API strut_status strut_rigid_check(const strut_model *model, strut_error *
 
 /**
  * a (length): the acceleration without bars and stick in, with them out. Adds their forces to
- * state->latest.force, sets friction of contacts in the band and tensions, and with the energy balance
- * accumulates them. state->trouble where it cannot be done.
+ * state->latest->force, sets friction of contacts in the band and tensions, and with the energy balance
+ * accumulates them. Where it cannot be done rigid->failed is set, and strut_rigid_project says so.
  */
-void strut_rigid_accelerate(const strut_model *model, strut_state *state, const double *q,
+void strut_rigid_accelerate(const strut_model *model, const strut_state *state, const double *q,
                             const double *v, double *a);
-/** The same from state->latest.force, where only forces are wanted. */
-void strut_rigid_constrain(const strut_model *model, strut_state *state, const double *q,
+/** The same from state->latest->force, where only forces are wanted. */
+void strut_rigid_constrain(const strut_model *model, const strut_state *state, const double *q,
                            const double *v);
 /** Bars with their rows factorised at q, for the filter; NULL: out of memory. */
 strut_rigid *strut_rigid_standing(const strut_model *model, const double *q, strut_arena *arena);

@@ -70,23 +70,23 @@ static rubbing_forces forces_of(const strut_model *model, const strut_state *sta
   return r;
 }
 
-static void add_entry(const strut_model *model, strut_state *state, int32_t item, const double *q,
-                      const double *v) {
+static void add_entry(const strut_model *model, const strut_state *state, int32_t item,
+                      const double *q, const double *v) {
   const strut_rubbing_entry *f = &model->rubbing.item[item];
   const uint32_t *at = model->elements.at + model->elements.element[f->element].first;
   if (f->friction.law == STRUT_FRICTION_NONE) return;
   rubbing_forces r = forces_of(model, state, item, q, v);
-  if (f->bend >= 0) state->latest.force[f->bend] = r.bend_rate;
+  if (f->bend >= 0) state->latest->force[f->bend] = r.bend_rate;
   for (int32_t k = 0; k < 2 * r.nodes; k++)
-    state->latest.force[at[k / 2] + (uint32_t)(k % 2)] += r.friction * r.slide[k];
+    state->latest->force[at[k / 2] + (uint32_t)(k % 2)] += r.friction * r.slide[k];
   if (!state->balance) return;
   double lost = -r.friction * r.slip, belt = r.friction * f->belt_speed;
-  state->latest.power[STRUT_POWER_FRICTION] += lost;
-  state->latest.power[STRUT_POWER_BELT] += belt;
-  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(lost) + fabs(belt);
+  state->latest->power[STRUT_POWER_FRICTION] += lost;
+  state->latest->power[STRUT_POWER_BELT] += belt;
+  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(lost) + fabs(belt);
 }
 
-void strut_rubbing_add_forces(const strut_model *model, strut_state *state, const double *q,
+void strut_rubbing_add_forces(const strut_model *model, const strut_state *state, const double *q,
                               const double *v) {
   const strut_rubbing_table *t = &model->rubbing;
   if (!model->elements.scattered) {
@@ -111,13 +111,13 @@ double strut_rubbing_bristle_decay(const strut_model *model, const strut_state *
                  : 1.0 / f->friction.relaxation;
 }
 
-void strut_rubbing_show_feet(const strut_model *model, strut_state *state, const double *q,
+void strut_rubbing_show_feet(const strut_model *model, const strut_state *state, const double *q,
                              const double *v) {
   for (int32_t i = 0; i < model->rubbing.count; i++) {
     int32_t contact = model->rubbing.item[i].contact;
     if (contact < 0) continue;
     rubbing_forces r = forces_of(model, state, i, q, v);
-    state->latest.normal[contact] = r.normal;
-    state->latest.friction[contact] = r.friction;
+    state->latest->normal[contact] = r.normal;
+    state->latest->friction[contact] = r.friction;
   }
 }

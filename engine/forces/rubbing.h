@@ -17,13 +17,13 @@ enum { STRUT_MOST_RUBBING = 6 }; /* coordinates of an element that rubs */
 int32_t strut_rubbing_slide(const strut_model *model, int32_t item, const double *q,
                             double b[STRUT_MOST_RUBBING]);
 /** Adds all this friction to the state's force, and its power; after the elements. */
-void strut_rubbing_add_forces(const strut_model *model, strut_state *state, const double *q,
+void strut_rubbing_add_forces(const strut_model *model, const strut_state *state, const double *q,
                               const double *v);
 /** How fast the bristles of an entry straighten as they slide at the state [1/s]; 0 where it has none. */
 double strut_rubbing_bristle_decay(const strut_model *model, const strut_state *state,
                                    int32_t item);
 /** Writes the forces of feet over those of their nodes' contacts, which touch nothing themselves. */
-void strut_rubbing_show_feet(const strut_model *model, strut_state *state, const double *q,
+void strut_rubbing_show_feet(const strut_model *model, const strut_state *state, const double *q,
                              const double *v);
 
 #endif

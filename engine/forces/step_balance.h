@@ -51,15 +51,15 @@ STRUT_INLINE void step_balance_clear_side(const strut_model *model, strut_power_
   step_balance_clear_contacts(to->turnover);
   if (model->contacts.belt_speed != 0.0) step_balance_clear_contacts(to->belt);
 }
-STRUT_INLINE void strut_step_balance_begin(const strut_model *model, strut_state *state) {
-  step_balance_clear_side(model, &state->latest.lanes[0]);
-  step_balance_clear_side(model, &state->latest.lanes[1]);
+STRUT_INLINE void strut_step_balance_begin(const strut_model *model, const strut_state *state) {
+  step_balance_clear_side(model, &state->latest->lanes[0]);
+  step_balance_clear_side(model, &state->latest->lanes[1]);
 }
 
 /* Adds the works of a step; sixth: of its size [s]. */
 STRUT_INLINE void strut_step_balance_end(const strut_model *model, strut_state *state,
                                          double sixth) {
-  const strut_power_lanes *once = &state->latest.lanes[0], *twice = &state->latest.lanes[1];
+  const strut_power_lanes *once = &state->latest->lanes[0], *twice = &state->latest->lanes[1];
   double *work = state->work;
   strut_lanes exchanged = {0};
   if (model->terms & STRUT_TERM_MEMBERS) {

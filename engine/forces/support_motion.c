@@ -20,40 +20,40 @@ void strut_support_motion_place(const strut_model *model, const strut_state *sta
   }
 }
 
-static void add_reaction_power(const strut_model *model, strut_state *state, double power,
+static void add_reaction_power(const strut_model *model, const strut_state *state, double power,
                                const double *v) {
   const strut_support_motion_table *table = &model->support_motion;
   for (int32_t i = 0; i < table->count; i++)
-    power -= state->latest.force[table->item[i].at] * v[table->item[i].at];
-  state->latest.power[STRUT_POWER_SUPPORT] += power;
-  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(power);
+    power -= state->latest->force[table->item[i].at] * v[table->item[i].at];
+  state->latest->power[STRUT_POWER_SUPPORT] += power;
+  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(power);
 }
 
-void strut_support_motion_apply(const strut_model *model, strut_state *state, double t,
+void strut_support_motion_apply(const strut_model *model, const strut_state *state, double t,
                                 const double *v) {
   const strut_support_motion_table *table = &model->support_motion;
   const strut_signal *signals = model->scene->signals;
-  double power = 0.0, *acceleration = state->buffers.support_rates;
+  double power = 0.0, *acceleration = state->buffers->support_rates;
   for (int32_t i = 0; i < table->count && table->coupling_count; i++)
     acceleration[i] =
         strut_signal_acceleration(signals, table->item[i].signal, t + state->time_offset);
   for (int32_t k = 0; k < table->coupling_count; k++) {
     const strut_support_coupling *c = &table->coupling[k];
     double push = -c->mass * acceleration[c->item];
-    state->latest.force[c->at] += push;
+    state->latest->force[c->at] += push;
     power += push * v[c->at];
   }
   if (state->balance) add_reaction_power(model, state, power, v);
 }
 
-void strut_support_motion_apply_mean(const strut_model *model, strut_state *state, double h,
+void strut_support_motion_apply_mean(const strut_model *model, const strut_state *state, double h,
                                      const double *before, const double *after, const double *u) {
   const strut_support_motion_table *table = &model->support_motion;
   double power = 0.0;
   for (int32_t k = 0; k < table->coupling_count; k++) {
     const strut_support_coupling *c = &table->coupling[k];
     double push = -c->mass * (after[c->item] - before[c->item]) / h;
-    state->latest.force[c->at] += push;
+    state->latest->force[c->at] += push;
     power += push * u[c->at];
   }
   if (state->balance) add_reaction_power(model, state, power, u);
@@ -71,21 +71,22 @@ static double jump_of_rate(const strut_signal *signals, int32_t signal, double f
   return sum;
 }
 
-/* Impulses of the jumps into state->latest.force. True if there are any. */
-static bool find_impulses(const strut_model *model, strut_state *state, double from, double to) {
+/* Impulses of the jumps into state->latest->force. True if there are any. */
+static bool find_impulses(const strut_model *model, const strut_state *state, double from,
+                          double to) {
   const strut_support_motion_table *table = &model->support_motion;
   bool any = false;
   for (int32_t i = 0; i < table->count; i++) {
-    state->buffers.support_rates[i] =
+    state->buffers->support_rates[i] =
         jump_of_rate(model->scene->signals, table->item[i].signal, from + state->time_offset,
                      to + state->time_offset);
-    any = any || state->buffers.support_rates[i] != 0.0;
+    any = any || state->buffers->support_rates[i] != 0.0;
   }
   if (!any) return false;
-  memset(state->latest.force, 0, (size_t)model->length * sizeof *state->latest.force);
+  memset(state->latest->force, 0, (size_t)model->length * sizeof *state->latest->force);
   for (int32_t k = 0; k < table->coupling_count; k++) {
     const strut_support_coupling *c = &table->coupling[k];
-    state->latest.force[c->at] -= c->mass * state->buffers.support_rates[c->item];
+    state->latest->force[c->at] -= c->mass * state->buffers->support_rates[c->item];
   }
   return true;
 }
@@ -102,10 +103,11 @@ bool strut_support_motion_kick(const strut_model *model, strut_state *state, dou
 static double moved_energy(const strut_model *model, const strut_state *state) {
   const strut_support_motion_table *table = &model->support_motion;
   double whole = strut_energy_kinetic(model, state->v);
-  memcpy(state->buffers.support_answer, state->v, (size_t)model->length * sizeof *state->v);
-  for (int32_t i = 0; i < table->count; i++) state->buffers.support_answer[table->item[i].at] = 0.0;
-  double rest = strut_energy_kinetic(model, state->buffers.support_answer);
-  memset(state->buffers.support_answer, 0, (size_t)model->length * sizeof *state->v);
+  memcpy(state->buffers->support_answer, state->v, (size_t)model->length * sizeof *state->v);
+  for (int32_t i = 0; i < table->count; i++)
+    state->buffers->support_answer[table->item[i].at] = 0.0;
+  double rest = strut_energy_kinetic(model, state->buffers->support_answer);
+  memset(state->buffers->support_answer, 0, (size_t)model->length * sizeof *state->v);
   return whole - rest;
 }
 

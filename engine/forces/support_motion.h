@@ -15,14 +15,14 @@
 void strut_support_motion_place(const strut_model *model, const strut_state *state, double t,
                                 double *q, double *v);
 /**
- * Adds -M_fc a_c at time t to state->latest.force, and the power of the supports at velocities v. Comes after
+ * Adds -M_fc a_c at time t to state->latest->force, and the power of the supports at velocities v. Comes after
  * all forces that act on moved coordinates.
  */
-void strut_support_motion_apply(const strut_model *model, strut_state *state, double t,
+void strut_support_motion_apply(const strut_model *model, const strut_state *state, double t,
                                 const double *v);
 /** The same on average over a step of h [s] that changes the moved velocities from `before` to `after`
     (moved coordinates), with mean velocities u. */
-void strut_support_motion_apply_mean(const strut_model *model, strut_state *state, double h,
+void strut_support_motion_apply_mean(const strut_model *model, const strut_state *state, double h,
                                      const double *before, const double *after, const double *u);
 /**
  * The impulse of velocities that jump after the time `from` and up to `to` [s]: free neighbours answer

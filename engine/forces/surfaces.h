@@ -12,10 +12,10 @@
 #include "engine/model/state.h"
 
 /**
- * Adds the reactions to state->latest.force; with the energy balance their powers. Friction comes last, and
+ * Adds the reactions to state->latest->force; with the energy balance their powers. Friction comes last, and
  * where several contacts of a node stick within Karnopp's band it is found for all of them together.
  */
-void strut_surfaces_add_forces(const strut_model *model, strut_state *state,
+void strut_surfaces_add_forces(const strut_model *model, const strut_state *state,
                                const double *restrict q, const double *restrict v);
 
 /** Velocity of a node against the surface of contact i: what the ground itself moves by is taken off. */

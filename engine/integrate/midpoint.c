@@ -299,7 +299,7 @@ static void guess(const strut_model *model, const strut_state *state, midpoint_w
 }
 
 /* Forces over the step that ends at q1 with velocity u on average. */
-static void evaluate(const strut_model *model, strut_state *state, midpoint_workspace *w) {
+static void evaluate(const strut_model *model, const strut_state *state, midpoint_workspace *w) {
   for (int32_t i = 0; i < model->length; i++) w->q1[i] = state->q[i] + w->step.h * w->u[i];
   strut_discrete_gradient_forces(model, state, &w->step, w->q1, w->u);
   if (model->terms & STRUT_TERM_SUPPORT_MOTION)
@@ -313,7 +313,7 @@ static bool correct_states(const strut_model *model, const strut_state *state,
   bool finite = true;
   w->states_settled = true;
   for (int32_t i = f->base; i < f->base + f->state_count; i++) {
-    double next = state->v[i] + 0.5 * w->step.h * state->latest.force[i];
+    double next = state->v[i] + 0.5 * w->step.h * state->latest->force[i];
     double close = CLOSE * ROUNDING * (fabs(next) + fabs(state->v[i]));
     if (!(fabs(next - w->u[i]) <= close)) w->states_settled = false;
     finite = finite && isfinite(next);
@@ -323,7 +323,7 @@ static bool correct_states(const strut_model *model, const strut_state *state,
 }
 
 /* Correction at u into x. False where there are no numbers. */
-static bool correct(const strut_model *model, strut_state *state, midpoint_workspace *w,
+static bool correct(const strut_model *model, const strut_state *state, midpoint_workspace *w,
                     double *x) {
   const strut_midpoint_matrix *m = &w->matrix;
   double h = w->step.h;
@@ -333,7 +333,7 @@ static bool correct(const strut_model *model, strut_state *state, midpoint_works
   for (int32_t i = 0; i < model->length; i++) w->u[i] += state->v[i];
   bool finite = correct_states(model, state, w);
   for (int32_t i = 0; i < m->n; i++) {
-    x[i] = 0.5 * h * state->latest.force[m->coordinate[i]] - x[i];
+    x[i] = 0.5 * h * state->latest->force[m->coordinate[i]] - x[i];
     finite = finite && isfinite(x[i]);
   }
   return finite;
@@ -364,7 +364,7 @@ static double rounding_of(const strut_model *model, const strut_state *state,
 static bool renew(const strut_model *model, const strut_state *state, midpoint_workspace *w,
                   bool stiff) {
   w->factor_step = w->step.h;
-  return strut_midpoint_matrix_update(model, &w->step, state->latest.rest, w->q1, w->held, stiff,
+  return strut_midpoint_matrix_update(model, &w->step, state->latest->rest, w->q1, w->held, stiff,
                                       &w->matrix);
 }
 
@@ -373,7 +373,7 @@ static bool renew(const strut_model *model, const strut_state *state, midpoint_w
  * that of an iterate, in which a stiff member is far too long or short until the next one. Where
  * corrections grow although the factor is new, only a part of each is taken.
  */
-static bool iterate(const strut_model *model, strut_state *state, midpoint_workspace *w,
+static bool iterate(const strut_model *model, const strut_state *state, midpoint_workspace *w,
                     bool stiff) {
   double before = 0.0, part = 1.0;
   size_t bytes = (size_t)w->matrix.n * sizeof *w->x;
@@ -412,7 +412,7 @@ static int32_t worst_node(const midpoint_workspace *w) {
 }
 
 /* Is there a solution? It is left in u, q1 and the powers. */
-static bool solve(const strut_model *model, strut_state *state, midpoint_workspace *w) {
+static bool solve(const strut_model *model, const strut_state *state, midpoint_workspace *w) {
   if (w->matrix.n == 0) {
     guess(model, state, w, true);
     for (int turn = 0; turn < MOST_TURNS; turn++) {
@@ -445,7 +445,7 @@ static void finish(const strut_model *model, strut_state *state, midpoint_worksp
   if (model->terms & STRUT_TERM_SUPPORT_MOTION)
     strut_support_motion_place(model, state, w->step.begin + h, state->q, state->v);
   for (int p = 0; p < STRUT_POWER_COUNT && state->balance; p++)
-    state->work[p] += h * state->latest.power[p];
+    state->work[p] += h * state->latest->power[p];
   strut_elements_keep_turns(model, state);
   memcpy(w->held, w->step.tension, (size_t)model->members.count * sizeof *w->held);
   w->before[1] = w->before[0], w->before[0] = w->u, w->u = oldest;

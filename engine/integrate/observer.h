@@ -22,8 +22,8 @@ typedef struct strut_motion_piece {
   bool ends_only; /* velocities have jumped within it: only its ends are known */
   /** Fills the state's held contact forces for an instant within the piece; NULL: they follow from
       q, v and t by the contacts' laws. */
-  void (*hold)(const struct strut_motion_piece *piece, const strut_model *model, strut_state *state,
-               double t, const double *q, const double *v);
+  void (*hold)(const struct strut_motion_piece *piece, const strut_model *model,
+               const strut_state *state, double t, const double *q, const double *v);
   void *workspace; /* of the method */
 } strut_motion_piece;
 

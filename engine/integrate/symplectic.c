@@ -27,7 +27,7 @@ STRUT_INLINE void euler_steps(const strut_model *model, strut_state *state, doub
     drives_ahead_apply(model, state, &drives, t, step, 1.0, dt, end - state->step);
     forces_kernel(model, state, t, q, v, a, terms, balance);
     for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
-      state->work[p] += dt * state->latest.power[p];
+      state->work[p] += dt * state->latest->power[p];
     for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
       strut_lanes next = strut_lanes_load(v + i) + dt * strut_lanes_load_pairs(a + i);
       strut_lanes_store(v + i, next);
@@ -86,7 +86,7 @@ static void verlet_restart(const strut_model *model, strut_state *state, void *w
                            double dt) {
   verlet_workspace *w = workspace;
   strut_forces_acceleration(model, state, (double)state->step * dt, state->q, state->v, w->a);
-  for (int p = 0; p < STRUT_POWER_COUNT; p++) w->power[p] = state->latest.power[p];
+  for (int p = 0; p < STRUT_POWER_COUNT; p++) w->power[p] = state->latest->power[p];
   w->started = true;
 }
 
@@ -115,13 +115,13 @@ STRUT_INLINE void verlet_steps(const strut_model *model, strut_state *state, ver
     if (moves) end_moving_step(model, state, dt);
     if (model->terms & STRUT_TERM_ELEMENTS) strut_elements_keep_turns(model, state);
     for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) {
-      state->work[p] += half * (w->power[p] + state->latest.power[p]);
-      w->power[p] = state->latest.power[p];
+      state->work[p] += half * (w->power[p] + state->latest->power[p]);
+      w->power[p] = state->latest->power[p];
     }
     w->a = next, w->next = a;
     if (model->terms & terms & STRUT_TERM_MEMORY && strut_history_renew(model, state, t)) {
       forces_kernel(model, state, t, q, v, w->a, terms, balance);
-      for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) w->power[p] = state->latest.power[p];
+      for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) w->power[p] = state->latest->power[p];
     }
   }
 }

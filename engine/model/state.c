@@ -11,19 +11,23 @@ static bool make_surfaces(const strut_model *model, strut_state *state) {
   const strut_contact_table *c = &model->contacts;
   size_t contacts = (size_t)c->count, grounds = model->scene->ground_count;
   if (!c->surface) return true;
-  state->latest.pose = strut_arena_allocate(&state->arena, contacts, sizeof *state->latest.pose);
-  state->buffers.near = strut_arena_allocate(&state->arena, contacts, sizeof *state->buffers.near);
+  state->latest->pose = strut_arena_allocate(&state->arena, contacts, sizeof *state->latest->pose);
+  state->buffers->near =
+      strut_arena_allocate(&state->arena, contacts, sizeof *state->buffers->near);
   if (c->moves)
-    state->latest.ground_motion =
-        strut_arena_allocate(&state->arena, grounds, sizeof *state->latest.ground_motion);
+    state->latest->ground_motion =
+        strut_arena_allocate(&state->arena, grounds, sizeof *state->latest->ground_motion);
   if (c->grips)
-    state->latest.grip = strut_arena_copy(&state->arena, c->entry, contacts, sizeof *c->entry);
-  return state->latest.pose && state->buffers.near && (state->latest.ground_motion || !c->moves) &&
-         (state->latest.grip || !c->grips);
+    state->latest->grip = strut_arena_copy(&state->arena, c->entry, contacts, sizeof *c->entry);
+  return state->latest->pose && state->buffers->near &&
+         (state->latest->ground_motion || !c->moves) && (state->latest->grip || !c->grips);
 }
 
 /* The arrays of a state and how long they are. */
 #define STRUT_STATE_ARRAYS(ARRAY)                                                                  \
+  ARRAY(latest, 1)                                                                                 \
+  ARRAY(buffers, 1)                                                                                \
+  ARRAY(nearby, STRUT_NEARBY_LISTS)                                                                \
   ARRAY(q, model->length)                                                                          \
   ARRAY(v, model->length)                                                                          \
   ARRAY(modes.slack_length_threshold, model->members.slots)                                        \
@@ -43,25 +47,25 @@ static bool make_surfaces(const strut_model *model, strut_state *state) {
   ARRAY(signals.trigger_was, model->scene->signal_count)                                           \
   ARRAY(signals.held, model->scene->signal_count)                                                  \
   ARRAY(signals.relay_side, model->scene->signal_count)                                            \
-  ARRAY(latest.rest, model->members.slots)                                                         \
-  ARRAY(latest.rest_rate, model->members.slots)                                                    \
-  ARRAY(latest.actuator_force, model->actuator_forces.count)                                       \
-  ARRAY(latest.sensor, model->feedback.count)                                                      \
-  ARRAY(latest.sensor_rate, model->feedback.count)                                                 \
-  ARRAY(latest.force, model->length)                                                               \
-  ARRAY(latest.normal, model->contacts.count)                                                      \
-  ARRAY(latest.friction, model->contacts.count)                                                    \
-  ARRAY(latest.sliding, model->sliding.moving_count)                                               \
+  ARRAY(latest->rest, model->members.slots)                                                        \
+  ARRAY(latest->rest_rate, model->members.slots)                                                   \
+  ARRAY(latest->actuator_force, model->actuator_forces.count)                                      \
+  ARRAY(latest->sensor, model->feedback.count)                                                     \
+  ARRAY(latest->sensor_rate, model->feedback.count)                                                \
+  ARRAY(latest->force, model->length)                                                              \
+  ARRAY(latest->normal, model->contacts.count)                                                     \
+  ARRAY(latest->friction, model->contacts.count)                                                   \
+  ARRAY(latest->sliding, model->sliding.moving_count)                                              \
   ARRAY(nearby[0].element, model->elements.scattered ? model->elements.count : 0)                  \
   ARRAY(nearby[1].element, model->elements.scattered ? model->elements.count : 0)                  \
   ARRAY(nearby[0].q, model->elements.scattered ? model->length : 0)                                \
   ARRAY(nearby[1].q, model->elements.scattered ? model->length : 0)                                \
-  ARRAY(buffers.mass_solve, model->length)                                                         \
-  ARRAY(buffers.support_rates, model->support_motion.count)                                        \
-  ARRAY(buffers.support_answer, answers_supports(model) ? model->length : 0)                       \
-  ARRAY(buffers.sliding_factor,                                                                    \
+  ARRAY(buffers->mass_solve, model->length)                                                        \
+  ARRAY(buffers->support_rates, model->support_motion.count)                                       \
+  ARRAY(buffers->support_answer, answers_supports(model) ? model->length : 0)                      \
+  ARRAY(buffers->sliding_factor,                                                                   \
         2 * (size_t)model->sliding.moving_count * (size_t)model->sliding.moving_count)             \
-  ARRAY(buffers.sliding_push, 2 * model->sliding.moving_count)
+  ARRAY(buffers->sliding_push, 2 * model->sliding.moving_count)
 
 static bool answers_supports(const strut_model *model) {
   return model->terms &
@@ -96,21 +100,21 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
   size_t both = (size_t)model->length * sizeof(double);
   size_t slots = (size_t)model->members.slots * sizeof(double);
   state->step = 0;
-  state->evaluations = state->events = 0;
+  state->latest->evaluations = state->events = 0;
   state->forced = (strut_forced_steps){0};
   state->limits.interrupt = NULL;
   state->limits.most_evaluations = 0;
   state->trouble = STRUT_FAILURE_NONE;
-  state->latest.drive_time = (double)NAN;
+  state->latest->drive_time = (double)NAN;
   state->time_offset = 0.0;
   for (int k = 0; k < STRUT_NEARBY_LISTS; k++) state->nearby[k].known = false;
   state->refined_until = -HUGE_VAL;
   memcpy(state->q, model->start, both);
   memcpy(state->v, model->velocity, both);
-  memcpy(state->latest.rest, model->members.rest, slots);
+  memcpy(state->latest->rest, model->members.rest, slots);
   memcpy(state->modes.slack_length_threshold, model->members.slack, slots);
   memcpy(state->modes.slack_force_threshold, model->members.slack, slots);
-  memset(state->latest.rest_rate, 0, slots);
+  memset(state->latest->rest_rate, 0, slots);
   for (int32_t i = 0; i < model->elements.count; i++) {
     state->modes.element_acts[i] = 0;
     state->modes.element_piece[i] = -1;
@@ -123,11 +127,11 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
     state->signals.relay_side[i] = 0;
   }
   for (int32_t k = 0; k < model->sliding.moving_count; k++)
-    state->latest.sliding[k] =
+    state->latest->sliding[k] =
         (strut_sliding_motion){.share = model->sliding.item[model->sliding.moving[k]].start};
   for (int32_t i = 0; i < model->elements.history_count; i++) state->history.plastic[i] = 0.0;
   for (int32_t i = 0; i < model->elements.history_slots; i++) {
-    state->history.material[i] = state->latest.rest[model->elements.history_slot + i];
+    state->history.material[i] = state->latest->rest[model->elements.history_slot + i];
     state->history.guide_mode[i] = 2; /* STRUT_GUIDE_FREE */
     state->history.guide_side[i] = 1;
     state->history.guide_drop[i] = 0.0;
@@ -135,7 +139,7 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
   for (int32_t i = 0; i < model->elements.breakable_count; i++)
     state->history.broken_at[i] = HUGE_VAL;
   memset(state->work, 0, sizeof state->work);
-  memset(state->latest.power, 0, sizeof state->latest.power);
+  memset(state->latest->power, 0, sizeof state->latest->power);
 }
 
 void strut_state_free(strut_state *state) {

@@ -43,8 +43,8 @@ static inline int32_t strut_weight_side(int k) { return k == 1 || k == 2; }
 /** Where an evaluation of the forces leaves its powers. */
 typedef enum strut_accumulation {
   STRUT_ACCUMULATE_NOTHING,
-  STRUT_ACCUMULATE_POWERS, /* in state->latest.power */
-  STRUT_ACCUMULATE_LANES /* those of members and level ground in state->latest.lanes, all others in state->latest.power */
+  STRUT_ACCUMULATE_POWERS, /* in state->latest->power */
+  STRUT_ACCUMULATE_LANES /* those of members and level ground in state->latest->lanes, all others in state->latest->power */
 } strut_accumulation;
 
 typedef enum strut_failure {
@@ -129,6 +129,7 @@ typedef struct strut_latest {
   double power[STRUT_POWER_ROOM]; /* [W]; only where the energy balance is kept */
   strut_power_lanes lanes[2];     /* see strut_weight_side */
   strut_power_lanes *accumulated; /* which of them the next evaluation adds to */
+  int64_t evaluations;            /* how many there were since the reset */
 } strut_latest;
 
 /** Elements that may act near some positions; see forces/nearby.h. */
@@ -172,7 +173,6 @@ typedef struct strut_state {
   double support_work_origin;    /* strut_support_motion_reset_work: where it counts from [J] */
   double time_offset;   /* drives and loads stand where they do so much later than n * dt [s] */
   double refined_until; /* methods that refine after touchdowns do so until then [s] */
-  int64_t evaluations;  /* of the forces since the reset */
   int64_t events;       /* switches located in time, since the reset */
   strut_forced_steps forced;
   strut_failure trouble; /* why a method could not go on; it stays on the latest grid point */
@@ -184,11 +184,12 @@ typedef struct strut_state {
   strut_frozen_modes modes;
   strut_history history;
   strut_signal_states signals;
-  strut_latest latest;
-  struct strut_rigid *rigid; /* forces of rigid bars, see rigid.h; NULL where bars are elastic */
-  strut_state_buffers buffers;
-  strut_nearby nearby[STRUT_NEARBY_LISTS]; /* the nearest first; only with elements.scattered */
   strut_state_watched watched;
+  /* what evaluations of the forces write, whose state is constant */
+  strut_latest *latest;
+  strut_state_buffers *buffers;
+  strut_nearby *nearby; /* (STRUT_NEARBY_LISTS) the nearest first; only with elements.scattered */
+  struct strut_rigid *rigid; /* forces of rigid bars, see rigid.h; NULL where bars are elastic */
   strut_arena arena;
 } strut_state;
 
@@ -196,7 +197,7 @@ typedef struct strut_state {
 static inline const strut_contact_entry *strut_contact_entry_now(const strut_model *model,
                                                                  const strut_state *state,
                                                                  int32_t i) {
-  return state->latest.grip ? &state->latest.grip[i] : &model->contacts.entry[i];
+  return state->latest->grip ? &state->latest->grip[i] : &model->contacts.entry[i];
 }
 
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */

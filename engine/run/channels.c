@@ -120,8 +120,8 @@ static void record_pressure(strut_channel_view *v, double *out) {
 static void record_contact(strut_channel_view *v, double *out) {
   observe_forces(v);
   for (int32_t i = 0; i < v->model->contacts.count; i++) {
-    out[2 * i] = v->state->latest.normal[i];
-    out[2 * i + 1] = v->state->latest.friction[i];
+    out[2 * i] = v->state->latest->normal[i];
+    out[2 * i + 1] = v->state->latest->friction[i];
   }
 }
 
@@ -162,7 +162,7 @@ static void multiply_by_mass(const strut_channel_view *v, const double *u, const
   for (int32_t j = 0, k = 0; j < model->sliding.count; j++) {
     const strut_sliding_item *s = &model->sliding.item[j];
     strut_sliding_motion motion = {.share = s->start};
-    if (s->signal >= 0) motion = v->state->latest.sliding[k++];
+    if (s->signal >= 0) motion = v->state->latest->sliding[k++];
     for (uint32_t c = 0; c < 2; c++) {
       uint32_t a = s->at[0] + c, b = s->at[1] + c;
       double speed = (1.0 - motion.share) * u[a] + motion.share * u[b];

@@ -66,7 +66,7 @@ void strut_run_watch_collisions(strut_run *r) {
     double speed = speed_of(r, at[0]) + other;
     bool fast = speed * r->dt > e->natural;
     strut_element_pose pose;
-    strut_element_evaluate(r->model, i, r->state->latest.rest, r->state->q, (double)NAN, &pose);
+    strut_element_evaluate(r->model, i, r->state->latest->rest, r->state->q, (double)NAN, &pose);
     if (!fast && !(pose.strain < DEEP * e->natural)) continue;
     r->tunnel.element = i + 1;
     r->tunnel.speed = fast ? speed : 0.0;
@@ -116,7 +116,7 @@ static void warn_of_tunnelling(const strut_run *r) {
 strut_status strut_run_check_collapse(const strut_run *r) {
   const strut_scene *scene = r->model->scene;
   int32_t cell = strut_cell_that_collapsed(r->model, r->state->q);
-  int32_t member = strut_member_that_is_wound_in(r->model, r->state->latest.rest);
+  int32_t member = strut_member_that_is_wound_in(r->model, r->state->latest->rest);
   if (cell >= 0)
     return strut_fail(
         r->error, STRUT_DIVERGED,

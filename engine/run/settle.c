@@ -75,7 +75,8 @@ static void add_element_rounding(const strut_relaxation *r, double *force) {
   for (int32_t i = 0; i < t->count; i++) {
     const strut_element *e = &t->element[i];
     const uint32_t *at = t->at + e->first;
-    strut_element_evaluate(r->model, i, r->state->latest.rest, q, r->state->history.turn[i], &pose);
+    strut_element_evaluate(r->model, i, r->state->latest->rest, q, r->state->history.turn[i],
+                           &pose);
     double bits = fabs(pose.strain) * DBL_EPSILON;
     for (int32_t k = 0; k < e->nodes; k++)
       bits +=
@@ -155,7 +156,7 @@ static strut_status relax_until_rest(strut_relaxation *r, strut_error *error) {
       return strut_fail(error, STRUT_INTERRUPTED, "interrupted while coming to rest");
     r->method->advance(r->model, state, r->workspace, dt, 1);
     r->time = before + (double)state->step * dt;
-    r->evaluations = spent + state->evaluations;
+    r->evaluations = spent + state->latest->evaluations;
     if (state->trouble == STRUT_FAILURE_INTERRUPT) continue;
     double kinetic = strut_energy_kinetic(r->model, state->v);
     if (state->trouble || !isfinite(kinetic)) return fail_diverged(r, r->time - before, error);

@@ -320,11 +320,11 @@ static void step_short(strut_run *r) {
   double later = (double)state->step * (r->dt - length);
   state->time_offset += later;
   state->refined_until -= later;
-  state->latest.drive_time = (double)NAN;
+  state->latest->drive_time = (double)NAN;
   advance(r, length, 1);
   state->time_offset = before;
   state->refined_until += later;
-  state->latest.drive_time = (double)NAN;
+  state->latest->drive_time = (double)NAN;
   if (state->step != r->grid.last || state->step <= strut_measure_first_step(&r->measure)) return;
   if (r->measure.quantities)
     strut_measure_step_quantities(r->model, state, &r->measure);
@@ -352,7 +352,7 @@ static void list_jumps(const strut_run *r) {
   for (int32_t i = 0; i < t->count; i++) {
     const strut_element *e = &t->element[i];
     if (e->law != STRUT_LAW_FOLDING) continue;
-    const double *own = &r->state->latest.rest[e->slot];
+    const double *own = &r->state->latest->rest[e->slot];
     if (own[STRUT_CURVE_JUMPS] > 0.0)
       s->end.jumps[s->end.jump_count++] =
           (strut_jump_summary){.name = strut_element_name(r->model->scene, e),
@@ -417,7 +417,7 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   if (o->interrupt && *o->interrupt)
     return strut_fail(r->error, STRUT_INTERRUPTED, "interrupted at t = %.9g s", strut_run_time(r));
   if (r->state->trouble == STRUT_FAILURE_WORK ||
-      (o->most_evaluations > 0 && r->state->evaluations > o->most_evaluations))
+      (o->most_evaluations > 0 && r->state->latest->evaluations > o->most_evaluations))
     return strut_fail(r->error, STRUT_WORK_LIMIT,
                       "%s used up the work budget of %lld force evaluations at t = %.9g s",
                       r->method->name, (long long)o->most_evaluations, strut_run_time(r));
@@ -495,7 +495,7 @@ static void fill_summary(strut_run *r, strut_status status) {
   s->duration = (double)s->spent.steps * r->dt;
   if (r->state->step == r->grid.last)
     s->duration = strut_experiment_span(r->experiment, r->model->scene).duration;
-  s->spent.evaluations = r->state->evaluations;
+  s->spent.evaluations = r->state->latest->evaluations;
   s->spent.events = r->state->events;
   s->spent.forced = r->state->forced.count;
   s->limit_fell = (strut_step_limit_violation){.limit = r->watch.limit.lowest,

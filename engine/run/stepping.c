@@ -86,7 +86,7 @@ static bool add_loads(stepping_inputs *in, strut_model *model) {
 }
 
 static void restart(const strut_model *model, strut_run *run) {
-  run->state->latest.drive_time = (double)NAN;
+  run->state->latest->drive_time = (double)NAN;
   if (run->method->restart) run->method->restart(model, run->state, run->workspace, run->dt);
 }
 
@@ -213,12 +213,12 @@ static strut_status inputs_apply(stepping_inputs *in, strut_model *model, strut_
   double loads = in->loads ? strut_energy_load_potential(model, state) : 0.0;
   /* Rest lengths that no drive and no memory sets follow here. */
   for (size_t i = 0; i < in->members; i++)
-    if (in->applied[i] != in->given[i]) state->latest.rest[i] = in->given[i];
+    if (in->applied[i] != in->given[i]) state->latest->rest[i] = in->given[i];
   memcpy(in->applied, in->given, in->count * sizeof *in->given);
   write_all(in, model);
   /* Constant loads do work along displacements only: what they have done so far stays. */
   if (in->loads) state->load_work_origin += strut_energy_load_potential(model, state) - loads;
-  state->latest.drive_time = (double)NAN;
+  state->latest->drive_time = (double)NAN;
   strut_energies after = strut_energy_evaluate(model, state, t);
   double work = after.elastic - before.elastic;
   state->work[STRUT_POWER_DRIVE] += work;

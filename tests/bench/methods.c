@@ -50,7 +50,7 @@ static double run(const method_row *row, double step, bool balance) {
     int64_t steps = (int64_t)(STEPS * 5e-5 / step);
     double begin = now();
     method->advance(model, state, work, step, steps);
-    time = 1e9 * (now() - begin) / (double)state->evaluations;
+    time = 1e9 * (now() - begin) / (double)state->latest->evaluations;
   }
   strut_state_free(state);
   strut_model_free(model);

@@ -213,7 +213,7 @@ void precision_roots(precision_problem *p, double t, const double *y, double *va
   }
   for (int32_t j = 0; j < members->count; j++)
     if (members->slack[j] == 0.0)
-      *value++ = strut_member_pose_at(members, p->state->latest.rest, j, p->state->q).stretch;
+      *value++ = strut_member_pose_at(members, p->state->latest->rest, j, p->state->q).stretch;
 }
 
 bool precision_renew(precision_problem *p, double t, const double *y) {

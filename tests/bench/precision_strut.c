@@ -55,7 +55,7 @@ static bool solve(precision_problem *p, const precision_method *row, double sett
   void *work = method->create(p->model, state, &settings);
   answer->velocity = work ? velocity_of(p, method, state, work, e.step, steps) : (double)NAN;
   answer->seconds = bench_seconds() - begin;
-  answer->evaluations = state->evaluations;
+  answer->evaluations = state->latest->evaluations;
   if (state->trouble) snprintf(answer->note, sizeof answer->note, "failed");
   strut_state_free(state);
   return true;

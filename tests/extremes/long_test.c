@@ -86,7 +86,7 @@ TEST(the_clock) {
   long double turns = (long double)frequency * ((long double)steps / 10000);
   double angle = (double)(2 * acosl(-1) * (turns - floorl(turns)));
   double sine =
-      (m.state->latest.rest[0] - 1) / amplitude; /* of the last stage, at the end of the step */
+      (m.state->latest->rest[0] - 1) / amplitude; /* of the last stage, at the end of the step */
   double rate = 2 * pi * frequency * cos(angle);
   assert_true(fabs(cos(angle)) > 0.05);
   double late = (sine - sin(angle)) / rate;

@@ -54,7 +54,7 @@ static run_hashes hash_run(const strut_model *model, const strut_experiment *exp
     method->advance(model, state, workspace, experiment->step, 100);
     hash.motion = add(hash.motion, state->q, length);
     hash.motion = add(hash.motion, state->v, length);
-    hash.motion = add(hash.motion, state->latest.force, length);
+    hash.motion = add(hash.motion, state->latest->force, length);
     /* those that the model has: a row that is added behind them changes no hash */
     hash.works = add(hash.works, state->work, (STRUT_POWER_EXCHANGED + 1) * sizeof state->work[0]);
   }

@@ -29,7 +29,7 @@ static void check_steps(const strut_setup *setup, bool balance) {
   assert_int_equal(allocations_so_far(), before);
   assert_int_equal(strut_allocation_count(), own);
   assert_int_equal(m.state->step, 1000);
-  assert_int_equal(m.state->evaluations, 4000);
+  assert_int_equal(m.state->latest->evaluations, 4000);
 }
 
 /* Everything at once on top of a chain: contacts, friction, drive, loads. */

@@ -32,10 +32,10 @@ static void end(crawlers *c) {
 static void compare(crawlers *c, double t) {
   const strut_state *a = c->together.state, *b = c->alone.state;
   strut_drive_apply(c->alone.model, c->alone.state, t);
-  assert_same_bits(a->latest.drive_time, b->latest.drive_time);
+  assert_same_bits(a->latest->drive_time, b->latest->drive_time);
   for (int32_t j = 0; j < c->alone.model->members.slots; j++) {
-    assert_same_bits(a->latest.rest[j], b->latest.rest[j]);
-    assert_same_bits(a->latest.rest_rate[j], b->latest.rest_rate[j]);
+    assert_same_bits(a->latest->rest[j], b->latest->rest[j]);
+    assert_same_bits(a->latest->rest_rate[j], b->latest->rest_rate[j]);
   }
 }
 

@@ -50,7 +50,7 @@ static double pull(strut_member_kind kind, double stretch, double rate) {
   OWN(motion) m = motion_begin(&setup.scene, STEP);
   strut_forces_evaluate(m.model, m.state, 0, m.state->q, m.state->v);
   strut_members_measure(m.model, m.state, &length, &tension);
-  double force = -m.state->latest.force[2];
+  double force = -m.state->latest->force[2];
   assert_near(tension, force, 1e-14 * fabs(force)); /* so slack: exactly 0 */
   assert_true(length == 1 + stretch);
   return force;
@@ -151,7 +151,7 @@ TEST(a_driven_cable_goes_slack) {
   build_actuator(&setup.scene, cable, build_signal(&setup.scene, ramp));
   m = motion_begin(&setup.scene, STEP);
   strut_forces_evaluate(m.model, m.state, 0, m.state->q, m.state->v);
-  assert_true(m.state->latest.force[2] == -(100 * 0.25 - 8 * 0.25));
+  assert_true(m.state->latest->force[2] == -(100 * 0.25 - 8 * 0.25));
   strut_forces_evaluate(m.model, m.state, 1, m.state->q, m.state->v);
-  assert_true(m.state->latest.force[2] == 0);
+  assert_true(m.state->latest->force[2] == 0);
 }

@@ -84,7 +84,7 @@ TEST(energy_of_a_stiff_frame) {
   print_message(
       "1e5 steps at 100 times the limit: energy within %.2g of itself, %.1f evaluations a "
       "step\n",
-      most / whole, (double)m.state->evaluations / 1e5);
+      most / whole, (double)m.state->latest->evaluations / 1e5);
   /* rounding of the bars' forces, c L eps, times the way of a step, at random over all steps */
   double rounding = 1e9 * 1.4 * 0x1p-52 * step * 2.3 * sqrt(1e5);
   assert_near(most, 0.0, rounding);

@@ -68,12 +68,12 @@ static void check_forces(const strut_scene *scene, const strut_model *model, str
   strut_forces_evaluate(model, state, t, state->q, state->v);
   strut_members_measure(model, state, length, tension);
   for (size_t i = 0; i < n; i++)
-    assert_near(state->latest.force[i], (double)slow->force[i], TOLERANCE * scale);
+    assert_near(state->latest->force[i], (double)slow->force[i], TOLERANCE * scale);
   for (size_t j = 0; j < scene->member_count; j++)
     assert_near(tension[j], (double)slow->tension[j], TOLERANCE * scale);
   for (size_t i = 0; i < scene->contact_count; i++) {
-    assert_near(state->latest.normal[i], (double)slow->normal[i], TOLERANCE * scale);
-    assert_near(state->latest.friction[i], (double)slow->friction[i], TOLERANCE * scale);
+    assert_near(state->latest->normal[i], (double)slow->normal[i], TOLERANCE * scale);
+    assert_near(state->latest->friction[i], (double)slow->friction[i], TOLERANCE * scale);
   }
   free(length);
   free(tension);
@@ -85,8 +85,8 @@ static void check_powers(const strut_state *state, const slow_model *slow) {
   double scale = 0;
   for (int p = 0; p < STRUT_POWER_EXCHANGED; p++) scale += (double)fabsl(expected[p]);
   for (int p = 0; p < STRUT_POWER_EXCHANGED; p++)
-    assert_near(state->latest.power[p], (double)expected[p], TOLERANCE * scale);
-  assert_true(state->latest.power[STRUT_POWER_EXCHANGED] >= scale * (1 - TOLERANCE));
+    assert_near(state->latest->power[p], (double)expected[p], TOLERANCE * scale);
+  assert_true(state->latest->power[STRUT_POWER_EXCHANGED] >= scale * (1 - TOLERANCE));
 }
 
 static void check_acceleration(const strut_scene *scene, const strut_model *model,

@@ -162,9 +162,9 @@ TEST(every_channel_holds_what_it_says) {
     assert_memory_equal(row + first.offset[2], length, sizeof length);
     assert_memory_equal(row + first.offset[3], force, sizeof force);
     for (int c = 0; c < 5; c++) {
-      assert_same_bits(row[first.offset[4] + 2 * (size_t)c], m.state->latest.normal[c]);
-      assert_same_bits(row[first.offset[4] + 2 * (size_t)c + 1], m.state->latest.friction[c]);
-      if (m.state->q[2 * c + 1] >= 0) assert_true(m.state->latest.normal[c] == 0);
+      assert_same_bits(row[first.offset[4] + 2 * (size_t)c], m.state->latest->normal[c]);
+      assert_same_bits(row[first.offset[4] + 2 * (size_t)c + 1], m.state->latest->friction[c]);
+      if (m.state->q[2 * c + 1] >= 0) assert_true(m.state->latest->normal[c] == 0);
     }
     assert_same_bits(energy[0], stored.kinetic);
     assert_same_bits(energy[1], stored.elastic);

@@ -27,7 +27,7 @@ static void expect_works(const motion *m, double *works) {
     }
     strut_forces_acceleration(m->model, s, ((double)s->step + ahead[k]) * m->step, q, v, a);
     for (int p = 0; p < STRUT_POWER_ROOM; p++)
-      works[p] += weight[k] * m->step / 6.0 * s->latest.power[p];
+      works[p] += weight[k] * m->step / 6.0 * s->latest->power[p];
   }
 }
 

@@ -115,7 +115,7 @@ static void check_forces(fixture *f) {
   strut_forces_evaluate(f->m.model, f->m.state, 0, f->q, v);
   double scale = largest(g, f->potential->n);
   for (int32_t i = 0; i < f->potential->n; i++)
-    assert_near(f->m.state->latest.force[f->potential->coordinate[i]], -g[i], 1e-12 * scale);
+    assert_near(f->m.state->latest->force[f->potential->coordinate[i]], -g[i], 1e-12 * scale);
 }
 
 TEST(derivatives_of_the_potential) {

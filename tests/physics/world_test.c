@@ -101,9 +101,9 @@ static void check_contacts(const fixture *f, const slow_rates *r, double scale, 
     seen->flying += r->normal[i] == 0;
     if (!(r->normal[i] > 0)) continue;
     seen->touching++;
-    assert_near(state->latest.normal[i], (double)r->normal[i], TOLERANCE * scale);
+    assert_near(state->latest->normal[i], (double)r->normal[i], TOLERANCE * scale);
     if (grounds_of(f, r, i) < 3) /* several that stick may share in many ways */
-      assert_near(state->latest.friction[i], (double)r->friction[i], TOLERANCE * scale);
+      assert_near(state->latest->friction[i], (double)r->friction[i], TOLERANCE * scale);
   }
 }
 
@@ -119,11 +119,11 @@ static void check_rates(fixture *f, coverage *seen) {
   double scale = fmax(largest(r.force, f->slow.n), largest(r.normal, scene->contact_count));
   double fastest = largest(r.a, f->slow.n);
   for (size_t i = 0; i < f->slow.n; i++) {
-    assert_near(state->latest.force[i], (double)r.force[i], TOLERANCE * scale);
+    assert_near(state->latest->force[i], (double)r.force[i], TOLERANCE * scale);
     if (!scene->nodes[i / 2].fixed[i % 2]) assert_near(a[i], (double)r.a[i], TOLERANCE * fastest);
   }
   for (size_t k = 0; k < f->slow.states; k++)
-    assert_near(state->latest.force[f->m.model->feedback.base + (int32_t)k], (double)r.z[k],
+    assert_near(state->latest->force[f->m.model->feedback.base + (int32_t)k], (double)r.z[k],
                 TOLERANCE * (scale + largest(r.z, f->slow.states)));
   check_contacts(f, &r, scale, seen);
   strut_members_measure(f->m.model, state, length, force);
@@ -227,10 +227,10 @@ TEST(a_node_rests_in_a_flat_corner) {
                      "-4.96 mm]}}\nloads: {push: {node: a, force: [1, 0]}}\n"
                      "ground: {profile: [[-1, 0.05], [0, 0], [1, 0.05]], stiffness: 1000,"
                      " friction: {mu: 0.5, stick_velocity: 0.1}");
-  assert_near(m.state->latest.force[0], 0, 1e-13);
-  assert_near(m.state->latest.force[1], 0, 1e-13);
-  assert_within(m.state->latest.friction[0], 0.3, 0.4);
-  assert_within(m.state->latest.friction[1], -1.4, -1.3);
+  assert_near(m.state->latest->force[0], 0, 1e-13);
+  assert_near(m.state->latest->force[1], 0, 1e-13);
+  assert_within(m.state->latest->friction[0], 0.3, 0.4);
+  assert_within(m.state->latest->friction[1], -1.4, -1.3);
 }
 
 /* Too deep to be held by both: the first side breaks loose, and the second holds the rest. */
@@ -241,8 +241,8 @@ TEST(one_side_of_a_flat_corner_breaks_loose) {
                      "-10 mm]}}\nloads: {push: {node: a, force: [2, 0]}}\n"
                      "ground: {profile: [[-1, 0.0159], [0, 0], [1, -0.015]], stiffness: 1000,"
                      " friction: {mu_forward: 0.5, mu_backward: 0.2, stick_velocity: 0.1}");
-  const double *f = m.state->latest.force, *t = m.state->latest.pose[1].axes.tangent;
-  assert_near(m.state->latest.friction[0], 0.2 * m.state->latest.normal[0], 1e-13);
+  const double *f = m.state->latest->force, *t = m.state->latest->pose[1].axes.tangent;
+  assert_near(m.state->latest->friction[0], 0.2 * m.state->latest->normal[0], 1e-13);
   assert_near(f[0] * t[0] + f[1] * t[1], 0, 1e-13);
-  assert_within(m.state->latest.friction[1], -4.2, -4.1);
+  assert_within(m.state->latest->friction[1], -4.2, -4.1);
 }

@@ -444,10 +444,10 @@ TEST(a_hinge_counts_its_turns) {
       state->q[4] = arm * cos(angle), state->q[5] = arm * sin(angle);
       strut_elements_keep_turns(model, state);
       strut_forces_evaluate(model, state, 0, state->q, state->v);
-      assert_near(state->latest.force[4], moment / arm * sin(angle), 1e-11);
-      assert_near(state->latest.force[5], -moment / arm * cos(angle), 1e-11);
+      assert_near(state->latest->force[4], moment / arm * sin(angle), 1e-11);
+      assert_near(state->latest->force[5], -moment / arm * cos(angle), 1e-11);
       double energy =
-          strut_elements_energy(model, state->latest.rest, state->history.turn, state->q, NULL);
+          strut_elements_energy(model, state->latest->rest, state->history.turn, state->q, NULL);
       assert_near(energy, 0.5 * kappa * (angle - 0.25) * (angle - 0.25), 1e-10);
     }
   }
@@ -514,9 +514,9 @@ TEST(hinges_in_vectors_have_the_forces_of_single_ones) {
     strut_forces_evaluate(model, state, 0.0, state->q, state->v);
     for (int i = 0; i < 2 * (HINGES + 2); i++)
       if (only < 0)
-        together[i] = state->latest.force[i];
+        together[i] = state->latest->force[i];
       else
-        alone[i] += state->latest.force[i];
+        alone[i] += state->latest->force[i];
     strut_state_free(state);
     strut_model_free(model);
     strut_scene_free(&scene);

@@ -83,7 +83,7 @@ static void compare_forces(double slope) {
       add_forces(model, state->q, state->v, force);
       double scale = strut_largest_magnitude(force, 2 * NODES);
       for (int32_t i = 0; i < 2 * NODES; i++)
-        assert_near(state->latest.force[i], force[i], 1e-13 * scale);
+        assert_near(state->latest->force[i], force[i], 1e-13 * scale);
     }
   }
 }

@@ -257,7 +257,7 @@ static double kink_dip(const strut_model *model, const strut_state *state,
 
 /* Earliest point, within the step, where a law that acts at both ends does not, or the other way, or is on another
    piece; 0: none. */
-static double earliest_switch(const strut_model *model, strut_state *state,
+static double earliest_switch(const strut_model *model, const strut_state *state,
                               strut_event_stepper *stepper, double h) {
   double first = 0.0, faint = 0.01 * fmax(0.1 * stepper->control.tolerance, 1e-12) * model->size;
   strut_event_measure(model, state, stepper, stepper->next);
@@ -315,9 +315,9 @@ STRUT_INLINE double earliest_dip(const strut_model *model, const strut_state *st
                      fmax(part * control->speed, h * control->rounding)};
   bool surfaces = frames_of(stepper->next, terms);
   int32_t count =
-      surfaces ? strut_surface_candidates(model, stepper, h, state->buffers.near) : c->count;
+      surfaces ? strut_surface_candidates(model, stepper, h, state->buffers->near) : c->count;
   for (int32_t k = 0; k < count; k++) {
-    int32_t i = surfaces ? state->buffers.near[k] : k;
+    int32_t i = surfaces ? state->buffers->near[k] : k;
     strut_touch from, to;
     measure_at_end(c, &stepper->modes, stepper->now, i, terms, &from);
     measure_at_end(c, &stepper->modes, stepper->next, i, terms, &to);
@@ -341,7 +341,7 @@ static double error_to_reach(const strut_event_stepper *stepper, double part) {
 }
 
 /* What the ends of a step of sufficient accuracy, and its stages, say about the time between. */
-STRUT_LOOP void look_between(const strut_model *model, strut_state *state,
+STRUT_LOOP void look_between(const strut_model *model, const strut_state *state,
                              strut_event_stepper *stepper, double h, unsigned terms) {
   if (!(stepper->control.error <= 1.0)) return;
   double part = model->contacts.count ? earliest_dip(model, state, stepper, h, terms) : 0.0;
@@ -355,8 +355,9 @@ STRUT_LOOP void look_between(const strut_model *model, strut_state *state,
   if (part > 0.0) stepper->control.error = error_to_reach(stepper, part);
 }
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                       double t, double h, unsigned terms, bool balance) {
+STRUT_INLINE void take(const strut_model *model, const strut_state *state,
+                       strut_event_stepper *stepper, double t, double h, unsigned terms,
+                       bool balance) {
   const strut_tableau *tableau = stepper->formula->tableau;
   double *v[STRUT_MOST_STAGES + 1], *a[STRUT_MOST_STAGES + 1];
   const int end = tableau->stages;
@@ -386,7 +387,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
       note_memory(model, state, stepper, &at, ahead[k], k == 1);
     }
     for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
-      stepper->gained[p] += last[k] * h * state->latest.power[p];
+      stepper->gained[p] += last[k] * h * state->latest->power[p];
   }
   evaluate_step_end(model, state, stepper, t + h, stepper->next, terms, balance);
   stepper->control.error = error_of(model, stepper, h, v, a);

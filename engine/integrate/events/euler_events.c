@@ -3,8 +3,9 @@
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/integrator.h"
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                       double t, double h, unsigned terms, bool balance) {
+STRUT_INLINE void take(const strut_model *model, const strut_state *state,
+                       strut_event_stepper *stepper, double t, double h, unsigned terms,
+                       bool balance) {
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
     strut_lanes v =
         strut_lanes_load(stepper->now->v + i) + h * strut_lanes_load_pairs(stepper->now->a + i);

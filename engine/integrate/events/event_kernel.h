@@ -87,14 +87,14 @@ STRUT_INLINE void measure_contact_rates(const strut_model *model, const strut_ac
   }
 }
 
-/* The ground's powers, from forces and speeds noted at an end; the others are in state->latest.power. */
-STRUT_INLINE void add_contact_powers(const strut_model *model, strut_state *state,
+/* The ground's powers, from forces and speeds noted at an end; the others are in state->latest->power. */
+STRUT_INLINE void add_contact_powers(const strut_model *model, const strut_state *state,
                                      const strut_active_set *active, const strut_step_end *end,
                                      unsigned terms) {
   const strut_contact_table *c = &model->contacts;
   const strut_touch *restrict touch = end->touch;
   const strut_contact_frame *frame = frames_of(end, terms);
-  double *power = state->latest.power, contact = power[STRUT_POWER_CONTACT],
+  double *power = state->latest->power, contact = power[STRUT_POWER_CONTACT],
          friction = power[STRUT_POWER_FRICTION], belt = power[STRUT_POWER_BELT],
          exchanged = power[STRUT_POWER_EXCHANGED];
   for (int32_t k = 0; k < active->closed_count; k++) {
@@ -115,9 +115,9 @@ STRUT_INLINE void add_contact_powers(const strut_model *model, strut_state *stat
 STRUT_INLINE void keep_structure_forces(const strut_model *model, const strut_state *state,
                                         strut_step_end *end, bool balance) {
   for (int32_t i = 0; i < model->length; i += STRUT_LANES)
-    strut_lanes_store(end->structure + i, strut_lanes_load_pairs(state->latest.force + i));
+    strut_lanes_store(end->structure + i, strut_lanes_load_pairs(state->latest->force + i));
   for (int p = 0; p < STRUT_POWER_ROOM && balance; p += STRUT_LANES)
-    strut_lanes_store(end->structure_power + p, strut_lanes_load(state->latest.power + p));
+    strut_lanes_store(end->structure_power + p, strut_lanes_load(state->latest->power + p));
 }
 
 /* Notes the motion of the grounds for which forces have just been evaluated. */
@@ -125,18 +125,18 @@ STRUT_INLINE void keep_ground_motion(const strut_model *model, const strut_state
                                      strut_step_end *end, unsigned terms) {
   if (!(terms & STRUT_TERM_SURFACES) || !end->motion) return;
   for (size_t g = 0; g < model->scene->ground_count; g++)
-    end->motion[g] = state->latest.ground_motion[g];
+    end->motion[g] = state->latest->ground_motion[g];
 }
 
-/* From the forces of the structure in state->latest.force to the acceleration. */
-STRUT_LOOP void accelerate_closed(const strut_model *model, strut_state *state,
+/* From the forces of the structure in state->latest->force to the acceleration. */
+STRUT_LOOP void accelerate_closed(const strut_model *model, const strut_state *state,
                                   strut_event_stepper *stepper, const double *restrict q,
                                   const double *restrict v, double *restrict a, strut_step_end *end,
                                   unsigned terms, bool balance) {
   const strut_active_set *active = &stepper->active;
   bool sliding = model->terms & terms & STRUT_TERM_SLIDING_MASS;
   if (active->closed_count)
-    add_contact_forces(model, stepper, q, v, state->latest.force, true, end, terms);
+    add_contact_forces(model, stepper, q, v, state->latest->force, true, end, terms);
   divide_by_mass(model, state, a, terms);
   if (sliding) strut_refresh_compliances(model, state, stepper);
   if (active->stuck_count) strut_solve_stick_constraints(model, stepper, a, end);
@@ -145,7 +145,7 @@ STRUT_LOOP void accelerate_closed(const strut_model *model, strut_state *state,
 }
 
 /* Acceleration with explicit contact dampers inside a step; contact forces into end->touch. */
-STRUT_LOOP void accelerate_in_modes(const strut_model *model, strut_state *state,
+STRUT_LOOP void accelerate_in_modes(const strut_model *model, const strut_state *state,
                                     strut_event_stepper *stepper, double t,
                                     const double *restrict q, const double *restrict v,
                                     double *restrict a, strut_step_end *end, unsigned terms,
@@ -164,7 +164,7 @@ STRUT_INLINE void settle_band_ties(const strut_model *model, const strut_event_s
 }
 
 /* The same at the end of a step, with all that belongs to that end. */
-STRUT_LOOP void evaluate_step_end(const strut_model *model, strut_state *state,
+STRUT_LOOP void evaluate_step_end(const strut_model *model, const strut_state *state,
                                   strut_event_stepper *stepper, double t, strut_step_end *end,
                                   unsigned terms, bool balance) {
   forces_of_structure(model, state, t, end->q, end->v, terms, balance);
@@ -173,7 +173,7 @@ STRUT_LOOP void evaluate_step_end(const strut_model *model, strut_state *state,
   accelerate_closed(model, state, stepper, end->q, end->v, end->a, end, terms, balance);
   measure_contact_rates(model, &stepper->active, end, terms);
   if (end == stepper->next && !stepper->active.all_sliding) settle_band_ties(model, stepper);
-  for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) end->power[p] = state->latest.power[p];
+  for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) end->power[p] = state->latest->power[p];
 }
 
 /* next becomes now: q and v are the state's own and are copied, the rest changes hands. */
@@ -249,7 +249,8 @@ STRUT_INLINE void control_step(strut_event_stepper *stepper, double h, bool whol
 
 /* Has the method made all evaluations that it may? */
 STRUT_INLINE bool is_spent(const strut_state *state) {
-  return state->limits.most_evaluations > 0 && state->evaluations > state->limits.most_evaluations;
+  return state->limits.most_evaluations > 0 &&
+         state->latest->evaluations > state->limits.most_evaluations;
 }
 
 /* Is it to give up, for that or on an interrupt? */
@@ -300,24 +301,24 @@ STRUT_INLINE double law_value(const strut_event_stepper *stepper, const strut_st
  */
 #define STRUT_EVENT_TRIAL(name, take)                                                              \
   STRUT_CLONES                                                                                     \
-  static void name##_with_balance(const strut_model *model, strut_state *state,                    \
+  static void name##_with_balance(const strut_model *model, const strut_state *state,              \
                                   strut_event_stepper *stepper, double t, double h) {              \
     take(model, state, stepper, t, h, STRUT_TERMS_COMMON, true);                                   \
   }                                                                                                \
                                                                                                    \
   STRUT_CLONES                                                                                     \
-  static void name##_without_balance(const strut_model *model, strut_state *state,                 \
+  static void name##_without_balance(const strut_model *model, const strut_state *state,           \
                                      strut_event_stepper *stepper, double t, double h) {           \
     take(model, state, stepper, t, h, STRUT_TERMS_COMMON, false);                                  \
   }                                                                                                \
                                                                                                    \
   STRUT_CLONES                                                                                     \
-  static void name##_with_rare_terms(const strut_model *model, strut_state *state,                 \
+  static void name##_with_rare_terms(const strut_model *model, const strut_state *state,           \
                                      strut_event_stepper *stepper, double t, double h) {           \
     take(model, state, stepper, t, h, STRUT_TERMS_ALL, state->balance);                            \
   }                                                                                                \
                                                                                                    \
-  static void name##_once(const strut_model *model, strut_state *state,                            \
+  static void name##_once(const strut_model *model, const strut_state *state,                      \
                           strut_event_stepper *stepper, double t, double h) {                      \
     if (model->terms & STRUT_TERMS_RARE)                                                           \
       name##_with_rare_terms(model, state, stepper, t, h);                                         \
@@ -327,7 +328,7 @@ STRUT_INLINE double law_value(const strut_event_stepper *stepper, const strut_st
       name##_without_balance(model, state, stepper, t, h);                                         \
   }                                                                                                \
                                                                                                    \
-  static void name##_trial(const strut_model *model, strut_state *state,                           \
+  static void name##_trial(const strut_model *model, const strut_state *state,                     \
                            strut_event_stepper *stepper, double t, double h) {                     \
     if (state->watched.rehearsals) strut_event_rehearse(name##_once, model, state, stepper, t, h); \
     name##_once(model, state, stepper, t, h);                                                      \

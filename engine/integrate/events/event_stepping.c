@@ -28,7 +28,7 @@ enum { MOST_AT_ONCE = 8, MOST_SWITCHES = 2000, MOST_HALVINGS = 30 };
 static const double SEPARATES = 0.1;
 
 /* Contact forces at an end, for recording and measuring. */
-static void show_contacts(const strut_model *model, strut_state *state,
+static void show_contacts(const strut_model *model, const strut_state *state,
                           const strut_event_stepper *stepper, const strut_step_end *end) {
   double *normal = (double *)state->modes.held_normal,
          *friction = (double *)state->modes.held_friction;
@@ -58,12 +58,12 @@ bool strut_event_stepper_observe(const strut_model *model, strut_state *state, v
 /* Contact forces in the present modes at an instant within a step. */
 STRUT_CLONES
 static void hold_contacts(const strut_motion_piece *piece, const strut_model *model,
-                          strut_state *state, double t, const double *q, const double *v) {
+                          const strut_state *state, double t, const double *q, const double *v) {
   strut_event_stepper *stepper = piece->workspace;
   strut_step_end *at = &stepper->view->instant;
-  int64_t evaluations = state->evaluations;
+  int64_t evaluations = state->latest->evaluations;
   accelerate_in_modes(model, state, stepper, t, q, v, at->a, at, STRUT_TERMS_ALL, false);
-  state->evaluations = evaluations; /* observing is not part of the run's cost */
+  state->latest->evaluations = evaluations; /* observing is not part of the run's cost */
   show_contacts(model, state, stepper, at);
 }
 
@@ -171,8 +171,9 @@ static void switch_relay(const strut_model *model, strut_state *state, strut_eve
   strut_modes_after_jump(model, state, stepper, t);
 }
 
-void strut_event_rehearse(strut_event_trial *trial, const strut_model *model, strut_state *state,
-                          strut_event_stepper *stepper, double t, double h) {
+void strut_event_rehearse(strut_event_trial *trial, const strut_model *model,
+                          const strut_state *state, strut_event_stepper *stepper, double t,
+                          double h) {
   const strut_step_control control = stepper->control;
   double far = stepper->formula->predict ? h : 2.0 * h;
   for (int k = 0; k < state->watched.rehearsals; k++) trial(model, state, stepper, t, far);
@@ -216,7 +217,7 @@ static bool must_step(const strut_chatter *c) {
  * Predicts positions, where the method knows them before it knows forces. A touchdown or an opening on the way ends
  * the piece.
  */
-static void predict_piece(const strut_model *model, strut_state *state,
+static void predict_piece(const strut_model *model, const strut_state *state,
                           strut_event_stepper *stepper, step_piece *piece) {
   const strut_step_formula *formula = stepper->formula;
   if (!formula->predict || stepper->tried) return;
@@ -247,8 +248,8 @@ static bool take_piece(const strut_model *model, strut_state *state, strut_event
  * Where the end contradicts a mode, goes back to where that begins. False: the step up to there shows something else
  * before it; control.h says what to try.
  */
-static bool locate_end(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                       step_piece *piece) {
+static bool locate_end(const strut_model *model, const strut_state *state,
+                       strut_event_stepper *stepper, step_piece *piece) {
   strut_event first = strut_event_first(model, state, stepper, piece->h);
   if (!first.kind) return true;
   piece->event = first;

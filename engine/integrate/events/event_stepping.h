@@ -172,7 +172,7 @@ typedef struct strut_tableau {
 } strut_tableau;
 
 /** A step from stepper->now at time t over h to stepper->next, with the works of it in stepper->gained. */
-typedef void strut_event_trial(const strut_model *model, strut_state *state,
+typedef void strut_event_trial(const strut_model *model, const strut_state *state,
                                strut_event_stepper *stepper, double t, double h);
 
 /** What a method adds: how one step goes while nothing happens. */
@@ -315,8 +315,9 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
 /** Prepares for an observer; see strut_integrator. */
 bool strut_event_stepper_observe(const strut_model *model, strut_state *state, void *workspace);
 /** Takes the trial as often as state->watched.rehearsals says, twice as far where positions are not predicted. */
-void strut_event_rehearse(strut_event_trial *trial, const strut_model *model, strut_state *state,
-                          strut_event_stepper *stepper, double t, double h);
+void strut_event_rehearse(strut_event_trial *trial, const strut_model *model,
+                          const strut_state *state, strut_event_stepper *stepper, double t,
+                          double h);
 /** `count` steps of dt. */
 void strut_event_stepper_advance(const strut_model *model, strut_state *state, void *workspace,
                                  double dt, int64_t count);
@@ -339,7 +340,7 @@ void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper
 void strut_apply_contact_impulse(const strut_contact_compliance *r, const strut_contact_axes *axes,
                                  double normal, double tangential, double *a);
 /** Acceleration, contact forces and powers of stepper->now at time t, in the present modes. */
-void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
+void strut_evaluate_acceleration(const strut_model *model, const strut_state *state,
                                  strut_event_stepper *stepper, double t);
 
 typedef struct strut_event {
@@ -351,13 +352,13 @@ typedef struct strut_event {
 /** Does the event end the mode of a law, not of a contact? */
 bool strut_event_is_of_law(strut_event_kind kind);
 /** The earliest event between now and next, a step h apart; kind NONE if every mode holds. */
-strut_event strut_event_first(const strut_model *model, strut_state *state,
+strut_event strut_event_first(const strut_model *model, const strut_state *state,
                               strut_event_stepper *stepper, double h);
 /**
  * Takes the step of h from now at time t again up to the event, or to one that comes before it. Returns the length
  * taken; next is its end. Exact formulas go on until the root is known to 1e-13 of the step, or to rounding.
  */
-double strut_event_locate(const strut_model *model, strut_state *state,
+double strut_event_locate(const strut_model *model, const strut_state *state,
                           strut_event_stepper *stepper, double t, double h, strut_event *event);
 /** First root in [0, 1] of the cubic with these values and slopes at 0 and 1; g0 > 0 > g1. */
 double strut_event_cubic_root(double g0, double d0, double g1, double d1);
@@ -365,8 +366,8 @@ double strut_event_cubic_root(double g0, double d0, double g1, double d1);
 double strut_event_value(const strut_model *model, const strut_event_stepper *stepper,
                          const strut_step_end *end, strut_event_kind kind, int32_t index);
 /** Forces and strains of the laws that switch, at an end that has just been evaluated. */
-void strut_event_measure(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                         const strut_step_end *end);
+void strut_event_measure(const strut_model *model, const strut_state *state,
+                         strut_event_stepper *stepper, const strut_step_end *end);
 /** Where collisions are many: all of them apart, and those listed that may touch at now. */
 void strut_event_part_all(const strut_model *model, strut_state *state,
                           strut_event_stepper *stepper);
@@ -388,8 +389,8 @@ void strut_contact_snap(const strut_model *model, strut_event_stepper *stepper, 
 void strut_law_pass_kink(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                          int32_t k, double t);
 /** Evaluates stepper->now at time t, letting go of one overloaded stuck contact after the other. */
-void strut_modes_derive(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                        double t);
+void strut_modes_derive(const strut_model *model, const strut_state *state,
+                        strut_event_stepper *stepper, double t);
 /** Changes the mode at stepper->now, time t, and leaves it fresh. */
 void strut_event_apply(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                        strut_event event, double t);

@@ -54,7 +54,7 @@ static void make_contacts(const strut_model *model, strut_state *state,
   stepper->active.closed = make(arena, count, sizeof *stepper->active.closed, failed);
   stepper->active.stuck = make(arena, count, sizeof *stepper->active.stuck, failed);
   strut_contact_bodies *contacts = &stepper->contacts;
-  contacts->entry = state->latest.grip ? state->latest.grip : model->contacts.entry;
+  contacts->entry = state->latest->grip ? state->latest->grip : model->contacts.entry;
   contacts->body = make(arena, count, sizeof *contacts->body, failed);
   contacts->compliance = make(arena, count, sizeof *contacts->compliance, failed);
   contacts->settling_time = make_doubles(arena, count, failed);

@@ -11,11 +11,13 @@
 enum { Q, V, A = V + 3, STAGES = A + 3 };
 
 STRUT_INLINE void gain(const strut_state *state, strut_event_stepper *stepper, double weight) {
-  for (int p = 0; p < STRUT_POWER_COUNT; p++) stepper->gained[p] += weight * state->latest.power[p];
+  for (int p = 0; p < STRUT_POWER_COUNT; p++)
+    stepper->gained[p] += weight * state->latest->power[p];
 }
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                       double t, double h, unsigned terms, bool balance) {
+STRUT_INLINE void take(const strut_model *model, const strut_state *state,
+                       strut_event_stepper *stepper, double t, double h, unsigned terms,
+                       bool balance) {
   const double *ahead = STRUT_RK4_AHEAD, *weight = STRUT_RK4_WEIGHTS;
   double **w = stepper->stage;
   const double *const v[4] = {stepper->now->v, w[V], w[V + 1], w[V + 2]};

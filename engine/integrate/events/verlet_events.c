@@ -29,8 +29,9 @@ STRUT_INLINE void correct(int32_t n, double h, const double *restrict v, const d
                                                                   strut_lanes_load_pairs(a1 + i)));
 }
 
-STRUT_LOOP void take(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                     double t, double h, unsigned terms, bool balance) {
+STRUT_LOOP void take(const strut_model *model, const strut_state *state,
+                     strut_event_stepper *stepper, double t, double h, unsigned terms,
+                     bool balance) {
   int32_t n = model->length;
   double *predicted = stepper->stage[PREDICTED], *a1 = stepper->next->a;
   bool moves = model->terms & terms & STRUT_TERM_SUPPORT_MOTION;
@@ -45,13 +46,13 @@ STRUT_LOOP void take(const strut_model *model, strut_state *state, strut_event_s
   if (!stepper->active.closed_count) {
     divide_by_mass(model, state, a1, terms);
   } else if (stepper->active.all_sliding) {
-    mass_kernel(model, state->latest.force, a1, state->buffers.mass_solve);
+    mass_kernel(model, state->latest->force, a1, state->buffers->mass_solve);
     implicit_ground_slides(model, stepper, h, a1);
   } else if (stepper->active.decoupled) {
-    mass_kernel(model, state->latest.force, a1, state->buffers.mass_solve);
-    implicit_ground_decoupled(model, stepper, h, predicted, state->latest.force, a1);
+    mass_kernel(model, state->latest->force, a1, state->buffers->mass_solve);
+    implicit_ground_decoupled(model, stepper, h, predicted, state->latest->force, a1);
   } else {
-    add_contact_forces(model, stepper, stepper->next->q, predicted, state->latest.force, false,
+    add_contact_forces(model, stepper, stepper->next->q, predicted, state->latest->force, false,
                        stepper->next, terms);
     divide_by_mass(model, state, a1, terms);
     if (sliding) strut_refresh_compliances(model, state, stepper);
@@ -70,7 +71,7 @@ STRUT_LOOP void take(const strut_model *model, strut_state *state, strut_event_s
   if (balance && sliding)
     strut_sliding_masses_add_power(model, state, stepper->next->q, stepper->next->v, a1);
   for (int p = 0; p < STRUT_POWER_ROOM && balance; p += STRUT_LANES) {
-    strut_lanes power = strut_lanes_load(state->latest.power + p);
+    strut_lanes power = strut_lanes_load(state->latest->power + p);
     strut_lanes_store(stepper->next->power + p, power);
     strut_lanes_store(stepper->gained + p,
                       0.5 * h * (strut_lanes_load(stepper->now->power + p) + power));
@@ -95,7 +96,7 @@ STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_event_steppe
 }
 
 /* Does what stepper->next says contradict a mode? */
-STRUT_INLINE bool contradicts(const strut_model *model, strut_state *state,
+STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state,
                               strut_event_stepper *stepper, double h) {
   if (stepper->active.all_sliding) {
     const strut_sliding_contact *s = stepper->active.sliding;

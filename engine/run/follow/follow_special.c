@@ -286,7 +286,7 @@ static double gap_of(const gap_watch *w, const double *q, const double *v,
 static void watch_gap(void *context, const strut_state *state) {
   gap_watch *w = context;
   double rate, h = w->dt;
-  double gap = gap_of(w, state->q, state->v, state->latest.ground_motion, &rate);
+  double gap = gap_of(w, state->q, state->v, state->latest->ground_motion, &rate);
   double sign = w->highest ? -1.0 : 1.0;
   if (sign * w->rate < 0.0 && sign * rate >= 0.0 && w->count < MOST_EXTREMA) {
     double rise = gap - w->gap, a = h * w->rate, b = h * rate;

@@ -152,7 +152,7 @@ static double height_above_surfaces(const strut_contact_table *t, const double q
 static double height_above_ground(const strut_columns *c, const strut_state *state,
                                   const double q[2]) {
   if (c->model->contacts.surface)
-    return height_above_surfaces(&c->model->contacts, q, state->latest.ground_motion);
+    return height_above_surfaces(&c->model->contacts, q, state->latest->ground_motion);
   return q[0] * c->normal[0] + (q[1] - c->model->scene->ground.height) * c->normal[1];
 }
 
@@ -238,13 +238,13 @@ static double evaluate_column(strut_columns *c, const strut_state *state, strut_
     case STRUT_COLUMN_NODE_VY: return state->v[at + 1];
     case STRUT_COLUMN_HEIGHT: return height_above_ground(c, state, state->q + at);
     case STRUT_COLUMN_NORMAL:
-      return column.item < 0 ? 0.0 : sum_of_node(c, column.item, state->latest.normal);
+      return column.item < 0 ? 0.0 : sum_of_node(c, column.item, state->latest->normal);
     case STRUT_COLUMN_FRICTION:
-      return column.item < 0 ? 0.0 : sum_of_node(c, column.item, state->latest.friction);
+      return column.item < 0 ? 0.0 : sum_of_node(c, column.item, state->latest->friction);
     case STRUT_COLUMN_LENGTH: return strut_member_measure(c->model, state, column.item).length;
     case STRUT_COLUMN_STRETCH:
       return strut_member_measure(c->model, state, column.item).length -
-             state->latest.rest[column.item];
+             state->latest->rest[column.item];
     case STRUT_COLUMN_RATE: return strut_member_measure(c->model, state, column.item).rate;
     case STRUT_COLUMN_FORCE: return strut_member_measure(c->model, state, column.item).force;
     case STRUT_COLUMN_PLASTIC: return plastic_of_member(c->model, state, column.item);
@@ -286,8 +286,8 @@ static double evaluate_column(strut_columns *c, const strut_state *state, strut_
       return strut_distance_measure(c->model, state, column.item).rate;
     case STRUT_COLUMN_DISTANCE_FORCE:
       return strut_distance_measure(c->model, state, column.item).force;
-    case STRUT_COLUMN_SENSOR: return state->latest.sensor[column.item];
-    case STRUT_COLUMN_SENSOR_RATE: return state->latest.sensor_rate[column.item];
+    case STRUT_COLUMN_SENSOR: return state->latest->sensor[column.item];
+    case STRUT_COLUMN_SENSOR_RATE: return state->latest->sensor_rate[column.item];
     case STRUT_COLUMN_STATE: return state->v[c->model->feedback.base + column.item];
     case STRUT_COLUMN_SIGNAL:
       return strut_drive_signal(c->model, state, state->v, column.item, column_time(c, state));
@@ -305,7 +305,7 @@ static double evaluate_column(strut_columns *c, const strut_state *state, strut_
 }
 
 /* Computes forces and energies at the state where a column needs them. */
-static void prepare_state(strut_columns *c, strut_state *state, double t) {
+static void prepare_state(strut_columns *c, const strut_state *state, double t) {
   c->time = t;
   if (c->forces && !strut_forces_show_held(c->model, state))
     strut_forces_observe(c->model, state, t);
@@ -324,7 +324,7 @@ static void note_extremes(strut_columns *c, size_t i, double size) {
   c->largest[i] = fmax(c->largest[i], size);
 }
 
-void strut_columns_evaluate(strut_columns *c, strut_state *state, double t) {
+void strut_columns_evaluate(strut_columns *c, const strut_state *state, double t) {
   prepare_state(c, state, t);
   for (size_t i = 0; i < c->count; i++) {
     double size = -1.0, last = c->value[i], now = evaluate_column(c, state, c->column[i], &size);
@@ -334,7 +334,7 @@ void strut_columns_evaluate(strut_columns *c, strut_state *state, double t) {
   }
 }
 
-void strut_columns_begin(strut_columns *c, strut_state *state, double t) {
+void strut_columns_begin(strut_columns *c, const strut_state *state, double t) {
   c->fastest = 0.0;
   c->loaded_now = c->loaded_most = -1;
   prepare_state(c, state, t);

@@ -32,8 +32,8 @@ static double rounding_of(const strut_energy *e, int64_t steps) {
   return ROUNDING * ((double)steps + 100.0) * (stored + e->moved);
 }
 
-void strut_balance_fill(const strut_model *model, strut_state *state, const strut_energies *begin,
-                        double t, strut_energy *e) {
+void strut_balance_fill(const strut_model *model, const strut_state *state,
+                        const strut_energies *begin, double t, strut_energy *e) {
   const double *w = state->work;
   strut_energies end = strut_energy_evaluate(model, state, t);
   double loads = strut_energy_load_work(model, state);
@@ -119,8 +119,9 @@ static void watch_losses(const strut_model *model, const strut_energy *e, int64_
   }
 }
 
-void strut_balance_sample(const strut_model *model, strut_state *state, const strut_energies *begin,
-                          double t, strut_balance_monitor *monitor, strut_energy *e) {
+void strut_balance_sample(const strut_model *model, const strut_state *state,
+                          const strut_energies *begin, double t, strut_balance_monitor *monitor,
+                          strut_energy *e) {
   strut_balance_fill(model, state, begin, t, e);
   monitor->swing = fmax(monitor->swing, e->kinetic);
   e->moved = fmax(e->moved, monitor->swing); /* an oscillation may end as it began */
@@ -276,12 +277,12 @@ void strut_measure_begin(const strut_model *model, strut_state *state, strut_mea
 /* Of the many pieces of a long profile: which touch, and the height over the lowest. */
 static void count_pieces(const strut_contact_table *c, const strut_state *state, int32_t first,
                          int32_t pieces, strut_measurement *m) {
-  const strut_ground_motion *motion = state->latest.ground_motion;
+  const strut_ground_motion *motion = state->latest->ground_motion;
   int32_t near =
-      strut_contacts_near(c, first, first + pieces, state->q, motion, 0.0, state->buffers.near);
+      strut_contacts_near(c, first, first + pieces, state->q, motion, 0.0, state->buffers->near);
   for (int32_t k = 0; k < near; k++)
-    if (strut_contact_gap_at(c, state->buffers.near[k], state->q, motion) < 0.0)
-      m->contact_steps[state->buffers.near[k]]++;
+    if (strut_contact_gap_at(c, state->buffers->near[k], state->q, motion) < 0.0)
+      m->contact_steps[state->buffers->near[k]]++;
   double gap;
   int32_t lowest = strut_contacts_lowest(c, first, state->q, motion, &gap);
   if (gap > m->max_height[lowest]) m->max_height[lowest] = gap;
@@ -299,7 +300,7 @@ static void count_contacts(const strut_model *model, const strut_state *state,
       i += pieces - 1;
       continue;
     }
-    double gap = strut_contact_gap_at(c, i, state->q, state->latest.ground_motion), high = gap;
+    double gap = strut_contact_gap_at(c, i, state->q, state->latest->ground_motion), high = gap;
     double last = m->last_gap[i], before = m->gap_before[i];
     if (gap < 0.0) m->contact_steps[i]++;
     if (equal && last > gap && last > before) /* the vertex between these steps */

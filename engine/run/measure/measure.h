@@ -15,8 +15,8 @@
  * Fills the balance from the stored energies at the start and now, at time t [s], and the works that
  * the state has accumulated.
  */
-void strut_balance_fill(const strut_model *model, strut_state *state, const strut_energies *begin,
-                        double t, strut_energy *energy);
+void strut_balance_fill(const strut_model *model, const strut_state *state,
+                        const strut_energies *begin, double t, strut_energy *energy);
 
 /** What takes energy out of a run, and never gives any. */
 typedef enum strut_loss {
@@ -49,8 +49,9 @@ void strut_balance_begin(const strut_state *state, const strut_energies *begin, 
  * Samples at time t [s]. Fills the energy too, whose `moved` is at least the largest kinetic
  * energy.
  */
-void strut_balance_sample(const strut_model *model, strut_state *state, const strut_energies *begin,
-                          double t, strut_balance_monitor *monitor, strut_energy *energy);
+void strut_balance_sample(const strut_model *model, const strut_state *state,
+                          const strut_energies *begin, double t, strut_balance_monitor *monitor,
+                          strut_energy *energy);
 
 /**
  * Makes the balance of a run continue that of the one before, whose state may have been corrected in

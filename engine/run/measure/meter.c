@@ -36,16 +36,16 @@ strut_motion_piece strut_dense_step(strut_dense *d, const strut_state *state, do
 }
 
 /* Accelerations and powers at both ends of a step of the grid. */
-static void accelerate_ends(strut_dense *d, strut_state *state, strut_motion_piece *piece) {
-  int64_t evaluations = state->evaluations;
+static void accelerate_ends(strut_dense *d, const strut_state *state, strut_motion_piece *piece) {
+  int64_t evaluations = state->latest->evaluations;
   for (int k = 0; k < 2; k++) {
     double t = piece->begin + k * piece->length;
-    state->latest.drive_time = (double)NAN;
+    state->latest->drive_time = (double)NAN;
     strut_forces_acceleration(d->model, state, t, piece->q[k], piece->v[k], d->a[k]);
-    memcpy(d->power[k], state->latest.power, sizeof d->power[k]);
+    memcpy(d->power[k], state->latest->power, sizeof d->power[k]);
     piece->a[k] = d->a[k];
   }
-  state->evaluations = evaluations; /* observing is not part of the run's cost */
+  state->latest->evaluations = evaluations; /* observing is not part of the run's cost */
 }
 
 /* The polynomial of fifth order through values, rates and second derivatives at both ends. */
@@ -87,7 +87,7 @@ double strut_dense_place(strut_dense *d, strut_state *state, strut_motion_piece 
   for (int p = 0; p < STRUT_POWER_COUNT && state->balance; p++)
     state->work[p] = strut_hermite(piece->work[0][p], piece->power[0][p], piece->work[1][p],
                                    piece->power[1][p], piece->length, s);
-  state->latest.drive_time = (double)NAN;
+  state->latest->drive_time = (double)NAN;
   if (piece->hold) piece->hold(piece, d->model, state, t, d->q, d->v);
   return t;
 }
@@ -99,7 +99,7 @@ void strut_dense_return(strut_dense *d, strut_state *state, const strut_motion_p
   d->away = false;
   state->q = d->end_q, state->v = d->end_v;
   memcpy(state->work, d->end_work, sizeof d->end_work);
-  state->latest.drive_time = (double)NAN;
+  state->latest->drive_time = (double)NAN;
   strut_drive_apply(model, state, t);
   if (model->terms & (STRUT_TERMS_RARE | STRUT_TERM_ELEMENTS | STRUT_TERM_RIGID))
     strut_forces_observe(model, state, t);

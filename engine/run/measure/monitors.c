@@ -93,7 +93,7 @@ static void iterate_power(const strut_model *model, const strut_state *state,
       model, state->q, w->motion, g->image, g->step * g->step * w->stiff, g->step * w->damp};
   /* implicit ground dampers: steps are refined while the ground is touched */
   strut_closed closed = g->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
-  strut_tangent_visit(model, state->q, state->latest.rest, -HUGE_VAL, closed, &p, apply_member,
+  strut_tangent_visit(model, state->q, state->latest->rest, -HUGE_VAL, closed, &p, apply_member,
                       apply_element, apply_contact);
   for (int32_t i = 0; i < n; i++)
     if (model->fixed[i]) g->image[i] = 0.0;
@@ -131,7 +131,7 @@ static double find_limit(const strut_model *model, const strut_step_limit_monito
 
 static void update_limit(const strut_model *model, const strut_state *state,
                          strut_step_limit_monitor *g) {
-  g->known_limit = find_limit(model, g, state->q, state->latest.rest, true);
+  g->known_limit = find_limit(model, g, state->q, state->latest->rest, true);
   for (int i = 0; i < g->count; i++) {
     strut_monitored_set *w = &g->set[i];
     w->known = w->strength;
@@ -168,7 +168,7 @@ void strut_step_limit_monitor_sample(const strut_model *model, const strut_state
   }
   if (g->count > 0) {
     memcpy(g->shape, state->q, (size_t)model->length * sizeof *g->shape);
-    memcpy(g->rest, state->latest.rest, (size_t)model->members.slots * sizeof *g->rest);
+    memcpy(g->rest, state->latest->rest, (size_t)model->members.slots * sizeof *g->rest);
   }
   if (again) update_limit(model, state, g);
   if (g->known_limit < g->step)
@@ -186,7 +186,7 @@ void strut_step_limit_monitor_check(const strut_model *model, const strut_state 
                                     strut_step_limit_monitor *g) {
   if (g->count == 0) return;
   double before = strut_step_limit_monitor_last_limit(model, g);
-  g->known_limit = fmin(before, find_limit(model, g, state->q, state->latest.rest, false));
+  g->known_limit = fmin(before, find_limit(model, g, state->q, state->latest->rest, false));
   if (g->known_limit < g->step) record_violation(g, (double)g->last * g->step, 0);
 }
 
@@ -255,7 +255,7 @@ static double form_of_motion(const strut_model *model, const strut_state *state,
   double sum = 0.0;
   product p = {model, state->q, state->v, image, stiff, damp};
   memset(image, 0, (size_t)model->length * sizeof *image);
-  strut_tangent_visit(model, state->q, state->latest.rest, -HUGE_VAL, STRUT_CLOSED_TOUCHING, &p,
+  strut_tangent_visit(model, state->q, state->latest->rest, -HUGE_VAL, STRUT_CLOSED_TOUCHING, &p,
                       apply_member, apply_element, apply_contact);
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     if (!model->fixed[i]) sum += image[i] * state->v[i];
@@ -336,7 +336,7 @@ static bool is_stuck(const strut_model *model, const strut_state *state, int32_t
 static double stiffness_of(const strut_model *model, const strut_state *state, int32_t member) {
   const strut_element *e = strut_element_of_member(&model->elements, member);
   if (!e || e->law != STRUT_LAW_AXIAL) return model->members.stiffness[member];
-  return e->numbers.axial / strut_axial_length(&e->numbers, state->latest.rest[member]);
+  return e->numbers.axial / strut_axial_length(&e->numbers, state->latest->rest[member]);
 }
 
 static void sample_tie(const strut_model *model, const strut_state *state, double time,
@@ -401,14 +401,15 @@ void strut_stick_band_sample(const strut_model *model, const strut_state *state,
   double time = (double)(state->step - band->last) * band->step;
   for (int32_t k = 0; k < band->tie_count; k++) sample_tie(model, state, time, &band->ties[k]);
   band->last = state->step;
-  bool with_acceleration = band->samples++ % ACCELERATION_INTERVAL == 0 && state->evaluations > 0;
-  if (with_acceleration) strut_mass_solve(model, state->latest.force, band->a, band->scratch);
+  bool with_acceleration =
+      band->samples++ % ACCELERATION_INTERVAL == 0 && state->latest->evaluations > 0;
+  if (with_acceleration) strut_mass_solve(model, state->latest->force, band->a, band->scratch);
   if (with_acceleration && model->terms & STRUT_TERM_SLIDING_MASS)
     strut_sliding_masses_correct(model, state, band->a);
   int32_t count =
-      c->surface ? strut_contacts_all_near(c, state->q, NULL, state->buffers.near) : c->count;
+      c->surface ? strut_contacts_all_near(c, state->q, NULL, state->buffers->near) : c->count;
   for (int32_t k = 0; k < count; k++) {
-    int32_t i = c->surface ? state->buffers.near[k] : k;
+    int32_t i = c->surface ? state->buffers->near[k] : k;
     strut_stick_band_monitor *w = &band->contacts[i];
     if (!(strut_contact_gap(c, i, state->q) < 0.0)) continue;
     if (!with_acceleration ||

@@ -43,9 +43,9 @@ size_t strut_columns_add(strut_columns *columns, strut_column column);
  * Evaluates all columns at the state, at time t [s] without its time_offset; updates forces and rest
  * lengths of the state, which follow from q, v and t. Angles continue from their last value.
  */
-void strut_columns_evaluate(strut_columns *columns, strut_state *state, double t);
+void strut_columns_evaluate(strut_columns *columns, const strut_state *state, double t);
 /** Starts the window at the present values. Angles are within half a turn of 0 here. */
-void strut_columns_begin(strut_columns *columns, strut_state *state, double t);
+void strut_columns_begin(strut_columns *columns, const strut_state *state, double t);
 /** Range of a column, or of the terms that it sums, in the window, SI. */
 double strut_columns_span(const strut_columns *columns, size_t index);
 /** Rounding error of a column in the window, SI. */

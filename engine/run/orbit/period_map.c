@@ -54,7 +54,7 @@ bool strut_period_map_spent(const strut_period_map *map) {
 /* Is the limit exceeded, the present application included? */
 static bool is_spent_now(const strut_period_map *map) {
   return map->most_evaluations > 0 &&
-         map->evaluations + map->state->evaluations > map->most_evaluations;
+         map->evaluations + map->state->latest->evaluations > map->most_evaluations;
 }
 
 /*
@@ -91,7 +91,7 @@ double strut_period_map_apply(strut_period_map *map, double *y) {
   strut_measure_tracked_point(model, state, &map->measure, &from, &speed);
   if (map->method->restart) map->method->restart(model, state, map->workspace, map->dt);
   advance_application(map);
-  map->evaluations += state->evaluations;
+  map->evaluations += state->latest->evaluations;
   map->events += state->events;
   map->forced += state->forced.count;
   map->applied += map->repeats;

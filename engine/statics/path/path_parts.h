@@ -93,7 +93,7 @@ typedef struct strut_path_elements {
 } strut_path_elements;
 
 /**
- * Pieces of laws that fold, at system->latest.q, as they follow from what the model remembers.
+ * Pieces of laws that fold, at system->latest->q, as they follow from what the model remembers.
  */
 void strut_path_find_pieces(struct strut_path_system *system);
 /** Elements on a piece of their law that goes back: each is unstable by itself, whatever holds its ends. */
@@ -161,7 +161,7 @@ typedef struct strut_path_contacts {
 /** False: out of memory. */
 bool strut_path_contacts_create(const strut_model *model, strut_arena *arena,
                                 strut_path_contacts *contacts);
-/** Adds forces, stiffness and the parameter's slope of all contacts at system->latest.q. */
+/** Adds forces, stiffness and the parameter's slope of all contacts at system->latest->q. */
 void strut_path_add_contacts(struct strut_path_system *system);
 /** The normal forces, friction along the tangents, and what they take from the reactions (length). */
 void strut_path_contact_reactions(const struct strut_path_system *system, double *reaction,

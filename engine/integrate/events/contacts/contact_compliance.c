@@ -18,12 +18,12 @@ enum { FEW_COLUMNS = 16 };
 static const double MOST_REFINED = 64.0;
 
 /* The column of M^-1 for one coordinate of a node, into `column` (length). */
-static void solve_column(const strut_model *model, strut_state *state, uint32_t at,
+static void solve_column(const strut_model *model, const strut_state *state, uint32_t at,
                          double *column) {
   assert(at < (uint32_t)model->length);
-  memset(state->latest.force, 0, (size_t)model->length * sizeof(double));
-  state->latest.force[at] = 1.0;
-  strut_mass_solve(model, state->latest.force, column, state->buffers.mass_solve);
+  memset(state->latest->force, 0, (size_t)model->length * sizeof(double));
+  state->latest->force[at] = 1.0;
+  strut_mass_solve(model, state->latest->force, column, state->buffers->mass_solve);
 }
 
 /* Then the mass matrix changes with time, and with it the compliances. */

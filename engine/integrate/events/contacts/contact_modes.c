@@ -12,24 +12,24 @@
 static const double TIE = 1e-12;
 
 STRUT_CLONES
-static void evaluate_now(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                         double t) {
+static void evaluate_now(const strut_model *model, const strut_state *state,
+                         strut_event_stepper *stepper, double t) {
   strut_step_end *now = stepper->now;
   if (!stepper->fresh) {
     evaluate_step_end(model, state, stepper, t, now, STRUT_TERMS_ALL, state->balance);
   } else {
-    for (int32_t i = 0; i < model->length; i++) state->latest.force[i] = now->structure[i];
-    for (int p = 0; p < STRUT_POWER_COUNT; p++) state->latest.power[p] = now->structure_power[p];
+    for (int32_t i = 0; i < model->length; i++) state->latest->force[i] = now->structure[i];
+    for (int p = 0; p < STRUT_POWER_COUNT; p++) state->latest->power[p] = now->structure_power[p];
     if (model->terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
     accelerate_closed(model, state, stepper, now->q, now->v, now->a, now, STRUT_TERMS_ALL,
                       state->balance);
     measure_contact_rates(model, &stepper->active, now, STRUT_TERMS_ALL);
-    for (int p = 0; p < STRUT_POWER_COUNT; p++) now->power[p] = state->latest.power[p];
+    for (int p = 0; p < STRUT_POWER_COUNT; p++) now->power[p] = state->latest->power[p];
   }
   stepper->fresh = true;
 }
 
-void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
+void strut_evaluate_acceleration(const strut_model *model, const strut_state *state,
                                  strut_event_stepper *stepper, double t) {
   bool fresh = stepper->fresh;
   evaluate_now(model, state, stepper, t);
@@ -149,8 +149,8 @@ static int32_t overloaded(const strut_model *model, const strut_event_stepper *s
   return found;
 }
 
-void strut_modes_derive(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                        double t) {
+void strut_modes_derive(const strut_model *model, const strut_state *state,
+                        strut_event_stepper *stepper, double t) {
   for (int32_t k = 0; k <= model->contacts.count; k++) {
     strut_update_active_set(model, stepper);
     strut_evaluate_acceleration(model, state, stepper, t);
@@ -176,7 +176,7 @@ static void find_piece(const strut_model *model, strut_state *state, strut_event
   bool folds = e->law == STRUT_LAW_FOLDING;
   if (folds) strut_curve_renew(model, state, i, stepper->now->q, t);
   set_piece(state, stepper, k,
-            folds ? (int)state->latest.rest[e->slot + STRUT_CURVE_PIECE]
+            folds ? (int)state->latest->rest[e->slot + STRUT_CURVE_PIECE]
                   : strut_law_piece(e->law, &e->numbers, stepper->now->stretch[k]));
 }
 

@@ -49,7 +49,7 @@ void strut_history_list(const strut_model *model, const strut_state *state,
 
 static bool is_gone(const strut_model *model, const strut_state *state, int32_t element) {
   const strut_element *e = &model->elements.element[element];
-  return e->remembers && strut_element_is_gone(state->latest.rest[e->slot]);
+  return e->remembers && strut_element_is_gone(state->latest->rest[e->slot]);
 }
 
 /* Force that is left to the yield while it holds; the rate, as a force, while it gives way. */

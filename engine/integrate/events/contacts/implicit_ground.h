@@ -98,7 +98,7 @@ STRUT_INLINE void implicit_ground_together(const strut_model *model, strut_event
 }
 
 /* Gaps, speeds and their rates at the end of the step; with the energy balance the ground's powers. */
-STRUT_INLINE void implicit_ground_finish(const strut_model *model, strut_state *state,
+STRUT_INLINE void implicit_ground_finish(const strut_model *model, const strut_state *state,
                                          strut_event_stepper *stepper, unsigned terms,
                                          bool balance) {
   const strut_contact_table *c = &model->contacts;
@@ -192,7 +192,7 @@ STRUT_INLINE void implicit_ground_slides(const strut_model *model,
 }
 
 /* As implicit_ground_finish, on level ground. */
-STRUT_INLINE void implicit_ground_leave(const strut_model *model, strut_state *state,
+STRUT_INLINE void implicit_ground_leave(const strut_model *model, const strut_state *state,
                                         const strut_event_stepper *stepper, bool balance) {
   const strut_contact_table *c = &model->contacts;
   const double *restrict v = stepper->next->v, *restrict a = stepper->next->a;
@@ -212,8 +212,8 @@ STRUT_INLINE void implicit_ground_leave(const strut_model *model, strut_state *s
     exchanged += fabs(damped) + fabs(rubbed) + fabs(carried);
   }
   if (!balance) return;
-  double *low = state->latest.power + STRUT_POWER_DRIVE,
-         *high = state->latest.power + STRUT_POWER_CONTACT;
+  double *low = state->latest->power + STRUT_POWER_DRIVE,
+         *high = state->latest->power + STRUT_POWER_CONTACT;
   strut_lanes_store(low, strut_lanes_load(low) + (strut_lanes){0.0, 0.0, belt, 0.0});
   strut_lanes_store(high,
                     strut_lanes_load(high) + (strut_lanes){contact, friction, exchanged, 0.0});

@@ -86,7 +86,7 @@ VALUE(of_law) { return law_value(stepper, end, i); }
  * At the edge of Karnopp's band, u = s delta: outside friction is -s mu N, inside it balances. The
  * node goes where the acceleration on that side leads; where both lead to the edge it creeps along.
  */
-static void decide_at_edge(const strut_model *model, strut_state *state,
+static void decide_at_edge(const strut_model *model, const strut_state *state,
                            strut_event_stepper *stepper, int32_t i, bool from_inside, double t) {
   strut_contact_modes *modes = &stepper->modes;
   const strut_contact_entry *e = &stepper->contacts.entry[i];

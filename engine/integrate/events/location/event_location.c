@@ -102,7 +102,7 @@ STRUT_INLINE void measure_cables_group(const strut_model *model, const strut_sta
   for (int n = 0; n < STRUT_LANES; n++) {
     int32_t j = stepper->laws.item[k[n]].member;
     from[n] = t->from[j], to[n] = t->to[j];
-    rest[n] = state->latest.rest[j], rest_rate[n] = state->latest.rest_rate[j];
+    rest[n] = state->latest->rest[j], rest_rate[n] = state->latest->rest_rate[j];
     stiffness[n] = t->stiffness[j], damping[n] = t->damping[j];
   }
   member_vectors d = members_gather(end->q, from, to), w = members_gather(end->v, from, to);
@@ -157,7 +157,7 @@ static void measure_element(const strut_model *model, const strut_state *state,
 static void measure_relay(const strut_model *model, const strut_state *state,
                           const strut_law_switch *law, const strut_step_end *end, int32_t k) {
   assert(k >= 0);
-  double now = state->latest.drive_time + state->time_offset;
+  double now = state->latest->drive_time + state->time_offset;
   end->stretch[k] = 1.0;
   end->stretch_rate[k] = 0.0;
   end->tension[k] = strut_relay_margin(model, state, law->relay - 1, now, end->v);
@@ -186,8 +186,8 @@ static bool is_of_collision(const strut_model *model, const strut_law_switch *la
 }
 
 /* Laws that may switch at `end`, in stepper->laws.nearby; those that have come near are measured at both ends. */
-static void list_nearby(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                        const strut_step_end *end) {
+static void list_nearby(const strut_model *model, const strut_state *state,
+                        strut_event_stepper *stepper, const strut_step_end *end) {
   const strut_nearby *near = strut_nearby_at(model, state, end->q);
   if (stepper->laws.nearby_made == near->made) return;
   stepper->laws.nearby_made = near->made;
@@ -205,8 +205,8 @@ static void list_nearby(const strut_model *model, strut_state *state, strut_even
   }
 }
 
-void strut_event_measure(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                         const strut_step_end *end) {
+void strut_event_measure(const strut_model *model, const strut_state *state,
+                         strut_event_stepper *stepper, const strut_step_end *end) {
   if (!stepper->laws.count) return;
   if (stepper->laws.nearby) list_nearby(model, state, stepper, end);
   measure_laws(model, state, stepper, end);
@@ -280,7 +280,7 @@ static bool is_settling(const strut_model *model, const strut_event_stepper *ste
 }
 
 /* What switches a law, if it comes before `first`. */
-static void keep_first_of_laws(const strut_model *model, strut_state *state,
+static void keep_first_of_laws(const strut_model *model, const strut_state *state,
                                strut_event_stepper *stepper, double h, strut_event *first) {
   strut_event_measure(model, state, stepper, stepper->next);
   int32_t laws = strut_laws_of(&stepper->laws);
@@ -293,7 +293,7 @@ static void keep_first_of_laws(const strut_model *model, strut_state *state,
 }
 
 /* Of `contacts` in a list and the laws of the stepper's list; NULL: of all contacts and laws. */
-STRUT_INLINE strut_event first_event(const strut_model *model, strut_state *state,
+STRUT_INLINE strut_event first_event(const strut_model *model, const strut_state *state,
                                      strut_event_stepper *stepper, double h, const int32_t *list,
                                      int32_t contacts, unsigned terms) {
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
@@ -303,11 +303,11 @@ STRUT_INLINE strut_event first_event(const strut_model *model, strut_state *stat
   return first;
 }
 
-strut_event strut_event_first(const strut_model *model, strut_state *state,
+strut_event strut_event_first(const strut_model *model, const strut_state *state,
                               strut_event_stepper *stepper, double h) {
   if (model->contacts.surface)
-    return first_event(model, state, stepper, h, state->buffers.near,
-                       strut_surface_candidates(model, stepper, 0.0, state->buffers.near),
+    return first_event(model, state, stepper, h, state->buffers->near,
+                       strut_surface_candidates(model, stepper, 0.0, state->buffers->near),
                        STRUT_TERMS_ALL);
   return first_event(model, state, stepper, h, NULL, model->contacts.count, STRUT_TERMS_COMMON);
 }
@@ -345,9 +345,9 @@ strut_event strut_event_predict(const strut_model *model, const strut_state *sta
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
   bool surfaces = c->surface;
   int32_t count =
-      surfaces ? strut_surface_candidates(model, stepper, 0.0, state->buffers.near) : c->count;
+      surfaces ? strut_surface_candidates(model, stepper, 0.0, state->buffers->near) : c->count;
   for (int32_t k = 0; k < count; k++) {
-    int32_t i = surfaces ? state->buffers.near[k] : k;
+    int32_t i = surfaces ? state->buffers->near[k] : k;
     bool closed = stepper->modes.of[i] != STRUT_MODE_OPEN;
     double gap = gap_at_end(c, &stepper->modes, i, stepper->next, STRUT_TERMS_ALL);
     if (closed ? gap <= 0.0 : gap >= 0.0) continue;

@@ -93,7 +93,7 @@ static bool move_on(const strut_model *model, const strut_state *state,
   return true;
 }
 
-double strut_event_locate(const strut_model *model, strut_state *state,
+double strut_event_locate(const strut_model *model, const strut_state *state,
                           strut_event_stepper *stepper, double t, double h, strut_event *event) {
   const strut_step_formula *formula = stepper->formula;
   search s = begin_search(model, stepper, event, 1.0);

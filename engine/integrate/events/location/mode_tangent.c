@@ -43,12 +43,12 @@ static bool allocate(const strut_model *model, strut_arena *arena, strut_mode_ta
 }
 
 /* M^-1, a column a free coordinate. */
-static void invert_mass(const strut_model *model, strut_state *state, strut_mode_tangent *t) {
+static void invert_mass(const strut_model *model, const strut_state *state, strut_mode_tangent *t) {
   memset(t->place, 0, (size_t)model->length * sizeof(double));
   for (int32_t j = 0; j < t->n; j++) {
-    memset(state->latest.force, 0, (size_t)model->length * sizeof(double));
-    state->latest.force[t->coordinate[j]] = 1.0;
-    strut_mass_solve(model, state->latest.force, t->place, state->buffers.mass_solve);
+    memset(state->latest->force, 0, (size_t)model->length * sizeof(double));
+    state->latest->force[t->coordinate[j]] = 1.0;
+    strut_mass_solve(model, state->latest->force, t->place, state->buffers->mass_solve);
     for (int32_t i = 0; i < t->n; i++) t->inverse[i * t->n + j] = t->place[t->coordinate[i]];
   }
 }
@@ -152,8 +152,8 @@ STRUT_INLINE void add_member(const strut_model *model, const strut_state *state,
   if (!(length > 0.0)) return;
   double u[2] = {x / length, y / length}, w[2] = {v[to] - v[from], v[to + 1] - v[from + 1]};
   double rate = u[0] * w[0] + u[1] * w[1], c = m->stiffness[j], k = m->damping[j];
-  double stretch = length - state->latest.rest[j];
-  double tension = c * stretch + k * (rate - state->latest.rest_rate[j]);
+  double stretch = length - state->latest->rest[j];
+  double tension = c * stretch + k * (rate - state->latest->rest_rate[j]);
   if (!(stretch > state->modes.slack_length_threshold[j] &&
         tension > state->modes.slack_force_threshold[j]))
     return;
@@ -186,7 +186,7 @@ static void difference_forces(const strut_model *model, strut_state *state,
       *x = keep + side * unit[of];
       forces_of_structure(model, state, time, t->place, t->speed, STRUT_TERMS_ALL, false);
       for (int32_t i = 0; i < t->n; i++)
-        t->force[i * t->width + j] += side * state->latest.force[t->coordinate[i]] / two;
+        t->force[i * t->width + j] += side * state->latest->force[t->coordinate[i]] / two;
     }
     *x = keep;
   }
@@ -285,7 +285,7 @@ static void add_contact(const strut_model *model, const strut_state *state,
   for (int k = 0; k < 2; k++)
     if (row[k] >= 0) x[k] = t->force + row[k] * t->width;
   measure_on_line(c, i, q, v, &o);
-  o.applied = strut_contact_along_ground(c, i, state->latest.force);
+  o.applied = strut_contact_along_ground(c, i, state->latest->force);
   o.normal = contact_normal_force(e, stepper->modes.damper[i], o.gap, o.into, true);
   friction_slopes f = slopes_of(e, &stepper->modes, i, &o);
   differentiate_normal(e, stepper->modes.damper[i], is_resting(e, stepper, i), &o, &gap, &into);
@@ -331,7 +331,7 @@ void strut_mode_tangent_evaluate(const strut_model *model, strut_state *state,
   if (!t->plain) difference_forces(model, state, stepper, time, q, v, t);
   if (!t->plain || asks_applied(stepper))
     forces_of_structure(model, state, time, q, v, STRUT_TERMS_ALL, false);
-  else if ((model->terms & STRUT_TERM_DRIVE) && time != state->latest.drive_time)
+  else if ((model->terms & STRUT_TERM_DRIVE) && time != state->latest->drive_time)
     strut_drive_apply(model, state, time);
   for (int32_t j = 0; j < model->members.count && t->plain; j++)
     add_member(model, state, j, q, v, t);

@@ -44,7 +44,7 @@ void strut_variation_reset(strut_variation *x) {
 
 static double *velocities(const strut_variation *x) { return x->columns + x->n * x->stride; }
 
-void strut_variation_begin(const strut_model *model, strut_state *state,
+void strut_variation_begin(const strut_model *model, const strut_state *state,
                            const strut_event_stepper *stepper) {
   strut_variation *x = state->watched.variation;
   memset(x->delay, 0, (size_t)x->stride * sizeof(double));
@@ -142,7 +142,7 @@ void strut_variation_step(const strut_model *model, strut_state *state,
   double *swap = x->columns;
   x->columns = x->middle, x->middle = swap;
   memset(x->delay, 0, (size_t)x->stride * sizeof(double));
-  if ((model->terms & STRUT_TERM_DRIVE) && state->latest.drive_time != t + h)
+  if ((model->terms & STRUT_TERM_DRIVE) && state->latest->drive_time != t + h)
     strut_drive_apply(model, state, t + h);
 }
 
@@ -200,7 +200,7 @@ static double contact_gradient(const strut_model *model, const strut_event_stepp
 }
 
 /* The event's value at stepper->next, after it has been moved, in the present modes. */
-static double value_beside(const strut_model *model, strut_state *state,
+static double value_beside(const strut_model *model, const strut_state *state,
                            strut_event_stepper *stepper, const strut_event *e, double t) {
   evaluate_step_end(model, state, stepper, t, stepper->next, STRUT_TERMS_ALL, false);
   strut_event_measure(model, state, stepper, stepper->next);
@@ -208,7 +208,7 @@ static double value_beside(const strut_model *model, strut_state *state,
 }
 
 /* By central differences along the motion, which gives the rate, and along each column. */
-static double differenced_gradient(const strut_model *model, strut_state *state,
+static double differenced_gradient(const strut_model *model, const strut_state *state,
                                    strut_event_stepper *stepper, const strut_event *e, double t,
                                    double dt, strut_variation *x) {
   const strut_step_end *now = stepper->now;
@@ -241,12 +241,12 @@ static double differenced_gradient(const strut_model *model, strut_state *state,
     }
     x->gradient[j] = (value[1] - value[0]) / (2.0 * part);
   }
-  if ((model->terms & STRUT_TERM_DRIVE) && state->latest.drive_time != t)
+  if ((model->terms & STRUT_TERM_DRIVE) && state->latest->drive_time != t)
     strut_drive_apply(model, state, t);
   return rate;
 }
 
-void strut_variation_meet(const strut_model *model, strut_state *state,
+void strut_variation_meet(const strut_model *model, const strut_state *state,
                           strut_event_stepper *stepper, const strut_event *e, double t, double dt,
                           bool stepped) {
   strut_variation *x = state->watched.variation;
@@ -264,7 +264,7 @@ void strut_variation_meet(const strut_model *model, strut_state *state,
   }
 }
 
-void strut_variation_pass(const strut_model *model, strut_state *state,
+void strut_variation_pass(const strut_model *model, const strut_state *state,
                           const strut_event_stepper *stepper, bool event) {
   strut_variation *x = state->watched.variation;
   double *v = velocities(x);

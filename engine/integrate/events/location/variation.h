@@ -37,7 +37,7 @@ STRUT_API strut_variation *strut_variation_create(const strut_model *model, stru
 STRUT_API void strut_variation_reset(strut_variation *variation);
 
 /** At the start of a run, when its modes are known. */
-void strut_variation_begin(const strut_model *model, strut_state *state,
+void strut_variation_begin(const strut_model *model, const strut_state *state,
                            const struct strut_event_stepper *stepper);
 /** Along the step from stepper->now at time t over h, whose stages and end the stepper holds. */
 void strut_variation_step(const strut_model *model, strut_state *state,
@@ -46,11 +46,11 @@ void strut_variation_step(const strut_model *model, strut_state *state,
  * At an event at time t, before the modes change. `stepped`: a step has just led here; otherwise it is a
  * consequence of the event before, at the same time.
  */
-void strut_variation_meet(const strut_model *model, strut_state *state,
+void strut_variation_meet(const strut_model *model, const strut_state *state,
                           struct strut_event_stepper *stepper, const struct strut_event *event,
                           double t, double dt, bool stepped);
 /** After modes have changed; `event`: by an event that was met, otherwise at a time of its own. */
-void strut_variation_pass(const strut_model *model, strut_state *state,
+void strut_variation_pass(const strut_model *model, const strut_state *state,
                           const struct strut_event_stepper *stepper, bool event);
 
 #endif
