@@ -20,7 +20,7 @@ except ImportError as missing:
     print(f"{missing}: stiffness cannot be computed here")
     sys.exit(77)
 
-from testing import fail, files_in, finish, models, strut
+from testing import check, fail, files_in, finish, models, strut
 
 CRAWLER, X = f"{models}/crawler/crawler.yaml", f"{models}/gallery/x-frame.yaml"
 TRUSS = f"{models}/basics/von-mises-truss.yaml"
@@ -30,8 +30,7 @@ TWO, SNAP = f"{models}/gallery/two-mass-crawler.yaml", f"{models}/gallery/von-mi
 
 def run(*words, code=0, stdin=""):
     done = subprocess.run([strut, *words], capture_output=True, text=True, input=stdin)
-    if done.returncode != code:
-        fail(f"strut {' '.join(words)}: exit code {done.returncode}, not {code}: {done.stderr}")
+    check(done.returncode == code, f"strut {' '.join(words)}: exit code {done.returncode}, not {code}: {done.stderr}")
     return done
 
 
@@ -42,8 +41,7 @@ def read(*words):
 
 def same(what, found, wanted, relative=1e-12):
     if found is None or wanted is None:
-        if found is not wanted:
-            fail(f"{what}: {found}, not {wanted}")
+        check(found is wanted, f"{what}: {found}, not {wanted}")
     elif not abs(found - wanted) <= relative * max(abs(found), abs(wanted)):
         fail(f"{what}: {found!r}, not {wanted!r}")
 
@@ -75,14 +73,12 @@ def check_states(path, model):
     if {s["name"]: s["energy"] for s in model["states"]} != stands:
         fail(f"{path}: states {model['states']}, not {stands}")
     energies = [s["energy"] for s in model["states"]]
-    if energies != sorted(energies):
-        fail(f"{path}: states are not in the order of their energy")
+    check(energies == sorted(energies), f"{path}: states are not in the order of their energy")
     same(f"{path}: number of states", v["stable_states"], len(stands))
     same(f"{path}: lowest", v["lowest_energy"], min(stands.values()))
     same(f"{path}: span", v["energy_span"], max(stands.values()) - min(stands.values()))
     barriers = [(b["from"], b["to"], b["height"]) for b in reported["barriers"]]
-    if [(b["from"], b["to"], b["height"]) for b in model["barriers"]] != barriers:
-        fail(f"{path}: barriers differ")
+    check([(b["from"], b["to"], b["height"]) for b in model["barriers"]] == barriers, f"{path}: barriers differ")
     return barriers
 
 
@@ -186,24 +182,21 @@ check_rigidity(CRAWLER, crawler["values"])
 check_frequencies(CRAWLER, crawler["values"])
 check_motion(CRAWLER, crawler)
 same("mass", crawler["values"]["mass"], 0.14)
-if crawler["values"]["lowest_energy"] is not None or \
-        crawler["reasons"]["lowest_energy"] != "not requested":
-    fail("states that were not asked for")
+check(crawler["values"]["lowest_energy"] is None and crawler["reasons"]["lowest_energy"] == "not requested",
+      "states that were not asked for")
 
 # ---- unlike structures, settings, CSV ----
 both = read("compare", "--set", "frequency=10.5 Hz", "--set", "start=II", CRAWLER, X, TWO, PENDULUM, "--no-states")
 by = {m["model"]: m for m in both["models"]}
-if list(by) != ["crawler", "x-frame", "two-mass-crawler", "pendulum"]:
-    fail(f"labels {list(by)}")
+check(list(by) == ["crawler", "x-frame", "two-mass-crawler", "pendulum"], f"labels {list(by)}")
 same("frequency set", by["crawler"]["values"]["drive_frequency"], 10.5)
 same("frequency set", by["two-mass-crawler"]["values"]["drive_frequency"], 10.5, 1e-9)
 if by["x-frame"]["without_parameters"] != ["frequency", "start"] or \
         by["two-mass-crawler"]["without_parameters"] != ["start"]:
     fail("parameters that a model does not have are not reported")
 check_motion(CRAWLER, by["crawler"], "--set", "frequency=10.5 Hz", "--set", "start=II")
-if by["x-frame"]["values"]["velocity"] is not None or "drive" not in \
-        by["x-frame"]["reasons"]["drive_frequency"]:
-    fail("a structure without drive")
+check(by["x-frame"]["values"]["velocity"] is None and "drive" in by["x-frame"]["reasons"]["drive_frequency"],
+      "a structure without drive")
 for model in both["models"]:
     for key, value in model["values"].items():
         if (value is None) != (key in model["reasons"]):
@@ -212,14 +205,12 @@ reported = run("compare", CRAWLER, X, "--no-states", "--csv").stdout
 rows = list(csv.DictReader(io.StringIO(reported)))
 alone = read("compare", CRAWLER, X, "--no-states")["models"]
 for row, model in zip(rows, alone):
-    if row["model"] != model["model"] or row["name"] != model["name"]:
-        fail(f"CSV: {row['model']}")
+    check(row["model"] == model["model"] and row["name"] == model["name"], f"CSV: {row['model']}")
     for key, value in model["values"].items():
         cell = next(c for n, c in row.items() if n.split(" ")[0] == key)
         if key != "cpu_per_second":
             same(f"CSV: {key}", float(cell) if cell else None, value, 0)
-if "mass [kg]" not in rows[0] or "contact_duty" not in rows[0]:
-    fail(f"CSV: header {list(rows[0])}")
+check("mass [kg]" in rows[0] and "contact_duty" in rows[0], f"CSV: header {list(rows[0])}")
 
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
@@ -243,16 +234,13 @@ members:
         fail(f"differences: {reported}")
     if found["models"][2]["differences"] or found["models"][2]["model"] != "one.yaml":
         fail("the same model twice has differences, or no label of its own")
-    if "differences" in found["models"][0]:
-        fail("the first differs from itself")
+    check("differences" not in found["models"][0], "the first differs from itself")
     # stiffer by a factor: a spring from a wall, whose stiffness along it is its own
     same("stiffness of a spring", found["models"][0]["values"]["stiffness_x"], 100)
-    if found["models"][0]["reasons"].get("stiffness_y") is None:
-        fail("a spring without tension resists across")
+    check(found["models"][0]["reasons"].get("stiffness_y") is not None, "a spring without tension resists across")
     out = run("compare", "one.yaml", "two.yaml", "--no-states", "--no-motion").stdout
     for line in ("two against one", "+ members.ac", "- parameters.unlike", "~ members.ab.stiffness: 100 -> 200"):
-        if line not in out:
-            fail(f"the table lacks '{line}'")
+        check(line in out, f"the table lacks '{line}'")
 
     # ---- files ----
     run("compare", "one.yaml", "two.yaml", SQUARE, "--no-motion", "-q", "-o", "kept")
@@ -265,11 +253,9 @@ members:
     first = {n: open(f"kept/{n}", "rb").read() for n in names}
     run("compare", "one.yaml", "two.yaml", SQUARE, "--no-motion", "-q", "-o", "kept")
     for name in names:
-        if open(f"kept/{name}", "rb").read() != first[name]:
-            fail(f"{name} is not the same a second time")
+        check(open(f"kept/{name}", "rb").read() == first[name], f"{name} is not the same a second time")
     run("compare", "one.yaml", "-q", "-o", "kept", "--no-motion")
-    if len(files_in("kept")) != 4:
-        fail("a picture of an earlier comparison stays")
+    check(len(files_in("kept")) == 4, "a picture of an earlier comparison stays")
     run("compare", "one.yaml", "--no-states", "--plot", "sheet.svg")
     tree.parse("sheet.svg")
 
@@ -284,8 +270,7 @@ members:
     # ---- bad use ----
     def refused(code, needle, *words, stdin=""):
         done = run("compare", *words, code=code, stdin=stdin)
-        if needle not in done.stderr:
-            fail(f"strut compare {' '.join(words)}: stderr lacks '{needle}': {done.stderr}")
+        check(needle in done.stderr, f"strut compare {' '.join(words)}: stderr lacks '{needle}': {done.stderr}")
         if done.stdout:
             fail(f"strut compare {' '.join(words)}: prints something")
 
@@ -295,8 +280,7 @@ members:
     open("worse.yaml", "w").write("strut: 1\nnods: {}\n")
     done = run("compare", "one.yaml", "bad.yaml", "worse.yaml", code=2)
     for needle in ("bad.yaml:6", "spring", "worse.yaml:2", "nodes"):
-        if needle not in done.stderr:
-            fail(f"bad models among good ones: stderr lacks '{needle}': {done.stderr}")
+        check(needle in done.stderr, f"bad models among good ones: stderr lacks '{needle}': {done.stderr}")
     if os.path.exists("none"):
         fail("a refused comparison leaves a directory")
     refused(1, "did you mean 'stiff'", "--set", "stif=3", "one.yaml", "two.yaml")
@@ -307,26 +291,21 @@ members:
     done = run("compare", "one.yaml", "one.yaml", "--set", "stiff=200 N/m", "one.yaml", "--set",
                "stiff=300 N/m", "--no-states", "--no-motion", "--json")
     own = {m["model"]: m for m in json.loads(done.stdout)["models"]}
-    if list(own) != ["one", "one stiff=200 N/m", "one stiff=300 N/m"]:
-        fail(f"labels of settings: {list(own)}")
+    check(list(own) == ["one", "one stiff=200 N/m", "one stiff=300 N/m"], f"labels of settings: {list(own)}")
     first = own["one"]["values"]["stiffness_x"]
     for label, stiffness in (("one stiff=200 N/m", 200), ("one stiff=300 N/m", 300)):
-        if own[label]["parameters"]["stiff"] != stiffness or \
-                own[label]["values"]["stiffness_x"] == first:
-            fail(f"{label} is not set: {own[label]['parameters']}")
+        check(own[label]["parameters"]["stiff"] == stiffness and own[label]["values"]["stiffness_x"] != first,
+              f"{label} is not set: {own[label]['parameters']}")
     done = run("compare", "--set", "stiff=1e6", "one.yaml", "one.yaml", "--no-states", "--no-motion")
-    if done.stderr.count("note:") != 1:
-        fail(f"not one note on --set: {done.stderr}")
+    check(done.stderr.count("note:") == 1, f"not one note on --set: {done.stderr}")
     done = run("compare", CRAWLER, PENDULUM, "--no-states", "--no-motion")
-    if "crawler:  Nine-member multistable crawler\n" not in done.stdout:
-        fail(f"no name of the scene: {done.stdout[:300]}")
+    check("crawler:  Nine-member multistable crawler\n" in done.stdout, f"no name of the scene: {done.stdout[:300]}")
     refused(1, "--accuracy", "one.yaml", "--accuracy", "0")
     refused(1, "--accuracy", "one.yaml", "--accuracy", "200%")
     refused(1, "--csv", "one.yaml", "--csv", "--json")
     refused(1, "'-' once", "-", "-", stdin=text)
     done = run("compare", "-", "one.yaml", "--no-states", "--csv", stdin=text)
-    if not done.stdout.split("\n")[1].startswith("stdin,one,2,1,"):
-        fail(f"the standard input: {done.stdout}")
+    check(done.stdout.split("\n")[1].startswith("stdin,one,2,1,"), f"the standard input: {done.stdout}")
     run("check", "one.yaml", "two.yaml", code=1)
 
     # ---- one that fails does not stop the others ----

@@ -3,26 +3,17 @@
 # grazing by its transfer function, doublings against single branches; files, refusals.
 #
 #   python3 follow_curves_test.py STRUT
-import csv
 import json
 import math
 import os
-import subprocess
 
-from testing import check, finish, models, strut, work, write
+from testing import check, finish, models, near, rows, run, strut, work, write
 
 duffing = os.path.join(models, "basics", "duffing.yaml")
 
 
-def run(*words, code=0):
-    done = subprocess.run([strut, "path", "--periodic", *words], capture_output=True, text=True, cwd=work, timeout=120, check=False)
-    check(done.returncode == code,
-          f"strut path --periodic {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
-    return done
-
-
-def near(got, want, tolerance, what):
-    check(abs(got - want) <= tolerance * abs(want), f"{what}: {got}, expected {want}")
+def follow(*words, code=0):
+    return run("path", "--periodic", *words, code=code)
 
 
 # ---- folds: where ((s - w^2)^2 + (c w)^2) A^2 = F^2, s = 1 + 3/4 b A^2, has a vertical tangent
@@ -44,7 +35,7 @@ def frequencies(amplitude):
     return found
 
 
-folds = json.loads(run(duffing, "--over", "frequency=0.14Hz..0.2Hz", "--and", "force=0.06N..0.15N", "-o", "folds",
+folds = json.loads(follow(duffing, "--over", "frequency=0.14Hz..0.2Hz", "--and", "force=0.06N..0.15N", "-o", "folds",
                        "--json").stdout)
 curves = folds["curves"]
 check([c["kind"] for c in curves] == ["fold"] and len(curves[0]["cusps"]) == 1, f"curves of folds: {len(curves)}")
@@ -52,15 +43,15 @@ check(folds["and"] == "force" and folds["and_at"] == 0.1, "the second parameter"
 for p in curves[0]["points"]:
     frequency, force = p["values"]
     want = min(frequencies(p["amplitude"]), key=lambda w: abs(w[0] - frequency))
-    near(frequency, want[0], 3e-3, f"frequency of the fold at {force}")
+    near(frequency, want[0], f"frequency of the fold at {force}", 3e-3)
     check(0.0599 < force < 0.1501, f"a fold at {force}")
     check(p["stable"], "the fold bounds a stable motion")
 ends = [curves[0]["points"][i]["values"] for i in (0, -1)]
 check(all(abs(e[1] - 0.15) < 1e-5 for e in ends) and ends[0][0] < ends[1][0], f"ends {ends}")
 # the cusp: the least force on the curve of folds
 least = min((f for a in range(900, 1800) for f in frequencies(a / 1000)), key=lambda f: f[1])
-near(curves[0]["cusps"][0][0], least[0], 2e-3, "frequency of the cusp")
-near(curves[0]["cusps"][0][1], least[1], 1e-2, "force at the cusp")
+near(curves[0]["cusps"][0][0], least[0], "frequency of the cusp", 2e-3)
+near(curves[0]["cusps"][0][1], least[1], "force at the cusp", 1e-2)
 # each fold of the branch is on the curve
 special = [p["value"] for p in folds["branches"][0]["special"] if p["point"] == "fold"]
 for value in special:
@@ -69,8 +60,7 @@ for value in special:
                 if (a[1] - 0.1) * (b[1] - 0.1) <= 0 and a[1] != b[1]]
     check(min(abs(c - value) for c in crossing) < 2e-5, f"fold at {value}, curve at {crossing}")
 check(os.path.exists(os.path.join(work, "folds", "curves.svg")), "no figure")
-with open(os.path.join(work, "folds", "curves.csv"), newline="", encoding="utf-8") as file:
-    table = list(csv.DictReader(file))
+table = rows("folds", "curves.csv")
 check([r["point"] for r in table].count("cusp") == 1 and len(table) == len(curves[0]["points"]), "curves.csv")
 
 # ---- grazing: where the amplitude of the free oscillator is the gap
@@ -85,13 +75,13 @@ loads: {push: {node: mass, force: [0, push], signal: {sine: {amplitude: 1, frequ
 solver: {integrator: rk4, step: 1 ms}
 run: {periods: 100, of: push, measure: {node: mass}}
 """)
-grazing = json.loads(run("bilinear.yaml", "--over", "frequency=1Hz..1.45Hz", "--and", "push=0.6N..1.6N", "--json").stdout)
+grazing = json.loads(follow("bilinear.yaml", "--over", "frequency=1Hz..1.45Hz", "--and", "push=0.6N..1.6N", "--json").stdout)
 check([(c["kind"], c["node"]) for c in grazing["curves"]] == [("grazing", "mass")], "curves of grazing")
 for curve in grazing["curves"]:
     check(len(curve["points"]) > 20, "a short curve")
     for p in curve["points"]:
         turn = 2 * math.pi * p["values"][0]
-        near(p["values"][1] / math.hypot(100 - turn**2, turn), 0.03, 1e-5, f"gap at {p['values']}")
+        near(p["values"][1] / math.hypot(100 - turn**2, turn), 0.03, f"gap at {p['values']}", 1e-5)
 
 # ---- doublings: a point of the curve is where a branch at that value doubles
 
@@ -106,20 +96,20 @@ loads: {push: {node: mass, force: [force, 0], signal: {sine: {amplitude: 1, freq
 solver: {integrator: rk4, step: 1 ms}
 run: {periods: 200, of: push, measure: {node: mass}}
 """)
-doublings = json.loads(run("wells.yaml", "--over", "force=0.178N..0.186N", "--values", "0.179N", "--and", "damping=0.24 N s/m..0.26 N s/m",
+doublings = json.loads(follow("wells.yaml", "--over", "force=0.178N..0.186N", "--values", "0.179N", "--and", "damping=0.24 N s/m..0.26 N s/m",
                            "--json").stdout)["curves"]
 check([(c["kind"], c["period_multiple"]) for c in doublings] == [("period-doubling", 1)], "curves of doublings")
 force, damping = doublings[0]["points"][3]["values"]
-alone = json.loads(run("wells.yaml", "--over", "force=0.176N..0.182N", "--values", "0.176N", "--set", f"damping={damping}",
+alone = json.loads(follow("wells.yaml", "--over", "force=0.176N..0.182N", "--values", "0.176N", "--set", f"damping={damping}",
                        "--json").stdout)
-near([p["value"] for p in alone["branches"][0]["special"] if p["point"] == "period-doubling"][0], force, 1e-6,
-     "a doubling alone")
+near([p["value"] for p in alone["branches"][0]["special"] if p["point"] == "period-doubling"][0], force, "a doubling alone",
+     1e-6)
 
 # ---- refusals
 
 
 def refused(text, *words):
-    done = run(duffing, "--over", "frequency=0.14Hz..0.24Hz", *words, code=1)
+    done = follow(duffing, "--over", "frequency=0.14Hz..0.24Hz", *words, code=1)
     check(text in done.stderr, f"stderr lacks '{text}': {done.stderr}")
 
 

@@ -4,7 +4,6 @@
 # boundary of motions without stops, the two-mass crawler; refusals, threads, files.
 #
 #   python3 follow_test.py STRUT
-import csv
 import json
 import math
 import os
@@ -12,20 +11,7 @@ import signal
 import subprocess
 import time
 
-from testing import check, finish, models, strut, work, write
-
-
-def run(*words, code=0, env=None):
-    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work, timeout=120,
-                          env={**os.environ, **(env or {})})
-    check(done.returncode == code,
-          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
-    return done
-
-
-def rows(directory):
-    with open(os.path.join(work, directory, "branches.csv"), newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+from testing import check, finish, models, near, rows, run, strut, work, write
 
 
 def follow(model, over, *words):
@@ -34,10 +20,6 @@ def follow(model, over, *words):
 
 def special(result, kind, branch=0):
     return [p for p in result["branches"][branch]["special"] if p["point"] == kind]
-
-
-def near(got, want, tolerance, what):
-    check(abs(got - want) <= tolerance * abs(want), f"{what}: {got}, expected {want}")
 
 
 def root(f, a, b):
@@ -66,16 +48,16 @@ run: {{periods: 200, of: push, measure: {{node: mass}}}}
 write("linear.yaml", OSCILLATOR.format(name="Linear oscillator", at=10, law="stiffness: 100, damping: 0.5",
                                        parameters="frequency: 1 Hz, force: 1 N"))
 run("path", "--periodic", "linear.yaml", "--over", "frequency=1Hz..3Hz", "-o", "linear")
-table = rows("linear")
+table = rows("linear", "branches.csv")
 check(len(table) > 30, f"{len(table)} points")
-near(float(table[0]["frequency [Hz]"]), 1, 1e-12, "the lower end")
-near(float(table[-1]["frequency [Hz]"]), 3, 1e-12, "the upper end")
+near(float(table[0]["frequency [Hz]"]), 1, "the lower end", 1e-12)
+near(float(table[-1]["frequency [Hz]"]), 3, "the upper end", 1e-12)
 for row in table:
     f, turn = float(row["frequency [Hz]"]), 2 * math.pi * float(row["frequency [Hz]"])
-    near(float(row["multiplier"]), math.exp(-0.25 / f), 1e-5, f"multiplier at {f}")
-    near(float(row["amplitude [m]"]), 1 / math.hypot(100 - turn**2, 0.5 * turn), 1e-4, f"amplitude at {f}")
+    near(float(row["multiplier"]), math.exp(-0.25 / f), f"multiplier at {f}", 1e-5)
+    near(float(row["amplitude [m]"]), 1 / math.hypot(100 - turn**2, 0.5 * turn), f"amplitude at {f}", 1e-4)
     want = math.pi * 0.5 * turn * float(row["amplitude [m]"])**2
-    near(float(row["work [J]"]), want, 1e-4, f"work at {f}")
+    near(float(row["work [J]"]), want, f"work at {f}", 1e-4)
     check(row["stable"] == "yes" and row["period_multiple"] == "1", "not stable")
 check(os.path.exists(os.path.join(work, "linear", "branches.svg")), "no figure")
 
@@ -107,10 +89,10 @@ def balance():
 high, low = balance()
 check(len(folds) == 2, f"folds at {folds}")
 if len(folds) == 2:
-    near(folds[0], high / (2 * math.pi), 2e-3, "upper fold")
-    near(folds[1], low / (2 * math.pi), 2e-3, "lower fold")
+    near(folds[0], high / (2 * math.pi), "upper fold", 2e-3)
+    near(folds[1], low / (2 * math.pi), "lower fold", 2e-3)
     for p in special(duffing, "fold"):
-        near(p["multiplier"][0], 1, 2e-2, "multiplier at a fold")
+        near(p["multiplier"][0], 1, "multiplier at a fold", 2e-2)
 stable = [p["stable"] for p in duffing["branches"][0]["points"]]
 check(stable[0] and stable[-1] and not all(stable), "stability over the folds")
 
@@ -121,10 +103,10 @@ write("wells.yaml", OSCILLATOR.format(
     parameters="frequency: 1/(2*pi)*1 Hz, force: 0.17 N"))
 wells = follow("wells.yaml", "force=0.165N..0.19N")
 doublings = [special(wells, "period-doubling", i)[0]["value"] for i in range(3)]
-near((doublings[1] - doublings[0]) / (doublings[2] - doublings[1]), 4.64, 0.03, "ratio of doublings")
+near((doublings[1] - doublings[0]) / (doublings[2] - doublings[1]), 4.64, "ratio of doublings", 0.03)
 check([b["period_multiple"] for b in wells["branches"][:3]] == [1, 2, 4], "period multiples")
 check(wells["branches"][1]["doubled_from"] == 1, "the doubled branch's parent")
-near(wells["branches"][1]["points"][0]["value"], doublings[0], 1e-4, "begin of the doubled branch")
+near(wells["branches"][1]["points"][0]["value"], doublings[0], "begin of the doubled branch", 1e-4)
 check(wells["branches"][1]["points"][2]["stable"], "the doubled branch is stable at first")
 
 # ---- the bilinear oscillator touches where the linear amplitude is the gap
@@ -149,8 +131,8 @@ def over_gap(f):
 bilinear = follow("bilinear.yaml", "frequency=1Hz..2Hz")
 grazings = special(bilinear, "grazing")
 check(len(grazings) == 2 and all(p["node"] == "mass" for p in grazings), f"grazings: {grazings}")
-near(grazings[0]["value"], root(over_gap, 1, 1.58), 3e-4, "first grazing")
-near(grazings[-1]["value"], root(over_gap, 1.6, 2), 3e-4, "last grazing")
+near(grazings[0]["value"], root(over_gap, 1, 1.58), "first grazing", 3e-4)
+near(grazings[-1]["value"], root(over_gap, 1.6, 2), "last grazing", 3e-4)
 
 # ---- Den Hartog 1931: dry friction, and where motions without stops end
 
@@ -193,7 +175,7 @@ for ratio in (0.8, 1.2):
     sticks = special(dry, "stick")
     check(sticks and sticks[0]["node"] == "mass", f"ratio {ratio}: no stick: {dry['branches'][0]['special']}")
     if sticks:
-        near(sticks[0]["value"], without_stops(ratio), 1e-3, f"first stop at ratio {ratio}")
+        near(sticks[0]["value"], without_stops(ratio), f"first stop at ratio {ratio}", 1e-3)
 
 # ---- the two-mass crawler's velocities, computed apart (models/gallery)
 
@@ -203,7 +185,7 @@ for friction, velocity in ((0.1, -3.6798), (0.3, -4.4777), (0.5, -2.6839)):
                  "--set", "periods=300", "--steps", "1")
     points = two["branches"][0]["points"]
     start = [p for p in points if p.get("point") == "start"]
-    near(start[0]["velocity"], velocity * 1e-3, 1e-3, f"velocity at friction {friction}")
+    near(start[0]["velocity"], velocity * 1e-3, f"velocity at friction {friction}", 1e-3)
 
 # ---- the same for any number of threads, and twice
 
@@ -233,7 +215,7 @@ for wait in (1.5, 4, 12, 30):
 check(partial.returncode not in (0, 1) and "interrupted" in err, f"interrupt: {partial.returncode} {err}")
 got = json.loads(out)
 check("interrupted" in got["notes"][-1] and got["branches"][0]["begins"] == "interrupted", f"{got['notes']}")
-check(len(rows("partial")) == len(got["branches"][0]["points"]) >= 2, "points of a partial branch")
+check(len(rows("partial", "branches.csv")) == len(got["branches"][0]["points"]) >= 2, "points of a partial branch")
 
 # ---- kicks: a linear motion always comes back, the larger of two stable ones does not
 

@@ -11,7 +11,7 @@ import re
 import shutil
 import subprocess
 
-from testing import check, finish, strut, work, write
+from testing import check, finish, run, strut, work, write
 
 models, tests = os.path.abspath("models"), os.path.dirname(os.path.abspath(__file__))
 
@@ -48,12 +48,6 @@ solver: {integrator: euler, step: 30 ms}
 run: {duration: 100 s}
 output: {every: 0.13 s}
 """
-
-
-def run(*words, code=0, stdin=None):
-    done = subprocess.run([strut, *words], capture_output=True, text=True, input=stdin)
-    check(done.returncode == code, f"strut {words}: exit code {done.returncode}, not {code}: {done.stderr}")
-    return done
 
 
 def without_clock(table):

@@ -4,26 +4,20 @@
 # interruptions; failed points; what is refused.
 #
 #   python3 sensitivity_test.py STRUT
-import csv
 import math
 import os
 
-from testing import check, finish, read, run, work, write
-
-
-def rows_of(name):
-    with open(os.path.join(work, name), newline="") as file:
-        return list(csv.DictReader(file))
+from testing import check, finish, read, rows, run, work, write
 
 
 def sweep(name, text, *words, code=0):
     write(name + "-study.yaml", "strut: 1\nstudy: s\n" + text)
     done = run("sweep", name + "-study.yaml", "-o", name, *words, code=code)
-    return done.stdout, rows_of(f"{name}/sensitivity.csv")
+    return done.stdout, rows(f"{name}/sensitivity.csv")
 
 
-def pick(rows, of, measure, parameter="", **others):
-    found = [r for r in rows if r["of"] == of and r["measure"] == measure
+def pick(table, of, measure, parameter="", **others):
+    found = [r for r in table if r["of"] == of and r["measure"] == measure
              and r["parameter"] == parameter and all(r[k] == v for k, v in others.items())]
     check(len(found) == 1, f"{of} {measure} {parameter}: {len(found)} rows")
     return found[0]
@@ -61,31 +55,31 @@ sensitivity: {of: [frequency_1, total_mass],
               over: {stiff: {lognormal: [100 N/m, 0.6]}, heavy: {lognormal: [2 kg, 0.4]}, idle: {uniform: [0, 1]}},
               samples: 512}
 """
-    said, rows = sweep("product", text)
+    said, table = sweep("product", text)
     a, b = math.exp(0.3 ** 2) - 1, math.exp(0.2 ** 2) - 1  # squared variations of both factors
     whole = (1 + a) * (1 + b) - 1
     f = math.sqrt(100 / 2) / 2 / math.pi
     mean = f * math.exp(0.3 ** 2 / 2 + 0.2 ** 2 / 2)
     of = "frequency_1"
-    within(pick(rows, of, "first_order", "stiff"), a / whole)
-    within(pick(rows, of, "total", "stiff"), a * (1 + b) / whole)
-    within(pick(rows, of, "first_order", "heavy"), b / whole)
-    within(pick(rows, of, "total", "heavy"), b * (1 + a) / whole)
-    within(pick(rows, of, "total", "idle"), 0.0)
-    within(pick(rows, of, "mean"), mean)
-    near(pick(rows, of, "deviation"), mean * math.sqrt(whole), 0.05)
+    within(pick(table, of, "first_order", "stiff"), a / whole)
+    within(pick(table, of, "total", "stiff"), a * (1 + b) / whole)
+    within(pick(table, of, "first_order", "heavy"), b / whole)
+    within(pick(table, of, "total", "heavy"), b * (1 + a) / whole)
+    within(pick(table, of, "total", "idle"), 0.0)
+    within(pick(table, of, "mean"), mean)
+    near(pick(table, of, "deviation"), mean * math.sqrt(whole), 0.05)
     for parameter, wanted in (("stiff", f / 200), ("heavy", -f / 4), ("idle", 0.0)):
-        row = pick(rows, of, "derivative", parameter)
+        row = pick(table, of, "derivative", parameter)
         check(abs(float(row["value"]) - wanted) <= float(row["error"]) + 1e-15, str(row))
         check(float(row["error"]) <= 1e-6 * abs(wanted) + 1e-15, str(row))
-    near(pick(rows, of, "elasticity", "stiff"), 0.5, 1e-6)
-    near(pick(rows, of, "elasticity", "heavy"), -0.5, 1e-6)
-    check(pick(rows, of, "derivative", "stiff")["unit"] == "Hz/(N/m)", "unit of a derivative")
-    check(pick(rows, of, "derivative", "heavy")["unit"] == "Hz/kg", "unit of a derivative")
+    near(pick(table, of, "elasticity", "stiff"), 0.5, 1e-6)
+    near(pick(table, of, "elasticity", "heavy"), -0.5, 1e-6)
+    check(pick(table, of, "derivative", "stiff")["unit"] == "Hz/(N/m)", "unit of a derivative")
+    check(pick(table, of, "derivative", "heavy")["unit"] == "Hz/kg", "unit of a derivative")
     # a sum of one: the mass owes all to one parameter; a sign that never changes has no indices
-    within(pick(rows, "total_mass", "first_order", "heavy"), 1.0)
-    check(pick(rows, "total_mass > 0", "share")["value"] == "1", "share of a sign")
-    check(pick(rows, "total_mass > 0", "total", "heavy")["value"] == "", "index without variance")
+    within(pick(table, "total_mass", "first_order", "heavy"), 1.0)
+    check(pick(table, "total_mass > 0", "share")["value"] == "1", "share of a sign")
+    check(pick(table, "total_mass > 0", "total", "heavy")["value"] == "", "index without variance")
     # a threshold: shares of a lognormal mass below and above its median; a line for each point of an axis
     report, cut = sweep("cut", text.replace("samples: 512", "samples: 64, threshold: 2").replace(
         "sensitivity:", "axes: [{long: [1 m, 2 m]}]\nsensitivity:"))
@@ -109,7 +103,7 @@ sensitivity: {of: [frequency_1, total_mass],
     check(read("product/sensitivity.csv") == read("alone/sensitivity.csv"), "resumed")
     # another seed, and the rows of a wider study at each point of an axis
     _, other = sweep("other", text.replace("samples: 512", "samples: 64, seed: 2"))
-    check(pick(other, of, "total", "stiff")["value"] != pick(rows, of, "total", "stiff")["value"],
+    check(pick(other, of, "total", "stiff")["value"] != pick(table, of, "total", "stiff")["value"],
           "the seed changes nothing")
     _, wide = sweep("wide", text.replace("sensitivity:", "axes: [{long: [1 m, 2 m]}]\nsensitivity:")
                     .replace("512", "16"))
@@ -143,24 +137,24 @@ run:
 keep: [quantities]
 sensitivity: {of: [height, right, late], over: {start: {uniform: [-1 m/s, 3 m/s]}}, samples: 64}
 """
-    _, rows = sweep("fall", text)  # height: 1 + start^2/(2 pull) above start = 0
-    row = pick(rows, "height", "derivative", "start")
+    _, table = sweep("fall", text)  # height: 1 + start^2/(2 pull) above start = 0
+    row = pick(table, "height", "derivative", "start")
     check(abs(float(row["value"]) - 1 / 9.81) <= float(row["error"]) + 1e-7, str(row))
     check(float(row["error"]) < 1e-4, str(row))
     # the share of a sign, with an interval that holds it: start > 0 in three quarters
-    row = pick(rows, "right > 0", "share")
+    row = pick(table, "right > 0", "share")
     check(float(row["low"]) <= 0.75 <= float(row["high"]) and row["used"] == "128", str(row))
-    near(pick(rows, "right > 0", "total", "start"), 1.0, 0.3)
+    near(pick(table, "right > 0", "total", "start"), 1.0, 0.3)
     # a result that is missing at some points is described by the others
-    row = pick(rows, "late", "mean")
+    row = pick(table, "late", "mean")
     check(0 < int(row["used"]) < 128, str(row))
-    row = pick(rows, "late", "total", "start")
+    row = pick(table, "late", "total", "start")
     check(0 < int(row["used"]) < 64, str(row))
     _, rough = sweep("rough", text + "solver: {accuracy: 1 %}\n")
     row = pick(rough, "height", "derivative", "start")
     check(float(row["error"]) > 0.01, str(row))
     check(abs(float(row["value"]) - 1 / 9.81) <= float(row["error"]), str(row))
-    starts = sorted({float(r["start [m/s]"]) for r in rows_of("rough/table.csv")[:5]})
+    starts = sorted({float(r["start [m/s]"]) for r in rows("rough/table.csv")[:5]})
     check(starts[-1] - starts[0] > 0.5, f"steps at an accuracy of 1 %: {starts}")
 
 
@@ -179,20 +173,20 @@ solver: {step: 1 ms}
 run: {duration: 10 ms}
 configurations: {up: {apex: [0, 0.3]}, down: {apex: [0, -0.3]}}
 """)
-    _, rows = sweep("arch", """model: truss.yaml
+    _, table = sweep("arch", """model: truss.yaml
 keep: [outcome]
 sensitivity: {of: [outcome], over: {load: {uniform: [5 N, 15 N]}, idle: {uniform: [0, 1]}}, samples: 32,
               derivatives: no}
 """)
     up = 0.4949917  # it snaps through above 9.949917 N
-    names = {r["of"] for r in rows}
+    names = {r["of"] for r in table}
     check("outcome = up" in names, str(names))
-    row = pick(rows, "outcome = up", "share")
+    row = pick(table, "outcome = up", "share")
     check(float(row["low"]) <= up <= float(row["high"]), str(row))
-    row = pick(rows, "outcome = up", "total", "load")
+    row = pick(table, "outcome = up", "total", "load")
     check(abs(float(row["value"]) - 1.0) < 0.3, str(row))
-    check(float(pick(rows, "outcome = up", "total", "idle")["value"]) == 0.0, "an idle parameter")
-    check(not any(r["measure"] == "derivative" for r in rows), "derivatives of a text")
+    check(float(pick(table, "outcome = up", "total", "idle")["value"]) == 0.0, "an idle parameter")
+    check(not any(r["measure"] == "derivative" for r in table), "derivatives of a text")
 
 
 def refused():

@@ -7,21 +7,8 @@
 import math
 import os
 import shutil
-import subprocess
 
-from testing import check, finish, path, read, rows, strut, work
-
-
-def run(*words, code=0, timeout=60):
-    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work, timeout=timeout)
-    check(done.returncode == code,
-          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
-    return done
-
-
-def write(name, text):
-    with open(path(name), "w", encoding="utf-8", newline="") as file:
-        file.write(text)
+from testing import check, finish, path, read, rows, run, strut, write
 
 
 write("block.yaml", """strut: 1

@@ -3,7 +3,6 @@
 # the threads, shards and kills, points that fail, studies that have changed.
 #
 #   python3 sweep_test.py STRUT [KILLS]      KILLS: 10 if not given
-import csv
 import json
 import os
 import random
@@ -19,15 +18,10 @@ except ImportError:
     print("numpy is missing: nothing tested")
     sys.exit(77)
 
-from testing import check, copy_models, finish, models, read, run, strut, work, write
+from testing import check, copy_models, finish, models, read, rows, run, strut, work, write
 
 kills = int(sys.argv[2]) if len(sys.argv) > 2 else 10
 copy_models()
-
-
-def rows(name):
-    with open(os.path.join(work, name), newline="") as file:
-        return list(csv.DictReader(file))
 
 
 BLOCK = """strut: 1

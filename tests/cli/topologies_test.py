@@ -9,7 +9,7 @@ import os
 import re
 import subprocess
 
-from testing import fail, finish, strut
+from testing import check, fail, finish, strut
 
 
 def run(*words):
@@ -23,13 +23,11 @@ ours = 0
 for path, model in zip(files, models):
     v, text = model["values"], open(path, encoding="utf-8").read()
     for key, wanted in (("mass", 0.14), ("friction", 0.1), ("drive_frequency", 10), ("drive_amplitude", 1e-4)):
-        if not abs(v[key] - wanted) < 1e-9:
-            fail(f"{path}: {key} is {v[key]}: it cannot be compared with the others")
+        check(abs(v[key] - wanted) < 1e-9, f"{path}: {key} is {v[key]}: it cannot be compared with the others")
     found = 1e-3 * float(re.search(r"^# Found: ([-+\d.]+) mm/s", text, re.M).group(1))
     if abs(v["velocity"] - found) > 0.01 * abs(found) + 1e-5:
         fail(f"{path}: {v['velocity']} m/s, its head says {found}")
-    if model["motion"] != "periodic":
-        fail(f"{path}: its motion is {model['motion']}")
+    check(model["motion"] == "periodic", f"{path}: its motion is {model['motion']}")
     if "nine-member.yaml" not in path and found > 5e-3:
         ours += 1
         # The classical method with small steps, which shares only the forces with what was used.

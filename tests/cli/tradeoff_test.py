@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 
-from testing import fail, files_in, finish, strut
+from testing import check, fail, files_in, finish, strut
 
 slower = int(sys.argv[2]) if len(sys.argv) > 2 else 1
 OSCILLATOR, BALL = "models/basics/oscillator.yaml", "models/basics/bouncing-node.yaml"
@@ -31,8 +31,7 @@ def budgeted(words):
 def run(*words, code=0):
     done = subprocess.run([strut, "tradeoff", *budgeted(words)], capture_output=True, text=True,
                           stdin=subprocess.DEVNULL)
-    if done.returncode != code:
-        fail(f"strut tradeoff {' '.join(words)}: {done.returncode}, not {code}: {done.stderr}")
+    check(done.returncode == code, f"strut tradeoff {' '.join(words)}: {done.returncode}, not {code}: {done.stderr}")
     return done
 
 
@@ -77,8 +76,7 @@ def check_front(what, answer):
         others = [(r["evaluations"], r["step_error"]["worst"]) for r in answer["settings"]
                   if r["model"] == row["model"] and r["step_error"]["worst"] is not None]
         wanted = error is not None and not any(c <= cost and e <= error and (c < cost or e < error) for c, e in others)
-        if row["front"] != wanted:
-            fail(f"{what}: {row['group']} {row['step']}: front is {row['front']}")
+        check(row["front"] == wanted, f"{what}: {row['group']} {row['step']}: front is {row['front']}")
 
 
 def check_advice(what, answer):
@@ -146,8 +144,7 @@ if answer:
         ratio = n * per_step / answer["base_evaluations"]
         if abs(row["evaluations"] / ratio - 1) > 2 / n:
             fail(f"{row['group']} at {row['step']} costs {row['evaluations']}, not {ratio}")
-    if "rk4" not in seen:
-        fail("no rk4 for the oscillator")
+    check("rk4" in seen, "no rk4 for the oscillator")
     steps = [r["step"] for r in answer["settings"] if r["method"] == "rk4"]
     if not any(h > 2.828 / w for h in steps) or sum(h < 2.829 / w for h in steps) < 8:
         fail(f"rk4's steps {steps} do not lie on both sides of its limit")
@@ -179,13 +176,10 @@ if answer:
     check_front("ball", answer)
     check_advice("ball", answer)
     drawn = [p["stiffness"] for p in answer["points"]]
-    if len(set(drawn)) != 11 or not all(300 <= k <= 500 for k in drawn):
-        fail(f"stiffnesses {drawn}")
-    if sum(r["base"] for r in answer["settings"]) != 1:
-        fail("there is not one base")
+    check(len(set(drawn)) == 11 and all(300 <= k <= 500 for k in drawn), f"stiffnesses {drawn}")
+    check(sum(r["base"] for r in answer["settings"]) == 1, "there is not one base")
     base = answer["settings"][answer["base_setting"]]
-    if base["method"] != "rk4" or base["evaluations"] != 1 or not base["base"]:
-        fail(f"the base is {base}")
+    check(base["method"] == "rk4" and base["evaluations"] == 1 and base["base"], f"the base is {base}")
 
     def measured(answer):
         answer = json.loads(json.dumps(answer))
@@ -194,8 +188,7 @@ if answer:
         answer.pop("base_seconds"), answer.pop("spent_seconds")
         return answer
 
-    if measured(read(*words)) != measured(answer):
-        fail("the same seed gives something else")
+    check(measured(read(*words)) == measured(answer), "the same seed gives something else")
     other = read(*words[:-4], "8", *words[-3:])
     if other and other["points"] == answer["points"]:
         fail("another seed gives the same points")
@@ -203,37 +196,31 @@ if answer:
 # ---- Words are drawn too; other models of a block that slides.
 answer = read("models/basics/sliding-block.yaml", "--step-sizes", "3", "--vary", "mu=0.2,0.3", "--points", "6")
 if answer:
-    if {round(p["mu"], 9) for p in answer["points"]} != {0.2, 0.3}:
-        fail(f"words: {answer['points']}")
+    check({round(p["mu"], 9) for p in answer["points"]} == {0.2, 0.3}, f"words: {answer['points']}")
     names = [m["name"] for m in answer["models"]]
-    if names[0] != "unchanged model" or "Coulomb friction" not in names:
-        fail(f"models of a block: {names}")
+    check(names[0] == "unchanged model" and "Coulomb friction" in names, f"models of a block: {names}")
     coulomb = answer["models"][names.index("Coulomb friction")]
     for point, value in zip(answer["points"], coulomb["values"]):
         # Way to the stop, in a second: v^2 / (2 mu g).
-        if not close(value, 1 / (2 * point["mu"] * 9.81), 1e-6):
-            fail(f"Coulomb's block at mu {point['mu']}: {value}")
+        check(close(value, 1 / (2 * point["mu"] * 9.81), 1e-6), f"Coulomb's block at mu {point['mu']}: {value}")
 
 # ---- Files: all of them or none; the same numbers as in the answer.
 with tempfile.TemporaryDirectory() as here:
     out = os.path.join(here, "deep", "out")
     done = run(BALL, "--step-sizes", "4", "-o", out, "--own-model")
-    if sorted(files_in(out)) != ["tradeoff.csv", "tradeoff.json", "tradeoff.svg"]:
-        fail(f"files: {files_in(out)}")
+    check(sorted(files_in(out)) == ["tradeoff.csv", "tradeoff.json", "tradeoff.svg"], f"files: {files_in(out)}")
     if "The cheapest setting" not in done.stdout or "\n    0.5 % " not in done.stdout:
         fail(f"the table lacks something: {done.stdout}")
     written = json.load(open(os.path.join(out, "tradeoff.json")))
     rows = list(csv.DictReader(open(os.path.join(out, "tradeoff.csv"), newline="")))
-    if len(rows) != len(written["settings"]):
-        fail(f"{len(rows)} rows of {len(written['settings'])} settings")
+    check(len(rows) == len(written["settings"]), f"{len(rows)} rows of {len(written['settings'])} settings")
     for row, setting in zip(rows, written["settings"]):
         error = setting["step_error"]["worst"]
         if float(row["step [s]"]) != setting["step"] or row["group"] != setting["group"] or \
                 float(row["error worst"]) != (math.inf if error is None else error):
             fail(f"{row} and {setting} differ")
     svg = open(os.path.join(out, "tradeoff.svg"), encoding="utf-8").read()
-    if "</svg>" not in svg:
-        fail("half a picture")
+    check("</svg>" in svg, "half a picture")
     before = {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}
     os.mkdir(os.path.join(here, "blocked"))
     os.mkdir(os.path.join(here, "blocked", "tradeoff.svg"))
@@ -241,8 +228,7 @@ with tempfile.TemporaryDirectory() as here:
     if done.stdout or files_in(os.path.join(here, "blocked")) != ["tradeoff.svg"]:
         fail(f"a blocked file: {done.stdout} {files_in(os.path.join(here, 'blocked'))}")
     run(BALL, "--integrator", "rk5", "-o", out, code=1)
-    if before != {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}:
-        fail("a refusal changed files")
+    check(before == {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}, "a refusal changed files")
     done = run(BALL, "--step-sizes", "1", "-o", "/dev/full/x", code=4)
 
 # ---- An accuracy: the recommended setting, run as the report writes it, keeps the error, against a much
@@ -275,8 +261,7 @@ def check_half(what, answer):
     slope = (b - a) / (y - x) if x > y else 0.0  # where the coarser one is as good: the cost of the finer one
     cost = math.exp(b + slope * (math.log(advice["error"] / 2) - y))
     wanted = max(1, cost / answer["settings"][advice["setting"]]["evaluations"])
-    if not close(wanted, advice["half_cost"], 1e-9):
-        fail(f"{what}: half costs {advice['half_cost']}, not {wanted}")
+    check(close(wanted, advice["half_cost"], 1e-9), f"{what}: half costs {advice['half_cost']}, not {wanted}")
 
 
 with tempfile.TemporaryDirectory() as here:
@@ -303,8 +288,7 @@ with tempfile.TemporaryDirectory() as here:
         floor = answer["models"][0]["floor"]["worst"]
         if not error <= wanted or not abs(error - row["step_error"]["worst"]) <= 3 * floor + 1e-3 * wanted:
             fail(f"{what}: {solver[1]} is {error} off, reported {row['step_error']['worst']}")
-        if not advice["known"] or not floor <= 0.01 * wanted:
-            fail(f"{what}: floor {floor}")
+        check(advice["known"] and floor <= 0.01 * wanted, f"{what}: floor {floor}")
         # The work is bounded, and counts all that is reported.
         work = answer["work"]
         least = answer["base_evaluations"] * sum(r["evaluations"] for r in answer["settings"] if not r["diverged"])
@@ -317,21 +301,17 @@ with tempfile.TemporaryDirectory() as here:
             table, rest = text.split("  (* Pareto", 1)
             return [line[:48] + line[57:] for line in table.splitlines()], re.sub(r"took .*", "", rest)
 
-        if stable(again) != stable(report):
-            fail(f"{what}: two reports differ: {report} {again}")
+        check(stable(again) == stable(report), f"{what}: two reports differ: {report} {again}")
 
 # ---- What the reference does not tell is not claimed; a limit of time that cuts is reported.
 done = run(OSCILLATOR, "--accuracy", "1e-15")
-if "For an error of 1e-13 %: not known: the references differ by" not in done.stdout:
-    fail(f"1e-15: {done.stdout[-500:]}")
+check("For an error of 1e-13 %: not known: the references differ by" in done.stdout, f"1e-15: {done.stdout[-500:]}")
 done = run(OSCILLATOR, "--accuracy", "1e-6", "--measure", "energy", "--integrator", "rk4")
 if "solver: {integrator: rk4, step: " not in done.stdout or " times a reference run" in done.stdout:
     fail(f"energy: {done.stdout[-500:]}")
 done = run("models/crawler/crawler.yaml", "--accuracy", "1%", "--cpu-time", "2 s")
-if "cut by --cpu-time" not in done.stdout:
-    fail(f"a cut study: {done.stdout[-500:]}")
-if "cut by --cpu-time" in run(OSCILLATOR, "--accuracy", "1%").stdout:
-    fail("a short study is cut")
+check("cut by --cpu-time" in done.stdout, f"a cut study: {done.stdout[-500:]}")
+check("cut by --cpu-time" not in run(OSCILLATOR, "--accuracy", "1%").stdout, "a short study is cut")
 
 
 # ---- Rigid bars of a pendulum vibrate nowhere: no limit says how long a step makes sense, and the
@@ -362,8 +342,7 @@ for row in found["settings"]:
 def offered(file, *words):
     found = read(file, "--step-sizes", "1", "--periods", "3", *words)
     for model in found["models"]:
-        if not model["run"]:
-            fail(f"{file}: {model['name']} is not run: {model['remark']}")
+        check(model["run"], f"{file}: {model['name']} is not run: {model['remark']}")
     return [model["name"].split(",")[0] for model in found["models"][1:]]
 
 
@@ -375,8 +354,7 @@ for file, wanted, *words in (
          "--cpu-time", "3 s", "--set", "step=50 us", "--set", "band=1 mm/s"),
         (OSCILLATOR, [], "--cpu-time", "1 s")):
     names = offered(file, *words)
-    if names != wanted:
-        fail(f"{file}: other models are {names}, not {wanted}")
+    check(names == wanted, f"{file}: other models are {names}, not {wanted}")
 
 # ---- At the first of these points nothing touches down; refined steps make a difference at others.
 found = read("models/crawler/crawler.yaml", "--vary", "frequency=9.8..15", "--vary",
@@ -389,8 +367,7 @@ if "verlet-events, refined" not in groups or "verlet-events, refined 8" not in g
 # ---- What a model's reader notes is said once, not at each point.
 done = run("models/basics/pendulum.yaml", "--vary", "stiffness=1e9..2e9", "--points", "3", "--step-sizes", "1",
            "--integrator", "rk4", "--own-model", "--cpu-time", "3 s")
-if done.stderr.count("note: --set stiffness") != 1:
-    fail(f"notes of three points: {done.stderr}")
+check(done.stderr.count("note: --set stiffness") == 1, f"notes of three points: {done.stderr}")
 
 # ---- Wrong use: one sentence, nothing on stdout.
 for words, text in (

@@ -6,7 +6,7 @@ usage: waves_test.py STRUT
 import json
 import math
 
-from testing import fail, finish, run, write
+from testing import check, fail, finish, run, write
 
 TAU = 2 * math.pi
 
@@ -17,8 +17,7 @@ def waves(name, text, *options):
 
 
 def close(what, found, wanted, error=1e-9, scale=0.0):
-    if not abs(found - wanted) <= error * max(abs(wanted), scale):
-        fail(f"{what}: {found!r}, expected {wanted!r}")
+    check(abs(found - wanted) <= error * max(abs(wanted), scale), f"{what}: {found!r}, expected {wanted!r}")
 
 
 def diatomic_chain():
@@ -40,8 +39,7 @@ members: {{left: {{kind: spring, nodes: [a, b], stiffness: {c}, pretension: {pul
     for wave in found["waves"]:
         for value, wanted in zip(wave["frequencies"], formula(wave["phase"][0])):
             close("diatomic chain", value, wanted, 1e-9, 1.0)
-    if len(found["gaps"]) != 1 or found["gaps"][0]["below"] != 3:
-        fail(f"diatomic chain: gaps {found['gaps']}")
+    check(len(found["gaps"]) == 1 and found["gaps"][0]["below"] == 3, f"diatomic chain: gaps {found['gaps']}")
     close("lower edge", found["gaps"][0]["low"], math.sqrt(2 * c / heavy) / TAU)
     close("upper edge", found["gaps"][0]["high"], math.sqrt(2 * c / light) / TAU)
     for value, k in zip(found["speeds"][0], (pull / half, c)):
@@ -156,16 +154,14 @@ members: {s: {kind: spring, nodes: [a, next], stiffness: 30, pretension: 3},
         for value, k in zip(wave["frequencies"], wanted):
             close("held cells", value, math.sqrt(k / 2) / TAU)
     close("below", found["gaps"][0]["high"], math.sqrt(20 / 1.2 / 2) / TAU)
-    if found["gaps"][0]["below"] != 0:
-        fail("held cells: no gap under the first band")
+    check(found["gaps"][0]["below"] == 0, "held cells: no gap under the first band")
 
 
 def refusals():
     def refuse(text, code, message, *options):
         write("bad.yaml", "strut: 1\n" + text)
         said = run("modes", "bad.yaml", "--wave", *options, code=code).stderr
-        if message not in said:
-            fail(f"expected '{message}', found {said}")
+        check(message in said, f"expected '{message}', found {said}")
 
     pair = "nodes: {a: {position: [0, 0], mass: 1}, b: [1, 0]}\nmembers: {m: {nodes: [a, b], stiffness: 1, kind: bar}}\n"
     refuse(pair, 2, "waves need 'lattice'")

@@ -5,7 +5,6 @@
 
 #include "engine/statics/form/form.h"
 #include "tests/support/motion.h"
-#include "tests/support/refused.h"
 
 static strut_status find(strut_setup *setup, strut_form_options options, strut_form *form,
                          strut_error *error) {

@@ -7,7 +7,6 @@
 
 #include "engine/statics/modes/modes.h"
 #include "tests/support/motion.h"
-#include "tests/support/refused.h"
 #include "tests/support/structures.h"
 
 FREED_BY(gsl_matrix_free, gsl_matrix)

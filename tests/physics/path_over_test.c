@@ -5,7 +5,6 @@
 
 #include "engine/statics/path/path.h"
 #include "tests/support/motion.h"
-#include "tests/support/refused.h"
 
 static const double SPAN = 1, HEIGHT = 0.3; /* of von Mises' truss: half its width, its height */
 enum { APEX = 2 };

@@ -6,7 +6,6 @@
 
 #include "engine/statics/path/path.h"
 #include "tests/support/motion.h"
-#include "tests/support/refused.h"
 
 typedef struct walk {
   strut_model *model;

@@ -7,7 +7,6 @@
 #include "engine/integrate/integrator.h"
 #include "parser/read/read_scene.h"
 #include "tests/support/motion.h"
-#include "tests/support/refused.h"
 
 static const double PI = 3.14159265358979323846, GRAVITY = 9.81;
 

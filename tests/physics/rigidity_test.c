@@ -8,7 +8,6 @@
 #include "engine/statics/rigidity/rigidity_parts.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
-#include "tests/support/refused.h"
 
 static void truss_nodes(strut_scene *scene, const double (*position)[2], size_t count) {
   for (size_t i = 0; i < count; i++) build_mass(scene, position[i][0], position[i][1], 1.0);

@@ -12,7 +12,7 @@ import subprocess
 import tempfile
 
 from svg_compare import differ
-from testing import fail, finish, strut
+from testing import check, fail, finish, strut
 
 MOST_BYTES = 3.4e6
 # Their modes come in pairs of one frequency, of which every mixture is as good: last bits choose one.
@@ -25,16 +25,14 @@ tabled = {row[1]: row for row in ROW.findall(page)}
 for model in sorted(glob.glob("models/**/*.yaml", recursive=True)):
     if re.search(r"^study:", open(model, encoding="utf-8").read(), re.M):
         continue
-    if f"](../{model})" not in page:
-        fail(f"{model} is not in docs/gallery.md")
+    check(f"](../{model})" in page, f"{model} is not in docs/gallery.md")
     if model in tabled:
         continue
     sizes = 2 if model.startswith("models/parts/") else 1
     if len(re.findall(rf"^strut \w+ {re.escape(model)} .*--plot [\w-]+\.svg$", page, re.M)) != sizes:
         fail(f"{model} has not {sizes} commands of its own in docs/gallery.md")
 for model in re.findall(r"\]\(\.\./(models/[^)]+\.yaml)\)", page):
-    if not os.path.exists(model):
-        fail(f"docs/gallery.md shows {model}, which is not there")
+    check(os.path.exists(model), f"docs/gallery.md shows {model}, which is not there")
 shown = re.findall(r"!\[[^\]]+\]\(gallery/([\w-]+\.svg)\)", page)
 drawn = re.findall(r"--plot ([\w-]+\.svg)$", page, re.M)
 there = sorted(os.path.basename(f) for f in glob.glob("docs/gallery/*"))
@@ -53,8 +51,7 @@ with tempfile.TemporaryDirectory() as now:
                  "if that is as it should be: sh docs/gallery.sh STRUT docs/gallery")
 
     for name, model, command, options in tabled.values():
-        if os.path.basename(model) != f"{name}.yaml":
-            fail(f"the row of {model} is called {name}")
+        check(os.path.basename(model) == f"{name}.yaml", f"the row of {model} is called {name}")
         picture = os.path.join(now, "tabled.svg")
         run = subprocess.run([strut, command, model, *shlex.split(options), "--plot", picture],
                              capture_output=True, text=True)

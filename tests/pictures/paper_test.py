@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 
-from testing import fail, finish, strut
+from testing import check, fail, finish, strut
 
 numbers = sys.argv[2:] or ["5", "6", "9", "11"]
 MOST_BYTES = 3.1e6
@@ -37,12 +37,10 @@ def alike(column, one, other):
 page = open("docs/paper.md", encoding="utf-8").read()
 shown = re.findall(r"!\[[^\]]+\]\(paper/([\w-]+\.svg)\)", page)
 there = [os.path.basename(f) for f in glob.glob("docs/paper/*.svg")]
-if sorted(shown) != sorted(there):
-    fail(f"shown and there are not the same: {set(shown) ^ set(there)}")
+check(sorted(shown) == sorted(there), f"shown and there are not the same: {set(shown) ^ set(there)}")
 for table in glob.glob("docs/paper/*.csv"):
     study = f"models/crawler/{os.path.basename(table)[:-4]}.yaml"
-    if not os.path.exists(study) or f"strut sweep {study}" not in page:
-        fail(f"docs/paper.md has no command for {table}")
+    check(os.path.exists(study) and f"strut sweep {study}" in page, f"docs/paper.md has no command for {table}")
 size = sum(os.path.getsize(f) for f in glob.glob("docs/paper/*"))
 if size > MOST_BYTES:
     fail(f"docs/paper has {size} bytes")
@@ -62,8 +60,7 @@ with tempfile.TemporaryDirectory() as now:
                     fail(f"{name}, point {a['point']}: {column} is {b[column]}, was {a[column]}")
         pictures = {os.path.basename(f) for f in glob.glob(f"{now}/{name}-*.svg")}
         wanted = {f for f in shown if re.match(rf"{name}-(?!long)", f)}
-        if pictures != wanted:
-            fail(f"{name}: draws {pictures}, docs/paper.md shows {wanted}")
+        check(pictures == wanted, f"{name}: draws {pictures}, docs/paper.md shows {wanted}")
 # It notices a velocity that is not the same.
 if alike("velocity [m/s]", "0.0100", "0.0103") or alike("outcome", "I", "II") or \
         alike("x_n1 [m]", "0.01", "0.02"):

@@ -13,7 +13,7 @@ import tempfile
 
 from svg_compare import differ
 
-from testing import fail, finish, strut
+from testing import check, fail, finish, strut
 
 
 TABLE = "docs/paper/figure-8.csv"
@@ -48,14 +48,12 @@ with tempfile.TemporaryDirectory() as now:
 
 KEYS = ("variant", "frequency [Hz]", "start", "friction")
 rows = {tuple(row[key] for key in KEYS): row for row in csv.DictReader(open(TABLE))}
-if len(rows) != 2 * 6 * 191:
-    fail(f"{TABLE} has {len(rows)} rows")
+check(len(rows) == 2 * 6 * 191, f"{TABLE} has {len(rows)} rows")
 for row in again:
     old = rows[tuple(row[key] for key in KEYS)]
     before, after = float(old["velocity [m/s]"]), float(row["velocity [m/s]"])
     near = 1e-9 * abs(before) if row["variant"] == "paper" else 0.01 * abs(before) + 1e-6
     if abs(before - after) > near or old["outcome"] != row["outcome"]:
         fail(f"figure 8: {old} is now {row}")
-if len(again) != 12:
-    fail(f"figure 8 at one frequency has {len(again)} rows")
+check(len(again) == 12, f"figure 8 at one frequency has {len(again)} rows")
 finish()

@@ -14,7 +14,7 @@ import time
 
 from svg_paths import distance, has_segment, near, read, segments
 
-from testing import fail, finish, strut
+from testing import check, fail, finish, strut
 
 crawler = open("models/crawler/crawler.yaml").read()
 EDGE, PALE, WHITE = (0.1, 0.1, 0.1), (0.72, 0.72, 0.72), (1, 1, 1)
@@ -90,8 +90,7 @@ def check_snapshots(here, model, words, expected, common):
         what = f"{words} at {wanted} s"
         windows.append(check_shape(what, frames[nearest], shape, lines, members))
         for x, y in shape:
-            if not (0 < x < width and 0 < y < height):
-                fail(f"{words}: a node is drawn beyond the page")
+            check(0 < x < width and 0 < y < height, f"{words}: a node is drawn beyond the page")
     if max(w[0] for w in windows) - min(w[0] for w in windows) > 1e-3 * windows[0][0]:
         fail(f"{words}: shapes have different scales")
     # Cells stand in rows and columns: with one window for all, origins differ by whole cells.
@@ -138,8 +137,7 @@ def check_period(here, model, factors):
     means = [tuple(sum(f[i][d] for f in last) / len(last) for d in (0, 1)) for i in range(5)]
     touches = [min(f[i][1] for f in last) < 1e-4 for i in range(5)]
     rest = [(m[0], 0.0) if down else m for m, down in zip(means, touches)]
-    if touches != [True, False, False, True, False]:
-        fail(f"the ground is touched by {touches}")
+    check(touches == [True, False, False, True, False], f"the ground is touched by {touches}")
     paths = read(file)[2]
     window = check_shape(f"period {factors}", rest if scale else frames[-1], circles(paths, PALE),
                          segments(paths), members_of(model))
@@ -165,8 +163,7 @@ def check_period(here, model, factors):
         for w in wanted:
             if distance(w, ways[i]) > 0.05:
                 return fail(f"period {factors}: the way of node {i + 1} misses {w}")
-    if not max(f[3][1] for f in last) > 1e-4 > max(f[0][1] for f in last):
-        fail("node 4 does not lift, or node 1 does")
+    check(max(f[3][1] for f in last) > 1e-4 > max(f[0][1] for f in last), "node 4 does not lift, or node 1 does")
 
 
 def check_overview(here, model):
@@ -226,8 +223,7 @@ def check_refusals(here, model):
     run(coarse, "-q", "--plot", file)  # an overview there is
     plain = open(file).read()
     run(coarse, "-q", "--plot", file, "--title", "Own title")
-    if open(file).read() == plain:
-        fail("--title changes nothing")
+    check(open(file).read() != plain, "--title changes nothing")
 
 
 def check_stopped(here, model):
@@ -256,8 +252,7 @@ def check_stopped(here, model):
     time.sleep(0.3)
     child.send_signal(signal.SIGINT)
     child.communicate(timeout=60)
-    if not os.path.exists(file):
-        fail("a run that was stopped is not drawn")
+    check(os.path.exists(file), "a run that was stopped is not drawn")
 
 
 with tempfile.TemporaryDirectory() as here:

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Tests, and assertions about numbers that say the numbers.
+ * Tests, assertions about numbers that say the numbers, and memory that is refused.
  */
 #ifndef STRUT_TESTS_SUPPORT_CHECK_H
 #define STRUT_TESTS_SUPPORT_CHECK_H
 
+#include "engine/base/memory.h"
+#include "engine/base/status.h"
 #include "tests/support/test.h"
 
 /** |actual - expected| <= tolerance; a NAN fails. */
@@ -30,5 +32,17 @@ void check_same_bits(double actual, double expected, const char *what, const cha
 
 /** Least-squares slope of log2(error) over halvings of the step: the observed order. */
 double observed_order(const double *error, size_t count);
+
+/**
+ * The status of a call when the allocation after n good ones fails, STRUT_OK or STRUT_NO_MEMORY; anything
+ * else fails the test.
+ */
+#define refused(n, call) (strut_fail_allocation_after(n), granted_again(call))
+
+static inline strut_status granted_again(strut_status status) {
+  strut_fail_allocation_after(-1);
+  if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
+  return status;
+}
 
 #endif

@@ -15,10 +15,9 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 
 #include <cmocka.h>
-
-#include "tests/support/own.h"
 
 /** When a function runs: as a test, before each test, before the first, after the last. */
 typedef enum test_moment {
@@ -46,5 +45,22 @@ void register_test(test_moment moment, const char *name, void (*function)(void),
 const char *test_word(int n);
 /** The same as a number; `otherwise` where there are fewer words. */
 double test_number(int n, double otherwise);
+
+/*
+ * Variables that are freed where their block ends, last declared first. Not where an assertion fails: what
+ * a failed test holds it keeps.
+ *
+ *     OWN(strut_setup) setup;                                        strut_setup_free(&setup)
+ *     OWN_POINTER(strut_model) model = motion_compile(&setup.scene); strut_model_free(model)
+ *     FREED char *text = scratch_read(path, &length);                free(text)
+ */
+#define OWN(type) __attribute__((cleanup(type##_free))) type
+#define OWN_POINTER(type) __attribute__((cleanup(type##_free_at))) type *
+/** Says once in a file how a type is freed that OWN_POINTER names. */
+#define FREED_BY(function, type)                                                                   \
+  static inline void type##_free_at(type **pointer) { function(*pointer); }
+#define FREED __attribute__((cleanup(own_free)))
+
+static inline void own_free(void *pointer) { free(*(void **)pointer); }
 
 #endif

@@ -57,9 +57,10 @@ def rows(*names):
         return list(csv.DictReader(file))
 
 
-def run(*words, code=0, timeout=120):
-    """Runs strut in the folder of the test; what it printed."""
-    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work, timeout=timeout, check=False)
+def run(*words, code=0, timeout=120, stdin="", env=None):
+    """Runs strut in the folder of the test, with `env` beside its own environment; what it printed."""
+    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work, timeout=timeout, check=False,
+                          input=stdin, env={**os.environ, **(env or {})})
     check(done.returncode == code, f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
     return done
 

@@ -6,8 +6,7 @@
 #include "engine/study/compare/compare.h"
 #include "parser/read/overlay.h"
 #include "parser/read/read_scene.h"
-#include "tests/support/refused.h"
-#include "tests/support/test.h"
+#include "tests/support/check.h"
 
 static const char hopper[] =
     "strut: 1\n"

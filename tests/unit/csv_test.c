@@ -7,9 +7,8 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/record_files.h"
+#include "tests/support/check.h"
 #include "tests/support/heap.h"
-#include "tests/support/refused.h"
-#include "tests/support/test.h"
 #include "tests/unit/sample.h"
 #include "tests/unit/scratch.h"
 

@@ -11,8 +11,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
-#include "tests/support/refused.h"
-#include "tests/support/test.h"
+#include "tests/support/check.h"
 #include "tests/unit/scratch.h"
 
 /* What the disk is asked for, in order; link options lead calls of fsync and rename here. */

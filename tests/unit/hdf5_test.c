@@ -13,8 +13,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
 #include "engine/output/record_files.h"
-#include "tests/support/refused.h"
-#include "tests/support/test.h"
+#include "tests/support/check.h"
 #include "tests/unit/sample.h"
 #include "tests/unit/scratch.h"
 

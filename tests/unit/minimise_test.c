@@ -8,7 +8,6 @@
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
-#include "tests/support/refused.h"
 #include "tests/support/structures.h"
 
 typedef struct fixture {

@@ -10,7 +10,6 @@
 #include "tests/physics/random_scene.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
-#include "tests/support/refused.h"
 
 FREED_BY(strut_potential_free, strut_potential)
 

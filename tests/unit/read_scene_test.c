@@ -10,7 +10,6 @@
 #include "parser/write/write_scene.h"
 #include "tests/language/cases.h"
 #include "tests/support/motion.h"
-#include "tests/support/refused.h"
 
 /* What every scene here ends with. */
 #define RUN "solver: {step: 1 ms}\nrun: {duration: 10 s}\n"

@@ -7,7 +7,6 @@
 
 #include "engine/output/figures/run_figure.h"
 #include "tests/support/motion.h"
-#include "tests/support/refused.h"
 #include "tests/support/structures.h"
 #include "tests/unit/scratch.h"
 

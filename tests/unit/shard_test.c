@@ -10,7 +10,6 @@
 #include "engine/output/file.h"
 #include "engine/study/results/study_table.h"
 #include "tests/support/check.h"
-#include "tests/support/refused.h"
 #include "tests/unit/scratch.h"
 
 static const strut_array_task nowhere = {0};

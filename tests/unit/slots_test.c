@@ -14,7 +14,6 @@
 #include "engine/base/memory.h"
 #include "engine/study/results/slots.h"
 #include "tests/support/check.h"
-#include "tests/support/refused.h"
 #include "tests/unit/scratch.h"
 
 static const strut_slot_column columns[] = {

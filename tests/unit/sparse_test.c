@@ -8,7 +8,6 @@
 #include "engine/model/sparse.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
-#include "tests/support/refused.h"
 
 FREED_BY(strut_factor_free, strut_factor)
 

@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "tests/support/motion.h"
-#include "tests/support/refused.h"
 #include "tests/support/structures.h"
 
 static const double G = 9.81;

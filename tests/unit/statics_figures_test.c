@@ -8,8 +8,7 @@
 #include "engine/output/draw/legend.h"
 #include "engine/output/figures/statics_figures.h"
 #include "tests/models/run_model.h"
-#include "tests/support/refused.h"
-#include "tests/support/test.h"
+#include "tests/support/check.h"
 #include "tests/unit/scratch.h"
 
 enum { MOST = 400 };

@@ -7,9 +7,8 @@
 
 #include "parser/program/streams.c" /* the program is no library to link with */
 #include "parser/program/table_file.c"
+#include "tests/support/check.h"
 #include "tests/support/heap.h"
-#include "tests/support/refused.h"
-#include "tests/support/test.h"
 #include "tests/unit/scratch.h"
 
 static strut_status read_text_as_file(const char *text, strut_table *table) {

@@ -3,8 +3,7 @@
 #include <math.h>
 
 #include "engine/output/figures/table_parts.h"
-#include "tests/support/refused.h"
-#include "tests/support/test.h"
+#include "tests/support/check.h"
 
 enum { ROWS = 9 };
 enum { SIDE, X, Y, WORD, COLUMNS };

@@ -149,7 +149,7 @@ TEST(a_run_that_diverged_is_marked) {
   assert_same_motion(&taken, &read);
 }
 
-static void refused(const strut_setup *setup, const char *directory, const char *why) {
+static void not_read(const strut_setup *setup, const char *directory, const char *why) {
   OWN(strut_trajectory) t = {0};
   strut_error error = {0};
   assert_int_equal(
@@ -162,25 +162,25 @@ static void refused(const strut_setup *setup, const char *directory, const char 
 TEST(refusals) {
   OWN(strut_trajectory) taken = {0};
   OWN(strut_setup) setup = crawler(1e-3);
-  refused(&setup, scratch_path("nowhere"), "No such file");
+  not_read(&setup, scratch_path("nowhere"), "No such file");
   assert_int_equal(record(&setup, ALL, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
   const char *name = setup.scene.nodes[2].name;
   setup.scene.nodes[2].name = "another";
-  refused(&setup, scratch_path(""), "another structure");
+  not_read(&setup, scratch_path(""), "another structure");
   setup.scene.nodes[2].name = name;
   name = setup.scene.members[8].name;
   setup.scene.members[8].name = "another";
-  refused(&setup, scratch_path(""), "another structure");
+  not_read(&setup, scratch_path(""), "another structure");
   setup.scene.members[8].name = name;
   setup.scene.contact_count--;
-  refused(&setup, scratch_path(""), "another structure");
+  not_read(&setup, scratch_path(""), "another structure");
   setup.scene.contact_count++;
   setup.scene.node_count--;
-  refused(&setup, scratch_path(""), "another structure");
+  not_read(&setup, scratch_path(""), "another structure");
   setup.scene.node_count++;
   FILE *file = fopen(scratch_path("trajectory.h5"), "r+b"); /* its first bytes */
   assert_true(file && fputs("this is no HDF5 file", file) > 0 && fclose(file) == 0);
-  refused(&setup, scratch_path(""), "not an HDF5 file");
+  not_read(&setup, scratch_path(""), "not an HDF5 file");
 }
 
 TEST(every_allocation_may_fail) {
