@@ -103,6 +103,16 @@ strut_status strut_option_number(const strut_command *command, const strut_argum
   return STRUT_OK;
 }
 
+strut_status strut_option_within(const strut_command *command, const strut_arguments *arguments,
+                                 strut_option_id id, strut_dimension dimension, double low,
+                                 double high, double *value) {
+  const char *text = strut_option_text(arguments, id);
+  strut_status status = strut_option_number(command, arguments, id, dimension, value);
+  if (status != STRUT_OK || !text || (*value >= low && *value <= high)) return status;
+  return strut_usage_error(command, arguments, "--%s expects a value from %g to %g, not '%s'",
+                           name_of(command, id), low, high, text);
+}
+
 size_t strut_option_numbers(const char *text, strut_dimension dimension, double *values,
                             size_t most) {
   char part[100];

@@ -195,6 +195,10 @@ strut_status strut_usage_error(const strut_command *command, const strut_argumen
  */
 strut_status strut_option_number(const strut_command *command, const strut_arguments *arguments,
                                  strut_option_id id, strut_dimension dimension, double *value);
+/** As strut_option_number, for a value from low to high [SI]. */
+strut_status strut_option_within(const strut_command *command, const strut_arguments *arguments,
+                                 strut_option_id id, strut_dimension dimension, double low,
+                                 double high, double *value);
 /**
  * Reads up to `most` values with commas between, such as "0 s, 80 ms", into values. Returns how many,
  * or 0 where the text is something else.

@@ -112,15 +112,6 @@ static void print_warnings(const strut_summary *summary) {
     fprintf(stderr, "strut: warning: %s\n", summary->warnings[i].text);
 }
 
-/* Runs last, as it takes longest: the results are on the screen by then. */
-static strut_status make_film(strut_run_pictures *pictures, const strut_model *model) {
-  strut_error error = {0};
-  fflush(stdout);
-  strut_status status = strut_run_pictures_film(pictures, model, &error);
-  if (status != STRUT_OK) strut_print_error(&error);
-  return status;
-}
-
 static strut_status run_model(const strut_arguments *arguments, const strut_setup *setup,
                               const strut_model *model, strut_run_pictures *pictures) {
   run_files keep = {.scene_text = NULL};
@@ -138,7 +129,7 @@ static strut_status run_model(const strut_arguments *arguments, const strut_setu
     if (written != STRUT_OK) status = written;
     strut_status printed = print_summary(arguments, &summary, model->scene);
     if (status == STRUT_OK) status = printed;
-    if (written == STRUT_OK) written = make_film(pictures, model);
+    if (written == STRUT_OK) written = strut_run_pictures_film(pictures, model);
     if (written != STRUT_OK) status = written;
     if (status == STRUT_OK && strut_summary_is_inaccurate(&summary)) status = STRUT_INACCURATE;
   }

@@ -206,12 +206,6 @@ static strut_status read_methods(const strut_arguments *arguments, tradeoff_requ
   return STRUT_OK;
 }
 
-static strut_status check_positive(const char *name, double value, double least, double most) {
-  if (value == 0 || (value >= least && value <= most)) return STRUT_OK;
-  fprintf(stderr, "strut tradeoff: --%s expects a value from %g to %g\n", name, least, most);
-  return STRUT_USAGE;
-}
-
 static strut_status read_numbers(const strut_arguments *arguments, tradeoff_request *w) {
   const strut_command *command = &strut_command_tradeoff;
   static const char *const measures[] = {"velocity", "position", "energy", NULL};
@@ -227,11 +221,11 @@ static strut_status read_numbers(const strut_arguments *arguments, tradeoff_requ
   if (status == STRUT_OK)
     status = strut_option_integer(command, arguments, STRUT_OPTION_POINTS, 1, MOST_POINTS, &points);
   if (status == STRUT_OK)
-    status = strut_option_number(command, arguments, STRUT_OPTION_PERIODS, STRUT_DIM_NONE,
-                                 &w->study.periods);
+    status = strut_option_within(command, arguments, STRUT_OPTION_PERIODS, STRUT_DIM_NONE, 1,
+                                 MOST_PERIODS, &w->study.periods);
   if (status == STRUT_OK)
-    status = strut_option_number(command, arguments, STRUT_OPTION_CPU_TIME, STRUT_DIM_TIME,
-                                 &w->study.budget);
+    status = strut_option_within(command, arguments, STRUT_OPTION_CPU_TIME, STRUT_DIM_TIME,
+                                 LEAST_BUDGET, MOST_BUDGET, &w->study.budget);
   if (status == STRUT_OK)
     status = strut_option_number(command, arguments, STRUT_OPTION_ACCURACY, STRUT_DIM_NONE,
                                  &w->study.accuracy);
@@ -239,9 +233,6 @@ static strut_status read_numbers(const strut_arguments *arguments, tradeoff_requ
       !(w->study.accuracy > 0.0 && w->study.accuracy <= 1.0))
     status = strut_usage_error(command, arguments,
                                "--accuracy must be above 0 and at most 1, that is 100%%");
-  if (status == STRUT_OK) status = check_positive("periods", w->study.periods, 1, MOST_PERIODS);
-  if (status == STRUT_OK)
-    status = check_positive("cpu-time", w->study.budget, LEAST_BUDGET, MOST_BUDGET);
   w->study.steps = (int)steps;
   w->study.measure = (strut_tradeoff_measure)(measure + 1);
   w->points = (size_t)points;

@@ -10,28 +10,6 @@
 #include "engine/output/figures/run_film.h"
 #include "parser/program/options.h"
 
-/** Rows for the table of options. */
-#define STRUT_RUN_FILM_OPTIONS                                                                     \
-  {STRUT_OPTION_ANIMATE, "animate", "FILE", "make a film: FILE ends with .mp4, .webm or .gif"},    \
-      {STRUT_OPTION_SPEED, "speed", "SPEED",                                                       \
-       "speed of the film, such as 1/10 or 5 (default 1, real time)"},                             \
-  {                                                                                                \
-    STRUT_OPTION_FPS, "fps", "NUMBER",                                                             \
-        "frames per second (default " STRUT_TEXT_OF(STRUT_FILM_FPS) "; gif: " STRUT_TEXT_OF(       \
-            STRUT_FILM_GIF_FPS) ")"                                                                \
-  }
-
-/**
- * Reads them before anything is computed, and finds out whether the film can be made: ffmpeg is
- * there, FILE can be written. STRUT_USAGE or STRUT_FILE_TROUBLE with the reason on stderr.
- */
-strut_status strut_run_film_read(const strut_command *command, const strut_arguments *arguments,
-                                 strut_film *film);
-/** Makes the film, with a progress bar unless `quiet`, and reports it unless `silent`. */
-strut_status strut_run_film_make(strut_film *film, const strut_model *model,
-                                 const strut_trajectory *motion, bool quiet, bool silent,
-                                 strut_error *error);
-
 /** Zero-initialise. */
 typedef struct strut_run_pictures {
   strut_plot plot;
@@ -45,7 +23,16 @@ typedef struct strut_run_pictures {
 
 /** Rows for the table of options. */
 #define STRUT_RUN_PICTURE_OPTIONS                                                                  \
-  STRUT_PLOT_OPTIONS, STRUT_RUN_FIGURE_OPTIONS, STRUT_RUN_FILM_OPTIONS
+  STRUT_PLOT_OPTIONS, STRUT_RUN_FIGURE_OPTIONS,                                                    \
+      {STRUT_OPTION_ANIMATE, "animate", "FILE",                                                    \
+       "make a film: FILE ends with .mp4, .webm or .gif"},                                         \
+      {STRUT_OPTION_SPEED, "speed", "SPEED",                                                       \
+       "speed of the film, such as 1/10 or 5 (default 1, real time)"},                             \
+  {                                                                                                \
+    STRUT_OPTION_FPS, "fps", "NUMBER",                                                             \
+        "frames per second (default " STRUT_TEXT_OF(STRUT_FILM_FPS) "; gif: " STRUT_TEXT_OF(       \
+            STRUT_FILM_GIF_FPS) ")"                                                                \
+  }
 
 /** Reads the options; STRUT_USAGE or STRUT_FILE_TROUBLE with the reason on stderr. */
 strut_status strut_run_pictures_read(const strut_command *command, const strut_arguments *arguments,
@@ -60,9 +47,8 @@ strut_sink *strut_run_pictures_sink(strut_run_pictures *pictures, const strut_sc
 /** Draws the figure after the run, if one was requested. */
 strut_status strut_run_pictures_draw(strut_run_pictures *pictures, const strut_model *model,
                                      const strut_summary *summary, strut_error *error);
-/** Makes the film, if one was requested, and reports what it made. */
-strut_status strut_run_pictures_film(strut_run_pictures *pictures, const strut_model *model,
-                                     strut_error *error);
+/** Makes the film, if one was requested, and reports it. Last, as it takes longest: the results are on the screen by then. */
+strut_status strut_run_pictures_film(strut_run_pictures *pictures, const strut_model *model);
 void strut_run_pictures_free(strut_run_pictures *pictures);
 
 #endif

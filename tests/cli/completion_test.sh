@@ -29,6 +29,7 @@ offers "--quiet :" keys --q
 # Every option of every command is offered.
 while read -r command; do
   expect 0 $command --help
+  grep STRUT_ out && fail "the help of $command has the name of a constant"
   sed -n '1,/^Options:/d; s/^ *\(-., \)\{0,1\}\(--[a-z-]*\).*/\2/p' out >listed
   sed -n "s/^'strut $command \(--[a-z]*\)' .*/\1/p" out >>listed
   sort listed -o listed

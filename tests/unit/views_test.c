@@ -67,22 +67,21 @@ static void drop(things *t) {
 
 TEST(film_without_memory) {
   things t;
-  if (strut_film_check("a.gif", NULL) != STRUT_OK) skip();
-  make(&t);
   const char *directory = scratch_make();
+  strut_film film = {.path = scratch_path("a.gif"), .speed = 1};
+  if (strut_film_check(&film, 0.1, NULL) != STRUT_OK) skip();
+  make(&t);
+  film.experiment = &t.setup.experiment;
   strut_status status = STRUT_NO_MEMORY;
   int failed = 0;
   for (; failed < MOST && status != STRUT_OK; failed++) {
     strut_error error = {0};
-    strut_film_made made;
-    const strut_film film = {
-        .experiment = &t.setup.experiment, .path = scratch_path("a.gif"), .speed = 1};
     strut_fail_allocation_after(failed);
-    status = strut_film_make(&film, t.model, &t.motion, &made, &error);
+    status = strut_film_make(&film, t.model, &t.motion, &error);
     strut_fail_allocation_after(-1);
     assert_int_equal(error.status, status);
     assert_int_equal(scratch_count(directory), status == STRUT_OK ? 1 : 0);
-    if (status == STRUT_OK) assert_int_equal(made.frames, 3);
+    if (status == STRUT_OK) assert_int_equal(film.frames, 3);
   }
   assert_true(failed > 5 && failed < MOST);
   drop(&t);
@@ -92,18 +91,17 @@ TEST(film_without_memory) {
 TEST(film_of_what_is_a_number) {
   things t;
   strut_error error = {0};
-  strut_film_made made;
-  if (strut_film_check("a.gif", NULL) != STRUT_OK) skip();
-  make(&t);
   const char *directory = scratch_make();
-  const strut_film film = {
-      .experiment = &t.setup.experiment, .path = scratch_path("a.gif"), .speed = 0.5};
+  strut_film film = {.path = scratch_path("a.gif"), .speed = 0.5};
+  if (strut_film_check(&film, 0.1, NULL) != STRUT_OK) skip();
+  make(&t);
+  film.experiment = &t.setup.experiment;
   t.position[2][1] = (double)NAN;
   t.motion.status = STRUT_DIVERGED;
-  assert_int_equal(strut_film_make(&film, t.model, &t.motion, &made, &error), STRUT_OK);
-  assert_int_equal(made.frames, 3); /* 0.05 s at half the speed and 25 frames per second */
+  assert_int_equal(strut_film_make(&film, t.model, &t.motion, &error), STRUT_OK);
+  assert_int_equal(film.frames, 3); /* 0.05 s at half the speed and 25 frames per second */
   t.position[0][0] = (double)INFINITY;
-  assert_int_equal(strut_film_make(&film, t.model, &t.motion, &made, &error), STRUT_DIVERGED);
+  assert_int_equal(strut_film_make(&film, t.model, &t.motion, &error), STRUT_DIVERGED);
   assert_int_equal(scratch_count(directory), 1);
   drop(&t);
 }

@@ -112,6 +112,16 @@ double strut_run_time_from(const strut_run_scene *run, size_t frame) {
   return run->motion->time[run->frames - 1] - run->motion->time[frame];
 }
 
+size_t strut_run_nearest(const strut_run_scene *run, double time) {
+  const double *times = run->motion->time;
+  size_t low = 0, high = run->frames - 1;
+  while (high - low > 1) {
+    size_t middle = (low + high) / 2;
+    *(times[middle] <= time ? &low : &high) = middle;
+  }
+  return time - times[low] <= times[high] - time ? low : high;
+}
+
 size_t strut_run_since(const strut_run_scene *run, double duration) {
   size_t first = run->frames - 1;
   while (first > 0 && strut_run_time_from(run, first - 1) <= duration * (1 + 1e-9)) first--;

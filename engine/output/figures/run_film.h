@@ -8,9 +8,9 @@
 #include "engine/output/trajectory.h"
 #include "engine/scene/experiment.h"
 
-/** Channels that a film needs from strut_trajectory_sink. */
-#define STRUT_FILM_CHANNELS                                                                        \
-  ((unsigned)STRUT_CHANNEL_POSITION | STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT)
+/** Frames per second where none are requested. */
+#define STRUT_FILM_FPS 30
+#define STRUT_FILM_GIF_FPS 25
 
 typedef struct strut_film {
   const strut_experiment *experiment; /* of the run: whose travel is shown */
@@ -20,27 +20,19 @@ typedef struct strut_film {
   const strut_flag *interrupt; /* stops soon after it becomes non-zero; may be NULL */
   void (*progress)(void *context, double fraction); /* may be NULL */
   void *progress_context;
+  /* What was made. */
+  size_t frames;
+  double motion;     /* that is shown [s] */
+  double every;      /* mean time between its frames [s]; 0 for a single one */
+  int width, height; /* pixels */
 } strut_film;
 
-/** Properties of a finished film. */
-typedef struct strut_film_made {
-  size_t frames;
-  int width, height; /* pixels */
-  double fps;
-  double lasts; /* the film [s] */
-  double every; /* mean time between frames of the motion [s]; 0 for a single one */
-  double shown; /* time of the motion between frames of the film [s] */
-} strut_film_made;
-
-/** Before a run: STRUT_USAGE for another ending, STRUT_FILE_TROUBLE where nothing can be written or ffmpeg is missing. */
-STRUT_API strut_status strut_film_check(const char *path, strut_error *error);
-/** STRUT_USAGE where a film of a motion of this duration [s] is too long. */
-STRUT_API strut_status strut_film_check_length(const strut_film *film, double motion,
-                                               strut_error *error);
-/** Makes the film from the recorded frames nearest in time; whole or not at all. STRUT_USAGE as above,
-    STRUT_FILE_TROUBLE with what ffmpeg says, STRUT_DIVERGED without a frame, STRUT_INTERRUPTED, STRUT_NO_MEMORY. */
-STRUT_API strut_status strut_film_make(const strut_film *film, const strut_model *model,
-                                       const strut_trajectory *motion, strut_film_made *made,
-                                       strut_error *error);
+/** Before a run of `motion` [s]: STRUT_USAGE for another ending or too long a film, STRUT_FILE_TROUBLE
+    where nothing can be written or ffmpeg is missing. Completes fps, width and height. */
+STRUT_API strut_status strut_film_check(strut_film *film, double motion, strut_error *error);
+/** Makes a checked film from what snapshots show, the frames nearest in time; whole or not at all. STRUT_FILE_TROUBLE
+    with what ffmpeg says, STRUT_DIVERGED without a frame, STRUT_INTERRUPTED, STRUT_NO_MEMORY. */
+STRUT_API strut_status strut_film_make(strut_film *film, const strut_model *model,
+                                       const strut_trajectory *motion, strut_error *error);
 
 #endif

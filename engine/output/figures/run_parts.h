@@ -48,6 +48,8 @@ bool strut_run_find_limits(strut_run_scene *run);
 const double *strut_run_positions(const strut_run_scene *run, size_t frame);
 /** Those as the model's coordinates, padded, in the arena; NULL: no memory. */
 double *strut_run_shape(strut_run_scene *run, size_t frame);
+/** The frame nearest to a time [s]; the earlier one of two. */
+size_t strut_run_nearest(const strut_run_scene *run, double time);
 /** First frame of the last `duration` seconds; there are two frames at least if there are two. */
 size_t strut_run_since(const strut_run_scene *run, double duration);
 /** Time from one frame to the last [s]. */

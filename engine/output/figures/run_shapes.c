@@ -226,22 +226,8 @@ static double default_time(const strut_run_scene *run, size_t i, size_t count) {
 }
 
 static size_t frame_of_cell(const strut_run_scene *run, size_t i, size_t count) {
-  const strut_trajectory *m = run->motion;
-  double time = run->figure->time_count ? run->figure->times[i] : default_time(run, i, count);
-  size_t best = 0;
-  for (size_t f = 1; f < run->frames; f++)
-    if (fabs(m->time[f] - time) < fabs(m->time[best] - time)) best = f;
-  return best;
-}
-
-/* The frame of the second motion nearest in time. */
-static size_t matching_frame(const strut_run_scene *run, const strut_run_scene *other,
-                             size_t frame) {
-  double time = run->motion->time[frame];
-  size_t best = 0;
-  for (size_t f = 1; f < other->frames; f++)
-    if (fabs(other->motion->time[f] - time) < fabs(other->motion->time[best] - time)) best = f;
-  return best;
+  return strut_run_nearest(
+      run, run->figure->time_count ? run->figure->times[i] : default_time(run, i, count));
 }
 
 /* The number of snapshots: requested ones up to the end of the run. */
@@ -262,8 +248,9 @@ static strut_bounds cell_bounds(const strut_run_scene *run, const grid *g, size_
   size_t frame = frame_of_cell(run, i, g->count);
   strut_bounds b = strut_run_frame_bounds(run, frame);
   if (strut_run_find_other(run, &other))
-    strut_bounds_add(&b, run->model,
-                     strut_run_positions(&other, matching_frame(run, &other, frame)));
+    strut_bounds_add(
+        &b, run->model,
+        strut_run_positions(&other, strut_run_nearest(&other, run->motion->time[frame])));
   strut_run_add_ground(run, &b);
   return b;
 }
@@ -414,7 +401,7 @@ static bool draw_other_shape(const strut_run_scene *run, strut_canvas *canvas,
                              const strut_window *window, size_t frame) {
   strut_run_scene other;
   if (!strut_run_find_other(run, &other)) return true;
-  const double *q = strut_run_shape(&other, matching_frame(run, &other, frame));
+  const double *q = strut_run_shape(&other, strut_run_nearest(&other, run->motion->time[frame]));
   if (q) strut_run_draw_other(&other, canvas, window, q);
   strut_arena_free(&other.arena);
   return q != NULL;
