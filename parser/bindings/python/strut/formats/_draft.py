@@ -17,6 +17,7 @@ Place = tuple[int, int]  #: line and column, from 1
 
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _SECTIONS = "parameters groups nodes members hinges cells distances loads path".split()
+HELD = ("", ", fixed: x", ", fixed: y", ", fixed: both")  #: behind a node's position: 1 for x, 2 for y
 _YAML_WORDS = {"y", "n", "yes", "no", "on", "off", "true", "false", "null", "nan", "inf"}
 
 
@@ -133,7 +134,7 @@ class Draft:
         self.unit = unit  #: of lengths [m]
         self.head: list[str] = []
         self.lines: dict[str, list[tuple[str, Source, Place]]] = {name: [] for name in _SECTIONS}
-        self._nodes: dict[str, tuple[str, str, Source, Place]] = {}
+        self._nodes: dict[str, tuple[str, Source, Place]] = {}
         self._used: set[str] = set()
 
     def length(self, value: float) -> str:
@@ -142,14 +143,14 @@ class Draft:
         decimal = parts >= 1 and abs(1 / self.unit - parts) < 1e-9 * parts
         return number(value / parts if decimal else value * self.unit)
 
-    def add(self, section: str, line: str, source: Source, place: Place) -> None:
-        self.lines[section].append((line, source, place))
+    def add(self, section: str, name: str, value: str, source: Source, place: Place) -> None:
+        self.lines[section].append((f"  {own_name(name)}: {value}", source, place))
 
-    def node(self, name: str, value: str, source: Source, place: Place) -> None:
+    def node(self, name: str, x: str, y: str, more: str, source: Source, place: Place) -> None:
         """Adds a node; it is written where something uses it, since a scene refuses nodes without use."""
         if name in self._nodes:
             raise Wrong(source, place, f"node '{name:.60}' is given twice")
-        self._nodes[name] = own_name(name), value, source, place
+        self._nodes[name] = f"{{position: [{x}, {y}]{more}}}", source, place
 
     def has_node(self, name: str) -> bool:
         return name in self._nodes
@@ -166,11 +167,11 @@ class Draft:
         places: dict[int, tuple[Source, Place]] = {}
         if not any(self.lines[section] for section in ("members", "hinges", "cells", "distances")):
             raise Failure(f"'{sources[0].name}' has no member that a scene could have")
-        for key, (own, value, source, place) in self._nodes.items():
-            if key in self._used:
-                self.add("nodes", f"  {own}: {value}", source, place)
+        for name, (value, source, place) in self._nodes.items():
+            if name in self._used:
+                self.add("nodes", name, value, source, place)
             else:
-                source.note(place, f"not imported: node {own}, which nothing uses")
+                source.note(place, f"not imported: node {own_name(name)}, which nothing uses")
         lines += self.head
         for section, entries in self.lines.items():
             lines += [f"{section}:"] if entries else []

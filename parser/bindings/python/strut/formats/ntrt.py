@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Sequence
 
 from . import number
-from ._draft import Draft, Source, Tree, collected, own_name
+from ._draft import Draft, Source, Tree, collected
 
 TITLE = "YAML of NASA's Tensegrity Robotics Toolkit"
 _KEYS = ("nodes", "pair_groups", "builders", "substructures", "bond_groups")
@@ -218,7 +218,7 @@ def read(draft: Draft, sources: Sequence[Source]) -> None:
     for node in nodes:
         x, y = (draft.length(0 if abs(node.p[c]) <= faint else node.p[c]) for c in (across, 1))
         with collected():
-            draft.node(node.name, f"{{position: [{x}, {y}]}}", node.key.source, node.key.place)
+            draft.node(node.name, x, y, "", node.key.source, node.key.place)
     for pairs in reader.pairs:
         with collected():
             builder = next((value for tags, value in reader.builders.items() if _has(pairs.tags, tags)), None)
@@ -234,5 +234,4 @@ def read(draft: Draft, sources: Sequence[Source]) -> None:
                     stiffness, damping = number(given["stiffness"]), number(given["damping"])
                     text = f"{{kind: cable, {ends}, stiffness: {stiffness} N/m, damping: {damping} N s/m, "
                     text += f"pretension: {draft.length(given['pretension'])} N}}"
-                name = own_name(f"{pairs.base}-{i}")
-                draft.add("members", f"  {name}: {text}", pairs.key.source, pairs.key.place)
+                draft.add("members", f"{pairs.base}-{i}", text, pairs.key.source, pairs.key.place)

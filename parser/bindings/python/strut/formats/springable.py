@@ -8,11 +8,10 @@ import re
 from typing import Sequence
 
 from . import number
-from ._draft import Draft, Source, Wrong, collected
+from ._draft import HELD, Draft, Source, Wrong, collected
 from ._springable_laws import Line, Skip, split
 
 TITLE = "CSV of springable"
-_HELD = ("", ", fixed: x", ", fixed: y", ", fixed: both")
 #: sections of distances: direction, whether from the middle of two nodes, whether the node comes first
 _DISTANCES = {"X DISTANCE": "x", "Y DISTANCE": "y", "POINT2MID X DISTANCE": "x", "POINT2MID Y DISTANCE": "y"}
 _DISTANCES |= {"MID2POINT X DISTANCE": "x", "MID2POINT Y DISTANCE": "y", "DISTANCE": ""}
@@ -63,7 +62,7 @@ class _Reader(Line):
         name += str(self.counts[name])
         for node in nodes:
             self.draft.use(node)
-        self.draft.add(section, f"  {name}: {{{text}}}", self.source, self.place(0))
+        self.draft.add(section, name, f"{{{text}}}", self.source, self.place(0))
         return name
 
     def parameter(self) -> None:
@@ -79,7 +78,7 @@ class _Reader(Line):
             self.note(2, "not imported: a range; give it as an axis of a study")
         own = self.own[name] = f"{name}_value" if name in self.taken else name
         self.values[own] = value
-        self.draft.add("parameters", f"  {own}: {number(value)}", self.source, self.place(0))
+        self.draft.add("parameters", own, number(value), self.source, self.place(0))
 
     def node(self) -> None:
         if len(self.fields) != 5 or not re.fullmatch(r"\d{1,9}", self.text(0), re.ASCII):
@@ -93,7 +92,7 @@ class _Reader(Line):
         (x, first), (y, second) = self.expression(1), self.expression(2)
         held = int(self.text(3)) + 2 * int(self.text(4))
         self.points[index] = first, second, held == 3
-        self.draft.node(f"n{index}", f"{{position: [{x}, {y}]{_HELD[held]}}}", self.source, self.place(0))
+        self.draft.node(f"n{index}", x, y, HELD[held], self.source, self.place(0))
 
     def chain(self, least: int, most: int) -> list[str]:
         """The nodes "0-2-1" as n0, n2, n1."""
@@ -143,8 +142,7 @@ class _Reader(Line):
             raise Skip("a distance from the middle of nodes that move", 0)
         self.counts["m"] = self.counts.get("m", 0) + 1
         name = f"m{self.counts['m']}"
-        text = f"{{position: [{number((x + u) / 2)}, {number((y + v) / 2)}], fixed: both}}"
-        self.draft.node(name, text, self.source, self.place(0))
+        self.draft.node(name, number((x + u) / 2), number((y + v) / 2), HELD[3], self.source, self.place(0))
         return name
 
     def distance(self) -> None:
@@ -199,6 +197,6 @@ def read(draft: Draft, sources: Sequence[Source]) -> None:
             reader.read(i, line.rstrip("\r"))
     reader.end_stage()
     for line in ["  stages:", *reader.stages] if reader.stages else ():
-        draft.add("path", line, source, (1, 1))
+        draft.lines["path"].append((line, source, (1, 1)))
     if not reader.points and not source.wrong:
         raise Wrong(source, (1, 1), "the file has no section NODES")

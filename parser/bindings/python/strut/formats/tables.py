@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from typing import Sequence
 
-from ._draft import Draft, Place, Source, Wrong, collected, is_number, own_name
+from ._draft import Draft, Place, Source, Wrong, collected, is_number
 
 TITLE = "tables of nodes and members"
 _CELL = re.compile(r'(?:^|,)(?:"((?:[^"]|"")*)"|([^,"]*))(?=,|$)')
@@ -81,9 +81,8 @@ def _node(draft: Draft, row: _Row) -> None:
     for axis in "xy":
         if not row.value(draft, axis):
             row.error(axis, "a coordinate is missing")
-    place = f"[{row.value(draft, 'x')}, {row.value(draft, 'y')}]"
-    text = f"{{position: {place}{row.values(draft, _NODES)}{held and ', fixed: ' + held}}}"
-    draft.node(row.text("node"), text, row.source, row.cells["node"][1])
+    more = row.values(draft, _NODES) + (held and f", fixed: {held}")
+    draft.node(row.text("node"), row.value(draft, "x"), row.value(draft, "y"), more, row.source, row.cells["node"][1])
 
 
 def _member(draft: Draft, row: _Row) -> None:
@@ -98,8 +97,8 @@ def _member(draft: Draft, row: _Row) -> None:
             if not draft.has_node(name):
                 row.error(title, f"there is no node '{name:.60}'")
         nodes += map(draft.use, names)
-    text = f"  {own_name(row.text('member'))}: {{kind: {row.text('kind')}, nodes: [{', '.join(nodes)}]"
-    draft.add("members", f"{text}{row.values(draft, _MEMBERS)}}}", row.source, row.cells["member"][1])
+    text = f"{{kind: {row.text('kind')}, nodes: [{', '.join(nodes)}]{row.values(draft, _MEMBERS)}}}"
+    draft.add("members", row.text("member"), text, row.source, row.cells["member"][1])
 
 
 def read(draft: Draft, sources: Sequence[Source]) -> None:

@@ -6,11 +6,10 @@ from __future__ import annotations
 from typing import Sequence
 
 from . import number
-from ._draft import Draft, Source, Tree, collected, own_name
+from ._draft import HELD, Draft, Source, Tree, collected, own_name
 
 TITLE = "YAML of TensegritySim"
 _KEYS = ("nodes", "builders", "connections", "pin")
-_PINS = ("", ", fixed: x", ", fixed: y", ", fixed: both")
 
 
 def read(draft: Draft, sources: Sequence[Source]) -> None:
@@ -48,8 +47,7 @@ def _nodes(draft: Draft, nodes: Tree, pins: Tree | None) -> None:
             pin = pins and pins.get(key.word)
             held = pin.listing("a list such as [True, True, False]", 2)[:2] if pin else []
             on = sum(i for i, item in enumerate(held, 1) if item.word in ("True", "true", "yes", "1"))
-            text = f"{{position: [{draft.length(x)}, {draft.length(y)}]{_PINS[on]}}}"
-            draft.node(key.word, text, key.source, key.place)
+            draft.node(key.word, draft.length(x), draft.length(y), HELD[on], key.source, key.place)
     for key, _ in pins.mapping("for 'pin'") if pins else ():
         with collected():
             if not nodes.get(key.word):
@@ -67,9 +65,9 @@ def _builder(draft: Draft, key: Tree, builder: Tree | None) -> bool:
     for name, value in builder.pairs:
         if value not in (kind, given, ratio):
             name.note(f"not imported: '{name.word:.60}' of a builder")
-    text = f"  {own_name(key.word)}: {{kind: {'bar' if kind.word == 'bar' else 'cable'}, stiffness: "
-    text += f"{number(stiffness)} N/m, rest_length_ratio: {number(ratio.number('the ratio') if ratio else 1)}}}"
-    draft.add("groups", text, key.source, key.place)
+    text = f"{{kind: {'bar' if kind.word == 'bar' else 'cable'}, stiffness: {number(stiffness)} N/m, "
+    text += f"rest_length_ratio: {number(ratio.number('the ratio') if ratio else 1)}}}"
+    draft.add("groups", key.word, text, key.source, key.place)
     return kind.word == "bar"
 
 
@@ -80,5 +78,4 @@ def _connection(draft: Draft, nodes: Tree, group: str, name: str, ends: Tree, ba
             if not nodes.get(end.word):
                 end.error(f"there is no node '{end.word:.60}'")
         used = ", ".join(draft.use(end.word) for end in items)
-        text = f"  {own_name(name)}: {{group: {own_name(group)}, nodes: [{used}]}}"
-        draft.add("members", text, ends.source, ends.place)
+        draft.add("members", name, f"{{group: {own_name(group)}, nodes: [{used}]}}", ends.source, ends.place)
