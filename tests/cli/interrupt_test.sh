@@ -71,5 +71,5 @@ interrupt INT --set step=1e5
 err_has "interrupted while coming to rest"
 
 # timeout(1) sends its signal twice.
-timeout -s INT 8 "$strut" run "$here/hopper.yaml" --set seconds=1e6 --quiet -o twice 2>err </dev/null
+timeout -s INT 2 "$strut" run "$here/hopper.yaml" --set seconds=1e6 --quiet -o twice 2>err </dev/null
 grep -q '"status":	"interrupted"' twice/summary.json || fail "killed by timeout's second signal"

@@ -45,20 +45,17 @@ if script -qec true /dev/null >/dev/null 2>&1 </dev/null; then
   out_has " of 1e+06 s, "
   out_has "░░░"
   grep -q "^$(printf '\033')\\[K" out || fail "the bar is not erased"
+  grep -q "$(printf '\033')\\[[0-9;]*m" out || fail "no colour on a terminal"
   columns=40
   on_terminal
   out_has "left"
   [ "$(widest)" -eq 39 ] || fail "wider than the terminal: $(widest)"
   columns=80
-  LC_ALL=C
+  LC_ALL=C NO_COLOR=1
+  export NO_COLOR
   on_terminal
   out_has "....."
   grep -q "░" out && fail "blocks where the locale has none"
-  grep -q "$(printf '\033')" out || fail "no colour on a terminal"
-  NO_COLOR=1
-  export NO_COLOR
-  on_terminal
-  out_has "left"
   grep -q "$(printf '\033')" out && fail "colour in spite of NO_COLOR"
   on_terminal --quiet
   ! grep -q "left" out || fail "a bar in spite of --quiet"

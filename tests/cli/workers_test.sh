@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Searches by several workers at once: the files of one process, byte for byte, no point computed twice, whoever
 # is killed and when; and the searches that workers cannot share.
+#
+#   sh workers_test.sh STRUT METHOD...     cma, nsga2, multistart
 # shellcheck disable=SC2086  # several processes are meant
 . "$(dirname "$0")/lib.sh"
+shift
 sed 's/^  seconds: 0.5/&\n  friction: 0.3/; s/mu: 0.3/mu: friction/' "$here/hopper.yaml" >model.yaml
 
 # study METHOD GOAL REST: a search over two numbers as METHOD.yaml.
@@ -64,7 +67,7 @@ wait_for_points() {
   done
 }
 
-for method in cma nsga2 multistart; do
+for method; do
   expect 0 sweep $method.yaml -o $method-alone --quiet
   points=$(done_points $method $method-alone)
 
