@@ -45,7 +45,7 @@ study points-contact basics/bouncing-node --vary height=0.05..0.3 --vary zeta=0.
   --points 40 --seed 1 --own-model --accuracy 0.5%
 study points-friction gallery/two-mass-crawler --set step="50 us" --vary friction=0.05..0.3 \
   --vary frequency=6..15 --points 20 --seed 1 --own-model --accuracy 0.5%
-study points-stiff basics/pendulum --vary stiffness=1e7..1e9 --vary length=0.5..2 --points 20 \
+study points-stiff basics/pendulum --vary "stiffness=1e7 N/m..1e9 N/m" --vary length=0.5..2 --points 20 \
   --seed 1 --own-model --accuracy 0.5%
 study points-cable gallery/d-bar --vary bars=1e7..1e9 --points 20 --seed 1 --own-model \
   --accuracy 0.5%
