@@ -76,16 +76,28 @@ const strut_nearby *strut_nearby_serving(const strut_model *model, const strut_s
   return serves(model, state->nearby, q, way_of(model, 0), 0.0) ? state->nearby : NULL;
 }
 
-const strut_nearby *strut_nearby_at(const strut_model *model, const strut_state *state,
-                                    const double *q) {
+/* A list that serves at q and until nodes have gone `more` from there, which is less than the way of the first list. */
+static const strut_nearby *near_within(const strut_model *model, const strut_state *state,
+                                       const double *q, double more) {
   strut_nearby *near = state->nearby;
-  if (serves(model, near, q, way_of(model, 0), 0.0)) return near;
+  if (serves(model, near, q, way_of(model, 0), more)) return near;
   int level = 1; /* the first list that serves for as long as the one below will */
   while (level < STRUT_NEARBY_LISTS &&
          !serves(model, &near[level], q, way_of(model, level), way_of(model, level - 1)))
     level++;
   while (level-- > 0) make(model, state, q, level);
   return near;
+}
+
+const strut_nearby *strut_nearby_at(const strut_model *model, const strut_state *state,
+                                    const double *q) {
+  return near_within(model, state, q, 0.0);
+}
+
+const strut_nearby *strut_nearby_around(const strut_model *model, const strut_state *state,
+                                        const double *q, double way) {
+  if (way > way_of(model, 0)) return NULL;
+  return near_within(model, state, q, way);
 }
 
 int32_t strut_nearby_find(const strut_nearby *near, int32_t element) {

@@ -15,6 +15,9 @@
 /** The elements that may act at q, for a model with elements.scattered. Until the next call with the same state. */
 const strut_nearby *strut_nearby_at(const strut_model *model, const strut_state *state,
                                     const double *q);
+/** The same, for all positions within `way` of q [m]; NULL: no list reaches as far. */
+const strut_nearby *strut_nearby_around(const strut_model *model, const strut_state *state,
+                                        const double *q, double way);
 /** The list that serves at q already; or NULL, which stands for all elements. */
 const strut_nearby *strut_nearby_serving(const strut_model *model, const strut_state *state,
                                          const double *q);

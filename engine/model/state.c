@@ -75,8 +75,8 @@ static bool answers_supports(const strut_model *model) {
 static bool make_arrays(const strut_model *model, strut_state *state) {
   bool good = true;
 #define STRUT_STATE_ARRAY(field, count)                                                            \
-  state->field = strut_arena_allocate(&state->arena, (size_t)(count), sizeof *state->field);       \
-  good = good && state->field;
+  good = good && (state->field =                                                                   \
+                      strut_arena_allocate(&state->arena, (size_t)(count), sizeof *state->field));
   STRUT_STATE_ARRAYS(STRUT_STATE_ARRAY)
 #undef STRUT_STATE_ARRAY
   return good && make_surfaces(model, state);

@@ -64,7 +64,7 @@ void strut_run_watch_collisions(strut_run *r) {
     double other = speed_of(r, at[1]);
     if (e->nodes > 2) other = fmax(other, speed_of(r, at[2]));
     double speed = speed_of(r, at[0]) + other;
-    bool fast = speed * r->dt > e->natural;
+    bool fast = !r->method->events && speed * r->dt > e->natural;
     strut_element_pose pose;
     strut_element_evaluate(r->model, i, r->state->latest->rest, r->state->q, (double)NAN, &pose);
     if (!fast && !(pose.strain < DEEP * e->natural)) continue;

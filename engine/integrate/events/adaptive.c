@@ -109,18 +109,6 @@ STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *step
   return relative_error(model, &stepper->control, h, largest_of(d.position), off);
 }
 
-/*
- * Where the cubic with these values, both above 0, and slopes at 0 and 1 is lowest, if that is below
- * 0 by more than `faint`; else 0.
- */
-static double dip(double g0, double d0, double g1, double d1, double faint) {
-  if (!(d0 < 0.0 && d1 > 0.0)) return 0.0;
-  /* slope: d0 + 2 b x + 3 c x^2, which passes 0 upwards once */
-  double rise = g1 - g0, b = 3.0 * rise - 2.0 * d0 - d1, c = d0 + d1 - 2.0 * rise;
-  double x = -d0 / (b + sqrt(fmax(0.0, b * b - 3.0 * c * d0)));
-  return g0 + x * (d0 + x * (b + x * c)) < -faint ? x : 0.0;
-}
-
 /* The margin at whose zero the mode of contact i, at o, ends; HUGE_VAL for modes that need no look at stages. */
 static double kept_margin(const strut_event_stepper *stepper, int32_t i, const strut_touch *o) {
   const strut_contact_entry *e = &stepper->contacts.entry[i];
@@ -176,9 +164,6 @@ static void note_memory(const strut_model *model, const strut_state *state,
    least? Its true least value may then be below 0. */
 static bool is_spent_at_stage(double least, double kept) { return 2.0 * least < kept; }
 
-/* Part of what is left of a step, after which what has begun still lasts. */
-static const double SOON = 0.1;
-
 /* A margin this small beside the normal force says nothing. */
 static const double FAINT_MARGIN = 1e-9;
 
@@ -200,11 +185,6 @@ static double spent_at(const strut_event_stepper *stepper, int32_t i) {
                                                                              : 0.0;
 }
 
-/* The smaller of two fractions of a step; 0 stands for none. */
-static double earlier(double one, double other) {
-  return one == 0.0 || (other > 0.0 && other < one) ? other : one;
-}
-
 /* As spent_at, of switch k of a slider, a guide or a break. */
 static double memory_spent_at(const strut_model *model, const strut_event_stepper *stepper,
                               int32_t k) {
@@ -223,115 +203,6 @@ static double earliest_spent(const strut_model *model, const strut_event_stepper
   return first;
 }
 
-/*
- * Where a law acts within the step but at neither end: its strain passes the kink, at a speed at which the damper pulls
- * too, and by the end the damper outweighs it. 0: nowhere.
- */
-static double short_pull(const strut_event_stepper *stepper, int32_t k, double h, double faint) {
-  double from = -stepper->now->stretch[k], to = stepper->next->stretch[k];
-  if (stepper->laws.acting[k] || !(from > 0.0 && to > faint && stepper->next->tension[k] < 0.0))
-    return 0.0;
-  double at = strut_event_cubic_root(from, -h * stepper->now->stretch_rate[k], -to,
-                                     -h * stepper->next->stretch_rate[k]);
-  return at + SOON * (1.0 - at);
-}
-
-/* Lowest point, within the step, of the distance of an element's strain from a kink that it passes and comes back over;
-   0: none. */
-static double kink_dip(const strut_model *model, const strut_state *state,
-                       const strut_event_stepper *stepper, int32_t k, double h, double faint) {
-  int32_t element = stepper->laws.item[k].element;
-  const strut_element *e = &model->elements.element[element];
-  int piece = state->modes.element_piece[element];
-  double way = h * strut_law_way(e->law, &e->numbers, piece), from[2], to[2], at = 0.0;
-  double d0 = way * stepper->now->stretch_rate[k], d1 = way * stepper->next->stretch_rate[k];
-  strut_law_margins(e->law, &e->numbers, piece, stepper->now->stretch[k], &from[0], &from[1]);
-  strut_law_margins(e->law, &e->numbers, piece, stepper->next->stretch[k], &to[0], &to[1]);
-  for (int side = 0; side < 2; side++) {
-    double sign = side ? -1.0 : 1.0;
-    if (from[side] > 0.0 && to[side] > 0.0 && to[side] < HUGE_VAL)
-      at = earlier(at, dip(from[side], sign * d0, to[side], sign * d1, faint));
-  }
-  return at;
-}
-
-/* Earliest point, within the step, where a law that acts at both ends does not, or the other way, or is on another
-   piece; 0: none. */
-static double earliest_switch(const strut_model *model, const strut_state *state,
-                              strut_event_stepper *stepper, double h) {
-  double first = 0.0, faint = 0.01 * fmax(0.1 * stepper->control.tolerance, 1e-12) * model->size;
-  strut_event_measure(model, state, stepper, stepper->next);
-  int32_t count = strut_laws_of(&stepper->laws);
-  for (int32_t n = 0; n < count; n++) {
-    int32_t k = strut_law_of(&stepper->laws, n);
-    double side = stepper->laws.acting[k] ? 1.0 : -1.0;
-    if (stepper->laws.item[k].event == STRUT_EVENT_KINK)
-      first = earlier(first, kink_dip(model, state, stepper, k, h, faint));
-    if (stepper->laws.item[k].event != STRUT_EVENT_ACTS) continue;
-    double from = side * stepper->now->stretch[k], to = side * stepper->next->stretch[k];
-    double at = from > 0.0 && to > 0.0 ? dip(from, side * h * stepper->now->stretch_rate[k], to,
-                                             side * h * stepper->next->stretch_rate[k], faint)
-                                       : short_pull(stepper, k, h, faint);
-    first = earlier(first, at);
-  }
-  return first;
-}
-
-/* Lowest point, within the step, of the slip left to closed contact i, of what is left to the edge of its band, or of
-   its speed into the ground, where that passes 0 twice; 0: none. */
-static double speed_dip(const strut_event_stepper *stepper, int32_t i, double h, double to_slip,
-                        double to_into, double faint) {
-  const strut_touch *now = &stepper->now->touch[i], *next = &stepper->next->touch[i];
-  double at = 0.0;
-  double edge = stick_band_edge(&stepper->contacts.entry[i]), s = 0.0,
-         bound = 0.0; /* s u is above it */
-  switch ((strut_contact_mode)stepper->modes.of[i]) {
-    case STRUT_MODE_SLIP: s = stepper->modes.side[i], bound = edge; break;
-    case STRUT_MODE_BAND:
-    case STRUT_MODE_PUSH:
-    case STRUT_MODE_YIELD: s = to_slip < 0.0 ? 1.0 : -1.0, bound = -edge; break;
-    case STRUT_MODE_OPEN:
-    case STRUT_MODE_SLIDE:
-    case STRUT_MODE_STICK:
-    case STRUT_MODE_CREEP: break;
-  }
-  double left = s * to_slip - bound;
-  if (s != 0.0 && left > 0.0)
-    at = dip(s * now->slip - bound, s * h * now->slip_rate, left, s * h * next->slip_rate, faint);
-  double turns = -stepper->modes.damper[i], end = turns * to_into;
-  if (end > 0.0)
-    at = earlier(at, dip(turns * now->into, turns * h * now->into_rate, end,
-                         turns * h * next->into_rate, faint));
-  return at;
-}
-
-/* Earliest lowest point, within the step, of a gap or speed that passes its edge twice; 0: none. */
-STRUT_INLINE double earliest_dip(const strut_model *model, const strut_state *state,
-                                 const strut_event_stepper *stepper, double h, unsigned terms) {
-  const strut_contact_table *c = &model->contacts;
-  double first = 0.0, part = fmax(0.1 * stepper->control.tolerance, 1e-12);
-  const strut_step_control *control = &stepper->control;
-  double faint[2] = {0.01 * part * model->size, /* of a gap, of a speed */
-                     fmax(part * control->speed, h * control->rounding)};
-  bool surfaces = frames_of(stepper->next, terms);
-  int32_t count =
-      surfaces ? strut_surface_candidates(model, stepper, h, state->buffers->near) : c->count;
-  for (int32_t k = 0; k < count; k++) {
-    int32_t i = surfaces ? state->buffers->near[k] : k;
-    strut_touch from, to;
-    measure_at_end(c, &stepper->modes, stepper->now, i, terms, &from);
-    measure_at_end(c, &stepper->modes, stepper->next, i, terms, &to);
-    bool open = stepper->modes.of[i] == STRUT_MODE_OPEN;
-    double side = open ? 1.0 : -1.0;
-    double at = 0.0;
-    if (side * to.gap > 0.0)
-      at = dip(side * from.gap, side * h * from.into, side * to.gap, side * h * to.into, faint[0]);
-    if (!open) at = earlier(at, speed_dip(stepper, i, h, to.slip, to.into, faint[1]));
-    first = earlier(first, at);
-  }
-  return first;
-}
-
 /* Steps are not split for a stage's sake below this part of the longest. */
 static const double LEAST_SPLIT = 1e-4;
 
@@ -341,12 +212,11 @@ static double error_to_reach(const strut_event_stepper *stepper, double part) {
 }
 
 /* What the ends of a step of sufficient accuracy, and its stages, say about the time between. */
-STRUT_LOOP void look_between(const strut_model *model, const strut_state *state,
-                             strut_event_stepper *stepper, double h, unsigned terms) {
+static void look_between(const strut_model *model, const strut_state *state,
+                         strut_event_stepper *stepper, double h) {
   if (!(stepper->control.error <= 1.0)) return;
-  double part = model->contacts.count ? earliest_dip(model, state, stepper, h, terms) : 0.0;
-  double slack = stepper->laws.count ? earliest_switch(model, state, stepper, h) : 0.0;
-  part = earlier(part, slack);
+  strut_event_measure(model, state, stepper, stepper->next);
+  double part = strut_event_between(model, state, stepper, h);
   double spent = h > LEAST_SPLIT * stepper->control.longest ? earliest_spent(model, stepper) : 0.0;
   if (spent > 0.0 && earlier(part, spent) == spent) {
     strut_event event = strut_event_first(model, state, stepper, h);
@@ -391,7 +261,7 @@ STRUT_INLINE void take(const strut_model *model, const strut_state *state,
   }
   evaluate_step_end(model, state, stepper, t + h, stepper->next, terms, balance);
   stepper->control.error = error_of(model, stepper, h, v, a);
-  look_between(model, state, stepper, h, terms);
+  look_between(model, state, stepper, h);
 }
 
 STRUT_EVENT_TRIAL(adaptive, take)

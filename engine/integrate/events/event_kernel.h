@@ -196,6 +196,14 @@ STRUT_INLINE void accept_step(const strut_model *model, strut_state *state,
                       strut_lanes_load(state->work + p) + strut_lanes_load(stepper->gained + p));
 }
 
+/* Part of what is left of a step, after which what has begun still lasts. */
+static const double SOON = 0.1;
+
+/* The smaller of two fractions of a step; 0 stands for none. */
+STRUT_INLINE double earlier(double one, double other) {
+  return one == 0.0 || (other > 0.0 && other < one) ? other : one;
+}
+
 /* A drive's jump this close to a point of the grid, in grid steps, is there. */
 static const double STRUT_AT_BREAK = 1e-9;
 

@@ -22,7 +22,7 @@ static const double AT_ONCE = 1e-9;
  * After so many switches of one contact or law without a step, or MOST_SWITCHES of all with hardly a step between, one
  * is taken whatever the modes say: switches may follow each other faster and faster without end (Zeno).
  */
-enum { MOST_AT_ONCE = 8, MOST_SWITCHES = 2000, MOST_HALVINGS = 30 };
+enum { MOST_AT_ONCE = 8, MOST_SWITCHES = 2000, MOST_HALVINGS = 30, MOST_LOOKS = 8 };
 
 /* A step above this part of the one that the method wants separates switches from those before. */
 static const double SEPARATES = 0.1;
@@ -244,6 +244,15 @@ static bool take_piece(const strut_model *model, strut_state *state, strut_event
   return false;
 }
 
+/* Takes the piece again over a part of it, where something happens that its end does not show. */
+static void take_part(const strut_model *model, const strut_state *state,
+                      strut_event_stepper *stepper, step_piece *piece, double part) {
+  const strut_step_formula *formula = stepper->formula;
+  piece->h *= part;
+  if (formula->predict) formula->predict(model, stepper, piece->h);
+  formula->trial(model, state, stepper, piece->t, piece->h);
+}
+
 /*
  * Where the end contradicts a mode, goes back to where that begins. False: the step up to there shows something else
  * before it; control.h says what to try.
@@ -251,6 +260,13 @@ static bool take_piece(const strut_model *model, strut_state *state, strut_event
 static bool locate_end(const strut_model *model, const strut_state *state,
                        strut_event_stepper *stepper, step_piece *piece) {
   strut_event first = strut_event_first(model, state, stepper, piece->h);
+  bool looks = stepper->formula->exact || stepper->laws.count || model->contacts.surface;
+  for (int k = 0; looks && k < MOST_LOOKS && !first.kind && !stepper->formula->adaptive; k++) {
+    double part = strut_event_between(model, state, stepper, piece->h);
+    if (!(part > 0.0)) break;
+    take_part(model, state, stepper, piece, part);
+    first = strut_event_first(model, state, stepper, piece->h);
+  }
   if (!first.kind) return true;
   piece->event = first;
   if (stepper->formula->exact || !(first.fraction * piece->h <= AT_ONCE * piece->dt))

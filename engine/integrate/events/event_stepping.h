@@ -276,6 +276,7 @@ struct strut_event_stepper {
   const strut_step_formula *formula;
   strut_step_end end[2], *now, *next; /* now->q and now->v are the state's own */
   double **stage;                     /* (formula->stages) arrays (length) */
+  double *middle;                     /* (length) scratch: places within the step */
   double gained[STRUT_POWER_ROOM];    /* by the step from now to next [J] */
   strut_contact_modes modes;
   strut_active_set active;
@@ -354,6 +355,12 @@ bool strut_event_is_of_law(strut_event_kind kind);
 /** The earliest event between now and next, a step h apart; kind NONE if every mode holds. */
 strut_event strut_event_first(const strut_model *model, const strut_state *state,
                               strut_event_stepper *stepper, double h);
+/**
+ * After a step of h from now to next, whose ends have been measured and say that every mode holds: where within it one does not, by the cubics
+ * along which nodes move, as a part of the step; 0: nowhere (between.c).
+ */
+double strut_event_between(const strut_model *model, const strut_state *state,
+                           strut_event_stepper *stepper, double h);
 /**
  * Takes the step of h from now at time t again up to the event, or to one that comes before it. Returns the length
  * taken; next is its end. Exact formulas go on until the root is known to 1e-13 of the step, or to rounding.

@@ -146,6 +146,7 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
   stepper->stage = make(arena, stages + 1, sizeof *stepper->stage, &failed);
   for (size_t k = 0; k < stages && !failed; k++)
     stepper->stage[k] = make_doubles(arena, (size_t)model->length, &failed);
+  stepper->middle = make_doubles(arena, (size_t)model->length, &failed);
   list_laws(model, state, &stepper->laws, &failed);
   size_t switches = contacts + (size_t)stepper->laws.count;
   strut_chatter *chatter = &stepper->chatter;

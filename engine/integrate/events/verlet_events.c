@@ -109,7 +109,8 @@ STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state
                             &stepper->next->touch[i]))
       return true;
   }
-  return stepper->laws.count && strut_event_first(model, state, stepper, h).kind;
+  return stepper->laws.count && (strut_event_first(model, state, stepper, h).kind ||
+                                 strut_event_between(model, state, stepper, h) > 0.0);
 }
 
 STRUT_INLINE void advance_predicted(const strut_model *model, strut_state *state,

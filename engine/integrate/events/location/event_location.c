@@ -279,6 +279,27 @@ static bool is_settling(const strut_model *model, const strut_event_stepper *ste
          before > -FAINT * law->stiffness * model->size;
 }
 
+/*
+ * Where an element whose strain has just passed a kink, on whichever side of it rounding has left it, comes back over
+ * it, as a part of the step; `after`: its margin at the end. 0: it has not just passed one, or does not go on.
+ */
+static double kink_comes_back(const strut_model *model, const strut_state *state,
+                              const strut_event_stepper *stepper, int32_t k, double h,
+                              double after) {
+  const strut_law_switch *law = &stepper->laws.item[k];
+  if (law->event != STRUT_EVENT_KINK || stepper->now->tension[k] > 0.0) return 0.0;
+  const strut_element *e = &model->elements.element[law->element];
+  int piece = state->modes.element_piece[law->element];
+  double low, high, way = strut_law_way(e->law, &e->numbers, piece);
+  strut_law_margins(e->law, &e->numbers, piece, stepper->now->stretch[k], &low, &high);
+  double sign = low < high ? way : -way, rate = h * sign * stepper->now->stretch_rate[k];
+  double b[STRUT_MOST_GRADIENT], turn = state->history.turn[law->element];
+  double noise = fabs(strut_element_strain(model, law->element, stepper->now->q, turn, b));
+  double room = room_to_last(0.0, fmin(low, high), rate, after);
+  if (!(room > 0.0 && rate > 0.0) || fmin(low, high) < -FAINT * noise) return 0.0;
+  return strut_event_cubic_root(room, rate, after, h * sign * stepper->next->stretch_rate[k]);
+}
+
 /* What switches a law, if it comes before `first`. */
 static void keep_first_of_laws(const strut_model *model, const strut_state *state,
                                strut_event_stepper *stepper, double h, strut_event *first) {
@@ -287,8 +308,12 @@ static void keep_first_of_laws(const strut_model *model, const strut_state *stat
   for (int32_t k = 0; k < laws; k++) {
     int32_t j = strut_law_of(&stepper->laws, k);
     double after = law_value(stepper, stepper->next, j);
-    if (after < 0.0 && !is_settling(model, stepper, j, after))
+    if (!(after < 0.0) || is_settling(model, stepper, j, after)) continue;
+    double back = kink_comes_back(model, state, stepper, j, h, after);
+    if (!(back > 0.0))
       keep_first(model, stepper, stepper->laws.item[j].event, j, h, first);
+    else if (!first->kind || back < first->fraction)
+      *first = (strut_event){STRUT_EVENT_KINK, j, back};
   }
 }
 

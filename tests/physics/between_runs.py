@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What happens for a moment between two steps, in runs with an accuracy and by every method with events: balls that
+strike each other, by a spring that only pushes and as a collision, against steps of a tenth of the contact."""
+import json
+import random
+
+from testing import check, finish, run, write
+
+SCENE = """strut: 1
+parameters: {{d: 50 mm, v: {v}, k: 1e7, x: {x}, b: {b}}}
+nodes: {{a: {{position: [x, b], mass: 1}}, b: {{position: [0, 0], mass: 1}}}}
+{body}
+initial: {{velocities: {{a: [v, 0]}}}}
+solver: {{{solver}}}
+run:
+  duration: 1 s
+  measure:
+    quantities: {{va: {{of: a.vx, take: final}}, vb: {{of: b.vx, take: final}}, wb: {{of: b.vy, take: final}}}}
+"""
+SPRING = "members: {s: {kind: spring, nodes: [a, b], rest_length: d, stiffness: k, law: compression_only}}"
+COLLISION = "collisions: {hit: {nodes: [a, b], thickness: d, stiffness: k}}"
+
+
+def velocities(values, solver):
+    write("balls.yaml", SCENE.format(solver=solver, **values))
+    measured = json.loads(run("run", "balls.yaml", "--json").stdout)["measured"]
+    return [measured[name]["value"] for name in ("va", "vb", "wb")]
+
+
+random.seed(59)
+for n in range(40):
+    v = random.uniform(3, 30)
+    values = dict(v=v, x=-random.uniform(0.1, 0.7) * v, b=random.uniform(-0.06, 0.06), body=(SPRING, COLLISION)[n % 2])
+    right = velocities(values, "integrator: adaptive, step: 20 us, tolerance: 1e-11")
+    for solver, part in (("accuracy: 0.1 %", 1e-3), ("integrator: adaptive, step: 10 ms", 1e-3),
+                         ("integrator: adaptive8, step: 10 ms, tolerance: 1e-9", 1e-3),
+                         ("integrator: rk4-events, step: 150 us", 3e-2), ("integrator: verlet-events, step: 20 us", 3e-2)):
+        found = velocities(values, solver)
+        error = max(abs(a - b) for a, b in zip(found, right))
+        check(error <= part * v, f"run {n}, {solver}: {found}, expected {right}")
+finish()
