@@ -49,8 +49,7 @@ output: {channels: [position, area, pressure, energy]}
 END
 }
 piston "gas: {kind: isentropic, pressure: 50 N/m, outside: 50 N/m}" 1 rk4 "1 ms" >piston.yaml
-expect 0 modes piston.yaml --json
-near '.modes[-1].angular_frequency' '1.4 * 50 / (2 * 2) | sqrt' 1e-6
+gives '.modes[-1].angular_frequency' '1.4 * 50 / (2 * 2) | sqrt' 1e-6 modes piston.yaml
 out_has "air 100"
 piston "gas: {kind: isothermal, pressure: 50 N/m, outside: 50 N/m}" 1 rk4 "1 ms" >isothermal.yaml
 gives '.modes[-1].angular_frequency' '50 / (2 * 2) | sqrt' 1e-6 modes isothermal.yaml
@@ -141,8 +140,7 @@ parts:
     cells: {air: {nodes: [a, b, top], rest_area: 1.5 m^2, law: {kind: polynomial, coefficients: [0, 0, 80 N/m^7], carries: compression}}}
 place: {small: {part: cushion}, large: {part: cushion, scale: 2, at: [9, 0]}}
 YAML
-expect 0 path cushion.yaml --over small.top.x --until 1.0001 --json
-near '.points[0].nodes["small.top"][1]' 1 1e-9
+gives '.points[0].nodes["small.top"][1]' 1 1e-9 path cushion.yaml --over small.top.x --until 1.0001
 near '.points[0].nodes["large.top"][1]' '(6 - (pow(0.5 / 8; 1 / 3))) / 2' 1e-9
 near '.points[0].pressures["small.air"]' 10 1e-9
 

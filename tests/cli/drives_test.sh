@@ -67,8 +67,7 @@ run:
     quantities: {turned: {of: h.angle, take: change}, moment: {of: h.moment, take: final},
                  done: {of: work.drives, take: final}}
 END
-expect 0 run turn.yaml --json
-near "$(value turned)" "-0.5" 1e-9
+gives "$(value turned)" "-0.5" 1e-9 run turn.yaml
 near "$(value moment)" 0.5 0
 near "$(value done)" "0.25" 1e-9
 closes 1e-9
@@ -107,8 +106,7 @@ decayed() { echo "(($1) as \$w | $2 as \$z | (\$w * (1 - \$z * \$z | sqrt)) as \
 near "$(value one)" "$(decayed 10 0.05)" 1e-8
 near "$(value two)" "$(decayed '300 / 1.5 | sqrt' 0.1)" 1e-8
 closes 1e-9
-expect 0 modes ratio.yaml --json
-near '[.modes[].damping_ratio | select(. > 0.01)] | min' 0.05 1e-9
+gives '[.modes[].damping_ratio | select(. > 0.01)] | min' 0.05 1e-9 modes ratio.yaml
 near '[.modes[].damping_ratio | select(. > 0.01)] | max' 0.1 1e-9
 
 # Rayleigh's damping of two masses between three springs that have mass: both modes decay by
@@ -133,16 +131,13 @@ for method in $methods; do
   step="1 ms"
   [ "$method" != adaptive ] || step="1 ms, tolerance: 1e-10"
   rayleigh 1 "$method" "$step" >rayleigh.yaml
-  expect 0 run rayleigh.yaml --json
-  near "$(value x)" "$(decayed "$slow" "$(rate "$slow")")" $error
+  gives "$(value x)" "$(decayed "$slow" "$(rate "$slow")")" $error run rayleigh.yaml
   first_order "$method" || closes 1e-4
   rayleigh -1 "$method" "$step" >rayleigh.yaml
-  expect 0 run rayleigh.yaml --json
-  near "$(value x)" "$(decayed "$fast" "$(rate "$fast")")" $error
+  gives "$(value x)" "$(decayed "$fast" "$(rate "$fast")")" $error run rayleigh.yaml
   first_order "$method" || closes 1e-4
 done
-expect 0 modes rayleigh.yaml --json
-near '.modes[0].damping_ratio' "$(rate "$slow")" 1e-9
+gives '.modes[0].damping_ratio' "$(rate "$slow")" 1e-9 modes rayleigh.yaml
 near '.modes[1].damping_ratio' "$(rate "$fast")" 1e-9
 expect 0 check rayleigh.yaml
 
@@ -226,11 +221,9 @@ initial: {settle: true}
 solver: {integrator: rk4-events, step: 1 ms}
 run: {duration: 0.25 s, measure: {quantities: {from: {of: b.y, take: max}, at: {of: a.y, take: final}}}}
 END
-expect 0 equilibria lifted.yaml --json
-near '.equilibria[0].nodes.a[1]' 1.2 1e-12
+gives '.equilibria[0].nodes.a[1]' 1.2 1e-12 equilibria lifted.yaml
 near '.equilibria[0].nodes.b[1]' 0.1 1e-9
-expect 0 run lifted.yaml --json
-near "$(value from)" 0.1 1e-6
+gives "$(value from)" 0.1 1e-6 run lifted.yaml
 near "$(value at)" 1 1e-12
 closes 1e-6
 gives '.modes[0].angular_frequency' 10 1e-9 modes lifted.yaml
@@ -252,8 +245,7 @@ expect 0 run unbalance.yaml --json
 near "$(value rms) * (2 | sqrt)" '(12.566370614359172 as $w | (200 - 2 * $w * $w) as $a | 8 * $w | . as $b |
   0.1 * 0.02 * $w * $w / ($a * $a + $b * $b | sqrt))' 1e-11
 closes 1e-8
-expect 0 export unbalance.yaml
-out_has 'u: {node: b, mass: 0.1, radius: 0.02, speed: 12.566370614359172, phase: 0.5235987755982988'
+shows 0 'u: {node: b, mass: 0.1, radius: 0.02, speed: 12.566370614359172, phase: 0.5235987755982988' export unbalance.yaml
 
 # A free node with a mass that is spun up from rest, with a corner of the angle: the centre of mass of both
 # stays where it was, as the mass moves to the other side; with weight both fall.

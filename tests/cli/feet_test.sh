@@ -20,14 +20,12 @@ YAML
 for method in rk4 adaptive verlet rk4-events; do
   gives .measured.quarter.value '1.5707963267948966 / (24 / 2.56 | sqrt)' 2e-4 run rocker.yaml --integrator $method
   near .measured.n.value 40 1e-3
-  expect 0 run rocker.yaml --integrator $method --set mu=0 --json
-  near .measured.quarter.value '1.5707963267948966 / (24 / 1.92 | sqrt)' 2e-4
+  gives .measured.quarter.value '1.5707963267948966 / (24 / 1.92 | sqrt)' 2e-4 run rocker.yaml --integrator $method --set mu=0
 done
 near '.energy.residual / (.energy.exchanged + 1e-9)' 0 1e-6
 
 # Its modes are those without friction, and standing it has 40 N on its foot; a push of its head rolls it freely.
-expect 0 modes rocker.yaml --json
-near '.modes[0].frequency' 0 1e-9
+gives '.modes[0].frequency' 0 1e-9 modes rocker.yaml
 near '.modes[1].frequency' '(24 / 1.92 | sqrt) / 6.283185307179586' 1e-4
 gives '[.equilibria[] | select(.outcome == "stands") | .energy] | min' 16 1e-2 equilibria rocker.yaml
 

@@ -38,8 +38,7 @@ for command in run check; do
   tells 1 "needs a ground with friction" "$command" "$rod" --friction-law coulomb
   tells 1 "needs a ground" "$command" "$rod" --damping-law approach_only
   tells 1 "needs a method with events" "$command" "$crawler" --friction-law coulomb
-  expect 1 "$command" "$crawler" --integrator midpoint
-  err_has "midpoint cannot step over contacts, and node 'n1' may touch the ground"
+  tells 1 "midpoint cannot step over contacts, and node 'n1' may touch the ground" "$command" "$crawler" --integrator midpoint
   tells 1 "midpoint does not keep the lengths of rigid bars" "$command" "$rod" --bars rigid --integrator midpoint
 done
 

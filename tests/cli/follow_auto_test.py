@@ -5,13 +5,12 @@
 #   python3 follow_auto_test.py STRUT
 import json
 import math
-import os
 import re
 import shutil
 import subprocess
 import sys
 
-from testing import check, finish, strut, work
+from testing import check, finish, strut, work, write
 
 auto = shutil.which("auto-07p")
 if not auto or not shutil.which("gfortran"):
@@ -21,8 +20,7 @@ if not auto or not shutil.which("gfortran"):
 DAMPING, CUBIC, FORCE = 0.05, 0.05, 0.1
 FROM, TO = 0.14, 0.22  # [Hz]
 
-with open(os.path.join(work, "duffing.yaml"), "w", encoding="utf-8") as file:
-    file.write(f"""strut: 1
+write("duffing.yaml", f"""strut: 1
 name: Duffing
 parameters: {{frequency: {FROM} Hz, force: {FORCE} N}}
 nodes:
@@ -45,8 +43,7 @@ points = result["branches"][0]["special"]
 ours = [p["value"] for p in points if p["point"] == "fold"]
 
 # x' = v and so on over one period, and an oscillator that makes sin and cos of the drive
-with open(os.path.join(work, "duf.f90"), "w", encoding="utf-8") as file:
-    file.write(f"""subroutine FUNC(NDIM,U,ICP,PAR,IJAC,F,DFDU,DFDP)
+write("duf.f90", f"""subroutine FUNC(NDIM,U,ICP,PAR,IJAC,F,DFDU,DFDP)
   implicit none
   integer, intent(in) :: NDIM, ICP(*), IJAC
   double precision, intent(in) :: U(NDIM), PAR(*)
@@ -94,8 +91,7 @@ end subroutine
 subroutine PVLS
 end subroutine
 """)
-with open(os.path.join(work, "c.duf"), "w", encoding="utf-8") as file:
-    file.write(f"""NDIM=4, IPS=4, IRS=0, ILP=1
+write("c.duf", f"""NDIM=4, IPS=4, IRS=0, ILP=1
 ICP=[1]
 NTST=40, NCOL=4, IAD=3, ISP=0, ISW=1, IPLT=0, NBC=4, NINT=0
 NMX=400, NPR=400, MXBF=0, IID=2, ITMX=9, ITNW=7, NWTN=3, JAC=0
@@ -104,8 +100,7 @@ DS=0.01, DSMIN=0.0001, DSMAX=0.05, IADS=1
 RL0=0.7, RL1=1.5, A0=0, A1=1e6
 UZSTOP={{1: {2 * math.pi * TO}}}
 """)
-with open(os.path.join(work, "duf.auto"), "w", encoding="utf-8") as file:
-    file.write("""r = run('duf')
+write("duf.auto", """r = run('duf')
 s = run(r('LP1'), ISW=2, ICP=[1, 2])
 run(s, DS=0.01, UZR={2: [0.12, 0.15, 0.18]}, UZSTOP={2: [0.2, 0.05]})
 run(s, DS=-0.01, UZR={2: [0.09, 0.12, 0.15, 0.18]}, UZSTOP={2: [0.2, 0.05]})

@@ -11,7 +11,7 @@ import signal
 import subprocess
 import time
 
-from testing import check, finish, models, near, rows, run, strut, work, write
+from testing import check, finish, models, near, read, rows, run, strut, work, write
 
 
 def follow(model, over, *words):
@@ -243,8 +243,7 @@ refused("linear.yaml", "frequency=2Hz..1Hz", "the lower one first")
 refused("linear.yaml", "frequency=1Hz..2Hz", "within the range", "--values", "3Hz")
 refused("linear.yaml", "frequency=1Hz..2Hz", "no configuration 'I'", "--at", "I")
 refused("bilinear.yaml", "frequency=1Hz..2Hz", "locates no events", "--integrator", "rk4")
-with open(os.path.join(work, "linear.yaml"), encoding="utf-8") as file:
-    text = file.read()
+text = read("linear.yaml").decode()
 write("seconds.yaml", text.replace("periods: 200, of: push", "duration: 5 s"))
 refused("seconds.yaml", "frequency=1Hz..2Hz", "no drive whose period")
 write("two.yaml", text.replace("solver:", "  pull: {node: mass, force: [force, 0], "

@@ -272,8 +272,7 @@ grounds: {ceiling: {normal: [0, -1], through: [0, 0.2], stiffness: 1000, nodes: 
           floor: {height: -0.3, stiffness: 1000, nodes: [pin]}}
 loads: {push: {node: pin, force: [4, 4]}}
 END
-expect 0 path walls.yaml --until 2 --json
-near '.events[0].nodes.pin[0]' 0.1 1e-9
+gives '.events[0].nodes.pin[0]' 0.1 1e-9 path walls.yaml --until 2
 near '.events[1].nodes.pin[1]' 0.2 1e-9
 holds '[.events[].detail] | (.[0] | test("pin touches wall")) and (.[1] | test("pin touches ceiling"))'
 pull='def pull($x): (($x + 1) * ($x + 1) + .[1] * .[1] | sqrt) as $l | 10 * ($l - 0.5) / $l;'

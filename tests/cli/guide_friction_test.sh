@@ -21,8 +21,7 @@ for method in rk4-events adaptive verlet-events euler-events rk4 verlet euler; d
   edit "s/rk4-events/$method/" atwood.yaml gives .measured.ratio.value "$bound" 2e-10 run
   near '.energy.residual / .energy.exchanged' 0 2e-3
 done
-expect 0 run atwood.yaml --set h='0.1 ms' --set c=1e7 --json
-near .measured.down.value "-0.5 * 9.81 * (2 - $bound) / (2 + $bound) * 0.09" 8e-5
+gives .measured.down.value "-0.5 * 9.81 * (2 - $bound) / (2 + $bound) * 0.09" 8e-5 run atwood.yaml --set h='0.1 ms' --set c=1e7
 near '.energy.dissipated_members / -.measured.down.value' "9.81 * (1 + (2 - $bound) / (2 + $bound)) * ($bound - 1)" 0.02
 # The order of the method is kept, and the balance closes at it.
 drop() {

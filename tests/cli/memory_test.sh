@@ -180,8 +180,7 @@ for command in equilibria modes; do
 done
 tells 0 "'e' carries more than it can" path rest.yaml --over b.x --until 10mm
 expect 0 rigidity rest.yaml
-expect 0 run rest.yaml --json
-err_has "member 'e' carries 10 N at the start, above the 8 N at which it breaks; it does so at once"
+tells 0 "member 'e' carries 10 N at the start, above the 8 N at which it breaks; it does so at once" run rest.yaml --json
 near .broken.e.time 0 0
 near .energy.residual 0 1e-9
 sed 's/breaks_at: 8 N/law: {kind: elastic_plastic, yield: 8}/' rest.yaml >yields.yaml

@@ -76,8 +76,7 @@ near '[.modes[] | select(.frequency == null and .eigenvalue == null and .error >
 # Of the arch of N wedges 2 N bars remain for 4 (N - 1) coordinates.
 arch=$here/../../models/parts/arch.yaml
 for cells in 8 16 23; do
-  expect 0 modes "$arch" --set cells=$cells --json
-  near '[.modes[] | select(.kind == "mechanism" and .frequency == 0)] | length' "2 * $cells - 4" 0
+  gives '[.modes[] | select(.kind == "mechanism" and .frequency == 0)] | length' "2 * $cells - 4" 0 modes "$arch" --set cells=$cells
   near '[.modes[] | select(.frequency > 0) | .frequency] | min | if . > 1 then 1 else 0 end' 1 0
   near '.just_taut | length' "3 * $cells + 1" 0
 done

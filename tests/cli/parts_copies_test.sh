@@ -184,10 +184,8 @@ for cells in 3 4 7; do
   sed "s/count: 3/count: $cells/" next.yaml >chain-$cells.yaml
 done
 expect 0 compare chain-3.yaml chain-4.yaml --no-states --json
-jq -e '[.models[1].differences[] | [.where, .was, .is]] ==
-  [["nodes.cell.2.b.mass", "2", "3"], ["cell.3", null, "2 nodes, 4 members, 1 load"]]' out >/dev/null ||
-  fail "one cell more: $(jq -c '.models[1].differences' out)"
+holds '[.models[1].differences[] | [.where, .was, .is]] ==
+  [["nodes.cell.2.b.mass", "2", "3"], ["cell.3", null, "2 nodes, 4 members, 1 load"]]'
 expect 0 compare chain-7.yaml chain-4.yaml --no-states --json
-jq -e '[.models[1].differences[] | [.where, .was, .is]] ==
-  [["nodes.cell.3.b.mass", "3", "2"], ["cell.4 to cell.6", "each 2 nodes, 4 members, 1 load", null]]' out >/dev/null ||
-  fail "three cells fewer: $(jq -c '.models[1].differences' out)"
+holds '[.models[1].differences[] | [.where, .was, .is]] ==
+  [["nodes.cell.3.b.mass", "3", "2"], ["cell.4 to cell.6", "each 2 nodes, 4 members, 1 load", null]]'

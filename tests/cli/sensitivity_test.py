@@ -96,8 +96,7 @@ sensitivity: {of: [frequency_1, total_mass],
     for name in ("table.csv", "sensitivity.csv", "sensitivity.svg"):
         check(read(f"product/{name}") == read(f"alone/{name}"), f"{name} depends on threads")
     slots = read("alone/points.slots")
-    with open(os.path.join(work, "alone", "points.slots"), "wb") as file:
-        file.write(slots[:len(slots) // 3])
+    write("alone/points.slots", slots[:len(slots) // 3])
     os.remove(os.path.join(work, "alone", "sensitivity.csv"))
     sweep("alone", text)
     check(read("product/sensitivity.csv") == read("alone/sensitivity.csv"), "resumed")

@@ -9,14 +9,13 @@ import signal
 import subprocess
 import time
 
-from testing import check, copy_models, finish, path, rows, run, strut, work, write
+from testing import check, copy_models, finish, path, read, rows, run, strut, work, write
 
 copy_models()
 
 
 def lines(name):
-    with open(path(name), encoding="utf-8") as file:
-        return file.read().splitlines()
+    return read(name).decode().splitlines()
 
 
 write("block.yaml", """strut: 1

@@ -16,7 +16,7 @@ import sys
 import xml.etree.ElementTree as tree
 import zipfile
 
-from testing import check, finish, strut, work
+from testing import check, finish, strut, work, write
 
 root = os.getcwd()
 
@@ -31,8 +31,7 @@ def lines_of(program):
 
 def run(words, text=None, name=None):
     if name:
-        with open(f"{work}/{name}", "w", encoding="utf-8") as file:
-            file.write(text)
+        write(name, text)
         text = None
     done = subprocess.run(words, input=text, capture_output=True, text=True, cwd=work,
                           env={**os.environ, "HOME": work, "MPLBACKEND": "Agg"})
@@ -63,8 +62,7 @@ def make_tables():
     shutil.copytree(f"{root}/models", f"{work}/models")
     os.environ["PATH"] = os.path.dirname(strut) + os.pathsep + os.environ["PATH"]
     run(["sh", "-eu"], block)
-    with open(f"{work}/fails.yaml", "w", encoding="utf-8") as file:
-        file.write("""strut: 1
+    write("fails.yaml", """strut: 1
 study: fails
 model: models/crawler/crawler.yaml
 axes: [{step: [0.1 ms, 10 ms]}, {start: [I, II]}]

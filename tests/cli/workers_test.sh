@@ -127,8 +127,7 @@ for method in crs2 direct sbplx; do
   err_has "give 'starts'"
 done
 sed '/method/d' sbplx.yaml >usual.yaml
-expect 2 sweep usual.yaml -o no --emit slurm --shards 4
-err_has "usual.yaml:6:3: error: workers cannot share a search by 'multistart'"
+tells 2 "usual.yaml:6:3: error: workers cannot share a search by 'multistart'" sweep usual.yaml -o no --emit slurm --shards 4
 out_empty
 absent no
 sed 's/evaluations: 10/starts: 2/' crs2.yaml >starts.yaml

@@ -8,14 +8,9 @@ import math
 import os
 import re
 
-from testing import check, finish, formats, models, run, work
+from testing import check, finish, formats, models, read, run, work, write
 
 gallery = os.path.join(models, "gallery")
-
-
-def write(name, text):
-    with open(os.path.join(work, name), "wb") as file:
-        file.write(text if isinstance(text, bytes) else text.encode())
 
 
 def exists(name):
@@ -25,8 +20,7 @@ def exists(name):
 def imported(name, *words):
     """The scene of what was written as that file, and what was said."""
     said = formats("import", name, *words, "-o", "scene.yaml").stderr
-    with open(os.path.join(work, "scene.yaml"), encoding="utf-8") as file:
-        return file.read(), said
+    return read("scene.yaml").decode(), said
 
 
 def stable_energies(model):
@@ -298,8 +292,7 @@ builders:
                           ("axis: [0, 0, 3]", "axis: [0, 0, 0]"), ("axis: [0, 0, 3]", "axis: [0, 1, 0]"),
                           ("scale: 0.5", "size: 0.5"), ("t2/top/node_node", "t2/node_node"), ("path: ./base/rods.yaml", "path: [1]"),
                            ("../base/rods.yaml", "../base/sticks.yaml")):
-        with open(os.path.join(work, "row.yaml"), encoding="utf-8") as file:
-            text = file.read()
+        text = read("row.yaml").decode()
         write("bad.yaml", text.replace(change, words))
         message = formats("import", "bad.yaml", "base/rods.yaml", "-o", "none.yaml", code=2).stderr
         check("bad.yaml:" in message or "rods.yaml:1:" in message, message)
@@ -326,8 +319,7 @@ def tables():
         same_numbers([m["frequency"] for m in modes[0]], [m["frequency"] for m in modes[1]], 1e-9, "modes")
     # what strut itself lists can be read again, but for the stiffness
     formats("build", f"{gallery}/x-frame.yaml", "-o", "build")
-    with open(os.path.join(work, "build/members.csv"), encoding="utf-8") as file:
-        rows = file.read().splitlines()
+    rows = read("build/members.csv").decode().splitlines()
     write("listed.csv", "\n".join([rows[0] + ",stiffness [N/m]"] + [
         row + (",1000" if ",bar," in row else ",100") for row in rows[1:]]) + "\n")
     imported("listed.csv", "build/nodes.csv")
@@ -396,8 +388,7 @@ def files():
         check(file.read() == "precious", "somebody else's file")
     printed = formats("import", "box.yaml").stdout
     formats("import", "box.yaml", "-o", "scene.yaml")
-    with open(os.path.join(work, "scene.yaml"), "rb") as file:
-        check(file.read().decode() == printed, "the same scene on standard output")
+    check(read("scene.yaml").decode() == printed, "the same scene on standard output")
     for words, code, text in ((("box.yaml",) * 3, 1, "one file"), (("box.yaml",) * 17, 1, "one file"),
                               (("box.yaml", "--unit", "3 kg"), 1, "unit"), (("box.yaml", "--unit", "0 m"), 1, "above 0"),
                               (("box.yaml", "box.yaml"), 1, "one file"), (("none.yaml",), 4, "none.yaml"),

@@ -16,7 +16,7 @@ if not shutil.which("ffmpeg") or not shutil.which("ffprobe"):
     print("skipped: there is no ffmpeg (Debian: ffmpeg)")
     sys.exit(77)
 
-from testing import check, finish, strut, work  # noqa: E402
+from testing import check, finish, read, strut, work, write  # noqa: E402
 
 hopper = os.path.abspath(sys.argv[2])
 os.chdir(work)
@@ -87,8 +87,7 @@ def test_formats():
 
 def test_motion():
     """The ball is where its time says, in each picture: the film keeps time and scale."""
-    with open("ball.yaml", "w", encoding="utf-8") as file:
-        file.write(BALL)
+    write("ball.yaml", BALL)
     call(0, "ball.yaml", "--quiet", "--animate", "ball.gif")
     pictures = frames("ball.gif", 640, 360)
     check(len(pictures) == 26, f"{len(pictures)} pictures")
@@ -98,8 +97,7 @@ def test_motion():
         wanted = 320 + span * (k / 25 - 0.5)
         check(abs(middle(picture) - wanted) < 1.0, f"picture {k}: ball at {middle(picture)}, not {wanted}")
     # The window goes along with what moves far.
-    with open("pair.yaml", "w", encoding="utf-8") as file:
-        file.write(BALL.replace("initial:", """  mate: {position: [10 mm, 0], mass: 1}
+    write("pair.yaml", BALL.replace("initial:", """  mate: {position: [10 mm, 0], mass: 1}
 members: {bar: {nodes: [ball, mate], kind: bar, stiffness: 1000}}
 initial:""").replace("{ball: [0.6, 0]}", "{ball: [0.6, 0], mate: [0.6, 0]}"))
     call(0, "pair.yaml", "--quiet", "--animate", "pair.gif")
@@ -137,8 +135,7 @@ def test_said():
     check(re.search(r"lasts only 500 ms; --speed 1/10 makes a film of 5 s", said), said[-300:])
     with open(hopper, encoding="utf-8") as file:
         text = file.read().replace("every: 1 ms", "every: 100 ms").replace("seconds: 0.5", "seconds: 3")
-    with open("seldom.yaml", "w", encoding="utf-8") as file:
-        file.write(text)
+    write("seldom.yaml", text)
     said = call(0, "seldom.yaml", "--animate", "d.gif").stdout
     check("recorded every 100 ms but shown every 40 ms" in said, said[-300:])
     check(call(0, hopper, "--animate", "d.gif", "--quiet").stdout == "", "not quiet")
@@ -148,8 +145,7 @@ def test_said():
 
 def fake(text):
     os.makedirs("fake", exist_ok=True)
-    with open("fake/ffmpeg", "w", encoding="utf-8") as file:
-        file.write("#!/bin/sh\n" + text)
+    write("fake/ffmpeg", "#!/bin/sh\n" + text)
     os.chmod("fake/ffmpeg", stat.S_IRWXU)
     return os.path.abspath("fake")
 
@@ -170,8 +166,7 @@ def test_without():
               said.stderr.count("\n") == 1 and not said.stdout, said.stderr)
     check(not left(), f"left: {left()}")
     call(0, hopper, "--animate", "old.mp4")
-    with open("old.mp4", "rb") as file:
-        old = file.read()
+    old = read("old.mp4")
     for script, word in [("echo 'no codec today' >&2\nexit 1\n", "no codec today\n"),
                          ("exit 1\n", ""),
                          ("cat >/dev/null\necho 'disk full' >&2\nexit 2\n", "disk full\n")]:

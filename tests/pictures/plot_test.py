@@ -10,7 +10,7 @@ import time
 
 from svg_paths import near, read
 
-from testing import check, finish, strut, work
+from testing import check, finish, strut, work, write
 
 FIRST, SECOND = (0, 0x60 / 255, 0xA8 / 255), (0xD5 / 255, 0x5E / 255, 0)
 BAND, FRAME = (0.86, 0.86, 0.86), (0.25, 0.25, 0.25)
@@ -21,11 +21,6 @@ def plot(*words, code=0, err=""):
     check(done.returncode == code and err in done.stderr and (code or not done.stderr),
           f"strut plot {words}: exit code {done.returncode}, expected {code}; {done.stderr}")
     return done
-
-
-def write(name, text):
-    with open(name, "w", encoding="utf-8", newline="") as file:
-        file.write(text)
 
 
 def curves(paths, colour):
@@ -270,8 +265,7 @@ plot("header.csv", "--plot", "a.svg", code=2, err="no rows")
 write("nan.csv", "a,b\n1,nan\n2,\n")
 plot("nan.csv", "--plot", "a.svg", code=1, err="'b' does not hold numbers")
 check(not os.path.exists("a.svg"), "a refusal left a picture")
-with open("bytes.csv", "wb") as file:
-    file.write(b"a\xff\xfe,b\n1,2\n3,4\n")
+write("bytes.csv", b"a\xff\xfe,b\n1,2\n3,4\n")
 plot("bytes.csv", "--plot", "bytes.svg")
 
 # A million rows take seconds.

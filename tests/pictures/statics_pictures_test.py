@@ -13,16 +13,9 @@ import xml.etree.ElementTree as tree
 
 from svg_paths import has_segment, near, read, segments
 
-from testing import check, finish, strut, work
+from testing import check, finish, run, work, write
 
 EDGE, WHITE, BLUE = (0.1, 0.1, 0.1), (1, 1, 1), (0, 0x60 / 255, 0xA8 / 255)
-
-
-def run(*words, code=0, err=""):
-    done = subprocess.run([strut, *words], capture_output=True, text=True)
-    check(done.returncode == code and err in done.stderr,
-          f"strut {words}: exit code {done.returncode}, expected {code}; {done.stderr}")
-    return done.stdout
 
 
 def circles(paths):
@@ -53,7 +46,7 @@ def check_shape(what, places, drawn):
 
 
 def members_of(model):
-    text = run("export", model)
+    text = run("export", model).stdout
     nodes = text[text.index("\nnodes:"):text.index("\nmembers:")]
     block = text[text.index("\nmembers:"):]
     found = re.findall(r"^  (\w+): \{nodes: \[(\w+), (\w+)\], kind: (\w+)", block, re.M)
@@ -83,7 +76,7 @@ os.chdir(work)
 crawler = os.path.join(root, "models/crawler/crawler.yaml")
 
 # Equilibria: those that stand, by energy, each to the same scale where it rests on the ground.
-found = json.loads(run("equilibria", crawler, "--json", "--plot", "e.svg"))["equilibria"]
+found = json.loads(run("equilibria", crawler, "--json", "--plot", "e.svg").stdout)["equilibria"]
 standing = [e for e in found if e["outcome"] == "stands"]
 standing.sort(key=lambda e: e["energy"])
 members, names = members_of(crawler)
@@ -111,7 +104,7 @@ check(open("e.svg", "rb").read() == first, "equilibria: other bytes the second t
 
 # Rigidity: the drawn shape with its forces and states; mechanisms as displaced shapes.
 model = os.path.join(root, "models/gallery/hexagon-three-bars.yaml")
-said = json.loads(run("rigidity", model, "--json", "--plot", "r.svg"))
+said = json.loads(run("rigidity", model, "--json", "--plot", "r.svg").stdout)
 members, names = members_of(model)
 _, _, paths = read("r.svg")
 centres = circles(paths)
@@ -127,7 +120,7 @@ check(sum(len(path.lines) for path in moved) == len(members) * said["mechanisms"
 
 # Form: where the new model starts, over what was drawn.
 arm = os.path.join(root, "models/gallery/arm.yaml")
-said = json.loads(run("form", arm, "--json", "--plot", "f.svg"))
+said = json.loads(run("form", arm, "--json", "--plot", "f.svg").stdout)
 members, names = members_of(arm)
 _, _, paths = read("f.svg")
 centres = circles(paths)

@@ -42,8 +42,8 @@ def path(*names):
 
 
 def write(name, text):
-    with open(path(name), "w", encoding="utf-8") as file:
-        file.write(text)
+    with open(path(name), "wb") as file:
+        file.write(text if isinstance(text, bytes) else text.encode())
 
 
 def read(*names):
@@ -57,11 +57,13 @@ def rows(*names):
         return list(csv.DictReader(file))
 
 
-def run(*words, code=0, timeout=120, stdin="", env=None):
-    """Runs strut in the folder of the test, with `env` beside its own environment; what it printed."""
+def run(*words, code=0, err="", timeout=120, stdin="", env=None):
+    """Runs strut in the folder of the test, with `env` beside its own environment; what it printed. Its exit code is to
+    be `code`, and its messages are to have `err`."""
     done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work, timeout=timeout, check=False,
                           input=stdin, env={**os.environ, **(env or {})})
-    check(done.returncode == code, f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
+    check(done.returncode == code and err in done.stderr,
+          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
     return done
 
 
