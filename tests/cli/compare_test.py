@@ -104,8 +104,7 @@ def check_motion(path, model, *options):
     same(f"{path}: transport", v["cost_of_transport"], v["drive_power"] / (v["mass"] * 9.81 * abs(v["velocity"])))
     duty = {n: c["duty"] for n, c in reported["contacts"].items()}
     for node, c in model["contacts"].items():
-        if abs(c["duty"] - duty[node]) > 0.03:
-            fail(f"{path}: {node} touches {c['duty']}, in the run {duty[node]}")
+        check(abs(c["duty"] - duty[node]) <= 0.03, f"{path}: {node} touches {c['duty']}, in the run {duty[node]}")
     touching = [c["duty"] for c in model["contacts"].values() if c["duty"] > 0]
     same(f"{path}: duty", v["contact_duty"], sum(touching) / len(touching))
 
@@ -271,8 +270,7 @@ members:
     def refused(code, needle, *words, stdin=""):
         done = run("compare", *words, code=code, stdin=stdin)
         check(needle in done.stderr, f"strut compare {' '.join(words)}: stderr lacks '{needle}': {done.stderr}")
-        if done.stdout:
-            fail(f"strut compare {' '.join(words)}: prints something")
+        check(not done.stdout, f"strut compare {' '.join(words)}: prints something")
 
     refused(1, "missing MODEL...")
     refused(4, "nosuch.yaml", "one.yaml", "nosuch.yaml", "-o", "none")
@@ -281,8 +279,7 @@ members:
     done = run("compare", "one.yaml", "bad.yaml", "worse.yaml", code=2)
     for needle in ("bad.yaml:6", "spring", "worse.yaml:2", "nodes"):
         check(needle in done.stderr, f"bad models among good ones: stderr lacks '{needle}': {done.stderr}")
-    if os.path.exists("none"):
-        fail("a refused comparison leaves a directory")
+    check(not os.path.exists("none"), "a refused comparison leaves a directory")
     refused(1, "did you mean 'stiff'", "--set", "stif=3", "one.yaml", "two.yaml")
     refused(1, "no model has such a parameter", "--set", "stif=3", "one.yaml", "two.yaml")
     refused(1, "'two.yaml' has no such parameter", "one.yaml", "two.yaml", "--set", "stif=3")

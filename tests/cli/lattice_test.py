@@ -15,8 +15,7 @@ from testing import check, fail, finish, strut
 def find(columns, rows, *options):
     done = subprocess.run([strut, "equilibria", sys.argv[2], "--set", f"columns={columns}", "--set", f"rows={rows}",
                            *options], capture_output=True, text=True)
-    if done.returncode:
-        fail(f"{columns} x {rows} cells: {done.stderr}")
+    check(not done.returncode, f"{columns} x {rows} cells: {done.stderr}")
     return done.stdout
 
 

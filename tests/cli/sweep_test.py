@@ -18,7 +18,7 @@ except ImportError:
     print("numpy is missing: nothing tested")
     sys.exit(77)
 
-from testing import check, copy_models, finish, models, read, rows, run, strut, work, write
+from testing import check, copy_models, finish, models, read, rows, run, strut, sweep, work, write
 
 kills = int(sys.argv[2]) if len(sys.argv) > 2 else 10
 copy_models()
@@ -363,16 +363,13 @@ def a_directory_stands_for_itself():
 
 
 def checked_again():
-    write("check.yaml", """strut: 1
-study: check
-model: block.yaml
+    table = sweep("check", """model: block.yaml
 axes:
   - seconds: [0.1 s, 0.157 s]
   - place: [near, far]
 check: {half_step: yes}
 """)
-    run("sweep", "check.yaml", "-o", "check", "--quiet")
-    for row in rows("check/table.csv"):
+    for row in table:
         check(row["check_outcome"] == row["outcome"] and row["flips"] == "0", f"{row}")
         v, w = float(row["velocity [m/s]"]), float(row["check_velocity [m/s]"])
         check(abs(v - w) < 1e-6, "half the step, about the same velocity")
@@ -405,14 +402,11 @@ figures:
 
 
 def trajectories():
-    write("motion.yaml", """strut: 1
-study: motion
-model: block.yaml
+    sweep("motion", """model: block.yaml
 axes: [{mass: [1 kg, 2 kg]}]
 set: {place: far}
 trajectories: yes
-""")
-    run("sweep", "motion.yaml", "-o", "motion", "--threads", "2", "--quiet")
+""", "--threads", "2")
     for n in range(2):
         run("run", "block.yaml", "-o", "alone", "--set", f"mass={n + 1} kg", "--set", "place=far", "--quiet")
         folder = f"motion/runs/{n:09d}"

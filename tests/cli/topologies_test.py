@@ -34,8 +34,7 @@ for path, model in zip(files, models):
         by_rk4 = json.loads(run("run", path, "--integrator", "rk4", "--step", "20 us", "--json", "--quiet"))
         if abs(by_rk4["velocity"] - v["velocity"]) > 0.02 * found:
             fail(f"{path}: {by_rk4['velocity']} m/s by rk4, not {v['velocity']}")
-if len(files) < 4 or ours < 2:
-    fail(f"{len(files)} topologies, {ours} of them ours that crawl")
+check(len(files) >= 4 and ours >= 2, f"{len(files)} topologies, {ours} of them ours that crawl")
 
 # The symmetric one cannot know a direction, and says nothing of a cost of transport.
 gull = models[[os.path.basename(f) for f in files].index("gull.yaml")]

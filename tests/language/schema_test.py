@@ -175,8 +175,7 @@ for path in sorted(glob.glob(os.path.join(work, "*.yaml"))):
     for line, message in seen:
         check(line in right, f"{path}:{line}: the schema says '{message}', strut nothing")
 print(f"{visible} faults that a schema can see")
-if visible < 120:
-    fail("too few faults were compared")
+check(visible >= 120, "too few faults were compared")
 
 # ---- keys of good files, misspelt: both find the same lines ----
 
@@ -217,6 +216,5 @@ for path in sorted(glob.glob(os.path.join(here, "good", "*.yaml"))):
             fail(f"{path}: '{key.value}' misspelt: the schema reports {by_schema}, strut {by_strut}")
         compared += bool(by_strut)
 print(f"{compared} misspelt keys")
-if compared < 60:
-    fail("too few misspelt keys were compared")
+check(compared >= 60, "too few misspelt keys were compared")
 finish()

@@ -59,8 +59,7 @@ count = 0
 for figure in sorted(glob.glob(os.path.join(directory, "**/*.svg"), recursive=True)):
     count += 1
     check_faults(figure)
-if count < 80:
-    fail(f"only {count} figures in {directory}")
+check(count >= 80, f"only {count} figures in {directory}")
 
 for model in ("gallery/dual-triangle", "gallery/bistable-chain", "gallery/zeeman", "crawler/crawler"):
     figure = os.path.join(work, os.path.basename(model) + ".svg")

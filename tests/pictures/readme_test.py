@@ -35,8 +35,7 @@ with tempfile.TemporaryDirectory() as now:
                         ("paper/figure-8-paper.svg", "figure-8-paper.svg"),
                         ("paper/figure-8-strut.svg", "figure-8-strut.svg"), *zip(shown, shown)]:
         why = differ(f"docs/{name}", f"{now}/{drawn}")
-        if why:
-            fail(f"docs/{name} is not what strut draws today: {why}; sh docs/redraw.sh")
+        check(not why, f"docs/{name} is not what strut draws today: {why}; sh docs/redraw.sh")
 
     # One frequency again, which forgets its roundings.
     shutil.copy("models/crawler/crawler.yaml", now)
@@ -53,7 +52,6 @@ for row in again:
     old = rows[tuple(row[key] for key in KEYS)]
     before, after = float(old["velocity [m/s]"]), float(row["velocity [m/s]"])
     near = 1e-9 * abs(before) if row["variant"] == "paper" else 0.01 * abs(before) + 1e-6
-    if abs(before - after) > near or old["outcome"] != row["outcome"]:
-        fail(f"figure 8: {old} is now {row}")
+    check(abs(before - after) <= near and old["outcome"] == row["outcome"], f"figure 8: {old} is now {row}")
 check(len(again) == 12, f"figure 8 at one frequency has {len(again)} rows")
 finish()

@@ -123,8 +123,7 @@ def check_ground(here):
     lines = [s for s in segments(paths) if near(s[2].stroke, (0.3, 0.3, 0.3))
              and abs(s[0][1] - s[1][1]) < 1e-6 and abs(s[0][0] - s[1][0]) > 0.3 * width]
     below = [s[0][1] for s in lines if s[0][1] > 0.6 * height]
-    if len(below) < 2 or max(below) - min(below) > 0.02:
-        fail(f"the ground of the last row is drawn at {below}")
+    check(len(below) >= 2 and max(below) - min(below) <= 0.02, f"the ground of the last row is drawn at {below}")
 
 
 def check_period(here, model, factors):
@@ -185,8 +184,7 @@ def check_overview(here, model):
     pairs = [(value[round(to_time(x), 3)], y) for x, y in line if round(to_time(x), 3) in value]
     low, high = min(pairs), max(pairs)
     slope = (high[1] - low[1]) / (high[0] - low[0])
-    if len(pairs) < 50 or not slope < 0:
-        fail(f"overview: {len(pairs)} points of the displacement, slope {slope}")
+    check(len(pairs) >= 50 and slope < 0, f"overview: {len(pairs)} points of the displacement, slope {slope}")
     for v, y in pairs:
         if abs(low[1] + slope * (v - low[0]) - y) > 0.6:
             return fail(f"overview: the displacement of {v} m is drawn at {y}")
@@ -218,8 +216,7 @@ def check_refusals(here, model):
     coarse = os.path.join(here, "coarse.yaml")
     open(coarse, "w").write(open(model).read().replace("every: 1/(100*frequency)", "every: 20 ms"))
     run(coarse, "-q", "--plot", file, "--draw", "period", code=1, err="every: 1 ms")
-    if os.path.exists(file):
-        fail("a run that was refused left a picture")
+    check(not os.path.exists(file), "a run that was refused left a picture")
     run(coarse, "-q", "--plot", file)  # an overview there is
     plain = open(file).read()
     run(coarse, "-q", "--plot", file, "--title", "Own title")
