@@ -237,7 +237,7 @@ bool strut_feedback_touch(const strut_model *model, strut_state *state, int32_t 
   bool any = false;
   for (int32_t i = 0; i < f->trigger_count; i++) {
     const strut_trigger *trigger = &model->scene->signals[f->triggered[i]].trigger;
-    bool mine = trigger->kind == STRUT_TRIGGER_CONTACT && element_of(model, contact) < 0 &&
+    bool mine = trigger->kind == STRUT_TRIGGER_CONTACT &&
                 trigger->item == model->contacts.entry[contact].node;
     if (mine && start_signal(model, state, f->triggered[i], t)) any = true;
   }
@@ -255,14 +255,13 @@ static bool condition_holds(const strut_model *model, const strut_state *state,
          state->latest->sensor[trigger->item] < trigger->level;
 }
 
-bool strut_feedback_watch(const strut_model *model, strut_state *state, double t, bool contacts) {
+bool strut_feedback_watch(const strut_model *model, strut_state *state, double t) {
   const strut_feedback_table *f = &model->feedback;
   bool any = false;
   strut_feedback_apply(model, state, t, state->q, state->v);
   for (int32_t i = 0; i < f->trigger_count; i++) {
     int32_t signal = f->triggered[i];
     const strut_trigger *trigger = &model->scene->signals[signal].trigger;
-    if (!contacts && !strut_trigger_is_watched(model->scene, trigger)) continue;
     bool holds = condition_holds(model, state, trigger);
     if (holds && state->signals.trigger_was[signal] == 0 && start_signal(model, state, signal, t))
       any = true;
@@ -327,4 +326,38 @@ bool strut_relays_follow(const strut_model *model, strut_state *state, double t)
     any = true;
   }
   return any;
+}
+
+void strut_threshold_begin(const strut_model *model, strut_state *state) {
+  const strut_feedback_table *f = &model->feedback;
+  for (int32_t i = 0; i < f->trigger_count; i++) {
+    const strut_trigger *trigger = &model->scene->signals[f->triggered[i]].trigger;
+    if (trigger->kind != STRUT_TRIGGER_CONTACT && state->signals.trigger_was[f->triggered[i]] < 0)
+      state->signals.trigger_was[f->triggered[i]] = condition_holds(model, state, trigger);
+  }
+}
+
+double strut_threshold_margin(const strut_model *model, const strut_state *state, int32_t signal,
+                              double now, const double *v, double *rate) {
+  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
+  const strut_trigger *trigger = &model->scene->signals[signal].trigger;
+  *rate = 0.0;
+  if (model->scene->signals[signal].kind == STRUT_RELAY && trigger->kind == STRUT_TRIGGER_NONE)
+    return strut_relay_margin(model, state, signal, now, v);
+  if (state->signals.started[signal] < (double)INFINITY && !trigger->each) return 1.0;
+  double side = trigger->kind == STRUT_TRIGGER_ABOVE ? -1.0 : 1.0;
+  if (state->signals.trigger_was[signal] > 0) side = -side;
+  *rate = side * state->latest->sensor_rate[trigger->item];
+  return side * (state->latest->sensor[trigger->item] - trigger->level);
+}
+
+void strut_threshold_pass(const strut_model *model, strut_state *state, int32_t signal, double t) {
+  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
+  if (model->scene->signals[signal].trigger.kind == STRUT_TRIGGER_NONE) {
+    strut_relay_switch(model, state, signal, t);
+    return;
+  }
+  bool holds = !(state->signals.trigger_was[signal] > 0);
+  state->signals.trigger_was[signal] = holds;
+  if (holds && start_signal(model, state, signal, t)) strut_drive_apply(model, state, t);
 }

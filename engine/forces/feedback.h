@@ -32,10 +32,21 @@ bool strut_feedback_sample(const strut_model *model, strut_state *state, double 
  */
 bool strut_feedback_touch(const strut_model *model, strut_state *state, int32_t contact, double t);
 /**
- * Looks at triggers at the state's positions and velocities, and starts signals whose condition holds now
- * and did not before; those of contacts only where `contacts` is true. True if one has started.
+ * For methods without events: looks at triggers at the state's positions and velocities, and starts signals whose
+ * condition holds now and did not before. True if one has started.
  */
-bool strut_feedback_watch(const strut_model *model, strut_state *state, double t, bool contacts);
+bool strut_feedback_watch(const strut_model *model, strut_state *state, double t);
+
+/* Thresholds: of relays, and of sensors that start signals. Methods with events locate where they are passed. */
+
+/** Before the first step: on which side of their levels the sensors are that start signals, as evaluated last. */
+void strut_threshold_begin(const strut_model *model, strut_state *state);
+/** How far the signal's input is from its threshold, of sensors and internal states as strut_relay_margin has them;
+    1 where it has none any more. Negative beyond it. And its rate, where that is known; else 0. */
+double strut_threshold_margin(const strut_model *model, const strut_state *state, int32_t signal,
+                              double now, const double *v, double *rate);
+/** Passes it at time t [s] of the steps: a relay switches, a signal starts, or may start again. */
+void strut_threshold_pass(const strut_model *model, strut_state *state, int32_t signal, double t);
 
 /* Relays: signals that switch between two values, when their input passes the upper threshold upwards or
  * the lower one downwards. Methods with events locate that; others switch at the ends of steps.

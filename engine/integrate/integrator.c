@@ -112,7 +112,7 @@ static void update_on_grid(const strut_integrator *method, const strut_model *mo
   double t = (double)state->step * dt, before = 0.0;
   if (state->balance) before = strut_energy_evaluate(model, state, t).elastic;
   bool changed = !method->events && strut_feedback_sample(model, state, t, ON_GRID * dt);
-  if (model->feedback.trigger_count && strut_feedback_watch(model, state, t, !method->events))
+  if (model->feedback.trigger_count && !method->events && strut_feedback_watch(model, state, t))
     changed = true;
   if (model->feedback.relay_count && !method->events && strut_relays_follow(model, state, t))
     changed = true;
@@ -128,7 +128,7 @@ static void update_on_grid(const strut_integrator *method, const strut_model *mo
 void strut_integrator_advance(const strut_integrator *method, const strut_model *model,
                               strut_state *state, void *workspace, double dt, int64_t count) {
   const strut_feedback_table *f = &model->feedback;
-  bool watched = f->watches || ((f->trigger_count || f->relay_count) && !method->events);
+  bool watched = (f->trigger_count || f->relay_count) && !method->events;
   if (!watched && (!f->sampled_count || method->events)) {
     method->advance(model, state, workspace, dt, count);
     return;

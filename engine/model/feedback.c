@@ -31,12 +31,6 @@ static strut_sensor_entry compile_sensor(const strut_model *model, const strut_s
   return entry;
 }
 
-bool strut_trigger_is_watched(const strut_scene *scene, const strut_trigger *trigger) {
-  for (size_t i = 0; i < scene->contact_count && trigger->kind == STRUT_TRIGGER_CONTACT; i++)
-    if (scene->contacts[i].node == trigger->item && strut_contact_is_element(scene, i)) return true;
-  return trigger->kind > STRUT_TRIGGER_CONTACT;
-}
-
 size_t strut_feedback_states(const strut_scene *scene) {
   size_t count = scene->state_count;
   for (size_t i = 0; i < scene->signal_count; i++) count += scene->signals[i].lag > 0.0;
@@ -96,7 +90,6 @@ bool strut_feedback_compile(strut_model *model) {
     lag_of[i] = s->lag > 0.0 ? (int32_t)scene->state_count + f->lag_count : -1;
     if (s->lag > 0.0) lagged[f->lag_count++] = (int32_t)i;
     if (s->trigger.kind != STRUT_TRIGGER_NONE) triggered[f->trigger_count++] = (int32_t)i;
-    if (strut_trigger_is_watched(scene, &s->trigger)) f->watches = true;
     if (s->every > 0.0)
       sampled[f->sampled_count++] = (int32_t)i;
     else if (s->kind == STRUT_RELAY)

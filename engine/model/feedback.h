@@ -40,14 +40,10 @@ typedef struct strut_feedback_table {
   int32_t sampled_count;
   int32_t trigger_count;
   const int32_t *triggered; /* (trigger_count) signals with a trigger */
-  bool watches;           /* some trigger is a sensor: it is watched on the grid by every method */
-  const int32_t *sampled; /* (sampled_count) signals that are sampled, terms before their sums */
+  const int32_t *sampled;   /* (sampled_count) signals that are sampled, terms before their sums */
   int32_t relay_count;
   const int32_t *relay; /* (relay_count) relays that are not sampled: they switch at any time */
 } strut_feedback_table;
-
-/** Is the trigger watched on the grid by every method, being of a sensor, or of a contact that is an element? */
-STRUT_API bool strut_trigger_is_watched(const strut_scene *scene, const strut_trigger *trigger);
 
 /** Does the motion depend on more of the past than positions and velocities hold? */
 static inline bool strut_feedback_remembers(const strut_feedback_table *f) {

@@ -389,7 +389,7 @@
 
 #define STRUT_STARTS_FIELDS(X) \
   X(STARTS, CONTACT, "contact", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_trigger, kind, STRUT_TRIGGER_CONTACT, REFERENCE(strut_trigger, item, NODE)), "The node whose touchdown starts the signal.") \
-  X(STARTS, SENSOR, "sensor", NAME, NONE, ANY, "", OPTIONAL, 7, "", REFERENCE(strut_trigger, item, SENSOR), "The sensor that starts the signal, at the end of the step in which it passes a level.") \
+  X(STARTS, SENSOR, "sensor", NAME, NONE, ANY, "", OPTIONAL, 7, "", REFERENCE(strut_trigger, item, SENSOR), "The sensor that starts the signal, where it passes a level.") \
   X(STARTS, ABOVE, "above", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", CHOICE(strut_trigger, kind, STRUT_TRIGGER_ABOVE, FIELD(strut_trigger, level)), "The signal starts when the sensor rises above this level.") \
   X(STARTS, BELOW, "below", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", CHOICE(strut_trigger, kind, STRUT_TRIGGER_BELOW, FIELD(strut_trigger, level)), "The signal starts when the sensor falls below this level.") \
   X(STARTS, EACH, "each", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_trigger, each), "`yes`: the signal starts again each time.")

@@ -90,6 +90,18 @@ static void find_next_break(const strut_model *model, const strut_state *state,
       strut_drive_next_break(model, state, t + state->time_offset + STRUT_AT_BREAK * dt);
 }
 
+/* On which side of their thresholds sensors begin; nodes that just touch when the run begins have touched down. */
+static void begin_triggers(const strut_model *model, strut_state *state,
+                           strut_event_stepper *stepper, double t, double dt) {
+  const strut_contact_table *c = &model->contacts;
+  strut_drive_apply(model, state, t);
+  strut_threshold_begin(model, state);
+  for (int32_t i = 0; i < c->count && state->step == 0; i++)
+    if (strut_contact_gap_at(c, i, state->q, state->latest->ground_motion) == 0.0 &&
+        strut_feedback_touch(model, state, i, t))
+      find_next_break(model, state, stepper, t, dt);
+}
+
 void strut_event_stepper_restart(const strut_model *model, strut_state *state, void *workspace,
                                  double dt) {
   strut_event_stepper *stepper = workspace;
@@ -105,6 +117,7 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
   stepper->tried = false;
   find_next_break(model, state, stepper, t, dt);
   if (stepper->next_break < HUGE_VAL) t += moment_before(t, dt);
+  if (model->feedback.trigger_count) begin_triggers(model, state, stepper, t, dt);
   strut_modes_start(model, state, stepper, t);
   show_contacts(model, state, stepper, stepper->now);
   end_smooth(stepper);
@@ -162,11 +175,23 @@ static void start_signals(const strut_model *model, strut_state *state,
   strut_modes_after_jump(model, state, stepper, t);
 }
 
-/* A relay whose input is at its threshold at time t: the drives jump likewise. */
-static void switch_relay(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
-                         int32_t signal, double t) {
+/* The contact that the event closes, by a mode of its own or as an element; -1: none. */
+static int32_t touched_by(const strut_model *model, const strut_event_stepper *stepper,
+                          const strut_event *event) {
+  if (event->kind == STRUT_EVENT_TOUCH) return event->index;
+  if (event->kind != STRUT_EVENT_ACTS || !stepper->laws.acting[event->index]) return -1;
+  int32_t i = stepper->laws.item[event->index].element;
+  const strut_element *e = i >= 0 ? &model->elements.element[i] : NULL;
+  bool ground = e && (e->role == STRUT_ELEMENT_FOOT || e->role == STRUT_ELEMENT_CONTACT);
+  return ground ? e->contact : -1;
+}
+
+/* At a threshold at time t the drives jump likewise. */
+static void pass_threshold(const strut_model *model, strut_state *state,
+                           strut_event_stepper *stepper, int32_t signal, double t, double dt) {
   double before = state->balance ? strut_energy_evaluate(model, state, t).elastic : 0.0;
-  strut_relay_switch(model, state, signal, t);
+  strut_threshold_pass(model, state, signal, t);
+  find_next_break(model, state, stepper, t, dt);
   accumulate_jump(model, state, t, before);
   strut_modes_after_jump(model, state, stepper, t);
 }
@@ -388,10 +413,11 @@ static void meet_event(const strut_model *model, strut_state *state, strut_event
   if (state->watched.variation)
     strut_variation_meet(model, state, stepper, event, t, piece->dt, piece->h > 0.0);
   strut_event_apply(model, state, stepper, *event, t);
-  if (event->kind == STRUT_EVENT_TOUCH && model->feedback.trigger_count)
-    start_signals(model, state, stepper, event->index, t, piece->dt);
-  if (event->kind == STRUT_EVENT_RELAY)
-    switch_relay(model, state, stepper, stepper->laws.item[event->index].relay - 1, t);
+  int32_t touched = model->feedback.trigger_count ? touched_by(model, stepper, event) : -1;
+  if (touched >= 0) start_signals(model, state, stepper, touched, t, piece->dt);
+  if (event->kind == STRUT_EVENT_THRESHOLD)
+    pass_threshold(model, state, stepper, stepper->laws.item[event->index].signal - 1, t,
+                   piece->dt);
   state->events++;
   count_switch(model, &stepper->chatter, piece);
 }

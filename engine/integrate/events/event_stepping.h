@@ -89,40 +89,40 @@ typedef struct strut_sliding_contact {
  * that value's rate (NONE: not known, a secant must do), and what it does to the modes. The functions are in
  * event_kinds.c.
  */
-#define STRUT_EVENT_KINDS(X)                                                                       \
-  X(NONE, CONTACT, no_end, NULL, no_effect)                                                        \
-  /* an open contact closes */                                                                     \
-  X(TOUCH, CONTACT, gap, NULL, close_nearest)                                                      \
-  /* a closed one opens */                                                                         \
-  X(OPEN, CONTACT, depth, depth_rate, open)                                                        \
-  /* slip ends: u reaches 0, or the band */                                                        \
-  X(SLIP_ENDS, CONTACT, slip_left, slip_rate, end_slip)                                            \
-  /* |u| reaches the edge of the band from inside */                                               \
-  X(LEAVES_STICK_BAND, CONTACT, band_left, band_rate, leave_band)                                  \
-  /* a stuck node's multiplier leaves mu_0 N */                                                    \
-  X(STICK_BREAKS, CONTACT, stick_left, NULL, break_stick)                                          \
-  /* creep's multiplier reaches mu N: slip */                                                      \
-  X(CREEP_OUT, CONTACT, creep_out_left, NULL, creep_out)                                           \
-  /* it reaches the band's force: band */                                                          \
-  X(CREEP_IN, CONTACT, creep_in_left, NULL, creep_in)                                              \
-  /* |F_res| passes mu_0 N inside the band, either way */                                          \
-  X(PUSH, CONTACT, push_left, NULL, push)                                                          \
-  /* F_res leaves the layer about mu_0 N */                                                        \
-  X(YIELDED, CONTACT, yield_left, NULL, end_yield)                                                 \
-  /* the ground damper's sign changes */                                                           \
-  X(DAMPER, CONTACT, speed_left, speed_rate, turn_damper)                                          \
-  /* a cable or an element that carries one sign begins or ceases to act */                        \
-  X(ACTS, LAW, of_law, NULL, act)                                                                  \
-  /* an element's strain passes a kink of its law */                                               \
-  X(KINK, LAW, of_law, NULL, pass_kink)                                                            \
-  /* a slider or a cable at a guide gives way, or holds again */                                   \
-  X(SLIDER, LAW, of_law, NULL, remember)                                                           \
-  /* a member or a hinge breaks */                                                                 \
-  X(BREAK, LAW, of_law, NULL, remember)                                                            \
-  /* another facet of the surface comes nearer to a closed contact */                              \
-  X(FACET, CONTACT, facet_left, NULL, change_facet)                                                \
-  /* the input of a relay passes a threshold; the stepper switches it */                           \
-  X(RELAY, LAW, of_law, NULL, no_effect)
+#define STRUT_EVENT_KINDS(X)                                                                        \
+  X(NONE, CONTACT, no_end, NULL, no_effect)                                                         \
+  /* an open contact closes */                                                                      \
+  X(TOUCH, CONTACT, gap, NULL, close_nearest)                                                       \
+  /* a closed one opens */                                                                          \
+  X(OPEN, CONTACT, depth, depth_rate, open)                                                         \
+  /* slip ends: u reaches 0, or the band */                                                         \
+  X(SLIP_ENDS, CONTACT, slip_left, slip_rate, end_slip)                                             \
+  /* |u| reaches the edge of the band from inside */                                                \
+  X(LEAVES_STICK_BAND, CONTACT, band_left, band_rate, leave_band)                                   \
+  /* a stuck node's multiplier leaves mu_0 N */                                                     \
+  X(STICK_BREAKS, CONTACT, stick_left, NULL, break_stick)                                           \
+  /* creep's multiplier reaches mu N: slip */                                                       \
+  X(CREEP_OUT, CONTACT, creep_out_left, NULL, creep_out)                                            \
+  /* it reaches the band's force: band */                                                           \
+  X(CREEP_IN, CONTACT, creep_in_left, NULL, creep_in)                                               \
+  /* |F_res| passes mu_0 N inside the band, either way */                                           \
+  X(PUSH, CONTACT, push_left, NULL, push)                                                           \
+  /* F_res leaves the layer about mu_0 N */                                                         \
+  X(YIELDED, CONTACT, yield_left, NULL, end_yield)                                                  \
+  /* the ground damper's sign changes */                                                            \
+  X(DAMPER, CONTACT, speed_left, speed_rate, turn_damper)                                           \
+  /* a cable or an element that carries one sign begins or ceases to act */                         \
+  X(ACTS, LAW, of_law, NULL, act)                                                                   \
+  /* an element's strain passes a kink of its law */                                                \
+  X(KINK, LAW, of_law, NULL, pass_kink)                                                             \
+  /* a slider or a cable at a guide gives way, or holds again */                                    \
+  X(SLIDER, LAW, of_law, NULL, remember)                                                            \
+  /* a member or a hinge breaks */                                                                  \
+  X(BREAK, LAW, of_law, NULL, remember)                                                             \
+  /* another facet of the surface comes nearer to a closed contact */                               \
+  X(FACET, CONTACT, facet_left, NULL, change_facet)                                                 \
+  /* a relay's input or a sensor passes a threshold; the stepper switches it, or starts a signal */ \
+  X(THRESHOLD, LAW, of_law, NULL, no_effect)
 
 typedef enum strut_event_kind {
 #define STRUT_EVENT_ROW(NAME, ...) STRUT_EVENT_##NAME,
@@ -130,11 +130,11 @@ typedef enum strut_event_kind {
 #undef STRUT_EVENT_ROW
 } strut_event_kind;
 
-/** Something that switches: a cable or an element that carries one sign, an element's kinks, a relay. */
+/** Something that switches: a cable or an element that carries one sign, an element's kinks, a threshold. */
 typedef struct strut_law_switch {
   int32_t member;         /* of a cable; -1: of an element */
   int32_t element;        /* of an element; -1: of a cable */
-  strut_event_kind event; /* what ends its mode: ACTS, KINK, SLIDER, BREAK or RELAY */
+  strut_event_kind event; /* what ends its mode: ACTS, KINK, SLIDER, BREAK or THRESHOLD */
   bool
       abrupt; /* its force has a jump or no slope where it begins to act: the stretch ends it, too */
   double stiffness; /* force per strain, by which stretch and force are compared */
@@ -143,7 +143,7 @@ typedef struct strut_law_switch {
   bool straight;     /* whether the cable passes straight over it */
   bool whole;        /* whether a cable with guide friction is taut */
   int32_t breakable; /* what may break, where neither member nor element is one; else unused */
-  int32_t relay;     /* with RELAY 1 + its signal */
+  int32_t signal;    /* with THRESHOLD 1 + its signal */
 } strut_law_switch;
 
 typedef struct strut_event_stepper strut_event_stepper;

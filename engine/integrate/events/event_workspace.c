@@ -6,12 +6,12 @@
 #include "engine/integrate/events/event_stepping.h"
 #include "engine/model/compile_parts.h"
 
-/* Most laws that switch: each cable, each element by its sign, by its kinks and by its memory, relays. */
+/* Most laws that switch: each cable, each element by its sign, by its kinks and by its memory, thresholds. */
 static size_t most_law_switches(const strut_model *model) {
   bool slack = model->terms & STRUT_TERM_SLACK;
   return (slack ? (size_t)model->members.count : 0) + 2 * (size_t)model->elements.count +
          (size_t)(2 * model->elements.history_slots + model->elements.breakable_count +
-                  model->feedback.relay_count);
+                  model->feedback.relay_count + model->feedback.trigger_count);
 }
 
 static void *make(strut_arena *arena, size_t count, size_t size, bool *failed) {
@@ -98,6 +98,11 @@ static void list_elements(const strut_model *model, const strut_state *state,
   }
 }
 
+static void list_threshold(strut_law_switches *laws, int32_t signal) {
+  laws->item[laws->count++] = (strut_law_switch){
+      .event = STRUT_EVENT_THRESHOLD, .member = -1, .element = -1, .signal = 1 + signal};
+}
+
 static void list_laws(const strut_model *model, strut_state *state, strut_law_switches *laws,
                       bool *failed) {
   size_t most = most_law_switches(model);
@@ -111,10 +116,12 @@ static void list_laws(const strut_model *model, strut_state *state, strut_law_sw
   list_elements(model, state, laws);
   strut_history_list(model, state, laws);
   for (int32_t i = 0; i < model->feedback.relay_count; i++)
-    laws->item[laws->count++] = (strut_law_switch){.event = STRUT_EVENT_RELAY,
-                                                   .member = -1,
-                                                   .element = -1,
-                                                   .relay = 1 + model->feedback.relay[i]};
+    list_threshold(laws, model->feedback.relay[i]);
+  for (int32_t i = 0; i < model->feedback.trigger_count && !state->forgetful; i++) {
+    int32_t signal = model->feedback.triggered[i];
+    if (model->scene->signals[signal].trigger.kind != STRUT_TRIGGER_CONTACT)
+      list_threshold(laws, signal);
+  }
 }
 
 /*

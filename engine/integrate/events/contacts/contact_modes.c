@@ -216,7 +216,7 @@ static void start_laws(const strut_model *model, strut_state *state, strut_event
     if (stepper->laws.item[k].event == STRUT_EVENT_KINK) {
       find_piece(model, state, stepper, k, t);
       changed = true;
-    } else if (stepper->laws.item[k].event == STRUT_EVENT_RELAY) {
+    } else if (stepper->laws.item[k].event == STRUT_EVENT_THRESHOLD) {
       continue;
     } else if (stepper->laws.item[k].event != STRUT_EVENT_ACTS) {
       strut_history_start(model, state, stepper, k);

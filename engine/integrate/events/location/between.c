@@ -391,6 +391,13 @@ static double longest_way(const strut_model *model, const strut_event_stepper *s
   return most;
 }
 
+/* Where a sensor is beyond a threshold within the step, as far as its rates at both ends say; 0: nowhere. */
+static double threshold_dip(const strut_event_stepper *stepper, int32_t k, double h) {
+  double from = stepper->now->tension[k], to = stepper->next->tension[k];
+  double falls = h * stepper->now->stretch_rate[k], rises = h * stepper->next->stretch_rate[k];
+  return from > 0.0 && to > 0.0 ? dip(from, falls, to, rises, 1e-9 * (from + to)) : 0.0;
+}
+
 /* Earliest point, within the step, where a law is not in the mode that it has at both ends; 0: none. */
 static double earliest_switch(const strut_model *model, const strut_state *state,
                               strut_event_stepper *stepper, double h, double faint) {
@@ -401,6 +408,7 @@ static double earliest_switch(const strut_model *model, const strut_state *state
   for (int32_t n = 0; n < count; n++) {
     int32_t k = strut_law_of(&stepper->laws, n);
     const strut_law_switch *law = &stepper->laws.item[k];
+    if (law->event == STRUT_EVENT_THRESHOLD) first = earlier(first, threshold_dip(stepper, k, h));
     if (law->event != STRUT_EVENT_ACTS && law->event != STRUT_EVENT_KINK) continue;
     if (law->event == STRUT_EVENT_ACTS && is_far(model, stepper, k, h, way)) continue;
     first =

@@ -154,13 +154,13 @@ static void measure_element(const strut_model *model, const strut_state *state,
 }
 
 /* The sensors are those of the end. */
-static void measure_relay(const strut_model *model, const strut_state *state,
-                          const strut_law_switch *law, const strut_step_end *end, int32_t k) {
+static void measure_threshold(const strut_model *model, const strut_state *state,
+                              const strut_law_switch *law, const strut_step_end *end, int32_t k) {
   assert(k >= 0);
   double now = state->latest->drive_time + state->time_offset;
-  end->stretch[k] = 1.0;
-  end->stretch_rate[k] = 0.0;
-  end->tension[k] = strut_relay_margin(model, state, law->relay - 1, now, end->v);
+  end->tension[k] =
+      strut_threshold_margin(model, state, law->signal - 1, now, end->v, &end->stretch_rate[k]);
+  end->stretch[k] = end->tension[k];
 }
 
 /* The rest lengths are those of the end. Laws of a list are all cables, or begin with all of them. */
@@ -171,8 +171,8 @@ static void measure_laws(const strut_model *model, const strut_state *state,
   measure_cables(model, state, stepper, end, stepper->laws.nearby, cables);
   for (int32_t n = cables; n < laws; n++) {
     int32_t k = strut_law_of(&stepper->laws, n);
-    if (stepper->laws.item[k].event == STRUT_EVENT_RELAY)
-      measure_relay(model, state, &stepper->laws.item[k], end, k);
+    if (stepper->laws.item[k].event == STRUT_EVENT_THRESHOLD)
+      measure_threshold(model, state, &stepper->laws.item[k], end, k);
     else if (stepper->laws.item[k].event >= STRUT_EVENT_SLIDER || stepper->laws.item[k].whole)
       strut_history_measure(model, state, stepper, end, k);
     else
