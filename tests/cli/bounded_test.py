@@ -71,6 +71,16 @@ def endless_runs():
     check(times == [0, 1], f"samples at {times}")
 
 
+def accuracy_of_stiff_scenes():
+    """What sets the step of fixed steps may never touch: it costs no accuracy's worth of them."""
+    write("high.yaml", MASS.replace("STIFFNESS", "100 N/m") + "ground: {stiffness: 1e11, height: -1, damping: 1e4}\n"
+          "solver: {step: 1 ms}\nrun: {duration: 20 s, measure: {quantities: {x: {of: b.x, take: max}}}}\n")
+    for accuracy in ("2 %", "0.1 %"):
+        done, _ = run("run", "high.yaml", "--accuracy", accuracy, "--json")
+        answer = json.loads(done.stdout)
+        check(answer["accuracy"]["kept"] and answer["accuracy"]["check_evaluations"] < 1e5, done.stdout[-600:])
+
+
 def killed():
     """A run that is killed while it writes leaves its stage, which the next one removes."""
     write("long.yaml", MASS.replace("STIFFNESS", "100 N/m") + "solver: {integrator: rk4, step: 1 us}\n"
@@ -142,6 +152,7 @@ def at_rest():
 profiles()
 at_rest()
 endless_runs()
+accuracy_of_stiff_scenes()
 killed()
 hidden()
 finish()

@@ -54,6 +54,11 @@ static strut_status refuse_exact_friction(const strut_accuracy *a) {
   return STRUT_OK;
 }
 
+double strut_accuracy_least_budget(const strut_accuracy *a) {
+  double part = a->experiment.budget / STRUT_USUAL_BUDGET;
+  return part * LEAST_WORK / (double)(a->scene->node_count + a->scene->member_count);
+}
+
 /* Chooses verlet-events, or the method for rigid bars, with nearly its largest stable step. */
 static strut_status choose_coarse_method(strut_accuracy *a) {
   const strut_model *model = a->model;
@@ -76,9 +81,7 @@ static strut_status choose_coarse_method(strut_accuracy *a) {
   a->stiff = e->step < unit / LEAST_STEPS;
   e->refine = e->refine_time = 0.0;
   double fine = FINE_EVALUATIONS * FINE_STEPS * span.duration / e->step;
-  double least = e->budget / STRUT_USUAL_BUDGET * LEAST_WORK;
-  least /= (double)(a->scene->node_count + a->scene->member_count);
-  a->budget = (int64_t)fmin(fmax(e->budget * fine, least), 1e18);
+  a->budget = (int64_t)fmin(fmax(e->budget * fine, strut_accuracy_least_budget(a)), 1e18);
   if (a->options->most_evaluations > 0 && a->options->most_evaluations < a->budget)
     a->budget = a->options->most_evaluations;
   a->allowed = a->budget;

@@ -68,6 +68,8 @@ static inline bool strut_accuracy_is_kept(bool confirmed, double expected, doubl
 double strut_accuracy_signal_time(const strut_scene *scene);
 /** Announces the next part of the work to the progress display. */
 void strut_accuracy_begin_phase(const strut_accuracy *a, const char *name);
+/** Force evaluations that the budget allows at least. */
+double strut_accuracy_least_budget(const strut_accuracy *a);
 /** Force evaluations left for the next run, at least 1. */
 int64_t strut_accuracy_evaluations_left(const strut_accuracy *a);
 /** Runs the model with another experiment; STRUT_WORK_LIMIT if it exceeds the evaluations left. */

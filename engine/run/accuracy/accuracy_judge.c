@@ -150,7 +150,7 @@ static double choose_margin(const strut_ladder *l) {
 
 void strut_ladder_judge_last(strut_ladder *l) {
   bool fine = l->a->single_method ? l->runs > 2 : strut_ladder_runs_with_error_control(l) > 1;
-  if (l->now->s.spent.forced) fine = false;
+  if (l->now->s.spent.forced || l->failed) fine = false;
   if (!l->kept)
     l->kept = strut_accuracy_is_kept(l->same_motion && fine, choose_margin(l) * l->expected,
                                      l->a->target);
@@ -187,6 +187,9 @@ static void explain_ladder(const strut_ladder *l, char *why, size_t size) {
              "%s, unchecked: the budget of %.2g force evaluations was used up before a second run "
              "finished; give a larger budget",
              how, (double)a->budget);
+  else if (l->failed)
+    snprintf(why, size,
+             "%s; a run with a smaller tolerance failed, so nothing is known of the error", how);
   else if (a->summary->spent.forced)
     snprintf(why, size,
              "%s: contacts or laws switch too often to be followed in %lld steps; choose a method "
@@ -202,7 +205,7 @@ static void explain_ladder(const strut_ladder *l, char *why, size_t size) {
         why, size,
         "%s; a start shifted by %.0e m changes the answer by %.2g of itself: the motion is too "
         "sensitive",
-        how, STRUT_LADDER_SHIFT * l->model->size, l->sensitivity);
+        how, l->shift * l->model->size, l->sensitivity);
   else if (l->kept)
     snprintf(why, size, "%s: %s gives the same motion, and %s", how,
              strut_ladder_runs_with_error_control(l) == 1 && !a->single_method

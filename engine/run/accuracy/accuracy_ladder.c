@@ -130,15 +130,32 @@ static double compare_results(strut_ladder *l, const strut_summary *one, const s
   return worst;
 }
 
-/* The latest run exceeded the budget: the one before it becomes the answer, if there is one. */
-static strut_status discard_unfinished_run(strut_ladder *l) {
+/* The one before the latest run becomes the latest; of both there is one. */
+static void step_back(strut_ladder *l) {
   strut_rung *unfinished = l->now;
-  l->budget_spent = true;
-  if (l->runs < 2) return STRUT_WORK_LIMIT;
   l->now = l->before;
   l->before = unfinished;
   l->runs--;
+}
+
+/* The latest run exceeded the budget: the one before it becomes the answer, if there is one. */
+static strut_status discard_unfinished_run(strut_ladder *l) {
+  l->budget_spent = true;
+  if (l->runs < 2) return STRUT_WORK_LIMIT;
+  step_back(l);
   return STRUT_OK;
+}
+
+/*
+ * The latest run, with error control, has failed after one that has not: the method of higher order gives way to the
+ * usual one; where that has failed, the run before is the answer, of which nothing is certain.
+ */
+static void discard_failed_run(strut_ladder *l) {
+  step_back(l);
+  if (l->precise)
+    l->precise = false, l->imprecise = true;
+  else
+    l->failed = true;
 }
 
 /* Keeps the results of the latest run, for their range. */
@@ -151,7 +168,7 @@ static void keep_results(const strut_ladder *l, const strut_summary *s) {
 /* Do tolerances set the steps of the two latest runs, with error control? */
 static void note_growth(strut_ladder *l) {
   double growth = (double)l->now->cost / (double)l->before->cost;
-  if (growth > GROWTH_BY_TOLERANCE && growth < GROWTH_BY_EVENTS) l->precise = true;
+  if (growth > GROWTH_BY_TOLERANCE && growth < GROWTH_BY_EVENTS) l->precise = !l->imprecise;
 }
 
 /* Makes one more run without output and compares it with the one before. */
@@ -170,6 +187,11 @@ static strut_status run_next_rung(strut_ladder *l) {
   next->cost = next->s.spent.evaluations;
   l->a->check_evaluations += next->cost;
   if (status == STRUT_WORK_LIMIT) return discard_unfinished_run(l);
+  if (status == STRUT_DIVERGED && strut_ladder_runs_with_error_control(l) > 1 &&
+      l->before->s.status == STRUT_OK) {
+    discard_failed_run(l);
+    return STRUT_OK;
+  }
   if (strut_ladder_runs_with_error_control(l) > 1) note_growth(l);
   l->earliest_change = l->earlier_change;
   l->earlier_change = l->change;
@@ -187,8 +209,41 @@ static strut_status run_next_rung(strut_ladder *l) {
   return STRUT_OK;
 }
 
+/*
+ * Of scenes whose fixed steps are so many, the first run with error control is tried before, for at most a part of the
+ * evaluations that fixed steps take: what sets their step may never touch, or move far less than the rest.
+ */
+static const double PROBED = 2e5, PROBE = 0.125;
+/* All runs may take so many times the evaluations of one that replaces fixed steps, for the usual budget. */
+static const double RUNS_OF_PROBE = 64.0;
+
+/* Tries whether runs with error control alone are cheaper; then the budget follows from their cost. */
+static strut_status probe(strut_ladder *l) {
+  strut_accuracy *a = l->a;
+  double steps = strut_experiment_span(&a->experiment, a->scene).duration / a->coarse.step;
+  if (a->single_method || !(steps > PROBED)) return STRUT_OK;
+  int64_t allowed = a->allowed;
+  int coarse_runs = l->coarse_runs;
+  a->allowed = (int64_t)fmin((double)a->used + PROBE * steps, (double)allowed);
+  l->coarse_runs = 0;
+  strut_status status = run_next_rung(l);
+  a->allowed = allowed;
+  if (status && status != STRUT_WORK_LIMIT) return status;
+  if (!status && l->now->s.status == STRUT_OK) {
+    double budget =
+        a->experiment.budget / STRUT_USUAL_BUDGET * RUNS_OF_PROBE * (double)l->now->cost;
+    a->budget = (int64_t)fmin((double)a->budget, fmax(budget, strut_accuracy_least_budget(a)));
+    a->allowed = a->budget;
+    return STRUT_OK;
+  }
+  l->coarse_runs = coarse_runs, l->runs = 0;
+  l->now = l->before = NULL;
+  l->budget_spent = false;
+  return STRUT_OK;
+}
+
 static bool may_refine(const strut_ladder *l) {
-  if (l->kept || l->budget_spent || l->runs >= STRUT_LADDER_RUNS) return false;
+  if (l->kept || l->failed || l->budget_spent || l->runs >= STRUT_LADDER_RUNS) return false;
   if (strut_ladder_runs_with_error_control(l) < 1 || l->a->single_method) return true;
   return l->now->e.tolerance > LEAST_TOLERANCE;
 }
@@ -223,12 +278,19 @@ static strut_status create_ladder(strut_accuracy *a, strut_ladder *l) {
 
 /*
  * Only two runs with tolerances below this are checked: coarser ones differ from each other by more than the
- * shift, so that their difference contains its effect.
+ * shift, so that their difference contains its effect. Where signals are sampled, two runs may agree on one side of a
+ * threshold, and the answer hangs on it: the shift is then that of positions that the tolerance allows.
  */
 static const double CHECKED_BELOW = 1e-8;
 
+/* The shift, over the size of the structure. */
+static double shift_of(const strut_ladder *l, double tolerance) {
+  return l->model->feedback.sampled_count ? fmax(STRUT_LADDER_SHIFT, 0.01 * tolerance)
+                                          : STRUT_LADDER_SHIFT;
+}
+
 /* The start with every free coordinate shifted, up or down. */
-static strut_status shift_start(strut_ladder *l, strut_snapshot *start) {
+static strut_status shift_start(strut_ladder *l, double shift, strut_snapshot *start) {
   const strut_model *model = l->model;
   size_t bytes = (size_t)model->length * sizeof(double);
   strut_state *state = NULL;
@@ -240,8 +302,7 @@ static strut_status shift_start(strut_ladder *l, strut_snapshot *start) {
   memcpy(start->q, state->q, bytes);
   memcpy(start->v, state->v, bytes);
   for (int32_t i = 0; i < 2 * model->node_count; i++)
-    if (!model->fixed[i])
-      start->q[i] += (i % 3 ? -STRUT_LADDER_SHIFT : STRUT_LADDER_SHIFT) * model->size;
+    if (!model->fixed[i]) start->q[i] += (i % 3 ? -shift : shift) * model->size;
   strut_state_free(state);
   return STRUT_OK;
 }
@@ -258,8 +319,9 @@ static strut_status check_sensitivity(strut_ladder *l) {
   const strut_rung *r = l->budget_spent ? l->now : l->before; /* the one before was not finished */
   if (!l->same_motion || a->single_method || strut_ladder_runs_with_error_control(l) < 2)
     return STRUT_OK;
-  if (!(r->e.tolerance < CHECKED_BELOW)) return STRUT_OK;
-  strut_status status = shift_start(l, &start);
+  if (!(r->e.tolerance < CHECKED_BELOW) && !l->model->feedback.sampled_count) return STRUT_OK;
+  l->shift = shift_of(l, r->e.tolerance);
+  strut_status status = shift_start(l, l->shift, &start);
   if (status) return status;
   quiet.sink_count = 0, quiet.to = NULL, quiet.from = &start;
   strut_accuracy_begin_phase(a, "checking with a shifted start");
@@ -300,10 +362,15 @@ strut_status strut_accuracy_climb_ladder(strut_accuracy *a) {
                     .expected = HUGE_VAL,
                     .precise = a->target < PRECISE};
   strut_status status = create_ladder(a, &l);
+  if (!status) status = probe(&l);
   while (!status && may_refine(&l)) {
     status = run_next_rung(&l);
-    if (!status && !l.budget_spent && l.runs > 1) strut_ladder_judge(&l);
-    if (!status && !l.budget_spent) strut_ladder_extend_coarse(&l);
+    if (!status && !l.budget_spent && !l.failed && l.runs > 1) strut_ladder_judge(&l);
+    if (!status && !l.budget_spent && !l.failed) strut_ladder_extend_coarse(&l);
+  }
+  if (!status && l.runs > 1 && l.now->s.status && !l.before->s.status) {
+    step_back(&l);
+    l.failed = true;
   }
   strut_ladder_judge_last(&l);
   if (!status) status = check_sensitivity(&l);

@@ -29,6 +29,7 @@ typedef struct strut_ladder {
   double *difference;             /* (quantities) of the latest two runs, SI */
   double *shifted;                /* (quantities) what a shifted start changes, SI */
   double sensitivity;             /* the same as `change` */
+  double shift;                   /* of that start, over the size of the structure */
   double *results;                /* (runs, quantities + 1) of each run, then the velocity, SI */
   size_t worst;                   /* index of the quantity with the largest relative error */
   double distance;                /* of the latest two tracks */
@@ -38,7 +39,9 @@ typedef struct strut_ladder {
   int means;
   double expected; /* estimated error of the latest run, relative */
   bool same_motion, kept, budget_spent;
-  bool precise; /* runs with error control are by the method of higher order */
+  bool precise;   /* runs with error control are by the method of higher order */
+  bool imprecise; /* that method has failed */
+  bool failed;    /* a finer run has failed, after one that is the answer */
   const strut_model *model;
   strut_arena arena;
 } strut_ladder;
