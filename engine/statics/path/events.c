@@ -17,6 +17,8 @@ static const double NARROW = 1e-13; /* of the piece's length */
  */
 static const double FORK = 1e-4;
 static const double BLURRED = 100; /* and this many roundings of the stiffness */
+static const double APART =
+    1e-4; /* [units of y] between trials about a bifurcation, where the piece has room */
 
 double strut_path_measure_switch(strut_path_system *s, const double *y,
                                  const strut_path_piece *piece, int32_t which) {
@@ -108,16 +110,18 @@ static bool interpolate(const strut_path_system *s, const trials *t, double leng
  * point is interpolated between four on its two sides, near enough for a cubic and far enough for
  * Newton's method. `slope` is the measure's derivative. False: they are not to be had.
  */
-static bool interpolate_fork(strut_path_system *s, const strut_path_piece *piece, double scale,
-                             double slope, trials *t, double *place, double *y) {
+static bool interpolate_fork(strut_path_system *s, const strut_path_piece *piece,
+                             strut_path_measure measure, double scale, double slope, trials *t,
+                             double *place, double *y) {
   static const double sides[KEPT] = {-2, -1, 1, 2};
-  double apart = fmin(fmax(FORK * scale, BLURRED * s->spectrum.noise) / slope, 0.1 * piece->length);
+  double noise = t->which < 0 ? 0.0 : BLURRED * s->spectrum.noise;
+  double apart = fmin(fmax(fmax(FORK * scale, noise) / slope, APART), 0.1 * piece->length);
   double middle = *place;
   t->count = 0;
   for (int k = 0; k < KEPT; k++) {
     double at = middle + sides[k] * apart;
     if (!point_at(s, piece, at, at / piece->length, piece->from, piece->to, y)) continue;
-    double value = strut_path_measure_eigenvalue(s, y, piece, t->which);
+    double value = measure(s, y, piece, t->which);
     if (fabs(value) <= 2 * scale) keep_trial(s, t, at, value, y);
   }
   return t->count > 1 && interpolate(s, t, piece->length, place, y);
@@ -131,7 +135,7 @@ double strut_path_locate(strut_path_system *s, const strut_path_piece *piece,
   double at[2] = {0, piece->length}, place = -1;
   double value[2] = {measure(s, piece->from, piece, which), measure(s, piece->to, piece, which)};
   double scale = fmax(fabs(value[0]), fabs(value[1])), slope = scale / piece->length;
-  bool fork = measure == strut_path_measure_eigenvalue;
+  bool fork = measure == strut_path_measure_eigenvalue || which < 0;
   double near = (fork ? 10 * FORK : ZERO) * scale;
   strut_arena arena = {0};
   trials t = {.which = which};
@@ -160,7 +164,8 @@ double strut_path_locate(strut_path_system *s, const strut_path_piece *piece,
     }
     double *rough = end[0];
     memcpy(rough, y, bytes);
-    if (fork && !interpolate_fork(s, piece, scale, slope, &t, &place, y)) memcpy(y, rough, bytes);
+    if (fork && !interpolate_fork(s, piece, measure, scale, slope, &t, &place, y))
+      memcpy(y, rough, bytes);
   }
   strut_arena_free(&arena);
   return place;

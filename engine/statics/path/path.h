@@ -88,7 +88,7 @@ typedef enum strut_path_end {
 STRUT_API const char *strut_path_end_word(strut_path_end end);
 
 /** Branches that are followed from one path at most, those of its branches included. */
-#define STRUT_PATH_BRANCHES 64
+#define STRUT_PATH_BRANCHES 256
 
 /** The parameter of the continuation. */
 typedef enum strut_path_over {

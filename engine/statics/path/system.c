@@ -218,7 +218,10 @@ static bool rigid_motion(const strut_path_system *s, int which, double *motion) 
   return possible;
 }
 
-/* Holds rigid motions that meet no stiffness and no load: they would make every matrix singular. */
+/*
+ * Holds rigid motions that meet no stiffness and no load: they would make every matrix singular. What supports
+ * forbid once is never held: two supports that meet allow a turn only there.
+ */
 static void hold_rigid_motions(strut_path_system *s) {
   size_t n = (size_t)s->n;
   double low, high, work = 0, load = 0;
@@ -232,7 +235,8 @@ static void hold_rigid_motions(strut_path_system *s) {
   for (int k = 0; k < STRUT_PATH_MOTIONS; k++) {
     double *row = s->held.motion[s->held.count];
     gsl_vector_view motion = gsl_vector_view_array(row, n);
-    if (!rigid_motion(s, k, row)) continue;
+    s->held.forbidden[k] = s->held.forbidden[k] || !rigid_motion(s, k, row);
+    if (s->held.forbidden[k]) continue;
     work = load = 0;
     for (int32_t i = 0; i < s->n; i++)
       work += s->latest.slope[i] * row[i], load += s->latest.slope[i] * s->latest.slope[i];
