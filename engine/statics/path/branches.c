@@ -13,6 +13,7 @@ static const double SAME_FORK = 1e-5; /* two bifurcations so near are one [units
 static const double PASSING = 0.02;   /* of a step: a branch so near a bifurcation passes it */
 static const double ALIKE = 1e-6;     /* of the range: values of the parameter on twins */
 static const double NEARLY = 0.02;    /* of their lengths, likewise, as chords have them */
+static const double AHEAD = 0.95;     /* cosine to a bifurcation that lies on the way */
 static const double ARRIVING = 0.5;   /* cosine to the path by which a walk came to a bifurcation */
 
 static bool is_known_fork(const strut_path_walk *w, const double *y) {
@@ -88,9 +89,10 @@ static bool leave_fork(strut_path_walk *w, const strut_path_fork *f, const strut
   return !w->failed;
 }
 
-/* The way by which a walk has come to a bifurcation need not be walked again. */
-static void mark_arrival(const strut_path_walk *w, strut_path_fork *f, const double *from) {
-  double distance = strut_path_distance(w, from, f->y), most = ARRIVING;
+/* The way by which a walk has come to a bifurcation need not be walked again. False: there is none within `most`. */
+static bool mark_arrival(const strut_path_walk *w, strut_path_fork *f, const double *from,
+                         double most) {
+  double distance = strut_path_distance(w, from, f->y);
   strut_path_ray *own = NULL;
   for (int32_t k = 0; k < f->rays.count && distance > 0; k++) {
     double along = 0;
@@ -99,6 +101,7 @@ static void mark_arrival(const strut_path_walk *w, strut_path_fork *f, const dou
     if (along > most) most = along, own = &f->rays.ray[k];
   }
   if (own) own->done = true;
+  return own != NULL;
 }
 
 /* Distance of a bifurcation to a step of the walk, a cubic from `from` with its tangent to w->y. */
@@ -117,26 +120,54 @@ static double passing_distance(const strut_path_walk *w, const double *from, con
   return least / length;
 }
 
-/* Ends the branch at a bifurcation that its last step passed; there it has been walked, too. */
+static void remark_joined(strut_path_walk *w, const strut_path_fork *f) {
+  strut_path *p = w->path;
+  char joined[40] = "the path";
+  memcpy(w->y, f->y, strut_path_bytes(w));
+  strut_path_add_point(w, p->points[p->point_count - 1].negative);
+  p->end = STRUT_PATH_JOINED;
+  if (f->path) snprintf(joined, sizeof joined, "branch %d", (int)f->path);
+  snprintf(p->remark, sizeof p->remark, "joins %s at the bifurcation at %s %.6g%s%s", joined,
+           strut_path_subject(w), f->factor, *p->unit ? " " : "", p->unit);
+}
+
+/* Can the branch end at this bifurcation? It begins at `origin`. */
+static bool may_join(const strut_path_walk *w, const strut_path_fork *f,
+                     const strut_path_fork *origin) {
+  return f->path != w->forks.path && (f != origin || w->path->point_count >= 5);
+}
+
+/* Ends the branch at a bifurcation that its next step would pass: there it has been walked, too. */
+static bool reach_fork(strut_path_walk *w, const strut_path_fork *origin) {
+  for (size_t k = 0; k < w->forks.count; k++) {
+    strut_path_fork *f = &w->forks.fork[k];
+    double distance = strut_path_distance(w, f->y, w->y), ahead = 0;
+    if (!may_join(w, f, origin) || !(distance > 0) ||
+        distance > fmax(1.2 * w->step, 2.0 * f->rays.radius))
+      continue;
+    for (int32_t i = 0; i <= w->system.n; i++)
+      ahead += w->tangent[i] * (f->y[i] - w->y[i]) / distance;
+    if (ahead < AHEAD || !mark_arrival(w, f, w->y, AHEAD)) continue;
+    w->arc += distance;
+    remark_joined(w, f);
+    return true;
+  }
+  return false;
+}
+
+/* The same of one that its last step has passed. */
 static bool join_fork(strut_path_walk *w, const strut_path_fork *origin, const double *from,
                       const double *tangent) {
   strut_path *p = w->path;
   for (size_t k = 0; k < w->forks.count; k++) {
     strut_path_fork *f = &w->forks.fork[k];
-    if (f == origin && p->point_count < 5) continue; /* it begins there */
-    if (f->path == w->forks.path) continue;          /* a bifurcation of its own */
+    if (!may_join(w, f, origin)) continue;
     if (passing_distance(w, from, tangent, f->y) > PASSING + 1.0 / PLACES) continue;
-    mark_arrival(w, f, from);
+    mark_arrival(w, f, from, ARRIVING);
     w->arc = p->points[p->point_count - 2].arc + strut_path_distance(w, from, f->y);
     p->point_count--;
     while (p->event_count > 0 && p->events[p->event_count - 1].arc > w->arc) p->event_count--;
-    memcpy(w->y, f->y, strut_path_bytes(w));
-    strut_path_add_point(w, p->points[p->point_count - 1].negative);
-    p->end = STRUT_PATH_JOINED;
-    char joined[40] = "the path";
-    if (f->path) snprintf(joined, sizeof joined, "branch %d", (int)f->path);
-    snprintf(p->remark, sizeof p->remark, "joins %s at the bifurcation at %s %.6g%s%s", joined,
-             strut_path_subject(w), f->factor, *p->unit ? " " : "", p->unit);
+    remark_joined(w, f);
     return true;
   }
   return false;
@@ -154,6 +185,7 @@ static void walk_branch(strut_path_walk *w, const strut_path_fork *origin,
   for (int32_t i = 0; i < steps && !w->failed && !strut_experiment_interrupted(experiment); i++) {
     memcpy(from, w->y, strut_path_bytes(w));
     memcpy(tangent, w->tangent, ((size_t)w->system.n + 1) * sizeof *tangent);
+    if (reach_fork(w, origin)) break;
     bool on = strut_path_walk_step(w);
     if (w->failed || join_fork(w, origin, from, tangent) || !on) break;
   }

@@ -17,6 +17,7 @@ static const double NARROW = 1e-13; /* of the piece's length */
  */
 static const double FORK = 1e-4;
 static const double BLURRED = 100; /* and this many roundings of the stiffness */
+static const double ALIKE = 20;    /* over an eigenvalue: another one that is near zero beside it */
 static const double APART =
     1e-4; /* [units of y] between trials about a bifurcation, where the piece has room */
 
@@ -105,6 +106,16 @@ static bool interpolate(const strut_path_system *s, const trials *t, double leng
   return true;
 }
 
+/* Is another eigenvalue as near to zero? Then their order changes where they pass it: each is smooth on one side. */
+static bool is_one_of_several(strut_path_system *s, const double *y, int32_t which) {
+  if (which < 0 || !strut_path_spectrum(s, y, STRUT_PATH_VALUES)) return false;
+  double value = fabs(gsl_vector_get(s->algebra.values, (size_t)which));
+  for (int32_t i = 0; i < s->n; i++)
+    if (i != which && fabs(gsl_vector_get(s->algebra.values, (size_t)i)) < ALIKE * value)
+      return true;
+  return false;
+}
+
 /*
  * Where an eigenvalue vanishes near `place`. Newton's method would be led astray there, so that the
  * point is interpolated between four on its two sides, near enough for a cubic and far enough for
@@ -113,13 +124,16 @@ static bool interpolate(const strut_path_system *s, const trials *t, double leng
 static bool interpolate_fork(strut_path_system *s, const strut_path_piece *piece,
                              strut_path_measure measure, double scale, double slope, trials *t,
                              double *place, double *y) {
-  static const double sides[KEPT] = {-2, -1, 1, 2};
+  static const double sides[2][KEPT] = {{-2, -1, 1, 2}, {-1, -2, -3, -4}};
   double noise = t->which < 0 ? 0.0 : BLURRED * s->spectrum.noise;
   double apart = fmin(fmax(fmax(FORK * scale, noise) / slope, APART), 0.1 * piece->length);
   double middle = *place;
+  int way = point_at(s, piece, middle - apart, (middle - apart) / piece->length, piece->from,
+                     piece->to, y) &&
+            is_one_of_several(s, y, t->which);
   t->count = 0;
   for (int k = 0; k < KEPT; k++) {
-    double at = middle + sides[k] * apart;
+    double at = middle + sides[way][k] * apart;
     if (!point_at(s, piece, at, at / piece->length, piece->from, piece->to, y)) continue;
     double value = measure(s, y, piece, t->which);
     if (fabs(value) <= 2 * scale) keep_trial(s, t, at, value, y);
