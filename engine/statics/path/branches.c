@@ -77,6 +77,7 @@ static bool leave_fork(strut_path_walk *w, const strut_path_fork *f, const strut
   if (contacts) memcpy(s->contacts.contact, f->contact, contacts * sizeof *f->contact);
   if (elements) memcpy(s->elements.element, f->element, elements * sizeof *f->element);
   memcpy(w->y, f->y, strut_path_bytes(w));
+  strut_path_forget_directions(s);
   if (!strut_path_tangent(s, ray->y, ray->direction, w->tangent)) return false;
   w->negative = ray->negative;
   w->arc = 0.0;

@@ -260,3 +260,33 @@ bool strut_path_pass_corner(strut_path_walk *w, int32_t which) {
   strut_path_report_exchange(w, turn, before);
   return true;
 }
+
+/*
+ * The force of a member that shrinks to nothing turns round with its direction. As at a corner, each force in
+ * between is in equilibrium there for some value of the parameter.
+ */
+bool strut_path_pass_zero_length(strut_path_walk *w, int32_t member) {
+  strut_path_system *s = &w->system;
+  const strut_member_table *t = &s->model->members;
+  double *ahead = &s->latest.ahead[2 * member], *row = w->trial, turn = w->tangent[s->n];
+  double value = strut_path_value(s, w->y);
+  int32_t before = w->negative;
+  char detail[300];
+  strut_path_add_point(w, before);
+  memset(row, 0, ((size_t)s->n + 1) * sizeof *row);
+  for (uint32_t c = 0; c < 2; c++) {
+    ahead[c] = -ahead[c];
+    strut_path_add_to_row(s, t->to[member] + c, ahead[c], row);
+    strut_path_add_to_row(s, t->from[member] + c, -ahead[c], row);
+  }
+  if (!strut_path_jump(w, row) || !strut_path_tangent(s, w->y, row, w->next_tangent)) return false;
+  memcpy(w->tangent, w->next_tangent, ((size_t)s->n + 1) * sizeof *w->tangent);
+  strut_path_count_negative(w);
+  snprintf(detail, sizeof detail,
+           "%s shrinks to nothing and its force turns round: %s jumps from %.6g to %.6g there",
+           s->model->scene->members[member].name, strut_path_subject(w), value,
+           strut_path_value(s, w->y));
+  strut_path_add_event(w, STRUT_PATH_ZERO_LENGTH, w->y, member, before, w->negative, detail);
+  strut_path_report_exchange(w, turn, before);
+  return true;
+}

@@ -32,7 +32,8 @@ const char *strut_path_event_name(strut_path_event_kind kind) {
                                       "kink of a law",
                                       "corner",
                                       "slips",
-                                      "sticks"};
+                                      "sticks",
+                                      "zero length"};
   return names[kind];
 }
 

@@ -211,7 +211,9 @@ enum { STRUT_PATH_MOTIONS = 3 };
 
 /** A member as it lies, to all digits. */
 typedef struct strut_path_member {
-  double length, tension, ux, uy; /* [m], [N], direction from its first node to the second */
+  double length, tension, ux, uy; /* [m], [N], direction from its first node to the second; of a
+                                     member that has shrunk to nothing and turned round, the negative
+                                     of both, and so smooth */
   double across;                  /* stiffness across its direction: tension / length [N/m] */
   bool pulls;                     /* or pushes */
 } strut_path_member;
@@ -238,7 +240,8 @@ typedef struct strut_path_system {
   } equations;
   /** The latest place. */
   struct {
-    uint8_t *pulling;                    /* (members) 1 where forces act, of whatever sign */
+    uint8_t *pulling; /* (members) 1 where forces act, of whatever sign */
+    double *ahead;    /* (2 members) directions at the last point kept; 0: none is known yet */
     double *q, *q_low, *g, *slope, *row; /* (length), (length), (n), (n) dg/dy_n, (n + 1) scratch */
     double forces;                       /* the largest force: what g is compared with [N] */
   } latest;
@@ -479,6 +482,13 @@ bool strut_path_pass_kink(strut_path_walk *walk, int32_t which, const double *be
 
 /** The same where a node leaves its facet over a corner, along which the parameter changes at once. */
 bool strut_path_pass_corner(strut_path_walk *walk, int32_t which);
+/** The same where a member shrinks to nothing, so that its force turns round. */
+bool strut_path_pass_zero_length(strut_path_walk *walk, int32_t member);
+/** Is this switch that of such a member? */
+bool strut_path_turns_round(const strut_path_system *system, int32_t which);
+/** Directions of members at the latest place count as theirs from now on, or what is found next. */
+void strut_path_keep_directions(strut_path_system *system);
+void strut_path_forget_directions(strut_path_system *system);
 /** The same where a contact begins to slide, with the same jump, or to stick. */
 bool strut_path_pass_grip(strut_path_walk *walk, int32_t which, const double *beyond);
 /** At a point that is kept: materials are renewed, and guides that began to slip or stick since the last one reported. */

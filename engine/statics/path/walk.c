@@ -73,6 +73,7 @@ void strut_path_add_point(strut_path_walk *w, int32_t negative) {
       !reserve_items(w, &items, p->point_count, &w->point_room, sizeof *p->points))
     return;
   strut_path_keep_turns(&w->system);
+  strut_path_keep_directions(&w->system);
   p->points = items;
   p->points[p->point_count++] = point;
 }
@@ -129,6 +130,14 @@ double strut_path_dot(const strut_path_walk *w, const double *a, const double *b
   return sum;
 }
 
+/* Do the nodes of a member pass beside one another, so that it turns fast, but does not shrink to nothing? */
+static bool is_passing_by(strut_path_walk *w, int32_t which, double place) {
+  strut_path_system *s = &w->system;
+  if (place < 0 || !strut_path_turns_round(s, which) || !strut_path_evaluate(s, w->spare))
+    return false;
+  return fabs(s->member[which].length) > STRUT_PATH_EVEN * s->size;
+}
+
 /*
  * The first switch that the piece throws: its place, and the point in w->trial; -1: none. *strayed: a search has left
  * the path, as where the piece is a jump onto another branch.
@@ -144,7 +153,7 @@ static double first_switch(strut_path_walk *w, const strut_path_piece *piece, in
     if (!isfinite(value) || (on ? value >= 0 : value <= 0)) continue;
     if (fabs(value) <= HANGING * s->size) continue;
     double place = strut_path_locate(s, piece, strut_path_measure_switch, k, w->spare);
-    *strayed = *strayed || s->strayed;
+    *strayed = *strayed || s->strayed || is_passing_by(w, k, place);
     if (place < 0) { /* it should have been thrown where the piece begins */
       place = 0;
       memcpy(w->spare, piece->from, strut_path_bytes(w));
@@ -263,6 +272,7 @@ static bool end_path(strut_path_walk *w, strut_path_end end) {
 
 static bool pass_switch(strut_path_walk *w, int32_t which, const double *beyond) {
   const strut_path_system *s = &w->system;
+  if (strut_path_turns_round(s, which)) return strut_path_pass_zero_length(w, which);
   if (which < strut_path_first_corner_switch(s) || which >= strut_path_first_element_switch(s))
     return strut_path_pass_kink(w, which, beyond);
   return which < strut_path_first_grip_switch(s) ? strut_path_pass_corner(w, which)
