@@ -7,6 +7,7 @@
 #include "engine/statics/path/path_parts.h"
 
 static const double COUPLED = 1e-6; /* of the load: what a null vector feels at a limit point */
+static const double WEAKLY = 1e-2;  /* likewise, at a bifurcation that is one but for rounding */
 static const double TOGETHER =
     1e-9; /* [units of y] eigenvalues that vanish so near do so at once */
 static const double VANISHED = 1e-5; /* of its value at the ends: an eigenvalue that is zero */
@@ -128,13 +129,14 @@ static bool meet_critical(strut_path_walk *w, const strut_path_piece *piece, con
     works = fmax(works, coupling(s, &null.vector));
     if (k == first) c->node = most_moved(s, &null.vector);
   }
-  c->limit = turned && works > COUPLED;
-  bool ends = turned && !c->limit && w->forks.path == 0; /* branches go on smoothly */
+  bool fork = !turned || works < WEAKLY; /* at a limit point that rounding makes of one, too */
+  bool ends = turned && fork && w->forks.path == 0; /* branches go on smoothly */
   strut_path_rays rays = {0};
-  if (ends || ((!c->limit || c->null > 1) && strut_path_wants_fork(w, y)))
+  if (ends || ((fork || c->null > 1) && strut_path_wants_fork(w, y)))
     strut_path_find_rays(w, y, &rays);
   const strut_path_ray *on = ends ? find_way_on(w, &rays) : NULL;
-  if (on) *way = *on, c->after = on->negative;
+  if (on) *way = *on, c->after = on->negative, c->null = rays.null;
+  c->limit = turned && works > COUPLED && !on;
   report(w, y, c, on != NULL);
   if (rays.count) strut_path_keep_fork(w, y, &rays, on);
   return on != NULL;

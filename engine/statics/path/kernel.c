@@ -32,8 +32,7 @@ static const double CONVERGED = 1e-13, NEAR = 1e-8; /* of a step of Newton's met
 static const double ROOT = 1e-11,
                     SMALL_STEP = 0.4; /* of the polynomial's zeros, on the unit sphere */
 static const double APART = 0.02;     /* of the radius: zeros that are not one */
-static const double OWN = 0.1;        /* of the radius: from the path that is walked, its own */
-static const double ALONG = 0.9;      /* likewise, the cosine to its tangent */
+static const double OWN = 0.4; /* of the radius: farthest from the path that is walked, its own */
 
 typedef struct reduction {
   strut_path_walk *w;
@@ -245,17 +244,6 @@ static bool find_root(const reduction *r, double *z) {
   return false;
 }
 
-/* Is it the path that is walked? */
-static int32_t own_side(const reduction *r, const strut_path_ray *ray) {
-  for (int k = 0; k < 2; k++) {
-    double along = (2 * k - 1) * strut_path_dot(r->w, ray->direction, r->w->tangent);
-    bool near =
-        r->own[k] ? strut_path_distance(r->w, ray->y, r->own[k]) < OWN * r->radius : along > ALONG;
-    if (near) return 2 * k - 1;
-  }
-  return 0;
-}
-
 /* Corrects a zero of the polynomial, by the full equations, and keeps it unless it is known. */
 static bool keep_ray(reduction *r, const double *z, strut_path_rays *rays) {
   strut_path_walk *w = r->w;
@@ -281,11 +269,27 @@ static bool keep_ray(reduction *r, const double *z, strut_path_rays *rays) {
   w->failed = w->failed || !ray->y || !ray->direction;
   if (w->failed) return false;
   for (int32_t j = 0; j <= s->n; j++) ray->direction[j] = (r->y[j] - r->centre[j]) / length;
-  ray->done = false, ray->own = own_side(r, ray);
+  ray->done = false, ray->own = 0;
   if (!strut_path_spectrum(s, r->y, STRUT_PATH_SIGNS)) return false;
   ray->negative = s->spectrum.negative;
   rays->count++;
   return true;
+}
+
+/* Marks the path that is walked, before and after: nearest to its own points, or else to its tangent. */
+static void mark_own(const reduction *r, strut_path_rays *rays) {
+  for (int side = -1; side <= 1; side += 2) {
+    const double *own = r->own[side > 0];
+    double least = OWN;
+    int32_t best = -1;
+    for (int32_t k = 0; k < rays->count; k++) {
+      const strut_path_ray *ray = &rays->ray[k];
+      double off = own ? strut_path_distance(r->w, ray->y, own) / r->radius
+                       : 1.0 - side * strut_path_dot(r->w, ray->direction, r->w->tangent);
+      if (off < least) least = off, best = k;
+    }
+    if (best >= 0) rays->ray[best].own = side;
+  }
 }
 
 /* All zeros on the sphere; false: some could not be had. */
@@ -310,6 +314,7 @@ static bool search_sphere(reduction *r, strut_path_rays *rays) {
   }
   for (int32_t i = 0; i < count && !r->w->failed; i++) all = keep_ray(r, root[i], rays) && all;
   strut_release(root);
+  mark_own(r, rays);
   return all;
 }
 
@@ -420,6 +425,7 @@ static bool find_at_radius(reduction *r, strut_path_rays *rays) {
   int32_t first = 0;
   r->null = count_kernel(r, &first);
   r->space = r->null + 1;
+  rays->null = r->null;
   return r->null && allocate_reduction(r) && make_basis(r, first) && fit_polynomial(r) &&
          search_sphere(r, rays);
 }

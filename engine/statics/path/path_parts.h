@@ -86,6 +86,7 @@ typedef struct strut_path_element_switch {
 typedef struct strut_path_elements {
   int32_t switch_count;
   strut_path_element *element;         /* (elements) */
+  double noise;                        /* rounding of the stiffest [N/m] */
   strut_path_element_switch *switches; /* (switch_count) kinks of one element ascending */
   double *
       material; /* (slots) of cables that rub at their guides, at the last point; NULL: none does */
@@ -378,7 +379,7 @@ typedef struct strut_path_ray {
 } strut_path_ray;
 
 typedef struct strut_path_rays {
-  int32_t count;
+  int32_t count, null; /* how many; the dimension of the kernel */
   double radius;
   strut_path_ray *ray; /* (count) the most stable first */
 } strut_path_rays;

@@ -103,8 +103,7 @@ static bool find_side(strut_path_walk *w, const double *y, const double *tangent
                       side *found, bool *blurred) {
   strut_path_system *s = &w->system;
   if (!strut_path_spectrum(s, y, STRUT_PATH_SIGNS)) return false;
-  double moved = s->model->elements.count > 0 ? ROUNDED / step : 0.0;
-  double level = fmax(BLURRED, moved) * s->spectrum.noise;
+  double level = fmax(BLURRED * s->spectrum.noise, ROUNDED / step * s->elements.noise);
   *found = (side){s->spectrum.negative, way_of(tangent[s->n])};
   for (int32_t i = 0; i < s->n; i++)
     if (fabs(gsl_vector_get(s->algebra.values, (size_t)i)) < level) *blurred = true;
