@@ -128,6 +128,12 @@ static strut_dd coordinate(const strut_path_system *s, uint32_t at) {
   return (strut_dd){s->latest.q[at], s->latest.q_low[at]};
 }
 
+/* Springs and bars whose force turns round where they shrink to nothing. */
+bool strut_path_turns_round(const strut_path_system *s, int32_t j) {
+  return j < s->model->members.count && s->model->scene->members[j].kind != STRUT_CABLE &&
+         s->equations.terms.rest[j] > 0.0 && !strut_member_is_element(&s->model->elements, j);
+}
+
 static const double NOTHING = 1e-12; /* of the size: a length that has no direction */
 static const double SHORT = 1e-9;    /* likewise, the shortest length by which a force is divided */
 
@@ -143,9 +149,12 @@ static double measure_member(const strut_path_system *s, int32_t j, strut_path_m
   strut_dd length = dd_length(dx, dy);
   const double *ahead = &s->latest.ahead[2 * j];
   *m = (strut_path_member){.length = dd_double(length)};
-  if (dx.hi * ahead[0] + dy.hi * ahead[1] < 0.0) length = dd_scale(length, -1.0), m->length *= -1.0;
+  bool turns = strut_path_turns_round(s, j);
+  if (turns && dx.hi * ahead[0] + dy.hi * ahead[1] < 0.0)
+    length = dd_scale(length, -1.0), m->length = -m->length;
   if (m->length != 0) m->ux = dd_double(dd_div(dx, length)), m->uy = dd_double(dd_div(dy, length));
-  if (fabs(m->length) < NOTHING * s->size && ahead[0] * ahead[0] + ahead[1] * ahead[1] > 0.0)
+  if (turns && fabs(m->length) < NOTHING * s->size &&
+      ahead[0] * ahead[0] + ahead[1] * ahead[1] > 0.0)
     m->ux = ahead[0], m->uy = ahead[1];
   return dd_double(dd_sub(length, rest));
 }
@@ -427,12 +436,6 @@ int32_t strut_path_switch_count(const strut_path_system *s) {
 static bool is_plain_cable(const strut_model *model, int32_t j) {
   return model->scene->members[j].kind == STRUT_CABLE &&
          !strut_member_is_element(&model->elements, j);
-}
-
-/* Others whose force turns round where they shrink to nothing. */
-bool strut_path_turns_round(const strut_path_system *s, int32_t j) {
-  return j < s->model->members.count && s->model->scene->members[j].kind != STRUT_CABLE &&
-         s->equations.terms.rest[j] > 0.0 && !strut_member_is_element(&s->model->elements, j);
 }
 
 /* How far the second node is ahead of the first, in the last direction [m]. */

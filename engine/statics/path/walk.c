@@ -226,7 +226,7 @@ static strut_path_end find_reason(strut_path_walk *w) {
 }
 
 /* A segment that is shorter than this part of the structure has lost its direction. */
-static const double VANISHED = 1e-6;
+static const double VANISHED = 1e-4;
 
 /* Says which member, or which segment of a running cable, has shrunk to nothing where no step succeeds. */
 static void name_vanished(strut_path_walk *w, char *text, size_t room) {
@@ -314,6 +314,7 @@ static bool end_at_switch(strut_path_walk *w, strut_path_piece *piece, int32_t w
   int32_t negative = w->negative;
   bool on = pass_switch(w, which, beyond);
   double since = w->arc - w->path->points[w->path->point_count - 1].arc;
+  if (!on && strut_path_turns_round(&w->system, which)) return end_path(w, STRUT_PATH_LOST);
   bool bends = on && negative == w->negative && strut_path_is_bend(&w->system, which);
   if (bends && since < w->step && ++w->bends < MOST_BENDS) return true;
   strut_path_add_point(w, w->negative);
