@@ -57,6 +57,7 @@ typedef struct trial {
 } trial;
 
 typedef struct trials {
+  strut_path_measure measure;
   int32_t which; /* eigenvalue that is followed */
   int count;
   trial kept[KEPT];
@@ -121,9 +122,8 @@ static bool is_one_of_several(strut_path_system *s, const double *y, int32_t whi
  * point is interpolated between four on its two sides, near enough for a cubic and far enough for
  * Newton's method. `slope` is the measure's derivative. False: they are not to be had.
  */
-static bool interpolate_fork(strut_path_system *s, const strut_path_piece *piece,
-                             strut_path_measure measure, double scale, double slope, trials *t,
-                             double *place, double *y) {
+static bool interpolate_fork(strut_path_system *s, const strut_path_piece *piece, double scale,
+                             double slope, trials *t, double *place, double *y) {
   static const double sides[2][KEPT] = {{-2, -1, 1, 2}, {-1, -2, -3, -4}};
   double noise = t->which < 0 ? 0.0 : BLURRED * s->spectrum.noise;
   double apart = fmin(fmax(fmax(FORK * scale, noise) / slope, APART), 0.1 * piece->length);
@@ -135,7 +135,7 @@ static bool interpolate_fork(strut_path_system *s, const strut_path_piece *piece
   for (int k = 0; k < KEPT; k++) {
     double at = middle + sides[way][k] * apart;
     if (!point_at(s, piece, at, at / piece->length, piece->from, piece->to, y)) continue;
-    double value = measure(s, y, piece, t->which);
+    double value = t->measure(s, y, piece, t->which);
     if (fabs(value) <= 2 * scale) keep_trial(s, t, at, value, y);
   }
   return t->count > 1 && interpolate(s, t, piece->length, place, y);
@@ -152,7 +152,7 @@ double strut_path_locate(strut_path_system *s, const strut_path_piece *piece,
   bool fork = measure == strut_path_measure_eigenvalue || which < 0;
   double near = (fork ? 10 * FORK : ZERO) * scale;
   strut_arena arena = {0};
-  trials t = {.which = which};
+  trials t = {.measure = measure, .which = which};
   double *end[2] = {strut_arena_allocate(&arena, 1, bytes), strut_arena_allocate(&arena, 1, bytes)};
   if (end[0] && end[1] && make_trials(s, &arena, &t) && value[0] * value[1] <= 0 && scale > 0) {
     memcpy(end[0], piece->from, bytes);
@@ -178,8 +178,7 @@ double strut_path_locate(strut_path_system *s, const strut_path_piece *piece,
     }
     double *rough = end[0];
     memcpy(rough, y, bytes);
-    if (fork && !interpolate_fork(s, piece, measure, scale, slope, &t, &place, y))
-      memcpy(y, rough, bytes);
+    if (fork && !interpolate_fork(s, piece, scale, slope, &t, &place, y)) memcpy(y, rough, bytes);
   }
   strut_arena_free(&arena);
   return place;
