@@ -140,16 +140,16 @@ TEST(unloading) {
   }
 }
 
-/* Shallow trusses under equal loads, uncoupled. */
-static strut_setup trusses(double k, double l) {
+/* Shallow trusses under equal loads, uncoupled; at rest with their tops at 0.2, drawn with them at `top`. */
+static strut_setup trusses(double k, double l, double drawn) {
   strut_setup setup = build_setup();
   for (int i = 0; i < 2; i++) {
     int32_t left = build_support(&setup.scene, 3.0 * i - 1, 0);
     int32_t right = build_support(&setup.scene, 3.0 * i + 1, 0);
-    int32_t top = build_mass(&setup.scene, 3.0 * i, 0.2, 1.0);
+    int32_t top = build_mass(&setup.scene, 3.0 * i, drawn, 1.0);
     setup.scene.nodes[top].fixed[0] = true;
-    build_member(&setup.scene, STRUT_BAR, left, top, i ? l : k, 0, 0);
-    build_member(&setup.scene, STRUT_BAR, right, top, i ? l : k, 0, 0);
+    build_sized(&setup.scene, STRUT_BAR, left, top, i ? l : k, 0, 0, hypot(1, 0.2));
+    build_sized(&setup.scene, STRUT_BAR, right, top, i ? l : k, 0, 0, hypot(1, 0.2));
     build_load(&setup.scene, top, 0, -1, -1);
   }
   return setup;
@@ -167,24 +167,26 @@ static double limit_load(void) {
  */
 TEST(nearly_equal_trusses) {
   static const int weak[8] = {1, -1, 0, -1, 1, 0, 1, -1};
-  for (int digits = 2; digits <= 8; digits++) {
-    double strong = 100 * (1 + pow(10, -digits));
-    OWN(strut_setup) setup = trusses(100, strong);
-    walk w = follow(&setup, (strut_path_options){.until = 2});
-    assert_int_equal(count(&w.path, STRUT_PATH_LIMIT), 8);
-    assert_int_equal(w.path.event_count, 8);
-    for (int i = 0; i < 8; i++) {
-      double load = weak[i] ? weak[i] * 100 : i == 2 ? strong : -strong;
-      assert_relative(w.path.events[i].factor, load * limit_load(), 1e-11);
+  for (int digits = 2; digits <= 8; digits++)
+    for (int back = 0; back < 2; back++) { /* from both ends */
+      double strong = 100 * (1 + pow(10, -digits));
+      OWN(strut_setup) setup = trusses(100, strong, back ? -0.3 : 0.2);
+      strut_path_options options = {.from = back ? 2 : 0, .until = back ? -0.4 : 2};
+      walk w = follow(&setup, options);
+      assert_int_equal(count(&w.path, STRUT_PATH_LIMIT), 8);
+      assert_int_equal(w.path.event_count, 8);
+      for (int i = 0; i < 8; i++) {
+        double load = weak[i] ? weak[i] * 100 : i == 2 ? strong : -strong;
+        assert_relative(w.path.events[back ? 7 - i : i].factor, load * limit_load(), 1e-11);
+      }
+      assert_int_equal(w.path.end, STRUT_PATH_UNTIL);
+      finish(&w);
     }
-    assert_int_equal(w.path.end, STRUT_PATH_UNTIL);
-    finish(&w);
-  }
 }
 
 /* Equal ones: a limit point from which two paths lead on which only one has snapped. */
 TEST(equal_trusses) {
-  OWN(strut_setup) setup = trusses(100, 100);
+  OWN(strut_setup) setup = trusses(100, 100, 0.2);
   walk w = follow(&setup, (strut_path_options){.until = 2, .branches = 1});
   assert_int_equal(w.path.event_count, 2);
   assert_int_equal(w.path.events[0].kind, STRUT_PATH_LIMIT);
