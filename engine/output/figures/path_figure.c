@@ -413,7 +413,8 @@ static const char *subject_of(const strut_model *model, const strut_path_event *
   const strut_scene *scene = model->scene;
   switch (event->kind) {
     case STRUT_PATH_SLACK:
-    case STRUT_PATH_TAUT: return scene->members[event->index].name;
+    case STRUT_PATH_TAUT:
+    case STRUT_PATH_ZERO_LENGTH: return scene->members[event->index].name;
     case STRUT_PATH_TOUCHDOWN:
     case STRUT_PATH_LIFT_OFF:
     case STRUT_PATH_CORNER:

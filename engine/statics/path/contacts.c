@@ -11,6 +11,9 @@
 #include "engine/model/pose.h"
 #include "engine/statics/path/path_parts.h"
 
+static const double ALONG = 1e-9; /* a direction's part across its line */
+static const double STILL = 1e-9; /* what does not move [units of y] */
+
 bool strut_path_contacts_create(const strut_model *model, strut_arena *arena,
                                 strut_path_contacts *p) {
   const strut_contact_table *t = &model->contacts;
@@ -257,6 +260,60 @@ bool strut_path_pass_corner(strut_path_walk *w, int32_t which) {
            scene->nodes[node].name, strut_path_ground_name(s, i), strut_path_subject(w), value,
            strut_path_value(s, w->y));
   strut_path_add_event(w, STRUT_PATH_CORNER, w->y, node, before, w->negative, detail);
+  strut_path_report_exchange(w, turn, before);
+  return true;
+}
+
+/* Do supports keep the two nodes of a member on its line? */
+static bool is_kept_on_line(const strut_path_system *s, int32_t member, const double *ahead) {
+  const strut_member_table *t = &s->model->members;
+  const uint32_t end[2] = {t->from[member], t->to[member]};
+  for (int k = 0; k < 2; k++)
+    for (uint32_t c = 0; c < 2; c++)
+      if (s->potential->row_of[end[k] + c] >= 0 && fabs(ahead[1 - c]) > ALONG) return false;
+  return true;
+}
+
+/*
+ * The force of a member that shrinks to nothing turns round with its direction. As at a corner, each force in
+ * between is in equilibrium there for some value of the parameter, if nothing else moves or the nodes stay on its
+ * line. Else the nodes would go on together, and the path ends.
+ */
+bool strut_path_pass_zero_length(strut_path_walk *w, int32_t member) {
+  strut_path_system *s = &w->system;
+  const strut_member_table *t = &s->model->members;
+  double *ahead = &s->latest.ahead[2 * member], *row = w->trial, turn = w->tangent[s->n];
+  double value = strut_path_value(s, w->y), arc = w->arc, beyond[2] = {-ahead[0], -ahead[1]};
+  int32_t before = w->negative;
+  char detail[300];
+  strut_path_evaluate(s, w->y);
+  if (fabs(s->member[member].length) > STRUT_PATH_EVEN * s->size)
+    return false; /* it has a direction */
+  memset(row, 0, ((size_t)s->n + 1) * sizeof *row);
+  for (uint32_t c = 0; c < 2; c++) {
+    ahead[c] = beyond[c];
+    strut_path_add_to_row(s, t->to[member] + c, beyond[c], row);
+    strut_path_add_to_row(s, t->from[member] + c, -beyond[c], row);
+  }
+  memcpy(w->next, w->y, strut_path_bytes(w));
+  bool found = strut_path_jump(w, row) && strut_path_tangent(s, w->y, row, w->next_tangent);
+  bool still = true;
+  for (int32_t i = 0; i < s->n; i++) still = still && fabs(w->y[i] - w->next[i]) < STILL;
+  memcpy(w->trial, w->y, strut_path_bytes(w));
+  memcpy(w->y, w->next, strut_path_bytes(w));
+  if (!found || !(still || is_kept_on_line(s, member, beyond))) return false;
+  double jumped = w->arc;
+  ahead[0] = -beyond[0], ahead[1] = -beyond[1], w->arc = arc;
+  strut_path_add_point(w, before);
+  memcpy(ahead, beyond, sizeof beyond), w->arc = jumped;
+  memcpy(w->y, w->trial, strut_path_bytes(w));
+  memcpy(w->tangent, w->next_tangent, ((size_t)s->n + 1) * sizeof *w->tangent);
+  strut_path_count_negative(w);
+  snprintf(detail, sizeof detail,
+           "%s shrinks to nothing and its force turns round: %s jumps from %.6g to %.6g there",
+           s->model->scene->members[member].name, strut_path_subject(w), value,
+           strut_path_value(s, w->y));
+  strut_path_add_event(w, STRUT_PATH_ZERO_LENGTH, w->y, member, before, w->negative, detail);
   strut_path_report_exchange(w, turn, before);
   return true;
 }

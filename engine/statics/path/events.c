@@ -17,6 +17,9 @@ static const double NARROW = 1e-13; /* of the piece's length */
  */
 static const double FORK = 1e-4;
 static const double BLURRED = 100; /* and this many roundings of the stiffness */
+static const double ALIKE = 20;    /* over an eigenvalue: another one that is near zero beside it */
+static const double APART =
+    1e-4; /* [units of y] between trials about a bifurcation, where the piece has room */
 
 double strut_path_measure_switch(strut_path_system *s, const double *y,
                                  const strut_path_piece *piece, int32_t which) {
@@ -54,6 +57,7 @@ typedef struct trial {
 } trial;
 
 typedef struct trials {
+  strut_path_measure measure;
   int32_t which; /* eigenvalue that is followed */
   int count;
   trial kept[KEPT];
@@ -103,6 +107,16 @@ static bool interpolate(const strut_path_system *s, const trials *t, double leng
   return true;
 }
 
+/* Is another eigenvalue as near to zero? Then their order changes where they pass it: each is smooth on one side. */
+static bool is_one_of_several(strut_path_system *s, const double *y, int32_t which) {
+  if (which < 0 || !strut_path_spectrum(s, y, STRUT_PATH_VALUES)) return false;
+  double value = fabs(gsl_vector_get(s->algebra.values, (size_t)which));
+  for (int32_t i = 0; i < s->n; i++)
+    if (i != which && fabs(gsl_vector_get(s->algebra.values, (size_t)i)) < ALIKE * value)
+      return true;
+  return false;
+}
+
 /*
  * Where an eigenvalue vanishes near `place`. Newton's method would be led astray there, so that the
  * point is interpolated between four on its two sides, near enough for a cubic and far enough for
@@ -110,14 +124,18 @@ static bool interpolate(const strut_path_system *s, const trials *t, double leng
  */
 static bool interpolate_fork(strut_path_system *s, const strut_path_piece *piece, double scale,
                              double slope, trials *t, double *place, double *y) {
-  static const double sides[KEPT] = {-2, -1, 1, 2};
-  double apart = fmin(fmax(FORK * scale, BLURRED * s->spectrum.noise) / slope, 0.1 * piece->length);
+  static const double sides[2][KEPT] = {{-2, -1, 1, 2}, {-1, -2, -3, -4}};
+  double noise = t->which < 0 ? 0.0 : BLURRED * s->spectrum.noise;
+  double apart = fmin(fmax(fmax(FORK * scale, noise) / slope, APART), 0.1 * piece->length);
   double middle = *place;
+  int way = point_at(s, piece, middle - apart, (middle - apart) / piece->length, piece->from,
+                     piece->to, y) &&
+            is_one_of_several(s, y, t->which);
   t->count = 0;
   for (int k = 0; k < KEPT; k++) {
-    double at = middle + sides[k] * apart;
+    double at = middle + sides[way][k] * apart;
     if (!point_at(s, piece, at, at / piece->length, piece->from, piece->to, y)) continue;
-    double value = strut_path_measure_eigenvalue(s, y, piece, t->which);
+    double value = t->measure(s, y, piece, t->which);
     if (fabs(value) <= 2 * scale) keep_trial(s, t, at, value, y);
   }
   return t->count > 1 && interpolate(s, t, piece->length, place, y);
@@ -131,10 +149,10 @@ double strut_path_locate(strut_path_system *s, const strut_path_piece *piece,
   double at[2] = {0, piece->length}, place = -1;
   double value[2] = {measure(s, piece->from, piece, which), measure(s, piece->to, piece, which)};
   double scale = fmax(fabs(value[0]), fabs(value[1])), slope = scale / piece->length;
-  bool fork = measure == strut_path_measure_eigenvalue;
+  bool fork = measure == strut_path_measure_eigenvalue || which < 0;
   double near = (fork ? 10 * FORK : ZERO) * scale;
   strut_arena arena = {0};
-  trials t = {.which = which};
+  trials t = {.measure = measure, .which = which};
   double *end[2] = {strut_arena_allocate(&arena, 1, bytes), strut_arena_allocate(&arena, 1, bytes)};
   if (end[0] && end[1] && make_trials(s, &arena, &t) && value[0] * value[1] <= 0 && scale > 0) {
     memcpy(end[0], piece->from, bytes);

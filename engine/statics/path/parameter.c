@@ -5,6 +5,7 @@
 #include "engine/statics/path/path_parts.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -361,6 +362,7 @@ bool strut_path_elements_create(const strut_model *model, strut_arena *arena,
     const strut_element *e = &t->element[i];
     int kinks = strut_law_kinks(e->law, &e->numbers);
     p->element[i] = (strut_path_element){.turn = (double)NAN, .acts = true};
+    p->noise = fmax(p->noise, DBL_EPSILON * strut_element_stiffest(model, i));
     if (e->carries) p->switches[p->switch_count++] = (strut_path_element_switch){i, -1};
     for (int k = 0; k < kinks; k++) {
       double kink = strut_law_kink(e->law, &e->numbers, k);

@@ -32,7 +32,8 @@ const char *strut_path_event_name(strut_path_event_kind kind) {
                                       "kink of a law",
                                       "corner",
                                       "slips",
-                                      "sticks"};
+                                      "sticks",
+                                      "zero length"};
   return names[kind];
 }
 
@@ -293,8 +294,9 @@ static strut_status list_held(const path_start *b, strut_path *path, strut_error
 
 static bool allocate_walk(strut_path_walk *w) {
   size_t count = 2 * ((size_t)w->system.n + 1);
-  double **arrays[] = {&w->y,     &w->tangent, &w->next,  &w->next_tangent,
-                       &w->trial, &w->spare,   &w->upward};
+  double **arrays[] = {&w->y,         &w->tangent,      &w->next,   &w->next_tangent, &w->trial,
+                       &w->spare,     &w->upward,       &w->fork,   &w->values,       &w->scale,
+                       &w->part.from, &w->part.tangent, &w->part.to};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
     *arrays[i] = strut_arena_allocate(&w->system.arena, count, sizeof(double));
     if (!*arrays[i]) return false;
@@ -306,8 +308,7 @@ static bool allocate_walk(strut_path_walk *w) {
 
 /* Room for bifurcations and the paths that leave them. */
 static bool allocate_branches(strut_path_walk *w) {
-  w->forks.fork =
-      strut_arena_allocate(&w->system.arena, STRUT_PATH_BRANCHES, sizeof *w->forks.fork);
+  w->forks.fork = strut_arena_allocate(&w->system.arena, STRUT_PATH_FORKS, sizeof *w->forks.fork);
   w->path->branches = strut_allocate(STRUT_PATH_BRANCHES, sizeof *w->path->branches);
   return w->forks.fork && w->path->branches;
 }

@@ -35,14 +35,15 @@ typedef enum strut_path_event_kind {
   STRUT_PATH_ENGAGE,           /* a stop is reached, or another element of one sign begins to act */
   STRUT_PATH_RELEASE,          /* it ceases to act */
   STRUT_PATH_LAW,              /* a law passes a kink */
-  STRUT_PATH_CORNER, /* a node passes a corner of a profile, where the force on it turns */
-  STRUT_PATH_SLIP,   /* a contact begins to slide */
-  STRUT_PATH_STICK   /* it sticks again */
+  STRUT_PATH_CORNER,     /* a node passes a corner of a profile, where the force on it turns */
+  STRUT_PATH_SLIP,       /* a contact begins to slide */
+  STRUT_PATH_STICK,      /* it sticks again */
+  STRUT_PATH_ZERO_LENGTH /* a member shrinks to nothing, and its force turns round */
 } strut_path_event_kind;
 
 /**
  * "limit point", "bifurcation", "slack", "taut", "touchdown", "lift-off", "limit point at a kink",
- * "bifurcation at a kink", "engages", "releases", "kink of a law", "corner", "slips", "sticks".
+ * "bifurcation at a kink", "engages", "releases", "kink of a law", "corner", "slips", "sticks", "zero length".
  */
 STRUT_API const char *strut_path_event_name(strut_path_event_kind kind);
 
@@ -88,7 +89,7 @@ typedef enum strut_path_end {
 STRUT_API const char *strut_path_end_word(strut_path_end end);
 
 /** Branches that are followed from one path at most, those of its branches included. */
-#define STRUT_PATH_BRANCHES 64
+#define STRUT_PATH_BRANCHES 256
 
 /** The parameter of the continuation. */
 typedef enum strut_path_over {

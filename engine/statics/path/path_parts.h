@@ -86,6 +86,7 @@ typedef struct strut_path_element_switch {
 typedef struct strut_path_elements {
   int32_t switch_count;
   strut_path_element *element;         /* (elements) */
+  double noise;                        /* rounding of the stiffest [N/m] */
   strut_path_element_switch *switches; /* (switch_count) kinks of one element ascending */
   double *
       material; /* (slots) of cables that rub at their guides, at the last point; NULL: none does */
@@ -211,7 +212,9 @@ enum { STRUT_PATH_MOTIONS = 3 };
 
 /** A member as it lies, to all digits. */
 typedef struct strut_path_member {
-  double length, tension, ux, uy; /* [m], [N], direction from its first node to the second */
+  double length, tension, ux, uy; /* [m], [N], direction from its first node to the second; of a
+                                     member that has shrunk to nothing and turned round, the negative
+                                     of both, and so smooth */
   double across;                  /* stiffness across its direction: tension / length [N/m] */
   bool pulls;                     /* or pushes */
 } strut_path_member;
@@ -238,7 +241,8 @@ typedef struct strut_path_system {
   } equations;
   /** The latest place. */
   struct {
-    uint8_t *pulling;                    /* (members) 1 where forces act, of whatever sign */
+    uint8_t *pulling; /* (members) 1 where forces act, of whatever sign */
+    double *ahead;    /* (2 members) directions at the last point kept; 0: none is known yet */
     double *q, *q_low, *g, *slope, *row; /* (length), (length), (n), (n) dg/dy_n, (n + 1) scratch */
     double forces;                       /* the largest force: what g is compared with [N] */
   } latest;
@@ -246,6 +250,7 @@ typedef struct strut_path_system {
   struct {
     int32_t count;
     double by, *motion[STRUT_PATH_MOTIONS]; /* (n) each */
+    bool forbidden[STRUT_PATH_MOTIONS];     /* by supports, somewhere on the path */
   } held;
   struct {
     gsl_matrix *hessian, *work; /* (n, n) */
@@ -361,15 +366,33 @@ double strut_path_locate(strut_path_system *system, const strut_path_piece *piec
 
 /* The walk along a path: what its steps share. For path.c, walk.c, events.c and branches.c. */
 
-/** A bifurcation that a branch may leave: all that a walk needs to begin there. */
+/** Bifurcations that branches are followed from, and paths that leave one of them, at most. */
+enum { STRUT_PATH_FORKS = 32, STRUT_PATH_RAYS = 256 };
+
+/** A path that leaves a point: its direction, and a point on it a small radius away. */
+typedef struct strut_path_ray {
+  double *y, *direction; /* (2 n + 2), (n + 1) of unit length */
+  int32_t negative;      /* eigenvalues below zero there */
+  int32_t own;           /* -1, 1: the path that is walked, before and after; else 0 */
+  int32_t order;
+  bool done; /* it was walked */
+} strut_path_ray;
+
+typedef struct strut_path_rays {
+  int32_t count, null; /* how many; the dimension of the kernel */
+  double radius;
+  strut_path_ray *ray; /* (count) the most stable first */
+} strut_path_rays;
+
+/** A bifurcation that branches may leave: all that a walk needs to begin there. */
 typedef struct strut_path_fork {
-  double *y, *direction; /* (2 n + 2), (n + 1) off the path that it was found on */
+  double *y; /* (2 n + 2) */
+  strut_path_rays rays;
   uint8_t *pulling;
   strut_path_contact *contact; /* (contacts) */
   strut_path_element *element; /* (elements) */
   double factor, arc;
   int32_t path, depth;
-  bool done[2]; /* the branch along -direction, along direction was walked */
 } strut_path_fork;
 
 typedef struct strut_path_walk {
@@ -378,6 +401,13 @@ typedef struct strut_path_walk {
   double *y, *next;               /* (2 n + 2) the present point, and the next */
   double *tangent, *next_tangent; /* (n + 1) there */
   double *trial, *spare, *upward; /* (2 n + 2) scratch; (0, ..., 0, 1) */
+  double *fork, *values, *scale;  /* (2 n + 2) scratch; (n) eigenvalues at y, and scratch */
+  /** A short part of the latest step with what changes on it. */
+  struct {
+    double *from, *tangent, *to;
+    bool known;
+  } part;
+  double stiff; /* the largest eigenvalue of a kernel's search, times the size */
   double arc, step;
   int32_t negative; /* eigenvalues below zero beyond y */
   int32_t bends;    /* kinks that stand for a smooth bend since the last point */
@@ -388,7 +418,8 @@ typedef struct strut_path_walk {
     strut_path_fork *fork; /* (STRUT_PATH_BRANCHES), or NULL: not asked for */
     size_t count;
     int32_t path, depth; /* of the path that is walked */
-    int32_t left;        /* bifurcations for which there was no room */
+    int32_t left,
+        lost; /* bifurcations or branches for which there was no room; that did not begin */
   } forks;
 } strut_path_walk;
 
@@ -413,8 +444,28 @@ strut_status strut_path_set_actuator(const strut_model *drawn, int32_t actuator,
 /** Notes why a path ended that took all its steps. */
 void strut_path_remark_steps(strut_path_walk *walk, int32_t steps);
 
-/** Keeps the bifurcation at y, where the stiffness does not resist the null vector (n). */
-void strut_path_keep_fork(strut_path_walk *walk, const double *y, const gsl_vector *null);
+/** The next point and its tangent, on the branch of the present one; false: there is none. */
+bool strut_path_find_next(strut_path_walk *walk);
+
+/**
+ * Reports limit points and bifurcations on a piece, which ends in walk->next. True: the path ends at one of them,
+ * walk->fork, and goes on along `way`.
+ */
+bool strut_path_find_criticals(strut_path_walk *walk, const strut_path_piece *piece,
+                               strut_path_ray *way);
+
+/** All paths through y, where eigenvalues vanish; that with walk->tangent is the walk's own. */
+void strut_path_find_rays(strut_path_walk *walk, const double *y, strut_path_rays *rays);
+/** Does only rounding part two branches that pass between two points? */
+bool strut_path_is_rounding(strut_path_walk *walk, const double *from, const double *to);
+/** Has an element, a cable or a contact to change before the point? */
+bool strut_path_is_switched(strut_path_walk *walk, const double *y);
+
+/** Are branches to be followed from the bifurcation y? */
+bool strut_path_wants_fork(strut_path_walk *walk, const double *y);
+/** Keeps the bifurcation at y; the walk goes on along `way`, or NULL: along its own path. */
+void strut_path_keep_fork(strut_path_walk *walk, const double *y, const strut_path_rays *rays,
+                          const strut_path_ray *way);
 /** After the walk along a path: the branches of the bifurcations kept, into path->branches. */
 void strut_path_walk_branches(strut_path_walk *walk, strut_path *path,
                               const strut_experiment *experiment);
@@ -432,6 +483,13 @@ bool strut_path_pass_kink(strut_path_walk *walk, int32_t which, const double *be
 
 /** The same where a node leaves its facet over a corner, along which the parameter changes at once. */
 bool strut_path_pass_corner(strut_path_walk *walk, int32_t which);
+/** The same where a member shrinks to nothing, so that its force turns round. */
+bool strut_path_pass_zero_length(strut_path_walk *walk, int32_t member);
+/** Is this switch that of such a member? */
+bool strut_path_turns_round(const strut_path_system *system, int32_t which);
+/** Directions of members at the latest place count as theirs from now on, or what is found next. */
+void strut_path_keep_directions(strut_path_system *system);
+void strut_path_forget_directions(strut_path_system *system);
 /** The same where a contact begins to slide, with the same jump, or to stick. */
 bool strut_path_pass_grip(strut_path_walk *walk, int32_t which, const double *beyond);
 /** At a point that is kept: materials are renewed, and guides that began to slip or stick since the last one reported. */
@@ -459,6 +517,12 @@ const char *strut_path_subject(const strut_path_walk *walk);
  */
 const char *strut_path_turn(const strut_path_walk *walk, double turn);
 
+/** Does the parameter turn back between two tangents? No sign of a rate below rounding counts. */
+static inline bool strut_path_turns(const strut_path_walk *walk, const double *before,
+                                    const double *after) {
+  double a = before[walk->system.n], b = after[walk->system.n], level = 1e-9;
+  return (a > level && b < -level) || (a < -level && b > level);
+}
 /** a . b over the first n + 1 numbers. */
 double strut_path_dot(const strut_path_walk *walk, const double *a, const double *b);
 /** Distance of two points of the path in y. */

@@ -107,10 +107,10 @@ static void project(strut_path_system *s, size_t first, gsl_matrix *ritz) {
     for (size_t k = 0; k < count; k++) {
       double d[2];
       relative_motion(s, j, first + k, d);
-      along[k] = m->length > 0 ? m->ux * d[0] + m->uy * d[1] : d[0];
-      across[k] = m->length > 0 ? m->ux * d[1] - m->uy * d[0] : d[1];
+      along[k] = m->length != 0 ? m->ux * d[0] + m->uy * d[1] : d[0];
+      across[k] = m->length != 0 ? m->ux * d[1] - m->uy * d[0] : d[1];
     }
-    add_square(ritz, along, m->length > 0 ? s->equations.terms.stiffness[j] : m->across);
+    add_square(ritz, along, m->length != 0 ? s->equations.terms.stiffness[j] : m->across);
     add_square(ritz, across, m->across);
   }
   s->spectrum.soft_parts = 0.0;

@@ -46,8 +46,9 @@ static bool make_arrays(strut_path_system *s) {
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
     if (!(*arrays[i] = strut_arena_allocate(&s->arena, length + 1, sizeof(double)))) return false;
   s->latest.pulling = strut_arena_allocate(&s->arena, members, 1);
+  s->latest.ahead = strut_arena_allocate(&s->arena, 2 * members, sizeof(double));
   s->member = strut_arena_allocate(&s->arena, members, sizeof *s->member);
-  if (!s->latest.pulling || !s->member) return false;
+  if (!s->latest.pulling || !s->latest.ahead || !s->member) return false;
   memset(s->latest.pulling, 1, members);
   return strut_path_elements_create(s->model, &s->arena, &s->elements) &&
          strut_path_contacts_create(s->model, &s->arena, &s->contacts) &&
@@ -127,15 +128,34 @@ static strut_dd coordinate(const strut_path_system *s, uint32_t at) {
   return (strut_dd){s->latest.q[at], s->latest.q_low[at]};
 }
 
-/* Length of a member, and what it is longer than its rest length. */
+/* Springs and bars whose force turns round where they shrink to nothing. */
+bool strut_path_turns_round(const strut_path_system *s, int32_t j) {
+  return j < s->model->members.count && s->model->scene->members[j].kind != STRUT_CABLE &&
+         s->equations.terms.rest[j] > 0.0 && !strut_member_is_element(&s->model->elements, j);
+}
+
+static const double NOTHING = 1e-12; /* of the size: a length that has no direction */
+static const double SHORT = 1e-9;    /* likewise, the shortest length by which a force is divided */
+
+/*
+ * Length of a member, and what it is longer than its rest length. Where its nodes have passed one another since
+ * the last point kept both count as negative: what acts before goes on smoothly.
+ */
 static double measure_member(const strut_path_system *s, int32_t j, strut_path_member *m) {
   const strut_member_table *t = &s->model->members;
   const strut_dd rest = {s->equations.terms.rest[j], s->equations.terms.rest_low[j]};
   strut_dd dx = dd_sub(coordinate(s, t->to[j]), coordinate(s, t->from[j]));
   strut_dd dy = dd_sub(coordinate(s, t->to[j] + 1), coordinate(s, t->from[j] + 1));
   strut_dd length = dd_length(dx, dy);
+  const double *ahead = &s->latest.ahead[2 * j];
   *m = (strut_path_member){.length = dd_double(length)};
-  if (m->length > 0) m->ux = dd_double(dd_div(dx, length)), m->uy = dd_double(dd_div(dy, length));
+  bool turns = strut_path_turns_round(s, j);
+  if (turns && dx.hi * ahead[0] + dy.hi * ahead[1] < 0.0)
+    length = dd_scale(length, -1.0), m->length = -m->length;
+  if (m->length != 0) m->ux = dd_double(dd_div(dx, length)), m->uy = dd_double(dd_div(dy, length));
+  if (turns && fabs(m->length) < NOTHING * s->size &&
+      ahead[0] * ahead[0] + ahead[1] * ahead[1] > 0.0)
+    m->ux = ahead[0], m->uy = ahead[1];
   return dd_double(dd_sub(length, rest));
 }
 
@@ -171,7 +191,8 @@ static void add_members(strut_path_system *s) {
     if (!m->pulls) continue;
     m->tension = k * stretch;
     /* of zero length and zero rest length: a spring alike in all directions */
-    m->across = m->length > 0 ? m->tension / m->length : s->equations.terms.rest[j] > 0 ? 0.0 : k;
+    double least = SHORT * s->size, length = copysign(fmax(fabs(m->length), least), m->length);
+    m->across = s->equations.terms.rest[j] > 0 ? m->tension / length : k;
     s->latest.forces = fmax(s->latest.forces, fabs(m->tension));
     int32_t row[4];
     double block[4][4], along = k - m->across;
@@ -218,7 +239,10 @@ static bool rigid_motion(const strut_path_system *s, int which, double *motion) 
   return possible;
 }
 
-/* Holds rigid motions that meet no stiffness and no load: they would make every matrix singular. */
+/*
+ * Holds rigid motions that meet no stiffness and no load: they would make every matrix singular. What supports
+ * forbid once is never held: two supports that meet allow a turn only there.
+ */
 static void hold_rigid_motions(strut_path_system *s) {
   size_t n = (size_t)s->n;
   double low, high, work = 0, load = 0;
@@ -232,7 +256,8 @@ static void hold_rigid_motions(strut_path_system *s) {
   for (int k = 0; k < STRUT_PATH_MOTIONS; k++) {
     double *row = s->held.motion[s->held.count];
     gsl_vector_view motion = gsl_vector_view_array(row, n);
-    if (!rigid_motion(s, k, row)) continue;
+    s->held.forbidden[k] = s->held.forbidden[k] || !rigid_motion(s, k, row);
+    if (s->held.forbidden[k]) continue;
     work = load = 0;
     for (int32_t i = 0; i < s->n; i++)
       work += s->latest.slope[i] * row[i], load += s->latest.slope[i] * s->latest.slope[i];
@@ -413,12 +438,32 @@ static bool is_plain_cable(const strut_model *model, int32_t j) {
          !strut_member_is_element(&model->elements, j);
 }
 
+/* How far the second node is ahead of the first, in the last direction [m]. */
+static double measure_ahead(const strut_path_system *s, int32_t j) {
+  const strut_member_table *t = &s->model->members;
+  strut_dd dx = dd_sub(coordinate(s, t->to[j]), coordinate(s, t->from[j]));
+  strut_dd dy = dd_sub(coordinate(s, t->to[j] + 1), coordinate(s, t->from[j] + 1));
+  const double *ahead = &s->latest.ahead[2 * j];
+  return dd_double(dd_add(dd_scale(dx, ahead[0]), dd_scale(dy, ahead[1])));
+}
+
+void strut_path_keep_directions(strut_path_system *s) {
+  for (int32_t j = 0; j < s->model->members.count; j++)
+    s->latest.ahead[2 * j] = s->member[j].ux, s->latest.ahead[2 * j + 1] = s->member[j].uy;
+}
+
+void strut_path_forget_directions(strut_path_system *s) {
+  memset(s->latest.ahead, 0, 2 * (size_t)s->model->members.count * sizeof *s->latest.ahead);
+}
+
 double strut_path_switch_value(strut_path_system *s, int32_t which, const double *y) {
   int32_t members = s->model->members.count, elements = strut_path_first_element_switch(s);
   int32_t corners = strut_path_first_corner_switch(s), grips = strut_path_first_grip_switch(s);
   strut_path_member m;
-  if (which < members && !is_plain_cable(s->model, which)) return -HUGE_VAL;
+  bool turns = strut_path_turns_round(s, which);
+  if (which < members && !turns && !is_plain_cable(s->model, which)) return -HUGE_VAL;
   if (!place(s, y)) return (double)NAN;
+  if (turns) return measure_ahead(s, which);
   if (which >= elements) return strut_path_element_switch_value(s, which - elements);
   if (which >= grips) return strut_path_grip_switch_value(s, which - grips);
   if (which >= corners) return strut_path_corner_value(s, which - corners);
@@ -432,6 +477,7 @@ bool strut_path_switch_is_on(const strut_path_system *s, int32_t which) {
   int32_t grips = strut_path_first_grip_switch(s);
   if (which >= grips) return s->contacts.contact[which - grips].sticks;
   if (which >= strut_path_first_corner_switch(s)) return true; /* it changes its facet instead */
+  if (which < members && !is_plain_cable(s->model, which)) return true; /* it is turned round */
   return which < members ? s->latest.pulling[which] : s->contacts.contact[which - members].touches;
 }
 
@@ -444,7 +490,7 @@ void strut_path_switch_set(strut_path_system *s, int32_t which, bool on) {
   else if (which >= grips)
     strut_path_grip_set(s, which - grips, on);
   else if (which < members)
-    s->latest.pulling[which] = on;
+    s->latest.pulling[which] = on || !is_plain_cable(s->model, which);
   else if (which < corners)
     strut_path_contact_switch_set(s, which - members, on);
 }

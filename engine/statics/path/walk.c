@@ -73,6 +73,7 @@ void strut_path_add_point(strut_path_walk *w, int32_t negative) {
       !reserve_items(w, &items, p->point_count, &w->point_room, sizeof *p->points))
     return;
   strut_path_keep_turns(&w->system);
+  strut_path_keep_directions(&w->system);
   p->points = items;
   p->points[p->point_count++] = point;
 }
@@ -110,15 +111,13 @@ void strut_path_add_event(strut_path_walk *w, strut_path_event_kind kind, const 
 
 /* Predictor, corrector, and the events between them. */
 
-enum { SLOW = 8, ROUNDS = 4, SUBSTEPS = 16, MOST_BENDS = 1000 };
+enum { ROUNDS = 4, MOST_BENDS = 1000 };
 
-static const double LONGEST = 0.05, SHORTEST = 1e-9; /* steps [units of y] */
-static const double SHORTEST_CHECKED = 1e-5;         /* likewise, for jumps between branches */
+static const double LONGEST = 0.05;          /* step [units of y] */
+static const double SHORT = 1e-3;            /* from here on steps grow slowly */
+static const double SHORTEST_CHECKED = 1e-5; /* likewise, for jumps between branches */
 static const double LONGEST_HELD =
-    0.02;                           /* where the curve is a reaction, which bends as it likes */
-static const double BLUNT = 1e-6;   /* step over a kink that is not located */
-static const double BEND = 0.97;    /* cosine that tangents of neighbouring points keep */
-static const double COUPLED = 1e-6; /* of the load: what a null vector feels at a limit point */
+    0.02; /* where the curve is a reaction, which bends as it likes */
 static const double BOUND = 1e3, DEEP = -10; /* sizes away; ranges the other way */
 /* Relative to the size: a cable whose length equals its rest length along the path, up to rounding. */
 static const double HANGING = 1e-15;
@@ -131,65 +130,12 @@ double strut_path_dot(const strut_path_walk *w, const double *a, const double *b
   return sum;
 }
 
-/* The node that a vector over the free coordinates moves most. */
-static int32_t most_moved(const strut_path_system *s, const gsl_vector *vector) {
-  int32_t best = 0;
-  double most = -1;
-  for (int32_t i = 0; i < s->n; i++) {
-    int32_t at = s->potential->coordinate[i];
-    double moved = gsl_vector_get(vector, (size_t)i), square = moved * moved;
-    if (i > 0 && s->potential->coordinate[i - 1] == at - 1 && at % 2 == 1) {
-      double other = gsl_vector_get(vector, (size_t)(i - 1));
-      square += other * other;
-    }
-    if (square > most * (1 + 1e-9)) most = square, best = at / 2;
-  }
-  return best;
-}
-
-/* The share of a unit vector that the parameter works on. */
-static double coupling(const strut_path_system *s, const gsl_vector *vector) {
-  double work = 0, load = 0;
-  for (int32_t i = 0; i < s->n; i++)
-    work += s->latest.slope[i] * gsl_vector_get(vector, (size_t)i),
-        load += s->latest.slope[i] * s->latest.slope[i];
-  return load > 0 ? fabs(work) / sqrt(load) : 0;
-}
-
-const char *strut_path_subject(const strut_path_walk *w) {
-  return w->path->over == STRUT_PATH_OVER_LOAD ? "the factor" : w->path->name;
-}
-
-const char *strut_path_turn(const strut_path_walk *w, double turn) {
-  bool grew = (turn > 0) == (w->system.parameter.range > 0);
-  if (turn > 0) return grew ? "can grow no further" : "can fall no further";
-  return grew ? "falls again from" : "grows again from";
-}
-
-/* An eigenvalue has changed its sign on the piece: a limit point or a fork. */
-static void find_critical(strut_path_walk *w, const strut_path_piece *piece, int32_t which,
-                          double turn, int32_t before, int32_t after) {
+/* Do the nodes of a member pass beside one another, so that it turns fast, but does not shrink to nothing? */
+static bool is_passing_by(strut_path_walk *w, int32_t which, double place) {
   strut_path_system *s = &w->system;
-  char detail[300];
-  /* no sign at one end: a loose part, neutral there, and no branch */
-  if (strut_path_locate(s, piece, strut_path_measure_eigenvalue, which, w->trial) < 0) return;
-  if (!strut_path_spectrum(s, w->trial, STRUT_PATH_VECTORS)) return;
-  gsl_vector_const_view null = gsl_matrix_const_column(s->algebra.vectors, (size_t)which);
-  int32_t node = most_moved(s, &null.vector);
-  const char *name = s->model->scene->nodes[node].name;
-  const char *stable = before == 0  ? ", unstable from here"
-                       : after == 0 ? ", stable from here"
-                                    : "";
-  if (turn * w->tangent[s->n] < 0 && coupling(s, &null.vector) > COUPLED) {
-    snprintf(detail, sizeof detail, "%s %s here; %s moves most%s", strut_path_subject(w),
-             strut_path_turn(w, w->tangent[s->n]), name, stable);
-    strut_path_add_event(w, STRUT_PATH_LIMIT, w->trial, node, before, after, detail);
-  } else {
-    snprintf(detail, sizeof detail, "another path branches off: %s moves most on it%s", name,
-             stable);
-    strut_path_keep_fork(w, w->trial, &null.vector);
-    strut_path_add_event(w, STRUT_PATH_BIFURCATION, w->trial, node, before, after, detail);
-  }
+  if (place < 0 || !strut_path_turns_round(s, which) || !strut_path_evaluate(s, w->spare))
+    return false;
+  return fabs(s->member[which].length) > STRUT_PATH_EVEN * s->size;
 }
 
 /*
@@ -207,7 +153,7 @@ static double first_switch(strut_path_walk *w, const strut_path_piece *piece, in
     if (!isfinite(value) || (on ? value >= 0 : value <= 0)) continue;
     if (fabs(value) <= HANGING * s->size) continue;
     double place = strut_path_locate(s, piece, strut_path_measure_switch, k, w->spare);
-    *strayed = *strayed || s->strayed;
+    *strayed = *strayed || s->strayed || is_passing_by(w, k, place);
     if (place < 0) { /* it should have been thrown where the piece begins */
       place = 0;
       memcpy(w->spare, piece->from, strut_path_bytes(w));
@@ -223,81 +169,8 @@ void strut_path_count_negative(strut_path_walk *w) {
   strut_path_spectrum(&w->system, w->y,
                       STRUT_PATH_SIGNS); /* y is of the path: its value was not refused */
   w->negative = w->system.spectrum.negative;
-}
-
-/* A step of the present length: the next point and its tangent, which may differ from this one as `bend` says. */
-static bool try_step(strut_path_walk *w, double bend) {
-  strut_path_system *s = &w->system;
-  double here = strut_path_dot(w, w->tangent, w->y);
-  memcpy(w->next, w->y, strut_path_bytes(w));
-  for (int32_t i = 0; i <= s->n; i++) w->next[i] += w->step * w->tangent[i];
-  int used = strut_path_correct(s, w->tangent, here + w->step, w->next);
-  return used >= 0 && used <= SLOW && strut_path_distance(w, w->next, w->y) <= 1.5 * w->step &&
-         strut_path_tangent(s, w->next, w->tangent, w->next_tangent) &&
-         strut_path_dot(w, w->tangent, w->next_tangent) >= bend;
-}
-
-/* Cables that meet or leave a circle, or begin to rub, bend a path at once with no switch that says where. */
-static bool has_hidden_kinks(const strut_path_system *s) {
-  return strut_path_has_rubbing(s) || s->model->strains >> STRUT_STRAIN_WRAP & 1u;
-}
-
-/* Predictor and corrector, shorter until they succeed: the next point and its tangent. */
-static bool find_next(strut_path_walk *w) {
-  for (; w->step >= SHORTEST; w->step *= 0.5)
-    if (try_step(w, BEND)) return true;
-  for (w->step = BLUNT; has_hidden_kinks(&w->system) && w->step >= SHORTEST; w->step *= 0.1)
-    if (try_step(w, 0.0)) return true;
-  w->step = SHORTEST;
-  return false;
-}
-
-/* Does the path bend away from the point found, when it is followed in shorter steps? */
-static bool bends_away(strut_path_walk *w, double *y, double *tangent) {
-  strut_path_system *s = &w->system;
-  size_t tangent_bytes = ((size_t)s->n + 1) * sizeof *tangent;
-  memcpy(y, w->y, strut_path_bytes(w));
-  memcpy(tangent, w->tangent, tangent_bytes);
-  for (int k = 0; k < SUBSTEPS; k++) {
-    double here = strut_path_dot(w, tangent, y), step = w->step / SUBSTEPS;
-    for (int32_t i = 0; i <= s->n; i++) y[i] += step * tangent[i];
-    if (strut_path_correct(s, tangent, here + step, y) < 0) return true;
-    if (!strut_path_tangent(s, y, tangent, w->next_tangent)) return true;
-    if (strut_path_dot(w, tangent, w->next_tangent) < BEND) return true;
-    memcpy(tangent, w->next_tangent, tangent_bytes);
-  }
-  return !strut_path_tangent(s, w->next, w->tangent, w->next_tangent) ||
-         strut_path_dot(w, tangent, w->next_tangent) < BEND;
-}
-
-/*
- * The next point, on the branch of this one: where the number of negative eigenvalues changes without
- * a turn, a step may have jumped over a sharp bend onto another branch, as beside an imperfect fork.
- */
-static bool find_next_on_branch(strut_path_walk *w) {
-  strut_path_system *s = &w->system;
-  double *y = NULL, *tangent = NULL;
-  bool found = find_next(w), jumped = found && w->negative >= 0;
-  while (jumped) {
-    jumped = w->step > SHORTEST_CHECKED && w->tangent[s->n] * w->next_tangent[s->n] > 0 &&
-             strut_path_spectrum(s, w->next, STRUT_PATH_SIGNS) &&
-             s->spectrum.negative != w->negative;
-    if (!jumped) break;
-    if (!y)
-      y = strut_allocate(1, strut_path_bytes(w)), tangent = strut_allocate(1, strut_path_bytes(w));
-    w->failed = w->failed || !y || !tangent;
-    jumped = !w->failed && bends_away(w, y, tangent);
-    if (!jumped) break;
-    double whole = w->step;
-    w->step /= SUBSTEPS;
-    jumped = find_next(w);
-    if (jumped) continue;
-    w->step = whole; /* no shorter step succeeds: so be it */
-    found = find_next(w);
-  }
-  strut_release(y);
-  strut_release(tangent);
-  return found && !w->failed;
+  for (int32_t i = 0; i < w->system.n; i++)
+    w->values[i] = gsl_vector_get(w->system.algebra.values, (size_t)i);
 }
 
 /* Ends the path exactly at the requested value if this piece passes it. */
@@ -336,19 +209,6 @@ static bool land_on_stop(strut_path_walk *w, const strut_path_piece *piece) {
   return true;
 }
 
-/* All eigenvalues that change their sign on the piece, in the order in which they leave or come. */
-static void find_criticals(strut_path_walk *w, const strut_path_piece *piece) {
-  strut_path_system *s = &w->system;
-  double turn = w->next_tangent[s->n];
-  if (!strut_path_spectrum(s, piece->to, STRUT_PATH_SIGNS)) return;
-  int32_t before = w->negative, after = s->spectrum.negative, folded = s->spectrum.folded;
-  for (int32_t k = before; k < after && piece->length > 0; k++)
-    find_critical(w, piece, k - folded, turn, k, k + 1);
-  for (int32_t k = before; k > after && piece->length > 0; k--)
-    find_critical(w, piece, k - 1 - folded, turn, k, k - 1);
-  w->negative = after;
-}
-
 static bool is_away(const strut_path_walk *w) {
   double most = 0;
   for (int32_t i = 0; i < w->system.n; i++) most = fmax(most, fabs(w->y[i]));
@@ -366,7 +226,7 @@ static strut_path_end find_reason(strut_path_walk *w) {
 }
 
 /* A segment that is shorter than this part of the structure has lost its direction. */
-static const double VANISHED = 1e-6;
+static const double VANISHED = 1e-4;
 
 /* Says which member, or which segment of a running cable, has shrunk to nothing where no step succeeds. */
 static void name_vanished(strut_path_walk *w, char *text, size_t room) {
@@ -412,10 +272,31 @@ static bool end_path(strut_path_walk *w, strut_path_end end) {
 
 static bool pass_switch(strut_path_walk *w, int32_t which, const double *beyond) {
   const strut_path_system *s = &w->system;
+  if (strut_path_turns_round(s, which)) return strut_path_pass_zero_length(w, which);
   if (which < strut_path_first_corner_switch(s) || which >= strut_path_first_element_switch(s))
     return strut_path_pass_kink(w, which, beyond);
   return which < strut_path_first_grip_switch(s) ? strut_path_pass_corner(w, which)
                                                  : strut_path_pass_grip(w, which, beyond);
+}
+
+/* From w->fork, where the path ends, along another one. */
+static bool go_on_along(strut_path_walk *w, const strut_path_ray *way) {
+  w->bends = 0;
+  w->arc += strut_path_distance(w, w->fork, w->y);
+  memcpy(w->y, w->fork, strut_path_bytes(w));
+  w->negative = way->negative;
+  strut_path_add_point(w, w->negative);
+  memcpy(w->next, way->y, strut_path_bytes(w));
+  bool landed = land_on_end(w);
+  w->step = strut_path_distance(w, w->next, w->y);
+  w->arc += w->step;
+  memcpy(w->y, w->next, strut_path_bytes(w));
+  if (w->failed || !strut_path_tangent(&w->system, w->y, way->direction, w->tangent))
+    return end_path(w, STRUT_PATH_LOST);
+  strut_path_count_negative(w);
+  strut_path_add_point(w, w->negative);
+  if (landed) w->path->end = STRUT_PATH_UNTIL;
+  return !landed && !w->failed;
 }
 
 /* Ends the piece where a switch is thrown and continues from there. */
@@ -425,13 +306,15 @@ static bool end_at_switch(strut_path_walk *w, strut_path_piece *piece, int32_t w
   memcpy(w->next, w->trial, strut_path_bytes(w));
   if (!strut_path_tangent(&w->system, w->next, w->tangent, w->next_tangent))
     memcpy(w->next_tangent, w->tangent, strut_path_bytes(w));
-  find_criticals(w, piece);
+  strut_path_ray way;
+  if (strut_path_find_criticals(w, piece, &way)) return go_on_along(w, &way);
   w->arc += strut_path_distance(w, w->next, w->y);
   memcpy(w->y, w->next, strut_path_bytes(w));
   memcpy(w->tangent, w->next_tangent, strut_path_bytes(w));
   int32_t negative = w->negative;
   bool on = pass_switch(w, which, beyond);
   double since = w->arc - w->path->points[w->path->point_count - 1].arc;
+  if (!on && strut_path_turns_round(&w->system, which)) return end_path(w, STRUT_PATH_LOST);
   bool bends = on && negative == w->negative && strut_path_is_bend(&w->system, which);
   if (bends && since < w->step && ++w->bends < MOST_BENDS) return true;
   strut_path_add_point(w, w->negative);
@@ -446,7 +329,7 @@ static bool take_step(strut_path_walk *w) {
   bool landed, stopped, strayed;
   double place;
   do {
-    if (!find_next_on_branch(w)) return end_path(w, find_reason(w));
+    if (!strut_path_find_next(w)) return end_path(w, find_reason(w));
     piece.length = strut_path_dot(w, w->tangent, w->next) - strut_path_dot(w, w->tangent, w->y);
     landed = land_on_end(w), stopped = land_on_stop(w, &piece);
     if (landed || stopped)
@@ -464,7 +347,8 @@ static bool take_step(strut_path_walk *w) {
     return on && !w->failed;
   }
   w->bends = 0;
-  find_criticals(w, &piece);
+  strut_path_ray way;
+  if (strut_path_find_criticals(w, &piece, &way)) return go_on_along(w, &way);
   w->arc += strut_path_distance(w, w->next, w->y);
   memcpy(w->y, w->next, strut_path_bytes(w));
   memcpy(w->tangent, w->next_tangent, strut_path_bytes(w));
@@ -475,7 +359,8 @@ static bool take_step(strut_path_walk *w) {
     return false;
   }
   if (is_away(w)) return end_path(w, STRUT_PATH_AWAY);
-  w->step = fmin(1.4 * w->step, w->path->coordinate >= 0 ? LONGEST_HELD : LONGEST);
+  w->step = fmin((w->step < SHORT ? 4.0 : 1.4) * w->step,
+                 w->path->coordinate >= 0 ? LONGEST_HELD : LONGEST);
   return true;
 }
 
