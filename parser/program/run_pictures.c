@@ -20,7 +20,8 @@ static strut_status read_film(const strut_command *command, const strut_argument
   if (status == STRUT_OK)
     status = strut_option_within(command, arguments, STRUT_OPTION_FPS, STRUT_DIM_NONE, 1, 120,
                                  &film->fps);
-  if (status == STRUT_OK && !film->path && (film->speed != 1 || film->fps != 0))
+  if (status == STRUT_OK && !film->path &&
+      (strut_option_text(arguments, STRUT_OPTION_SPEED) || film->fps != 0))
     status = strut_usage_error(command, arguments, "--speed and --fps need --animate FILE");
   return status;
 }

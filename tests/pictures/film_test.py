@@ -182,7 +182,7 @@ def test_usage():
     for code, words, message in [
             (1, ["--animate", "f.avi"], ".mp4, .webm or .gif"),
             (1, ["--animate", ".mp4"], ".mp4, .webm or .gif"),
-            (1, ["--speed", "2"], "--animate"),
+            (1, ["--speed", "1"], "--animate"),
             (1, ["--fps", "2"], "--animate"),
             (1, ["--animate", "f.mp4", "--speed", "0"], "--speed"),
             (1, ["--animate", "f.mp4", "--speed", "1/0"], "--speed"),

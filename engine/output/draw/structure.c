@@ -27,6 +27,13 @@ strut_bounds strut_bounds_none(void) {
   return (strut_bounds){{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
 }
 
+void strut_bounds_widen(strut_bounds *b, const double low[2], const double high[2]) {
+  for (int d = 0; d < 2; d++) {
+    b->low[d] = fmin(b->low[d], low[d]);
+    b->high[d] = fmax(b->high[d], high[d]);
+  }
+}
+
 void strut_bounds_add(strut_bounds *b, const strut_model *model, const double *q) {
   for (int32_t i = 0; i < 2 * model->node_count; i++) {
     if (!isfinite(q[i])) continue;

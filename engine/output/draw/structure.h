@@ -21,6 +21,8 @@ typedef struct strut_bounds {
 } strut_bounds;
 
 STRUT_API strut_bounds strut_bounds_none(void);
+/** Widens the bounds to hold a rectangle, or a point as both its corners. */
+STRUT_API void strut_bounds_widen(strut_bounds *bounds, const double low[2], const double high[2]);
 /** Widens the bounds by all nodes of a shape q (model->length). */
 STRUT_API void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const double *q);
 /**

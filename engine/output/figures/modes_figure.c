@@ -100,14 +100,6 @@ static void find_taut(figure *f) {
   }
 }
 
-/* Widens one rectangle to hold the other. */
-static void widen(strut_bounds *bounds, const strut_bounds *other) {
-  for (int d = 0; d < 2; d++) {
-    bounds->low[d] = fmin(bounds->low[d], other->low[d]);
-    bounds->high[d] = fmax(bounds->high[d], other->high[d]);
-  }
-}
-
 static void find_bounds(figure *f) {
   f->all = strut_bounds_none();
   strut_bounds_add(&f->all, f->model, f->modes->q);
@@ -118,7 +110,7 @@ static void find_bounds(figure *f) {
     strut_bounds_add(&f->bounds[k], f->model, f->modes->q);
     displace(f, &f->modes->list[f->shown[k]]);
     strut_bounds_add(&f->bounds[k], f->model, f->moved);
-    widen(&f->all, &f->bounds[k]);
+    strut_bounds_widen(&f->all, f->bounds[k].low, f->bounds[k].high);
   }
 }
 

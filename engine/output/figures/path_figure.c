@@ -239,10 +239,7 @@ static strut_bounds bounds_of(path_picture *p) {
     strut_bounds_add(&bounds, p->model, enlarged(p, p->vertices[p->stops[i].vertex].q));
   for (size_t k = 0; k < p->count; k++) { /* the path of the node between them */
     const double *at = enlarged(p, p->vertices[k].q) + p->coordinate / 2 * 2;
-    for (int d = 0; d < 2; d++) {
-      bounds.low[d] = fmin(bounds.low[d], at[d]);
-      bounds.high[d] = fmax(bounds.high[d], at[d]);
-    }
+    strut_bounds_widen(&bounds, at, at);
   }
   return bounds;
 }
@@ -293,10 +290,7 @@ static strut_window find_window(path_picture *p, strut_box box) {
       for (int k = 0; k < 2; k++) {
         const double at[2] = {window.left + (ends[k][0] - box.x) / window.scale,
                               window.top - (ends[k][1] - box.y) / window.scale};
-        for (int d = 0; d < 2; d++) {
-          all.low[d] = fmin(all.low[d], at[d]);
-          all.high[d] = fmax(all.high[d], at[d]);
-        }
+        strut_bounds_widen(&all, at, at);
       }
     }
     window = strut_window_fit(box, all, MARGIN);

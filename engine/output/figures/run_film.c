@@ -108,10 +108,7 @@ static void find_view(making *m) {
   m->view = strut_bounds_none();
   for (size_t i = 0; i < m->film->frames; i++) {
     const strut_bounds b = move(m, i, -1, bounds_of(m, i));
-    for (int d = 0; d < 2; d++) {
-      m->view.low[d] = fmin(m->view.low[d], b.low[d]);
-      m->view.high[d] = fmax(m->view.high[d], b.high[d]);
-    }
+    strut_bounds_widen(&m->view, b.low, b.high);
   }
   strut_run_add_ground(&m->run, &m->view);
 }
