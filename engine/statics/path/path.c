@@ -391,6 +391,9 @@ static strut_status walk_from(path_start *b, double until, int32_t steps, strut_
   return status;
 }
 
+/* A longer range than this is a mistake: squares of it have no number. */
+static const double LONGEST_RANGE = 1e100;
+
 /* Unit of what the actuator drives. */
 static const char *unit_of_drive(const strut_actuator *a) {
   return a->member >= 0 ? "m" : a->hinge >= 0 ? "rad" : "N/m";
@@ -436,6 +439,9 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   *path = (strut_path){0};
   if (!(fabs(until - options->from) > 0))
     return strut_fail(error, STRUT_USAGE, "the path ends where it starts, at %.6g", until);
+  if (!(fabs(until - options->from) < LONGEST_RANGE))
+    return strut_fail(error, STRUT_USAGE, "the path's range from %g to %g is too large",
+                      options->from, until);
   b.load = strut_arena_allocate(&b.arena, length, sizeof *b.load);
   b.q = strut_arena_allocate(&b.arena, length, sizeof *b.q);
   strut_status status =
