@@ -74,4 +74,3 @@ for name in 'Füße' '节点' 'κόμβος' 'узел'; do
   expect 0 check named.yaml
 done
 
-done_testing

@@ -124,4 +124,3 @@ axes: [{k: [1]}]" | sed "s|pulled.yaml|$model|" >study.yaml
   expect 2 check study.yaml
   grep -q 'study.yaml:3:8: error' err || fail "no place of the model $model"
 done
-done_testing

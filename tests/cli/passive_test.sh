@@ -202,4 +202,3 @@ for start in 'velocity: [0, 2]' 'velocities: {a: [0, 2], b: [0, 2]}'; do
   done
 done
 
-done_testing
