@@ -155,7 +155,7 @@ void strut_check_names(strut_checker *checker) {
 }
 
 /* Beyond it squares of distances have no number [m]. */
-static const double FARTHEST = 1e100;
+static const double FARTHEST = 1e150;
 
 void strut_check_nodes(strut_checker *checker) {
   const strut_scene *scene = checker->scene;

@@ -87,7 +87,7 @@ said() { # TEXT: of `check` of the scene on standard input
   tells 2 "$1" check said.yaml
   grep -q 'said.yaml:[0-9]*:[0-9]*: error' err || fail "no place of: $1"
 }
-echo "$pair" | sed 's/\[1, 0\]/[1e200, 0]/' | said "the position of node 'b' is more than 1e+100 m away"
+echo "$pair" | sed 's/\[1, 0\]/[1e200, 0]/' | said "the position of node 'b' is more than 1e+150 m away"
 said "a number of state 'o' is not finite" <<END
 $pair
 oscillators: {o: {frequency: 1e308 Hz}}
