@@ -103,9 +103,9 @@ def killed():
 
 
 def hidden():
-    """A name that turns the direction of writing appears as its number in a terminal, and as it is in a pipe."""
-    write("hidden.yaml", MASS.replace("STIFFNESS", "100 N/m").replace("b:", '"b\u202e":').replace(
-        "w, b", 'w, "b\u202e"') + "solver: {step: 1 ms}\nrun: {duration: 1 s}\n")
+    """A title that turns the direction of writing appears as its number in a terminal, and as it is in a pipe."""
+    write("hidden.yaml", MASS.replace("STIFFNESS", "100 N/m") +
+          'name: "b\u202e"\nsolver: {step: 1 ms}\nrun: {duration: 1 s}\n')
     try:
         ours, theirs = pty.openpty()
     except OSError:

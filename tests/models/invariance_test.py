@@ -171,7 +171,7 @@ def numbers_of(analysis, found, change):
         for key in ("count", "rigid_body"):
             yield f"mechanisms {key}", found["mechanisms"][key], 0.0
     elif analysis == "form":
-        most = max(map(abs, found["densities"].values()), default=0.0)
+        most = max(map(abs, found["densities"].values()), default=0.0) + 1e-9
         for name, density in sorted(found["densities"].items()):
             yield name, density, most
     elif analysis == "path":
@@ -204,6 +204,8 @@ def allowed(analysis, kind, reach, size):
 
 
 def compare(name, what, change, one, other, analysis, reach, size):
+    if isinstance(other, int) and reach > 1e4 * size:
+        return  # refused where too few digits are left
     if isinstance(one, int) or isinstance(other, int):
         if one != other:
             fail(f"{name}, {what}: {analysis} ends with {other if isinstance(other, int) else 0}, "
