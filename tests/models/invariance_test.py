@@ -172,11 +172,12 @@ def numbers_of(analysis, found, change):
             yield f"mechanisms {key}", found["mechanisms"][key], 0.0
     elif analysis == "form":
         most = max(map(abs, found["densities"].values()), default=0.0) + 1e-9
-        for name, density in sorted(found["densities"].items()):
-            yield name, density, most
+        for i, density in enumerate(sorted(found["densities"].values())):  # of mirror images either is right
+            yield f"density {i + 1}", density, most
     elif analysis == "path":
         yield "end " + found["end"], 0.0, 0.0
-        for i, event in enumerate(found["events"]):
+        some = MANY if found["end"] == "steps" else None  # as far as both come
+        for i, event in enumerate(found["events"][:some]):
             if "factor" in event and event["factor"] is not None:
                 yield f"{event['kind']} {i}", event["factor"], abs(event["factor"]) + 1e-3
     elif analysis == "equilibria":

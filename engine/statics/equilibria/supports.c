@@ -2,6 +2,7 @@
 #include "engine/statics/equilibria/equilibria_parts.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -125,18 +126,26 @@ static bool bring_near(strut_level_frame *level) {
   return strut_scene_shift(s, by, &level->arena);
 }
 
+/* Turns a force, of which rounding leaves no part along or across the ground where there is none. */
+static void turn_force(const strut_level_frame *level, double force[2]) {
+  strut_level_frame_from_original(level, 1, force);
+  double least = 16.0 * DBL_EPSILON * hypot(force[0], force[1]);
+  for (int c = 0; c < 2; c++)
+    if (fabs(force[c]) < least) force[c] = 0.0;
+}
+
 static void make_level(strut_level_frame *level) {
   strut_scene *s = &level->scene;
   if (level->sine == 0.0) return;
   s->ground.height *= level->cosine;
   s->ground.slope = 0.0;
-  strut_level_frame_from_original(level, 1, s->gravity);
+  turn_force(level, s->gravity);
   for (size_t i = 0; i < s->node_count; i++) {
     strut_level_frame_from_original(level, 1, s->nodes[i].position);
     strut_level_frame_from_original(level, 1, s->nodes[i].start);
   }
   for (size_t i = 0; i < s->load_count; i++)
-    strut_level_frame_from_original(level, 1, s->loads[i].force);
+    turn_force(level, s->loads[i].force);
   for (size_t i = 0; i < s->configuration_count; i++)
     if (s->configurations[i].position)
       strut_level_frame_from_original(level, s->node_count, s->configurations[i].position[0]);
