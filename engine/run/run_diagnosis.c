@@ -357,7 +357,7 @@ static void warn_of_wide_bands(const strut_run *r) {
         b->rubbed, remedy);
   if (b->crept > WIDE * b->speed)
     strut_summary_warn(r->summary, "wide_band",
-                       "nodes that should stick creep within their stick bands, at %.2g %% of the "
+                       "feet that should stick creep within their stick bands, at %.2g %% of the "
                        "mean speed of the structure, which changes its motion; %s",
                        100.0 * b->crept / b->speed, remedy);
 }

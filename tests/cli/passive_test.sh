@@ -202,3 +202,19 @@ for start in 'velocity: [0, 2]' 'velocities: {a: [0, 2], b: [0, 2]}'; do
   done
 done
 
+
+# ---- feet, whose band is a width within which they creep ----
+cat >footed.yaml <<'END'
+strut: 1
+parameters: {band: 1 mm/s}
+gravity: [0, -9.81]
+nodes: {a: {position: [0, 0.0495], mass: 1}, b: {position: [0.3, 0.1023966], mass: 1}}
+members: {m: {kind: bar, nodes: [a, b], stiffness: 1e5, damping: 100}}
+feet: {f: {node: a, member: m, radius: 50 mm}, g: {node: b, member: m, radius: 50 mm}}
+ground: {slope: 10 deg, stiffness: 1e4, damping: 100, friction: {mu: 0.5, stick_velocity: band}}
+initial: {velocity: [0.05, 0.0088]}
+solver: {step: 0.1 ms}
+run: {duration: 10 s}
+END
+tells 0 "creep within their stick bands" run footed.yaml
+tells 5 "creep within their stick bands" run footed.yaml --accuracy 1%

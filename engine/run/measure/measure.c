@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "engine/forces/moving_masses.h"
+#include "engine/forces/rubbing.h"
 #include "engine/forces/support_motion.h"
 #include "engine/forces/surfaces.h"
 #include "engine/model/pose.h"
@@ -95,6 +96,10 @@ static double lost_in(const strut_energy *e, strut_loss loss) {
 /* Slower than this part of a band nothing creeps. */
 static const double AT_REST = 1e-3;
 
+static double creep_within(double band, double slip) {
+  return fabs(slip) < band && fabs(slip) > AT_REST * band ? fabs(slip) : 0.0;
+}
+
 /*
  * Within its band Karnopp's friction balances the other forces whatever the speed, so that it may give energy, at
  * most with the speed at the edge. Normal forces between samples are taken to be a few times those at them.
@@ -119,7 +124,17 @@ static double creeping_power(const strut_model *model, const strut_state *state,
              (4.0 * fmax(0.0, -gap * e->stiffness) + weight);
     if (!(gap < 0.0)) continue;
     feet++;
-    if (fabs(slip) < band && fabs(slip) > AT_REST * band) crept += fabs(slip);
+    crept += creep_within(band, slip);
+  }
+  for (int32_t i = 0; i < model->rubbing.count;
+       i++) { /* feet have no stick: within the band they creep */
+    const strut_rubbing_entry *f = &model->rubbing.item[i];
+    double normal, slip = strut_rubbing_slip(model, state, i, &normal);
+    if (f->contact < 0 || f->bend >= 0 || !(normal > 0.0)) continue;
+    const strut_friction *friction = &model->scene->contacts[f->contact].friction;
+    if (!strut_friction_has_band(friction->law)) continue;
+    feet++;
+    crept += creep_within(friction->stick_velocity, slip);
   }
   if (feet) monitor->crept += crept / feet, monitor->speed += speed;
   return power;
