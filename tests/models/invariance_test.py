@@ -171,7 +171,7 @@ def numbers_of(analysis, found, change):
         for key in ("count", "rigid_body"):
             yield f"mechanisms {key}", found["mechanisms"][key], 0.0
     elif analysis == "form":
-        most = max(map(abs, found["densities"].values()), default=0.0) + 1e-9
+        most = max(map(abs, found["densities"].values()), default=0.0) + 1e-6 * found["stiffest"]
         for i, density in enumerate(sorted(found["densities"].values())):  # of mirror images either is right
             yield f"density {i + 1}", density, most
     elif analysis == "path":
@@ -193,7 +193,11 @@ def compute(program, analysis, path):
     words = {"run": ["--integrator", "rk4-events"], "equilibria": ["--starts", "30"]}.get(analysis, [])
     done = subprocess.run([program, analysis, path, "--json", "--quiet", *words], capture_output=True, text=True,
                           timeout=300)
-    return json.loads(done.stdout) if done.returncode == 0 and done.stdout else done.returncode
+    if done.returncode or not done.stdout:
+        return done.returncode
+    with open(path, encoding="utf-8") as file:
+        stiffnesses = [m["stiffness"] for m in each(json.load(file), "members") if "stiffness" in m]
+    return json.loads(done.stdout) | {"stiffest": max((k for k in stiffnesses if not isinstance(k, str)), default=0.0)}
 
 
 def allowed(analysis, kind, reach, size):

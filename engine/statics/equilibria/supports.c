@@ -144,8 +144,7 @@ static void make_level(strut_level_frame *level) {
     strut_level_frame_from_original(level, 1, s->nodes[i].position);
     strut_level_frame_from_original(level, 1, s->nodes[i].start);
   }
-  for (size_t i = 0; i < s->load_count; i++)
-    turn_force(level, s->loads[i].force);
+  for (size_t i = 0; i < s->load_count; i++) turn_force(level, s->loads[i].force);
   for (size_t i = 0; i < s->configuration_count; i++)
     if (s->configurations[i].position)
       strut_level_frame_from_original(level, s->node_count, s->configurations[i].position[0]);
