@@ -15,7 +15,7 @@
 /* X(code, exit code of the program, text) */
 #define STRUT_STATUS_TABLE(X)                                                                      \
   X(STRUT_OK, 0, "completed")                                                                      \
-  X(STRUT_USAGE, 1, "wrong use of the program or of a function")                                   \
+  X(STRUT_USAGE, 1, "cannot be done as asked")                                                     \
   X(STRUT_BAD_SCENE, 2, "the scene is not valid")                                                  \
   X(STRUT_DIVERGED, 3, "diverged")                                                                 \
   X(STRUT_STEP_TOO_LARGE, 3, "the step is above the stability limit")                              \

@@ -287,7 +287,7 @@ void strut_breakable_break(const strut_model *model, strut_state *state, int32_t
   for (int32_t i = table->breakable[breakable].first; i >= 0; i = table->element[i].sibling) {
     strut_element_evaluate(model, i, state->latest->rest, state->q, state->history.turn[i], &pose);
     energy += pose.energy;
-    state->latest->rest[table->element[i].slot] = HUGE_VAL;
+    state->latest->rest[table->element[i].slot] = STRUT_GONE;
     state->latest->rest_rate[table->element[i].slot] = 0.0;
   }
   accumulate_loss(state, energy);

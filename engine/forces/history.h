@@ -26,8 +26,11 @@
 /** Modes of a slider, as state->modes.element_piece holds them; -1: by its force. */
 enum { STRUT_SLIDER_BACK, STRUT_SLIDER_HOLDS, STRUT_SLIDER_FORTH };
 
+/** The natural strain of an element that is gone: finite, as kernels multiply it by a stiffness of 0. */
+#define STRUT_GONE 1e300
+
 /** Has the element broken or been released, by its natural strain? */
-static inline bool strut_element_is_gone(double natural) { return isinf(natural) != 0; }
+static inline bool strut_element_is_gone(double natural) { return natural == STRUT_GONE; }
 
 /** k_1, F_1 and k_1 / k of an elastic-plastic element. */
 static inline double strut_slider_spring(const strut_element *e) {

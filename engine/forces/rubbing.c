@@ -70,6 +70,13 @@ static rubbing_forces forces_of(const strut_model *model, const strut_state *sta
   return r;
 }
 
+double strut_rubbing_slip(const strut_model *model, const strut_state *state, int32_t item,
+                          double *normal) {
+  rubbing_forces r = forces_of(model, state, item, state->q, state->v);
+  *normal = r.nodes ? r.normal : 0.0;
+  return r.slip;
+}
+
 static void add_entry(const strut_model *model, const strut_state *state, int32_t item,
                       const double *q, const double *v) {
   const strut_rubbing_entry *f = &model->rubbing.item[item];

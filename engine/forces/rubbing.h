@@ -19,6 +19,9 @@ int32_t strut_rubbing_slide(const strut_model *model, int32_t item, const double
 /** Adds all this friction to the state's force, and its power; after the elements. */
 void strut_rubbing_add_forces(const strut_model *model, const strut_state *state, const double *q,
                               const double *v);
+/** How fast an entry slides at the state [m/s], and the force that presses it [N]; 0 where it does not touch. */
+double strut_rubbing_slip(const strut_model *model, const strut_state *state, int32_t item,
+                          double *normal);
 /** How fast the bristles of an entry straighten as they slide at the state [1/s]; 0 where it has none. */
 double strut_rubbing_bristle_decay(const strut_model *model, const strut_state *state,
                                    int32_t item);

@@ -27,9 +27,38 @@ void strut_triplets_add(strut_triplets *triplets, int32_t row, int32_t column, d
   triplets->value[triplets->count++] = value;
 }
 
-/* Sorts a column's few rows, keeping the order of equals, and sums those; the new length. */
+/* A column of more entries, as of a hub, is merged. */
+enum { FEW = 32 };
+
+typedef struct entry {
+  int32_t row;
+  double value;
+} entry;
+
+/* Sorts by merging, keeping the order of equals; false: out of memory. */
+static bool merge_rows(int32_t *row, double *value, size_t length) {
+  entry *from = strut_allocate(2 * length, sizeof *from), *all = from, *to = from + length;
+  if (!all) return false;
+  for (size_t i = 0; i < length; i++) from[i] = (entry){row[i], value[i]};
+  for (size_t width = 1; width < length; width *= 2) {
+    for (size_t begin = 0; begin < length; begin += 2 * width) {
+      size_t middle = begin + width < length ? begin + width : length;
+      size_t end = middle + width < length ? middle + width : length;
+      for (size_t k = begin, a = begin, b = middle; k < end; k++)
+        to[k] = a < middle && (b >= end || from[a].row <= from[b].row) ? from[a++] : from[b++];
+    }
+    entry *other = from;
+    from = to, to = other;
+  }
+  for (size_t i = 0; i < length; i++) row[i] = from[i].row, value[i] = from[i].value;
+  strut_release(all);
+  return true;
+}
+
+/* Sorts a column's rows, keeping the order of equals, and sums those; the new length. */
 static int32_t tidy_column(int32_t *row, double *value, int32_t length) {
-  for (int32_t i = 1; i < length; i++)
+  bool merged = length > FEW && merge_rows(row, value, (size_t)length);
+  for (int32_t i = 1; i < length && !merged; i++)
     for (int32_t k = i; k > 0 && row[k - 1] > row[k]; k--) {
       int32_t r = row[k];
       double v = value[k];

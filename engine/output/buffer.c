@@ -62,11 +62,18 @@ static bool needs_quotes(const char *text, size_t length) {
   return needed;
 }
 
+/* Would a spreadsheet compute the text? A sign before a number makes a number. */
+static bool is_formula(const char *text, size_t length) {
+  if (length < 2 || !strchr("=@+-", text[0])) return false;
+  return text[0] == '=' || text[0] == '@' || !strchr("0123456789.i", text[1]);
+}
+
 size_t strut_csv_quote(const char *text, size_t length, char *cell) {
   size_t written = 0;
   length = strnlen(text, length);
   bool quoted = needs_quotes(text, length);
   if (quoted) cell[written++] = '"';
+  if (is_formula(text, length)) cell[written++] = '\'';
   for (size_t i = 0; i < length; i++) {
     if (text[i] == '"') cell[written++] = '"';
     cell[written++] = text[i];

@@ -196,6 +196,13 @@ static strut_rounded_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, DIGITS, unit);
 }
 
+/* In a unit that takes no prefix. */
+static strut_rounded_quantity plain(double value, int digits, const char *unit) {
+  strut_rounded_quantity q = {"none"};
+  if (isfinite(value)) snprintf(q.text, sizeof q.text, "%.*g %s", digits, value, unit);
+  return q;
+}
+
 /* What the numbers are worth, in one line; then why, where that is not what was asked for. */
 static void add_worth(strut_buffer *table, const strut_summary *s) {
   const strut_accuracy_summary *a = &s->accuracy;
@@ -320,8 +327,8 @@ static void add_hinges(strut_buffer *table, const strut_summary *s) {
   if (s->end.hinge_count)
     strut_buffer_add(table, "\n  %-16s %14s %14s\n", "hinge", "angle", "moment");
   for (size_t i = 0; i < s->end.hinge_count && i < MOST_ROWS; i++)
-    strut_buffer_add(table, "  %-16s %10.5g deg %14s\n", s->end.hinges[i].hinge,
-                     s->end.hinges[i].angle * (180.0 / STRUT_PI),
+    strut_buffer_add(table, "  %-16s %14s %14s\n", s->end.hinges[i].hinge,
+                     plain(s->end.hinges[i].angle * (180.0 / STRUT_PI), 5, "deg").text,
                      in(s->end.hinges[i].moment, "N m").text);
   add_more(table, s->end.hinge_count);
 }
@@ -330,7 +337,8 @@ static void add_cells(strut_buffer *table, const strut_summary *s) {
   if (s->end.cell_count)
     strut_buffer_add(table, "\n  %-16s %14s %14s\n", "cell", "area", "pressure");
   for (size_t i = 0; i < s->end.cell_count && i < MOST_ROWS; i++)
-    strut_buffer_add(table, "  %-16s %10.4g m^2 %14s\n", s->end.cells[i].cell, s->end.cells[i].area,
+    strut_buffer_add(table, "  %-16s %14s %14s\n", s->end.cells[i].cell,
+                     plain(s->end.cells[i].area, 4, "m^2").text,
                      in(s->end.cells[i].pressure, "N/m").text);
   add_more(table, s->end.cell_count);
 }

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/memory.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/nearby.h"
 #include "engine/forces/rubbing.h"
@@ -12,13 +13,15 @@
 /* A run beyond this multiple of the scene's size counts as diverged. */
 static const double RUNAWAY = 1e10;
 int32_t strut_run_find_lost_node(const strut_model *model, const strut_state *state) {
-  double bound = RUNAWAY * (model->size > 0 ? model->size : 1.0);
-  for (int32_t i = 0; i < model->node_count; i++) {
-    double x = state->q[2 * i], y = state->q[2 * i + 1];
-    double vx = state->v[2 * i], vy = state->v[2 * i + 1];
-    if (!(fabs(x) <= bound && fabs(y) <= bound) || isnan(vx + vy)) return i;
+  double bound = RUNAWAY * model->size;
+  int32_t lost = -1;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) {
+    double away = fabs(state->q[i] - model->start[i]);
+    if (away <= bound && isfinite(state->v[i])) continue;
+    if (!model->fixed[i]) return i / 2; /* a NaN spreads, but not first from what is held */
+    if (lost < 0) lost = i / 2;
   }
-  return -1;
+  return lost;
 }
 
 strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node) {
@@ -80,10 +83,38 @@ void strut_run_watch_bristles(strut_run *r) {
   }
 }
 
-/* What fixed steps can follow of a decay: as far as each method is stable on the real axis. */
-static void warn_of_bristles(const strut_run *r) {
+/* What fixed steps can follow of a decay [1/s]: as far as each method is stable on the real axis. */
+static double longest_step(const strut_run *r, double decay) {
   static const double most[STRUT_REGIONS] = {HUGE_VAL, 2.7, 2.0, 2.0};
-  double step = most[r->method->region] / r->bristles.decay;
+  return most[r->method->region] / decay;
+}
+
+/* The limit of steps that is known knows nothing of internal states, such as the gas of pipes. */
+strut_status strut_run_check_rates(const strut_run *r) {
+  const strut_scene *scene = r->model->scene;
+  int32_t state;
+  if (!r->model->feedback.state_count || r->options->force) return STRUT_OK;
+  double *work = strut_allocate(3 * (size_t)r->model->length, sizeof *work);
+  if (!work) return strut_no_memory(r->error, "for the model");
+  double rate = strut_states_rate(r->model, r->state, strut_time_grid_at(&r->grid, r->state->step),
+                                  work, &state);
+  double step = longest_step(r, rate);
+  strut_release(work);
+  if (!(r->dt > step)) return STRUT_OK;
+  size_t lag = (size_t)state - scene->state_count;
+  const char *name = (size_t)state < scene->state_count
+                         ? scene->states[state].name
+                         : scene->signals[r->model->feedback.lagged[lag]].name;
+  return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
+                    "%s '%s' settles within %.3g s at t = %.9g s, too fast for a step of %g s of "
+                    "%s; use solver.step <= %.2g s, adaptive, or --force to run anyway",
+                    (size_t)state < scene->state_count ? "pipe or state" : "the lag of signal",
+                    name ? name : "", 1.0 / rate, strut_run_time(r), r->dt, r->method->name,
+                    0.9 * step);
+}
+
+static void warn_of_bristles(const strut_run *r) {
+  double step = longest_step(r, r->bristles.decay);
   if (!(r->dt > step)) return;
   int32_t contact = r->model->rubbing.item[r->bristles.item].contact;
   strut_summary_warn(
@@ -117,6 +148,8 @@ strut_status strut_run_check_collapse(const strut_run *r) {
   const strut_scene *scene = r->model->scene;
   int32_t cell = strut_cell_that_collapsed(r->model, r->state->q);
   int32_t member = strut_member_that_is_wound_in(r->model, r->state->latest->rest);
+  strut_status rates = cell >= 0 ? strut_run_check_rates(r) : STRUT_OK;
+  if (rates) return rates;
   if (cell >= 0)
     return strut_fail(
         r->error, STRUT_DIVERGED,
@@ -144,7 +177,7 @@ static const char *fastest_node(const strut_run *r, bool of_contacts) {
   return r->model->scene->nodes[found].name;
 }
 
-strut_status strut_run_check_losses(const strut_run *r) {
+static strut_status check_losses(const strut_run *r) {
   static const char *const names[] = {[STRUT_LOSS_MEMBERS] = "the dampers of members",
                                       [STRUT_LOSS_CONTACT] = "the ground's dampers",
                                       [STRUT_LOSS_FRICTION] = "friction"};
@@ -157,6 +190,25 @@ strut_status strut_run_check_losses(const strut_run *r) {
       "motion, which is fastest at node '%s'; use a smaller step%s, or --force to continue anyway",
       b->time + r->grid.offset, names[b->giver], b->given, r->method->name,
       fastest_node(r, contacts), b->giver == STRUT_LOSS_FRICTION ? " or a smaller friction" : "");
+}
+
+/* What the balance sums, in its order. */
+static const char *first_not_finite(const strut_energy *e) {
+  const struct {
+    const char *name;
+    double value;
+  } parts[] = {{"kinetic energy", e->kinetic},
+               {"energy of the members", e->elastic},
+               {"energy of the ground's springs", e->contact},
+               {"work of the drives", e->drive_work},
+               {"work of the loads", e->load_work},
+               {"work of moving supports", e->support_work},
+               {"loss of the members' dampers", e->dissipated_members},
+               {"loss of the ground's dampers", e->dissipated_contact},
+               {"loss of friction", e->dissipated_friction}};
+  for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
+    if (!isfinite(parts[i].value)) return parts[i].name;
+  return "energy";
 }
 
 strut_status strut_run_check_states(const strut_run *r) {
@@ -175,6 +227,19 @@ strut_status strut_run_check_states(const strut_run *r) {
         own ? scene->states[i].name : "", own ? "'" : "", strut_run_time(r), r->dt);
   }
   return STRUT_OK;
+}
+
+strut_status strut_run_check_balance(const strut_run *r) {
+  const strut_energy *e = &r->summary->energy;
+  strut_status states = strut_run_check_states(r);
+  if (states) return states;
+  int32_t lost = strut_run_find_lost_node(r->model, r->state);
+  if (lost >= 0) return strut_run_fail_lost_node(r, lost);
+  if (isfinite(e->residual) && isfinite(e->moved)) return check_losses(r);
+  return strut_fail(r->error, STRUT_DIVERGED,
+                    "the %s is no longer a finite number at t = %.9g s with dt = %g s, and fastest "
+                    "is node '%s'; look for a stiffness, law or drive that is far too large there",
+                    first_not_finite(e), strut_run_time(r), r->dt, fastest_node(r, false));
 }
 
 strut_status strut_run_fail_method(const strut_run *r) {
@@ -272,6 +337,29 @@ static void warn_of_creep(const strut_run *r) {
                      scene->nodes[e[tie->contact[0]].node].name,
                      scene->nodes[e[tie->contact[1]].node].name, scene->members[tie->member].name,
                      tie->worst);
+}
+
+/* Feet that creep faster than this part of the structure's mean speed change its motion. */
+static const double WIDE = 0.1;
+
+/* Warns of friction that gave energy, and of bands so wide that creeping is much of the motion. */
+static void warn_of_wide_bands(const strut_run *r) {
+  const strut_balance_monitor *b = &r->watch.balance;
+  static const char *const remedy =
+      "use 'law: coulomb' with a method with events, such as rk4-events, or a far smaller "
+      "stick_velocity";
+  if (r->summary->energy.rubbed > 0.0)
+    strut_summary_warn(
+        r->summary, "friction_gives",
+        "friction gave %.3g J, which it can only take: within its band Karnopp's law "
+        "balances the other forces whatever the speed, so that what should rest "
+        "creeps, even uphill; %s",
+        b->rubbed, remedy);
+  if (b->crept > WIDE * b->speed)
+    strut_summary_warn(r->summary, "wide_band",
+                       "feet that should stick creep within their stick bands, at %.2g %% of the "
+                       "mean speed of the structure, which changes its motion; %s",
+                       100.0 * b->crept / b->speed, remedy);
 }
 
 static void warn_of_limit(const strut_run *r) {
@@ -472,6 +560,7 @@ void strut_run_warn(const strut_run *r) {
   warn_of_balance(r);
   warn_of_narrow_bands(r);
   warn_of_creep(r);
+  warn_of_wide_bands(r);
   warn_of_limit(r);
   warn_of_coarse_steps(r);
   warn_of_tunnelling(r);

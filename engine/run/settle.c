@@ -451,6 +451,7 @@ static strut_status relax_from(strut_relaxation *r, const double *from, strut_er
     if (i > 0) r->step *= 0.5;
     strut_state_reset(r->model, r->state);
     memcpy(r->state->q, from, (size_t)r->model->length * sizeof *from);
+    memset(r->state->v, 0, 2 * (size_t)r->model->node_count * sizeof *r->state->v);
     status = strut_relaxation_run(r, error);
   }
   return status;
@@ -506,7 +507,7 @@ strut_status strut_settle_experiment(const strut_model *model, const strut_exper
   return status;
 }
 
-/* Copies the scene with its nodes at rest in the positions q (length). */
+/* Copies the scene with its nodes in the positions q (length). */
 static strut_status move_start(const strut_scene *scene, const double *q,
                                strut_settled_start *start) {
   strut_scene *settled = start->scene = strut_arena_allocate(&start->arena, 1, sizeof *settled);
@@ -516,10 +517,8 @@ static strut_status move_start(const strut_scene *scene, const double *q,
   if (!settled->nodes) return STRUT_NO_MEMORY;
   memcpy(settled->nodes, scene->nodes, scene->node_count * sizeof *settled->nodes);
   for (size_t i = 0; i < scene->node_count; i++)
-    for (size_t c = 0; c < 2; c++) {
+    for (size_t c = 0; c < 2; c++)
       if (!scene->nodes[i].fixed[c]) settled->nodes[i].start[c] = q[2 * i + c];
-      settled->nodes[i].velocity[c] = 0.0;
-    }
   return STRUT_OK;
 }
 

@@ -54,6 +54,30 @@ static strut_status check_step_limit(const strut_run *r, bool bound) {
                     r->dt, r->dt > limit ? "above" : "at", r->method->name, limit, 0.9 * limit);
 }
 
+/* Steps for a turn of what turns fastest, below which its mean over a step is wrong, or nothing is right. */
+static const double FEW_STEPS = 10.0, LEAST_STEPS_OF_TURN = 2.0;
+
+/* Methods whose own error does not choose their steps do not notice what turns about once in a step. */
+static strut_status check_turns(const strut_run *r) {
+  strut_turning fastest =
+      strut_scene_fastest_turn(r->model->scene, (double)r->steps * r->dt, r->method->events);
+  double steps = 1.0 / (fastest.rate * r->dt);
+  if (strut_integrator_controls_error(r->method) || !(steps < FEW_STEPS)) return STRUT_OK;
+  if (steps < LEAST_STEPS_OF_TURN && !r->options->force)
+    return strut_fail(
+        r->error, STRUT_STEP_TOO_LARGE,
+        "%s turns at %.4g Hz, %.3g times in a step of %g s of %s, which sees "
+        "nothing of that; use solver.step <= %.2g s, adaptive, or --force to run anyway",
+        fastest.name, fastest.rate, 1.0 / steps, r->dt, r->method->name,
+        0.5 / (FEW_STEPS * fastest.rate));
+  if (!r->options->chosen)
+    strut_summary_warn(r->summary, "coarse_step",
+                       "%s turns at %.4g Hz, once in %.3g steps of %g s, too few to follow "
+                       "it; use solver.step <= %.2g s, adaptive, or --accuracy 1%%",
+                       fastest.name, fastest.rate, steps, r->dt, 0.5 / (FEW_STEPS * fastest.rate));
+  return STRUT_OK;
+}
+
 static strut_status allocate_summary(strut_run *r) {
   const strut_scene *scene = r->model->scene;
   strut_summary *s = r->summary;
@@ -130,7 +154,6 @@ static strut_status place_state(strut_run *r) {
     return STRUT_OK;
   }
   if (!r->experiment->settle.wanted) return STRUT_OK;
-  memset(r->state->v, 0, 2 * (size_t)r->model->node_count * sizeof(double));
   strut_status status = strut_settle_experiment(r->model, r->experiment, r->options->interrupt,
                                                 r->state->q, &r->summary->settle, r->error);
   r->summary->settle_time = r->summary->settle.time;
@@ -171,6 +194,7 @@ static strut_status prepare_run(strut_run *r) {
   if (!r->model->mass) return strut_fail(r->error, STRUT_SINGULAR, "a free node has no mass");
   if ((status = strut_integrator_check_samples(r->method, r->model, r->dt, r->error)))
     return status;
+  if ((status = check_turns(r))) return status;
   r->summary->feedback = strut_scene_has_feedback(scene);
   double *limit = &r->summary->step_limit;
   bool bound = false;
@@ -213,6 +237,7 @@ static strut_status prepare_run(strut_run *r) {
     return strut_no_memory(r->error, "for the model");
   strut_energy_reset_load_work(r->model, r->state);
   r->watch.initial = strut_energy_evaluate(r->model, r->state, begin);
+  if ((status = strut_run_check_rates(r))) return status;
   if (r->options->from && r->options->from->balance && r->state->balance)
     strut_balance_continue(r->options->from->balance, r->state, &r->watch.initial);
   strut_balance_begin(r->state, &r->watch.initial, begin, r->method->evaluations,
@@ -382,7 +407,7 @@ static strut_status sample_balance(strut_run *r) {
   if (r->method->lag > 0.0)
     strut_motion_frequency_sample(r->model, r->state, r->summary->energy.kinetic,
                                   &r->watch.frequency);
-  return strut_run_check_losses(r);
+  return strut_run_check_balance(r);
 }
 
 strut_status strut_run_sample(strut_run *r, int64_t *stop) {

@@ -99,10 +99,12 @@ void strut_run_watch_collisions(strut_run *run);
 void strut_run_watch_bristles(strut_run *run);
 /** STRUT_DIVERGED with the name of a cell without area, or of a member that is wound in. */
 strut_status strut_run_check_collapse(const strut_run *run);
-/** STRUT_DIVERGED with the place where a loss has given energy. */
-strut_status strut_run_check_losses(const strut_run *r);
+/** STRUT_DIVERGED where a loss has given energy, or an energy is no longer finite. */
+strut_status strut_run_check_balance(const strut_run *r);
 /** STRUT_DIVERGED with the name of an internal state that is no longer a finite number. */
 strut_status strut_run_check_states(const strut_run *r);
+/** STRUT_STEP_TOO_LARGE with the internal state that settles too fast for the step. */
+strut_status strut_run_check_rates(const strut_run *r);
 /** Reports a method that failed: STRUT_DIVERGED. */
 strut_status strut_run_fail_method(const strut_run *r);
 

@@ -154,6 +154,9 @@ void strut_check_names(strut_checker *checker) {
   }
 }
 
+/* Beyond it squares of distances have no number [m]. */
+static const double FARTHEST = 1e150;
+
 void strut_check_nodes(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   const void *usual = strut_thing_at(STRUT_THING_NODE)->usual;
@@ -165,12 +168,24 @@ void strut_check_nodes(strut_checker *checker) {
     strut_format_name(owner, "node", node->name, i);
     const strut_checked whose = {STRUT_ON_NODE, i, owner, NULL};
     strut_check_fields(checker, &whose, STRUT_FIELDS_NODE, node, usual);
-    if (!isfinite(node->position[0]) || !isfinite(node->position[1]))
-      strut_report_finding(checker, STRUT_ON_NODE, i, "position",
-                           "the position of %s is not finite", owner);
-    else if (!isfinite(node->start[0]) || !isfinite(node->start[1]))
-      strut_report_finding(checker, STRUT_ON_NODE, i, "start",
-                           "the start position of %s is not finite", owner);
+    const struct {
+      const char *key, *what;
+      const double *at;
+    } places[] = {{"position", "position", node->position},
+                  {"start", "start position", node->start}};
+    for (size_t k = 0; k < 2; k++) {
+      double away = fmax(fabs(places[k].at[0]), fabs(places[k].at[1]));
+      bool finite = isfinite(places[k].at[0]) && isfinite(places[k].at[1]);
+      if (finite && away <= FARTHEST) continue;
+      if (finite)
+        strut_report_finding(checker, STRUT_ON_NODE, i, places[k].key,
+                             "the %s of %s is more than %g m away", places[k].what, owner,
+                             FARTHEST);
+      else
+        strut_report_finding(checker, STRUT_ON_NODE, i, places[k].key, "the %s of %s is not finite",
+                             places[k].what, owner);
+      break;
+    }
     for (size_t c = 0; c < 2; c++) {
       if (!isfinite(node->velocity[c]))
         strut_report_finding(checker, STRUT_ON_NODE, i, "velocity",

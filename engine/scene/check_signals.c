@@ -310,6 +310,10 @@ static bool check_program(strut_checker *checker, const strut_program *program, 
   bool valid = program->length > 0;
   for (size_t i = 0; i < program->length && valid; i++) {
     const strut_instruction *p = &program->instruction[i];
+    if (p->operation == STRUT_OPERATION_NUMBER && !isfinite(p->number)) {
+      strut_report_finding(checker, subject, index, key, "a number of %s is not finite", owner);
+      return false;
+    }
     valid = is_known(checker->scene, p, signals);
     if (!valid) break;
     size_t operands = (size_t)strut_operation_operands(p->operation);

@@ -304,6 +304,21 @@ bool strut_scene_stop_grounds(strut_scene *scene, strut_arena *arena) {
   return good;
 }
 
+bool strut_scene_shift(strut_scene *scene, const double by[2], strut_arena *arena) {
+  for (int c = 0; c < 2; c++) {
+    for (size_t i = 0; i < scene->node_count; i++)
+      scene->nodes[i].position[c] += by[c], scene->nodes[i].start[c] += by[c];
+    for (size_t k = 0; k < scene->configuration_count; k++)
+      for (size_t i = 0; scene->configurations[k].position && i < scene->node_count; i++)
+        scene->configurations[k].position[i][c] += by[c];
+  }
+  if (scene->ground.present) scene->ground.height += by[1] - tan(scene->ground.slope) * by[0];
+  bool good = true;
+  for (size_t i = 0; i < scene->ground_count && good; i++)
+    good = shift_ground(&scene->grounds[i], by, arena);
+  return good;
+}
+
 /* ---- masses that slide ---- */
 
 double strut_sliding_mass_scale(const strut_scene *scene, size_t index) {

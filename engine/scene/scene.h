@@ -424,6 +424,8 @@ STRUT_API void strut_scene_stop_grip(const strut_scene *scene, strut_friction *f
  * false: out of memory of the arena.
  */
 STRUT_API bool strut_scene_stop_grounds(strut_scene *scene, strut_arena *arena);
+/** Moves everything in a copy whose nodes, configurations and grounds are its own; false: out of memory. */
+STRUT_API bool strut_scene_shift(strut_scene *scene, const double by[2], strut_arena *arena);
 
 /** What outputs call a contact: the name of its node, with that of the ground where there are several. */
 static inline const char *strut_contact_name(const strut_scene *scene, size_t contact) {

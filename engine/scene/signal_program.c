@@ -4,7 +4,10 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/scene/scene.h"
 
 /* A number and its time derivative. */
@@ -229,4 +232,111 @@ bool strut_scene_has_feedback(const strut_scene *scene) {
   for (size_t i = 0; i < scene->state_count; i++)
     if (reads_sensor(&scene->states[i].rate)) return true;
   return false;
+}
+
+/* ---- what turns ---- */
+
+enum { MOMENTS = 16 }; /* at which rates are looked at */
+
+static void note_turn(strut_turning *fastest, double rate, const char *kind, const char *name) {
+  if (!(fabs(rate) > fastest->rate)) return;
+  fastest->rate = fabs(rate);
+  snprintf(fastest->name, sizeof fastest->name, name ? "%s '%.80s'" : "%s", kind, name);
+}
+
+/* Where the instructions begin that compute the operand of number `end`. */
+static size_t begin_of_operand(const strut_program *program, size_t end) {
+  int wanted = 1;
+  while (end > 0 && wanted > 0)
+    wanted += strut_operation_operands(program->instruction[--end].operation) - 1;
+  return end;
+}
+
+/* The fastest argument of a sine or of whole numbers [turns/s]; what follows the motion is not known. */
+static double turns_of_program(const strut_scene *scene, const strut_program *program,
+                               double last) {
+  double most = 0.0, value, rate;
+  for (size_t i = 0; i < program->length; i++) {
+    strut_operation operation = program->instruction[i].operation;
+    bool wave = operation == STRUT_OPERATION_SIN || operation == STRUT_OPERATION_COS ||
+                operation == STRUT_OPERATION_TAN;
+    bool saw = operation == STRUT_OPERATION_FLOOR || operation == STRUT_OPERATION_CEIL ||
+               operation == STRUT_OPERATION_ROUND;
+    if (!wave && !saw) continue;
+    size_t begin = begin_of_operand(program, i);
+    strut_program angle = {i - begin, program->depth, program->instruction + begin};
+    for (int k = 0; k <= MOMENTS; k++) {
+      strut_program_evaluate(&angle, scene->signals, NULL, last * k / MOMENTS, &value, &rate);
+      rate = fabs(rate) / (wave ? STRUT_TAU : 1.0);
+      if (rate > most) most = rate;
+    }
+  }
+  return most;
+}
+
+static double turns_of_signal(const strut_scene *scene, const strut_signal *s, double last,
+                              bool stops) {
+  if (s->every > 0.0) return 0.0;
+  if (strut_signal_has_program(s)) return turns_of_program(scene, &s->program, last);
+  bool jumps = s->kind == STRUT_SQUARE || s->kind == STRUT_HALF_SINE;
+  bool turns = s->kind == STRUT_SINE || (jumps && !stops);
+  return turns && s->amplitude != 0.0 ? s->frequency : 0.0;
+}
+
+/* An oscillator's own rate is the number that its program begins with. */
+static double turns_of_state(const strut_internal_state *state) {
+  const strut_instruction *first = state->rate.instruction;
+  bool angle = state->unit && strcmp(state->unit, "rad") == 0 && state->rate.length > 0;
+  return angle && first->operation == STRUT_OPERATION_NUMBER ? first->number / STRUT_TAU : 0.0;
+}
+
+/* Notes signals that no name tells from others by what they drive. */
+static void note_user(const strut_scene *scene, double last, bool stops, int32_t signal,
+                      const char *kind, const char *name, strut_turning *fastest) {
+  if (signal < 0) return;
+  const strut_signal *s = &scene->signals[signal];
+  double rate = turns_of_signal(scene, s, last, stops);
+  note_turn(fastest, rate, s->name ? "signal" : kind, s->name ? s->name : name);
+  for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
+    note_user(scene, last, stops, s->terms[i], kind, name, fastest);
+  for (size_t i = 0; strut_signal_has_program(s) && i < s->program.length; i++) {
+    const strut_instruction *p = &s->program.instruction[i];
+    if (p->operation == STRUT_OPERATION_COLUMN && p->column.kind == STRUT_COLUMN_SIGNAL)
+      note_user(scene, last, stops, p->column.item, kind, name, fastest);
+  }
+}
+
+strut_turning strut_scene_fastest_turn(const strut_scene *scene, double last, bool stops) {
+  strut_turning fastest = {.rate = 0.0};
+  for (size_t i = 0; i < scene->actuator_count; i++)
+    note_user(scene, last, stops, scene->actuators[i].signal, "the drive of actuator",
+              scene->actuators[i].name, &fastest);
+  for (size_t i = 0; i < scene->load_count; i++)
+    note_user(scene, last, stops, scene->loads[i].signal, "load", scene->loads[i].name, &fastest);
+  for (size_t i = 0; i < scene->support_motion_count; i++)
+    note_user(scene, last, stops, scene->support_motions[i].signal, "the moving node",
+              scene->nodes[scene->support_motions[i].node].name, &fastest);
+  for (size_t i = 0; i < scene->sliding_count; i++)
+    note_user(scene, last, stops, scene->sliding_masses[i].signal, "sliding mass",
+              scene->sliding_masses[i].name, &fastest);
+  for (size_t i = 0; i < scene->ground_count; i++)
+    for (int c = 0; c < 2; c++)
+      if (scene->grounds[i].moves[c])
+        note_user(scene, last, stops, scene->grounds[i].motion[c], "the moving ground", NULL,
+                  &fastest);
+  for (size_t i = 0; i < scene->contact_count; i++)
+    if (scene->contacts[i].friction.driven)
+      note_user(scene, last, stops, scene->contacts[i].friction.signal, "friction", NULL, &fastest);
+  for (size_t i = 0; i < scene->unbalance_count; i++) {
+    const strut_unbalance *u = &scene->unbalances[i];
+    note_turn(&fastest, u->speed / STRUT_TAU, "unbalance", u->name);
+    double value, rate;
+    for (int k = 0; k <= MOMENTS && u->signal >= 0; k++) {
+      strut_signal_evaluate(scene->signals, u->signal, last * k / MOMENTS, &value, &rate);
+      note_turn(&fastest, rate / STRUT_TAU, "unbalance", u->name);
+    }
+  }
+  for (size_t i = 0; i < scene->state_count; i++)
+    note_turn(&fastest, turns_of_state(&scene->states[i]), "oscillator", scene->states[i].name);
+  return fastest;
 }

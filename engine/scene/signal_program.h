@@ -121,6 +121,17 @@ typedef struct strut_signal_traits {
 struct strut_scene;
 /** Of signal `index` of a valid scene. */
 STRUT_API strut_signal_traits strut_signal_describe(const struct strut_scene *scene, int32_t index);
+/** What turns fastest in a scene: waves, sines of expressions, oscillators, unbalances. */
+typedef struct strut_turning {
+  double rate;    /* [1/s]; 0: nothing turns */
+  char name[120]; /* such as "signal 's'" */
+} strut_turning;
+/**
+ * Finds it within `last` [s]. `stops`: the method stops where a signal jumps, so that squares and halves of
+ * sines do not count.
+ */
+STRUT_API strut_turning strut_scene_fastest_turn(const struct strut_scene *scene, double last,
+                                                 bool stops);
 /** Does some signal or internal state follow a sensor? Modes and step limits know nothing of that. */
 STRUT_API bool strut_scene_has_feedback(const struct strut_scene *scene);
 

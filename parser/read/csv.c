@@ -23,6 +23,9 @@ typedef struct reader {
 
 static void step(reader *r) {
   unsigned char c = (unsigned char)*r->at++;
+  if (!c) /* texts end there */
+    strut_diagnose(r->diagnostics, strut_place_at(r->line, r->column, 1),
+                   "a NUL byte is not allowed; the file is damaged, or no text");
   if (c == '\n') {
     r->line++;
     r->column = 1;
@@ -198,11 +201,11 @@ strut_status strut_csv_read(const char *text, size_t length, strut_diagnostics *
   *csv = (strut_csv){0};
   if (length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) r.at += 3; /* a byte order mark */
   if (r.at == r.end)
-    strut_diagnose(diagnostics, (strut_place){0}, "the file is empty, expected a table");
+    strut_diagnose(diagnostics, strut_place_at(1, 1, 1), "the file is empty, expected a table");
   else
     read_lines(&r);
   if (!r.failed && !diagnostics->count && !csv->row_count)
-    strut_diagnose(diagnostics, (strut_place){0}, "the table has a header but no rows");
+    strut_diagnose(diagnostics, strut_place_at(1, 1, 1), "the table has a header but no rows");
   if (!r.failed && !diagnostics->count && !finish(&r)) r.failed = true;
   strut_release(r.cell);
   strut_release(r.place);

@@ -68,13 +68,29 @@ static const char *known_keys(strut_reader *reader, const sections_context *cont
   return text;
 }
 
+/* Where a key belongs that is of another mapping of the scene; "" if there is none. */
+static const char *other_home(const char *text) {
+  static const struct {
+    strut_section section;
+    const char *advice;
+  } homes[] = {{STRUT_SECTION_SCENE, "; it belongs beside 'nodes', to the whole scene"},
+               {STRUT_SECTION_SOLVER, "; it belongs under 'solver'"},
+               {STRUT_SECTION_RUN, "; it belongs under 'run'"},
+               {STRUT_SECTION_INITIAL, "; it belongs under 'initial'"},
+               {STRUT_SECTION_OUTPUT, "; it belongs under 'output'"}};
+  for (size_t i = 0; i < sizeof homes / sizeof homes[0]; i++)
+    if (strut_key_find(homes[i].section, text) >= 0) return homes[i].advice;
+  return "";
+}
+
 int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *sections,
                       size_t count, strut_owner owner) {
   sections_context context = {sections, count};
   const char *advice = punctuation_advice(key);
   const char *near = advice ? NULL : nearest_key(reader, key->text, &context);
   char others[400];
-  if (!advice) advice = near ? "" : known_keys(reader, &context, others, sizeof others);
+  if (!advice) advice = near ? "" : other_home(key->text);
+  if (!*advice && !near) advice = known_keys(reader, &context, others, sizeof others);
   strut_report_error(reader, key->place, "unknown key '%s' in %s%s%s%s%s",
                      strut_sanitised_text(reader, key->text), strut_owner_text(reader, owner),
                      advice, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");

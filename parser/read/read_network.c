@@ -121,6 +121,13 @@ static size_t count_layers(const char *text) {
   return layers;
 }
 
+/* A damaged file may have NUL bytes, at which a text would end. */
+static bool is_text(network *n, const strut_safe_text *text) {
+  const char *end = memchr(text->text, '\0', text->length);
+  for (const char *c = text->text; end && c < end; c++) n->line += *c == '\n';
+  return !end || fail_network(n, "a NUL byte is not allowed; the file is damaged", NULL);
+}
+
 /* All neurons of the text; those of the last layer are the last signals. */
 static bool read_layers(network *n, char *text) {
   size_t layers = count_layers(text);
@@ -143,6 +150,7 @@ static bool read_layers(network *n, char *text) {
     if (index < 0) return false;
     if (n->width++ == 0) n->layer = index;
   }
+  if (n->neurons == 0) n->line = 1;
   if (n->neurons == 0) return fail_network(n, "there is no neuron in this file", NULL);
   return end_layer(n);
 }
@@ -232,7 +240,7 @@ int32_t strut_read_network(strut_reader *reader, const strut_tree *key) {
   n.passes = (double)n.before;
   n.weight = strut_reader_allocate(reader, &reader->scratch, n.before + MOST_NEURONS + 1,
                                    sizeof *n.weight);
-  bool fine = n.weight && read_layers(&n, text.text);
+  bool fine = n.weight && is_text(&n, &text) && read_layers(&n, text.text);
   strut_safe_text_free(&text);
   return fine ? add_output(&n, strut_slot_of(&fields, STRUT_KEY_NETWORK_SCALE), owner) : -1;
 }

@@ -179,6 +179,21 @@ static bool check_releases(strut_reader *reader, const strut_tree *item) {
   return fine;
 }
 
+/* A stage must not end where the one before of the same load has ended. */
+static bool check_ends(strut_reader *reader, const strut_tree *item) {
+  const strut_path_stage *stage = reader->experiment->stages;
+  for (size_t k = 0; item; item = item->next, k++)
+    for (size_t i = k; i-- > 0 && stage[k].load;) {
+      if (!stage[i].load || strcmp(stage[i].load, stage[k].load) != 0) continue;
+      if (stage[i].until != stage[k].until || stage[i].stop >= 0) break;
+      strut_report_error(reader, item->place,
+                         "stage %zu ends where it starts: stage %zu took load '%s' to %g already",
+                         k + 1, i + 1, stage[k].load, stage[k].until);
+      return false;
+    }
+  return true;
+}
+
 void strut_read_stages(strut_reader *reader) {
   strut_experiment *e = reader->experiment;
   strut_fields path;
@@ -214,6 +229,7 @@ void strut_read_stages(strut_reader *reader) {
     fine = read_stage(reader, item, number + 1, &e->stages[number]) && fine;
     number++;
   }
-  fine = fine && e->stages && check_releases(reader, stages->value->first);
+  fine = fine && e->stages && check_releases(reader, stages->value->first) &&
+         check_ends(reader, stages->value->first);
   e->stage_count = fine ? (size_t)number : 0;
 }

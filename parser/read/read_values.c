@@ -335,15 +335,35 @@ int32_t strut_read_name_of(strut_reader *reader, const strut_tree *value, const 
   return index;
 }
 
-static bool name_character(unsigned char c) {
-  return c >= 0x80 || (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
-         c == '_' || c == '-' || c == '.';
+/* Characters without a look of their own, or that turn text round, from and to; all below U+00A1 but ASCII. */
+static const uint32_t INVISIBLE[][2] = {
+    {0x80, 0xA0},     {0xAD, 0xAD},         {0x34F, 0x34F},   {0x61C, 0x61C},   {0x115F, 0x1160},
+    {0x1680, 0x1680}, {0x17B4, 0x17B5},     {0x180B, 0x180F}, {0x2000, 0x206F}, {0x3000, 0x3000},
+    {0x3164, 0x3164}, {0xD800, 0xF8FF},     {0xFE00, 0xFE0F}, {0xFEFF, 0xFEFF}, {0xFFA0, 0xFFA0},
+    {0xFFF0, 0xFFFF}, {0xE0000, UINT32_MAX}};
+
+static bool is_visible(uint32_t code) {
+  for (size_t i = 0; i < sizeof INVISIBLE / sizeof INVISIBLE[0]; i++)
+    if (code >= INVISIBLE[i][0] && code <= INVISIBLE[i][1]) return false;
+  return true;
+}
+
+/* Bytes of the name's character at `c`; 0: none, or one that a name must not have. */
+static size_t name_character(const char *text, size_t left) {
+  unsigned char c = (unsigned char)*text;
+  uint32_t code = c;
+  if (c >= 0x80) {
+    size_t size = strut_text_decode(text, left, &code);
+    return is_visible(code) ? size : 0;
+  }
+  return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' ||
+         c == '-' || c == '.';
 }
 
 bool strut_read_name(strut_reader *reader, const strut_tree *key, const char *kind) {
   const char *c = key->text;
-  while (*c && name_character((unsigned char)*c)) c++;
-  size_t length = strlen(key->text);
+  size_t length = strlen(key->text), step;
+  while (*c && (step = name_character(c, (size_t)(key->text + length - c))) > 0) c += step;
   strut_tree plain = *key; /* a name that reads as null could not be referred to */
   plain.quoted = false;
   if (length && !*c && length <= LONGEST_NAME && !strut_is_null(&plain)) return true;

@@ -591,7 +591,8 @@ static strut_status try_point(strut_study_file *file, const strut_study_value *v
   if (followed)
     format_value(&file->followed, (strut_study_value){.number = *followed}, text, used,
                  sizeof text);
-  strut_diagnose(&file->diagnostics, (strut_place){0}, "the model cannot be run at %s", text);
+  strut_place place = file->column_count ? file->columns[0].place : (strut_place){0};
+  strut_diagnose(&file->diagnostics, place, "the model cannot be run at %s", text);
   return status;
 }
 

@@ -49,6 +49,7 @@ static bool check_range(strut_study_reader *r, const strut_study_along *a,
   if (v->from == v->to)
     return refuse(r, a, "has a range of one value: write it under 'set' of the study");
   if (v->from > v->to) return refuse(r, a, "has a reversed range: 'from' must be below 'to'");
+  if (!isfinite(v->to - v->from)) return refuse(r, a, "has too wide a range for a number");
   if (v->logarithmic && v->from * v->to <= 0.0)
     return refuse(r, a, "cannot be logarithmic: 'from' and 'to' must be on one side of 0");
   if (v->wraps && (v->logarithmic || v->integer))

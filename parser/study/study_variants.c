@@ -86,7 +86,10 @@ static strut_status read_model(strut_study_reader *r, const strut_tree *name, st
   if (!folder) return STRUT_NO_MEMORY;
   strut_status status =
       strut_safe_read(folder, file->path, name->text, STRUT_TEXT_MOST, &text, error);
-  if (status == STRUT_BAD_SCENE) strut_report_error(r->reader, name->place, "%s", error->message);
+  if (status == STRUT_BAD_SCENE) {
+    strut_report_error(r->reader, name->place, "%s", error->message);
+    *error = (strut_error){0}; /* said where it is */
+  }
   if (status) return status;
   file->model_path = text.path, file->model_text = text.text, file->model_length = text.length;
   return STRUT_OK;

@@ -341,7 +341,10 @@ static bool read_end(reader *r, const yaml_event_t *event) {
   r->ended = true;
   if (root && (root->kind != STRUT_TREE_SCALAR || root->quoted || root->text[0] != '\0'))
     return event->type != YAML_DOCUMENT_END_EVENT || check_rest(r, event);
-  strut_diagnose(r->diagnostics, (strut_place){0}, "the file is empty");
+  const char *text = r->diagnostics->text;
+  bool comments = text && memchr(text, '#', r->diagnostics->length);
+  strut_diagnose(r->diagnostics, (strut_place){0},
+                 comments ? "the file has comments only" : "the file is empty");
   return false;
 }
 

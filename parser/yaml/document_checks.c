@@ -101,6 +101,12 @@ bool strut_document_scan(strut_diagnostics *diagnostics) {
                    length >> 20, STRUT_TEXT_MOST >> 20);
     return false;
   }
+  bool wide =
+      length >= 4 && (memcmp(text, "\xFF\xFE\0\0", 4) == 0 || memcmp(text, "\0\0\xFE\xFF", 4) == 0);
+  if (wide) {
+    strut_diagnose(diagnostics, (strut_place){0}, "the file is UTF-32; save it as UTF-8");
+    return false;
+  }
   if (length >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0)) {
     strut_diagnose(diagnostics, (strut_place){0}, "the file is UTF-16; save it as UTF-8");
     return false;

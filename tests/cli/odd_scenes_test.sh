@@ -77,3 +77,50 @@ tells 2 "check their units" modes stiff.yaml
 tells 3 "moves away without end, n" modes under.yaml
 tells 3 "nodes 'n1' and 'n3', the ends of 'taut', coincide" form "$models/gallery/d-bar.yaml" --given densities
 out_empty
+
+# Where it is, and what it is.
+pair='strut: 1
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}
+members: {m: {kind: spring, nodes: [a, b], stiffness: 100}}'
+said() { # TEXT: of `check` of the scene on standard input
+  cat >said.yaml
+  tells 2 "$1" check said.yaml
+  grep -q 'said.yaml:[0-9]*:[0-9]*: error' err || fail "no place of: $1"
+}
+echo "$pair" | sed 's/\[1, 0\]/[1e200, 0]/' | said "the position of node 'b' is more than 1e+150 m away"
+said "a number of state 'o' is not finite" <<END
+$pair
+oscillators: {o: {frequency: 1e308 Hz}}
+END
+echo "$pair" | sed 's/stiffness: 100/stiffness: 100, mass_model: lumped/' |
+  said "unknown key 'mass_model' in member 'm'; it belongs beside 'nodes'"
+said "stage 2 ends where it starts: stage 1 took load 'l' to 3 already" <<END
+$pair
+loads: {l: {node: b, force: [1, 0]}}
+path: {stages: [{load: l, until: 3}, {load: l, until: 3}]}
+END
+echo "$pair
+loads: {l: {node: b, force: [1, 0]}}" >pulled.yaml
+tells 1 "the path's range from 0 to 1e+308 is too large" path pulled.yaml --until 1e308
+printf '# nothing\n# else\n' >said.yaml
+tells 2 "the file has comments only" check said.yaml
+printf '\377\376\0\0s\0\0\0' >said.yaml
+tells 2 "the file is UTF-32" check said.yaml
+
+study='strut: 1
+study: S
+model: pulled.yaml
+keep: [velocity]'
+for points in '' 'k'; do
+  printf "$points" >points.csv
+  echo "$study
+axes: [{points: points.csv}]" >study.yaml
+  expect 2 check study.yaml
+  grep -q 'points.csv:1:1: error' err || fail "no place of a table without rows"
+done
+for model in .. /etc/passwd .; do
+  echo "$study
+axes: [{k: [1]}]" | sed "s|pulled.yaml|$model|" >study.yaml
+  expect 2 check study.yaml
+  grep -q 'study.yaml:3:8: error' err || fail "no place of the model $model"
+done

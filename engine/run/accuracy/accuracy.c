@@ -2,14 +2,18 @@
 #include "engine/run/accuracy/accuracy.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/pose.h"
 #include "engine/run/settle.h"
+#include "engine/scene/signal_program.h"
 
 /* Least steps per period. */
 static const double LEAST_STEPS = 100.0;
+/* The longest step as a part of the shortest turn. */
+static const double STEP_OF_TURN = 0.1;
 /* Velocities below this part of size over time are not measured relative to themselves. */
 static const double STANDSTILL = 1e-3;
 
@@ -78,6 +82,8 @@ static strut_status choose_coarse_method(strut_accuracy *a) {
   status =
       strut_step_limit_for_method(model, strut_integrator_find(e->integrator), &limit, a->error);
   e->step = fmin(STRUT_COARSE_STEP * limit, unit / LEAST_STEPS);
+  double turns = strut_scene_fastest_turn(a->scene, span.duration, true).rate;
+  e->step = fmin(e->step, STEP_OF_TURN / turns);
   a->stiff = e->step < unit / LEAST_STEPS;
   e->refine = e->refine_time = 0.0;
   double fine = FINE_EVALUATIONS * FINE_STEPS * span.duration / e->step;
@@ -102,6 +108,21 @@ bool strut_accuracy_orbit_covers_window(const strut_accuracy *a,
   double repetitions = e->measure_last / steady->repeats;
   return (double)steady->periods <= strut_accuracy_transient_periods(a) &&
          fabs(repetitions - round(repetitions)) < 1e-9;
+}
+
+/*
+ * What finer runs cannot mend, since they agree on it, is not certified: bands that are too wide, and friction that
+ * gave more of the exchanged energy than the wanted accuracy.
+ */
+static void withhold(strut_summary *s) {
+  bool wide = s->energy.rubbed > s->accuracy.wanted * s->energy.moved;
+  for (size_t i = 0; i < s->warning_count; i++)
+    wide = wide || strcmp(s->warnings[i].code, "wide_band") == 0;
+  if (!wide || !s->accuracy.kept) return;
+  s->accuracy.kept = false, s->accuracy.expected = (double)NAN;
+  snprintf(s->accuracy.why, sizeof s->accuracy.why,
+           "all runs creep within the stick band, as another warning says");
+  for (size_t m = 0; m < s->measured_count; m++) s->measured[m].kept = false;
 }
 
 strut_status strut_simulate_accurately(const strut_model *model, const strut_experiment *experiment,
@@ -135,6 +156,7 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
   summary->status = status;
   summary->settle_time = start.how.time, summary->settle = start.how;
   strut_summary_warn_of_start(summary);
+  withhold(summary);
   strut_summary_warn_of_accuracy(summary);
   strut_settled_start_free(&start);
   return status;

@@ -9,6 +9,7 @@
 
 #include "engine/integrate/integrator.h"
 #include "engine/run/accuracy/accuracy.h"
+#include "engine/scene/signal_program.h"
 
 /*
  * Steps of the first run: in the whole run, in a drive period, and in the shortest time of a
@@ -96,11 +97,9 @@ static bool has_jumping_signal(const strut_scene *scene) {
 }
 
 double strut_accuracy_signal_time(const strut_scene *scene) {
-  double shortest = HUGE_VAL;
+  double shortest = 1.0 / strut_scene_fastest_turn(scene, 0.0, false).rate;
   for (size_t i = 0; i < scene->signal_count; i++) {
     const strut_signal *s = &scene->signals[i];
-    if (s->kind == STRUT_SINE || s->kind == STRUT_HALF_SINE || s->kind == STRUT_SQUARE)
-      shortest = fmin(shortest, 1.0 / s->frequency);
     if (s->kind != STRUT_CONSTANT && s->stop > s->start)
       shortest = fmin(shortest, s->stop - s->start);
     for (size_t k = 1; s->kind == STRUT_TABLE && k < s->point_count; k++)

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "engine/forces/moving_masses.h"
+#include "engine/forces/rubbing.h"
 #include "engine/forces/support_motion.h"
 #include "engine/forces/surfaces.h"
 #include "engine/model/pose.h"
@@ -29,7 +30,28 @@ static double absolute_change(double a, double b) { return fabs(a - b); }
 /* Change of the balance that rounding over the steps may explain. */
 static double rounding_of(const strut_energy *e, int64_t steps) {
   double stored = fabs(e->initial) + e->kinetic + e->elastic + fabs(e->gravity) + e->contact;
-  return ROUNDING * ((double)steps + 100.0) * (stored + e->moved);
+  return ROUNDING * ((double)steps + 100.0) * (stored + e->moved + e->placed);
+}
+
+/*
+ * Energy whose rounding is that of positions: a force that acts over the way to the origin, as positions are stored
+ * from there, however small the motion. The forces are those of gravity, and of springs that store such an energy.
+ */
+static double energy_of_places(const strut_model *model, const strut_state *state,
+                               const strut_energies *now) {
+  const strut_contact_table *c = &model->contacts;
+  const double *g = model->scene->gravity;
+  double away = 0.0, weight = 0.0, stiffness = 0.0;
+  for (int32_t i = 0; i < model->node_count; i++) {
+    away = fmax(away, fmax(fabs(state->q[2 * i]), fabs(state->q[2 * i + 1])));
+    weight += model->weight[i] * hypot(g[0], g[1]);
+  }
+  for (int32_t j = 0; j < model->members.count; j++) stiffness += model->members.stiffness[j];
+  for (int32_t i = 0; i < model->elements.count; i++)
+    stiffness += model->elements.element[i].numbers.stiffness;
+  for (int32_t i = 0; i < c->count; i++) stiffness += c->entry[i].stiffness;
+  double force = weight + sqrt(2.0 * stiffness * (fabs(now->elastic) + now->contact));
+  return away * (force + stiffness * away * DBL_EPSILON);
 }
 
 void strut_balance_fill(const strut_model *model, const strut_state *state,
@@ -50,6 +72,7 @@ void strut_balance_fill(const strut_model *model, const strut_state *state,
   e->residual = end.kinetic + end.elastic + end.gravity + end.contact - e->initial - e->drive_work -
                 e->load_work - e->belt_work - e->support_work + e->dissipated_members +
                 e->dissipated_contact + e->dissipated_friction;
+  e->placed = energy_of_places(model, state, &end);
   e->moved = absolute_change(end.kinetic, begin->kinetic) +
              absolute_change(end.elastic, begin->elastic) +
              absolute_change(end.gravity, begin->gravity) +
@@ -70,23 +93,50 @@ static double lost_in(const strut_energy *e, strut_loss loss) {
                                       : e->dissipated_friction;
 }
 
+/* Slower than this part of a band nothing creeps. */
+static const double AT_REST = 1e-3;
+
+static double creep_within(double band, double slip) {
+  return fabs(slip) < band && fabs(slip) > AT_REST * band ? fabs(slip) : 0.0;
+}
+
 /*
  * Within its band Karnopp's friction balances the other forces whatever the speed, so that it may give energy, at
  * most with the speed at the edge. Normal forces between samples are taken to be a few times those at them.
+ * Notes how fast the feet creep there, and the structure moves.
  */
-static double creeping_power(const strut_model *model, const strut_state *state) {
+static double creeping_power(const strut_model *model, const strut_state *state,
+                             strut_balance_monitor *monitor) {
   const strut_contact_table *c = &model->contacts;
   const double *g = model->scene->gravity;
-  double weight = 0.0, power = 0.0;
-  for (int32_t i = 0; i < model->node_count; i++) weight += model->weight[i] * hypot(g[0], g[1]);
+  double weight = 0.0, power = 0.0, crept = 0.0, speed = 0.0;
+  int32_t feet = 0;
+  for (int32_t i = 0; i < model->node_count; i++) {
+    weight += model->weight[i] * hypot(g[0], g[1]);
+    speed += hypot(state->v[2 * i], state->v[2 * i + 1]) / model->node_count;
+  }
   for (int32_t i = 0; i < c->count; i++) {
     const strut_contact_entry *e = &c->entry[i];
-    double gap, slip;
+    double gap, slip, band = e->friction.stick_velocity;
     if (!strut_friction_has_band(e->friction.law)) continue;
     strut_contact_observe(c, i, state, &gap, &slip);
-    power += e->friction.stick_velocity * strut_friction_largest(&e->friction) *
+    power += band * strut_friction_largest(&e->friction) *
              (4.0 * fmax(0.0, -gap * e->stiffness) + weight);
+    if (!(gap < 0.0)) continue;
+    feet++;
+    crept += creep_within(band, slip);
   }
+  for (int32_t i = 0; i < model->rubbing.count;
+       i++) { /* feet have no stick: within the band they creep */
+    const strut_rubbing_entry *f = &model->rubbing.item[i];
+    double normal, slip = strut_rubbing_slip(model, state, i, &normal);
+    if (f->contact < 0 || f->bend >= 0 || !(normal > 0.0)) continue;
+    const strut_friction *friction = &model->scene->contacts[f->contact].friction;
+    if (!strut_friction_has_band(friction->law)) continue;
+    feet++;
+    crept += creep_within(friction->stick_velocity, slip);
+  }
+  if (feet) monitor->crept += crept / feet, monitor->speed += speed;
   return power;
 }
 
@@ -112,6 +162,8 @@ static void watch_losses(const strut_model *model, const strut_energy *e, int64_
     double now = lost_in(e, (strut_loss)k), since = monitor->lost[k] - now;
     double over = fmax(since - (rubs ? creep : 0.0), -now - (rubs ? monitor->creep : 0.0));
     monitor->lost[k] = now;
+    if (rubs && !model->rubbing.bristles && -now > fmax(allowed, monitor->rubbed))
+      monitor->rubbed = -now;
     if (!(over > allowed) || monitor->given > 0.0) continue;
     if (k == STRUT_LOSS_MEMBERS && members_may_give(model)) continue;
     if (rubs && model->rubbing.bristles) continue; /* they spring back */
@@ -130,8 +182,9 @@ void strut_balance_sample(const strut_model *model, const strut_state *state,
     monitor->worst = change;
     monitor->from = monitor->time, monitor->to = t;
   }
-  double creep = creeping_power(model, state) * (t - monitor->time);
+  double creep = creeping_power(model, state, monitor) * (t - monitor->time);
   watch_losses(model, e, state->step, creep, monitor);
+  e->rubbed = monitor->rubbed;
   monitor->residual = e->residual, monitor->time = t;
   while (monitor->next <= state->step) monitor->next += monitor->every;
 }
@@ -162,8 +215,8 @@ void strut_balance_warn(strut_summary *s, const char *why) {
 }
 
 strut_balance strut_balance_judge(const strut_energy *e, int64_t steps) {
-  bool open = fabs(e->residual) > OPEN * e->moved && fabs(e->residual) > rounding_of(e, steps);
-  return open ? STRUT_BALANCE_OPEN : STRUT_BALANCE_CLOSED;
+  double most = fmax(OPEN * e->moved, rounding_of(e, steps));
+  return fabs(e->residual) <= most ? STRUT_BALANCE_CLOSED : STRUT_BALANCE_OPEN; /* open where NaN */
 }
 
 /* ---- velocities and contacts ---- */

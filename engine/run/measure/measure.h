@@ -38,6 +38,9 @@ typedef struct strut_balance_monitor {
   double from, to;       /* its interval [s] */
   double lost[STRUT_LOSS_COUNT]; /* at the latest sample [J] */
   double creep;                  /* what friction may have given within its bands by then [J] */
+  double rubbed;                 /* the most that friction had given by some sample [J] */
+  double crept;                  /* sum over samples: mean slip of feet within their bands [m/s] */
+  double speed;                  /* likewise: mean speed of nodes [m/s] */
   strut_loss giver;              /* the loss that gave energy first, by more than errors explain */
   double given;                  /* how much it gave by the latest sample [J]; 0: none */
 } strut_balance_monitor;

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/forces/feedback.h"
 #include "engine/forces/moving_masses.h"
 #include "engine/forces/surfaces.h"
 #include "engine/integrate/limit/step_limit.h"
@@ -436,4 +437,39 @@ const strut_band_tie *strut_stick_band_strained(const strut_stick_band *band) {
     if (band->ties[k].worst > STRAINED && (!most || band->ties[k].worst > most->worst))
       most = &band->ties[k];
   return most;
+}
+
+/* ---- internal states ---- */
+
+enum { ROUNDS = 40 };
+
+double strut_states_rate(const strut_model *model, strut_state *state, double t, double *work,
+                         int32_t *fastest) {
+  const strut_feedback_table *f = &model->feedback;
+  int32_t count = (int32_t)model->scene->state_count + f->lag_count, base = f->base;
+  double *v = work, *here = v + model->length, *there = here + model->length;
+  double size = 1e-3, rate = 0.0;
+  *fastest = -1;
+  if (!count) return 0.0;
+  memcpy(v, state->v, (size_t)model->length * sizeof *v);
+  strut_feedback_apply(model, state, t, state->q, v);
+  strut_feedback_add_rates(model, state, t, v, here);
+  for (int32_t i = 0; i < count; i++) size = fmax(size, fabs(v[base + i]));
+  for (int32_t i = 0; i < count; i++) v[base + i] += 1e-6 * size * (i % 2 ? -1.0 : 1.0);
+  for (int round = 0; round < ROUNDS; round++) { /* power iteration with differences of rates */
+    double most = 0.0;
+    strut_feedback_apply(model, state, t, state->q, v);
+    strut_feedback_add_rates(model, state, t, v, there);
+    for (int32_t i = 0; i < count; i++) {
+      double change = there[base + i] - here[base + i];
+      v[base + i] = change;
+      if (fabs(change) > most) most = fabs(change), *fastest = i;
+    }
+    rate = most / (1e-6 * size);
+    if (!(most > 0.0) || !isfinite(most)) break;
+    for (int32_t i = 0; i < count; i++)
+      v[base + i] = state->v[base + i] + 1e-6 * size * v[base + i] / most;
+  }
+  strut_feedback_apply(model, state, t, state->q, state->v);
+  return isfinite(rate) ? rate : 0.0;
 }

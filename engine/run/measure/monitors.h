@@ -143,6 +143,13 @@ void strut_stick_band_sample(const strut_model *model, const strut_state *state,
 double strut_stick_band_missed(const strut_model *model, const strut_stick_band *band,
                                int32_t contact);
 
+/**
+ * How fast internal states and lags settle by themselves while the structure stands, at most [1/s]; 0: there is
+ * none. *fastest: the one that does, lags counted on. `work`: (3 length) of the model.
+ */
+double strut_states_rate(const strut_model *model, strut_state *state, double t, double *work,
+                         int32_t *fastest);
+
 /** The tie most strained by creeping, where that may release a node; otherwise NULL. */
 const strut_band_tie *strut_stick_band_strained(const strut_stick_band *band);
 

@@ -20,6 +20,8 @@ typedef struct strut_energy {
   double residual; /* end total - initial - works + losses; 0 but for the integration error */
   double moved;    /* sum of the absolute energies exchanged, or the largest kinetic energy seen if
                       that is more: the scale of the residual */
+  double rubbed;   /* the most that friction had given by some sample; 0: none */
+  double placed;   /* scale of what the rounding of positions does to the balance */
 } strut_energy;
 
 /** State of the energy balance. Open: the residual is more than 1 % of the exchanged energy. */

@@ -245,10 +245,12 @@ static strut_status mark_collisions(strut_equilibrium_search *h) {
 
 static void turn_to_original(strut_equilibrium_search *h, strut_equilibrium *e) {
   size_t nodes = (size_t)h->model->node_count;
-  strut_level_frame_to_original(&h->level, nodes, e->point.q);
+  strut_level_frame_place(&h->level, nodes, e->point.q);
   strut_level_frame_to_original(&h->level, nodes, e->point.softest);
   strut_level_frame_to_original(&h->level, nodes, e->reaction[0]);
-  if (e->rest && e->rest != e->point.q) strut_level_frame_to_original(&h->level, nodes, e->rest);
+  if (e->rest && e->rest != e->point.q) strut_level_frame_place(&h->level, nodes, e->rest);
+  double lower = strut_level_frame_work(&h->level, h->model->weight);
+  e->energy -= lower, e->rest_energy -= lower, e->point.potential -= lower;
 }
 
 /* Sorts, names, links and describes the candidates, and moves them to the result. */

@@ -92,6 +92,7 @@ strut_status strut_passages_find(const strut_potential *potential, const strut_c
 typedef struct strut_level_frame {
   strut_scene scene;   /* without actuators, loads on a signal, friction and belt; in coordinates
                           along and across the ground. Shares texts with the original */
+  double shift[2];     /* by which the original is moved from the origin of the scene [m] */
   double cosine, sine; /* of the slope that was turned away: 1, 0 on level ground */
   int32_t
       oblique_node; /* node held in one direction only on a slope, or -1; then nothing is turned */
@@ -103,6 +104,10 @@ strut_status strut_level_frame_create(const strut_scene *original, strut_level_f
                                       strut_error *error);
 void strut_level_frame_free(strut_level_frame *level);
 
+/** Brings count points (x, y) of the level scene to where they are in the original, in place. */
+void strut_level_frame_place(const strut_level_frame *level, size_t count, double *xy);
+/** What gravity and loads do along that shift [J]; `weight`: of the nodes [kg]. */
+double strut_level_frame_work(const strut_level_frame *level, const double *weight);
 /** Turns count vectors (x, y) between level and original coordinates, in place. */
 void strut_level_frame_to_original(const strut_level_frame *level, size_t count, double *xy);
 void strut_level_frame_from_original(const strut_level_frame *level, size_t count, double *xy);

@@ -276,7 +276,7 @@ static strut_status find_rest(const strut_model *model, const strut_experiment *
     turned = false;
     status = search_configuration(model, experiment, c, q, &rests_on, error);
   }
-  if (!status && turned) strut_level_frame_to_original(&h.level, (size_t)model->node_count, q);
+  if (!status && turned) strut_level_frame_place(&h.level, (size_t)model->node_count, q);
   free_search(&h);
   return status;
 }

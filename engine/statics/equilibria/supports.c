@@ -2,10 +2,14 @@
 #include "engine/statics/equilibria/equilibria_parts.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
+
+/* A structure is moved to the origin where it is this many of its sizes away: digits would be lost. */
+static const double FAR = 100.0;
 
 /* Turns vectors counterclockwise by the angle of c, s; the identity is exact. */
 static void turn_vectors(double c, double s, size_t count, double *xy) {
@@ -17,12 +21,28 @@ static void turn_vectors(double c, double s, size_t count, double *xy) {
   }
 }
 
+void strut_level_frame_place(const strut_level_frame *level, size_t count, double *xy) {
+  strut_level_frame_to_original(level, count, xy);
+  for (size_t i = 0; i < 2 * count; i++) xy[i] += level->shift[i % 2];
+}
+
 void strut_level_frame_to_original(const strut_level_frame *level, size_t count, double *xy) {
   turn_vectors(level->cosine, level->sine, count, xy);
 }
 
 void strut_level_frame_from_original(const strut_level_frame *level, size_t count, double *xy) {
   turn_vectors(level->cosine, -level->sine, count, xy);
+}
+
+double strut_level_frame_work(const strut_level_frame *level, const double *weight) {
+  const strut_scene *s = &level->scene;
+  double force[2] = {0.0, 0.0};
+  for (size_t i = 0; i < s->node_count; i++)
+    for (int c = 0; c < 2; c++) force[c] += weight[i] * s->gravity[c];
+  for (size_t i = 0; i < s->load_count; i++)
+    for (int c = 0; c < 2; c++) force[c] += s->loads[i].force[c];
+  strut_level_frame_to_original(level, 1, force);
+  return force[0] * level->shift[0] + force[1] * level->shift[1];
 }
 
 /* A node that is held in x alone or in y alone has no such support in turned coordinates. */
@@ -89,18 +109,42 @@ static bool remove_motion(strut_scene *s, strut_arena *arena) {
   return true;
 }
 
+/* Moves a structure far from the origin there. */
+static bool bring_near(strut_level_frame *level) {
+  strut_scene *s = &level->scene;
+  double size = 0.0, far = 0.0, by[2];
+  for (size_t i = 0; i < s->node_count; i++)
+    for (int c = 0; c < 2; c++) {
+      size = fmax(size, fabs(s->nodes[i].position[c] - s->nodes[0].position[c]));
+      far = fmax(far, fabs(s->nodes[i].position[c]));
+    }
+  if (!(far > FAR * size) || !(size > 0.0)) return true;
+  for (int c = 0; c < 2; c++) {
+    level->shift[c] = s->nodes[0].position[c];
+    by[c] = -level->shift[c];
+  }
+  return strut_scene_shift(s, by, &level->arena);
+}
+
+/* Turns a force, of which rounding leaves no part along or across the ground where there is none. */
+static void turn_force(const strut_level_frame *level, double force[2]) {
+  strut_level_frame_from_original(level, 1, force);
+  double least = 16.0 * DBL_EPSILON * hypot(force[0], force[1]);
+  for (int c = 0; c < 2; c++)
+    if (fabs(force[c]) < least) force[c] = 0.0;
+}
+
 static void make_level(strut_level_frame *level) {
   strut_scene *s = &level->scene;
   if (level->sine == 0.0) return;
   s->ground.height *= level->cosine;
   s->ground.slope = 0.0;
-  strut_level_frame_from_original(level, 1, s->gravity);
+  turn_force(level, s->gravity);
   for (size_t i = 0; i < s->node_count; i++) {
     strut_level_frame_from_original(level, 1, s->nodes[i].position);
     strut_level_frame_from_original(level, 1, s->nodes[i].start);
   }
-  for (size_t i = 0; i < s->load_count; i++)
-    strut_level_frame_from_original(level, 1, s->loads[i].force);
+  for (size_t i = 0; i < s->load_count; i++) turn_force(level, s->loads[i].force);
   for (size_t i = 0; i < s->configuration_count; i++)
     if (s->configurations[i].position)
       strut_level_frame_from_original(level, s->node_count, s->configurations[i].position[0]);
@@ -120,7 +164,7 @@ strut_status strut_level_frame_create(const strut_scene *original, strut_level_f
     level->sine = sin(original->ground.slope);
   }
   keep_rest_lengths(original, &level->scene);
-  if (!remove_motion(&level->scene, &level->arena)) {
+  if (!remove_motion(&level->scene, &level->arena) || !bring_near(level)) {
     strut_level_frame_free(level);
     return strut_no_memory(error, "");
   }

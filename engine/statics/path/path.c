@@ -392,6 +392,9 @@ static strut_status walk_from(path_start *b, double until, int32_t steps, strut_
   return status;
 }
 
+/* A longer range than this is a mistake: squares of it have no number. */
+static const double LONGEST_RANGE = 1e100;
+
 /* Unit of what the actuator drives. */
 static const char *unit_of_drive(const strut_actuator *a) {
   return a->member >= 0 ? "m" : a->hinge >= 0 ? "rad" : "N/m";
@@ -420,6 +423,19 @@ static strut_status name_parameter(const strut_model *model, const strut_path_op
   return path->name ? STRUT_OK : strut_no_memory(error, "");
 }
 
+/* Elements, unlike members, are computed with the digits that positions have. */
+static const double FARTHEST = 1e4; /* sizes from the origin */
+
+static strut_status check_place(const strut_model *model, strut_error *error) {
+  double away = 0.0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) away = fmax(away, fabs(model->start[i]));
+  if (!model->elements.count || !(away > FARTHEST * model->size)) return STRUT_OK;
+  return strut_fail(error, STRUT_NOT_SETTLED,
+                    "the structure stands %.3g m from the origin, %.2g times its size, so that "
+                    "rounding of positions may lead the path elsewhere; draw it nearer",
+                    away, away / model->size);
+}
+
 strut_status strut_path_follow(const strut_model *model, const strut_experiment *experiment,
                                const strut_path_options *options, strut_path *path,
                                strut_error *error) {
@@ -428,6 +444,8 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
                       "actuator '%s' gives a force, which statics leaves out; follow a load, or an "
                       "actuator with a signal",
                       model->scene->actuators[options->index].name);
+  strut_status place = check_place(model, error);
+  if (place) return place;
   size_t length = (size_t)model->length;
   bool over_load = options->over == STRUT_PATH_OVER_LOAD;
   bool unsaid = over_load && options->until == 0 && options->from == 0;
@@ -437,6 +455,9 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   *path = (strut_path){0};
   if (!(fabs(until - options->from) > 0))
     return strut_fail(error, STRUT_USAGE, "the path ends where it starts, at %.6g", until);
+  if (!(fabs(until - options->from) < LONGEST_RANGE))
+    return strut_fail(error, STRUT_USAGE, "the path's range from %g to %g is too large",
+                      options->from, until);
   b.load = strut_arena_allocate(&b.arena, length, sizeof *b.load);
   b.q = strut_arena_allocate(&b.arena, length, sizeof *b.q);
   strut_status status =

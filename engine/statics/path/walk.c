@@ -210,8 +210,11 @@ static bool land_on_stop(strut_path_walk *w, const strut_path_piece *piece) {
 }
 
 static bool is_away(const strut_path_walk *w) {
+  const strut_path_system *s = &w->system;
+  const double *start = w->path->points[0].q;
   double most = 0;
-  for (int32_t i = 0; i < w->system.n; i++) most = fmax(most, fabs(w->y[i]));
+  for (int32_t i = 0; i < s->n; i++)
+    most = fmax(most, fabs(w->y[i] - start[s->potential->coordinate[i]] / s->size));
   return most > BOUND || w->y[w->system.n] < DEEP;
 }
 

@@ -25,6 +25,23 @@ static bool is_plain(const char *text, const char *others) {
   return length > 0 && length < 32 && isdigit((unsigned char)text[0]);
 }
 
+/* A line break would end a here-document; no other control character is meant, either. */
+static bool has_controls(const char *text) {
+  while (*text && (unsigned char)*text >= 0x20 && *text != 0x7F) text++;
+  return *text;
+}
+
+static strut_status check_texts(const strut_cluster_script *s, strut_error *error) {
+  const char *const texts[] = {s->program, s->folder, s->study, s->output};
+  bool wild = false;
+  for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) wild = wild || has_controls(texts[i]);
+  for (size_t i = 0; i < s->word_count; i++) wild = wild || has_controls(s->words[i]);
+  if (!wild) return STRUT_OK;
+  return strut_fail(error, STRUT_USAGE,
+                    "a path or an option for the script has a line break or another control "
+                    "character; choose one without");
+}
+
 static strut_status check(const strut_cluster_script *s, strut_error *error) {
   if (s->shards < 1 || s->shards > STRUT_MOST_SHARDS)
     return strut_fail(error, STRUT_USAGE, "a study has 1 to %d shards", STRUT_MOST_SHARDS);
@@ -35,7 +52,7 @@ static strut_status check(const strut_cluster_script *s, strut_error *error) {
   if (!is_plain(s->memory, "KMGT"))
     return strut_fail(error, STRUT_USAGE, "'%s' is not an amount of memory, such as 500M or 2G",
                       s->memory);
-  return STRUT_OK;
+  return check_texts(s, error);
 }
 
 /* A name for the queue: letters, digits, dots, dashes and underscores. */
