@@ -197,7 +197,7 @@ TEST(tags_and_directives_are_refused) {
 TEST(a_file_holds_one_document) {
   expect_error("", "0:0: the file is empty");
   expect_error("\xEF\xBB\xBF", "0:0: the file is empty");
-  expect_error("# only a comment\n", "0:0: the file is empty");
+  expect_error("# only a comment\n", "0:0: the file has comments only");
   expect_error("---\n", "0:0: the file is empty");
   expect_error("---\n...\n", "0:0: the file is empty");
   expect_error("a: 1\n---\nb: 2\n", "2:1: a second document; a file holds one");

@@ -204,85 +204,26 @@ strut_status strut_orbit_solve_check_tolerance(strut_orbit_solve *solve) {
                           : correct_with_finer_tolerance(solve);
 }
 
-/* ---- motions without an orbit to correct: irregular or stuck ---- */
+/* ---- motions without an orbit to correct: stuck or creeping; irregular ones are in orbit_means.c ---- */
 
-/*
- * Periods over which the mean of an irregular motion is sought, and those added while it is
- * transient.
- */
-static const double PERIODS = 136.0, MORE_PERIODS = 544.0;
-/* Periods of the half-step run: half of those above. */
-static const double HALF_PERIODS = 68.0;
 /* Periods in which a run with half the step must prove to creep, too. */
 static const double CREEPING = 30.0;
 /* Velocities agree if they differ by less than this part of the wanted error. */
 static const double AGREE = 0.4;
 
-static strut_experiment halve_coarse_step(const strut_orbit_solve *solve) {
+strut_experiment strut_orbit_solve_halve_step(const strut_orbit_solve *solve) {
   strut_experiment half = solve->a->coarse;
   half.step *= 0.5;
   half.steady.creep = 0.0;
   return half;
 }
 
-/* `error` in [m/s]. */
-static void accept_last_run(strut_orbit_solve *solve, strut_orbit_answer end, double error) {
+void strut_orbit_solve_accept_last_run(strut_orbit_solve *solve, strut_orbit_answer end,
+                                       double error) {
   strut_orbit_solve_copy_end_to_orbit(solve);
   solve->orbit.velocity = solve->last_run.velocity;
   solve->error = error;
   solve->answer = end;
-}
-
-/*
- * Widens the interval of a mean over `periods` to that of a mean over the shorter window: it
- * scatters as the square root of their ratio.
- */
-static double widen_to_window(const strut_orbit_solve *solve, double interval, double periods) {
-  const strut_experiment *e = &solve->a->experiment;
-  if (e->steady.wanted || !(e->measure_last < periods)) return interval;
-  return interval * (1.0 + sqrt(periods / fmax(1.0, e->measure_last)));
-}
-
-/* Continues the coarse run; solve->coarse_run grows by it. */
-static strut_status continue_coarse_run(strut_orbit_solve *solve, double periods) {
-  strut_summary more = {0};
-  strut_status status = strut_orbit_solve_run_until_steady(
-      solve, solve->a->coarse, solve->a->target, 5, periods, true, &more);
-  if (!status) strut_summary_append(&solve->coarse_run, &more);
-  strut_summary_free(&more);
-  return status;
-}
-
-strut_status strut_orbit_solve_average_irregular(strut_orbit_solve *solve, bool *periodic) {
-  strut_accuracy *a = solve->a;
-  strut_summary half = {0};
-  strut_status status = STRUT_OK;
-  solve->answer = STRUT_ORBIT_NONE;
-  if (solve->coarse_run.steady.kind != STRUT_MOTION_IRREGULAR)
-    status = continue_coarse_run(solve, PERIODS);
-  if (!status && solve->coarse_run.steady.kind == STRUT_MOTION_CREEPING) {
-    status = strut_orbit_solve_confirm_creep(solve);
-    if (status || solve->answer) return status;
-    a->coarse.steady.creep = 0.0;
-    status = continue_coarse_run(solve, PERIODS);
-  }
-  if (!status && solve->coarse_run.steady.kind == STRUT_MOTION_TRANSIENT)
-    status = continue_coarse_run(solve, MORE_PERIODS);
-  *periodic = !status && solve->coarse_run.steady.kind == STRUT_MOTION_PERIODIC;
-  if (status || solve->coarse_run.steady.kind != STRUT_MOTION_IRREGULAR) return status;
-  status = strut_orbit_solve_run_until_steady(solve, halve_coarse_step(solve), a->target, 5,
-                                              HALF_PERIODS, true, &half);
-  if (!status) {
-    strut_summary_append(&solve->last_run, &half);
-    double apart = fabs(solve->last_run.velocity - solve->coarse_run.velocity);
-    if (solve->last_run.steady.kind == STRUT_MOTION_TRANSIENT)
-      solve->last_run.steady.kind = STRUT_MOTION_IRREGULAR; /* too short a run for the detector */
-    accept_last_run(
-        solve, STRUT_ORBIT_IRREGULAR,
-        apart + widen_to_window(solve, solve->coarse_run.steady.interval, HALF_PERIODS));
-  }
-  strut_summary_free(&half);
-  return status;
 }
 
 bool strut_orbit_solve_is_stuck(const strut_orbit_solve *solve) {
@@ -298,7 +239,7 @@ strut_status strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve) {
   strut_summary half = {0};
   solve->answer = STRUT_ORBIT_NONE;
   strut_status status = strut_orbit_solve_run_until_steady(
-      solve, halve_coarse_step(solve), fmin(0.001, 0.2 * a->target), 4,
+      solve, strut_orbit_solve_halve_step(solve), fmin(0.001, 0.2 * a->target), 4,
       fmax(20.0, strut_accuracy_transient_periods(a)), false, &half);
   if (status) {
     strut_summary_free(&half);
@@ -309,14 +250,15 @@ strut_status strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve) {
   double apart = fabs(solve->last_run.velocity - solve->coarse_run.velocity);
   if (periodic &&
       apart <= AGREE * a->target * strut_accuracy_velocity_scale(a, solve->last_run.velocity))
-    accept_last_run(solve, STRUT_ORBIT_STUCK, apart + solve->last_run.steady.interval);
+    strut_orbit_solve_accept_last_run(solve, STRUT_ORBIT_STUCK,
+                                      apart + solve->last_run.steady.interval);
   return STRUT_OK;
 }
 
 strut_status strut_orbit_solve_confirm_creep(strut_orbit_solve *solve) {
   strut_accuracy *a = solve->a;
   strut_summary half = {0};
-  strut_experiment finer = halve_coarse_step(solve);
+  strut_experiment finer = strut_orbit_solve_halve_step(solve);
   finer.steady.creep = a->coarse.steady.creep;
   strut_status status =
       strut_orbit_solve_run_until_steady(solve, finer, a->target, 5, CREEPING, true, &half);
@@ -328,23 +270,9 @@ strut_status strut_orbit_solve_confirm_creep(strut_orbit_solve *solve) {
     solve->last_run.steady.kind = STRUT_MOTION_CREEPING;
     solve->last_run.steady.repeats = 0;
     if (steady && fabs(solve->last_run.velocity) <= finer.steady.creep)
-      accept_last_run(solve, STRUT_ORBIT_CREEPING,
-                      apart + fmax(found.interval, solve->coarse_run.steady.interval));
-  }
-  strut_summary_free(&half);
-  return status;
-}
-
-strut_status strut_orbit_solve_average_disputed(strut_orbit_solve *solve) {
-  strut_summary half = {0};
-  double accurate = solve->last_run.velocity;
-  strut_status status = strut_orbit_solve_run_until_steady(
-      solve, halve_coarse_step(solve), solve->a->target, 5, HALF_PERIODS, true, &half);
-  if (!status) {
-    strut_summary_append(&solve->last_run, &half);
-    double apart = fabs(accurate - solve->coarse_run.velocity);
-    accept_last_run(solve, STRUT_ORBIT_DISPUTED,
-                    apart + fabs(solve->last_run.velocity - solve->coarse_run.velocity));
+      strut_orbit_solve_accept_last_run(
+          solve, STRUT_ORBIT_CREEPING,
+          apart + fmax(found.interval, solve->coarse_run.steady.interval));
   }
   strut_summary_free(&half);
   return status;
@@ -370,19 +298,7 @@ static void explain_orbit(const strut_orbit_solve *solve, strut_accuracy_summary
                0.5 * step, moved);
       return;
     case STRUT_ORBIT_IRREGULAR:
-      snprintf(
-          to->why, size,
-          "the motion does not repeat itself: mean velocities over many periods, by verlet-events "
-          "with steps of %.3g s and %.3g s, agree to %.2g m/s including their scatter",
-          step, 0.5 * step, solve->error);
-      return;
-    case STRUT_ORBIT_DISPUTED:
-      snprintf(
-          to->why, size,
-          "verlet-events with a step of %.3g s finds a periodic motion and adaptive (tolerance "
-          "%.1g) does not: their mean velocities and that with half the step agree to %.2g m/s",
-          step, tolerance, solve->error);
-      return;
+    case STRUT_ORBIT_DISPUTED: strut_orbit_solve_explain_mean(solve, to->why, size); return;
     case STRUT_ORBIT_CREEPING:
       snprintf(to->why, size,
                "it creeps: over 24 periods its mean velocity was below %.2g m/s, and it did not "
@@ -458,6 +374,10 @@ void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orb
   s->steady = ran_on ? solve->last_run.steady : solve->coarse_run.steady;
   s->steady.interval = error;
   tell_whole_motion(solve, orbit, s);
+  if (solve->mean.periods > 0) { /* over which the velocity is the mean */
+    s->window.time = 0.5 * (double)solve->mean.periods * solve->coarse_map.period;
+    s->window.start = solve->orbit_time - s->window.time;
+  }
   s->spent.evaluations = sum_evaluations(solve);
   s->step = solve->coarse_map.dt;
   s->step_limit = solve->coarse_run.step_limit;
@@ -473,6 +393,6 @@ void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orb
           a->check_evaluations + orbit->spent.evaluations + (coarse_suffices ? corrections : 0)};
   /* of what creeps only that is promised */
   double known = solve->answer == STRUT_ORBIT_CREEPING ? 0.0 : s->accuracy.expected;
-  s->accuracy.kept = strut_accuracy_is_kept(true, known, a->target);
+  s->accuracy.kept = strut_accuracy_is_kept(!solve->mean.disputed, known, a->target);
   explain_orbit(solve, &s->accuracy);
 }

@@ -36,6 +36,14 @@ typedef enum strut_orbit_answer {
   STRUT_ORBIT_CREEPING   /* slower than matters, by two steps */
 } strut_orbit_answer;
 
+/** The mean velocity of a motion that does not repeat itself, over the latter half of a run. */
+typedef struct strut_orbit_mean {
+  double velocity, interval; /* [m/s] and 95 % confidence */
+  int64_t periods;           /* of the run; 0: there is none */
+  double apart;              /* from the mean of another run, by other steps [m/s] */
+  bool disputed;             /* by more than the scatter of both, and a third run does not decide */
+} strut_orbit_mean;
+
 typedef struct strut_orbit_solve {
   strut_accuracy *a;
   strut_experiment reference; /* with error control */
@@ -57,6 +65,7 @@ typedef struct strut_orbit_solve {
   strut_arena arena;
   double finer; /* how often the coarse map's step is in the first coarse one [1] */
   double apart; /* velocity of the orbit from that of the run that confirms it [m/s] */
+  strut_orbit_mean mean;
 } strut_orbit_solve;
 
 /** The velocity that errors are relative to [m/s]. */
@@ -94,12 +103,33 @@ strut_status strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from
                                              double periods);
 /** Repeats the reference orbit with a tenth of the tolerance; replaces it where they disagree. */
 strut_status strut_orbit_solve_check_tolerance(strut_orbit_solve *solve);
+/** The coarse method with half its step. */
+strut_experiment strut_orbit_solve_halve_step(const strut_orbit_solve *solve);
+/** solve->last_run is the answer, with that error [m/s]. */
+void strut_orbit_solve_accept_last_run(strut_orbit_solve *solve, strut_orbit_answer end,
+                                       double error);
+
+/* orbit_means.c: motions that do not repeat themselves. */
+
 /**
- * Averages an irregular motion over many periods, by the coarse method with its step and with half
- * of it. Sets solve->answer if the mean is known. *periodic: the coarse run became periodic after
- * all, and solve->end_state is on its orbit.
+ * Runs the coarse method on until its motion is periodic or not; *periodic: it became so after all, and
+ * solve->end_state is on its orbit. An irregular motion is averaged as by strut_orbit_solve_average.
  */
 strut_status strut_orbit_solve_average_irregular(strut_orbit_solve *solve, bool *periodic);
+/**
+ * Mean velocity of the motion from solve->end_state by the coarse method with half its step, checked by that with its
+ * whole step: over as many periods as the wanted accuracy takes, the scene has and the budget allows. Where both
+ * differ by more than their scatter, a third run from where the second has ended decides. Sets solve->answer.
+ */
+strut_status strut_orbit_solve_average(strut_orbit_solve *solve);
+/**
+ * The reference method (solve->last_run) did not become periodic, the coarse one did: the mean velocity by the
+ * reference method over many periods from there must agree with the orbit's. Sets solve->answer.
+ */
+strut_status strut_orbit_solve_average_disputed(strut_orbit_solve *solve);
+/** Writes how the mean is known. */
+void strut_orbit_solve_explain_mean(const strut_orbit_solve *solve, char *text, size_t size);
+
 /** Did the coarse map pass no event, at a velocity within the stick band? */
 bool strut_orbit_solve_is_stuck(const strut_orbit_solve *solve);
 /**
@@ -112,11 +142,6 @@ strut_status strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve);
  * The coarse run creeps. Runs it on with half the step; sets solve->answer if that is as slow.
  */
 strut_status strut_orbit_solve_confirm_creep(strut_orbit_solve *solve);
-/**
- * The reference method (solve->last_run) did not become periodic, the coarse one did. Averages the
- * coarse method with half the step; the differences of the means are the error.
- */
-strut_status strut_orbit_solve_average_disputed(strut_orbit_solve *solve);
 /** Fills the request's summary from the answer; orbit: the run of its periods. */
 void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orbit);
 

@@ -98,6 +98,9 @@ typedef struct strut_steady_summary {
   int64_t periods; /* drive periods until that was known */
   double interval; /* half-width of the confidence interval of the velocity [m/s] */
   double residual; /* change of the shape over one repetition, relative to the shape's motion */
+  /* of a motion that has not repeated itself: the mean velocity over the latter half of the run, and its 95 % confidence
+     interval by eight batches [m/s]; INFINITY of a run that was too short */
+  double mean, scatter;
 } strut_steady_summary;
 
 /** Choice and check of the method for a wanted accuracy; `wanted` is 0 without. */

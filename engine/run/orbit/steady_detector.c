@@ -369,6 +369,17 @@ static void judge_irregular(strut_steady_detector *w) {
   w->velocity = mean;
 }
 
+/* The mean over the latter half of the run, whose batches, and whose latter half, say how well it is known. */
+static void measure_mean(strut_steady_detector *w) {
+  int32_t half = (w->drift.marks - 1) / 2 / BATCHES, quarter = half / 2;
+  double wide, narrow, trend, late;
+  w->result.mean = w->velocity, w->result.scatter = HUGE_VAL;
+  if (quarter < 1) return;
+  w->result.mean = batch_mean(w, half, &wide, &trend);
+  late = batch_mean(w, quarter, &narrow, &trend);
+  w->result.scatter = fmax(wide, fabs(w->result.mean - late) - narrow);
+}
+
 bool strut_steady_detector_period(const strut_state *state, double x, strut_steady_detector *w) {
   int64_t now = w->latest.seen++;
   double *latest = w->latest.state[now % STRUT_RING];
@@ -394,7 +405,10 @@ bool strut_steady_detector_period(const strut_state *state, double x, strut_stea
 }
 
 void strut_steady_detector_finish(strut_steady_detector *w, strut_summary *summary) {
-  if (!w->known) judge_irregular(w);
+  if (!w->known) {
+    judge_irregular(w);
+    measure_mean(w);
+  }
   summary->steady = w->result;
   if (!w->known) {
     summary->steady.periods = w->latest.seen > 0 ? w->latest.seen - 1 : 0;

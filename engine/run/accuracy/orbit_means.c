@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Motions that do not repeat themselves: their mean velocity over the latter half of a long run, with the confidence
+ * interval of its batches (steady_detector.c). Two runs by different steps must agree within both intervals.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/integrate/integrator.h"
+#include "engine/run/accuracy/orbit_solve.h"
+
+/* Periods of the first runs for a mean, and the least factor from runs to longer ones. */
+static const double PERIODS = 136.0, LONGER = 3.0;
+/* Periods added while the motion is transient. */
+static const double MORE_PERIODS = 544.0;
+/* Part of the evaluations left that runs for a mean may take, the last and longest of them. */
+static const double PART = 0.4;
+/* An interval is enough that is this part of the wanted error, or smaller. */
+static const double ENOUGH = 0.6;
+/* Tolerance to which such a run must repeat itself to count as periodic. */
+static const double PERIODIC = 1e-4;
+/* Eight batches of half a run are not quite independent: their interval is widened by this. */
+static const double WIDER = 1.25;
+
+static strut_status continue_coarse_run(strut_orbit_solve *solve, double periods) {
+  strut_summary more = {0};
+  strut_status status = strut_orbit_solve_run_until_steady(
+      solve, solve->a->coarse, solve->a->target, 5, periods, true, &more);
+  if (!status) strut_summary_append(&solve->coarse_run, &more);
+  strut_summary_free(&more);
+  return status;
+}
+
+/* The mean of a run that has ended, and the interval within which it is known. */
+static strut_orbit_mean mean_of(const strut_summary *run) {
+  bool repeats = run->steady.kind == STRUT_MOTION_PERIODIC;
+  return (strut_orbit_mean){
+      .velocity = repeats ? run->velocity : run->steady.mean,
+      .interval = repeats ? run->steady.interval : WIDER * run->steady.scatter,
+      .periods = run->steady.periods};
+}
+
+/* Runs from solve->end_state, which becomes the run's end. */
+static strut_status run_for_mean(strut_orbit_solve *solve, strut_experiment e, double periods,
+                                 strut_summary *run, strut_orbit_mean *mean) {
+  strut_summary_free(run);
+  *run = (strut_summary){0};
+  e.steady.creep = 0.0;
+  strut_status status =
+      strut_orbit_solve_run_until_steady(solve, e, PERIODIC, 8, periods, true, run);
+  *mean = mean_of(run);
+  return status;
+}
+
+/* Do two means differ by no more than their scatter? Neither is known of runs that were too short. */
+static bool agree(const strut_orbit_mean *one, const strut_orbit_mean *other) {
+  return fabs(one->velocity - other->velocity) <= hypot(one->interval, other->interval);
+}
+
+/* Most periods of a run for a mean of which one takes `cost` evaluations. */
+static double most_periods(const strut_orbit_solve *solve, double cost) {
+  double left = PART * (double)strut_accuracy_evaluations_left(solve->a);
+  return fmin(solve->a->experiment.periods, left / fmax(1.0, cost));
+}
+
+/* Evaluations of a drive period in a run. */
+static double cost_of_period(const strut_summary *run) {
+  return (double)run->spent.evaluations / fmax(1.0, (double)run->steady.periods);
+}
+
+/* The answer is the latest run, `mean`, beside which `apart` is what another run differs by. */
+static void accept_mean(strut_orbit_solve *solve, strut_orbit_answer answer, strut_summary *run,
+                        strut_orbit_mean mean) {
+  strut_summary_append(&solve->last_run, run);
+  if (mean.disputed) mean.interval += mean.apart;
+  solve->mean = mean;
+  solve->last_run.velocity = mean.velocity;
+  if (solve->last_run.steady.kind == STRUT_MOTION_TRANSIENT)
+    solve->last_run.steady.kind = STRUT_MOTION_IRREGULAR;
+  strut_orbit_solve_accept_last_run(solve, answer, mean.interval);
+}
+
+/* Where a run has ended. */
+typedef struct run_end {
+  double *y; /* (2 length) positions, then velocities */
+  double refined, time;
+  strut_orbit_history history;
+} run_end;
+
+static void keep_end(const strut_orbit_solve *solve, run_end *end) {
+  size_t length = (size_t)solve->coarse_map.model->length;
+  memcpy(end->y, solve->end_state.q, length * sizeof(double));
+  memcpy(end->y + length, solve->end_state.v, length * sizeof(double));
+  end->refined = solve->end_state.refined, end->time = solve->end_state.time;
+  end->history = solve->history;
+}
+
+static void return_to(strut_orbit_solve *solve, const run_end *end) {
+  size_t length = (size_t)solve->coarse_map.model->length;
+  memcpy(solve->end_state.q, end->y, length * sizeof(double));
+  memcpy(solve->end_state.v, end->y + length, length * sizeof(double));
+  solve->end_state.refined = end->refined, solve->end_state.time = end->time;
+  solve->history = end->history;
+}
+
+/* Ever longer runs from solve->orbit by the coarse step and by half of it, until the mean of the latter, whose end is
+   solve->end_state, is known well enough. */
+static strut_status run_by_two_steps(strut_orbit_solve *solve, run_end *end, strut_summary run[2],
+                                     strut_orbit_mean mean[2]) {
+  strut_accuracy *a = solve->a;
+  const strut_experiment by[2] = {a->coarse, strut_orbit_solve_halve_step(solve)};
+  double most = most_periods(solve, 3.0 * cost_of_period(&solve->coarse_run));
+  for (double periods = fmin(PERIODS, most);;) {
+    for (int k = 0; k < 2; k++) {
+      strut_orbit_solve_copy_orbit_to_end(solve);
+      a->check_evaluations += run[k].spent.evaluations;
+      strut_status status = run_for_mean(solve, by[k], periods, &run[k], &mean[k]);
+      if (status) return status;
+      if (k == 0) keep_end(solve, end);
+    }
+    double size = strut_accuracy_velocity_scale(a, mean[1].velocity);
+    double wanted = ENOUGH * a->target * size;
+    mean[1].apart = fabs(mean[1].velocity - mean[0].velocity);
+    bool enough = mean[1].interval <= wanted && mean[1].apart <= wanted;
+    if (!(periods < most) || !agree(&mean[0], &mean[1]) || enough) return STRUT_OK;
+    double missing =
+        fmax(mean[1].interval, mean[1].apart) / wanted; /* it falls with the square root */
+    periods = fmin(periods * fmax(LONGER, missing * missing), most);
+  }
+}
+
+strut_status strut_orbit_solve_average(strut_orbit_solve *solve) {
+  size_t both = 2 * (size_t)solve->coarse_map.model->length;
+  run_end end = {.y = strut_arena_allocate(&solve->arena, both, sizeof(double))};
+  strut_summary run[2] = {{0}, {0}};
+  strut_orbit_mean mean[2] = {{.periods = 0}, {.periods = 0}};
+  if (!end.y) return strut_no_memory(solve->a->error, "");
+  strut_accuracy_begin_phase(solve->a, "averaging over many periods");
+  strut_orbit_solve_copy_end_to_orbit(solve);
+  strut_status status = run_by_two_steps(solve, &end, run, mean);
+  solve->a->check_evaluations += run[0].spent.evaluations;
+  if (!status && !agree(&mean[0], &mean[1])) { /* does the half step leave the other motion? */
+    strut_orbit_mean before = mean[1];
+    return_to(solve, &end);
+    solve->a->check_evaluations += run[1].spent.evaluations;
+    status = run_for_mean(solve, strut_orbit_solve_halve_step(solve), (double)before.periods,
+                          &run[1], &mean[1]);
+    mean[1].apart = fabs(mean[1].velocity - before.velocity);
+    mean[1].disputed = !agree(&mean[1], &before);
+  }
+  if (!status) accept_mean(solve, STRUT_ORBIT_IRREGULAR, &run[1], mean[1]);
+  for (int k = 0; k < 2; k++) strut_summary_free(&run[k]);
+  return status;
+}
+
+strut_status strut_orbit_solve_average_irregular(strut_orbit_solve *solve, bool *periodic) {
+  strut_accuracy *a = solve->a;
+  strut_status status = STRUT_OK;
+  solve->answer = STRUT_ORBIT_NONE;
+  if (solve->coarse_run.steady.kind != STRUT_MOTION_IRREGULAR)
+    status = continue_coarse_run(solve, PERIODS);
+  if (!status && solve->coarse_run.steady.kind == STRUT_MOTION_CREEPING) {
+    status = strut_orbit_solve_confirm_creep(solve);
+    if (status || solve->answer) return status;
+    a->coarse.steady.creep = 0.0;
+    status = continue_coarse_run(solve, PERIODS);
+  }
+  if (!status && solve->coarse_run.steady.kind == STRUT_MOTION_TRANSIENT)
+    status = continue_coarse_run(solve, MORE_PERIODS);
+  *periodic = !status && solve->coarse_run.steady.kind == STRUT_MOTION_PERIODIC;
+  if (status || solve->coarse_run.steady.kind != STRUT_MOTION_IRREGULAR) return status;
+  return strut_orbit_solve_average(solve);
+}
+
+strut_status strut_orbit_solve_average_disputed(strut_orbit_solve *solve) {
+  strut_summary run = {0};
+  strut_orbit_mean orbit = {.velocity = solve->coarse_run.velocity}, mean;
+  double most = most_periods(solve, cost_of_period(&solve->last_run));
+  strut_status status = run_for_mean(solve, solve->reference, fmax(PERIODS, most), &run, &mean);
+  if (!status) {
+    mean.apart = fabs(mean.velocity - orbit.velocity);
+    bool left =
+        run.steady.kind == STRUT_MOTION_PERIODIC; /* an orbit of its own, from the coarse one */
+    mean.disputed = !left && !agree(&mean, &orbit);
+    if (left) mean.interval += mean.apart;
+    accept_mean(solve, STRUT_ORBIT_DISPUTED, &run, mean);
+  }
+  strut_summary_free(&run);
+  return status;
+}
+
+void strut_orbit_solve_explain_mean(const strut_orbit_solve *solve, char *text, size_t size) {
+  const strut_orbit_mean *mean = &solve->mean;
+  double step = solve->coarse_map.dt;
+  char how[160];
+  if (solve->answer == STRUT_ORBIT_DISPUTED)
+    snprintf(how, sizeof how,
+             "verlet-events with a step of %.3g s finds a periodic motion and adaptive (tolerance "
+             "%.1g) does not",
+             step, solve->reference.tolerance);
+  else
+    snprintf(how, sizeof how,
+             "the motion does not repeat itself, by verlet-events with steps of %.3g s and %.3g s",
+             step, 0.5 * step);
+  snprintf(
+      text, size,
+      "%s: the mean velocity over the latter half of %lld periods is known to %.2g m/s, and that "
+      "of other runs "
+      "differs by %.2g m/s%s; more periods or a larger budget narrow it",
+      how, (long long)mean->periods, solve->error, mean->apart,
+      mean->disputed ? ", more than they scatter: there are two motions, or a long transient" : "");
+}
