@@ -95,13 +95,14 @@ static bool has_jumping_signal(const strut_scene *scene) {
   return any;
 }
 
-double strut_accuracy_signal_time(const strut_scene *scene) {
+double strut_accuracy_signal_time(const strut_scene *scene, bool stops) {
   double shortest = HUGE_VAL;
   for (size_t i = 0; i < scene->signal_count; i++) {
     const strut_signal *s = &scene->signals[i];
+    if (stops && s->kind != STRUT_SINE) continue;
     if (s->kind == STRUT_SINE || s->kind == STRUT_HALF_SINE || s->kind == STRUT_SQUARE)
       shortest = fmin(shortest, 1.0 / s->frequency);
-    if (s->kind != STRUT_CONSTANT && s->stop > s->start)
+    if (!stops && s->kind != STRUT_CONSTANT && s->stop > s->start)
       shortest = fmin(shortest, s->stop - s->start);
     for (size_t k = 1; s->kind == STRUT_TABLE && k < s->point_count; k++)
       shortest = fmin(shortest, s->time[k] - s->time[k - 1]);
@@ -116,7 +117,7 @@ double strut_accuracy_signal_time(const strut_scene *scene) {
 static double choose_first_step(const strut_accuracy *a) {
   strut_span span = strut_experiment_span(&a->experiment, a->scene);
   double unit = span.period > 0.0 ? span.period : span.duration;
-  double signals = STEPS_IN_SIGNAL * unit / strut_accuracy_signal_time(a->scene);
+  double signals = STEPS_IN_SIGNAL * unit / strut_accuracy_signal_time(a->scene, false);
   double least = fmax(span.period > 0.0 ? STEPS_IN_PERIOD : STEPS_IN_RUN, ceil(signals));
   if (!(unit / least > a->coarse.step)) return 0.0;
   for (double n = least; n <= 4.0 * least; n++) {
