@@ -10,6 +10,7 @@
 #include "engine/forces/signal_vector.h"
 #include "engine/forces/strains/angle.h"
 #include "engine/forces/strains/path.h"
+#include "engine/scene/signal_bounds.h"
 #include "engine/scene/signal_motion.h"
 
 strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
@@ -125,42 +126,72 @@ void strut_loads_apply(const strut_model *model, const strut_state *state, doubl
   }
 }
 
-double strut_drive_next_break(const strut_model *model, const strut_state *state, double t) {
-  const strut_signal *signals = model->scene->signals;
-  double first = (double)INFINITY;
-  for (int32_t i = 0; i < model->drives.count; i++)
-    first = fmin(first, strut_signal_next_break_since(signals, state->signals.started,
-                                                      model->drives.signal[i], t));
-  for (int32_t i = 0; i < model->loads.count; i++)
-    first = fmin(first, strut_signal_next_break_since(signals, state->signals.started,
-                                                      model->loads.signal[i], t));
+/* The earlier of `first` and the next break of a signal. */
+static double earlier_break(const strut_model *model, const strut_state *state, int32_t signal,
+                            double t, double first) {
+  return fmin(first, strut_signal_next_break_since(model->scene->signals, state->signals.started,
+                                                   signal, t, first));
+}
+
+/* Of what never follows the motion. */
+static double next_break_of_motions(const strut_model *model, const strut_state *state, double t,
+                                    double first) {
+  const strut_scene *scene = model->scene;
   for (int32_t i = 0; i < model->support_motion.count; i++)
-    first = fmin(first, strut_signal_next_break(signals, model->support_motion.item[i].signal, t));
-  for (size_t i = 0; i < model->scene->unbalance_count; i++)
-    if (model->scene->unbalances[i].signal >= 0)
-      first = fmin(first, strut_signal_next_break(signals, model->scene->unbalances[i].signal, t));
-  for (int32_t k = 0; k < model->sliding.moving_count; k++) {
-    const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
-    first = fmin(first, strut_signal_next_break(signals, s->signal, t));
-  }
-  for (size_t g = 0; g < model->scene->ground_count && model->contacts.moves; g++)
+    first = earlier_break(model, state, model->support_motion.item[i].signal, t, first);
+  for (size_t i = 0; i < scene->unbalance_count; i++)
+    if (scene->unbalances[i].signal >= 0)
+      first = earlier_break(model, state, scene->unbalances[i].signal, t, first);
+  for (int32_t k = 0; k < model->sliding.moving_count; k++)
+    first =
+        earlier_break(model, state, model->sliding.item[model->sliding.moving[k]].signal, t, first);
+  for (size_t g = 0; g < scene->ground_count && model->contacts.moves; g++)
     for (int c = 0; c < 2; c++)
-      if (model->scene->grounds[g].moves[c])
-        first =
-            fmin(first, strut_signal_next_break(signals, model->scene->grounds[g].motion[c], t));
-  for (int32_t i = 0; i < model->contacts.count && model->contacts.grips; i++) {
-    const strut_friction *f = &model->contacts.entry[i].friction;
-    if (f->driven)
-      first =
-          fmin(first, strut_signal_next_break_since(signals, state->signals.started, f->signal, t));
-  }
+      if (scene->grounds[g].moves[c])
+        first = earlier_break(model, state, scene->grounds[g].motion[c], t, first);
+  return first;
+}
+
+double strut_drive_next_break(const strut_model *model, const strut_state *state, double t,
+                              double until) {
+  double first = fmin(until, strut_feedback_next_sample(model, t));
   for (int32_t i = 0; i < model->elements.breakable_count; i++)
     if (model->elements.breakable[i].time > t)
       first = fmin(first, model->elements.breakable[i].time);
+  first = next_break_of_motions(model, state, t, first);
+  for (int32_t i = 0; i < model->drives.count; i++)
+    first = earlier_break(model, state, model->drives.signal[i], t, first);
+  for (int32_t i = 0; i < model->loads.count; i++)
+    first = earlier_break(model, state, model->loads.signal[i], t, first);
+  for (int32_t i = 0; i < model->contacts.count && model->contacts.grips; i++)
+    if (model->contacts.entry[i].friction.driven)
+      first = earlier_break(model, state, model->contacts.entry[i].friction.signal, t, first);
   for (int32_t i = 0; i < model->actuator_forces.count; i++)
-    first = fmin(first, strut_signal_next_break_since(signals, state->signals.started,
-                                                      model->actuator_forces.item[i].signal, t));
-  return fmin(first, strut_feedback_next_sample(model, t));
+    first = earlier_break(model, state, model->actuator_forces.item[i].signal, t, first);
+  for (size_t i = 0; i < model->scene->state_count; i++)
+    first = fmin(first, strut_program_next_break(model->scene->signals, state->signals.started,
+                                                 &model->scene->states[i].rate, t, first));
+  return first;
+}
+
+bool strut_drive_is_looked_at(const strut_model *model) {
+  const strut_scene *scene = model->scene;
+  bool any = scene->state_count > 0;
+  for (size_t i = 0; i < scene->signal_count; i++)
+    any = any || strut_signal_is_looked_at(&scene->signals[i]);
+  return any;
+}
+
+double strut_drive_longest_step(const strut_model *model, const strut_state *state, double t,
+                                double h, double faint, double least) {
+  const strut_scene *scene = model->scene;
+  const strut_signal_inputs now = strut_drive_inputs(model, state, state->v);
+  const strut_signal_inputs *in = model->terms & STRUT_TERM_FEEDBACK ? &now : NULL;
+  for (size_t i = 0; i < scene->signal_count; i++)
+    h = strut_signal_longest_step(scene->signals, in, (int32_t)i, t, h, faint, least);
+  for (size_t i = 0; i < scene->state_count; i++)
+    h = strut_program_longest_step(&scene->states[i].rate, scene->signals, in, t, h, faint, least);
+  return h;
 }
 
 /* de/dq of the strain that the force works on. */

@@ -33,9 +33,19 @@ void strut_grounds_move(const strut_model *model, double t, strut_ground_motion 
 
 /**
  * The first time after t [s] at which a drive, a load or its rate jumps, or something is released;
- * INFINITY if none does.
+ * INFINITY if none does. Those after `until` need not be told.
  */
-double strut_drive_next_break(const strut_model *model, const strut_state *state, double t);
+double strut_drive_next_break(const strut_model *model, const strut_state *state, double t,
+                              double until);
+
+/** Has the model expressions or pulses, for which steps may have to be shorter? */
+bool strut_drive_is_looked_at(const strut_model *model);
+/**
+ * The longest step from time t [s] of the signals, at most h, over which begin, middle and end show what all of them do;
+ * see strut_program_longest_step.
+ */
+double strut_drive_longest_step(const strut_model *model, const strut_state *state, double t,
+                                double h, double faint, double least);
 
 /* Forces and moments of actuators; see engine/model/elements.h. */
 

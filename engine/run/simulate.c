@@ -397,7 +397,9 @@ static double time_of_balance(const strut_run *r) {
   double t = strut_time_grid_at(&r->grid, r->state->step), near = 2e-9 * r->dt;
   if (!r->method->events) return t;
   double now = t + r->state->time_offset;
-  return strut_drive_next_break(r->model, r->state, now - near) <= now + near ? t + near : t;
+  return strut_drive_next_break(r->model, r->state, now - near, now + 2.0 * near) <= now + near
+             ? t + near
+             : t;
 }
 
 static strut_status sample_balance(strut_run *r) {

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "engine/base/vec.h"
+#include "engine/scene/signal_bounds.h"
 #include "engine/scene/signal_motion.h"
 #include "engine/scene/signal_program.h"
 
@@ -30,8 +31,9 @@ static void evaluate_ramp(const strut_signal *s, double t, double *value, double
   }
 }
 
-static void evaluate_table(const strut_signal *s, double t, double *value, double *rate) {
-  size_t low = 0, high = s->point_count; /* points before `low` are at or before t */
+/* Number of a table's points at or before t. */
+static size_t count_points(const strut_signal *s, double t) {
+  size_t low = 0, high = s->point_count;
   while (low < high) {
     size_t middle = low + (high - low) / 2;
     if (s->time[middle] <= t)
@@ -39,6 +41,11 @@ static void evaluate_table(const strut_signal *s, double t, double *value, doubl
     else
       high = middle;
   }
+  return low;
+}
+
+static void evaluate_table(const strut_signal *s, double t, double *value, double *rate) {
+  size_t low = count_points(s, t);
   *rate = 0.0;
   *value = s->value[low ? low - 1 : 0];
   if (low == 0 || low == s->point_count) return;
@@ -147,26 +154,34 @@ static bool is_signal(const strut_instruction *p) {
   return p->operation == STRUT_OPERATION_COLUMN && p->column.kind == STRUT_COLUMN_SIGNAL;
 }
 
+double strut_program_next_break(const strut_signal *signals, const double *started,
+                                const strut_program *program, double t, double until) {
+  double first = until;
+  for (size_t i = 0; i < program->length; i++)
+    if (is_signal(&program->instruction[i]))
+      first = fmin(first, strut_signal_next_break_since(
+                              signals, started, program->instruction[i].column.item, t, first));
+  return fmin(first, strut_program_next_kink(program, signals, started, t, first));
+}
+
 static double next_break_inside(const strut_signal *signals, const double *started,
-                                const strut_signal *s, double t) {
+                                const strut_signal *s, double t, double until) {
   double first = (double)INFINITY;
+  size_t past;
   switch (s->kind) {
     case STRUT_SQUARE: return next_half_period(s, t);
     case STRUT_HALF_SINE: return s->start + 0.5 / s->frequency;
     case STRUT_TABLE:
-      for (size_t k = s->point_count; k > 0 && s->time[k - 1] > t; k--) first = s->time[k - 1];
-      return first;
+      past = count_points(s, t);
+      return past < s->point_count ? s->time[past] : first;
     case STRUT_SUM:
       for (size_t i = 0; i < s->term_count; i++)
-        first = fmin(first, strut_signal_next_break_since(signals, started, s->terms[i], t));
+        first = fmin(first, strut_signal_next_break_since(signals, started, s->terms[i], t,
+                                                          fmin(first, until)));
       return first;
     case STRUT_EXPRESSION:
     case STRUT_RELAY: /* its input's: there it may switch */
-      for (size_t i = 0; i < s->program.length; i++)
-        if (is_signal(&s->program.instruction[i]))
-          first = fmin(first, strut_signal_next_break_since(
-                                  signals, started, s->program.instruction[i].column.item, t));
-      return first;
+      return strut_program_next_break(signals, started, &s->program, t, until);
     case STRUT_CONSTANT:
     case STRUT_SINE:
     case STRUT_RAMP:
@@ -177,30 +192,30 @@ static double next_break_inside(const strut_signal *signals, const double *start
 
 /* Of a signal in its own time. */
 static double next_break_of(const strut_signal *signals, const double *started, int32_t index,
-                            double t) {
+                            double t, double until) {
   const strut_signal *s = &signals[index];
   if (s->kind == STRUT_TABLE || strut_signal_has_program(s))
-    return next_break_inside(signals, started, s, t);
+    return next_break_inside(signals, started, s, t, until);
   if (t < s->start) return s->start;
-  double first = next_break_inside(signals, started, s, t);
+  double first = next_break_inside(signals, started, s, t, until);
   if (!(first > t)) first = (double)INFINITY;
   return t < s->stop ? fmin(first, s->stop) : (double)INFINITY;
 }
 
 double strut_signal_next_break_since(const strut_signal *signals, const double *started,
-                                     int32_t index, double t) {
+                                     int32_t index, double t, double until) {
   const strut_signal *s = &signals[index];
   if (s->trigger.kind != STRUT_TRIGGER_NONE && started) {
     double since = started[index];
     if (!(since < (double)INFINITY)) return (double)INFINITY;
     if (t < since) return since;
-    return since + next_break_of(signals, started, index, t - since);
+    return since + next_break_of(signals, started, index, t - since, until - since);
   }
-  return next_break_of(signals, started, index, t);
+  return next_break_of(signals, started, index, t, until);
 }
 
 double strut_signal_next_break(const strut_signal *signals, int32_t index, double t) {
-  return strut_signal_next_break_since(signals, NULL, index, t);
+  return strut_signal_next_break_since(signals, NULL, index, t, (double)INFINITY);
 }
 
 /* Longest period among a signal's repeating parts, or among its pulses; 0 without any. */

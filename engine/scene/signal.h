@@ -97,12 +97,18 @@ STRUT_API void strut_signal_evaluate(const strut_signal *signals, int32_t index,
                                      double *value, double *rate);
 
 /**
- * First time after t [s] at which signal `index` or its rate jumps; INFINITY where it stays smooth.
+ * First time after t [s] at which signal `index` or its rate may jump; INFINITY where it stays smooth.
  */
 STRUT_API double strut_signal_next_break(const strut_signal *signals, int32_t index, double t);
-/** The same of signals that started at the times `started` (signals); NULL: no signal has a trigger. */
+/**
+ * The same of signals that started at the times `started` (signals); NULL: no signal has a trigger. Breaks after
+ * `until` need not be told.
+ */
 STRUT_API double strut_signal_next_break_since(const strut_signal *signals, const double *started,
-                                               int32_t index, double t);
+                                               int32_t index, double t, double until);
+/** Likewise of a program of the time and of signals. */
+STRUT_API double strut_program_next_break(const strut_signal *signals, const double *started,
+                                          const strut_program *program, double t, double until);
 
 /**
  * Period of a signal [s]: 1 / frequency; of a sum, the longest period of its terms if every other

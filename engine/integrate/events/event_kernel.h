@@ -235,6 +235,26 @@ STRUT_INLINE double next_step_size(const strut_state *state, const strut_event_s
   return h > rest * (1.0 - 1e-9) ? rest : h;
 }
 
+/* What a signal does for a smaller part of its size may be missed by fixed steps. */
+static const double FAINT_SIGNAL = 1e-6;
+/* Steps are not shorter than this part of the longest for a signal's sake. */
+static const double LEAST_SHOWN = 1e-9;
+
+/*
+ * Size of the next step, at most h, which shows what signals do within it. Methods without error control see little but
+ * ends: what these and the next end show is enough for them.
+ */
+STRUT_INLINE double shown_step_size(const strut_model *model, const strut_state *state,
+                                    const strut_event_stepper *stepper, double h, double dt) {
+  if (!stepper->looks) return h;
+  bool controlled = stepper->formula->adaptive;
+  double t = (double)state->step * dt + stepper->done + state->time_offset;
+  double ahead = controlled ? h : 2.0 * h,
+         faint = controlled ? stepper->control.tolerance : FAINT_SIGNAL;
+  double shown = strut_drive_longest_step(model, state, t, ahead, faint, LEAST_SHOWN * dt);
+  return shown < ahead ? h * (shown / ahead) : h;
+}
+
 /*
  * Local error of a step of h over what is allowed, by those of positions and of velocities. The latter is not
  * asked for beyond what rounding leaves of it: a structure at rest has no speed to compare it with.

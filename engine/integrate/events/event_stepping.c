@@ -86,8 +86,8 @@ static void end_smooth(strut_event_stepper *stepper) {
 
 static void find_next_break(const strut_model *model, const strut_state *state,
                             strut_event_stepper *stepper, double t, double dt) {
-  stepper->next_break =
-      strut_drive_next_break(model, state, t + state->time_offset + STRUT_AT_BREAK * dt);
+  stepper->next_break = strut_drive_next_break(
+      model, state, t + state->time_offset + STRUT_AT_BREAK * dt, (double)INFINITY);
 }
 
 /* On which side of their thresholds sensors begin; nodes that just touch when the run begins have touched down. */
@@ -116,6 +116,7 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
   stepper->chatter.pushed = -1;
   stepper->tried = false;
   find_next_break(model, state, stepper, t, dt);
+  stepper->looks = strut_drive_is_looked_at(model);
   if (stepper->next_break < HUGE_VAL) t += moment_before(t, dt);
   if (model->feedback.trigger_count) begin_triggers(model, state, stepper, t, dt);
   strut_modes_start(model, state, stepper, t);
@@ -482,7 +483,8 @@ static bool given_up(const strut_model *model, strut_state *state, strut_event_s
 /* One step within the grid's, and what happens in it. */
 static void take_step(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                       double dt) {
-  double t = (double)state->step * dt + stepper->done, h = next_step_size(state, stepper, dt);
+  double t = (double)state->step * dt + stepper->done;
+  double h = shown_step_size(model, state, stepper, next_step_size(state, stepper, dt), dt);
   double gone = advance_piece(model, state, stepper, evaluation_time(stepper, t, dt), h, dt);
   if (state->watched.event_log) strut_event_log_note(model, state, stepper, t + gone);
   advance_within_grid(state, stepper, gone, dt);

@@ -287,6 +287,7 @@ struct strut_event_stepper {
   double done; /* of the grid step under way [s] */
   double
       next_break; /* when a drive or load jumps next, with the state's time_offset [s]; INFINITY: never */
+  bool looks; /* signals may ask for shorter steps */
   bool started;
   bool fresh;                /* now->structure holds for now */
   bool tried;                /* next is the end of the step that is due */

@@ -119,6 +119,7 @@ STRUT_INLINE void advance_predicted(const strut_model *model, strut_state *state
   while (state->step < end) {
     double t = (double)state->step * dt + stepper->done, h = next_step_size(state, stepper, dt);
     if (t + h + state->time_offset > stepper->next_break - STRUT_AT_BREAK * dt) return;
+    if (shown_step_size(model, state, stepper, h, dt) < h) return;
     t = evaluation_time(stepper, t, dt);
     predict(model, stepper, h);
     if (crosses(&model->contacts, stepper, stepper->next->q)) return;

@@ -64,8 +64,9 @@ static inline bool strut_accuracy_is_kept(bool confirmed, double expected, doubl
   return confirmed && expected <= wanted;
 }
 
-/** The shortest period or duration of a signal [s]; HUGE_VAL: none. */
-double strut_accuracy_signal_time(const strut_scene *scene);
+/** The shortest period or duration of a signal [s]; HUGE_VAL: none. `stops`: only of those that the breaks at which
+    methods with events stop do not resolve. */
+double strut_accuracy_signal_time(const strut_scene *scene, bool stops);
 /** Announces the next part of the work to the progress display. */
 void strut_accuracy_begin_phase(const strut_accuracy *a, const char *name);
 /** Force evaluations that the budget allows at least. */

@@ -28,7 +28,7 @@ static const double PRECISE = 2e-6, GROWTH_BY_TOLERANCE = 1.6, GROWTH_BY_EVENTS 
 static const double LEAST_TOLERANCE = 3e-14;
 /* Moments of a track: per period or run, and the most. */
 enum { MOMENTS_OF_PERIOD = 10, MOST_MOMENTS = 61 };
-/* Moments are at most this part of the shortest signal time apart. */
+/* Moments are at most this part of the shortest signal time apart; breaks of signals are stops, and none of it. */
 static const double SIGNAL_FRACTION = 0.1;
 /* Largest size of a track in doubles. */
 static const double MOST_TRACK_NUMBERS = 4e6;
@@ -254,7 +254,7 @@ static strut_status create_ladder(strut_accuracy *a, strut_ladder *l) {
   l->model = a->model;
   l->unit = find_grid_unit(a, &meets);
   l->moment = l->unit / MOMENTS_OF_PERIOD;
-  double signals = strut_accuracy_signal_time(a->scene);
+  double signals = strut_accuracy_signal_time(a->scene, !a->single_method);
   if (l->moment > SIGNAL_FRACTION * signals)
     l->moment = divide_evenly(l->moment, SIGNAL_FRACTION * signals);
   if (!meets) l->moment = divide_evenly(l->moment, fmin(l->unit / 40.0, 5.0 * a->coarse.step));

@@ -96,9 +96,9 @@ static bool has_jumping_signal(const strut_scene *scene) {
   return any;
 }
 
-double strut_accuracy_signal_time(const strut_scene *scene) {
-  double shortest = 1.0 / strut_scene_fastest_turn(scene, 0.0, false).rate;
-  for (size_t i = 0; i < scene->signal_count; i++) {
+double strut_accuracy_signal_time(const strut_scene *scene, bool stops) {
+  double shortest = 1.0 / strut_scene_fastest_turn(scene, 0.0, stops).rate;
+  for (size_t i = 0; i < scene->signal_count && !stops; i++) {
     const strut_signal *s = &scene->signals[i];
     if (s->kind != STRUT_CONSTANT && s->stop > s->start)
       shortest = fmin(shortest, s->stop - s->start);
@@ -115,7 +115,7 @@ double strut_accuracy_signal_time(const strut_scene *scene) {
 static double choose_first_step(const strut_accuracy *a) {
   strut_span span = strut_experiment_span(&a->experiment, a->scene);
   double unit = span.period > 0.0 ? span.period : span.duration;
-  double signals = STEPS_IN_SIGNAL * unit / strut_accuracy_signal_time(a->scene);
+  double signals = STEPS_IN_SIGNAL * unit / strut_accuracy_signal_time(a->scene, false);
   double least = fmax(span.period > 0.0 ? STEPS_IN_PERIOD : STEPS_IN_RUN, ceil(signals));
   if (!(unit / least > a->coarse.step)) return 0.0;
   for (double n = least; n <= 4.0 * least; n++) {
