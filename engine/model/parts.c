@@ -19,11 +19,11 @@ static void connect_nodes(const strut_model *model, int32_t *parent) {
   }
 }
 
-void strut_parts_find(const strut_model *model, const double *force, int32_t *part_of,
-                      strut_part *part) {
+void strut_connected_parts_find(const strut_model *model, const double *force, int32_t *part_of,
+                                strut_connected_part *part) {
   connect_nodes(model, part_of);
   for (int32_t i = 0; i < model->node_count; i++) {
-    strut_part *p = &part[part_of[i] = root(part_of, i)];
+    strut_connected_part *p = &part[part_of[i] = root(part_of, i)];
     for (int c = 0; c < 2; c++) {
       p->held[c] = p->held[c] || model->fixed[2 * i + c];
       if (!model->fixed[2 * i + c]) p->force[c] += force[2 * i + c];

@@ -5,17 +5,17 @@
 
 #include "engine/model/model.h"
 
-typedef struct strut_part {
+typedef struct strut_connected_part {
   double force[2]; /* sum of those on free coordinates [N] */
   bool held[2];    /* some node of it, along x, along y */
   bool touches;    /* some node of it is one that contacts have */
-} strut_part;
+} strut_connected_part;
 
 /**
  * part_of (node_count) becomes the number of a node's part, the first that was found of its nodes; part
  * (node_count), zeros before, is filled there. force: (length) [N].
  */
-void strut_parts_find(const strut_model *model, const double *force, int32_t *part_of,
-                      strut_part *part);
+void strut_connected_parts_find(const strut_model *model, const double *force, int32_t *part_of,
+                                strut_connected_part *part);
 
 #endif

@@ -49,9 +49,9 @@ strut_status strut_relaxation_check(strut_relaxation *r, strut_error *error) {
   size_t nodes = (size_t)model->node_count;
   if (!model->constant_force || !c->count || (c->surface && !c->parallel)) return STRUT_OK;
   int32_t *part_of = strut_arena_allocate(&r->arena, nodes, sizeof *part_of);
-  strut_part *part = strut_arena_allocate(&r->arena, nodes, sizeof *part);
+  strut_connected_part *part = strut_arena_allocate(&r->arena, nodes, sizeof *part);
   if (!part_of || !part) return strut_no_memory(error, "");
-  strut_parts_find(model, model->constant_force, part_of, part);
+  strut_connected_parts_find(model, model->constant_force, part_of, part);
   for (int32_t i = 0; i < model->node_count; i++) {
     if (part_of[i] != i || !part[i].touches || part[i].held[0] || part[i].held[1]) continue;
     held_part own = find_grip(r, part_of, i, part[i].force);

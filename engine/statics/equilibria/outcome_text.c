@@ -109,7 +109,7 @@ enum { NAMES = 100 };
 
 /* Why a part cannot rest: the forces on it against the supports that could balance them. */
 static strut_instability_cause instability_of(const strut_equilibrium_search *h,
-                                              const strut_part *p) {
+                                              const strut_connected_part *p) {
   double scale = 1e-12 * h->potential->force_scale;
   bool across = !p->held[1] && fabs(p->force[1]) > scale;
   bool along = !p->held[0] && fabs(p->force[0]) > scale;
@@ -126,7 +126,7 @@ static strut_instability_cause instability_of(const strut_equilibrium_search *h,
 }
 
 /* The friction coefficient that would hold the part: force along the ground over normal force. */
-static void describe_friction(const strut_part *p, size_t room, char *text) {
+static void describe_friction(const strut_connected_part *p, size_t room, char *text) {
   if (p->force[1] < 0)
     snprintf(text, room, "a friction coefficient of at least %.4g holds it",
              fabs(p->force[0] / p->force[1]));
@@ -135,7 +135,7 @@ static void describe_friction(const strut_part *p, size_t room, char *text) {
 }
 
 static void describe_instability(strut_equilibrium_search *h, strut_instability_cause cause,
-                                 const strut_part *p, const uint8_t *flag) {
+                                 const strut_connected_part *p, const uint8_t *flag) {
   char names[NAMES] = "all nodes", friction[NAMES], *remark = h->out->remark;
   size_t room = sizeof h->out->remark;
   int32_t count = 0;
@@ -159,10 +159,10 @@ strut_instability_cause strut_equilibrium_search_instability(strut_equilibrium_s
   strut_instability_cause worst = STRUT_INSTABILITY_NONE;
   strut_arena scratch = {0};
   int32_t *parent = strut_arena_allocate(&scratch, (size_t)nodes, sizeof *parent);
-  strut_part *parts = strut_arena_allocate(&scratch, (size_t)nodes, sizeof *parts);
+  strut_connected_part *parts = strut_arena_allocate(&scratch, (size_t)nodes, sizeof *parts);
   uint8_t *flag = strut_arena_allocate(&scratch, (size_t)nodes, 1);
   if (parent && parts && flag) {
-    strut_parts_find(h->model, h->potential->force, parent, parts);
+    strut_connected_parts_find(h->model, h->potential->force, parent, parts);
     for (int32_t i = 0; i < nodes && worst == STRUT_INSTABILITY_NONE; i++)
       if (parent[i] == i && (worst = instability_of(h, &parts[i])) != STRUT_INSTABILITY_NONE)
         moves = i;
