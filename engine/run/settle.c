@@ -19,6 +19,18 @@
 static const int64_t ROUNDING_EVALUATIONS = 1000000;
 
 /*
+ * Friction where all is at rest: by laws that stick, exactly and in sliding as well, so that it ends as soon as it
+ * may; by others, which vanish with the speed, there is none.
+ */
+static void make_static(strut_friction *friction, bool kept) {
+  bool sticks = strut_friction_has_band(friction->law) || strut_friction_is_exact(friction->law);
+  friction->law = kept && sticks ? STRUT_FRICTION_COULOMB : STRUT_FRICTION_NONE;
+  friction->stick_velocity = DBL_MIN; /* so that the law, too, holds at a speed of zero */
+  friction->mu_kinetic = friction->mu_static;
+  friction->mu_kinetic_backward = friction->mu_static_backward;
+}
+
+/*
  * Copies the scene without drives, driven loads, feedback, belt and, unless kept, friction. Shares texts and
  * arrays.
  */
@@ -44,7 +56,7 @@ static strut_status copy_passive_scene(const strut_scene *scene, bool friction,
   for (size_t i = 0; i < scene->contact_count; i++) {
     passive->contacts[i] = scene->contacts[i];
     strut_scene_stop_grip(scene, &passive->contacts[i].friction);
-    if (!friction) passive->contacts[i].friction.law = STRUT_FRICTION_NONE;
+    make_static(&passive->contacts[i].friction, friction);
   }
   strut_collision *bodies =
       strut_arena_copy(arena, scene->collisions, scene->collision_count, sizeof *bodies);
@@ -104,11 +116,17 @@ static double rounding_acceleration(const strut_relaxation *r) {
   return 4.0 * worst;
 }
 
+/* With friction, the last bit of a speed is sliding; what comes to rest stands. */
+static void accelerate(const strut_relaxation *r) {
+  const double *v = r->experiment->settle.friction ? r->still : r->state->v;
+  strut_forces_acceleration(r->model, r->state, 0.0, r->state->q, v, r->acceleration);
+}
+
 static strut_status fail_not_settled(const strut_relaxation *r, strut_error *error) {
   const strut_settle *wanted = &r->experiment->settle;
   int32_t fastest, pushed, length = r->model->length;
   double speed = find_largest(r->state->v, length, &fastest);
-  strut_forces_acceleration(r->model, r->state, 0.0, r->state->q, r->state->v, r->acceleration);
+  accelerate(r);
   double push = find_largest(r->acceleration, length, &pushed);
   bool late = r->time >= wanted->limit, moves = !(speed < wanted->speed);
   bool slides = r->scene.contact_count && !wanted->friction;
@@ -170,7 +188,7 @@ static strut_status relax_until_rest(strut_relaxation *r, strut_error *error) {
       enough = fmax(enough, rounding_acceleration(r));
     }
     if (!(find_largest(state->v, length, &node) < wanted->speed)) continue;
-    strut_forces_acceleration(r->model, state, 0.0, state->q, state->v, r->acceleration);
+    accelerate(r);
     if (find_largest(r->acceleration, length, &node) < enough) return STRUT_OK;
   }
   return fail_not_settled(r, error);
@@ -193,7 +211,8 @@ strut_status strut_relaxation_create(const strut_model *model, const strut_exper
   strut_status status = copy_passive_scene(model->scene, settle->friction, &r->scene, &r->arena);
   r->step = settle->step > 0.0 ? settle->step : experiment->step;
   r->acceleration = strut_arena_allocate(&r->arena, (size_t)model->length, sizeof(double));
-  if (!r->acceleration) status = STRUT_NO_MEMORY;
+  r->still = strut_arena_allocate(&r->arena, (size_t)model->length, sizeof(double));
+  if (!r->acceleration || !r->still) status = STRUT_NO_MEMORY;
   if (status) return strut_fail(error, status, "out of memory");
   status = strut_model_compile(&r->scene, &r->model, error);
   if (!status) status = strut_state_create(r->model, &r->state, error);
@@ -500,6 +519,7 @@ strut_status strut_settle_experiment(const strut_model *model, const strut_exper
   *how = (strut_settle_summary){0};
   r.interrupt = interrupt;
   memcpy(q, model->start, (size_t)model->length * sizeof *q);
+  if (!status) status = strut_relaxation_check(&r, error);
   if (!status) status = choose_settle_step(&r, error);
   if (!status) status = settle_and_perturb(&r, q, how, error);
   how->time = r.time;

@@ -25,6 +25,7 @@ typedef struct strut_relaxation {
   const struct strut_integrator *method;
   void *workspace;
   double *acceleration; /* (length) */
+  double *still;        /* (length) zeros */
   double step;          /* [s] */
   double time;          /* simulated so far [s] */
   int64_t evaluations;  /* so far */
@@ -45,6 +46,11 @@ strut_status strut_relaxation_create(const strut_model *model, const strut_exper
  * STRUT_DIVERGED, STRUT_INTERRUPTED.
  */
 strut_status strut_relaxation_run(strut_relaxation *relaxation, strut_error *error);
+/**
+ * Can straight grounds hold each part of the structure that nothing else holds along them? STRUT_NOT_SETTLED with
+ * the coefficient of friction that it takes, STRUT_NO_MEMORY.
+ */
+strut_status strut_relaxation_check(strut_relaxation *relaxation, strut_error *error);
 void strut_relaxation_free(strut_relaxation *relaxation);
 
 /** A single relaxation with the given step; *time is the simulated time [s]. */

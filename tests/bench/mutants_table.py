@@ -154,6 +154,9 @@ MUTANTS = [
     Mutant("settled-by-speed-alone", "engine/run/settle.c",
            "if (find_largest(r->acceleration, length, &node) < enough) return STRUT_OK;", "return STRUT_OK;",
            "settling ends at the first turning point, at rest or not", "simulate|gallery|crawler"),
+    Mutant("rest-slides", "engine/run/settle.c",
+           "friction->stick_velocity = DBL_MIN;", "friction->stick_velocity = 0.0;",
+           "what sticks exactly counts as sliding at a speed of zero", "sticking_rest"),
     Mutant("balance-without-loads", "engine/run/measure/measure.c", "e->load_work = w[STRUT_POWER_LOAD] + loads;",
            "e->load_work = w[STRUT_POWER_LOAD];", "constant loads do no work in the energy balance", "energy|simulate"),
 

@@ -170,10 +170,10 @@ TEST(an_interrupted_step_is_undone_with_its_works) {
   m.state->balance = true;
   m.state->limits.interrupt = &ring;
   ring = 0;
-  assert_int_equal(sigaction(SIGALRM, &action, &before), 0);
-  assert_int_equal(setitimer(ITIMER_REAL, &soon, NULL), 0);
+  assert_int_equal(sigaction(SIGVTALRM, &action, &before), 0);
+  assert_int_equal(setitimer(ITIMER_VIRTUAL, &soon, NULL), 0);
   motion_steps(&m, 1);
-  assert_int_equal(sigaction(SIGALRM, &before, NULL), 0);
+  assert_int_equal(sigaction(SIGVTALRM, &before, NULL), 0);
   assert_int_equal(m.state->trouble, STRUT_FAILURE_INTERRUPT);
   assert_true(m.state->latest->evaluations > 100); /* it had gone somewhere */
   assert_int_equal(m.state->step, 0);

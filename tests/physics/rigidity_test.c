@@ -424,10 +424,8 @@ TEST(out_of_memory) {
   for (int64_t n = 0; !done && n < 10000; n++) {
     strut_rigidity found;
     strut_status status = refused(n, strut_rigidity_find(model, model->start, &found, &error));
-    if (status == STRUT_OK)
-      done = found.states.count == 5;
-    else
-      strut_rigidity_free(&found);
+    done = status == STRUT_OK && found.states.count == 5;
+    strut_rigidity_free(&found);
   }
   assert_true(done);
 }

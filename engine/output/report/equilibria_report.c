@@ -179,6 +179,7 @@ static void put_rest(strut_json *json, struct cJSON *to, const strut_scene *scen
   put_nodes(json, rest, scene, e->rest);
   strut_json_number(json, rest, "energy", e->rest_energy);
   strut_json_number(json, rest, "residual", e->rest_residual);
+  strut_json_number(json, rest, "friction", e->friction);
   struct cJSON *contacts = strut_json_object(json, rest, "contacts");
   for (int32_t i = 0; i < e->contact_count; i++)
     strut_json_number(json, contacts, scene->nodes[e->contacts[i]].name, e->normal[i]);
@@ -319,6 +320,7 @@ static const char *collision_words(const strut_equilibrium *e) {
 static void add_end(strut_buffer *table, const strut_equilibria *all, const strut_equilibrium *e) {
   const int32_t *down = e->point.down;
   if (e->outcome == STRUT_OUTCOME_STANDS) {
+    if (e->friction > 0.0) strut_buffer_add(table, "  needs friction %.4g", e->friction);
     strut_buffer_add(table, "%s", collision_words(e));
     return;
   }

@@ -125,7 +125,8 @@ static void add_head(strut_buffer *table, const strut_model *model, const strut_
       modes->dense ? "all modes computed" : "the lowest modes computed", modes->condition);
   if (!modes->at_rest)
     strut_buffer_add(table,
-                     "  this shape is not an equilibrium: the structure moves away from it\n");
+                     "  this shape is not an equilibrium: the structure moves away from it%s\n",
+                     model->contacts.count ? " where friction does not hold it" : "");
   char warning[300];
   if (strut_settle_warning(&modes->settle, warning, sizeof warning))
     strut_buffer_add(table, "  %s\n", warning);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/model/linear_solver.h"
+#include "engine/model/pose.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibria_parts.h"
 
@@ -316,7 +317,7 @@ static strut_status prepare_search(strut_equilibrium_search *h, const strut_mode
   return status;
 }
 
-static strut_status search_scene(strut_equilibrium_search *h) {
+static strut_status search_scene(strut_equilibrium_search *h, const strut_scene *scene) {
   if (h->potential->n == 0) {
     strncpy(h->out->remark, "nothing can move: the scene holds every node",
             sizeof h->out->remark - 1);
@@ -326,21 +327,43 @@ static strut_status search_scene(strut_equilibrium_search *h) {
   if (h->instability == STRUT_INSTABILITY_FALLS) return STRUT_OK;
   strut_status status =
       strut_relaxer_create(h->potential, h->experiment->settle.limit, &h->relaxer, h->error);
+  if (!status && h->instability == STRUT_INSTABILITY_SLIDES)
+    status = strut_equilibrium_search_grips(h, scene, &h->held_by_friction);
   if (!status) status = search_all_sets(h);
   if (!status) status = strut_equilibrium_search_follow(h);
   if (!status && h->explored) status = add_ground(h);
   return status;
 }
 
-/* The equilibrium on the real ground whose shape is nearest, if that is near, in model sizes. */
-static int32_t find_nearest(const strut_model *model, const strut_equilibria *all,
+static bool is_listed(const int32_t *nodes, int32_t count, int32_t node) {
+  for (int32_t k = 0; k < count; k++)
+    if (nodes[k] == node) return true;
+  return false;
+}
+
+/* Is the shape q held by the ground where that equilibrium is? */
+static bool touches_alike(const strut_model *model, const strut_equilibrium *e, const double *q) {
+  const strut_contact_table *c = &model->contacts;
+  for (int32_t i = 0; i < c->count; i++)
+    if ((strut_contact_gap(c, i, q) < 0.0) !=
+        is_listed(e->contacts, e->contact_count, c->entry[i].node))
+      return false;
+  return true;
+}
+
+/*
+ * The equilibrium on the real ground whose shape is nearest, if that is near, in model sizes. Friction holds others
+ * around it, on the same contacts.
+ */
+static int32_t find_nearest(const strut_model *model, const strut_equilibria *all, bool friction,
                             const double *q) {
-  double least = 1e-4 * model->size;
+  double least = (friction ? STRUT_NAMED_WITHIN : 1e-4) * model->size;
   int32_t nearest = -1;
   for (size_t i = 0; i < all->count; i++) {
     const strut_equilibrium *e = &all->list[i];
     bool unstable = !e->supports && e->outcome == STRUT_OUTCOME_UNSTABLE;
     if (e->outcome != STRUT_OUTCOME_STANDS && !unstable) continue;
+    if (friction && (unstable || !touches_alike(model, e, q))) continue;
     const double *shape = unstable ? e->point.q : e->rest;
     double away = strut_shape_distance(model, q, shape, false, NULL);
     if (away < least) least = away, nearest = (int32_t)i;
@@ -357,7 +380,7 @@ static strut_status settle_start(strut_equilibrium_search *h, const strut_model 
   if (!q) return strut_no_memory(h->error, "");
   strut_status status = strut_settle_experiment(model, h->experiment, h->options->interrupt, q,
                                                 &h->out->settle, &trouble);
-  if (!status) h->out->start = find_nearest(model, h->out, q);
+  if (!status) h->out->start = find_nearest(model, h->out, h->experiment->settle.friction, q);
   if (!status) return STRUT_OK;
   if (status != STRUT_NOT_SETTLED && status != STRUT_DIVERGED)
     return strut_fail(h->error, status, "%s", trouble.message);
@@ -375,7 +398,7 @@ strut_status strut_equilibria_find(const strut_model *model, const strut_experim
   strut_equilibrium_search h = {
       .experiment = experiment, .options = options, .out = equilibria, .error = error};
   status = prepare_search(&h, model);
-  if (!status) status = search_scene(&h);
+  if (!status) status = search_scene(&h, model->scene);
   if (!status) status = report_equilibria(&h);
   if (!status) status = settle_start(&h, model);
   strut_landscape_free(&h.landscape);

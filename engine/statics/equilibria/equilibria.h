@@ -71,6 +71,7 @@ typedef struct strut_equilibrium {
   double *rest;         /* (length) where it comes to rest on the real ground, or NULL */
   double rest_energy;   /* (13) there [J] */
   double rest_residual; /* largest net force there [N] */
+  double friction;      /* coefficient that holds it there along the ground; 0: it needs none [1] */
   int32_t contact_count;
   int32_t *contacts; /* nodes that touch at the end; before it is followed: supports */
   double *normal;    /* (contact_count) [N] */

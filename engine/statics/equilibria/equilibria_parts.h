@@ -227,7 +227,9 @@ typedef struct strut_equilibrium_search {
   strut_model *model; /* of level.scene */
   strut_supports supports;
   strut_instability_cause instability;
-  bool on_ground;             /* else there is no ground, or nothing presses on it */
+  bool held_by_friction; /* it slides without friction, and friction can hold it */
+  double *grip;   /* (contacts) largest friction over push against the pull along the ground */
+  bool on_ground; /* else there is no ground, or nothing presses on it */
   strut_potential *potential; /* on the real ground */
   strut_relaxer *relaxer;
   strut_landscape landscape;
@@ -258,6 +260,18 @@ strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *search,
  * rest.
  */
 strut_status strut_equilibrium_search_follow(strut_equilibrium_search *search);
+
+/** Does the shape `rest` (length) of a candidate stand, on all of its supports, much as it was found on them? */
+bool strut_equilibrium_search_stands(const strut_equilibrium_search *search,
+                                     const strut_candidate_equilibrium *find, const double *rest);
+
+/** Can friction hold what slides without it? Fills in `grip`; the friction is that of `scene`. */
+strut_status strut_equilibrium_search_grips(strut_equilibrium_search *search,
+                                            const strut_scene *scene, bool *hold);
+
+/** Judges a candidate that may stand by whether friction holds it as its supports did. */
+strut_status strut_equilibrium_search_hold(strut_equilibrium_search *search,
+                                           strut_candidate_equilibrium *find);
 
 /** Checks whether the structure can rest at all; if not, writes the cause to the remark. */
 strut_instability_cause strut_equilibrium_search_instability(strut_equilibrium_search *search);

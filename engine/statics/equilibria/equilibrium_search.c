@@ -155,6 +155,7 @@ static strut_outcome judge_on_supports(const strut_equilibrium_search *h,
   if (e->point.label != STRUT_STABLE) return STRUT_OUTCOME_UNSTABLE;
   for (int32_t i = 0; i < h->model->node_count; i++)
     if (e->below[i]) return STRUT_OUTCOME_BELOW_GROUND;
+  if (h->held_by_friction && !f->pulls) return STRUT_OUTCOME_STANDS;
   return h->instability == STRUT_INSTABILITY_NONE ? STRUT_OUTCOME_STANDS : STRUT_OUTCOME_NO_REST;
 }
 
@@ -206,8 +207,8 @@ static strut_status explore_landscape(strut_equilibrium_search *h) {
   return status;
 }
 
-static bool stands_on(const strut_equilibrium_search *h, const strut_candidate_equilibrium *f,
-                      const double *rest) {
+bool strut_equilibrium_search_stands(const strut_equilibrium_search *h,
+                                     const strut_candidate_equilibrium *f, const double *rest) {
   const strut_node_set *set = f->e.supports;
   double moved = strut_shape_distance(h->model, f->e.point.q, rest, false, NULL);
   for (size_t i = 0; i < set->count; i++) {
@@ -252,7 +253,7 @@ static strut_status follow_candidate(strut_equilibrium_search *h, strut_candidat
   e->rest_residual = relaxed.residual;
   f->state = strut_landscape_find(&h->landscape, q);
   if ((status = strut_equilibrium_search_contacts(h, q, e))) return status;
-  e->outcome = stands_on(h, f, q) ? STRUT_OUTCOME_STANDS : STRUT_OUTCOME_TIPS;
+  e->outcome = strut_equilibrium_search_stands(h, f, q) ? STRUT_OUTCOME_STANDS : STRUT_OUTCOME_TIPS;
   return STRUT_OK;
 }
 
@@ -261,7 +262,10 @@ strut_status strut_equilibrium_search_follow(strut_equilibrium_search *h) {
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < h->count; i++)
     h->candidates[i].e.outcome = judge_on_supports(h, &h->candidates[i]);
-  if (h->instability != STRUT_INSTABILITY_NONE) return STRUT_OK;
+  for (size_t i = 0; i < h->count && h->held_by_friction && !status; i++)
+    if (h->candidates[i].e.outcome == STRUT_OUTCOME_STANDS)
+      status = strut_equilibrium_search_hold(h, &h->candidates[i]);
+  if (h->instability != STRUT_INSTABILITY_NONE) return status;
   if ((status = explore_landscape(h))) return status;
   for (size_t i = 0; i < h->count && !status; i++) {
     if (!is_followed(h, &h->candidates[i])) continue;

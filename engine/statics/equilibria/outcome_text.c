@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/model/parts.h"
 #include "engine/statics/minimise.h"
 
 /* Nodes that move at least this share of the one that moves most. */
@@ -106,47 +107,14 @@ static bool stays_displaced(const strut_potential *p, const strut_critical_point
 
 enum { NAMES = 100 };
 
-/* A part of the structure (nodes that members connect): what acts on it, what may hold it. */
-typedef struct part {
-  double force[2];
-  bool held[2], touches;
-} part;
-
-static int32_t root(int32_t *parent, int32_t a) {
-  while (parent[a] != a) a = parent[a] = parent[parent[a]];
-  return a;
-}
-
-/* parent[] of each node becomes its part's first found node; part[] is filled there. */
-static void sum_parts(const strut_equilibrium_search *h, int32_t *parent, part *parts) {
-  const strut_model *model = h->model;
-  for (int32_t i = 0; i < model->node_count; i++) parent[i] = i;
-  for (int32_t j = 0; j < model->members.count; j++) {
-    int32_t a = (int32_t)model->members.from[j] / 2, b = (int32_t)model->members.to[j] / 2;
-    parent[root(parent, a)] = root(parent, b);
-  }
-  for (int32_t j = 0; j < model->elements.count; j++) {
-    const uint32_t *at = model->elements.at + model->elements.element[j].first;
-    for (int32_t k = 1; k < model->elements.element[j].nodes; k++)
-      parent[root(parent, (int32_t)at[0] / 2)] = root(parent, (int32_t)at[k] / 2);
-  }
-  for (int32_t i = 0; i < model->node_count; i++) {
-    part *p = &parts[parent[i] = root(parent, i)];
-    for (int c = 0; c < 2; c++) {
-      p->held[c] = p->held[c] || model->fixed[2 * i + c];
-      if (!model->fixed[2 * i + c]) p->force[c] += h->potential->force[2 * i + c];
-    }
-  }
-  for (int32_t i = 0; i < model->contacts.count && h->on_ground; i++)
-    parts[parent[model->contacts.entry[i].node]].touches = true;
-}
-
 /* Why a part cannot rest: the forces on it against the supports that could balance them. */
-static strut_instability_cause instability_of(const strut_equilibrium_search *h, const part *p) {
+static strut_instability_cause instability_of(const strut_equilibrium_search *h,
+                                              const strut_connected_part *p) {
   double scale = 1e-12 * h->potential->force_scale;
   bool across = !p->held[1] && fabs(p->force[1]) > scale;
   bool along = !p->held[0] && fabs(p->force[0]) > scale;
-  if (!p->touches) return across || along ? STRUT_INSTABILITY_FALLS : STRUT_INSTABILITY_NONE;
+  if (!p->touches || !h->on_ground)
+    return across || along ? STRUT_INSTABILITY_FALLS : STRUT_INSTABILITY_NONE;
   const strut_contact_table *c = &h->model->contacts;
   if (c->surface) { /* only along parallel lines is it known beforehand that nothing holds it */
     double pull = p->force[0] * c->tangent[0] + p->force[1] * c->tangent[1];
@@ -158,7 +126,7 @@ static strut_instability_cause instability_of(const strut_equilibrium_search *h,
 }
 
 /* The friction coefficient that would hold the part: force along the ground over normal force. */
-static void describe_friction(const part *p, size_t room, char *text) {
+static void describe_friction(const strut_connected_part *p, size_t room, char *text) {
   if (p->force[1] < 0)
     snprintf(text, room, "a friction coefficient of at least %.4g holds it",
              fabs(p->force[0] / p->force[1]));
@@ -167,7 +135,7 @@ static void describe_friction(const part *p, size_t room, char *text) {
 }
 
 static void describe_instability(strut_equilibrium_search *h, strut_instability_cause cause,
-                                 const part *p, const uint8_t *flag) {
+                                 const strut_connected_part *p, const uint8_t *flag) {
   char names[NAMES] = "all nodes", friction[NAMES], *remark = h->out->remark;
   size_t room = sizeof h->out->remark;
   int32_t count = 0;
@@ -191,10 +159,10 @@ strut_instability_cause strut_equilibrium_search_instability(strut_equilibrium_s
   strut_instability_cause worst = STRUT_INSTABILITY_NONE;
   strut_arena scratch = {0};
   int32_t *parent = strut_arena_allocate(&scratch, (size_t)nodes, sizeof *parent);
-  part *parts = strut_arena_allocate(&scratch, (size_t)nodes, sizeof *parts);
+  strut_connected_part *parts = strut_arena_allocate(&scratch, (size_t)nodes, sizeof *parts);
   uint8_t *flag = strut_arena_allocate(&scratch, (size_t)nodes, 1);
   if (parent && parts && flag) {
-    sum_parts(h, parent, parts);
+    strut_connected_parts_find(h->model, h->potential->force, parent, parts);
     for (int32_t i = 0; i < nodes && worst == STRUT_INSTABILITY_NONE; i++)
       if (parent[i] == i && (worst = instability_of(h, &parts[i])) != STRUT_INSTABILITY_NONE)
         moves = i;
@@ -259,7 +227,8 @@ static void describe_no_rest(const strut_equilibrium_search *h, strut_equilibriu
       [STRUT_INSTABILITY_FALLS] = "falls",
       [STRUT_INSTABILITY_SLIDES] = "slides along the ground without friction",
       [STRUT_INSTABILITY_LIFTED] = "is lifted off the ground"};
-  snprintf(e->verdict, sizeof e->verdict, "%s", why[h->instability]);
+  snprintf(e->verdict, sizeof e->verdict, "%s",
+           h->held_by_friction ? "tips over or slides once released" : why[h->instability]);
 }
 
 static void describe_outcome(strut_equilibrium_search *h, strut_candidate_equilibrium *finds,
@@ -267,8 +236,14 @@ static void describe_outcome(strut_equilibrium_search *h, strut_candidate_equili
   strut_equilibrium *e = &f->e;
   size_t room = sizeof e->verdict;
   char names[NAMES];
+  int used;
   switch (e->outcome) {
-    case STRUT_OUTCOME_STANDS: snprintf(e->verdict, room, "stands"); break;
+    case STRUT_OUTCOME_STANDS:
+      used = snprintf(e->verdict, room, "stands");
+      if (e->friction > 0.0)
+        snprintf(e->verdict + used, room - (size_t)used, " by friction, with a coefficient of %.4g",
+                 e->friction);
+      break;
     case STRUT_OUTCOME_TIPS: describe_tipping(h, finds, f, flag, e); break;
     case STRUT_OUTCOME_BELOW_GROUND:
       strut_list_nodes(&h->level.scene, e->below, sizeof names, names);

@@ -77,7 +77,7 @@ static strut_status judge_rest(const strut_model *model, strut_arena *arena, str
   return status;
 }
 
-/* Prepares a search for a single relaxation. */
+/* Prepares a search for a single relaxation; of what friction holds there is none without it. */
 static strut_status prepare_relaxation(strut_equilibrium_search *h, const strut_model *model) {
   strut_status status = strut_level_frame_create(model->scene, &h->level, h->error);
   if (!status) status = strut_model_compile(&h->level.scene, &h->model, h->error);
@@ -85,7 +85,12 @@ static strut_status prepare_relaxation(strut_equilibrium_search *h, const strut_
     h->on_ground = h->model->contacts.count > 0;
     status = strut_potential_create(h->model, NULL, h->on_ground, &h->potential, h->error);
   }
-  if (!status && strut_equilibrium_search_instability(h) != STRUT_INSTABILITY_NONE)
+  if (!status) h->instability = strut_equilibrium_search_instability(h);
+  h->supports.pin = true;
+  if (!status && h->instability == STRUT_INSTABILITY_SLIDES)
+    status = strut_equilibrium_search_grips(h, model->scene, &h->held_by_friction);
+  if (status || h->held_by_friction) return status;
+  if (h->instability != STRUT_INSTABILITY_NONE)
     status = strut_fail(h->error, STRUT_NOT_SETTLED, "%s", h->out->remark);
   if (!status && h->potential->n > 0)
     status = strut_relaxer_create(h->potential, h->experiment->settle.limit, &h->relaxer, h->error);
@@ -261,15 +266,24 @@ static strut_status find_in_list(const strut_model *model, const strut_experimen
                     "unknown equilibrium '%.100s'; 'strut equilibria' lists all", name);
 }
 
+/* *held: by friction alone. */
 static strut_status find_rest(const strut_model *model, const strut_experiment *experiment,
-                              const strut_configuration *c, double *q, strut_error *error) {
+                              const strut_configuration *c, double *q, bool *held,
+                              strut_error *error) {
   strut_equilibria scratch = {0};
   strut_equilibrium_search h = {.experiment = experiment, .out = &scratch, .error = error};
   strut_node_set rests_on = {0};
-  bool found = !c, turned = true;
+  strut_settle_summary how;
+  strut_experiment kept = *experiment;
+  kept.settle.friction = true;
   strut_status status = prepare_relaxation(&h, model);
-  if (!status && !c) status = relax_from_start(&h, q);
-  if (!status && c && c->shaped)
+  bool found = !c, turned = !h.held_by_friction;
+  *held = h.held_by_friction;
+  if (!status && !c && !turned)
+    status = strut_settle_experiment(model, &kept, experiment->interrupt, q, &how, error);
+  else if (!status && !c)
+    status = relax_from_start(&h, q);
+  if (!status && c && c->shaped && turned)
     status = relax_from_shape(&h, &h.level.scene.configurations[c - model->scene->configurations],
                               q, &found, &rests_on);
   if (!status && !found) {
@@ -320,9 +334,10 @@ strut_status strut_rest_state_find(const strut_model *model, const strut_experim
   }
   if (!c && experiment->settle.wanted && model->mass)
     return settle_scene(model, experiment, arena, rest, error);
-  strut_status status = find_rest(model, experiment, c, rest->q, error);
+  bool held = false;
+  strut_status status = find_rest(model, experiment, c, rest->q, &held, error);
   if (!status) status = judge_rest(model, arena, rest, error);
-  rest->at_rest = true;
+  if (!held) rest->at_rest = true;
   return strut_experiment_end(experiment, status, error);
 }
 

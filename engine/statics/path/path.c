@@ -274,6 +274,8 @@ static strut_status find_start(path_start *b, strut_error *error) {
   strut_status status = o->start ? STRUT_OK
                         : at     ? start_at_name(b, at, error)
                                  : descend_to_rest(b, NULL, without, error);
+  if (status == STRUT_NOT_SETTLED && o->friction && !at)
+    status = start_at_name(b, "start", error); /* friction alone may hold it */
   if (status || o->over != STRUT_PATH_OVER_COORDINATE || b->model->fixed[o->index]) return status;
   b->held = strut_arena_allocate(&b->arena, length, sizeof *b->held);
   if (!b->held) return strut_no_memory(error, "");
