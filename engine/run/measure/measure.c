@@ -162,8 +162,9 @@ void strut_balance_warn(strut_summary *s, const char *why) {
 }
 
 strut_balance strut_balance_judge(const strut_energy *e, int64_t steps) {
-  bool open = fabs(e->residual) > OPEN * e->moved && fabs(e->residual) > rounding_of(e, steps);
-  return open ? STRUT_BALANCE_OPEN : STRUT_BALANCE_CLOSED;
+  double residual = fabs(e->residual);
+  bool closed = residual <= OPEN * e->moved || residual <= rounding_of(e, steps); /* not: NAN */
+  return closed ? STRUT_BALANCE_CLOSED : STRUT_BALANCE_OPEN;
 }
 
 /* ---- velocities and contacts ---- */
