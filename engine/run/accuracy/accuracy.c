@@ -2,6 +2,7 @@
 #include "engine/run/accuracy/accuracy.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "engine/integrate/limit/step_limit.h"
@@ -33,7 +34,7 @@ strut_status strut_accuracy_run(strut_accuracy *a, const strut_experiment *exper
                                 const strut_run_options *options, strut_summary *summary) {
   strut_experiment plain = *experiment;
   strut_run_options bounded = *options;
-  plain.accuracy = 0.0;
+  plain.accuracy = a->target; /* to which extremes are resolved */
   bounded.chosen = true;
   bounded.most_evaluations = strut_accuracy_evaluations_left(a);
   strut_status status = strut_simulate(a->model, &plain, &bounded, summary, a->error);
@@ -104,6 +105,24 @@ bool strut_accuracy_orbit_covers_window(const strut_accuracy *a,
          fabs(repetitions - round(repetitions)) < 1e-9;
 }
 
+bool strut_accuracy_balance_is_open(const strut_accuracy *a, const strut_summary *s) {
+  return s->balance == STRUT_BALANCE_OPEN &&
+         !(fabs(s->energy.residual) <= a->target * s->energy.moved);
+}
+
+/* Energy from nothing is no answer to rely on, however well runs agree. */
+static void refuse_open_balance(const strut_accuracy *a) {
+  strut_summary *s = a->summary;
+  if (s->status != STRUT_OK || !strut_accuracy_balance_is_open(a, s)) return;
+  s->accuracy.kept = false, s->accuracy.expected = (double)NAN;
+  for (size_t i = 0; i < s->measured_count; i++) s->measured[i].kept = false;
+  snprintf(s->accuracy.why, sizeof s->accuracy.why,
+           "%s with a step of %.3g s: the energy balance does not close: %.3g J, %.2g %% of the "
+           "exchanged energy",
+           s->method, s->step, s->energy.residual,
+           100.0 * fabs(s->energy.residual) / s->energy.moved);
+}
+
 strut_status strut_simulate_accurately(const strut_model *model, const strut_experiment *experiment,
                                        const strut_run_options *options, strut_summary *summary,
                                        strut_error *error) {
@@ -133,6 +152,7 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
   if (!status && !done) status = strut_accuracy_climb_ladder(&a);
   summary->spent.wall_time = strut_run_clock() - begin;
   summary->status = status;
+  refuse_open_balance(&a);
   summary->settle_time = start.how.time, summary->settle = start.how;
   strut_summary_warn_of_start(summary);
   strut_summary_warn_of_accuracy(summary);
