@@ -113,24 +113,28 @@ int32_t strut_nearby_find(const strut_nearby *near, int32_t element) {
 }
 
 /* The least of the listed elements; NULL: of all. */
-static double least_of(const strut_model *model, const strut_nearby *list, const double *q) {
+static double least_of(const strut_model *model, const strut_nearby *list, const double *q,
+                       int32_t *which) {
   int32_t count = list ? list->count : model->elements.count;
   double least = HUGE_VAL, b[STRUT_MOST_GRADIENT];
   for (int32_t k = 0; k < count; k++) {
     int32_t i = list ? list->element[k] : k;
     const strut_element *e = &model->elements.element[i];
     if (e->role != STRUT_ELEMENT_COLLISION) continue;
-    least = fmin(least, strut_element_strain(model, i, q, 0.0, b) - e->natural);
+    double gap = strut_element_strain(model, i, q, 0.0, b) - e->natural;
+    if (gap < least) least = gap, *which = i;
   }
   return least;
 }
 
-double strut_nearby_least_gap(const strut_model *model, const strut_state *state, const double *q) {
+double strut_nearby_least_gap(const strut_model *model, const strut_state *state, const double *q,
+                              int32_t *which) {
+  *which = -1;
   for (int k = 0; k < STRUT_NEARBY_LISTS && model->elements.scattered; k++) {
     const strut_nearby *list = &state->nearby[k];
     double others = 2.0 * (way_of(model, k) - way_since(model, list, q));
-    double least = others > 0.0 ? least_of(model, list, q) : HUGE_VAL;
+    double least = others > 0.0 ? least_of(model, list, q, which) : HUGE_VAL;
     if (least <= others) return least;
   }
-  return least_of(model, NULL, q);
+  return least_of(model, NULL, q, which);
 }

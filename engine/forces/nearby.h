@@ -23,8 +23,10 @@ const strut_nearby *strut_nearby_serving(const strut_model *model, const strut_s
                                          const double *q);
 /** Is the element of a collision whose bodies are not near at q? */
 bool strut_nearby_is_far(const strut_model *model, int32_t element, const double *q);
-/** The least distance at q between the surfaces of two bodies of a collision, negative where they press [m]. */
-double strut_nearby_least_gap(const strut_model *model, const strut_state *state, const double *q);
+/** The least distance at q between the surfaces of two bodies of a collision, negative where they press [m]; which
+    element's. */
+double strut_nearby_least_gap(const strut_model *model, const strut_state *state, const double *q,
+                              int32_t *which);
 /** The place in the list of the first element that is not below `element`. */
 int32_t strut_nearby_find(const strut_nearby *near, int32_t element);
 

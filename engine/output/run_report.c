@@ -163,9 +163,11 @@ static void put_measured(strut_json *json, cJSON *to, const strut_summary *s) {
     strut_json_number(json, quantity, "scale", m->scale);
     strut_json_bool(json, quantity, "zero", m->zero);
     if (m->member) strut_json_text(json, quantity, "member", m->member);
-    if (!isfinite(m->expected)) continue;
-    strut_json_number(json, quantity, "expected", m->expected);
-    strut_json_bool(json, quantity, "kept", m->kept);
+    const char *arrival = strut_measured_arrival(m);
+    if (arrival) strut_json_text(json, quantity, "arrival", arrival);
+    if (isfinite(m->expected)) strut_json_number(json, quantity, "expected", m->expected);
+    if (isfinite(m->expected) || (arrival && s->accuracy.wanted > 0.0))
+      strut_json_bool(json, quantity, "kept", m->kept);
   }
 }
 
@@ -283,7 +285,7 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
 
 /* Why a quantity has no value. */
 static const char *missing(const strut_summary *s, const strut_measured *m) {
-  if (m->arrival && s->status == STRUT_OK) return "the target was not reached";
+  if (strut_measured_arrival(m) && s->status == STRUT_OK) return "the target was not reached";
   return s->status == STRUT_OK ? "not finite" : "the window was not reached";
 }
 
@@ -296,7 +298,10 @@ static void add_measured(strut_buffer *table, const strut_summary *s) {
                      strut_quantity_of_any(m->value, DIGITS, m->unit).text);
     if (isfinite(m->spread))
       strut_buffer_add(table, " %14s", strut_quantity_of_any(m->spread, DIGITS, m->unit).text);
-    if (isnan(m->value)) strut_buffer_add(table, "  %s", missing(s, m));
+    if (m->undecided)
+      strut_buffer_add(table, "  not decided");
+    else if (isnan(m->value))
+      strut_buffer_add(table, "  %s", missing(s, m));
     if (m->zero) strut_buffer_add(table, "  zero up to rounding");
     if (m->member) strut_buffer_add(table, "  in %.40s", m->member);
     if (isfinite(m->expected))

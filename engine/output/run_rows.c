@@ -86,7 +86,7 @@ static void show_velocity(rows *r, const strut_experiment *experiment, const str
 
 /* What is known of a measured value: spread, member, error. */
 static void show_measured_value(rows *r, const cJSON *item, const char *unit) {
-  const char *member = text(item, "member");
+  const char *member = text(item, "member"), *arrival = text(item, "arrival");
   double value = number(item, "value"), spread = number(item, "spread");
   double expected = number(item, "expected");
   bool kept = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(item, "kept"));
@@ -97,6 +97,7 @@ static void show_measured_value(rows *r, const cJSON *item, const char *unit) {
   if (cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(item, "zero")))
     strut_buffer_add(&shown, ", zero up to rounding");
   if (member) strut_buffer_add(&shown, ", in %s", member);
+  if (arrival && strcmp(arrival, "reached") != 0) strut_buffer_add(&shown, ", %s", arrival);
   if (isfinite(expected))
     strut_buffer_add(&shown, ", %s within %s",
                      kept ? "known" : "not as accurate as requested, but known",

@@ -107,6 +107,7 @@ static strut_status allocate_summary(strut_run *r) {
                                       .spread = (double)NAN,
                                       .scale = (double)NAN,
                                       .expected = (double)NAN,
+                                      .margin = (double)NAN,
                                       .arrival = e->quantities[i].take == STRUT_TAKE_ARRIVAL};
   for (size_t i = 0; i < s->end.node_count; i++) s->end.node_names[i] = scene->nodes[i].name;
   for (size_t i = 0; i < s->end.hinge_count; i++)

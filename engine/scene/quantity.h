@@ -10,6 +10,7 @@
 #ifndef STRUT_ENGINE_SCENE_QUANTITY_H
 #define STRUT_ENGINE_SCENE_QUANTITY_H
 
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -185,5 +186,16 @@ typedef struct strut_quantity_definition {
   double target;            /* of ARRIVAL, in the expression's SI unit */
   const char *target_unit;  /* of ARRIVAL: that unit; "1": none */
 } strut_quantity_definition;
+
+/**
+ * Error allowed for a value of a quantity, in its unit, where `accuracy` is that of the run. Relative ones refer to
+ * the value, or to a thousandth of its largest term, `scale`, if that is larger.
+ */
+static inline double strut_quantity_allowed_error(const strut_quantity_definition *definition,
+                                                  double accuracy, double value, double scale) {
+  if (definition->accuracy_absolute > 0.0) return definition->accuracy_absolute;
+  double part = definition->accuracy > 0.0 ? definition->accuracy : accuracy;
+  return part * fmax(fabs(value), 1e-3 * scale);
+}
 
 #endif

@@ -37,7 +37,7 @@ strut_status strut_accuracy_run(strut_accuracy *a, const strut_experiment *exper
                                 const strut_run_options *options, strut_summary *summary) {
   strut_experiment plain = *experiment;
   strut_run_options bounded = *options;
-  plain.accuracy = 0.0;
+  plain.accuracy = a->target; /* to which extremes are resolved */
   bounded.chosen = true;
   bounded.most_evaluations = strut_accuracy_evaluations_left(a);
   strut_status status = strut_simulate(a->model, &plain, &bounded, summary, a->error);
@@ -110,19 +110,38 @@ bool strut_accuracy_orbit_covers_window(const strut_accuracy *a,
          fabs(repetitions - round(repetitions)) < 1e-9;
 }
 
-/*
- * What finer runs cannot mend, since they agree on it, is not certified: bands that are too wide, and friction that
- * gave more of the exchanged energy than the wanted accuracy.
- */
+/* The answer is not certified, whatever finer runs say, which agree on its fault. */
 static void withhold(strut_summary *s) {
+  s->accuracy.kept = false, s->accuracy.expected = (double)NAN;
+  for (size_t m = 0; m < s->measured_count; m++) s->measured[m].kept = false;
+}
+
+/* Bands that are too wide, and friction that gave more of the exchanged energy than the wanted accuracy. */
+static void refuse_wide_bands(strut_summary *s) {
   bool wide = s->energy.rubbed > s->accuracy.wanted * s->energy.moved;
   for (size_t i = 0; i < s->warning_count; i++)
     wide = wide || strcmp(s->warnings[i].code, "wide_band") == 0;
   if (!wide || !s->accuracy.kept) return;
-  s->accuracy.kept = false, s->accuracy.expected = (double)NAN;
+  withhold(s);
   snprintf(s->accuracy.why, sizeof s->accuracy.why,
            "all runs creep within the stick band, as another warning says");
-  for (size_t m = 0; m < s->measured_count; m++) s->measured[m].kept = false;
+}
+
+bool strut_accuracy_balance_is_open(const strut_accuracy *a, const strut_summary *s) {
+  return s->balance == STRUT_BALANCE_OPEN &&
+         !(fabs(s->energy.residual) <= a->target * s->energy.moved);
+}
+
+/* Energy from nothing is no answer to rely on. */
+static void refuse_open_balance(const strut_accuracy *a) {
+  strut_summary *s = a->summary;
+  if (s->status != STRUT_OK || !strut_accuracy_balance_is_open(a, s)) return;
+  withhold(s);
+  snprintf(s->accuracy.why, sizeof s->accuracy.why,
+           "%s with a step of %.3g s: the energy balance does not close: %.3g J, %.2g %% of the "
+           "exchanged energy",
+           s->method, s->step, s->energy.residual,
+           100.0 * fabs(s->energy.residual) / s->energy.moved);
 }
 
 strut_status strut_simulate_accurately(const strut_model *model, const strut_experiment *experiment,
@@ -154,9 +173,10 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
   if (!status && !done) status = strut_accuracy_climb_ladder(&a);
   summary->spent.wall_time = strut_run_clock() - begin;
   summary->status = status;
+  refuse_open_balance(&a);
   summary->settle_time = start.how.time, summary->settle = start.how;
   strut_summary_warn_of_start(summary);
-  withhold(summary);
+  refuse_wide_bands(summary);
   strut_summary_warn_of_accuracy(summary);
   strut_settled_start_free(&start);
   return status;

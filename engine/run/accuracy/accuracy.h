@@ -64,6 +64,8 @@ static inline bool strut_accuracy_is_kept(bool confirmed, double expected, doubl
   return confirmed && expected <= wanted;
 }
 
+/** Does the energy balance leave open what the accuracy asked for does not explain? */
+bool strut_accuracy_balance_is_open(const strut_accuracy *a, const strut_summary *summary);
 /** The shortest period or duration of a signal [s]; HUGE_VAL: none. `stops`: only of those that the breaks at which
     methods with events stop do not resolve. */
 double strut_accuracy_signal_time(const strut_scene *scene, bool stops);

@@ -8,14 +8,17 @@
 #include "engine/integrate/integrator.h"
 #include "engine/run/accuracy/ladder_parts.h"
 
-/* Quantities below this part of their largest term count as zero. */
-static const double ZERO_QUANTITY = 1e-3;
-
 double strut_ladder_tolerated_error(const strut_ladder *l, const strut_measured *m, size_t i) {
-  const strut_quantity_definition *d = &l->a->experiment.quantities[i];
-  if (d->accuracy_absolute > 0.0) return d->accuracy_absolute;
-  double part = d->accuracy > 0.0 ? d->accuracy : l->a->target;
-  return part * fmax(fabs(m->value), ZERO_QUANTITY * m->scale);
+  double allowed = strut_quantity_allowed_error(&l->a->experiment.quantities[i], l->a->target,
+                                                m->value, m->scale);
+  return m->arrival ? allowed : fmax(allowed, m->rounding);
+}
+
+double strut_ladder_arrival_doubt(const strut_measured *one, const strut_measured *other) {
+  double apart = fabs(one->margin - other->margin) + one->rounding;
+  if (one->margin == HUGE_VAL && other->margin == HUGE_VAL) return 0.0;
+  if (isnan(one->value) != isnan(other->value) || !(one->margin > 0.0)) return HUGE_VAL;
+  return 1.5 * apart / one->margin;
 }
 
 /* Tracks closer than this, relative to the range of motion, are the same motion. */
@@ -122,6 +125,11 @@ void strut_ladder_extend_coarse(strut_ladder *l) {
   if (spent <= WORTH * (double)l->rung[0].cost) l->coarse_runs++;
 }
 
+/* Did no contact or law switch too often, and does the energy balance close? */
+static bool is_followed(const strut_ladder *l, const strut_summary *s) {
+  return !s->spent.forced && !strut_accuracy_balance_is_open(l->a, s);
+}
+
 void strut_ladder_judge(strut_ladder *l) {
   int further = strut_ladder_runs_with_error_control(l);
   double wanted = l->a->target, enough = further < 3 ? ENOUGH_OF_TWO : ENOUGH;
@@ -134,7 +142,7 @@ void strut_ladder_judge(strut_ladder *l) {
   bool converging = coarse_runs_converge(l),
        diverging = strut_ladder_is_coarse(l, 3) && !converging;
   bool apart = further < 2 && (diverging || l->distance > allowed_distance(l, converging));
-  bool followed = !l->now->s.spent.forced;
+  bool followed = is_followed(l, &l->now->s);
   l->kept = strut_accuracy_is_kept(!once && !apart && followed, l->expected, enough * wanted);
   if (l->kept || l->same_motion || !followed) return;
   l->expected = estimate_mean_error(l);
@@ -150,7 +158,7 @@ static double choose_margin(const strut_ladder *l) {
 
 void strut_ladder_judge_last(strut_ladder *l) {
   bool fine = l->a->single_method ? l->runs > 2 : strut_ladder_runs_with_error_control(l) > 1;
-  if (l->now->s.spent.forced || l->failed) fine = false;
+  if (!is_followed(l, &l->now->s) || l->failed) fine = false;
   if (!l->kept)
     l->kept = strut_accuracy_is_kept(l->same_motion && fine, choose_margin(l) * l->expected,
                                      l->a->target);
@@ -171,10 +179,19 @@ static void describe_difference(const strut_ladder *l, char *text, size_t size) 
              l->change * strut_ladder_velocity_size(l, s->velocity));
 }
 
+/* The first arrival that is not decided; NULL: all are. */
+static const strut_measured *find_undecided(const strut_ladder *l) {
+  const strut_summary *s = l->a->summary;
+  for (size_t i = 0; i < s->measured_count; i++)
+    if (s->measured[i].undecided) return &s->measured[i];
+  return NULL;
+}
+
 /* Explains the answer and, where the accuracy was not reached, the reason and remedy. */
 static void explain_ladder(const strut_ladder *l, char *why, size_t size) {
   const strut_accuracy *a = l->a;
   const strut_experiment *e = &l->now->e;
+  const strut_measured *undecided = find_undecided(l);
   char how[80], apart[120];
   describe_difference(l, apart, sizeof apart);
   if (strut_integrator_controls_error(strut_integrator_find(e->integrator)))
@@ -195,6 +212,13 @@ static void explain_ladder(const strut_ladder *l, char *why, size_t size) {
              "%s: contacts or laws switch too often to be followed in %lld steps; choose a method "
              "and a smaller solver.step",
              how, (long long)a->summary->spent.forced);
+  else if (undecided)
+    snprintf(why, size,
+             "%s: whether '%.60s' reaches its target, or when, is not decided: an extreme comes "
+             "within %.2g %s of it, "
+             "and its error may be as large",
+             how, undecided->name, undecided->margin,
+             a->experiment.quantities[undecided - a->summary->measured].target_unit);
   else if (l->kept && !l->same_motion && l->means >= LEAST_MEANS)
     snprintf(why, size, "%s: a coarser run gives a different motion, but %s, as in all %d runs",
              how, apart, l->means);
@@ -246,9 +270,14 @@ static void report_quantities(const strut_ladder *l) {
     m->expected = (double)NAN;
     if (l->runs > 1)
       m->expected = fmax(choose_margin(l) * factor * l->difference[i], l->shifted[i]);
-    m->kept = l->kept || strut_accuracy_is_kept(l->same_motion && !s->spent.forced, m->expected,
+    m->kept = l->kept || strut_accuracy_is_kept(l->same_motion && is_followed(l, s), m->expected,
                                                 strut_ladder_tolerated_error(l, m, i));
     if (!m->kept && l->runs > 1) m->expected = fmax(m->expected, range_about_latest(l, i));
+    bool decided = l->runs > 1 && isfinite(l->difference[i] + l->shifted[i]);
+    bool unsettled = !l->kept && l->worst == i && isnan(m->value);
+    m->undecided = m->arrival && (!decided || unsettled);
+    if (m->undecided) m->kept = false;
+    if (m->undecided || (m->arrival && isnan(m->value))) m->expected = (double)NAN;
   }
 }
 
@@ -278,6 +307,7 @@ void strut_ladder_report(strut_ladder *l) {
                                          .scale = a->scale,
                                          .kept = l->kept,
                                          .check_evaluations = a->check_evaluations};
-  explain_ladder(l, s->accuracy.why, sizeof s->accuracy.why);
   report_quantities(l);
+  if (find_undecided(l)) s->accuracy.expected = (double)NAN, s->accuracy.kept = false;
+  explain_ladder(l, s->accuracy.why, sizeof s->accuracy.why);
 }

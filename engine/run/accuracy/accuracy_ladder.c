@@ -116,14 +116,16 @@ static double compare_results(strut_ladder *l, const strut_summary *one, const s
     return fabs(one->velocity - other->velocity) / strut_ladder_velocity_size(l, one->velocity);
   for (size_t i = 0; i < one->measured_count; i++) {
     const strut_measured *m = &one->measured[i];
-    double apart = fabs(m->value - other->measured[i].value),
-           allowed = strut_ladder_tolerated_error(l, m, i);
-    bool never = isnan(m->value) && isnan(other->measured[i].value) &&
-                 l->a->experiment.quantities[i].take == STRUT_TAKE_ARRIVAL;
-    if (never) apart = 0.0; /* neither run reaches the target */
-    difference[i] = apart;
-    if (apart == 0.0) continue;
-    double part = l->a->target * apart / allowed;
+    double apart = fabs(m->value - other->measured[i].value) + m->left,
+           allowed = strut_ladder_tolerated_error(l, m, i), doubt = 0.0;
+    if (m->arrival) {
+      doubt = strut_ladder_arrival_doubt(m, &other->measured[i]);
+      if (isnan(m->value) && doubt < HUGE_VAL) apart = 0.0; /* neither run reaches the target */
+    }
+    if (m->zero && other->measured[i].zero) apart = 0.0;
+    difference[i] = doubt > STRUT_LADDER_UNDECIDED ? (double)NAN : apart;
+    if (apart == 0.0 && doubt == 0.0) continue;
+    double part = l->a->target * fmax(doubt, apart > 0.0 ? apart / allowed : 0.0);
     if (!(part <= worst)) worst = isnan(part) ? HUGE_VAL : part;
     if (worst == (isnan(part) ? HUGE_VAL : part)) l->worst = i;
   }

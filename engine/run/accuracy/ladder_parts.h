@@ -11,6 +11,9 @@ enum { STRUT_LADDER_RUNS = 12 }; /* at most */
 /** Shift of the start, over the size of the structure: no model is known to so many digits. */
 #define STRUT_LADDER_SHIFT 1e-12
 
+/** Doubt of an arrival above which it is not decided: more than the ladder accepts of any two runs. */
+#define STRUT_LADDER_UNDECIDED 0.3
+
 /** One run with its result. */
 typedef struct strut_rung {
   strut_experiment e;
@@ -65,6 +68,11 @@ static inline double strut_ladder_velocity_size(const strut_ladder *l, double ve
  * of its largest term if that is larger.
  */
 double strut_ladder_tolerated_error(const strut_ladder *l, const strut_measured *m, size_t i);
+/**
+ * Error of the extreme that decides an arrival, by two runs, over its distance from the target: 0 is certain, above
+ * STRUT_LADDER_UNDECIDED nothing is known.
+ */
+double strut_ladder_arrival_doubt(const strut_measured *one, const strut_measured *other);
 /** Decides whether the latest of two or more runs is accurate enough, and estimates its error. */
 void strut_ladder_judge(strut_ladder *l);
 /** Lets the coarse method go on where one or two more halved steps should do, for less than another method takes. */

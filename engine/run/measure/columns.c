@@ -49,7 +49,8 @@ bool strut_columns_create(const strut_model *model, size_t most, strut_arena *ar
   c->least = strut_arena_allocate(arena, most, sizeof *c->least);
   c->most = strut_arena_allocate(arena, most, sizeof *c->most);
   c->largest = strut_arena_allocate(arena, most, sizeof *c->largest);
-  return c->column && c->value && c->least && c->most && c->largest;
+  c->branch = strut_arena_allocate(arena, most, sizeof *c->branch);
+  return c->column && c->value && c->least && c->most && c->largest && c->branch;
 }
 
 /* Finds the first contact of a node: the scene refers to contacts by nodes. */
@@ -210,23 +211,27 @@ static double evaluate_slider(const strut_columns *c, const strut_state *state,
   return rate ? place + strut_sliding_mass_rate(c->model->scene, slider, t) * (q[b] - q[a]) : place;
 }
 
-/* The largest absolute force of a member; *member: which. */
-static double largest_force(const strut_columns *c, const strut_state *state, int32_t *member) {
+/* The largest absolute force of a member; *member: which; *branch: also at which end, and its sign. */
+static double largest_force(const strut_columns *c, const strut_state *state, int32_t *member,
+                            int32_t *branch) {
   double most = 0.0;
-  *member = -1;
+  *member = *branch = -1;
   for (int32_t j = 0; j < c->model->members.count; j++) {
-    double force = fmax(fabs(strut_member_measure(c->model, state, j).force),
-                        fabs(last_force_of_member(c->model, state, j)));
-    if (!(force > most)) continue;
-    most = force;
-    *member = j;
+    double first = strut_member_measure(c->model, state, j).force;
+    double last = last_force_of_member(c->model, state, j);
+    bool other = fabs(last) > fabs(first);
+    double force = other ? last : first;
+    if (!(fabs(force) > most)) continue;
+    most = fabs(force);
+    *member = j, *branch = 4 * j + 2 * other + (force < 0.0);
   }
   return most;
 }
 
-/* Evaluates a column; *size: magnitude of the terms that it sums, where that is not the value. */
+/* Evaluates a column; *size: magnitude of the terms that it sums, where that is not the value; *branch as in
+   strut_columns. */
 static double evaluate_column(strut_columns *c, const strut_state *state, strut_column column,
-                              double *size) {
+                              double *size, int32_t *branch) {
   size_t at = 2 * (size_t)(column.item < 0 ? 0 : column.item);
   const double *w = state->work;
   double d[2];
@@ -297,8 +302,8 @@ static double evaluate_column(strut_columns *c, const strut_state *state, strut_
     case STRUT_COLUMN_SLIDER_VY: return evaluate_slider(c, state, column);
     case STRUT_COLUMN_SLIDER_SHARE:
       return strut_sliding_mass_share(c->model->scene, (size_t)column.item, column_time(c, state));
-    case STRUT_COLUMN_LEAST_GAP: return strut_nearby_least_gap(c->model, state, state->q);
-    case STRUT_COLUMN_LARGEST_FORCE: return largest_force(c, state, &c->loaded_now);
+    case STRUT_COLUMN_LEAST_GAP: return strut_nearby_least_gap(c->model, state, state->q, branch);
+    case STRUT_COLUMN_LARGEST_FORCE: return largest_force(c, state, &c->loaded_now, branch);
     case STRUT_COLUMN_COUNT: break;
   }
   return 0.0;
@@ -327,7 +332,8 @@ static void note_extremes(strut_columns *c, size_t i, double size) {
 void strut_columns_evaluate(strut_columns *c, const strut_state *state, double t) {
   prepare_state(c, state, t);
   for (size_t i = 0; i < c->count; i++) {
-    double size = -1.0, last = c->value[i], now = evaluate_column(c, state, c->column[i], &size);
+    double size = -1.0, last = c->value[i];
+    double now = evaluate_column(c, state, c->column[i], &size, &c->branch[i]);
     if (is_angle(c->column[i].kind)) now += STRUT_TAU * round((last - now) / STRUT_TAU);
     c->value[i] = now;
     note_extremes(c, i, size < 0.0 ? fabs(now) : size);
@@ -340,7 +346,7 @@ void strut_columns_begin(strut_columns *c, const strut_state *state, double t) {
   prepare_state(c, state, t);
   for (size_t i = 0; i < c->count; i++) {
     double size = -1.0;
-    c->value[i] = evaluate_column(c, state, c->column[i], &size);
+    c->value[i] = evaluate_column(c, state, c->column[i], &size, &c->branch[i]);
     c->least[i] = (double)INFINITY, c->most[i] = -(double)INFINITY, c->largest[i] = 0.0;
     note_extremes(c, i, size < 0.0 ? fabs(c->value[i]) : size);
   }

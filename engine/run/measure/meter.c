@@ -72,7 +72,7 @@ static void interpolate(strut_dense *d, const strut_motion_piece *p, double s) {
 }
 
 double strut_dense_place(strut_dense *d, strut_state *state, strut_motion_piece *piece, double s) {
-  double t = piece->begin + (s > 0.0 ? s * piece->length : piece->moment);
+  double t = piece->begin + fmax(s * piece->length, s < 1.0 ? piece->moment : 0.0);
   if (!d->away) {
     d->end_q = state->q, d->end_v = state->v;
     memcpy(d->end_work, state->work, sizeof d->end_work);
@@ -114,11 +114,17 @@ static const double EXACT = 1e-6, NEAR = 0.5;
 /* Samples within this part of the range of what their neighbours foretell are resolved. */
 static const double RESOLVED = 1e-2;
 
+/* Where an extreme may lie: within this part of the error that is allowed for it. */
+static const double OF_ALLOWED = 0.05;
+
 /* Values and their differences are known to this part of the largest one. */
 static const double ROUNDED = 1e-12;
 
 /* Searches for extremes end when they gain less than this part of the range. */
 static const double GAINED = 1e-10;
+
+/* Further from a target than this part of the range, extremes need not be known well. */
+static const double SURE = 0.05;
 
 enum { MOST_TRIALS = 40 };
 
@@ -127,6 +133,15 @@ typedef struct place {
 } place;
 
 static double range_of(const strut_meter *m) { return m->whole.high - m->whole.low; }
+
+/* To what an extreme is resolved. */
+static double resolution(const strut_meter *m) {
+  strut_reduction take = m->definition->take;
+  double value = take == STRUT_TAKE_MIN   ? m->part.low
+                 : take == STRUT_TAKE_MAX ? m->part.high
+                                          : range_of(m);
+  return OF_ALLOWED * strut_quantity_allowed_error(m->definition, m->accuracy, value, m->largest);
+}
 
 /* ---- stretches ---- */
 
@@ -167,7 +182,13 @@ void strut_meter_open(strut_meter *m, double time, double value, double origin) 
   m->value = value;
   m->elapsed = 0.0;
   m->doubt = 0.0;
+  m->least = HUGE_VAL, m->most = -HUGE_VAL;
   m->largest = fabs(value);
+  m->branch = m->seen;
+  double above = value - m->definition->target;
+  m->side = above > 0.0 ? 1.0 : above < 0.0 ? -1.0 : 0.0;
+  m->close = fabs(above), m->nearest = HUGE_VAL, m->beyond = 0.0;
+  m->returned = false;
 }
 
 void strut_meter_mark(strut_meter *m, double time, double value, double origin) {
@@ -181,6 +202,23 @@ void strut_meter_mark(strut_meter *m, double time, double value, double origin) 
 
 /* ---- what every way of adding a part does ---- */
 
+/* Notes turns before the target, and how far the value then goes beyond it. */
+static void note_approach(strut_meter *m, double value) {
+  double before = m->side * (value - m->definition->target);
+  if (before <= 0.0 && !m->returned) m->beyond = fmax(m->beyond, -before);
+  if (before <= 0.0) return;
+  if (!isnan(m->whole.arrival)) m->returned = true;
+  if (m->returned) return;
+  if (before > m->close + GAINED * m->largest) m->nearest = fmin(m->nearest, m->close);
+  m->close = before > m->close + GAINED * m->largest ? before : fmin(before, m->close);
+}
+
+double strut_meter_margin(const strut_meter *m) {
+  if (m->side == 0.0) return HUGE_VAL;
+  double margin = fmin(m->nearest, isnan(m->whole.arrival) ? m->close : m->beyond);
+  return fmin(margin, SURE * range_of(m));
+}
+
 static void note_value(strut_meter *m, double value) {
   strut_meter_stretch *const both[] = {&m->whole, &m->part};
   for (int k = 0; k < 2; k++) {
@@ -188,6 +226,7 @@ static void note_value(strut_meter *m, double value) {
     if (!(value <= both[k]->high)) both[k]->high = value;
   }
   m->largest = fmax(m->largest, fabs(value));
+  if (m->definition->take == STRUT_TAKE_ARRIVAL) note_approach(m, value);
 }
 
 static void add_integrals(strut_meter *m, double integral, double square) {
@@ -224,6 +263,7 @@ void strut_meter_jump(strut_meter *m, double time, double value) {
   if (awaits_arrival(m) && is_passed(m, m->value, value)) note_arrival(m, time);
   m->value = value;
   m->elapsed = 0.0;
+  m->branch = m->seen;
 }
 
 /* Does an extreme of about this value matter to what is taken? */
@@ -235,9 +275,36 @@ static bool matters(const strut_meter *m, double value, double sign) {
     case STRUT_TAKE_RANGE:
       return sign > 0.0 ? value > m->part.high - close : value < m->part.low + close;
     case STRUT_TAKE_RISE: return true;
-    case STRUT_TAKE_ARRIVAL: return awaits_arrival(m);
+    case STRUT_TAKE_ARRIVAL: return awaits_arrival(m) || (!m->returned && m->beyond <= close);
     case STRUT_TAKE_MEAN:
     case STRUT_TAKE_RMS:
+    case STRUT_TAKE_FINAL:
+    case STRUT_TAKE_CHANGE:
+    case STRUT_TAKE_RATE: break;
+  }
+  return false;
+}
+
+/* Could values down to `low` or up to `high` change an extreme? */
+static bool may_exceed(const strut_meter *m, double low, double high) {
+  strut_reduction take = m->definition->take;
+  bool lower = take == STRUT_TAKE_MIN || take == STRUT_TAKE_RANGE;
+  bool higher = take == STRUT_TAKE_MAX || take == STRUT_TAKE_RANGE;
+  return (lower && low < m->part.low) || (higher && high > m->part.high);
+}
+
+bool strut_meter_may_turn(const strut_meter *m, double value, double length) {
+  double way = m->elapsed > 0.0 ? fabs(m->value - m->before) * length / m->elapsed : HUGE_VAL;
+  double reach = 2.0 * (way + fabs(value - m->value)), target = m->definition->target;
+  double low = fmin(m->value, value) - reach, high = fmax(m->value, value) + reach;
+  switch (m->definition->take) {
+    case STRUT_TAKE_MIN:
+    case STRUT_TAKE_MAX:
+    case STRUT_TAKE_RANGE: return may_exceed(m, low, high);
+    case STRUT_TAKE_ARRIVAL: return !m->returned && target >= low && target <= high;
+    case STRUT_TAKE_MEAN:
+    case STRUT_TAKE_RMS:
+    case STRUT_TAKE_RISE: return true;
     case STRUT_TAKE_FINAL:
     case STRUT_TAKE_CHANGE:
     case STRUT_TAKE_RATE: break;
@@ -269,8 +336,8 @@ bool strut_meter_is_even(const strut_meter *m, double value, double length) {
   double bend = fabs(difference), low = fmin(m->value, value), high = fmax(m->value, value);
   double target = m->definition->target, range = fmax(range_of(m), high - low);
   if (awaits_arrival(m) && target >= low - bend && target <= high + bend) return false;
-  if (bend > EXACT * range + ROUNDED * m->largest && is_near_extreme(m, value, difference, length))
-    return false;
+  double exact = fmin(EXACT * range, resolution(m)) + ROUNDED * m->largest;
+  if (bend > exact && is_near_extreme(m, value, difference, length)) return false;
   return !(bend > EVEN * range + ROUNDED * m->largest);
 }
 
@@ -306,20 +373,44 @@ void strut_meter_add_even(strut_meter *m, double value, double begin, double len
 
 /* ---- parts with samples ---- */
 
+/* How far sample k, at an odd place, is from what those beside it foretell. */
+static double off_foretold(const strut_samples *s, int k) {
+  const double *f = s->value;
+  int last = s->count - 1;
+  bool ahead = k + 3 <= last;
+  if (last <= 2) return fabs(f[k] - 0.5 * (f[k - 1] + f[k + 1]));
+  double sum = (ahead ? 3.0 * f[k - 1] : 3.0 * f[k + 1]) + 6.0 * (ahead ? f[k + 1] : f[k - 1]) -
+               (ahead ? f[k + 3] : f[k - 3]);
+  return fabs(f[k] - 0.125 * sum);
+}
+
+/* Where an extreme may lie about sample k, if it is not resolved there. */
+static bool is_unresolved(const strut_meter *m, const strut_samples *s, int k, double *low,
+                          double *high) {
+  const double *f = s->value;
+  double off = off_foretold(s, k);
+  *low = fmin(f[k], fmin(f[k - 1], f[k + 1])) - off;
+  *high = fmax(f[k], fmax(f[k - 1], f[k + 1])) + off;
+  return off > resolution(m) + ROUNDED * m->largest;
+}
+
+double strut_meter_left(const strut_meter *m) {
+  strut_reduction take = m->definition->take;
+  bool lower = take == STRUT_TAKE_MIN || take == STRUT_TAKE_RANGE;
+  bool higher = take == STRUT_TAKE_MAX || take == STRUT_TAKE_RANGE;
+  return (lower ? fmax(0.0, m->whole.low - m->least) : 0.0) +
+         (higher ? fmax(0.0, m->most - m->whole.high) : 0.0);
+}
+
 bool strut_meter_is_resolved(const strut_meter *m, const strut_samples *s) {
   const double *f = s->value;
   int last = s->count - 1;
   double low = f[0], high = f[0], worst = 0.0;
   for (int k = 1; k <= last; k++) low = fmin(low, f[k]), high = fmax(high, f[k]);
   for (int k = 1; k < last; k += 2) {
-    double foretold = 0.5 * (f[k - 1] + f[k + 1]);
-    if (last > 2) {
-      bool ahead = k + 3 <= last;
-      foretold = (ahead ? 3.0 * f[k - 1] : 3.0 * f[k + 1]) + 6.0 * (ahead ? f[k + 1] : f[k - 1]) -
-                 (ahead ? f[k + 3] : f[k - 3]);
-      foretold *= 0.125;
-    }
-    worst = fmax(worst, fabs(f[k] - foretold));
+    worst = fmax(worst, off_foretold(s, k));
+    double least, most;
+    if (is_unresolved(m, s, k, &least, &most) && may_exceed(m, least, most)) return false;
   }
   double part = last > 2 ? RESOLVED : EVEN;
   return !(worst > part * fmax(range_of(m), high - low) + ROUNDED * m->largest);
@@ -406,9 +497,12 @@ static bool find_extreme(const strut_meter *m, const strut_samples *s, int k, pl
   if (isnan(vertex.at)) return false;
   double half = 0.5 / last, sign = vertex.value > p[1].value ? 1.0 : -1.0;
   if (vertex.value == p[1].value) sign = p[0].value < p[1].value ? 1.0 : -1.0;
+  /* at a kink the value turns beyond the vertex */
+  double turn =
+      vertex.value + sign * fmin(fabs(p[0].value - p[1].value), fabs(p[2].value - p[1].value));
   bool inside = fabs(vertex.at - p[1].at) <= half;
   bool outer = (k == 1 && vertex.at < p[1].at) || (k == last - 1 && vertex.at > p[1].at);
-  if (!(inside || outer) || !matters(m, vertex.value, sign)) return false;
+  if (!(inside || outer) || !matters(m, turn, sign)) return false;
   if (inside) {
     *extreme = refine_extreme(s, p[0], p[1], p[2], sign, range_of(m));
     return true;
@@ -445,11 +539,13 @@ void strut_meter_add(strut_meter *m, const strut_samples *s) {
   int last = s->count - 1;
   strut_meter_stretch before = m->whole;
   place at = {0.0, s->value[0]};
-  double passed = 0.0; /* the latest extreme */
+  double passed = 0.0;                             /* the latest extreme */
+  bool searched[STRUT_MOST_SAMPLES + 4] = {false}; /* two samples on: is an extreme known there? */
   for (int k = 1; k <= last; k++) {
     place extreme, sample = {(double)k / last, s->value[k]};
     bool found = k < last && find_extreme(m, s, k, &extreme) && extreme.at > passed;
     if (found) passed = extreme.at;
+    for (int j = k; found && j <= k + 4; j++) searched[j] = true;
     if (found && extreme.at < sample.at) pass_point(m, s, at, extreme), at = extreme;
     pass_point(m, s, at, sample), at = sample;
     if (found && extreme.at > sample.at) pass_point(m, s, at, extreme), at = extreme;
@@ -457,5 +553,10 @@ void strut_meter_add(strut_meter *m, const strut_samples *s) {
   add_integrals(m, s->length * integrate_samples(s->value, last, false),
                 s->length * integrate_samples(s->value, last, true));
   add_doubt(m, s, &before);
+  for (int k = 1; k < last; k += 2) {
+    double least, most;
+    if (searched[k + 2] || !is_unresolved(m, s, k, &least, &most)) continue;
+    m->least = fmin(m->least, least), m->most = fmax(m->most, most);
+  }
   end_part(m, s->value[last], s->length);
 }

@@ -129,9 +129,13 @@ typedef struct strut_meter_stretch {
 
 typedef struct strut_meter {
   const strut_quantity_definition *definition;
-  size_t *index;  /* (length) the columns of the program */
-  size_t rate_of; /* column whose change is the integral of a single velocity; or -1 */
-  bool inner;     /* what happens between steps matters */
+  size_t *index;   /* (length) the columns of the program */
+  size_t rate_of;  /* column whose change is the integral of a single velocity; or -1 */
+  bool inner;      /* what happens between steps matters */
+  double accuracy; /* relative, to which extremes are resolved [1] */
+  /* branches of the program: at the ends of the latest part and of that under way; evaluated last */
+  uint64_t branch, ahead, seen;
+  bool kinked;    /* it has a kink in the part under way that matters */
   double value;   /* at the end of the latest part */
   double before;  /* at its begin, `elapsed` earlier [s] */
   double elapsed; /* 0: none, or something has switched since */
@@ -139,6 +143,11 @@ typedef struct strut_meter {
   double
       doubt; /* uncertainty of the result, where the interpolation is too coarse; that of MEAN, RMS and
                    RISE over the whole window times its length [s] */
+  double least, most; /* that extremes may be where samples do not resolve the value */
+  /* of ARRIVAL: begins above (1) or below (-1) the target, at it 0; how close it is now, how close the
+     nearest turn before the arrival came; how far it then went beyond, until it returned */
+  double side, close, nearest, beyond;
+  bool returned;
   strut_meter_stretch whole, part; /* since the start of the window; since the latest mark */
   double result;                   /* up to the latest mark */
   int64_t parts; /* periods so far; mean of their values; sum of squares about it */
@@ -158,6 +167,12 @@ typedef struct strut_samples {
 
 /** Starts the window; place: of the column rate_of. */
 void strut_meter_open(strut_meter *m, double time, double value, double place);
+/** Could a kink within the next `length` [s], at whose end the value is `value`, change the result? */
+bool strut_meter_may_turn(const strut_meter *m, double value, double length);
+/** Uncertainty of the result where samples do not resolve an extreme. */
+double strut_meter_left(const strut_meter *m);
+/** How far from the target the extreme is that decides whether and when it is reached; HUGE_VAL: at it already. */
+double strut_meter_margin(const strut_meter *m);
 /** A mark of the window: ends one period and starts the next. */
 void strut_meter_mark(strut_meter *m, double time, double value, double place);
 /** The value jumps, or the way it changes does, at a time [s]. */

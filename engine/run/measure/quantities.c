@@ -42,6 +42,26 @@ static double apply_operation(strut_operation operation, double a, double b) {
   return (double)NAN;
 }
 
+/* Adds a number to those gathered so far. */
+static uint64_t gather(uint64_t all, uint64_t one) { return (all ^ one) * 1099511628211u; }
+
+/* On which side of a kink, or on which step, the operands are. */
+static uint64_t branch_of(strut_operation operation, double a, double b, double result) {
+  uint64_t step = 0;
+  switch ((int)operation) {
+    case STRUT_OPERATION_ABS: return a < 0.0;
+    case STRUT_OPERATION_MIN:
+    case STRUT_OPERATION_MAX: return b < a;
+    case STRUT_OPERATION_FLOOR:
+    case STRUT_OPERATION_CEIL:
+    case STRUT_OPERATION_ROUND:
+      result += 0.0; /* of -0, too */
+      memcpy(&step, &result, sizeof step);
+      return step;
+    default: return 0;
+  }
+}
+
 static const struct operation_row {
   int operands;
   strut_sensitivity sensitivity;
@@ -53,8 +73,9 @@ static const struct operation_row {
 };
 
 double strut_quantity_program_evaluate(const strut_quantity_definition *d, const size_t *index,
-                                       const double *value, double *stack) {
+                                       const double *value, double *stack, uint64_t *branch) {
   size_t top = 0;
+  uint64_t gathered = 0;
   for (size_t i = 0; i < d->length; i++) {
     const strut_instruction *p = &d->program[i];
     if (p->operation == STRUT_OPERATION_NUMBER) {
@@ -65,11 +86,14 @@ double strut_quantity_program_evaluate(const strut_quantity_definition *d, const
       int count = rows[p->operation].operands;
       top -= (size_t)count;
       assert(top < d->depth);
-      stack[top] = apply_operation(p->operation, stack[top], count > 1 ? stack[top + 1] : 0.0);
+      double a = stack[top], b = count > 1 ? stack[top + 1] : 0.0;
+      stack[top] = apply_operation(p->operation, a, b);
+      if (branch) gathered = gather(gathered, branch_of(p->operation, a, b, stack[top]));
       top++;
     }
   }
   assert(top == 1);
+  if (branch) *branch = gathered;
   return stack[0];
 }
 
@@ -136,6 +160,13 @@ strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition
 /* A mark this close to the end of a step, in steps, counts as being there. */
 static const double MARK_TOLERANCE = 1e-6;
 
+/* To what extremes are resolved where no accuracy is asked for [1]. */
+static const double USUAL_ACCURACY = 1e-3;
+
+/* A kink is located to this part of a piece; and how many of them in one, at most. */
+static const double LOCATED = 1e-12;
+enum { MOST_KINKS = 16 };
+
 /* Results below these parts of their terms are rounding: of differences, and of others. */
 static const double CANCELLED = 1e-10, ROUNDED = 1e-15;
 
@@ -167,6 +198,7 @@ typedef struct motion_part {
   strut_state *state;
   strut_motion_piece *piece;
   double from, to;
+  double start; /* time of the piece [s] */
   size_t meter; /* whose samples are asked for */
 } motion_part;
 
@@ -206,8 +238,8 @@ static bool needs_inner(const strut_meter *m) {
   return true;
 }
 
-static bool make_meter(strut_quantities *q, const strut_quantity_definition *d, strut_arena *arena,
-                       strut_meter *m) {
+static bool make_meter(strut_quantities *q, const strut_quantity_definition *d, double accuracy,
+                       strut_arena *arena, strut_meter *m) {
   strut_column primitive;
   *m = (strut_meter){.definition = d, .rate_of = NONE};
   m->index = strut_arena_allocate(arena, d->length, sizeof *m->index);
@@ -219,6 +251,7 @@ static bool make_meter(strut_quantities *q, const strut_quantity_definition *d, 
   if (mean && find_primitive(d->program[0].column, &primitive))
     m->rate_of = strut_columns_add(&q->columns, primitive);
   m->inner = needs_inner(m);
+  m->accuracy = accuracy > 0.0 ? accuracy : USUAL_ACCURACY;
   q->inner = q->inner || m->inner;
   return true;
 }
@@ -248,7 +281,7 @@ strut_quantities *strut_quantities_create(const strut_model *model, const strut_
                strut_columns_create(model, columns, arena, &q->columns) &&
                strut_dense_create(model, arena, &q->dense);
   for (size_t i = 0; i < q->count && ready; i++)
-    ready = make_meter(q, &e->quantities[i], arena, &q->meters[i]);
+    ready = make_meter(q, &e->quantities[i], e->accuracy, arena, &q->meters[i]);
   return ready ? q : NULL;
 }
 
@@ -272,8 +305,13 @@ void strut_quantities_observe(strut_quantities *q) { q->observed = true; }
 static double *row_at(const strut_quantities *q, int k) { return q->grid + (size_t)k * q->count; }
 
 static double evaluate_meter(const strut_quantities *q, size_t i) {
-  const strut_meter *m = &q->meters[i];
-  return strut_quantity_program_evaluate(m->definition, m->index, q->columns.value, q->stack);
+  strut_meter *m = &q->meters[i];
+  const strut_quantity_definition *d = m->definition;
+  double value = strut_quantity_program_evaluate(d, m->index, q->columns.value, q->stack, &m->seen);
+  for (size_t k = 0; k < d->length; k++)
+    if (d->program[k].operation == STRUT_OPERATION_COLUMN)
+      m->seen = gather(m->seen, (uint64_t)q->columns.branch[m->index[k]]);
+  return value;
 }
 
 /* Values of all quantities at the fraction s of the piece. */
@@ -357,17 +395,68 @@ static void add_to_meter(motion_part *part, size_t i, double begin) {
   strut_meter_add(m, &samples);
 }
 
-/* Adds a part of the piece to all quantities; begin: its time [s]. */
-static void add_part(motion_part *part, double begin) {
+/* Adds a part of the piece without kinks that matter, to whose end values the last row belongs, to all quantities. */
+static void add_smooth_part(motion_part *part) {
   strut_quantities *q = part->quantities;
-  int last = STRUT_MOST_SAMPLES - 1;
+  double begin = part->start + part->from * part->piece->length;
   if (!(part->to > part->from)) return;
   memset(q->known, 0, sizeof q->known);
-  q->known[0] = true;
+  q->known[0] = q->known[STRUT_MOST_SAMPLES - 1] = true;
   q->coarse_known = false;
-  evaluate_at(part, part->to, row_at(q, last));
-  q->known[last] = true;
   for (size_t i = 0; i < q->count; i++) add_to_meter(part, i, begin);
+}
+
+/* Evaluates all at the end of the part: which quantities have a kink in it that matters? */
+static bool find_kinks(const motion_part *part) {
+  strut_quantities *q = part->quantities;
+  double *row = row_at(q, STRUT_MOST_SAMPLES - 1);
+  double length = (part->to - part->from) * part->piece->length;
+  bool any = false;
+  evaluate_at(part, part->to, row);
+  for (size_t i = 0; i < q->count; i++) {
+    strut_meter *m = &q->meters[i];
+    m->ahead = m->seen;
+    m->kinked = m->inner && m->ahead != m->branch && strut_meter_may_turn(m, row[i], length);
+    any = any || m->kinked;
+  }
+  return any && !part->piece->ends_only;
+}
+
+/* Has one of these kinks been passed at the fraction s of the piece? Values there: `coarse`. */
+static bool is_kink_passed(const motion_part *part, double s) {
+  const strut_quantities *q = part->quantities;
+  bool any = false;
+  evaluate_at(part, s, q->coarse);
+  for (size_t i = 0; i < q->count; i++)
+    any = any || (q->meters[i].kinked && q->meters[i].seen != q->meters[i].branch);
+  return any;
+}
+
+/* Adds the part up to the first kink, and moves its begin there. */
+static void add_to_kink(motion_part *part) {
+  strut_quantities *q = part->quantities;
+  double low = part->from, high = part->to, end = part->to;
+  while (high - low > LOCATED) {
+    double middle = 0.5 * (low + high);
+    *(is_kink_passed(part, middle) ? &high : &low) = middle;
+  }
+  part->to = low;
+  evaluate_at(part, low, row_at(q, STRUT_MOST_SAMPLES - 1));
+  add_smooth_part(part);
+  (void)is_kink_passed(part, high);
+  for (size_t i = 0; i < q->count; i++)
+    if (q->meters[i].kinked && q->meters[i].seen != q->meters[i].branch)
+      strut_meter_jump(&q->meters[i], part->start + low * part->piece->length, q->coarse[i]);
+  part->from = low, part->to = end;
+}
+
+/* Adds a part of the piece to all quantities, from kink to kink. */
+static void add_part(motion_part *part) {
+  strut_quantities *q = part->quantities;
+  if (!(part->to > part->from)) return;
+  for (int k = 0; find_kinks(part) && k < MOST_KINKS; k++) add_to_kink(part);
+  add_smooth_part(part);
+  for (size_t i = 0; i < q->count; i++) q->meters[i].branch = q->meters[i].ahead;
 }
 
 static double primitive_of(const strut_quantities *q, const strut_meter *m) {
@@ -403,8 +492,8 @@ static void see_piece(strut_observer *observer, strut_state *state,
                       const strut_motion_piece *seen) {
   strut_quantities *q = (strut_quantities *)observer;
   strut_motion_piece piece = *seen;
-  motion_part part = {.quantities = q, .state = state, .piece = &piece};
   double begin = piece.begin + (state->time_offset - q->marks.offset), h = piece.length;
+  motion_part part = {.quantities = q, .state = state, .piece = &piece, .start = begin};
   double end = begin + h, near = MARK_TOLERANCE * q->marks.step;
   bool smooth = piece.smooth && !q->fresh;
   if (q->next >= q->marks.count) return;
@@ -413,12 +502,12 @@ static void see_piece(strut_observer *observer, strut_state *state,
   while (q->next < q->marks.count && q->marks.time[q->next] <= end + near) {
     double s = (q->marks.time[q->next] - begin) / h;
     part.to = s * h > h - near ? 1.0 : fmax(s, part.from);
-    if (q->next > 0) add_part(&part, begin + part.from * h);
+    if (q->next > 0) add_part(&part);
     pass_mark(&part, part.to);
     part.from = part.to;
   }
   part.to = 1.0;
-  if (q->next > 0 && q->next < q->marks.count) add_part(&part, begin + part.from * h);
+  if (q->next > 0 && q->next < q->marks.count) add_part(&part);
   strut_dense_return(&q->dense, state, &piece);
   if (q->next >= q->marks.count) state->watched.observer = NULL;
 }
@@ -500,8 +589,11 @@ static void fill_measured(strut_quantities *q, strut_meter *m, strut_measured *t
   double size = fmax(made.size, m->largest), window = q->time - q->begin;
   double per = take == STRUT_TAKE_RATE ? window : 1.0;
   bool summed = take == STRUT_TAKE_MEAN || take == STRUT_TAKE_RMS;
+  to->rounding = (made.noise + (cancels ? CANCELLED : ROUNDED) * size) / per;
+  if (take == STRUT_TAKE_ARRIVAL) to->margin = strut_meter_margin(m);
   if (!isfinite(m->result)) return;
   to->doubt = m->doubt / (summed ? window : 1.0);
+  to->left = strut_meter_left(m);
   to->value = m->result;
   to->member = loaded_member(q, m);
   if (take == STRUT_TAKE_ARRIVAL) { /* a time, not a value of the expression */
@@ -510,8 +602,7 @@ static void fill_measured(strut_quantities *q, strut_meter *m, strut_measured *t
   }
   double scale = (differs ? made.span : size) / per;
   if (isfinite(scale)) to->scale = scale;
-  double noise = made.noise + (cancels ? CANCELLED : ROUNDED) * size;
-  to->zero = fabs(to->value) <= noise / per;
+  to->zero = fabs(to->value) <= to->rounding;
   if (q->by_periods && m->parts > 1) to->spread = sqrt(m->part_square / (double)(m->parts - 1));
 }
 

@@ -25,6 +25,7 @@ typedef struct strut_columns {
   double *value;         /* (count) now, SI */
   double *least, *most;  /* (count) over the window */
   double *largest;       /* (count) largest absolute value of the terms that it sums */
+  int32_t *branch;       /* (count) which of several values one is, such as the largest force */
   double fastest;        /* largest speed of a node in the window [m/s]; only with `speeds` */
   bool forces;           /* some column needs the forces at the state */
   bool energies;         /* some column needs the stored energies */
@@ -53,10 +54,14 @@ double strut_columns_noise(const strut_columns *columns, size_t index);
 
 /* ---- the postfix program of a measured quantity; see engine/scene/quantity.h ---- */
 
-/** Evaluates a program; `index` (length): position of each column in `value`. */
+/**
+ * Evaluates a program; `index` (length): position of each column in `value`. *branch, if not NULL, gathers which side
+ * of each kink (abs, min, max) and which step of each jump (floor, ...) the operands are on: where it changes between
+ * two instants, there is a kink or a jump between them.
+ */
 STRUT_API double strut_quantity_program_evaluate(const strut_quantity_definition *definition,
                                                  const size_t *index, const double *value,
-                                                 double *stack);
+                                                 double *stack, uint64_t *branch);
 
 /** Size of a term, and two uncertainties that propagate alike. */
 typedef struct strut_magnitude {

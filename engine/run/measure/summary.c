@@ -14,6 +14,11 @@ const char *strut_motion_name(strut_motion motion) {
   return names[motion];
 }
 
+const char *strut_measured_arrival(const strut_measured *m) {
+  if (!m->arrival || isnan(m->margin)) return NULL;
+  return m->undecided ? "not decided" : isnan(m->value) ? "never" : "reached";
+}
+
 void strut_summary_warn(strut_summary *summary, const char *code, const char *format, ...) {
   size_t i = 0;
   assert(summary->warning_count <= STRUT_MOST_WARNINGS);

@@ -72,13 +72,21 @@ typedef struct strut_measured {
   double spread; /* standard deviation of the value of each of the window's periods; or NAN */
   double scale;  /* largest absolute value over the window, of the quantity and of the terms that it
                       is made of: relative errors mean nothing where the value is far below it */
-  double expected;    /* expected error, SI; NAN where unknown */
-  double doubt;       /* uncertainty where steps are too coarse for what happens between them, SI */
-  bool kept;          /* expected is within the wanted error */
-  bool zero;          /* zero by symmetry: only rounding */
+  double expected; /* expected error, SI; NAN where unknown */
+  double doubt;    /* uncertainty where steps are too coarse for what happens between them, SI */
+  double left;     /* uncertainty of an extreme that samples between the steps do not resolve, SI */
+  double rounding; /* a value or a difference below it is rounding, SI */
+  bool kept;       /* expected is within the wanted error */
+  bool zero;       /* zero by symmetry: only rounding */
   const char *member; /* that of a largest `largest_force`; owned by the scene; else NULL */
   bool arrival;       /* the time of an arrival: missing where the target was not reached */
+  double margin; /* of ARRIVAL: how far from the target the extreme is that decides whether and when
+                    it is reached, in SI of the expression; `rounding` is of that, too */
+  bool undecided; /* of ARRIVAL: the error of that extreme may be as large */
 } strut_measured;
+
+/** "reached", "never" or "not decided"; NULL: no arrival, or the window was not reached. */
+STRUT_API const char *strut_measured_arrival(const strut_measured *measured);
 
 /** Kind of motion that a run with steady detection found; STRUT_MOTION_NOT_WATCHED without. */
 typedef enum strut_motion {

@@ -58,7 +58,7 @@ static double evaluate(const strut_search_formula *f, const double *numbers) {
     index[i] = f->program.program[i].operation == STRUT_OPERATION_COLUMN
                    ? (size_t)f->program.program[i].column.item
                    : 0;
-  return strut_quantity_program_evaluate(&f->program, index, numbers, stack);
+  return strut_quantity_program_evaluate(&f->program, index, numbers, stack, NULL);
 }
 
 static double broken_by(const strut_search_condition *c, const double *numbers,
