@@ -20,6 +20,7 @@ typedef struct document {
   int line_number;
   faulty_cases *cases;
   lines base, text;
+  char *base_text;     /* of the file that the base begins with */
   const char *purpose; /* of the base and of its cases */
   faulty_case *now;    /* the base or case that is being read; NULL before the first */
 } document;
@@ -79,7 +80,7 @@ static void remove_line(lines *text, size_t at) {
 }
 
 static void change_line(document *d, char mark, char *line) {
-  if (!d->now || d->now->is_base != (mark == '|'))
+  if (!d->now || (mark == '|' && !d->now->is_base))
     refuse(d, "this mark has no meaning here:", line);
   if (mark == '=') {
     char *colon = strchr(line, ':');
@@ -160,6 +161,22 @@ static void add_message(document *d, const char *text) {
   d->now->message[d->now->message_count++] = copy_text(text);
 }
 
+/* The text of a file beside the document. */
+static char *read_beside(const document *d, const char *name, size_t *length) {
+  char path[2 * PATH_SIZE];
+  snprintf(path, sizeof path, "%s/%s", d->folder, name);
+  return read_file(path, length);
+}
+
+static void take_lines(document *d, const char *name) {
+  size_t length;
+  char *rest;
+  free(d->base_text);
+  d->base_text = read_beside(d, name, &length);
+  for (char *line = strtok_r(d->base_text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest))
+    insert_line(d, &d->text, line);
+}
+
 /* "WORD rest of the line" */
 static void read_statement(document *d, char *line) {
   const char *rest = strchr(line, ' ');
@@ -167,7 +184,8 @@ static void read_statement(document *d, char *line) {
   rest = rest ? rest + 1 : "";
 #define IS(word) (length == sizeof word - 1 && strncmp(line, word, length) == 0)
   if (IS("base")) {
-    begin_case(d, rest, true);
+    begin_case(d, "", true);
+    if (*rest) take_lines(d, rest);
   } else if (IS("case")) {
     begin_case(d, rest, false);
   } else if (IS("expect")) {
@@ -181,9 +199,7 @@ static void read_statement(document *d, char *line) {
   } else if (IS("set") && strchr(rest, '=') && d->now->set_count < CASE_MOST_SETS) {
     d->now->set[d->now->set_count++] = copy_text(rest);
   } else if (IS("file")) {
-    char path[2 * PATH_SIZE];
-    snprintf(path, sizeof path, "%s/%s", d->folder, rest);
-    d->now->text = read_file(path, &d->now->length);
+    d->now->text = read_beside(d, rest, &d->now->length);
   } else {
     refuse(d, "unknown line", line);
   }
@@ -220,6 +236,7 @@ static void read_document(faulty_cases *cases, const char *folder, const char *n
       read_statement(d, line);
   }
   finish_case(d);
+  free(d->base_text);
   free(text);
   free(d);
 }
