@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members through no length at all, structures turned inside out, throws a million sizes far. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Form finding: shapes from densities and lengths, rest lengths from prestress, and that they hold. */
-#include <math.h>
-#include <string.h>
-
 #include "engine/statics/form/form.h"
 #include "tests/support/motion.h"
 

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The Hunt-Crossley ground and smooth friction against their closed forms; who may use Coulomb's. */
 #include <gsl/gsl_integration.h>
-#include <math.h>
-#include <string.h>
 
 #include "tests/support/motion.h"
 

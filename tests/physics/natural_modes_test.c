@@ -2,8 +2,6 @@
 /* strut_modes_find against closed forms and an assembly of its own. */
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>
-#include <math.h>
-#include <string.h>
 
 #include "engine/statics/modes/modes.h"
 #include "tests/support/motion.h"

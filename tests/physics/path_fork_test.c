@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Paths where several things happen at once: equal and nearly equal parts, unloading, a length through zero. */
-#include <math.h>
-
 #include "engine/statics/path/path.h"
 #include "tests/support/motion.h"
 

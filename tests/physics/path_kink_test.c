@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Paths with kinks, and with stiff bars: stability on each side and every digit, by closed forms. */
 #include <gsl/gsl_eigen.h>
-#include <math.h>
-#include <string.h>
 
 #include "engine/statics/path/path.h"
 #include "engine/statics/potential.h"

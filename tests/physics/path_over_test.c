@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Paths over displacements, actuators and numbers of a scene, against closed forms. */
-#include <math.h>
-#include <string.h>
-
 #include "engine/statics/path/path.h"
 #include "tests/support/motion.h"
 

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Paths of equilibria: limit points, forks, slackening and contact against closed forms. */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "engine/statics/path/path.h"
 #include "tests/support/motion.h"
 

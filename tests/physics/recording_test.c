@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows for sinks: which, when, what; sinks that fail; and a run that is refused memory. */
-#include <math.h>
-#include <string.h>
-
 #include "engine/forces/energy.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"

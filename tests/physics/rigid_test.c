@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rigid bars: pendulums with closed forms, lengths over long runs, energy, stick, and refusals. */
-#include <math.h>
-#include <string.h>
-
 #include "engine/forces/rigid.h"
 #include "tests/support/motion.h"
 

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The run: what it measures, how it refuses, stops and comes to rest. */
-#include <math.h>
-#include <string.h>
 #include <time.h>
 
 #include "tests/support/motion.h"

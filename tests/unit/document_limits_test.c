@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The YAML reader under pressure: limits, bombs, big texts, lost memory, files. */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
-#include "engine/base/memory.h"
 #include "parser/read/read_scene.h"
 #include "parser/yaml/document.h"
 #include "tests/support/motion.h"

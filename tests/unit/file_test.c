@@ -2,13 +2,10 @@
 /* Files that appear whole or not at all, and directories of them. */
 #include <errno.h>
 #include <signal.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "engine/base/memory.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "tests/support/check.h"

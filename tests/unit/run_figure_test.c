@@ -1,10 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Figures of a run without memory, without frames, and of frames that are no shapes. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/output/figures/run_figure.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"

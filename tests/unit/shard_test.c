@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shards: who has which points, and what may be merged. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
-#include "engine/base/memory.h"
 #include "engine/output/file.h"
 #include "engine/study/results/study_table.h"
 #include "tests/support/check.h"

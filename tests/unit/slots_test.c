@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The slots of a study on disk: whatever happens to the file, a row is whole or missing. */
 #include <fcntl.h>
-#include <math.h>
 #include <pthread.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "engine/base/memory.h"
 #include "engine/study/results/slots.h"
 #include "tests/support/check.h"
 #include "tests/unit/scratch.h"
