@@ -77,8 +77,7 @@ TEST(nothing_to_draw) {
   empty.frames = 0;
   assert_int_equal(draw(STRUT_RUN_OVERVIEW, &none, &error), STRUT_USAGE);
   assert_int_equal(draw(STRUT_RUN_OVERVIEW, &no_positions, &error), STRUT_USAGE);
-  assert_int_equal(draw(STRUT_RUN_CURVES, &empty, &error), STRUT_USAGE);
-  assert_non_null(strstr(error.message, "nothing to draw"));
+  assert_fails(draw(STRUT_RUN_CURVES, &empty, &error), STRUT_USAGE, error, "nothing to draw");
   assert_int_equal(scratch_count(scratch_path("")), 0);
 }
 
