@@ -6,12 +6,8 @@
 #include <fenv.h>
 #include <gsl/gsl_errno.h>
 #include <locale.h>
-#include <math.h>
 #include <pthread.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strut/abi.h>
 #include <time.h>
 

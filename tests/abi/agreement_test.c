@@ -6,9 +6,6 @@
  *   test_abi_agreement PROGRAM
  */
 #include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strut/abi.h>
 #include <unistd.h>
 

@@ -4,8 +4,6 @@
  * until a call succeeds. Sees the library from inside, where tests can make allocations fail.
  */
 #include <stdbool.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "engine/base/memory.h"
 #include "parser/bindings/abi/abi.h"

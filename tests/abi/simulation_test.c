@@ -4,12 +4,8 @@
  * that are events, and an energy balance that closes over all of it.
  */
 #include <limits.h>
-#include <math.h>
 #include <signal.h>
 #include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strut/abi.h>
 #include <unistd.h>
 

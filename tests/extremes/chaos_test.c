@@ -4,9 +4,6 @@
  * ones, against the two equations of motion in the angles, integrated here by themselves (Benettin's
  * method).
  */
-#include <math.h>
-#include <stdlib.h>
-
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Methods with located events against closed forms: bounce, belt, Coulomb's oscillator. */
-#include <math.h>
-#include <stdlib.h>
-
 #include "tests/support/motion.h"
 
 static const double PI = 3.14159265358979323846, GRAVITY = 9.81;

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Large grids of X-frames that land on the ground: energy, momentum, memory and pace over many steps.
    Arguments: nodes and steps of the large one, steps of one of 1000 nodes, nodes of the largest. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <time.h>
 

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Beside the largest stable step: growth per step, from the motion, against the method's theory. */
 #include <complex.h>
-#include <math.h>
-#include <stdlib.h>
 
 #include "engine/integrate/limit/step_limit.h"
 #include "tests/support/motion.h"

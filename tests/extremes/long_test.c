@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Very many steps: energy, clock and memory. The number of steps is the program's argument. */
-#include <math.h>
-#include <stdlib.h>
 #include <sys/resource.h>
 
 #include "engine/forces/energy.h"

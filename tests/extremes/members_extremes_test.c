@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members through no length at all, structures turned inside out, throws a million sizes far. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
@@ -63,8 +59,7 @@ TEST(bars_through_no_length_keep_their_balance) {
       strut_error error = {0};
       strut_status status = strut_simulate(model, &setup.experiment, &options, &s, &error);
       if (status) { /* a named stop */
-        assert_int_equal(status, STRUT_DIVERGED);
-        assert_non_null(strstr(error.message, "n2"));
+        assert_fails(status, STRUT_DIVERGED, error, "n2");
       } else {
         double kept = s.energy.kinetic + s.energy.elastic - s.energy.initial;
         double allowed = 7 * 2 * K * rest * speed * step; /* seven times through in 1.05 s */

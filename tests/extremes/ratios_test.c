@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stiffness 1e12 times stiffness and mass 1e9 times mass, in one structure. */
-#include <math.h>
-#include <stdlib.h>
-
 #include "engine/model/mass.h"
 #include "engine/statics/minimise.h"
 #include "tests/support/motion.h"

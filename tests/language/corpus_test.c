@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every case of tests/language/bad is refused with exactly the messages that it announces; bases are valid. */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "parser/read/read_scene.h"
 #include "tests/language/cases.h"
 #include "tests/support/test.h"

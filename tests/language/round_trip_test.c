@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is written reads back to the same bits, for every valid scene of the repository. */
 #include <locale.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "parser/language/keys.h"
 #include "parser/write/write_scene.h"

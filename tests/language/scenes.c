@@ -2,9 +2,6 @@
 #include "tests/language/scenes.h"
 
 #include <dirent.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "parser/write/write_scene.h"
 #include "tests/language/cases.h"

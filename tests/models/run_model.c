@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/models/run_model.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "tests/support/check.h"
 
 enum { MOST_SETTINGS = 8, NAME_ROOM = 64 };

@@ -8,8 +8,6 @@
  * the length used here whose start differs by multiples of 1e-13 m, as the independent program gives
  * it. It is below 1e-4 from 11 Hz on: there the motion forgets its roundings.
  */
-#include <math.h>
-
 #include "engine/run/settle.h"
 #include "tests/paper/reference_crawler.h"
 #include "tests/support/motion.h"

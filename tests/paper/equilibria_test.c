@@ -5,9 +5,6 @@
  * and III; and how high the passes between them are. Against the figures measured by an independent
  * program, and against slow searches that share no code with the engine (reference_statics.c).
  */
-#include <math.h>
-#include <string.h>
-
 #include "engine/statics/equilibria/equilibria.h"
 #include "tests/models/run_model.h"
 #include "tests/paper/reference_crawler.h"

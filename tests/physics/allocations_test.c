@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Steps allocate nothing, whatever the scene needs. */
-#include <stdlib.h>
-
+#include "tests/support/allocations.h"
 #include "engine/model/mass.h"
 #include "tests/physics/random_scene.h"
-#include "tests/support/allocations.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The energy balance judged: open where energy comes from nowhere, with the cause; else not a word. */
-#include <math.h>
-#include <string.h>
-
 #include "engine/run/measure/measure.h"
 #include "tests/support/motion.h"
 

@@ -3,9 +3,6 @@
  * What happens between the ends of a step: of random steps of a cloud of nodes with everything that has a strain, no
  * contact and no kink is missed that a dense sampling of the nodes' cubics finds, and none is made up.
  */
-#include <math.h>
-#include <string.h>
-
 #include "engine/forces/elements.h"
 #include "engine/integrate/events/event_stepping.h"
 #include "tests/models/run_model.h"

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Recorded channels: angular momentum against its law and a closed form, and every channel out of a file again. */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "engine/output/record_files.h"
 #include "engine/output/trajectory.h"
 #include "tests/models/run_model.h"

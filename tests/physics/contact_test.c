@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The ground's reaction (8): restitution, contact time, rest. The damper works on approach only. */
-#include <math.h>
-
 #include "tests/support/motion.h"
 
 static const double K = 1e4, MASS = 0.5, SPEED = 1.5;

@@ -4,8 +4,6 @@
  * an energy written once more here, and descents from thousands of random shapes by GSL.
  */
 #include <gsl/gsl_multimin.h>
-#include <math.h>
-#include <string.h>
 
 #include "engine/base/vec.h"
 #include "engine/statics/search/critical.h"

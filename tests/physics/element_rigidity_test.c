@@ -3,9 +3,6 @@
  * Columns of the equilibrium matrix and stress forms of running cables and hinges, against
  * differences of their lengths and angles.
  */
-#include <math.h>
-#include <string.h>
-
 #include "engine/base/vec.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "tests/support/motion.h"

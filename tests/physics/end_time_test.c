@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A run ends at the time that was asked for, whatever its step, and so does what is recorded. */
-#include <math.h>
-#include <string.h>
-
 #include "tests/support/motion.h"
 
 static const double PI = 3.14159265358979323846;

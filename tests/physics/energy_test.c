@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The energy balance of a run: closed on smooth scenes, closing with the step on the others. */
-#include <math.h>
 #include <signal.h>
 #include <sys/time.h>
 

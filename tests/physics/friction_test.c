@@ -6,8 +6,6 @@
  * node is not stopped, it keeps the speed with which it came into the band. "At rest" below means
  * slower than the band for good.
  */
-#include <math.h>
-
 #include "tests/support/motion.h"
 
 static const double G = 9.81, K = 1e5, MASS = 1;

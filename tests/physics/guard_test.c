@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A structure that becomes stiffer than it was at its start, and a step that then no longer suits. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/integrate/limit/step_limit.h"
 #include "tests/support/motion.h"
 

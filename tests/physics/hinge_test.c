@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Hinges in motion: torsion over several turns, a pendulum with a hinge, works of a driven hinge. */
-#include <math.h>
-
 #include "tests/models/run_model.h"
 #include "tests/support/check.h"
 

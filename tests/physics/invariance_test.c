@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Changes of a scene whose effect is known without any oracle: other units, mirror, other order. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/integrate/limit/step_limit.h"
 #include "tests/physics/random_scene.h"
 #include "tests/support/motion.h"

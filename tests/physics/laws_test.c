@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Laws of members and stops in motion, against closed forms. */
-#include <math.h>
-#include <stdio.h>
-
 #include "tests/models/run_model.h"
 #include "tests/support/check.h"
 

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members at the edges of their law: of no length, slack, driven slack. */
-#include <math.h>
-
 #include "tests/support/motion.h"
 #include "tests/support/oscillation.h"
 

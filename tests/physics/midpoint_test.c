@@ -3,9 +3,6 @@
  * Implicit midpoint: steps a hundred times the explicit limit on stiff members, the work that closes
  * the energy balance to rounding, and what it refuses.
  */
-#include <math.h>
-#include <string.h>
-
 #include "engine/forces/energy.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "tests/physics/random_scene.h"

@@ -2,8 +2,6 @@
 /* strut_modes_find against closed forms and an assembly of its own. */
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>
-#include <math.h>
-#include <string.h>
 
 #include "engine/statics/modes/modes.h"
 #include "tests/support/motion.h"
@@ -414,9 +412,8 @@ TEST(node_without_mass) {
   strut_model_free(model);
   setup.scene.nodes[1].fixed[1] = false; /* now it may move sideways, without mass or stiffness */
   assert_int_equal(strut_model_compile(&setup.scene, &model, &error), STRUT_OK);
-  assert_int_equal(strut_modes_find(model, &setup.experiment, &options, &modes, &error),
-                   STRUT_SINGULAR);
-  assert_non_null(strstr(error.message, "'n2'"));
+  assert_fails(strut_modes_find(model, &setup.experiment, &options, &modes, &error), STRUT_SINGULAR,
+               error, "'n2'");
   free_modes(&setup);
 }
 

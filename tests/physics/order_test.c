@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every fixed-step method of the table shows the order that its row claims, on smooth scenes. */
-#include <math.h>
-#include <string.h>
-
 #include "engine/base/vec.h"
 #include "engine/integrate/events/tableaus.h"
 #include "tests/physics/smooth_scenes.h"

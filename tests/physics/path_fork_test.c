@@ -1,37 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Paths where several things happen at once: equal and nearly equal parts, unloading, a length through zero. */
-#include <math.h>
-
-#include "engine/statics/path/path.h"
-#include "tests/support/motion.h"
-
-typedef struct walk {
-  strut_model *model;
-  strut_path path;
-} walk;
-
-static walk follow(const strut_setup *setup, strut_path_options options) {
-  walk w = {.model = motion_compile(&setup->scene)};
-  strut_error error = {0};
-  strut_status status = strut_path_follow(w.model, &setup->experiment, &options, &w.path, &error);
-  if (status) print_error("%s\n", error.message);
-  assert_int_equal(status, STRUT_OK);
-  return w;
-}
-
-static void finish(walk *w) {
-  strut_path_free(&w->path);
-  strut_model_free(w->model);
-}
+#include "tests/physics/walk.h"
 
 static const strut_path_point *last_of(const strut_path *path) {
   return &path->points[path->point_count - 1];
-}
-
-static size_t count(const strut_path *path, strut_path_event_kind kind) {
-  size_t sum = 0;
-  for (size_t i = 0; i < path->event_count; i++) sum += path->events[i].kind == kind;
-  return sum;
 }
 
 enum { MOST = 4 };
@@ -76,7 +48,7 @@ TEST(equal_columns) {
   const double stiffness[MOST] = {1, 1, 1, 1};
   for (int n = 1, all = 3; n <= MOST; n++, all *= 3) {
     OWN(strut_setup) setup = columns(n, stiffness, 0);
-    walk w = follow(&setup, (strut_path_options){.until = 6, .branches = 2});
+    OWN(walk) w = walk_by(&setup, (strut_path_options){.until = 6, .branches = 2});
     bool seen[81] = {false};
     assert_int_equal(w.path.event_count, 1);
     assert_relative(w.path.events[0].factor, buckling_load(1), 1e-10);
@@ -96,7 +68,6 @@ TEST(equal_columns) {
       seen[place] = true;
       assert_int_equal(last_of(branch)->negative, straight);
     }
-    finish(&w);
   }
 }
 
@@ -105,7 +76,7 @@ TEST(nearly_equal_columns) {
   for (int digits = 2; digits <= 8; digits++) {
     const double stiffness[2] = {1, 1 + pow(10, -digits)};
     OWN(strut_setup) setup = columns(2, stiffness, 0);
-    walk w = follow(&setup, (strut_path_options){.until = 6, .branches = 3});
+    OWN(walk) w = walk_by(&setup, (strut_path_options){.until = 6, .branches = 3});
     bool seen[9] = {false};
     int stable = 0;
     assert_int_equal(w.path.event_count, 2);
@@ -120,7 +91,6 @@ TEST(nearly_equal_columns) {
       seen[place] = true;
     }
     assert_int_equal(stable, 4);
-    finish(&w);
   }
 }
 
@@ -129,14 +99,13 @@ TEST(unloading) {
   const double stiffness = 1;
   for (int side = -1; side <= 1; side += 2) {
     OWN(strut_setup) setup = columns(1, &stiffness, 0.01 * side);
-    walk w = follow(&setup, (strut_path_options){.from = 3, .until = 0.5});
+    OWN(walk) w = walk_by(&setup, (strut_path_options){.from = 3, .until = 0.5});
     assert_int_equal(side_of(&w.path.points[0], 0, 1), side);
     assert_int_equal(w.path.event_count, 1);
     assert_int_equal(w.path.events[0].kind, STRUT_PATH_BIFURCATION);
     assert_relative(w.path.events[0].factor, buckling_load(1), 1e-9);
     assert_int_equal(w.path.end, STRUT_PATH_UNTIL);
     assert_int_equal(side_of(last_of(&w.path), 0, 1), 0);
-    finish(&w);
   }
 }
 
@@ -172,22 +141,21 @@ TEST(nearly_equal_trusses) {
       double strong = 100 * (1 + pow(10, -digits));
       OWN(strut_setup) setup = trusses(100, strong, back ? -0.3 : 0.2);
       strut_path_options options = {.from = back ? 2 : 0, .until = back ? -0.4 : 2};
-      walk w = follow(&setup, options);
-      assert_int_equal(count(&w.path, STRUT_PATH_LIMIT), 8);
+      OWN(walk) w = walk_by(&setup, options);
+      assert_int_equal(walk_count(&w.path, STRUT_PATH_LIMIT), 8);
       assert_int_equal(w.path.event_count, 8);
       for (int i = 0; i < 8; i++) {
         double load = weak[i] ? weak[i] * 100 : i == 2 ? strong : -strong;
         assert_relative(w.path.events[back ? 7 - i : i].factor, load * limit_load(), 1e-11);
       }
       assert_int_equal(w.path.end, STRUT_PATH_UNTIL);
-      finish(&w);
     }
 }
 
 /* Equal ones: a limit point from which two paths lead on which only one has snapped. */
 TEST(equal_trusses) {
   OWN(strut_setup) setup = trusses(100, 100, 0.2);
-  walk w = follow(&setup, (strut_path_options){.until = 2, .branches = 1});
+  OWN(walk) w = walk_by(&setup, (strut_path_options){.until = 2, .branches = 1});
   assert_int_equal(w.path.event_count, 2);
   assert_int_equal(w.path.events[0].kind, STRUT_PATH_LIMIT);
   assert_int_equal(w.path.events[0].after, 2);
@@ -201,7 +169,6 @@ TEST(equal_trusses) {
     assert_int_equal(p->negative, 1);
     assert_true((p->q[5] - 0.2 - (p->q[11] - 0.2)) * (b ? 1 : -1) != 0);
   }
-  finish(&w);
 }
 
 /* A strut on a spring that is pressed to nothing: there its force of k l turns round. */
@@ -214,8 +181,8 @@ TEST(zero_length) {
   build_member(&setup.scene, STRUT_BAR, a, b, 1e7 / hypot(100, 1), 0, 0);
   build_member(&setup.scene, STRUT_SPRING, b, c, k, 0, 0);
   build_load(&setup.scene, b, 0, -load, -1);
-  walk w = follow(&setup, (strut_path_options){.until = 1});
-  assert_int_equal(count(&w.path, STRUT_PATH_ZERO_LENGTH), 1);
+  OWN(walk) w = walk_by(&setup, (strut_path_options){.until = 1});
+  assert_int_equal(walk_count(&w.path, STRUT_PATH_ZERO_LENGTH), 1);
   const strut_path_event *e = &w.path.events[2], *turn = &w.path.events[1];
   assert_int_equal(turn->kind, STRUT_PATH_LIMIT);
   assert_int_equal(e->kind, STRUT_PATH_ZERO_LENGTH);
@@ -226,5 +193,4 @@ TEST(zero_length) {
   for (size_t i = 0; i < w.path.point_count; i++)
     before = before || fabs(w.path.points[i].factor - k * rest / load) < 1e-9;
   assert_true(before);
-  finish(&w);
 }

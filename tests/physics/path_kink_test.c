@@ -1,34 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Paths with kinks, and with stiff bars: stability on each side and every digit, by closed forms. */
 #include <gsl/gsl_eigen.h>
-#include <math.h>
-#include <string.h>
 
-#include "engine/statics/path/path.h"
 #include "engine/statics/potential.h"
-#include "tests/support/motion.h"
+#include "tests/physics/walk.h"
 
 FREED_BY(strut_potential_free, strut_potential)
-
-typedef struct walk {
-  strut_model *model;
-  strut_path path;
-} walk;
-
-static walk follow(const strut_setup *setup, double until) {
-  walk w = {.model = motion_compile(&setup->scene)};
-  strut_path_options options = {.until = until};
-  strut_error error = {0};
-  strut_status status = strut_path_follow(w.model, &setup->experiment, &options, &w.path, &error);
-  if (status) print_error("%s\n", error.message);
-  assert_int_equal(status, STRUT_OK);
-  return w;
-}
-
-static void finish(walk *w) {
-  strut_path_free(&w->path);
-  strut_model_free(w->model);
-}
 
 static void check_event(const strut_path_event *e, strut_path_event_kind kind, double factor,
                         int32_t before, int32_t after) {
@@ -72,7 +49,7 @@ TEST(limit_points_at_kinks) {
   double turn = toggle_load(-STOP),
          hard = SPRING * (1 - REST * ANCHOR * ANCHOR / pow(hypot(STOP, ANCHOR), 3));
   assert_true(hard < 0 && hard + STOP_SPRING > 0); /* the tangents on the two sides */
-  walk w = follow(&setup, 2 * turn);
+  OWN(walk) w = walk_until(&setup, 2 * turn);
   assert_int_equal(w.path.event_count, 4);
   const strut_path_event *e = w.path.events;
   check_event(&e[0], STRUT_PATH_SLACK, turn, 0, 1);
@@ -93,7 +70,6 @@ TEST(limit_points_at_kinks) {
   }
   assert_true(unstable > 3);
   assert_int_equal(w.path.end, STRUT_PATH_UNTIL);
-  finish(&w);
 }
 
 /* The other way along it: the same points, each side judged as before. */
@@ -101,11 +77,10 @@ TEST(kinks_backwards) {
   OWN(strut_setup) setup = toggle();
   setup.scene.nodes[TIP].start[0] = 0.12;
   double turn = toggle_load(-STOP);
-  walk w = follow(&setup, -2 * turn);
+  OWN(walk) w = walk_until(&setup, -2 * turn);
   assert_int_equal(w.path.event_count, 4);
   check_event(&w.path.events[1], STRUT_PATH_KINK_LIMIT, -turn, 0, 1);
   check_event(&w.path.events[3], STRUT_PATH_KINK_LIMIT, turn, 1, 0);
-  finish(&w);
 }
 
 /*
@@ -122,7 +97,7 @@ TEST(bifurcation_at_kink) {
   build_sized(&setup.scene, STRUT_CABLE, left, tip, 1000, 0, 0, hypot(1, top));
   build_sized(&setup.scene, STRUT_CABLE, right, tip, 1000, 0, 0, hypot(1, top));
   build_load(&setup.scene, tip, 0, -1, -1);
-  walk w = follow(&setup, 1.5 * mast * (1 - top));
+  OWN(walk) w = walk_until(&setup, 1.5 * mast * (1 - top));
   double load = mast * (1 - top);
   assert_int_equal(w.path.event_count, 3);
   check_event(&w.path.events[0], STRUT_PATH_SLACK, load, 0, 0);
@@ -133,7 +108,6 @@ TEST(bifurcation_at_kink) {
     assert_int_equal(p->negative, p->factor < load * (1 - 1e-9) ? 0 : 1);
     assert_near(p->q[2 * tip], 0, 1e-12);
   }
-  finish(&w);
 }
 
 /* Von Mises' truss falls on the ground between its limit points: stable from there, the load grows. */
@@ -147,7 +121,7 @@ TEST(touchdown_restores_stability) {
   build_contact(&setup.scene, apex, 1e4, 0);
   setup.scene.ground.height = floor;
   build_load(&setup.scene, apex, 0, -1, -1);
-  walk w = follow(&setup, 15);
+  OWN(walk) w = walk_until(&setup, 15);
   double there = 2 * k * floor * (hypot(a, h) / hypot(a, floor) - 1);
   assert_int_equal(w.path.event_count, 3);
   assert_int_equal(w.path.events[0].kind, STRUT_PATH_LIMIT);
@@ -158,7 +132,6 @@ TEST(touchdown_restores_stability) {
   double y = end->q[2 * apex + 1], push = 2 * k * y * (hypot(a, h) / hypot(a, y) - 1);
   assert_near(end->contact[0], 1e4 * (floor - y), 1e-9);
   assert_near(end->contact[0] + push, 15, 1e-9);
-  finish(&w);
 }
 
 /*
@@ -191,7 +164,7 @@ static double found_buckling_load(double bar, double spring, double x, double y)
   build_member(&setup.scene, STRUT_SPRING, tip, other, spring, 0, 0);
   build_load(&setup.scene, tip, -x, -y, -1); /* of length l, exactly along the bar */
   double length = hypot(x, y);
-  walk w = follow(&setup, 3 * spring);
+  OWN(walk) w = walk_until(&setup, 3 * spring);
   double load = 0;
   for (size_t i = 0; i < w.path.event_count && load == 0; i++)
     if (w.path.events[i].kind == STRUT_PATH_BIFURCATION) {
@@ -199,7 +172,6 @@ static double found_buckling_load(double bar, double spring, double x, double y)
       assert_int_equal(w.path.events[i].before, 0);
       assert_int_equal(w.path.events[i].after, 1);
     }
-  finish(&w);
   return load;
 }
 

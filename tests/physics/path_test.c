@@ -1,31 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Paths of equilibria: limit points, forks, slackening and contact against closed forms. */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
-#include "engine/statics/path/path.h"
-#include "tests/support/motion.h"
-
-typedef struct walk {
-  strut_model *model;
-  strut_path path;
-} walk;
-
-static walk follow(const strut_setup *setup, double until) {
-  walk w = {.model = motion_compile(&setup->scene)};
-  strut_path_options options = {.until = until};
-  strut_error error = {0};
-  strut_status status = strut_path_follow(w.model, &setup->experiment, &options, &w.path, &error);
-  if (status) print_error("%s\n", error.message);
-  assert_int_equal(status, STRUT_OK);
-  return w;
-}
-
-static void finish(walk *w) {
-  strut_path_free(&w->path);
-  strut_model_free(w->model);
-}
+#include "tests/physics/walk.h"
 
 static const strut_path_point *last(const walk *w) {
   assert_int_equal(w->path.end, STRUT_PATH_UNTIL);
@@ -38,12 +13,6 @@ static const strut_path_event *event(const walk *w, strut_path_event_kind kind, 
     if (w->path.events[i].kind == kind && number-- == 0) return &w->path.events[i];
   fail_msg("no such event: %s", strut_path_event_name(kind));
   return NULL;
-}
-
-static size_t count(const walk *w, strut_path_event_kind kind) {
-  size_t sum = 0;
-  for (size_t i = 0; i < w->path.event_count; i++) sum += w->path.events[i].kind == kind;
-  return sum;
 }
 
 /* Von Mises' truss: supports at (-+a, 0), apex at (0, h), pressed by 1 N times the factor. */
@@ -66,9 +35,9 @@ static void check_arch(double a, double h, double k, double expected, double dig
   double rest = hypot(a, h), length = cbrt(rest * a * a), top = sqrt(length * length - a * a);
   double limit = arch_load(a, h, k, top);
   OWN(strut_setup) setup = arch(a, h, k);
-  walk w = follow(&setup, 1.5 * limit);
+  OWN(walk) w = walk_until(&setup, 1.5 * limit);
   assert_near(limit, expected, digits);
-  assert_int_equal(count(&w, STRUT_PATH_LIMIT), 2);
+  assert_int_equal(walk_count(&w.path, STRUT_PATH_LIMIT), 2);
   for (int i = 0; i < 2; i++) {
     const strut_path_event *e = event(&w, STRUT_PATH_LIMIT, i);
     assert_relative(e->factor, i ? -limit : limit, 1e-12);
@@ -83,7 +52,6 @@ static void check_arch(double a, double h, double k, double expected, double dig
   }
   assert_true(last(&w)->factor == 1.5 * limit);
   assert_true(last(&w)->q[5] < -h);
-  finish(&w);
 }
 
 TEST(limit_points) {
@@ -117,20 +85,20 @@ TEST(touchdown) {
   build_member(&setup.scene, STRUT_SPRING, top, node, k, 0, 0);
   build_contact(&setup.scene, node, ground, 0);
   build_load(&setup.scene, node, 0, -1, -1);
-  walk w = follow(&setup, 20);
+  walk w = walk_until(&setup, 20);
   assert_int_equal(w.path.event_count, 1);
   assert_relative(event(&w, STRUT_PATH_TOUCHDOWN, 0)->factor, k * gap, 1e-12);
   assert_near(last(&w)->q[3], -(20 - k * gap) / (k + ground), 1e-13);
-  finish(&w);
+  walk_free(&w);
   setup.scene.nodes[node].start[1] = -0.05; /* begins in the ground: nothing holds it there */
   setup.scene.nodes[node].position[1] = -0.05, setup.scene.nodes[top].position[1] = 0.95;
   setup.scene.nodes[top].start[1] = 0.95, setup.scene.loads[0].force[1] = 1;
-  w = follow(&setup, 20);
+  w = walk_until(&setup, 20);
   double depth = 0.05 * k / (k + ground); /* spring force k (0.05 - depth) = ground depth */
   assert_near(w.path.points[0].q[3], -depth, 1e-13);
   assert_relative(event(&w, STRUT_PATH_LIFT_OFF, 0)->factor, k * 0.05, 1e-10);
   assert_near(last(&w)->q[3], 20 / k - 0.05, 1e-12);
-  finish(&w);
+  walk_free(&w);
 }
 
 /* A box lifted at one corner tips when the load is half its weight: the others leave together. */
@@ -143,9 +111,8 @@ TEST(lift_off) {
     build_contact(&setup.scene, i, 1e5, 0);
   }
   build_load(&setup.scene, 2, 0, 1, -1);
-  walk w = follow(&setup, 1.9);
+  OWN(walk) w = walk_until(&setup, 1.9);
   assert_int_equal(w.path.event_count, 0);
-  finish(&w);
   strut_path path = {0};
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   strut_path_options options = {.until = 3, .steps = 60};

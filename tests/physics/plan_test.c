@@ -3,8 +3,6 @@
  * A term that the scene does not need is not in the model; leaving it out changes no bit of the rest
  * and costs no time.
  */
-#include <math.h>
-
 #include "tests/support/instructions.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"

@@ -1,10 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Measured quantities against closed forms: each column, each reduction, and what they cost. */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
-#include "engine/integrate/integrator.h"
 #include "parser/read/read_scene.h"
 #include "tests/support/motion.h"
 

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/physics/random_world.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "tests/support/check.h"
 #include "tests/support/random.h"
 

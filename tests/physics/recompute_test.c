@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every compiled force, M and M^-1 F against the slow recomputation, on 200 random scenes. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/model/mass.h"
 #include "tests/physics/random_scene.h"
 #include "tests/physics/slow_model.h"

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members with an axial_stiffness whose rest length is driven: EA over the present one, in closed forms. */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "tests/models/run_model.h"
 #include "tests/support/motion.h"
 

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rank, self-stress and mechanisms by closed forms, by two methods, and of random structures; the gallery has the
    structures whose answers are known. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/statics/rigidity/rigidity_parts.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"

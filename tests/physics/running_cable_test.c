@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Running cables: one tension over all segments, in rest and in motion, against closed forms. */
-#include <math.h>
-
 #include "tests/models/run_model.h"
 #include "tests/support/check.h"
 

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One settling for whoever starts from it: the same bits, bounded, and judged for stability. */
-#include <math.h>
-#include <string.h>
-
-#include "engine/run/accuracy/accuracy.h"
 #include "engine/run/settle.h"
+#include "engine/run/accuracy/accuracy.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "tests/support/motion.h"
 

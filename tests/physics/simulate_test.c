@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The run: what it measures, how it refuses, stops and comes to rest. */
-#include <math.h>
-#include <string.h>
 #include <time.h>
 
 #include "tests/support/motion.h"
@@ -125,8 +123,7 @@ TEST(a_step_above_the_limit_is_refused) {
   strut_error error;
   strut_run_options options = {0};
   OWN(strut_setup) setup = stiff(0.142, 1);
-  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_STEP_TOO_LARGE);
-  assert_non_null(strstr(error.message, "0.142 s"));
+  assert_fails(simulate(&setup, &options, &s, &error), STRUT_STEP_TOO_LARGE, error, "0.142 s");
   assert_non_null(strstr(error.message, "0.1414 s"));
   assert_relative(s.step_limit, sqrt(8) / 20, 1e-6);
   assert_int_equal(s.spent.steps, 0);
@@ -145,8 +142,7 @@ TEST(force_runs_above_the_limit_until_it_diverges) {
   assert_int_equal(s.spent.steps, 20);
   strut_summary_free(&s);
   setup.experiment.step = 0.2, setup.experiment.duration = 1000;
-  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_DIVERGED);
-  assert_non_null(strstr(error.message, "node 'n2'"));
+  assert_fails(simulate(&setup, &options, &s, &error), STRUT_DIVERGED, error, "node 'n2'");
   assert_non_null(strstr(error.message, "t = "));
   assert_non_null(strstr(error.message, "dt = 0.2 s"));
   assert_non_null(strstr(error.message, "0.1414 s"));
@@ -166,8 +162,7 @@ TEST(a_mass_that_flies_beyond_all_bounds_is_lost) {
   OWN(strut_setup) setup = stiff(0.01, 100);
   build_mass(&setup.scene, 0, 1, 1);
   setup.scene.nodes[2].velocity[1] = 1e9;
-  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_DIVERGED);
-  assert_non_null(strstr(error.message, "node 'n3'"));
+  assert_fails(simulate(&setup, &options, &s, &error), STRUT_DIVERGED, error, "node 'n3'");
   assert_null(strstr(error.message, "use a smaller step"));
   assert_within(s.duration, 10, 10 + 64 * 0.01 + 1e-9);
   assert_true(isfinite(s.end.positions[2]));
@@ -239,8 +234,7 @@ TEST(settling_gives_up_at_its_limit) {
   strut_run_options options = {0};
   OWN(strut_setup) setup = hanging();
   setup.experiment.settle.limit = 0.05;
-  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_NOT_SETTLED);
-  assert_non_null(strstr(error.message, "0.05 s"));
+  assert_fails(simulate(&setup, &options, &s, &error), STRUT_NOT_SETTLED, error, "0.05 s");
 }
 
 /* On a slope of 0.2 rad a block rests with mu 0.5 if friction is kept, and without it never. */
@@ -291,8 +285,7 @@ TEST(a_scene_without_mass_or_method_does_not_run) {
   strut_run_options options = {0};
   OWN(strut_setup) setup = stiff(1e-3, 1);
   setup.experiment.integrator = "leapfrog";
-  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_USAGE);
-  assert_non_null(strstr(error.message, "leapfrog"));
+  assert_fails(simulate(&setup, &options, &s, &error), STRUT_USAGE, error, "leapfrog");
   strut_summary_free(&s);
   setup.experiment.integrator = "rk4";
   setup.scene.nodes[1].mass = 0;

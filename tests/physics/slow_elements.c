@@ -2,7 +2,6 @@
 #include "tests/physics/slow_elements.h"
 
 #include <gsl/gsl_spline.h>
-#include <math.h>
 
 #include "tests/support/check.h"
 

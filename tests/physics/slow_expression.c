@@ -2,9 +2,6 @@
 #include "tests/physics/slow_expression.h"
 
 #include <ctype.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "tests/support/check.h"
 

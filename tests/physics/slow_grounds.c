@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Distances from grounds, by their definitions. */
-#include <math.h>
-
 #include "tests/physics/slow_world.h"
 #include "tests/support/check.h"
 

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/physics/slow_model.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "tests/support/check.h"
 
 /* Widening is the point here; clang counts it as promotion. */

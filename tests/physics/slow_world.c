@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/physics/slow_world.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "tests/physics/slow_expression.h"
 #include "tests/physics/slow_model.h"
 #include "tests/support/check.h"

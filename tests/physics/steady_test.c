@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs that stop when they are steady: what they call so, and what they must not. */
-#include <math.h>
-
 #include "tests/physics/driven_scenes.h"
 #include "tests/support/motion.h"
 

@@ -3,9 +3,6 @@
  * What runs call steady, against the truth: closed forms, and equations of motion that are written
  * out and stepped here, with their variation for Lyapunov exponents.
  */
-#include <math.h>
-#include <string.h>
-
 #include "tests/physics/driven_scenes.h"
 #include "tests/support/motion.h"
 

@@ -4,9 +4,6 @@
  * bits where every trial of a method with events is first taken twice as far and thrown away, and where forces are
  * evaluated anywhere between steps.
  */
-#include <math.h>
-#include <string.h>
-
 #include "tests/models/run_model.h"
 #include "tests/physics/random_world.h"
 #include "tests/support/motion.h"

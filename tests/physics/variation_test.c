@@ -5,10 +5,6 @@
  */
 #include "engine/integrate/events/location/variation.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "engine/base/memory.h"
 #include "tests/physics/driven_scenes.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"

@@ -3,9 +3,6 @@
  * Random scenes with cells, collisions, grounds of every shape and elements that remember: turned,
  * mirrored and larger they move as the turned, mirrored and larger scene, by methods with events, too.
  */
-#include <math.h>
-#include <stdlib.h>
-
 #include "engine/forces/history.h"
 #include "engine/scene/profile.h"
 #include "tests/models/run_model.h"

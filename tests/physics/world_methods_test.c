@@ -3,10 +3,6 @@
  * Random scenes with every element, ground, drive and sensor by every method: energy balances close, and
  * motions are those of an accurate run, both better with half the step as the method's order says.
  */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "tests/models/run_model.h"
 #include "tests/physics/random_world.h"
 #include "tests/support/motion.h"

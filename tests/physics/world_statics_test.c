@@ -3,10 +3,6 @@
  * The potential energy of random scenes with cells, collisions and grounds of every shape: its gradient
  * and its Hessian against differences, and the forces of a motion at rest against both.
  */
-#include <math.h>
-#include <string.h>
-
-#include "engine/forces/forces.h"
 #include "engine/statics/potential.h"
 #include "tests/models/run_model.h"
 #include "tests/physics/random_world.h"

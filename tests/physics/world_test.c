@@ -3,10 +3,6 @@
  * Every element, ground, drive, sensor and state once more: forces and accelerations of random scenes at
  * random instants, and whole motions by a Runge-Kutta method of the test's own, against the engine's.
  */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-
 #include "engine/forces/history.h"
 #include "engine/forces/support_motion.h"
 #include "tests/models/run_model.h"

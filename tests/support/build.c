@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/support/build.h"
 
-#include <string.h>
-
 #include "tests/support/check.h"
 
 strut_scene build_scene(void) {

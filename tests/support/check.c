@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/support/check.h"
 
-#include <math.h>
-#include <string.h>
-
 static void fail_at(const char *file, int line, const char *what, double actual,
                     const char *expected, double a, double b) {
   print_error("%s is %.17g, expected %s %.17g, %.3g\n", what, actual, expected, a, b);

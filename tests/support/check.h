@@ -22,6 +22,10 @@
 #define assert_same_bits(actual, expected)                                                         \
   check_same_bits((actual), (expected), #actual, __FILE__, __LINE__)
 
+/** The call returns that status, and the strut_error that it fills has these words. */
+#define assert_fails(call, expected, error, words)                                                 \
+  (assert_int_equal((call), (expected)), check_words((error).message, (words), __FILE__, __LINE__))
+
 void check_near(double actual, double expected, double tolerance, const char *what,
                 const char *file, int line);
 void check_relative(double actual, double expected, double tolerance, const char *what,
@@ -29,6 +33,12 @@ void check_relative(double actual, double expected, double tolerance, const char
 void check_within(double actual, double low, double high, const char *what, const char *file,
                   int line);
 void check_same_bits(double actual, double expected, const char *what, const char *file, int line);
+
+static inline void check_words(const char *text, const char *words, const char *file, int line) {
+  if (strstr(text, words)) return;
+  print_error("'%s' lacks '%s'\n", text, words);
+  _fail(file, line);
+}
 
 /** Least-squares slope of log2(error) over halvings of the step: the observed order. */
 double observed_order(const double *error, size_t count);

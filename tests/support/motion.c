@@ -2,7 +2,6 @@
 #include "tests/support/motion.h"
 
 #include "engine/scene/check.h"
-#include "tests/support/check.h"
 
 static void check(const strut_scene *scene) {
   strut_findings findings = {0};

@@ -2,7 +2,6 @@
 #include "tests/support/test.h"
 
 #include <stdbool.h>
-#include <stdlib.h>
 
 enum { MOST_TESTS = 100 };
 

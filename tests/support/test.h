@@ -10,12 +10,15 @@
 #ifndef STRUT_TESTS_SUPPORT_TEST_H
 #define STRUT_TESTS_SUPPORT_TEST_H
 
-/* What cmocka.h needs. */
+/* What cmocka.h needs, and what most tests do: they have no need to say so. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Laws of cells: force, slope and drive against differences of the energy; a cell of a scene. */
-#include <math.h>
-
 #include "engine/scene/law.h"
 #include "tests/support/check.h"
 

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The semantic rules on scenes made without a file: each spoilt in one way, each finding named. */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "engine/scene/check.h"
 #include "tests/support/test.h"
 

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CMA-ES: evaluations that known functions take (python3-cmaes agrees within a fifth), bounds, the same bits,
    stops. */
-#include <math.h>
 #include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/study/search/optimisers.h"
 #include "tests/support/test.h"

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Comparing: differences of texts, every allocation failing once, an interrupt, what is reported. */
-#include <math.h>
-#include <string.h>
-
 #include "engine/study/compare/compare.h"
 #include "parser/read/overlay.h"
 #include "parser/read/read_scene.h"

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The search for stationary points: the paper's crawler, what is floppy, threads, memory, size. */
-#include <math.h>
-#include <string.h>
 #ifdef _OPENMP
 #include <omp.h>
 #endif

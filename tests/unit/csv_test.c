@@ -1,11 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trajectories as CSV: headers, every value's bits, full disks, no memory. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "engine/base/memory.h"
 #include "engine/output/record_files.h"
 #include "tests/support/check.h"
 #include "tests/support/heap.h"

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Located messages: their text, order and limits, the caret, and suggestions. */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "engine/base/memory.h"
 #include "parser/yaml/diagnostics.h"
+#include "engine/base/memory.h"
 #include "tests/support/test.h"
 
 static strut_place at(uint32_t line, uint32_t column, uint32_t length) {

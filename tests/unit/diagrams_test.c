@@ -1,10 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What diagrams are made of: round ticks, prefixes, thinned curves, the front of the best. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/output/draw/chart.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/work_precision.h"

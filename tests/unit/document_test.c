@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The YAML reader: trees and places, and every refusal with its words. */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "parser/yaml/document.h"
 #include "tests/support/test.h"
 #include "tests/unit/document_support.h"

@@ -3,9 +3,6 @@
 #include "engine/statics/algebra.h"
 
 #include <float.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "tests/support/check.h"
 

@@ -3,10 +3,6 @@
 #include "engine/forces/elements.h"
 
 #include <float.h>
-#include <math.h>
-
-#include <string.h>
-#include "engine/forces/forces.h"
 
 #include "engine/forces/strains/along.h"
 #include "engine/forces/strains/angle.h"

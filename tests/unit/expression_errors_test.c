@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Expressions that are refused: the place and the words; limits; random texts. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/base/memory.h"
 #include "tests/support/test.h"
 #include "tests/unit/expression_support.h"

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/unit/expression_support.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "tests/support/test.h"
 
 int test_lookup(void *context, const char *name, size_t length, strut_quantity *q) {

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Expressions: values, units, dimensions. */
-#include <math.h>
-
 #include "tests/support/test.h"
 #include "tests/unit/expression_support.h"
 

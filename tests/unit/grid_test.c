@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The values of ranges: round where they are round, their ends as written, near the exact ones. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-
 #include "engine/study/sweep/grid.h"
 #include "tests/support/test.h"
 

@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trajectories as HDF5: read back through the library, equal bytes, full disks, silence. */
 #include <fcntl.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <hdf5.h>
 #include <hdf5_hl.h>
 
-#include "engine/base/memory.h"
 #include "engine/output/file.h"
 #include "engine/output/record_files.h"
 #include "tests/support/check.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Ctrl-C: the first signal sets the flag, one that comes later kills. */
 #define _GNU_SOURCE /* streams.c is part of this file */
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>

@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A run's summary as JSON, read back with cJSON bit by bit, and as a table for people. */
 #include <locale.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include <cjson/cJSON.h>
 
-#include "engine/base/memory.h"
 #include "engine/output/buffer.h"
 #include "engine/output/run_report.h"
 #include "tests/support/motion.h"

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The table of keys is consistent, and the page made from it is the one in docs/. */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "engine/base/memory.h"
 #include "parser/language/keys.h"
+#include "engine/base/memory.h"
 #include "parser/write/writer.h"
 #include "tests/support/test.h"
 

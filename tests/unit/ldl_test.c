@@ -2,8 +2,6 @@
 /* Factors of matrices that need not be positive definite: solutions, signs, condition. */
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
-#include <math.h>
-#include <string.h>
 
 #include "engine/model/sparse.h"
 #include "tests/support/check.h"

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Linear programmes with answers by hand; least squares under bounds against every active set. */
 #include <gsl/gsl_linalg.h>
-#include <math.h>
-#include <string.h>
 
 #include "engine/statics/algebra.h"
 #include "engine/statics/form/parts.h"

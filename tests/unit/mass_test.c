@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The mass matrix: how it is taken apart, and that its inverse is one whatever the masses. */
-#include <math.h>
-#include <stdlib.h>
-
 #include "engine/model/mass.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"

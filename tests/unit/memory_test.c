@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Counted allocation, allocations that fail on demand, and arenas. */
 #include <stdbool.h>
-#include <string.h>
 
-#include "engine/base/memory.h"
 #include "tests/support/check.h"
 
 static bool all_zero(const void *block, size_t size) {

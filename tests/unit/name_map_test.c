@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The map from names to indices, against a plain list. */
-#include <stdio.h>
-
-#include "engine/base/memory.h"
 #include "engine/base/name_map.h"
+#include "engine/base/memory.h"
 #include "tests/support/test.h"
 
 enum { MANY = 20000 };

@@ -2,13 +2,7 @@
 /* Of many collisions only those of near bodies are evaluated, and the motion is the same to the last bit. */
 #include "engine/forces/nearby.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/forces/elements.h"
-#include "engine/integrate/integrator.h"
 #include "tests/models/run_model.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"

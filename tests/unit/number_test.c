@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Number literals: the grammar, correct rounding, and that neither locale nor luck matters. */
 #include <locale.h>
-#include <math.h>
 #include <regex.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/base/memory.h"
 #include "parser/expression/expression.h"

@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The shortest text of a double: against the C library, over random bits and all hard corners. */
 #include <float.h>
-#include <math.h>
 #include <stdbool.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/base/number_text.h"
 #include "tests/support/test.h"

@@ -2,13 +2,8 @@
 /* Blocks of the page, taken apart again by zlib and the inverse written here; and which frames of a
    motion a page takes. */
 #include <float.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <zlib.h>
 
-#include "engine/base/memory.h"
 #include "engine/output/page/page.h"
 #include "tests/support/motion.h"
 

@@ -3,10 +3,6 @@
  * The step's vector kernels against pose.h, on random poses: members_kernel.h and ground_kernel.h in
  * strut_forces_evaluate.
  */
-#include <math.h>
-#include <string.h>
-
-#include "engine/forces/forces.h"
 #include "engine/model/pose.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"

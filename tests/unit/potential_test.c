@@ -2,9 +2,6 @@
 /* The potential energy, its gradient and Hessian against differences and the engine's own sums. */
 #include "engine/statics/potential.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "engine/forces/energy.h"
 #include "engine/forces/tangent.h"
 #include "tests/physics/random_scene.h"

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Defaults; the four ways to give a rest length; what an experiment amounts to. */
-#include <math.h>
-#include <string.h>
-
 #include "engine/scene/experiment.h"
 #include "tests/support/test.h"
 

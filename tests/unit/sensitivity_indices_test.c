@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sensitivity indices of made-up results: closed forms, missing ones, and results that hardly vary. */
-#include <math.h>
-
 #include "engine/study/sensitivity/sensitivity.h"
 #include "tests/support/test.h"
 

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Waveforms against their closed forms, and their rates against differences. */
-#include <math.h>
-
-#include "engine/forces/signal_vector.h"
 #include "engine/scene/signal.h"
+#include "engine/forces/signal_vector.h"
 #include "tests/support/test.h"
 
 static const double PI = 3.14159265358979323846;

@@ -5,9 +5,6 @@
  */
 #include "engine/statics/equilibria/equilibria.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 

@@ -2,9 +2,6 @@
 /* Equilibria that the points of a study share: only structures that stand alike may. */
 #include "engine/study/sweep/evaluation.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 

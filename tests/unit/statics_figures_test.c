@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pictures of modes and of a path: without memory there is none, nor half of one. */
-#include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
-#include "engine/base/memory.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/figures/statics_figures.h"
 #include "tests/models/run_model.h"

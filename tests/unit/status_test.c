@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Status codes, what the program makes of them, and messages. */
-#include <string.h>
-
-#include "engine/base/status.h"
 #include "tests/support/check.h"
 
 /* The codes that scripts and papers rely on. */

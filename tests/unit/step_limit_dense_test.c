@@ -3,8 +3,6 @@
    step at 0.99 of the limit must map no motion onto a larger one, at 1.01 it must. */
 #include <gsl/gsl_complex_math.h>
 #include <gsl/gsl_eigen.h>
-#include <math.h>
-#include <stdlib.h>
 #include <time.h>
 
 #include "engine/forces/tangent.h"

@@ -2,8 +2,6 @@
 /* The largest stable step: RK4's own limits, closed forms of structures, and the truth of it. */
 #include "engine/integrate/limit/step_limit.h"
 
-#include <math.h>
-
 #include "tests/physics/random_scene.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"

@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CSV tables read for pictures: cells, numbers, what is no table, and nothing left behind. */
 #define _GNU_SOURCE /* streams.c is part of this file */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
-#include "parser/program/streams.c" /* the program is no library to link with */
 #include "parser/program/table_file.c"
+#include "parser/program/streams.c" /* the program is no library to link with */
 #include "tests/support/check.h"
 #include "tests/support/heap.h"
 #include "tests/unit/scratch.h"

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables chosen from tables: rows of a text, differences of two sides, between points too. */
-#include <math.h>
-
 #include "engine/output/figures/table_parts.h"
 #include "tests/support/check.h"
 

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tables of things: names by kind, and the numbers by which an equilibrium is known. */
-#include <stdio.h>
-#include <string.h>
-
-#include "engine/base/memory.h"
 #include "engine/scene/things.h"
+#include "engine/base/memory.h"
 #include "parser/language/keys.h"
 #include "parser/read/read_scene.h"
 #include "tests/support/test.h"

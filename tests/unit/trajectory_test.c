@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A recorded motion in memory: as the run had it, as its file gives it back, thinned, refused. */
-#include <stdio.h>
-#include <string.h>
-
-#include "engine/output/record_files.h"
 #include "engine/output/trajectory.h"
+#include "engine/output/record_files.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 #include "tests/unit/scratch.h"

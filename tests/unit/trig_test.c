@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sine and cosine of turns against the C library's long double. */
-#include <math.h>
-
 #include "engine/base/vec.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Units: the table's order and factors, and the words for dimensions. */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
-#include "parser/expression/expression.h"
 #include "parser/expression/units.h"
+#include "parser/expression/expression.h"
 #include "tests/support/test.h"
 
 static const strut_unit *unit(const char *name) { return strut_unit_find(name, strlen(name)); }

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Films where memory is out. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/base/memory.h"
 #include "engine/output/figures/run_film.h"
 #include "parser/read/read_scene.h"
