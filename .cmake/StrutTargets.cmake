@@ -78,9 +78,6 @@ endfunction()
 function(strut_all_listed folder)
   file(GLOB_RECURSE there CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.c")
   list(FILTER there EXCLUDE REGEX "/web/") # built by the preset web
-  if(NOT TARGET strut_python) # a machine without python3-dev, or a build with sanitizers
-    list(FILTER there EXCLUDE REGEX "/python/")
-  endif()
   foreach(target IN LISTS ARGN)
     if(TARGET ${target})
       get_target_property(sources ${target} SOURCES)

@@ -9,7 +9,7 @@ set -eu
 
 packages="gcc libc6-dev make cmake pkg-config
   libyaml-dev libgsl-dev libsuitesparse-dev libcjson-dev libhdf5-dev libarpack2-dev libglpk-dev
-  libnlopt-dev libpango1.0-dev zlib1g-dev fonts-dejavu-core libjs-dygraphs python3-dev"
+  libnlopt-dev libpango1.0-dev zlib1g-dev fonts-dejavu-core libjs-dygraphs"
 case ${1:-} in
   '') ;;
   tests) packages="$packages g++ clang clang-format libcmocka-dev locales jq

@@ -126,7 +126,7 @@ test -s "$prefix/share/bash-completion/completions/strut"
 "$prefix/bin/strut" check "$source/models/crawler/crawler.yaml" >/dev/null
 
 # The Python package finds the library beside it, wherever both are.
-package=$(dirname "$(find "$prefix" -name _strut.abi3.so)")
+package=$(dirname "$(find "$prefix" -path "*/strut/_strut.py")")
 if [ -e "$package/__init__.py" ]; then
   (cd / && env -u LD_LIBRARY_PATH PYTHONPATH="${package%/*}" PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c '
 import strut, sys

@@ -44,7 +44,6 @@ breaches() {
       # Foreign libraries live in one folder each; those of linear algebra even in one room.
       home["yaml.h"] = "parser/yaml"; home["hdf5.h"] = "engine/output"; home["hdf5_hl.h"] = "engine/output"
       home["cJSON.h"] = home["cjson/cJSON.h"] = "engine/output"
-      home["Python.h"] = "parser/bindings/python"
       home["zlib.h"] = "engine/output/page"; home["cairo.h"] = home["cairo-pdf.h"] = "engine/output/draw"
       home["cairo-svg.h"] = home["pango/pangocairo.h"] = "engine/output/draw"
       room_of["cholmod.h"] = "engine/model/cholmod_factor engine/statics/sparse_algebra"
@@ -61,8 +60,6 @@ breaches() {
       quoted = substr(text, RSTART, 1) == "\""
       from = folder(file); to = folder(name)
       ours = name ~ "^(engine|parser|tests)/"
-      # Bindings of other languages know the installed interface alone, and their host.
-      if (from ~ "^parser/bindings/python$") { if (ours && to != from) breach("runs up"); next }
       if (!ours) {
         base = name; sub("^suitesparse/", "", base)
         if (quoted) breach("not spelled from the repository root")
@@ -133,10 +130,6 @@ expect 0 parser/bindings/abi/b.c '#include "parser/command/a.h"'
 expect 1 parser/command/b.c '#include "parser/program/a.h"'
 expect 1 parser/bindings/abi/b.c '#include "parser/program/a.h"'
 expect 1 parser/read/b.c '#include "parser/command/a.h"'
-expect 0 parser/bindings/python/b.c '#include "strut/abi.h"'
-expect 0 parser/bindings/python/b.c '#include <Python.h>'
-expect 1 parser/read/b.c '#include <Python.h>'
-expect 1 parser/bindings/python/b.c '#include "parser/bindings/abi/a.h"'
 expect 0 parser/strut.h '#include "engine/output/a.h"'
 expect 0 parser/yaml/b.c '#include <yaml.h>'
 expect 1 parser/read/b.c '#include <yaml.h>'

@@ -2,127 +2,48 @@
 /*
  * `strut complete WORD...`, which strut.bash calls: prints the words that complete the last one, a line each, and a
  * last line that begins with a colon: ":" alone, ":files" or ":files yaml yml" where files (of these endings) fit
- * too, or ":folders". What cannot be read offers nothing, since messages would disturb the line that is being typed.
+ * too, or ":folders".
  */
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include "engine/base/memory.h"
 #include "engine/integrate/integrator.h"
-#include "engine/output/file.h"
-#include "engine/scene/things.h"
 #include "parser/language/keys.h"
 #include "parser/program/commands.h"
-#include "parser/read/read_scene.h"
-
-enum { LARGEST = 4 << 20, PATH = 4096 };
 
 typedef struct completion {
   const char *word;   /* as typed so far, within an argument: behind its last comma or "--set=" */
   int kept;           /* bytes before it in the argument, which are printed again */
   const char *before; /* the argument */
-  const char *model;  /* the first file or folder among the arguments, or NULL */
 } completion;
 
-/* Prints text + end if it begins as the word does. */
-static void offer(const completion *c, const char *text, const char *end) {
+/* Prints the text if it begins as the word does. */
+static void offer(const completion *c, const char *text) {
   if (strncmp(text, c->word, strlen(c->word)) == 0 && !strpbrk(text, "\t\n"))
-    printf("%.*s%s%s\n", c->kept, c->before, text, end);
+    printf("%.*s%s\n", c->kept, c->before, text);
 }
 
 static void offer_commands(const completion *c) {
-  for (size_t i = 0; strut_command_at(i); i++) offer(c, strut_command_at(i)->name, "");
+  for (size_t i = 0; strut_command_at(i); i++) offer(c, strut_command_at(i)->name);
 }
 
 static void offer_options(const completion *c, const strut_command *command) {
   char name[64];
   for (size_t i = 0; strut_option_at(command, i); i++) {
     snprintf(name, sizeof name, "--%s", strut_option_at(command, i)->name);
-    offer(c, name, "");
+    offer(c, name);
   }
   for (const strut_command_variant *f = command->forms; f && f->selector; f++) {
     snprintf(name, sizeof name, "--%s", f->selector);
-    offer(c, name, "");
+    offer(c, name);
   }
 }
 
 static void offer_methods(const completion *c) {
-  for (size_t i = 0; strut_integrator_at(i); i++) offer(c, strut_integrator_at(i)->name, "");
+  for (size_t i = 0; strut_integrator_at(i); i++) offer(c, strut_integrator_at(i)->name);
 }
 
-static void offer_example(void *context, const char *model) { offer(context, model, ""); }
-
-/* ---- names in the model ---- */
-
-static void offer_things(const completion *c, const strut_scene *scene, strut_thing kind,
-                         const char *end) {
-  for (size_t i = 0; strut_thing_name(scene, kind, i); i++)
-    offer(c, strut_thing_name(scene, kind, i), end);
-}
-
-/* NAME= or, behind that, the model's own value. */
-static void offer_parameters(const completion *c, const strut_scene *scene, const char *end) {
-  const char *equals = strchr(c->word, '=');
-  size_t length = strcspn(c->word, "=");
-  for (size_t i = 0; i < scene->parameter_count; i++) {
-    const strut_parameter *p = &scene->parameters[i];
-    if (!equals) offer(c, p->name, end);
-    if (!equals || strlen(p->name) != length || strncmp(p->name, c->word, length) != 0) continue;
-    completion value = *c;
-    value.word += length + 1;
-    value.kept += (int)length + 1;
-    offer(&value, p->text, "");
-  }
-}
-
-static void offer_names_of(const completion *c, strut_option_id id, const strut_scene *scene) {
-  if (id == STRUT_OPTION_SET || id == STRUT_OPTION_VARY) offer_parameters(c, scene, "=");
-  if (id == STRUT_OPTION_AT) offer_things(c, scene, STRUT_THING_CONFIGURATION, "");
-  if (id == STRUT_OPTION_SUPPORTS) offer_things(c, scene, STRUT_THING_NODE, "");
-  if (id == STRUT_OPTION_LOAD) offer_things(c, scene, STRUT_THING_LOAD, "");
-  if (id != STRUT_OPTION_OVER) return;
-  offer_parameters(c, scene, "");
-  offer_things(c, scene, STRUT_THING_ACTUATOR, "");
-  if (!*c->word) return; /* all displacements would fill the screen */
-  offer_things(c, scene, STRUT_THING_NODE, ".x");
-  offer_things(c, scene, STRUT_THING_NODE, ".y");
-}
-
-static void offer_names(const completion *c, strut_option_id id) {
-  char path[PATH], *text = NULL;
-  size_t length;
-  struct stat found;
-  strut_setup setup;
-  strut_error error = {0};
-  strut_diagnostics unused = {0};
-  if (!c->model || stat(c->model, &found) != 0) return;
-  bool run = S_ISDIR(found.st_mode);
-  if (snprintf(path, sizeof path, "%s%s", c->model, run ? "/scene.yaml" : "") >= PATH) return;
-  bool small = stat(path, &found) == 0 && S_ISREG(found.st_mode) && found.st_size <= LARGEST;
-  if (!small || strut_file_read(path, &text, &length, &error) != STRUT_OK) return;
-  if (strut_setup_read(&setup, path, text, length, NULL, 0, STRUT_FOR_ANY, &unused) == STRUT_OK) {
-    offer_names_of(c, id, &setup.scene);
-    strut_setup_free(&setup);
-  }
-  strut_diagnostics_free(&unused);
-  strut_release(text);
-}
-
-/* The columns of a table. */
-static void offer_columns(const completion *c, const char *end) {
-  char line[8192];
-  FILE *file = c->model ? fopen(c->model, "r") : NULL;
-  if (!file) return;
-  bool read = fgets(line, sizeof line, file) != NULL;
-  fclose(file);
-  for (char *name = read ? strtok(line, ",\r\n") : NULL; name; name = strtok(NULL, ",\r\n")) {
-    char *unit = strstr(name, " [");
-    if (unit) *unit = '\0';
-    if (!strchr(name, '"')) offer(c, name, end);
-  }
-}
+static void offer_example(void *context, const char *model) { offer(context, model); }
 
 /* ---- the command line ---- */
 
@@ -134,9 +55,6 @@ static const char *complete_value(const strut_option *option, completion *c) {
     c->word = comma + 1;
   }
   if (option->id == STRUT_OPTION_INTEGRATOR) offer_methods(c);
-  if (strncmp(option->argument, "COLUMN", 6) == 0)
-    offer_columns(c, option->argument[6] == '=' ? "=" : "");
-  offer_names(c, option->id);
   if (strcmp(option->argument, "DIR") == 0) return ":folders";
   return strncmp(option->argument, "FILE", 4) == 0 ? ":files" : ":";
 }
@@ -157,22 +75,11 @@ static const strut_option *option_of(const strut_command *command, const char *w
   return NULL;
 }
 
-/* The first file or folder among the positional arguments. */
-static const char *find_model(const strut_command *command, int count, char **words) {
-  for (int i = 0; i < count; i++) {
-    const char *value;
-    const strut_option *option = option_of(command, words[i], &value);
-    if (option && option->argument && !value) i++;
-    if (!option && words[i][0] != '-' && access(words[i], R_OK) == 0) return words[i];
-  }
-  return NULL;
-}
-
 static const char *complete_argument(const strut_command *command, completion *c) {
   const char *model = command->model ? command->model : "";
   if (strncmp(model, "COMMAND", 7) == 0) offer_commands(c);
   for (int i = 0; i < STRUT_SECTION_COUNT && strncmp(model, "SECTION", 7) == 0; i++)
-    offer(c, strut_section_name((strut_section)i), "");
+    offer(c, strut_section_name((strut_section)i));
   if (strcmp(model, "EXAMPLE") == 0) strut_examples_list(offer_example, c);
   if (strcmp(model, "DIR") == 0) return ":folders";
   if (strcmp(model, "TABLE") == 0) return ":files csv";
@@ -184,7 +91,6 @@ static const char *complete_argument(const strut_command *command, completion *c
 static const char *complete_in(const strut_command *command, int count, char **words) {
   const char *word = words[count - 1], *value;
   completion c = {.word = word, .before = word};
-  c.model = find_model(command, count - 1, words);
   const strut_option *option = option_of(command, word, &value);
   if (option && value && option->argument) {
     c.kept = (int)(value - word);

@@ -3,13 +3,10 @@
 #define _DEFAULT_SOURCE 1
 #include "parser/program/progress.h"
 
-#include <langinfo.h>
-#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/ioctl.h>
 #include <time.h>
 #include <unistd.h>
@@ -17,31 +14,6 @@
 #include "engine/base/number_text.h"
 
 /* ---- the terminal ---- */
-
-static bool says_utf8(const char *name) {
-  for (; *name; name++)
-    if (strncasecmp(name, "utf-8", 5) == 0 || strncasecmp(name, "utf8", 4) == 0) return true;
-  return false;
-}
-
-/* The name of the locale of letters; a locale that is not installed still has one. */
-static const char *locale_name(void) {
-  static const char *const variables[] = {"LC_ALL", "LC_CTYPE", "LANG"};
-  for (size_t i = 0; i < sizeof variables / sizeof variables[0]; i++) {
-    const char *value = getenv(variables[i]);
-    if (value && *value) return value;
-  }
-  return "C";
-}
-
-/* May the terminal show more than ASCII? */
-static bool shows_unicode(void) {
-  locale_t locale = newlocale(LC_CTYPE_MASK, "", (locale_t)0);
-  if (locale == (locale_t)0) return says_utf8(locale_name());
-  bool unicode = says_utf8(nl_langinfo_l(CODESET, locale));
-  freelocale(locale);
-  return unicode;
-}
 
 int strut_terminal_columns(int descriptor, int usual) {
 #ifdef TIOCGWINSZ
@@ -57,7 +29,7 @@ int strut_terminal_columns(int descriptor, int usual) {
 
 /* ---- progress ---- */
 
-enum { WIDTH = 30, USUAL = 80, PARTS = 8, BAR_ROOM = 3 * WIDTH + 1, TEXT = 128, LEAST = 8 };
+enum { WIDTH = 30, USUAL = 80, BAR_ROOM = WIDTH + 1, TEXT = 128, LEAST = 8 };
 
 /* Runs shorter than this show no bar [s]. */
 static const double PATIENCE = 0.5;
@@ -74,7 +46,6 @@ strut_progress strut_progress_begin(bool quiet) {
   return (strut_progress){
       .wanted = !quiet && isatty(STDERR_FILENO),
       .colour = !plain,
-      .unicode = shows_unicode(),
       .start = now(),
       .columns = strut_terminal_columns(STDERR_FILENO, USUAL),
   };
@@ -90,20 +61,11 @@ static void write_simulated(char *text, size_t size, double fraction, double spa
   snprintf(text, size, "%.1f of %.5g %s, ", fraction * span, span, units[unit]);
 }
 
-void strut_progress_bar(char *bar, int width, double fraction, bool unicode) {
+void strut_progress_bar(char *bar, int width, double fraction) {
   double part = fraction < 0 ? 0 : fraction > 1 ? 1 : fraction;
-  int done = (int)(part * width * PARTS);
-  for (int i = 0; i < width; i++) {
-    int here = done - PARTS * i;
-    if (!unicode) {
-      *bar++ = here >= PARTS ? '#' : '.';
-    } else if (here > 0 && here < PARTS) { /* U+2588 is a whole block, U+258F an eighth */
-      bar += snprintf(bar, 4, "\xe2\x96%c", 0x88 + PARTS - here);
-    } else {
-      bar += snprintf(bar, 4, here > 0 ? "\xe2\x96\x88" : "\xe2\x96\x91");
-    }
-  }
-  *bar = '\0';
+  int done = (int)(part * width);
+  for (int i = 0; i < width; i++) bar[i] = i < done ? '#' : '.';
+  bar[width] = '\0';
 }
 
 void strut_progress_phase(void *context, const char *name) {
@@ -152,7 +114,7 @@ void strut_progress_show(void *context, double fraction) {
     room = progress->columns - 1 - length;
   }
   int width = room > WIDTH ? WIDTH : room > 0 ? room : 0;
-  strut_progress_bar(bar, width, fraction, progress->unicode);
+  strut_progress_bar(bar, width, fraction);
   const char *on = progress->colour ? "\033[36m" : "", *off = progress->colour ? "\033[0m" : "";
   int blank = room - width < 6 ? room - width : 6; /* erase the rest of a longer line */
   fprintf(stderr, "\r%s%s%s%.*s", on, bar, off, progress->columns - 1, text);

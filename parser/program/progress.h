@@ -16,7 +16,6 @@ typedef struct strut_progress {
   bool wanted;            /* stderr is a terminal, and --quiet is not given */
   bool colour;            /* the terminal knows escape sequences and NO_COLOR is not set */
   bool shown;             /* there is a bar to erase */
-  bool unicode;           /* the locale writes UTF-8: the bar is made of blocks */
   const char *phase;      /* part of the work that the bar shows, in words; NULL: the whole */
   double run_start, last; /* of the phase's present run: clock [s] and the last fraction */
   double start;           /* [s] of the monotonic clock */
@@ -29,8 +28,8 @@ strut_progress strut_progress_begin(bool quiet);
 void strut_progress_show(void *context, double fraction);
 /** Starts another part of the work: `context` is the strut_progress, `name` a constant text. */
 void strut_progress_phase(void *context, const char *name);
-/** Writes a bar of `width` columns into 3 * width + 1 bytes: block characters, or ASCII. */
-void strut_progress_bar(char *bar, int width, double fraction, bool unicode);
+/** Writes a bar of `width` columns into width + 1 bytes. */
+void strut_progress_bar(char *bar, int width, double fraction);
 /** Erases the bar. */
 void strut_progress_end(strut_progress *progress);
 

@@ -23,7 +23,6 @@ _strut() {
             COMPREPLY+=("$(printf %q "${line#"$cut"}")")
         fi
     done < <("${COMP_WORDS[0]}" complete "${words[@]}" 2>/dev/null)
-    [[ ${#COMPREPLY[@]} -eq 1 && ${COMPREPLY[0]} == *= ]] && compopt -o nospace 2>/dev/null
     case $directive in
         ":files "*)
             local ending

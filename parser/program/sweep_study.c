@@ -405,7 +405,7 @@ void strut_sweep_progress_show(void *context, const strut_sweep_state *state) {
     return;
   }
   int size = bar->columns - 1, width = size > 3 * WIDTH ? WIDTH : 0;
-  strut_progress_bar(blocks, width, (double)state->done / (double)state->points, bar->unicode);
+  strut_progress_bar(blocks, width, (double)state->done / (double)state->points);
   const char *on = bar->colour ? "\033[36m" : "", *off = bar->colour ? "\033[0m" : "";
   fprintf(stderr, "\r%s%s%s %-*.*s", on, blocks, off, size - width - 1, size - width - 1, all);
   fflush(stderr);

@@ -49,29 +49,10 @@ offers ":files" run "$crawler" --plot ""
 offers ":files" form "$crawler" -o ""
 offers ":" run "$crawler" --step ""
 
-# The model's own names.
-offers "frequency= friction= :" run "$crawler" --set fr
-offers "friction= :" run --json --set seconds=2 "$crawler" --set fri
-offers "friction=0.1 :" run "$crawler" --set friction=
-offers "--set=friction= :" run "$crawler" --set=fri
-offers ":" run missing.yaml --set ""
-offers ":" run --set ""
-offers "I II III :" modes "$crawler" --at ""
-offers "I II III :" modes "$crawler" --at I
-offers ":" modes --at ""
-offers "n1,n2 :" equilibria "$crawler" --supports n1,n2
-offers "n1.x n1.y :" path "$crawler" --over n1
+# Methods, also behind a comma.
 offers "rk4 rk4-events :" run --integrator rk
 offers "rk4,verlet rk4,verlet-events :" tradeoff --integrator rk4,ver
-# Copies of parts, by the names that they have.
-expect 0 complete path models/parts/x-chain.yaml --over c
-grep -q '^[a-z]*\.0\.[a-z0-9]*\.x' out || fail "no node of a copy"
-printf 'strut: 1\nparameters: {length: 3 mm\n' >torn.yaml
-offers ":" run torn.yaml --set ""
-printf 'frequency [Hz],velocity [m/s],mode\n1,2,3\n' >table.csv
-offers "frequency :" plot table.csv --x fr
-offers "frequency,velocity :" plot table.csv --y frequency,v
-offers "mode= :" plot table.csv --only m
+offers ":" run "$crawler" --set fr
 
 mkdir bin
 ln -s "$strut" bin/strut
@@ -91,15 +72,9 @@ try() {
 COMP_WORDBREAKS=$' \t\n"\'><=;|&(:'
 try strut che
 try strut modes --st
-try strut run models/crawler/crawler.yaml --set fri
-try strut run models/crawler/crawler.yaml --set friction =
-try strut run models/crawler/crawler.yaml --set friction = 0
-try strut run models/crawler/crawler.yaml --set friction = 0.3 --set fri
 try strut run models/crawler/crawler.yaml --integrator = rk4-
-try strut modes models/crawler/crawler.yaml --at I
 try strut run models/crawler/cr
 try strut run models/cra
-try strut plot tab
 complete -p strut
 END
   bash --norc try.bash "$script" >out 2>err
@@ -107,15 +82,9 @@ END
   cat >wanted <<'END'
 check
 --stuck
-friction=
-0.1
-0.1
-friction=
 rk4-events
-I II III
 models/crawler/crawler.yaml
 models/crawler
-table.csv
 complete -F _strut strut
 END
   same wanted out

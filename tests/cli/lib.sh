@@ -45,7 +45,7 @@ expect() {
 # formats CODE WORD...: as expect, of python3 -m strut.formats; false where the Python package was not built.
 formats() {
   package=$(dirname "$strut")/python
-  [ -e "$package/strut/_strut.abi3.so" ] || return 1
+  [ -e "$package/strut/_strut.py" ] || return 1
   expected_code=$1
   shift
   PYTHONPATH=$package /usr/bin/python3 -m strut.formats "$@" >"$work/out" 2>"$work/err" </dev/null

@@ -97,19 +97,14 @@ class Errors(unittest.TestCase):
         raw = strut.load(CRAWLER)._raw
         for wrong in (
             lambda: _strut.Scene(),
-            lambda: _strut.Result(),
-            lambda: _strut.open("a", [], ()),
             lambda: _strut.open("a", ("a",), ()),
             lambda: _strut.open_text("a", "b", (1,), (2,)),
-            lambda: _strut.with_(3, (), ()),
-            lambda: raw.call(_strut.result(), "dance", (), (), None),
-            lambda: raw.call(3, "run", (), (), None),
-            lambda: raw.sweep(_strut.result(), ("a",), 2, b"12345678", None, (), (), (), None),
-            lambda: raw.sweep(_strut.result(), ("a",), -1, memoryview(b""), None, (), (), (), None),
+            lambda: raw.call(_strut.Result(), "dance", (), (), None),
+            lambda: raw.sweep(_strut.Result(), ("a",), 2, b"12345678", None, (), (), (), None),
+            lambda: raw.sweep(_strut.Result(), ("a",), -1, memoryview(b""), None, (), (), (), None),
             lambda: raw.names(3),
             lambda: raw.array(None),
-            lambda: _strut.result().json(),
-            lambda: _strut.status_name("ok"),
+            lambda: _strut.Result().json(),
         ):
             with self.assertRaises((TypeError, ValueError)):
                 wrong()

@@ -92,7 +92,7 @@ def round_of_everything() -> None:
     run = scene(mass=3).run()
     run["position"].array.sum()
     run.nodes["block"].x.sum()
-    memoryview(run._raw.array("position")).tolist()
+    run._raw.array("position").tolist()
     scene.modes().frequency.sum()
     scene.matrices().dense("mass")
     scene.to_dict()

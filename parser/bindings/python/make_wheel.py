@@ -21,7 +21,7 @@ import subprocess
 import sys
 
 OUTSIDE = re.compile(r"ld-linux|lib(c|m|dl|rt|pthread|resolv|util|gcc_s)\.so|libstdc\+\+\.so")
-PYTHON = "cp311"  #: the Py_LIMITED_API of CMakeLists.txt
+PYTHON = "cp311"  #: the oldest Python
 EPOCH = "315532800"  #: 1980, the earliest date that a zip file can have: the same bytes from a clone and from an archive
 FONTS = "/usr/share/fonts/truetype/dejavu"
 FONTS_CONF = """<?xml version="1.0"?>
@@ -45,9 +45,9 @@ def libraries(file: pathlib.Path) -> list[pathlib.Path]:
 
 
 def copy_libraries(module: pathlib.Path, library: pathlib.Path, to: pathlib.Path) -> list[pathlib.Path]:
-    """Copies the library and all that it needs, under new names; returns where they came from."""
+    """Copies all that the library needs, under new names, for its copy `module`; returns where they came from."""
     to.mkdir()
-    there = [library, *libraries(library)]
+    there = libraries(library)
     names = {}
     for path in there:
         digest = hashlib.sha256(path.read_bytes()).hexdigest()[:8]
@@ -55,7 +55,7 @@ def copy_libraries(module: pathlib.Path, library: pathlib.Path, to: pathlib.Path
         copy = to / names[path.name]
         shutil.copyfile(path, copy)
     renamed = [word for name, new in names.items() for word in ("--replace-needed", name, new)]
-    run("strip", "--strip-unneeded", module, to / names[library.name])
+    run("strip", "--strip-unneeded", module)
     for name in names.values():
         (to / name).chmod(0o755)
         run("patchelf", "--set-soname", name, to / name)
@@ -63,7 +63,7 @@ def copy_libraries(module: pathlib.Path, library: pathlib.Path, to: pathlib.Path
     for file, where in [(module, "$ORIGIN/libs"), *((to / name, "$ORIGIN") for name in names.values())]:
         run("patchelf", "--set-rpath", where, file)
         run("patchelf", *renamed, file)
-    return there[1:]
+    return there
 
 
 def owners(paths: list[pathlib.Path]) -> set[str]:
@@ -100,7 +100,7 @@ def fill(stage: pathlib.Path, source: pathlib.Path, build: pathlib.Path, library
     shutil.rmtree(stage, ignore_errors=True)
     package = stage / "strut"
     shutil.copytree(build / "python/strut", package, ignore=shutil.ignore_patterns("__pycache__"))
-    module = package / "_strut.abi3.so"
+    module = package / library.name
     copied = copy_libraries(module, library, package / "libs")
     fonts = [pathlib.Path(FONTS, f"DejaVuSans{kind}.ttf") for kind in ("", "-Bold")]
     (package / "fonts").mkdir()

@@ -11,7 +11,7 @@ if not pathlib.Path(__file__).with_name("VERSION").exists():
 
 
 class Built(Distribution):
-    """A package that holds a compiled module, though it has no sources of one."""
+    """A package that holds a compiled library, though it has no sources of one."""
 
     def has_ext_modules(self) -> bool:
         return True

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Exceptions. _strut calls make() for each error of the library."""
+"""Exceptions. _strut makes one by make() for each error of the library."""
 
 from __future__ import annotations
 

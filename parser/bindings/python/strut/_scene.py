@@ -172,7 +172,7 @@ class Scene(Frozen):
 
         What an interrupted or failed call returned becomes error.result.
         """
-        raw = _strut.result()
+        raw = _strut.Result()
         pairs = options({name: value for name, value in given.items() if name not in _NO_OPTIONS})
         progress: Any = given.get("progress")
         try:
@@ -366,7 +366,7 @@ class Scene(Frozen):
         work = plan(self, {**(axes or {}), **alike, **parameters}, points, names)
         pairs = options(given, [name for name, _ in _strut.options("sweep")])
         kept = (keep,) if isinstance(keep, str) else tuple(keep)
-        raw = _strut.result()
+        raw = _strut.Result()
         try:
             self._raw.sweep(
                 raw, work.names, work.rows, work.numbers, work.words, kept, *pairs, progress

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Callable
 
 from . import _strut
-from ._values import COMPONENTS, Frozen, Named, numpy, unknown
+from ._values import COMPONENTS, Frozen, Named, fixed, numpy, unknown
 
 if TYPE_CHECKING:
     from ._scene import Scene
@@ -34,14 +34,14 @@ class Simulation(Frozen):
     restore: Callable[[_strut.Snapshot], None]  #: back to a snapshot; what follows has the same bits
     _raw: _strut.Simulation
     _scene: Scene
-    _rest0: bytes | None
+    _rest0: list[float] | None
 
     def __init__(self, raw: _strut.Simulation, scene: Scene) -> None:
         rest = raw.input("rest")
         self.__dict__.update(
             _raw=raw,
             _scene=scene,
-            _rest0=None if rest is None else bytes(memoryview(rest)),
+            _rest0=None if rest is None else rest.tolist(),
             advance=raw.advance,
             snapshot=raw.snapshot,
             restore=raw.restore,
@@ -70,7 +70,7 @@ class Simulation(Frozen):
             array, kind = self._raw.input(name), _INPUTS[name]
         elif name == "rest0":
             kind = "members"
-            array = None if self._rest0 is None else numpy().frombuffer(self._rest0)
+            array = None if self._rest0 is None else fixed(self._rest0)
         else:
             raise AttributeError(unknown(name, [*COMPONENTS, *_INPUTS, "rest0", "advance"]))
         if array is None:

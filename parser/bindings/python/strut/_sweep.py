@@ -138,7 +138,7 @@ class Table(Frozen):
     @property
     def _codes(self) -> list[int]:
         """Of each point 0, or the number of its failure."""
-        return [int(code) for code in memoryview(self._raw.array("status"))]
+        return [int(code) for code in self._raw.array("status").tolist()]
 
     def grid(self, column: str) -> Array:
         """A column of numbers in the shape of the axes."""

@@ -46,7 +46,7 @@ def shape(scene: Scene, at: str | None) -> dict[str, Any]:
     """Arrays of the structure in a shape as lists: position, weight, length, rest_length, tension, ..."""
     raw = scene.matrices(at=at)._raw
     names = ("position", "weight", "length", "rest_length", "tension", "damping_coefficient")
-    return {name: memoryview(raw.array(name)).tolist() for name in names}
+    return {name: raw.array(name).tolist() for name in names}
 
 
 def kind_of(member: Mapping[str, Any]) -> int:

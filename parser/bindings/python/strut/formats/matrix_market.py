@@ -38,7 +38,7 @@ def write(scene: Scene, folder: str, at: str | None) -> None:
     raw: Any = matrices._raw
 
     def values(name: str) -> Any:
-        return memoryview(raw.array(name)).tolist()
+        return raw.array(name).tolist()
 
     def texts() -> Iterator[tuple[str, str]]:
         nodes = scene.names("nodes")

@@ -81,7 +81,7 @@ class _Writer:
         self.words = words = loads(scene.to_yaml()).to_dict()  # with the start as positions
         _refuse(words)
         self.at, self.names = shape(scene, None), scene.names("nodes")
-        self.stiffness = memoryview(scene._raw.array("members.stiffness")).tolist()
+        self.stiffness = scene._raw.array("members.stiffness").tolist()
         self.members, self.solver = words.get("members", {}), words.get("solver", {})
         self.rigid = [m["kind"] == "bar" and words.get("bars") == "rigid" for m in self.members.values()]
         initial, drawn = words.get("initial", {}), dict(zip(self.names, self.at["position"]))
