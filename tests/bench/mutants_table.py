@@ -346,7 +346,7 @@ MUTANTS = [
            "if (piece->h > SEPARATES * (stepper->formula->adaptive ? stepper->control.h : piece->dt))\n    stepper->chatter.switches = 0;", "",
            "many switches within a long step of the grid are not followed to its end", "cli_accuracy"),
     Mutant("vouches-for-forced-steps", "engine/run/accuracy/accuracy_judge.c",
-           "bool followed = !l->now->s.spent.forced;", "bool followed = true;",
+           "return !s->spent.forced && !strut", "return !strut",
            "--accuracy promises what steps against the modes have given", "cli_accuracy"),
     Mutant("leaving-hides-holding", "engine/integrate/events/location/event_location.c",
            "if (kind == STRUT_EVENT_LEAVES_STICK_BAND &&", "if (kind == STRUT_EVENT_NONE &&",

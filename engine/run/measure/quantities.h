@@ -63,6 +63,11 @@ STRUT_API double strut_quantity_program_evaluate(const strut_quantity_definition
                                                  const size_t *index, const double *value,
                                                  double *stack, uint64_t *branch);
 
+/** Adds a branch to those gathered so far. */
+static inline uint64_t strut_gather_branch(uint64_t all, uint64_t one) {
+  return (all ^ one) * 1099511628211u;
+}
+
 /** Size of a term, and two uncertainties that propagate alike. */
 typedef struct strut_magnitude {
   double size;  /* largest absolute value of the terms */
