@@ -47,6 +47,7 @@ static strut_status run_for_mean(strut_orbit_solve *solve, strut_experiment e, d
   strut_summary_free(run);
   *run = (strut_summary){0};
   e.steady.creep = 0.0;
+  e.measure_last = ceil(0.5 * fmin(periods, e.periods));
   strut_status status =
       strut_orbit_solve_run_until_steady(solve, e, PERIODIC, 8, periods, true, run);
   *mean = mean_of(run);

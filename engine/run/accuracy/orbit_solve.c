@@ -374,10 +374,7 @@ void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orb
   s->steady = ran_on ? solve->last_run.steady : solve->coarse_run.steady;
   s->steady.interval = error;
   tell_whole_motion(solve, orbit, s);
-  if (solve->mean.periods > 0) { /* over which the velocity is the mean */
-    s->window.time = 0.5 * (double)solve->mean.periods * solve->coarse_map.period;
-    s->window.start = solve->orbit_time - s->window.time;
-  }
+  if (solve->mean.periods > 0) s->window = solve->last_run.window; /* that of the mean */
   s->spent.evaluations = sum_evaluations(solve);
   s->step = solve->coarse_map.dt;
   s->step_limit = solve->coarse_run.step_limit;
