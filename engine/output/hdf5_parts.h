@@ -61,26 +61,7 @@ bool strut_hdf5_scale_attach(hid_t file, hid_t dataset, const char *name, int ra
 /** Stores the list of users of the scale, after the last attach. */
 bool strut_hdf5_scale_end(const strut_hdf5_scale *scale);
 
-/*
- * An HDF5 file driver whose writing never fails; for hdf5_writer.c alone.
- *
- * HDF5 1.10 cannot close a file once a write has failed: it keeps the file, complains, and crashes
- * when the program exits. So this driver hides a full disk from the library. What did not fit is
- * kept in memory until the file is closed, and the reason is noted here for the caller to ask for.
- */
-
-/** Destination of one file's bytes. Must outlive the file's closing. */
-typedef struct strut_hdf5_disk {
-  int descriptor;                 /* open for reading and writing; not owned */
-  int trouble;                    /* errno of the first failure, or 0 */
-  hid_t driver;                   /* HDF5 1.10 still reads it after releasing it */
-  struct strut_hdf5_piece *first; /* data that could not be written, in order */
-  struct strut_hdf5_piece **last;
-} strut_hdf5_disk;
-
-/** A new HDF5 file, without times in it, on an empty file's descriptor. Negative on failure. */
-hid_t strut_hdf5_disk_create(strut_hdf5_disk *disk, int descriptor);
-/** Frees pending data and the driver, after the file was closed. A zeroed struct is allowed. */
-void strut_hdf5_disk_free(strut_hdf5_disk *disk);
+/** A new HDF5 file, without times in it, in place of an empty one. Negative on failure. */
+hid_t strut_hdf5_create_file(const char *path);
 
 #endif

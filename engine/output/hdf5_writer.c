@@ -26,7 +26,6 @@ typedef struct hdf5 {
   strut_sink sink;
   const char *directory, *scene_text;
   strut_file file;
-  strut_hdf5_disk disk;
   hid_t id; /* 0: no file open */
   size_t width, series_count;
   series series[1 + STRUT_CHANNEL_COUNT]; /* the time comes first */
@@ -39,9 +38,6 @@ static bool close_file(hdf5 *self) {
   bool good = true;
   if (self->id > 0) good = H5Fclose(self->id) >= 0;
   self->id = 0;
-  errno = self->disk.trouble;
-  good = good && !self->disk.trouble;
-  strut_hdf5_disk_free(&self->disk);
   return good;
 }
 
@@ -122,14 +118,8 @@ static bool create_channel(hdf5 *self, const strut_record_channel *channel, size
   return strut_hdf5_scale_attach(self->id, s->dataset, channel->name, STRUT_HDF5_RANK, scales);
 }
 
-/* The driver does not report failures; they are read from its state here. */
-static bool written(const hdf5 *self) {
-  if (self->disk.trouble) errno = self->disk.trouble;
-  return !self->disk.trouble;
-}
-
 static bool create_all(hdf5 *self, const strut_record_layout *layout) {
-  self->id = strut_hdf5_disk_create(&self->disk, fileno(self->file.stream));
+  self->id = strut_hdf5_create_file(self->file.part);
   bool good = self->id > 0 && strut_hdf5_text(self->id, "strut_version", STRUT_VERSION) &&
               strut_hdf5_text(self->id, "scene", self->scene_text) &&
               create_time(self, layout->expected_rows);
@@ -140,7 +130,7 @@ static bool create_all(hdf5 *self, const strut_record_layout *layout) {
     }
   }
   for (int i = 0; good && i < self->scale_count; i++) good = strut_hdf5_scale_end(&self->scales[i]);
-  return written(self) && good;
+  return good;
 }
 
 static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
@@ -184,7 +174,7 @@ static bool take_row(hdf5 *self, const double *row) {
   for (size_t i = 0; i < self->series_count; i++) {
     series *s = &self->series[i];
     memcpy(s->rows + s->held * s->size, row + s->offset, s->size * sizeof *row);
-    if (++s->held == s->most && !(flush_series(s) && written(self))) return false;
+    if (++s->held == s->most && !flush_series(s)) return false;
   }
   return true;
 }

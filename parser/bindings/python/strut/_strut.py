@@ -190,7 +190,7 @@ class Array:
 
     def __init__(self, owner: object, data: int, shape: list[int], stride: list[int], read_only: bool) -> None:
         self.owner, self.shape, self.stride = owner, shape, stride
-        self.__array_interface__ = {
+        self.__array_interface__: dict[str, Any] = {
             "version": 3,
             "typestr": "<f8",
             "data": (data, read_only),
@@ -213,7 +213,7 @@ class Array:
         return part(0, 0)
 
 
-def _array(function: Any, owner: _Handle, name: str, read_only: bool = True) -> Array | None:
+def _array(function: Any, owner: _Handle, name: str, read_only: bool = True) -> Any:
     data, dimensions, shape, stride = c_void_p(), c_int(), (c_size_t * 4)(), (c_size_t * 4)()
     if not function(owner._handle, _bytes(name), byref(data), byref(dimensions), shape, stride):
         return None
@@ -266,7 +266,7 @@ class Result(_Handle):
     def warnings(self) -> list[str]:
         return list(_until_none(Result._warning, self._filled()))
 
-    def array(self, name: str) -> Array | None:
+    def array(self, name: str) -> Any:
         self._filled()
         return _array(Result._array, self, name)
 
@@ -359,11 +359,11 @@ class Simulation(_Handle):
     def input_work(self) -> float:
         return Simulation._work(self._idle())  # type: ignore[no-any-return]
 
-    def array(self, name: str) -> Array | None:
+    def array(self, name: str) -> Any:
         self._idle()
         return _array(Simulation._array, self, name)
 
-    def input(self, name: str) -> Array | None:
+    def input(self, name: str) -> Any:
         self._idle()
         return _array(Simulation._input, self, name, read_only=False)
 
@@ -416,7 +416,7 @@ class Scene(_Handle):
             return bool(flag.value)
         return Scene._text(self._handle, key)  # type: ignore[no-any-return]
 
-    def array(self, name: str) -> Array | None:
+    def array(self, name: str) -> Any:
         return _array(Scene._array, self, name)
 
     def warnings(self) -> list[str]:
