@@ -8,16 +8,6 @@
 
 #include "engine/base/vec.h"
 
-typedef struct strut_range {
-  double low, high;
-} strut_range;
-
-/** All values and rates of a signal over some time; from rounding outwards. */
-typedef struct strut_bounds {
-  strut_range value, rate;
-  bool follows; /* depends on more than the time */
-} strut_bounds;
-
 /* What an evaluation goes by, and what it has found. */
 typedef struct bounder {
   const strut_signal *signals;
@@ -37,7 +27,7 @@ static strut_range exactly(double x) { return isnan(x) ? ANY : (strut_range){x, 
 
 /* From low to high, and what rounding of them may leave out. */
 static strut_range outward(double low, double high) {
-  if (isnan(low) || isnan(high)) return ANY;
+  if (!(low < HUGE_VAL && high > -HUGE_VAL)) return ANY;
   return (strut_range){low - 2.0 * DBL_EPSILON * fabs(low), high + 2.0 * DBL_EPSILON * fabs(high)};
 }
 
@@ -400,10 +390,16 @@ static strut_bounds bound_program(bounder *b, const strut_program *program, doub
   return stack[0];
 }
 
+strut_bounds strut_program_bound(const strut_program *program, const strut_signal *signals,
+                                 const strut_signal_inputs *in, double from, double to) {
+  bounder b = {.signals = signals, .in = in, .started = in ? in->started : NULL};
+  return bound_program(&b, program, from, to);
+}
+
 /* ---- kinks ---- */
 
 /* Intervals that are looked at for one kink, and the width of the first finite one [s]. */
-enum { MOST_INTERVALS = 4000 };
+enum { MOST_INTERVALS = 4000, LOOKS_OF_WIDTH = 50 };
 static const double FIRST_WIDTH = 1e3;
 /* Kinks are known to this part of the time, or to so much [s]. No run lasts LATEST [s]. */
 static const double RESOLUTION = 4.0 * DBL_EPSILON, LEAST_WIDTH = 1e-20, LATEST = 1e15;
@@ -429,25 +425,42 @@ static uint64_t branches_at(const bounder *b, const strut_program *program, doub
   return at.branches;
 }
 
+/* The end of a short time, between t and `end`, over which the branches change as they do from t to `end`. */
+static double narrow(const bounder *b, const strut_program *program, double t, double end) {
+  uint64_t before = branches_at(b, program, t);
+  while (end - t > RESOLUTION * fabs(t) + LEAST_WIDTH) {
+    double middle = t + 0.5 * (end - t);
+    if (!(middle > t && middle < end)) break;
+    if (branches_at(b, program, middle) == before)
+      t = middle;
+    else
+      end = middle;
+  }
+  return end;
+}
+
 double strut_program_next_kink(const strut_program *program, const strut_signal *signals,
                                const double *started, double t, double until) {
   bounder b = {.signals = signals, .started = started};
-  double wide = until - t, part = RESOLUTION; /* grows over places that are touched, not passed */
+  double wide = until - t,
+         part = RESOLUTION; /* grows where bounds do not tell, as where edges are only touched */
   if (!may_kink(program) || !(until > t)) return (double)INFINITY;
   for (int k = 0; k < MOST_INTERVALS && t < LATEST; k++) {
     double end = fmin(t + wide, until), least = part * fabs(t) + part / RESOLUTION * LEAST_WIDTH;
+    if (k % LOOKS_OF_WIDTH == LOOKS_OF_WIDTH - 1) part *= 2.0;
     b.undecided = false;
     bound_program(&b, program, t, end);
     if (!b.undecided && end >= until) return (double)INFINITY;
     if (!b.undecided) {
-      t = end, wide *= 4.0, part = RESOLUTION;
+      t = end, wide *= 4.0;
     } else if (wide > FIRST_WIDTH && !isfinite(wide)) {
       wide = FIRST_WIDTH;
     } else if (wide > least) {
       wide *= 0.25;
     } else {
       end = t + least;
-      if (branches_at(&b, program, t) != branches_at(&b, program, end)) return end;
+      if (branches_at(&b, program, t) != branches_at(&b, program, end))
+        return narrow(&b, program, t, end);
       t = end, part *= 2.0, wide = 2.0 * least;
     }
   }
@@ -476,7 +489,8 @@ typedef struct look {
 
 static strut_bounds bound_between(const look *l, double from, double to) {
   bounder b = {.signals = l->signals, .in = l->in, .started = l->in ? l->in->started : NULL};
-  return l->program ? bound_program(&b, l->program, from, to) : bound_kind(&b, l->signal, from, to);
+  if (l->program) return strut_program_bound(l->program, l->signals, l->in, from, to);
+  return bound_kind(&b, l->signal, from, to);
 }
 
 /* `seen`: hulls of values and rates at begin, middle and end; `all`: of the whole step; `faint`: what may be missed. */
@@ -527,6 +541,10 @@ static bool reads_time(const strut_program *program) {
       return true;
   }
   return false;
+}
+
+bool strut_signal_is_looked_at(const strut_signal *s) {
+  return s->kind == STRUT_HALF_SINE || (strut_signal_has_program(s) && reads_time(&s->program));
 }
 
 double strut_program_longest_step(const strut_program *program, const strut_signal *signals,

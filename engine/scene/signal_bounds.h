@@ -9,6 +9,21 @@
 
 #include "engine/scene/signal_program.h"
 
+typedef struct strut_range {
+  double low, high;
+} strut_range;
+
+/** All values and rates of a signal over some time; from rounding outwards. */
+typedef struct strut_bounds {
+  strut_range value, rate;
+  bool follows; /* depends on more than the time */
+} strut_bounds;
+
+/** Of a program from time `from` to `to` [s], which may be INFINITY; `in` as that of strut_program_evaluate. */
+STRUT_API strut_bounds strut_program_bound(const strut_program *program,
+                                           const strut_signal *signals,
+                                           const strut_signal_inputs *in, double from, double to);
+
 /**
  * First time after t [s], up to `until`, at which the program may have a kink or a jump as a function of time alone:
  * where the argument of abs, min, max, floor, ceil, round or atan2 passes its edge. Those of its signals are not
@@ -32,8 +47,6 @@ STRUT_API double strut_signal_longest_step(const strut_signal *signals,
                                            double h, double faint, double least);
 
 /** Must steps be short enough for the signal? Other waves are smooth between their breaks, and as long as they say. */
-static inline bool strut_signal_is_looked_at(const strut_signal *s) {
-  return strut_signal_has_program(s) || s->kind == STRUT_HALF_SINE;
-}
+STRUT_API bool strut_signal_is_looked_at(const strut_signal *signal);
 
 #endif

@@ -242,14 +242,14 @@ static const double LEAST_SHOWN = 1e-9;
 
 /*
  * Size of the next step, at most h, which shows what signals do within it. Methods without error control see little but
- * ends: what these and the next end show is enough for them.
+ * ends: two of their steps show what a half does.
  */
 STRUT_INLINE double shown_step_size(const strut_model *model, const strut_state *state,
                                     const strut_event_stepper *stepper, double h, double dt) {
   if (!stepper->looks) return h;
   bool controlled = stepper->formula->adaptive;
   double t = (double)state->step * dt + stepper->done + state->time_offset;
-  double ahead = controlled ? h : 2.0 * h,
+  double ahead = controlled ? h : 4.0 * h,
          faint = controlled ? stepper->control.tolerance : FAINT_SIGNAL;
   double shown = strut_drive_longest_step(model, state, t, ahead, faint, LEAST_SHOWN * dt);
   return shown < ahead ? h * (shown / ahead) : h;

@@ -68,7 +68,7 @@ static inline bool strut_accuracy_is_kept(bool confirmed, double expected, doubl
 bool strut_accuracy_balance_is_open(const strut_accuracy *a, const strut_summary *summary);
 /** The shortest period or duration of a signal [s]; HUGE_VAL: none. `stops`: only of those that the breaks at which
     methods with events stop do not resolve. */
-double strut_accuracy_signal_time(const strut_scene *scene, bool stops);
+double strut_accuracy_signal_time(const strut_accuracy *a, bool stops);
 /** Announces the next part of the work to the progress display. */
 void strut_accuracy_begin_phase(const strut_accuracy *a, const char *name);
 /** Force evaluations that the budget allows at least. */

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/forces/drives.h"
 #include "engine/integrate/integrator.h"
 #include "engine/run/accuracy/ladder_parts.h"
 
@@ -256,15 +257,18 @@ static strut_status create_ladder(strut_accuracy *a, strut_ladder *l) {
   l->model = a->model;
   l->unit = find_grid_unit(a, &meets);
   l->moment = l->unit / MOMENTS_OF_PERIOD;
-  double signals = strut_accuracy_signal_time(a->scene, !a->single_method);
+  double signals = strut_accuracy_signal_time(a, !a->single_method);
   if (l->moment > SIGNAL_FRACTION * signals)
     l->moment = divide_evenly(l->moment, SIGNAL_FRACTION * signals);
+  /* where the signals set steps within moments, two runs of one method share them, and their error */
+  bool shares = strut_drive_is_looked_at(a->model) ||
+                SIGNAL_FRACTION * strut_accuracy_signal_time(a, false) < l->moment;
   if (!meets) l->moment = divide_evenly(l->moment, fmin(l->unit / 40.0, 5.0 * a->coarse.step));
   double capacity = MOST_TRACK_NUMBERS / (2.0 * l->model->node_count);
   size_t moments = capacity < 2.0 ? 2 : capacity < MOST_MOMENTS ? (size_t)capacity : MOST_MOMENTS;
   /* Two steps of one method may lead to the same wrong motion: they must agree from the start on. */
   double duration = strut_experiment_span(&a->experiment, a->scene).duration;
-  l->coarse_runs = duration <= (double)(moments - 1) * l->moment ? 2 : 1;
+  l->coarse_runs = !shares && duration <= (double)(moments - 1) * l->moment ? 2 : 1;
   for (int k = 0; k < 3 && !status; k++)
     status = strut_track_create(l->model, moments, &l->arena, &l->rung[k].track);
   size_t quantities = a->experiment.quantity_count;

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/forces/drives.h"
 #include "engine/integrate/integrator.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/scene/signal_program.h"
@@ -96,8 +97,34 @@ static bool has_jumping_signal(const strut_scene *scene) {
   return any;
 }
 
-double strut_accuracy_signal_time(const strut_scene *scene, bool stops) {
+/* Steps in which expressions and half-waves are looked for, a part of their size that may be missed, and the least time
+   that is told apart, as a part of the run. */
+enum { MOST_LOOKS = 20000 };
+static const double FAINT = 1e-4, LEAST_PART = 1e-9;
+
+/* The shortest time between breaks of expressions, or in which one of them or a half-wave does something. */
+static double find_expression_time(const strut_accuracy *a) {
+  double duration = strut_experiment_span(&a->experiment, a->scene).duration, last = 0.0, t = 0.0;
+  double shortest = HUGE_VAL, least = LEAST_PART * duration;
+  strut_state *state = NULL;
+  if (!strut_drive_is_looked_at(a->model)) return shortest;
+  if (strut_state_create(a->model, &state, NULL)) return shortest;
+  for (int k = 0; k < MOST_LOOKS && t < duration; k++) {
+    double stop = strut_drive_next_break(a->model, state, t + 1e-3 * least, duration), h = stop - t;
+    double shown = strut_drive_longest_step(a->model, state, t, h, FAINT, least);
+    if (shown < h) shortest = fmin(shortest, shown);
+    t = shown < h ? t + shown : stop;
+    if (t == stop && stop < duration)
+      shortest = fmin(shortest, fmax(stop - last, least)), last = stop;
+  }
+  strut_state_free(state);
+  return shortest;
+}
+
+double strut_accuracy_signal_time(const strut_accuracy *a, bool stops) {
+  const strut_scene *scene = a->scene;
   double shortest = 1.0 / strut_scene_fastest_turn(scene, 0.0, stops).rate;
+  if (!stops) shortest = fmin(shortest, find_expression_time(a));
   for (size_t i = 0; i < scene->signal_count && !stops; i++) {
     const strut_signal *s = &scene->signals[i];
     if (s->kind != STRUT_CONSTANT && s->stop > s->start)
@@ -115,7 +142,7 @@ double strut_accuracy_signal_time(const strut_scene *scene, bool stops) {
 static double choose_first_step(const strut_accuracy *a) {
   strut_span span = strut_experiment_span(&a->experiment, a->scene);
   double unit = span.period > 0.0 ? span.period : span.duration;
-  double signals = STEPS_IN_SIGNAL * unit / strut_accuracy_signal_time(a->scene, false);
+  double signals = STEPS_IN_SIGNAL * unit / strut_accuracy_signal_time(a, false);
   double least = fmax(span.period > 0.0 ? STEPS_IN_PERIOD : STEPS_IN_RUN, ceil(signals));
   if (!(unit / least > a->coarse.step)) return 0.0;
   for (double n = least; n <= 4.0 * least; n++) {
