@@ -19,7 +19,7 @@ typedef struct bounder {
 } bounder;
 
 static const strut_range ANY = {-HUGE_VAL, HUGE_VAL}, ZERO = {0.0, 0.0};
-static const strut_bounds ANYTHING = {{-HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, HUGE_VAL}, true};
+static const strut_signal_bounds ANYTHING = {{-HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, HUGE_VAL}, true};
 
 /* ---- ranges ---- */
 
@@ -123,38 +123,39 @@ static int side_of(bounder *b, strut_range x, bool follows, bool still) {
   return side;
 }
 
-static bool is_still(strut_bounds a) { return a.rate.low == 0.0 && a.rate.high == 0.0; }
+static bool is_still(strut_signal_bounds a) { return a.rate.low == 0.0 && a.rate.high == 0.0; }
 
-static strut_bounds least_of(bounder *b, strut_bounds x, strut_bounds y) {
+static strut_signal_bounds least_of(bounder *b, strut_signal_bounds x, strut_signal_bounds y) {
   strut_range above = plus(y.value, negative(x.value));
   int side = side_of(b, above, x.follows || y.follows, is_still(x) && is_still(y));
-  strut_bounds both = {{fmin(x.value.low, y.value.low), fmin(x.value.high, y.value.high)},
-                       hull(x.rate, y.rate),
-                       false};
+  strut_signal_bounds both = {{fmin(x.value.low, y.value.low), fmin(x.value.high, y.value.high)},
+                              hull(x.rate, y.rate),
+                              false};
   return side > 0 ? x : side < 0 ? y : both;
 }
 
-static strut_bounds opposite(strut_bounds x) {
-  return (strut_bounds){negative(x.value), negative(x.rate), x.follows};
+static strut_signal_bounds opposite(strut_signal_bounds x) {
+  return (strut_signal_bounds){negative(x.value), negative(x.rate), x.follows};
 }
 
-static strut_bounds size(bounder *b, strut_bounds x) {
+static strut_signal_bounds size(bounder *b, strut_signal_bounds x) {
   int side = side_of(b, x.value, x.follows, is_still(x));
   if (side != 0) return side > 0 ? x : opposite(x);
-  return (strut_bounds){magnitude(x.value), hull(x.rate, negative(x.rate)), false};
+  return (strut_signal_bounds){magnitude(x.value), hull(x.rate, negative(x.rate)), false};
 }
 
-static strut_bounds stairs(bounder *b, strut_bounds x, double (*f)(double)) {
+static strut_signal_bounds stairs(bounder *b, strut_signal_bounds x, double (*f)(double)) {
   strut_range value = {f(x.value.low), f(x.value.high)};
   note_branch(b, (uint64_t)(int64_t)fmax(fmin(value.high, 1e15), -1e15));
   if (value.low != value.high && !x.follows && !is_still(x)) b->undecided = true;
-  return (strut_bounds){isnan(width(value)) ? ANY : value, ZERO, false};
+  return (strut_signal_bounds){isnan(width(value)) ? ANY : value, ZERO, false};
 }
 
-static strut_bounds angle(bounder *b, strut_bounds y, strut_bounds x) {
+static strut_signal_bounds angle(bounder *b, strut_signal_bounds y, strut_signal_bounds x) {
   strut_range far = plus(square(x.value), square(y.value));
   strut_range turn = plus(times(x.value, y.rate), negative(times(y.value, x.rate)));
-  strut_bounds result = {{-0.5 * STRUT_TAU, 0.5 * STRUT_TAU}, chain(inverse(far), turn), false};
+  strut_signal_bounds result = {
+      {-0.5 * STRUT_TAU, 0.5 * STRUT_TAU}, chain(inverse(far), turn), false};
   bool follows = x.follows || y.follows;
   int side = x.value.low > 0.0 ? 1 : side_of(b, y.value, follows, is_still(y));
   if (side == 0) return result;
@@ -165,8 +166,8 @@ static strut_bounds angle(bounder *b, strut_bounds y, strut_bounds x) {
   return result;
 }
 
-static strut_bounds distance(strut_bounds x, strut_bounds y) {
-  strut_bounds result = {.value = root(plus(square(x.value), square(y.value)))};
+static strut_signal_bounds distance(strut_signal_bounds x, strut_signal_bounds y) {
+  strut_signal_bounds result = {.value = root(plus(square(x.value), square(y.value)))};
   double most = hypot(size_of(x.rate), size_of(y.rate)); /* whatever the direction */
   strut_range along = plus(times(x.value, x.rate), times(y.value, y.rate));
   result.rate = chain(inverse(result.value), along);
@@ -174,8 +175,8 @@ static strut_bounds distance(strut_bounds x, strut_bounds y) {
   return result;
 }
 
-static strut_bounds raise(strut_bounds x, strut_bounds y) {
-  strut_bounds result = {.value = power(x.value, y.value)};
+static strut_signal_bounds raise(strut_signal_bounds x, strut_signal_bounds y) {
+  strut_signal_bounds result = {.value = power(x.value, y.value)};
   strut_range less = {y.value.low - 1.0, y.value.high - 1.0};
   strut_range slope = times(y.value, power(x.value, less));
   result.rate = chain(slope, x.rate);
@@ -186,15 +187,16 @@ static strut_bounds raise(strut_bounds x, strut_bounds y) {
   return result;
 }
 
-static strut_bounds combine(bounder *b, strut_operation operation, strut_bounds x, strut_bounds y) {
-  strut_bounds result = ANYTHING;
+static strut_signal_bounds combine(bounder *b, strut_operation operation, strut_signal_bounds x,
+                                   strut_signal_bounds y) {
+  strut_signal_bounds result = ANYTHING;
   switch ((int)operation) {
     case STRUT_OPERATION_ADD:
-      result = (strut_bounds){plus(x.value, y.value), plus(x.rate, y.rate), false};
+      result = (strut_signal_bounds){plus(x.value, y.value), plus(x.rate, y.rate), false};
       break;
     case STRUT_OPERATION_SUBTRACT:
-      result =
-          (strut_bounds){plus(x.value, negative(y.value)), plus(x.rate, negative(y.rate)), false};
+      result = (strut_signal_bounds){plus(x.value, negative(y.value)),
+                                     plus(x.rate, negative(y.rate)), false};
       break;
     case STRUT_OPERATION_MULTIPLY:
       result.value = times(x.value, y.value);
@@ -216,11 +218,11 @@ static strut_bounds combine(bounder *b, strut_operation operation, strut_bounds 
   return result;
 }
 
-static strut_bounds apply(bounder *b, strut_operation operation, strut_bounds a) {
+static strut_signal_bounds apply(bounder *b, strut_operation operation, strut_signal_bounds a) {
   const double ten = 2.30258509299404568402; /* log 10 */
   const strut_range x = a.value, one = {1.0, 1.0};
   strut_range y = ANY, slope = ANY;
-  strut_bounds result;
+  strut_signal_bounds result;
   switch ((int)operation) {
     case STRUT_OPERATION_NEGATE: return opposite(a);
     case STRUT_OPERATION_ABS:
@@ -264,33 +266,33 @@ static strut_bounds apply(bounder *b, strut_operation operation, strut_bounds a)
     case STRUT_OPERATION_TANH: y = rising(tanh, x), slope = plus(one, negative(square(y))); break;
     default: break;
   }
-  return (strut_bounds){y, chain(slope, a.rate), a.follows};
+  return (strut_signal_bounds){y, chain(slope, a.rate), a.follows};
 }
 
 /* ---- signals ---- */
 
 /* A value that stays while the motion does; any where none is known. */
-static strut_bounds held(const bounder *b, double value) {
+static strut_signal_bounds held(const bounder *b, double value) {
   if (!b->in) return ANYTHING;
-  return (strut_bounds){exactly(value), ZERO, true};
+  return (strut_signal_bounds){exactly(value), ZERO, true};
 }
 
-static strut_bounds bound_wave(const strut_signal *s, double from, double to) {
+static strut_signal_bounds bound_wave(const strut_signal *s, double from, double to) {
   double begin = s->frequency * (from - s->start) + s->phase;
   double end = s->frequency * (to - s->start) + s->phase;
   if (s->kind == STRUT_HALF_SINE) begin = fmax(begin, 0.0), end = fmin(end, 0.5);
-  if (!(begin <= end)) return (strut_bounds){ZERO, ZERO, false};
+  if (!(begin <= end)) return (strut_signal_bounds){ZERO, ZERO, false};
   strut_range turns = {begin, end}, later = {begin + 0.25, end + 0.25};
-  return (strut_bounds){
+  return (strut_signal_bounds){
       times(exactly(s->amplitude), sine_of_turns(turns)),
       times(exactly(s->amplitude * STRUT_TAU * s->frequency), sine_of_turns(later)), false};
 }
 
 /* Of a signal that is linear between its points. */
-static strut_bounds bound_pieces(const bounder *b, int32_t index, double from, double to) {
+static strut_signal_bounds bound_pieces(const bounder *b, int32_t index, double from, double to) {
   double value, rate;
   strut_signal_evaluate(b->signals, index, from, &value, &rate);
-  strut_bounds result = {exactly(value), exactly(rate), false};
+  strut_signal_bounds result = {exactly(value), exactly(rate), false};
   for (double t = from; t < to;) {
     t = strut_signal_next_break(b->signals, index, t);
     strut_signal_evaluate(b->signals, index, fmin(t, to), &value, &rate);
@@ -300,14 +302,15 @@ static strut_bounds bound_pieces(const bounder *b, int32_t index, double from, d
   return result;
 }
 
-static strut_bounds bound_signal(bounder *b, int32_t index, double from, double to);
+static strut_signal_bounds bound_signal(bounder *b, int32_t index, double from, double to);
 
-static strut_bounds bound_program(bounder *b, const strut_program *program, double from, double to);
+static strut_signal_bounds bound_program(bounder *b, const strut_program *program, double from,
+                                         double to);
 
-static strut_bounds bound_kind(bounder *b, int32_t index, double from, double to) {
+static strut_signal_bounds bound_kind(bounder *b, int32_t index, double from, double to) {
   const strut_signal *s = &b->signals[index];
   bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE || strut_signal_has_program(s);
-  strut_bounds result = {ZERO, ZERO, false};
+  strut_signal_bounds result = {ZERO, ZERO, false};
   double half = 2.0 * (s->frequency * (from - s->start) + s->phase);
   if (!holds && (to < s->start || from >= s->stop)) return result;
   switch (s->kind) {
@@ -324,7 +327,7 @@ static strut_bounds bound_kind(bounder *b, int32_t index, double from, double to
     case STRUT_TABLE: return bound_pieces(b, index, from, to);
     case STRUT_SUM:
       for (size_t i = 0; i < s->term_count; i++) {
-        strut_bounds part = bound_signal(b, s->terms[i], from, to);
+        strut_signal_bounds part = bound_signal(b, s->terms[i], from, to);
         result.value = plus(result.value, part.value), result.rate = plus(result.rate, part.rate);
         result.follows = result.follows || part.follows;
       }
@@ -338,7 +341,7 @@ static strut_bounds bound_kind(bounder *b, int32_t index, double from, double to
   return result;
 }
 
-static strut_bounds bound_signal(bounder *b, int32_t index, double from, double to) {
+static strut_signal_bounds bound_signal(bounder *b, int32_t index, double from, double to) {
   const strut_signal *s = &b->signals[index];
   const bounder outside = *b;
   if (s->every > 0.0) return held(b, b->in ? b->in->held[index] : (double)NAN);
@@ -346,18 +349,18 @@ static strut_bounds bound_signal(bounder *b, int32_t index, double from, double 
   if (s->trigger.kind != STRUT_TRIGGER_NONE) {
     double since = b->started ? b->started[index] : (double)NAN;
     if (isnan(since)) return ANYTHING;
-    if (to < since) return (strut_bounds){ZERO, ZERO, false};
+    if (to < since) return (strut_signal_bounds){ZERO, ZERO, false};
     from = fmax(from - since, 0.0), to -= since;
   }
-  strut_bounds result = bound_kind(b, index, from, to);
+  strut_signal_bounds result = bound_kind(b, index, from, to);
   b->undecided = outside.undecided; /* of its own kinks strut_signal_next_break knows */
   b->branches = outside.branches;
   return result;
 }
 
-static strut_bounds bound_column(bounder *b, strut_column column, double from, double to) {
+static strut_signal_bounds bound_column(bounder *b, strut_column column, double from, double to) {
   switch ((int)column.kind) {
-    case STRUT_COLUMN_TIME: return (strut_bounds){{from, to}, {1.0, 1.0}, false};
+    case STRUT_COLUMN_TIME: return (strut_signal_bounds){{from, to}, {1.0, 1.0}, false};
     case STRUT_COLUMN_SIGNAL: return bound_signal(b, column.item, from, to);
     case STRUT_COLUMN_SENSOR: return held(b, b->in ? b->in->sensor[column.item] : (double)NAN);
     case STRUT_COLUMN_SENSOR_RATE:
@@ -367,16 +370,16 @@ static strut_bounds bound_column(bounder *b, strut_column column, double from, d
   }
 }
 
-static strut_bounds bound_program(bounder *b, const strut_program *program, double from,
-                                  double to) {
-  strut_bounds stack[STRUT_MOST_PROGRAM_DEPTH];
+static strut_signal_bounds bound_program(bounder *b, const strut_program *program, double from,
+                                         double to) {
+  strut_signal_bounds stack[STRUT_MOST_PROGRAM_DEPTH];
   size_t top = 0;
   for (size_t i = 0; i < program->length; i++) {
     const strut_instruction *p = &program->instruction[i];
     int operands = strut_operation_operands(p->operation);
     assert(top >= (size_t)operands && top < STRUT_MOST_PROGRAM_DEPTH + (size_t)operands);
     if (p->operation == STRUT_OPERATION_NUMBER) {
-      stack[top++] = (strut_bounds){exactly(p->number), ZERO, false};
+      stack[top++] = (strut_signal_bounds){exactly(p->number), ZERO, false};
     } else if (operands == 0) {
       stack[top++] = bound_column(b, p->column, from, to);
     } else if (operands == 1) {
@@ -390,8 +393,8 @@ static strut_bounds bound_program(bounder *b, const strut_program *program, doub
   return stack[0];
 }
 
-strut_bounds strut_program_bound(const strut_program *program, const strut_signal *signals,
-                                 const strut_signal_inputs *in, double from, double to) {
+strut_signal_bounds strut_program_bound(const strut_program *program, const strut_signal *signals,
+                                        const strut_signal_inputs *in, double from, double to) {
   bounder b = {.signals = signals, .in = in, .started = in ? in->started : NULL};
   return bound_program(&b, program, from, to);
 }
@@ -487,28 +490,28 @@ typedef struct look {
   double faint;
 } look;
 
-static strut_bounds bound_between(const look *l, double from, double to) {
+static strut_signal_bounds bound_between(const look *l, double from, double to) {
   bounder b = {.signals = l->signals, .in = l->in, .started = l->in ? l->in->started : NULL};
   if (l->program) return strut_program_bound(l->program, l->signals, l->in, from, to);
   return bound_kind(&b, l->signal, from, to);
 }
 
 /* `seen`: hulls of values and rates at begin, middle and end; `all`: of the whole step; `faint`: what may be missed. */
-static bool is_shown(strut_bounds seen, strut_bounds all, double h, double faint) {
+static bool is_shown(strut_signal_bounds seen, strut_signal_bounds all, double h, double faint) {
   double shown = width(seen.value), apart = width(seen.rate);
   if (width(all.value) <= faint) return true;
   return h * size_of(all.rate) <= SHOWN * shown + faint &&
          h * (width(all.rate) - TWICE * apart) <= UNSHOWN * shown + faint;
 }
 
-static strut_bounds hull_of(strut_bounds a, strut_bounds b) {
-  return (strut_bounds){hull(a.value, b.value), hull(a.rate, b.rate), false};
+static strut_signal_bounds hull_of(strut_signal_bounds a, strut_signal_bounds b) {
+  return (strut_signal_bounds){hull(a.value, b.value), hull(a.rate, b.rate), false};
 }
 
 static bool resolves(const look *l, double t, double h) {
-  strut_bounds all = bound_between(l, t, t + h);
+  strut_signal_bounds all = bound_between(l, t, t + h);
   if (is_still(all)) return true;
-  strut_bounds seen = bound_between(l, t, t);
+  strut_signal_bounds seen = bound_between(l, t, t);
   for (int k = 1; k <= 2; k++)
     seen = hull_of(seen, bound_between(l, t + 0.5 * k * h, t + 0.5 * k * h));
   if (is_shown(seen, all, h, 0.0)) return true;

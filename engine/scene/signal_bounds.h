@@ -14,15 +14,16 @@ typedef struct strut_range {
 } strut_range;
 
 /** All values and rates of a signal over some time; from rounding outwards. */
-typedef struct strut_bounds {
+typedef struct strut_signal_bounds {
   strut_range value, rate;
   bool follows; /* depends on more than the time */
-} strut_bounds;
+} strut_signal_bounds;
 
 /** Of a program from time `from` to `to` [s], which may be INFINITY; `in` as that of strut_program_evaluate. */
-STRUT_API strut_bounds strut_program_bound(const strut_program *program,
-                                           const strut_signal *signals,
-                                           const strut_signal_inputs *in, double from, double to);
+STRUT_API strut_signal_bounds strut_program_bound(const strut_program *program,
+                                                  const strut_signal *signals,
+                                                  const strut_signal_inputs *in, double from,
+                                                  double to);
 
 /**
  * First time after t [s], up to `until`, at which the program may have a kink or a jump as a function of time alone:

@@ -70,7 +70,7 @@ TEST(bounds_hold_values_and_rates) {
   for (int n = 0; n < PROGRAMS; n++) {
     strut_program program = random_program(p);
     double from = uniform(0, 4), to = from + pow(10.0, uniform(-6, 0.5));
-    strut_bounds all = strut_program_bound(&program, NULL, NULL, from, to);
+    strut_signal_bounds all = strut_program_bound(&program, NULL, NULL, from, to);
     assert_true(all.value.low <= all.value.high && all.rate.low <= all.rate.high);
     for (int k = 0; k <= POINTS; k++) {
       double t = k == POINTS ? to : from + (to - from) * k / POINTS, value, rate;
