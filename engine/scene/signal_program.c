@@ -277,7 +277,8 @@ static double turns_of_program(const strut_scene *scene, const strut_program *pr
 static double turns_of_signal(const strut_scene *scene, const strut_signal *s, double last,
                               bool stops) {
   if (s->every > 0.0) return 0.0;
-  if (strut_signal_has_program(s)) return turns_of_program(scene, &s->program, last);
+  if (strut_signal_has_program(s)) /* within a step such methods look for what it does */
+    return stops ? 0.0 : turns_of_program(scene, &s->program, last);
   bool jumps = s->kind == STRUT_SQUARE || s->kind == STRUT_HALF_SINE;
   bool turns = s->kind == STRUT_SINE || (jumps && !stops);
   return turns && s->amplitude != 0.0 ? s->frequency : 0.0;

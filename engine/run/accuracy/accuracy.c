@@ -168,12 +168,15 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
   if (model->terms & STRUT_TERM_MEMORY || model->contacts.grips) velocity = false;
   if (strut_feedback_remembers(&model->feedback)) velocity = false;
   if (!status && velocity) status = strut_accuracy_try_midpoint(&a, &done);
+  bool orbit =
+      false; /* whose balance is that of the coarse way to it, and which another method confirms */
   if (!status && !done && velocity && experiment->periods > 0.0 && !a.single_method)
-    status = strut_accuracy_try_orbit(&a, &done);
+    status = strut_accuracy_try_orbit(&a, &orbit);
+  done = done || orbit;
   if (!status && !done) status = strut_accuracy_climb_ladder(&a);
   summary->spent.wall_time = strut_run_clock() - begin;
   summary->status = status;
-  refuse_open_balance(&a);
+  if (!orbit) refuse_open_balance(&a);
   summary->settle_time = start.how.time, summary->settle = start.how;
   strut_summary_warn_of_start(summary);
   refuse_wide_bands(summary);

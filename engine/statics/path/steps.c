@@ -211,8 +211,8 @@ bool strut_path_find_next(strut_path_walk *w) {
     w->part.known = false;
     double whole = w->step;
     w->step *= 1.0 / PARTS;
-    if (find_next(w)) continue;
-    w->step = whole; /* no shorter step succeeds: so be it */
+    if (find_next(w) && w->step < whole) continue;
+    w->step = whole; /* no shorter step succeeds, or only a longer one over a kink: so be it */
     found = find_next(w), done = true;
   }
   strut_arena_free(&c.arena);
