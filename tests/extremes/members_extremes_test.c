@@ -77,14 +77,7 @@ TEST(bars_through_no_length_keep_their_balance) {
 
 /* A frame of springs, so that nothing is discontinuous. */
 static strut_setup springs(double damping) {
-  const x_frame frame = {.side = 0.2,
-                         .cable_stiffness = 800,
-                         .bar_stiffness = 2000,
-                         .force_density = 60,
-                         .cable_mass = 0.05,
-                         .bar_mass = 0.1,
-                         .cable_damping = damping,
-                         .bar_damping = damping};
+  const x_frame frame = {0.2, 60, .cable = {800, damping, 0.05}, .bar = {2000, damping, 0.1}};
   strut_setup setup = build_setup();
   structure_x_frame(&setup.scene, &frame);
   for (size_t j = 0; j < setup.scene.member_count; j++) setup.scene.members[j].kind = STRUT_SPRING;
