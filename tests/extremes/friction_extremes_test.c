@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Friction at its extremes: none, a million, and slopes beside the angle of friction. */
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static const double G = 9.81;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members through no length at all, structures turned inside out, throws a million sizes far. */
-#include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 
@@ -11,9 +10,7 @@ enum { METHOD_COUNT = sizeof METHODS / sizeof METHODS[0] };
 
 /* A mass that swings through a support, missing it by `miss`. */
 static strut_setup through(double rest, double miss) {
-  strut_setup setup = build_setup();
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 1, 0, MASS);
+  strut_setup setup = build_tethered(1, 0, MASS);
   build_sized(&setup.scene, STRUT_SPRING, 0, 1, K, 0, 0, rest);
   setup.scene.nodes[1].velocity[1] = miss * sqrt(K / MASS);
   return setup;

@@ -4,7 +4,6 @@
 #include <time.h>
 
 #include "engine/scene/check.h"
-#include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 

@@ -6,7 +6,6 @@
 #include "engine/forces/energy.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "tests/physics/random_scene.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static double explicit_limit(const strut_setup *setup) {

@@ -4,7 +4,6 @@
 #include <gsl/gsl_errno.h>
 
 #include "engine/statics/modes/modes.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 FREED_BY(gsl_matrix_free, gsl_matrix)

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/physics/smooth_scenes.h"
 
-#include "tests/support/build.h"
 #include "tests/support/structures.h"
 
 /* A mass on a spring, w = 10 rad/s. */

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A free bar and a free frame: lengths, frequencies, centre of mass and angular momentum. */
-#include "tests/support/motion.h"
 #include "tests/support/oscillation.h"
 #include "tests/support/structures.h"
 

@@ -5,7 +5,7 @@
 #ifndef STRUT_TESTS_SUPPORT_STRUCTURES_H
 #define STRUT_TESTS_SUPPORT_STRUCTURES_H
 
-#include "engine/scene/scene.h"
+#include "tests/support/motion.h"
 
 /** Snelson's X-frame: a square with four cables as sides and two bars as diagonals. */
 typedef struct x_frame {

@@ -3,7 +3,6 @@
 #include "engine/integrate/limit/step_limit.h"
 
 #include "tests/physics/random_scene.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static const double PI = 3.14159265358979323846, IMAGINARY = 2.8284271247461903;
