@@ -10,9 +10,8 @@ import os
 import re
 import subprocess
 import sys
-import tempfile
 
-from testing import check, fail, files_in, finish, strut
+from testing import check, fail, files_in, finish, strut, work
 
 slower = int(sys.argv[2]) if len(sys.argv) > 2 else 1
 OSCILLATOR, BALL = "models/basics/oscillator.yaml", "models/basics/bouncing-node.yaml"
@@ -203,31 +202,30 @@ if answer:
         check(close(value, 1 / (2 * point["mu"] * 9.81), 1e-6), f"Coulomb's block at mu {point['mu']}: {value}")
 
 # ---- Files: all of them or none; the same numbers as in the answer.
-with tempfile.TemporaryDirectory() as here:
-    out = os.path.join(here, "deep", "out")
-    done = run(BALL, "--step-sizes", "4", "-o", out, "--own-model")
-    check(sorted(files_in(out)) == ["tradeoff.csv", "tradeoff.json", "tradeoff.svg"], f"files: {files_in(out)}")
-    if "The cheapest setting" not in done.stdout or "\n    0.5 % " not in done.stdout:
-        fail(f"the table lacks something: {done.stdout}")
-    written = json.load(open(os.path.join(out, "tradeoff.json")))
-    rows = list(csv.DictReader(open(os.path.join(out, "tradeoff.csv"), newline="")))
-    check(len(rows) == len(written["settings"]), f"{len(rows)} rows of {len(written['settings'])} settings")
-    for row, setting in zip(rows, written["settings"]):
-        error = setting["step_error"]["worst"]
-        if float(row["step [s]"]) != setting["step"] or row["group"] != setting["group"] or \
-                float(row["error worst"]) != (math.inf if error is None else error):
-            fail(f"{row} and {setting} differ")
-    svg = open(os.path.join(out, "tradeoff.svg"), encoding="utf-8").read()
-    check("</svg>" in svg, "half a picture")
-    before = {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}
-    os.mkdir(os.path.join(here, "blocked"))
-    os.mkdir(os.path.join(here, "blocked", "tradeoff.svg"))
-    done = run(BALL, "--step-sizes", "1", "-o", os.path.join(here, "blocked"), code=4)
-    if done.stdout or files_in(os.path.join(here, "blocked")) != ["tradeoff.svg"]:
-        fail(f"a blocked file: {done.stdout} {files_in(os.path.join(here, 'blocked'))}")
-    run(BALL, "--integrator", "rk5", "-o", out, code=1)
-    check(before == {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}, "a refusal changed files")
-    done = run(BALL, "--step-sizes", "1", "-o", "/dev/full/x", code=4)
+out = os.path.join(work, "deep", "out")
+done = run(BALL, "--step-sizes", "4", "-o", out, "--own-model")
+check(sorted(files_in(out)) == ["tradeoff.csv", "tradeoff.json", "tradeoff.svg"], f"files: {files_in(out)}")
+if "The cheapest setting" not in done.stdout or "\n    0.5 % " not in done.stdout:
+    fail(f"the table lacks something: {done.stdout}")
+written = json.load(open(os.path.join(out, "tradeoff.json")))
+rows = list(csv.DictReader(open(os.path.join(out, "tradeoff.csv"), newline="")))
+check(len(rows) == len(written["settings"]), f"{len(rows)} rows of {len(written['settings'])} settings")
+for row, setting in zip(rows, written["settings"]):
+    error = setting["step_error"]["worst"]
+    if float(row["step [s]"]) != setting["step"] or row["group"] != setting["group"] or \
+            float(row["error worst"]) != (math.inf if error is None else error):
+        fail(f"{row} and {setting} differ")
+svg = open(os.path.join(out, "tradeoff.svg"), encoding="utf-8").read()
+check("</svg>" in svg, "half a picture")
+before = {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}
+os.mkdir(os.path.join(work, "blocked"))
+os.mkdir(os.path.join(work, "blocked", "tradeoff.svg"))
+done = run(BALL, "--step-sizes", "1", "-o", os.path.join(work, "blocked"), code=4)
+if done.stdout or files_in(os.path.join(work, "blocked")) != ["tradeoff.svg"]:
+    fail(f"a blocked file: {done.stdout} {files_in(os.path.join(work, 'blocked'))}")
+run(BALL, "--integrator", "rk5", "-o", out, code=1)
+check(before == {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}, "a refusal changed files")
+done = run(BALL, "--step-sizes", "1", "-o", "/dev/full/x", code=4)
 
 # ---- An accuracy: the recommended setting, run as the report writes it, keeps the error, against a much
 # finer run by another method; it is the cheapest measured, and half the error lies on the measured curve.
@@ -262,44 +260,43 @@ def check_half(what, answer):
     check(close(wanted, advice["half_cost"], 1e-9), f"{what}: half costs {advice['half_cost']}, not {wanted}")
 
 
-with tempfile.TemporaryDirectory() as here:
-    for file, accuracy in (("models/basics/sliding-block.yaml", "1e-4"), (HOPPER, "0.1%"), (HOPPER, "1e-6"),
-                           ("models/gallery/two-mass-crawler.yaml", "2%"),
-                           ("models/gallery/two-mass-crawler.yaml", "0.1%")):
-        what, words = f"{file} to {accuracy}", (file, "--accuracy", accuracy, "--own-model", "--measure", "velocity")
-        report, answer = run(*words).stdout, read(*words)
-        solver = re.search(r"For an error of .*: (solver: {.*})", report)
-        if not answer or not solver:
-            fail(f"{what}: no recommendation: {report[-800:]}")
-            continue
-        check_advice(what, answer)
-        check_half(what, answer)
-        advice, wanted = answer["advice"][0], eval(accuracy.replace("%", "/100"))
-        row = answer["settings"][advice["setting"]]
-        with open(file, encoding="utf-8") as text:
-            model = re.sub(r"(?m)^solver: .*$", solver[1], text.read())
-        with open(os.path.join(here, "model.yaml"), "w", encoding="utf-8") as out:
-            out.write(model)
-        other = ("rk4-events", f"{row['step'] / 2048} s") if row["method"] == "adaptive" else ("adaptive", "1 ms")
-        fine = measure(file, "--integrator", other[0], "--step", other[1], "--tolerance", "1e-11")
-        error = abs(measure(os.path.join(here, "model.yaml")) - fine) / max(abs(fine), answer["scale"])
-        floor = answer["models"][0]["floor"]["worst"]
-        if not error <= wanted or not abs(error - row["step_error"]["worst"]) <= 3 * floor + 1e-3 * wanted:
-            fail(f"{what}: {solver[1]} is {error} off, reported {row['step_error']['worst']}")
-        check(advice["known"] and floor <= 0.01 * wanted, f"{what}: floor {floor}")
-        # The work is bounded, and counts all that is reported.
-        work = answer["work"]
-        least = answer["base_evaluations"] * sum(r["evaluations"] for r in answer["settings"] if not r["diverged"])
-        if not least <= work["evaluations"] <= 30 * work["unit"] or work["limit"] != 30 or work["cut_by_time"]:
-            fail(f"{what}: work {work}, of which settings {least}")
-        # The same bytes again, with another limit of CPU time too, but for CPU times.
-        again = run(*words, "--cpu-time", "5000 s").stdout
+for file, accuracy in (("models/basics/sliding-block.yaml", "1e-4"), (HOPPER, "0.1%"), (HOPPER, "1e-6"),
+                       ("models/gallery/two-mass-crawler.yaml", "2%"),
+                       ("models/gallery/two-mass-crawler.yaml", "0.1%")):
+    what, words = f"{file} to {accuracy}", (file, "--accuracy", accuracy, "--own-model", "--measure", "velocity")
+    report, answer = run(*words).stdout, read(*words)
+    solver = re.search(r"For an error of .*: (solver: {.*})", report)
+    if not answer or not solver:
+        fail(f"{what}: no recommendation: {report[-800:]}")
+        continue
+    check_advice(what, answer)
+    check_half(what, answer)
+    advice, wanted = answer["advice"][0], eval(accuracy.replace("%", "/100"))
+    row = answer["settings"][advice["setting"]]
+    with open(file, encoding="utf-8") as text:
+        model = re.sub(r"(?m)^solver: .*$", solver[1], text.read())
+    with open(os.path.join(work, "model.yaml"), "w", encoding="utf-8") as out:
+        out.write(model)
+    other = ("rk4-events", f"{row['step'] / 2048} s") if row["method"] == "adaptive" else ("adaptive", "1 ms")
+    fine = measure(file, "--integrator", other[0], "--step", other[1], "--tolerance", "1e-11")
+    error = abs(measure(os.path.join(work, "model.yaml")) - fine) / max(abs(fine), answer["scale"])
+    floor = answer["models"][0]["floor"]["worst"]
+    if not error <= wanted or not abs(error - row["step_error"]["worst"]) <= 3 * floor + 1e-3 * wanted:
+        fail(f"{what}: {solver[1]} is {error} off, reported {row['step_error']['worst']}")
+    check(advice["known"] and floor <= 0.01 * wanted, f"{what}: floor {floor}")
+    # The work is bounded, and counts all that is reported.
+    work = answer["work"]
+    least = answer["base_evaluations"] * sum(r["evaluations"] for r in answer["settings"] if not r["diverged"])
+    if not least <= work["evaluations"] <= 30 * work["unit"] or work["limit"] != 30 or work["cut_by_time"]:
+        fail(f"{what}: work {work}, of which settings {least}")
+    # The same bytes again, with another limit of CPU time too, but for CPU times.
+    again = run(*words, "--cpu-time", "5000 s").stdout
 
-        def stable(text):
-            table, rest = text.split("  (* Pareto", 1)
-            return [line[:48] + line[57:] for line in table.splitlines()], re.sub(r"took .*", "", rest)
+    def stable(text):
+        table, rest = text.split("  (* Pareto", 1)
+        return [line[:48] + line[57:] for line in table.splitlines()], re.sub(r"took .*", "", rest)
 
-        check(stable(again) == stable(report), f"{what}: two reports differ: {report} {again}")
+    check(stable(again) == stable(report), f"{what}: two reports differ: {report} {again}")
 
 # ---- What the reference does not tell is not claimed; a limit of time that cuts is reported.
 done = run(OSCILLATOR, "--accuracy", "1e-15")

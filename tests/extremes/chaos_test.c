@@ -4,7 +4,6 @@
  * ones, against the two equations of motion in the angles, integrated here by themselves (Benettin's
  * method).
  */
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static const double G = 9.81, APART = 1e-9;

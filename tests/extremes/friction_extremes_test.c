@@ -1,17 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Friction at its extremes: none, a million, and slopes beside the angle of friction. */
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static const double G = 9.81;
-static const x_frame FRAME = {.side = 0.2,
-                              .cable_stiffness = 800,
-                              .bar_stiffness = 2e4,
-                              .force_density = 60,
-                              .cable_mass = 0.01,
-                              .bar_mass = 0.1,
-                              .cable_damping = 0.3,
-                              .bar_damping = 2};
+static const x_frame FRAME = {0.2, 60, .cable = {800, 0.3, 0.01}, .bar = {2e4, 2, 0.1}};
 static double times = 1; /* how much longer the runs are in the long version */
 
 /* The frame above ground on which all its nodes may land. */

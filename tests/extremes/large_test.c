@@ -8,7 +8,6 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/run/measure/measure.h"
 #include "tests/support/allocations.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 enum { ROWS = 10, PARTS = 10 };

@@ -4,9 +4,7 @@
 
 #include "engine/integrate/limit/step_limit.h"
 #include "tests/support/motion.h"
-
-/* Widening is the point here; clang counts it as promotion. */
-#pragma GCC diagnostic ignored "-Wdouble-promotion"
+#include "tests/support/widening.h"
 
 /* A method on x'' = -2 zeta w x' - w^2 x maps (x, x') linearly; z = w dt. */
 typedef struct map {
@@ -53,9 +51,7 @@ enum { METHOD_COUNT = sizeof METHODS / sizeof METHODS[0] };
 static const double K = 300, MASS = 0.7;
 
 static strut_setup oscillator(double zeta) {
-  strut_setup setup = build_setup();
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 1, 0, MASS);
+  strut_setup setup = build_tethered(1, 0, MASS);
   /* of rest length zero, so that it is linear at any amplitude */
   build_sized(&setup.scene, STRUT_SPRING, 0, 1, K, 2 * zeta * sqrt(K * MASS), 0, 0);
   setup.scene.nodes[1].velocity[0] = 6.5;

@@ -5,17 +5,13 @@
 #include "engine/forces/energy.h"
 #include "tests/support/allocations.h"
 #include "tests/support/motion.h"
-
-/* Widening is the point here; clang counts it as promotion. */
-#pragma GCC diagnostic ignored "-Wdouble-promotion"
+#include "tests/support/widening.h"
 
 static int64_t steps = 1000000;
 static const double K = 300, MASS = 0.7;
 
 static strut_setup oscillator(void) {
-  strut_setup setup = build_setup();
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 1, 0, MASS);
+  strut_setup setup = build_tethered(1, 0, MASS);
   build_member(&setup.scene, STRUT_SPRING, 0, 1, K, 0, 0);
   setup.scene.nodes[1].start[0] = 1.25, setup.scene.nodes[1].velocity[0] = 1.5;
   return setup;

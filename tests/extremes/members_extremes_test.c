@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members through no length at all, structures turned inside out, throws a million sizes far. */
-#include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 
@@ -11,9 +10,7 @@ enum { METHOD_COUNT = sizeof METHODS / sizeof METHODS[0] };
 
 /* A mass that swings through a support, missing it by `miss`. */
 static strut_setup through(double rest, double miss) {
-  strut_setup setup = build_setup();
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 1, 0, MASS);
+  strut_setup setup = build_tethered(1, 0, MASS);
   build_sized(&setup.scene, STRUT_SPRING, 0, 1, K, 0, 0, rest);
   setup.scene.nodes[1].velocity[1] = miss * sqrt(K / MASS);
   return setup;
@@ -77,14 +74,7 @@ TEST(bars_through_no_length_keep_their_balance) {
 
 /* A frame of springs, so that nothing is discontinuous. */
 static strut_setup springs(double damping) {
-  const x_frame frame = {.side = 0.2,
-                         .cable_stiffness = 800,
-                         .bar_stiffness = 2000,
-                         .force_density = 60,
-                         .cable_mass = 0.05,
-                         .bar_mass = 0.1,
-                         .cable_damping = damping,
-                         .bar_damping = damping};
+  const x_frame frame = {0.2, 60, .cable = {800, damping, 0.05}, .bar = {2000, damping, 0.1}};
   strut_setup setup = build_setup();
   structure_x_frame(&setup.scene, &frame);
   for (size_t j = 0; j < setup.scene.member_count; j++) setup.scene.members[j].kind = STRUT_SPRING;

@@ -4,19 +4,11 @@
 #include <time.h>
 
 #include "engine/scene/check.h"
-#include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 
 static strut_setup shaken_frame(double shift) {
-  const x_frame frame = {.side = 1,
-                         .cable_stiffness = 800,
-                         .bar_stiffness = 2000,
-                         .force_density = 60,
-                         .cable_mass = 0.05,
-                         .bar_mass = 0.1,
-                         .cable_damping = 0.3,
-                         .bar_damping = 0.3};
+  const x_frame frame = {1, 60, .cable = {800, 0.3, 0.05}, .bar = {2000, 0.3, 0.1}};
   strut_setup setup = build_setup();
   structure_x_frame(&setup.scene, &frame);
   for (size_t j = 0; j < setup.scene.member_count; j++) setup.scene.members[j].kind = STRUT_SPRING;

@@ -26,6 +26,13 @@ def at_energy($energy): .equilibria | min_by((.energy - $energy) | fabs);
 def near($what; $node; $x; $y):
   labelled($what) | min_by((.nodes[$node][0] - $x) * (.nodes[$node][0] - $x) +
                             (.nodes[$node][1] - $y) * (.nodes[$node][1] - $y));
+def stands($node; $x; $y): near("stable"; $node; $x; $y);
+def tips($node; $x; $y): near("saddle"; $node; $x; $y);
+def standing: labelled("stable")[0];
+
+# Of strut run: where nodes are at the end. Of strut path: how far one has gone along x (0) or y (1).
+def places: .nodes | map_values(.position);
+def moved($node; $axis): .points | .[-1].nodes[$node][$axis] - .[0].nodes[$node][$axis];
 
 # Of a mapping from nodes to places: how far apart two are.
 def distance($a; $b):
@@ -44,6 +51,7 @@ def hertz: [.modes[].frequency];
 # Of strut path: the first event of a kind; the place of a node on the path at a factor that it has.
 def event($kind): [.events[] | select(.kind == $kind)][0];
 def at_factor($factor): [.points[] | select(((.factor - $factor) | fabs) < 1e-12)][0];
+def final: .points[-1];
 
 # For expected numbers: root(2) instead of (2 | sqrt), since | divides the fields of a line.
 def root(f): f | sqrt;

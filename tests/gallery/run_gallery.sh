@@ -23,7 +23,8 @@
 #   modes --set load=20 | .status | 3 | =
 # The second line makes a variant of the scene by sed, for what a parameter cannot change:
 #   %free = s/fixed: [a-z]*/mass: 1/
-# A line that ends with a backslash goes on in the next. A command that several lines ask is run once.
+# A line that ends with a backslash goes on in the next. A command that several lines ask is run once; a line
+# without one asks that of the line before.
 set -eu
 root=$(cd "$1" && pwd)
 strut=$2
@@ -81,7 +82,7 @@ trim() {
 # wrong.
 answers() {
   rm -f "$scratch"/*.sed
-  asked_last=
+  asked_last='' command_last=''
   awk -v name="${3-}" 'BEGIN { asked = name == "" }
        /^\[/ { asked = $0 == "[" name "]"; next }
        !asked { next }
@@ -100,7 +101,8 @@ answers() {
       *) echo "${1##*/}:$number: not COMMAND | FILTER | EXPECTED | TOLERANCE: $line"; continue ;;
     esac
     trim "${line%%|*}"
-    command=$trimmed
+    command=${trimmed:-$command_last}
+    command_last=$command
     rest=${line#*|}
     trim "${rest##*|}"
     tolerance=$trimmed
@@ -133,7 +135,7 @@ cat >"$scratch/good.answers" <<'TEXT'
 %wide = s/4 m/40 m/
 check | .name | itself | =
 check | .members.m.drawn_length | 5 | 1e-12
-check | .members[] | [.drawn_length, .stiffness] | [root(9 + 16), 1] | 1e-12
+| .members[] | [.drawn_length, .stiffness] | [root(9 + 16), 1] | 1e-12
 check --set long=30 %wide | .members.m.drawn_length | 50 | \
   1e-12
 check --set long=2kg | .status | 2 | =

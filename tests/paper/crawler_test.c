@@ -10,7 +10,6 @@
  */
 #include "engine/run/settle.h"
 #include "tests/paper/reference_crawler.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static const double STEP = 1e-4, STROKE = 1e-4;

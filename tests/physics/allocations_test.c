@@ -3,7 +3,6 @@
 #include "tests/support/allocations.h"
 #include "engine/model/mass.h"
 #include "tests/physics/random_scene.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 TEST(the_count_counts) {

@@ -98,9 +98,7 @@ TEST(a_run_that_ends_at_a_jump) {
 
 /* A free swing that ends where it began: nothing seems to have moved, and the error is small. */
 TEST(a_swing_that_ends_as_it_began) {
-  OWN(strut_setup) setup = build_setup();
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 1.1, 0, 1);
+  OWN(strut_setup) setup = build_tethered(1.1, 0, 1);
   build_sized(&setup.scene, STRUT_SPRING, 0, 1, 100, 0, 0, 1);
   double period = 2 * acos(-1) / 10;
   motion_experiment(&setup, period / 40, 10 * period);

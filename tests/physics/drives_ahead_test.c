@@ -2,7 +2,6 @@
 /* Drives that are computed for many evaluations at once have the bits of those computed one by one. */
 #include "engine/forces/drives.h"
 
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static const double STEP = 1e-4;

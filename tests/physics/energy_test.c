@@ -4,7 +4,6 @@
 #include <sys/time.h>
 
 #include "tests/physics/smooth_scenes.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static strut_energy balance(void (*make)(strut_scene *), double step, double duration) {
@@ -158,9 +157,7 @@ static void note_ring(int number) {
 TEST(an_interrupted_step_is_undone_with_its_works) {
   const struct itimerval soon = {.it_value = {.tv_usec = 50000}};
   struct sigaction before, action = {.sa_handler = note_ring};
-  OWN(strut_setup) setup = build_setup();
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 1, 0, 0.1);
+  OWN(strut_setup) setup = build_tethered(1, 0, 0.1);
   build_member(&setup.scene, STRUT_SPRING, 0, 1, 1e6, 0.01, 0);
   build_load(&setup.scene, 1, 1, 0, build_sine(&setup.scene, 1, 300));
   setup.scene.nodes[1].start[0] = 1.01;

@@ -8,7 +8,6 @@
  * compiler, its options and one set of registers; elsewhere there is nothing to compare with.
  */
 #include "tests/support/instructions.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 enum { BEFORE = 500, STEPS = 10 };

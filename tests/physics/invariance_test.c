@@ -2,12 +2,9 @@
 /* Changes of a scene whose effect is known without any oracle: other units, mirror, other order. */
 #include "engine/integrate/limit/step_limit.h"
 #include "tests/physics/random_scene.h"
-#include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
-
-/* Widening is the point here; clang counts it as promotion. */
-#pragma GCC diagnostic ignored "-Wdouble-promotion"
+#include "tests/support/widening.h"
 
 enum { RANDOM_SCENES = 60 };
 static const double FACTOR = 1024;

@@ -3,9 +3,6 @@
  * What is measured where expressions have kinks, and where a target is hardly reached or hardly missed: two
  * oscillators without damping, whose exact motions are cosines.
  */
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/measure/measure.h"

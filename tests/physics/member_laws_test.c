@@ -94,9 +94,7 @@ TEST(a_ball_flies_freely_until_its_cable_is_taut) {
 TEST(a_slack_cable_holds_nothing_back_by_any_method) {
   const strut_integrator *method;
   for (size_t i = 0; (method = strut_integrator_at(i)); i++) {
-    OWN(strut_setup) setup = build_setup();
-    build_support(&setup.scene, 0, 0);
-    build_mass(&setup.scene, 0.5, 0.1, 0.5);
+    OWN(strut_setup) setup = build_tethered(0.5, 0.1, 0.5);
     build_sized(&setup.scene, STRUT_CABLE, 0, 1, 400, 30, 0, 1);
     setup.scene.nodes[1].velocity[0] = 2;
     motion_experiment(&setup, STEP, 1);
@@ -121,9 +119,7 @@ TEST(a_cable_lets_go_where_its_damper_would_push) {
   const double k = 400, mass = 0.5, out = 0.1, omega = sqrt(k / mass), zeta = 0.2;
   double speed = out * omega * exp(-zeta * acos(zeta) / sqrt(1 - zeta * zeta));
   for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-    OWN(strut_setup) setup = build_setup();
-    build_support(&setup.scene, 0, 0);
-    build_mass(&setup.scene, 1, 0, mass);
+    OWN(strut_setup) setup = build_tethered(1, 0, mass);
     build_sized(&setup.scene, STRUT_CABLE, 0, 1, k, 2 * zeta * sqrt(k * mass), 0, 1);
     setup.scene.nodes[1].start[0] = 1 + out;
     motion_experiment(&setup, 1e-4, 1);

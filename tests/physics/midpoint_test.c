@@ -6,7 +6,6 @@
 #include "engine/forces/energy.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "tests/physics/random_scene.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static double explicit_limit(const strut_setup *setup) {
@@ -58,12 +57,7 @@ TEST(stiff_pendulum_is_the_rigid_one) {
 /* A closed frame, spinning and vibrating, at 100 times the largest step of RK4. */
 TEST(energy_of_a_stiff_frame) {
   OWN(strut_setup) setup;
-  const x_frame frame = {.side = 1,
-                         .cable_stiffness = 1e7,
-                         .bar_stiffness = 1e9,
-                         .force_density = 200,
-                         .cable_mass = 0.1,
-                         .bar_mass = 1};
+  const x_frame frame = {1, 200, .cable = {1e7, 0, 0.1}, .bar = {1e9, 0, 1}};
   strut_setup_init(&setup);
   structure_x_frame(&setup.scene, &frame);
   structure_throw(&setup.scene, 1.0, -2.0, 0.5);

@@ -4,7 +4,6 @@
 #include <gsl/gsl_errno.h>
 
 #include "engine/statics/modes/modes.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 FREED_BY(gsl_matrix_free, gsl_matrix)
@@ -37,12 +36,7 @@ static size_t count_kind(strut_mode_kind kind) {
   return count;
 }
 
-static const x_frame FRAME = {.side = 1,
-                              .cable_stiffness = 1000,
-                              .bar_stiffness = 5e4,
-                              .force_density = 120,
-                              .cable_mass = 0.02,
-                              .bar_mass = 0.3};
+static const x_frame FRAME = {1, 120, .cable = {1000, 0, 0.02}, .bar = {5e4, 0, 0.3}};
 
 BEFORE_ALL { gsl_set_error_handler_off(); }
 
@@ -359,7 +353,7 @@ TEST(stiff_bars_in_soft_cables) {
   strut_setup setup = build_setup();
   double kc = 1, kb = 1e9, q = 0.1, mc = 0.02, mb = 0.3;
   x_frame frame = FRAME;
-  frame.cable_stiffness = kc, frame.bar_stiffness = kb, frame.force_density = q;
+  frame.cable.stiffness = kc, frame.bar.stiffness = kb, frame.force_density = q;
   frame.side = 1.0 / 3;
   structure_x_frame(&setup.scene, &frame);
   find(&setup);

@@ -63,9 +63,7 @@ TEST(every_method_has_its_order) {
 
 /* A ball on a driven cable that catches it and lets it go again: where it is after half a second. */
 static double caught_ball(const char *method, double step, double tolerance) {
-  OWN(strut_setup) setup = build_setup();
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 0.8, 0, 0.5);
+  OWN(strut_setup) setup = build_tethered(0.8, 0, 0.5);
   int32_t cable = build_sized(&setup.scene, STRUT_CABLE, 0, 1, 400, 2, 0, 1);
   build_actuator(&setup.scene, cable, build_sine(&setup.scene, 0.05, 2));
   setup.scene.nodes[1].velocity[0] = 1;
@@ -146,9 +144,7 @@ TEST(pairs_have_their_orders) {
 /* Fast, but small beside the structure: it is the error of the velocity that error control must see. */
 TEST(error_control_sees_velocities) {
   const double size = 1e-6, omega = 1000, time = 0.1;
-  OWN(strut_setup) setup = build_setup();
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 1, 0, 1);
+  OWN(strut_setup) setup = build_tethered(1, 0, 1);
   build_member(&setup.scene, STRUT_SPRING, 0, 1, omega * omega, 0, 0);
   setup.scene.nodes[1].velocity[0] = size * omega;
   motion_experiment(&setup, 0.01, time);

@@ -4,7 +4,6 @@
  * and costs no time.
  */
 #include "tests/support/instructions.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 enum { FRAMES = 12 }; /* 60 members: each instruction is stepped through */

@@ -5,9 +5,6 @@
 #include "tests/physics/slow_model.h"
 #include "tests/support/motion.h"
 
-/* Widening is the point here; clang counts it as promotion. */
-#pragma GCC diagnostic ignored "-Wdouble-promotion"
-
 enum { SCENES = 200 };
 static const double TOLERANCE = 1e-13;
 

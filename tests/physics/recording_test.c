@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows for sinks: which, when, what; sinks that fail; and a run that is refused memory. */
 #include "engine/forces/energy.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 enum { MOST_ROWS = 2000, MOST_WIDTH = 300 };
@@ -75,9 +74,7 @@ BEFORE_EACH { clean(); }
 
 /* x = 1 + 0.5 t for the mass, which nothing moves. */
 static strut_setup gliding(double step, double duration, double every) {
-  strut_setup setup = build_setup();
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 1, 0, 1);
+  strut_setup setup = build_tethered(1, 0, 1);
   build_sized(&setup.scene, STRUT_CABLE, 0, 1, 10, 1, 0, 1000);
   setup.scene.nodes[1].velocity[0] = 0.5;
   motion_experiment(&setup, step, duration);

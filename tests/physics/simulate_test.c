@@ -2,7 +2,6 @@
 /* The run: what it measures, how it refuses, stops and comes to rest. */
 #include <time.h>
 
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static const double PI = 3.14159265358979323846;
@@ -98,9 +97,7 @@ TEST(height_above_sloping_ground) {
 
 /* w = 20 rad/s: RK4 bears a step of 0.1414 s. */
 static strut_setup stiff(double step, double duration) {
-  strut_setup setup = build_setup();
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 1, 0, 0.5);
+  strut_setup setup = build_tethered(1, 0, 0.5);
   build_member(&setup.scene, STRUT_SPRING, 0, 1, 200, 0, 0);
   setup.scene.nodes[1].start[0] = 1.1;
   motion_experiment(&setup, step, duration);
@@ -196,9 +193,7 @@ TEST(an_interrupt_stops_within_a_second) {
 
 /* A weight on a spring, with everything on that settling must leave aside. */
 static strut_setup hanging(void) {
-  strut_setup setup = build_setup();
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 0.1, -1, 2);
+  strut_setup setup = build_tethered(0.1, -1, 2);
   int32_t spring = build_sized(&setup.scene, STRUT_SPRING, 0, 1, 300, 1, 0, 1);
   setup.scene.gravity[1] = -9.81;
   build_actuator(&setup.scene, spring, build_sine(&setup.scene, 0.1, 3));

@@ -5,9 +5,6 @@
 
 #include "tests/support/check.h"
 
-/* Widening is the point here; clang counts it as promotion. */
-#pragma GCC diagnostic ignored "-Wdouble-promotion"
-
 slow_strain slow_path_of(const strut_member *m) {
   slow_strain s = {.kind = SLOW_PATH, .count = m->guide_count + 2};
   assert_true(s.count <= SLOW_MOST);

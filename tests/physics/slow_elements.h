@@ -7,6 +7,7 @@
 #define STRUT_TESTS_PHYSICS_SLOW_ELEMENTS_H
 
 #include "engine/scene/scene.h"
+#include "tests/support/widening.h"
 
 enum { SLOW_MOST = 32 }; /* nodes of a scene, and of a strain */
 

@@ -3,9 +3,6 @@
 #include "tests/physics/slow_world.h"
 #include "tests/support/check.h"
 
-/* Widening is the point here; clang counts it as promotion. */
-#pragma GCC diagnostic ignored "-Wdouble-promotion"
-
 typedef struct point {
   long double x, y;
 } point;

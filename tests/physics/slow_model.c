@@ -3,9 +3,6 @@
 
 #include "tests/support/check.h"
 
-/* Widening is the point here; clang counts it as promotion. */
-#pragma GCC diagnostic ignored "-Wdouble-promotion"
-
 static long double *zeros(size_t count) {
   long double *block = calloc(count ? count : 1, sizeof *block);
   assert_non_null(block);

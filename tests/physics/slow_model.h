@@ -9,6 +9,7 @@
 #define STRUT_TESTS_PHYSICS_SLOW_MODEL_H
 
 #include "engine/scene/scene.h"
+#include "tests/support/widening.h"
 
 typedef struct slow_model {
   size_t n;

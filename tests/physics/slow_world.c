@@ -5,9 +5,6 @@
 #include "tests/physics/slow_model.h"
 #include "tests/support/check.h"
 
-/* Widening is the point here; clang counts it as promotion. */
-#pragma GCC diagnostic ignored "-Wdouble-promotion"
-
 enum { NONE = SLOW_STATES };
 static const strut_law LINEAR = {.kind = STRUT_LAW_LINEAR};
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/physics/smooth_scenes.h"
 
-#include "tests/support/build.h"
 #include "tests/support/structures.h"
 
 /* A mass on a spring, w = 10 rad/s. */
@@ -15,14 +14,7 @@ static void oscillator(strut_scene *scene) {
 
 /* Free, damped, driven in a bar and a cable, pushed by a constant and an alternating load. */
 static void frame(strut_scene *scene, strut_mass_model mass_model) {
-  x_frame it = {.side = 1,
-                .cable_stiffness = 400,
-                .bar_stiffness = 2000,
-                .force_density = 60,
-                .cable_mass = 0.05,
-                .bar_mass = 0.4,
-                .cable_damping = 0.5,
-                .bar_damping = 0.3};
+  x_frame it = {1, 60, .cable = {400, 0.5, 0.05}, .bar = {2000, 0.3, 0.4}};
   strut_scene_init(scene);
   scene->mass_model = mass_model;
   structure_x_frame(scene, &it);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A free bar and a free frame: lengths, frequencies, centre of mass and angular momentum. */
-#include "tests/support/motion.h"
 #include "tests/support/oscillation.h"
 #include "tests/support/structures.h"
 
@@ -55,14 +54,7 @@ TEST(a_free_bar_vibrates_at_its_frequency) {
 }
 
 static strut_scene tumbling_frame(strut_mass_model mass_model, double damping) {
-  x_frame frame = {.side = 1,
-                   .cable_stiffness = 400,
-                   .bar_stiffness = 2000,
-                   .force_density = 60,
-                   .cable_mass = 0.05,
-                   .bar_mass = 0.4,
-                   .cable_damping = damping,
-                   .bar_damping = 0.1 * damping};
+  x_frame frame = {1, 60, .cable = {400, damping, 0.05}, .bar = {2000, 0.1 * damping, 0.4}};
   strut_scene scene = build_scene();
   scene.mass_model = mass_model;
   structure_x_frame(&scene, &frame);

@@ -134,9 +134,7 @@ TEST(transients_in_tune_with_the_drive) {
  */
 TEST(a_swing_that_grows_from_almost_nothing) {
   for (int power = 4; power <= 10; power += 2) {
-    OWN(strut_setup) setup = build_setup();
-    build_support(&setup.scene, 0, 0);
-    build_mass(&setup.scene, pow(10, -power), -1, 1);
+    OWN(strut_setup) setup = build_tethered(pow(10, -power), -1, 1);
     build_member(&setup.scene, STRUT_SPRING, 0, 1, 400, 6, 0);
     setup.scene.gravity[1] = -9.81;
     build_load(&setup.scene, 1, 0, 1, build_sine(&setup.scene, 20, 0.985));
@@ -172,9 +170,7 @@ TEST(a_drift_that_ends_in_a_jolt) {
 
 /* A frame at rest under its weight that nothing moves: it stands still, and the run ends at once. */
 TEST(standing_still_under_its_weight) {
-  OWN(strut_setup) setup = build_setup();
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 0, -1, 1);
+  OWN(strut_setup) setup = build_tethered(0, -1, 1);
   build_member(&setup.scene, STRUT_SPRING, 0, 1, 981, 20, 0);
   setup.scene.gravity[1] = -9.81;
   build_load(&setup.scene, 1, 1, 0, build_sine(&setup.scene, 0, 2));

@@ -3,7 +3,6 @@
  * The works of a Runge-Kutta step, whose powers are added up lane by lane, against the powers of its four evaluations
  * with the weights of the method: of a driven crawler on a belt.
  */
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 enum { LENGTH = 16, SETTLED = 500, STEPS = 1000 };

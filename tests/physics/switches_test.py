@@ -63,7 +63,8 @@ def unit_of(name):
 
 def compare(name, part, most_events, *ways):
     """The ways agree in the velocity to `part`, and no one makes more than so many switches."""
-    found = [(way, run(name, *way)) for way in ways]
+    unit = unit_of(name)
+    found = [(way(unit), run(name, *way(unit))) for way in ways]
     found = [(way, one) for way, one in found if one]
     for way, one in found:
         if abs(one["velocity"] - found[0][1]["velocity"]) > part * abs(found[0][1]["velocity"]):
@@ -72,35 +73,28 @@ def compare(name, part, most_events, *ways):
             failures.append(f"{name}: {one['events']} switches by {way}")
 
 
-def adaptive(unit, steps, tolerance):
-    return ("--integrator", "adaptive", "--step", repr(unit / steps), "--tolerance", tolerance)
+def adaptive(steps, tolerance, method="adaptive"):
+    return lambda unit: ("--integrator", method, "--step", repr(unit / steps), "--tolerance", tolerance)
 
 
-def precise(unit, steps, tolerance):
-    return ("--integrator", "adaptive8", *adaptive(unit, steps, tolerance)[2:])
+def precise(steps, tolerance):
+    return adaptive(steps, tolerance, "adaptive8")
 
 
-def fixed(unit, steps, method="rk4-events"):
-    return ("--integrator", method, "--step", repr(unit / steps))
+def fixed(steps, method="rk4-events"):
+    return lambda unit: ("--integrator", method, "--step", repr(unit / steps))
 
 
-u = unit_of("touch-together")
-compare("touch-together", 1e-7, 200, adaptive(u, 100, "1e-11"), adaptive(u, 1000, "1e-12"), fixed(u, 1000),
-        fixed(u, 4000))
-u = unit_of("square-drive")
-compare("square-drive", 1e-4, 1000, adaptive(u, 100, "1e-9"), adaptive(u, 330, "1e-10"), fixed(u, 16000))
-u = unit_of("release-before-opening")
-compare("release-before-opening", 1e-4, 400, adaptive(u, 50, "1e-9"), adaptive(u, 100, "1e-9"), fixed(u, 400))
-u = unit_of("edge-of-the-band")
-compare("edge-of-the-band", 1e-3, 1000, adaptive(u, 50, "1e-4"), adaptive(u, 100, "1e-9"), fixed(u, 1000))
-u = unit_of("yielding")
-compare("yielding", 1e-3, 4000, adaptive(u, 400, "1e-12"), adaptive(u, 4000, "1e-11"), fixed(u, 4000),
-        fixed(u, 20000))
-u = unit_of("jump-at-the-edge")
-compare("jump-at-the-edge", 1e-5, 500, adaptive(u, 100, "1e-9"), adaptive(u, 400, "1e-11"), fixed(u, 1000),
-        fixed(u, 2000))
-u = unit_of("tied-and-held")
-compare("tied-and-held", 5e-3, 2000, adaptive(u, 50, "1e-4"), adaptive(u, 100, "1e-9"))
+compare("touch-together", 1e-7, 200, adaptive(100, "1e-11"), adaptive(1000, "1e-12"), fixed(1000),
+        fixed(4000))
+compare("square-drive", 1e-4, 1000, adaptive(100, "1e-9"), adaptive(330, "1e-10"), fixed(16000))
+compare("release-before-opening", 1e-4, 400, adaptive(50, "1e-9"), adaptive(100, "1e-9"), fixed(400))
+compare("edge-of-the-band", 1e-3, 1000, adaptive(50, "1e-4"), adaptive(100, "1e-9"), fixed(1000))
+compare("yielding", 1e-3, 4000, adaptive(400, "1e-12"), adaptive(4000, "1e-11"), fixed(4000),
+        fixed(20000))
+compare("jump-at-the-edge", 1e-5, 500, adaptive(100, "1e-9"), adaptive(400, "1e-11"), fixed(1000),
+        fixed(2000))
+compare("tied-and-held", 5e-3, 2000, adaptive(50, "1e-4"), adaptive(100, "1e-9"))
 for name, part, most_events in (("up-and-down-again", 1e-9, 90), ("touches-again", 1e-9, 50),
                                 ("kink-of-a-margin", 2e-9, 120), ("gives-way-briefly", 1e-9, 120),
                                 ("creeps-out-at-a-jump", 1e-9, 160), ("creeps-in-at-a-jump", 1e-9, 420),
@@ -108,22 +102,18 @@ for name, part, most_events in (("up-and-down-again", 1e-9, 90), ("touches-again
                                 ("damper-turned-twice", 1e-9, 210), ("knee-passed-twice", 1e-9, 8),
                                 ("leaves-the-band-briefly", 2e-9, 15), ("guide-slips-briefly", 5e-9, 40),
                                 ("slack-in-a-try", 1e-9, 20)):
-    u = unit_of(name)
-    compare(name, part, most_events, precise(u, 100, "1e-13"), precise(u, 1000, "1e-13"), adaptive(u, 100, "1e-13"))
-    compare(name, 50 * part, most_events, precise(u, 100, "1e-10"), precise(u, 1000, "1e-13"))
-u = unit_of("released-at-once")
-compare("released-at-once", 1e-9, 120, *(precise(u, n, t) for n in (100, 300, 1000) for t in ("1e-10", "1e-12")),
-        adaptive(u, 100, "1e-12"))
-u = unit_of("bounces")
-compare("bounces", 1e-9, 20, adaptive(u, 50, "1e-12"), adaptive(u, 500, "1e-12"), precise(u, 50, "1e-12"))
+    compare(name, part, most_events, precise(100, "1e-13"), precise(1000, "1e-13"), adaptive(100, "1e-13"))
+    compare(name, 50 * part, most_events, precise(100, "1e-10"), precise(1000, "1e-13"))
+compare("released-at-once", 1e-9, 120, *(precise(n, t) for n in (100, 300, 1000) for t in ("1e-10", "1e-12")),
+        adaptive(100, "1e-12"))
+compare("bounces", 1e-9, 20, adaptive(50, "1e-12"), adaptive(500, "1e-12"), precise(50, "1e-12"))
 
-u = unit_of("guides-at-a-jump")
-compare("guides-at-a-jump", 1e-9, 180, precise(u, 50, "1e-11"), adaptive(u, 100, "1e-11"), fixed(u, 10000))
+compare("guides-at-a-jump", 1e-9, 180, precise(50, "1e-11"), adaptive(100, "1e-11"), fixed(10000))
 
 # A rest length that jumps: the work of the drive is what it adds to the elastic energy, and the balance
 # closes.
 for name in ("square-drive", "guides-at-a-jump"):
-    one = run(name, *fixed(unit_of(name), 4000))
+    one = run(name, *fixed(4000)(unit_of(name)))
     if one and abs(one["energy"]["residual"]) > 1e-7 * one["energy"]["exchanged"]:
         failures.append(f"{name}: {one['energy']['residual']} J of {one['energy']['exchanged']} J missing")
 

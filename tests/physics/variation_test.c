@@ -6,7 +6,6 @@
 #include "engine/integrate/events/location/variation.h"
 
 #include "tests/physics/driven_scenes.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 enum { MOST = 24 };

@@ -10,9 +10,6 @@
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 
-/* Widening is the point here; clang counts it as promotion. */
-#pragma GCC diagnostic ignored "-Wdouble-promotion"
-
 enum { STEPS = 100 };
 static uint64_t scenes = 25,
                 motions = 5; /* of each kind; more of them: test_world SCENES MOTIONS */

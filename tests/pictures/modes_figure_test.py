@@ -8,11 +8,10 @@ import math
 import os
 import re
 import subprocess
-import tempfile
 
 from svg_paths import has_segment, near, read, segments
 
-from testing import fail, finish, strut
+from testing import fail, finish, strut, work
 
 SWING = 0.08  # of the structure's larger extent
 UNSTRAINED = 1e-9  # rounding
@@ -92,17 +91,16 @@ def check_panel(what, panel, nodes, members, shape):
 
 
 def check(model, arguments, expected):
-    with tempfile.TemporaryDirectory() as here:
-        file = os.path.join(here, "a.svg")
-        command = [strut, "modes", model, *arguments, "--json", "--plot", file]
-        run = subprocess.run(command, capture_output=True)
-        if run.returncode != 0:
-            return fail(f"{command}: {run.stderr}")
-        first = open(file, "rb").read()
-        subprocess.run(command, capture_output=True)
-        if open(file, "rb").read() != first:
-            fail(f"{model}: drawn again it has other bytes")
-        width, height, paths = read(file)
+    file = os.path.join(work, "a.svg")
+    command = [strut, "modes", model, *arguments, "--json", "--plot", file]
+    run = subprocess.run(command, capture_output=True)
+    if run.returncode != 0:
+        return fail(f"{command}: {run.stderr}")
+    first = open(file, "rb").read()
+    subprocess.run(command, capture_output=True)
+    if open(file, "rb").read() != first:
+        fail(f"{model}: drawn again it has other bytes")
+    width, height, paths = read(file)
     answer = json.loads(run.stdout)
     panels = panels_of(paths)
     modes = [m for m in answer["modes"] if m["kind"] != "rigid-body"] or answer["modes"]

@@ -9,11 +9,10 @@ import math
 import os
 import re
 import subprocess
-import tempfile
 
 from svg_paths import distance, has_segment, near, read, segments
 
-from testing import fail, finish, strut
+from testing import fail, finish, strut, work
 
 CURVE, CURVE_WIDTH = (0.15, 0.15, 0.15), 1.2
 
@@ -91,14 +90,13 @@ def check_shapes(what, paths, answer, members, larger):
 
 def check(model, arguments, column, sign, larger, width="page", shapes=True, height="factor", upright=False):
     what = f"{model} {' '.join(arguments)}"
-    with tempfile.TemporaryDirectory() as here:
-        file = os.path.join(here, "a.svg")
-        command = [strut, "path", model, *arguments, "--json", "--plot", file, "--width", width, "-o", here]
-        run = subprocess.run(command, capture_output=True)
-        if run.returncode != 0:
-            return fail(f"{command}: {run.stderr}")
-        rows = list(csv.DictReader(open(os.path.join(here, "path.csv"), newline="")))
-        page_width, page_height, paths = read(file)
+    file = os.path.join(work, "a.svg")
+    command = [strut, "path", model, *arguments, "--json", "--plot", file, "--width", width, "-o", work]
+    run = subprocess.run(command, capture_output=True)
+    if run.returncode != 0:
+        return fail(f"{command}: {run.stderr}")
+    rows = list(csv.DictReader(open(os.path.join(work, "path.csv"), newline="")))
+    page_width, page_height, paths = read(file)
     answer = json.loads(run.stdout)
     drawn = check_curve(what, paths, rows, column, sign, height, upright)
     if not drawn:
@@ -130,15 +128,14 @@ check("models/gallery/von-mises.yaml", ["--set", "load=0.01", "--over", "load", 
       "apex.y [m]", -1, 1, height="value [N]", upright=True, shapes=False)
 
 # What moves by rounding alone is not enlarged, and no second row of the key says so.
-with tempfile.TemporaryDirectory() as here:
-    heights = []
-    for model, over, until in (("mast-with-guys", "tension", "8 N"), ("clustered-square-pulled", "pull", "0.5 m")):
-        file = os.path.join(here, "a.svg")
-        subprocess.run([strut, "path", f"models/gallery/{model}.yaml", "--over", over, "--until", until, "--quiet",
-                        "--plot", file], check=True)
-        heights.append(read(file)[1])
-    if abs(heights[0] - heights[1]) > 0.01:
-        fail(f"a mast that does not move: the picture is {heights[0]} high, not {heights[1]}")
+heights = []
+for model, over, until in (("mast-with-guys", "tension", "8 N"), ("clustered-square-pulled", "pull", "0.5 m")):
+    file = os.path.join(work, "a.svg")
+    subprocess.run([strut, "path", f"models/gallery/{model}.yaml", "--over", over, "--until", until, "--quiet",
+                    "--plot", file], check=True)
+    heights.append(read(file)[1])
+if abs(heights[0] - heights[1]) > 0.01:
+    fail(f"a mast that does not move: the picture is {heights[0]} high, not {heights[1]}")
 
 # A slider that snaps from one cable to the other: dashes from kink to kink, and nowhere else.
 TOGGLE = """strut: 1
@@ -151,34 +148,33 @@ loads: {push: {node: tip, force: [2 N, 0]}}
 """
 STOP = 0.1
 TURN = 500 * (1 - 0.7 / math.hypot(STOP, 0.5)) * -STOP / 2
-with tempfile.TemporaryDirectory() as here:
-    model, file = os.path.join(here, "toggle.yaml"), os.path.join(here, "a.svg")
-    open(model, "w", encoding="utf-8").write(TOGGLE)
-    run = subprocess.run([strut, "path", model, "--until", str(2 * TURN), "--plot", file, "--json",
-                          "-o", here], capture_output=True, text=True)
-    if run.returncode != 0:
-        fail(f"toggle: {run.stderr}")
+model, file = os.path.join(work, "toggle.yaml"), os.path.join(work, "a.svg")
+open(model, "w", encoding="utf-8").write(TOGGLE)
+run = subprocess.run([strut, "path", model, "--until", str(2 * TURN), "--plot", file, "--json",
+                      "-o", work], capture_output=True, text=True)
+if run.returncode != 0:
+    fail(f"toggle: {run.stderr}")
+else:
+    rows = list(csv.DictReader(open(os.path.join(work, "path.csv"), newline="")))
+    drawn = check_curve("toggle", read(file)[2], rows, "tip.x [m]", 1)
+    for row in rows:
+        x = float(row["tip.x [m]"])
+        middle = -STOP - 1e-9 < x < STOP - 1e-9
+        if row["negative_eigenvalues"] and (int(row["negative_eigenvalues"]) > 0) != middle:
+            fail(f"toggle: the path from x = {x} on is judged wrong: {row}")
+    dashed = [line for path in read(file)[2] if path.dash and near(path.stroke, CURVE)
+              and abs(path.width - CURVE_WIDTH) < 1e-6 for line in path.lines]
+    kinks = [d for d, row in zip(drawn, rows) if row["event"] == "limit point at a kink"]
+    if len(dashed) != 2 or len(kinks) != 2:  # the branch, and the sample in the key
+        fail(f"toggle: {len(dashed)} dashed lines, {len(kinks)} kinks")
     else:
-        rows = list(csv.DictReader(open(os.path.join(here, "path.csv"), newline="")))
-        drawn = check_curve("toggle", read(file)[2], rows, "tip.x [m]", 1)
-        for row in rows:
-            x = float(row["tip.x [m]"])
-            middle = -STOP - 1e-9 < x < STOP - 1e-9
-            if row["negative_eigenvalues"] and (int(row["negative_eigenvalues"]) > 0) != middle:
-                fail(f"toggle: the path from x = {x} on is judged wrong: {row}")
-        dashed = [line for path in read(file)[2] if path.dash and near(path.stroke, CURVE)
-                  and abs(path.width - CURVE_WIDTH) < 1e-6 for line in path.lines]
-        kinks = [d for d, row in zip(drawn, rows) if row["event"] == "limit point at a kink"]
-        if len(dashed) != 2 or len(kinks) != 2:  # the branch, and the sample in the key
-            fail(f"toggle: {len(dashed)} dashed lines, {len(kinks)} kinks")
-        else:
-            for end, kink in zip((dashed[0][0], dashed[0][-1]), kinks):
-                if math.dist(end, kink) > 0.02:
-                    fail(f"toggle: the unstable branch ends at {end}, the kink is at {kink}")
-        answer = json.loads(run.stdout)
-        for event, turn in zip(answer["events"], (TURN, TURN, -TURN, -TURN)):
-            if abs(event["factor"] - turn) > 1e-9 or abs(event["force"] - 2 * turn) > 1e-9:
-                fail(f"toggle: {event['kind']} at {event['factor']}, not {turn}")
+        for end, kink in zip((dashed[0][0], dashed[0][-1]), kinks):
+            if math.dist(end, kink) > 0.02:
+                fail(f"toggle: the unstable branch ends at {end}, the kink is at {kink}")
+    answer = json.loads(run.stdout)
+    for event, turn in zip(answer["events"], (TURN, TURN, -TURN, -TURN)):
+        if abs(event["factor"] - turn) > 1e-9 or abs(event["force"] - 2 * turn) > 1e-9:
+            fail(f"toggle: {event['kind']} at {event['factor']}, not {turn}")
 
 # Names of any script and length, and a node that comes to touch the ground.
 LONG = "a_rather_long_name_of_some_sixty_letters_for_a_mere_node_of_it"
@@ -194,45 +190,43 @@ ground: {{stiffness: 1e4}}
 loads:
   {"م" * 32}: {{node: {LONG}, force: [0, -50]}}
 """
-with tempfile.TemporaryDirectory() as here:
-    model = os.path.join(here, "hostile.yaml")
-    open(model, "w", encoding="utf-8").write(HOSTILE)
-    for size in ("page", "column", "40 mm"):
-        file = os.path.join(here, "a.svg")
-        run = subprocess.run([strut, "path", model, "--load", "م" * 32, "--until", "2", "--plot",
-                              file, "--width", size], capture_output=True, text=True)
-        if run.returncode != 0 or run.stderr:
-            fail(f"names of other scripts, {size}: {run.returncode} {run.stderr}")
-        else:
-            read(file)
+model = os.path.join(work, "hostile.yaml")
+open(model, "w", encoding="utf-8").write(HOSTILE)
+for size in ("page", "column", "40 mm"):
+    file = os.path.join(work, "a.svg")
+    run = subprocess.run([strut, "path", model, "--load", "م" * 32, "--until", "2", "--plot",
+                          file, "--width", size], capture_output=True, text=True)
+    if run.returncode != 0 or run.stderr:
+        fail(f"names of other scripts, {size}: {run.returncode} {run.stderr}")
+    else:
+        read(file)
 for bad, code in (("x.gif", 1), ("nowhere/x.svg", 4)):
     run = subprocess.run([strut, "path", "models/gallery/von-mises.yaml", "--set", "load=1",
                           "--plot", bad], capture_output=True)
     if run.returncode != code or run.stdout or not run.stderr:
         fail(f"--plot {bad}: exit code {run.returncode}, {run.stdout}, {run.stderr}")
 # Title, labels and limits; an event beyond the limits has no marker there.
-with tempfile.TemporaryDirectory() as there:
-    call = [strut, "path", "models/gallery/von-mises.yaml", "--set", "load=0.1", "--quiet"]
-    words = ["--title", "Own title", "--x-label", "own label", "--x-limits", "0,0.02", "--y-limits", "-0.02,0.05"]
-    for name, more in (("plain.svg", []), ("own.svg", words)):
-        subprocess.run(call + more + ["--plot", f"{there}/{name}"], check=True)
-    plain, own = (read(f"{there}/{name}")[2] for name in ("plain.svg", "own.svg"))
-    left = [len([c for c in centres(p, None) if c[0] < 250 and c[1] < 170]) for p in (plain, own)]
-    if left != [4, 1]:
-        fail(f"path: {left} markers on the curve without and with limits, not 4 and 1")
-    for bad, why in ((["--x-limits", "2,1", "--plot", f"{there}/bad.svg"], "two ascending numbers"),
-                     (["--title", "x"], "--title needs --plot"), (["--y-label", "x"], "--y-label needs --plot")):
-        done = subprocess.run(call + bad, capture_output=True, text=True)
-        if done.returncode != 1 or why not in done.stderr:
-            fail(f"path {bad}: {done.returncode} {done.stderr}")
-    # The other commands take a title.
-    for command in (["modes"], ["rigidity"], ["equilibria"], ["form"], ["compare", "--no-motion", "--no-states"]):
-        texts = []
-        for title in ("A", "A longer title"):
-            subprocess.run([strut, *command, "models/gallery/x-frame.yaml", "--quiet", "--title", title, "--plot",
-                            f"{there}/a.svg"], check=True, stdout=subprocess.DEVNULL)
-            texts.append(open(f"{there}/a.svg", encoding="utf-8").read().count("<use "))
-        if texts[1] - texts[0] != 13:
-            fail(f"{command[0]} --title: {texts} letters")
+call = [strut, "path", "models/gallery/von-mises.yaml", "--set", "load=0.1", "--quiet"]
+words = ["--title", "Own title", "--x-label", "own label", "--x-limits", "0,0.02", "--y-limits", "-0.02,0.05"]
+for name, more in (("plain.svg", []), ("own.svg", words)):
+    subprocess.run(call + more + ["--plot", f"{work}/{name}"], check=True)
+plain, own = (read(f"{work}/{name}")[2] for name in ("plain.svg", "own.svg"))
+left = [len([c for c in centres(p, None) if c[0] < 250 and c[1] < 170]) for p in (plain, own)]
+if left != [4, 1]:
+    fail(f"path: {left} markers on the curve without and with limits, not 4 and 1")
+for bad, why in ((["--x-limits", "2,1", "--plot", f"{work}/bad.svg"], "two ascending numbers"),
+                 (["--title", "x"], "--title needs --plot"), (["--y-label", "x"], "--y-label needs --plot")):
+    done = subprocess.run(call + bad, capture_output=True, text=True)
+    if done.returncode != 1 or why not in done.stderr:
+        fail(f"path {bad}: {done.returncode} {done.stderr}")
+# The other commands take a title.
+for command in (["modes"], ["rigidity"], ["equilibria"], ["form"], ["compare", "--no-motion", "--no-states"]):
+    texts = []
+    for title in ("A", "A longer title"):
+        subprocess.run([strut, *command, "models/gallery/x-frame.yaml", "--quiet", "--title", title, "--plot",
+                        f"{work}/a.svg"], check=True, stdout=subprocess.DEVNULL)
+        texts.append(open(f"{work}/a.svg", encoding="utf-8").read().count("<use "))
+    if texts[1] - texts[0] != 13:
+        fail(f"{command[0]} --title: {texts} letters")
 
 finish()

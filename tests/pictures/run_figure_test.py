@@ -9,12 +9,11 @@ import os
 import re
 import signal
 import subprocess
-import tempfile
 import time
 
 from svg_paths import distance, has_segment, near, read, segments
 
-from testing import check, fail, finish, strut
+from testing import check, fail, finish, strut, work
 
 crawler = open("models/crawler/crawler.yaml").read()
 EDGE, PALE, WHITE = (0.1, 0.1, 0.1), (0.72, 0.72, 0.72), (1, 1, 1)
@@ -252,24 +251,23 @@ def check_stopped(here, model):
     check(os.path.exists(file), "a run that was stopped is not drawn")
 
 
-with tempfile.TemporaryDirectory() as here:
-    short = os.path.join(here, "short.yaml")
-    open(short, "w").write(crawler.replace("periods: 1100", "periods: 20")
-                           .replace("measure: {last: 100}", "measure: {node: n1, last: 2}"))
-    tilt = os.path.join(here, "tilt.yaml")  # the change from state I to II, figure 11
-    pulse = "{half_sine: {amplitude: 0.8 mm, frequency: 10 Hz}}"
-    text = crawler.replace("{sine: {amplitude: amplitude, frequency: frequency}}", pulse)
-    text = re.sub(r"^run:.*", "run: {duration: 1 s}", text, flags=re.M)
-    open(tilt, "w").write(re.sub(r"^output:.*", "output: {every: 1 ms}", text, flags=re.M))
-    check_snapshots(here, tilt, [], [0, 0.2, 0.4, 0.6, 0.8, 1.0], True)
-    check_snapshots(here, tilt, ["--times", "0 s, 50 ms,100 ms,0.15 s, 1"], [0, 0.05, 0.1, 0.15, 1.0], True)
-    check_snapshots(here, tilt, ["--times", "300.4 ms", "--width", "column"], [0.3], True)
-    check_snapshots(here, short, [], [1.4, 1.52, 1.64, 1.76, 1.88, 2.0], True)
-    check_ground(here)
-    check_period(here, short, (1, 1))
-    check_period(here, short, (10, 2))
-    check_overview(here, short)
-    check_same_bytes(here, short)
-    check_refusals(here, short)
-    check_stopped(here, short)
+short = os.path.join(work, "short.yaml")
+open(short, "w").write(crawler.replace("periods: 1100", "periods: 20")
+                       .replace("measure: {last: 100}", "measure: {node: n1, last: 2}"))
+tilt = os.path.join(work, "tilt.yaml")  # the change from state I to II, figure 11
+pulse = "{half_sine: {amplitude: 0.8 mm, frequency: 10 Hz}}"
+text = crawler.replace("{sine: {amplitude: amplitude, frequency: frequency}}", pulse)
+text = re.sub(r"^run:.*", "run: {duration: 1 s}", text, flags=re.M)
+open(tilt, "w").write(re.sub(r"^output:.*", "output: {every: 1 ms}", text, flags=re.M))
+check_snapshots(work, tilt, [], [0, 0.2, 0.4, 0.6, 0.8, 1.0], True)
+check_snapshots(work, tilt, ["--times", "0 s, 50 ms,100 ms,0.15 s, 1"], [0, 0.05, 0.1, 0.15, 1.0], True)
+check_snapshots(work, tilt, ["--times", "300.4 ms", "--width", "column"], [0.3], True)
+check_snapshots(work, short, [], [1.4, 1.52, 1.64, 1.76, 1.88, 2.0], True)
+check_ground(work)
+check_period(work, short, (1, 1))
+check_period(work, short, (10, 2))
+check_overview(work, short)
+check_same_bytes(work, short)
+check_refusals(work, short)
+check_stopped(work, short)
 finish()

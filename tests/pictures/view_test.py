@@ -9,10 +9,9 @@ import html.parser
 import json
 import os
 import subprocess
-import tempfile
 import zlib
 
-from testing import check, finish, models, strut
+from testing import check, finish, models, strut, work
 
 
 def run(*words, code=0):
@@ -256,12 +255,11 @@ def alone():
     check(data["equilibria"] is None and data["equilibria_remark"], "equilibria all the same")
 
 
-with tempfile.TemporaryDirectory() as work:
-    os.chdir(work)
-    crawler()
-    short_run()
-    paper_run()
-    hostile()
-    diverged()
-    alone()
+os.chdir(work)
+crawler()
+short_run()
+paper_run()
+hostile()
+diverged()
+alone()
 finish()

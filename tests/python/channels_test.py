@@ -11,14 +11,9 @@ import tempfile
 import unittest
 import zlib
 
-from support import main, program, skip_without
+from arrays import main, np, program, strut
 
-skip_without("numpy")
-
-import numpy as np  # noqa: E402
-
-import strut  # noqa: E402
-from strut import _strut  # noqa: E402
+from strut import _strut
 
 SCENE = """strut: 1
 nodes: {a: {position: [-0.5, 0], mass: 0.1}, b: {position: [0.5, 0], mass: 0.2}, c: {position: [0, 0.6], mass: 0.3}}

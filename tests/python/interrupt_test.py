@@ -7,13 +7,8 @@ import threading
 import time
 import unittest
 
-from support import MODELS, main, skip_without
+from arrays import CRAWLER, MODELS, main, strut
 
-skip_without("numpy")
-
-import strut  # noqa: E402
-
-CRAWLER = MODELS / "crawler/crawler.yaml"
 LATE = 1.0  #: s; 0.2 s on an idle machine, which tests cannot expect
 
 

@@ -7,15 +7,10 @@ import pathlib
 import tempfile
 import unittest
 
-from support import MODELS, main, program, skip_without
+from arrays import MODELS, main, np, program, strut
 
-skip_without("numpy")
-
-import numpy as np  # noqa: E402
-
-import strut  # noqa: E402
-from strut import _values  # noqa: E402
-from strut.formats import matrix_market  # noqa: E402
+from strut import _values
+from strut.formats import matrix_market
 
 RUNS = {
     "crawler/crawler": {"accuracy": "1 %"},

@@ -7,15 +7,7 @@ import threading
 import time
 import unittest
 
-from support import MODELS, main, skip_without
-
-skip_without("numpy")
-
-import numpy as np  # noqa: E402
-
-import strut  # noqa: E402
-
-CRAWLER = MODELS / "crawler/crawler.yaml"
+from arrays import CRAWLER, MODELS, main, np, strut
 
 
 class Simulations(unittest.TestCase):

@@ -11,15 +11,8 @@ import threading
 import time
 import unittest
 
-from support import MODELS, main, program, skip_without
+from arrays import CRAWLER, main, np, program, strut
 
-skip_without("numpy")
-
-import numpy as np  # noqa: E402
-
-import strut  # noqa: E402
-
-CRAWLER = MODELS / "crawler/crawler.yaml"
 STUDY = """strut: 1
 study: A few points
 model: {model}

@@ -9,15 +9,8 @@ import resource
 import tracemalloc
 import unittest
 
-from support import MODELS, main, skip_without
+from arrays import CRAWLER, MODELS, main, np, strut
 
-skip_without("numpy")
-
-import numpy as np  # noqa: E402
-
-import strut  # noqa: E402
-
-CRAWLER = MODELS / "crawler/crawler.yaml"
 ACCURATE = {"accuracy": "2 %", "channels": "position,force"}
 
 

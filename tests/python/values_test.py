@@ -6,14 +6,9 @@ import json
 import pickle
 import unittest
 
-from support import MODELS, main, skip_without
+from arrays import MODELS, main, np, strut
 
-skip_without("numpy")
-
-import numpy as np  # noqa: E402
-
-import strut  # noqa: E402
-from strut import _errors, _strut, _values  # noqa: E402
+from strut import _errors, _strut, _values
 
 CRAWLER = strut.load(MODELS / "crawler/crawler.yaml")
 FRAME = strut.load(MODELS / "gallery/x-frame.yaml")

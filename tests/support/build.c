@@ -157,3 +157,10 @@ const double *build_numbers(strut_scene *scene, const double *numbers, size_t co
   memcpy(copy, numbers, count * sizeof *copy);
   return copy;
 }
+
+strut_setup build_tethered(double x, double y, double mass) {
+  strut_setup setup = build_setup();
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, x, y, mass);
+  return setup;
+}

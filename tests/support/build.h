@@ -12,6 +12,8 @@
 
 strut_scene build_scene(void);
 strut_setup build_setup(void);
+/** The same with node 0 fixed at the origin and node 1, a mass [kg], at (x, y) [m]. */
+strut_setup build_tethered(double x, double y, double mass);
 /** A free node, drawn and starting at x, y [m], without mass and at rest. */
 int32_t build_node(strut_scene *scene, double x, double y);
 /** The same with a point mass [kg]. */

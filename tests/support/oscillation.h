@@ -9,8 +9,7 @@
 #include <math.h>
 #include <stdint.h>
 
-/* Widening is the point here; clang counts it as promotion. */
-#pragma GCC diagnostic ignored "-Wdouble-promotion"
+#include "tests/support/widening.h"
 
 /**
  * R(iz)^n with R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24 and z = step * angular frequency: after n steps

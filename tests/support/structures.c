@@ -16,13 +16,13 @@ void structure_x_frame(strut_scene *scene, const x_frame *f) {
   for (int i = 0; i < 4; i++) build_node(scene, corner[i][0], corner[i][1]);
   for (int i = 0; i < 4; i++)
     with_density(scene,
-                 build_member(scene, STRUT_CABLE, i, (i + 1) % 4, f->cable_stiffness,
-                              f->cable_damping, f->cable_mass),
+                 build_member(scene, STRUT_CABLE, i, (i + 1) % 4, f->cable.stiffness,
+                              f->cable.damping, f->cable.mass),
                  f->force_density);
   for (int i = 0; i < 2; i++)
     with_density(
         scene,
-        build_member(scene, STRUT_BAR, i, i + 2, f->bar_stiffness, f->bar_damping, f->bar_mass),
+        build_member(scene, STRUT_BAR, i, i + 2, f->bar.stiffness, f->bar.damping, f->bar.mass),
         -f->force_density);
 }
 

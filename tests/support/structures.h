@@ -5,15 +5,15 @@
 #ifndef STRUT_TESTS_SUPPORT_STRUCTURES_H
 #define STRUT_TESTS_SUPPORT_STRUCTURES_H
 
-#include "engine/scene/scene.h"
+#include "tests/support/motion.h"
 
 /** Snelson's X-frame: a square with four cables as sides and two bars as diagonals. */
 typedef struct x_frame {
-  double side;                           /* [m] */
-  double cable_stiffness, bar_stiffness; /* [N/m] */
-  double force_density;                  /* of the cables [N/m]; the bars' is the opposite */
-  double cable_mass, bar_mass;           /* [kg] */
-  double cable_damping, bar_damping;     /* [N s/m] */
+  double side;          /* [m] */
+  double force_density; /* of the cables [N/m]; the bars' is the opposite */
+  struct {
+    double stiffness, damping, mass; /* [N/m], [N s/m], [kg] */
+  } cable, bar;
 } x_frame;
 
 /** Stands free and square about the origin; nodes 0 to 3 anticlockwise from lower left. */

@@ -5,8 +5,6 @@
 #endif
 
 #include "engine/statics/search/critical.h"
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/structures.h"
 
 /* A scene (fill it first), and what a search of it gives. */

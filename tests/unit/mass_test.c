@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The mass matrix: how it is taken apart, and that its inverse is one whatever the masses. */
 #include "engine/model/mass.h"
-#include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 

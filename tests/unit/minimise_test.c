@@ -2,8 +2,6 @@
 /* Descents: from anywhere, at any condition, by eigenvectors and by sparse factors. */
 #include "engine/statics/minimise.h"
 
-#include "tests/support/build.h"
-#include "tests/support/check.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Figures of a run without memory, without frames, and of frames that are no shapes. */
 #include "engine/output/figures/run_figure.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 #include "tests/unit/scratch.h"
 

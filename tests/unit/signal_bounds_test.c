@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bounds of random expressions against their values and rates; kinks and the longest steps of known ones. */
-#include <math.h>
 
 #include "engine/scene/signal_bounds.h"
 #include "tests/support/test.h"
@@ -98,27 +97,36 @@ static void check_kinks(strut_program program, const double *times, int count) {
   assert_true(isinf(strut_program_next_kink(&program, NULL, NULL, t, 100.0)));
 }
 
+/* A program in postfix order: numbers, t, and operations by their words, as in "t 1 - abs". */
+static strut_program postfix(const char *text, strut_instruction *p) {
+  static const struct {
+    const char *word;
+    strut_operation id;
+  } words[] = {{"+", STRUT_OPERATION_ADD},      {"-", STRUT_OPERATION_SUBTRACT},
+               {"*", STRUT_OPERATION_MULTIPLY}, {"/", STRUT_OPERATION_DIVIDE},
+               {"^", STRUT_OPERATION_POWER},    {"neg", STRUT_OPERATION_NEGATE},
+               {"abs", STRUT_OPERATION_ABS},    {"max", STRUT_OPERATION_MAX},
+               {"sin", STRUT_OPERATION_SIN},    {"exp", STRUT_OPERATION_EXP}};
+  size_t count = 0, most = sizeof words / sizeof *words;
+  for (size_t length; *text; text += length + (text[length] == ' '), count++) {
+    size_t k = 0;
+    length = strcspn(text, " ");
+    while (k < most && (strlen(words[k].word) != length || strncmp(text, words[k].word, length)))
+      k++;
+    p[count] = k < most ? operation(words[k].id) : *text == 't' ? TIME : number(strtod(text, NULL));
+  }
+  return (strut_program){.length = count, .depth = MOST, .instruction = p};
+}
+
 TEST(kinks_of_a_triangle) { /* max(0, 1 - abs(t - 0.53) / 1e-5) */
-  const strut_instruction p[] = {number(0.0),
-                                 number(1.0),
-                                 TIME,
-                                 number(0.53),
-                                 operation(STRUT_OPERATION_SUBTRACT),
-                                 operation(STRUT_OPERATION_ABS),
-                                 number(1e-5),
-                                 operation(STRUT_OPERATION_DIVIDE),
-                                 operation(STRUT_OPERATION_SUBTRACT),
-                                 operation(STRUT_OPERATION_MAX)};
-  check_kinks((strut_program){.length = 10, .depth = 4, .instruction = p},
-              (const double[]){0.52999, 0.53, 0.53001}, 3);
+  strut_instruction p[MOST];
+  check_kinks(postfix("0 1 t 0.53 - abs 1e-5 / - max", p), (const double[]){0.52999, 0.53, 0.53001},
+              3);
 }
 
 TEST(kinks_of_a_sine_that_is_cut_off) { /* max(sin(t) + 0.01 t, 1.9) */
-  const strut_instruction p[] = {
-      TIME,        operation(STRUT_OPERATION_SIN),      number(0.01),
-      TIME,        operation(STRUT_OPERATION_MULTIPLY), operation(STRUT_OPERATION_ADD),
-      number(1.9), operation(STRUT_OPERATION_MAX)};
-  strut_program program = {.length = 8, .depth = 3, .instruction = p};
+  strut_instruction p[MOST];
+  strut_program program = postfix("t sin 0.01 t * + 1.9 max", p);
   double t = 0.0, before = 0.0;
   int count = 0;
   while ((t = strut_program_next_kink(&program, NULL, NULL, t, 100.0)) < HUGE_VAL) {
@@ -130,17 +138,8 @@ TEST(kinks_of_a_sine_that_is_cut_off) { /* max(sin(t) + 0.01 t, 1.9) */
 }
 
 TEST(a_place_that_is_touched_is_passed) { /* abs(t^2 - 2 t + 1) */
-  const strut_instruction p[] = {TIME,
-                                 number(2.0),
-                                 operation(STRUT_OPERATION_POWER),
-                                 number(2.0),
-                                 TIME,
-                                 operation(STRUT_OPERATION_MULTIPLY),
-                                 operation(STRUT_OPERATION_SUBTRACT),
-                                 number(1.0),
-                                 operation(STRUT_OPERATION_ADD),
-                                 operation(STRUT_OPERATION_ABS)};
-  strut_program program = {.length = 10, .depth = 3, .instruction = p};
+  strut_instruction p[MOST];
+  strut_program program = postfix("t 2 ^ 2 t * - 1 + abs", p);
   int count = 0;
   for (double t = 0.0; t < 100.0 && count < 1000; count++)
     t = strut_program_next_kink(&program, NULL, NULL, t, 100.0);
@@ -148,16 +147,8 @@ TEST(a_place_that_is_touched_is_passed) { /* abs(t^2 - 2 t + 1) */
 }
 
 TEST(steps_end_before_a_pulse_and_grow_with_what_is_smooth) { /* exp(-((t - 1) / 1e-4)^2); sin(t) */
-  const strut_instruction p[] = {TIME,
-                                 number(1.0),
-                                 operation(STRUT_OPERATION_SUBTRACT),
-                                 number(1e-4),
-                                 operation(STRUT_OPERATION_DIVIDE),
-                                 number(2.0),
-                                 operation(STRUT_OPERATION_POWER),
-                                 operation(STRUT_OPERATION_NEGATE),
-                                 operation(STRUT_OPERATION_EXP)};
-  strut_program pulse = {.length = 9, .depth = 2, .instruction = p};
+  strut_instruction p[MOST];
+  strut_program pulse = postfix("t 1 - 1e-4 / 2 ^ neg exp", p);
   int steps = 0, within_pulse = 0;
   for (double t = 0.0; t < 2.0; steps++) {
     double h = strut_program_longest_step(&pulse, NULL, NULL, t, 0.5, 1e-6, 1e-9);
@@ -166,8 +157,8 @@ TEST(steps_end_before_a_pulse_and_grow_with_what_is_smooth) { /* exp(-((t - 1) /
     t += h;
   }
   assert_true(within_pulse >= 2 && steps < 100);
-  const strut_instruction s[] = {TIME, operation(STRUT_OPERATION_SIN)};
-  strut_program sine = {.length = 2, .depth = 1, .instruction = s};
+  strut_instruction s[MOST];
+  strut_program sine = postfix("t sin", s);
   for (double t = 0.0; t < 10.0; t += 0.1)
     assert_true(strut_program_longest_step(&sine, NULL, NULL, t, 1.0, 1e-6, 1e-9) > 0.4);
 }

@@ -5,7 +5,6 @@
  */
 #include "engine/statics/equilibria/equilibria.h"
 
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static const double G = 9.81;
@@ -103,9 +102,7 @@ TEST(it_tips_over_its_foot) {
 
 /* Two bars over a span, held at both ends: nothing else is needed to hold it. */
 static strut_setup truss(void) {
-  strut_setup setup = build_setup();
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 1, 0.3, 1);
+  strut_setup setup = build_tethered(1, 0.3, 1);
   build_support(&setup.scene, 2, 0);
   build_member(&setup.scene, STRUT_BAR, 0, 1, 1000, 0, 0);
   build_member(&setup.scene, STRUT_BAR, 1, 2, 1000, 0, 0);

@@ -9,7 +9,6 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/integrate/limit/tangent_limits.h"
 #include "engine/model/mass.h"
-#include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 

@@ -3,7 +3,6 @@
 #include "engine/integrate/limit/step_limit.h"
 
 #include "tests/physics/random_scene.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
 static const double PI = 3.14159265358979323846, IMAGINARY = 2.8284271247461903;
@@ -154,14 +153,7 @@ static double growth(const strut_setup *setup, const char *method, double step, 
 
 /* The truth of it: just below the limit small motions stay small, just above they grow. */
 TEST(the_limit_is_where_motions_begin_to_grow) {
-  x_frame frame = {.side = 1,
-                   .cable_stiffness = 400,
-                   .bar_stiffness = 2000,
-                   .force_density = 0,
-                   .cable_mass = 0.05,
-                   .bar_mass = 0.4,
-                   .cable_damping = 0.3,
-                   .bar_damping = 0.2};
+  x_frame frame = {1, 0, .cable = {400, 0.3, 0.05}, .bar = {2000, 0.2, 0.4}};
   for (int i = 0; i < 14; i++) {
     const strut_integrator *method = strut_integrator_at((size_t)(i / 2));
     int lumped = i % 2;

@@ -2,7 +2,6 @@
 /* A recorded motion in memory: as the run had it, as its file gives it back, thinned, refused. */
 #include "engine/output/trajectory.h"
 #include "engine/output/record_files.h"
-#include "tests/support/motion.h"
 #include "tests/support/structures.h"
 #include "tests/unit/scratch.h"
 
@@ -131,9 +130,7 @@ TEST(thinned_to_the_room) {
 
 TEST(a_run_that_diverged_is_marked) {
   OWN(strut_trajectory) taken = {0}, read = {0};
-  OWN(strut_setup) setup = build_setup();
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 1.1, 0, 1);
+  OWN(strut_setup) setup = build_tethered(1.1, 0, 1);
   build_sized(&setup.scene, STRUT_BAR, 0, 1, 2e5, 1, 0, 1);
   motion_experiment(&setup, 0.01, 10); /* w dt = 4.5 */
   setup.experiment.output_every = 0.01;

@@ -3,9 +3,7 @@
 #include "engine/base/vec.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
-
-/* Widening is the point here; clang counts it as promotion. */
-#pragma GCC diagnostic ignored "-Wdouble-promotion"
+#include "tests/support/widening.h"
 
 static const double BOUND = 1.5 * 0x1p-52; /* units in the last place of 1 */
 
