@@ -45,8 +45,8 @@ for band in 50mm/s 1m/s; do
 done
 
 # ---- what turns about once in a step, or more often; right where the step follows it ----
-turning() { # NAME: of the scene on standard input, whose T is the time of a turn, and step 1 ms
-  cat >turning.yaml
+turning() { # NAME LINES: of the scene of $body and LINES, which turns at HERTZ, with a step of 1 ms
+  printf '%s\n' "$body" "$2" >turning.yaml
   for method in rk4 verlet euler rk4-events verlet-events; do
     sed 's/HERTZ/1 kHz/g' turning.yaml >fast.yaml
     tells 3 "$1 turns at 1000 Hz, 1 times in a step" run fast.yaml --integrator $method
@@ -65,42 +65,23 @@ members: {m: {kind: spring, nodes: [a, b], stiffness: 1000, damping: 5}}
 solver: {step: 1 ms}
 run: {duration: 0.2 s}
 strut: 1'
-turning "unbalance 'rotor'" <<END
-$body
-unbalances: {rotor: {node: b, mass: 2 g, radius: 3 mm, speed: HERTZ}}
-END
-turning "load 'l'" <<END
-$body
-loads: {l: {node: b, force: [1, 0], signal: {sine: {amplitude: 1, frequency: HERTZ}}}}
-END
-turning "the drive of actuator 'd'" <<END
-$body
-actuators: {d: {member: m, signal: {expression: '1 mm * sin(2*pi*HERTZ*t)'}}}
-END
-turning "load 'l'" <<END
-$body
-loads: {l: {node: b, force: [1, 0], signal: {expression: 't*HERTZ - floor(t*HERTZ)'}}}
-END
-turning "signal 's'" <<END
-$body
-signals: {part: {sine: {amplitude: 1 mm, frequency: HERTZ}}, s: {sine: {amplitude: 1 mm, frequency: HERTZ, phase: 0.1}}}
-actuators: {d: {member: m, signal: s}}
-END
-turning "oscillator 'o'" <<END
-$body
-oscillators: {o: {frequency: HERTZ}}
-actuators: {d: {member: m, signal: {expression: '1 mm * sin(o)'}}}
-END
-turning "the moving node 'c'" <<END
-$(echo "$body" | sed 's/^nodes: {/nodes: {c: {position: [0.2, 0], fixed: both, moves: {x: {sine: {amplitude: 1 mm, frequency: HERTZ}}}}, /
-s/^members: {/members: {n: {kind: spring, nodes: [b, c], stiffness: 1000}, /')
-END
+turning "unbalance 'rotor'" "unbalances: {rotor: {node: b, mass: 2 g, radius: 3 mm, speed: HERTZ}}"
+turning "load 'l'" "loads: {l: {node: b, force: [1, 0], signal: {sine: {amplitude: 1, frequency: HERTZ}}}}"
+turning "the drive of actuator 'd'" "actuators: {d: {member: m, signal: {expression: '1 mm * sin(2*pi*HERTZ*t)'}}}"
+turning "load 'l'" "loads: {l: {node: b, force: [1, 0], signal: {expression: 't*HERTZ - floor(t*HERTZ)'}}}"
+turning "signal 's'" "signals: {part: {sine: {amplitude: 1 mm, frequency: HERTZ}}, s: {sine: {amplitude: 1 mm, frequency: HERTZ, phase: 0.1}}}
+actuators: {d: {member: m, signal: s}}"
+turning "oscillator 'o'" "oscillators: {o: {frequency: HERTZ}}
+actuators: {d: {member: m, signal: {expression: '1 mm * sin(o)'}}}"
 # the right answer is at hand: a free body stays, on average
 sed 's/HERTZ/1 kHz/' >rotor.yaml <<END
 $body
 unbalances: {rotor: {node: b, mass: 2 g, radius: 3 mm, speed: HERTZ}}
 END
 gives .velocity 0 1e-8 run rotor.yaml --accuracy 1%
+body=$(echo "$body" | sed 's/^nodes: {/nodes: {c: {position: [0.2, 0], fixed: both, moves: {x: {sine: {amplitude: 1 mm, frequency: HERTZ}}}}, /
+s/^members: {/members: {n: {kind: spring, nodes: [b, c], stiffness: 1000}, /')
+turning "the moving node 'c'" ""
 
 # ---- gas that flows too fast for the step ----
 cat >pipe.yaml <<'END'
@@ -201,7 +182,6 @@ for start in 'velocity: [0, 2]' 'velocities: {a: [0, 2], b: [0, 2]}'; do
     gives .measured.vy.value 1.019 2e-3 run t.yaml $more
   done
 done
-
 
 # ---- feet, whose band is a width within which they creep ----
 cat >footed.yaml <<'END'

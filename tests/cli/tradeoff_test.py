@@ -11,7 +11,7 @@ import re
 import subprocess
 import sys
 
-from testing import check, fail, files_in, finish, strut, work
+from testing import check, fail, files_in, finish, strut, work as here
 
 slower = int(sys.argv[2]) if len(sys.argv) > 2 else 1
 OSCILLATOR, BALL = "models/basics/oscillator.yaml", "models/basics/bouncing-node.yaml"
@@ -202,7 +202,7 @@ if answer:
         check(close(value, 1 / (2 * point["mu"] * 9.81), 1e-6), f"Coulomb's block at mu {point['mu']}: {value}")
 
 # ---- Files: all of them or none; the same numbers as in the answer.
-out = os.path.join(work, "deep", "out")
+out = os.path.join(here, "deep", "out")
 done = run(BALL, "--step-sizes", "4", "-o", out, "--own-model")
 check(sorted(files_in(out)) == ["tradeoff.csv", "tradeoff.json", "tradeoff.svg"], f"files: {files_in(out)}")
 if "The cheapest setting" not in done.stdout or "\n    0.5 % " not in done.stdout:
@@ -218,11 +218,11 @@ for row, setting in zip(rows, written["settings"]):
 svg = open(os.path.join(out, "tradeoff.svg"), encoding="utf-8").read()
 check("</svg>" in svg, "half a picture")
 before = {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}
-os.mkdir(os.path.join(work, "blocked"))
-os.mkdir(os.path.join(work, "blocked", "tradeoff.svg"))
-done = run(BALL, "--step-sizes", "1", "-o", os.path.join(work, "blocked"), code=4)
-if done.stdout or files_in(os.path.join(work, "blocked")) != ["tradeoff.svg"]:
-    fail(f"a blocked file: {done.stdout} {files_in(os.path.join(work, 'blocked'))}")
+os.mkdir(os.path.join(here, "blocked"))
+os.mkdir(os.path.join(here, "blocked", "tradeoff.svg"))
+done = run(BALL, "--step-sizes", "1", "-o", os.path.join(here, "blocked"), code=4)
+if done.stdout or files_in(os.path.join(here, "blocked")) != ["tradeoff.svg"]:
+    fail(f"a blocked file: {done.stdout} {files_in(os.path.join(here, 'blocked'))}")
 run(BALL, "--integrator", "rk5", "-o", out, code=1)
 check(before == {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}, "a refusal changed files")
 done = run(BALL, "--step-sizes", "1", "-o", "/dev/full/x", code=4)
@@ -275,11 +275,11 @@ for file, accuracy in (("models/basics/sliding-block.yaml", "1e-4"), (HOPPER, "0
     row = answer["settings"][advice["setting"]]
     with open(file, encoding="utf-8") as text:
         model = re.sub(r"(?m)^solver: .*$", solver[1], text.read())
-    with open(os.path.join(work, "model.yaml"), "w", encoding="utf-8") as out:
+    with open(os.path.join(here, "model.yaml"), "w", encoding="utf-8") as out:
         out.write(model)
     other = ("rk4-events", f"{row['step'] / 2048} s") if row["method"] == "adaptive" else ("adaptive", "1 ms")
     fine = measure(file, "--integrator", other[0], "--step", other[1], "--tolerance", "1e-11")
-    error = abs(measure(os.path.join(work, "model.yaml")) - fine) / max(abs(fine), answer["scale"])
+    error = abs(measure(os.path.join(here, "model.yaml")) - fine) / max(abs(fine), answer["scale"])
     floor = answer["models"][0]["floor"]["worst"]
     if not error <= wanted or not abs(error - row["step_error"]["worst"]) <= 3 * floor + 1e-3 * wanted:
         fail(f"{what}: {solver[1]} is {error} off, reported {row['step_error']['worst']}")

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Large grids of X-frames that land on the ground: energy, momentum, memory and pace over many steps.
    Arguments: nodes and steps of the large one, steps of one of 1000 nodes, nodes of the largest. */
-#include <sys/resource.h>
 #include <time.h>
 
 #include "engine/forces/energy.h"
@@ -18,12 +17,6 @@ static const double STEP = 5e-4, ROUGH_STEP = 1e-4;
 static const double HEIGHT = 0.001, FALL = 1.0;
 
 static double seconds(void) { return (double)clock() / CLOCKS_PER_SEC; }
-
-static long resident(void) {
-  struct rusage usage;
-  assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
-  return usage.ru_maxrss;
-}
 
 /* A grid of about n nodes that falls at 1 m/s, and drifts where it may slide. */
 static strut_setup falling(int32_t n, strut_mass_model mass, double mu) {

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Very many steps: energy, clock and memory. The number of steps is the program's argument. */
-#include <sys/resource.h>
-
 #include "engine/forces/energy.h"
 #include "tests/support/allocations.h"
 #include "tests/support/motion.h"
@@ -20,12 +18,6 @@ static strut_setup oscillator(void) {
 static double energy(const motion *m) {
   strut_energies e = strut_energy_evaluate(m->model, m->state, 0);
   return e.kinetic + e.elastic;
-}
-
-static long resident(void) {
-  struct rusage usage;
-  assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
-  return usage.ru_maxrss;
 }
 
 BEFORE_ALL { steps = (int64_t)test_number(1, (double)steps); }

@@ -6,19 +6,14 @@
 
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/measure/measure.h"
-#include "parser/read/read_scene.h"
+#include "tests/models/run_model.h"
 #include "tests/support/motion.h"
 
 /* Runs a text to the accuracy that it asks for. */
 static strut_summary run_text(const char *text, strut_setup *setup) {
-  strut_diagnostics diagnostics = {0};
   strut_error error = {0};
   strut_summary s;
-  strut_status status =
-      strut_setup_read(setup, "test", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics);
-  if (status) print_message("%s", strut_diagnostics_render(&diagnostics, 10));
-  assert_int_equal(status, STRUT_OK);
-  strut_diagnostics_free(&diagnostics);
+  *setup = model_read_text("test", text, (const char *const[]){NULL}).setup;
   OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   strut_run_options options = {0};
   assert_int_equal(strut_simulate_as_asked(model, &setup->experiment, &options, &s, &error),

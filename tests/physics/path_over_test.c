@@ -58,8 +58,7 @@ static void check_displaced_apex(bool supported, double from) {
   assert_true(path.points[0].factor == from);
   assert_true(path.points[path.point_count - 1].factor == until);
   double most = 0, least = 0;
-  for (size_t i = 0; i < path.point_count; i++) {
-    const strut_path_point *p = &path.points[i];
+  for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
     double y = HEIGHT + p->factor, l = hypot(SPAN, y);
     assert_near(p->q[2 * APEX + 1], y, 1e-15);
     assert_near(p->reaction[2 * APEX + 1], -arch_load(k, y), 1e-11);
@@ -93,8 +92,7 @@ TEST(displacement_under_load) {
                         .over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .until = -0.5});
   double start = path.points[0].q[2 * APEX + 1];
   assert_relative(arch_load(k, start), load, 1e-11);
-  for (size_t i = 0; i < path.point_count; i++) {
-    const strut_path_point *p = &path.points[i];
+  for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
     assert_near(p->reaction[2 * APEX + 1], load - arch_load(k, start + p->factor), 1e-10);
   }
 }
@@ -115,8 +113,7 @@ TEST(displacement_of_a_support) {
   assert_int_equal(path.event_count, 1);
   assert_int_equal(path.events[0].kind, STRUT_PATH_TAUT);
   assert_near(path.events[0].factor, slack, 1e-14);
-  for (size_t i = 0; i < path.point_count; i++) {
-    const strut_path_point *p = &path.points[i];
+  for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
     double pull = spring * cable / (spring + cable) * fmax(0, p->factor - slack);
     assert_near(p->reaction[2 * hand], pull, 1e-11);
     assert_near(p->reaction[2 * wall], -pull, 1e-11);
@@ -167,8 +164,7 @@ TEST(actuator_snaps) {
     assert_int_equal(e->before, i);
     assert_int_equal(e->after, 1 - i);
   }
-  for (size_t i = 0; i < path.point_count; i++) {
-    const strut_path_point *p = &path.points[i];
+  for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
     double y = p->q[2 * APEX + 1];
     assert_near(p->factor, lever_length(k, y), 1e-12);
     assert_near(p->force[2], -arch_load(k, y), 1e-10);
@@ -217,8 +213,7 @@ TEST(stiffness_of_a_scene) {
   assert_relative(path.events[0].factor, soft, 1e-11);
   assert_near(path.events[0].q[2 * APEX + 1], limit_height(), 1e-8);
   assert_non_null(strstr(path.events[0].detail, "k can fall no further"));
-  for (size_t i = 0; i < path.point_count; i++) {
-    const strut_path_point *p = &path.points[i];
+  for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
     double y = p->q[2 * APEX + 1];
     assert_near(arch_load(p->factor, y), 1, 1e-11);
     assert_int_equal(p->negative, y < limit_height() ? 1 : 0);
@@ -273,8 +268,7 @@ TEST(rising_ground) {
   assert_int_equal(path.event_count, 1);
   assert_int_equal(path.events[0].kind, STRUT_PATH_TOUCHDOWN);
   assert_near(path.events[0].factor, 0, 1e-13);
-  for (size_t i = 0; i < path.point_count; i++) {
-    const strut_path_point *p = &path.points[i];
+  for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
     double y = 1000 * fmax(0, p->factor) / 1100;
     assert_near(p->q[3], y, 1e-13);
     assert_near(p->contact[0], 100 * y, 1e-10);

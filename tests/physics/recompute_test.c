@@ -17,14 +17,8 @@ typedef struct coverage {
   int loaded[STRUT_SUM + 1], fixed_member;
 } coverage;
 
-static double largest(const long double *x, size_t n) {
-  long double most = 0;
-  for (size_t i = 0; i < n; i++) most = fmaxl(most, fabsl(x[i]));
-  return (double)most;
-}
-
 static void check_mass(const strut_scene *scene, const strut_model *model, const slow_model *slow) {
-  double scale = largest(slow->mass, slow->n * slow->n);
+  double scale = slow_largest(slow->mass, slow->n * slow->n);
   for (size_t c = 0; c < 2; c++) {
     const strut_mass_operator *op = &model->mass->coordinate[c];
     const strut_sparse *m = op->matrix;
@@ -56,8 +50,9 @@ static void check_forces(const strut_scene *scene, const strut_model *model, str
   double *length = calloc(scene->member_count, sizeof *length);
   double *tension = calloc(scene->member_count, sizeof *tension);
   assert_true(length && tension);
-  double scale = fmax(largest(slow->force, n), largest(slow->tension, scene->member_count));
-  scale = fmax(scale, largest(slow->normal, scene->contact_count));
+  double scale =
+      fmax(slow_largest(slow->force, n), slow_largest(slow->tension, scene->member_count));
+  scale = fmax(scale, slow_largest(slow->normal, scene->contact_count));
   strut_forces_evaluate(model, state, t, state->q, state->v);
   strut_members_measure(model, state, length, tension);
   for (size_t i = 0; i < n; i++)
@@ -87,7 +82,7 @@ static void check_acceleration(const strut_scene *scene, const strut_model *mode
   double *a = calloc((size_t)model->length, sizeof *a);
   double *with_balance = calloc((size_t)model->length, sizeof *a);
   assert_true(a && with_balance);
-  double scale = largest(slow->acceleration, slow->n);
+  double scale = slow_largest(slow->acceleration, slow->n);
   strut_forces_acceleration(model, state, t, state->q, state->v, a);
   for (size_t i = 0; i < slow->n; i++) {
     assert_near(a[i], (double)slow->acceleration[i], TOLERANCE * scale);

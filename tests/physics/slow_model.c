@@ -236,3 +236,9 @@ void slow_free(slow_model *slow) {
   free(slow->normal);
   free(slow->friction);
 }
+
+double slow_largest(const long double *x, size_t n) {
+  long double most = 0;
+  for (size_t i = 0; i < n; i++) most = fmaxl(most, fabsl(x[i]));
+  return (double)most;
+}

@@ -34,5 +34,7 @@ void slow_member_rest(const strut_scene *scene, const strut_member *m, long doub
                       long double *stiffness);
 /** x[n] of a (n, n + 1) row by row, whose last column is the right-hand side; a is destroyed. */
 void slow_solve(long double *a, size_t n, long double *x);
+/** The largest size of n numbers. */
+double slow_largest(const long double *x, size_t n);
 
 #endif

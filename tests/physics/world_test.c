@@ -7,6 +7,7 @@
 #include "engine/forces/support_motion.h"
 #include "tests/models/run_model.h"
 #include "tests/physics/random_world.h"
+#include "tests/physics/slow_model.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 
@@ -69,12 +70,6 @@ static void stand_there(fixture *f) {
     f->at.z[k] = state->v[base + (int32_t)k] = (double)f->at.z[k];
 }
 
-static double largest(const long double *x, size_t n) {
-  long double most = 0;
-  for (size_t i = 0; i < n; i++) most = fmaxl(most, fabsl(x[i]));
-  return (double)most;
-}
-
 typedef struct coverage {
   int touching, flying, sticking, acting;
 } coverage;
@@ -109,15 +104,16 @@ static void check_rates(fixture *f, coverage *seen) {
   if (r.undecided) return;
   assert_true(f->m.model->length <= 2 * SLOW_PLACES);
   strut_forces_acceleration(f->m.model, state, (double)f->at.t, state->q, state->v, a);
-  double scale = fmax(largest(r.force, f->slow.n), largest(r.normal, scene->contact_count));
-  double fastest = largest(r.a, f->slow.n);
+  double scale =
+      fmax(slow_largest(r.force, f->slow.n), slow_largest(r.normal, scene->contact_count));
+  double fastest = slow_largest(r.a, f->slow.n);
   for (size_t i = 0; i < f->slow.n; i++) {
     assert_near(state->latest->force[i], (double)r.force[i], TOLERANCE * scale);
     if (!scene->nodes[i / 2].fixed[i % 2]) assert_near(a[i], (double)r.a[i], TOLERANCE * fastest);
   }
   for (size_t k = 0; k < f->slow.states; k++)
     assert_near(state->latest->force[f->m.model->feedback.base + (int32_t)k], (double)r.z[k],
-                TOLERANCE * (scale + largest(r.z, f->slow.states)));
+                TOLERANCE * (scale + slow_largest(r.z, f->slow.states)));
   check_contacts(f, &r, scale, seen);
   strut_members_measure(f->m.model, state, length, force);
   for (size_t j = 0; j < scene->member_count; j++)
@@ -151,7 +147,7 @@ TEST(forces_by_definition) {
 static double difference(const fixture *f) {
   const strut_state *state = f->m.state;
   int32_t base = f->m.model->feedback.base;
-  double far = largest(f->at.q, f->slow.n), fast = largest(f->at.v, f->slow.n), worst = 0;
+  double far = slow_largest(f->at.q, f->slow.n), fast = slow_largest(f->at.v, f->slow.n), worst = 0;
   for (size_t i = 0; i < f->slow.n; i++) {
     worst = fmax(worst, fabs(state->q[i] - (double)f->at.q[i]) / far);
     worst = fmax(worst, fabs(state->v[i] - (double)f->at.v[i]) / fast);

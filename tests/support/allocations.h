@@ -9,5 +9,7 @@
 
 /** Calls of malloc, calloc, realloc and their kin so far; only the differences mean anything. */
 uint64_t allocations_so_far(void);
+/** Most memory that the process has had [kB]. */
+long resident(void);
 
 #endif

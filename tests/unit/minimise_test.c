@@ -84,9 +84,8 @@ TEST(from_random_shapes) {
 
 /* Springs of 1 and `ratio` N/m in turn along x, unit load at the end: the tip moves by their sum. */
 static double tip_error(int32_t springs, double ratio, bool sparse, strut_descent *d) {
-  fixture f = {0};
+  fixture f = {.scene = build_scene()};
   double sum = 0;
-  strut_scene_init(&f.scene);
   build_support(&f.scene, 0, 0);
   for (int32_t i = 1; i <= springs; i++) {
     double stiffness = i % 2 ? 1 : ratio;
@@ -121,8 +120,7 @@ TEST(stiffness_ratios) {
 
 /* A drawn shape that is symmetric stands on the ridge; the descent leaves it. */
 TEST(it_leaves_a_ridge) {
-  fixture f = {0};
-  strut_scene_init(&f.scene);
+  fixture f = {.scene = build_scene()};
   build_support(&f.scene, -1, 0);
   build_support(&f.scene, 1, 0);
   build_node(&f.scene, 0, 0);
@@ -141,8 +139,7 @@ TEST(it_leaves_a_ridge) {
 
 /* A bouncing ball's rest: weight over the ground's stiffness below the line, from a metre above. */
 TEST(it_falls_onto_the_ground) {
-  fixture f = {0};
-  strut_scene_init(&f.scene);
+  fixture f = {.scene = build_scene()};
   build_mass(&f.scene, 0.3, 1, 2);
   build_contact(&f.scene, 0, 1e5, 0);
   f.scene.gravity[1] = -10;
@@ -155,8 +152,7 @@ TEST(it_falls_onto_the_ground) {
 }
 
 TEST(without_ground_it_falls_for_ever) {
-  fixture f = {0};
-  strut_scene_init(&f.scene);
+  fixture f = {.scene = build_scene()};
   build_mass(&f.scene, 0.3, 1, 2);
   f.scene.gravity[1] = -10;
   compile(&f, NULL, true);
@@ -166,8 +162,7 @@ TEST(without_ground_it_falls_for_ever) {
 
 /* A mass on a slack cable falls until the cable holds it, then hangs. */
 TEST(a_slack_cable_catches) {
-  fixture f = {0};
-  strut_scene_init(&f.scene);
+  fixture f = {.scene = build_scene()};
   build_support(&f.scene, 0, 0);
   build_mass(&f.scene, 0.4, -0.2, 1);
   build_sized(&f.scene, STRUT_CABLE, 0, 1, 1000, 0, 0, 1);
@@ -182,8 +177,7 @@ TEST(a_slack_cable_catches) {
 
 /* A free prestressed square finds its side (gallery P1), wherever it drifts. */
 TEST(a_free_body) {
-  fixture f = {0};
-  strut_scene_init(&f.scene);
+  fixture f = {.scene = build_scene()};
   const double corner[4][2] = {{0, 0}, {1, 0.05}, {1.1, 1}, {0, 1}};
   for (int i = 0; i < 4; i++) build_node(&f.scene, corner[i][0], corner[i][1]);
   for (int i = 0; i < 4; i++) build_sized(&f.scene, STRUT_CABLE, i, (i + 1) % 4, 100, 0, 0, 0.95);
@@ -202,8 +196,7 @@ TEST(a_free_body) {
 /* A hanging net of 12 by 12 prestressed cables by sparse factors. */
 TEST(a_large_net) {
   enum { SIDE = 12 };
-  fixture f = {0};
-  strut_scene_init(&f.scene);
+  fixture f = {.scene = build_scene()};
   for (int i = 0; i < SIDE * SIDE; i++) {
     build_mass(&f.scene, i % SIDE, (double)(i / SIDE), 0.1);
     bool edge = i / SIDE == SIDE - 1;
