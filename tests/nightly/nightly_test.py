@@ -61,7 +61,7 @@ def table():
         for preset in re.findall(r"--preset (\w+)", one.command):
             check(preset in presets, f"{one.name}: no preset {preset}")
         for target in re.findall(r"--target (\w+)", one.command):
-            check(re.search(rf"add_custom_target\({target}\b", lists), f"{one.name}: no target {target}")
+            check(re.search(rf"(add_custom|strut_python)_target\({target}\b", lists), f"{one.name}: no target {target}")
         for script in re.findall(r"tests/[\w/]+\.(?:py|sh)", one.command):
             check((ROOT / script).is_file(), f"{one.name}: no file {script}")
 
