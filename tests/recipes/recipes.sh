@@ -15,6 +15,7 @@ awk '/^```diff/ { inside = 1; blocks++; next } /^```/ { inside = 0 } inside { pr
 cd "$scratch"
 touched=$(sed -n 's/^+++ b\///p' recipes.diff | sort -u | tr '\n' ' ')
 expected="engine/forces/elements.c engine/forces/strains/span.h engine/integrate/euler_forward.c \
+engine/integrate/events/location/between.c \
 engine/model/elements.c engine/model/elements.h engine/scene/experiment.h engine/scene/law.h \
 engine/scene/laws/friction.h engine/scene/laws/stiffening.h engine/scene/scene.c \
 engine/scene/scene.h engine/scene/things_table.h parser/language/keys_table.h parser/read/read_scene.c \
@@ -25,7 +26,7 @@ patch -s -p1 <recipes.diff
 sources="tests/recipes/recipes.c tests/recipes/things.c $(ls engine/base/*.c engine/scene/*.c \
   engine/model/*.c engine/forces/*.c engine/statics/search/*.c engine/statics/equilibria/*.c) \
   $(find engine/integrate parser/yaml parser/expression parser/language parser/read parser/write -name '*.c')
-  engine/run/settle.c engine/statics/curvature.c engine/statics/dense_algebra.c
+  engine/run/settle.c engine/run/settle_check.c engine/statics/curvature.c engine/statics/dense_algebra.c
   engine/statics/minimise.c engine/statics/potential.c engine/statics/spectrum.c"
 # shellcheck disable=SC2086
 printf '%s\n' $sources | xargs -P 2 -n 12 sh -c 'cc=$1 includes=$2; shift 2
