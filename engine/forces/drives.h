@@ -33,7 +33,7 @@ void strut_grounds_move(const strut_model *model, double t, strut_ground_motion 
 
 /**
  * The first time after t [s] at which a drive, a load or its rate jumps, or something is released;
- * INFINITY if none does. Those after `until` need not be told.
+ * INFINITY if none does. Those after `until` may be left out.
  */
 double strut_drive_next_break(const strut_model *model, const strut_state *state, double t,
                               double until);

@@ -19,8 +19,8 @@
 static const int64_t ROUNDING_EVALUATIONS = 1000000;
 
 /*
- * Friction where all is at rest: by laws that stick, exactly and in sliding as well, so that it ends as soon as it
- * may; by others, which vanish with the speed, there is none.
+ * Friction while a structure comes to rest. Laws that stick do so exactly, and slide with the static coefficient, so
+ * that sliding ends as soon as it may. Other laws vanish with the speed and hold nothing.
  */
 static void make_static(strut_friction *friction, bool kept) {
   bool sticks = strut_friction_has_band(friction->law) || strut_friction_is_exact(friction->law);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What can never come to rest, told before it is tried: what slides along the ground whatever friction does. */
+/* What can never come to rest, found before it is tried: it slides along the ground whatever friction does. */
 #include <math.h>
 #include <stdio.h>
 

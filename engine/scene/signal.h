@@ -102,7 +102,7 @@ STRUT_API void strut_signal_evaluate(const strut_signal *signals, int32_t index,
 STRUT_API double strut_signal_next_break(const strut_signal *signals, int32_t index, double t);
 /**
  * The same of signals that started at the times `started` (signals); NULL: no signal has a trigger. Breaks after
- * `until` need not be told.
+ * `until` may be left out.
  */
 STRUT_API double strut_signal_next_break_since(const strut_signal *signals, const double *started,
                                                int32_t index, double t, double until);

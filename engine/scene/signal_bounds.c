@@ -537,13 +537,7 @@ static double longest_step(const look *l, double t, double h, double least) {
 }
 
 static bool reads_time(const strut_program *program) {
-  for (size_t i = 0; i < program->length; i++) {
-    const strut_instruction *p = &program->instruction[i];
-    if (p->operation == STRUT_OPERATION_COLUMN &&
-        (p->column.kind == STRUT_COLUMN_TIME || p->column.kind == STRUT_COLUMN_SIGNAL))
-      return true;
-  }
-  return false;
+  return strut_program_reads(program, STRUT_COLUMN_TIME, STRUT_COLUMN_SIGNAL);
 }
 
 bool strut_signal_is_looked_at(const strut_signal *s) {

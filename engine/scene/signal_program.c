@@ -215,14 +215,18 @@ strut_signal_traits strut_signal_describe(const strut_scene *scene, int32_t inde
   return traits;
 }
 
-static bool reads_sensor(const strut_program *program) {
+bool strut_program_reads(const strut_program *program, strut_column_kind one,
+                         strut_column_kind other) {
   for (size_t i = 0; i < program->length; i++) {
     const strut_instruction *p = &program->instruction[i];
-    if (p->operation == STRUT_OPERATION_COLUMN &&
-        (p->column.kind == STRUT_COLUMN_SENSOR || p->column.kind == STRUT_COLUMN_SENSOR_RATE))
-      return true;
+    bool column = p->operation == STRUT_OPERATION_COLUMN;
+    if (column && (p->column.kind == one || p->column.kind == other)) return true;
   }
   return false;
+}
+
+static bool reads_sensor(const strut_program *program) {
+  return strut_program_reads(program, STRUT_COLUMN_SENSOR, STRUT_COLUMN_SENSOR_RATE);
 }
 
 bool strut_scene_has_feedback(const strut_scene *scene) {

@@ -132,6 +132,9 @@ typedef struct strut_turning {
  */
 STRUT_API strut_turning strut_scene_fastest_turn(const struct strut_scene *scene, double last,
                                                  bool stops);
+/** Has the program a column of one of two kinds? */
+STRUT_API bool strut_program_reads(const strut_program *program, strut_column_kind one,
+                                   strut_column_kind other);
 /** Does some signal or internal state follow a sensor? Modes and step limits know nothing of that. */
 STRUT_API bool strut_scene_has_feedback(const struct strut_scene *scene);
 

@@ -46,6 +46,16 @@ static const char HINGE[] =
     "solver: {integrator: adaptive, step: 0.1, tolerance: 1e-6}\n"
     "run: {duration: 1}\n";
 
+/* A slender cell, one end of whose short side moves. */
+static const char CELL[] =
+    "strut: 1\n"
+    "nodes: {a: {position: [0, 0], mass: 1}, b: {position: [0.1, 0], fixed: both},\n"
+    "  c: {position: [0, 5], fixed: both}, d: {position: [9, 1], mass: 1},\n"
+    "  e: {position: [9, 3], mass: 1}, f: {position: [9, 5], mass: 1}}\n"
+    "cells: {cell: {nodes: [a, b, c], stiffness: 1, rest_area: 0.25, law: compression_only}}\n"
+    "solver: {integrator: adaptive, step: 0.1, tolerance: 1e-6}\n"
+    "run: {duration: 1}\n";
+
 static void place(const strut_event_stepper *stepper, double h, double x, double *q, double *v) {
   const strut_step_end *now = stepper->now, *next = stepper->next;
   double r = 1.0 - x;
@@ -84,11 +94,12 @@ static double least_at(const motion *m, const strut_event_stepper *stepper, doub
   return least;
 }
 
-static void random_end(uint64_t *seed, double *q, double *v, const double *near, double far,
-                       double fast) {
+static void random_end(const strut_model *model, uint64_t *seed, double *q, double *v,
+                       const double *near, double far, double fast) {
   for (int32_t i = 0; i < LENGTH; i++) {
-    q[i] = near[i] + random_between(seed, -far, far);
-    v[i] = random_between(seed, -fast, fast);
+    double moves = model->fixed[i] ? 0.0 : 1.0;
+    q[i] = near[i] + moves * random_between(seed, -far, far);
+    v[i] = moves * random_between(seed, -fast, fast);
   }
 }
 
@@ -97,10 +108,10 @@ static void random_end(uint64_t *seed, double *q, double *v, const double *near,
 static int look_at_step(motion *m, uint64_t *seed, double far, double most) {
   strut_event_stepper *stepper = m->workspace;
   double h = random_scale(seed, 1e-3, 1.0), fast = random_scale(seed, 0.03, 1.0) * most / h;
-  random_end(seed, m->state->q, m->state->v, m->model->start, far, fast);
+  random_end(m->model, seed, m->state->q, m->state->v, m->model->start, far, fast);
   m->method->restart(m->model, m->state, m->workspace, 0.1);
   strut_elements_keep_turns(m->model, m->state);
-  random_end(seed, stepper->next->q, stepper->next->v, stepper->now->q, fast * h, fast);
+  random_end(m->model, seed, stepper->next->q, stepper->next->v, stepper->now->q, fast * h, fast);
   strut_event_measure(m->model, m->state, stepper, stepper->now);
   strut_event_measure(m->model, m->state, stepper, stepper->next);
   if (strut_event_first(m->model, m->state, stepper, h).kind) return -1;
@@ -139,8 +150,14 @@ static void no_kink_of_a_hinge_is_missed(void **unused) {
   misses_nothing(HINGE, 0.3, 0.3);
 }
 
+static void no_area_is_missed(void **unused) {
+  (void)unused;
+  misses_nothing(CELL, 0.1, 0.3);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_of_a_cloud_is_missed),
-                                     cmocka_unit_test(no_kink_of_a_hinge_is_missed)};
+                                     cmocka_unit_test(no_kink_of_a_hinge_is_missed),
+                                     cmocka_unit_test(no_area_is_missed)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -357,8 +357,8 @@ bool strut_event_is_of_law(strut_event_kind kind);
 strut_event strut_event_first(const strut_model *model, const strut_state *state,
                               strut_event_stepper *stepper, double h);
 /**
- * After a step of h from now to next, whose ends have been measured and say that every mode holds: where within it one does not, by the cubics
- * along which nodes move, as a part of the step; 0: nowhere (between.c).
+ * After a step of h from now to next, whose ends have been measured and say that every mode holds: where within it one
+ * does not, by the cubics along which nodes move, as a part of the step; 0: nowhere (between.c).
  */
 double strut_event_between(const strut_model *model, const strut_state *state,
                            strut_event_stepper *stepper, double h);

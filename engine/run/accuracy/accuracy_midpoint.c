@@ -97,8 +97,8 @@ static bool has_jumping_signal(const strut_scene *scene) {
   return any;
 }
 
-/* Steps in which expressions and half-waves are looked for, a part of their size that may be missed, and the least time
-   that is told apart, as a part of the run. */
+/* Steps in which to look for what expressions and half-waves do; the part of their size that may be missed; and the
+   shortest time to resolve, as a part of the run. */
 enum { MOST_LOOKS = 20000 };
 static const double FAINT = 1e-4, LEAST_PART = 1e-9;
 

@@ -70,10 +70,11 @@ static double cost_of_period(const strut_summary *run) {
   return (double)run->spent.evaluations / fmax(1.0, (double)run->steady.periods);
 }
 
-/* The answer is the latest run, `mean`, beside which `apart` is what another run differs by. */
+/* The answer is the latest run with its mean, unless it was too short to know that. */
 static void accept_mean(strut_orbit_solve *solve, strut_orbit_answer answer, strut_summary *run,
                         strut_orbit_mean mean) {
   strut_summary_append(&solve->last_run, run);
+  if (!isfinite(mean.interval)) return;
   if (mean.disputed) mean.interval += mean.apart;
   solve->mean = mean;
   solve->last_run.velocity = mean.velocity;

@@ -349,16 +349,18 @@ static bool wanders_evenly(const strut_steady_detector *w, int32_t each) {
 }
 
 /*
- * Recognises an irregular motion whose mean is known: equal over the last half and the last quarter
- * of the run, without trend, and with an even difference between neighbouring periods.
+ * The mean over the latter half of a run that has not repeated itself, which batches and the last quarter confirm. The
+ * motion is irregular where these are equal, without trend, with an even difference between neighbouring periods.
  */
 static void judge_irregular(strut_steady_detector *w) {
   int32_t stretches = w->drift.marks - 1, half = stretches / 2 / BATCHES, quarter = half / 2;
   int64_t seen = w->latest.seen - 1;
-  if (quarter < 1 || seen < w->rules.least_irregular || (double)seen < 2.0 * w->rules.not_before)
-    return;
+  w->result.mean = w->velocity, w->result.scatter = HUGE_VAL;
+  if (quarter < 1) return;
   double wide, narrow, trend, other;
   double mean = batch_mean(w, half, &wide, &trend), late = batch_mean(w, quarter, &narrow, &other);
+  w->result.mean = mean, w->result.scatter = fmax(wide, fabs(mean - late) - narrow);
+  if (seen < w->rules.least_irregular || (double)seen < 2.0 * w->rules.not_before) return;
   double times = w->rules.mean_tolerance / w->rules.tolerance;
   double allowed = fmax(w->rules.mean_tolerance * fabs(mean), w->rules.floor * times);
   if (wide > allowed || narrow > 2.0 * allowed || trend > STUDENT_6) return;
@@ -367,17 +369,6 @@ static void judge_irregular(strut_steady_detector *w) {
   w->result.kind = STRUT_MOTION_IRREGULAR;
   w->result.interval = wide + fabs(mean - late);
   w->velocity = mean;
-}
-
-/* The mean over the latter half of the run, whose batches, and whose latter half, say how well it is known. */
-static void measure_mean(strut_steady_detector *w) {
-  int32_t half = (w->drift.marks - 1) / 2 / BATCHES, quarter = half / 2;
-  double wide, narrow, trend, late;
-  w->result.mean = w->velocity, w->result.scatter = HUGE_VAL;
-  if (quarter < 1) return;
-  w->result.mean = batch_mean(w, half, &wide, &trend);
-  late = batch_mean(w, quarter, &narrow, &trend);
-  w->result.scatter = fmax(wide, fabs(w->result.mean - late) - narrow);
 }
 
 bool strut_steady_detector_period(const strut_state *state, double x, strut_steady_detector *w) {
@@ -405,10 +396,7 @@ bool strut_steady_detector_period(const strut_state *state, double x, strut_stea
 }
 
 void strut_steady_detector_finish(strut_steady_detector *w, strut_summary *summary) {
-  if (!w->known) {
-    judge_irregular(w);
-    measure_mean(w);
-  }
+  if (!w->known) judge_irregular(w);
   summary->steady = w->result;
   if (!w->known) {
     summary->steady.periods = w->latest.seen > 0 ? w->latest.seen - 1 : 0;

@@ -67,7 +67,7 @@ static swiftness swiftness_of(const cubic *x, const cubic *y) {
 /* A strain over a step. */
 typedef struct course {
   const strut_model *model;
-  int32_t element, member; /* -1: the other */
+  int32_t element; /* -1: a plain member */
   strut_strain_kind strain;
   int32_t nodes;
   const uint32_t *at;
@@ -98,14 +98,14 @@ static double distance_of(const course *c, int32_t i, int32_t k) {
   return hypot(b[0] - a[0], b[1] - a[1]);
 }
 
-/* How far off its place in c->q the distance of two nodes may be within `half` a part. */
-static double reach_of(const course *c, int32_t i, int32_t k, double half) {
+/* The largest speed of node k beside the first node. */
+static double rate_beside_first(const course *c, int32_t k) {
   double sum = 0.0;
-  for (int32_t n = i + 1; n <= k; n++) sum += c->apart[n].rate;
-  return sum * half;
+  for (int32_t n = 1; n <= k; n++) sum += c->apart[n].rate;
+  return sum;
 }
 
-/* Bounds of a strain's derivatives in the part of the step within `half` of where the nodes stand in c->q. */
+/* Bounds of a strain's derivatives less than `half` of the step before and after the nodes stand as in c->q. */
 static swiftness bounds_of(const course *c, double half) {
   const strut_element *e = c->element >= 0 ? &c->model->elements.element[c->element] : NULL;
   const swiftness *apart = c->apart;
@@ -141,11 +141,12 @@ static swiftness bounds_of(const course *c, double half) {
         most.rate +=
             e->radius * apart[1].rate / fmax(0.0, distance_of(c, 0, 1) - apart[1].rate * half);
       break;
-    case STRUT_STRAIN_AREA:
-      for (int32_t k = 1; k < c->nodes; k++) {
-        double arm = distance_of(c, 0, k) + reach_of(c, 0, k, half);
-        most.rate += 0.5 * arm * apart[k].rate;
-        if (k + 1 < c->nodes) most.rate += 0.5 * arm * apart[k + 1].rate;
+    case STRUT_STRAIN_AREA: /* triangles at the first node */
+      for (int32_t k = 1; k + 1 < c->nodes; k++) {
+        double turns = rate_beside_first(c, k), grows = apart[k + 1].rate;
+        double arm = distance_of(c, 0, k) + turns * half;
+        double side = distance_of(c, k, k + 1) + grows * half;
+        most.rate += 0.5 * (turns * side + arm * grows);
       }
       break;
     case STRUT_STRAIN_COUNT: break;
@@ -249,7 +250,7 @@ static void begin_element(const strut_model *model, const strut_state *state,
                           course *c) {
   const strut_element *e = &model->elements.element[element];
   c->model = model, c->q = stepper->middle;
-  c->element = element, c->member = -1;
+  c->element = element;
   c->strain = e->strain, c->nodes = e->nodes, c->at = model->elements.at + e->first;
   c->turn = state->history.turn[element];
   begin_course(stepper, h, c);
@@ -265,7 +266,7 @@ static void begin_law(const strut_model *model, const strut_state *state,
     if (law->event == STRUT_EVENT_ACTS) sign = model->elements.element[law->element].carries;
   } else {
     c->model = model, c->q = stepper->middle;
-    c->element = -1, c->member = law->member;
+    c->element = -1;
     c->strain = STRUT_STRAIN_LENGTH, c->nodes = 2, c->at = c->ends;
     c->ends[0] = model->members.from[law->member], c->ends[1] = model->members.to[law->member];
     begin_course(stepper, h, c);
@@ -361,7 +362,7 @@ static double law_leaves(const strut_model *model, const strut_state *state,
   return at;
 }
 
-/* Where bodies that are apart at both ends, and stand in no list of those nearby, meet within the step. */
+/* Where bodies meet within the step that are apart at both ends and in no list of bodies nearby. */
 static double strangers_meet(const strut_model *model, const strut_state *state,
                              const strut_event_stepper *stepper, double h, double faint) {
   double first = 0.0;
