@@ -60,12 +60,13 @@ const strut_owner_row *strut_owner_row_of(strut_channel_owner owner) {
   return &owners[owner];
 }
 
-static size_t owner_count(strut_channel_owner owner, const strut_scene *scene) {
+size_t strut_owner_count(strut_channel_owner owner, const strut_scene *scene) {
   switch (owner) {
     case STRUT_OWNER_NODE: return scene->node_count;
     case STRUT_OWNER_MEMBER: return scene->member_count;
     case STRUT_OWNER_HINGE: return scene->hinge_count;
     case STRUT_OWNER_CELL: return scene->cell_count;
+    case STRUT_OWNER_DISTANCE: return scene->distance_count;
     case STRUT_OWNER_CONTACT: return scene->contact_count;
     case STRUT_OWNER_SYSTEM:
     case STRUT_OWNER_COUNT: break;
@@ -74,22 +75,27 @@ static size_t owner_count(strut_channel_owner owner, const strut_scene *scene) {
 }
 
 size_t strut_channel_items(const strut_channel_row *row, const strut_scene *scene) {
-  return owner_count(row->owner, scene) + (row->total ? 1 : 0);
+  return strut_owner_count(row->owner, scene) + (row->total ? 1 : 0);
 }
 
-const char *strut_channel_item(const strut_channel_row *row, const strut_scene *scene, size_t i) {
-  assert(i < strut_channel_items(row, scene));
-  if (i == owner_count(row->owner, scene)) return "total";
-  switch (row->owner) {
+const char *strut_owner_name(strut_channel_owner owner, const strut_scene *scene, size_t i) {
+  switch (owner) {
     case STRUT_OWNER_NODE: return scene->nodes[i].name;
     case STRUT_OWNER_MEMBER: return scene->members[i].name;
     case STRUT_OWNER_HINGE: return scene->hinges[i].name;
     case STRUT_OWNER_CELL: return scene->cells[i].name;
+    case STRUT_OWNER_DISTANCE: return scene->distances[i].name;
     case STRUT_OWNER_CONTACT: return strut_contact_name(scene, i);
     case STRUT_OWNER_SYSTEM:
     case STRUT_OWNER_COUNT: break;
   }
   return "total";
+}
+
+const char *strut_channel_item(const strut_channel_row *row, const strut_scene *scene, size_t i) {
+  assert(i < strut_channel_items(row, scene));
+  return i == strut_owner_count(row->owner, scene) ? "total"
+                                                   : strut_owner_name(row->owner, scene, i);
 }
 
 size_t strut_channel_things(const strut_channel_row *row, const strut_scene *scene) {

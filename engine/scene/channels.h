@@ -40,6 +40,7 @@ struct strut_scene;
   X(MEMBER, "members", "member", "members.csv")                                                    \
   X(HINGE, "hinges", "hinge", "hinges.csv")                                                        \
   X(CELL, "cells", "cell", "cells.csv")                                                            \
+  X(DISTANCE, "distances", "distance", "distances.csv")                                            \
   X(CONTACT, "contacts", "contact_node", "contacts.csv")                                           \
   X(SYSTEM, "energies", "system", "energy.csv")
 
@@ -116,6 +117,10 @@ STRUT_API const strut_channel_row *strut_channel_row_of(strut_channel id);
 /** The channel of that name, or NULL. */
 STRUT_API const strut_channel_row *strut_channel_named(const char *name);
 STRUT_API const strut_owner_row *strut_owner_row_of(strut_channel_owner owner);
+/** Number and names of what the scene has of a kind; 1 and "total" of the system. */
+STRUT_API size_t strut_owner_count(strut_channel_owner owner, const struct strut_scene *scene);
+STRUT_API const char *strut_owner_name(strut_channel_owner owner, const struct strut_scene *scene,
+                                       size_t i);
 /** Number of a channel's items: things of the scene, and the total; 1 for the system. */
 STRUT_API size_t strut_channel_items(const strut_channel_row *row, const struct strut_scene *scene);
 /** Name of the i-th item; the scene's, or "total". */

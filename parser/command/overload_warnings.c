@@ -47,12 +47,12 @@ void strut_warn_of_equilibria(const strut_listener *listener, const strut_model 
 static const char *overloaded_at(const strut_scene *scene, const strut_path_point *at) {
   for (size_t j = 0; j < scene->member_count; j++) {
     const strut_member *m = &scene->members[j];
-    bool yields = m->law.kind == STRUT_LAW_ELASTIC_PLASTIC && fabs(at->force[j]) > m->law.yield;
-    if (yields || (m->breaks_at > 0.0 && at->force[j] > m->breaks_at)) return m->name;
+    bool yields = m->law.kind == STRUT_LAW_ELASTIC_PLASTIC && fabs(at->at.force[j]) > m->law.yield;
+    if (yields || (m->breaks_at > 0.0 && at->at.force[j] > m->breaks_at)) return m->name;
   }
   for (size_t i = 0; i < scene->hinge_count; i++) {
     const strut_hinge *h = &scene->hinges[i];
-    double moment = fabs(at->moment[i]);
+    double moment = fabs(at->at.moment[i]);
     bool yields = h->law.kind == STRUT_LAW_ELASTIC_PLASTIC && moment > h->law.yield;
     if (yields || (h->breaks_at > 0.0 && moment > h->breaks_at)) return h->name;
   }
@@ -68,7 +68,7 @@ static bool warn_of_points(const strut_listener *listener, const strut_scene *sc
     strut_tell(listener, STRUT_MESSAGE_WARNING, NULL,
                "from the factor %.4g on '%s' carries more than it can; paths take what "
                "breaks as whole and what yields as elastic",
-               path->points[i].factor, name);
+               path->points[i].at.factor, name);
     return true;
   }
   return false;

@@ -33,10 +33,10 @@ static double buckling_load(double stiffness) {
 
 /* -1, 0, 1: the side to which a column has given way; else the moment at its joint is not that of its load. */
 static int side_of(const strut_path_point *p, int column, double stiffness) {
-  const double *foot = p->q + 6 * column, *middle = foot + 2;
+  const double *foot = p->at.q + 6 * column, *middle = foot + 2;
   double x = middle[0] - foot[0], y = middle[1] - foot[1], lean = atan2(x, y);
   if (fabs(x) < 1e-8) return 0;
-  assert_near(p->factor * x, 2 * stiffness * lean, 1e-9);
+  assert_near(p->at.factor * x, 2 * stiffness * lean, 1e-9);
   return x > 0 ? 1 : -1;
 }
 
@@ -51,7 +51,7 @@ TEST(equal_columns) {
     OWN(walk) w = walk_by(&setup, (strut_path_options){.until = 6, .branches = 2});
     bool seen[81] = {false};
     assert_int_equal(w.path.event_count, 1);
-    assert_relative(w.path.events[0].factor, buckling_load(1), 1e-10);
+    assert_relative(w.path.events[0].at.factor, buckling_load(1), 1e-10);
     assert_int_equal(w.path.events[0].before, 0);
     assert_int_equal(w.path.events[0].after, n);
     assert_int_equal(w.path.branch_count, all - 1);
@@ -81,7 +81,7 @@ TEST(nearly_equal_columns) {
     int stable = 0;
     assert_int_equal(w.path.event_count, 2);
     for (int i = 0; i < 2; i++) {
-      assert_relative(w.path.events[i].factor, buckling_load(stiffness[i]), 1e-10);
+      assert_relative(w.path.events[i].at.factor, buckling_load(stiffness[i]), 1e-10);
       assert_int_equal(w.path.events[i].after, i + 1);
     }
     for (size_t b = 0; b < w.path.branch_count; b++) {
@@ -103,7 +103,7 @@ TEST(unloading) {
     assert_int_equal(side_of(&w.path.points[0], 0, 1), side);
     assert_int_equal(w.path.event_count, 1);
     assert_int_equal(w.path.events[0].kind, STRUT_PATH_BIFURCATION);
-    assert_relative(w.path.events[0].factor, buckling_load(1), 1e-9);
+    assert_relative(w.path.events[0].at.factor, buckling_load(1), 1e-9);
     assert_int_equal(w.path.end, STRUT_PATH_UNTIL);
     assert_int_equal(side_of(last_of(&w.path), 0, 1), 0);
   }
@@ -146,7 +146,7 @@ TEST(nearly_equal_trusses) {
       assert_int_equal(w.path.event_count, 8);
       for (int i = 0; i < 8; i++) {
         double load = weak[i] ? weak[i] * 100 : i == 2 ? strong : -strong;
-        assert_relative(w.path.events[back ? 7 - i : i].factor, load * limit_load(), 1e-11);
+        assert_relative(w.path.events[back ? 7 - i : i].at.factor, load * limit_load(), 1e-11);
       }
       assert_int_equal(w.path.end, STRUT_PATH_UNTIL);
     }
@@ -167,7 +167,7 @@ TEST(equal_trusses) {
     assert_int_equal(branch->from.twin, 2 - (int)b);
     const strut_path_point *p = &branch->points[3];
     assert_int_equal(p->negative, 1);
-    assert_true((p->q[5] - 0.2 - (p->q[11] - 0.2)) * (b ? 1 : -1) != 0);
+    assert_true((p->at.q[5] - 0.2 - (p->at.q[11] - 0.2)) * (b ? 1 : -1) != 0);
   }
 }
 
@@ -186,11 +186,11 @@ TEST(zero_length) {
   const strut_path_event *e = &w.path.events[2], *turn = &w.path.events[1];
   assert_int_equal(turn->kind, STRUT_PATH_LIMIT);
   assert_int_equal(e->kind, STRUT_PATH_ZERO_LENGTH);
-  assert_near(e->q[2 * b + 1], -1, 1e-9);
-  assert_near(e->factor, -k * rest / load, 1e-9);
-  assert_true(w.path.end == STRUT_PATH_UNTIL && last_of(&w.path)->q[2 * b + 1] < -1);
+  assert_near(e->at.q[2 * b + 1], -1, 1e-9);
+  assert_near(e->at.factor, -k * rest / load, 1e-9);
+  assert_true(w.path.end == STRUT_PATH_UNTIL && last_of(&w.path)->at.q[2 * b + 1] < -1);
   bool before = false;
   for (size_t i = 0; i < w.path.point_count; i++)
-    before = before || fabs(w.path.points[i].factor - k * rest / load) < 1e-9;
+    before = before || fabs(w.path.points[i].at.factor - k * rest / load) < 1e-9;
   assert_true(before);
 }

@@ -10,7 +10,7 @@ FREED_BY(strut_potential_free, strut_potential)
 static void check_event(const strut_path_event *e, strut_path_event_kind kind, double factor,
                         int32_t before, int32_t after) {
   assert_string_equal(strut_path_event_name(e->kind), strut_path_event_name(kind));
-  assert_relative(e->factor, factor, 1e-12);
+  assert_relative(e->at.factor, factor, 1e-12);
   assert_int_equal(e->before, before);
   assert_int_equal(e->after, after);
 }
@@ -61,8 +61,8 @@ TEST(limit_points_at_kinks) {
   size_t unstable = 0;
   for (size_t i = 0; i < w.path.point_count; i++) {
     const strut_path_point *p = &w.path.points[i];
-    double x = p->q[2 * TIP];
-    assert_near(p->factor, toggle_load(x), 1e-11 * turn);
+    double x = p->at.q[2 * TIP];
+    assert_near(p->at.factor, toggle_load(x), 1e-11 * turn);
     /* the kink at -STOP is judged as the path goes on, and so is that at STOP */
     bool middle = x > -STOP - 1e-9 && x < STOP - 1e-9;
     assert_int_equal(p->negative, middle ? 1 : 0);
@@ -105,8 +105,8 @@ TEST(bifurcation_at_kink) {
   check_event(&w.path.events[2], STRUT_PATH_KINK_BIFURCATION, load, 0, 1);
   for (size_t i = 0; i < w.path.point_count; i++) {
     const strut_path_point *p = &w.path.points[i];
-    assert_int_equal(p->negative, p->factor < load * (1 - 1e-9) ? 0 : 1);
-    assert_near(p->q[2 * tip], 0, 1e-12);
+    assert_int_equal(p->negative, p->at.factor < load * (1 - 1e-9) ? 0 : 1);
+    assert_near(p->at.q[2 * tip], 0, 1e-12);
   }
 }
 
@@ -129,9 +129,9 @@ TEST(touchdown_restores_stability) {
   check_event(&w.path.events[1], STRUT_PATH_TOUCHDOWN, there, 1, 0);
   check_event(&w.path.events[2], STRUT_PATH_KINK_LIMIT, there, 1, 0);
   const strut_path_point *end = &w.path.points[w.path.point_count - 1];
-  double y = end->q[2 * apex + 1], push = 2 * k * y * (hypot(a, h) / hypot(a, y) - 1);
-  assert_near(end->contact[0], 1e4 * (floor - y), 1e-9);
-  assert_near(end->contact[0] + push, 15, 1e-9);
+  double y = end->at.q[2 * apex + 1], push = 2 * k * y * (hypot(a, h) / hypot(a, y) - 1);
+  assert_near(end->at.contact[0], 1e4 * (floor - y), 1e-9);
+  assert_near(end->at.contact[0] + push, 15, 1e-9);
 }
 
 /*
@@ -168,7 +168,7 @@ static double found_buckling_load(double bar, double spring, double x, double y)
   double load = 0;
   for (size_t i = 0; i < w.path.event_count && load == 0; i++)
     if (w.path.events[i].kind == STRUT_PATH_BIFURCATION) {
-      load = length * w.path.events[i].factor;
+      load = length * w.path.events[i].at.factor;
       assert_int_equal(w.path.events[i].before, 0);
       assert_int_equal(w.path.events[i].after, 1);
     }
@@ -260,8 +260,8 @@ static bool is_at_kink(const strut_model *model, const double *q) {
 static double find_steepest(const strut_model *model, const strut_path_point *p) {
   double most = 0;
   for (int32_t j = 0; j < model->members.count; j++) {
-    const double *a = p->q + model->members.from[j], *b = p->q + model->members.to[j];
-    most = fmax(most, fabs(p->force[j]) / hypot(b[0] - a[0], b[1] - a[1]));
+    const double *a = p->at.q + model->members.from[j], *b = p->at.q + model->members.to[j];
+    most = fmax(most, fabs(p->at.force[j]) / hypot(b[0] - a[0], b[1] - a[1]));
   }
   return most;
 }
@@ -279,17 +279,17 @@ static void check_points(const strut_model *model, const strut_path *path, size_
   assert_int_equal(potential->n, 6);
   for (size_t i = 0; i < path->point_count; i++) {
     const strut_path_point *p = &path->points[i];
-    bool kink = is_at_kink(model, p->q);
-    int32_t count = kink ? -1 : count_negative(potential, p->q, &arena);
+    bool kink = is_at_kink(model, p->at.q);
+    int32_t count = kink ? -1 : count_negative(potential, p->at.q, &arena);
     double g[6];
     if (count < 0 && (i == 0 || !kink)) break;
     if (count >= 0) assert_int_equal(p->negative, count);
     for (int32_t k = 0; k < model->length; k++)
-      potential->force[k] = p->factor * model->constant_force[k];
-    strut_potential_gradient(potential, p->q, g);
+      potential->force[k] = p->at.factor * model->constant_force[k];
+    strut_potential_gradient(potential, p->at.q, g);
     double bit = find_steepest(model, p) * 1e-14; /* what rounded positions leave */
-    for (int k = 0; k < 6; k++) assert_near(g[k], 0, 1e-11 * (1 + fabs(p->factor)) + bit);
-    for (; at < path->event_count && path->events[at].arc <= p->arc; at++) {
+    for (int k = 0; k < 6; k++) assert_near(g[k], 0, 1e-11 * (1 + fabs(p->at.factor)) + bit);
+    for (; at < path->event_count && path->events[at].at.arc <= p->at.arc; at++) {
       const strut_path_event *e = &path->events[at];
       bool exchange = e->kind >= STRUT_PATH_KINK_LIMIT;
       *kinks += exchange;

@@ -55,19 +55,19 @@ static void check_displaced_apex(bool supported, double from) {
   assert_int_equal(path.end, STRUT_PATH_UNTIL);
   assert_string_equal(path.unit, "m");
   assert_int_equal(path.event_count, 0);
-  assert_true(path.points[0].factor == from);
-  assert_true(path.points[path.point_count - 1].factor == until);
+  assert_true(path.points[0].at.factor == from);
+  assert_true(path.points[path.point_count - 1].at.factor == until);
   double most = 0, least = 0;
   for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
-    double y = HEIGHT + p->factor, l = hypot(SPAN, y);
-    assert_near(p->q[2 * APEX + 1], y, 1e-15);
-    assert_near(p->reaction[2 * APEX + 1], -arch_load(k, y), 1e-11);
-    assert_near(p->force[0], k * (l - hypot(SPAN, HEIGHT)), 1e-11);
-    assert_near(p->reaction[0], -k * (l - hypot(SPAN, HEIGHT)) * SPAN / l, 1e-11);
-    assert_near(p->reaction[1] + p->reaction[3] + p->reaction[5], 0, 1e-11);
+    double y = HEIGHT + p->at.factor, l = hypot(SPAN, y);
+    assert_near(p->at.q[2 * APEX + 1], y, 1e-15);
+    assert_near(p->at.reaction[2 * APEX + 1], -arch_load(k, y), 1e-11);
+    assert_near(p->at.force[0], k * (l - hypot(SPAN, HEIGHT)), 1e-11);
+    assert_near(p->at.reaction[0], -k * (l - hypot(SPAN, HEIGHT)) * SPAN / l, 1e-11);
+    assert_near(p->at.reaction[1] + p->at.reaction[3] + p->at.reaction[5], 0, 1e-11);
     assert_int_equal(p->negative, 0);
-    most = fmax(most, p->reaction[2 * APEX + 1]);
-    least = fmin(least, p->reaction[2 * APEX + 1]);
+    most = fmax(most, p->at.reaction[2 * APEX + 1]);
+    least = fmin(least, p->at.reaction[2 * APEX + 1]);
   }
   double limit = arch_load(k, limit_height());
   assert_near(most, limit, 0.01 * limit);
@@ -90,10 +90,10 @@ TEST(displacement_under_load) {
   OWN(strut_path) path =
       follow(model, &(strut_path_options){
                         .over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .until = -0.5});
-  double start = path.points[0].q[2 * APEX + 1];
+  double start = path.points[0].at.q[2 * APEX + 1];
   assert_relative(arch_load(k, start), load, 1e-11);
   for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
-    assert_near(p->reaction[2 * APEX + 1], load - arch_load(k, start + p->factor), 1e-10);
+    assert_near(p->at.reaction[2 * APEX + 1], load - arch_load(k, start + p->at.factor), 1e-10);
   }
 }
 
@@ -112,12 +112,12 @@ TEST(displacement_of_a_support) {
       &(strut_path_options){.over = STRUT_PATH_OVER_COORDINATE, .index = 2 * hand, .until = 0.5});
   assert_int_equal(path.event_count, 1);
   assert_int_equal(path.events[0].kind, STRUT_PATH_TAUT);
-  assert_near(path.events[0].factor, slack, 1e-14);
+  assert_near(path.events[0].at.factor, slack, 1e-14);
   for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
-    double pull = spring * cable / (spring + cable) * fmax(0, p->factor - slack);
-    assert_near(p->reaction[2 * hand], pull, 1e-11);
-    assert_near(p->reaction[2 * wall], -pull, 1e-11);
-    assert_near(p->force[1], pull, 1e-11);
+    double pull = spring * cable / (spring + cable) * fmax(0, p->at.factor - slack);
+    assert_near(p->at.reaction[2 * hand], pull, 1e-11);
+    assert_near(p->at.reaction[2 * wall], -pull, 1e-11);
+    assert_near(p->at.force[1], pull, 1e-11);
   }
 }
 
@@ -159,15 +159,15 @@ TEST(actuator_snaps) {
   for (int i = 0; i < 2; i++) {
     const strut_path_event *e = &path.events[i];
     double y = i ? -turn : turn;
-    assert_relative(e->factor, lever_length(k, y), 1e-11);
-    assert_near(e->q[2 * APEX + 1], y, 1e-8);
+    assert_relative(e->at.factor, lever_length(k, y), 1e-11);
+    assert_near(e->at.q[2 * APEX + 1], y, 1e-8);
     assert_int_equal(e->before, i);
     assert_int_equal(e->after, 1 - i);
   }
   for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
-    double y = p->q[2 * APEX + 1];
-    assert_near(p->factor, lever_length(k, y), 1e-12);
-    assert_near(p->force[2], -arch_load(k, y), 1e-10);
+    double y = p->at.q[2 * APEX + 1];
+    assert_near(p->at.factor, lever_length(k, y), 1e-12);
+    assert_near(p->at.force[2], -arch_load(k, y), 1e-10);
     assert_int_equal(p->negative, LEVER_SPRING - arch_stiffness(k, y) < 0 ? 1 : 0);
   }
 }
@@ -210,12 +210,12 @@ TEST(stiffness_of_a_scene) {
   OWN(strut_path) path = follow(model, &options);
   assert_int_equal(path.events[0].kind, STRUT_PATH_LIMIT);
   double soft = 1 / arch_load(1, limit_height());
-  assert_relative(path.events[0].factor, soft, 1e-11);
-  assert_near(path.events[0].q[2 * APEX + 1], limit_height(), 1e-8);
+  assert_relative(path.events[0].at.factor, soft, 1e-11);
+  assert_near(path.events[0].at.q[2 * APEX + 1], limit_height(), 1e-8);
   assert_non_null(strstr(path.events[0].detail, "k can fall no further"));
   for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
-    double y = p->q[2 * APEX + 1];
-    assert_near(arch_load(p->factor, y), 1, 1e-11);
+    double y = p->at.q[2 * APEX + 1];
+    assert_near(arch_load(p->at.factor, y), 1, 1e-11);
     assert_int_equal(p->negative, y < limit_height() ? 1 : 0);
   }
 }
@@ -229,7 +229,7 @@ TEST(end_of_validity) {
   strut_path_options options = over_stiffness(&f, 1000, -10);
   strut_path path = follow(model, &options);
   assert_int_equal(path.end, STRUT_PATH_INVALID);
-  assert_near(path.points[path.point_count - 1].factor, 50, 1e-3);
+  assert_near(path.points[path.point_count - 1].at.factor, 50, 1e-3);
   assert_non_null(strstr(path.remark, "k must be 50 N/m at least"));
   assert_non_null(strstr(path.remark, "the path ends at k 50"));
   strut_path_free(&path);
@@ -267,13 +267,13 @@ TEST(rising_ground) {
                                                              .until = 0.1});
   assert_int_equal(path.event_count, 1);
   assert_int_equal(path.events[0].kind, STRUT_PATH_TOUCHDOWN);
-  assert_near(path.events[0].factor, 0, 1e-13);
+  assert_near(path.events[0].at.factor, 0, 1e-13);
   for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
-    double y = 1000 * fmax(0, p->factor) / 1100;
-    assert_near(p->q[3], y, 1e-13);
-    assert_near(p->contact[0], 100 * y, 1e-10);
-    assert_near(p->reaction[1], 100 * -y, 1e-10);
-    assert_near(p->force[0], -100 * y, 1e-10);
+    double y = 1000 * fmax(0, p->at.factor) / 1100;
+    assert_near(p->at.q[3], y, 1e-13);
+    assert_near(p->at.contact[0], 100 * y, 1e-10);
+    assert_near(p->at.reaction[1], 100 * -y, 1e-10);
+    assert_near(p->at.force[0], -100 * y, 1e-10);
   }
 }
 
@@ -293,7 +293,7 @@ TEST(refusals) {
   strut_status status = strut_path_follow(model, &setup.experiment, &options, &path, &error);
   assert_int_equal(status, STRUT_OK); /* it is found on the way */
   assert_int_equal(path.end, STRUT_PATH_INVALID);
-  assert_near(path.points[path.point_count - 1].factor, 1500, 0.1);
+  assert_near(path.points[path.point_count - 1].at.factor, 1500, 0.1);
   assert_non_null(strstr(path.remark, "changes what the structure is made of"));
   strut_path_free(&path);
   options = over_stiffness(&grows, 1000, 1000);

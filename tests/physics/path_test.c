@@ -40,18 +40,18 @@ static void check_arch(double a, double h, double k, double expected, double dig
   assert_int_equal(walk_count(&w.path, STRUT_PATH_LIMIT), 2);
   for (int i = 0; i < 2; i++) {
     const strut_path_event *e = event(&w, STRUT_PATH_LIMIT, i);
-    assert_relative(e->factor, i ? -limit : limit, 1e-12);
-    assert_relative(e->q[5], i ? -top : top, 1e-10);
-    assert_near(e->q[4], 0, 1e-12 * a);
+    assert_relative(e->at.factor, i ? -limit : limit, 1e-12);
+    assert_relative(e->at.q[5], i ? -top : top, 1e-10);
+    assert_near(e->at.q[4], 0, 1e-12 * a);
   }
   for (size_t i = 0; i < w.path.point_count; i++) {
     const strut_path_point *p = &w.path.points[i];
-    double y = p->q[5];
-    assert_near(p->factor, arch_load(a, h, k, y), 1e-10 * limit);
+    double y = p->at.q[5];
+    assert_near(p->at.factor, arch_load(a, h, k, y), 1e-10 * limit);
     assert_int_equal(p->negative, fabs(y) > top ? 0 : 1);
   }
-  assert_true(last(&w)->factor == 1.5 * limit);
-  assert_true(last(&w)->q[5] < -h);
+  assert_true(last(&w)->at.factor == 1.5 * limit);
+  assert_true(last(&w)->at.q[5] < -h);
 }
 
 TEST(limit_points) {
@@ -87,17 +87,17 @@ TEST(touchdown) {
   build_load(&setup.scene, node, 0, -1, -1);
   walk w = walk_until(&setup, 20);
   assert_int_equal(w.path.event_count, 1);
-  assert_relative(event(&w, STRUT_PATH_TOUCHDOWN, 0)->factor, k * gap, 1e-12);
-  assert_near(last(&w)->q[3], -(20 - k * gap) / (k + ground), 1e-13);
+  assert_relative(event(&w, STRUT_PATH_TOUCHDOWN, 0)->at.factor, k * gap, 1e-12);
+  assert_near(last(&w)->at.q[3], -(20 - k * gap) / (k + ground), 1e-13);
   walk_free(&w);
   setup.scene.nodes[node].start[1] = -0.05; /* begins in the ground: nothing holds it there */
   setup.scene.nodes[node].position[1] = -0.05, setup.scene.nodes[top].position[1] = 0.95;
   setup.scene.nodes[top].start[1] = 0.95, setup.scene.loads[0].force[1] = 1;
   w = walk_until(&setup, 20);
   double depth = 0.05 * k / (k + ground); /* spring force k (0.05 - depth) = ground depth */
-  assert_near(w.path.points[0].q[3], -depth, 1e-13);
-  assert_relative(event(&w, STRUT_PATH_LIFT_OFF, 0)->factor, k * 0.05, 1e-10);
-  assert_near(last(&w)->q[3], 20 / k - 0.05, 1e-12);
+  assert_near(w.path.points[0].at.q[3], -depth, 1e-13);
+  assert_relative(event(&w, STRUT_PATH_LIFT_OFF, 0)->at.factor, k * 0.05, 1e-10);
+  assert_near(last(&w)->at.q[3], 20 / k - 0.05, 1e-12);
   walk_free(&w);
 }
 
@@ -119,7 +119,7 @@ TEST(lift_off) {
   assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, NULL), STRUT_OK);
   assert_int_equal(path.events[0].kind, STRUT_PATH_LIFT_OFF);
   assert_int_equal(path.events[0].index, 1);
-  assert_relative(path.events[0].factor, 0.4 * 9.81 / 2, 1e-6); /* it leans a little */
+  assert_relative(path.events[0].at.factor, 0.4 * 9.81 / 2, 1e-6); /* it leans a little */
   strut_path_free(&path);
   setup.scene.loads[0].force[0] = 1, setup.scene.loads[0].force[1] = 0; /* no friction holds it */
   assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, NULL),
@@ -140,8 +140,8 @@ TEST(named_load) {
     OWN(strut_path) path = {0};
     strut_path_options options = {.load = i ? NULL : "l1"};
     assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, NULL), STRUT_OK);
-    assert_near(path.points[0].q[2 * b], i ? 1 : 0.97, 1e-14);
-    assert_near(path.points[path.point_count - 1].q[2 * b], i ? 0.97 : 1.02, 1e-14);
+    assert_near(path.points[0].at.q[2 * b], i ? 1 : 0.97, 1e-14);
+    assert_near(path.points[path.point_count - 1].at.q[2 * b], i ? 0.97 : 1.02, 1e-14);
   }
 }
 

@@ -123,8 +123,8 @@ static double curve_height(const strut_path *path, double value, const double *r
 /* Where a point of a branch lies on the curve's axes. */
 static void branch_vertex(const path_picture *p, const strut_path_point *point, double *motion,
                           double *height) {
-  *motion = p->sign * (point->q[p->coordinate] - p->path->points[0].q[p->coordinate]);
-  *height = curve_height(p->path, point->factor, point->reaction);
+  *motion = p->sign * (point->at.q[p->coordinate] - p->path->points[0].at.q[p->coordinate]);
+  *height = curve_height(p->path, point->at.factor, point->at.reaction);
 }
 
 static strut_axes place_axes(path_picture *p, strut_box box, char labels[2][LABEL]) {
@@ -219,7 +219,7 @@ static void draw_curve(path_picture *p, strut_box box) {
 
 /* A shape with its motion enlarged, in p->shape. */
 static const double *enlarged(path_picture *p, const double *q) {
-  const double *from = p->path->points[0].q;
+  const double *from = p->path->points[0].at.q;
   for (int32_t i = 0; i < p->model->length; i++)
     p->shape[i] = from[i] + p->larger * (q[i] - from[i]);
   return p->shape;
@@ -254,7 +254,7 @@ static double shapes_height(path_picture *p, double width) {
 /* The arrow of a load at the beginning [pt]: outwards from its node, or from outside onto it. */
 static bool load_arrow(const path_picture *p, const strut_window *window, const strut_load *load,
                        double ends[2][2]) {
-  const double *q = p->path->points[0].q;
+  const double *q = p->path->points[0].at.q;
   double largest = 0.0, size = hypot(load->force[0], load->force[1]), middle[2] = {0, 0};
   if (!load_grows(p->path, load) || !(size > 0)) return false;
   for (size_t l = 0; l < p->model->scene->load_count; l++) {
@@ -338,7 +338,7 @@ static void draw_shapes(path_picture *p, strut_box box) {
   draw_markers(p, (const double(*)[2])stops);
   draw_letters(p, box, (const double(*)[2])stops);
   if (p->model->node_count <= NAMED)
-    strut_draw_names(p->canvas, &window, p->model, p->path->points[0].q, false);
+    strut_draw_names(p->canvas, &window, p->model, p->path->points[0].at.q, false);
 }
 
 /* The path put in order, places to stop at, the page. */
@@ -355,7 +355,7 @@ static const double SAME = 1e-7; /* of the whole arc: events so close are one */
 static double largest_motion(const strut_path *path, int32_t coordinate) {
   double most = 0.0;
   for (size_t k = 0; k < path->point_count; k++) {
-    double here = path->points[k].q[coordinate] - path->points[0].q[coordinate];
+    double here = path->points[k].at.q[coordinate] - path->points[0].at.q[coordinate];
     if (fabs(here) > fabs(most) * (1 + 1e-9)) most = here;
   }
   return most;
@@ -388,7 +388,7 @@ static void add_vertex(path_picture *p, double value, const double *q, const dou
   assert(p->count < p->path->point_count + p->path->event_count);
   p->vertices[p->count++] =
       (path_vertex){.value = value,
-                    .motion = p->sign * (q[p->coordinate] - p->path->points[0].q[p->coordinate]),
+                    .motion = p->sign * (q[p->coordinate] - p->path->points[0].at.q[p->coordinate]),
                     .height = curve_height(p->path, value, reaction),
                     .unstable = unstable,
                     .q = q,
@@ -442,7 +442,7 @@ static void describe_event(const path_picture *p, const strut_path_event *event,
 static void add_event(path_picture *p, size_t index, double whole) {
   const strut_path_event *event = &p->path->events[index];
   const strut_path_event *before = index ? event - 1 : NULL;
-  bool same = before && event->arc - before->arc <= SAME * whole;
+  bool same = before && event->at.arc - before->at.arc <= SAME * whole;
   if (same && p->stop_count > 1 && !p->events_left) {
     describe_event(p, event, before, p->stops[p->stop_count - 1].text);
   } else if (p->stop_count + 1 < MOST_STOPS) { /* one is kept for the end */
@@ -457,16 +457,18 @@ static void add_event(path_picture *p, size_t index, double whole) {
 /* Orders points and events by arc length. The start of an edge determines its stability. */
 static void put_in_order(path_picture *p) {
   const strut_path *path = p->path;
-  double whole = fmax(path->points[path->point_count - 1].arc, 1e-300);
+  double whole = fmax(path->points[path->point_count - 1].at.arc, 1e-300);
   size_t at = 0;
   for (size_t k = 0; k < path->point_count; k++) {
     const strut_path_point *point = &path->points[k];
-    for (; at < path->event_count && path->events[at].arc <= point->arc; at++) {
+    for (; at < path->event_count && path->events[at].at.arc <= point->at.arc; at++) {
       const strut_path_event *event = &path->events[at];
-      add_vertex(p, event->factor, event->q, event->force, event->reaction, event->after > 0);
+      add_vertex(p, event->at.factor, event->at.q, event->at.force, event->at.reaction,
+                 event->after > 0);
       add_event(p, at, whole);
     }
-    add_vertex(p, point->factor, point->q, point->force, point->reaction, point->negative > 0);
+    add_vertex(p, point->at.factor, point->at.q, point->at.force, point->at.reaction,
+               point->negative > 0);
     if (k == 0) snprintf(add_stop(p, p->count - 1)->text, STOP_TEXT, "start");
   }
   snprintf(add_stop(p, p->count - 1)->text, STOP_TEXT, "end");

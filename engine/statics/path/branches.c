@@ -165,9 +165,9 @@ static bool join_fork(strut_path_walk *w, const strut_path_fork *origin, const d
     if (!may_join(w, f, origin)) continue;
     if (passing_distance(w, from, tangent, f->y) > PASSING + 1.0 / PLACES) continue;
     mark_arrival(w, f, from, ARRIVING);
-    w->arc = p->points[p->point_count - 2].arc + strut_path_distance(w, from, f->y);
+    w->arc = p->points[p->point_count - 2].at.arc + strut_path_distance(w, from, f->y);
     p->point_count--;
-    while (p->event_count > 0 && p->events[p->event_count - 1].arc > w->arc) p->event_count--;
+    while (p->event_count > 0 && p->events[p->event_count - 1].at.arc > w->arc) p->event_count--;
     remark_joined(w, f);
     return true;
   }
@@ -199,7 +199,7 @@ static void walk_branch(strut_path_walk *w, const strut_path_fork *origin,
 static double change_along(const strut_path *p, int32_t length) {
   double sum = 0;
   for (int32_t i = 0; i < length; i++) {
-    double change = p->points[p->point_count - 1].q[i] - p->points[0].q[i];
+    double change = p->points[p->point_count - 1].at.q[i] - p->points[0].at.q[i];
     sum += change * change;
   }
   return sum;
@@ -211,11 +211,12 @@ static bool are_twins(const strut_path_walk *w, const strut_path *a, const strut
   double range = fabs(w->system.parameter.range);
   double moved = change_along(a, w->system.model->length);
   if (a->event_count != b->event_count || a->end != b->end || s->negative != t->negative ||
-      fabs(s->factor - t->factor) > ALIKE * range || fabs(s->arc - t->arc) > NEARLY * s->arc ||
+      fabs(s->at.factor - t->at.factor) > ALIKE * range ||
+      fabs(s->at.arc - t->at.arc) > NEARLY * s->at.arc ||
       fabs(moved - change_along(b, w->system.model->length)) > ALIKE * moved)
     return false;
   for (size_t k = 0; k < a->event_count; k++)
-    if (fabs(a->events[k].factor - b->events[k].factor) > ALIKE * range ||
+    if (fabs(a->events[k].at.factor - b->events[k].at.factor) > ALIKE * range ||
         a->events[k].kind != b->events[k].kind || a->events[k].after != b->events[k].after)
       return false;
   return true;

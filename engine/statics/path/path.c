@@ -54,7 +54,7 @@ void strut_path_remark_steps(strut_path_walk *w, int32_t steps) {
   const strut_path *path = w->path;
   if (path->end != STRUT_PATH_STEPS || path->point_count == 0) return;
   snprintf(w->path->remark, sizeof path->remark, "%d steps led to %s %.6g%s%s; --steps allows more",
-           (int)steps, strut_path_subject(w), path->points[path->point_count - 1].factor,
+           (int)steps, strut_path_subject(w), path->points[path->point_count - 1].at.factor,
            *path->unit ? " " : "", path->unit);
 }
 
@@ -358,7 +358,7 @@ static bool keep_pieces(const strut_path_system *s, strut_path *path) {
 static double part_done(const strut_path *path, double until, int32_t step, int32_t steps) {
   double done = ((double)step + 1.0) / (double)steps;
   if (path->point_count < 2) return done;
-  double from = path->points[0].factor, at = path->points[path->point_count - 1].factor;
+  double from = path->points[0].at.factor, at = path->points[path->point_count - 1].at.factor;
   return fmin(1.0, fmax(done, (at - from) / (until - from)));
 }
 

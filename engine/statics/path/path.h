@@ -14,6 +14,7 @@
 
 #include "engine/model/model.h"
 #include "engine/scene/experiment.h"
+#include "engine/scene/value_rows.h"
 
 /** What 0 steps stand for. */
 #define STRUT_PATH_USUAL_STEPS 400
@@ -47,32 +48,35 @@ typedef enum strut_path_event_kind {
  */
 STRUT_API const char *strut_path_event_name(strut_path_event_kind kind);
 
-typedef struct strut_path_point {
+/** What a path is at one of its points or events. */
+typedef struct strut_path_state {
   double factor;    /* the parameter: a load's factor [1], else in its SI unit */
   double arc;       /* from the beginning; coordinates in units of the structure's size, the
                         parameter in units of the range asked for [1] */
-  int32_t negative; /* eigenvalues of the stiffness below zero beyond it: 0 is stable */
   double *q;        /* (length) [m] */
   double *force;    /* (members) tension, with stops [N] */
   double *moment;   /* (hinges) [N m] */
+  double *pressure; /* (cells) inside [N/m] */
+  double *distance; /* (distances) force [N] */
   double *reaction; /* (length) force of supports on held coordinates, else 0 [N] */
   double *contact;  /* (contacts) normal force of the ground [N] */
   double *
       friction; /* (contacts) its force on the node along the tangent; 0 unless friction is kept [N] */
-  double *pressure; /* (cells) inside [N/m] */
-  double *distance; /* (distances) force [N] */
+} strut_path_state;
+
+typedef struct strut_path_point {
+  strut_path_state at;
+  int32_t negative; /* eigenvalues of the stiffness below zero beyond it: 0 is stable */
 } strut_path_point;
 
 typedef struct strut_path_event {
+  strut_path_state at;
   strut_path_event_kind kind;
-  double factor, arc;
   int32_t index; /* of the member or node that changes, of a guide's node; of the node that moves
                          most at a limit point or bifurcation; of the element that engages, releases or
                          passes a kink */
   int32_t before, after; /* eigenvalues of the stiffness below zero on its two sides */
   const char *detail;    /* in words */
-  double *q, *force, *moment, *reaction, *contact, *friction, *pressure,
-      *distance; /* as of a point */
 } strut_path_event;
 
 typedef enum strut_path_end {
@@ -132,6 +136,10 @@ typedef struct strut_path {
   } from;
   strut_arena arena;
 } strut_path;
+
+/** Rows of a strut_path, and of a strut_path_state in it. */
+STRUT_API extern const strut_value_rows strut_path_values;
+extern const strut_value_rows strut_path_state_values;
 
 /** The scene, and its experiment, where the parameter has a value; the caller frees `setup`. */
 typedef strut_status (*strut_path_scene_at)(void *context, double value, strut_setup *setup,

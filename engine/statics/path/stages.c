@@ -129,14 +129,14 @@ static void change_supports(stages *s, const strut_path_stage *stage, const stru
 static void keep_end(stages *s, const strut_path_stage *stage, const strut_path_options *o,
                      const strut_path *path) {
   const strut_path_point *end = &path->points[path->point_count - 1];
-  memcpy(s->q, end->q, (size_t)s->model->length * sizeof *s->q);
-  s->reaction = end->reaction;
+  memcpy(s->q, end->at.q, (size_t)s->model->length * sizeof *s->q);
+  s->reaction = end->at.reaction;
   for (size_t i = 0; i < s->model->scene->load_count && stage->load; i++)
     if (strut_path_names_load(stage->load, s->model->scene->loads[i].name))
-      s->factor[i] = end->factor;
-  if (o->over == STRUT_PATH_OVER_ACTUATOR) s->drive[o->index] = end->factor;
+      s->factor[i] = end->at.factor;
+  if (o->over == STRUT_PATH_OVER_ACTUATOR) s->drive[o->index] = end->at.factor;
   if (o->over == STRUT_PATH_OVER_COORDINATE)
-    s->held[o->index] = 1, s->moved[o->index] = end->factor;
+    s->held[o->index] = 1, s->moved[o->index] = end->at.factor;
 }
 
 /* Follows stage k into s->path[k]. */

@@ -27,50 +27,51 @@ static bool reserve_items(strut_path_walk *w, void **items, size_t count, size_t
   return true;
 }
 
-/* Positions and forces at y; false: out of memory. */
-static bool keep_state(strut_path_walk *w, const double *y, strut_path_point *point) {
+static double *new_values(strut_path_walk *w, size_t count) {
+  double *values = strut_arena_allocate(&w->path->arena, count, sizeof *values);
+  if (!values) w->failed = true;
+  return values;
+}
+
+/* What the path is at y, `arc` from its beginning; w->failed: out of memory. */
+static strut_path_state keep_state(strut_path_walk *w, const double *y, double arc) {
   strut_path_system *s = &w->system;
   const strut_model *model = s->model;
+  const strut_scene *scene = model->scene;
   size_t length = (size_t)model->length, members = (size_t)model->members.count;
-  point->q = strut_arena_allocate(&w->path->arena, length, sizeof(double));
-  point->force = strut_arena_allocate(&w->path->arena, members, sizeof(double));
-  point->moment = strut_arena_allocate(&w->path->arena, model->scene->hinge_count, sizeof(double));
-  point->pressure = strut_arena_allocate(&w->path->arena, model->scene->cell_count, sizeof(double));
-  point->distance =
-      strut_arena_allocate(&w->path->arena, model->scene->distance_count, sizeof(double));
-  point->reaction = strut_arena_allocate(&w->path->arena, length, sizeof(double));
-  point->contact =
-      strut_arena_allocate(&w->path->arena, (size_t)model->contacts.count, sizeof(double));
-  point->friction =
-      strut_arena_allocate(&w->path->arena, (size_t)model->contacts.count, sizeof(double));
-  if (!point->q || !point->force || !point->moment || !point->reaction || !point->contact ||
-      !point->friction || !point->pressure || !point->distance) {
-    w->failed = true;
-    return false;
-  }
+  size_t contacts = (size_t)model->contacts.count;
+  strut_path_state state = {.factor = strut_path_value(s, y),
+                            .arc = arc,
+                            .q = new_values(w, length),
+                            .force = new_values(w, members),
+                            .moment = new_values(w, scene->hinge_count),
+                            .pressure = new_values(w, scene->cell_count),
+                            .distance = new_values(w, scene->distance_count),
+                            .reaction = new_values(w, length),
+                            .contact = new_values(w, contacts),
+                            .friction = new_values(w, contacts)};
+  if (w->failed) return state;
   strut_path_evaluate(s, y); /* y is of the path: its value was not refused */
-  memcpy(point->q, s->latest.q, length * sizeof *s->latest.q);
+  memcpy(state.q, s->latest.q, length * sizeof *s->latest.q);
   for (size_t j = 0; j < members; j++) {
-    bool cable = model->scene->members[j].kind == STRUT_CABLE; /* at a kink a rounding may push */
-    point->force[j] = cable ? fmax(s->member[j].tension, 0.0) : s->member[j].tension;
+    bool cable = scene->members[j].kind == STRUT_CABLE; /* at a kink a rounding may push */
+    state.force[j] = cable ? fmax(s->member[j].tension, 0.0) : s->member[j].tension;
     if (strut_element_of_member(&model->elements, (int32_t)j))
-      point->force[j] += strut_path_element_tension(s, (int32_t)j);
+      state.force[j] += strut_path_element_tension(s, (int32_t)j);
   }
-  strut_path_element_forces(s, STRUT_ELEMENT_HINGE, point->moment);
-  strut_path_element_forces(s, STRUT_ELEMENT_DISTANCE, point->distance);
-  strut_path_pressures(s, point->pressure);
-  strut_path_reactions(s, point->reaction, point->contact, point->friction);
-  return true;
+  strut_path_element_forces(s, STRUT_ELEMENT_HINGE, state.moment);
+  strut_path_element_forces(s, STRUT_ELEMENT_DISTANCE, state.distance);
+  strut_path_pressures(s, state.pressure);
+  strut_path_reactions(s, state.reaction, state.contact, state.friction);
+  return state;
 }
 
 void strut_path_add_point(strut_path_walk *w, int32_t negative) {
   strut_path *p = w->path;
   strut_path_keep_guides(w);
   void *items = p->points;
-  strut_path_point point = {
-      .factor = strut_path_value(&w->system, w->y), .arc = w->arc, .negative = negative};
-  if (!keep_state(w, w->y, &point) ||
-      !reserve_items(w, &items, p->point_count, &w->point_room, sizeof *p->points))
+  strut_path_point point = {keep_state(w, w->y, w->arc), negative};
+  if (w->failed || !reserve_items(w, &items, p->point_count, &w->point_room, sizeof *p->points))
     return;
   strut_path_keep_turns(&w->system);
   strut_path_keep_directions(&w->system);
@@ -82,30 +83,20 @@ void strut_path_add_event(strut_path_walk *w, strut_path_event_kind kind, const 
                           int32_t index, int32_t before, int32_t after, const char *detail) {
   strut_path *p = w->path;
   void *items = p->events;
-  strut_path_point state;
   detail = strut_arena_text(&p->arena, detail, strlen(detail));
   if (!detail) w->failed = true;
-  if (w->failed || !keep_state(w, y, &state) ||
-      !reserve_items(w, &items, p->event_count, &w->event_room, sizeof *p->events))
+  if (w->failed) return;
+  strut_path_event event = {keep_state(w, y, w->arc + strut_path_distance(w, w->y, y)),
+                            kind,
+                            index,
+                            before,
+                            after,
+                            detail};
+  if (w->failed || !reserve_items(w, &items, p->event_count, &w->event_room, sizeof *p->events))
     return;
   p->events = items;
-  strut_path_event event = {.kind = kind,
-                            .factor = strut_path_value(&w->system, y),
-                            .arc = w->arc + strut_path_distance(w, w->y, y),
-                            .index = index,
-                            .before = before,
-                            .after = after,
-                            .detail = detail,
-                            .q = state.q,
-                            .force = state.force,
-                            .moment = state.moment,
-                            .reaction = state.reaction,
-                            .contact = state.contact,
-                            .friction = state.friction,
-                            .pressure = state.pressure,
-                            .distance = state.distance};
   size_t at = p->event_count++; /* in the order of the path */
-  for (; at > 0 && p->events[at - 1].arc > event.arc; at--) p->events[at] = p->events[at - 1];
+  for (; at > 0 && p->events[at - 1].at.arc > event.at.arc; at--) p->events[at] = p->events[at - 1];
   p->events[at] = event;
 }
 
@@ -211,7 +202,7 @@ static bool land_on_stop(strut_path_walk *w, const strut_path_piece *piece) {
 
 static bool is_away(const strut_path_walk *w) {
   const strut_path_system *s = &w->system;
-  const double *start = w->path->points[0].q;
+  const double *start = w->path->points[0].at.q;
   double most = 0;
   for (int32_t i = 0; i < s->n; i++)
     most = fmax(most, fabs(w->y[i] - start[s->potential->coordinate[i]] / s->size));
@@ -316,7 +307,7 @@ static bool end_at_switch(strut_path_walk *w, strut_path_piece *piece, int32_t w
   memcpy(w->tangent, w->next_tangent, strut_path_bytes(w));
   int32_t negative = w->negative;
   bool on = pass_switch(w, which, beyond);
-  double since = w->arc - w->path->points[w->path->point_count - 1].arc;
+  double since = w->arc - w->path->points[w->path->point_count - 1].at.arc;
   if (!on && strut_path_turns_round(&w->system, which)) return end_path(w, STRUT_PATH_LOST);
   bool bends = on && negative == w->negative && strut_path_is_bend(&w->system, which);
   if (bends && since < w->step && ++w->bends < MOST_BENDS) return true;
@@ -432,6 +423,6 @@ bool strut_path_walk_begin(strut_path_walk *w) {
   strut_path_add_point(w, w->negative);
   const strut_path_stop *stop = &s->parameter.options->stop;
   if (!w->failed && stop->given)
-    s->stop_at = w->path->points[0].q[stop->coordinate] + stop->displacement;
+    s->stop_at = w->path->points[0].at.q[stop->coordinate] + stop->displacement;
   return !w->failed;
 }

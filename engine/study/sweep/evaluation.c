@@ -83,8 +83,8 @@ double strut_goals_shape_distance(const strut_study *study, const strut_scene *s
 static double force_at(const strut_path *path, double displacement) {
   for (size_t i = 0; i < path->point_count; i++) {
     const strut_path_point *p = &path->points[i], *before = i ? p - 1 : p;
-    double u = p->factor, u0 = before->factor;
-    double f = p->reaction[path->coordinate], f0 = before->reaction[path->coordinate];
+    double u = p->at.factor, u0 = before->at.factor;
+    double f = p->at.reaction[path->coordinate], f0 = before->at.reaction[path->coordinate];
     if (u == displacement) return f;
     if (i && (u0 - displacement) * (u - displacement) < 0.0)
       return f0 + (f - f0) * (displacement - u0) / (u - u0);

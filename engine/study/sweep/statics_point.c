@@ -102,12 +102,12 @@ static bool loses_stability(const strut_path_event *e) { return e->before == 0 &
 /* The factor of the first event of a kind. */
 static double first_factor(const strut_path *path, bool (*matches)(const strut_path_event *)) {
   for (size_t i = 0; i < path->event_count; i++)
-    if (matches(&path->events[i])) return path->events[i].factor;
+    if (matches(&path->events[i])) return path->events[i].at.factor;
   return (double)NAN;
 }
 
 static double last_factor(const strut_path *path) {
-  return path->point_count ? path->points[path->point_count - 1].factor : (double)NAN;
+  return path->point_count ? path->points[path->point_count - 1].at.factor : (double)NAN;
 }
 
 /* 0 or 1; missing where another combination of several states might be super stable. */
