@@ -7,23 +7,22 @@
 #include "engine/output/json_value.h"
 #include "engine/scene/value_rows.h"
 
-/** The value of a row. */
-STRUT_API strut_value strut_value_of(const strut_value_row *row, const strut_result_object *of);
-
-/** Columns of each of its things, and whether one of these values, column by column, is there. */
-STRUT_API size_t strut_value_columns(const strut_value_row *row);
-STRUT_API bool strut_value_has(const strut_value_row *row, const strut_result_object *of, size_t k);
+/** Numbers of each of its things; number k, thing by thing, and whether it is there. */
+STRUT_API size_t strut_value_columns(const strut_value *value);
+STRUT_API double strut_value_item(const strut_value *value, const strut_result_object *of,
+                                  size_t k);
+STRUT_API bool strut_value_has(const strut_value *value, size_t k);
 
 /** Adds the values of a struct as members of an object. */
 STRUT_API void strut_json_values(strut_json *json, struct cJSON *to, const strut_value_rows *rows,
                                  const strut_result_object *of);
 /** A whole result as JSON: the scene's name, strut's version, its values; a block of strut_allocate or NULL. */
-STRUT_API char *strut_result_to_json(const strut_value_rows *rows, const void *result,
-                                     const struct strut_scene *scene);
+STRUT_API char *strut_values_json(const strut_value_rows *rows, const void *result,
+                                  const struct strut_scene *scene);
 
 /** Appends the names of the columns of a CSV, or their values, each after a comma. */
-STRUT_API void strut_csv_add_head(strut_buffer *csv, const strut_value_rows *rows,
-                                  const strut_result_object *of);
+STRUT_API void strut_csv_add_names(strut_buffer *csv, const strut_value_rows *rows,
+                                   const strut_result_object *of);
 STRUT_API void strut_csv_add_values(strut_buffer *csv, const strut_value_rows *rows,
                                     const strut_result_object *of);
 

@@ -2,6 +2,11 @@
 /**
  * Results as data: for each value of a struct one row, beside the struct. JSON, CSV, tables, the trees of the
  * library and the page of results are made from the rows; nobody writes them by hand.
+ *
+ *     #define MODE(X) \
+ *       X("frequency", "Hz", NUMBER(m->angular_frequency / STRUT_TAU), "undamped") \
+ *       X("shape", "1", OF(NODE, m->shape), "the largest entry is 1")
+ *     STRUT_VALUES(mode_values, MODE, const strut_mode *m = of->at)
  */
 #ifndef STRUT_ENGINE_SCENE_VALUE_ROWS_H
 #define STRUT_ENGINE_SCENE_VALUE_ROWS_H
@@ -12,22 +17,18 @@
 
 #include "engine/scene/channels.h"
 
-typedef struct strut_value_rows strut_value_rows;
-
-/** What a value is, and how a struct stores it where a row gives its place. */
 typedef enum strut_value_kind {
   STRUT_VALUE_ABSENT,  /* not there: files have no such key */
-  STRUT_VALUE_NUMBER,  /* double; null in files where it is not finite */
-  STRUT_VALUE_INTEGER, /* int32_t */
-  STRUT_VALUE_COUNT,   /* size_t or int64_t */
-  STRUT_VALUE_FLAG,    /* bool */
-  STRUT_VALUE_TEXT,    /* const char *; NULL is null */
-  STRUT_VALUE_WORDS,   /* char[]; empty is null */
-  STRUT_VALUE_NUMBERS, /* const double *, as many as `count` says */
-  STRUT_VALUE_NAMES,   /* names of things */
-  STRUT_VALUE_THINGS,  /* const double *, for each of an owner's things, of nodes two */
-  STRUT_VALUE_PART,    /* a struct: rows of its own */
-  STRUT_VALUE_LIST     /* const struct *, as many as `count` says, each with its rows */
+  STRUT_VALUE_NUMBER,  /* null in files where it is not finite */
+  STRUT_VALUE_COUNT,   /* a whole number */
+  STRUT_VALUE_FLAG,    /* yes or no */
+  STRUT_VALUE_TEXT,    /* NULL: null */
+  STRUT_VALUE_WORDS,   /* a text in the value itself; empty: null */
+  STRUT_VALUE_NUMBERS, /* an array of numbers, or of arrays of `columns` of them; NULL: null */
+  STRUT_VALUE_NAMES,   /* of things */
+  STRUT_VALUE_THINGS,  /* a number for each of an owner's things, of nodes two */
+  STRUT_VALUE_PART,    /* a struct with rows of its own; without a key: rows of the same struct */
+  STRUT_VALUE_LIST /* structs with rows of their own; under names where it has some; NULL: null */
 } strut_value_kind;
 
 /** A struct, and the one that it is part of. */
@@ -35,30 +36,31 @@ typedef struct strut_result_object {
   const void *at;
   const struct strut_result_object *outer; /* NULL: it is the whole result */
   const struct strut_scene *scene;
+  size_t index; /* of a struct of a list */
 } strut_result_object;
 
-/** A value that was asked for. */
+/** Name of thing i of a value of that struct; NULL: it is left out. */
+typedef const char *strut_value_name(const strut_result_object *of, size_t i);
+
 typedef struct strut_value {
   strut_value_kind kind;
-  double number;
-  int64_t integer; /* also of a flag */
+  double number; /* also of a count and a flag */
+  int64_t integer;
   const char *text;
-  const void *items; /* numbers, structs of a list, or a part */
-  size_t count;
-  /** NAMES, and a LIST whose structs stand under names: of thing i, NULL: it is left out. */
-  const char *(*name)(const strut_result_object *of, size_t i);
+  const void *items;           /* numbers, structs of a list, or a part */
+  size_t count, size, columns; /* of items; bytes from one to the next */
+  strut_value_name *name;
+  double (*each)(const strut_result_object *of, size_t k); /* of things: instead of items */
+  const uint8_t *held;       /* of things: number by number, whether it is there; NULL: all are */
+  strut_channel_owner owner; /* of things */
+  char words[320];
 } strut_value;
 
+typedef struct strut_value_rows strut_value_rows;
+
 typedef struct strut_value_row {
-  const char *key, *unit, *what; /* in files; SI, "" for none; a sentence for readers */
-  strut_value_kind kind;
-  strut_channel_owner owner;  /* of things */
-  size_t at, count_at, size;  /* offsets of the value, of its number; size of a struct of a list */
-  strut_value_kind counts_as; /* how the number is stored */
-  const strut_value_rows *rows;
-  strut_value (*get)(const strut_result_object *of); /* instead of what the struct stores */
-  bool (*there)(const strut_result_object *of);      /* else it is absent; NULL: it is there */
-  bool (*has)(const strut_result_object *of, size_t component); /* of things; NULL: each has it */
+  const char *key, *unit, *what; /* in files; SI, "" for none; a phrase for readers */
+  const strut_value_rows *rows;  /* of a part, of a list */
   /* Of a CSV, and of a printed table, of nodes along x and y; NULL: not in it. Things: behind the name. */
   const char *column[2], *label[2];
 } strut_value_row;
@@ -66,50 +68,73 @@ typedef struct strut_value_row {
 struct strut_value_rows {
   const strut_value_row *row;
   size_t count;
+  void (*fill)(const strut_result_object *of, strut_value *value); /* (count) */
 };
 
-/* ---- rows ---- */
+/* ---- making rows ---- */
 
-#define STRUT_VALUE_KIND(TYPE, MEMBER)                                                             \
-  _Generic(((TYPE *)0)->MEMBER,                                                                    \
-      double: STRUT_VALUE_NUMBER,                                                                  \
-      int32_t: STRUT_VALUE_INTEGER,                                                                \
-      size_t: STRUT_VALUE_COUNT,                                                                   \
-      int64_t: STRUT_VALUE_COUNT,                                                                  \
-      bool: STRUT_VALUE_FLAG,                                                                      \
-      const char *: STRUT_VALUE_TEXT,                                                              \
-      char *: STRUT_VALUE_WORDS)
+enum { STRUT_MOST_VALUES = 64 };
 
-/** A value that the struct stores. */
-#define STRUT_VALUE(TYPE, MEMBER, KEY, UNIT, WHAT)                                                 \
-  .key = KEY, .unit = UNIT, .what = WHAT, .kind = STRUT_VALUE_KIND(TYPE, MEMBER),                  \
-  .at = offsetof(TYPE, MEMBER)
-/** One that is computed from it. */
-#define STRUT_VALUE_GET(GET, KEY, UNIT, WHAT) .key = KEY, .unit = UNIT, .what = WHAT, .get = GET
-/** An array: a value for each thing of an owner. */
-#define STRUT_VALUE_OF(TYPE, MEMBER, OWNER, KEY, UNIT, WHAT)                                       \
-  .key = KEY, .unit = UNIT, .what = WHAT, .kind = STRUT_VALUE_THINGS, .owner = OWNER,              \
-  .at = offsetof(TYPE, MEMBER)
-/** Rows of a struct that stands at the beginning of this one, or is it: they are as rows of its own. */
-#define STRUT_VALUE_SAME(ROWS)                                                                     \
-  .kind = STRUT_VALUE_PART, .rows = &(const strut_value_rows)STRUT_VALUE_ROWS(ROWS)
-/** A list of structs. */
-#define STRUT_VALUE_STRUCTS(TYPE, MEMBER, COUNT, ROWS, KEY, WHAT)                                  \
-  .key = KEY, .unit = "", .what = WHAT, .kind = STRUT_VALUE_LIST, .at = offsetof(TYPE, MEMBER),    \
-  .count_at = offsetof(TYPE, COUNT), .counts_as = STRUT_VALUE_KIND(TYPE, COUNT),                   \
-  .size = sizeof *((TYPE *)0)->MEMBER, .rows = ROWS
-/** The rows of a table. */
-#define STRUT_VALUE_ROWS(ROWS)                                                                     \
-  { ROWS, sizeof(ROWS) / sizeof *(ROWS) }
+/** Defines the rows NAME of a table of X(key, unit, value, what, ...); the rest declares what values refer to. */
+#define STRUT_VALUES(NAME, TABLE, ...) STRUT_VALUES_OF(const, NAME, TABLE, __VA_ARGS__)
+/** The same for one file. */
+#define STRUT_VALUES_HERE(NAME, TABLE, ...) STRUT_VALUES_OF(static const, NAME, TABLE, __VA_ARGS__)
+#define STRUT_VALUES_OF(LINKAGE, NAME, TABLE, ...)                                                 \
+  static const strut_value_row NAME##_row[] = {TABLE(STRUT_VALUE_ROW)};                            \
+  static void NAME##_fill(const strut_result_object *of, strut_value *value) {                     \
+    __VA_ARGS__;                                                                                   \
+    TABLE(STRUT_VALUE_FILL)                                                                        \
+  }                                                                                                \
+  LINKAGE strut_value_rows NAME = {NAME##_row, sizeof NAME##_row / sizeof *NAME##_row, NAME##_fill};
+#define STRUT_VALUE_ROW(KEY, UNIT, VALUE, ...) {.key = KEY, .unit = UNIT, .what = __VA_ARGS__},
+#define STRUT_VALUE_FILL(KEY, UNIT, VALUE, ...) *value++ = STRUT_VALUE_AS_##VALUE;
 
-static inline strut_value strut_value_number(double number) {
-  return (strut_value){.kind = STRUT_VALUE_NUMBER, .number = number};
-}
-static inline strut_value strut_value_flag(bool flag) {
-  return (strut_value){.kind = STRUT_VALUE_FLAG, .integer = flag};
-}
-static inline strut_value strut_value_text(const char *text) {
-  return (strut_value){.kind = STRUT_VALUE_TEXT, .text = text};
-}
+#define STRUT_VALUE_AS_NUMBER(NUMBER)                                                              \
+  (strut_value) { .kind = STRUT_VALUE_NUMBER, .number = (NUMBER) }
+#define STRUT_VALUE_AS_COUNT(NUMBER)                                                               \
+  (strut_value) {                                                                                  \
+    .kind = STRUT_VALUE_COUNT, .integer = (int64_t)(NUMBER), .number = (double)(NUMBER)            \
+  }
+#define STRUT_VALUE_AS_FLAG(FLAG)                                                                  \
+  (strut_value) { .kind = STRUT_VALUE_FLAG, .integer = (FLAG), .number = (FLAG) ? 1.0 : 0.0 }
+#define STRUT_VALUE_AS_TEXT(TEXT)                                                                  \
+  (strut_value) { .kind = STRUT_VALUE_TEXT, .text = (TEXT) }
+#define STRUT_VALUE_AS_NUMBERS(ITEMS, COUNT)                                                       \
+  (strut_value) { .kind = STRUT_VALUE_NUMBERS, .items = (ITEMS), .count = (size_t)(COUNT) }
+/** Arrays in an array: the first COLUMNS of each ITEMS[i]. */
+#define STRUT_VALUE_AS_TABLE(ITEMS, COUNT, COLUMNS)                                                \
+  (strut_value) {                                                                                  \
+    .kind = STRUT_VALUE_NUMBERS, .items = (ITEMS), .count = (size_t)(COUNT),                       \
+    .columns = (size_t)(COLUMNS), .size = sizeof *(ITEMS)                                          \
+  }
+#define STRUT_VALUE_AS_NAMES(NAME, COUNT)                                                          \
+  (strut_value) { .kind = STRUT_VALUE_NAMES, .name = (NAME), .count = (size_t)(COUNT) }
+#define STRUT_VALUE_AS_OF(OWNER, ITEMS) STRUT_VALUE_AS_OF_HELD(OWNER, ITEMS, NULL)
+#define STRUT_VALUE_AS_OF_HELD(OWNER, ITEMS, HELD)                                                 \
+  (strut_value) {                                                                                  \
+    .kind = STRUT_VALUE_THINGS, .items = (ITEMS), .owner = STRUT_OWNER_##OWNER, .held = (HELD),    \
+    .count = strut_owner_count(STRUT_OWNER_##OWNER, of->scene)                                     \
+  }
+#define STRUT_VALUE_AS_OF_EACH(OWNER, EACH)                                                        \
+  (strut_value) {                                                                                  \
+    .kind = STRUT_VALUE_THINGS, .each = (EACH), .owner = STRUT_OWNER_##OWNER,                      \
+    .count = strut_owner_count(STRUT_OWNER_##OWNER, of->scene)                                     \
+  }
+#define STRUT_VALUE_AS_PART(ITEM)                                                                  \
+  (strut_value) { .kind = STRUT_VALUE_PART, .items = (ITEM) }
+#define STRUT_VALUE_AS_SAME STRUT_VALUE_AS_PART(of->at)
+#define STRUT_VALUE_AS_LIST(ITEMS, COUNT) STRUT_VALUE_AS_NAMED(ITEMS, COUNT, NULL)
+#define STRUT_VALUE_AS_NAMED(ITEMS, COUNT, NAME)                                                   \
+  (strut_value) {                                                                                  \
+    .kind = STRUT_VALUE_LIST, .items = (ITEMS), .count = (size_t)(COUNT), .size = sizeof *(ITEMS), \
+    .name = (NAME)                                                                                 \
+  }
+/** Of a function that returns the value. */
+#define STRUT_VALUE_AS_BY(CALL) (CALL)
+#define STRUT_VALUE_AS_IF(THERE, VALUE)                                                            \
+  (THERE) ? STRUT_VALUE_AS_##VALUE : (strut_value) { 0 }
+/** null where it is not known. */
+#define STRUT_VALUE_AS_KNOWN(KNOWN, VALUE)                                                         \
+  (KNOWN) ? STRUT_VALUE_AS_##VALUE : (strut_value) { .kind = STRUT_VALUE_TEXT }
 
 #endif

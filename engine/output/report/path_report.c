@@ -23,7 +23,7 @@ static const double ROUNDING = 1e-12; /* of the largest force */
 
 static strut_result_object object_of(const strut_path_state *state,
                                      const strut_result_object *path) {
-  return (strut_result_object){state, path, path->scene};
+  return (strut_result_object){state, path, path->scene, 0};
 }
 
 static double largest_force(const strut_path *path, const strut_scene *scene) {
@@ -35,16 +35,18 @@ static double largest_force(const strut_path *path, const strut_scene *scene) {
 }
 
 /* The largest of some values anywhere on the path; of supports and the ground that of members. */
-static double largest_value(const strut_result_object *whole, const strut_value_row *row) {
+static double largest_value(const strut_result_object *whole, size_t row) {
   const strut_path *path = whole->at;
-  if (row->owner == STRUT_OWNER_NODE || row->owner == STRUT_OWNER_CONTACT)
-    return largest_force(path, whole->scene);
   double most = 0;
   for (size_t k = 0; k < path->point_count; k++) {
+    strut_value values[STRUT_MOST_VALUES];
     strut_result_object at = object_of(&path->points[k].at, whole);
-    strut_value value = strut_value_of(row, &at);
-    for (size_t i = 0; i < value.count; i++)
-      most = fmax(most, fabs(((const double *)value.items)[i]));
+    strut_path_state_values.fill(&at, values);
+    const strut_value *value = &values[row];
+    if (value->owner == STRUT_OWNER_NODE || value->owner == STRUT_OWNER_CONTACT)
+      return largest_force(path, whole->scene);
+    for (size_t i = 0; i < value->count; i++)
+      most = fmax(most, fabs(strut_value_item(value, &at, i)));
   }
   return most;
 }
@@ -55,7 +57,7 @@ static double shown_force(double value, double largest) {
 }
 
 char *strut_path_json(const strut_path *path, const strut_scene *scene) {
-  return strut_result_to_json(&strut_path_values, path, scene);
+  return strut_values_json(&strut_path_values, path, scene);
 }
 
 /* The node that is farthest from where the path began at some point of it; a free one if there is. */
@@ -156,27 +158,28 @@ static size_t choose_stops(const strut_path *path, const strut_path_state *stops
 }
 
 /* A row for each thing that has such a force, as long as there is room. */
-static void add_forces(strut_buffer *table, const strut_result_object *whole,
-                       const strut_value_row *row, const strut_path_state *const *stops,
-                       size_t count, size_t *rows) {
-  strut_value value[MOST_STOPS];
+static void add_forces(strut_buffer *table, const strut_result_object *whole, size_t row,
+                       const strut_path_state *const *stops, size_t count, size_t *rows) {
+  const strut_value_row *what = &strut_path_state_values.row[row];
+  strut_value values[MOST_STOPS][STRUT_MOST_VALUES], *first = &values[0][row];
   double largest = largest_value(whole, row);
-  for (size_t k = 0; k < count; k++)
-    value[k] = strut_value_of(row, &(strut_result_object){stops[k], whole, whole->scene});
-  size_t columns = strut_value_columns(row);
-  for (size_t i = 0; i < columns * value[0].count; i++) {
+  for (size_t k = 0; k < count; k++) {
+    strut_result_object at = object_of(stops[k], whole);
+    strut_path_state_values.fill(&at, values[k]);
+  }
+  size_t columns = strut_value_columns(first);
+  for (size_t i = 0; i < columns * first->count; i++) {
     char text[STRUT_QUANTITY_TEXT];
-    strut_result_object at = object_of(stops[0], whole);
-    if (!strut_value_has(row, &at, i) || (*rows)++ >= MOST_FORCES) continue;
-    const char *name = strut_owner_name(row->owner, whole->scene, i / columns);
-    const char *which = row->label[i % columns];
+    if (!strut_value_has(first, i) || (*rows)++ >= MOST_FORCES) continue;
+    const char *name = strut_owner_name(first->owner, whole->scene, i / columns);
+    const char *which = what->label[i % columns];
     int room = LABEL - (int)strlen(which), characters, bytes = text_bytes(name, room, &characters);
     strut_buffer_add(table, "  %.*s%s%*s", bytes, name, which, room - characters, "");
-    for (size_t k = 0; k < count; k++)
-      strut_buffer_add(
-          table, "  %14s",
-          strut_quantity_text(shown_force(((const double *)value[k].items)[i], largest), DIGITS,
-                              row->unit, text));
+    for (size_t k = 0; k < count; k++) {
+      double force = strut_value_item(&values[k][row], whole, i);
+      strut_buffer_add(table, "  %14s",
+                       strut_quantity_text(shown_force(force, largest), DIGITS, what->unit, text));
+    }
     strut_buffer_add(table, "\n");
   }
 }
@@ -199,8 +202,7 @@ static void add_force_table(strut_buffer *table, const strut_result_object *whol
     strut_buffer_add(table, "  %14s", value_text(path, stops[k]->factor, text));
   strut_buffer_add(table, "\n");
   for (size_t i = 0; i < strut_path_state_values.count; i++)
-    if (strut_path_state_values.row[i].label[0])
-      add_forces(table, whole, &strut_path_state_values.row[i], stops, count, &rows);
+    if (strut_path_state_values.row[i].label[0]) add_forces(table, whole, i, stops, count, &rows);
   if (rows > MOST_FORCES)
     strut_buffer_add(table, "  and %zu more; -o DIR writes all of them\n", rows - MOST_FORCES);
 }
@@ -265,7 +267,7 @@ char *strut_path_table(const strut_path *path, const strut_scene *scene) {
   strut_buffer table = {0};
   size_t node = farthest_node(path, scene), at = 0;
   size_t every = (path->point_count + MOST_ROWS - 1) / MOST_ROWS;
-  strut_result_object whole = {path, NULL, scene};
+  strut_result_object whole = {path, NULL, scene, 0};
   double largest = path->coordinate >= 0 ? largest_force(path, scene) : 0;
   strut_c_locale locale = strut_c_locale_enter();
   strut_buffer_add(&table, "%s%spath %s %s, %zu points\n\n", scene->name, *scene->name ? ": " : "",
@@ -294,7 +296,7 @@ char *strut_path_table(const strut_path *path, const strut_scene *scene) {
 /* The parameter and what else a row begins with; then the values of its state. */
 static void add_header(strut_buffer *csv, const strut_path *path, const strut_scene *scene) {
   bool loads = path->over == STRUT_PATH_OVER_LOAD, staged = path->stages;
-  strut_result_object whole = {path, NULL, scene}, at = object_of(&path->points[0].at, &whole);
+  strut_result_object whole = {path, NULL, scene, 0}, at = object_of(&path->points[0].at, &whole);
   strut_buffer_add(csv, staged ? "stage,over,unit," : "");
   strut_buffer_add(csv, path->branches ? "branch," : "");
   strut_buffer_add(csv,
@@ -305,7 +307,7 @@ static void add_header(strut_buffer *csv, const strut_path *path, const strut_sc
                    path->unit);
   if (loads && path->reference > 0 && !staged) strut_buffer_add(csv, ",force [N]");
   strut_buffer_add(csv, ",arc,negative_eigenvalues,event");
-  strut_csv_add_head(csv, &strut_path_state_values, &at);
+  strut_csv_add_names(csv, &strut_path_state_values, &at);
   strut_buffer_add(csv, "\n");
 }
 
@@ -319,7 +321,7 @@ typedef struct rows {
 static void add_numbers(strut_buffer *csv, const rows *of, const strut_scene *scene,
                         const strut_path_state *state, const char *negative, const char *event) {
   const strut_path *path = of->path;
-  strut_result_object whole = {path, NULL, scene}, at = object_of(state, &whole);
+  strut_result_object whole = {path, NULL, scene, 0}, at = object_of(state, &whole);
   if (path->stages) {
     strut_buffer_add(csv, "%d,", of->stage);
     strut_csv_add_text(csv, "%s", of->part->name);

@@ -139,7 +139,7 @@ typedef struct strut_path {
 
 /** Rows of a strut_path, and of a strut_path_state in it. */
 STRUT_API extern const strut_value_rows strut_path_values;
-extern const strut_value_rows strut_path_state_values;
+STRUT_API extern const strut_value_rows strut_path_state_values;
 
 /** The scene, and its experiment, where the parameter has a value; the caller frees `setup`. */
 typedef strut_status (*strut_path_scene_at)(void *context, double value, strut_setup *setup,
