@@ -6,15 +6,13 @@
 
 #include "engine/scene/scene.h"
 
-size_t strut_value_columns(const strut_value *value) {
-  return value->owner == STRUT_OWNER_NODE ? 2 : 1;
-}
-
 double strut_value_item(const strut_value *value, const strut_result_object *of, size_t k) {
   return value->each ? value->each(of, k) : ((const double *)value->items)[k];
 }
 
-bool strut_value_has(const strut_value *value, size_t k) { return !value->held || value->held[k]; }
+bool strut_value_has(const strut_value *value, const strut_result_object *of, size_t k) {
+  return !value->has || value->has(of, k);
+}
 
 static const char *text_of(const strut_value *value) {
   if (value->kind == STRUT_VALUE_TEXT) return value->text;
@@ -26,11 +24,12 @@ static const char *text_of(const strut_value *value) {
 static void put_things(strut_json *json, struct cJSON *to, const char *key,
                        const strut_result_object *of, const strut_value *value) {
   struct cJSON *map = strut_json_object(json, to, key);
-  size_t columns = strut_value_columns(value);
+  size_t columns = value->columns;
   for (size_t i = 0; i < value->count; i++) {
     double number[2];
     const char *name = strut_owner_name(value->owner, of->scene, i);
-    if (!strut_value_has(value, columns * i) && !strut_value_has(value, columns * (i + 1) - 1))
+    if (!strut_value_has(value, of, columns * i) &&
+        !strut_value_has(value, of, columns * (i + 1) - 1))
       continue;
     for (size_t k = 0; k < columns; k++) number[k] = strut_value_item(value, of, columns * i + k);
     if (columns == 1)
@@ -70,7 +69,7 @@ static void put_names(strut_json *json, struct cJSON *to, const char *key,
   struct cJSON *list = strut_json_array(json, to, key);
   for (size_t i = 0; i < value->count; i++) {
     const char *name = value->name(of, i);
-    if (name) strut_json_text(json, list, NULL, name);
+    if (name) strut_json_text(json, list, NULL, *name ? name : NULL);
   }
 }
 
@@ -92,12 +91,11 @@ static void put(strut_json *json, struct cJSON *to, const strut_value_row *row,
     case STRUT_VALUE_NAMES: put_names(json, to, row->key, of, value); break;
     case STRUT_VALUE_THINGS: put_things(json, to, row->key, of, value); break;
     case STRUT_VALUE_LIST: put_list(json, to, row, of, value); break;
-    case STRUT_VALUE_PART:
-      if (row->key)
-        strut_json_values(json, strut_json_object(json, to, row->key), row->rows,
-                          &(strut_result_object){value->items, of, of->scene, 0});
-      else
-        strut_json_values(json, to, row->rows, of);
+    case STRUT_VALUE_PART: {
+      strut_result_object part = {value->items, of, of->scene, 0};
+      struct cJSON *object = row->key ? strut_json_object(json, to, row->key) : to;
+      strut_json_values(json, object, row->rows, value->items == of->at ? of : &part);
+    }
   }
 }
 
@@ -120,46 +118,98 @@ char *strut_values_json(const strut_value_rows *rows, const void *result,
 
 /* ---- CSV ---- */
 
-static void add_cell(strut_buffer *csv, const strut_value *value) {
-  strut_buffer_add(csv, ",");
-  if (value->kind == STRUT_VALUE_NUMBER)
-    strut_csv_add_number(csv, value->number);
-  else if (value->kind == STRUT_VALUE_TEXT || value->kind == STRUT_VALUE_WORDS)
-    strut_csv_add_text(csv, "%s", text_of(value) ? text_of(value) : "");
-  else
-    strut_buffer_add(csv, "%lld", (long long)value->integer);
+/* A line under way: names of columns or their values, and what stands before the next cell. */
+typedef struct line {
+  strut_buffer *csv;
+  bool names;
+  const char *before;
+} line;
+
+static void next_cell(line *at) {
+  strut_buffer_add(at->csv, "%s", at->before);
+  at->before = ",";
 }
 
-static void add_columns(strut_buffer *csv, const strut_value_rows *rows,
-                        const strut_result_object *of, bool names) {
+static void add_cell(line *at, const strut_value_row *row, const strut_value *value) {
+  next_cell(at);
+  if (at->names)
+    strut_buffer_add(at->csv, "%s", row->column[0]);
+  else if (value->kind == STRUT_VALUE_NUMBER)
+    strut_csv_add_number(at->csv, value->number);
+  else if (value->kind == STRUT_VALUE_TEXT || value->kind == STRUT_VALUE_WORDS)
+    strut_csv_add_text(at->csv, "%s", text_of(value) ? text_of(value) : "");
+  else
+    strut_buffer_add(at->csv, "%lld", (long long)value->integer);
+}
+
+static void add_numbers(line *at, const strut_value_row *row, const strut_value *value) {
+  for (size_t k = 0; k < value->count; k++) {
+    next_cell(at);
+    if (at->names)
+      strut_buffer_add(at->csv, "%s %zu [%s]", row->column[0], k + 1, row->unit);
+    else
+      strut_csv_add_number(at->csv, ((const double *)value->items)[k]);
+  }
+}
+
+static void add_things(line *at, const strut_value_row *row, const strut_value *value,
+                       const strut_result_object *of) {
+  size_t columns = value->columns;
+  for (size_t k = 0; k < columns * value->count; k++) {
+    if (!strut_value_has(value, of, k)) continue;
+    next_cell(at);
+    if (at->names)
+      strut_csv_add_text(at->csv, "%s.%s", strut_owner_name(value->owner, of->scene, k / columns),
+                         row->column[k % columns]);
+    else
+      strut_csv_add_number(at->csv, strut_value_item(value, of, k));
+  }
+}
+
+static void add_columns(line *at, const strut_value_rows *rows, const strut_result_object *of) {
   strut_value values[STRUT_MOST_VALUES];
   rows->fill(of, values);
   for (size_t i = 0; i < rows->count; i++) {
     const strut_value_row *row = &rows->row[i];
     const strut_value *value = &values[i];
-    size_t columns = strut_value_columns(value);
-    if (value->kind == STRUT_VALUE_PART && !row->key) add_columns(csv, row->rows, of, names);
+    if (value->kind == STRUT_VALUE_PART && !row->key) add_columns(at, row->rows, of);
     if (!row->column[0] || value->kind == STRUT_VALUE_ABSENT) continue;
-    if (value->kind != STRUT_VALUE_THINGS && names) strut_buffer_add(csv, ",%s", row->column[0]);
-    if (value->kind != STRUT_VALUE_THINGS && !names) add_cell(csv, value);
-    for (size_t k = 0; value->kind == STRUT_VALUE_THINGS && k < columns * value->count; k++) {
-      if (!strut_value_has(value, k)) continue;
-      strut_buffer_add(csv, ",");
-      if (names)
-        strut_csv_add_text(csv, "%s.%s", strut_owner_name(value->owner, of->scene, k / columns),
-                           row->column[k % columns]);
-      else
-        strut_csv_add_number(csv, strut_value_item(value, of, k));
-    }
+    if (value->kind == STRUT_VALUE_THINGS)
+      add_things(at, row, value, of);
+    else if (value->kind == STRUT_VALUE_NUMBERS)
+      add_numbers(at, row, value);
+    else
+      add_cell(at, row, value);
   }
 }
 
 void strut_csv_add_names(strut_buffer *csv, const strut_value_rows *rows,
                          const strut_result_object *of) {
-  add_columns(csv, rows, of, true);
+  add_columns(&(line){csv, true, ","}, rows, of);
 }
 
 void strut_csv_add_values(strut_buffer *csv, const strut_value_rows *rows,
                           const strut_result_object *of) {
-  add_columns(csv, rows, of, false);
+  add_columns(&(line){csv, false, ","}, rows, of);
+}
+
+char *strut_values_csv(const strut_value_rows *rows, const char *key, const char *index,
+                       const void *result, const strut_scene *scene) {
+  strut_buffer csv = {0};
+  strut_value values[STRUT_MOST_VALUES];
+  strut_result_object whole = {result, NULL, scene, 0};
+  size_t of = 0;
+  rows->fill(&whole, values);
+  while (strcmp(rows->row[of].key, key) != 0) of++;
+  for (size_t i = 0; i <= values[of].count; i++) { /* the first line has the names */
+    size_t at = i ? i - 1 : 0;
+    line cells = {&csv, !i, ""};
+    const char *item = (const char *)values[of].items + at * values[of].size;
+    if (index) next_cell(&cells);
+    if (index && !i) strut_buffer_add(&csv, "%s", index);
+    if (index && i) strut_buffer_add(&csv, "%zu", i);
+    add_columns(&cells, rows->row[of].rows, &(strut_result_object){item, &whole, scene, at});
+    strut_buffer_add(&csv, "\n");
+  }
+  return strut_buffer_take(&csv);
 }

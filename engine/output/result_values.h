@@ -7,11 +7,10 @@
 #include "engine/output/json_value.h"
 #include "engine/scene/value_rows.h"
 
-/** Numbers of each of its things; number k, thing by thing, and whether it is there. */
-STRUT_API size_t strut_value_columns(const strut_value *value);
+/** Number k of things, thing by thing, and whether it is there. */
 STRUT_API double strut_value_item(const strut_value *value, const strut_result_object *of,
                                   size_t k);
-STRUT_API bool strut_value_has(const strut_value *value, size_t k);
+STRUT_API bool strut_value_has(const strut_value *value, const strut_result_object *of, size_t k);
 
 /** Adds the values of a struct as members of an object. */
 STRUT_API void strut_json_values(strut_json *json, struct cJSON *to, const strut_value_rows *rows,
@@ -25,5 +24,11 @@ STRUT_API void strut_csv_add_names(strut_buffer *csv, const strut_value_rows *ro
                                    const strut_result_object *of);
 STRUT_API void strut_csv_add_values(strut_buffer *csv, const strut_value_rows *rows,
                                     const strut_result_object *of);
+/**
+ * The structs of the list `key` of a whole result, of which there is one at least, as a CSV in a block of
+ * strut_allocate or NULL. With `index` the first column has that name and counts them from 1.
+ */
+STRUT_API char *strut_values_csv(const strut_value_rows *rows, const char *key, const char *index,
+                                 const void *result, const struct strut_scene *scene);
 
 #endif

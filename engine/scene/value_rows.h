@@ -27,8 +27,8 @@ typedef enum strut_value_kind {
   STRUT_VALUE_NUMBERS, /* an array of numbers, or of arrays of `columns` of them; NULL: null */
   STRUT_VALUE_NAMES,   /* of things */
   STRUT_VALUE_THINGS,  /* a number for each of an owner's things, of nodes two */
-  STRUT_VALUE_PART,    /* a struct with rows of its own; without a key: rows of the same struct */
-  STRUT_VALUE_LIST /* structs with rows of their own; under names where it has some; NULL: null */
+  STRUT_VALUE_PART, /* a struct with rows of its own; without a key they stand among the others */
+  STRUT_VALUE_LIST  /* structs with rows of their own; under names where it has some; NULL: null */
 } strut_value_kind;
 
 /** A struct, and the one that it is part of. */
@@ -39,8 +39,10 @@ typedef struct strut_result_object {
   size_t index; /* of a struct of a list */
 } strut_result_object;
 
-/** Name of thing i of a value of that struct; NULL: it is left out. */
+/** Name of thing i of a value of that struct; NULL: it is left out; STRUT_NAME_NULL: null. */
 typedef const char *strut_value_name(const strut_result_object *of, size_t i);
+
+#define STRUT_NAME_NULL ""
 
 typedef struct strut_value {
   strut_value_kind kind;
@@ -48,10 +50,11 @@ typedef struct strut_value {
   int64_t integer;
   const char *text;
   const void *items;           /* numbers, structs of a list, or a part */
-  size_t count, size, columns; /* of items; bytes from one to the next */
+  size_t count, size, columns; /* of items; bytes from one to the next; numbers of a thing */
   strut_value_name *name;
   double (*each)(const strut_result_object *of, size_t k); /* of things: instead of items */
-  const uint8_t *held;       /* of things: number by number, whether it is there; NULL: all are */
+  bool (*has)(const strut_result_object *of,
+              size_t k);     /* likewise, whether it is there; NULL: yes */
   strut_channel_owner owner; /* of things */
   char words[320];
 } strut_value;
@@ -74,6 +77,11 @@ struct strut_value_rows {
 /* ---- making rows ---- */
 
 enum { STRUT_MOST_VALUES = 64 };
+
+static inline const void *strut_result_whole(const strut_result_object *of) {
+  while (of->outer) of = of->outer;
+  return of->at;
+}
 
 /** Defines the rows NAME of a table of X(key, unit, value, what, ...); the rest declares what values refer to. */
 #define STRUT_VALUES(NAME, TABLE, ...) STRUT_VALUES_OF(const, NAME, TABLE, __VA_ARGS__)
@@ -109,17 +117,19 @@ enum { STRUT_MOST_VALUES = 64 };
   }
 #define STRUT_VALUE_AS_NAMES(NAME, COUNT)                                                          \
   (strut_value) { .kind = STRUT_VALUE_NAMES, .name = (NAME), .count = (size_t)(COUNT) }
-#define STRUT_VALUE_AS_OF(OWNER, ITEMS) STRUT_VALUE_AS_OF_HELD(OWNER, ITEMS, NULL)
-#define STRUT_VALUE_AS_OF_HELD(OWNER, ITEMS, HELD)                                                 \
+#define STRUT_VALUE_AS_THINGS(OWNER, COLUMNS, ITEMS, EACH, HAS)                                    \
   (strut_value) {                                                                                  \
-    .kind = STRUT_VALUE_THINGS, .items = (ITEMS), .owner = STRUT_OWNER_##OWNER, .held = (HELD),    \
+    .kind = STRUT_VALUE_THINGS, .items = (ITEMS), .each = (EACH), .has = (HAS),                    \
+    .columns = (COLUMNS), .owner = STRUT_OWNER_##OWNER,                                            \
     .count = strut_owner_count(STRUT_OWNER_##OWNER, of->scene)                                     \
   }
+/** A number for each thing, two for a node; from an array or by a function; only where HAS says so. */
+#define STRUT_VALUE_AS_OF(OWNER, ITEMS)                                                            \
+  STRUT_VALUE_AS_THINGS(OWNER, STRUT_OWNER_##OWNER == STRUT_OWNER_NODE ? 2 : 1, ITEMS, NULL, NULL)
+#define STRUT_VALUE_AS_OF_WHERE(OWNER, ITEMS, HAS)                                                 \
+  STRUT_VALUE_AS_THINGS(OWNER, STRUT_OWNER_##OWNER == STRUT_OWNER_NODE ? 2 : 1, ITEMS, NULL, HAS)
 #define STRUT_VALUE_AS_OF_EACH(OWNER, EACH)                                                        \
-  (strut_value) {                                                                                  \
-    .kind = STRUT_VALUE_THINGS, .each = (EACH), .owner = STRUT_OWNER_##OWNER,                      \
-    .count = strut_owner_count(STRUT_OWNER_##OWNER, of->scene)                                     \
-  }
+  STRUT_VALUE_AS_THINGS(OWNER, STRUT_OWNER_##OWNER == STRUT_OWNER_NODE ? 2 : 1, NULL, EACH, NULL)
 #define STRUT_VALUE_AS_PART(ITEM)                                                                  \
   (strut_value) { .kind = STRUT_VALUE_PART, .items = (ITEM) }
 #define STRUT_VALUE_AS_SAME STRUT_VALUE_AS_PART(of->at)

@@ -9,6 +9,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/report/reports.h"
+#include "engine/output/result_values.h"
 #include "engine/scene/things.h"
 #include "parser/yaml/diagnostics.h"
 
@@ -344,8 +345,9 @@ static strut_status judge_equilibria(const strut_analysis *a, strut_error *error
   return all->count > 0 ? STRUT_OK : strut_fail(error, STRUT_NOT_SETTLED, "%s", all->remark);
 }
 
-static char *equilibria_json(const strut_analysis *a) {
-  return strut_equilibria_json(&a->result.equilibria, a->model);
+static const strut_value_rows *equilibria_values(const strut_analysis *a, const void **result) {
+  *result = &a->result.equilibria;
+  return &strut_equilibria_values;
 }
 
 static char *equilibria_table(const strut_analysis *a) {
@@ -370,7 +372,7 @@ const strut_analysis_kind strut_equilibria_analysis = {.files = {"equilibria.jso
                                                        .asks = true,
                                                        .compute = compute_equilibria,
                                                        .verdict = judge_equilibria,
-                                                       .json = equilibria_json,
+                                                       .values = equilibria_values,
                                                        .table = equilibria_table,
                                                        .warn = warn_of_equilibria,
                                                        .draw = draw_equilibria,
@@ -393,14 +395,18 @@ static strut_status compute_modes(strut_analysis *a, strut_error *error) {
   return strut_modes_find(a->model, &a->setup->experiment, &wanted, &a->result.modes.found, error);
 }
 
-static char *modes_json(const strut_analysis *a) {
-  return a->result.modes.wave ? strut_waves_json(a->model, &a->result.modes.waves)
-                              : strut_modes_json(a->model, &a->result.modes.found);
+static const strut_value_rows *modes_values(const strut_analysis *a, const void **result) {
+  bool wave = a->result.modes.wave;
+  *result = wave ? (const void *)&a->result.modes.waves : &a->result.modes.found;
+  return wave ? &strut_waves_values : &strut_modes_values;
 }
 
 static char *modes_csv(const strut_analysis *a) {
-  return a->result.modes.wave ? strut_waves_csv(&a->result.modes.waves)
-                              : strut_modes_csv(&a->result.modes.found);
+  const void *result;
+  const strut_value_rows *rows = modes_values(a, &result);
+  bool wave = a->result.modes.wave;
+  return strut_values_csv(rows, wave ? "waves" : "modes", wave ? NULL : "mode", result,
+                          &a->setup->scene);
 }
 
 static char *modes_table(const strut_analysis *a) {
@@ -429,7 +435,7 @@ const strut_option strut_modes_analysis_options[] = {STRUT_MODES_OPTIONS, END};
 
 const strut_analysis_kind strut_modes_analysis = {.files = {"modes.json", "modes.csv"},
                                                   .compute = compute_modes,
-                                                  .json = modes_json,
+                                                  .values = modes_values,
                                                   .csv = modes_csv,
                                                   .table = modes_table,
                                                   .warn = warn_of_modes,
@@ -443,11 +449,14 @@ static strut_status compute_rigidity(strut_analysis *a, strut_error *error) {
   strut_status status = strut_named_shape_find(a->arguments, a->model, &a->setup->experiment,
                                                &a->arena, &a->result.rigidity.shape, error);
   if (status != STRUT_OK) return status;
-  return strut_rigidity_find(a->model, shape->q, &a->result.rigidity.found, error);
+  strut_status found = strut_rigidity_find(a->model, shape->q, &a->result.rigidity.found, error);
+  a->result.rigidity.found.at = shape->name;
+  return found;
 }
 
-static char *rigidity_json(const strut_analysis *a) {
-  return strut_rigidity_json(&a->result.rigidity.found, a->model, a->result.rigidity.shape.name);
+static const strut_value_rows *rigidity_values(const strut_analysis *a, const void **result) {
+  *result = &a->result.rigidity.found;
+  return &strut_rigidity_values;
 }
 
 static char *rigidity_table(const strut_analysis *a) {
@@ -467,7 +476,7 @@ const strut_option strut_rigidity_analysis_options[] = {STRUT_SHAPE_OPTIONS, END
 
 const strut_analysis_kind strut_rigidity_analysis = {.files = {"rigidity.json"},
                                                      .compute = compute_rigidity,
-                                                     .json = rigidity_json,
+                                                     .values = rigidity_values,
                                                      .table = rigidity_table,
                                                      .draw = draw_rigidity,
                                                      .release = free_rigidity};
@@ -487,8 +496,9 @@ static strut_status compute_form(strut_analysis *a, strut_error *error) {
   return strut_form_find(a->setup, &wanted, &a->result.form.found, error);
 }
 
-static char *form_json(const strut_analysis *a) {
-  return strut_form_json(&a->result.form.found, &a->setup->scene);
+static const strut_value_rows *form_values(const strut_analysis *a, const void **result) {
+  *result = &a->result.form.found;
+  return &strut_form_values;
 }
 
 static char *form_table(const strut_analysis *a) {
@@ -508,7 +518,7 @@ const strut_option strut_form_analysis_options[] = {STRUT_FORM_OPTIONS, END};
 
 const strut_analysis_kind strut_form_analysis = {.uncompiled = true,
                                                  .compute = compute_form,
-                                                 .json = form_json,
+                                                 .values = form_values,
                                                  .table = form_table,
                                                  .draw = draw_form};
 
@@ -536,8 +546,9 @@ static strut_status compute_path(strut_analysis *a, strut_error *error) {
   return strut_path_follow(a->model, &a->setup->experiment, &wanted, &a->result.path, error);
 }
 
-static char *path_json(const strut_analysis *a) {
-  return strut_path_json(&a->result.path, &a->setup->scene);
+static const strut_value_rows *path_values(const strut_analysis *a, const void **result) {
+  *result = &a->result.path;
+  return &strut_path_values;
 }
 
 static char *path_csv(const strut_analysis *a) {
@@ -562,9 +573,15 @@ const strut_option strut_path_analysis_options[] = {STRUT_PATH_OPTIONS, END};
 
 const strut_analysis_kind strut_path_analysis = {.files = {"path.json", "path.csv"},
                                                  .compute = compute_path,
-                                                 .json = path_json,
+                                                 .values = path_values,
                                                  .csv = path_csv,
                                                  .table = path_table,
                                                  .warn = warn_of_path,
                                                  .draw = draw_path,
                                                  .release = free_path};
+
+char *strut_analysis_json(const strut_analysis *a) {
+  const void *result;
+  const strut_value_rows *rows = a->kind->values(a, &result);
+  return strut_values_json(rows, result, &a->setup->scene);
+}

@@ -100,7 +100,8 @@ struct strut_analysis_kind {
   strut_status (*compute)(strut_analysis *a, strut_error *error);
   /** Fails where nothing was found, which is a result, too. May be NULL. */
   strut_status (*verdict)(const strut_analysis *a, strut_error *error);
-  char *(*json)(const strut_analysis *a);
+  /** Rows of the result and, into *result, what they are of; strut_analysis_json writes it. */
+  const strut_value_rows *(*values)(const strut_analysis *a, const void **result);
   char *(*csv)(const strut_analysis *a); /* NULL: no such file */
   char *(*table)(const strut_analysis *a);
   /** Tells the listener what is doubtful in the result. May be NULL. */
@@ -145,6 +146,9 @@ struct strut_analysis {
     strut_path path;
   } result;
 };
+
+/** The result as JSON, in a block of strut_allocate; NULL where memory is out. */
+char *strut_analysis_json(const strut_analysis *a);
 
 /** Computes; a->result is zero before. Call strut_analysis_free in any case. */
 strut_status strut_analysis_compute(strut_analysis *a, strut_error *error);

@@ -27,7 +27,7 @@ static strut_status report(const strut_arguments *arguments, const strut_analysi
   const strut_analysis_kind *kind = a->kind;
   strut_status status = STRUT_OK;
   /* Of large structures the JSON takes long to make. */
-  char *json = arguments->json || arguments->output ? kind->json(a) : NULL, *csv = NULL;
+  char *json = arguments->json || arguments->output ? strut_analysis_json(a) : NULL, *csv = NULL;
   if (arguments->output && kind->csv) csv = kind->csv(a);
   if (arguments->output) status = write_files(arguments->output, kind->files, json, csv, error);
   strut_release(csv);
@@ -233,7 +233,7 @@ static strut_status report_form(const strut_arguments *arguments, const strut_an
   if (status == STRUT_OK && arguments->output)
     status = strut_file_write_path(arguments->output, model, error);
   if (arguments->json || arguments->output)
-    text = arguments->json ? a->kind->json(a) : a->kind->table(a);
+    text = arguments->json ? strut_analysis_json(a) : a->kind->table(a);
   if (status == STRUT_OK && !text && (arguments->json || arguments->output))
     status = strut_print_out_of_memory();
   if (status == STRUT_OK && !silent) status = strut_print(text ? text : model);

@@ -56,10 +56,6 @@ static double shown_force(double value, double largest) {
   return fabs(value) > ROUNDING * largest ? value : 0.0;
 }
 
-char *strut_path_json(const strut_path *path, const strut_scene *scene) {
-  return strut_values_json(&strut_path_values, path, scene);
-}
-
 /* The node that is farthest from where the path began at some point of it; a free one if there is. */
 static size_t farthest_node(const strut_path *path, const strut_scene *scene) {
   const double *from = path->points[0].at.q;
@@ -167,10 +163,11 @@ static void add_forces(strut_buffer *table, const strut_result_object *whole, si
     strut_result_object at = object_of(stops[k], whole);
     strut_path_state_values.fill(&at, values[k]);
   }
-  size_t columns = strut_value_columns(first);
+  size_t columns = first->columns;
+  strut_result_object begin = object_of(stops[0], whole);
   for (size_t i = 0; i < columns * first->count; i++) {
     char text[STRUT_QUANTITY_TEXT];
-    if (!strut_value_has(first, i) || (*rows)++ >= MOST_FORCES) continue;
+    if (!strut_value_has(first, &begin, i) || (*rows)++ >= MOST_FORCES) continue;
     const char *name = strut_owner_name(first->owner, whole->scene, i / columns);
     const char *which = what->label[i % columns];
     int room = LABEL - (int)strlen(which), characters, bytes = text_bytes(name, room, &characters);

@@ -16,39 +16,28 @@
  * NULL when memory is out.
  */
 
-STRUT_API char *strut_equilibria_json(const strut_equilibria *equilibria, const strut_model *model);
 /** Lists the equilibria that stand and their barriers; with `all` every equilibrium and its shape. */
 STRUT_API char *strut_equilibria_table(const strut_equilibria *equilibria, const strut_model *model,
                                        bool all);
 
-/** "stands", "tips", "below ground", "unstable", "floppy", "no rest". */
-STRUT_API const char *strut_outcome_name(strut_outcome fate);
-
 /* ---- a form that was found, as a table and as JSON ---- */
 
 /** Texts in blocks of strut_allocate; NULL: memory was out. The scene is the one found. */
-STRUT_API char *strut_form_json(const strut_form *form, const strut_scene *scene);
 STRUT_API char *strut_form_table(const strut_form *form, const strut_setup *setup);
 
 /* ---- natural frequencies and shapes as JSON, as a table for people, and as CSV ---- */
 
 /** Blocks of strut_allocate, or NULL when memory is out. */
-STRUT_API char *strut_modes_json(const strut_model *model, const strut_modes *modes);
 STRUT_API char *strut_modes_table(const strut_model *model, const strut_modes *modes);
-/** A row for each mode, shapes left out. */
-STRUT_API char *strut_modes_csv(const strut_modes *modes);
 
 /* ---- waves of a structure that repeats: bands, gaps, speeds; CSV has the samples along the zone ---- */
 
 /** Blocks of strut_allocate, or NULL when memory is out. */
-STRUT_API char *strut_waves_json(const strut_model *model, const strut_waves *waves);
 STRUT_API char *strut_waves_table(const strut_model *model, const strut_waves *waves);
-STRUT_API char *strut_waves_csv(const strut_waves *waves);
 
 /* ---- a path of equilibria as a table for people, as JSON, and as a curve in CSV ---- */
 
 /** Texts in blocks of strut_allocate; NULL: memory was out. */
-STRUT_API char *strut_path_json(const strut_path *path, const strut_scene *scene);
 STRUT_API char *strut_path_table(const strut_path *path, const strut_scene *scene);
 /**
  * One row per point: the parameter ("factor" and, of loads that are alike, "force [N]"; else "value"
@@ -61,8 +50,6 @@ STRUT_API char *strut_path_csv(const strut_path *path, const strut_scene *scene)
 /* ---- the report of strut rigidity, as JSON and as a table ---- */
 
 /** Both in a block of strut_allocate, or NULL: out of memory. `at` is the name of the shape. */
-STRUT_API char *strut_rigidity_json(const strut_rigidity *rigidity, const strut_model *model,
-                                    const char *at);
 STRUT_API char *strut_rigidity_table(const strut_rigidity *rigidity, const strut_model *model,
                                      const char *at);
 

@@ -9,6 +9,7 @@
 
 #include "engine/base/status.h"
 #include "engine/scene/channels.h"
+#include "engine/scene/value_rows.h"
 
 /** Rows of STRUT_ENERGY_TABLE [J], and what belongs to their balance. */
 typedef struct strut_energy {
@@ -148,6 +149,7 @@ typedef struct strut_settle_summary {
   double stiffness;   /* the lowest eigenvalue of the Hessian [N/m]; 0 where stable */
   double growth_rate; /* of that motion without damping [1/s]; 0 where stable */
 } strut_settle_summary;
+STRUT_API extern const strut_value_rows strut_settle_values;
 
 /** Filled by strut_simulate; strut_summary_free releases the arrays. */
 typedef struct strut_summary {

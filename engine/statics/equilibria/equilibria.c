@@ -401,6 +401,8 @@ strut_status strut_equilibria_find(const strut_model *model, const strut_experim
   if (!status) status = search_scene(&h, model->scene);
   if (!status) status = report_equilibria(&h);
   if (!status) status = settle_start(&h, model);
+  for (size_t i = 0; !status && i < equilibria->count; i++)
+    strut_find_shape_flaws(model, &equilibria->list[i]);
   strut_landscape_free(&h.landscape);
   strut_relaxer_free(h.relaxer);
   strut_potential_free(h.potential);

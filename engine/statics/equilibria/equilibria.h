@@ -54,6 +54,8 @@ typedef enum strut_outcome {
   STRUT_OUTCOME_FLOPPY,
   STRUT_OUTCOME_NO_REST /* did not come to rest: falls, slides */
 } strut_outcome;
+/** "stands", "tips", "below ground", "unstable", "floppy", "no rest". */
+STRUT_API const char *strut_outcome_name(strut_outcome outcome);
 
 /** One equilibrium: on held contacts (supports not NULL), or as the scene itself stands. */
 typedef struct strut_equilibrium {
@@ -78,6 +80,8 @@ typedef struct strut_equilibrium {
   int32_t overlap;   /* collision whose bodies lie in each other here, or -1 */
   int32_t through;   /* collision: of a saddle, on a way down from it; of others, on every known way
                         here from where the drawn shape comes to rest; or -1 */
+  bool collapsed;    /* two nodes coincide, or a member has no length, within 1e-4 model sizes */
+  int32_t crossings; /* pairs of members that cross, away from their ends */
   char verdict[208]; /* in words: "stands", "tips over n4 onto n2, n4: II", ... */
 } strut_equilibrium;
 
@@ -109,6 +113,8 @@ typedef struct strut_equilibria {
   char remark[400];            /* why no equilibrium was found, or what moves freely; else empty */
   strut_arena arena;
 } strut_equilibria;
+/** Rows of a strut_equilibria. */
+STRUT_API extern const strut_value_rows strut_equilibria_values;
 
 typedef struct strut_equilibria_options {
   int64_t starts;                 /* 0: as the experiment says */

@@ -508,6 +508,44 @@ static strut_status refuse_elements(const strut_scene *scene, strut_form_source 
       strut_form_source_name(from), scene->hinges[0].name);
 }
 
+/* A member at the start; model: of the scene where it has elements, else NULL. */
+static void measure_member(const strut_scene *scene, const strut_model *model, size_t j,
+                           double pose[4]) {
+  const strut_member *m = &scene->members[j];
+  const double *a = scene->nodes[m->node[0]].start, *b = scene->nodes[m->node[1]].start;
+  strut_rest rest = {0};
+  double length = hypot(b[0] - a[0], b[1] - a[1]), force = 0;
+  if (!strut_member_rest(scene, j, &rest)) {
+    force = 0;
+  } else if (model && strut_element_of_member(&model->elements, (int32_t)j)) {
+    length = strut_member_path_length(model, (int32_t)j, model->start);
+    force = strut_member_elastic_tension(model, model->members.rest, (int32_t)j, model->start);
+  } else {
+    force = rest.stiffness * (length - rest.length);
+    if (m->kind == STRUT_CABLE && force < 0) force = 0;
+  }
+  pose[0] = length, pose[1] = rest.length, pose[2] = force;
+  pose[3] = length > 0 ? force / length : 0;
+}
+
+/* Lengths and forces of the members of the form that was found. */
+static strut_status measure_members(strut_scene *scene, strut_form *form, strut_error *error) {
+  size_t count = scene->member_count;
+  strut_model *model = NULL;
+  double *values = strut_arena_allocate(&scene->arena, 4 * count, sizeof *values);
+  if (!values) return strut_no_memory(error, "");
+  if (strut_model_compile(scene, &model, &(strut_error){0}) != STRUT_OK) model = NULL;
+  for (size_t j = 0; j < count; j++) {
+    double pose[4];
+    measure_member(scene, model && model->elements.count ? model : NULL, j, pose);
+    for (size_t k = 0; k < 4; k++) values[k * count + j] = pose[k];
+  }
+  form->length = values, form->rest = values + count;
+  form->force = values + 2 * count, form->density = values + 3 * count;
+  strut_model_free(model);
+  return STRUT_OK;
+}
+
 strut_status strut_form_find(strut_setup *setup, const strut_form_options *options,
                              strut_form *form, strut_error *error) {
   strut_scene *scene = &setup->scene;
@@ -538,9 +576,33 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
   if (status == STRUT_OK) {
     form->moved = moved_from(drawn, scene);
     if (form->moved > 0) drop_shapes(scene);
+    status = measure_members(scene, form, error);
   }
   strut_potential_free(potential);
   strut_model_free(model);
   strut_arena_free(&f.arena);
   return strut_experiment_end(&setup->experiment, status, error);
 }
+
+/* ---- what a form has, a row for each value ---- */
+
+static double start_of(const strut_result_object *of, size_t k) {
+  return of->scene->nodes[k / 2].start[k % 2];
+}
+
+#define FORM(X)                                                                                    \
+  X("from", "", TEXT(strut_form_source_name(form->from)), "what was given")                        \
+  X("moved", "m", NUMBER(form->moved), "largest displacement of a node from where it was drawn")   \
+  X("residual", "N", NUMBER(form->residual), "largest net force on a free coordinate")             \
+  X("density_change", "1", NUMBER(form->density_change),                                           \
+    "largest change of a force density, of the largest one")                                       \
+  X("least_tension", "N", NUMBER(form->least_tension), "lower bound for the cables")               \
+  X("run_added", "", FLAG(form->run_added), "whether a step and 10 s were given to it")            \
+  X("driven", "", FLAG(form->driven), "whether drives or loads will move it")                      \
+  X("massless", "", FLAG(form->massless), "whether a node that can move has no mass")              \
+  X("nodes", "m", OF_EACH(NODE, start_of), "positions")                                            \
+  X("lengths", "m", OF(MEMBER, form->length), "of members")                                        \
+  X("rest_lengths", "m", OF(MEMBER, form->rest), "of members")                                     \
+  X("forces", "N", OF(MEMBER, form->force), "tensions of members")                                 \
+  X("densities", "N/m", OF(MEMBER, form->density), "forces over lengths")
+STRUT_VALUES(strut_form_values, FORM, const strut_form *form = of->at)

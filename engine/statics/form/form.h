@@ -7,6 +7,7 @@
 #define STRUT_ENGINE_STATICS_FORM_FORM_H
 
 #include "engine/scene/experiment.h"
+#include "engine/scene/value_rows.h"
 
 typedef enum strut_form_source {
   STRUT_FORM_BY_SCENE, /* densities if a member gives one, else lengths if one does, else prestress */
@@ -45,7 +46,11 @@ typedef struct strut_form {
   bool run_added;         /* the scene had no run: a step and 10 s were given to it */
   bool driven;            /* the scene has drives or loads with a signal: they will move it */
   bool massless;          /* a node that can move has no mass: the result is for statics alone */
+  const double *length, *rest, *force, *density; /* (members) at the start [m], [m], [N], [N/m]; in
+                                                     the scene's arena */
 } strut_form;
+/** Rows of a strut_form. */
+STRUT_API extern const strut_value_rows strut_form_values;
 
 /**
  * Changes the scene and its experiment: positions, rest lengths, start. Supports stay where they are drawn;

@@ -254,6 +254,15 @@ static int32_t requested_count(const strut_modes_options *options, bool dense) {
   return dense ? STRUT_DENSE_MODES : STRUT_SPARSE_MODES;
 }
 
+/* What acts in a run, but not in modes. */
+static const char *left_out(const strut_model *model) {
+  bool feedback = strut_scene_has_feedback(model->scene), maxwell = model->feedback.maxwell_count;
+  return feedback && maxwell ? "the feedback of sensors and Maxwell branches, which have relaxed"
+         : feedback          ? "the feedback of sensors"
+         : maxwell           ? "Maxwell branches, which have relaxed"
+                             : NULL;
+}
+
 strut_status strut_modes_find(const strut_model *model, const strut_experiment *experiment,
                               const strut_modes_options *options, strut_modes *modes,
                               strut_error *error) {
@@ -264,6 +273,7 @@ strut_status strut_modes_find(const strut_model *model, const strut_experiment *
       strut_modes_shape(model, experiment, options->at, &modes->arena, &rest, error);
   if (status != STRUT_OK) return status;
   modes->at = rest.name;
+  modes->left_out = left_out(model);
   modes->q = rest.q;
   modes->at_rest = rest.at_rest;
   modes->settle = rest.settle;

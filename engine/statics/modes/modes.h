@@ -65,11 +65,14 @@ typedef struct strut_modes {
   bool damped_exactly; /* damping from the quadratic eigenproblem; else by the modal quotient */
   bool at_rest;        /* the shape is an equilibrium */
   strut_settle_summary settle; /* of strut_rest_state */
+  const char *left_out;        /* what acts in a run, but not here; NULL: nothing */
   double condition;            /* largest eigenvalue over the smallest that is not zero */
   size_t count;
   strut_mode *list; /* by eigenvalue */
   strut_arena arena;
 } strut_modes;
+/** Rows of a strut_modes, and of a strut_mode in it. */
+STRUT_API extern const strut_value_rows strut_modes_values, strut_mode_values;
 
 typedef struct strut_modes_options {
   const char *at; /* as for strut_rest_state_find */

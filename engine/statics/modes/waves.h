@@ -16,6 +16,7 @@
 
 #include "engine/model/model.h"
 #include "engine/scene/experiment.h"
+#include "engine/scene/value_rows.h"
 
 enum { STRUT_MOST_BANDS = 120, STRUT_MOST_CORNERS = 6 };
 
@@ -64,6 +65,8 @@ typedef struct strut_waves {
   double speed[2][2];   /* (steps, acoustic) of their long waves along each step [m/s] */
   strut_arena arena;
 } strut_waves;
+/** Rows of a strut_waves, and of a sample in it. */
+STRUT_API extern const strut_value_rows strut_waves_values, strut_wave_values;
 
 typedef struct strut_waves_options {
   const char *at; /* NULL or "drawn", or a configuration that has positions */

@@ -4,6 +4,10 @@
 
 static bool over_load(const strut_path *path) { return path->over == STRUT_PATH_OVER_LOAD; }
 
+static bool is_held(const strut_result_object *of, size_t k) {
+  return ((const strut_path *)of->outer->at)->held[k];
+}
+
 /* The parameter of the path around: a load's factor and what it is in newtons, or a value. */
 #define PARAMETER(X, FACTOR)                                                                       \
   X("factor", "1", IF(over_load(path), NUMBER(FACTOR)), "factor of the loads")                     \
@@ -23,7 +27,7 @@ static bool over_load(const strut_path *path) { return path->over == STRUT_PATH_
     "pressures inside cells", .column = {"pressure [N/m]"}, .label = {" pressure"})                \
   X("distance_forces", "N", IF(of->scene->distance_count, OF(DISTANCE, state->distance)),          \
     "forces of distances", .column = {"force [N]"}, .label = {""})                                 \
-  X("reactions", "N", OF_HELD(NODE, state->reaction, path->held), "forces of supports",            \
+  X("reactions", "N", OF_WHERE(NODE, state->reaction, is_held), "forces of supports",              \
     .column = {"reaction_x [N]", "reaction_y [N]"}, .label = {" support x", " support y"})         \
   X("contacts", "N", OF(CONTACT, state->contact), "normal forces of the ground",                   \
     .column = {"ground [N]"}, .label = {" ground"})                                                \

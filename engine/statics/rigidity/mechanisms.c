@@ -435,6 +435,15 @@ static bool allocate_sorter(sorter *s, size_t count) {
   return s->motion && s->turned && s->density && s->form && s->value && s->vector;
 }
 
+static double largest_motion(const sorter *s, const double *motion) {
+  double largest = 0.0;
+  for (int32_t i = 0; i < s->model->length; i += 2) {
+    int32_t x = s->a->row_of[i], y = s->a->row_of[i + 1];
+    largest = fmax(largest, hypot(x < 0 ? 0.0 : motion[x], y < 0 ? 0.0 : motion[y]));
+  }
+  return largest;
+}
+
 static strut_status sort(sorter *s, const strut_null_spaces *spaces, const double *force,
                          strut_mechanisms *m) {
   size_t count = (size_t)m->count;
@@ -450,6 +459,7 @@ static strut_status sort(sorter *s, const strut_null_spaces *spaces, const doubl
   collect(s, spaces->motion, count, rigid);
   strut_status status = s->n > 0 ? judge(s, force, m, m->list + rigid) : STRUT_OK;
   if (status == STRUT_OK) measure_and_count(s, force, m);
+  for (size_t i = 0; i < count; i++) m->list[i].largest = largest_motion(s, m->list[i].motion);
   return status;
 }
 

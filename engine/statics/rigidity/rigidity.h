@@ -7,6 +7,7 @@
 #define STRUT_ENGINE_STATICS_RIGIDITY_RIGIDITY_H
 
 #include "engine/model/model.h"
+#include "engine/scene/value_rows.h"
 
 /* The equilibrium matrix A of a shape: what forces on the nodes the member forces balance.
  *
@@ -159,6 +160,7 @@ STRUT_API const char *strut_motion_kind_name(strut_motion_kind kind);
 typedef struct strut_mechanism {
   strut_motion_kind kind;
   const double *motion; /* (rows) free coordinates; unit vector */
+  double largest;       /* motion of the node that moves most in it */
   double stiffness;     /* by the forces in the shape [N/m]; NAN where these do not balance */
   double stress_form;   /* the same by strut_mechanisms.stiffener [1/m]; NAN without one */
   double moved;         /* followed: largest change of a distance between nodes [m]; NAN: not */
@@ -246,6 +248,7 @@ typedef struct strut_tensegrity {
 } strut_tensegrity;
 
 typedef struct strut_rigidity {
+  const char *at; /* name of the shape; the caller's */
   strut_equilibrium_matrix matrix;
   strut_null_spaces spaces;
   strut_self_stress states;
@@ -288,5 +291,25 @@ STRUT_API strut_status strut_mechanisms_find(const strut_model *model, const dou
 STRUT_API strut_status strut_rigidity_find(const strut_model *model, const double *q,
                                            strut_rigidity *rigidity, strut_error *error);
 STRUT_API void strut_rigidity_free(strut_rigidity *rigidity);
+
+/* ---- what is found, in words and as rows ---- */
+
+enum { STRUT_RIGIDITY_WORDS = 240 };
+const char *strut_mechanism_words(const strut_mechanisms *all, const strut_mechanism *motion,
+                                  char words[STRUT_RIGIDITY_WORDS]);
+const char *strut_super_stability_words(const strut_rigidity *rigidity,
+                                        char words[STRUT_RIGIDITY_WORDS]);
+
+/** Column of the equilibrium matrix of thing i of an owner: members, then hinges, cells, distances. */
+size_t strut_column_of(const strut_scene *scene, strut_channel_owner owner, size_t i);
+/** What such a column's force is: a moment [N m], a pressure [N/m] outwards, or itself [N]. */
+double strut_column_force(const strut_rigidity *rigidity, strut_channel_owner owner, double force);
+/** An angle [rad], an area [m^2] or a length [m]. */
+double strut_column_extent(const strut_rigidity *rigidity, strut_channel_owner owner, size_t j);
+/** A cable that does not pull in this shape. */
+bool strut_member_is_idle(const strut_rigidity *rigidity, const strut_scene *scene, size_t j);
+
+/** Rows of a strut_rigidity. */
+STRUT_API extern const strut_value_rows strut_rigidity_values;
 
 #endif

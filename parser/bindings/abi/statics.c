@@ -61,7 +61,7 @@ static strut_status compute_and_report(abi_call *call, const strutlib_scene *sce
   if (status == STRUT_OK && kind->verdict) status = kind->verdict(a, what);
   if (status != STRUT_OK) return status;
   if (kind->warn) kind->warn(a, &call->listener);
-  result->json = kind->json(a);
+  result->json = strut_analysis_json(a);
   result->table = kind->table(a);
   bool complete = result->json && result->table && !result->messages.out_of_memory;
   return complete ? STRUT_OK : strut_no_memory(what, "");

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a search for equilibria found, a row for each value. */
+#include <assert.h>
+
+#include "engine/statics/equilibria/equilibria_parts.h"
+
+const char *strut_outcome_name(strut_outcome outcome) {
+  static const char *const names[] = {"stands",   "tips",   "below ground",
+                                      "unstable", "floppy", "no rest"};
+  assert((size_t)outcome < sizeof names / sizeof names[0]);
+  return names[outcome];
+}
+
+static const char *node_or_none(const strut_scene *scene, int32_t node) {
+  return node >= 0 ? scene->nodes[node].name : NULL;
+}
+
+static const char *collision_or_none(const strut_scene *scene, int32_t collision) {
+  return collision >= 0 ? scene->collisions[collision].name : NULL;
+}
+
+static const char *listed(const strut_equilibria *all, int32_t i) {
+  return i >= 0 ? all->list[i].name : NULL;
+}
+
+/* ---- of one equilibrium ---- */
+
+static const strut_equilibrium *rest_of(const strut_result_object *of) { return of->outer->at; }
+
+static bool touches(const strut_result_object *of, size_t node) {
+  const strut_equilibrium *e = rest_of(of);
+  for (int32_t i = 0; i < e->contact_count; i++)
+    if (e->contacts[i] == (int32_t)node) return true;
+  return false;
+}
+
+static double normal_on(const strut_result_object *of, size_t node) {
+  const strut_equilibrium *e = rest_of(of);
+  int32_t i = 0;
+  while (e->contacts[i] != (int32_t)node) i++;
+  return e->normal[i];
+}
+
+#define REST(X)                                                                                    \
+  X("nodes", "m", OF(NODE, e->rest), "positions")                                                  \
+  X("energy", "J", NUMBER(e->rest_energy), "there")                                                \
+  X("residual", "N", NUMBER(e->rest_residual), "largest net force there")                          \
+  X("friction", "1", NUMBER(e->friction), "coefficient that holds it along the ground")            \
+  X("contacts", "N", THINGS(NODE, 1, NULL, normal_on, touches), "normal forces of the ground")
+STRUT_VALUES_HERE(rest_values, REST, const strut_equilibrium *e = rest_of(of))
+
+static const char *contact_name(const strut_result_object *of, size_t i) {
+  return of->scene->nodes[((const strut_equilibrium *)of->at)->contacts[i]].name;
+}
+
+static const char *support_name(const strut_result_object *of, size_t i) {
+  return of->scene->nodes[((const strut_equilibrium *)of->at)->supports->node[i]].name;
+}
+
+static const char *name_below(const strut_result_object *of, size_t i) {
+  return ((const strut_equilibrium *)of->at)->below[i] ? of->scene->nodes[i].name : NULL;
+}
+
+static const char *name_down(const strut_result_object *of, size_t i) {
+  const char *name = listed(of->outer->at, ((const strut_equilibrium *)of->at)->point.down[i]);
+  return name ? name : STRUT_NAME_NULL;
+}
+
+static bool is_support(const strut_result_object *of, size_t k) {
+  const strut_equilibrium *e = of->at;
+  const strut_node *node = &of->scene->nodes[k / 2];
+  for (size_t i = 0; e->supports && i < e->supports->count; i++)
+    if (e->supports->node[i] == (int32_t)(k / 2)) return true;
+  return node->fixed[0] || node->fixed[1];
+}
+
+#define EQUILIBRIUM(X)                                                                             \
+  X("name", "", TEXT(e->name), "unique in the list")                                               \
+  X("label", "", TEXT(strut_stability_name(p->label)), "stable, saddle, ... on its supports")      \
+  X("energy", "J", NUMBER(e->energy), "elastic")                                                   \
+  X("potential", "J", NUMBER(p->potential), "with weights and loads")                              \
+  X("contacts", "", NAMES(contact_name, e->contact_count), "nodes that touch the ground")          \
+  X("supports", "", KNOWN(e->supports, NAMES(support_name, e->supports->count)),                   \
+    "contact nodes that were held; null: the scene as it stands")                                  \
+  X("outcome", "", TEXT(strut_outcome_name(e->outcome)), "on the real ground")                     \
+  X("verdict", "", TEXT(e->verdict), "in words")                                                   \
+  X("tips_over", "", TEXT(node_or_none(of->scene, e->tips_over)), "node about which it turns")     \
+  X("ends_as", "", TEXT(listed(all, e->ends_as)), "the equilibrium that it ends in")               \
+  X("shape", "", COUNT(p->shape), "number of its shape: congruent ones share it")                  \
+  X("congruent_copies", "", COUNT(p->placements), "of its shape")                                  \
+  X("found", "", COUNT(p->found), "random starts that met it")                                     \
+  X("collapsed", "", FLAG(e->collapsed), "whether two nodes coincide")                             \
+  X("crossings", "", COUNT(e->crossings), "pairs of members that cross")                           \
+  X("overlap", "", IF(of->scene->collision_count, TEXT(collision_or_none(of->scene, e->overlap))), \
+    "collision whose bodies lie in each other")                                                    \
+  X("through", "", IF(of->scene->collision_count, TEXT(collision_or_none(of->scene, e->through))), \
+    "collision on every known way here, or on a way down")                                         \
+  X("nodes", "m", OF(NODE, p->q), "positions")                                                     \
+  X("forces", "N", OF(MEMBER, e->member_force), "tensions of members")                             \
+  X("reactions", "N", OF_WHERE(NODE, (const double *)e->reaction, is_support), "of supports")      \
+  X("below_ground", "", NAMES(name_below, of->scene->node_count), "nodes under the ground")        \
+  X("eigenvalues", "N/m", NUMBERS(p->eigenvalues, p->eigenvalue_count), "of the stiffness")        \
+  X("negative_eigenvalues", "", COUNT(p->negative), "of them, below zero")                         \
+  X("zero_eigenvalues", "", COUNT(p->zero), "of them, zero up to rounding")                        \
+  X("rest", "", KNOWN(e->rest, PART(e->rest)), "where it comes to rest on the real ground",        \
+    .rows = &rest_values)                                                                          \
+  X("down", "", IF(p->label == STRUT_SADDLE && p->negative == 1, NAMES(name_down, 2)),             \
+    "where the two ways down from a saddle lead")
+STRUT_VALUES_HERE(equilibrium_values, EQUILIBRIUM, const strut_equilibrium *e = of->at;
+                  const strut_critical_point *p = &e->point;
+                  const strut_equilibria *all = of->outer->at)
+
+/* ---- of all ---- */
+
+static const char *name_via(const strut_result_object *of, size_t k) {
+  const char *name = listed(of->outer->at, ((const strut_barrier *)of->at)->via[k]);
+  return name ? name : STRUT_NAME_NULL;
+}
+
+#define BARRIER(X)                                                                                 \
+  X("from", "", TEXT(all->list[b->from].name), "a stable equilibrium")                             \
+  X("to", "", TEXT(all->list[b->to].name), "another one")                                          \
+  X("height", "J", NUMBER(b->height), "of the lowest known way, above `from`")                     \
+  X("saddle", "", TEXT(listed(all, b->saddle)), "the highest on the way")                          \
+  X("via", "", NAMES(name_via, b->via_count), "equilibria in between")                             \
+  X("direct", "J", NUMBER(b->direct), "height of the lowest saddle that connects them directly")   \
+  X("direct_saddle", "", TEXT(listed(all, b->direct_saddle)), "that one")
+STRUT_VALUES_HERE(barrier_values, BARRIER, const strut_barrier *b = of->at;
+                  const strut_equilibria *all = of->outer->at)
+
+#define MISSED(X)                                                                                  \
+  X("probability", "1", NUMBER(all->missed.probability), "that a stable one was not found")        \
+  X("probability_bound", "1", NUMBER(all->missed.below), "of it, at 95 %")                         \
+  X("unreached", "", COUNT(all->unmet), "stable ones that no random start met")                    \
+  X("smallest_basin", "1", NUMBER(all->missed.one), "share of starts that one as rare would meet") \
+  X("at_least", "", COUNT(all->unseen), "stable ones that exist besides, at 95 %")                 \
+  X("cut_short", "", FLAG(all->cut_short), "whether some search ended early")
+STRUT_VALUES_HERE(missed_values, MISSED, const strut_equilibria *all = of->at)
+
+#define EQUILIBRIA(X)                                                                              \
+  X("seed", "", COUNT(all->seed), "of the random starts")                                          \
+  X("starts", "", COUNT(all->starts), "random starts of a search")                                 \
+  X("missed", "", PART(all), "what may be missing", .rows = &missed_values)                        \
+  X("settle", "", IF(all->settle.evaluations, PART(&all->settle)),                                 \
+    "how the scene's start settled", .rows = &strut_settle_values)                                 \
+  X("start", "", IF(all->settle.evaluations > 0, TEXT(listed(all, all->start))), "where it did")   \
+  X("start_trouble", "", IF(all->start_trouble[0], TEXT(all->start_trouble)), "why it did not")    \
+  X("remark", "", TEXT(all->remark[0] ? all->remark : NULL), "why none was found, or what moves")  \
+  X("equilibria", "", LIST(all->list, all->count), "by supports; those of the real ground last",   \
+    .rows = &equilibrium_values)                                                                   \
+  X("barriers", "", LIST(all->barriers, all->barrier_count), "between stable ones",                \
+    .rows = &barrier_values)
+STRUT_VALUES(strut_equilibria_values, EQUILIBRIA, const strut_equilibria *all = of->at)
