@@ -2,6 +2,7 @@
 #include "engine/output/result_values.h"
 
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 #include "engine/scene/scene.h"
@@ -14,9 +15,13 @@ bool strut_value_has(const strut_value *value, const strut_result_object *of, si
   return !value->has || value->has(of, k);
 }
 
-static const char *text_of(const strut_value *value) {
+/* A text, or words written into `room`; NULL: null. */
+static const char *text_of(const strut_value *value, const strut_result_object *of,
+                           char room[STRUT_VALUE_ROOM]) {
   if (value->kind == STRUT_VALUE_TEXT) return value->text;
-  return *value->words ? value->words : NULL;
+  *room = '\0';
+  value->write(of, room);
+  return *room ? room : NULL;
 }
 
 /* ---- JSON ---- */
@@ -52,6 +57,18 @@ static void put_numbers(strut_json *json, struct cJSON *to, const char *key,
   }
 }
 
+static void put_parameters(strut_json *json, struct cJSON *to, const char *key,
+                           const strut_scene *scene) {
+  struct cJSON *parameters = strut_json_object(json, to, key);
+  for (size_t i = 0; i < scene->parameter_count; i++) {
+    const strut_parameter *parameter = &scene->parameters[i];
+    if (isnan(parameter->value))
+      strut_json_text(json, parameters, parameter->name, parameter->text);
+    else
+      strut_json_number(json, parameters, parameter->name, parameter->value);
+  }
+}
+
 static void put_list(strut_json *json, struct cJSON *to, const strut_value_row *row,
                      const strut_result_object *of, const strut_value *value) {
   struct cJSON *list =
@@ -75,6 +92,7 @@ static void put_names(strut_json *json, struct cJSON *to, const char *key,
 
 static void put(strut_json *json, struct cJSON *to, const strut_value_row *row,
                 const strut_result_object *of, const strut_value *value) {
+  char room[STRUT_VALUE_ROOM];
   bool array = value->kind == STRUT_VALUE_NUMBERS || value->kind == STRUT_VALUE_LIST;
   if (array && !value->items && value->count) {
     strut_json_text(json, to, row->key, NULL);
@@ -86,10 +104,11 @@ static void put(strut_json *json, struct cJSON *to, const strut_value_row *row,
     case STRUT_VALUE_COUNT: strut_json_integer(json, to, row->key, value->integer); break;
     case STRUT_VALUE_FLAG: strut_json_bool(json, to, row->key, value->integer != 0); break;
     case STRUT_VALUE_TEXT:
-    case STRUT_VALUE_WORDS: strut_json_text(json, to, row->key, text_of(value)); break;
+    case STRUT_VALUE_WORDS: strut_json_text(json, to, row->key, text_of(value, of, room)); break;
     case STRUT_VALUE_NUMBERS: put_numbers(json, to, row->key, value); break;
     case STRUT_VALUE_NAMES: put_names(json, to, row->key, of, value); break;
     case STRUT_VALUE_THINGS: put_things(json, to, row->key, of, value); break;
+    case STRUT_VALUE_PARAMETERS: put_parameters(json, to, row->key, of->scene); break;
     case STRUT_VALUE_LIST: put_list(json, to, row, of, value); break;
     case STRUT_VALUE_PART: {
       strut_result_object part = {value->items, of, of->scene, 0};
@@ -130,14 +149,17 @@ static void next_cell(line *at) {
   at->before = ",";
 }
 
-static void add_cell(line *at, const strut_value_row *row, const strut_value *value) {
+static void add_cell(line *at, const strut_value_row *row, const strut_value *value,
+                     const strut_result_object *of) {
+  char room[STRUT_VALUE_ROOM];
+  const char *text;
   next_cell(at);
   if (at->names)
     strut_buffer_add(at->csv, "%s", row->column[0]);
   else if (value->kind == STRUT_VALUE_NUMBER)
     strut_csv_add_number(at->csv, value->number);
   else if (value->kind == STRUT_VALUE_TEXT || value->kind == STRUT_VALUE_WORDS)
-    strut_csv_add_text(at->csv, "%s", text_of(value) ? text_of(value) : "");
+    strut_csv_add_text(at->csv, "%s", (text = text_of(value, of, room)) ? text : "");
   else
     strut_buffer_add(at->csv, "%lld", (long long)value->integer);
 }
@@ -179,7 +201,7 @@ static void add_columns(line *at, const strut_value_rows *rows, const strut_resu
     else if (value->kind == STRUT_VALUE_NUMBERS)
       add_numbers(at, row, value);
     else
-      add_cell(at, row, value);
+      add_cell(at, row, value, of);
   }
 }
 

@@ -22,12 +22,6 @@ STRUT_API char *strut_summary_json(const strut_summary *summary, const strut_sce
 /** A table of a screenful in a block of strut_allocate, or NULL when memory is out. */
 STRUT_API char *strut_summary_table(const strut_summary *summary, const strut_scene *scene);
 
-/* ---- how a start settled, as every report's JSON has it ---- */
-
-/** Adds how a start settled as the member `settle`; nothing where it did not. */
-STRUT_API void strut_json_settle(strut_json *json, struct cJSON *to,
-                                 const strut_settle_summary *how);
-
 /* ---- rows of text, read back from summary.json ---- */
 
 /**

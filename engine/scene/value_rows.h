@@ -18,15 +18,16 @@
 #include "engine/scene/channels.h"
 
 typedef enum strut_value_kind {
-  STRUT_VALUE_ABSENT,  /* not there: files have no such key */
-  STRUT_VALUE_NUMBER,  /* null in files where it is not finite */
-  STRUT_VALUE_COUNT,   /* a whole number */
-  STRUT_VALUE_FLAG,    /* yes or no */
-  STRUT_VALUE_TEXT,    /* NULL: null */
-  STRUT_VALUE_WORDS,   /* a text in the value itself; empty: null */
-  STRUT_VALUE_NUMBERS, /* an array of numbers, or of arrays of `columns` of them; NULL: null */
-  STRUT_VALUE_NAMES,   /* of things */
-  STRUT_VALUE_THINGS,  /* a number for each of an owner's things, of nodes two */
+  STRUT_VALUE_ABSENT,     /* not there: files have no such key */
+  STRUT_VALUE_NUMBER,     /* null in files where it is not finite */
+  STRUT_VALUE_COUNT,      /* a whole number */
+  STRUT_VALUE_FLAG,       /* yes or no */
+  STRUT_VALUE_TEXT,       /* NULL: null */
+  STRUT_VALUE_WORDS,      /* a text that is written when it is asked for; empty: null */
+  STRUT_VALUE_NUMBERS,    /* an array of numbers, or of arrays of `columns` of them; NULL: null */
+  STRUT_VALUE_NAMES,      /* of things */
+  STRUT_VALUE_THINGS,     /* a number for each of an owner's things, of nodes two */
+  STRUT_VALUE_PARAMETERS, /* of the scene, by their names: numbers, or texts */
   STRUT_VALUE_PART, /* a struct with rows of its own; without a key they stand among the others */
   STRUT_VALUE_LIST  /* structs with rows of their own; under names where it has some; NULL: null */
 } strut_value_kind;
@@ -44,6 +45,9 @@ typedef const char *strut_value_name(const strut_result_object *of, size_t i);
 
 #define STRUT_NAME_NULL ""
 
+/** Room for words. */
+enum { STRUT_VALUE_ROOM = 320 };
+
 typedef struct strut_value {
   strut_value_kind kind;
   double number; /* also of a count and a flag */
@@ -56,7 +60,7 @@ typedef struct strut_value {
   bool (*has)(const strut_result_object *of,
               size_t k);     /* likewise, whether it is there; NULL: yes */
   strut_channel_owner owner; /* of things */
-  char words[320];
+  void (*write)(const strut_result_object *of, char text[STRUT_VALUE_ROOM]); /* of words */
 } strut_value;
 
 typedef struct strut_value_rows strut_value_rows;
@@ -67,6 +71,10 @@ typedef struct strut_value_row {
   /* Of a CSV, and of a printed table, of nodes along x and y; NULL: not in it. Things: behind the name. */
   const char *column[2], *label[2];
 } strut_value_row;
+
+/** The value at a path of keys through parts, "steady.kind", and its row, NULL where the rows have no such. */
+STRUT_API const strut_value_row *strut_value_at(const strut_value_rows *rows, const char *path,
+                                                const strut_result_object *of, strut_value *value);
 
 struct strut_value_rows {
   const strut_value_row *row;
@@ -139,6 +147,10 @@ static inline const void *strut_result_whole(const strut_result_object *of) {
     .kind = STRUT_VALUE_LIST, .items = (ITEMS), .count = (size_t)(COUNT), .size = sizeof *(ITEMS), \
     .name = (NAME)                                                                                 \
   }
+#define STRUT_VALUE_AS_PARAMETERS                                                                  \
+  (strut_value) { .kind = STRUT_VALUE_PARAMETERS }
+#define STRUT_VALUE_AS_WORDS(WRITE)                                                                \
+  (strut_value) { .kind = STRUT_VALUE_WORDS, .write = (WRITE) }
 /** Of a function that returns the value. */
 #define STRUT_VALUE_AS_BY(CALL) (CALL)
 #define STRUT_VALUE_AS_IF(THERE, VALUE)                                                            \

@@ -141,23 +141,3 @@ double strut_summary_cost_of_transport(const strut_summary *s) {
   double cost = strut_summary_work_per_distance(s) / s->weight;
   return s->weight > 0.0 && cost > 0.0 ? cost : (double)NAN;
 }
-
-#define VALUE_NUMBER(value) STRUT_RESULT_NUMBER, .number = (value)
-#define VALUE_COUNT(value) STRUT_RESULT_COUNT_OF, .count = (value), .number = (double)(value)
-#define VALUE_FLAG(value) STRUT_RESULT_FLAG, .count = (value), .number = (value) ? 1.0 : 0.0
-#define VALUE_TEXT(value) STRUT_RESULT_TEXT, .number = (double)NAN, .text = (value)
-#define VALUE_PART(value) STRUT_RESULT_PART, .number = (value)
-
-strut_result strut_summary_result(const strut_summary *s, strut_result_id id) {
-  switch (id) {
-#define RESULT(group, key, unit, TYPE, value, exists)                                              \
-  case STRUT_RESULT_##group##_##key:                                                               \
-    return (strut_result){#group, #key, unit, VALUE_##TYPE(value), .there = (exists)};
-#define STRUT_RESULT_OF_ENERGY_RESULT(name, kind, label)                                           \
-  RESULT(energy, name, "J", NUMBER, s->energy.name, true)
-    STRUT_RESULT_TABLE(RESULT)
-#undef RESULT
-    case STRUT_RESULT_COUNT: break;
-  }
-  return (strut_result){.there = false};
-}

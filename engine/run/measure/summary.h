@@ -200,80 +200,10 @@ typedef struct strut_summary {
   double weight; /* of the whole structure [N] */
 } strut_summary;
 
-/**
- * X(group, key, unit, TYPE, value, there): results of a run as expressions of its summary s, in the order of
- * the JSON. Those of `run` are its keys, those of other groups keys of an object of that name, which is left
- * out where none of its values is there; those of `table` are columns of studies only. TYPE: NUMBER, COUNT,
- * FLAG, TEXT (NULL: null), or PART, an object of its own.
- */
-#define STRUT_RESULT_TABLE(X)                                                                      \
-  X(run, velocity, "m/s", NUMBER, s->velocity, true)                                               \
-  X(run, velocity_spread, "m/s", NUMBER, s->velocity_spread, true)                                 \
-  X(run, velocity_zero, "1", FLAG, s->velocity_zero, s->velocity_zero)                             \
-  X(run, window_start, "s", NUMBER, s->window.start, true)                                         \
-  X(run, window_duration, "s", NUMBER, s->window.time, true)                                       \
-  X(run, window_drive_work, "J", NUMBER, s->window.work, true)                                     \
-  X(run, duration, "s", NUMBER, s->duration, true)                                                 \
-  X(run, settle_time, "s", NUMBER, s->settle_time, true)                                           \
-  X(run, settle, "1", PART, 0.0, s->settle.evaluations != 0)                                       \
-  X(run, steps, "1", COUNT, s->spent.steps, true)                                                  \
-  X(run, force_evaluations, "1", COUNT, s->spent.evaluations, true)                                \
-  X(run, events, "1", COUNT, s->spent.events, true)                                                \
-  X(run, forced_steps, "1", COUNT, s->spent.forced, s->spent.forced > 0)                           \
-  X(run, method, "1", TEXT, s->method, true)                                                       \
-  X(run, step, "s", NUMBER, s->step, true)                                                         \
-  X(run, step_limit, "s", NUMBER, s->step_limit, true)                                             \
-  X(step_limit_violation, limit, "s", NUMBER, s->limit_fell.limit, s->limit_fell.limit > 0.0)      \
-  X(step_limit_violation, time, "s", NUMBER, s->limit_fell.time, s->limit_fell.limit > 0.0)        \
-  X(step_limit_violation, since, "s", NUMBER, s->limit_fell.since, s->limit_fell.limit > 0.0)      \
-  X(step_limit_violation, steps, "1", COUNT, s->limit_fell.steps, s->limit_fell.limit > 0.0)       \
-  X(steady, kind, "1", TEXT, strut_motion_name(s->steady.kind), s->steady.kind)                    \
-  X(steady, repeats, "1", COUNT, s->steady.repeats, s->steady.kind)                                \
-  X(steady, periods, "1", COUNT, s->steady.periods, s->steady.kind)                                \
-  X(steady, velocity_interval, "m/s", NUMBER, s->steady.interval, s->steady.kind)                  \
-  X(steady, residual, "1", NUMBER, s->steady.residual, s->steady.kind)                             \
-  X(accuracy, wanted, "1", NUMBER, s->accuracy.wanted, s->accuracy.wanted > 0.0)                   \
-  X(accuracy, expected, "1", NUMBER, s->accuracy.expected, s->accuracy.wanted > 0.0)               \
-  X(accuracy, kept, "1", FLAG, s->accuracy.kept, s->accuracy.wanted > 0.0)                         \
-  X(accuracy, scale, "m/s", NUMBER, s->accuracy.scale, s->accuracy.wanted > 0.0)                   \
-  X(accuracy, why, "1", TEXT, s->accuracy.why, s->accuracy.wanted > 0.0)                           \
-  X(accuracy, check_evaluations, "1", COUNT, s->accuracy.check_evaluations,                        \
-    s->accuracy.wanted > 0.0)                                                                      \
-  STRUT_ENERGY_TABLE(STRUT_RESULT_OF_ENERGY_##X)                                                   \
-  X(energy, initial, "J", NUMBER, s->energy.initial, true)                                         \
-  X(energy, residual, "J", NUMBER, s->energy.residual, true)                                       \
-  X(energy, exchanged, "J", NUMBER, s->energy.moved, true)                                         \
-  X(energy, balance, "1", TEXT, strut_balance_name(s->balance), true)                              \
-  X(table, work_per_distance, "N", NUMBER, strut_summary_work_per_distance(s), true)               \
-  X(table, cost_of_transport, "1", NUMBER, strut_summary_cost_of_transport(s), true)
-
-#define STRUT_RESULT_OF_ENERGY_STRUT_RESULT_ID(name, kind, label) STRUT_RESULT_energy_##name,
-typedef enum strut_result_id {
-#define STRUT_RESULT_ID(group, key, ...) STRUT_RESULT_##group##_##key,
-  STRUT_RESULT_TABLE(STRUT_RESULT_ID)
-#undef STRUT_RESULT_ID
-      STRUT_RESULT_COUNT
-} strut_result_id;
-
-typedef enum strut_result_type {
-  STRUT_RESULT_NUMBER,
-  STRUT_RESULT_COUNT_OF, /* a whole number */
-  STRUT_RESULT_FLAG,
-  STRUT_RESULT_TEXT,
-  STRUT_RESULT_PART
-} strut_result_type;
-
-/** A result: its row, and its value, as a number too where it is a count or a flag. */
-typedef struct strut_result {
-  const char *group, *key, *unit;
-  strut_result_type type;
-  bool there; /* this run has it */
-  double number;
-  int64_t count;
-  const char *text;
-} strut_result;
-
-STRUT_API strut_result strut_summary_result(const strut_summary *summary, strut_result_id id);
+/** Rows of a strut_summary: what a run has, and the same with its wall time, which no file has. */
+STRUT_API extern const strut_value_rows strut_summary_values, strut_timed_summary_values;
+/** Rows of a strut_summary that are columns of studies only. */
+STRUT_API extern const strut_value_rows strut_summary_column_values;
 
 /** "closed" or "open"; NULL: not kept. */
 STRUT_API const char *strut_balance_name(strut_balance balance);

@@ -169,10 +169,9 @@ static double motion_of(const strut_result_object *of, size_t k) {
   return !(largest > 0) ? moves : fabs(moves) < 1e-13 * largest ? 0.0 : moves / largest;
 }
 
-static strut_value words_of(const strut_mechanisms *all, const strut_mechanism *mode) {
-  strut_value value = {.kind = STRUT_VALUE_WORDS};
-  strut_mechanism_words(all, mode, value.words);
-  return value;
+static void write_test(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
+  const strut_rigidity *r = strut_result_whole(of);
+  strut_mechanism_words(&r->mechanisms, of->at, text);
 }
 
 #define MODE(X)                                                                                    \
@@ -182,10 +181,9 @@ static strut_value words_of(const strut_mechanisms *all, const strut_mechanism *
   X("stress_form", "1/m", NUMBER(mode->stress_form), "by the state that stiffens")                 \
   X("moved", "m", NUMBER(mode->moved), "followed: largest change of a distance between nodes")     \
   X("strain", "1", NUMBER(mode->strain), "and of a member's length, relative")                     \
-  X("test", "", BY(words_of(&r->mechanisms, mode)), "in words")                                    \
+  X("test", "", WORDS(write_test), "in words")                                                     \
   X("nodes", "1", OF_EACH(NODE, motion_of), "motion: the node that moves most moves by 1")
-STRUT_VALUES_HERE(mode_values, MODE, const strut_mechanism *mode = of->at;
-                  const strut_rigidity *r = strut_result_whole(of))
+STRUT_VALUES_HERE(mode_values, MODE, const strut_mechanism *mode = of->at)
 
 #define MECHANISMS(X)                                                                              \
   X("count", "", COUNT(m->count), "of independent ones, f")                                        \
@@ -224,10 +222,8 @@ STRUT_VALUES_HERE(stress_values, STRESS, const strut_rigidity *r = strut_result_
   X("struts_inside", "", FLAG(t->struts_inside), "what is pulled is one net around all struts")
 STRUT_VALUES_HERE(tensegrity_values, TENSEGRITY, const strut_tensegrity *t = of->at)
 
-static strut_value super_stability_of(const strut_rigidity *r) {
-  strut_value value = {.kind = STRUT_VALUE_WORDS};
-  strut_super_stability_words(r, value.words);
-  return value;
+static void write_super_stability(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
+  strut_super_stability_words(of->at, text);
 }
 
 /* Of several states another combination might do it. */
@@ -294,7 +290,7 @@ static const char *member_name(const strut_result_object *of, size_t i) {
   X("maxwell_calladine", "", PART(r), "the count", .rows = &maxwell_values)                        \
   X("class", "", COUNT(r->bars_at_node > 1 ? r->bars_at_node : 1), "most bars that meet")          \
   X("super_stable", "", KNOWN(is_judged(r), FLAG(r->stress.super_stable)), "null: not judged")     \
-  X("super_stability", "", BY(super_stability_of(r)), "in words")                                  \
+  X("super_stability", "", WORDS(write_super_stability), "in words")                               \
   X("stress_matrix", "", KNOWN(r->stress.tested, PART(&r->stress)), "null: not tested",            \
     .rows = &stress_values)                                                                        \
   X("classification", "", PART(&r->tensegrity), "what kind of tensegrity",                         \

@@ -14,51 +14,48 @@ static const strut_keep USUAL[] = {STRUT_KEEP_VELOCITY,  STRUT_KEEP_SPREAD,     
                                    STRUT_KEEP_QUANTITIES};
 
 /*
- * The columns of each word of `keep`, in order: word, name, result of a summary. Those without a result are made
- * of several (combine).
+ * The columns of each word of `keep`, in order: word, name, and where a summary has it. Those that it has nowhere are
+ * made of several (combine).
  */
-#define ENTRY_TABLE(X)                                                                             \
-  X(VELOCITY, "velocity", STRUT_RESULT_run_velocity)                                               \
-  X(SPREAD, "velocity_spread", STRUT_RESULT_run_velocity_spread)                                   \
-  X(INTERVAL, "velocity_interval", STRUT_RESULT_steady_velocity_interval)                          \
-  X(MOTION, "motion", STRUT_RESULT_steady_kind)                                                    \
-  X(REPEATS, "repeats", STRUT_RESULT_steady_repeats)                                               \
-  X(PERIODS, "periods", NO_RESULT)                                                                 \
-  X(DISTANCE, "distance", NO_RESULT)                                                               \
-  X(DURATION, "duration", STRUT_RESULT_run_duration)                                               \
-  X(SETTLE_TIME, "settle_time", STRUT_RESULT_run_settle_time)                                      \
-  X(STEPS, "steps", STRUT_RESULT_run_steps)                                                        \
-  X(EVALUATIONS, "force_evaluations", STRUT_RESULT_run_force_evaluations)                          \
-  X(CHECKS, "check_evaluations", NO_RESULT)                                                        \
-  X(EVENTS, "events", STRUT_RESULT_run_events)                                                     \
-  X(METHOD, "method", STRUT_RESULT_run_method)                                                     \
-  X(STEP, "step", STRUT_RESULT_run_step)                                                           \
-  X(STEP_LIMIT, "step_limit", STRUT_RESULT_run_step_limit)                                         \
-  X(EXPECTED, "expected_error", STRUT_RESULT_accuracy_expected)                                    \
-  X(KEPT, STRUT_KEPT_COLUMN, STRUT_RESULT_accuracy_kept)                                           \
-  STRUT_ENERGY_TABLE(ENERGY_##X)                                                                   \
-  X(RESIDUAL, "residual", STRUT_RESULT_energy_residual)                                            \
-  X(COST, "cost_of_transport", STRUT_RESULT_table_cost_of_transport)                               \
-  X(COST, "work_per_distance", STRUT_RESULT_table_work_per_distance)
-#define NO_RESULT STRUT_RESULT_COUNT
-
 typedef struct entry {
   strut_keep keep;
-  const char *name;
-  strut_result_id result;
+  const char *name, *path;
 } entry;
 
 static const entry entries[] = {
-#define ENTRY(keep, name, result) {STRUT_KEEP_##keep, name, result},
-#define ENERGY_ENTRY(name, kind, label) ENTRY(kind, #name, STRUT_RESULT_energy_##name)
-    ENTRY_TABLE(ENTRY)};
+#define ENERGY_ENTRY(name, kind, label) {STRUT_KEEP_##kind, #name, "energy." #name},
+    {STRUT_KEEP_VELOCITY, "velocity", "velocity"},
+    {STRUT_KEEP_SPREAD, "velocity_spread", "velocity_spread"},
+    {STRUT_KEEP_INTERVAL, "velocity_interval", "steady.velocity_interval"},
+    {STRUT_KEEP_MOTION, "motion", "steady.kind"},
+    {STRUT_KEEP_REPEATS, "repeats", "steady.repeats"},
+    {STRUT_KEEP_PERIODS, "periods", NULL},
+    {STRUT_KEEP_DISTANCE, "distance", NULL},
+    {STRUT_KEEP_DURATION, "duration", "duration"},
+    {STRUT_KEEP_SETTLE_TIME, "settle_time", "settle_time"},
+    {STRUT_KEEP_STEPS, "steps", "steps"},
+    {STRUT_KEEP_EVALUATIONS, "force_evaluations", "force_evaluations"},
+    {STRUT_KEEP_CHECKS, "check_evaluations", NULL},
+    {STRUT_KEEP_EVENTS, "events", "events"},
+    {STRUT_KEEP_METHOD, "method", "method"},
+    {STRUT_KEEP_STEP, "step", "step"},
+    {STRUT_KEEP_STEP_LIMIT, "step_limit", "step_limit"},
+    {STRUT_KEEP_EXPECTED, "expected_error", "accuracy.expected"},
+    {STRUT_KEEP_KEPT, STRUT_KEPT_COLUMN, "accuracy.kept"},
+    STRUT_ENERGY_TABLE(ENERGY_ENTRY){STRUT_KEEP_RESIDUAL, "residual", "energy.residual"},
+    {STRUT_KEEP_COST, "cost_of_transport", "cost_of_transport"},
+    {STRUT_KEEP_COST, "work_per_distance", "work_per_distance"}};
 enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
-/* Of a summary with these words alone. */
+static const strut_value_rows *rows_of(const entry *e) {
+  return e->keep == STRUT_KEEP_COST ? &strut_summary_column_values : &strut_summary_values;
+}
+
 static const char *unit_of(const entry *e) {
-  static const strut_summary none;
   if (e->keep == STRUT_KEEP_DISTANCE) return "m";
-  return e->result == NO_RESULT ? "1" : strut_summary_result(&none, e->result).unit;
+  if (!e->path) return "1";
+  const char *unit = strut_value_at(rows_of(e), e->path, NULL, NULL)->unit;
+  return *unit ? unit : "1";
 }
 
 static bool is_word(const entry *e) {
@@ -309,18 +306,28 @@ static double combine(const strut_summary *s, const strut_setup *setup, strut_ke
   return keep == STRUT_KEEP_PERIODS ? s->duration / period : s->velocity * period;
 }
 
+static strut_value value_at(const strut_summary *s, const strut_value_rows *rows,
+                            const char *path) {
+  strut_value value = {0};
+  strut_value_at(rows, path, &(strut_result_object){.at = s}, &value);
+  return value;
+}
+
 /* NAN if the summary has none. */
-static double result_of(const strut_summary *s, strut_result_id id) {
-  strut_result r = strut_summary_result(s, id);
-  return r.there ? r.number : (double)NAN;
+static double result_of(const strut_summary *s, const strut_value_rows *rows, const char *path) {
+  strut_value value = value_at(s, rows, path);
+  bool number = value.kind == STRUT_VALUE_NUMBER || value.kind == STRUT_VALUE_COUNT ||
+                value.kind == STRUT_VALUE_FLAG;
+  return number ? value.number : (double)NAN;
 }
 
 static double number_of(const strut_summary *s, const strut_setup *setup, const entry *e) {
-  return e->result == NO_RESULT ? combine(s, setup, e->keep) : result_of(s, e->result);
+  return e->path ? result_of(s, rows_of(e), e->path) : combine(s, setup, e->keep);
 }
 
 static const char *word_of(const strut_summary *s, size_t index) {
-  return strut_summary_result(s, entries[index].result).text;
+  const char *word = value_at(s, &strut_summary_values, entries[index].path).text;
+  return word ? word : "";
 }
 
 static double count_freedoms(const strut_model *model) {
@@ -415,6 +422,6 @@ void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
   if (plan->start)
     strut_sweep_number(cells, summary ? (double)summary->settle.unstable : (double)NAN);
   if (plan->accurate)
-    strut_sweep_number(cells,
-                       summary ? result_of(summary, STRUT_RESULT_accuracy_kept) : (double)NAN);
+    strut_sweep_number(
+        cells, summary ? result_of(summary, &strut_summary_values, "accuracy.kept") : (double)NAN);
 }
