@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/scene/value_rows.h"
+
+#include <assert.h>
+#include <string.h>
+
+const strut_value_row *strut_value_at(const strut_value_rows *rows, const char *path,
+                                      const strut_result_object *of, strut_value *value) {
+  strut_value values[STRUT_MOST_VALUES];
+  size_t length = strcspn(path, ".");
+  assert(rows->count <= STRUT_MOST_VALUES);
+  if (of) rows->fill(of, values);
+  for (size_t i = 0; i < rows->count; i++) {
+    const strut_value_row *row = &rows->row[i];
+    if (strncmp(row->key, path, length) != 0 || row->key[length]) continue;
+    if (of) *value = values[i];
+    if (!path[length]) return row;
+    strut_result_object part = {of ? values[i].items : NULL, of, of ? of->scene : NULL, 0};
+    return strut_value_at(row->rows, path + length + 1,
+                          of && values[i].kind == STRUT_VALUE_PART ? &part : NULL, value);
+  }
+  return NULL;
+}
