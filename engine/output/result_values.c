@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "engine/scene/scene.h"
@@ -234,4 +235,21 @@ char *strut_values_csv(const strut_value_rows *rows, const char *key, const char
     strut_buffer_add(&csv, "\n");
   }
   return strut_buffer_take(&csv);
+}
+
+/* ---- the page of results ---- */
+
+void strut_values_describe(strut_buffer *page, const strut_value_rows *rows, const char *before) {
+  for (size_t i = 0; i < rows->count; i++) {
+    const strut_value_row *row = &rows->row[i];
+    const char *unit = row->unit[0] && strcmp(row->unit, "1") != 0 ? row->unit : "";
+    char key[200];
+    snprintf(key, sizeof key, "%s%s", before, row->key ? row->key : "");
+    if (row->key)
+      strut_buffer_add(page, "| `%s` | %s | %s |%s\n", key, unit, row->what,
+                       row->column[0] ? " x |" : "  |");
+    if (!row->rows) continue;
+    if (row->key) snprintf(key, sizeof key, "%s%s.", before, row->key);
+    strut_values_describe(page, row->rows, key);
+  }
 }

@@ -31,4 +31,8 @@ STRUT_API void strut_csv_add_values(strut_buffer *csv, const strut_value_rows *r
 STRUT_API char *strut_values_csv(const strut_value_rows *rows, const char *key, const char *index,
                                  const void *result, const struct strut_scene *scene);
 
+/** Appends rows of a Markdown table about the values, their keys after `before`. */
+STRUT_API void strut_values_describe(strut_buffer *page, const strut_value_rows *rows,
+                                     const char *before);
+
 #endif

@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/output/report/reports.h"
+#include "engine/output/result_values.h"
 #include "parser/program/commands.h"
 #include "parser/program/streams.h"
 #include "parser/write/writer.h"
@@ -60,7 +62,48 @@ static strut_status run_keys(const strut_arguments *arguments) {
   return status;
 }
 
-static const strut_command_variant forms[] = {{"schema", &strut_command_schema}, {NULL, NULL}};
+/* ---- what commands find ---- */
+
+static strut_status run_results(const strut_arguments *arguments) {
+  static const struct {
+    const char *command;
+    const strut_value_rows *rows;
+  } results[] = {{"run", &strut_summary_values},       {"equilibria", &strut_equilibria_values},
+                 {"modes", &strut_modes_values},       {"modes --wave", &strut_waves_values},
+                 {"rigidity", &strut_rigidity_values}, {"form", &strut_form_values},
+                 {"path", &strut_path_values}};
+  strut_buffer page = {0};
+  (void)arguments;
+  strut_buffer_add(
+      &page,
+      "# Results\n\nWhat commands find, by the keys of their JSON (`--json`, and the files of "
+      "`-o`), which are the names in Python and\nin the library, too. Values are in SI "
+      "units; `null` is a value that is not known or that does not exist. Of lists\nand "
+      "of things by their names, keys behind the dot are those of each. Those marked in "
+      "the last column are\ncolumns of the CSV. Every result begins with the scene's "
+      "`name` and `strut_version`.\n\n`strut keys --results` prints this page.\n");
+  for (size_t i = 0; i < sizeof results / sizeof *results; i++) {
+    strut_buffer_add(&page, "\n## strut %s\n\n| key | unit | what | CSV |\n|---|---|---|---|\n",
+                     results[i].command);
+    strut_values_describe(&page, results[i].rows, "");
+  }
+  return strut_print_block(strut_buffer_take(&page));
+}
+
+static const strut_option no_options[] = {
+    {STRUT_OPTION_SELECTOR, "results", NULL, "print what commands find, as a page"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+static const strut_command strut_command_results = {
+    .name = "keys --results",
+    .summary = "explains the results of all commands, as Markdown",
+    .options = no_options,
+    .run = run_results,
+};
+
+static const strut_command_variant forms[] = {
+    {"schema", &strut_command_schema}, {"results", &strut_command_results}, {NULL, NULL}};
 
 const strut_command strut_command_keys = {
     .name = "keys",
