@@ -58,25 +58,14 @@ static void put_numbers(strut_json *json, struct cJSON *to, const char *key,
   }
 }
 
-static void put_parameters(strut_json *json, struct cJSON *to, const char *key,
-                           const strut_scene *scene) {
-  struct cJSON *parameters = strut_json_object(json, to, key);
-  for (size_t i = 0; i < scene->parameter_count; i++) {
-    const strut_parameter *parameter = &scene->parameters[i];
-    if (isnan(parameter->value))
-      strut_json_text(json, parameters, parameter->name, parameter->text);
-    else
-      strut_json_number(json, parameters, parameter->name, parameter->value);
-  }
-}
-
 static void put_list(strut_json *json, struct cJSON *to, const strut_value_row *row,
                      const strut_result_object *of, const strut_value *value) {
   struct cJSON *list =
       value->name ? strut_json_object(json, to, row->key) : strut_json_array(json, to, row->key);
   for (size_t i = 0; i < value->count; i++) {
     const char *name = value->name ? value->name(of, i) : NULL;
-    strut_result_object item = {(const char *)value->items + i * value->size, of, of->scene, i};
+    const strut_scene *scene = value->scene ? value->scene(of, i) : of->scene;
+    strut_result_object item = {(const char *)value->items + i * value->size, of, scene, i};
     if (name || !value->name)
       strut_json_values(json, strut_json_object(json, list, name), row->rows, &item);
   }
@@ -90,6 +79,9 @@ static void put_names(strut_json *json, struct cJSON *to, const char *key,
     if (name) strut_json_text(json, list, NULL, *name ? name : NULL);
   }
 }
+
+static void put_map(strut_json *json, struct cJSON *to, const char *key,
+                    const strut_result_object *of, const strut_value *value);
 
 static void put(strut_json *json, struct cJSON *to, const strut_value_row *row,
                 const strut_result_object *of, const strut_value *value) {
@@ -109,13 +101,23 @@ static void put(strut_json *json, struct cJSON *to, const strut_value_row *row,
     case STRUT_VALUE_NUMBERS: put_numbers(json, to, row->key, value); break;
     case STRUT_VALUE_NAMES: put_names(json, to, row->key, of, value); break;
     case STRUT_VALUE_THINGS: put_things(json, to, row->key, of, value); break;
-    case STRUT_VALUE_PARAMETERS: put_parameters(json, to, row->key, of->scene); break;
+    case STRUT_VALUE_MAP: put_map(json, to, row->key, of, value); break;
     case STRUT_VALUE_LIST: put_list(json, to, row, of, value); break;
     case STRUT_VALUE_PART: {
       strut_result_object part = {value->items, of, of->scene, 0};
       struct cJSON *object = row->key ? strut_json_object(json, to, row->key) : to;
       strut_json_values(json, object, row->rows, value->items == of->at ? of : &part);
     }
+  }
+}
+
+static void put_map(strut_json *json, struct cJSON *to, const char *key,
+                    const strut_result_object *of, const strut_value *value) {
+  struct cJSON *map = strut_json_object(json, to, key);
+  for (size_t i = 0; i < value->count; i++) {
+    strut_value_row row = {.key = value->name(of, i)};
+    strut_value item = value->value(of, i);
+    put(json, map, &row, of, &item);
   }
 }
 
@@ -130,8 +132,8 @@ void strut_json_values(strut_json *json, struct cJSON *to, const strut_value_row
 char *strut_values_json(const strut_value_rows *rows, const void *result,
                         const strut_scene *scene) {
   strut_json json = strut_json_begin();
-  strut_json_text(&json, json.root, "name", scene->name);
-  strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
+  if (scene) strut_json_text(&json, json.root, "name", scene->name);
+  if (scene) strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
   strut_json_values(&json, json.root, rows, &(strut_result_object){result, NULL, scene, 0});
   return strut_json_end(&json);
 }

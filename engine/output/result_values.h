@@ -15,7 +15,7 @@ STRUT_API bool strut_value_has(const strut_value *value, const strut_result_obje
 /** Adds the values of a struct as members of an object. */
 STRUT_API void strut_json_values(strut_json *json, struct cJSON *to, const strut_value_rows *rows,
                                  const strut_result_object *of);
-/** A whole result as JSON: the scene's name, strut's version, its values; a block of strut_allocate or NULL. */
+/** A whole result as JSON: of a scene (or NULL) its name and strut's version, its values; a block of strut_allocate or NULL. */
 STRUT_API char *strut_values_json(const strut_value_rows *rows, const void *result,
                                   const struct strut_scene *scene);
 

@@ -2,7 +2,10 @@
 #include "engine/scene/value_rows.h"
 
 #include <assert.h>
+#include <math.h>
 #include <string.h>
+
+#include "engine/scene/scene.h"
 
 const strut_value_row *strut_value_at(const strut_value_rows *rows, const char *path,
                                       const strut_result_object *of, strut_value *value) {
@@ -20,4 +23,13 @@ const strut_value_row *strut_value_at(const strut_value_rows *rows, const char *
                           of && values[i].kind == STRUT_VALUE_PART ? &part : NULL, value);
   }
   return NULL;
+}
+
+const char *strut_name_of_parameter(const strut_result_object *of, size_t i) {
+  return of->scene->parameters[i].name;
+}
+
+strut_value strut_value_of_parameter(const strut_result_object *of, size_t i) {
+  const strut_parameter *p = &of->scene->parameters[i];
+  return isnan(p->value) ? STRUT_VALUE_AS_TEXT(p->text) : STRUT_VALUE_AS_NUMBER(p->value);
 }

@@ -18,16 +18,16 @@
 #include "engine/scene/channels.h"
 
 typedef enum strut_value_kind {
-  STRUT_VALUE_ABSENT,     /* not there: files have no such key */
-  STRUT_VALUE_NUMBER,     /* null in files where it is not finite */
-  STRUT_VALUE_COUNT,      /* a whole number */
-  STRUT_VALUE_FLAG,       /* yes or no */
-  STRUT_VALUE_TEXT,       /* NULL: null */
-  STRUT_VALUE_WORDS,      /* a text that is written when it is asked for; empty: null */
-  STRUT_VALUE_NUMBERS,    /* an array of numbers, or of arrays of `columns` of them; NULL: null */
-  STRUT_VALUE_NAMES,      /* of things */
-  STRUT_VALUE_THINGS,     /* a number for each of an owner's things, of nodes two */
-  STRUT_VALUE_PARAMETERS, /* of the scene, by their names: numbers, or texts */
+  STRUT_VALUE_ABSENT,  /* not there: files have no such key */
+  STRUT_VALUE_NUMBER,  /* null in files where it is not finite */
+  STRUT_VALUE_COUNT,   /* a whole number */
+  STRUT_VALUE_FLAG,    /* yes or no */
+  STRUT_VALUE_TEXT,    /* NULL: null */
+  STRUT_VALUE_WORDS,   /* a text that is written when it is asked for; empty: null */
+  STRUT_VALUE_NUMBERS, /* an array of numbers, or of arrays of `columns` of them; NULL: null */
+  STRUT_VALUE_NAMES,   /* of things */
+  STRUT_VALUE_THINGS,  /* a number for each of an owner's things, of nodes two */
+  STRUT_VALUE_MAP,     /* a value of any kind under each name */
   STRUT_VALUE_PART, /* a struct with rows of its own; without a key they stand among the others */
   STRUT_VALUE_LIST  /* structs with rows of their own; under names where it has some; NULL: null */
 } strut_value_kind;
@@ -42,13 +42,17 @@ typedef struct strut_result_object {
 
 /** Name of thing i of a value of that struct; NULL: it is left out; STRUT_NAME_NULL: null. */
 typedef const char *strut_value_name(const strut_result_object *of, size_t i);
+typedef struct strut_value strut_value;
+/** Name and value of the scene's parameter i: a number, or a text. */
+STRUT_API strut_value_name strut_name_of_parameter;
+STRUT_API strut_value strut_value_of_parameter(const strut_result_object *of, size_t i);
 
 #define STRUT_NAME_NULL ""
 
 /** Room for words. */
 enum { STRUT_VALUE_ROOM = 320 };
 
-typedef struct strut_value {
+struct strut_value {
   strut_value_kind kind;
   double number; /* also of a count and a flag */
   int64_t integer;
@@ -61,7 +65,10 @@ typedef struct strut_value {
               size_t k);     /* likewise, whether it is there; NULL: yes */
   strut_channel_owner owner; /* of things */
   void (*write)(const strut_result_object *of, char text[STRUT_VALUE_ROOM]); /* of words */
-} strut_value;
+  strut_value (*value)(const strut_result_object *of, size_t i); /* of a map; absent: left out */
+  /* Of a list whose structs belong to scenes of their own. */
+  const struct strut_scene *(*scene)(const strut_result_object *of, size_t i);
+};
 
 typedef struct strut_value_rows strut_value_rows;
 
@@ -147,8 +154,12 @@ static inline const void *strut_result_whole(const strut_result_object *of) {
     .kind = STRUT_VALUE_LIST, .items = (ITEMS), .count = (size_t)(COUNT), .size = sizeof *(ITEMS), \
     .name = (NAME)                                                                                 \
   }
+#define STRUT_VALUE_AS_MAP(COUNT, NAME, VALUE)                                                     \
+  (strut_value) {                                                                                  \
+    .kind = STRUT_VALUE_MAP, .count = (size_t)(COUNT), .name = (NAME), .value = (VALUE)            \
+  }
 #define STRUT_VALUE_AS_PARAMETERS                                                                  \
-  (strut_value) { .kind = STRUT_VALUE_PARAMETERS }
+  STRUT_VALUE_AS_MAP(of->scene->parameter_count, strut_name_of_parameter, strut_value_of_parameter)
 #define STRUT_VALUE_AS_WORDS(WRITE)                                                                \
   (strut_value) { .kind = STRUT_VALUE_WORDS, .write = (WRITE) }
 /** Of a function that returns the value. */

@@ -158,6 +158,8 @@ STRUT_API void strut_compare_free(strut_compare *result);
 STRUT_API char *strut_compare_table(const strut_compare *result, int columns);
 /** Units in the header; empty where there is no value. */
 STRUT_API char *strut_compare_csv(const strut_compare *result);
+/** Rows of a strut_compare. */
+STRUT_API extern const strut_value_rows strut_compare_values;
 /** With the reasons of what is empty, all states, barriers, contacts, nodes and differences. */
 STRUT_API char *strut_compare_json(const strut_compare *result);
 

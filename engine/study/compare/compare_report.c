@@ -9,7 +9,7 @@
 #include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
-#include "engine/output/json_value.h"
+#include "engine/output/result_values.h"
 
 enum {
   LABELS = 24, /* width of the column of labels */
@@ -240,119 +240,121 @@ char *strut_compare_csv(const strut_compare *r) {
 
 /* ---- JSON ---- */
 
-static void put_units(strut_json *json) {
-  struct cJSON *units = strut_json_object(json, json->root, "units");
-  for (int row = 0; row < STRUT_COMPARE_QUANTITIES; row++) {
-    strut_compare_row row_info = strut_compare_row_of((strut_compare_quantity)row);
-    if (*row_info.unit) strut_json_text(json, units, row_info.key, row_info.unit);
-  }
+static const strut_scene *scene_of(const strut_compare_column *c) {
+  return &c->input->setup->scene;
 }
 
-static void put_cells(strut_json *json, struct cJSON *to, const strut_compare_column *c) {
-  struct cJSON *values = strut_json_object(json, to, "values");
-  for (int row = 0; row < STRUT_COMPARE_QUANTITIES; row++) {
-    strut_compare_row row_info = strut_compare_row_of((strut_compare_quantity)row);
-    double v = c->cell[row].value;
-    if (isfinite(v) && !*row_info.unit)
-      strut_json_integer(json, values, row_info.key, (int64_t)v);
-    else
-      strut_json_number(json, values, row_info.key, v);
-  }
-  struct cJSON *reasons = strut_json_object(json, to, "reasons");
-  for (int row = 0; row < STRUT_COMPARE_QUANTITIES; row++)
-    if (c->cell[row].reason)
-      strut_json_text(json, reasons, strut_compare_row_of((strut_compare_quantity)row).key,
-                      c->cell[row].reason);
+static const char *quantity_name(const strut_result_object *of, size_t i) {
+  (void)of;
+  return strut_compare_row_of((strut_compare_quantity)i).key;
 }
 
-static void put_states(strut_json *json, struct cJSON *to, const strut_compare_column *c) {
-  struct cJSON *states = strut_json_array(json, to, "states");
-  for (size_t i = 0; i < c->state_count; i++) {
-    struct cJSON *state = strut_json_object(json, states, NULL);
-    strut_json_text(json, state, "name", c->states[i].name);
-    strut_json_number(json, state, "energy", c->states[i].energy);
-  }
-  struct cJSON *barriers = strut_json_array(json, to, "barriers");
-  for (size_t i = 0; i < c->barrier_count; i++) {
-    struct cJSON *barrier = strut_json_object(json, barriers, NULL);
-    strut_json_text(json, barrier, "from", c->barriers[i].from);
-    strut_json_text(json, barrier, "to", c->barriers[i].to);
-    strut_json_number(json, barrier, "height", c->barriers[i].height);
-  }
+static strut_value quantity_unit(const strut_result_object *of, size_t i) {
+  const char *unit = strut_compare_row_of((strut_compare_quantity)i).unit;
+  (void)of;
+  return STRUT_VALUE_AS_IF(*unit, TEXT(unit));
 }
 
-static void put_shape(strut_json *json, struct cJSON *to, const strut_compare_column *c) {
-  const strut_scene *scene = &c->input->setup->scene;
-  strut_json_text(json, to, "shape", c->shape);
-  struct cJSON *nodes = strut_json_object(json, to, "nodes");
-  for (size_t i = 0; c->q && i < scene->node_count; i++) {
-    struct cJSON *node = strut_json_object(json, nodes, scene->nodes[i].name);
-    strut_json_numbers(json, node, "position", c->q + 2 * i, 2);
-    if (c->stiffness) strut_json_numbers(json, node, "stiffness", c->stiffness[i], 2);
-  }
-  for (int d = 0; d < 2; d++)
-    strut_json_text(json, to, d ? "softest_in_y" : "softest_in_x",
-                    c->softest[d] < 0 ? NULL : scene->nodes[c->softest[d]].name);
+static strut_value quantity_value(const strut_result_object *of, size_t i) {
+  double value = ((const strut_compare_column *)of->at)->cell[i].value;
+  bool whole = isfinite(value) && !*strut_compare_row_of((strut_compare_quantity)i).unit;
+  return whole ? STRUT_VALUE_AS_COUNT(value) : STRUT_VALUE_AS_NUMBER(value);
 }
 
-static void put_motion(strut_json *json, struct cJSON *to, const strut_compare_column *c) {
-  strut_json_text(json, to, "motion", c->motion);
-  if (c->repeats > 0) strut_json_integer(json, to, "repeats", c->repeats);
-  if (c->motion) strut_json_bool(json, to, "still", c->still);
-  strut_json_text(json, to, "velocity_method", c->how);
-  struct cJSON *contacts = strut_json_object(json, to, "contacts");
-  for (size_t i = 0; i < c->contact_count; i++) {
-    struct cJSON *contact = strut_json_object(json, contacts, c->contacts[i].node);
-    strut_json_number(json, contact, "duty", c->contacts[i].duty);
-    strut_json_number(json, contact, "max_height", c->contacts[i].max_height);
-  }
+static strut_value quantity_reason(const strut_result_object *of, size_t i) {
+  const char *reason = ((const strut_compare_column *)of->at)->cell[i].reason;
+  return STRUT_VALUE_AS_IF(reason, TEXT(reason));
 }
 
-static void put_differences(strut_json *json, struct cJSON *to, const strut_compare_input *in) {
-  struct cJSON *list = strut_json_array(json, to, "differences");
-  for (size_t i = 0; i < in->difference_count; i++) {
-    const strut_difference *d = &in->differences[i];
-    struct cJSON *row = strut_json_object(json, list, NULL);
-    strut_json_text(json, row, "where", d->where);
-    strut_json_text(json, row, "change", !d->was ? "added" : !d->is ? "removed" : "changed");
-    strut_json_text(json, row, "was", d->was);
-    strut_json_text(json, row, "is", d->is);
-  }
-  struct cJSON *without = strut_json_array(json, to, "without_parameters");
-  for (size_t i = 0; i < in->without_count; i++)
-    strut_json_text(json, without, NULL, in->without[i]);
+#define STATE(X)                                                                                   \
+  X("name", "", TEXT(state->name), "of the equilibrium")                                           \
+  X("energy", "J", NUMBER(state->energy), "at rest on the real ground")
+STRUT_VALUES_HERE(state_values, STATE, const strut_compare_state *state = of->at)
+
+#define BARRIER(X)                                                                                 \
+  X("from", "", TEXT(barrier->from), "an equilibrium")                                             \
+  X("to", "", TEXT(barrier->to), "another one")                                                    \
+  X("height", "J", NUMBER(barrier->height), "above `from`")
+STRUT_VALUES_HERE(barrier_values, BARRIER, const strut_compare_barrier *barrier = of->at)
+
+#define NODE(X)                                                                                    \
+  X("position", "m", NUMBERS(of->at, 2), "in that shape")                                          \
+  X("stiffness", "N/m", IF(c->stiffness, NUMBERS(c->stiffness[of->index], 2)), "under unit loads")
+STRUT_VALUES_HERE(node_values, NODE, const strut_compare_column *c = of->outer->at)
+
+#define CONTACT(X)                                                                                 \
+  X("duty", "1", NUMBER(contact->duty), "share of the time in contact")                            \
+  X("max_height", "m", NUMBER(contact->max_height), "above the ground")
+STRUT_VALUES_HERE(contact_values, CONTACT, const strut_contact_summary *contact = of->at)
+
+#define DIFFERENCE(X)                                                                              \
+  X("where", "", TEXT(d->where), "path of the key")                                                \
+  X("change", "", TEXT(!d->was ? "added" : !d->is ? "removed" : "changed"), "against the first")   \
+  X("was", "", TEXT(d->was), "in the first")                                                       \
+  X("is", "", TEXT(d->is), "here")
+STRUT_VALUES_HERE(difference_values, DIFFERENCE, const strut_difference *d = of->at)
+
+static const char *node_name(const strut_result_object *of, size_t i) {
+  return scene_of(of->at)->nodes[i].name;
 }
 
-static void put_parameters(strut_json *json, struct cJSON *to, const strut_scene *scene) {
-  struct cJSON *parameters = strut_json_object(json, to, "parameters");
-  for (size_t i = 0; i < scene->parameter_count; i++) {
-    const strut_parameter *p = &scene->parameters[i];
-    if (isnan(p->value))
-      strut_json_text(json, parameters, p->name, p->text);
-    else
-      strut_json_number(json, parameters, p->name, p->value);
-  }
+static const char *contact_name(const strut_result_object *of, size_t i) {
+  return ((const strut_compare_column *)of->at)->contacts[i].node;
 }
+
+static const char *missing_name(const strut_result_object *of, size_t i) {
+  return ((const strut_compare_column *)of->at)->input->without[i];
+}
+
+static const char *softest_node(const strut_compare_column *c, int axis) {
+  return c->softest[axis] < 0 ? NULL : scene_of(c)->nodes[c->softest[axis]].name;
+}
+
+#define MODEL(X)                                                                                   \
+  X("model", "", TEXT(c->input->label), "its label")                                               \
+  X("name", "", TEXT(scene_of(c)->name), "of its scene")                                           \
+  X("status", "", TEXT(strut_status_text(c->status)), "the worst of what was computed")            \
+  X("reason", "", TEXT(c->status == STRUT_OK ? NULL : c->message), "of it")                        \
+  X("parameters", "", PARAMETERS, "of its scene")                                                  \
+  X("values", "", MAP(STRUT_COMPARE_QUANTITIES, quantity_name, quantity_value), "of the rows")     \
+  X("reasons", "", MAP(STRUT_COMPARE_QUANTITIES, quantity_name, quantity_reason), "of null")       \
+  X("states", "", LIST(c->states, c->state_count), "it stands in", .rows = &state_values)          \
+  X("barriers", "", LIST(c->barriers, c->barrier_count), "between", .rows = &barrier_values)       \
+  X("shape", "", TEXT(c->shape), "that is evaluated and drawn")                                    \
+  X("nodes", "", NAMED((const double(*)[2])c->q, c->q ? scene_of(c)->node_count : 0, node_name),   \
+    "in it", .rows = &node_values)                                                                 \
+  X("softest_in_x", "", TEXT(softest_node(c, 0)), "node")                                          \
+  X("softest_in_y", "", TEXT(softest_node(c, 1)), "node")                                          \
+  X("motion", "", TEXT(c->motion), "periodic, irregular, ...")                                     \
+  X("repeats", "", IF(c->repeats > 0, COUNT(c->repeats)), "drive periods of one repetition")       \
+  X("still", "", IF(c->motion, FLAG(c->still)), "whether it does not travel")                      \
+  X("velocity_method", "", TEXT(c->how), "how its velocity was found")                             \
+  X("contacts", "", NAMED(c->contacts, c->contact_count, contact_name), "in the steady motion",    \
+    .rows = &contact_values)                                                                       \
+  X("differences", "", IF(of->index, LIST(in->differences, in->difference_count)),                 \
+    "from the first", .rows = &difference_values)                                                  \
+  X("without_parameters", "", IF(of->index, NAMES(missing_name, in->without_count)),               \
+    "that were set and that it does not have")
+STRUT_VALUES_HERE(model_values, MODEL, const strut_compare_column *c = of->at;
+                  const strut_compare_input *in = c->input)
+
+static const strut_scene *scene_of_model(const strut_result_object *of, size_t i) {
+  return scene_of(&((const strut_compare *)of->at)->columns[i]);
+}
+
+static strut_value models_of(const strut_compare *r) {
+  strut_value list = STRUT_VALUE_AS_LIST(r->columns, r->count);
+  list.scene = scene_of_model;
+  return list;
+}
+
+#define COMPARISON(X)                                                                              \
+  X("strut_version", "", TEXT(STRUT_VERSION), "that computed it")                                  \
+  X("accuracy", "1", NUMBER(r->no_motion ? (double)NAN : r->accuracy), "asked of velocities")      \
+  X("units", "", MAP(STRUT_COMPARE_QUANTITIES, quantity_name, quantity_unit), "of the rows")       \
+  X("models", "", BY(models_of(r)), "in their order", .rows = &model_values)
+STRUT_VALUES(strut_compare_values, COMPARISON, const strut_compare *r = of->at)
 
 char *strut_compare_json(const strut_compare *r) {
-  strut_json json = strut_json_begin();
-  strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
-  strut_json_number(&json, json.root, "accuracy", r->no_motion ? (double)NAN : r->accuracy);
-  put_units(&json);
-  struct cJSON *models = strut_json_array(&json, json.root, "models");
-  for (size_t i = 0; i < r->count; i++) {
-    const strut_compare_column *c = &r->columns[i];
-    struct cJSON *model = strut_json_object(&json, models, NULL);
-    strut_json_text(&json, model, "model", c->input->label);
-    strut_json_text(&json, model, "name", c->input->setup->scene.name);
-    strut_json_text(&json, model, "status", strut_status_text(c->status));
-    strut_json_text(&json, model, "reason", c->status == STRUT_OK ? NULL : c->message);
-    put_parameters(&json, model, &c->input->setup->scene);
-    put_cells(&json, model, c);
-    put_states(&json, model, c);
-    put_shape(&json, model, c);
-    put_motion(&json, model, c);
-    if (i > 0) put_differences(&json, model, c->input);
-  }
-  return strut_json_end(&json);
+  return strut_values_json(&strut_compare_values, r, NULL);
 }
