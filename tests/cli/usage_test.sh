@@ -66,6 +66,8 @@ err_has "there is no section or key"
 expect 1 keys --schema "$hopper"
 out_empty
 err_has "'strut keys --schema --help' lists the options"
+expect 0 keys --results
+cmp out "$here/../../docs/results.md" || fail "docs/results.md is not what strut keys --results prints"
 tells 1 "missing MODEL" run --
 expect 0 run -q -- "$hopper"
 expect 0 run --quiet "$hopper" --set seconds=0.01
