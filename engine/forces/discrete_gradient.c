@@ -203,7 +203,9 @@ static void add_element(const strut_model *model, const strut_state *state,
   strut_element_pose end, middle;
   strut_element_evaluate(model, i, state->latest->rest, q1, step->strain0[i], &end);
   strut_element_evaluate(model, i, state->latest->rest, step->middle, step->strain0[i], &middle);
-  double natural0 = e->slot >= 0 ? step->rest0[e->slot] : e->natural, square = 0.0, work = 0.0;
+  bool load = e->role == STRUT_ELEMENT_LOAD; /* its moment is that half-way */
+  double natural0 = e->slot >= 0 && !load ? step->rest0[e->slot] : end.natural;
+  double square = 0.0, work = 0.0;
   double rest_rate = e->slot >= 0 ? step->rest_rate[e->slot] : 0.0;
   double origin0 = strut_element_origin(e, natural0),
          origin1 = strut_element_origin(e, end.natural);
@@ -230,6 +232,11 @@ static void add_element(const strut_model *model, const strut_state *state,
     state->latest->force[c] -= force * (middle.b[k] + more * (q1[c] - q0[c]));
   }
   if (!state->balance) return;
+  if (load) {
+    state->latest->power[STRUT_POWER_LOAD] -= force * rate;
+    state->latest->power[STRUT_POWER_EXCHANGED] += fabs(force * rate);
+    return;
+  }
   const average now = {.tension = force, .elastic = elastic};
   const stretching m = {.rate = rate, .h = step->h};
   add_powers(state, &now, &m, origin1 - origin0, rest_rate);

@@ -115,6 +115,10 @@ void strut_loads_apply(const strut_model *model, const strut_state *state, doubl
   for (int32_t i = 0; i < loads->count; i++) {
     double factor, rate;
     evaluate(model, state, v, loads->signal[i], t + state->time_offset, &factor, &rate);
+    if (loads->slot[i] >= 0) { /* its element exerts it */
+      state->latest->rest[loads->slot[i]] = factor * loads->x[i];
+      continue;
+    }
     int32_t at = 2 * loads->node[i];
     double px = factor * loads->x[i], py = factor * loads->y[i];
     state->latest->force[at] += px;
@@ -224,21 +228,13 @@ void strut_actuator_forces_apply(const strut_model *model, const strut_state *st
   }
 }
 
-double strut_actuator_force_on_member(const strut_model *model, const strut_state *state,
-                                      int32_t member) {
+double strut_actuator_force_on(const strut_model *model, const strut_state *state, int32_t member,
+                               int32_t hinge) {
   const strut_actuator_force_table *table = &model->actuator_forces;
   double sum = 0.0;
   for (int32_t i = 0; i < table->count; i++)
-    if (table->item[i].member == member) sum += state->latest->actuator_force[i];
-  return sum;
-}
-
-double strut_actuator_moment_on_hinge(const strut_model *model, const strut_state *state,
-                                      int32_t hinge) {
-  const strut_actuator_force_table *table = &model->actuator_forces;
-  double sum = 0.0;
-  for (int32_t i = 0; i < table->count; i++)
-    if (table->item[i].hinge == hinge) sum += state->latest->actuator_force[i];
+    if (table->item[i].member == member && table->item[i].hinge == hinge)
+      sum += state->latest->actuator_force[i];
   return sum;
 }
 

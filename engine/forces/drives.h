@@ -56,12 +56,9 @@ double strut_drive_longest_step(const strut_model *model, const strut_state *sta
 void strut_actuator_forces_apply(const strut_model *model, const strut_state *state, double t,
                                  const double *q, const double *v);
 
-/** Sum of the forces that actuators add to a member's own, when last applied; tension positive [N]. */
-double strut_actuator_force_on_member(const strut_model *model, const strut_state *state,
-                                      int32_t member);
-/** Sum of the moments that actuators add to a hinge's own [N m]. */
-double strut_actuator_moment_on_hinge(const strut_model *model, const strut_state *state,
-                                      int32_t hinge);
+/** Sum of what actuators add to a member's own force or a hinge's moment, when last applied; the other one is -1. */
+double strut_actuator_force_on(const strut_model *model, const strut_state *state, int32_t member,
+                               int32_t hinge);
 /** Adds the forces on all members to `force` (members). */
 void strut_actuator_forces_add_tensions(const strut_model *model, const strut_state *state,
                                         double *force);

@@ -67,7 +67,7 @@ void strut_element_evaluate(const strut_model *model, int32_t element, const dou
   assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
   pose->natural = strut_element_natural(e, rest);
-  double near = strut_element_is_gone(pose->natural) ? 0.0 : pose->natural;
+  double near = strut_element_is_gone(pose->natural) ? 0.0 : strut_element_near(e, pose->natural);
   pose->strain = strain_of(e, model->elements.at + e->first, q, isnan(turn) ? near : turn, pose->b);
   if (strut_element_is_gone(pose->natural)) {
     pose->acts = false;
@@ -175,6 +175,19 @@ double strut_elements_energy(const strut_model *model, const double *rest, const
   for (int32_t k = 0; k < count; k++) {
     int32_t i = near ? near->element[k] : k;
     strut_element_evaluate(model, i, rest, q, turn ? turn[i] : (double)NAN, &pose);
+    if (model->elements.element[i].role != STRUT_ELEMENT_LOAD) sum += pose.energy;
+  }
+  return sum;
+}
+
+double strut_couples_potential(const strut_model *model, const double *near, const double *q) {
+  double sum = 0.0, b[STRUT_MOST_GRADIENT];
+  strut_element_pose pose;
+  for (int32_t i = 0; i < model->elements.count && model->elements.couples; i++) {
+    const strut_element *e = &model->elements.element[i];
+    if (e->role != STRUT_ELEMENT_LOAD) continue;
+    double at = strut_element_strain(model, i, near, strut_element_start(model, i), b);
+    strut_element_evaluate(model, i, model->members.rest, q, at, &pose);
     sum += pose.energy;
   }
   return sum;
@@ -199,9 +212,12 @@ static inline exertion exert(const strut_element *e, const strut_state *state, i
   return (exertion){force, r->force, own_rate, r->excess};
 }
 
-static inline void add_powers(const strut_state *state, const exertion *x, double rest_rate) {
+static inline void add_powers(const strut_element *e, const strut_state *state, const exertion *x,
+                              double rest_rate) {
   double drive = (x->excess - x->force) * rest_rate, lost = (x->force - x->elastic) * x->own_rate;
-  state->latest->power[STRUT_POWER_DRIVE] += drive;
+  bool load = e->role == STRUT_ELEMENT_LOAD;
+  if (load) drive = -x->force * x->own_rate;
+  state->latest->power[load ? STRUT_POWER_LOAD : STRUT_POWER_DRIVE] += drive;
   state->latest->power[STRUT_POWER_MEMBERS] += lost;
   state->latest->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
 }
@@ -230,7 +246,7 @@ static inline void add_powers(const strut_state *state, const exertion *x, doubl
         force[at[k]] -= x.force * b[2 * k];                                                        \
         force[at[k] + 1] -= x.force * b[2 * k + 1];                                                \
       }                                                                                            \
-      if (state->balance) add_powers(state, &x, rest_rate);                                        \
+      if (state->balance) add_powers(e, state, &x, rest_rate);                                     \
     }                                                                                              \
   }
 
@@ -278,7 +294,7 @@ static void add_running_cables(const strut_model *model, const strut_state *stat
     strut_law_response r = strut_law_linear(&e->numbers, strain, natural, -1);
     exertion x = exert(e, state, i, &r, strain - natural, rate - rest_rate);
     pull_path(at, e->nodes, force, b, x.force);
-    if (state->balance) add_powers(state, &x, rest_rate);
+    if (state->balance) add_powers(e, state, &x, rest_rate);
   }
 }
 
@@ -338,9 +354,9 @@ bool strut_hinges_have_collapsed(const strut_model *model, const double *q) {
   for (int32_t i = 0; i < model->elements.count; i++) {
     const strut_element *e = &model->elements.element[i];
     const uint32_t *at = model->elements.at + e->first;
-    for (int arm = 0; arm < 3 && e->strain == STRUT_STRAIN_ANGLE; arm += 2)
-      if (strut_distance(q + at[arm], q + at[1]) <
-          gone * strut_distance(model->start + at[arm], model->start + at[1]))
+    for (int k = 1; k < e->nodes && e->strain == STRUT_STRAIN_ANGLE; k++)
+      if (strut_distance(q + at[k], q + at[k - 1]) <
+          gone * strut_distance(model->start + at[k], model->start + at[k - 1]))
         return true;
   }
   return false;

@@ -71,9 +71,11 @@ void strut_elements_keep_turns(const strut_model *model, strut_state *state);
  */
 double strut_element_stiffest(const strut_model *model, int32_t element);
 
-/** Elastic energy of all elements [J], or those `near`; turn (elements): see strut_element_evaluate, or NULL. */
+/** Elastic energy of all elements but loads [J], or those `near`; turn: see strut_element_evaluate, or NULL. */
 double strut_elements_energy(const strut_model *model, const double *rest, const double *turn,
                              const double *q, const strut_nearby *near);
+/** Minus moment times angle of constant couples at q [J], each angle nearest to that in the shape `near`. */
+double strut_couples_potential(const strut_model *model, const double *near, const double *q);
 
 /** Elastic force of member j at q, of its spring or of its elements, tension positive [N]. */
 STRUT_API double strut_member_elastic_tension(const strut_model *model, const double *rest,

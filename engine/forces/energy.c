@@ -102,8 +102,7 @@ double strut_energy_load_potential(const strut_model *model, const strut_state *
   double sum = 0.0;
   for (size_t i = 0; i < scene->load_count; i++) {
     const strut_load *load = &scene->loads[i];
-    if (load->signal >= 0) continue;
-    for (int c = 0; c < 2; c++) {
+    for (int c = 0; c < 2 && load->signal < 0 && !load->couple; c++) {
       int32_t at = 2 * load->node + c;
       sum += load->force[c] * state->q[at];
     }

@@ -45,7 +45,7 @@ strut_member_values strut_member_measure(const strut_model *model, const strut_s
                                          int32_t member) {
   strut_member_values values = strut_member_measure_at(model, state, member, state->q, state->v);
   if (state->rigid) values.force += strut_rigid_tension(state->rigid, member);
-  values.force += strut_actuator_force_on_member(model, state, member);
+  values.force += strut_actuator_force_on(model, state, member, -1);
   return values;
 }
 
@@ -54,7 +54,7 @@ strut_hinge_values strut_hinge_measure(const strut_model *model, const strut_sta
   assert(element >= 0 && element < model->elements.count);
   strut_element_pose pose;
   double moment = strut_element_measure(model, state, element, &pose);
-  moment += strut_actuator_moment_on_hinge(model, state, model->elements.element[element].item);
+  moment += strut_actuator_force_on(model, state, -1, model->elements.element[element].item);
   return (strut_hinge_values){pose.strain, strut_element_rate(model, element, &pose, state->v),
                               moment};
 }

@@ -200,6 +200,7 @@ static void compile_loads(strut_model *model, bool *failed) {
   double *constant = doubles(model, (size_t)model->length, failed);
   double *x = doubles(model, most, failed), *y = doubles(model, most, failed);
   int32_t *node = indices(model, most, failed), *signal = indices(model, most, failed);
+  int32_t *slot = indices(model, most, failed);
   if (*failed) return;
   bool any = false;
   for (size_t c = 0; c < 2; c++)
@@ -212,15 +213,17 @@ static void compile_loads(strut_model *model, bool *failed) {
     const strut_load *load = &scene->loads[i];
     if (load->signal >= 0) {
       node[count] = load->node, signal[count] = load->signal;
-      x[count] = load->force[0], y[count++] = load->force[1];
+      slot[count] = load->couple ? strut_couple_slot(model, i) : -1;
+      x[count] = load->couple ? load->moment : load->force[0], y[count++] = load->force[1];
       continue;
     }
+    if (load->couple) continue;
     constant[2 * load->node] += load->force[0];
     constant[2 * load->node + 1] += load->force[1];
     any = true;
   }
   model->constant_force = any ? constant : NULL;
-  model->loads = (strut_load_table){count, node, signal, x, y};
+  model->loads = (strut_load_table){count, node, slot, signal, x, y};
   model->terms |= (any ? STRUT_TERM_CONSTANT : 0u) | (count ? STRUT_TERM_LOADS : 0u);
 }
 

@@ -29,6 +29,8 @@ void strut_damping_compile(strut_model *model);
 
 /** Value near which an element's strain is taken at the start: its natural strain. */
 double strut_element_start(const strut_model *model, int32_t element);
+/** Slot of the moment of a load that is a couple. */
+int32_t strut_couple_slot(const strut_model *model, size_t load);
 /** Slot of the natural strain that actuator i of the scene drives. */
 int32_t strut_actuator_slot(const strut_model *model, size_t i);
 

@@ -49,8 +49,16 @@ static size_t count_history_slots(const strut_scene *scene) {
   return count;
 }
 
+/* The loads before number i that are couples. */
+static size_t count_couples(const strut_scene *scene, size_t i) {
+  size_t count = 0;
+  while (i-- > 0) count += scene->loads[i].couple;
+  return count;
+}
+
 size_t strut_element_slots(const strut_scene *scene) {
-  return scene->hinge_count + scene->cell_count + count_history_slots(scene);
+  return scene->hinge_count + scene->cell_count + count_couples(scene, scene->load_count) +
+         count_history_slots(scene);
 }
 
 /* The slots stand behind those of the members. */
@@ -61,6 +69,11 @@ static int32_t hinge_slot(const strut_model *model, int32_t hinge) {
 
 static int32_t cell_slot(const strut_model *model, int32_t cell) {
   return hinge_slot(model, (int32_t)model->scene->hinge_count + cell);
+}
+
+/* Behind the last of all are those of elements with memory. */
+int32_t strut_couple_slot(const strut_model *model, size_t load) {
+  return cell_slot(model, (int32_t)(model->scene->cell_count + count_couples(model->scene, load)));
 }
 
 int32_t strut_actuator_slot(const strut_model *model, size_t i) {
@@ -74,7 +87,7 @@ int32_t strut_actuator_slot(const strut_model *model, size_t i) {
 double strut_element_start(const strut_model *model, int32_t element) {
   assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
-  return e->slot >= 0 ? model->members.rest[e->slot] : e->natural;
+  return strut_element_near(e, e->slot >= 0 ? model->members.rest[e->slot] : e->natural);
 }
 
 /* A collision of two members is that of each of their four ends with the other member. */
@@ -101,10 +114,11 @@ static void count_elements(const strut_scene *scene, const uint8_t *reeled, size
   *elements = scene->hinge_count + scene->cell_count;
   *nodes = 3 * scene->hinge_count;
   for (size_t i = 0; i < scene->cell_count; i++) *nodes += scene->cells[i].node_count;
-  *elements += MOST_PAIRS * scene->collision_count + scene->distance_count;
+  size_t couples = count_couples(scene, scene->load_count);
+  *elements += MOST_PAIRS * scene->collision_count + scene->distance_count + couples;
   for (size_t i = 0; i < scene->contact_count; i++)
     if (strut_contact_is_element(scene, i)) ++*elements, *nodes += 2;
-  *nodes += 3 * (MOST_PAIRS * scene->collision_count + scene->distance_count);
+  *nodes += 3 * (MOST_PAIRS * scene->collision_count + scene->distance_count + couples);
   for (size_t j = 0; j < scene->member_count; j++) {
     size_t own = elements_of_member(&scene->members[j], reeled && reeled[j]);
     *elements += own;
@@ -277,8 +291,7 @@ static void remember(compilation *c, strut_element *e) {
   e->base = e->slot;
   e->memory = model->elements.history_count++;
   strut_element_table *t = &model->elements;
-  t->history_slot =
-      hinge_slot(model, (int32_t)(model->scene->hinge_count + model->scene->cell_count));
+  t->history_slot = strut_couple_slot(model, model->scene->load_count);
   e->slot = t->history_slot + t->history_slots++;
   double *rest = (double *)model->members.rest;
   rest[e->slot] = e->base >= 0 ? rest[e->base] : e->natural;
@@ -463,6 +476,27 @@ static void add_distance(compilation *c, size_t i) {
   if (memory_of_law(&d->law)) remember(c, e);
 }
 
+/* Its law is that of a given pressure, with the drawn angle for the area. */
+static void add_couple(compilation *c, size_t i) {
+  strut_model *model = c->model;
+  const strut_load *load = &model->scene->loads[i];
+  int32_t slot = strut_couple_slot(model, i);
+  strut_element *e = add_element(c, (strut_element){.strain = STRUT_STRAIN_ANGLE,
+                                                    .law = STRUT_LAW_PRESSURE,
+                                                    .role = STRUT_ELEMENT_LOAD,
+                                                    .item = (int32_t)i,
+                                                    .slot = slot});
+  const int32_t *node = load->hinge >= 0 ? model->scene->hinges[load->hinge].node
+                                         : model->scene->members[load->member].node;
+  for (int k = 0; k < (load->hinge >= 0 ? 3 : 2); k++) add_node(c, e, node[k]);
+  strut_vec2 span = strut_vec2_between(model->scene->nodes[node[0]].position,
+                                       model->scene->nodes[node[1]].position);
+  e->numbers.area = load->hinge >= 0 ? strut_hinge_drawn(model->scene, (size_t)load->hinge)
+                                     : atan2(span.y, span.x);
+  ((double *)model->members.rest)[slot] = load->signal < 0 ? load->moment : 0.0;
+  model->elements.couples++;
+}
+
 /*
  * Contacts that are elements press as the scene says: a foot, or a node alone, which is one without an arc.
  * strut_rubbing_compile places them on their grounds.
@@ -625,7 +659,7 @@ static bool list_breakables(strut_model *model) {
   for (size_t i = 0; i < scene->hinge_count; i++) {
     const strut_hinge *h = &scene->hinges[i];
     if (!strut_hinge_ends(h)) continue;
-    int32_t first = strut_element_of_hinge(t, (int32_t)i);
+    int32_t first = strut_element_find(t, STRUT_ELEMENT_HINGE, (int32_t)i);
     list[t->breakable_count++] =
         breakable(STRUT_ELEMENT_HINGE, i, first, h->breaks_at, h->released_at);
   }
@@ -661,6 +695,8 @@ static bool compile(strut_model *model, const uint8_t *reeled) {
   for (size_t i = 0; i < scene->cell_count; i++) add_cell(&c, i);
   for (size_t i = 0; i < scene->collision_count; i++) add_collision(&c, i);
   for (size_t i = 0; i < scene->distance_count; i++) add_distance(&c, i);
+  for (size_t i = 0; i < scene->load_count; i++)
+    if (scene->loads[i].couple) add_couple(&c, i);
   add_feet(&c);
   assert(c.count <= (int32_t)elements && c.nodes <= (int32_t)nodes);
   model->elements.at = c.at;

@@ -11,6 +11,7 @@
 #define STRUT_ENGINE_MODEL_ELEMENTS_H
 
 #include <assert.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -49,6 +50,7 @@ typedef enum strut_element_role {
   STRUT_ELEMENT_CELL,     /* the pressure in a cell */
   STRUT_ELEMENT_COLLISION, /* what two bodies exert on each other; of two members it has four elements */
   STRUT_ELEMENT_DISTANCE, /* the force of a distance */
+  STRUT_ELEMENT_LOAD,     /* a load that is a couple; its slot holds the moment */
   STRUT_ELEMENT_FOOT,     /* what a ground presses a foot with */
   STRUT_ELEMENT_CONTACT /* what it presses a node with that it holds by bristles: a foot without an arc */
 } strut_element_role;
@@ -117,6 +119,7 @@ typedef struct strut_element_table {
   const strut_element_block *block; /* (block_count) */
   const uint32_t *at;               /* where the nodes' x stand in coordinate arrays: 2 * node */
   const int32_t *of_member;         /* (members) first element of a member, or -1; NULL: none */
+  int32_t couples;                  /* elements of loads */
   int32_t history_count, breakable_count;
   const int32_t *memory;               /* (history_count) the elements with memory */
   int32_t history_slot, history_slots; /* the first of their slots, and how many there are */
@@ -138,20 +141,6 @@ static inline int32_t strut_element_find(const strut_element_table *t, strut_ele
   int32_t k = 0;
   while (k < t->count && (t->element[k].role != role || t->element[k].item != item)) k++;
   return k < t->count ? k : -1;
-}
-static inline int32_t strut_element_of_hinge(const strut_element_table *t, int32_t i) {
-  return strut_element_find(t, STRUT_ELEMENT_HINGE, i);
-}
-static inline int32_t strut_element_of_cell(const strut_element_table *t, int32_t i) {
-  return strut_element_find(t, STRUT_ELEMENT_CELL, i);
-}
-
-static inline int32_t strut_element_of_collision(const strut_element_table *t, int32_t i) {
-  return strut_element_find(t, STRUT_ELEMENT_COLLISION, i);
-}
-
-static inline int32_t strut_element_of_distance(const strut_element_table *t, int32_t i) {
-  return strut_element_find(t, STRUT_ELEMENT_DISTANCE, i);
 }
 
 /** The element behind the last one of the same item; elements of a collision follow each other. */
@@ -177,6 +166,7 @@ static inline strut_thing strut_element_thing(strut_element_role role) {
     case STRUT_ELEMENT_CELL: return STRUT_THING_CELL;
     case STRUT_ELEMENT_COLLISION: return STRUT_THING_COLLISION;
     case STRUT_ELEMENT_DISTANCE: return STRUT_THING_DISTANCE;
+    case STRUT_ELEMENT_LOAD: return STRUT_THING_LOAD;
     case STRUT_ELEMENT_FOOT: return STRUT_THING_FOOT;
     case STRUT_ELEMENT_CONTACT: return STRUT_THING_CONTACT;
     case STRUT_ELEMENT_MEMBER:
@@ -195,6 +185,11 @@ static inline const char *strut_element_name(const strut_scene *scene, const str
 /** The natural strain in the unit of the strain: the laws of cells have a pressure there instead. */
 static inline double strut_element_origin(const strut_element *e, double natural) {
   return strut_law_is_of_cells(e->law) ? 0.0 : natural;
+}
+
+/** The angle near which an element's is taken at first. A couple leans, so that it may turn by just half a turn. */
+static inline double strut_element_near(const strut_element *e, double natural) {
+  return e->role == STRUT_ELEMENT_LOAD ? e->numbers.area + copysign(0.1, natural) : natural;
 }
 
 /** Does an element take the place of the plain member j? */

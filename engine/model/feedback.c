@@ -10,16 +10,20 @@ static int32_t find_contact(const strut_model *model, int32_t node) {
 static strut_sensor_entry compile_sensor(const strut_model *model, const strut_sensor *s) {
   strut_sensor_entry entry = {s->kind, s->item};
   switch (s->kind) {
-    case STRUT_SENSOR_ANGLE: entry.at = strut_element_of_hinge(&model->elements, s->item); break;
+    case STRUT_SENSOR_ANGLE:
+      entry.at = strut_element_find(&model->elements, STRUT_ELEMENT_HINGE, s->item);
+      break;
     case STRUT_SENSOR_CONTACT_FORCE:
     case STRUT_SENSOR_CONTACT: entry.at = find_contact(model, s->item); break;
     case STRUT_SENSOR_AREA:
-    case STRUT_SENSOR_PRESSURE: entry.at = strut_element_of_cell(&model->elements, s->item); break;
+    case STRUT_SENSOR_PRESSURE:
+      entry.at = strut_element_find(&model->elements, STRUT_ELEMENT_CELL, s->item);
+      break;
     case STRUT_SENSOR_DISTANCE:
-      entry.at = strut_element_of_distance(&model->elements, s->item);
+      entry.at = strut_element_find(&model->elements, STRUT_ELEMENT_DISTANCE, s->item);
       break;
     case STRUT_SENSOR_COLLISION_FORCE:
-      entry.at = strut_element_of_collision(&model->elements, s->item);
+      entry.at = strut_element_find(&model->elements, STRUT_ELEMENT_COLLISION, s->item);
       break;
     case STRUT_SENSOR_POSITION:
     case STRUT_SENSOR_VELOCITY: entry.at = 2 * s->item + (int32_t)s->along; break;

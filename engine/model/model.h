@@ -121,8 +121,8 @@ typedef struct strut_drive_table {
 
 typedef struct strut_load_table {
   int32_t count;
-  const int32_t *node, *signal;
-  const double *x, *y; /* [N], times the signal */
+  const int32_t *node, *slot, *signal; /* slot: of a couple's moment, or -1 */
+  const double *x, *y; /* [N], times the signal; x of a couple is its moment [N m] */
 } strut_load_table;
 
 typedef struct strut_model {

@@ -148,12 +148,15 @@ void strut_check_drives(strut_checker *checker) {
   for (size_t i = 0; i < scene->load_count; i++) {
     const strut_load *l = &scene->loads[i];
     strut_format_name(owner, "load", l->name, i);
-    if (!strut_exists(l->node, scene->node_count))
-      strut_report_finding(checker, STRUT_ON_LOAD, i, "node",
-                           "%s acts on a node that does not exist", owner);
-    if (!isfinite(l->force[0]) || !isfinite(l->force[1]))
-      strut_report_finding(checker, STRUT_ON_LOAD, i, "force", "the force of %s is not finite",
-                           owner);
+    const char *key = !l->couple ? "node" : l->hinge >= 0 ? "hinge" : "member";
+    if (!(!l->couple      ? strut_exists(l->node, scene->node_count)
+          : l->hinge >= 0 ? strut_exists(l->hinge, scene->hinge_count)
+                          : strut_exists(l->member, scene->member_count)))
+      strut_report_finding(checker, STRUT_ON_LOAD, i, key, "%s acts on a %s that does not exist",
+                           owner, key);
+    if (!isfinite(l->force[0] + l->force[1] + l->moment))
+      strut_report_finding(checker, STRUT_ON_LOAD, i, l->couple ? "moment" : "force",
+                           "the %s of %s is not finite", l->couple ? "moment" : "force", owner);
     if (l->signal != -1 && !strut_exists(l->signal, scene->signal_count))
       strut_report_finding(checker, STRUT_ON_LOAD, i, "signal",
                            "%s has a signal that does not exist", owner);

@@ -237,13 +237,21 @@ typedef struct strut_sliding_mass {
   bool travel; /* the signal is a length [m] along the member as drawn, otherwise a share [1] */
 } strut_sliding_mass;
 
-/** A force on a node: force, times signal(t) if there is one. */
+/** A force on a node, or a couple: a moment on the angle of a hinge or of a member; times signal(t) if there is one. */
 typedef struct strut_load {
   const char *name;
   int32_t node;
   double force[2]; /* [N]; with a signal a direction, or a force scaled by the signal */
   int32_t signal;  /* or -1 */
+  bool couple;
+  int32_t hinge, member; /* of a couple; one of them is -1 */
+  double moment;         /* of a couple, counter-clockwise [N m] */
 } strut_load;
+
+static inline void strut_load_scale(strut_load *load, double factor) {
+  for (int c = 0; c < 2; c++) load->force[c] *= factor;
+  load->moment *= factor;
+}
 
 /** A parameter as used, for the record only: the numbers of the scene already contain it. */
 typedef struct strut_parameter {

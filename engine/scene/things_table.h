@@ -51,7 +51,7 @@
   X(DISTANCE, "distance", "distances", strut_distance_spring, distances, distance_count, AT_REST, .name = "", .node = {-1, -1}, .line = {-1, -1}, .rest_distance = (double)NAN) \
   X(FOOT, "foot", "feet", strut_foot, feet, foot_count, AT_REST, .name = "", .member = -1, .node = -1) \
   X(ACTUATOR, "actuator", "actuators", strut_actuator, actuators, actuator_count, OF_RUNS, .name = "", .member = -1, .signal = -1, .hinge = -1, .cell = -1) \
-  X(LOAD, "load", "loads", strut_load, loads, load_count, BY_HAND, .name = "", .node = -1, .signal = -1) \
+  X(LOAD, "load", "loads", strut_load, loads, load_count, BY_HAND, .name = "", .node = -1, .signal = -1, .hinge = -1, .member = -1) \
   X(UNBALANCE, "unbalance", "unbalances", strut_unbalance, unbalances, unbalance_count, AT_REST, .name = "", .node = -1, .signal = -1) \
   X(SLIDER, "slider", "sliders", strut_sliding_mass, sliding_masses, sliding_count, BY_HAND, .name = "", .member = -1, .signal = -1) \
   X(SIGNAL, "signal", "signals", strut_signal, signals, signal_count, OF_RUNS, .stop = (double)INFINITY) \
@@ -103,7 +103,7 @@
   X(SCENE, LATTICE, "lattice", FREE, NONE, ANY, "", OPTIONAL, 0, "one or two displacements, such as [[1 m, 0]]", BY_HAND, "Displacements by which the structure repeats without end, for `strut modes --wave`. A node at such a displacement from another is that node of the next cell.") \
   X(SCENE, GROUND, "ground", MAP, NONE, ANY, "", OPTIONAL, 1, "", SECTION(GROUND), "The line, profile or circle that nodes may touch. Without it there is no ground.") \
   X(SCENE, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", THINGS(ACTUATOR), "Drives of rest lengths, rest angles and pressures, or added forces and moments. Several on one member add up.") \
-  X(SCENE, LOADS, "loads", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a load", THINGS(LOAD), "Forces on nodes.") \
+  X(SCENE, LOADS, "loads", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a load", THINGS(LOAD), "Forces on nodes, moments on hinges and members.") \
   X(SCENE, UNBALANCES, "unbalances", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an unbalance", THINGS(UNBALANCE), "Masses that rotate about nodes.") \
   X(SCENE, SIGNALS, "signals", THINGS, NONE, ANY, "", OPTIONAL, 0, "a signal", THINGS(SIGNAL), "Named signals, for use in several places.") \
   X(SCENE, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, "", OPTIONAL, 0, "`{NODE: [x, y], ...}` or the keys of a [configuration](#configuration)", THINGS(CONFIGURATION), "Named shapes, to start from and to name equilibria. Nodes that are not listed stay as drawn.") \
@@ -288,9 +288,12 @@
   X(ACTUATOR, MOMENT, "moment", SIGNAL, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "Instead of `signal`: a moment in addition to the hinge's own; positive closes the angle. Statics ignore it.")
 
 #define STRUT_LOAD_FIELDS(X) \
-  X(LOAD, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_load, node, NODE), "The node on which the force acts.") \
-  X(LOAD, FORCE, "force", PAIR, FORCE, ANY, "", REQUIRED, 0, "", FIELD(strut_load, force), "The force; with a signal, the force at signal 1.") \
-  X(LOAD, SIGNAL, "signal", SIGNAL, NONE, ANY, "constant 1", OPTIONAL, 0, "", FIELD(strut_load, signal), "Factor of the force, without unit.")
+  X(LOAD, NODE, "node", NAME, NONE, ANY, "", OPTIONAL, 6, "", REFERENCE(strut_load, node, NODE), "The node on which the force acts.") \
+  X(LOAD, HINGE, "hinge", NAME, NONE, ANY, "", OPTIONAL, 6, "", REFERENCE(strut_load, hinge, HINGE), "The hinge whose angle the moment opens: opposite couples on its two arms.") \
+  X(LOAD, MEMBER, "member", NAME, NONE, ANY, "", OPTIONAL, 6, "", REFERENCE(strut_load, member, MEMBER), "The member that the moment turns: opposite forces across it on its two end nodes.") \
+  X(LOAD, FORCE, "force", PAIR, FORCE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_load, couple, false, FIELD(strut_load, force)), "The force; with a signal, the force at signal 1.") \
+  X(LOAD, MOMENT, "moment", NUMBER, MOMENT, ANY, "", OPTIONAL, 7, "", CHOICE(strut_load, couple, true, FIELD(strut_load, moment)), "Of a hinge or member, instead of `force`: the moment, counter-clockwise.") \
+  X(LOAD, SIGNAL, "signal", SIGNAL, NONE, ANY, "constant 1", OPTIONAL, 0, "", FIELD(strut_load, signal), "Factor of the force or moment, without unit.")
 
 #define STRUT_UNBALANCE_FIELDS(X) \
   X(UNBALANCE, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_unbalance, node, NODE), "The node about which it rotates.") \

@@ -137,9 +137,9 @@ static bool leave_ridge(strut_minimiser *m, double *q, double radius) {
   if (!m->curvature->unstable_direction(m->workspace, m->step)) return false;
   for (double far = radius; far > 1e-6 * m->size; far *= 0.25) {
     set_trial(m, q, far);
-    double up = strut_potential_value(m->potential, m->trial);
+    double up = strut_potential_value_near(m->potential, m->trial, q);
     set_trial(m, q, -far);
-    double down = strut_potential_value(m->potential, m->trial);
+    double down = strut_potential_value_near(m->potential, m->trial, q);
     if (!(up < here) && !(down < here)) continue;
     if (!(down < up)) set_trial(m, q, far);
     strut_potential_gradient(m->potential, m->trial, m->g_trial);
@@ -215,14 +215,14 @@ static double try_step(strut_minimiser *m, const double *q, double here, double 
                        double *there) {
   size_t bytes = (size_t)m->potential->n * sizeof *m->step;
   set_trial(m, q, 1.0);
-  *there = strut_potential_value(m->potential, m->trial);
+  *there = strut_potential_value_near(m->potential, m->trial, q);
   strut_potential_gradient(m->potential, m->trial, m->g_trial);
   double ratio = energy_lost(m, here, *there, expected) / expected;
   for (int i = 0; i < MOST_BENDS && !(ratio > 0.75); i++) {
     memcpy(m->unbent, m->step, bytes);
     if (!m->curvature->rebalance(m->workspace, m->g_trial, m->step)) break;
     set_trial(m, q, 1.0);
-    double lower = strut_potential_value(m->potential, m->trial);
+    double lower = strut_potential_value_near(m->potential, m->trial, q);
     bool better = lower < *there;
     if (better) *there = lower;
     if (!better) memcpy(m->step, m->unbent, bytes);
@@ -254,7 +254,8 @@ static bool descend_once(strut_minimiser *m, double *q, double still, double *ra
         *radius = fmin(radius_growth(m, ratio) * *radius, m->longest_step);
       if (ratio < 0.25) *radius = 0.5 * step.length;
       keep_trial(m, q);
-      *energy = there;
+      bool couples = m->potential->model->elements.couples > 0;
+      *energy = couples ? strut_potential_value(m->potential, q) : there;
       return true;
     }
     *radius = (ratio > -1.0 ? 0.25 : 0.1) * step.length;

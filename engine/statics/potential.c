@@ -17,7 +17,8 @@ static void sum_forces(strut_potential *p) {
   for (int32_t i = 0; i < model->node_count; i++) p->force_scale += g * model->weight[i];
   for (size_t i = 0; i < scene->load_count; i++)
     if (scene->loads[i].signal < 0)
-      p->force_scale += hypot(scene->loads[i].force[0], scene->loads[i].force[1]);
+      p->force_scale += hypot(scene->loads[i].force[0], scene->loads[i].force[1]) +
+                        fabs(scene->loads[i].moment) / (model->size > 0 ? model->size : 1.0);
 }
 
 static bool make_pattern(strut_potential *p) {
@@ -74,6 +75,10 @@ static double elastic_energy(const strut_potential *p, const double *q) {
 }
 
 double strut_potential_value(const strut_potential *p, const double *q) {
+  return strut_potential_value_near(p, q, q);
+}
+
+double strut_potential_value_near(const strut_potential *p, const double *q, const double *near) {
   const strut_contact_table *c = &p->model->contacts;
   double sum = elastic_energy(p, q), work = 0.0;
   for (int32_t at = 0; at < 2 * p->model->node_count; at++) work += p->force[at] * q[at];
@@ -81,7 +86,7 @@ double strut_potential_value(const strut_potential *p, const double *q) {
     double gap = strut_contact_gap(c, i, q);
     if (gap < 0.0) sum += 0.5 * c->entry[i].stiffness * gap * gap;
   }
-  return sum - work;
+  return sum - work + strut_couples_potential(p->model, near, q);
 }
 
 double strut_potential_energy(const strut_potential *p, const double *q) {

@@ -39,6 +39,9 @@ STRUT_API void strut_potential_free(strut_potential *potential);
  * of the ground's springs.
  */
 STRUT_API double strut_potential_value(const strut_potential *potential, const double *q);
+/** The same with the angles of couples nearest to those in the shape `near`, on from where they jump by a turn. */
+double strut_potential_value_near(const strut_potential *potential, const double *q,
+                                  const double *near);
 
 /** (13) alone: elastic energy of the members and gravity's, zero at the origin [J]. */
 STRUT_API double strut_potential_energy(const strut_potential *potential, const double *q);

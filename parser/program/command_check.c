@@ -210,7 +210,7 @@ static bool describe_member(const strut_model *model, const double *q, size_t i,
 
 static bool describe_hinge(const strut_model *model, const double *q, size_t i, description *d) {
   const strut_hinge *h = &model->scene->hinges[i];
-  int32_t element = strut_element_of_hinge(&model->elements, (int32_t)i);
+  int32_t element = strut_element_find(&model->elements, STRUT_ELEMENT_HINGE, (int32_t)i);
   strut_element_pose pose;
   strut_element_evaluate(model, element, model->members.rest, q, (double)NAN, &pose);
   add_number(d, "drawn_angle", "rad", pose.strain);
@@ -239,7 +239,7 @@ static bool describe_cell(const strut_model *model, const double *q, size_t i, d
 
 /* The least distance of the surfaces of a collision in the drawn shape. */
 static double drawn_gap(const strut_model *model, const double *q, size_t i) {
-  int32_t first = strut_element_of_collision(&model->elements, (int32_t)i);
+  int32_t first = strut_element_find(&model->elements, STRUT_ELEMENT_COLLISION, (int32_t)i);
   int32_t end = strut_element_end(&model->elements, first);
   double gap = HUGE_VAL;
   strut_element_pose pose;
@@ -262,7 +262,7 @@ static bool describe_collision(const strut_model *model, const double *q, size_t
 
 static bool describe_distance(const strut_model *model, const double *q, size_t i, description *d) {
   const strut_distance_spring *s = &model->scene->distances[i];
-  int32_t element = strut_element_of_distance(&model->elements, (int32_t)i);
+  int32_t element = strut_element_find(&model->elements, STRUT_ELEMENT_DISTANCE, (int32_t)i);
   (void)q;
   add_number(d, "drawn", "m", strut_distance_drawn(model->scene, i));
   add_number(d, "rest", "m", strut_distance_rest(model->scene, i));

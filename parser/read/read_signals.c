@@ -446,10 +446,28 @@ bool strut_read_actuator(strut_reader *reader, strut_fields *fields, strut_owner
 }
 
 bool strut_read_load(strut_reader *reader, strut_fields *fields, strut_owner owner, void *object) {
-  (void)owner;
-  strut_place_vector(reader, strut_slot_of(fields, STRUT_KEY_LOAD_FORCE)->value,
-                     ((strut_load *)object)->force);
-  return true;
+  strut_load *load = object;
+  const strut_slot *node = strut_slot_of(fields, STRUT_KEY_LOAD_NODE);
+  const strut_slot *force = strut_slot_of(fields, STRUT_KEY_LOAD_FORCE);
+  const strut_slot *moment = strut_slot_of(fields, STRUT_KEY_LOAD_MOMENT);
+  bool turns = strut_slot_of(fields, STRUT_KEY_LOAD_HINGE)->key ||
+               strut_slot_of(fields, STRUT_KEY_LOAD_MEMBER)->key;
+  const strut_slot *odd = turns ? force : moment, *due = turns ? moment : force;
+  const char *wrong =
+      !node->key && !turns
+          ? "lacks 'node', expected the name of a node, or 'hinge' or 'member' for a moment"
+      : odd->key && turns  ? "gives a 'force' to a hinge or member, which takes a 'moment'"
+      : odd->key           ? "gives a 'moment' to a node, which takes a 'force'"
+      : !due->key && turns ? "lacks 'moment', expected a moment such as '2 N m'"
+      : !due->key          ? "lacks 'force', expected two numbers such as [10 N, 0]"
+                           : NULL;
+  if (wrong && !fields->broken)
+    strut_report_error(reader, *wrong == 'g' ? odd->key->place : fields->key->place, "%s %s",
+                       strut_owner_text(reader, owner), wrong);
+  if (force->key) strut_place_vector(reader, force->value, load->force);
+  /* the nodes of a hinge in a mirrored copy change places instead */
+  if (strut_scope_flips(reader) && load->member >= 0) load->moment = -load->moment;
+  return !wrong;
 }
 
 /* ---- unbalances ---- */

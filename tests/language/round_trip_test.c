@@ -96,6 +96,10 @@ static void same_drives(const strut_setup *a, const strut_setup *b) {
     assert_string_equal(a->scene.loads[i].name, b->scene.loads[i].name);
     SAME(scene.loads[i].node);
     SAME(scene.loads[i].force);
+    SAME(scene.loads[i].moment);
+    assert_true(!a->scene.loads[i].couple ||
+                (b->scene.loads[i].couple && a->scene.loads[i].hinge == b->scene.loads[i].hinge &&
+                 a->scene.loads[i].member == b->scene.loads[i].member));
     SAME(scene.loads[i].signal);
   }
 }

@@ -125,7 +125,8 @@ void build_guides(strut_scene *scene, int32_t member, const int32_t *guides, siz
 int32_t build_load(strut_scene *scene, int32_t node, double x, double y, int32_t signal) {
   size_t i = scene->load_count;
   scene->loads = grown(scene, scene->loads, i, sizeof *scene->loads);
-  scene->loads[i] = (strut_load){name(scene, "l", i), node, {x, y}, signal};
+  scene->loads[i] =
+      (strut_load){.name = name(scene, "l", i), .node = node, .force = {x, y}, .signal = signal};
   scene->load_count++;
   return (int32_t)i;
 }

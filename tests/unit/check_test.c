@@ -51,8 +51,8 @@ static void fill_drives(sample *s) {
   s->signals[3] = strut_signal_default(STRUT_RAMP);
   s->signals[3].amplitude = 1, s->signals[3].stop = 2;
   s->actuators[0] = (strut_actuator){.name = "drive", .member = 1, .signal = 2};
-  s->loads[0] = (strut_load){"push", 2, {1, 0}, -1};
-  s->loads[1] = (strut_load){"swell", 1, {1, 0}, 3};
+  s->loads[0] = (strut_load){.name = "push", .node = 2, .force = {1, 0}, .signal = -1};
+  s->loads[1] = (strut_load){.name = "swell", .node = 1, .force = {1, 0}, .signal = 3};
 }
 
 static void fill(sample *s) {

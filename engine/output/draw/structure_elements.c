@@ -153,7 +153,8 @@ void strut_draw_elements(strut_canvas *canvas, const strut_drawing *d) {
     if (e->strain == STRUT_STRAIN_WRAP && e->role == STRUT_ELEMENT_MEMBER)
       draw_guides(canvas, d, i);
     if (e->role == STRUT_ELEMENT_MEMBER || e->role == STRUT_ELEMENT_CELL ||
-        e->role == STRUT_ELEMENT_COLLISION || e->role == STRUT_ELEMENT_CONTACT)
+        e->role == STRUT_ELEMENT_COLLISION || e->role == STRUT_ELEMENT_CONTACT ||
+        e->role == STRUT_ELEMENT_LOAD)
       continue;
     strut_element_evaluate(d->model, i, d->model->members.rest, d->q, (double)NAN, &pose);
     bool thin = e->role == STRUT_ELEMENT_HINGE || e->role == STRUT_ELEMENT_DISTANCE;

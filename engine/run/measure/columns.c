@@ -76,13 +76,13 @@ size_t strut_columns_add(strut_columns *c, strut_column column) {
   if (column.kind == STRUT_COLUMN_NORMAL || column.kind == STRUT_COLUMN_FRICTION)
     column.item = find_contact(c->model, column.item);
   if (is_of_hinge(column.kind))
-    column.item = strut_element_of_hinge(&c->model->elements, column.item);
+    column.item = strut_element_find(&c->model->elements, STRUT_ELEMENT_HINGE, column.item);
   if (rows[column.kind].owner == STRUT_COLUMN_OF_CELL)
-    column.item = strut_element_of_cell(&c->model->elements, column.item);
+    column.item = strut_element_find(&c->model->elements, STRUT_ELEMENT_CELL, column.item);
   if (rows[column.kind].owner == STRUT_COLUMN_OF_COLLISION)
-    column.item = strut_element_of_collision(&c->model->elements, column.item);
+    column.item = strut_element_find(&c->model->elements, STRUT_ELEMENT_COLLISION, column.item);
   if (rows[column.kind].owner == STRUT_COLUMN_OF_DISTANCE)
-    column.item = strut_element_of_distance(&c->model->elements, column.item);
+    column.item = strut_element_find(&c->model->elements, STRUT_ELEMENT_DISTANCE, column.item);
   for (size_t i = 0; i < c->count; i++) {
     const strut_column *other = &c->column[i];
     if (other->kind == column.kind && other->item == column.item && other->other == column.other)

@@ -425,7 +425,7 @@ static bool is_decided(strut_relaxer *r, double energy, const double *q, strut_p
     return false;
   }
   if (passes && energy < passes(context, r->quenched)) return true;
-  double excess = energy - strut_potential_value(r->potential, r->quenched);
+  double excess = energy - strut_potential_value_near(r->potential, r->quenched, q);
   if (v->excess < 0) v->excess = excess;
   bool same = v->agreed && strut_shape_distance(r->model, r->last, r->quenched, false, NULL) <
                                SAME * r->model->size;

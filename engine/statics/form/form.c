@@ -10,6 +10,7 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/linear_solver.h"
 #include "engine/model/pose.h"
+#include "engine/scene/things.h"
 #include "engine/statics/form/form.h"
 #include "engine/statics/minimise.h"
 
@@ -486,26 +487,17 @@ static strut_status refuse_elements(const strut_scene *scene, strut_form_source 
                       strut_form_source_name(from), m->name,
                       m->guide_count ? "runs over guides" : "has another law");
   }
-  if (scene->collision_count)
-    return strut_fail(
-        error, STRUT_BAD_SCENE,
-        "form finding by %s knows straight members with a linear law only: %s is a collision",
-        strut_form_source_name(from), scene->collisions[0].name);
-  if (scene->distance_count)
-    return strut_fail(
-        error, STRUT_BAD_SCENE,
-        "form finding by %s knows straight members with a linear law only: %s is a distance",
-        strut_form_source_name(from), scene->distances[0].name);
-  if (scene->cell_count)
-    return strut_fail(
-        error, STRUT_BAD_SCENE,
-        "form finding by %s knows straight members with a linear law only: %s is a cell",
-        strut_form_source_name(from), scene->cells[0].name);
-  if (scene->hinge_count == 0) return STRUT_OK;
-  return strut_fail(
-      error, STRUT_BAD_SCENE,
-      "form finding by %s knows straight members with a linear law only: %s is a hinge",
-      strut_form_source_name(from), scene->hinges[0].name);
+  static const strut_thing others[] = {STRUT_THING_COLLISION, STRUT_THING_DISTANCE,
+                                       STRUT_THING_CELL, STRUT_THING_HINGE, STRUT_THING_LOAD};
+  for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+    for (size_t i = 0; i < strut_thing_count(scene, others[k]); i++)
+      if (others[k] != STRUT_THING_LOAD || scene->loads[i].couple)
+        return strut_fail(
+            error, STRUT_BAD_SCENE,
+            "form finding by %s knows straight members with a linear law only: %s is a %s",
+            strut_form_source_name(from), strut_thing_name(scene, others[k], i),
+            others[k] == STRUT_THING_LOAD ? "moment" : strut_thing_at(others[k])->word);
+  return STRUT_OK;
 }
 
 /* A member at the start; model: of the scene where it has elements, else NULL. */

@@ -226,9 +226,9 @@ static void fill_energies(const strut_vibration *v, const double *x, double *ene
   const strut_element_table *t = &v->model->elements;
   int32_t members = v->model->members.count;
   for (int32_t j = 0; j < members; j++) energy[j] = stretch_energy(v, j, x);
-  for (int32_t i = 0; i < t->count; i++) {
-    energy[item_of(v->model, &t->element[i])] += element_energy(v, i, x);
-  }
+  for (int32_t i = 0; i < t->count; i++)
+    if (t->element[i].role != STRUT_ELEMENT_LOAD)
+      energy[item_of(v->model, &t->element[i])] += element_energy(v, i, x);
 }
 
 static energies energies_of(const strut_vibration *v, const double *x, const double *energy) {

@@ -202,7 +202,10 @@ bool strut_path_parameter_terms(strut_path_parameter *p, strut_dd value, strut_p
   if (p->options->over == STRUT_PATH_OVER_SCENE) return read_scene_terms(p, dd_double(value), t);
   copy_terms(p->model, &p->base, t);
   if (p->options->over == STRUT_PATH_OVER_LOAD) {
+    const double *moment = p->load + p->model->length;
     for (int32_t i = 0; i < p->model->length; i++) t->force[i] += dd_double(change) * p->load[i];
+    for (int32_t i = 0; i < p->model->members.slots; i++)
+      t->rest[i] += dd_double(change) * moment[i];
   } else if (p->options->over == STRUT_PATH_OVER_ACTUATOR) {
     int32_t member = p->model->scene->actuators[at].member;
     int32_t slot = strut_actuator_slot(p->model, (size_t)at);
@@ -258,6 +261,8 @@ bool strut_path_parameter_rates(strut_path_parameter *p, double value, strut_pat
     case STRUT_PATH_OVER_SCENE: return difference_scenes(p, value, rates);
     case STRUT_PATH_OVER_LOAD:
       memcpy(rates->force, p->load, (size_t)p->model->length * sizeof(double));
+      memcpy(rates->rest, p->load + p->model->length,
+             (size_t)p->model->members.slots * sizeof(double));
       return true;
     case STRUT_PATH_OVER_ACTUATOR:
       rates->rest[strut_actuator_slot(p->model, (size_t)at)] = 1;

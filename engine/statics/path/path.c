@@ -86,8 +86,9 @@ static size_t count_names(const char *names) {
 /*
  * Adds the loads that the factor multiplies to `load`, and what they are at factor 1 to the path.
  */
-static strut_status choose_loads(const strut_scene *scene, const char *name, double *load,
+static strut_status choose_loads(const strut_model *model, const char *name, double *load,
                                  strut_path *path, strut_error *error) {
+  const strut_scene *scene = model->scene;
   bool acts = false, alike = true;
   size_t count = 0;
   for (size_t i = 0; i < scene->load_count; i++) {
@@ -97,8 +98,11 @@ static strut_status choose_loads(const strut_scene *scene, const char *name, dou
     path->several = count > 0;
     alike = alike && (!count || fabs(size - path->reference) <= ALIKE * size);
     path->reference = size;
+    alike = alike && !l->couple;
     count++;
-    for (int c = 0; c < 2; c++) {
+    if (l->couple) load[model->length + strut_couple_slot(model, i)] = l->moment;
+    acts = acts || l->moment != 0.0;
+    for (int c = 0; c < 2 && !l->couple; c++) {
       int32_t at = 2 * l->node + c;
       load[at] += l->force[c];
       acts = acts || (load[at] != 0 && !scene->nodes[l->node].fixed[c]);
@@ -125,7 +129,8 @@ typedef struct path_start {
   strut_setup setup; /* where the parameter is `from`; its arena is its own only if `owned` */
   bool owned;
   strut_model *model; /* of that scene */
-  double *load, *q;   /* (length) loads at factor 1 [N]; the equilibrium [m] */
+  double *load;       /* (length) loads at factor 1 [N], then (slots) moments [N m] */
+  double *q;          /* (length) the equilibrium [m] */
   uint8_t *held;      /* (length) a free coordinate that is displaced; NULL without one */
   strut_arena arena;
 } path_start;
@@ -140,7 +145,7 @@ static bool scale_loads(path_start *b) {
     loads[i] = drawn->loads[i];
     if (!is_followed(&loads[i], b->options->load)) continue;
     loads[i].signal = -1;
-    for (int c = 0; c < 2; c++) loads[i].force[c] *= b->options->from;
+    strut_load_scale(&loads[i], b->options->from);
   }
   return true;
 }
@@ -460,12 +465,12 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   if (!(fabs(until - options->from) < LONGEST_RANGE))
     return strut_fail(error, STRUT_USAGE, "the path's range from %g to %g is too large",
                       options->from, until);
-  b.load = strut_arena_allocate(&b.arena, length, sizeof *b.load);
+  b.load = strut_arena_allocate(&b.arena, length + (size_t)model->members.slots, sizeof *b.load);
   b.q = strut_arena_allocate(&b.arena, length, sizeof *b.q);
   strut_status status =
       b.load && b.q ? name_parameter(model, options, path, error) : strut_no_memory(error, "");
   if (status == STRUT_OK && over_load)
-    status = choose_loads(model->scene, options->load, b.load, path, error);
+    status = choose_loads(model, options->load, b.load, path, error);
   if (status == STRUT_OK) status = make_model(&b, error);
   b.setup.experiment.interrupt = experiment->interrupt;
   if (status == STRUT_OK && b.model->length != model->length)

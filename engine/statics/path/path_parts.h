@@ -30,7 +30,7 @@ typedef struct strut_path_terms {
 typedef struct strut_path_parameter {
   const strut_path_options *options;
   const strut_model *model; /* at `from`: of all others the structure must be the same */
-  const double *load;       /* (length) loads at factor 1 [N] */
+  const double *load;       /* (length) loads at factor 1 [N], then (slots) moments [N m] */
   double from, range;       /* [SI]; range is not 0 */
   strut_path_terms base, low, high;
   double apart;        /* of low and high as a derivative took them */

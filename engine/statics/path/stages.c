@@ -90,7 +90,7 @@ static bool set_loads(stages *s, const strut_path_stage *stage, const strut_path
     loads[i] = scene->loads[i];
     if (stage->load && strut_path_names_load(stage->load, loads[i].name)) continue;
     if (s->staged[i]) loads[i].signal = -1;
-    for (int c = 0; c < 2; c++) loads[i].force[c] *= s->factor[i];
+    strut_load_scale(&loads[i], s->factor[i]);
   }
   scene->loads = loads;
   if (!stage->release) return true;

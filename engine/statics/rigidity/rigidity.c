@@ -186,7 +186,7 @@ static void add_outer_forces(const strut_model *model, const double *q, double *
     const strut_element *e = &model->elements.element[i];
     const uint32_t *at = model->elements.at + e->first;
     strut_element_pose pose;
-    if (e->role != STRUT_ELEMENT_COLLISION) continue;
+    if (e->role != STRUT_ELEMENT_COLLISION && e->role != STRUT_ELEMENT_LOAD) continue;
     strut_element_evaluate(model, i, model->members.rest, q, (double)NAN, &pose);
     for (int32_t k = 0; k < 2 * e->nodes; k++)
       net[at[k / 2] + (uint32_t)(k % 2)] -= pose.force * pose.b[k];

@@ -152,7 +152,7 @@ static double bend_step(strut_climber *c, const double *q, double mu, double sca
     memcpy(c->straight, c->step, bytes);
     if (!rebalance_stiff_modes(c, mu, scale)) break;
     set_trial(c, q);
-    double lower = strut_potential_value(c->potential, c->trial);
+    double lower = strut_potential_value_near(c->potential, c->trial, q);
     if (lower < there) {
       there = lower;
       continue;
@@ -176,7 +176,7 @@ static bool climb_once(strut_climber *c, double *q, double *radius) {
     double change = assemble_step(c, &length);
     if (!(length > 0)) return false;
     set_trial(c, q);
-    double there = strut_potential_value(p, c->trial);
+    double there = strut_potential_value_near(p, c->trial, q);
     there = bend_step(c, q, mu, image.scale, there, here + change + 0.3 * fabs(change));
     if (fabs(change) > 1e-9 * (fabs(here) + fabs(there))) ratio = (there - here) / change;
     bool good = ratio > 0.0 && ratio < 2.0;

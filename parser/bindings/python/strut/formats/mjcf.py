@@ -45,6 +45,7 @@ def _refuse(words: dict[str, Any]) -> None:
         "grounds other than one line at rest": "grounds" in words or any(k in ground for k in ("profile", "circle", "motion")),
         "belts": ground.get("belt_speed", 0) != 0,
         "supports that move": any("moves" in n for n in words["nodes"].values() if isinstance(n, dict)),
+        "moments": any("moment" in load for load in words.get("loads", {}).values()),
         "rotating masses": "unbalances" in words,
         "sliders": "sliders" in words,
         "sensors and controllers": any(key in words for key in ("sensors", "states", "oscillators", "controllers")),
