@@ -306,27 +306,28 @@ static double combine(const strut_summary *s, const strut_setup *setup, strut_ke
   return keep == STRUT_KEEP_PERIODS ? s->duration / period : s->velocity * period;
 }
 
-static strut_value value_at(const strut_summary *s, const strut_value_rows *rows,
-                            const char *path) {
+static strut_value value_at(const strut_summary *s, const strut_scene *scene,
+                            const strut_value_rows *rows, const char *path) {
   strut_value value = {0};
-  strut_value_at(rows, path, &(strut_result_object){.at = s}, &value);
+  strut_value_at(rows, path, &(strut_result_object){.at = s, .scene = scene}, &value);
   return value;
 }
 
 /* NAN if the summary has none. */
-static double result_of(const strut_summary *s, const strut_value_rows *rows, const char *path) {
-  strut_value value = value_at(s, rows, path);
+static double result_of(const strut_summary *s, const strut_scene *scene,
+                        const strut_value_rows *rows, const char *path) {
+  strut_value value = value_at(s, scene, rows, path);
   bool number = value.kind == STRUT_VALUE_NUMBER || value.kind == STRUT_VALUE_COUNT ||
                 value.kind == STRUT_VALUE_FLAG;
   return number ? value.number : (double)NAN;
 }
 
 static double number_of(const strut_summary *s, const strut_setup *setup, const entry *e) {
-  return e->path ? result_of(s, rows_of(e), e->path) : combine(s, setup, e->keep);
+  return e->path ? result_of(s, &setup->scene, rows_of(e), e->path) : combine(s, setup, e->keep);
 }
 
-static const char *word_of(const strut_summary *s, size_t index) {
-  const char *word = value_at(s, &strut_summary_values, entries[index].path).text;
+static const char *word_of(const strut_summary *s, const strut_scene *scene, size_t index) {
+  const char *word = value_at(s, scene, &strut_summary_values, entries[index].path).text;
   return word ? word : "";
 }
 
@@ -404,7 +405,7 @@ void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
   for (size_t i = 0; i < ENTRIES; i++) {
     if (!keeps(plan, entries[i].keep)) continue;
     if (is_word(&entries[i]))
-      strut_sweep_word(cells, summary ? word_of(summary, i) : "");
+      strut_sweep_word(cells, summary ? word_of(summary, &setup->scene, i) : "");
     else
       strut_sweep_number(cells, summary ? number_of(summary, setup, &entries[i]) : (double)NAN);
   }
@@ -423,5 +424,6 @@ void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
     strut_sweep_number(cells, summary ? (double)summary->settle.unstable : (double)NAN);
   if (plan->accurate)
     strut_sweep_number(
-        cells, summary ? result_of(summary, &strut_summary_values, "accuracy.kept") : (double)NAN);
+        cells, summary ? result_of(summary, &setup->scene, &strut_summary_values, "accuracy.kept")
+                       : (double)NAN);
 }
