@@ -55,7 +55,8 @@ typedef enum strut_failure {
   STRUT_FAILURE_INTERRUPT, /* *interrupt was set */
   STRUT_FAILURE_WORK,      /* most_evaluations were made */
   STRUT_FAILURE_IMPLICIT,  /* an implicit step of the whole structure has no solution nearby */
-  STRUT_FAILURE_RELAY      /* a relay that switches takes its own input past the other threshold */
+  STRUT_FAILURE_RELAY,     /* a relay that switches takes its own input past the other threshold */
+  STRUT_FAILURE_GUIDE      /* a cable is pulled through its guide */
 } strut_failure;
 
 /** When a method whose steps may take long gives up. Nothing of it after the reset. */
@@ -176,7 +177,10 @@ typedef struct strut_state {
   int64_t events;       /* switches located in time, since the reset */
   strut_forced_steps forced;
   strut_failure trouble; /* why a method could not go on; it stays on the latest grid point */
-  int32_t trouble_node;  /* where, with STRUT_FAILURE_IMPLICIT; the signal, with _RELAY */
+  int32_t
+      trouble_node; /* where, with STRUT_FAILURE_IMPLICIT; the signal, with _RELAY; with _GUIDE among the
+                            nodes of all elements the first of the segment */
+  double trouble_time; /* with _GUIDE [s] */
   bool kicked; /* velocities have jumped at the end of the latest step of a method without events */
   bool balance;   /* keep the energy balance? It costs some arithmetic per evaluation */
   bool forgetful; /* nothing yields or breaks: while settling; strut_state_reset keeps it */

@@ -267,6 +267,16 @@ strut_status strut_run_fail_method(const strut_run *r) {
         "threshold at once, so that it would switch back without end; set the thresholds further "
         "apart, or sample it ('every')",
         r->model->scene->signals[r->state->trouble_node].name, strut_run_time(r));
+  if (r->state->trouble == STRUT_FAILURE_GUIDE) {
+    const uint32_t *at = r->model->elements.at + r->state->trouble_node;
+    const char *const *name = r->summary->end.node_names;
+    return strut_fail(
+        r->error, STRUT_DIVERGED,
+        "'%s' and '%s' meet at (%.6g, %.6g) m at t = %.9g s: the cable that runs there would be "
+        "pulled through its guide; end the run before, or keep the two apart by a collision",
+        name[at[0] / 2], name[at[1] / 2], r->state->q[at[0]], r->state->q[at[0] + 1],
+        r->state->trouble_time);
+  }
   return strut_fail(r->error, STRUT_DIVERGED, "%s failed at t = %.9g s: %s", r->method->name,
                     strut_run_time(r), why[r->state->trouble]);
 }

@@ -171,8 +171,8 @@ TEST(equal_trusses) {
   }
 }
 
-/* A strut on a spring that is pressed to nothing: there its force of k l turns round. */
-TEST(zero_length) {
+/* A strut on a spring that is pressed to nothing: there its force of k l turns round, whatever its law. */
+static void press_to_nothing(strut_law_kind law) {
   const double k = 0.5, rest = 2, load = 5;
   OWN(strut_setup) setup = build_setup();
   int32_t a = build_support(&setup.scene, 0, 0), c = build_support(&setup.scene, 100, -1);
@@ -181,6 +181,8 @@ TEST(zero_length) {
   build_member(&setup.scene, STRUT_BAR, a, b, 1e7 / hypot(100, 1), 0, 0);
   build_member(&setup.scene, STRUT_SPRING, b, c, k, 0, 0);
   build_load(&setup.scene, b, 0, -load, -1);
+  setup.scene.members[1].law.kind = law;
+  setup.scene.members[1].law.knee = 10, setup.scene.members[1].law.second_stiffness = k;
   OWN(walk) w = walk_by(&setup, (strut_path_options){.until = 1});
   assert_int_equal(walk_count(&w.path, STRUT_PATH_ZERO_LENGTH), 1);
   const strut_path_event *e = &w.path.events[2], *turn = &w.path.events[1];
@@ -194,3 +196,5 @@ TEST(zero_length) {
     before = before || fabs(w.path.points[i].at.factor - k * rest / load) < 1e-9;
   assert_true(before);
 }
+TEST(zero_length) { press_to_nothing(STRUT_LAW_LINEAR); }
+TEST(zero_length_of_a_law) { press_to_nothing(STRUT_LAW_BILINEAR); }

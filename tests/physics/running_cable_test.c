@@ -2,6 +2,7 @@
 /* Running cables: one tension over all segments, in rest and in motion, against closed forms. */
 #include "tests/models/run_model.h"
 #include "tests/support/check.h"
+#include "tests/support/motion.h"
 
 static const double G = 9.81;
 
@@ -40,6 +41,21 @@ TEST(two_weights_over_a_guide) {
       assert_near(model_position(&run, "right")[1], left - sum, tolerance[i]);
       assert_near(run.summary.energy.residual, 0, tolerance[i] * run.summary.energy.moved * 100);
     }
+}
+
+/* The lighter weight is at the guide after sqrt(2 h / a), where the run ends: it would be pulled through. */
+TEST(a_weight_at_its_guide_ends_the_run) {
+  static const char *const methods[] = {"rk4-events", "adaptive", "adaptive8", "verlet-events"};
+  for (int i = 0; i < 8; i++) {
+    OWN(model_run) run = model_read_text("atwood", atwood, set_to("k=1e4"));
+    OWN_POINTER(strut_model) model = motion_compile(&run.setup.scene);
+    strut_run_options options = {0};
+    strut_error error = {0};
+    run.setup.experiment.integrator = methods[i % 4], run.setup.experiment.duration = 2;
+    run.setup.experiment.step = i < 4 ? 1e-4 : 1e-2;
+    assert_fails(strut_simulate(model, &run.setup.experiment, &options, &run.summary, &error),
+                 STRUT_DIVERGED, error, "'guide' and 'right' meet at (0, 0) m at t = 1.4");
+  }
 }
 
 /* The acceleration (m1 - m2) g / (m1 + m2) is met as the string gets stiffer. */

@@ -144,13 +144,22 @@ STRUT_LOOP void accelerate_closed(const strut_model *model, const strut_state *s
   if (balance && sliding) strut_sliding_masses_add_power(model, state, q, v, a);
 }
 
+/* The forces of the structure in the modes of members that may shrink to nothing. */
+STRUT_LOOP void forces_in_modes(const strut_model *model, const strut_state *state,
+                                const strut_event_stepper *stepper, double t,
+                                const double *restrict q, const double *restrict v, unsigned terms,
+                                bool balance) {
+  forces_of_structure(model, state, t, q, v, terms, balance);
+  if (stepper->turns.on) strut_turns_hold(model, state, stepper, q, v);
+}
+
 /* Acceleration with explicit contact dampers inside a step; contact forces into end->touch. */
 STRUT_LOOP void accelerate_in_modes(const strut_model *model, const strut_state *state,
                                     strut_event_stepper *stepper, double t,
                                     const double *restrict q, const double *restrict v,
                                     double *restrict a, strut_step_end *end, unsigned terms,
                                     bool balance) {
-  forces_of_structure(model, state, t, q, v, terms, balance);
+  forces_in_modes(model, state, stepper, t, q, v, terms, balance);
   keep_ground_motion(model, state, end, terms);
   accelerate_closed(model, state, stepper, q, v, a, end, terms, balance);
 }
@@ -167,7 +176,7 @@ STRUT_INLINE void settle_band_ties(const strut_model *model, const strut_event_s
 STRUT_LOOP void evaluate_step_end(const strut_model *model, const strut_state *state,
                                   strut_event_stepper *stepper, double t, strut_step_end *end,
                                   unsigned terms, bool balance) {
-  forces_of_structure(model, state, t, end->q, end->v, terms, balance);
+  forces_in_modes(model, state, stepper, t, end->q, end->v, terms, balance);
   keep_structure_forces(model, state, end, balance);
   keep_ground_motion(model, state, end, terms);
   accelerate_closed(model, state, stepper, end->q, end->v, end->a, end, terms, balance);
@@ -190,6 +199,7 @@ STRUT_INLINE void accept_step(const strut_model *model, strut_state *state,
   stepper->now = now, stepper->next = next;
   if (model->terms & STRUT_TERM_ELEMENTS) strut_elements_keep_turns(model, state);
   if (model->terms & STRUT_TERM_MEMORY) strut_history_keep(model, state);
+  if (stepper->turns.on) strut_turns_keep(model, stepper);
   stepper->fresh = true;
   for (int p = 0; p < STRUT_POWER_ROOM && balance; p += STRUT_LANES)
     strut_lanes_store(state->work + p,
@@ -198,6 +208,15 @@ STRUT_INLINE void accept_step(const strut_model *model, strut_state *state,
 
 /* Part of what is left of a step, after which what has begun still lasts. */
 static const double SOON = 0.1;
+
+/* Part of a hundredth of the size that lengths may be off; without error control a fixed one. */
+STRUT_INLINE double strut_faint_part(const strut_event_stepper *stepper) {
+  return stepper->formula->adaptive ? fmax(0.1 * stepper->control.tolerance, 1e-12) : 1e-7;
+}
+STRUT_INLINE double strut_faint_length(const strut_model *model,
+                                       const strut_event_stepper *stepper) {
+  return 0.01 * strut_faint_part(stepper) * model->size;
+}
 
 /* The smaller of two fractions of a step; 0 stands for none. */
 STRUT_INLINE double earlier(double one, double other) {

@@ -122,7 +122,9 @@ typedef struct strut_sliding_contact {
   /* another facet of the surface comes nearer to a closed contact */                               \
   X(FACET, CONTACT, facet_left, NULL, change_facet)                                                 \
   /* a relay's input or a sensor passes a threshold; the stepper switches it, or starts a signal */ \
-  X(THRESHOLD, LAW, of_law, NULL, no_effect)
+  X(THRESHOLD, LAW, of_law, NULL, no_effect)                                                        \
+  /* a member shrinks to nothing, and its force turns round */                                      \
+  X(TURN, LAW, of_law, turn_rate, turn)
 
 typedef enum strut_event_kind {
 #define STRUT_EVENT_ROW(NAME, ...) STRUT_EVENT_##NAME,
@@ -134,12 +136,13 @@ typedef enum strut_event_kind {
 typedef struct strut_law_switch {
   int32_t member;         /* of a cable; -1: of an element */
   int32_t element;        /* of an element; -1: of a cable */
-  strut_event_kind event; /* what ends its mode: ACTS, KINK, SLIDER, BREAK or THRESHOLD */
+  strut_event_kind event; /* what ends its mode: ACTS, KINK, SLIDER, BREAK, THRESHOLD or TURN */
   bool
       abrupt; /* its force has a jump or no slope where it begins to act: the stretch ends it, too */
   double stiffness; /* force per strain, by which stretch and force are compared */
   double damping;
-  int32_t guide;     /* with SLIDER 1 + the guide; 0: the slider of `element` itself */
+  int32_t
+      guide; /* with SLIDER 1 + the guide; 0: the slider of `element` itself; with TURN 1 + the segment */
   bool straight;     /* whether the cable passes straight over it */
   bool whole;        /* whether a cable with guide friction is taut */
   int32_t breakable; /* what may break, where neither member nor element is one; else unused */
@@ -243,6 +246,16 @@ typedef struct strut_law_switches {
   int64_t nearby_made;
 } strut_law_switches;
 
+/** Members whose force turns round where they shrink to nothing: laws behind all others, which count while one may. */
+typedef struct strut_turns {
+  int32_t first, count;
+  const uint32_t *ends; /* (count, 2) their nodes */
+  double *ahead; /* (count, 2) direction in which the step begins, or in which it has just passed */
+  int64_t due;   /* the grid step from which on they are looked at */
+  bool on;       /* they count among the laws */
+  bool stepped;  /* a step has been accepted since the latest look */
+} strut_turns;
+
 /** Lengths of steps. */
 typedef struct strut_step_control {
   double wanted_step;                        /* of the settings [s] */
@@ -282,6 +295,7 @@ struct strut_event_stepper {
   strut_active_set active;
   strut_contact_bodies contacts;
   strut_law_switches laws;
+  strut_turns turns;
   strut_step_control control;
   strut_chatter chatter;
   double done; /* of the grid step under way [s] */
@@ -385,6 +399,36 @@ bool strut_event_rate(const strut_event_stepper *stepper, const strut_step_end *
 /** Before a step of a formula that predicts: the first touchdown or opening. */
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
                                 const strut_event_stepper *stepper, double h);
+/* ---- turns.c: members that shrink to nothing ---- */
+
+/** How many there are; into item and ends, unless these are NULL. */
+int32_t strut_turns_list(const strut_model *model, strut_law_switch *item, uint32_t *ends);
+/** After a trial of h: finds whether one may turn round within it, and so counts. */
+void strut_turns_look(const strut_model *model, const strut_state *state,
+                      strut_event_stepper *stepper, double h);
+/** The same; true where one has turned for which the trial did not reckon. */
+bool strut_turns_appear(const strut_model *model, const strut_state *state,
+                        strut_event_stepper *stepper, double h);
+static inline bool strut_turns_due(const strut_state *state, const strut_event_stepper *stepper) {
+  return state->step >= stepper->turns.due;
+}
+void strut_turns_measure(const strut_event_stepper *stepper, const strut_step_end *end);
+/** After a step has been accepted while they count. */
+void strut_turns_keep(const strut_model *model, strut_event_stepper *stepper);
+/** To the forces of the structure: those that have turned since the step began go on as before. */
+void strut_turns_hold(const strut_model *model, const strut_state *state,
+                      const strut_event_stepper *stepper, const double *q, const double *v);
+/** Does law k, whose second node is no longer ahead, pass through nothing, not beside it? */
+bool strut_turn_passes(const strut_model *model, const strut_event_stepper *stepper, int32_t k,
+                       double h);
+/** As strut_event_between, of law k. */
+double strut_turn_between(const strut_model *model, const strut_event_stepper *stepper, int32_t k,
+                          double h);
+void strut_turn_round(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
+                      int32_t k, double t);
+/** Where the cubic with these values, both above 0, and slopes at 0 and 1 is lowest, if below 0 by more than faint. */
+double strut_event_dip(double g0, double d0, double g1, double d1, double faint);
+
 /* ---- contact_modes.c: what an event does is made of these ---- */
 
 /** Mode of contact i, which touches, from its speeds; with surfaces on `facet`, or -1: the nearest. */

@@ -11,7 +11,8 @@ static size_t most_law_switches(const strut_model *model) {
   bool slack = model->terms & STRUT_TERM_SLACK;
   return (slack ? (size_t)model->members.count : 0) + 2 * (size_t)model->elements.count +
          (size_t)(2 * model->elements.history_slots + model->elements.breakable_count +
-                  model->feedback.relay_count + model->feedback.trigger_count);
+                  model->feedback.relay_count + model->feedback.trigger_count +
+                  strut_turns_list(model, NULL, NULL));
 }
 
 static void *make(strut_arena *arena, size_t count, size_t size, bool *failed) {
@@ -103,6 +104,19 @@ static void list_threshold(strut_law_switches *laws, int32_t signal) {
       .event = STRUT_EVENT_THRESHOLD, .member = -1, .element = -1, .signal = 1 + signal};
 }
 
+/* Behind all others. */
+static void list_turns(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
+                       bool *failed) {
+  strut_turns *turns = &stepper->turns;
+  turns->first = stepper->laws.count;
+  int32_t count = strut_turns_list(model, NULL, NULL);
+  uint32_t *ends = make(&state->arena, 2 * (size_t)count, sizeof *ends, failed);
+  turns->ahead = make_doubles(&state->arena, 2 * (size_t)count, failed);
+  turns->ends = ends;
+  if (*failed || !count) return;
+  turns->count = strut_turns_list(model, stepper->laws.item + turns->first, ends);
+}
+
 static void list_laws(const strut_model *model, strut_state *state, strut_law_switches *laws,
                       bool *failed) {
   size_t most = most_law_switches(model);
@@ -155,7 +169,8 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
     stepper->stage[k] = make_doubles(arena, (size_t)model->length, &failed);
   stepper->middle = make_doubles(arena, (size_t)model->length, &failed);
   list_laws(model, state, &stepper->laws, &failed);
-  size_t switches = contacts + (size_t)stepper->laws.count;
+  if (!failed) list_turns(model, state, stepper, &failed);
+  size_t switches = contacts + (size_t)(stepper->laws.count + stepper->turns.count);
   strut_chatter *chatter = &stepper->chatter;
   chatter->times = make(arena, switches, sizeof *chatter->times, &failed);
   chatter->switched = make(arena, switches, sizeof *chatter->switched, &failed);

@@ -40,7 +40,7 @@ STRUT_LOOP void take(const strut_model *model, const strut_state *state,
   if (terms == STRUT_TERMS_COMMON && t == (double)state->step * h)
     drives_ahead_ends(model, state, &stepper->drives, h);
   if (terms == STRUT_TERMS_COMMON) drives_ahead_meet(model, state, &stepper->drives, t + h);
-  forces_of_structure(model, state, t + h, stepper->next->q, predicted, terms, balance);
+  forces_in_modes(model, state, stepper, t + h, stepper->next->q, predicted, terms, balance);
   keep_structure_forces(model, state, stepper->next, balance);
   keep_ground_motion(model, state, stepper->next, terms);
   if (!stepper->active.closed_count) {
@@ -109,8 +109,9 @@ STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state
                             &stepper->next->touch[i]))
       return true;
   }
-  return stepper->laws.count && (strut_event_first(model, state, stepper, h).kind ||
-                                 strut_event_between(model, state, stepper, h) > 0.0);
+  return (stepper->laws.count || strut_turns_due(state, stepper)) &&
+         (strut_event_first(model, state, stepper, h).kind ||
+          strut_event_between(model, state, stepper, h) > 0.0);
 }
 
 STRUT_INLINE void advance_predicted(const strut_model *model, strut_state *state,

@@ -437,6 +437,7 @@ static double find_rate(const strut_path_system *s, int32_t i) {
 static void evaluate_element(strut_path_system *s, int32_t i) {
   strut_path_element *own = &s->elements.element[i];
   strut_element_evaluate(s->model, i, s->equations.terms.rest, s->latest.q, own->turn, &own->pose);
+  strut_path_turn_segments(s, &s->model->elements.element[i], &own->pose);
   own->pose.natural = natural_in(&s->equations.terms, i);
   strut_law_response r =
       respond(&s->equations.terms, i, own->pose.strain, own->pose.natural, own->piece);
@@ -455,6 +456,7 @@ static void add_element(strut_path_system *s, int32_t i) {
   double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
   int32_t n = 2 * e->nodes;
   strut_element_stiffness(s->model, i, &own->pose, s->latest.q, k);
+  strut_path_turn_bends(s, e, own->pose.force, k);
   for (int32_t a = 0; a < n; a++) {
     int32_t row = s->potential->row_of[place_of(s, e, a)];
     if (row < 0) continue;

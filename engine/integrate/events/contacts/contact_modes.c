@@ -198,6 +198,7 @@ void strut_law_pass_kink(const strut_model *model, strut_state *state, strut_eve
 static void start_laws(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                        double t) {
   bool changed = false, memory = model->terms & STRUT_TERM_MEMORY;
+  stepper->turns.due = state->step;
   if (memory) strut_drive_apply(model, state, t);
   if (memory) strut_history_thaw(model, state, stepper);
   if (stepper->laws.nearby) strut_event_part_all(model, state, stepper);
@@ -216,7 +217,7 @@ static void start_laws(const strut_model *model, strut_state *state, strut_event
     if (stepper->laws.item[k].event == STRUT_EVENT_KINK) {
       find_piece(model, state, stepper, k, t);
       changed = true;
-    } else if (stepper->laws.item[k].event == STRUT_EVENT_THRESHOLD) {
+    } else if (stepper->laws.item[k].event >= STRUT_EVENT_THRESHOLD) {
       continue;
     } else if (stepper->laws.item[k].event != STRUT_EVENT_ACTS) {
       strut_history_start(model, state, stepper, k);

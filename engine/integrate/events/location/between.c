@@ -16,12 +16,7 @@
 /* Parts of the step at most, of one law: beyond it what is left is taken to hold its mode. */
 enum { MOST_PARTS = 400, MOST_DEPTH = 48 };
 
-/* Of methods without error control: part of a hundredth of the size that lengths may be off. */
-static const double FIXED_PART = 1e-7;
-
-/* Where the cubic with these values, both above 0, and slopes at 0 and 1 is lowest, if that is below 0 by more than
-   `faint`; else 0. */
-static double dip(double g0, double d0, double g1, double d1, double faint) {
+double strut_event_dip(double g0, double d0, double g1, double d1, double faint) {
   if (!(g0 + d0 / 3.0 < -faint || g1 - d1 / 3.0 < -faint)) return 0.0; /* it is within their hull */
   /* slope: d0 + 2 b x + 3 c x^2, which passes 0 upwards once */
   double rise = g1 - g0, b = 3.0 * rise - 2.0 * d0 - d1, c = d0 + d1 - 2.0 * rise;
@@ -290,17 +285,6 @@ static double short_pull(const strut_event_stepper *stepper, int32_t k, double h
   return at + SOON * (1.0 - at);
 }
 
-/* What is too small to matter: of lengths [m], of speeds [m/s]. */
-typedef struct faintness {
-  double length, speed;
-} faintness;
-
-static faintness faint_of(const strut_model *model, const strut_event_stepper *stepper, double h) {
-  const strut_step_control *control = &stepper->control;
-  double part = stepper->formula->adaptive ? fmax(0.1 * control->tolerance, 1e-12) : FIXED_PART;
-  return (faintness){0.01 * part * model->size, fmax(part * control->speed, h * control->rounding)};
-}
-
 /* Strains that change no faster than the distances of their nodes do. */
 static bool is_of_distances(strut_strain_kind strain) {
   return strain == STRUT_STRAIN_LENGTH || strain == STRUT_STRAIN_PATH ||
@@ -396,7 +380,7 @@ static double longest_way(const strut_model *model, const strut_event_stepper *s
 static double threshold_dip(const strut_event_stepper *stepper, int32_t k, double h) {
   double from = stepper->now->tension[k], to = stepper->next->tension[k];
   double falls = h * stepper->now->stretch_rate[k], rises = h * stepper->next->stretch_rate[k];
-  return from > 0.0 && to > 0.0 ? dip(from, falls, to, rises, 1e-9 * (from + to)) : 0.0;
+  return from > 0.0 && to > 0.0 ? strut_event_dip(from, falls, to, rises, 1e-9 * (from + to)) : 0.0;
 }
 
 /* Earliest point, within the step, where a law is not in the mode that it has at both ends; 0: none. */
@@ -410,6 +394,8 @@ static double earliest_switch(const strut_model *model, const strut_state *state
     int32_t k = strut_law_of(&stepper->laws, n);
     const strut_law_switch *law = &stepper->laws.item[k];
     if (law->event == STRUT_EVENT_THRESHOLD) first = earlier(first, threshold_dip(stepper, k, h));
+    if (law->event == STRUT_EVENT_TURN)
+      first = earlier(first, strut_turn_between(model, stepper, k, h));
     if (law->event != STRUT_EVENT_ACTS && law->event != STRUT_EVENT_KINK) continue;
     if (law->event == STRUT_EVENT_ACTS && is_far(model, stepper, k, h, way)) continue;
     first =
@@ -440,11 +426,12 @@ static double speed_dip(const strut_event_stepper *stepper, int32_t i, double h,
   }
   double left = s * to_slip - bound;
   if (s != 0.0 && left > 0.0)
-    at = dip(s * now->slip - bound, s * h * now->slip_rate, left, s * h * next->slip_rate, faint);
+    at = strut_event_dip(s * now->slip - bound, s * h * now->slip_rate, left,
+                         s * h * next->slip_rate, faint);
   double turns = -stepper->modes.damper[i], end = turns * to_into;
   if (end > 0.0)
-    at = earlier(at, dip(turns * now->into, turns * h * now->into_rate, end,
-                         turns * h * next->into_rate, faint));
+    at = earlier(at, strut_event_dip(turns * now->into, turns * h * now->into_rate, end,
+                                     turns * h * next->into_rate, faint));
   return at;
 }
 
@@ -500,8 +487,13 @@ static double gap_dip(const strut_contact_table *c, const strut_event_stepper *s
   double to = side * strut_ground_gap(c, next->q + c->at[i]);
   double falls = turn * strut_contact_along_normal(c, i, now->v);
   double rises = turn * strut_contact_along_normal(c, i, next->v);
-  return from > 0.0 && to > 0.0 ? dip(from, falls, to, rises, faint) : 0.0;
+  return from > 0.0 && to > 0.0 ? strut_event_dip(from, falls, to, rises, faint) : 0.0;
 }
+
+/* What is too small to matter: of lengths [m], of speeds [m/s]. */
+typedef struct faintness {
+  double length, speed;
+} faintness;
 
 /*
  * Earliest point, within the step, where a gap or speed is beyond an edge that it passes twice; 0: none. Methods that are
@@ -531,6 +523,12 @@ static double earliest_dip(const strut_model *model, const strut_state *state,
     first = earlier(first, at);
   }
   return first;
+}
+
+static faintness faint_of(const strut_model *model, const strut_event_stepper *stepper, double h) {
+  const strut_step_control *control = &stepper->control;
+  return (faintness){strut_faint_length(model, stepper),
+                     fmax(strut_faint_part(stepper) * control->speed, h * control->rounding)};
 }
 
 double strut_event_between(const strut_model *model, const strut_state *state,

@@ -75,6 +75,7 @@ VALUE(facet_left) {
   return strut_surface_facet_margin(&model->contacts, &stepper->modes, end, i, &nearest);
 }
 VALUE(of_law) { return law_value(stepper, end, i); }
+RATE(turn_rate) { return end->stretch_rate[i]; }
 
 /* ---- what follows ---- */
 
@@ -180,6 +181,7 @@ EFFECT(act) {
 }
 EFFECT(pass_kink) { strut_law_pass_kink(model, state, stepper, i, t); }
 EFFECT(remember) { strut_history_apply(model, state, stepper, i, t); }
+EFFECT(turn) { strut_turn_round(model, state, stepper, i, t); }
 EFFECT(change_facet) {
   int32_t nearest;
   strut_surface_facet_margin(&model->contacts, &stepper->modes, stepper->now, i, &nearest);

@@ -171,6 +171,7 @@ static void measure_laws(const strut_model *model, const strut_state *state,
   measure_cables(model, state, stepper, end, stepper->laws.nearby, cables);
   for (int32_t n = cables; n < laws; n++) {
     int32_t k = strut_law_of(&stepper->laws, n);
+    if (stepper->laws.item[k].event == STRUT_EVENT_TURN) break;
     if (stepper->laws.item[k].event == STRUT_EVENT_THRESHOLD)
       measure_threshold(model, state, &stepper->laws.item[k], end, k);
     else if (stepper->laws.item[k].event >= STRUT_EVENT_SLIDER || stepper->laws.item[k].whole)
@@ -178,6 +179,7 @@ static void measure_laws(const strut_model *model, const strut_state *state,
     else
       measure_element(model, state, &stepper->laws.item[k], end, k);
   }
+  if (stepper->turns.on) strut_turns_measure(stepper, end);
 }
 
 /* Do bodies of a collision exert what the law says? Only laws of collisions may be left out of a list. */
@@ -309,6 +311,8 @@ static void keep_first_of_laws(const strut_model *model, const strut_state *stat
     int32_t j = strut_law_of(&stepper->laws, k);
     double after = law_value(stepper, stepper->next, j);
     if (!(after < 0.0) || is_settling(model, stepper, j, after)) continue;
+    if (stepper->laws.item[j].event == STRUT_EVENT_TURN && !strut_turn_passes(model, stepper, j, h))
+      continue;
     double back = kink_comes_back(model, state, stepper, j, h, after);
     if (!(back > 0.0))
       keep_first(model, stepper, stepper->laws.item[j].event, j, h, first);
@@ -322,6 +326,7 @@ STRUT_INLINE strut_event first_event(const strut_model *model, const strut_state
                                      strut_event_stepper *stepper, double h, const int32_t *list,
                                      int32_t contacts, unsigned terms) {
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
+  if (strut_turns_due(state, stepper)) strut_turns_look(model, state, stepper, h);
   for (int32_t k = 0; k < contacts; k++)
     keep_first_of(model, stepper, list ? list[k] : k, h, terms, &first);
   if (stepper->laws.count) keep_first_of_laws(model, state, stepper, h, &first);

@@ -176,6 +176,7 @@ static bool contact_slopes(const strut_event_stepper *stepper, const strut_event
     case STRUT_EVENT_BREAK:
     case STRUT_EVENT_FACET:
     case STRUT_EVENT_THRESHOLD:
+    case STRUT_EVENT_TURN:
     case STRUT_EVENT_NONE: break;
   }
   return false;
