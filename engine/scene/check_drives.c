@@ -154,6 +154,11 @@ void strut_check_drives(strut_checker *checker) {
     if (!isfinite(l->force[0]) || !isfinite(l->force[1]))
       strut_report_finding(checker, STRUT_ON_LOAD, i, "force", "the force of %s is not finite",
                            owner);
+    else if (strut_exists(l->node, scene->node_count) && scene->nodes[l->node].fixed[0] &&
+             scene->nodes[l->node].fixed[1])
+      strut_report_finding(checker, STRUT_ON_LOAD, i, "node",
+                           "%s acts on node '%s', which is fixed and cannot yield to it", owner,
+                           scene->nodes[l->node].name);
     if (l->signal != -1 && !strut_exists(l->signal, scene->signal_count))
       strut_report_finding(checker, STRUT_ON_LOAD, i, "signal",
                            "%s has a signal that does not exist", owner);
