@@ -398,7 +398,7 @@ void strut_check_use(strut_checker *checker) {
     if (!(state[i] & USED))
       strut_report_finding(checker, STRUT_ON_NODE, i, NULL,
                            "nothing uses %s: it has no member, no load and no mass", owner);
-    else if (checker->purpose == STRUT_FOR_RUN && !(state[i] & HEAVY) &&
+    else if (checker->purpose == STRUT_FOR_RUN && !checker->resting && !(state[i] & HEAVY) &&
              !(node->fixed[0] && node->fixed[1]))
       strut_report_finding(checker, STRUT_ON_NODE, i, "mass",
                            "%s has no mass, so a run cannot move it; "
@@ -428,6 +428,7 @@ strut_status strut_setup_check(const strut_setup *setup, strut_purpose purpose,
                            .experiment = e,
                            .purpose = purpose,
                            .step_given_later = step_later,
+                           .resting = resting,
                            .findings = findings};
   checker.loose = strut_allocate(scene->member_count, sizeof *checker.loose);
   checker.wild = strut_allocate(scene->signal_count, sizeof *checker.wild);

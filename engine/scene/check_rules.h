@@ -12,6 +12,7 @@ typedef struct strut_checker {
   const strut_experiment *experiment;
   strut_purpose purpose;
   bool step_given_later; /* the step is given later */
+  bool resting;          /* nothing moves, so that no mass is needed */
   strut_findings *findings;
   bool out_of_memory;
   bool *

@@ -265,21 +265,13 @@ static void read_form(strut_study_reader *r, const strut_slot *slot) {
 }
 
 /* Wall time ends only what can be interrupted. */
-static void read_limit(strut_study_reader *r, const strut_slot *slot) {
+static void read_limit(strut_study_reader *r, strut_fields *top, const strut_slot *slot) {
   strut_study *study = &r->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
   strut_read_fields(r->reader, STRUT_SECTION_LIMIT, slot->value, limit_owner, &fields);
+  fields.outer = top;
   strut_store_fields(r->reader, &fields, limit_owner, &r->file->arena, study, sizeof *study);
-  const strut_slot *evaluations = strut_slot_of(&fields, STRUT_KEY_LIMIT_EVALUATIONS);
-  const strut_slot *time = strut_slot_of(&fields, STRUT_KEY_LIMIT_TIME);
-  bool run = study->compute == STRUT_COMPUTE_RUN;
-  if (!run && evaluations->state == STRUT_GIVEN)
-    strut_report_error(r->reader, evaluations->key->place,
-                       "'evaluations' limits runs only, which 'compute: run' has");
-  if (!run && study->compute != STRUT_COMPUTE_EQUILIBRIA && time->state == STRUT_GIVEN)
-    strut_report_error(r->reader, time->key->place,
-                       "'time' limits runs and the search for equilibria only");
 }
 
 static void read_rest(strut_study_reader *r, strut_fields *top) {
@@ -294,7 +286,7 @@ static void read_rest(strut_study_reader *r, strut_fields *top) {
   }
   read_path(r, strut_slot_of(top, STRUT_KEY_STUDY_PATH));
   read_form(r, strut_slot_of(top, STRUT_KEY_STUDY_FORM));
-  read_limit(r, strut_slot_of(top, STRUT_KEY_STUDY_LIMIT));
+  read_limit(r, top, strut_slot_of(top, STRUT_KEY_STUDY_LIMIT));
   read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
 
