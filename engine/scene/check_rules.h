@@ -55,6 +55,9 @@ bool strut_check_number(strut_checker *checker, const strut_checked *whose,
 /** Does an actuator add a force to that member, a moment to that hinge? -1: none. */
 bool strut_is_pulled(const strut_scene *scene, int32_t member, int32_t hinge);
 
+/** 1 for each node (node_count) that things between nodes join; to be released. NULL: out of memory. */
+unsigned char *strut_joined_nodes(strut_checker *checker);
+
 /** The rules, one function for each kind of thing. */
 void strut_check_names(strut_checker *checker);
 void strut_check_nodes(strut_checker *checker);

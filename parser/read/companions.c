@@ -24,10 +24,6 @@ static const companion companions[] = {
     WITH(LAW, SMOOTH, LAW, KIND, "table"),
     WITH(LAW, MIRRORED, LAW, KIND, "table|curve"),
     WITH(LAW, ROUNDING, LAW, KIND, "curve"),
-    WITH(GROUND, DAMPING, GROUND, DAMPING_LAW, "approach_only"),
-    WITH(GROUND, DISSIPATION, GROUND, DAMPING_LAW, "hunt_crossley"),
-    WITH(CONTACT, DAMPING, GROUND, DAMPING_LAW, "approach_only"),
-    WITH(CONTACT, DISSIPATION, GROUND, DAMPING_LAW, "hunt_crossley"),
     BESIDE(SENSOR, ALONG, "position|velocity"),
     BESIDE(OSCILLATOR, BIAS, "coupling"),
     BESIDE(REPEAT, ABOUT, "turn|scale"),
@@ -68,7 +64,8 @@ static const companion companions[] = {
 
 enum { COMPANIONS = sizeof companions / sizeof companions[0] };
 
-bool strut_same_layer(const strut_tree *a, const strut_tree *b) {
+/* Are both keys of one file, and not one of them laid over by a study? */
+static bool same_layer(const strut_tree *a, const strut_tree *b) {
   return a->place.file == b->place.file && (a->place.line ^ b->place.line) < STRUT_OVERLAY_LINE;
 }
 
@@ -97,8 +94,8 @@ bool strut_check_companions(strut_reader *reader, strut_fields *fields, strut_ow
     if (strut_key_at(c->key)->section != fields->section) continue;
     strut_slot *slot = strut_slot_of(fields, c->key);
     if (slot->state != STRUT_GIVEN || is_met(fields, c, &other)) continue;
-    if (slot->from || (other && other->key && !strut_same_layer(slot->key, other->key))) {
-      slot->state = STRUT_ABSENT; /* a group's is for others, a base's for its own law */
+    if (slot->from || (other && other->key && !same_layer(slot->key, other->key))) {
+      slot->state = STRUT_ABSENT; /* a group's is for others, a base's for its own kind */
       continue;
     }
     strut_report_error(reader, slot->key->place, "'%s' of %s has no meaning without %s%s%s",

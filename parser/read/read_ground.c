@@ -14,7 +14,6 @@ typedef struct friction_layers {
   strut_friction friction;
   unsigned given;         /* one bit for each key that some layer gave */
   bool any, broken;       /* there is a layer; one could not be read */
-  bool shared;            /* the top layer is a group's */
   const strut_tree *last; /* the mapping of the top layer, */
   strut_owner owner;      /* and what messages call it */
 } friction_layers;
@@ -104,9 +103,8 @@ static void set_coefficients(strut_reader *reader, friction_layers *f, strut_fie
 }
 
 static void add_layer(strut_reader *reader, friction_layers *f, strut_fields *fields,
-                      strut_owner owner, bool shared) {
+                      strut_owner owner) {
   f->any = true;
-  f->shared = shared;
   f->last = fields->map;
   f->owner = owner;
   if (fields->broken) f->broken = true;
@@ -145,31 +143,6 @@ static bool check_static_friction(strut_reader *reader, const friction_layers *f
 }
 
 /*
- * Numbers that the law does not know are none of the contact's. False: the top layer gives one beside the
- * law, which was reported; a group may give it for other contacts.
- */
-static bool drop_idle(strut_reader *reader, friction_layers *f, const strut_tree **reported) {
-  bool fine = true;
-  for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
-    const char *name = strut_friction_key(p);
-    int number = strut_key_find(STRUT_SECTION_FRICTION, name);
-    strut_tree *key = NULL, *law = NULL;
-    bool mu = strut_key_at(number)->measure == STRUT_MEASURE_NONE;
-    if (mu || strut_friction_needs(f->friction.law, p) || !(f->given & key_bit(number))) continue;
-    *strut_friction_parameter(&f->friction, p) = 0.0;
-    if (!strut_tree_find(f->last, name, &key)) continue;
-    strut_tree_find(f->last, "law", &law);
-    if (law ? !strut_same_layer(key, law) : f->shared) continue;
-    fine = false;
-    if (*reported != f->last)
-      strut_report_error(reader, key->place, "'%s' of %s has no meaning with 'law: %s'", name,
-                         strut_owner_text(reader, f->owner),
-                         strut_friction_law_at(f->friction.law)->word);
-  }
-  return fine;
-}
-
-/*
  * Are all numbers given that the friction law needs? What is missing is reported once for each top layer;
  * where no coefficient is given, as one lacking key, mu.
  */
@@ -179,7 +152,7 @@ static bool complete_friction(strut_reader *reader, friction_layers *f,
   if (!(f->given & key_bit(STRUT_KEY_FRICTION_LAW))) f->friction.law = STRUT_FRICTION_KARNOPP;
   bool statics = f->given & key_bit(STRUT_KEY_FRICTION_MU_STATIC);
   bool kinetics = f->given & key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
-  bool complete = drop_idle(reader, f, reported), reported_mu = false;
+  bool complete = true, reported_mu = false;
   for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
     int key = strut_key_find(STRUT_SECTION_FRICTION, strut_friction_key(p));
     if (!strut_friction_needs(f->friction.law, p) || (f->given & key_bit(key))) continue;
@@ -206,7 +179,6 @@ typedef struct ground_defaults {
   strut_contact contact;
   friction_layers friction;
   bool broken;
-  strut_fields *fields;       /* of the ground */
   const strut_tree *reported; /* the layer of friction whose lacks were reported last */
   double along[2];            /* the direction of a line, along which forward is; else that of x */
 } ground_defaults;
@@ -222,12 +194,12 @@ static void own_friction(strut_reader *reader, strut_fields *fields, strut_owner
     for (size_t i = 0; i < groups[g]->count; i++)
       if (groups[g]->items[i].nested)
         add_layer(reader, layers, groups[g]->items[i].nested,
-                  (strut_owner){"the friction of group", groups[g]->name}, true);
+                  (strut_owner){"the friction of group", groups[g]->name});
   if (own->state != STRUT_GIVEN || own->from) return;
   strut_fields nested;
   strut_owner mine = {"the friction of contact", owner.name};
   strut_read_fields(reader, STRUT_SECTION_FRICTION, own->value, mine, &nested);
-  add_layer(reader, layers, &nested, mine, false);
+  add_layer(reader, layers, &nested, mine);
 }
 
 /* Forward is where the part's own x points, along the ground. */
@@ -260,7 +232,6 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
     strut_fields fields;
     strut_enter_scope(reader, key);
     strut_read_fields(reader, STRUT_SECTION_CONTACT, key->next, owner, &fields);
-    fields.outer = defaults->fields;
     strut_apply_groups(reader, &fields, STRUT_KEY_CONTACT_GROUP, owner);
     strut_store_fields(reader, &fields, owner, &reader->scene->arena, contact, sizeof *contact);
     own_friction(reader, &fields, owner, &layers);
@@ -431,7 +402,7 @@ static void read_contacts(strut_reader *reader, strut_fields *fields, strut_owne
 /* What all contacts of a ground begin with. */
 static ground_defaults read_defaults(strut_reader *reader, strut_fields *fields,
                                      const strut_contact *contact, strut_owner owner) {
-  ground_defaults defaults = {.contact = *contact, .broken = fields->broken, .fields = fields};
+  ground_defaults defaults = {.contact = *contact, .broken = fields->broken};
   const strut_slot *friction = strut_slot_of(fields, STRUT_KEY_GROUND_FRICTION);
   if (friction->state != STRUT_GIVEN) return defaults;
   strut_fields nested;
@@ -439,7 +410,7 @@ static ground_defaults read_defaults(strut_reader *reader, strut_fields *fields,
   snprintf(text, sizeof text, "the friction of %.150s", strut_owner_text(reader, owner));
   strut_owner mine = {strut_keep_text(reader, text), NULL};
   strut_read_fields(reader, STRUT_SECTION_FRICTION, friction->value, mine, &nested);
-  add_layer(reader, &defaults.friction, &nested, mine, false);
+  add_layer(reader, &defaults.friction, &nested, mine);
   return defaults;
 }
 

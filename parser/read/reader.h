@@ -338,9 +338,6 @@ const strut_tree *strut_entries(strut_reader *reader, int key);
 /** Reports keys that mean nothing without another one; those of a group or of a base become absent. */
 bool strut_check_companions(strut_reader *reader, strut_fields *fields, strut_owner owner);
 
-/** Are both keys of one file, and not one of them laid over by a study? */
-bool strut_same_layer(const strut_tree *a, const strut_tree *b);
-
 /* read_things.c: values into objects */
 
 /**
