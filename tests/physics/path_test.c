@@ -156,7 +156,7 @@ TEST(refusals) {
   assert_string_equal(error.message, "unknown load 'push'; the scene's loads are: l1");
   strut_path_free(&path);
   strut_model_free(model);
-  setup.scene.loads[0].node = 0; /* a support */
+  setup.scene.nodes[setup.scene.loads[0].node].fixed[1] = true; /* the load is vertical */
   model = motion_compile(&setup.scene);
   options.load = NULL;
   assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
