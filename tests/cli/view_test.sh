@@ -98,8 +98,7 @@ rm still/trajectory.h5
 tells 4 "no recorded motion" view still -o page.html
 mkfifo still/trajectory.h5
 tells 4 "'still/trajectory.h5' is not a regular file" view still -o page.html
-rm still/trajectory.h5
-echo nonsense >still/trajectory.h5
+rm still/trajectory.h5; echo nonsense >still/trajectory.h5
 expect 4 view still -o page.html
 cp -r swing damaged
 echo '{"status": ' >damaged/summary.json

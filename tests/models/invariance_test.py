@@ -23,8 +23,7 @@ FEW = ("basics/von-mises-truss", "basics/slope", "basics/robot", "basics/pendulu
        "gallery/snapping-square", "gallery/mast-with-guys", "gallery/stop", "crawler/crawler")
 EPSILON = 2.0**-52
 MANY = 6
-# What is not cured: three nodes in a row on a turned ground are called floppy, since they slide along it; a descent
-# that does not come to rest ends elsewhere, or at rest, after other rounding.
+# Not cured: three nodes in a row on a turned ground are called floppy; a descent without rest ends by chance.
 KNOWN = {("gallery/gripping-caterpillar", "turned by 37 deg", "equilibria"),
          ("gallery/t-bar-with-tendon", "1e5 sizes away", "form")}
 
