@@ -135,7 +135,8 @@ void strut_elements_visit(const strut_model *model, const double *rest, const do
   strut_element_pose pose;
   for (int32_t i = 0; i < model->elements.count; i++) {
     const strut_element *e = &model->elements.element[i];
-    if (model->elements.scattered && !(stops && e->crowds) && strut_nearby_is_far(model, i, q))
+    if (model->elements.scattered && !(stops && e->crowds) &&
+        strut_nearby_is_far(model, i, q, stops))
       continue;
     strut_element_evaluate(model, i, rest, q, (double)NAN, &pose);
     bool stop = e->role == STRUT_ELEMENT_LONGEST || e->role == STRUT_ELEMENT_SHORTEST ||
@@ -174,6 +175,7 @@ double strut_elements_energy(const strut_model *model, const double *rest, const
   int32_t count = near ? near->count : model->elements.count;
   for (int32_t k = 0; k < count; k++) {
     int32_t i = near ? near->element[k] : k;
+    if (!near && model->elements.scattered && strut_nearby_is_far(model, i, q, false)) continue;
     strut_element_evaluate(model, i, rest, q, turn ? turn[i] : (double)NAN, &pose);
     if (model->elements.element[i].role != STRUT_ELEMENT_LOAD) sum += pose.energy;
   }

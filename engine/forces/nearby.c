@@ -51,8 +51,11 @@ static bool is_beyond(const strut_model *model, int32_t element, const double *q
          strut_element_strain(model, element, q, 0.0, b) > reach;
 }
 
-bool strut_nearby_is_far(const strut_model *model, int32_t element, const double *q) {
-  return is_beyond(model, element, q, way_of(model, 0));
+bool strut_nearby_is_far(const strut_model *model, int32_t element, const double *q, bool soon) {
+  const strut_element *e = &model->elements.element[element];
+  if (soon) return is_beyond(model, element, q, way_of(model, 0));
+  return e->role == STRUT_ELEMENT_COLLISION &&
+         is_outside(model->elements.at + e->first, e->nodes, q, e->natural);
 }
 
 static void make(const strut_model *model, const strut_state *state, const double *q, int level) {

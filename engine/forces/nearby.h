@@ -21,8 +21,8 @@ const strut_nearby *strut_nearby_around(const strut_model *model, const strut_st
 /** The list that serves at q already; or NULL, which stands for all elements. */
 const strut_nearby *strut_nearby_serving(const strut_model *model, const strut_state *state,
                                          const double *q);
-/** Is the element of a collision whose bodies are not near at q? */
-bool strut_nearby_is_far(const strut_model *model, int32_t element, const double *q);
+/** Is the element of a collision whose bodies are not near at q; `soon`: nor within the first list's way? */
+bool strut_nearby_is_far(const strut_model *model, int32_t element, const double *q, bool soon);
 /** The least distance at q between the surfaces of two bodies of a collision, negative where they press [m]; which
     element's. */
 double strut_nearby_least_gap(const strut_model *model, const strut_state *state, const double *q,

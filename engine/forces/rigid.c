@@ -154,7 +154,8 @@ strut_status strut_rigid_check(const strut_model *model, strut_error *error) {
   if (bad >= 0)
     status = strut_fail(error, STRUT_SINGULAR,
                         "bar '%s' cannot be rigid: supports or other rigid bars hold its ends "
-                        "already; make it a spring, or use bars: elastic",
+                        "already, always or where they start, as bars in one line do; start "
+                        "elsewhere, make it a spring, or use bars: elastic",
                         model->scene->members[g->member[bad]].name);
   strut_arena_free(&arena);
   return status;

@@ -346,50 +346,53 @@ void strut_check_members(strut_checker *checker) {
   }
 }
 
+/* Marks the nodes that exist. */
+static void mark_nodes(unsigned char *joined, const strut_scene *scene, const int32_t *node,
+                       size_t count) {
+  for (size_t k = 0; k < count; k++)
+    if (strut_exists(node[k], scene->node_count)) joined[node[k]] = 1;
+}
+
+unsigned char *strut_joined_nodes(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  unsigned char *joined = strut_allocate(scene->node_count, 1);
+  checker->out_of_memory = checker->out_of_memory || !joined;
+  if (!joined) return NULL;
+  for (size_t i = 0; i < scene->member_count; i++) {
+    mark_nodes(joined, scene, scene->members[i].node, 2);
+    mark_nodes(joined, scene, scene->members[i].guides, scene->members[i].guide_count);
+  }
+  for (size_t i = 0; i < scene->hinge_count; i++)
+    mark_nodes(joined, scene, scene->hinges[i].node, 3);
+  for (size_t i = 0; i < scene->cell_count; i++)
+    mark_nodes(joined, scene, scene->cells[i].node, scene->cells[i].node_count);
+  for (size_t i = 0; i < scene->collision_count; i++)
+    mark_nodes(joined, scene, scene->collisions[i].node, 2);
+  for (size_t i = 0; i < scene->distance_count; i++) {
+    mark_nodes(joined, scene, scene->distances[i].node, 2);
+    mark_nodes(joined, scene, scene->distances[i].line, 2);
+  }
+  return joined;
+}
+
 /* Is every node used, and does every free node have mass in a run? */
 void strut_check_use(strut_checker *checker) {
   enum { USED = 1, HEAVY = 2 };
   const strut_scene *scene = checker->scene;
-  unsigned char *state = strut_allocate(scene->node_count, 1);
-  if (!state) {
-    checker->out_of_memory = true;
-    return;
-  }
+  unsigned char *state = strut_joined_nodes(checker);
+  if (!state) return;
   for (size_t i = 0; i < scene->member_count; i++)
     for (size_t e = 0; e < scene->members[i].guide_count + 2; e++) {
       int32_t n = strut_member_node(&scene->members[i], e);
-      if (n < 0 || (size_t)n >= scene->node_count) continue;
-      state[n] = (unsigned char)(state[n] | USED | (scene->members[i].mass > 0.0 ? HEAVY : 0));
-    }
-  for (size_t i = 0; i < scene->hinge_count; i++)
-    for (int k = 0; k < 3; k++) {
-      int32_t n = scene->hinges[i].node[k];
-      if (n >= 0 && (size_t)n < scene->node_count) state[n] |= USED;
-    }
-  for (size_t i = 0; i < scene->cell_count; i++)
-    for (size_t k = 0; k < scene->cells[i].node_count; k++) {
-      int32_t n = scene->cells[i].node[k];
-      if (n >= 0 && (size_t)n < scene->node_count) state[n] |= USED;
-    }
-  for (size_t i = 0; i < scene->collision_count; i++)
-    for (int k = 0; k < 2; k++) {
-      int32_t n = scene->collisions[i].node[k];
-      if (n >= 0 && (size_t)n < scene->node_count) state[n] |= USED;
-    }
-  for (size_t i = 0; i < scene->distance_count; i++)
-    for (int k = 0; k < 2; k++) {
-      const strut_distance_spring *d = &scene->distances[i];
-      if (strut_exists(d->node[k], scene->node_count)) state[d->node[k]] |= USED;
-      if (strut_exists(d->line[k], scene->node_count)) state[d->line[k]] |= USED;
+      if (strut_exists(n, scene->node_count) && scene->members[i].mass > 0.0) state[n] |= HEAVY;
     }
   for (size_t i = 0; i < scene->unbalance_count; i++) {
     int32_t n = scene->unbalances[i].node;
-    if (n >= 0 && (size_t)n < scene->node_count)
+    if (strut_exists(n, scene->node_count))
       state[n] = (unsigned char)(state[n] | USED | (scene->unbalances[i].mass > 0.0 ? HEAVY : 0));
   }
   for (size_t i = 0; i < scene->load_count; i++)
-    if (scene->loads[i].node >= 0 && (size_t)scene->loads[i].node < scene->node_count)
-      state[scene->loads[i].node] |= USED;
+    if (strut_exists(scene->loads[i].node, scene->node_count)) state[scene->loads[i].node] |= USED;
   for (size_t i = 0; i < scene->node_count; i++) {
     const strut_node *node = &scene->nodes[i];
     char owner[200];
@@ -398,7 +401,7 @@ void strut_check_use(strut_checker *checker) {
     if (!(state[i] & USED))
       strut_report_finding(checker, STRUT_ON_NODE, i, NULL,
                            "nothing uses %s: it has no member, no load and no mass", owner);
-    else if (checker->purpose == STRUT_FOR_RUN && !(state[i] & HEAVY) &&
+    else if (checker->purpose == STRUT_FOR_RUN && !checker->resting && !(state[i] & HEAVY) &&
              !(node->fixed[0] && node->fixed[1]))
       strut_report_finding(checker, STRUT_ON_NODE, i, "mass",
                            "%s has no mass, so a run cannot move it; "
@@ -428,6 +431,7 @@ strut_status strut_setup_check(const strut_setup *setup, strut_purpose purpose,
                            .experiment = e,
                            .purpose = purpose,
                            .step_given_later = step_later,
+                           .resting = resting,
                            .findings = findings};
   checker.loose = strut_allocate(scene->member_count, sizeof *checker.loose);
   checker.wild = strut_allocate(scene->signal_count, sizeof *checker.wild);

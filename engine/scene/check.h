@@ -52,7 +52,7 @@ typedef enum strut_purpose {
   STRUT_FOR_RUN,
   STRUT_FOR_RUN_STEP_LATER, /* for a run whose step or accuracy is given later */
   STRUT_FOR_ANY,            /* for a run where the scene describes one, otherwise for statics */
-  STRUT_FOR_ANY_STATICS     /* the same for what only rests: a run's step may be missing */
+  STRUT_FOR_ANY_STATICS /* the same for what only rests: a run's step and masses may be missing */
 } strut_purpose;
 
 /** Appends every finding. Returns STRUT_OK (none new), STRUT_BAD_SCENE or STRUT_NO_MEMORY. */

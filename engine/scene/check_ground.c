@@ -280,18 +280,12 @@ static bool check_foot(strut_checker *checker, size_t index, const char *owner) 
   if (checker->loose[f->member]) return false; /* it is reported there */
   const strut_member *m = &scene->members[f->member];
   const char *member = m->name, *node = scene->nodes[f->node].name;
-  double length =
-      strut_distance(scene->nodes[m->node[0]].position, scene->nodes[m->node[1]].position);
   if (m->node[0] != f->node && m->node[1] != f->node)
     strut_report_finding(checker, STRUT_ON_FOOT, index, "node",
                          "%s is at node '%s', which is no end of member '%s'", owner, node, member);
   else if (m->guide_count)
     strut_report_finding(checker, STRUT_ON_FOOT, index, "member",
                          "%s is at a running cable; a foot needs a straight member", owner);
-  else if (!(f->radius < length))
-    strut_report_finding(checker, STRUT_ON_FOOT, index, "radius",
-                         "%s has a radius of %g m, more than member '%s' is long (%g m)", owner,
-                         f->radius, member, length);
   else
     return true;
   return false;

@@ -12,6 +12,7 @@ typedef struct strut_checker {
   const strut_experiment *experiment;
   strut_purpose purpose;
   bool step_given_later; /* the step is given later */
+  bool resting;          /* nothing moves, so that no mass is needed */
   strut_findings *findings;
   bool out_of_memory;
   bool *
@@ -53,6 +54,9 @@ bool strut_check_number(strut_checker *checker, const strut_checked *whose,
 
 /** Does an actuator add a force to that member, a moment to that hinge? -1: none. */
 bool strut_is_pulled(const strut_scene *scene, int32_t member, int32_t hinge);
+
+/** 1 for each node (node_count) that things between nodes join; to be released. NULL: out of memory. */
+unsigned char *strut_joined_nodes(strut_checker *checker);
 
 /** The rules, one function for each kind of thing. */
 void strut_check_names(strut_checker *checker);

@@ -24,11 +24,16 @@ static bool check_table(strut_checker *checker, size_t index, const char *owner)
     if (!isfinite(s->time[i]) || !isfinite(s->value[i]))
       strut_report_finding(checker, STRUT_ON_SIGNAL, index, "table",
                            "point %zu in the table of %s is not finite", i + 1, owner);
-    else if (i && s->time[i] <= s->time[i - 1])
+    else if (i && s->time[i] < s->time[i - 1])
       strut_report_finding(
           checker, STRUT_ON_SIGNAL, index, "table",
           "the times in the table of %s must increase, but point %zu at %g s follows %g s", owner,
           i + 1, s->time[i], s->time[i - 1]);
+    else if (i > 1 && s->time[i] <= s->time[i - 2])
+      strut_report_finding(
+          checker, STRUT_ON_SIGNAL, index, "table",
+          "the table of %s has three points at %g s, expected at most two, between which it jumps",
+          owner, s->time[i]);
     else
       continue;
     return false;

@@ -441,12 +441,7 @@ static void check_rubbing(strut_checker *checker, size_t index, const char *owne
   const strut_friction none = {STRUT_FRICTION_NONE};
   const strut_checked whose = {STRUT_ON_COLLISION, index, owner, "friction"};
   if (f->mu_kinetic == 0.0 && f->width == 0.0 && f->mu_static == 0.0) return;
-  if (!strut_check_fields(checker, &whose, STRUT_FIELDS_RUBBING, f, &none)) return;
-  if ((f->decay_velocity > 0.0) == (f->mu_static > 0.0)) return;
-  strut_report_finding(checker, STRUT_ON_COLLISION, index, "friction",
-                       "the friction of %s has '%s', but no '%s'", owner,
-                       f->mu_static > 0.0 ? "mu_static" : "decay_velocity",
-                       f->mu_static > 0.0 ? "decay_velocity" : "mu_static");
+  strut_check_fields(checker, &whose, STRUT_FIELDS_RUBBING, f, &none);
 }
 
 void strut_check_collisions(strut_checker *checker) {

@@ -354,8 +354,13 @@ bool strut_signal_value_jumps(const strut_signal *signals, int32_t index, double
                               double *when) {
   const strut_signal *s = &signals[index];
   switch (s->kind) {
-    case STRUT_RAMP:
-    case STRUT_TABLE: return false;
+    case STRUT_RAMP: return false;
+    case STRUT_TABLE:
+      for (size_t i = 1; i < s->point_count; i++)
+        if (s->time[i] == s->time[i - 1] && s->value[i] != s->value[i - 1] &&
+            switches_within(*when = s->time[i], last))
+          return true;
+      return false;
     case STRUT_SUM:
       for (size_t i = 0; i < s->term_count; i++)
         if (strut_signal_value_jumps(signals, s->terms[i], last, when)) return true;

@@ -69,7 +69,7 @@ typedef struct strut_signal {
   double phase;         /* [turns]; sine and square */
   double start, stop;   /* [s]; default 0 and INFINITY */
   size_t point_count;   /* table: number of points, >= 1 */
-  const double *time;   /* (point_count) [s], strictly increasing */
+  const double *time;   /* (point_count) [s], increasing; at two alike it jumps */
   const double *value;  /* (point_count) */
   size_t term_count;    /* sum: number of terms */
   const int32_t *terms; /* (term_count) indices of signals, each below this signal's own */

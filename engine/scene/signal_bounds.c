@@ -295,6 +295,8 @@ static strut_signal_bounds bound_pieces(const bounder *b, int32_t index, double 
   strut_signal_bounds result = {exactly(value), exactly(rate), false};
   for (double t = from; t < to;) {
     t = strut_signal_next_break(b->signals, index, t);
+    strut_signal_evaluate(b->signals, index, nextafter(fmin(t, to), from), &value, &rate);
+    result.value = hull(result.value, exactly(value)); /* before a jump */
     strut_signal_evaluate(b->signals, index, fmin(t, to), &value, &rate);
     result.value = hull(result.value, exactly(value));
     if (t < to) result.rate = hull(result.rate, exactly(rate));

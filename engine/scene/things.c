@@ -4,7 +4,11 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+enum { LONGEST = 1024 }; /* name in which `last` is a number */
 
 /* ---- kinds ---- */
 
@@ -49,8 +53,29 @@ const char *strut_thing_name(const strut_scene *scene, strut_thing kind, size_t 
   return name;
 }
 
+/* Writes for each `.last` of a name the largest number that things have there. */
+static void resolve_last(const strut_scene *scene, strut_thing kind, char name[LONGEST]) {
+  char rest[LONGEST];
+  for (char *at = name; (at = strstr(at, ".last")) != NULL; at++) {
+    size_t before = (size_t)(++at - name);
+    long most = -1;
+    for (size_t i = 0; i < strut_thing_count(scene, kind); i++) {
+      const char *own = strut_thing_name(scene, kind, i);
+      if (own && strncmp(own, name, before) == 0 && own[before] >= '0' && own[before] <= '9' &&
+          strtol(own + before, NULL, 10) > most)
+        most = strtol(own + before, NULL, 10);
+    }
+    if (most < 0 || (at[4] && at[4] != '.')) continue;
+    memcpy(rest, at + 4, strlen(at + 4) + 1);
+    snprintf(at, LONGEST - before, "%ld%s", most, rest);
+  }
+}
+
 int32_t strut_thing_find(const strut_scene *scene, strut_thing kind, const char *name) {
+  char text[LONGEST];
   size_t count = strut_thing_count(scene, kind);
+  snprintf(text, sizeof text, "%s", name);
+  if (strlen(name) + 1 < sizeof text) resolve_last(scene, kind, text), name = text;
   for (size_t i = 0; i < count; i++) {
     const char *own = strut_thing_name(scene, kind, i);
     if (own && strcmp(own, name) == 0) return (int32_t)i;
@@ -59,13 +84,13 @@ int32_t strut_thing_find(const strut_scene *scene, strut_thing kind, const char 
 }
 
 int32_t strut_coordinate_find(const strut_scene *scene, const char *name) {
+  char node[LONGEST];
   const char *dot = strrchr(name, '.');
   if (!dot || (strcmp(dot, ".x") != 0 && strcmp(dot, ".y") != 0)) return -1;
-  size_t length = (size_t)(dot - name);
-  for (size_t i = 0; i < scene->node_count; i++)
-    if (strlen(scene->nodes[i].name) == length && strncmp(scene->nodes[i].name, name, length) == 0)
-      return (int32_t)(2 * i) + (dot[1] == 'y');
-  return -1;
+  if ((size_t)snprintf(node, sizeof node, "%.*s", (int)(dot - name), name) >= sizeof node)
+    return -1;
+  int32_t i = strut_thing_find(scene, STRUT_THING_NODE, node);
+  return i < 0 ? -1 : 2 * i + (dot[1] == 'y');
 }
 
 strut_thing strut_thing_of_column(strut_column_owner owner) {

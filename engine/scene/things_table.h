@@ -316,7 +316,7 @@
   X(SIGNAL, HALF_SINE, "half_sine", MAP, NONE, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_HALF_SINE, SECTION(HALF_SINE)), "One half-wave of a sine, then 0.") \
   X(SIGNAL, SQUARE, "square", MAP, NONE, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_SQUARE, SECTION(SQUARE)), "+amplitude in the first half of each period, -amplitude in the second.") \
   X(SIGNAL, RAMP, "ramp", MAP, NONE, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_RAMP, SECTION(RAMP)), "Rises linearly from 0 at `start` to the amplitude at `stop`, and stays there.") \
-  X(SIGNAL, TABLE, "table", TABLE, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Points `[[t, value], ...]`, interpolated linearly; constant before the first and after the last.") \
+  X(SIGNAL, TABLE, "table", TABLE, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Points `[[t, value], ...]`, interpolated linearly; constant before the first and after the last. At two points of one time the signal jumps.") \
   X(SIGNAL, SUM, "sum", SIGNALS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "The sum of the listed signals.") \
   X(SIGNAL, EXPRESSION, "expression", EXPRESSION, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "An expression of the time `t`, parameters, [sensors](#sensor) and other signals, evaluated with the forces.") \
   X(SIGNAL, STARTS, "starts", MAP, NONE, ANY, "", OPTIONAL, 0, "start", NESTED(strut_signal, trigger, STARTS), "Beside one of the keys above: the event at which the time of the signal begins. Before it, the signal is 0.") \

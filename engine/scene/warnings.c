@@ -199,28 +199,9 @@ static void warn_of_pairs(strut_checker *checker) {
 /* Warns of masses without members, if the scene has members. */
 static void warn_of_loose_masses(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  bool *used = strut_allocate(scene->node_count, sizeof *used);
+  unsigned char *used = strut_joined_nodes(checker);
   named loose = {0};
-  if (!used) {
-    checker->out_of_memory = true;
-    return;
-  }
-  for (size_t i = 0; i < scene->member_count; i++)
-    for (size_t k = 0; k < scene->members[i].guide_count + 2; k++)
-      used[strut_member_node(&scene->members[i], k)] = true;
-  for (size_t i = 0; i < scene->hinge_count; i++)
-    for (int k = 0; k < 3; k++) used[scene->hinges[i].node[k]] = true;
-  for (size_t i = 0; i < scene->cell_count; i++)
-    for (size_t k = 0; k < scene->cells[i].node_count; k++) used[scene->cells[i].node[k]] = true;
-  for (size_t i = 0; i < scene->collision_count; i++)
-    for (int k = 0; k < 2; k++)
-      if (scene->collisions[i].node[k] >= 0) used[scene->collisions[i].node[k]] = true;
-  for (size_t i = 0; i < scene->distance_count; i++)
-    for (int k = 0; k < 2; k++) {
-      const strut_distance_spring *d = &scene->distances[i];
-      if (d->node[k] >= 0) used[d->node[k]] = true;
-      if (d->line[k] >= 0) used[d->line[k]] = true;
-    }
+  if (!used) return;
   for (size_t i = 0; i < scene->node_count && scene->member_count; i++) {
     const strut_node *node = &scene->nodes[i];
     if (!used[i] && node->mass > 0.0 && !(node->fixed[0] && node->fixed[1]))

@@ -12,7 +12,7 @@
 #include "parser/yaml/diagnostics.h"
 #include "parser/yaml/text.h"
 
-enum { DEPTH_MOST = 64, LENGTH_MOST = 1000 };
+enum { DEPTH_MOST = 64, LENGTH_MOST = 1000, PROGRAM_MOST = 10000 };
 
 static bool read_sum(strut_expression_reader *r, strut_quantity *q);
 static bool read_signed(strut_expression_reader *r, strut_quantity *q);
@@ -210,9 +210,11 @@ bool strut_expression_compile(const char *text, const strut_scope *scope, strut_
                               strut_quantity *quantity, strut_expression_error *error) {
   strut_expression_reader r = {text, strlen(text), 0, 0, scope, error, compiler};
   strut_quantity q = {0};
-  if (r.length > LENGTH_MOST && strut_text_points(text, r.length) > LENGTH_MOST)
+  int most =
+      compiler ? PROGRAM_MOST : LENGTH_MOST; /* what is evaluated in every step is read once */
+  if (r.length > (size_t)most && strut_text_points(text, r.length) > (size_t)most)
     return strut_expression_fail(&r, 0, r.length, "the expression is longer than %d characters",
-                                 LENGTH_MOST);
+                                 most);
   if (strut_expression_peek(&r) == '\0' && r.at >= r.length)
     return strut_expression_fail(&r, 0, r.length, "a number is missing here");
   if (!read_sum(&r, &q)) return false;

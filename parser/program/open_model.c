@@ -197,20 +197,21 @@ static char *inside(strut_arena *arena, const char *directory, const char *name)
   return strut_arena_format(arena, "%s%s%s", directory, slash ? "" : "/", name);
 }
 
-/* Checks for the files that every run writes. */
-static strut_status check_files(const char *directory, const char *scene, const char *trajectory,
+/* Checks for the files that every run writes; of another kind, such as a FIFO, they are none of a run. */
+static strut_status check_files(const char *directory, const char *const paths[3], bool *summarised,
                                 strut_error *error) {
-  struct stat found;
-  bool described = stat(scene, &found) == 0, recorded = stat(trajectory, &found) == 0;
-  if (!described) {
-    return strut_fail(error, STRUT_FILE_TROUBLE,
-                      "'%s' holds no run: it has no scene.yaml ('strut run MODEL -o DIR' "
-                      "writes one)",
-                      directory);
+  static const char *const lacks[] = {
+      "'%s' holds no run: it has no scene.yaml ('strut run MODEL -o DIR' writes one)",
+      "'%s' holds no recorded motion: it has no trajectory.h5", NULL};
+  for (int i = 0; i < 3; i++) {
+    struct stat found;
+    bool there = stat(paths[i], &found) == 0;
+    if (!there && lacks[i]) return strut_fail(error, STRUT_FILE_TROUBLE, lacks[i], directory);
+    if (there && !S_ISREG(found.st_mode))
+      return strut_fail(error, STRUT_FILE_TROUBLE, "'%s' is not a regular file", paths[i]);
+    *summarised = there;
   }
-  if (recorded) return STRUT_OK;
-  return strut_fail(error, STRUT_FILE_TROUBLE,
-                    "'%s' holds no recorded motion: it has no trajectory.h5", directory);
+  return STRUT_OK;
 }
 
 static strut_status read_motion(const char *directory, size_t room, strut_opened *opened,
@@ -236,7 +237,9 @@ static strut_status open_directory(const strut_arguments *arguments, size_t room
   char *trajectory = inside(arena, directory, "trajectory.h5");
   char *summary = inside(arena, directory, "summary.json");
   if (!scene || !trajectory || !summary) return strut_no_memory(error, "");
-  strut_status status = check_files(directory, scene, trajectory, error);
+  bool summarised = false;
+  const char *const paths[] = {scene, trajectory, summary};
+  strut_status status = check_files(directory, paths, &summarised, error);
   if (status != STRUT_OK) return status;
   strut_arguments inner = *arguments;
   inner.model = scene;
@@ -245,8 +248,7 @@ static strut_status open_directory(const strut_arguments *arguments, size_t room
   status = strut_model_compile(&opened->setup.scene, &opened->model, error);
   if (status == STRUT_OK) status = read_motion(directory, room, opened, error);
   size_t length = 0;
-  struct stat found;
-  if (status == STRUT_OK && stat(summary, &found) == 0)
+  if (status == STRUT_OK && summarised)
     status = strut_file_read(summary, &opened->summary, &length, error);
   return status;
 }

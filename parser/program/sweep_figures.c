@@ -87,11 +87,6 @@ static strut_status check_figure(const source *s, const strut_study_figure *f, s
     return strut_fail(error, STRUT_BAD_SCENE,
                       "figure '%.60s' of the study is of a search, which the study has not",
                       f->name);
-  if (of_search(f) && (f->difference || f->band))
-    return strut_fail(
-        error, STRUT_BAD_SCENE,
-        "figure '%.60s' of the study is of a search: it has no 'difference' and no 'band'",
-        f->name);
   strut_status status = check_column(s, f, f->x, true, error);
   if (!status) status = check_column(s, f, f->y, true, error);
   if (!status) status = check_column(s, f, f->series, false, error);

@@ -31,6 +31,9 @@ STRUT_API strut_mapping_kind strut_kind_below(strut_mapping_kind kind, const cha
 STRUT_API bool strut_says_otherwise(strut_mapping_kind kind, const strut_tree *map,
                                     const char *key);
 
+/** Marks what a study lays over its model. */
+#define STRUT_OVERLAY_LINE ((uint32_t)1 << 30)
+
 typedef struct strut_overlay {
   strut_arena *arena;             /* of the result, which shares what did not change */
   uint32_t mark;                  /* is set in the line of every place of what is laid over */

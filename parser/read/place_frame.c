@@ -113,6 +113,7 @@ bool strut_read_repeat(strut_reader *reader, const strut_slot *slot, const char 
   const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_REPEAT_SCALE);
   const strut_slot *about = strut_slot_of(&fields, STRUT_KEY_REPEAT_ABOUT);
   if (fields.broken || count->state != STRUT_GIVEN) return false;
+  if (!strut_check_companions(reader, &fields, owner)) return false;
   if (!read_counts(reader, count->value, owner, r)) return false;
   bool fine = read_steps(reader, strut_slot_of(&fields, STRUT_KEY_REPEAT_STEP), owner, r);
   fine = read_next(reader, strut_slot_of(&fields, STRUT_KEY_REPEAT_NEXT), owner, r) && fine;

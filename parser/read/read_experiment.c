@@ -358,15 +358,12 @@ static void read_of(strut_reader *reader) {
   const strut_slot *periods = strut_slot_of(&reader->run, STRUT_KEY_RUN_PERIODS);
   strut_slot *top = strut_slot_of(&reader->top, STRUT_KEY_SCENE_RUN);
   bool broken = false;
-  if (of->state == STRUT_GIVEN && periods->state == STRUT_ABSENT) {
-    strut_report_error(reader, of->key->place, "the run gives 'of' without 'periods'");
-    reader->run.broken = true;
-  } else if (of->state == STRUT_ABSENT && periods->state == STRUT_GIVEN) {
+  if (of->state == STRUT_ABSENT && periods->state == STRUT_GIVEN) {
     strut_report_error(
         reader, top->key->place,
         "the run lacks 'of', expected the actuator, load or signal whose periods count");
     reader->run.broken = true;
-  } else if (of->state == STRUT_GIVEN) {
+  } else if (of->state == STRUT_GIVEN && periods->state != STRUT_ABSENT) {
     e->period_signal = find_signal_of(reader, of->value, &broken);
     e->period_of = strut_keep_text(reader, of->value->text);
     if (broken) reader->run.broken = true;

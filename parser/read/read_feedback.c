@@ -92,10 +92,6 @@ bool strut_read_sensor(strut_reader *reader, strut_fields *fields, strut_owner o
   else if (directed && along->state == STRUT_ABSENT)
     strut_report_error(reader, fields->key->place, "sensor '%s' needs 'along': x or y",
                        fields->key->text);
-  else if (!directed && along->state != STRUT_ABSENT)
-    strut_report_error(reader, along->key->place,
-                       "sensor '%s' has 'along', which belongs to a position or a velocity",
-                       fields->key->text);
   else
     return !directed || turn_sensor(reader, along, sensor);
   return false;
@@ -277,7 +273,7 @@ static void list_oscillator(strut_reader *reader, const strut_tree *key) {
   strut_read_fields_of(reader, STRUT_SECTION_OSCILLATOR, key, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
   if (fields.broken) fine = false;
-  if (fine) strut_store_fields(reader, &fields, owner, &reader->scratch, &o, sizeof o);
+  fine = fine && strut_store_fields(reader, &fields, owner, &reader->scratch, &o, sizeof o);
   int32_t i = strut_add_state(reader, key, key->text, STRUT_DIM_ANGLE, o.phase);
   reader->things[STRUT_THING_STATE].source[i].broken = !fine;
 }

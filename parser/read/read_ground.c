@@ -516,6 +516,16 @@ static void merge_contacts(strut_reader *reader, const contact_list *lists) {
   name_contacts(reader);
 }
 
+/* A belt that rubs on nothing carries nothing. */
+static void check_belt(strut_reader *reader, const strut_slot *belt, const contact_list *list) {
+  bool rubs = belt->state != STRUT_GIVEN || !list->count;
+  for (size_t i = 0; i < list->count && !rubs; i++)
+    rubs = list->contact[i].friction.law != STRUT_FRICTION_NONE || list->source[i].broken;
+  if (!rubs)
+    strut_report_error(reader, belt->key->place,
+                       "'belt_speed' has no meaning without 'friction' of a contact");
+}
+
 /* One ground of the scene: its fields, itself and its contacts. */
 static void read_one(strut_reader *reader, strut_fields *fields, strut_owner owner,
                      strut_place place, strut_ground *ground, contact_list *list) {
@@ -534,6 +544,7 @@ static void read_one(strut_reader *reader, strut_fields *fields, strut_owner own
     read_contacts(reader, fields, owner, &defaults, pieces_of(ground), list);
   else
     fields->broken = true;
+  check_belt(reader, strut_slot_of(fields, STRUT_KEY_GROUND_BELT_SPEED), list);
 }
 
 static void read_single(strut_reader *reader) {

@@ -359,12 +359,7 @@ static void read_target(strut_reader *reader, strut_fields *fields, strut_owner 
   bool wanted = d->take == STRUT_TAKE_ARRIVAL, given = slot->state == STRUT_GIVEN;
   char unit[STRUT_SUFFIX_TEXT];
   if (slot->state == STRUT_BROKEN) return;
-  if (given && !wanted)
-    strut_report_error(reader, slot->key->place,
-                       "'target' of %s is what 'take: arrival' waits for, and has no meaning with "
-                       "another 'take'",
-                       strut_owner_text(reader, owner));
-  else if (!given && wanted)
+  if (!given && wanted)
     strut_report_error(reader, fields->key->place, "%s lacks 'target', the value that it waits for",
                        strut_owner_text(reader, owner));
   if (!given || !wanted || !dimension) return;

@@ -158,10 +158,9 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
   strut_read_fields(reader, STRUT_SECTION_SCENE, reader->document.root, owner, &reader->top);
   if (!reader->top.map || reader->document.root->kind != STRUT_TREE_MAP) return;
   strut_require(reader, &reader->top, owner, strut_root_place(reader));
-  strut_purpose of_run =
-      reader->purpose == STRUT_FOR_ANY_STATICS ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
-  if (reader->purpose == STRUT_FOR_ANY || reader->purpose == STRUT_FOR_ANY_STATICS)
-    reader->purpose = describes_run(reader) ? of_run : STRUT_FOR_STATICS;
+  bool any = reader->purpose == STRUT_FOR_ANY || reader->purpose == STRUT_FOR_ANY_STATICS;
+  if (any && !describes_run(reader)) reader->purpose = STRUT_FOR_STATICS;
+  if (reader->purpose == STRUT_FOR_ANY) reader->purpose = STRUT_FOR_RUN;
   if (reader->top.broken || reader->holes) reader->ends_unknown = true;
   read_sections(reader, settings, count);
   if (reader->out_of_memory || strut_diagnostics_full(reader->diagnostics)) return;

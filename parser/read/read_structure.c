@@ -243,24 +243,6 @@ static bool check_needs(strut_reader *reader, strut_fields *fields, strut_owner 
                        strut_owner_text(reader, owner), points ? "not both" : "and has neither");
     fine = false;
   }
-  static const struct {
-    int key;
-    bool table, curve; /* that have it */
-  } forms[] = {{STRUT_KEY_LAW_SMOOTH, true, false},
-               {STRUT_KEY_LAW_MIRRORED, true, true},
-               {STRUT_KEY_LAW_ROUNDING, false, true}};
-  for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
-    const strut_slot *slot = strut_slot_of(fields, forms[i].key);
-    if (slot->state == STRUT_ABSENT || (law->kind == STRUT_LAW_TABLE && forms[i].table) ||
-        (law->kind == STRUT_LAW_FOLDING && forms[i].curve))
-      continue;
-    strut_report_error(reader, slot->key->place, "%s gives '%s', which only a %s has",
-                       strut_owner_text(reader, owner), slot->key->text,
-                       !forms[i].curve   ? "table"
-                       : !forms[i].table ? "curve"
-                                         : "table or a curve");
-    fine = false;
-  }
   return fine;
 }
 
@@ -395,15 +377,11 @@ bool strut_read_hinge(strut_reader *reader, strut_fields *fields, strut_owner ow
 
 bool strut_read_gas(strut_reader *reader, strut_fields *fields, strut_owner owner, void *object) {
   strut_cell *cell = object;
+  (void)reader, (void)owner;
   const strut_slot *kind = strut_slot_of(fields, STRUT_KEY_GAS_KIND);
-  const strut_slot *exponent = strut_slot_of(fields, STRUT_KEY_GAS_EXPONENT);
   if (kind->state == STRUT_GIVEN)
     cell->law = kind->word ? STRUT_LAW_ISENTROPIC : STRUT_LAW_ISOTHERMAL;
-  if (cell->law != STRUT_LAW_ISOTHERMAL || exponent->state != STRUT_GIVEN) return true;
-  strut_report_error(reader, exponent->key->place,
-                     "%s gives 'exponent', which the kind isothermal does not have",
-                     strut_owner_text(reader, owner));
-  return false;
+  return true;
 }
 
 bool strut_read_cell(strut_reader *reader, strut_fields *fields, strut_owner owner, void *object) {

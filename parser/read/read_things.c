@@ -314,7 +314,7 @@ bool strut_store_fields(strut_reader *reader, strut_fields *fields, strut_owner 
                         strut_arena *arena, void *object, size_t object_size) {
   int size = strut_section_size(fields->section);
   const strut_key *keys = strut_key_at(strut_section_first(fields->section));
-  bool fine = true;
+  bool fine = strut_check_companions(reader, fields, owner);
   for (int i = 0; i < size; i++) {
     strut_slot *slot = &fields->slot[i];
     bool given = slot->state == STRUT_GIVEN;

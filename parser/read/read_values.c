@@ -260,9 +260,13 @@ bool strut_read_number(strut_reader *reader, const strut_tree *value, const char
   if (!strut_read_quantity(reader, value, key, owner, &quantity)) return false;
   if (!quantity.bare && !strut_dimension_equal(quantity.dimension, dimension)) {
     strut_expected_quantity(what, dimension, expected, sizeof expected);
-    strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected, key,
-                       strut_owner_text(reader, owner),
-                       strut_dimension_name(quantity.dimension, found, sizeof found));
+    strut_dimension turned = quantity.dimension;
+    turned.angle = -1.0f;
+    bool per_angle = quantity.dimension.angle == 0.0f && strut_dimension_equal(turned, dimension);
+    strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s", expected,
+                       key, strut_owner_text(reader, owner),
+                       strut_dimension_name(quantity.dimension, found, sizeof found),
+                       per_angle ? "; write (...)/(1 rad)" : "");
     return false;
   }
   *number = quantity.value;

@@ -38,10 +38,11 @@ typedef struct strut_slot {
 /** The keys of one mapping. */
 typedef struct strut_fields {
   strut_section section;
-  bool broken;           /* some value, or the mapping itself, could not be read */
-  bool unresolved;       /* a thing that it must name is not known */
-  const strut_tree *map; /* NULL: the mapping is absent */
-  const strut_tree *key; /* whose value it is, where reading needs its place */
+  bool broken;                /* some value, or the mapping itself, could not be read */
+  bool unresolved;            /* a thing that it must name is not known */
+  const strut_tree *map;      /* NULL: the mapping is absent */
+  const strut_tree *key;      /* whose value it is, where reading needs its place */
+  struct strut_fields *outer; /* of the mapping around it, where its keys depend on that; or NULL */
   strut_slot slot[STRUT_MOST_KEYS];
 } strut_fields;
 
@@ -331,6 +332,11 @@ bool strut_read_section(strut_reader *reader, int key, strut_section section, co
                         strut_fields *fields);
 /** The mapping of names to things that is the value of a key of the scene, or NULL. */
 const strut_tree *strut_entries(strut_reader *reader, int key);
+
+/* companions.c */
+
+/** Reports keys that mean nothing without another one; those of a group or of a base become absent. */
+bool strut_check_companions(strut_reader *reader, strut_fields *fields, strut_owner owner);
 
 /* read_things.c: values into objects */
 

@@ -265,52 +265,13 @@ static void read_form(strut_study_reader *r, const strut_slot *slot) {
 }
 
 /* Wall time ends only what can be interrupted. */
-static void read_limit(strut_study_reader *r, const strut_slot *slot) {
+static void read_limit(strut_study_reader *r, strut_fields *top, const strut_slot *slot) {
   strut_study *study = &r->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
   strut_read_fields(r->reader, STRUT_SECTION_LIMIT, slot->value, limit_owner, &fields);
+  fields.outer = top;
   strut_store_fields(r->reader, &fields, limit_owner, &r->file->arena, study, sizeof *study);
-  const strut_slot *evaluations = strut_slot_of(&fields, STRUT_KEY_LIMIT_EVALUATIONS);
-  const strut_slot *time = strut_slot_of(&fields, STRUT_KEY_LIMIT_TIME);
-  bool run = study->compute == STRUT_COMPUTE_RUN;
-  if (!run && evaluations->state == STRUT_GIVEN)
-    strut_report_error(r->reader, evaluations->key->place,
-                       "'evaluations' limits runs only, which 'compute: run' has");
-  if (!run && study->compute != STRUT_COMPUTE_EQUILIBRIA && time->state == STRUT_GIVEN)
-    strut_report_error(r->reader, time->key->place,
-                       "'time' limits runs and the search for equilibria only");
-}
-
-/* Keys that only some computations know: what has them. */
-static void check_computed(strut_study_reader *r, strut_fields *top) {
-  static const struct {
-    int key;
-    unsigned of;
-  } keys[] = {
-      {STRUT_KEY_STUDY_LOWEST, STRUT_OF_EQUILIBRIA | STRUT_OF_MODES},
-      {STRUT_KEY_STUDY_AT, STRUT_OF_MODES | STRUT_OF_RIGIDITY | STRUT_OF_PATH},
-      {STRUT_KEY_STUDY_PATH, STRUT_OF_PATH},
-      {STRUT_KEY_STUDY_FORM, STRUT_OF_FORM},
-      {STRUT_KEY_STUDY_CHECK, STRUT_OF_RUN},
-      {STRUT_KEY_STUDY_TRAJECTORIES, STRUT_OF_RUN},
-      {STRUT_KEY_STUDY_STIFFNESS_AT, STRUT_OF_MODES},
-      {STRUT_KEY_STUDY_SHAPE, STRUT_OF_RUN | STRUT_OF_EQUILIBRIA | STRUT_OF_MODES},
-      {STRUT_KEY_STUDY_LIKE, STRUT_OF_RUN | STRUT_OF_EQUILIBRIA | STRUT_OF_MODES},
-      {STRUT_KEY_STUDY_CURVE, STRUT_OF_PATH},
-  };
-  const strut_study *study = &r->file->study;
-  const char *words = strut_key_at(STRUT_KEY_STUDY_COMPUTE)->words;
-  char word[24];
-  if (strut_slot_of(top, STRUT_KEY_STUDY_COMPUTE)->state == STRUT_BROKEN) return;
-  strut_word_at(words, (int)study->compute, word, sizeof word);
-  for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
-    const strut_slot *slot = strut_slot_of(top, keys[i].key);
-    bool given = slot->state != STRUT_ABSENT && slot->key; /* a misspelt one has no key */
-    if (!given || keys[i].of >> study->compute & 1u) continue;
-    strut_report_error(r->reader, slot->key->place, "'%s' has no meaning with 'compute: %s'",
-                       slot->key->text, word);
-  }
 }
 
 static void read_rest(strut_study_reader *r, strut_fields *top) {
@@ -325,8 +286,7 @@ static void read_rest(strut_study_reader *r, strut_fields *top) {
   }
   read_path(r, strut_slot_of(top, STRUT_KEY_STUDY_PATH));
   read_form(r, strut_slot_of(top, STRUT_KEY_STUDY_FORM));
-  read_limit(r, strut_slot_of(top, STRUT_KEY_STUDY_LIMIT));
-  check_computed(r, top);
+  read_limit(r, top, strut_slot_of(top, STRUT_KEY_STUDY_LIMIT));
   read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
 

@@ -6,6 +6,7 @@
 #define STRUT_PARSER_STUDY_STUDY_READER_H
 
 #include "engine/scene/sample.h"
+#include "parser/read/overlay.h"
 #include "parser/read/reader.h"
 #include "parser/study/read_study.h"
 
@@ -107,9 +108,6 @@ void strut_study_read_follow(strut_study_reader *r, strut_fields *top);
 /** Reports those of the keys that are given: the study has `own`, which excludes them. */
 void strut_study_exclude(strut_study_reader *r, strut_fields *top, const strut_slot *own,
                          const int *keys, size_t count);
-
-/** Set in the line of every place of the study's text within the tree of the model. */
-#define STRUT_OVERLAY_LINE ((uint32_t)1 << 30)
 
 /** The place, marked as one of the study's text. */
 strut_place strut_overlay_place(strut_place place);

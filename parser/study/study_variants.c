@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "engine/base/number_text.h"
-#include "parser/read/overlay.h"
 #include "parser/read/used_files.h"
 #include "parser/study/read_study.h"
 #include "parser/study/study_reader.h"

@@ -96,7 +96,9 @@ tells 4 "holds no run" view empty -o page.html
 cp -r swing still
 rm still/trajectory.h5
 tells 4 "no recorded motion" view still -o page.html
-echo nonsense >still/trajectory.h5
+mkfifo still/trajectory.h5
+tells 4 "'still/trajectory.h5' is not a regular file" view still -o page.html
+rm still/trajectory.h5; echo nonsense >still/trajectory.h5
 expect 4 view still -o page.html
 cp -r swing damaged
 echo '{"status": ' >damaged/summary.json

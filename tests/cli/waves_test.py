@@ -163,7 +163,7 @@ def refusals():
         check(message in said, f"expected '{message}', found {said}")
 
     pair = "nodes: {a: {position: [0, 0], mass: 1}, b: [1, 0]}\nmembers: {m: {nodes: [a, b], stiffness: 1, kind: bar}}\n"
-    refuse(pair, 2, "waves need 'lattice'")
+    refuse(pair, 1, "--wave needs 'lattice'")
     refuse("lattice: [1, 0]\n" + pair, 2, "a lattice has one or two steps")
     refuse("lattice: [[0, 0]]\n" + pair, 2, "must lead somewhere")
     refuse("lattice: [[1, 0], [2, 0]]\n" + pair, 2, "parallel")

@@ -145,30 +145,24 @@ TEST(named_load) {
   }
 }
 
-TEST(refusals) {
+static void refuse(const strut_setup *setup, const char *load, const char *message) {
   strut_path path = {0};
   strut_error error = {0};
-  strut_path_options options = {.load = "push"};
+  strut_path_options options = {.load = load};
+  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
+  assert_int_equal(strut_path_follow(model, &setup->experiment, &options, &path, &error),
+                   STRUT_USAGE);
+  assert_non_null(strstr(error.message, message));
+  strut_path_free(&path);
+}
+
+TEST(refusals) {
   OWN(strut_setup) setup = arch(1, 0.3, 1000);
-  strut_model *model = motion_compile(&setup.scene);
-  assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
-                   STRUT_USAGE);
-  assert_string_equal(error.message, "unknown load 'push'; the scene's loads are: l1");
-  strut_path_free(&path);
-  strut_model_free(model);
-  setup.scene.loads[0].node = 0; /* a support */
-  model = motion_compile(&setup.scene);
-  options.load = NULL;
-  assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
-                   STRUT_USAGE);
-  strut_path_free(&path);
-  strut_model_free(model);
+  refuse(&setup, "push", "unknown load 'push'; the scene's loads are: l1");
+  setup.scene.nodes[setup.scene.loads[0].node].fixed[1] = true; /* the load is vertical */
+  refuse(&setup, NULL, "acts on nothing that can move");
   setup.scene.load_count = 0;
-  model = motion_compile(&setup.scene);
-  assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
-                   STRUT_USAGE);
-  strut_path_free(&path);
-  strut_model_free(model);
+  refuse(&setup, NULL, "no constant load");
 }
 
 TEST(memory) {

@@ -2,6 +2,7 @@
 /* Waveforms against their closed forms, and their rates against differences. */
 #include "engine/scene/signal.h"
 #include "engine/forces/signal_vector.h"
+#include "engine/scene/signal_motion.h"
 #include "tests/support/test.h"
 
 static const double PI = 3.14159265358979323846;
@@ -110,9 +111,12 @@ TEST(ramps_hold_their_end) {
 }
 
 TEST(tables) {
-  static const double time[] = {1, 2, 4, 4.5}, value[] = {10, 20, -20, 0};
+  static const double time[] = {1, 2, 4, 4.5, 4.5}, value[] = {10, 20, -20, 0, 5};
   strut_signal s = strut_signal_default(STRUT_TABLE);
-  s.time = time, s.value = value, s.point_count = 4;
+  s.time = time, s.value = value, s.point_count = 5;
+  assert_true(value_of(&s, 0, 4.5) == 5.0 && value_of(&s, 0, 4.25) == -10.0);
+  assert_true(strut_signal_value_jumps(&s, 0, 9, &(double){0}));
+  s.point_count = 4;
   for (int i = 0; i < 4; i++) assert_true(value_of(&s, 0, time[i]) == value[i]);
   assert_true(value_of(&s, 0, -5) == 10.0 && rate_of(&s, 0, -5) == 0.0);
   assert_true(value_of(&s, 0, 1.5) == 15.0 && rate_of(&s, 0, 1) == 10.0);

@@ -130,7 +130,7 @@ double strut_accuracy_signal_time(const strut_accuracy *a, bool stops) {
     if (s->kind != STRUT_CONSTANT && s->stop > s->start)
       shortest = fmin(shortest, s->stop - s->start);
     for (size_t k = 1; s->kind == STRUT_TABLE && k < s->point_count; k++)
-      shortest = fmin(shortest, s->time[k] - s->time[k - 1]);
+      if (s->time[k] > s->time[k - 1]) shortest = fmin(shortest, s->time[k] - s->time[k - 1]);
   }
   return shortest;
 }

@@ -274,12 +274,14 @@ strut_status strut_form_nearest(strut_former *f, const uint8_t *held, bool stand
                       "the densities alone determine no shape, and the structure is too large to "
                       "adjust them: %zu coordinates, at most %d",
                       coordinates, MOST_COORDINATES);
+  const double *origin = f->scene->nodes[0].position; /* from the scene's, digits would be lost */
+  for (size_t i = 0; i < coordinates; i++) x[i] -= origin[i % 2];
   memcpy(x_given, x, coordinates * sizeof *x);
   if (standing && !take_turns(f, x_given, x, q)) return strut_no_memory(error, "");
   if (standing) lay_down(f->scene, held, x_given, x);
   for (size_t i = 0; i < coordinates; i++) row_of[i] = held[i] ? -1 : p.n++;
   for (size_t i = 0; i < coordinates; i++)
-    if (held[i]) x[i] = f->scene->nodes[i / 2].position[i % 2];
+    if (held[i]) x[i] = f->scene->nodes[i / 2].position[i % 2] - origin[i % 2];
   memcpy(x_given, x, coordinates * sizeof *x);
   memcpy(q_given, q, members * sizeof *q);
   for (size_t j = 0; j < members; j++) p.unit = fmax(p.unit, fabs(q[j]));
@@ -288,6 +290,7 @@ strut_status strut_form_nearest(strut_former *f, const uint8_t *held, bool stand
   p.step = gsl_vector_alloc((size_t)p.n + members);
   strut_status status =
       p.slope && p.force && p.step && p.unit > 0 ? solve(&p, error) : strut_no_memory(error, "");
+  for (size_t i = 0; i < coordinates; i++) x[i] += origin[i % 2];
   gsl_matrix_free(p.slope);
   gsl_vector_free(p.force);
   gsl_vector_free(p.step);

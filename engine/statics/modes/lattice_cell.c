@@ -47,12 +47,12 @@ static strut_status find_owner(strut_lattice_cell *cell, int32_t i, strut_error 
       continue;
     if (steps[0] == 0 && steps[1] == 0) continue; /* two nodes in one place */
     if (cell->owner[i] != i)
-      return strut_fail(error, STRUT_BAD_SCENE,
-                        "node '%s' lies whole steps of the lattice from both '%s' and '%s', which "
-                        "are drawn in one place, so it is not clear whose image it is; draw one of "
-                        "them elsewhere in the cell",
-                        scene->nodes[i].name, scene->nodes[cell->owner[i]].name,
-                        scene->nodes[k].name);
+      return strut_fail(
+          error, STRUT_BAD_SCENE,
+          "--wave: node '%s' lies whole steps of the lattice from both '%s' and '%s', which "
+          "are drawn in one place, so it is not clear whose image it is; draw one of "
+          "them elsewhere in the cell",
+          scene->nodes[i].name, scene->nodes[cell->owner[i]].name, scene->nodes[k].name);
     cell->owner[i] = k;
     memcpy(cell->shift[i], steps, sizeof steps);
     cell->images++;
@@ -69,7 +69,7 @@ static strut_status check_steps(const strut_lattice_cell *cell, strut_error *err
     if (!used)
       return strut_fail(
           error, STRUT_BAD_SCENE,
-          "no node lies a step [%g m, %g m] of the lattice from another one, so "
+          "--wave: no node lies a step [%g m, %g m] of the lattice from another one, so "
           "nothing ties the cell to the next; draw the nodes of the next cell at which "
           "members of this one end",
           scene->lattice[k][0], scene->lattice[k][1]);
@@ -105,9 +105,9 @@ strut_status strut_lattice_cell_create(const strut_model *model, strut_arena *ar
   };
   if (!cell->owner || !cell->shift || !cell->row || !cell->first) return strut_no_memory(error, "");
   if (model->scene->lattice_count == 0)
-    return strut_fail(error, STRUT_BAD_SCENE,
-                      "waves need 'lattice', the steps by which the structure repeats, such as "
-                      "lattice: [[100 mm, 0]]");
+    return strut_fail(error, STRUT_USAGE,
+                      "--wave needs 'lattice' in the scene, the steps by which the structure "
+                      "repeats, such as lattice: [[100 mm, 0]]");
   strut_status status = STRUT_OK;
   for (int32_t i = 0; i < model->node_count && status == STRUT_OK; i++)
     status = find_owner(cell, i, error);
@@ -115,12 +115,14 @@ strut_status strut_lattice_cell_create(const strut_model *model, strut_arena *ar
   if (status != STRUT_OK) return status;
   number_rows(cell);
   if (cell->n == 0)
-    return strut_fail(error, STRUT_BAD_SCENE, "no node is free to move, so there are no waves");
-  if (cell->n > STRUT_MOST_BANDS)
     return strut_fail(error, STRUT_BAD_SCENE,
-                      "the cell has %d coordinates; waves are computed for at most %d. Choose the "
-                      "smallest part of the structure that repeats",
-                      (int)cell->n, (int)STRUT_MOST_BANDS);
+                      "--wave: no node is free to move, so there are no waves");
+  if (cell->n > STRUT_MOST_BANDS)
+    return strut_fail(
+        error, STRUT_BAD_SCENE,
+        "--wave: the cell has %d coordinates; waves are computed for at most %d. Choose the "
+        "smallest part of the structure that repeats",
+        (int)cell->n, (int)STRUT_MOST_BANDS);
   return STRUT_OK;
 }
 
