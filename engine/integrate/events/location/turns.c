@@ -207,7 +207,7 @@ static double force_at_nothing(const strut_model *model, const strut_state *stat
   there[at[1]] = there[at[0]], there[at[1] + 1] = there[at[0] + 1];
   if (law->member >= 0) {
     force = strut_member_elastic_tension(model, rest, law->member, there) +
-            strut_actuator_force_on_member(model, state, law->member);
+            strut_actuator_force_on(model, state, law->member, -1);
   } else {
     strut_element_pose pose;
     strut_element_evaluate(model, law->element, rest, there, (double)NAN, &pose);
