@@ -159,7 +159,8 @@ static inline const void *strut_result_whole(const strut_result_object *of) {
     .kind = STRUT_VALUE_MAP, .count = (size_t)(COUNT), .name = (NAME), .value = (VALUE)            \
   }
 #define STRUT_VALUE_AS_PARAMETERS                                                                  \
-  STRUT_VALUE_AS_MAP(of->scene->parameter_count, strut_name_of_parameter, strut_value_of_parameter)
+  STRUT_VALUE_AS_MAP(of->scene ? of->scene->parameter_count : 0, strut_name_of_parameter,          \
+                     strut_value_of_parameter)
 #define STRUT_VALUE_AS_WORDS(WRITE)                                                                \
   (strut_value) { .kind = STRUT_VALUE_WORDS, .write = (WRITE) }
 /** Of a function that returns the value. */
