@@ -99,8 +99,8 @@ void strut_csv_add_cells(strut_buffer *csv, const strut_report_value *cells, siz
   }
 }
 
-/* What cJSON printed, which is released, with a newline in a block of strut_allocate; NULL for NULL. */
-static char *take_printed(char *printed) {
+char *strut_json_print(const cJSON *tree) {
+  char *printed = cJSON_Print(tree);
   if (!printed) return NULL;
   size_t length = strlen(printed);
   char *text = strut_allocate(length + 2, 1);
@@ -112,15 +112,9 @@ static char *take_printed(char *printed) {
   return text;
 }
 
-char *strut_json_print(const cJSON *tree) { return take_printed(cJSON_Print(tree)); }
-
-static char *end(strut_json *json, char *(*print)(const cJSON *)) {
-  char *text = json->failed ? NULL : take_printed(print(json->root));
+char *strut_json_end(strut_json *json) {
+  char *text = json->failed ? NULL : strut_json_print(json->root);
   cJSON_Delete(json->root);
   *json = (strut_json){NULL, true};
   return text;
 }
-
-char *strut_json_end(strut_json *json) { return end(json, cJSON_Print); }
-
-char *strut_json_end_line(strut_json *json) { return end(json, cJSON_PrintUnformatted); }

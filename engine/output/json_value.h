@@ -62,7 +62,5 @@ STRUT_API struct cJSON *strut_json_array(strut_json *json, struct cJSON *to, con
 STRUT_API char *strut_json_print(const struct cJSON *tree);
 /** Frees the tree; its text with a final newline in a block of strut_allocate, or NULL. */
 STRUT_API char *strut_json_end(strut_json *json);
-/** The same on one line. */
-STRUT_API char *strut_json_end_line(strut_json *json);
 
 #endif
