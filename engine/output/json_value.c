@@ -9,7 +9,6 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
-#include "engine/output/buffer.h"
 
 strut_json strut_json_begin(void) {
   cJSON *root = cJSON_CreateObject();
@@ -67,36 +66,6 @@ cJSON *strut_json_object(strut_json *json, cJSON *to, const char *key) {
 
 cJSON *strut_json_array(strut_json *json, cJSON *to, const char *key) {
   return add(json, to, key, cJSON_CreateArray());
-}
-
-/* ---- rows ---- */
-
-void strut_json_cells(strut_json *json, cJSON *to, const strut_report_value *cells, size_t count) {
-  for (size_t i = 0; i < count; i++)
-    if (cells[i].text)
-      strut_json_text(json, to, cells[i].key, cells[i].text);
-    else
-      strut_json_number(json, to, cells[i].key, cells[i].number);
-}
-
-void strut_csv_add_columns(strut_buffer *csv, const strut_report_value *cells, size_t count) {
-  for (size_t i = 0; i < count; i++) {
-    if (!cells[i].column) continue;
-    strut_buffer_add(csv, ",");
-    for (const char *c = cells[i].key; *c; c++) strut_buffer_add(csv, "%c", *c == '_' ? ' ' : *c);
-    if (strcmp(cells[i].unit, "1") != 0) strut_buffer_add(csv, " [%s]", cells[i].unit);
-  }
-}
-
-void strut_csv_add_cells(strut_buffer *csv, const strut_report_value *cells, size_t count) {
-  for (size_t i = 0; i < count; i++) {
-    if (!cells[i].column) continue;
-    strut_buffer_add(csv, ",");
-    if (cells[i].text)
-      strut_csv_add_text(csv, "%s", cells[i].text);
-    else
-      strut_csv_add_number(csv, cells[i].number);
-  }
 }
 
 char *strut_json_print(const cJSON *tree) {

@@ -177,6 +177,8 @@ static inline const void *strut_result_whole(const strut_result_object *of) {
 #define STRUT_VALUE_AS_BY(CALL) (CALL)
 #define STRUT_VALUE_AS_IF(THERE, VALUE)                                                            \
   (THERE) ? STRUT_VALUE_AS_##VALUE : (strut_value) { 0 }
+/** A number, where it is above 0. */
+#define STRUT_VALUE_AS_POSITIVE(VALUE) STRUT_VALUE_AS_IF((VALUE) > 0.0, NUMBER(VALUE))
 /** null where it is below 0. */
 #define STRUT_VALUE_AS_INDEX(INDEX) STRUT_VALUE_AS_KNOWN((INDEX) >= 0, COUNT(INDEX))
 /** null where it is not known. */
