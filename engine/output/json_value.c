@@ -9,7 +9,6 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
-#include "engine/output/buffer.h"
 
 strut_json strut_json_begin(void) {
   cJSON *root = cJSON_CreateObject();
@@ -69,38 +68,8 @@ cJSON *strut_json_array(strut_json *json, cJSON *to, const char *key) {
   return add(json, to, key, cJSON_CreateArray());
 }
 
-/* ---- rows ---- */
-
-void strut_json_cells(strut_json *json, cJSON *to, const strut_report_value *cells, size_t count) {
-  for (size_t i = 0; i < count; i++)
-    if (cells[i].text)
-      strut_json_text(json, to, cells[i].key, cells[i].text);
-    else
-      strut_json_number(json, to, cells[i].key, cells[i].number);
-}
-
-void strut_csv_add_columns(strut_buffer *csv, const strut_report_value *cells, size_t count) {
-  for (size_t i = 0; i < count; i++) {
-    if (!cells[i].column) continue;
-    strut_buffer_add(csv, ",");
-    for (const char *c = cells[i].key; *c; c++) strut_buffer_add(csv, "%c", *c == '_' ? ' ' : *c);
-    if (strcmp(cells[i].unit, "1") != 0) strut_buffer_add(csv, " [%s]", cells[i].unit);
-  }
-}
-
-void strut_csv_add_cells(strut_buffer *csv, const strut_report_value *cells, size_t count) {
-  for (size_t i = 0; i < count; i++) {
-    if (!cells[i].column) continue;
-    strut_buffer_add(csv, ",");
-    if (cells[i].text)
-      strut_csv_add_text(csv, "%s", cells[i].text);
-    else
-      strut_csv_add_number(csv, cells[i].number);
-  }
-}
-
-/* What cJSON printed, which is released, with a newline in a block of strut_allocate; NULL for NULL. */
-static char *take_printed(char *printed) {
+char *strut_json_print(const cJSON *tree) {
+  char *printed = cJSON_Print(tree);
   if (!printed) return NULL;
   size_t length = strlen(printed);
   char *text = strut_allocate(length + 2, 1);
@@ -112,15 +81,9 @@ static char *take_printed(char *printed) {
   return text;
 }
 
-char *strut_json_print(const cJSON *tree) { return take_printed(cJSON_Print(tree)); }
-
-static char *end(strut_json *json, char *(*print)(const cJSON *)) {
-  char *text = json->failed ? NULL : take_printed(print(json->root));
+char *strut_json_end(strut_json *json) {
+  char *text = json->failed ? NULL : strut_json_print(json->root);
   cJSON_Delete(json->root);
   *json = (strut_json){NULL, true};
   return text;
 }
-
-char *strut_json_end(strut_json *json) { return end(json, cJSON_Print); }
-
-char *strut_json_end_line(strut_json *json) { return end(json, cJSON_PrintUnformatted); }

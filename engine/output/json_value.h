@@ -14,7 +14,6 @@
 #include "engine/base/status.h"
 
 struct cJSON;
-struct strut_buffer;
 
 typedef struct strut_json {
   struct cJSON *root; /* an object; owned */
@@ -36,25 +35,6 @@ STRUT_API void strut_json_raw(strut_json *json, struct cJSON *to, const char *ke
 /** An array of numbers. */
 STRUT_API void strut_json_numbers(strut_json *json, struct cJSON *to, const char *key,
                                   const double *values, size_t count);
-/**
- * A value of a row by its name, from which JSON, CSV and a table come; `text` instead of a number where it is
- * one.
- */
-typedef struct strut_report_value {
-  const char *key, *unit; /* "damping_ratio", "1"; the column of a CSV is "damping ratio" */
-  double number;
-  const char *text;
-  bool column; /* the CSV has it, too */
-} strut_report_value;
-/** Adds the cells as members of an object. */
-STRUT_API void strut_json_cells(strut_json *json, struct cJSON *to, const strut_report_value *cells,
-                                size_t count);
-/** Appends the names of their columns, or their values, as cells of CSV, each after a comma. */
-STRUT_API void strut_csv_add_columns(struct strut_buffer *csv, const strut_report_value *cells,
-                                     size_t count);
-STRUT_API void strut_csv_add_cells(struct strut_buffer *csv, const strut_report_value *cells,
-                                   size_t count);
-
 /** An empty object or array in `to`, to be filled; belongs to json. */
 STRUT_API struct cJSON *strut_json_object(strut_json *json, struct cJSON *to, const char *key);
 STRUT_API struct cJSON *strut_json_array(strut_json *json, struct cJSON *to, const char *key);
@@ -62,7 +42,5 @@ STRUT_API struct cJSON *strut_json_array(strut_json *json, struct cJSON *to, con
 STRUT_API char *strut_json_print(const struct cJSON *tree);
 /** Frees the tree; its text with a final newline in a block of strut_allocate, or NULL. */
 STRUT_API char *strut_json_end(strut_json *json);
-/** The same on one line. */
-STRUT_API char *strut_json_end_line(strut_json *json);
 
 #endif

@@ -47,14 +47,13 @@ static void put_things(strut_json *json, struct cJSON *to, const char *key,
 
 static void put_numbers(strut_json *json, struct cJSON *to, const char *key,
                         const strut_value *value) {
-  if (!value->columns) {
-    strut_json_numbers(json, to, key, value->items, value->count);
-    return;
-  }
   struct cJSON *list = strut_json_array(json, to, key);
   for (size_t i = 0; i < value->count; i++) {
-    const void *row = (const char *)value->items + i * value->size;
-    strut_json_numbers(json, list, NULL, row, value->columns);
+    const void *item = (const char *)value->items + i * value->size;
+    if (value->columns)
+      strut_json_numbers(json, list, NULL, item, value->columns);
+    else
+      strut_json_number(json, list, NULL, *(const double *)item);
   }
 }
 
@@ -80,7 +79,7 @@ static void put_names(strut_json *json, struct cJSON *to, const char *key,
   }
 }
 
-static void put_map(strut_json *json, struct cJSON *to, const char *key,
+static void put_map(strut_json *json, struct cJSON *to, const strut_value_row *row,
                     const strut_result_object *of, const strut_value *value);
 
 static void put(strut_json *json, struct cJSON *to, const strut_value_row *row,
@@ -101,7 +100,7 @@ static void put(strut_json *json, struct cJSON *to, const strut_value_row *row,
     case STRUT_VALUE_NUMBERS: put_numbers(json, to, row->key, value); break;
     case STRUT_VALUE_NAMES: put_names(json, to, row->key, of, value); break;
     case STRUT_VALUE_THINGS: put_things(json, to, row->key, of, value); break;
-    case STRUT_VALUE_MAP: put_map(json, to, row->key, of, value); break;
+    case STRUT_VALUE_MAP: put_map(json, to, row, of, value); break;
     case STRUT_VALUE_LIST: put_list(json, to, row, of, value); break;
     case STRUT_VALUE_PART: {
       strut_result_object part = {value->items, of, of->scene, 0};
@@ -111,13 +110,15 @@ static void put(strut_json *json, struct cJSON *to, const strut_value_row *row,
   }
 }
 
-static void put_map(strut_json *json, struct cJSON *to, const char *key,
+static void put_map(strut_json *json, struct cJSON *to, const strut_value_row *row,
                     const strut_result_object *of, const strut_value *value) {
-  struct cJSON *map = strut_json_object(json, to, key);
+  struct cJSON *map = !value->name ? strut_json_array(json, to, row->key)
+                      : row->key   ? strut_json_object(json, to, row->key)
+                                   : to;
   for (size_t i = 0; i < value->count; i++) {
-    strut_value_row row = {.key = value->name(of, i)};
+    strut_value_row entry = {.key = value->name ? value->name(of, i) : NULL, .rows = row->rows};
     strut_value item = value->value(of, i);
-    put(json, map, &row, of, &item);
+    put(json, map, &entry, of, &item);
   }
 }
 
@@ -126,7 +127,9 @@ void strut_json_values(strut_json *json, struct cJSON *to, const strut_value_row
   strut_value value[STRUT_MOST_VALUES];
   assert(rows->count <= STRUT_MOST_VALUES);
   rows->fill(of, value);
-  for (size_t i = 0; i < rows->count; i++) put(json, to, &rows->row[i], of, &value[i]);
+  for (size_t i = 0; i < rows->count; i++)
+    if (rows->row[i].key || value[i].kind >= STRUT_VALUE_MAP)
+      put(json, to, &rows->row[i], of, &value[i]);
 }
 
 char *strut_values_json(const strut_value_rows *rows, const void *result,
@@ -140,11 +143,11 @@ char *strut_values_json(const strut_value_rows *rows, const void *result,
 
 /* ---- CSV ---- */
 
-/* A line under way: names of columns or their values, and what stands before the next cell. */
+/* A line under way: names of columns or their values, and what stands before the next cell and name. */
 typedef struct line {
   strut_buffer *csv;
   bool names;
-  const char *before;
+  const char *before, *part;
 } line;
 
 static void next_cell(line *at) {
@@ -158,7 +161,7 @@ static void add_cell(line *at, const strut_value_row *row, const strut_value *va
   const char *text;
   next_cell(at);
   if (at->names)
-    strut_buffer_add(at->csv, "%s", row->column[0]);
+    strut_buffer_add(at->csv, "%s%s", at->part, row->column[0]);
   else if (value->kind == STRUT_VALUE_NUMBER)
     strut_csv_add_number(at->csv, value->number);
   else if (value->kind == STRUT_VALUE_TEXT || value->kind == STRUT_VALUE_WORDS)
@@ -191,15 +194,28 @@ static void add_things(line *at, const strut_value_row *row, const strut_value *
   }
 }
 
+static void add_columns(line *at, const strut_value_rows *rows, const strut_result_object *of);
+
+static void add_part(line *at, const strut_value_row *row, const strut_result_object *of,
+                     const strut_value *value) {
+  strut_result_object part = {value->items, of, of->scene, 0};
+  const char *outer = at->part;
+  if (row->column[0]) at->part = row->column[0];
+  add_columns(at, row->rows, value->items == of->at ? of : &part);
+  at->part = outer;
+}
+
 static void add_columns(line *at, const strut_value_rows *rows, const strut_result_object *of) {
   strut_value values[STRUT_MOST_VALUES];
   rows->fill(of, values);
   for (size_t i = 0; i < rows->count; i++) {
     const strut_value_row *row = &rows->row[i];
     const strut_value *value = &values[i];
-    if (value->kind == STRUT_VALUE_PART && !row->key) add_columns(at, row->rows, of);
-    if (!row->column[0] || value->kind == STRUT_VALUE_ABSENT) continue;
-    if (value->kind == STRUT_VALUE_THINGS)
+    if (value->kind == STRUT_VALUE_PART && (!row->key || row->column[0]))
+      add_part(at, row, of, value);
+    else if (!row->column[0] || value->kind == STRUT_VALUE_ABSENT)
+      continue;
+    else if (value->kind == STRUT_VALUE_THINGS)
       add_things(at, row, value, of);
     else if (value->kind == STRUT_VALUE_NUMBERS)
       add_numbers(at, row, value);
@@ -210,12 +226,12 @@ static void add_columns(line *at, const strut_value_rows *rows, const strut_resu
 
 void strut_csv_add_names(strut_buffer *csv, const strut_value_rows *rows,
                          const strut_result_object *of) {
-  add_columns(&(line){csv, true, ","}, rows, of);
+  add_columns(&(line){csv, true, ",", ""}, rows, of);
 }
 
 void strut_csv_add_values(strut_buffer *csv, const strut_value_rows *rows,
                           const strut_result_object *of) {
-  add_columns(&(line){csv, false, ","}, rows, of);
+  add_columns(&(line){csv, false, ",", ""}, rows, of);
 }
 
 char *strut_values_csv(const strut_value_rows *rows, const char *key, const char *index,
@@ -228,7 +244,7 @@ char *strut_values_csv(const strut_value_rows *rows, const char *key, const char
   while (strcmp(rows->row[of].key, key) != 0) of++;
   for (size_t i = 0; i <= values[of].count; i++) { /* the first line has the names */
     size_t at = i ? i - 1 : 0;
-    line cells = {&csv, !i, ""};
+    line cells = {&csv, !i, "", ""};
     const char *item = (const char *)values[of].items + at * values[of].size;
     if (index) next_cell(&cells);
     if (index && !i) strut_buffer_add(&csv, "%s", index);

@@ -15,7 +15,7 @@ const strut_value_row *strut_value_at(const strut_value_rows *rows, const char *
   if (of) rows->fill(of, values);
   for (size_t i = 0; i < rows->count; i++) {
     const strut_value_row *row = &rows->row[i];
-    if (strncmp(row->key, path, length) != 0 || row->key[length]) continue;
+    if (!row->key || strncmp(row->key, path, length) != 0 || row->key[length]) continue;
     if (of) *value = values[i];
     if (!path[length]) return row;
     strut_result_object part = {of ? values[i].items : NULL, of, of ? of->scene : NULL, 0};

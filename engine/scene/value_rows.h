@@ -27,7 +27,7 @@ typedef enum strut_value_kind {
   STRUT_VALUE_NUMBERS, /* an array of numbers, or of arrays of `columns` of them; NULL: null */
   STRUT_VALUE_NAMES,   /* of things */
   STRUT_VALUE_THINGS,  /* a number for each of an owner's things, of nodes two */
-  STRUT_VALUE_MAP,     /* a value of any kind under each name */
+  STRUT_VALUE_MAP,     /* a value of any kind under each name; an array of them without names */
   STRUT_VALUE_PART, /* a struct with rows of its own; without a key they stand among the others */
   STRUT_VALUE_LIST  /* structs with rows of their own; under names where it has some; NULL: null */
 } strut_value_kind;
@@ -73,9 +73,11 @@ struct strut_value {
 typedef struct strut_value_rows strut_value_rows;
 
 typedef struct strut_value_row {
-  const char *key, *unit, *what; /* in files; SI, "" for none; a phrase for readers */
-  const strut_value_rows *rows;  /* of a part, of a list */
-  /* Of a CSV, and of a printed table, of nodes along x and y; NULL: not in it. Things: behind the name. */
+  /* In files, NULL: only in a CSV, or a map or part without one; SI, "" for none; a phrase for readers. */
+  const char *key, *unit, *what;
+  const strut_value_rows *rows; /* of a part, of a list */
+  /* Of a CSV, and of a printed table, of nodes along x and y; NULL: not in it. Things: behind the name; before
+     the columns of a part. */
   const char *column[2], *label[2];
 } strut_value_row;
 
@@ -122,8 +124,12 @@ static inline const void *strut_result_whole(const strut_result_object *of) {
   (strut_value) { .kind = STRUT_VALUE_FLAG, .integer = (FLAG), .number = (FLAG) ? 1.0 : 0.0 }
 #define STRUT_VALUE_AS_TEXT(TEXT)                                                                  \
   (strut_value) { .kind = STRUT_VALUE_TEXT, .text = (TEXT) }
-#define STRUT_VALUE_AS_NUMBERS(ITEMS, COUNT)                                                       \
-  (strut_value) { .kind = STRUT_VALUE_NUMBERS, .items = (ITEMS), .count = (size_t)(COUNT) }
+#define STRUT_VALUE_AS_NUMBERS(ITEMS, COUNT) STRUT_VALUE_AS_OF_STRUCTS(ITEMS, COUNT, sizeof(double))
+/** A number of each of several structs in a row, from that of the first on. */
+#define STRUT_VALUE_AS_OF_STRUCTS(FIRST, COUNT, SIZE)                                              \
+  (strut_value) {                                                                                  \
+    .kind = STRUT_VALUE_NUMBERS, .items = (FIRST), .count = (size_t)(COUNT), .size = (SIZE)        \
+  }
 /** Arrays in an array: the first COLUMNS of each ITEMS[i]. */
 #define STRUT_VALUE_AS_TABLE(ITEMS, COUNT, COLUMNS)                                                \
   (strut_value) {                                                                                  \
@@ -154,18 +160,27 @@ static inline const void *strut_result_whole(const strut_result_object *of) {
     .kind = STRUT_VALUE_LIST, .items = (ITEMS), .count = (size_t)(COUNT), .size = sizeof *(ITEMS), \
     .name = (NAME)                                                                                 \
   }
+/** The same struct with each index. */
+#define STRUT_VALUE_AS_TIMES(COUNT)                                                                \
+  (strut_value) { .kind = STRUT_VALUE_LIST, .items = of->at, .count = (size_t)(COUNT) }
+#define STRUT_VALUE_AS_ARRAY(COUNT, VALUE) STRUT_VALUE_AS_MAP(COUNT, NULL, VALUE)
 #define STRUT_VALUE_AS_MAP(COUNT, NAME, VALUE)                                                     \
   (strut_value) {                                                                                  \
     .kind = STRUT_VALUE_MAP, .count = (size_t)(COUNT), .name = (NAME), .value = (VALUE)            \
   }
 #define STRUT_VALUE_AS_PARAMETERS                                                                  \
-  STRUT_VALUE_AS_MAP(of->scene->parameter_count, strut_name_of_parameter, strut_value_of_parameter)
+  STRUT_VALUE_AS_MAP(of->scene ? of->scene->parameter_count : 0, strut_name_of_parameter,          \
+                     strut_value_of_parameter)
 #define STRUT_VALUE_AS_WORDS(WRITE)                                                                \
   (strut_value) { .kind = STRUT_VALUE_WORDS, .write = (WRITE) }
 /** Of a function that returns the value. */
 #define STRUT_VALUE_AS_BY(CALL) (CALL)
 #define STRUT_VALUE_AS_IF(THERE, VALUE)                                                            \
   (THERE) ? STRUT_VALUE_AS_##VALUE : (strut_value) { 0 }
+/** A number, where it is above 0. */
+#define STRUT_VALUE_AS_POSITIVE(VALUE) STRUT_VALUE_AS_IF((VALUE) > 0.0, NUMBER(VALUE))
+/** null where it is below 0. */
+#define STRUT_VALUE_AS_INDEX(INDEX) STRUT_VALUE_AS_KNOWN((INDEX) >= 0, COUNT(INDEX))
 /** null where it is not known. */
 #define STRUT_VALUE_AS_KNOWN(KNOWN, VALUE)                                                         \
   (KNOWN) ? STRUT_VALUE_AS_##VALUE : (strut_value) { .kind = STRUT_VALUE_TEXT }

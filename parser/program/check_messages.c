@@ -2,67 +2,71 @@
 #include "parser/program/check_messages.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "engine/base/memory.h"
+#include "engine/integrate/integrator.h"
 #include "engine/output/file.h"
+#include "engine/run/measure/monitors.h"
 #include "parser/program/streams.h"
 #include "parser/program/sweep.h"
 #include "parser/read/reader.h"
 #include "parser/yaml/document.h"
 
-static void add_place(strut_json *json, struct cJSON *row, const char *file, strut_place place) {
-  strut_json_text(json, row, "file", file);
-  strut_json_integer(json, row, "line", place.line ? place.line : 1);
-  strut_json_integer(json, row, "column", place.line && place.column ? place.column : 1);
-  strut_json_integer(json, row, "length", place.line ? place.length : 0);
-}
+#define LOCATED(X)                                                                                 \
+  X("file", "", TEXT(at->file), "that it is about")                                                \
+  X("line", "", COUNT(at->place.line ? at->place.line : 1), "from 1")                              \
+  X("column", "", COUNT(at->place.line && at->place.column ? at->place.column : 1),                \
+    "code point, from 1")                                                                          \
+  X("length", "", COUNT(at->place.line ? at->place.length : 0), "code points; 0: of the file")     \
+  X("message", "", TEXT(at->text), "one sentence")
+#define MESSAGE(X)                                                                                 \
+  LOCATED(X)                                                                                       \
+  X("severity", "", TEXT(m->severity), "error, warning or note")                                   \
+  X("hint", "", TEXT(m->hint), "a suggestion")                                                     \
+  X("notes", "", LIST(m->note, m->note_count), "what else there is to say, and where",             \
+    .rows = &note_values)
+STRUT_VALUES_HERE(note_values, LOCATED, const strut_located *at = of->at)
+STRUT_VALUES(strut_message_values, MESSAGE, const strut_message *m = of->at;
+             const strut_located *at = &m->at)
 
-/* A suggestion at the end of a message is a hint of its own. */
-static struct cJSON *add_row(strut_json *json, struct cJSON *to, const char *file,
-                             strut_place place, const char *severity, const char *message) {
-  char text[1000];
-  struct cJSON *row = strut_json_object(json, to, NULL);
+/* A suggestion at the end of a message is a hint of its own. NULL: memory was out. */
+static strut_message *add(strut_messages *to, const char *file, strut_place place,
+                          const char *severity, const char *message) {
   const char *hint = strstr(message, "; did you mean ");
   size_t length = hint ? (size_t)(hint - message) : strlen(message);
-  if (length >= sizeof text) length = sizeof text - 1;
-  memcpy(text, message, length);
-  text[length] = '\0';
-  add_place(json, row, file, place);
-  strut_json_text(json, row, "severity", severity);
-  strut_json_text(json, row, "message", text);
-  strut_json_text(json, row, "hint", hint ? hint + 2 : NULL);
-  return row;
+  const char *text = strut_arena_text(&to->arena, message, length);
+  strut_message *list = strut_reallocate(to->list, to->count + 1, sizeof *list);
+  to->failed = to->failed || !text || !list;
+  if (!list) return NULL;
+  to->list = list;
+  list[to->count] =
+      (strut_message){{file, text, place}, severity, hint ? hint + 2 : NULL, 0, {{0}}};
+  return &list[to->count++];
 }
 
-static void add_diagnostic(strut_json *json, struct cJSON *to, const strut_diagnostics *all,
-                           const char *severity, const strut_diagnostic *item) {
-  struct cJSON *row = add_row(json, to, strut_diagnostics_file(all, item->place), item->place,
-                              severity, item->message);
-  struct cJSON *notes = strut_json_array(json, row, "notes");
-  for (size_t k = 0; k < STRUT_MESSAGE_NOTES && item->note[k]; k++) {
-    struct cJSON *note = strut_json_object(json, notes, NULL);
-    strut_place place = item->note_place[k];
-    add_place(json, note, strut_diagnostics_file(all, place), place);
-    strut_json_text(json, note, "message", item->note[k]);
-  }
+static void add_diagnostic(strut_messages *to, const strut_diagnostics *all, const char *severity,
+                           const strut_diagnostic *item) {
+  strut_message *m =
+      add(to, strut_diagnostics_file(all, item->place), item->place, severity, item->message);
+  for (size_t k = 0; m && k < STRUT_MESSAGE_NOTES && item->note[k]; k++)
+    m->note[m->note_count++] = (strut_located){strut_diagnostics_file(all, item->note_place[k]),
+                                               item->note[k], item->note_place[k]};
 }
 
-void strut_add_diagnostics(strut_json *json, struct cJSON *to, strut_diagnostics *diagnostics) {
+void strut_messages_add_diagnostics(strut_messages *to, strut_diagnostics *diagnostics) {
   strut_diagnostics_sort(diagnostics);
   for (size_t i = 0; i < diagnostics->count; i++)
-    add_diagnostic(json, to, diagnostics, "error", &diagnostics->items[i]);
+    add_diagnostic(to, diagnostics, "error", &diagnostics->items[i]);
   for (size_t i = 0; i < diagnostics->note_count; i++)
-    add_diagnostic(json, to, diagnostics, "note", &diagnostics->notes[i]);
+    add_diagnostic(to, diagnostics, "note", &diagnostics->notes[i]);
 }
 
-void strut_add_message(strut_json *json, struct cJSON *to, const char *file, const char *severity,
-                       const char *message) {
+void strut_messages_add_error(strut_messages *to, const char *file, const char *message) {
   const strut_place whole = {.line = 0};
-  strut_json_array(json, add_row(json, to, file, whole, severity, message), "notes");
+  if (*message) add(to, file, whole, "error", message);
 }
 
 static const strut_tree *map_below(const strut_tree *tree, const char *name, strut_tree **key) {
@@ -109,20 +113,43 @@ static strut_place place_of(const strut_finding *finding, const strut_scene *sce
   return key ? key->place : whole;
 }
 
-void strut_add_warnings(strut_json *json, struct cJSON *to, const strut_findings *found,
-                        const strut_scene *scene, const strut_diagnostics *source) {
+void strut_messages_add_warnings(strut_messages *to, const strut_findings *found,
+                                 const strut_scene *scene, const strut_diagnostics *source) {
   strut_document document = {.root = NULL};
   strut_diagnostics again = {0};
   if (!found->count) return;
   strut_diagnostics_source(&again, source->file, source->text, source->length);
-  if (strut_document_read(&document, &again) == STRUT_NO_MEMORY) json->failed = true;
-  for (size_t i = 0; i < found->count; i++) {
-    strut_place place = place_of(&found->items[i], scene, document.root);
-    strut_json_array(
-        json, add_row(json, to, source->file, place, "warning", found->items[i].message), "notes");
-  }
+  if (strut_document_read(&document, &again) == STRUT_NO_MEMORY) to->failed = true;
+  for (size_t i = 0; i < found->count; i++)
+    add(to, source->file, place_of(&found->items[i], scene, document.root), "warning",
+        found->items[i].message);
   strut_document_free(&document);
   strut_diagnostics_free(&again);
+}
+
+void strut_check_bands(const strut_model *model, const strut_experiment *experiment) {
+  const strut_scene *scene = model->scene;
+  const strut_integrator *method = strut_integrator_find(experiment->integrator);
+  double needed = 0.0;
+  int32_t first = -1, more = -1;
+  for (int32_t i = 0; method && i < model->contacts.count; i++) {
+    double here = strut_stick_band_needed(model, method, i, experiment->step);
+    if (!(here * (1.0 - 1e-6) > model->contacts.entry[i].friction.stick_velocity)) continue;
+    if (first < 0) first = i;
+    if (here > needed) needed = here;
+    more++;
+  }
+  if (first < 0) return;
+  const strut_contact_entry *e = &model->contacts.entry[first];
+  char others[40] = "";
+  if (more > 0) snprintf(others, sizeof others, " and %d more", (int)more);
+  fprintf(stderr,
+          "strut: warning: stick_velocity %s of node '%s'%s is narrower than the change of slip in "
+          "one step of %s, so that sticking is a matter of chance; use stick_velocity >= %s, a "
+          "smaller step, or a method with events\n",
+          strut_quantity_of(e->friction.stick_velocity, 5, "m/s").text, scene->nodes[e->node].name,
+          others, strut_quantity_of(experiment->step, 5, "s").text,
+          strut_quantity_of(needed, 5, "m/s").text);
 }
 
 /* Larger files are models. */
@@ -172,21 +199,15 @@ static strut_status refuse_options(const strut_command *command, const strut_arg
 
 static strut_status print_json(strut_sweep_study *study, strut_status status,
                                const strut_error *error) {
-  strut_json json = strut_json_begin();
   strut_study_file *file = &study->file;
-  strut_json_bool(&json, json.root, "valid", status == STRUT_OK);
-  strut_json_text(&json, json.root, "study", status == STRUT_OK ? file->study.name : NULL);
-  strut_json_number(&json, json.root, "points",
-                    status == STRUT_OK ? (double)study->plan.points : (double)NAN);
-  struct cJSON *messages = strut_json_array(&json, json.root, "messages");
-  strut_add_diagnostics(&json, messages, &file->diagnostics);
+  strut_checked checked = {.valid = status == STRUT_OK, .study = study};
+  strut_messages_add_diagnostics(&checked.messages, &file->diagnostics);
   for (size_t i = 0; i < file->table_count; i++)
-    strut_add_diagnostics(&json, messages, &file->tables[i].diagnostics);
+    strut_messages_add_diagnostics(&checked.messages, &file->tables[i].diagnostics);
   if (file->model_diagnostics.file)
-    strut_add_diagnostics(&json, messages, &file->model_diagnostics);
-  if (status != STRUT_OK && error->message[0])
-    strut_add_message(&json, messages, file->path, "error", error->message);
-  return strut_print_block(strut_json_end(&json));
+    strut_messages_add_diagnostics(&checked.messages, &file->model_diagnostics);
+  if (status != STRUT_OK) strut_messages_add_error(&checked.messages, file->path, error->message);
+  return strut_checked_print(&checked);
 }
 
 strut_status strut_check_study(const strut_command *command, const strut_arguments *arguments) {

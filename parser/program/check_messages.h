@@ -3,26 +3,71 @@
 #ifndef STRUT_PARSER_PROGRAM_CHECK_MESSAGES_H
 #define STRUT_PARSER_PROGRAM_CHECK_MESSAGES_H
 
-#include "engine/output/json_value.h"
+#include "engine/run/cost_estimate.h"
 #include "engine/scene/check.h"
+#include "engine/scene/value_rows.h"
 #include "parser/program/options.h"
 #include "parser/yaml/diagnostics.h"
 
-/* Messages with their places as JSON, for editors: `strut check --json`.
- *
- * Each has file, line, column, length (code points, from 1), severity (error, warning, note), message,
- * hint or null, and notes, which have places of their own. Messages about a whole file point to its
- * first character with the length 0.
- */
+/* Messages with their places, for editors: `strut check --json`. */
 
-/** Appends all errors and notes to the array `to`; sorts them. */
-void strut_add_diagnostics(strut_json *json, struct cJSON *to, strut_diagnostics *diagnostics);
-/** Appends one message about a file as a whole. */
-void strut_add_message(strut_json *json, struct cJSON *to, const char *file, const char *severity,
-                       const char *message);
+typedef struct strut_located {
+  const char *file, *text;
+  strut_place place;
+} strut_located;
+
+typedef struct strut_message {
+  strut_located at;
+  const char *severity; /* error, warning, note */
+  const char *hint;     /* or NULL */
+  size_t note_count;
+  strut_located note[STRUT_MESSAGE_NOTES];
+} strut_message;
+
+/** Texts of others, which outlive it, and of its own. Zero-initialise. */
+typedef struct strut_messages {
+  size_t count;
+  strut_message *list; /* (count) */
+  bool failed;         /* memory was out */
+  strut_arena arena;
+} strut_messages;
+
+extern const strut_value_rows strut_message_values;
+
+/** Appends all errors and notes; sorts them. */
+void strut_messages_add_diagnostics(strut_messages *to, strut_diagnostics *diagnostics);
+/** Appends one error about a file as a whole, unless it is empty. */
+void strut_messages_add_error(strut_messages *to, const char *file, const char *message);
 /** Appends the warnings of a scene, at the names of their things in its text. */
-void strut_add_warnings(strut_json *json, struct cJSON *to, const strut_findings *found,
-                        const strut_scene *scene, const strut_diagnostics *source);
+void strut_messages_add_warnings(strut_messages *to, const strut_findings *found,
+                                 const strut_scene *scene, const strut_diagnostics *source);
+
+/** Warns on stderr of stick bands that a step passes over, in one line for all nodes. */
+void strut_check_bands(const strut_model *model, const strut_experiment *experiment);
+
+/* ---- check_values.c: what is found, as data ---- */
+
+struct strut_sweep_study;
+
+typedef struct strut_checked {
+  bool valid;
+  strut_messages messages;
+  size_t unlisted;                       /* messages that were only counted */
+  const struct strut_sweep_study *study; /* NULL: it is a model */
+  /* Of a valid model; else NULL. */
+  const strut_setup *setup;
+  const strut_model *model;
+  const strut_cost_estimate *estimate;
+  double *drawn;        /* (length) the drawn shape */
+  strut_findings found; /* warnings */
+} strut_checked;
+
+extern const strut_value_rows strut_checked_values;
+
+/** Prints it as JSON and releases what it has found. */
+strut_status strut_checked_print(strut_checked *checked);
+/** Prints a table for each kind of things of a model. */
+void strut_checked_print_things(const strut_checked *checked);
 
 /* `strut check STUDY`: studies are edited beside models, and are checked likewise. */
 

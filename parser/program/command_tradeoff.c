@@ -275,10 +275,9 @@ static strut_status print_study(const strut_arguments *arguments, const strut_tr
 }
 
 static strut_status report_study(const strut_arguments *arguments, strut_results *files,
-                                 const strut_plot *plot, const strut_tradeoff *result,
-                                 const operating_points *points) {
+                                 const strut_plot *plot, const strut_tradeoff *result) {
   strut_error error = {0};
-  char *json = strut_tradeoff_json(result, points->list);
+  char *json = strut_tradeoff_json(result);
   if (!json) return strut_print_out_of_memory();
   strut_status status = STRUT_OK;
   if (files->stage) {
@@ -312,7 +311,7 @@ static strut_status run_study(const strut_arguments *arguments, const strut_plot
     strut_progress_end(&progress);
   }
   if (status == STRUT_OK)
-    status = report_study(arguments, &files, plot, &result, points);
+    status = report_study(arguments, &files, plot, &result);
   else
     strut_print_error(&error);
   strut_tradeoff_free(&result);

@@ -10,7 +10,7 @@
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
-#include "engine/output/json_value.h"
+#include "engine/output/result_values.h"
 #include "engine/study/sweep/grid.h"
 
 /* Changes of the objective that count: of a more exact run, and among the best points. */
@@ -21,6 +21,8 @@ typedef struct report {
   const strut_sweep_plan *plan;
   const strut_study_search *search;
   const strut_search_result *result;
+  const strut_sweep_state *state;
+  const char *table; /* its path */
 } report;
 
 static const char *unit_of(const char *unit) { return !unit || strcmp(unit, "1") == 0 ? "" : unit; }
@@ -205,101 +207,105 @@ static void add_front(report *r, const strut_search_front *front) {
 
 /* ---- JSON ---- */
 
-static void add_json_point(strut_json *j, struct cJSON *to, const strut_study_search *search,
-                           const strut_search_point *p) {
-  strut_json_integer(j, to, "point", p->worst);
-  strut_json_number(j, to, "objective", p->objective);
-  if (search->second.text) strut_json_number(j, to, "objective_2", p->second);
-  strut_json_number(j, to, "violation", p->violation);
-  struct cJSON *values = strut_json_object(j, to, "values");
-  for (size_t i = 0; i < search->variable_count; i++) {
-    if (p->values[i].word)
-      strut_json_text(j, values, search->variables[i].name, p->values[i].word);
-    else
-      strut_json_number(j, values, search->variables[i].name, p->values[i].number);
-  }
+static const strut_study_search *search_of(const strut_result_object *of) {
+  return ((const report *)strut_result_whole(of))->search;
 }
 
-static void add_json_outcome(strut_json *j, struct cJSON *list, const strut_study_search *search,
-                             const strut_search_outcome *o) {
-  static const char *const ends[] = {"used up", "converged", "repeats", "enumerated"};
-  struct cJSON *item = strut_json_object(j, list, NULL);
-  strut_json_integer(j, item, "outer", o->outer);
-  strut_json_integer(j, item, "search", o->start + 1);
-  strut_json_integer(j, item, "evaluations", o->evaluations);
-  strut_json_integer(j, item, "repeated", o->repeated);
-  strut_json_integer(j, item, "failed", o->failed);
-  strut_json_integer(j, item, "without_objective", o->valueless);
-  strut_json_integer(j, item, "feasible", o->feasible);
-  strut_json_bool(j, item, "constant", o->constant);
-  strut_json_text(j, item, "end", ends[o->end]);
-  strut_json_numbers(j, item, "top", o->top, o->top_count);
-  if (o->best.evaluation >= 0)
-    add_json_point(j, strut_json_object(j, item, "best"), search, &o->best);
+static const char *variable_name(const strut_result_object *of, size_t i) {
+  return search_of(of)->variables[i].name;
 }
 
-static void add_json_worth(strut_json *j, struct cJSON *list, const report *r,
-                           const strut_search_worth *w) {
-  const strut_search_outcome *o = &r->result->outcomes[w->best];
-  struct cJSON *item = strut_json_object(j, list, NULL);
-  strut_json_integer(j, item, "outer", o->outer);
-  strut_json_integer(j, item, "search", o->start + 1);
-  strut_json_bool(j, item, "feasible", o->best.violation <= 0.0);
-  strut_json_integer(j, item, "agreeing", w->agreeing);
-  add_json_point(j, item, r->search, &o->best);
-  if (w->checked) strut_json_number(j, item, "check", w->check.objective);
-  struct cJSON *bounds = strut_json_object(j, item, "bounds");
-  struct cJSON *neighbours = strut_json_object(j, item, "neighbours");
-  for (size_t i = 0; i < r->search->variable_count; i++) {
-    const char *name = r->search->variables[i].name;
-    if (w->bound[i]) strut_json_text(j, bounds, name, w->bound[i] > 0 ? "upper" : "lower");
-    double near[2];
-    for (int side = 0; side < 2; side++)
-      near[side] =
-          w->neighbours[i][side].there ? w->neighbours[i][side].point.objective : (double)NAN;
-    strut_json_numbers(j, neighbours, name, near, 2);
-  }
+static strut_value variable_value(const strut_result_object *of, size_t i) {
+  const strut_study_value *value = &((const strut_search_point *)of->at)->values[i];
+  return value->word ? STRUT_VALUE_AS_TEXT(value->word) : STRUT_VALUE_AS_NUMBER(value->number);
 }
 
-static char *make_json(const report *r, const strut_sweep_state *state, const char *table) {
-  strut_json j = strut_json_begin();
-  strut_json_integer(&j, j.root, "points", state->points);
-  strut_json_integer(&j, j.root, "failed", state->failed);
-  strut_json_integer(&j, j.root, "computed", state->computed);
-  strut_json_text(&j, j.root, "table", table);
-  strut_json_text(&j, j.root, r->search->maximise ? "maximise" : "minimise", r->search->goal.text);
-  strut_json_text(&j, j.root, "unit", r->search->goal.program.unit);
-  struct cJSON *best = strut_json_array(&j, j.root, "best");
-  for (size_t i = 0; i < r->result->worth_count; i++)
-    add_json_worth(&j, best, r, &r->result->worths[i]);
-  struct cJSON *fronts = r->result->front_count ? strut_json_array(&j, j.root, "fronts") : NULL;
-  for (size_t i = 0; i < r->result->front_count; i++) {
-    struct cJSON *front = strut_json_array(&j, fronts, NULL);
-    for (size_t k = 0; k < r->result->fronts[i].count; k++)
-      add_json_point(&j, strut_json_object(&j, front, NULL), r->search,
-                     &r->result->fronts[i].points[k]);
-  }
-  struct cJSON *searches = strut_json_array(&j, j.root, "searches");
-  for (size_t i = 0; i < r->result->outcome_count; i++)
-    add_json_outcome(&j, searches, r->search, &r->result->outcomes[i]);
-  struct cJSON *warnings = strut_json_array(&j, j.root, "warnings");
-  for (size_t i = 0; i < state->warning_count; i++) {
-    struct cJSON *item = strut_json_object(&j, warnings, NULL);
-    strut_json_text(&j, item, "code", state->warnings[i].code);
-    strut_json_integer(&j, item, "runs", state->warnings[i].runs);
-    strut_json_integer(&j, item, "point", state->warnings[i].point);
-    strut_json_text(&j, item, "text", state->warnings[i].text);
-  }
-  return strut_json_end_line(&j);
+#define POINT(X)                                                                                   \
+  X("point", "", COUNT(p->worst), "of the study: its worst scenario")                              \
+  X("objective", "", NUMBER(p->objective), "there; null: it failed")                               \
+  X("objective_2", "", IF(search_of(of)->second.text, NUMBER(p->second)), "of the second goal")    \
+  X("violation", "1", NUMBER(p->violation), "of conditions, at worst; 0: they hold")               \
+  X("values", "", MAP(search_of(of)->variable_count, variable_name, variable_value),               \
+    "of the variables, SI")
+STRUT_VALUES_HERE(point_values, POINT, const strut_search_point *p = of->at)
+
+#define OUTCOME(X)                                                                                 \
+  X("outer", "", COUNT(o->outer), "point of the axes before the searches")                         \
+  X("search", "", COUNT(o->start + 1), "its number")                                               \
+  X("evaluations", "", COUNT(o->evaluations), "of the objective")                                  \
+  X("repeated", "", COUNT(o->repeated), "that were known")                                         \
+  X("failed", "", COUNT(o->failed), "of them")                                                     \
+  X("without_objective", "", COUNT(o->valueless), "of them")                                       \
+  X("feasible", "", COUNT(o->feasible), "of them")                                                 \
+  X("constant", "", FLAG(o->constant), "whether all objectives are the same")                      \
+  X("end", "", TEXT(ends[o->end]), "why it ended")                                                 \
+  X("top", "", NUMBERS(o->top, o->top_count), "its best objectives")                               \
+  X("best", "", IF(o->best.evaluation >= 0, PART(&o->best)), "its best point",                     \
+    .rows = &point_values)
+static const char *const ends[] = {"used up", "converged", "repeats", "enumerated"};
+STRUT_VALUES_HERE(outcome_values, OUTCOME, const strut_search_outcome *o = of->at)
+
+static strut_value bound_of(const strut_result_object *of, size_t i) {
+  int bound = ((const strut_search_worth *)of->at)->bound[i];
+  return STRUT_VALUE_AS_IF(bound, TEXT(bound > 0 ? "upper" : "lower"));
 }
+
+static strut_value neighbours_of(const strut_result_object *of, size_t i) {
+  const strut_search_neighbour *near = ((const strut_search_worth *)of->at)->neighbours[i];
+  return STRUT_VALUE_AS_OF_STRUCTS(&near->point.objective, 2, sizeof *near);
+}
+
+#define WORTH(X)                                                                                   \
+  X("outer", "", COUNT(o->outer), "point of the axes before the searches")                         \
+  X("search", "", COUNT(o->start + 1), "that found it")                                            \
+  X("feasible", "", FLAG(o->best.violation <= 0.0), "whether all conditions hold")                 \
+  X("agreeing", "", COUNT(w->agreeing), "searches whose best is within 1 % of it")                 \
+  X(NULL, "", PART(&o->best), "", .rows = &point_values)                                           \
+  X("check", "", IF(w->checked, NUMBER(w->check.objective)), "the objective, more exactly")        \
+  X("bounds", "", MAP(r->search->variable_count, variable_name, bound_of),                         \
+    "on which variables are: upper, lower")                                                        \
+  X("neighbours", "", MAP(r->search->variable_count, variable_name, neighbours_of),                \
+    "objectives 1 % of the range below and above")
+STRUT_VALUES_HERE(worth_values, WORTH, const strut_search_worth *w = of->at;
+                  const report *r = of->outer->at;
+                  const strut_search_outcome *o = &r->result->outcomes[w->best])
+
+static strut_value front_of(const strut_result_object *of, size_t i) {
+  const strut_search_front *front = &((const report *)of->at)->result->fronts[i];
+  return STRUT_VALUE_AS_LIST(front->points, front->count);
+}
+
+#define WARNING(X)                                                                                 \
+  X("code", "", TEXT(warning->code), "for programs")                                               \
+  X("runs", "", COUNT(warning->runs), "that it is about")                                          \
+  X("point", "", COUNT(warning->point), "the first of them")                                       \
+  X("text", "", TEXT(warning->text), "finding, likely cause and remedy")
+STRUT_VALUES_HERE(warning_values, WARNING, const strut_sweep_warning *warning = of->at)
+
+#define SEARCH(X)                                                                                  \
+  X("points", "", COUNT(r->state->points), "of the table")                                         \
+  X("failed", "", COUNT(r->state->failed), "of them")                                              \
+  X("computed", "", COUNT(r->state->computed), "of them, by this call")                            \
+  X("table", "", TEXT(r->table), "its path")                                                       \
+  X("maximise", "", IF(r->search->maximise, TEXT(r->search->goal.text)), "the objective")          \
+  X("minimise", "", IF(!r->search->maximise, TEXT(r->search->goal.text)), "the objective")         \
+  X("unit", "", TEXT(r->search->goal.program.unit), "of it")                                       \
+  X("best", "", LIST(r->result->worths, r->result->worth_count), "points", .rows = &worth_values)  \
+  X("fronts", "", IF(r->result->front_count, ARRAY(r->result->front_count, front_of)),             \
+    "of two objectives: lists of points", .rows = &point_values)                                   \
+  X("searches", "", LIST(r->result->outcomes, r->result->outcome_count), "one by one",             \
+    .rows = &outcome_values)                                                                       \
+  X("warnings", "", LIST(r->state->warnings, r->state->warning_count), "of runs",                  \
+    .rows = &warning_values)
+STRUT_VALUES(strut_search_report_values, SEARCH, const report *r = of->at)
 
 char *strut_search_report(const strut_sweep_plan *plan, const strut_search_result *result,
                           const strut_sweep_state *state, const char *table, bool json) {
-  report r = {.plan = plan, .search = plan->study->search, .result = result};
+  report r = {{0}, plan, plan->study->search, result, state, table};
   char time[STRUT_DURATION_TEXT], *text;
   strut_c_locale locale = strut_c_locale_enter();
   if (json) {
-    text = make_json(&r, state, table);
+    text = strut_values_json(&strut_search_report_values, &r, NULL);
   } else {
     for (size_t i = 0; i < result->worth_count; i++) add_best(&r, &result->worths[i]);
     for (size_t i = 0; i < result->front_count; i++) add_front(&r, &result->fronts[i]);

@@ -11,6 +11,7 @@
 
 #include "engine/base/flag.h"
 #include "engine/output/record_files.h"
+#include "engine/scene/value_rows.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
 #include "engine/study/sensitivity/sensitivity.h"
@@ -29,6 +30,7 @@ strut_status strut_shards_report(const char *directory, const strut_shards_found
 /** What a search has found; `table`: the path of its rows. */
 char *strut_search_report(const strut_sweep_plan *plan, const strut_search_result *result,
                           const strut_sweep_state *state, const char *table, bool json);
+STRUT_API extern const strut_value_rows strut_search_report_values;
 /** What a sensitivity analysis has found; `directory` has its table. */
 char *strut_sensitivity_report(const strut_sweep_plan *plan, strut_slots *slots,
                                const strut_sensitivity_result *result, const char *directory);

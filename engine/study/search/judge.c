@@ -238,6 +238,7 @@ static bool list_points(strut_search_batch *b, strut_search_result *r, strut_sea
     for (int side = 0; side < 2 && fine; side++) {
       strut_search_neighbour *near = &w->neighbours[i][side];
       strut_study_value value;
+      near->point.objective = (double)NAN;
       near->there = beside(&search->variables[i], o->best.values[i], side ? 1 : -1, &value);
       if (!near->there) continue;
       strut_study_value *values = copy_values(b, r, o->best.values);

@@ -24,12 +24,12 @@ double strut_tradeoff_level(const strut_tradeoff *r, size_t i) {
 }
 
 strut_spread strut_spread_of(const double *values, size_t count, double *scratch) {
-  if (count == 0) return (strut_spread){(double)NAN, (double)NAN, (double)NAN};
+  if (count == 0) return (strut_spread){(double)NAN, (double)NAN, (double)NAN, NULL, 0};
   for (size_t i = 0; i < count; i++) scratch[i] = values[i];
   gsl_sort(scratch, 1, count);
   size_t half = count / 2, rank = (9 * count + 9) / 10;
   double median = count % 2 ? scratch[half] : 0.5 * (scratch[half - 1] + scratch[half]);
-  return (strut_spread){median, scratch[rank - 1], scratch[count - 1]};
+  return (strut_spread){median, scratch[rank - 1], scratch[count - 1], values, count};
 }
 
 void strut_tradeoff_judge_row(tradeoff_study *s, strut_tradeoff_row *row) {
@@ -469,7 +469,7 @@ strut_status strut_tradeoff_make(const strut_setup *const *setups, size_t count,
                                  const strut_tradeoff_options *options, strut_tradeoff *result,
                                  strut_error *error) {
   strut_error own = {0};
-  *result = (strut_tradeoff){.name = ""};
+  *result = (strut_tradeoff){.name = "", .setups = setups};
   tradeoff_study s = {
       .setups = setups,
       .options = options,

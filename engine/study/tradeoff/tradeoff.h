@@ -22,6 +22,7 @@
 #include "engine/integrate/integrator.h"
 #include "engine/scene/experiment.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/value_rows.h"
 
 typedef enum strut_tradeoff_measure {
   STRUT_TRADEOFF_AUTOMATIC, /* velocity with contacts or a run by periods, where it is not
@@ -62,6 +63,8 @@ typedef struct strut_spread {
   double median; /* of an even number the mean of the middle two */
   double ninety; /* 90th percentile */
   double worst;
+  const double *values; /* (count) */
+  size_t count;
 } strut_spread;
 
 /** A variant of the model. The first is the unchanged one. */
@@ -98,9 +101,10 @@ typedef struct strut_tradeoff_row {
   bool front; /* Pareto-optimal among the rows of its variant, by `evaluations` and worst error */
 } strut_tradeoff_row;
 
-/** A study; release with strut_tradeoff_free. Names and methods outlive it. */
+/** A study; release with strut_tradeoff_free. Names, setups and methods outlive it. */
 typedef struct strut_tradeoff {
-  const char *name; /* of the scene */
+  const char *name;                 /* of the scene */
+  const strut_setup *const *setups; /* (point_count) */
   strut_tradeoff_measure measure;
   size_t point_count, value_count, variant_count, row_count, group_count;
   double scale;    /* velocities below it have errors relative to it [m/s]; of the first point */
@@ -167,8 +171,8 @@ STRUT_API strut_tradeoff_advice strut_tradeoff_advise(const strut_tradeoff *resu
  * differ from run to run, everything else does not unless the study was cut.
  */
 STRUT_API char *strut_tradeoff_table(const strut_tradeoff *result);
-/** setups: the operating points, whose parameters are listed. */
-STRUT_API char *strut_tradeoff_json(const strut_tradeoff *result, const strut_setup *const *setups);
+STRUT_API char *strut_tradeoff_json(const strut_tradeoff *result);
+STRUT_API extern const strut_value_rows strut_tradeoff_values;
 /** One row per setting, the spreads over the operating points; diverged: "inf". */
 STRUT_API char *strut_tradeoff_csv(const strut_tradeoff *result);
 

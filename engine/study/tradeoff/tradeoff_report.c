@@ -6,7 +6,7 @@
 #include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
-#include "engine/output/json_value.h"
+#include "engine/output/result_values.h"
 #include "engine/study/tradeoff/tradeoff.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
@@ -281,164 +281,117 @@ char *strut_tradeoff_table(const strut_tradeoff *r) {
   return strut_buffer_take(&table);
 }
 
-/* ---- CSV ---- */
+/* ---- values ---- */
 
-static void add_number(strut_buffer *csv, double value) {
-  char text[STRUT_NUMBER_TEXT];
-  strut_buffer_add(csv, ",");
-  if (isinf(value)) strut_buffer_add(csv, "inf");
-  if (!isfinite(value)) return;
-  strut_number_text(value, text);
-  strut_buffer_add(csv, "%s", text);
+#define SPREAD(X)                                                                                  \
+  X("median", "1", NUMBER(spread->median), "of the points", .column = {"median"})                  \
+  X("percentile_90", "1", NUMBER(spread->ninety), "of the points", .column = {"90 %"})             \
+  X("worst", "1", NUMBER(spread->worst), "of the points", .column = {"worst"})                     \
+  X("points", "1", NUMBERS(spread->values, spread->count), "at each of them")
+STRUT_VALUES_HERE(spread_values, SPREAD, const strut_spread *spread = of->at)
+
+static strut_value reference_name(const strut_result_object *of, size_t i) {
+  const strut_model_variant *f = of->at;
+  return STRUT_VALUE_AS_IF(f->reference[i][0], TEXT(f->reference[i]));
 }
 
-static void add_spread(strut_buffer *csv, const strut_spread *spread) {
-  add_number(csv, spread->median);
-  add_number(csv, spread->ninety);
-  add_number(csv, spread->worst);
+#define VARIANT(X)                                                                                 \
+  X("name", "", TEXT(f->name), "of the variant; the first is the unchanged model")                 \
+  X("remark", "", TEXT(f->remark[0] ? f->remark : NULL), "why it was not run, or an assumption")   \
+  X("run", "", FLAG(f->run), "whether it was")                                                     \
+  X("reference", "", IF(f->run, ARRAY(2, reference_name)), "settings that agree on it")            \
+  X("values", "", IF(f->run, NUMBERS(f->value, r->point_count * r->value_count)),                  \
+    "point by point")                                                                              \
+  X("floor", "1", IF(f->run, PART(&f->floor_spread)), "how far they differ",                       \
+    .rows = &spread_values)                                                                        \
+  X("model_error", "1", IF(f->run, PART(&f->model_spread)), "its change of the answer",            \
+    .rows = &spread_values)
+STRUT_VALUES_HERE(variant_values, VARIANT, const strut_model_variant *f = of->at;
+                  const strut_tradeoff *r = of->outer->at)
+
+static void write_group(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
+  strut_tradeoff_group_text(of->at, text);
 }
+
+#define SETTING(X)                                                                                 \
+  X("model", "", TEXT(r->variants[row->variant].name), "its variant", .column = {"model"})         \
+  X("group", "", WORDS(write_group), "settings that differ by their step alone",                   \
+    .column = {"group"})                                                                           \
+  X("method", "", TEXT(row->method->name), "of integration", .column = {"method"})                 \
+  X("refine", "1", NUMBER(row->refine), "of steps with events", .column = {"refine"})              \
+  X("step", "s", NUMBER(row->step), "the largest, where it adapts", .column = {"step [s]"})        \
+  X("tolerance", "1", NUMBER(row->tolerance), "of an adaptive method", .column = {"tolerance"})    \
+  X("evaluations", "1", NUMBER(row->evaluations), "of forces, over those of the base",             \
+    .column = {"evaluations"})                                                                     \
+  X("rate", "1/s", NUMBER(row->rate), "evaluations for a simulated second")                        \
+  X("cpu", "1", NUMBER(row->cpu), "CPU time over that of the base", .column = {"cpu"})             \
+  X("seconds", "s", NUMBER(row->seconds), "CPU time of a run", .column = {"seconds [s]"})          \
+  X("step_error", "1", PART(&row->error_spread), "from its model's answer", .column = {"error "},  \
+    .rows = &spread_values)                                                                        \
+  X("total_error", "1", PART(&row->total_spread), "from the unchanged model's",                    \
+    .column = {"total "}, .rows = &spread_values)                                                  \
+  X("values", "", NUMBERS(row->value, r->point_count * r->value_count), "point by point")          \
+  X("diverged", "", COUNT(row->diverged), "points", .column = {"diverged"})                        \
+  X(NULL, "", COUNT(r->point_count), "", .column = {"points"})                                     \
+  X("above_limit", "", FLAG(row->above), "of stability: runs refuse the step")                     \
+  X("front", "", FLAG(row->front), "Pareto-optimal in its variant", .column = {"front"})           \
+  X("base", "", FLAG(row->base), "costs are relative to it", .column = {"base"})
+STRUT_VALUES_HERE(setting_values, SETTING, const strut_tradeoff_row *row = of->at;
+                  const strut_tradeoff *r = of->outer->at)
+
+#define ADVICE(X)                                                                                  \
+  X("error", "1", NUMBER(a.error), "to be kept")                                                   \
+  X("known", "", FLAG(a.known), "whether the references agree well enough")                        \
+  X("setting", "", INDEX(a.row), "the cheapest, from 0")                                           \
+  X("half_setting", "", INDEX(a.half), "likewise, for half the error")                             \
+  X("half_cost", "1", NUMBER(a.cost), "of it, over that of `setting`")                             \
+  X("next_method", "", INDEX(a.other), "the cheapest of another method")
+STRUT_VALUES_HERE(
+    advice_values, ADVICE, const strut_tradeoff *r = of->at;
+    const strut_tradeoff_advice a = strut_tradeoff_advise(r, strut_tradeoff_level(r, of->index)))
+
+#define WORK(X)                                                                                    \
+  X("evaluations", "", NUMBER(r->work), "of forces, of all runs")                                  \
+  X("unit", "", NUMBER(r->work_unit), "those of a reference run")                                  \
+  X("limit", "1", COUNT(STRUT_TRADEOFF_MOST_WORK), "of their ratio")                               \
+  X("unrefined_series", "", COUNT(r->left_out), "that the limit kept from finer steps")            \
+  X("cut_by_time", "", FLAG(r->cut), "another machine may measure more")
+STRUT_VALUES_HERE(work_values, WORK, const strut_tradeoff *r = of->at)
+
+#define POINT(X) X(NULL, "", PARAMETERS, "")
+STRUT_VALUES_HERE(point_values, POINT, )
+
+static const strut_scene *scene_of(const strut_result_object *of, size_t i) {
+  return &((const strut_tradeoff *)of->at)->setups[i]->scene;
+}
+
+static strut_value points_of(const strut_tradeoff *r) {
+  strut_value points = STRUT_VALUE_AS_LIST(r->setups, r->point_count);
+  points.scene = scene_of;
+  return points;
+}
+
+#define TRADEOFF(X)                                                                                \
+  X("measure", "", TEXT(strut_tradeoff_measure_text(r->measure)), "what errors are of")            \
+  X("periods", "1", IF(r->periods > 0, NUMBER(r->periods)), "of a run")                            \
+  X("duration", "s", NUMBER(r->duration), "of a run at the first point")                           \
+  X("scale", "m/s", IF(r->measure == STRUT_TRADEOFF_VELOCITY, NUMBER(r->scale)),                   \
+    "velocities below it have errors relative to it")                                              \
+  X("base_setting", "", INDEX(r->base), "that costs are relative to; null: not run")               \
+  X("base_evaluations", "", NUMBER(r->base_evaluations), "of forces")                              \
+  X("base_seconds", "s", NUMBER(r->base_seconds), "CPU time")                                      \
+  X("spent_seconds", "s", NUMBER(r->spent), "CPU time of the study")                               \
+  X("work", "", PART(r), "its bound", .rows = &work_values)                                        \
+  X("points", "", BY(points_of(r)), "parameters of each operating point", .rows = &point_values)   \
+  X("models", "", LIST(r->variants, r->variant_count), "variants", .rows = &variant_values)        \
+  X("settings", "", LIST(r->rows, r->row_count), "that were run", .rows = &setting_values)         \
+  X("advice", "", TIMES(strut_tradeoff_level_count(r)), "for each error", .rows = &advice_values)
+STRUT_VALUES(strut_tradeoff_values, TRADEOFF, const strut_tradeoff *r = of->at)
 
 char *strut_tradeoff_csv(const strut_tradeoff *r) {
-  strut_buffer csv = {0};
-  char a[STRUT_TRADEOFF_TEXT];
-  strut_buffer_add(&csv,
-                   "model,group,method,refine,step [s],tolerance,evaluations,cpu,seconds [s],"
-                   "error median,error 90 %%,error worst,total median,total 90 %%,"
-                   "total worst,diverged,points,front,base\n");
-  for (size_t i = 0; i < r->row_count; i++) {
-    const strut_tradeoff_row *row = &r->rows[i];
-    strut_buffer_add(&csv, "\"%s\",\"%s\",%s", r->variants[row->variant].name,
-                     strut_tradeoff_group_text(row, a), row->method->name);
-    add_number(&csv, row->refine);
-    add_number(&csv, row->step);
-    add_number(&csv, row->tolerance);
-    add_number(&csv, row->evaluations);
-    add_number(&csv, row->cpu);
-    add_number(&csv, row->seconds);
-    add_spread(&csv, &row->error_spread);
-    add_spread(&csv, &row->total_spread);
-    strut_buffer_add(&csv, ",%zu,%zu,%d,%d\n", row->diverged, r->point_count, row->front,
-                     row->base);
-  }
-  return strut_buffer_take(&csv);
+  return strut_values_csv(&strut_tradeoff_values, "settings", NULL, r, NULL);
 }
 
-/* ---- JSON ---- */
-
-static void put_spread(strut_json *json, struct cJSON *to, const char *key,
-                       const strut_spread *spread, const double *values, size_t count) {
-  struct cJSON *object = strut_json_object(json, to, key);
-  strut_json_number(json, object, "median", spread->median);
-  strut_json_number(json, object, "percentile_90", spread->ninety);
-  strut_json_number(json, object, "worst", spread->worst);
-  strut_json_numbers(json, object, "points", values, count);
-}
-
-static void put_variants(strut_json *json, const strut_tradeoff *r) {
-  struct cJSON *list = strut_json_array(json, json->root, "models");
-  for (size_t i = 0; i < r->variant_count; i++) {
-    const strut_model_variant *f = &r->variants[i];
-    struct cJSON *object = strut_json_object(json, list, NULL);
-    strut_json_text(json, object, "name", f->name);
-    strut_json_text(json, object, "remark", f->remark[0] ? f->remark : NULL);
-    strut_json_bool(json, object, "run", f->run);
-    if (!f->run) continue;
-    struct cJSON *methods = strut_json_array(json, object, "reference");
-    for (int k = 0; k < 2; k++)
-      if (f->reference[k][0]) strut_json_text(json, methods, NULL, f->reference[k]);
-    strut_json_numbers(json, object, "values", f->value, r->point_count * r->value_count);
-    put_spread(json, object, "floor", &f->floor_spread, f->floor, r->point_count);
-    put_spread(json, object, "model_error", &f->model_spread, f->model_error, r->point_count);
-  }
-}
-
-static void put_rows(strut_json *json, const strut_tradeoff *r) {
-  struct cJSON *list = strut_json_array(json, json->root, "settings");
-  char a[STRUT_TRADEOFF_TEXT];
-  for (size_t i = 0; i < r->row_count; i++) {
-    const strut_tradeoff_row *row = &r->rows[i];
-    struct cJSON *object = strut_json_object(json, list, NULL);
-    strut_json_text(json, object, "model", r->variants[row->variant].name);
-    strut_json_text(json, object, "group", strut_tradeoff_group_text(row, a));
-    strut_json_text(json, object, "method", row->method->name);
-    strut_json_number(json, object, "step", row->step);
-    strut_json_number(json, object, "tolerance", row->tolerance);
-    strut_json_number(json, object, "refine", row->refine);
-    strut_json_number(json, object, "evaluations", row->evaluations);
-    strut_json_number(json, object, "rate", row->rate);
-    strut_json_number(json, object, "cpu", row->cpu);
-    strut_json_number(json, object, "seconds", row->seconds);
-    put_spread(json, object, "step_error", &row->error_spread, row->error, r->point_count);
-    put_spread(json, object, "total_error", &row->total_spread, row->total, r->point_count);
-    strut_json_numbers(json, object, "values", row->value, r->point_count * r->value_count);
-    strut_json_integer(json, object, "diverged", (int64_t)row->diverged);
-    strut_json_bool(json, object, "above_limit", row->above);
-    strut_json_bool(json, object, "front", row->front);
-    strut_json_bool(json, object, "base", row->base);
-  }
-}
-
-static void put_points(strut_json *json, const strut_setup *const *setups, size_t count) {
-  struct cJSON *list = strut_json_array(json, json->root, "points");
-  for (size_t p = 0; p < count; p++) {
-    struct cJSON *object = strut_json_object(json, list, NULL);
-    for (size_t i = 0; i < setups[p]->scene.parameter_count; i++) {
-      const strut_parameter *parameter = &setups[p]->scene.parameters[i];
-      if (isnan(parameter->value))
-        strut_json_text(json, object, parameter->name, parameter->text);
-      else
-        strut_json_number(json, object, parameter->name, parameter->value);
-    }
-  }
-}
-
-/* An index of `settings`, or null. */
-static void put_setting(strut_json *json, struct cJSON *object, const char *key, int row) {
-  if (row < 0)
-    strut_json_text(json, object, key, NULL);
-  else
-    strut_json_integer(json, object, key, row);
-}
-
-static void put_advice(strut_json *json, const strut_tradeoff *r) {
-  struct cJSON *list = strut_json_array(json, json->root, "advice");
-  for (size_t i = 0; i < strut_tradeoff_level_count(r); i++) {
-    const strut_tradeoff_advice a = strut_tradeoff_advise(r, strut_tradeoff_level(r, i));
-    struct cJSON *object = strut_json_object(json, list, NULL);
-    strut_json_number(json, object, "error", a.error);
-    strut_json_bool(json, object, "known", a.known);
-    put_setting(json, object, "setting", a.row);
-    put_setting(json, object, "half_setting", a.half);
-    strut_json_number(json, object, "half_cost", a.cost);
-    put_setting(json, object, "next_method", a.other);
-  }
-}
-
-static void put_work(strut_json *json, const strut_tradeoff *r) {
-  struct cJSON *object = strut_json_object(json, json->root, "work");
-  strut_json_number(json, object, "evaluations", r->work);
-  strut_json_number(json, object, "unit", r->work_unit);
-  strut_json_integer(json, object, "limit", STRUT_TRADEOFF_MOST_WORK);
-  strut_json_integer(json, object, "unrefined_series", (int64_t)r->left_out);
-  strut_json_bool(json, object, "cut_by_time", r->cut);
-}
-
-char *strut_tradeoff_json(const strut_tradeoff *r, const strut_setup *const *setups) {
-  strut_json json = strut_json_begin();
-  strut_json_text(&json, json.root, "name", r->name);
-  strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
-  strut_json_text(&json, json.root, "measure", strut_tradeoff_measure_text(r->measure));
-  if (r->periods > 0) strut_json_number(&json, json.root, "periods", r->periods);
-  strut_json_number(&json, json.root, "duration", r->duration);
-  if (r->measure == STRUT_TRADEOFF_VELOCITY) strut_json_number(&json, json.root, "scale", r->scale);
-  put_setting(&json, json.root, "base_setting", r->base);
-  strut_json_number(&json, json.root, "base_evaluations", r->base_evaluations);
-  strut_json_number(&json, json.root, "base_seconds", r->base_seconds);
-  strut_json_number(&json, json.root, "spent_seconds", r->spent);
-  put_work(&json, r);
-  put_points(&json, setups, r->point_count);
-  put_variants(&json, r);
-  put_rows(&json, r);
-  put_advice(&json, r);
-  return strut_json_end(&json);
+char *strut_tradeoff_json(const strut_tradeoff *r) {
+  return strut_values_json(&strut_tradeoff_values, r, &r->setups[0]->scene);
 }

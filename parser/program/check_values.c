@@ -1,0 +1,300 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What `strut check` finds, a row for each value: JSON, and the tables of its things. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/memory.h"
+#include "engine/base/vec.h"
+#include "engine/forces/elements.h"
+#include "engine/integrate/integrator.h"
+#include "engine/output/result_values.h"
+#include "parser/program/check_messages.h"
+#include "parser/program/streams.h"
+#include "parser/program/sweep.h"
+
+enum { MOST_THINGS = 40, DIGITS = 5 };
+
+/* ---- things, as they are drawn ---- */
+
+/* Titles of columns are the keys; values without a label stand behind the columns. */
+#define COLUMN .label = {""}
+
+static strut_element_pose pose_of(const strut_result_object *of, int32_t element) {
+  const strut_checked *c = strut_result_whole(of);
+  strut_element_pose pose;
+  strut_element_evaluate(c->model, element, c->model->members.rest, c->drawn, (double)NAN, &pose);
+  return pose;
+}
+
+/* Rest length, force and stiffness of a member as drawn; of one that is an element by its law. */
+static strut_rest rest_of(const strut_result_object *of) {
+  const strut_model *model = ((const strut_checked *)strut_result_whole(of))->model;
+  strut_rest rest = {0};
+  strut_member_rest(of->scene, of->index, &rest);
+  const strut_element *e = strut_element_of_member(&model->elements, (int32_t)of->index);
+  if (!e || e->role != STRUT_ELEMENT_MEMBER) return rest;
+  rest.pretension = pose_of(of, (int32_t)(e - model->elements.element)).force;
+  rest.force_density = rest.drawn_length > 0.0 ? rest.pretension / rest.drawn_length : 0.0;
+  rest.stiffness = e->numbers.stiffness;
+  return rest;
+}
+
+static const char *carries_name(const strut_member *m) {
+  static const char *const names[] = {"both", "tension", "compression"};
+  return names[m->kind == STRUT_CABLE ? STRUT_CARRIES_TENSION : m->law.carries];
+}
+
+/* The stiffness of a member's stops [N/m]. */
+static double stop_stiffness(const strut_model *model, size_t j) {
+  const strut_element *e = strut_element_of_member(&model->elements, (int32_t)j);
+  while (e && e->role == STRUT_ELEMENT_MEMBER)
+    e = e->sibling >= 0 ? &model->elements.element[e->sibling] : NULL;
+  return e ? e->numbers.stiffness : 0.0;
+}
+
+static strut_value way_of(const strut_result_object *of, size_t k) {
+  return STRUT_VALUE_AS_TEXT(of->scene->nodes[strut_member_node(of->at, k)].name);
+}
+
+/* Its rest length is given in the four forms that the language accepts. */
+#define MEMBER(X)                                                                                  \
+  X("kind", "", TEXT(strut_member_kind_name(m->kind)), "bar, spring or cable", COLUMN)             \
+  X("drawn_length", "m", NUMBER(rest.drawn_length), "as drawn", COLUMN)                            \
+  X("rest_length", "m", NUMBER(rest.length), "without force", COLUMN)                              \
+  X("rest_length_ratio", "1", NUMBER(rest.ratio), "to the drawn length", COLUMN)                   \
+  X("pretension", "N", NUMBER(rest.pretension), "as drawn", COLUMN)                                \
+  X("force_density", "N/m", NUMBER(rest.force_density), "as drawn", COLUMN)                        \
+  X("stiffness", "N/m", NUMBER(rest.stiffness), "as drawn", COLUMN)                                \
+  X("law", "", IF(lawful, TEXT(strut_law_at(m->law.kind)->word)), "of its force")                  \
+  X("carries", "", IF(lawful, TEXT(carries_name(m))), "tension, compression or both")              \
+  X("guide_friction", "1", POSITIVE(m->guide_friction), "coefficient")                             \
+  X("guide_radius", "m", POSITIVE(m->guide_radius), "of its guides")                               \
+  X("breaks_at", "N", POSITIVE(m->breaks_at), "force")                                             \
+  X("released_at", "s", POSITIVE(m->released_at), "time")                                          \
+  X("shortest", "m", POSITIVE(m->shortest), "length, by a stop")                                   \
+  X("longest", "m", POSITIVE(m->longest), "length, by a stop")                                     \
+  X("stop_stiffness", "N/m", POSITIVE(stops ? stop_stiffness(model, of->index) : 0.0), "of both")  \
+  X("stop_damping", "N s/m", POSITIVE(stops ? m->stop_damping : 0.0), "of both")                   \
+  X("nodes", "", IF(m->guide_count, ARRAY(m->guide_count + 2, way_of)), "that it runs over")
+STRUT_VALUES_HERE(member_values, MEMBER, const strut_member *m = of->at;
+                  strut_rest rest = rest_of(of);
+                  const strut_model *model = ((const strut_checked *)of->outer->at)->model;
+                  bool stops = m->shortest > 0.0 || m->longest > 0.0;
+                  bool lawful = m->law.kind != STRUT_LAW_LINEAR ||
+                                m->law.carries != STRUT_CARRIES_BOTH)
+
+#define HINGE(X)                                                                                   \
+  X("drawn_angle", "rad", NUMBER(pose.strain), "as drawn", COLUMN)                                 \
+  X("rest_angle", "rad", NUMBER(pose.natural), "without moment", COLUMN)                           \
+  X("moment", "N m", NUMBER(pose.force), "as drawn", COLUMN)                                       \
+  X("stiffness", "N m/rad", NUMBER(elements->element[i].numbers.stiffness), "as drawn", COLUMN)    \
+  X("breaks_at", "N m", POSITIVE(h->breaks_at), "moment")                                          \
+  X("released_at", "s", POSITIVE(h->released_at), "time")
+#define ELEMENTS                                                                                   \
+  const strut_element_table *elements = &((const strut_checked *)of->outer->at)->model->elements
+STRUT_VALUES_HERE(hinge_values, HINGE, const strut_hinge *h = of->at; ELEMENTS;
+                  int32_t i = strut_element_of_hinge(elements, (int32_t)of->index);
+                  strut_element_pose pose = pose_of(of, i))
+
+#define CELL(X)                                                                                    \
+  X("drawn_area", "m^2", NUMBER(fabs(strut_cell_drawn(of->scene, of->index))), "as drawn", COLUMN) \
+  X("pressure", "N/m", NUMBER(cell->pressure), "inside", COLUMN)                                   \
+  X("outside", "N/m", NUMBER(cell->outside), "pressure", COLUMN)                                   \
+  X("content", "",                                                                                 \
+    TEXT(strut_cell_is_elastic(cell)         ? "elastic"                                           \
+         : cell->law == STRUT_LAW_PRESSURE   ? "given pressure"                                    \
+         : cell->law == STRUT_LAW_ISOTHERMAL ? "isothermal gas"                                    \
+                                             : "isentropic gas"),                                  \
+    "in words", COLUMN)
+STRUT_VALUES_HERE(cell_values, CELL, const strut_cell *cell = of->at)
+
+/* The least distance of the surfaces of a collision in the drawn shape. */
+static double drawn_gap(const strut_result_object *of, const strut_element_table *elements) {
+  int32_t first = strut_element_of_collision(elements, (int32_t)of->index);
+  double gap = HUGE_VAL;
+  for (int32_t k = first; k < strut_element_end(elements, first); k++) {
+    strut_element_pose pose = pose_of(of, k);
+    gap = fmin(gap, pose.strain - pose.natural);
+  }
+  return gap;
+}
+
+#define COLLISION(X)                                                                               \
+  X("thickness", "m", NUMBER(c->thickness), "of both together", COLUMN)                            \
+  X("drawn_gap", "m", NUMBER(drawn_gap(of, elements)), "as drawn", COLUMN)                         \
+  X("stiffness", "N/m", NUMBER(c->stiffness), "of the contact", COLUMN)                            \
+  X("damping", "N s/m", NUMBER(c->damping), "of the contact", COLUMN)
+STRUT_VALUES_HERE(collision_values, COLLISION, const strut_collision *c = of->at; ELEMENTS)
+
+#define DISTANCE(X)                                                                                \
+  X("drawn", "m", NUMBER(strut_distance_drawn(of->scene, of->index)), "as drawn", COLUMN)          \
+  X("rest", "m", NUMBER(strut_distance_rest(of->scene, of->index)), "without force", COLUMN)       \
+  X("stiffness", "N/m", NUMBER(elements->element[i].numbers.stiffness), "at rest", COLUMN)         \
+  X("damping", "N s/m", NUMBER(s->damping), "of it", COLUMN)                                       \
+  X("law", "", TEXT(strut_law_at(s->law.kind)->word), "of its force", COLUMN)
+STRUT_VALUES_HERE(distance_values, DISTANCE, const strut_distance_spring *s = of->at; ELEMENTS;
+                  int32_t i = strut_element_of_distance(elements, (int32_t)of->index))
+
+static const char *member_name(const strut_result_object *of, size_t i) {
+  strut_rest rest;
+  return strut_member_rest(of->scene, i, &rest) ? of->scene->members[i].name : NULL;
+}
+#define NAME_OF(THING, THINGS)                                                                     \
+  static const char *THING##_name(const strut_result_object *of, size_t i) {                       \
+    return of->scene->THINGS[i].name;                                                              \
+  }
+NAME_OF(hinge, hinges)
+NAME_OF(cell, cells)
+NAME_OF(collision, collisions)
+NAME_OF(distance, distances)
+
+/* ---- the whole ---- */
+
+static const char *method_name(const strut_result_object *of, size_t i) {
+  (void)of;
+  return strut_integrator_at(i)->name;
+}
+
+static strut_value method_limit(const strut_result_object *of, size_t i) {
+  const strut_checked *c = of->at;
+  double limit = strut_step_limit_of_method(&c->estimate->limits, strut_integrator_at(i));
+  return STRUT_VALUE_AS_NUMBER(limit);
+}
+
+static size_t method_count(void) {
+  size_t count = 0;
+  while (strut_integrator_at(count)) count++;
+  return count;
+}
+
+#define WARNING(X)                                                                                 \
+  X("code", "", TEXT(finding->key), "for programs")                                                \
+  X("text", "", TEXT(finding->message), "one sentence")
+STRUT_VALUES_HERE(warning_values, WARNING, const strut_finding *finding = of->at)
+
+#define THINGS(X, THING, OF)                                                                       \
+  X(#OF, "", NAMED(of->scene->OF, of->scene->THING##_count, THING##_name), "by name",              \
+    .rows = &THING##_values, .label = {#THING})
+#define SCENE(X)                                                                                   \
+  X("language", "", COUNT(STRUT_LANGUAGE_VERSION), "version of the scene's language")              \
+  X("nodes", "", COUNT(e->count.nodes), "number")                                                  \
+  X("degrees_of_freedom", "", COUNT(e->count.degrees_of_freedom), "of the nodes")                  \
+  X("bars", "", COUNT(e->count.bars), "number")                                                    \
+  X("springs", "", COUNT(e->count.springs), "number")                                              \
+  X("cables", "", COUNT(e->count.cables), "number")                                                \
+  X("running_cables", "", COUNT(e->count.running_cables), "of the cables")                         \
+  X("laws", "", COUNT(e->count.laws), "members with another law than the linear")                  \
+  X("stops", "", COUNT(e->count.stops), "members with stops")                                      \
+  X("contacts", "", COUNT(e->count.contacts), "number")                                            \
+  X("actuators", "", COUNT(e->count.actuators), "number")                                          \
+  X("loads", "", COUNT(e->count.loads), "number")                                                  \
+  X("mass_nonzeros", "", COUNT(e->matrix.mass_nonzeros), "entries of the mass matrix")             \
+  X("factor_nonzeros", "", COUNT(e->matrix.factor_nonzeros), "entries of its sparse factor")       \
+  X("dense_entries", "", COUNT(e->matrix.dense_entries), "entries of dense inverses")              \
+  X("bytes", "", COUNT(e->bytes), "of the compiled model")                                         \
+  X("runnable", "", FLAG(e->runnable), "whether every free node has a mass")                       \
+  X("largest_frequency", "Hz", KNOWN(e->runnable, NUMBER(e->largest_frequency / STRUT_TAU)),       \
+    "undamped, all contacts closed")                                                               \
+  X("step", "s", NUMBER(c->setup->experiment.step), "of the scene; 0: none")                       \
+  X("step_limit", "s", KNOWN(e->runnable, NUMBER(e->step_limit)), "largest stable one of rk4")     \
+  X("step_limit_exact", "", FLAG(e->step_limit_exact), "or within 1 %")                            \
+  X("step_limit_bound", "", FLAG(e->limits.bound), "the limits are lower bounds")                  \
+  X("step_limits", "s", MAP(e->runnable ? method_count() : 0, method_name, method_limit),          \
+    "of all methods")                                                                              \
+  THINGS(X, member, members)                                                                       \
+  THINGS(X, hinge, hinges)                                                                         \
+  THINGS(X, cell, cells)                                                                           \
+  THINGS(X, collision, collisions)                                                                 \
+  THINGS(X, distance, distances)                                                                   \
+  X("warnings", "", LIST(c->found.items, c->found.count), "of the scene", .rows = &warning_values)
+STRUT_VALUES_HERE(scene_values, SCENE, const strut_checked *c = of->at;
+                  const strut_cost_estimate *e = c->estimate)
+
+#define CHECKED(X)                                                                                 \
+  X("valid", "", FLAG(c->valid), "whether there is no error")                                      \
+  X("study", "", IF(c->study, TEXT(c->valid ? c->study->file.study.name : NULL)), "its name")      \
+  X("points", "", IF(c->study, KNOWN(c->valid, COUNT(c->study->plan.points))), "of a study")       \
+  X(NULL, "", IF(c->model, SAME), "", .rows = &scene_values)                                       \
+  X("messages", "", LIST(c->messages.list, c->messages.count), "errors, warnings and notes",       \
+    .rows = &strut_message_values)                                                                 \
+  X("unlisted", "", IF(!c->valid && !c->study, COUNT(c->unlisted)), "messages beyond the first")
+STRUT_VALUES(strut_checked_values, CHECKED, const strut_checked *c = of->at)
+
+strut_status strut_checked_print(strut_checked *c) {
+  char *text = c->messages.failed
+                   ? NULL
+                   : strut_values_json(&strut_checked_values, c, c->model ? c->model->scene : NULL);
+  strut_release(c->messages.list);
+  strut_arena_free(&c->messages.arena);
+  strut_findings_free(&c->found);
+  return strut_print_block(text);
+}
+
+/* ---- tables: of things of one kind, those with a rest length ---- */
+
+static void print_value(const strut_value_row *row, const strut_value *value, int width) {
+  bool angle = strcmp(row->unit, "rad") == 0;
+  double number = angle ? value->number * 180.0 / STRUT_PI : value->number;
+  strut_rounded_quantity rounded = strut_quantity_of_any(number, DIGITS, angle ? "deg" : row->unit);
+  printf("%*s", width, value->kind == STRUT_VALUE_TEXT ? value->text : rounded.text);
+}
+
+/* "rest_length" as "rest length". */
+static const char *title_of(const strut_value_row *row, char title[40]) {
+  snprintf(title, 40, "%s", row->key);
+  for (char *c = title; *c; c++)
+    if (*c == '_') *c = ' ';
+  return title;
+}
+
+static void print_thing(const strut_value_rows *rows, const strut_result_object *of) {
+  strut_value value[STRUT_MOST_VALUES];
+  char title[40];
+  rows->fill(of, value);
+  for (size_t i = 0; i < rows->count; i++) {
+    const strut_value_row *row = &rows->row[i];
+    size_t length = strlen(row->key);
+    for (size_t k = 0; value[i].kind == STRUT_VALUE_MAP && k < value[i].count; k++)
+      printf("%s%s", k ? ", " : ", over ", value[i].value(of, k).text);
+    if (value[i].kind == STRUT_VALUE_ABSENT || value[i].kind == STRUT_VALUE_MAP) continue;
+    if (!row->label[0]) printf(", %s ", title_of(row, title));
+    print_value(row, &value[i], !row->label[0] ? 0 : length > 11 ? (int)length + 2 : 13);
+  }
+  printf("\n");
+}
+
+static void print_things(const strut_value_row *row, const strut_value *list, int names,
+                         const strut_result_object *of) {
+  bool titled = false;
+  char title[40];
+  for (size_t i = 0; i < list->count && i < MOST_THINGS; i++) {
+    const char *name = list->name(of, i);
+    if (!name) continue;
+    if (!titled) printf("\n  %-*s", names, row->label[0]);
+    for (size_t k = 0; !titled && k < row->rows->count; k++)
+      if (row->rows->row[k].label[0]) printf("  %11s", title_of(&row->rows->row[k], title));
+    printf("%s  %-*s", titled ? "" : "\n", names, name);
+    titled = true;
+    const char *thing = (const char *)list->items + i * list->size;
+    print_thing(row->rows, &(strut_result_object){thing, of, of->scene, i});
+  }
+  if (list->count > MOST_THINGS)
+    printf("  ... and %zu more; --json lists all\n", list->count - MOST_THINGS);
+}
+
+void strut_checked_print_things(const strut_checked *checked) {
+  strut_value value[STRUT_MOST_VALUES];
+  const strut_result_object of = {checked, NULL, checked->model->scene, 0};
+  size_t names = 12; /* the width of their column, up to 40 */
+  scene_values.fill(&of, value);
+  for (size_t k = 0; k < scene_values.count; k++)
+    for (size_t i = 0; value[k].name && value[k].items && i < value[k].count && i < MOST_THINGS;
+         i++) {
+      const char *name = value[k].name(&of, i);
+      if (name && strlen(name) > names) names = strlen(name);
+    }
+  for (size_t k = 0; k < scene_values.count; k++)
+    if (scene_values.row[k].label[0])
+      print_things(&scene_values.row[k], &value[k], names > 40 ? 40 : (int)names, &of);
+}
