@@ -94,7 +94,7 @@ STRUT_VALUES_HERE(member_values, MEMBER, const strut_member *m = of->at;
 #define ELEMENTS                                                                                   \
   const strut_element_table *elements = &((const strut_checked *)of->outer->at)->model->elements
 STRUT_VALUES_HERE(hinge_values, HINGE, const strut_hinge *h = of->at; ELEMENTS;
-                  int32_t i = strut_element_of_hinge(elements, (int32_t)of->index);
+                  int32_t i = strut_element_find(elements, STRUT_ELEMENT_HINGE, (int32_t)of->index);
                   strut_element_pose pose = pose_of(of, i))
 
 #define CELL(X)                                                                                    \
@@ -111,7 +111,7 @@ STRUT_VALUES_HERE(cell_values, CELL, const strut_cell *cell = of->at)
 
 /* The least distance of the surfaces of a collision in the drawn shape. */
 static double drawn_gap(const strut_result_object *of, const strut_element_table *elements) {
-  int32_t first = strut_element_of_collision(elements, (int32_t)of->index);
+  int32_t first = strut_element_find(elements, STRUT_ELEMENT_COLLISION, (int32_t)of->index);
   double gap = HUGE_VAL;
   for (int32_t k = first; k < strut_element_end(elements, first); k++) {
     strut_element_pose pose = pose_of(of, k);
@@ -134,7 +134,8 @@ STRUT_VALUES_HERE(collision_values, COLLISION, const strut_collision *c = of->at
   X("damping", "N s/m", NUMBER(s->damping), "of it", COLUMN)                                       \
   X("law", "", TEXT(strut_law_at(s->law.kind)->word), "of its force", COLUMN)
 STRUT_VALUES_HERE(distance_values, DISTANCE, const strut_distance_spring *s = of->at; ELEMENTS;
-                  int32_t i = strut_element_of_distance(elements, (int32_t)of->index))
+                  int32_t i = strut_element_find(elements, STRUT_ELEMENT_DISTANCE,
+                                                 (int32_t)of->index))
 
 static const char *member_name(const strut_result_object *of, size_t i) {
   strut_rest rest;
