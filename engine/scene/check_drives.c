@@ -157,12 +157,6 @@ void strut_check_drives(strut_checker *checker) {
     if (!isfinite(l->force[0] + l->force[1] + l->moment))
       strut_report_finding(checker, STRUT_ON_LOAD, i, l->couple ? "moment" : "force",
                            "the %s of %s is not finite", l->couple ? "moment" : "force", owner);
-    bool held = !l->couple && strut_exists(l->node, scene->node_count) &&
-                scene->nodes[l->node].fixed[0] && scene->nodes[l->node].fixed[1];
-    if (held)
-      strut_report_finding(checker, STRUT_ON_LOAD, i, "node",
-                           "%s acts on node '%s', which is fixed and cannot yield to it", owner,
-                           scene->nodes[l->node].name);
     if (l->signal != -1 && !strut_exists(l->signal, scene->signal_count))
       strut_report_finding(checker, STRUT_ON_LOAD, i, "signal",
                            "%s has a signal that does not exist", owner);
