@@ -53,7 +53,6 @@ expect 1 run rocker.yaml --integrator midpoint
 refused() { # sed command, message
   edit "$1" rocker.yaml tells 2 "$2" check
 }
-refused 's/radius: 1 m/radius: 2 m/' "more than member 'body' is long"
 refused 's/node: n, radius/node: x, radius/' "unknown node 'x'"
 refused 's/law: smooth, mu: mu, width: 1 mm.s/law: coulomb, mu: 1/' "no friction that sticks exactly"
 refused 's/nodes: .n..$/nodes: [o]}/' "may touch no ground"

@@ -195,10 +195,10 @@ static void put_distances(random_world *w) {
 
 /* ---- grounds ---- */
 
-static void put_friction(random_world *w) {
+static bool put_friction(random_world *w) {
   double mu = between(w, 0.2, 0.8);
   bool smooth = once_in(w, 2);
-  if (once_in(w, 3)) return;
+  if (once_in(w, 3)) return false;
   const char *curve = w->ring % 2 ? "smooth" : "stribeck, decay_velocity: 0.4";
   put(w, GROUNDS, ", friction: {law: %s", smooth ? curve : "karnopp");
   if (once_in(w, 2))
@@ -206,6 +206,7 @@ static void put_friction(random_world *w) {
   else
     put(w, GROUNDS, ", mu_static: %.17g, mu_kinetic: %.17g", 1.2 * mu, mu);
   put(w, GROUNDS, ", %s: %.17g}", smooth ? "width" : "stick_velocity", between(w, 0.1, 0.5));
+  return true;
 }
 
 static void put_ground(random_world *w, int first, int last) {
@@ -215,8 +216,8 @@ static void put_ground(random_world *w, int first, int last) {
     put(w, GROUNDS, ", damping: %.17g", between(w, 0, 5));
   else
     put(w, GROUNDS, ", damping_law: hunt_crossley, dissipation: %.17g", between(w, 0, 2));
-  if (once_in(w, 2)) put(w, GROUNDS, ", belt_speed: %.17g", between(w, -1, 1));
-  put_friction(w);
+  double belt = once_in(w, 2) ? between(w, -1, 1) : 0.0;
+  if (put_friction(w) && belt != 0.0) put(w, GROUNDS, ", belt_speed: %.17g", belt);
   put(w, GROUNDS, ", nodes: [");
   for (int i = first; i <= last; i++) put(w, GROUNDS, "%sn%d", i > first ? ", " : "", i);
   put(w, GROUNDS, "]}\n");
