@@ -149,16 +149,19 @@ static strut_status discard_unfinished_run(strut_ladder *l) {
   return STRUT_OK;
 }
 
-/*
- * The latest run, with error control, has failed after one that has not: the method of higher order gives way to the
- * usual one; where that has failed, the run before is the answer, of which nothing is certain.
- */
+/* Runs that may fail: their tolerance or step is left out. */
+enum { MOST_FAILURES = 2 };
+
+/* The latest run has failed after one that has not. The method of higher order gives way to the usual one. */
 static void discard_failed_run(strut_ladder *l) {
+  bool coarse = l->runs <= l->coarse_runs;
   step_back(l);
-  if (l->precise)
-    l->precise = false, l->imprecise = true;
+  if (coarse)
+    l->coarse_runs--, l->tried--;
+  else if (l->precise)
+    l->precise = false, l->imprecise = true, l->tried--;
   else
-    l->failed = true;
+    l->failed = ++l->failures == MOST_FAILURES;
 }
 
 /* Keeps the results of the latest run, for their range. */
@@ -179,19 +182,19 @@ static strut_status run_next_rung(strut_ladder *l) {
   strut_rung *next = l->runs == 0 ? l->rung : l->now == &l->rung[1] ? &l->rung[2] : &l->rung[1];
   strut_run_options quiet = *l->a->options;
   strut_sink *sinks[] = {&next->track.sink};
-  assert(next != l->now && l->runs < STRUT_LADDER_RUNS);
+  assert(next != l->now && l->tried < STRUT_LADDER_RUNS);
   l->before = l->now;
   l->now = next;
   strut_summary_free(&next->s);
-  next->e = refine_experiment(l, l->runs++);
+  next->e = refine_experiment(l, l->tried++);
+  l->runs++;
   strut_accuracy_begin_phase(l->a, l->runs == 1 ? "first run" : "checking by a finer run");
   quiet.sinks = sinks, quiet.sink_count = 1, quiet.to = NULL;
   strut_status status = strut_accuracy_run(l->a, &next->e, &quiet, &next->s);
   next->cost = next->s.spent.evaluations;
   l->a->check_evaluations += next->cost;
   if (status == STRUT_WORK_LIMIT) return discard_unfinished_run(l);
-  if (status == STRUT_DIVERGED && strut_ladder_runs_with_error_control(l) > 1 &&
-      l->before->s.status == STRUT_OK) {
+  if (status == STRUT_DIVERGED && l->before && l->before->s.status == STRUT_OK) {
     discard_failed_run(l);
     return STRUT_OK;
   }
@@ -207,8 +210,6 @@ static strut_status run_next_rung(strut_ladder *l) {
       next->e.steady.wanted ? strut_experiment_span(&l->a->experiment, l->a->scene).period : 0.0;
   l->change = compare_results(l, &next->s, &l->before->s, l->difference);
   l->distance = strut_track_distance(&next->track, &l->before->track, period);
-  if (strut_ladder_runs_with_error_control(l) > 0 && l->means < STRUT_LADDER_RUNS)
-    l->mean[l->means++] = next->s.velocity;
   return STRUT_OK;
 }
 
@@ -239,14 +240,15 @@ static strut_status probe(strut_ladder *l) {
     a->allowed = a->budget;
     return STRUT_OK;
   }
-  l->coarse_runs = coarse_runs, l->runs = 0;
+  l->coarse_runs = coarse_runs, l->runs = l->tried = 0;
   l->now = l->before = NULL;
   l->budget_spent = false;
   return STRUT_OK;
 }
 
 static bool may_refine(const strut_ladder *l) {
-  if (l->kept || l->failed || l->budget_spent || l->runs >= STRUT_LADDER_RUNS) return false;
+  if (l->kept || l->failed || l->budget_spent || l->tried >= STRUT_LADDER_RUNS) return false;
+  if (l->sensitivity > l->a->target && !l->model->feedback.sampled_count) return false;
   if (strut_ladder_runs_with_error_control(l) < 1 || l->a->single_method) return true;
   return l->now->e.tolerance > LEAST_TOLERANCE;
 }
@@ -269,6 +271,7 @@ static strut_status create_ladder(strut_accuracy *a, strut_ladder *l) {
   /* Two steps of one method may lead to the same wrong motion: they must agree from the start on. */
   double duration = strut_experiment_span(&a->experiment, a->scene).duration;
   l->coarse_runs = !shares && duration <= (double)(moments - 1) * l->moment ? 2 : 1;
+  if (a->single_method) l->coarse_runs = 0;
   for (int k = 0; k < 3 && !status; k++)
     status = strut_track_create(l->model, moments, &l->arena, &l->rung[k].track);
   size_t quantities = a->experiment.quantity_count;
@@ -322,7 +325,8 @@ static strut_status check_sensitivity(strut_ladder *l) {
   strut_run_options quiet = *a->options;
   strut_snapshot start = {.q = NULL};
   strut_summary shifted = {0};
-  const strut_rung *r = l->budget_spent ? l->now : l->before; /* the one before was not finished */
+  const strut_rung *r = l->before && !l->before->s.status ? l->before : l->now;
+  int64_t allowed = a->allowed;
   if (!l->same_motion || a->single_method || strut_ladder_runs_with_error_control(l) < 2)
     return STRUT_OK;
   if (!(r->e.tolerance < CHECKED_BELOW) && !l->model->feedback.sampled_count) return STRUT_OK;
@@ -333,6 +337,7 @@ static strut_status check_sensitivity(strut_ladder *l) {
   strut_accuracy_begin_phase(a, "checking with a shifted start");
   a->allowed = INT64_MAX; /* the same run was within the budget before */
   status = strut_accuracy_run(a, &r->e, &quiet, &shifted);
+  a->allowed = allowed;
   a->check_evaluations += shifted.spent.evaluations;
   size_t worst = l->worst;
   l->sensitivity = status ? HUGE_VAL : compare_results(l, &r->s, &shifted, l->shifted);
@@ -371,15 +376,15 @@ strut_status strut_accuracy_climb_ladder(strut_accuracy *a) {
   if (!status) status = probe(&l);
   while (!status && may_refine(&l)) {
     status = run_next_rung(&l);
-    if (!status && !l.budget_spent && !l.failed && l.runs > 1) strut_ladder_judge(&l);
-    if (!status && !l.budget_spent && !l.failed) strut_ladder_extend_coarse(&l);
+    if (status || l.budget_spent || l.failed) break;
+    if (l.runs > 1) strut_ladder_judge(&l);
+    strut_ladder_extend_coarse(&l);
+    if (l.kept) status = check_sensitivity(&l);
   }
-  if (!status && l.runs > 1 && l.now->s.status && !l.before->s.status) {
-    step_back(&l);
-    l.failed = true;
+  if (!status && !l.kept && !(l.sensitivity > a->target)) {
+    strut_ladder_judge_last(&l);
+    status = check_sensitivity(&l);
   }
-  strut_ladder_judge_last(&l);
-  if (!status) status = check_sensitivity(&l);
   if (!status) status = deliver_answer(&l);
   if (!status) strut_ladder_report(&l);
   for (int k = 0; k < 3; k++) strut_summary_free(&l.rung[k].s);
