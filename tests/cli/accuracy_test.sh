@@ -331,7 +331,7 @@ loads: {push: {node: n3, force: [-0.596, 0], signal: {sine: {amplitude: 1, frequ
 run: {duration: 0.956}
 solver: {step: 1 ms}
 END
-for setting in "adaptive8 --tolerance 2e-9" "adaptive8 --tolerance 1e-10" "adaptive --tolerance 1e-8" "rk4-events --step 5e-6"; do
+for setting in "implicit --tolerance 1e-10" "adaptive8 --tolerance 2e-9" "adaptive8 --tolerance 1e-10" "adaptive --tolerance 1e-8" "rk4-events --step 5e-6"; do
   # shellcheck disable=SC2086
   expect 0 run pushed.yaml --integrator $setting --json
   about .velocity -0.260301183 1e-6
@@ -352,7 +352,8 @@ loads: {shake: {node: side, force: [3, 0], signal: {sum: [{sine: {amplitude: 1, 
 run: {duration: 3 s}
 solver: {step: 1 ms}
 END
-for setting in "adaptive8 --tolerance 1e-10" "adaptive --tolerance 1e-10" "rk4-events --step 1e-4"; do
+for setting in "implicit --tolerance 1e-10" "adaptive8 --tolerance 1e-10" "adaptive --tolerance 1e-10" \
+  "rk4-events --step 1e-4"; do
   # shellcheck disable=SC2086
   expect 0 run held.yaml --integrator $setting --json
   about .velocity 0.0011415962 1e-6

@@ -289,10 +289,11 @@ struct strut_event_stepper {
       next_break; /* when a drive or load jumps next, with the state's time_offset [s]; INFINITY: never */
   bool looks; /* signals may ask for shorter steps */
   bool started;
-  bool fresh;                /* now->structure holds for now */
-  bool tried;                /* next is the end of the step that is due */
-  strut_event_view *view;    /* NULL: nothing is observed */
-  strut_drives_ahead drives; /* of methods with one evaluation a step, during a call */
+  bool fresh;                      /* now->structure holds for now */
+  bool tried;                      /* next is the end of the step that is due */
+  strut_event_view *view;          /* NULL: nothing is observed */
+  struct strut_implicit *implicit; /* of implicit.c */
+  strut_drives_ahead drives;       /* of methods with one evaluation a step, during a call */
 };
 
 /** Laws that may switch: `count` of them, each by its place in a list. */
@@ -385,6 +386,11 @@ bool strut_event_rate(const strut_event_stepper *stepper, const strut_step_end *
 /** Before a step of a formula that predicts: the first touchdown or opening. */
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
                                 const strut_event_stepper *stepper, double h);
+/** Of methods with error control (adaptive.c): notes what is left of margins at a stage. */
+void strut_event_note_stage(const strut_event_stepper *stepper, double at, bool first);
+/** What the ends of a step of sufficient accuracy, and its stages, say about the time between. */
+void strut_event_look_between(const strut_model *model, const strut_state *state,
+                              strut_event_stepper *stepper, double h);
 /* ---- contact_modes.c: what an event does is made of these ---- */
 
 /** Mode of contact i, which touches, from its speeds; with surfaces on `facet`, or -1: the nearest. */

@@ -90,8 +90,10 @@ static strut_experiment refine_experiment(const strut_ladder *l, int k) {
     if (k > 0) e.refine_rate *= 0.5; /* steps after a touchdown are finer, too */
   } else {
     int further = k - l->coarse_runs;
-    e.integrator =
-        strut_integrator_for(l->precise ? STRUT_ROLE_PRECISE : STRUT_ROLE_REFERENCE)->name;
+    e.integrator = strut_integrator_for(l->implicit  ? STRUT_ROLE_IMPLICIT
+                                        : l->precise ? STRUT_ROLE_PRECISE
+                                                     : STRUT_ROLE_REFERENCE)
+                       ->name;
     e.step = l->moment / STEPS_OF_MOMENT[further];
     e.tolerance = fmin(FIRST_TOLERANCE, FIRST_TOLERANCE_PER_ERROR * a->target);
     e.tolerance = fmax(LEAST_TOLERANCE, e.tolerance * pow(FINER_TOLERANCE, further));
@@ -174,7 +176,8 @@ static void keep_results(const strut_ladder *l, const strut_summary *s) {
 /* Do tolerances set the steps of the two latest runs, with error control? */
 static void note_growth(strut_ladder *l) {
   double growth = (double)l->now->cost / (double)l->before->cost;
-  if (growth > GROWTH_BY_TOLERANCE && growth < GROWTH_BY_EVENTS) l->precise = !l->imprecise;
+  if (growth > GROWTH_BY_TOLERANCE && growth < GROWTH_BY_EVENTS)
+    l->precise = !l->imprecise && !l->implicit;
 }
 
 /* Makes one more run without output and compares it with the one before. */
@@ -217,19 +220,44 @@ static strut_status run_next_rung(strut_ladder *l) {
  * Of scenes whose fixed steps are so many, the first run with error control is tried before, for at most a part of the
  * evaluations that fixed steps take: what sets their step may never touch, or move far less than the rest.
  */
-static const double PROBED = 2e5, PROBE = 0.125;
+static const double PROBED = 2e5, PROBE = 0.125, PROBE_IMPLICIT = 0.05;
 /* All runs may take so many times the evaluations of one that replaces fixed steps, for the usual budget. */
 static const double RUNS_OF_PROBE = 64.0;
+/* Free coordinates of an implicit step at most, and least damping over the critical one of what it does not follow. */
+enum { MOST_IMPLICIT = 128 };
+static const double DAMPED = 0.1;
+
+static bool is_damped(double stiffness, double damping, double per_mass) {
+  return damping * per_mass >= 2.0 * DAMPED * sqrt(stiffness * per_mass);
+}
+
+/* May steps be longer than vibrations? They must die out by themselves, not by the method. */
+static bool suits_implicit_steps(const strut_model *model) {
+  const strut_member_table *t = &model->members;
+  bool suits = 2 * model->node_count <= MOST_IMPLICIT && !model->elements.count &&
+               !(model->terms & STRUT_TERM_MEMORY);
+  for (int32_t j = 0; j < t->count && suits; j++)
+    suits = is_damped(t->stiffness[j], t->damping[j],
+                      1.0 / model->weight[t->from[j] / 2] + 1.0 / model->weight[t->to[j] / 2]);
+  for (int32_t i = 0; i < model->contacts.count && suits; i++) {
+    const strut_contact_entry *e = &model->contacts.entry[i];
+    suits = is_damped(e->stiffness, e->damping, 1.0 / model->weight[e->node]);
+  }
+  return suits;
+}
 
 /* Tries whether runs with error control alone are cheaper; then the budget follows from their cost. */
-static strut_status probe(strut_ladder *l) {
+static strut_status probe(strut_ladder *l, bool implicit) {
   strut_accuracy *a = l->a;
   double steps = strut_experiment_span(&a->experiment, a->scene).duration / a->coarse.step;
-  if (a->single_method || !(steps > PROBED)) return STRUT_OK;
+  double part = implicit ? PROBE_IMPLICIT : PROBE;
+  if (a->single_method || l->runs || !(steps > PROBED)) return STRUT_OK;
+  if (implicit && !suits_implicit_steps(l->model)) return STRUT_OK;
   int64_t allowed = a->allowed;
   int coarse_runs = l->coarse_runs;
-  a->allowed = (int64_t)fmin((double)a->used + PROBE * steps, (double)allowed);
+  a->allowed = (int64_t)fmin((double)a->used + part * steps, (double)allowed);
   l->coarse_runs = 0;
+  l->implicit = implicit;
   strut_status status = run_next_rung(l);
   a->allowed = allowed;
   if (status && status != STRUT_WORK_LIMIT) return status;
@@ -242,7 +270,7 @@ static strut_status probe(strut_ladder *l) {
   }
   l->coarse_runs = coarse_runs, l->runs = l->tried = 0;
   l->now = l->before = NULL;
-  l->budget_spent = false;
+  l->budget_spent = l->implicit = false;
   return STRUT_OK;
 }
 
@@ -373,7 +401,8 @@ strut_status strut_accuracy_climb_ladder(strut_accuracy *a) {
                     .expected = HUGE_VAL,
                     .precise = a->target < PRECISE};
   strut_status status = create_ladder(a, &l);
-  if (!status) status = probe(&l);
+  if (!status) status = probe(&l, true);
+  if (!status) status = probe(&l, false);
   while (!status && may_refine(&l)) {
     status = run_next_rung(&l);
     if (status || l.budget_spent || l.failed) break;

@@ -41,7 +41,8 @@ typedef struct strut_ladder {
   int tried, failures;           /* runs, with those that failed; the latter */
   double expected, margin; /* estimated error of the latest run, relative; reported over that */
   bool same_motion, kept, budget_spent;
-  bool precise;   /* runs with error control are by the method of higher order */
+  bool implicit;  /* runs with error control are by the implicit method */
+  bool precise;   /* or by the method of higher order */
   bool imprecise; /* that method has failed */
   bool failed;    /* a finer run has failed, after one that is the answer */
   const strut_model *model;
