@@ -25,6 +25,7 @@ typedef enum strut_integrator_role {
   STRUT_ROLE_COARSE,      /* the first, coarse run of a requested accuracy */
   STRUT_ROLE_REFERENCE,   /* chooses its steps by its own estimate of the error */
   STRUT_ROLE_PRECISE,     /* the same, for small tolerances */
+  STRUT_ROLE_IMPLICIT,    /* the same, for what is stiff */
   STRUT_ROLE_STIFF        /* long steps over stiff members that hardly move */
 } strut_integrator_role;
 
@@ -79,7 +80,8 @@ STRUT_API const strut_integrator *strut_integrator_find(const char *name);
 STRUT_API const strut_integrator *strut_integrator_for(strut_integrator_role role);
 /** Does it choose its steps by its own estimate of the error? */
 static inline bool strut_integrator_controls_error(const strut_integrator *method) {
-  return method->role == STRUT_ROLE_REFERENCE || method->role == STRUT_ROLE_PRECISE;
+  return method->role == STRUT_ROLE_REFERENCE || method->role == STRUT_ROLE_PRECISE ||
+         method->role == STRUT_ROLE_IMPLICIT;
 }
 /** The method of STRUT_ROLE_PLAIN, or of STRUT_ROLE_EXACT_STICK where the model has such a contact. */
 STRUT_API const strut_integrator *strut_integrator_for_settling(const strut_model *model);

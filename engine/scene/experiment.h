@@ -91,6 +91,7 @@ typedef struct strut_steady {
   X(verlet_events, "verlet-events", 0)                                                             \
   X(adaptive, "adaptive", 100)                                                                     \
   X(adaptive8, "adaptive8", 10)                                                                    \
+  X(implicit, "implicit", 10)                                                                      \
   X(midpoint, "midpoint", 0)
 /** Their words as the key table lists them: "rk4|euler|...". */
 #define STRUT_INTEGRATOR_WORD(row, word, steps) "|" word

@@ -331,7 +331,7 @@ MUTANTS = [
            "to > faint && stepper->next->tension[k] < 0.0", "to > faint && stepper->next->tension[k] > 0.0",
            "a damped cable that pulls for part of a step is not seen", "cli_accuracy"),
     Mutant("chance-of-coarse", "engine/run/accuracy/accuracy_judge.c",
-           "return fmax(error, LEFT_BY_HALF_STEP * earlier);", "return earlier > 0.0 ? error : earlier;",
+           "if (e->leaves == 0.0) return rest;", "return rest;",
            "coarse runs that agree by chance count as accurate", "cli_accuracy"),
     Mutant("never-of-order-8", "engine/run/accuracy/accuracy_ladder.c",
            "if (growth > GROWTH_BY_TOLERANCE &&", "if (growth > 1e3 * GROWTH_BY_TOLERANCE &&",

@@ -133,7 +133,7 @@ static void note(strut_least_margin *least, double margin, double at, bool first
   if (first || margin < least->margin) *least = (strut_least_margin){margin, at};
 }
 
-static void note_stage(const strut_event_stepper *stepper, double at, bool first) {
+void strut_event_note_stage(const strut_event_stepper *stepper, double at, bool first) {
   for (int32_t k = 0; k < stepper->active.closed_count; k++) {
     int32_t i = stepper->active.closed[k];
     const strut_touch *o = &stepper->next->touch[i];
@@ -211,9 +211,8 @@ static double error_to_reach(const strut_event_stepper *stepper, double part) {
   return fmax(1.01, pow(0.9 / part, stepper->formula->tableau->order));
 }
 
-/* What the ends of a step of sufficient accuracy, and its stages, say about the time between. */
-static void look_between(const strut_model *model, const strut_state *state,
-                         strut_event_stepper *stepper, double h) {
+void strut_event_look_between(const strut_model *model, const strut_state *state,
+                              strut_event_stepper *stepper, double h) {
   if (!(stepper->control.error <= 1.0)) return;
   strut_event_measure(model, state, stepper, stepper->next);
   double part = strut_event_between(model, state, stepper, h);
@@ -251,7 +250,7 @@ STRUT_INLINE void take_stages(const strut_model *model, const strut_state *state
     accelerate_in_modes(model, state, stepper, t + ahead[k] * h, q, v[k], a[k], stepper->next,
                         terms, balance);
     if (stepper->active.closed_count && !stepper->active.all_sliding)
-      note_stage(stepper, ahead[k], k == 1);
+      strut_event_note_stage(stepper, ahead[k], k == 1);
     if (model->terms & terms & STRUT_TERM_MEMORY) {
       strut_step_end at = *stepper->next;
       at.q = q, at.v = v[k];
@@ -273,7 +272,7 @@ STRUT_INLINE void take(const strut_model *model, const strut_state *state,
     take_stages(model, state, stepper, t, h, terms, balance);
     again = strut_turns_due(state, stepper) && strut_turns_appear(model, state, stepper, h);
   } while (again);
-  look_between(model, state, stepper, h);
+  strut_event_look_between(model, state, stepper, h);
 }
 
 STRUT_EVENT_TRIAL(adaptive, take)

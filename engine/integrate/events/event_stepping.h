@@ -303,10 +303,11 @@ struct strut_event_stepper {
       next_break; /* when a drive or load jumps next, with the state's time_offset [s]; INFINITY: never */
   bool looks; /* signals may ask for shorter steps */
   bool started;
-  bool fresh;                /* now->structure holds for now */
-  bool tried;                /* next is the end of the step that is due */
-  strut_event_view *view;    /* NULL: nothing is observed */
-  strut_drives_ahead drives; /* of methods with one evaluation a step, during a call */
+  bool fresh;                      /* now->structure holds for now */
+  bool tried;                      /* next is the end of the step that is due */
+  strut_event_view *view;          /* NULL: nothing is observed */
+  struct strut_implicit *implicit; /* of implicit.c */
+  strut_drives_ahead drives;       /* of methods with one evaluation a step, during a call */
 };
 
 /** Laws that may switch: `count` of them, each by its place in a list. */
@@ -429,6 +430,11 @@ void strut_turn_round(const strut_model *model, strut_state *state, strut_event_
 /** Where the cubic with these values, both above 0, and slopes at 0 and 1 is lowest, if below 0 by more than faint. */
 double strut_event_dip(double g0, double d0, double g1, double d1, double faint);
 
+/** Of methods with error control (adaptive.c): notes what is left of margins at a stage. */
+void strut_event_note_stage(const strut_event_stepper *stepper, double at, bool first);
+/** What the ends of a step of sufficient accuracy, and its stages, say about the time between. */
+void strut_event_look_between(const strut_model *model, const strut_state *state,
+                              strut_event_stepper *stepper, double h);
 /* ---- contact_modes.c: what an event does is made of these ---- */
 
 /** Mode of contact i, which touches, from its speeds; with surfaces on `facet`, or -1: the nearest. */

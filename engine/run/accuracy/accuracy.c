@@ -42,6 +42,8 @@ strut_status strut_accuracy_run(strut_accuracy *a, const strut_experiment *exper
   bounded.most_evaluations = strut_accuracy_evaluations_left(a);
   strut_status status = strut_simulate(a->model, &plain, &bounded, summary, a->error);
   a->used += summary->spent.evaluations;
+  for (size_t i = 0; i < summary->warning_count; i++)
+    a->creeps = a->creeps || strcmp(summary->warnings[i].code, "wide_band") == 0;
   return status;
 }
 
@@ -117,14 +119,14 @@ static void withhold(strut_summary *s) {
 }
 
 /* Bands that are too wide, and friction that gave more of the exchanged energy than the wanted accuracy. */
-static void refuse_wide_bands(strut_summary *s) {
-  bool wide = s->energy.rubbed > s->accuracy.wanted * s->energy.moved;
-  for (size_t i = 0; i < s->warning_count; i++)
-    wide = wide || strcmp(s->warnings[i].code, "wide_band") == 0;
-  if (!wide || !s->accuracy.kept) return;
+static void refuse_wide_bands(const strut_accuracy *a) {
+  strut_summary *s = a->summary;
+  bool gives = s->energy.rubbed > s->accuracy.wanted * s->energy.moved;
+  if (!(a->creeps || gives) || !s->accuracy.kept) return;
   withhold(s);
   snprintf(s->accuracy.why, sizeof s->accuracy.why,
-           "all runs creep within the stick band, as another warning says");
+           "feet that should stick creep within their stick bands; use 'law: coulomb', or a far "
+           "smaller stick_velocity");
 }
 
 bool strut_accuracy_balance_is_open(const strut_accuracy *a, const strut_summary *s) {
@@ -179,7 +181,7 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
   if (!orbit) refuse_open_balance(&a);
   summary->settle_time = start.how.time, summary->settle = start.how;
   strut_summary_warn_of_start(summary);
-  refuse_wide_bands(summary);
+  refuse_wide_bands(&a);
   strut_summary_warn_of_accuracy(summary);
   strut_settled_start_free(&start);
   return status;

@@ -48,6 +48,7 @@ typedef struct strut_accuracy {
   double target,
       scale; /* wanted relative error [1]; velocity below which errors are not relative [m/s] */
   bool single_method;        /* only one method suits the scene: compare different steps of it */
+  bool creeps;               /* a run has warned that feet creep within wide bands */
   int64_t check_evaluations; /* force evaluations that are not part of the answer */
   int64_t budget;            /* force evaluations allowed in total */
   int64_t used, allowed;     /* made so far; allowed until the present strategy must stop */

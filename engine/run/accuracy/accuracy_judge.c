@@ -21,108 +21,83 @@ double strut_ladder_arrival_doubt(const strut_measured *one, const strut_measure
   return 1.5 * apart / one->margin;
 }
 
+/*
+ * The table of evidence: what the latest runs must be, and how near to each other, to say how accurate the latest one
+ * is. Motions are apart by strut_track_distance; results differ by l->change. For each number of runs there is one row
+ * at most; its scene, of tests/cli/accuracy_test.sh, is wrong or costs far more without it.
+ */
+typedef struct strut_evidence {
+  enum { COARSE, CONTROLLED, ALONE } method; /* the latter: the only one that suits the scene */
+  int least, most;        /* runs of it; those by the coarse method are the first */
+  double apart_of_wanted; /* distance of the two latest motions at most, over the wanted error */
+  double apart;           /* and over the range of motion */
+  double shrinks;         /* a difference over the one before at most; 0: whatever it was */
+  double leaves;          /* what is left of the difference before, by the order of the method */
+  double enough;          /* estimate over the wanted error at most */
+  double margin;          /* reported error over the estimate */
+} strut_evidence;
+
 /* Tracks closer than this, relative to the range of motion, are the same motion. */
 static const double SAME_MOTION = 0.03;
-/*
- * The same for two runs only: over the accuracy wanted, and, where the first is coarse, at most. A mean velocity that
- * is small beside the nodes' may agree by chance where their motions do not.
- */
-static const double SAME_MOTION_OF_TWO = 0.5, MOST_APART_OF_COARSE = 0.005;
-/* The same for coarse runs that converge, each with half the step of the one before. */
-static const double MOST_APART_OF_CONVERGING = 0.01, CONVERGING_STEPS = 0.5;
-/* Part that half the step leaves of what two runs of the coarse method, of order 2, differ by. */
-static const double LEFT_BY_HALF_STEP = 0.25;
+enum { HALVED_AGAIN = 1, ANY = STRUT_LADDER_RUNS };
+static const strut_evidence EVIDENCE[] = {
+    /* half the step, over all of a short run: small velocities may agree by chance (chance) */
+    {COARSE, 2, 2, 0.4, 0.005, 0.0, 0.0, 0.2, 2.0},
+    /* half of it again, where that converges (grid) */
+    {COARSE, 3, ANY, 0.4, 0.01, 0.5, 0.25, 0.2, 2.0},
+    /* another method, another grid: both may be of another branch than the motion's (branch) */
+    {CONTROLLED, 1, 1, 0.5, 0.005, 0.0, 0.0, 0.2, 2.0},
+    /* a thirtieth of the tolerance: differs by a third of an error of order 1 in the longest step (pair) */
+    {CONTROLLED, 2, 2, 0.5, SAME_MOTION, 0.0, 0.0, 0.2, 4.0},
+    /* again: differences that grew, or hardly shrank, may be small by chance (growing, stalled) */
+    {CONTROLLED, 3, ANY, HUGE_VAL, SAME_MOTION, 0.7, 0.0, 0.3, 2.0},
+    /* half the step, twice, with nothing else to compare with (rod) */
+    {ALONE, 3, ANY, HUGE_VAL, SAME_MOTION, 0.7, 0.0, 0.05, 2.0},
+};
+
+/* Differences below this are rounding, and show no convergence. */
+static const double NOISE = 1e-9;
+/* What is reported is no less than this part of the distance of the motions: results may agree by chance. */
+static const double OF_DISTANCE = 0.5;
+/* Nor, over what is allowed of it, than this part of what is reported of the quantity that is known worst. */
+static const double OF_WORST = 0.1;
 /* Runs by the coarse method; and what those after the second may cost, over the first: as a run with error control. */
 enum { MOST_COARSE_RUNS = 4 };
 static const double WORTH = 5.0;
-/*
- * Expected error that is accepted, as part of the wanted one: of two runs by one method or by two, which show no
- * convergence; of two whose motions are further apart than that; and of later runs. Where the first two with error
- * control both took the longest step, so that their tolerances changed nothing, an error of order 1 in it is three
- * times their difference.
- */
-static const double ENOUGH_OF_TWO = 0.2, ENOUGH_OF_TWO_APART = 0.05, ENOUGH = 0.3;
-/* The same where only one method suits the scene. */
-static const double ENOUGH_ALONE = 0.05;
-/* Runs converge whose differences shrink from one to the next by this factor or a smaller one. */
-static const double CONVERGING = 0.7;
-/* Runs needed for a mean over different motions. */
+/* Different motions: so many runs with error control, whose results must agree to this part of the wanted error. */
 enum { LEAST_MEANS = 5 };
-/* Part of the wanted error within which means of different motions must agree. */
 static const double ENOUGH_OF_MEANS = 0.1;
-/* Reported error over the estimate. */
-static const double MARGIN = 2.0, MARGIN_OF_FIRST_PAIR = 4.0;
-static const double DEVIATIONS = 4.0;
 
-/*
- * Expected error over the distance of coarse motions, of which the latest is a third away from the limit. Velocities
- * may agree by chance.
- */
-static const double OF_DISTANCE = 0.5;
-
-/* The same for coarse runs; of three, what the first two led to expect, if that is more. */
-static double estimate_coarse_error(const strut_ladder *l) {
-  double error = fmax(l->change, OF_DISTANCE * l->distance);
-  if (l->runs < 3) return error;
-  double earlier = fmax(l->earlier_change, OF_DISTANCE * l->earlier_distance);
-  return fmax(error, LEFT_BY_HALF_STEP * earlier);
+/* The row for the runs that there are; NULL: they say nothing. */
+static const strut_evidence *find_evidence(const strut_ladder *l) {
+  int fine = strut_ladder_runs_with_error_control(l);
+  int method = l->a->single_method ? ALONE : fine > 0 ? CONTROLLED : COARSE;
+  int runs = method == COARSE ? l->runs : fine;
+  for (size_t k = 0; k < sizeof EVIDENCE / sizeof EVIDENCE[0]; k++) {
+    const strut_evidence *e = &EVIDENCE[k];
+    if ((int)e->method == method && runs >= e->least && runs <= e->most) return e;
+  }
+  return NULL;
 }
 
-/*
- * Estimates the relative error of the latest run where it and the one before are the same motion:
- * the rest of a geometric series where a third run shows the rate, otherwise their difference.
- */
-static double estimate_motion_error(const strut_ladder *l) {
-  if (!(l->distance <= SAME_MOTION)) return HUGE_VAL;
-  bool series = strut_ladder_runs_with_error_control(l) > 2 || (l->a->single_method && l->runs > 2);
-  if (strut_ladder_is_coarse(l, 2)) return estimate_coarse_error(l);
-  double ratio = series && l->earlier_change > 0.0 ? l->change / l->earlier_change : 0.5;
-  double noise = 1e-9; /* smaller differences are rounding and show no convergence */
-  if (!(ratio < CONVERGING) && l->change > noise) return HUGE_VAL;
+static bool shrinks(const strut_ladder *l, const strut_evidence *e) {
+  double part = e->shrinks;
+  if (part == 0.0) return true;
+  if (e->leaves > 0.0 && !(l->distance <= part * l->earlier_distance)) return false;
+  if (l->change <= NOISE) return true;
   /* after differences that did not shrink, one that is small may be chance */
-  bool stalled = l->earlier_change > CONVERGING * l->earliest_change &&
-                 l->earlier_change > ENOUGH * l->a->target;
-  if (series && stalled && l->change > noise) return HUGE_VAL;
-  return l->change * fmax(1.0, ratio / (1.0 - fmin(ratio, CONVERGING)));
+  bool stalled =
+      l->earlier_change > part * l->earliest_change && l->earlier_change > e->enough * l->a->target;
+  return l->change < part * l->earlier_change && !stalled;
 }
 
-/*
- * Estimates the relative error of the mean velocity where all runs are different motions:
- * DEVIATIONS standard deviations of their velocities. HUGE_VAL where there are too few.
- */
-static double estimate_mean_error(const strut_ladder *l) {
-  double mean = 0.0, square = 0.0;
-  int first = l->means > LEAST_MEANS + 1 ? l->means - LEAST_MEANS - 1 : 0, n = l->means - first;
-  if (n < LEAST_MEANS || l->a->single_method || l->now->s.measured_count) return HUGE_VAL;
-  for (int k = first; k < l->means; k++) mean += l->mean[k] / n;
-  for (int k = first; k < l->means; k++) square += (l->mean[k] - mean) * (l->mean[k] - mean);
-  return DEVIATIONS * sqrt(square / (n - 1)) / strut_ladder_velocity_size(l, mean);
-}
-
-static bool coarse_runs_converge(const strut_ladder *l) {
-  return strut_ladder_is_coarse(l, 3) && l->distance <= CONVERGING_STEPS * l->earlier_distance &&
-         l->change <= CONVERGING_STEPS * l->earlier_change;
-}
-
-/* Largest distance of the motions of two runs of which the first is coarse. */
-static double allowed_distance(const strut_ladder *l, bool converging) {
-  double most = converging ? MOST_APART_OF_CONVERGING : MOST_APART_OF_COARSE;
-  return fmin(SAME_MOTION_OF_TWO * l->a->target, most);
-}
-
-void strut_ladder_extend_coarse(strut_ladder *l) {
-  if (l->kept || l->runs != l->coarse_runs || !strut_ladder_is_coarse(l, 2)) return;
-  if (l->runs > 2 && !coarse_runs_converge(l)) return;
-  double apart =
-      fmax(l->distance / allowed_distance(l, true), l->change / (ENOUGH_OF_TWO * l->a->target));
-  double cost = (double)l->now->cost, of_steps = cost - (double)l->before->cost, spent = 0.0;
-  int runs = l->runs;
-  do {
-    if (runs++ == MOST_COARSE_RUNS) return;
-    apart *= LEFT_BY_HALF_STEP;
-    of_steps *= 2.0, cost += of_steps, spent += cost;
-  } while (apart > 1.0);
-  if (spent <= WORTH * (double)l->rung[0].cost) l->coarse_runs++;
+/* Relative error of the latest run: the rest of a geometric series where the rate is known, else the difference. */
+static double estimate_error(const strut_ladder *l, const strut_evidence *e) {
+  if (!(l->distance <= e->apart) || !shrinks(l, e)) return HUGE_VAL;
+  double ratio = e->shrinks > 0.0 ? fmin(l->change / l->earlier_change, e->shrinks) : 0.5;
+  double rest = l->change > NOISE ? l->change * fmax(1.0, ratio / (1.0 - ratio)) : l->change;
+  if (e->leaves == 0.0) return rest;
+  return fmax(rest, e->leaves * fmax(l->earlier_change, OF_DISTANCE * l->earlier_distance));
 }
 
 /* Did no contact or law switch too often, and does the energy balance close? */
@@ -130,38 +105,80 @@ static bool is_followed(const strut_ladder *l, const strut_summary *s) {
   return !s->spent.forced && !strut_accuracy_balance_is_open(l->a, s);
 }
 
+void strut_ladder_extend_coarse(strut_ladder *l) {
+  const strut_evidence *e = &EVIDENCE[HALVED_AGAIN];
+  if (l->kept || l->runs != l->coarse_runs || !strut_ladder_is_coarse(l, 2)) return;
+  if (l->runs > 2 && !shrinks(l, e)) return;
+  double wanted = l->a->target;
+  double apart = fmax(l->distance / fmin(e->apart_of_wanted * wanted, e->apart),
+                      l->change / (e->enough * wanted));
+  double cost = (double)l->now->cost, of_steps = cost - (double)l->before->cost, spent = 0.0;
+  int runs = l->runs;
+  do {
+    if (runs++ == MOST_COARSE_RUNS) return;
+    apart *= e->leaves;
+    of_steps *= 2.0, cost += of_steps, spent += cost;
+  } while (apart > 1.0);
+  if (spent <= WORTH * (double)l->rung[0].cost) l->coarse_runs++;
+}
+
+/* Runs whose range counts where they are the same motion: earlier ones were further from it. */
+enum { LATEST = 3 };
+static const double RANGE_MARGIN = 2.0;
+
+/*
+ * How far runs are from the latest, in quantity i or, behind them, in the velocity. The first run is coarser
+ * by far.
+ */
+static double range_about_latest(const strut_ladder *l, size_t i) {
+  size_t width = l->a->experiment.quantity_count + 1;
+  double latest = l->results[(size_t)(l->runs - 1) * width + i], most = 0.0;
+  for (int k = l->same_motion && l->runs > LATEST ? l->runs - LATEST : 1; k < l->runs; k++)
+    most = fmax(most, fabs(l->results[(size_t)k * width + i] - latest));
+  return RANGE_MARGIN * most;
+}
+
+/* The relative error where the runs do not converge: nothing is known of the answer but their range. */
+static double range_of_runs(const strut_ladder *l, const strut_summary *s) {
+  if (l->runs < 2) return (double)NAN;
+  double worst = 0.0, change = isfinite(l->change) ? RANGE_MARGIN * l->change : 0.0;
+  if (!s->measured_count)
+    return fmax(change, range_about_latest(l, 0) / strut_ladder_velocity_size(l, s->velocity));
+  for (size_t i = 0; i < s->measured_count; i++) {
+    const strut_measured *m = &s->measured[i];
+    worst = fmax(worst, range_about_latest(l, i) / strut_ladder_tolerated_error(l, m, i));
+  }
+  return fmax(change, l->a->target * worst);
+}
+
+/* The error where all runs are different motions; HUGE_VAL: they are too few. */
+static double estimate_mean_error(const strut_ladder *l) {
+  const strut_summary *s = &l->now->s;
+  bool zero = s->velocity_zero && l->before->s.velocity_zero;
+  bool few = strut_ladder_runs_with_error_control(l) < LEAST_MEANS || l->a->single_method;
+  for (size_t i = 0; i < s->measured_count; i++) few = few || s->measured[i].arrival;
+  if (!s->measured_count && zero) return 0.0;
+  return few ? HUGE_VAL : range_of_runs(l, s);
+}
+
 void strut_ladder_judge(strut_ladder *l) {
-  int further = strut_ladder_runs_with_error_control(l);
-  double wanted = l->a->target, enough = further < 3 ? ENOUGH_OF_TWO : ENOUGH;
-  if (further == 2 && l->distance > SAME_MOTION_OF_TWO * wanted) enough = ENOUGH_OF_TWO_APART;
-  if (l->a->single_method) enough = ENOUGH_ALONE;
-  l->expected = estimate_motion_error(l);
-  l->same_motion = l->distance <= SAME_MOTION;
-  /* steps of one method must agree twice: a single agreement may be chance */
-  bool once = l->a->single_method && l->runs < 3;
-  bool converging = coarse_runs_converge(l),
-       diverging = strut_ladder_is_coarse(l, 3) && !converging;
-  bool apart = further < 2 && (diverging || l->distance > allowed_distance(l, converging));
+  const strut_evidence *e = find_evidence(l);
+  double wanted = l->a->target;
   bool followed = is_followed(l, &l->now->s);
-  l->kept = strut_accuracy_is_kept(!once && !apart && followed, l->expected, enough * wanted);
+  l->same_motion = l->distance <= SAME_MOTION;
+  l->expected = e ? estimate_error(l, e) : HUGE_VAL;
+  l->margin = e ? e->margin : 1.0;
+  bool near = e && l->distance <= e->apart_of_wanted * wanted;
+  l->kept = e && strut_accuracy_is_kept(near && followed, l->expected, e->enough * wanted);
   if (l->kept || l->same_motion || !followed) return;
   l->expected = estimate_mean_error(l);
-  bool zero = !l->now->s.measured_count && l->now->s.velocity_zero && l->before->s.velocity_zero;
-  if (zero) l->expected = 0.0;
   l->kept = strut_accuracy_is_kept(true, l->expected, ENOUGH_OF_MEANS * wanted);
 }
 
-static double choose_margin(const strut_ladder *l) {
-  return strut_ladder_runs_with_error_control(l) == 2 && !l->a->single_method ? MARGIN_OF_FIRST_PAIR
-                                                                              : MARGIN;
-}
-
 void strut_ladder_judge_last(strut_ladder *l) {
-  bool fine = l->a->single_method ? l->runs > 2 : strut_ladder_runs_with_error_control(l) > 1;
-  if (!is_followed(l, &l->now->s) || l->failed) fine = false;
-  if (!l->kept)
-    l->kept = strut_accuracy_is_kept(l->same_motion && fine, choose_margin(l) * l->expected,
-                                     l->a->target);
+  bool fine = strut_ladder_runs_with_error_control(l) > 1 && !l->failed;
+  if (l->runs < 2 || !l->same_motion || !is_followed(l, &l->now->s)) return;
+  l->kept = strut_accuracy_is_kept(fine, l->margin * l->expected, l->a->target);
 }
 
 /* ---- what is said ---- */
@@ -219,9 +236,6 @@ static void explain_ladder(const strut_ladder *l, char *why, size_t size) {
              "and its error may be as large",
              how, undecided->name, undecided->margin,
              a->experiment.quantities[undecided - a->summary->measured].target_unit);
-  else if (l->kept && !l->same_motion && l->means >= LEAST_MEANS)
-    snprintf(why, size, "%s: a coarser run gives a different motion, but %s, as in all %d runs",
-             how, apart, l->means);
   else if (l->kept && !l->same_motion)
     snprintf(why, size, "%s: a coarser run gives a different motion, but also %s", how, apart);
   else if (l->sensitivity > a->target)
@@ -246,32 +260,23 @@ static void explain_ladder(const strut_ladder *l, char *why, size_t size) {
              how, apart, l->budget_spent ? "; a larger budget may help" : "");
 }
 
-/* Runs whose range counts where they are the same motion: earlier ones were further from it. */
-enum { LATEST = 3 };
-
-/*
- * How far runs are from the latest, in quantity i or, behind them, in the velocity. The first run is coarser
- * by far.
- */
-static double range_about_latest(const strut_ladder *l, size_t i) {
-  size_t width = l->a->experiment.quantity_count + 1;
-  double latest = l->results[(size_t)(l->runs - 1) * width + i], most = 0.0;
-  for (int k = l->same_motion && l->runs > LATEST ? l->runs - LATEST : 1; k < l->runs; k++)
-    most = fmax(most, fabs(l->results[(size_t)k * width + i] - latest));
-  return MARGIN * most;
-}
-
 /* Fills the expected error of each quantity and whether it is within the wanted one. */
 static void report_quantities(const strut_ladder *l) {
   strut_summary *s = l->a->summary;
-  double factor = l->change > 0.0 && isfinite(l->expected) ? l->expected / l->change : 1.0;
+  bool known = isfinite(l->expected);
+  double factor = l->change > 0.0 && known ? l->expected / l->change : 1.0;
+  double worst = known ? OF_WORST * l->expected / l->a->target : 0.0;
+  double apart = l->same_motion ? OF_DISTANCE * l->distance : 0.0;
   for (size_t i = 0; i < s->measured_count; i++) {
     strut_measured *m = &s->measured[i];
     m->expected = (double)NAN;
-    if (l->runs > 1)
-      m->expected = fmax(choose_margin(l) * factor * l->difference[i], l->shifted[i]);
-    m->kept = l->kept || strut_accuracy_is_kept(l->same_motion && is_followed(l, s), m->expected,
-                                                strut_ladder_tolerated_error(l, m, i));
+    double allowed = strut_ladder_tolerated_error(l, m, i), error = factor * l->difference[i];
+    if (!m->zero && error < HUGE_VAL)
+      error = fmax(error, fmax(apart * fabs(m->value), worst * allowed));
+    if (l->runs > 1) m->expected = fmax(l->margin * error, l->shifted[i]);
+    m->kept = l->kept ||
+              strut_accuracy_is_kept(l->same_motion && is_followed(l, s), m->expected, allowed);
+    if (l->kept) m->expected = fmin(m->expected, allowed);
     if (!m->kept && l->runs > 1) m->expected = fmax(m->expected, range_about_latest(l, i));
     bool decided = l->runs > 1 && isfinite(l->difference[i] + l->shifted[i]);
     bool unsettled = !l->kept && l->worst == i && isnan(m->value);
@@ -281,25 +286,14 @@ static void report_quantities(const strut_ladder *l) {
   }
 }
 
-/* The relative error where the runs do not converge: nothing is known of the answer but their range. */
-static double range_of_runs(const strut_ladder *l) {
-  const strut_summary *s = l->a->summary;
-  if (l->runs < 2) return (double)NAN;
-  double worst = 0.0, change = isfinite(l->change) ? MARGIN * l->change : 0.0;
-  if (!s->measured_count)
-    return fmax(change, range_about_latest(l, 0) / strut_ladder_velocity_size(l, s->velocity));
-  for (size_t i = 0; i < s->measured_count; i++) {
-    const strut_measured *m = &s->measured[i];
-    worst = fmax(worst, range_about_latest(l, i) / strut_ladder_tolerated_error(l, m, i));
-  }
-  return fmax(change, l->a->target * worst);
-}
-
 void strut_ladder_report(strut_ladder *l) {
   strut_accuracy *a = l->a;
   strut_summary *s = a->summary;
-  double expected = l->same_motion ? choose_margin(l) * l->expected : l->expected;
-  if (!isfinite(expected)) expected = range_of_runs(l);
+  double expected = l->expected;
+  if (l->same_motion)
+    expected = l->margin * fmax(expected, s->velocity_zero ? 0.0 : OF_DISTANCE * l->distance);
+  if (l->kept) expected = fmin(expected, a->target);
+  if (!isfinite(expected)) expected = range_of_runs(l, s);
   if (isfinite(expected)) expected = fmax(expected, l->sensitivity);
   if (!isfinite(expected)) expected = (double)NAN; /* a single run */
   s->accuracy = (strut_accuracy_summary){.wanted = a->target,

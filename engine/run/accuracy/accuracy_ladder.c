@@ -90,8 +90,10 @@ static strut_experiment refine_experiment(const strut_ladder *l, int k) {
     if (k > 0) e.refine_rate *= 0.5; /* steps after a touchdown are finer, too */
   } else {
     int further = k - l->coarse_runs;
-    e.integrator =
-        strut_integrator_for(l->precise ? STRUT_ROLE_PRECISE : STRUT_ROLE_REFERENCE)->name;
+    e.integrator = strut_integrator_for(l->implicit  ? STRUT_ROLE_IMPLICIT
+                                        : l->precise ? STRUT_ROLE_PRECISE
+                                                     : STRUT_ROLE_REFERENCE)
+                       ->name;
     e.step = l->moment / STEPS_OF_MOMENT[further];
     e.tolerance = fmin(FIRST_TOLERANCE, FIRST_TOLERANCE_PER_ERROR * a->target);
     e.tolerance = fmax(LEAST_TOLERANCE, e.tolerance * pow(FINER_TOLERANCE, further));
@@ -149,16 +151,19 @@ static strut_status discard_unfinished_run(strut_ladder *l) {
   return STRUT_OK;
 }
 
-/*
- * The latest run, with error control, has failed after one that has not: the method of higher order gives way to the
- * usual one; where that has failed, the run before is the answer, of which nothing is certain.
- */
+/* Runs that may fail: their tolerance or step is left out. */
+enum { MOST_FAILURES = 2 };
+
+/* The latest run has failed after one that has not. The method of higher order gives way to the usual one. */
 static void discard_failed_run(strut_ladder *l) {
+  bool coarse = l->runs <= l->coarse_runs;
   step_back(l);
-  if (l->precise)
-    l->precise = false, l->imprecise = true;
+  if (coarse)
+    l->coarse_runs--, l->tried--;
+  else if (l->precise)
+    l->precise = false, l->imprecise = true, l->tried--;
   else
-    l->failed = true;
+    l->failed = ++l->failures == MOST_FAILURES;
 }
 
 /* Keeps the results of the latest run, for their range. */
@@ -171,7 +176,8 @@ static void keep_results(const strut_ladder *l, const strut_summary *s) {
 /* Do tolerances set the steps of the two latest runs, with error control? */
 static void note_growth(strut_ladder *l) {
   double growth = (double)l->now->cost / (double)l->before->cost;
-  if (growth > GROWTH_BY_TOLERANCE && growth < GROWTH_BY_EVENTS) l->precise = !l->imprecise;
+  if (growth > GROWTH_BY_TOLERANCE && growth < GROWTH_BY_EVENTS)
+    l->precise = !l->imprecise && !l->implicit;
 }
 
 /* Makes one more run without output and compares it with the one before. */
@@ -179,19 +185,19 @@ static strut_status run_next_rung(strut_ladder *l) {
   strut_rung *next = l->runs == 0 ? l->rung : l->now == &l->rung[1] ? &l->rung[2] : &l->rung[1];
   strut_run_options quiet = *l->a->options;
   strut_sink *sinks[] = {&next->track.sink};
-  assert(next != l->now && l->runs < STRUT_LADDER_RUNS);
+  assert(next != l->now && l->tried < STRUT_LADDER_RUNS);
   l->before = l->now;
   l->now = next;
   strut_summary_free(&next->s);
-  next->e = refine_experiment(l, l->runs++);
+  next->e = refine_experiment(l, l->tried++);
+  l->runs++;
   strut_accuracy_begin_phase(l->a, l->runs == 1 ? "first run" : "checking by a finer run");
   quiet.sinks = sinks, quiet.sink_count = 1, quiet.to = NULL;
   strut_status status = strut_accuracy_run(l->a, &next->e, &quiet, &next->s);
   next->cost = next->s.spent.evaluations;
   l->a->check_evaluations += next->cost;
   if (status == STRUT_WORK_LIMIT) return discard_unfinished_run(l);
-  if (status == STRUT_DIVERGED && strut_ladder_runs_with_error_control(l) > 1 &&
-      l->before->s.status == STRUT_OK) {
+  if (status == STRUT_DIVERGED && l->before && l->before->s.status == STRUT_OK) {
     discard_failed_run(l);
     return STRUT_OK;
   }
@@ -207,8 +213,6 @@ static strut_status run_next_rung(strut_ladder *l) {
       next->e.steady.wanted ? strut_experiment_span(&l->a->experiment, l->a->scene).period : 0.0;
   l->change = compare_results(l, &next->s, &l->before->s, l->difference);
   l->distance = strut_track_distance(&next->track, &l->before->track, period);
-  if (strut_ladder_runs_with_error_control(l) > 0 && l->means < STRUT_LADDER_RUNS)
-    l->mean[l->means++] = next->s.velocity;
   return STRUT_OK;
 }
 
@@ -216,19 +220,44 @@ static strut_status run_next_rung(strut_ladder *l) {
  * Of scenes whose fixed steps are so many, the first run with error control is tried before, for at most a part of the
  * evaluations that fixed steps take: what sets their step may never touch, or move far less than the rest.
  */
-static const double PROBED = 2e5, PROBE = 0.125;
+static const double PROBED = 2e5, PROBE = 0.125, PROBE_IMPLICIT = 0.05;
 /* All runs may take so many times the evaluations of one that replaces fixed steps, for the usual budget. */
 static const double RUNS_OF_PROBE = 64.0;
+/* Free coordinates of an implicit step at most, and least damping over the critical one of what it does not follow. */
+enum { MOST_IMPLICIT = 128 };
+static const double DAMPED = 0.1;
+
+static bool is_damped(double stiffness, double damping, double per_mass) {
+  return damping * per_mass >= 2.0 * DAMPED * sqrt(stiffness * per_mass);
+}
+
+/* May steps be longer than vibrations? They must die out by themselves, not by the method. */
+static bool suits_implicit_steps(const strut_model *model) {
+  const strut_member_table *t = &model->members;
+  bool suits = 2 * model->node_count <= MOST_IMPLICIT && !model->elements.count &&
+               !(model->terms & STRUT_TERM_MEMORY);
+  for (int32_t j = 0; j < t->count && suits; j++)
+    suits = is_damped(t->stiffness[j], t->damping[j],
+                      1.0 / model->weight[t->from[j] / 2] + 1.0 / model->weight[t->to[j] / 2]);
+  for (int32_t i = 0; i < model->contacts.count && suits; i++) {
+    const strut_contact_entry *e = &model->contacts.entry[i];
+    suits = is_damped(e->stiffness, e->damping, 1.0 / model->weight[e->node]);
+  }
+  return suits;
+}
 
 /* Tries whether runs with error control alone are cheaper; then the budget follows from their cost. */
-static strut_status probe(strut_ladder *l) {
+static strut_status probe(strut_ladder *l, bool implicit) {
   strut_accuracy *a = l->a;
   double steps = strut_experiment_span(&a->experiment, a->scene).duration / a->coarse.step;
-  if (a->single_method || !(steps > PROBED)) return STRUT_OK;
+  double part = implicit ? PROBE_IMPLICIT : PROBE;
+  if (a->single_method || l->runs || !(steps > PROBED)) return STRUT_OK;
+  if (implicit && !suits_implicit_steps(l->model)) return STRUT_OK;
   int64_t allowed = a->allowed;
   int coarse_runs = l->coarse_runs;
-  a->allowed = (int64_t)fmin((double)a->used + PROBE * steps, (double)allowed);
+  a->allowed = (int64_t)fmin((double)a->used + part * steps, (double)allowed);
   l->coarse_runs = 0;
+  l->implicit = implicit;
   strut_status status = run_next_rung(l);
   a->allowed = allowed;
   if (status && status != STRUT_WORK_LIMIT) return status;
@@ -239,14 +268,15 @@ static strut_status probe(strut_ladder *l) {
     a->allowed = a->budget;
     return STRUT_OK;
   }
-  l->coarse_runs = coarse_runs, l->runs = 0;
+  l->coarse_runs = coarse_runs, l->runs = l->tried = 0;
   l->now = l->before = NULL;
-  l->budget_spent = false;
+  l->budget_spent = l->implicit = false;
   return STRUT_OK;
 }
 
 static bool may_refine(const strut_ladder *l) {
-  if (l->kept || l->failed || l->budget_spent || l->runs >= STRUT_LADDER_RUNS) return false;
+  if (l->kept || l->failed || l->budget_spent || l->tried >= STRUT_LADDER_RUNS) return false;
+  if (l->sensitivity > l->a->target && !l->model->feedback.sampled_count) return false;
   if (strut_ladder_runs_with_error_control(l) < 1 || l->a->single_method) return true;
   return l->now->e.tolerance > LEAST_TOLERANCE;
 }
@@ -269,6 +299,7 @@ static strut_status create_ladder(strut_accuracy *a, strut_ladder *l) {
   /* Two steps of one method may lead to the same wrong motion: they must agree from the start on. */
   double duration = strut_experiment_span(&a->experiment, a->scene).duration;
   l->coarse_runs = !shares && duration <= (double)(moments - 1) * l->moment ? 2 : 1;
+  if (a->single_method) l->coarse_runs = 0;
   for (int k = 0; k < 3 && !status; k++)
     status = strut_track_create(l->model, moments, &l->arena, &l->rung[k].track);
   size_t quantities = a->experiment.quantity_count;
@@ -322,7 +353,8 @@ static strut_status check_sensitivity(strut_ladder *l) {
   strut_run_options quiet = *a->options;
   strut_snapshot start = {.q = NULL};
   strut_summary shifted = {0};
-  const strut_rung *r = l->budget_spent ? l->now : l->before; /* the one before was not finished */
+  const strut_rung *r = l->before && !l->before->s.status ? l->before : l->now;
+  int64_t allowed = a->allowed;
   if (!l->same_motion || a->single_method || strut_ladder_runs_with_error_control(l) < 2)
     return STRUT_OK;
   if (!(r->e.tolerance < CHECKED_BELOW) && !l->model->feedback.sampled_count) return STRUT_OK;
@@ -333,6 +365,7 @@ static strut_status check_sensitivity(strut_ladder *l) {
   strut_accuracy_begin_phase(a, "checking with a shifted start");
   a->allowed = INT64_MAX; /* the same run was within the budget before */
   status = strut_accuracy_run(a, &r->e, &quiet, &shifted);
+  a->allowed = allowed;
   a->check_evaluations += shifted.spent.evaluations;
   size_t worst = l->worst;
   l->sensitivity = status ? HUGE_VAL : compare_results(l, &r->s, &shifted, l->shifted);
@@ -368,18 +401,19 @@ strut_status strut_accuracy_climb_ladder(strut_accuracy *a) {
                     .expected = HUGE_VAL,
                     .precise = a->target < PRECISE};
   strut_status status = create_ladder(a, &l);
-  if (!status) status = probe(&l);
+  if (!status) status = probe(&l, true);
+  if (!status) status = probe(&l, false);
   while (!status && may_refine(&l)) {
     status = run_next_rung(&l);
-    if (!status && !l.budget_spent && !l.failed && l.runs > 1) strut_ladder_judge(&l);
-    if (!status && !l.budget_spent && !l.failed) strut_ladder_extend_coarse(&l);
+    if (status || l.budget_spent || l.failed) break;
+    if (l.runs > 1) strut_ladder_judge(&l);
+    strut_ladder_extend_coarse(&l);
+    if (l.kept) status = check_sensitivity(&l);
   }
-  if (!status && l.runs > 1 && l.now->s.status && !l.before->s.status) {
-    step_back(&l);
-    l.failed = true;
+  if (!status && !l.kept && !(l.sensitivity > a->target)) {
+    strut_ladder_judge_last(&l);
+    status = check_sensitivity(&l);
   }
-  strut_ladder_judge_last(&l);
-  if (!status) status = check_sensitivity(&l);
   if (!status) status = deliver_answer(&l);
   if (!status) strut_ladder_report(&l);
   for (int k = 0; k < 3; k++) strut_summary_free(&l.rung[k].s);

@@ -25,38 +25,38 @@ typedef struct strut_rung {
 typedef struct strut_ladder {
   strut_accuracy *a;
   strut_rung rung[3], *now, *before;
-  double unit;                    /* the longest steps and moments divide it [s] */
-  double moment;                  /* between moments of a track [s] */
-  double change, earlier_change;  /* relative, of the latest two runs and of the two before */
-  double earliest_change;         /* of the two before those */
-  double *difference;             /* (quantities) of the latest two runs, SI */
-  double *shifted;                /* (quantities) what a shifted start changes, SI */
-  double sensitivity;             /* the same as `change` */
-  double shift;                   /* of that start, over the size of the structure */
-  double *results;                /* (runs, quantities + 1) of each run, then the velocity, SI */
-  size_t worst;                   /* index of the quantity with the largest relative error */
-  double distance;                /* of the latest two tracks */
-  double earlier_distance;        /* of the two before */
-  int runs, coarse_runs;          /* of all, the first ones, by the coarse method */
-  double mean[STRUT_LADDER_RUNS]; /* (means) velocities of the runs with error control [m/s] */
-  int means;
-  double expected; /* estimated error of the latest run, relative */
+  double unit;                   /* the longest steps and moments divide it [s] */
+  double moment;                 /* between moments of a track [s] */
+  double change, earlier_change; /* relative, of the latest two runs and of the two before */
+  double earliest_change;        /* of the two before those */
+  double *difference;            /* (quantities) of the latest two runs, SI */
+  double *shifted;               /* (quantities) what a shifted start changes, SI */
+  double sensitivity;            /* the same as `change` */
+  double shift;                  /* of that start, over the size of the structure */
+  double *results;               /* (runs, quantities + 1) of each run, then the velocity, SI */
+  size_t worst;                  /* index of the quantity with the largest relative error */
+  double distance;               /* of the latest two tracks */
+  double earlier_distance;       /* of the two before */
+  int runs, coarse_runs;         /* of all, the first ones, by the coarse method */
+  int tried, failures;           /* runs, with those that failed; the latter */
+  double expected, margin; /* estimated error of the latest run, relative; reported over that */
   bool same_motion, kept, budget_spent;
-  bool precise;   /* runs with error control are by the method of higher order */
+  bool implicit;  /* runs with error control are by the implicit method */
+  bool precise;   /* or by the method of higher order */
   bool imprecise; /* that method has failed */
   bool failed;    /* a finer run has failed, after one that is the answer */
   const strut_model *model;
   strut_arena arena;
 } strut_ladder;
 
-/** Not positive before the first one; meaningless where only one method suits the scene. */
+/** Not positive before the first one. Where only one method suits the scene, all runs count as such. */
 static inline int strut_ladder_runs_with_error_control(const strut_ladder *l) {
   return l->runs - l->coarse_runs;
 }
 
 /** Are there so many runs, and all by the coarse method? */
 static inline bool strut_ladder_is_coarse(const strut_ladder *l, int least) {
-  return !l->a->single_method && l->runs >= least && strut_ladder_runs_with_error_control(l) < 1;
+  return l->runs >= least && strut_ladder_runs_with_error_control(l) < 1;
 }
 
 static inline double strut_ladder_velocity_size(const strut_ladder *l, double velocity) {
