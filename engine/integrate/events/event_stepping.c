@@ -398,6 +398,7 @@ static void accept_piece(const strut_model *model, strut_state *state, strut_eve
   if (state->watched.variation) strut_variation_step(model, state, stepper, piece->t, piece->h);
   if (observed) keep_begin(model, state, stepper->view);
   accept_step(model, state, stepper, state->balance);
+  if (stepper->formula->adaptive) strut_contact_rest(stepper, piece->h, piece->event.kind);
   stepper->control.fastest = fmax(stepper->control.fastest, stepper->control.own_speed);
   stepper->control.speed = stepper->control.fastest;
   if (observed) show_piece(model, state, stepper, piece);

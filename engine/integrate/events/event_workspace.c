@@ -128,8 +128,8 @@ static void list_laws(const strut_model *model, strut_state *state, strut_law_sw
  * What rounding leaves of a pair's difference of accelerations [m/s^2]: lengths are known to a part in 1e16 of the
  * size, and the stiffest spring on the lightest node pulls by as much.
  */
-static double rounding_of(const strut_model *model, const strut_tableau *pair) {
-  double fastest = strut_model_fastest_spring(model), weights = 0.0;
+static double rounding_of(const strut_model *model, const strut_tableau *pair, double fastest) {
+  double weights = 0.0;
   for (int k = 0; k <= pair->stages; k++) weights += fabs(pair->difference[k]);
   return DBL_EPSILON * model->size * fastest * fastest * weights;
 }
@@ -146,7 +146,10 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
   stepper->now = &stepper->end[0], stepper->next = &stepper->end[1];
   stepper->now->q = state->q, stepper->now->v = state->v;
   stepper->control.tolerance = settings->tolerance;
-  stepper->control.rounding = formula->adaptive ? rounding_of(model, formula->tableau) : 0.0;
+  if (formula->adaptive) {
+    double fastest = stepper->control.frequency = strut_model_fastest_spring(model);
+    stepper->control.rounding = rounding_of(model, formula->tableau, fastest);
+  }
   strut_step_end_create(model, arena, true, stepper->now, &failed);
   strut_step_end_create(model, arena, false, stepper->next, &failed);
   make_contacts(model, state, stepper, &failed);

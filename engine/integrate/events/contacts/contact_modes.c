@@ -121,6 +121,18 @@ void strut_contact_close(const strut_model *model, strut_event_stepper *stepper,
   }
 }
 
+void strut_contact_rest(strut_event_stepper *stepper, double h, bool event) {
+  for (int32_t k = 0; k < stepper->active.closed_count; k++) {
+    int32_t i = stepper->active.closed[k];
+    double into = stepper->now->touch[i].into;
+    int8_t *damper = &stepper->modes.damper[i];
+    bool rests = is_at_rest(stepper, into, h);
+    if (rests && !event) *damper = 0;
+    if (!rests && !*damper && stepper->contacts.entry[i].damping > 0.0)
+      *damper = into < 0.0 ? 1 : -1;
+  }
+}
+
 /* Is what holds stuck contact i no more than rounding of the forces on its node? */
 static bool is_held_by_rounding(const strut_model *model, const strut_event_stepper *stepper,
                                 int32_t i) {
