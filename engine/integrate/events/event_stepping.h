@@ -144,6 +144,7 @@ typedef struct strut_law_switch {
   bool whole;        /* whether a cable with guide friction is taut */
   int32_t breakable; /* what may break, where neither member nor element is one; else unused */
   int32_t signal;    /* with THRESHOLD 1 + its signal */
+  int32_t kink;      /* with THRESHOLD 1 + the kink of the signal that it is instead */
 } strut_law_switch;
 
 typedef struct strut_event_stepper strut_event_stepper;
@@ -283,6 +284,7 @@ struct strut_event_stepper {
   strut_active_set active;
   strut_contact_bodies contacts;
   strut_law_switches laws;
+  strut_kinks kinks; /* of signals: state->modes.kinks */
   strut_step_control control;
   strut_chatter chatter;
   double done; /* of the grid step under way [s] */

@@ -11,7 +11,8 @@ static size_t most_law_switches(const strut_model *model) {
   bool slack = model->terms & STRUT_TERM_SLACK;
   return (slack ? (size_t)model->members.count : 0) + 2 * (size_t)model->elements.count +
          (size_t)(2 * model->elements.history_slots + model->elements.breakable_count +
-                  model->feedback.relay_count + model->feedback.trigger_count);
+                  model->feedback.relay_count + model->feedback.trigger_count +
+                  strut_scene_kinks(model->scene, NULL, NULL));
 }
 
 static void *make(strut_arena *arena, size_t count, size_t size, bool *failed) {
@@ -103,8 +104,26 @@ static void list_threshold(strut_law_switches *laws, int32_t signal) {
       .event = STRUT_EVENT_THRESHOLD, .member = -1, .element = -1, .signal = 1 + signal};
 }
 
-static void list_laws(const strut_model *model, strut_state *state, strut_law_switches *laws,
+static void list_kinks(const strut_model *model, strut_arena *arena, strut_event_stepper *stepper,
+                       bool *failed) {
+  strut_kinks *kinks = &stepper->kinks;
+  int32_t count = strut_scene_kinks(model->scene, NULL, NULL);
+  int32_t *signal = make(arena, (size_t)count, sizeof *signal, failed);
+  kinks->at = make(arena, (size_t)count, sizeof *kinks->at, failed);
+  double **arrays[] = {&kinks->side, &kinks->margin, &kinks->rate, &kinks->largest};
+  for (int k = 0; k < 4; k++) *arrays[k] = make_doubles(arena, (size_t)count, failed);
+  if (*failed) return;
+  kinks->controlled = stepper->formula->adaptive;
+  kinks->count = strut_scene_kinks(model->scene, kinks->at, signal);
+  for (int32_t i = 0; i < kinks->count; i++) {
+    list_threshold(&stepper->laws, signal[i]);
+    stepper->laws.item[stepper->laws.count - 1].kink = 1 + i;
+  }
+}
+
+static void list_laws(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                       bool *failed) {
+  strut_law_switches *laws = &stepper->laws;
   size_t most = most_law_switches(model);
   if (!most) return;
   laws->item = make(&state->arena, most, sizeof *laws->item, failed);
@@ -122,6 +141,7 @@ static void list_laws(const strut_model *model, strut_state *state, strut_law_sw
     if (model->scene->signals[signal].trigger.kind != STRUT_TRIGGER_CONTACT)
       list_threshold(laws, signal);
   }
+  if (stepper->formula->exact) list_kinks(model, &state->arena, stepper, failed);
 }
 
 /*
@@ -157,7 +177,7 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
   for (size_t k = 0; k < stages && !failed; k++)
     stepper->stage[k] = make_doubles(arena, (size_t)model->length, &failed);
   stepper->middle = make_doubles(arena, (size_t)model->length, &failed);
-  list_laws(model, state, &stepper->laws, &failed);
+  list_laws(model, state, stepper, &failed);
   size_t switches = contacts + (size_t)stepper->laws.count;
   strut_chatter *chatter = &stepper->chatter;
   chatter->times = make(arena, switches, sizeof *chatter->times, &failed);

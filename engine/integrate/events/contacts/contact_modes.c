@@ -229,7 +229,12 @@ static void start_laws(const strut_model *model, strut_state *state, strut_event
       find_piece(model, state, stepper, k, t);
       changed = true;
     } else if (stepper->laws.item[k].event == STRUT_EVENT_THRESHOLD) {
-      continue;
+      int32_t i = stepper->laws.item[k].kink - 1;
+      if (i < 0 || stepper->kinks.side[i] != 0.0) continue;
+      double margin = stepper->now->tension[k], rate = stepper->now->stretch_rate[k];
+      stepper->kinks.side[i] = margin < 0.0 || (margin == 0.0 && rate < 0.0) ? -1.0 : 1.0;
+      stepper->kinks.largest[i] = fabs(margin);
+      changed = true;
     } else if (stepper->laws.item[k].event != STRUT_EVENT_ACTS) {
       strut_history_start(model, state, stepper, k);
       changed = true;
@@ -250,6 +255,8 @@ void strut_modes_after_jump(const strut_model *model, strut_state *state,
 void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                        double t) {
   stepper->fresh = false;
+  state->modes.kinks = stepper->kinks.count ? &stepper->kinks : NULL;
+  for (int32_t i = 0; i < stepper->kinks.count; i++) stepper->kinks.side[i] = 0.0;
   strut_surface_move(model, state, stepper->now, t);
   for (int32_t i = 0; i < model->contacts.count; i++) {
     strut_touch o;

@@ -158,6 +158,12 @@ static void measure_threshold(const strut_model *model, const strut_state *state
                               const strut_law_switch *law, const strut_step_end *end, int32_t k) {
   assert(k >= 0);
   double now = state->latest->drive_time + state->time_offset;
+  if (law->kink) {
+    strut_drive_signal(model, state, end->v, law->signal - 1, now);
+    end->tension[k] = end->stretch[k] = state->modes.kinks->margin[law->kink - 1];
+    end->stretch_rate[k] = state->modes.kinks->rate[law->kink - 1];
+    return;
+  }
   end->tension[k] =
       strut_threshold_margin(model, state, law->signal - 1, now, end->v, &end->stretch_rate[k]);
   end->stretch[k] = end->tension[k];
@@ -314,6 +320,7 @@ static void keep_first_of_laws(const strut_model *model, const strut_state *stat
                                strut_event_stepper *stepper, double h, strut_event *first) {
   strut_event_measure(model, state, stepper, stepper->next);
   int32_t laws = strut_laws_of(&stepper->laws);
+  double faint = stepper->formula->adaptive ? stepper->control.tolerance : FAINT;
   for (int32_t k = 0; k < laws; k++) {
     int32_t j = strut_law_of(&stepper->laws, k);
     double after = law_value(stepper, stepper->next, j);
@@ -322,6 +329,8 @@ static void keep_first_of_laws(const strut_model *model, const strut_state *stat
     if (stepper->laws.item[j].member >= 0 &&
         grazes(stepper, end->stretch[j], end->stretch_rate[j], h))
       continue;
+    int32_t kink = stepper->laws.item[j].kink;
+    if (kink && -after <= faint * stepper->kinks.largest[kink - 1]) continue;
     double back = kink_comes_back(model, state, stepper, j, h, after);
     if (!(back > 0.0))
       keep_first(model, stepper, stepper->laws.item[j].event, j, h, first);
