@@ -22,6 +22,7 @@ strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_sta
                                .lag_of = model->feedback.lag_of,
                                .held = state->signals.held,
                                .started = state->signals.started,
+                               .kinks = state->modes.kinks,
                                .relay_side = state->signals.relay_side};
 }
 

@@ -72,6 +72,7 @@ typedef struct strut_frozen_modes {
   double *slack_force_threshold; /* cables, -INFINITY otherwise */
   int8_t *element_acts;          /* (elements) 1 acts, -1 does not, 0 by strain and force */
   int16_t *element_piece;        /* (elements) the law's smooth piece; -1 by the strain */
+  const strut_kinks *kinks;      /* of signals; NULL: by their values */
   const double *held_normal;   /* (contacts) forces [N]; both NULL with other methods, where they */
   const double *held_friction; /* follow from q, v and t alone */
 } strut_frozen_modes;

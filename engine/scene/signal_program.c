@@ -38,8 +38,8 @@ static dual raise_to_power(dual a, dual b) {
 
 /* Of two arguments a and b. */
 static dual combine(strut_operation operation, dual a, dual b) {
-  double square = a.value * a.value + b.value * b.value, root = hypot(a.value, b.value);
-  switch (operation) {
+  double square = a.value * a.value + b.value * b.value, root;
+  switch ((int)operation) {
     case STRUT_OPERATION_ADD: return (dual){a.value + b.value, a.rate + b.rate};
     case STRUT_OPERATION_SUBTRACT: return (dual){a.value - b.value, a.rate - b.rate};
     case STRUT_OPERATION_MULTIPLY:
@@ -51,26 +51,10 @@ static dual combine(strut_operation operation, dual a, dual b) {
     case STRUT_OPERATION_MAX: return b.value > a.value ? b : a;
     case STRUT_OPERATION_ATAN2:
       return chain(atan2(a.value, b.value), 1.0 / square, b.value * a.rate - a.value * b.rate);
-    case STRUT_OPERATION_HYPOT: return chain(root, 1.0 / root, a.value * a.rate + b.value * b.rate);
-    case STRUT_OPERATION_NEGATE:
-    case STRUT_OPERATION_SIN:
-    case STRUT_OPERATION_COS:
-    case STRUT_OPERATION_TAN:
-    case STRUT_OPERATION_ASIN:
-    case STRUT_OPERATION_ACOS:
-    case STRUT_OPERATION_ATAN:
-    case STRUT_OPERATION_SQRT:
-    case STRUT_OPERATION_EXP:
-    case STRUT_OPERATION_LOG:
-    case STRUT_OPERATION_LOG10:
-    case STRUT_OPERATION_TANH:
-    case STRUT_OPERATION_ABS:
-    case STRUT_OPERATION_FLOOR:
-    case STRUT_OPERATION_CEIL:
-    case STRUT_OPERATION_ROUND:
-    case STRUT_OPERATION_NUMBER:
-    case STRUT_OPERATION_COLUMN:
-    case STRUT_OPERATION_COUNT: break;
+    case STRUT_OPERATION_HYPOT:
+      root = hypot(a.value, b.value);
+      return chain(root, 1.0 / root, a.value * a.rate + b.value * b.rate);
+    default: break;
   }
   return (dual){(double)NAN, (double)NAN};
 }
@@ -79,7 +63,7 @@ static dual combine(strut_operation operation, dual a, dual b) {
 static dual apply(strut_operation operation, dual a) {
   const double ten = 2.30258509299404568402; /* log 10 */
   double x = a.value, y;
-  switch (operation) {
+  switch ((int)operation) {
     case STRUT_OPERATION_NEGATE: return (dual){-x, -a.rate};
     case STRUT_OPERATION_SIN: return chain(sin(x), cos(x), a.rate);
     case STRUT_OPERATION_COS: return chain(cos(x), -sin(x), a.rate);
@@ -96,20 +80,38 @@ static dual apply(strut_operation operation, dual a) {
     case STRUT_OPERATION_FLOOR: return (dual){floor(x), 0.0};
     case STRUT_OPERATION_CEIL: return (dual){ceil(x), 0.0};
     case STRUT_OPERATION_ROUND: return (dual){round(x), 0.0};
-    case STRUT_OPERATION_ADD:
-    case STRUT_OPERATION_SUBTRACT:
-    case STRUT_OPERATION_MULTIPLY:
-    case STRUT_OPERATION_DIVIDE:
-    case STRUT_OPERATION_POWER:
-    case STRUT_OPERATION_MIN:
-    case STRUT_OPERATION_MAX:
-    case STRUT_OPERATION_ATAN2:
-    case STRUT_OPERATION_HYPOT:
-    case STRUT_OPERATION_NUMBER:
-    case STRUT_OPERATION_COLUMN:
-    case STRUT_OPERATION_COUNT: break;
+    default: break;
   }
   return (dual){(double)NAN, (double)NAN};
+}
+
+double strut_operation_apply(strut_operation operation, double a, double b) {
+  dual x = {a, 0.0}, y = {b, 0.0};
+  return strut_operation_operands(operation) == 1 ? apply(operation, x).value
+                                                  : combine(operation, x, y).value;
+}
+
+/* Has it a kink, where its operand, or the difference of both, is 0? */
+static bool has_kink(strut_operation operation) {
+  return operation == STRUT_OPERATION_ABS || operation == STRUT_OPERATION_MIN ||
+         operation == STRUT_OPERATION_MAX;
+}
+
+/*
+ * The result of an instruction, which is `free` by its operands, where a side is held; and notes the margin. What min
+ * and max leave out may be too steep for a step without error control.
+ */
+static dual hold_side(const strut_kinks *kinks, const strut_instruction *p, dual a, dual b,
+                      dual free) {
+  int32_t i = 0;
+  while (i < kinks->count && kinks->at[i] != p) i++;
+  if (i == kinks->count) return free;
+  double side = kinks->side[i], sign = side < 0.0 ? -1.0 : 1.0;
+  kinks->margin[i] = sign * (a.value - b.value), kinks->rate[i] = sign * (a.rate - b.rate);
+  if (side == 0.0) return free;
+  if (p->operation == STRUT_OPERATION_ABS) return (dual){side * a.value, side * a.rate};
+  if (!kinks->controlled) return free;
+  return (p->operation == STRUT_OPERATION_MIN) == (side > 0.0) ? b : a;
 }
 
 /* An internal state and its rate, which takes the values of others only. */
@@ -152,11 +154,12 @@ void strut_program_evaluate(const strut_program *program, const strut_signal *si
       stack[top++] = (dual){p->number, 0.0};
     } else if (operands == 0) {
       stack[top++] = read_column(p->column, signals, in, t);
-    } else if (operands == 1) {
-      stack[top - 1] = apply(p->operation, stack[top - 1]);
     } else {
-      top--;
-      stack[top - 1] = combine(p->operation, stack[top - 1], stack[top]);
+      top -= (size_t)operands - 1;
+      dual a = stack[top - 1], b = operands == 1 ? (dual){0.0, 0.0} : stack[top];
+      stack[top - 1] = operands == 1 ? apply(p->operation, a) : combine(p->operation, a, b);
+      if (in && in->kinks && has_kink(p->operation))
+        stack[top - 1] = hold_side(in->kinks, p, a, b, stack[top - 1]);
     }
   }
   assert(top == 1);
@@ -213,6 +216,21 @@ strut_signal_traits strut_signal_describe(const strut_scene *scene, int32_t inde
   strut_signal_traits traits = {.sensor = -1, .damped = -1};
   describe_signal(scene, index, DIRECT, &traits);
   return traits;
+}
+
+int32_t strut_scene_kinks(const strut_scene *scene, const strut_instruction **at, int32_t *signal) {
+  int32_t count = 0;
+  for (size_t i = 0; i < scene->signal_count; i++) {
+    const strut_signal *s = &scene->signals[i];
+    if (s->kind != STRUT_EXPRESSION || s->every > 0.0) continue;
+    if (!strut_signal_describe(scene, (int32_t)i).follows) continue;
+    for (size_t k = 0; k < s->program.length; k++) {
+      if (!has_kink(s->program.instruction[k].operation)) continue;
+      if (at) at[count] = &s->program.instruction[k], signal[count] = (int32_t)i;
+      count++;
+    }
+  }
+  return count;
 }
 
 bool strut_program_reads(const strut_program *program, strut_column_kind one,

@@ -57,6 +57,17 @@ typedef struct strut_internal_state {
   strut_program rate;
 } strut_internal_state;
 
+/** Where abs, min and max have kinks, each by its instruction, and the sides on which they are. */
+typedef struct strut_kinks {
+  int32_t count;
+  const strut_instruction **at; /* (count) NULL: not watched any more */
+  double *
+      side; /* (count) 1: abs is its operand, max the first one, min the second; -1; 0: by their values */
+  double *margin, *rate; /* (count) of the latest evaluation: how far it is on that side */
+  bool controlled;       /* steps have error control */
+  double *largest;       /* (count) of the margins' sizes at ends of steps */
+} strut_kinks;
+
 /** What signals are computed from, beside the time. */
 typedef struct strut_signal_inputs {
   const double *sensor, *sensor_rate; /* (sensors) values in SI units, and their rates */
@@ -66,6 +77,7 @@ typedef struct strut_signal_inputs {
   const double *held;       /* (signals) values of sampled signals since the latest sample */
   const double *started;    /* (signals) when those with a trigger started [s]; INFINITY: not yet */
   bool values_only;         /* rates are not wanted */
+  const strut_kinks *kinks; /* NULL: none is held */
   const int8_t *relay_side; /* (signals) of relays: 1 above, -1 below, see strut_relay_value */
 } strut_signal_inputs;
 
@@ -88,6 +100,8 @@ static inline bool strut_sensor_needs_drives(strut_sensor_kind kind) {
          kind == STRUT_SENSOR_CONTACT_FORCE;
 }
 
+/** Value of an operation of one operand or two. */
+STRUT_API double strut_operation_apply(strut_operation operation, double a, double b);
 /** Operands of an operation. */
 STRUT_API int strut_operation_operands(strut_operation operation);
 
@@ -111,6 +125,12 @@ STRUT_API void strut_program_evaluate(const strut_program *program, const strut_
                                       const strut_signal_inputs *in, double t, double *value,
                                       double *rate);
 
+struct strut_scene;
+/** Instructions of signals at which what follows the motion has kinks, and the signals of these, in arrays with room
+    for them or NULL. Returns how many. */
+STRUT_API int32_t strut_scene_kinks(const struct strut_scene *scene, const strut_instruction **at,
+                                    int32_t *signal);
+
 /** What a signal depends on. */
 typedef struct strut_signal_traits {
   bool follows;   /* sensors, internal states or its own history */
@@ -118,7 +138,6 @@ typedef struct strut_signal_traits {
   int32_t
       damped; /* one of the force of a member with a damper, which the signal's rate follows; or -1 */
 } strut_signal_traits;
-struct strut_scene;
 /** Of signal `index` of a valid scene. */
 STRUT_API strut_signal_traits strut_signal_describe(const struct strut_scene *scene, int32_t index);
 /** What turns fastest in a scene: waves, sines of expressions, oscillators, unbalances. */

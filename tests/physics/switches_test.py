@@ -38,9 +38,11 @@ Found by random scenes of tests/physics/random_world.c:
   closes. Found by a file written on the spot.
 """
 import json
+import math
 import pathlib
 import subprocess
 import sys
+import tempfile
 
 strut = sys.argv[1]
 scenes = pathlib.Path(__file__).parent / "switches"
@@ -116,6 +118,24 @@ for name in ("square-drive", "guides-at-a-jump"):
     one = run(name, *fixed(4000)(unit_of(name)))
     if one and abs(one["energy"]["residual"]) > 1e-7 * one["energy"]["exchanged"]:
         failures.append(f"{name}: {one['energy']['residual']} J of {one['energy']['exchanged']} J missing")
+
+# Closed forms of what follows sensors, and rest: what must hold of x, and the most switches.
+HEAD = "strut: 1\nnodes: {m: {position: [0, 0], mass: 1}}\nsolver: {step: 1}\n"
+DRIVEN = HEAD + "sensors: {x: {position: m, along: x}}\ninitial: {velocities: {m: [1, 0]}}\nrun: {duration: %r}\n"
+PUSH = 'loads: {push: {node: m, force: [1, 0], signal: {expression: "%s"}}}\n'
+REST = HEAD + "gravity: [0, -1]\nground: {stiffness: 1e4, damping: 100}\nrun: {duration: 100}\n"
+for text, axis, right, off, most_events, ways in (
+        (DRIVEN % (20.5 * 0.15 * math.pi) + PUSH % "max(0, -100*x/(1 m)) - max(0, 400*x/(1 m))", 0,
+         -math.sin(math.pi / 4) / 10, 2e-6, 85, (fixed(250), fixed(400), adaptive(1, "1e-7"), precise(1, "1e-8"))),
+        (DRIVEN % 40.5 + PUSH % "-(x/(1 m) + 1e-15)/abs(x/(1 m) + 1e-15)", 0, 0.375, 1e-11, 25,
+         (fixed(10), adaptive(1, "1e-6"), precise(1, "1e-6"))),
+        (REST, 1, -1e-4, 1e-8, 40, (fixed(200), adaptive(1, "1e-5"), adaptive(1, "1e-7"), precise(1, "1e-9")))):
+    with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+        file.write(text)
+        file.flush()
+        for one, way in ((run(file.name[:-5], *way(1.0)), way(1.0)) for way in ways):
+            if one and not (abs(one["nodes"]["m"]["position"][axis] - right) < off and one["events"] <= most_events):
+                failures.append(f"{text}{way}: {one['nodes']}, {one['events']} switches")
 
 for line in failures:
     print(line)

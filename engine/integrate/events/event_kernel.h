@@ -274,16 +274,27 @@ STRUT_INLINE double shown_step_size(const strut_model *model, const strut_state 
   return shown < ahead ? h * (shown / ahead) : h;
 }
 
-/*
- * Local error of a step of h over what is allowed, by those of positions and of velocities. The latter is not
- * asked for beyond what rounding leaves of it: a structure at rest has no speed to compare it with.
- */
+/* Error that a step of h may have in velocities [m/s]; not below rounding: a structure at rest has no speed to compare
+   it with. */
+STRUT_INLINE double allowed_speed(const strut_step_control *control, double h) {
+  double allowed = control->speed * control->tolerance, least = h * control->rounding;
+  return allowed > least ? allowed : least;
+}
+
+/* Local error of a step of h over what is allowed, by those of positions and of velocities. */
 STRUT_INLINE double relative_error(const strut_model *model, const strut_step_control *control,
                                    double h, double position, double velocity) {
   double error = position / (0.01 * model->size * control->tolerance);
-  double allowed = control->speed * control->tolerance, least = h * control->rounding;
-  double other = velocity > 0.0 ? velocity / (allowed > least ? allowed : least) : 0.0;
+  double other = velocity > 0.0 ? velocity / allowed_speed(control, h) : 0.0;
   return other > error ? other : error;
+}
+
+/* Errors of what rests may be so many times that of one step, where its length is near the limit of stability. */
+static const double REST = 30.0;
+
+/* Is this a speed, after a step of h, of which error control does not know the sign? */
+STRUT_INLINE bool is_at_rest(const strut_event_stepper *stepper, double speed, double h) {
+  return stepper->formula->adaptive && fabs(speed) <= REST * allowed_speed(&stepper->control, h);
 }
 
 /* New step after an error of stepper->control.error. */

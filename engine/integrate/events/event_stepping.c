@@ -189,9 +189,13 @@ static int32_t touched_by(const strut_model *model, const strut_event_stepper *s
 
 /* At a threshold at time t the drives jump likewise. */
 static void pass_threshold(const strut_model *model, strut_state *state,
-                           strut_event_stepper *stepper, int32_t signal, double t, double dt) {
+                           strut_event_stepper *stepper, const strut_law_switch *law, double t,
+                           double dt) {
   double before = state->balance ? strut_energy_evaluate(model, state, t).elastic : 0.0;
-  strut_threshold_pass(model, state, signal, t);
+  if (law->kink)
+    stepper->kinks.side[law->kink - 1] *= -1.0;
+  else
+    strut_threshold_pass(model, state, law->signal - 1, t);
   find_next_break(model, state, stepper, t, dt);
   accumulate_jump(model, state, t, before);
   strut_modes_after_jump(model, state, stepper, t);
@@ -232,6 +236,17 @@ static void count_switch(const strut_model *model, strut_chatter *c, const step_
   if (!c->times[i]) c->switched[c->count++] = i;
   if (c->times[i] < UINT8_MAX) c->times[i]++;
   if (c->times[i] > c->most) c->most = c->times[i];
+}
+
+/* A kink that switches back and forth where the piece begins, as where a signal's sign leads back to it from both sides,
+   is met by its values from now on. */
+static void release_kink(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
+                         const step_piece *piece, int32_t kink) {
+  if (stepper->chatter.times[place_of(model, &piece->event)] < MOST_AT_ONCE) return;
+  stepper->kinks.at[kink] = NULL;
+  stepper->kinks.margin[kink] = 1.0;
+  stepper->chatter.at_once = 0;
+  if (!state->forced.count++) state->forced.first = piece->t;
 }
 
 /* Must a step be taken whatever the modes say? */
@@ -398,6 +413,12 @@ static void accept_piece(const strut_model *model, strut_state *state, strut_eve
   if (state->watched.variation) strut_variation_step(model, state, stepper, piece->t, piece->h);
   if (observed) keep_begin(model, state, stepper->view);
   accept_step(model, state, stepper, state->balance);
+  for (int32_t k = 0; k < stepper->laws.count && stepper->kinks.count; k++) {
+    int32_t i = stepper->laws.item[k].kink - 1;
+    if (i >= 0)
+      stepper->kinks.largest[i] = fmax(stepper->kinks.largest[i], fabs(stepper->now->tension[k]));
+  }
+  if (stepper->formula->adaptive) strut_contact_rest(stepper, piece->h, piece->event.kind);
   stepper->control.fastest = fmax(stepper->control.fastest, stepper->control.own_speed);
   stepper->control.speed = stepper->control.fastest;
   if (observed) show_piece(model, state, stepper, piece);
@@ -417,10 +438,11 @@ static void meet_event(const strut_model *model, strut_state *state, strut_event
   int32_t touched = model->feedback.trigger_count ? touched_by(model, stepper, event) : -1;
   if (touched >= 0) start_signals(model, state, stepper, touched, t, piece->dt);
   if (event->kind == STRUT_EVENT_THRESHOLD)
-    pass_threshold(model, state, stepper, stepper->laws.item[event->index].signal - 1, t,
-                   piece->dt);
+    pass_threshold(model, state, stepper, &stepper->laws.item[event->index], t, piece->dt);
   state->events++;
   count_switch(model, &stepper->chatter, piece);
+  if (event->kind == STRUT_EVENT_THRESHOLD && stepper->laws.item[event->index].kink)
+    release_kink(model, state, stepper, piece, stepper->laws.item[event->index].kink - 1);
 }
 
 /* Modes and accelerations at the piece's end. */

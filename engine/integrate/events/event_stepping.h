@@ -147,6 +147,7 @@ typedef struct strut_law_switch {
   bool whole;        /* whether a cable with guide friction is taut */
   int32_t breakable; /* what may break, where neither member nor element is one; else unused */
   int32_t signal;    /* with THRESHOLD 1 + its signal */
+  int32_t kink;      /* with THRESHOLD 1 + the kink of the signal that it is instead */
 } strut_law_switch;
 
 typedef struct strut_event_stepper strut_event_stepper;
@@ -267,6 +268,7 @@ typedef struct strut_step_control {
       speed; /* of these and of all trials of the next one: what errors of velocities are compared with */
   double own_speed;          /* of the latest trial */
   double longest;            /* a step of the grid [s] */
+  double frequency;          /* of the fastest spring of members and contacts [rad/s] */
   double rounding;           /* of what the pair says of accelerations [m/s^2] */
   strut_least_margin *least; /* (contacts, laws) in the latest step, of closed ones and memory */
   double work[STRUT_POWER_ROOM]; /* at the begin of the grid step [J] */
@@ -296,6 +298,7 @@ struct strut_event_stepper {
   strut_contact_bodies contacts;
   strut_law_switches laws;
   strut_turns turns;
+  strut_kinks kinks; /* of signals: state->modes.kinks */
   strut_step_control control;
   strut_chatter chatter;
   double done; /* of the grid step under way [s] */
@@ -440,6 +443,9 @@ void strut_event_look_between(const strut_model *model, const strut_state *state
 /** Mode of contact i, which touches, from its speeds; with surfaces on `facet`, or -1: the nearest. */
 void strut_contact_close(const strut_model *model, strut_event_stepper *stepper, int32_t i,
                          int32_t facet);
+/** After a step of h: the dampers of contacts at rest follow its sign, which ends no step; others have a mode that does.
+    `event`: modes end at the step's end. */
+void strut_contact_rest(strut_event_stepper *stepper, double h, bool event);
 /** Sets the speed of contact i along the ground exactly. */
 void strut_contact_snap(const strut_model *model, strut_event_stepper *stepper, int32_t i,
                         double slip);

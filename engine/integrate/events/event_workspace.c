@@ -12,7 +12,8 @@ static size_t most_law_switches(const strut_model *model) {
   return (slack ? (size_t)model->members.count : 0) + 2 * (size_t)model->elements.count +
          (size_t)(2 * model->elements.history_slots + model->elements.breakable_count +
                   model->feedback.relay_count + model->feedback.trigger_count +
-                  strut_turns_list(model, NULL, NULL));
+                  strut_turns_list(model, NULL, NULL) +
+                  strut_scene_kinks(model->scene, NULL, NULL));
 }
 
 static void *make(strut_arena *arena, size_t count, size_t size, bool *failed) {
@@ -117,8 +118,26 @@ static void list_turns(const strut_model *model, strut_state *state, strut_event
   turns->count = strut_turns_list(model, stepper->laws.item + turns->first, ends);
 }
 
-static void list_laws(const strut_model *model, strut_state *state, strut_law_switches *laws,
+static void list_kinks(const strut_model *model, strut_arena *arena, strut_event_stepper *stepper,
+                       bool *failed) {
+  strut_kinks *kinks = &stepper->kinks;
+  int32_t count = strut_scene_kinks(model->scene, NULL, NULL);
+  int32_t *signal = make(arena, (size_t)count, sizeof *signal, failed);
+  kinks->at = make(arena, (size_t)count, sizeof *kinks->at, failed);
+  double **arrays[] = {&kinks->side, &kinks->margin, &kinks->rate, &kinks->largest};
+  for (int k = 0; k < 4; k++) *arrays[k] = make_doubles(arena, (size_t)count, failed);
+  if (*failed) return;
+  kinks->controlled = stepper->formula->adaptive;
+  kinks->count = strut_scene_kinks(model->scene, kinks->at, signal);
+  for (int32_t i = 0; i < kinks->count; i++) {
+    list_threshold(&stepper->laws, signal[i]);
+    stepper->laws.item[stepper->laws.count - 1].kink = 1 + i;
+  }
+}
+
+static void list_laws(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                       bool *failed) {
+  strut_law_switches *laws = &stepper->laws;
   size_t most = most_law_switches(model);
   if (!most) return;
   laws->item = make(&state->arena, most, sizeof *laws->item, failed);
@@ -136,14 +155,15 @@ static void list_laws(const strut_model *model, strut_state *state, strut_law_sw
     if (model->scene->signals[signal].trigger.kind != STRUT_TRIGGER_CONTACT)
       list_threshold(laws, signal);
   }
+  if (stepper->formula->exact) list_kinks(model, &state->arena, stepper, failed);
 }
 
 /*
  * What rounding leaves of a pair's difference of accelerations [m/s^2]: lengths are known to a part in 1e16 of the
  * size, and the stiffest spring on the lightest node pulls by as much.
  */
-static double rounding_of(const strut_model *model, const strut_tableau *pair) {
-  double fastest = strut_model_fastest_spring(model), weights = 0.0;
+static double rounding_of(const strut_model *model, const strut_tableau *pair, double fastest) {
+  double weights = 0.0;
   for (int k = 0; k <= pair->stages; k++) weights += fabs(pair->difference[k]);
   return DBL_EPSILON * model->size * fastest * fastest * weights;
 }
@@ -160,7 +180,10 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
   stepper->now = &stepper->end[0], stepper->next = &stepper->end[1];
   stepper->now->q = state->q, stepper->now->v = state->v;
   stepper->control.tolerance = settings->tolerance;
-  stepper->control.rounding = formula->adaptive ? rounding_of(model, formula->tableau) : 0.0;
+  if (formula->adaptive) {
+    double fastest = stepper->control.frequency = strut_model_fastest_spring(model);
+    stepper->control.rounding = rounding_of(model, formula->tableau, fastest);
+  }
   strut_step_end_create(model, arena, true, stepper->now, &failed);
   strut_step_end_create(model, arena, false, stepper->next, &failed);
   make_contacts(model, state, stepper, &failed);
@@ -168,7 +191,7 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
   for (size_t k = 0; k < stages && !failed; k++)
     stepper->stage[k] = make_doubles(arena, (size_t)model->length, &failed);
   stepper->middle = make_doubles(arena, (size_t)model->length, &failed);
-  list_laws(model, state, &stepper->laws, &failed);
+  list_laws(model, state, stepper, &failed);
   if (!failed) list_turns(model, state, stepper, &failed);
   size_t switches = contacts + (size_t)(stepper->laws.count + stepper->turns.count);
   strut_chatter *chatter = &stepper->chatter;

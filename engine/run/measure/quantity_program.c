@@ -5,40 +5,7 @@
 #include <string.h>
 
 #include "engine/run/measure/quantities.h"
-
-static double apply_operation(strut_operation operation, double a, double b) {
-  switch (operation) {
-    case STRUT_OPERATION_ADD: return a + b;
-    case STRUT_OPERATION_SUBTRACT: return a - b;
-    case STRUT_OPERATION_MULTIPLY: return a * b;
-    case STRUT_OPERATION_DIVIDE: return a / b;
-    case STRUT_OPERATION_POWER: return pow(a, b);
-    case STRUT_OPERATION_NEGATE: return -a;
-    case STRUT_OPERATION_SIN: return sin(a);
-    case STRUT_OPERATION_COS: return cos(a);
-    case STRUT_OPERATION_TAN: return tan(a);
-    case STRUT_OPERATION_ASIN: return asin(a);
-    case STRUT_OPERATION_ACOS: return acos(a);
-    case STRUT_OPERATION_ATAN: return atan(a);
-    case STRUT_OPERATION_ATAN2: return atan2(a, b);
-    case STRUT_OPERATION_SQRT: return sqrt(a);
-    case STRUT_OPERATION_EXP: return exp(a);
-    case STRUT_OPERATION_LOG: return log(a);
-    case STRUT_OPERATION_LOG10: return log10(a);
-    case STRUT_OPERATION_TANH: return tanh(a);
-    case STRUT_OPERATION_ABS: return fabs(a);
-    case STRUT_OPERATION_MIN: return b < a ? b : a;
-    case STRUT_OPERATION_MAX: return b > a ? b : a;
-    case STRUT_OPERATION_FLOOR: return floor(a);
-    case STRUT_OPERATION_CEIL: return ceil(a);
-    case STRUT_OPERATION_ROUND: return round(a);
-    case STRUT_OPERATION_HYPOT: return hypot(a, b);
-    case STRUT_OPERATION_NUMBER:
-    case STRUT_OPERATION_COLUMN:
-    case STRUT_OPERATION_COUNT: break;
-  }
-  return (double)NAN;
-}
+#include "engine/scene/signal_program.h"
 
 /* On which side of a kink, or on which step, the operands are. */
 static uint64_t branch_of(strut_operation operation, double a, double b, double result) {
@@ -82,7 +49,7 @@ double strut_quantity_program_evaluate(const strut_quantity_definition *d, const
       top -= (size_t)count;
       assert(top < d->depth);
       double a = stack[top], b = count > 1 ? stack[top + 1] : 0.0;
-      stack[top] = apply_operation(p->operation, a, b);
+      stack[top] = strut_operation_apply(p->operation, a, b);
       if (branch)
         gathered = strut_gather_branch(gathered, branch_of(p->operation, a, b, stack[top]));
       top++;
@@ -118,7 +85,7 @@ static strut_magnitude combine_magnitudes(strut_operation operation, strut_magni
     case STRUT_SENSITIVITY_POWER:
     case STRUT_SENSITIVITY_ROOT:
     case STRUT_SENSITIVITY_EXPONENTIAL:
-      size = fabs(apply_operation(operation, a.size, b.size));
+      size = fabs(strut_operation_apply(operation, a.size, b.size));
       break;
     case STRUT_SENSITIVITY_SUM: size = fmax(a.size, b.size); break;
     case STRUT_SENSITIVITY_LOGARITHM:

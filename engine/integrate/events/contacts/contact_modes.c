@@ -121,6 +121,18 @@ void strut_contact_close(const strut_model *model, strut_event_stepper *stepper,
   }
 }
 
+void strut_contact_rest(strut_event_stepper *stepper, double h, bool event) {
+  for (int32_t k = 0; k < stepper->active.closed_count; k++) {
+    int32_t i = stepper->active.closed[k];
+    double into = stepper->now->touch[i].into;
+    int8_t *damper = &stepper->modes.damper[i];
+    bool rests = is_at_rest(stepper, into, h);
+    if (rests && !event) *damper = 0;
+    if (!rests && !*damper && stepper->contacts.entry[i].damping > 0.0)
+      *damper = into < 0.0 ? 1 : -1;
+  }
+}
+
 /* Is what holds stuck contact i no more than rounding of the forces on its node? */
 static bool is_held_by_rounding(const strut_model *model, const strut_event_stepper *stepper,
                                 int32_t i) {
@@ -217,7 +229,14 @@ static void start_laws(const strut_model *model, strut_state *state, strut_event
     if (stepper->laws.item[k].event == STRUT_EVENT_KINK) {
       find_piece(model, state, stepper, k, t);
       changed = true;
-    } else if (stepper->laws.item[k].event >= STRUT_EVENT_THRESHOLD) {
+    } else if (stepper->laws.item[k].event == STRUT_EVENT_THRESHOLD) {
+      int32_t i = stepper->laws.item[k].kink - 1;
+      if (i < 0 || stepper->kinks.side[i] != 0.0) continue;
+      double margin = stepper->now->tension[k], rate = stepper->now->stretch_rate[k];
+      stepper->kinks.side[i] = margin < 0.0 || (margin == 0.0 && rate < 0.0) ? -1.0 : 1.0;
+      stepper->kinks.largest[i] = fabs(margin);
+      changed = true;
+    } else if (stepper->laws.item[k].event > STRUT_EVENT_THRESHOLD) {
       continue;
     } else if (stepper->laws.item[k].event != STRUT_EVENT_ACTS) {
       strut_history_start(model, state, stepper, k);
@@ -239,6 +258,8 @@ void strut_modes_after_jump(const strut_model *model, strut_state *state,
 void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                        double t) {
   stepper->fresh = false;
+  state->modes.kinks = stepper->kinks.count ? &stepper->kinks : NULL;
+  for (int32_t i = 0; i < stepper->kinks.count; i++) stepper->kinks.side[i] = 0.0;
   strut_surface_move(model, state, stepper->now, t);
   for (int32_t i = 0; i < model->contacts.count; i++) {
     strut_touch o;

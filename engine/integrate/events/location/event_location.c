@@ -158,6 +158,12 @@ static void measure_threshold(const strut_model *model, const strut_state *state
                               const strut_law_switch *law, const strut_step_end *end, int32_t k) {
   assert(k >= 0);
   double now = state->latest->drive_time + state->time_offset;
+  if (law->kink) {
+    strut_drive_signal(model, state, end->v, law->signal - 1, now);
+    end->tension[k] = end->stretch[k] = state->modes.kinks->margin[law->kink - 1];
+    end->stretch_rate[k] = state->modes.kinks->rate[law->kink - 1];
+    return;
+  }
   end->tension[k] =
       strut_threshold_margin(model, state, law->signal - 1, now, end->v, &end->stretch_rate[k]);
   end->stretch[k] = end->tension[k];
@@ -223,19 +229,27 @@ void strut_event_part_all(const strut_model *model, strut_state *state,
   list_nearby(model, state, stepper, stepper->now);
 }
 
+/* Is a member or a contact, so far beyond where it begins or ceases to act, and at this speed, at rest there? */
+static bool grazes(const strut_event_stepper *stepper, double beyond, double speed, double h) {
+  return is_at_rest(stepper, speed, h) &&
+         is_at_rest(stepper, beyond * stepper->control.frequency, h);
+}
+
 /* Whether an open contact whose gap is below 0 at the step's end has come down to it. One that has just
    opened may stand below 0 by rounding, on its way up. */
-static bool closes(const strut_contact_table *c, int32_t i, const strut_event_stepper *stepper) {
+static bool closes(const strut_contact_table *c, int32_t i, const strut_event_stepper *stepper,
+                   double h) {
   strut_touch to;
-  if (gap_at_end(c, &stepper->modes, i, stepper->now, STRUT_TERMS_ALL) > 0.0) return true;
   measure_at_end(c, &stepper->modes, stepper->next, i, STRUT_TERMS_ALL, &to);
-  return to.into < 0.0;
+  if (grazes(stepper, to.gap, to.into, h)) return false;
+  return to.into < 0.0 || gap_at_end(c, &stepper->modes, i, stepper->now, STRUT_TERMS_ALL) > 0.0;
 }
 
 /* Has closed contact i left the ground by the end of the step, where it is at `o`, even if it is on its way down again?
    One that has just touched may be above the ground by rounding while it still moves down. */
-static bool opens(const strut_event_stepper *stepper, int32_t i, const strut_touch *o) {
-  return o->gap > 0.0 && (o->into > 0.0 || stepper->now->touch[i].gap < 0.0);
+static bool opens(const strut_event_stepper *stepper, int32_t i, const strut_touch *o, double h) {
+  return o->gap > 0.0 && (o->into > 0.0 || stepper->now->touch[i].gap < 0.0) &&
+         !grazes(stepper, o->gap, o->into, h);
 }
 
 /* What ends a mode of contact i, if it comes before `first`. */
@@ -244,7 +258,7 @@ STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_step
   const strut_contact_modes *modes = &stepper->modes;
   const strut_contact_table *c = &model->contacts;
   if (modes->of[i] == STRUT_MODE_OPEN) {
-    if (gap_at_end(c, modes, i, stepper->next, terms) < 0.0 && closes(c, i, stepper))
+    if (gap_at_end(c, modes, i, stepper->next, terms) < 0.0 && closes(c, i, stepper, h))
       keep_first(model, stepper, STRUT_EVENT_TOUCH, i, h, first);
     return;
   }
@@ -263,9 +277,10 @@ STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_step
       strut_surface_facet_margin(c, modes, stepper->next, i, &nearest) < 0.0)
     keep_first(model, stepper, STRUT_EVENT_FACET, i, h, first);
   if (!stepper->formula->exact) return;
-  if (opens(stepper, i, o)) keep_first(model, stepper, STRUT_EVENT_OPEN, i, h, first);
+  if (opens(stepper, i, o, h)) keep_first(model, stepper, STRUT_EVENT_OPEN, i, h, first);
   if (modes->damper[i] && (modes->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
-      c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
+      c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal) &&
+      !is_at_rest(stepper, o->into, h))
     keep_first(model, stepper, STRUT_EVENT_DAMPER, i, h, first);
 }
 
@@ -307,12 +322,19 @@ static void keep_first_of_laws(const strut_model *model, const strut_state *stat
                                strut_event_stepper *stepper, double h, strut_event *first) {
   strut_event_measure(model, state, stepper, stepper->next);
   int32_t laws = strut_laws_of(&stepper->laws);
+  double faint = stepper->formula->adaptive ? stepper->control.tolerance : FAINT;
   for (int32_t k = 0; k < laws; k++) {
     int32_t j = strut_law_of(&stepper->laws, k);
     double after = law_value(stepper, stepper->next, j);
     if (!(after < 0.0) || is_settling(model, stepper, j, after)) continue;
     if (stepper->laws.item[j].event == STRUT_EVENT_TURN && !strut_turn_passes(model, stepper, j, h))
       continue;
+    const strut_step_end *end = stepper->next;
+    if (stepper->laws.item[j].member >= 0 &&
+        grazes(stepper, end->stretch[j], end->stretch_rate[j], h))
+      continue;
+    int32_t kink = stepper->laws.item[j].kink;
+    if (kink && -after <= faint * stepper->kinks.largest[kink - 1]) continue;
     double back = kink_comes_back(model, state, stepper, j, h, after);
     if (!(back > 0.0))
       keep_first(model, stepper, stepper->laws.item[j].event, j, h, first);
