@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/number_text.h"
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/report/reports.h"
 #include "engine/output/result_values.h"
@@ -28,27 +29,23 @@ void strut_analysis_free(strut_analysis *a) {
 
 /* ---- options ---- */
 
-enum { MOST_MODES = 1000 };
-/* JSON readers represent integers exactly up to here. */
-static const int64_t MOST_STARTS = 1000000000, MOST_SEED = 9007199254740992;
-
 static const char *node_name_at(const void *context, size_t i) {
   const strut_scene *scene = context;
   return i < scene->node_count ? scene->nodes[i].name : NULL;
 }
 
-static strut_status refuse_node(const strut_command *command, const strut_arguments *arguments,
-                                const strut_scene *scene, const char *name, const char *why) {
+static strut_status refuse_node(const strut_arguments *arguments, const strut_scene *scene,
+                                const char *name, const char *why) {
   const char *near = strut_did_you_mean(name, node_name_at, scene);
   if (near && strcmp(near, name) == 0) near = NULL;
-  return strut_usage_error(command, arguments, "--supports: %s '%s'%s%s%s", why, name,
+  return strut_usage_error(arguments, "--supports: %s '%s'%s%s%s", why, name,
                            near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
 /* "n1,n4" as nodes, in the scene's arena; *set stays NULL without --supports. */
-static strut_status read_supports(const strut_command *command, const strut_arguments *arguments,
-                                  strut_scene *scene, strut_node_set **set) {
-  const char *text = strut_option_text(arguments, STRUT_OPTION_SUPPORTS);
+static strut_status read_supports(const strut_arguments *arguments, strut_scene *scene,
+                                  strut_node_set **set) {
+  const char *text = arguments->supports;
   if (!text) return STRUT_OK;
   size_t most = strlen(text) + 1;
   strut_node_set *to = strut_arena_allocate(&scene->arena, 1, sizeof *to);
@@ -63,11 +60,9 @@ static strut_status read_supports(const strut_command *command, const strut_argu
     memcpy(word, at, length);
     word[length] = '\0';
     while (found < scene->node_count && strcmp(scene->nodes[found].name, word) != 0) found++;
-    if (found == scene->node_count)
-      return refuse_node(command, arguments, scene, word, "there is no node");
+    if (found == scene->node_count) return refuse_node(arguments, scene, word, "there is no node");
     for (size_t i = 0; i < to->count; i++)
-      if (to->node[i] == (int32_t)found)
-        return refuse_node(command, arguments, scene, word, "named twice:");
+      if (to->node[i] == (int32_t)found) return refuse_node(arguments, scene, word, "named twice:");
     to->node[to->count++] = (int32_t)found;
     at += length;
     if (!*at) break;
@@ -76,63 +71,10 @@ static strut_status read_supports(const strut_command *command, const strut_argu
   return STRUT_OK;
 }
 
-static strut_status read_equilibria_options(const strut_command *command,
-                                            const strut_arguments *arguments, strut_setup *setup,
-                                            strut_equilibria_options *to, uint64_t *seed) {
-  int64_t starts = 0, chosen = (int64_t)setup->experiment.search.seed;
-  strut_node_set *set = NULL;
-  strut_status status =
-      strut_option_integer(command, arguments, STRUT_OPTION_STARTS, 0, MOST_STARTS, &starts);
-  if (!status)
-    status = strut_option_integer(command, arguments, STRUT_OPTION_SEED, 0, MOST_SEED, &chosen);
-  if (!status) status = read_supports(command, arguments, &setup->scene, &set);
-  *seed = (uint64_t)chosen;
-  *to = (strut_equilibria_options){.starts = starts, .seed = seed, .supports = set};
-  return status;
-}
-
-static strut_status read_modes_options(const strut_command *command,
-                                       const strut_arguments *arguments, strut_modes_options *to) {
-  int64_t count = 0;
-  strut_status status =
-      strut_option_integer(command, arguments, STRUT_OPTION_COUNT, 1, MOST_MODES, &count);
-  *to = (strut_modes_options){.at = strut_option_text(arguments, STRUT_OPTION_AT),
-                              .count = (int32_t)count,
-                              .stuck = arguments->stuck};
-  return status;
-}
-
-static strut_status read_form_options(const strut_command *command,
-                                      const strut_arguments *arguments,
-                                      strut_form_options *wanted) {
-  static const char *const sources[] = {"densities", "lengths", "prestress", NULL};
-  static const char *const objectives[] = {"largest", "sum", "squares", NULL};
-  int source = -1, objective = 0;
-  double least = NAN;
-  strut_status status = strut_option_word(command, arguments, STRUT_OPTION_GIVEN, sources, &source);
-  if (status == STRUT_OK)
-    status = strut_option_word(command, arguments, STRUT_OPTION_OBJECTIVE, objectives, &objective);
-  if (status == STRUT_OK)
-    status = strut_option_number(command, arguments, STRUT_OPTION_LEAST_TENSION, STRUT_DIM_FORCE,
-                                 &least);
-  /* 0 asks for none, while without the option a part of the forces is taken */
-  wanted->least_tension = isnan(least) ? 0.0 : least == 0.0 ? DBL_MIN : least;
-  if (status == STRUT_OK)
-    status = strut_option_number(command, arguments, STRUT_OPTION_LEAST_DENSITY,
-                                 STRUT_DIM_STIFFNESS, &wanted->least_density);
-  if (status == STRUT_OK && (wanted->least_tension < 0 || wanted->least_density < 0))
-    status = strut_usage_error(
-        command, arguments,
-        "--least-tension and --least-density must not be negative: cables only pull");
-  wanted->from = (strut_form_source)(source + 1);
-  wanted->objective = (strut_form_objective)objective;
-  return status;
-}
-
 strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
                                     const strut_experiment *experiment, strut_arena *arena,
                                     strut_named_shape *shape, strut_error *error) {
-  const char *name = strut_option_text(arguments, STRUT_OPTION_AT);
+  const char *name = arguments->at;
   strut_rest_state stand = {0};
   strut_status status =
       strut_rest_state_find(model, experiment, name ? name : "drawn", arena, &stand, error);
@@ -140,8 +82,6 @@ strut_status strut_named_shape_find(const strut_arguments *arguments, const stru
   *shape = (strut_named_shape){.name = stand.name, .q = stand.q};
   return STRUT_OK;
 }
-
-enum { MOST_STEPS = 1000000, DEEPEST = 10 };
 
 /* Everything that --over may name: candidates for suggestions. */
 typedef struct candidates {
@@ -160,15 +100,14 @@ static const char *candidate_at(const void *context, size_t i) {
   return strut_arena_format(c->arena, "%s.%c", scene->nodes[i / 2].name, i % 2 ? 'y' : 'x');
 }
 
-static strut_status reject_name(const strut_command *command, const strut_arguments *arguments,
-                                const strut_scene *scene, const char *name) {
+static strut_status reject_name(const strut_arguments *arguments, const strut_scene *scene,
+                                const char *name) {
   strut_arena arena = {0};
   const candidates all = {.scene = scene, .arena = &arena};
   if (strut_thing_find(scene, STRUT_THING_LOAD, name) >= 0)
-    return strut_usage_error(command, arguments, "--over: '%s' is a load; use --load %s", name,
-                             name);
+    return strut_usage_error(arguments, "--over: '%s' is a load; use --load %s", name, name);
   const char *near = strut_did_you_mean(name, candidate_at, &all);
-  strut_usage_error(command, arguments,
+  strut_usage_error(arguments,
                     "--over: no parameter, actuator, or coordinate of a node (such as '%s.x') is "
                     "called '%s'%s%s%s",
                     scene->node_count ? scene->nodes[0].name : "node", name,
@@ -177,15 +116,14 @@ static strut_status reject_name(const strut_command *command, const strut_argume
   return STRUT_USAGE;
 }
 
-static strut_status choose_followed(const strut_command *command, const strut_arguments *arguments,
-                                    const strut_scene *scene, const char *name,
-                                    strut_varied_scenes *scenes, strut_path_options *wanted,
-                                    strut_dimension *dimension) {
+static strut_status choose_followed(const strut_arguments *arguments, const strut_scene *scene,
+                                    const char *name, strut_varied_scenes *scenes,
+                                    strut_path_options *wanted, strut_dimension *dimension) {
   const strut_parameter *parameter = strut_find_parameter(scene, name);
   *dimension = STRUT_DIM_LENGTH;
   if (parameter && !isfinite(parameter->value))
-    return strut_usage_error(command, arguments,
-                             "--over: parameter '%s' is a text, expected a number", name);
+    return strut_usage_error(arguments, "--over: parameter '%s' is a text, expected a number",
+                             name);
   if (parameter) {
     wanted->over = STRUT_PATH_OVER_SCENE;
     wanted->name = name;
@@ -206,39 +144,13 @@ static strut_status choose_followed(const strut_command *command, const strut_ar
   }
   wanted->over = STRUT_PATH_OVER_COORDINATE;
   wanted->index = strut_coordinate_find(scene, name);
-  return wanted->index >= 0 ? STRUT_OK : reject_name(command, arguments, scene, name);
-}
-
-/* --friction, or what the file says. */
-static strut_status read_friction(const strut_command *command, const strut_arguments *arguments,
-                                  bool *kept) {
-  const char *word = strut_option_text(arguments, STRUT_OPTION_FRICTION);
-  if (!word) return STRUT_OK;
-  *kept = strcmp(word, "kept") == 0;
-  if (*kept || strcmp(word, "none") == 0) return STRUT_OK;
-  return strut_usage_error(command, arguments, "--friction expects 'none' or 'kept', not '%s'",
-                           word);
-}
-
-static strut_status read_path_options(const strut_command *command,
-                                      const strut_arguments *arguments, bool friction,
-                                      strut_path_options *wanted) {
-  int64_t steps = 0, branches = 0;
-  strut_status status =
-      strut_option_integer(command, arguments, STRUT_OPTION_STEPS, 1, MOST_STEPS, &steps);
-  if (status == STRUT_OK)
-    status = strut_option_integer(command, arguments, STRUT_OPTION_BRANCHES, 1, DEEPEST, &branches);
-  *wanted = (strut_path_options){.at = strut_option_text(arguments, STRUT_OPTION_AT),
-                                 .steps = (int32_t)steps,
-                                 .branches = (int32_t)branches,
-                                 .friction = friction};
-  return status ? status : read_friction(command, arguments, &wanted->friction);
+  return wanted->index >= 0 ? STRUT_OK : reject_name(arguments, scene, name);
 }
 
 /* NODE.x=VALUE */
-static strut_status read_stop(const strut_command *command, const strut_arguments *arguments,
-                              const strut_scene *scene, strut_path_stop *stop) {
-  const char *text = strut_option_text(arguments, STRUT_OPTION_STOP);
+static strut_status read_stop(const strut_arguments *arguments, const strut_scene *scene,
+                              strut_path_stop *stop) {
+  const char *text = arguments->stop;
   strut_arena arena = {0};
   if (!text) return STRUT_OK;
   const char *equal = strrchr(text, '=');
@@ -246,11 +158,11 @@ static strut_status read_stop(const strut_command *command, const strut_argument
   stop->coordinate = name ? strut_coordinate_find(scene, name) : -1;
   stop->given = true;
   bool number = equal &&
-                strut_option_numbers(equal + 1, STRUT_DIM_LENGTH, &stop->displacement, 1) == 1 &&
+                strut_quantities_read(equal + 1, STRUT_DIM_LENGTH, &stop->displacement, 1) == 1 &&
                 isfinite(stop->displacement) && stop->displacement != 0.0;
   strut_arena_free(&arena);
   if (stop->coordinate >= 0 && number) return STRUT_OK;
-  return strut_usage_error(command, arguments,
+  return strut_usage_error(arguments,
                            "--stop expects a node's displacement, not 0, such as %s.x=10mm, not "
                            "'%s'",
                            scene->node_count ? scene->nodes[0].name : "node", text);
@@ -261,17 +173,16 @@ typedef struct over_text {
   const char *name, *from, *until;
 } over_text;
 
-static strut_status read_over(const strut_command *command, const strut_arguments *arguments,
-                              strut_arena *arena, over_text *over) {
-  const char *text = strut_option_text(arguments, STRUT_OPTION_OVER);
+static strut_status read_over(const strut_arguments *arguments, strut_arena *arena,
+                              over_text *over) {
+  const char *text = arguments->over;
   strut_range_text r;
   *over = (over_text){.name = NULL};
   if (!text) return STRUT_OK;
   if (!strut_range_text_split(text, &r))
-    return strut_usage_error(command, arguments, "--over expects WHAT or WHAT=FROM..UNTIL");
-  if (r.low && (strut_option_text(arguments, STRUT_OPTION_FROM) ||
-                strut_option_text(arguments, STRUT_OPTION_UNTIL)))
-    return strut_usage_error(command, arguments,
+    return strut_usage_error(arguments, "--over expects WHAT or WHAT=FROM..UNTIL");
+  if (r.low && (arguments->from || arguments->until))
+    return strut_usage_error(arguments,
                              "give either --over WHAT=FROM..UNTIL, or --from and --until");
   over->name = strut_arena_text(arena, r.name, r.name_length);
   if (r.low) over->from = strut_arena_text(arena, r.low, r.low_length);
@@ -282,60 +193,58 @@ static strut_status read_over(const strut_command *command, const strut_argument
 }
 
 /* A value of --over WHAT=FROM..UNTIL. */
-static strut_status read_over_end(const strut_command *command, const strut_arguments *arguments,
-                                  strut_dimension dimension, const char *text, double *value) {
+static strut_status read_over_end(const strut_arguments *arguments, strut_dimension dimension,
+                                  const char *text, double *value) {
   const char *example = strut_dimension_example(dimension);
-  if (!text || strut_option_numbers(text, dimension, value, 1) == 1) return STRUT_OK;
-  return strut_usage_error(command, arguments, "--over: expected a value%s%s, not '%s'",
+  if (!text || strut_quantities_read(text, dimension, value, 1) == 1) return STRUT_OK;
+  return strut_usage_error(arguments, "--over: expected a value%s%s, not '%s'",
                            example ? " such as " : "", example ? example : "", text);
 }
 
-static strut_status read_followed(const strut_command *command, const strut_arguments *arguments,
-                                  strut_scene *scene, strut_varied_scenes *scenes,
-                                  strut_path_options *wanted) {
+static strut_status read_followed(const strut_arguments *arguments, strut_scene *scene,
+                                  strut_varied_scenes *scenes, strut_path_options *wanted) {
   over_text over;
-  strut_status early = read_over(command, arguments, &scene->arena, &over);
+  strut_status early = read_over(arguments, &scene->arena, &over);
   if (early != STRUT_OK) return early;
   const char *name = over.name;
   strut_dimension dimension = STRUT_DIM_NONE;
   strut_status status = STRUT_OK;
-  wanted->load = strut_option_text(arguments, STRUT_OPTION_LOAD);
+  wanted->load = arguments->load;
   wanted->until = 1.0;
   if (name && wanted->load)
-    return strut_usage_error(command, arguments, "give either --load or --over, not both");
-  if (name) status = choose_followed(command, arguments, scene, name, scenes, wanted, &dimension);
-  if (status == STRUT_OK && name && !over.until &&
-      !strut_option_text(arguments, STRUT_OPTION_UNTIL)) {
+    return strut_usage_error(arguments, "give either --load or --over, not both");
+  if (name) status = choose_followed(arguments, scene, name, scenes, wanted, &dimension);
+  if (status == STRUT_OK && name && !over.until && !arguments->until) {
     const char *example = strut_dimension_example(dimension);
-    return strut_usage_error(command, arguments, "missing --until VALUE, the end value of %s%s%s%s",
-                             name, example ? ": such as --until \"" : "", example ? example : "",
+    return strut_usage_error(arguments, "missing --until VALUE, the end value of %s%s%s%s", name,
+                             example ? ": such as --until \"" : "", example ? example : "",
                              example ? "\"" : "");
   }
   if (status == STRUT_OK)
-    status = strut_option_number(command, arguments, STRUT_OPTION_FROM, dimension, &wanted->from);
+    status = strut_quantity_read(arguments, "from", arguments->from, dimension, &wanted->from);
   if (status == STRUT_OK)
-    status = strut_option_number(command, arguments, STRUT_OPTION_UNTIL, dimension, &wanted->until);
-  if (status == STRUT_OK)
-    status = read_over_end(command, arguments, dimension, over.from, &wanted->from);
-  if (status == STRUT_OK)
-    status = read_over_end(command, arguments, dimension, over.until, &wanted->until);
+    status = strut_quantity_read(arguments, "until", arguments->until, dimension, &wanted->until);
+  if (status == STRUT_OK) status = read_over_end(arguments, dimension, over.from, &wanted->from);
+  if (status == STRUT_OK) status = read_over_end(arguments, dimension, over.until, &wanted->until);
   if (status == STRUT_OK &&
       !(isfinite(wanted->from) && isfinite(wanted->until) && wanted->from != wanted->until))
-    return strut_usage_error(command, arguments, "--from and --until are equal");
-  return status == STRUT_OK ? read_stop(command, arguments, scene, &wanted->stop) : status;
+    return strut_usage_error(arguments, "--from and --until are equal");
+  return status == STRUT_OK ? read_stop(arguments, scene, &wanted->stop) : status;
 }
-
-#define END                                                                                        \
-  { STRUT_OPTION_END, NULL, NULL, NULL }
 
 /* ---- equilibria ---- */
 
 static strut_status compute_equilibria(strut_analysis *a, strut_error *error) {
-  strut_equilibria_options wanted;
-  uint64_t seed;
-  strut_status status = read_equilibria_options(a->command, a->arguments, a->setup, &wanted, &seed);
+  const strut_arguments *arguments = a->arguments;
+  const uint64_t seed =
+      arguments->seed.text ? (uint64_t)arguments->seed.value : a->setup->experiment.search.seed;
+  strut_node_set *set = NULL;
+  strut_status status = read_supports(arguments, &a->setup->scene, &set);
   if (status != STRUT_OK) return status;
-  wanted.interrupt = a->setup->experiment.interrupt;
+  const strut_equilibria_options wanted = {.starts = arguments->starts.value,
+                                           .seed = &seed,
+                                           .supports = set,
+                                           .interrupt = a->setup->experiment.interrupt};
   return strut_equilibria_find(a->model, &a->setup->experiment, &wanted, &a->result.equilibria,
                                error);
 }
@@ -366,7 +275,18 @@ static strut_status draw_equilibria(const strut_analysis *a, const strut_plot *p
 
 static void free_equilibria(strut_analysis *a) { strut_equilibria_free(&a->result.equilibria); }
 
-const strut_option strut_equilibria_analysis_options[] = {STRUT_EQUILIBRIA_OPTIONS, END};
+/* JSON readers represent integers exactly up to here. */
+#define MOST_SEED INT64_C(9007199254740992)
+
+const strut_option strut_equilibria_analysis_options[] = {
+    {STRUT_FILLS(supports), "supports", "NODES", "hold only these contact nodes, such as n1,n4"},
+    {STRUT_FILLS(starts), "starts", "N", "number of random starts per search (default automatic)",
+     .most = 1000000000},
+    {STRUT_FILLS(seed), "seed", "S", "seed of the random starts (default as the scene says)",
+     .most = MOST_SEED},
+    {STRUT_FILLS(all), "all", NULL,
+     "list every equilibrium, and the positions of those that stand"},
+    {.name = NULL}};
 
 const strut_analysis_kind strut_equilibria_analysis = {.files = {"equilibria.json"},
                                                        .asks = true,
@@ -381,18 +301,19 @@ const strut_analysis_kind strut_equilibria_analysis = {.files = {"equilibria.jso
 /* ---- modes ---- */
 
 static strut_status compute_modes(strut_analysis *a, strut_error *error) {
-  strut_modes_options wanted;
-  strut_status status = read_modes_options(a->command, a->arguments, &wanted);
-  if (status == STRUT_OK && a->arguments->wave && wanted.stuck)
-    status = strut_usage_error(a->command, a->arguments,
-                               "--stuck holds contacts with the ground; --wave knows no ground");
-  if (status != STRUT_OK) return status;
-  a->result.modes.count = (size_t)wanted.count;
-  a->result.modes.wave = a->arguments->wave;
-  const strut_waves_options waves = {.at = wanted.at, .count = wanted.count};
-  if (a->result.modes.wave)
+  const strut_arguments *arguments = a->arguments;
+  const int32_t count = (int32_t)arguments->count.value;
+  if (arguments->wave && arguments->stuck)
+    return strut_usage_error(arguments,
+                             "--stuck holds contacts with the ground; --wave knows no ground");
+  a->result.modes.count = (size_t)count;
+  a->result.modes.wave = arguments->wave;
+  const strut_waves_options waves = {.at = arguments->at, .count = count};
+  const strut_modes_options modes = {
+      .at = arguments->at, .count = count, .stuck = arguments->stuck};
+  if (arguments->wave)
     return strut_waves_find(a->model, &a->setup->experiment, &waves, &a->result.modes.waves, error);
-  return strut_modes_find(a->model, &a->setup->experiment, &wanted, &a->result.modes.found, error);
+  return strut_modes_find(a->model, &a->setup->experiment, &modes, &a->result.modes.found, error);
 }
 
 static const strut_value_rows *modes_values(const strut_analysis *a, const void **result) {
@@ -430,7 +351,15 @@ static void free_modes(strut_analysis *a) {
   strut_waves_free(&a->result.modes.waves);
 }
 
-const strut_option strut_modes_analysis_options[] = {STRUT_MODES_OPTIONS, END};
+const strut_option strut_modes_analysis_options[] = {
+    {STRUT_FILLS(at), "at", "NAME",
+     "equilibrium to linearise about (default: that of the start), or drawn"},
+    {STRUT_FILLS(count), "count", "N", "number of modes or bands, lowest first", .least = 1,
+     .most = 1000},
+    {STRUT_FILLS(wave), "wave", NULL,
+     "instead: waves of the structure repeated by its lattice, bands and gaps"},
+    {STRUT_FILLS(stuck), "stuck", NULL, "treat closed contacts as stuck instead of frictionless"},
+    {.name = NULL}};
 
 const strut_analysis_kind strut_modes_analysis = {.files = {"modes.json", "modes.csv"},
                                                   .compute = compute_modes,
@@ -471,7 +400,9 @@ static strut_status draw_rigidity(const strut_analysis *a, const strut_plot *plo
 
 static void free_rigidity(strut_analysis *a) { strut_rigidity_free(&a->result.rigidity.found); }
 
-const strut_option strut_rigidity_analysis_options[] = {STRUT_SHAPE_OPTIONS, END};
+const strut_option strut_rigidity_analysis_options[] = {
+    {STRUT_FILLS(at), "at", "NAME", "the shape: drawn (default), start, or an equilibrium"},
+    {.name = NULL}};
 
 const strut_analysis_kind strut_rigidity_analysis = {.files = {"rigidity.json"},
                                                      .compute = compute_rigidity,
@@ -484,9 +415,17 @@ const strut_analysis_kind strut_rigidity_analysis = {.files = {"rigidity.json"},
 
 static strut_status compute_form(strut_analysis *a, strut_error *error) {
   const strut_scene *scene = &a->setup->scene;
-  strut_form_options wanted = {0};
-  strut_status status = read_form_options(a->command, a->arguments, &wanted);
-  if (status != STRUT_OK) return status;
+  const strut_arguments *arguments = a->arguments;
+  const double least = arguments->least_tension.value;
+  /* 0 asks for none, while without the option a part of the forces is taken */
+  const strut_form_options wanted = {
+      .least_tension = arguments->least_tension.text && least == 0.0 ? DBL_MIN : least,
+      .least_density = arguments->least_density.value,
+      .from = (strut_form_source)(arguments->given.text ? arguments->given.index + 1 : 0),
+      .objective = (strut_form_objective)arguments->objective.index};
+  if (wanted.least_tension < 0 || wanted.least_density < 0)
+    return strut_usage_error(
+        arguments, "--least-tension and --least-density must not be negative: cables only pull");
   double(*drawn)[2] = strut_arena_allocate(&a->arena, scene->node_count, sizeof *drawn);
   if (!drawn) return strut_no_memory(error, "");
   for (size_t i = 0; i < scene->node_count; i++)
@@ -513,7 +452,17 @@ static strut_status draw_form(const strut_analysis *a, const strut_plot *plot, s
   return status;
 }
 
-const strut_option strut_form_analysis_options[] = {STRUT_FORM_OPTIONS, END};
+const strut_option strut_form_analysis_options[] = {
+    {STRUT_FILLS(given), "given", "WHAT",
+     "densities, lengths or prestress (default: by what the model gives)",
+     .words = "densities|lengths|prestress"},
+    {STRUT_FILLS(least_tension), "least-tension", "FORCE",
+     "lower bound on the tension of every cable", .measure = STRUT_MEASURE_FORCE},
+    {STRUT_FILLS(least_density), "least-density", "DENSITY",
+     "lower bound on the force density of every cable", .measure = STRUT_MEASURE_STIFFNESS},
+    {STRUT_FILLS(objective), "objective", "WHAT",
+     "which prestress: minimal largest (default), sum or squares", .words = "largest|sum|squares"},
+    {.name = NULL}};
 
 const strut_analysis_kind strut_form_analysis = {.uncompiled = true,
                                                  .compute = compute_form,
@@ -525,22 +474,23 @@ const strut_analysis_kind strut_form_analysis = {.uncompiled = true,
 
 /* The file's stages are followed unless the command says what to follow. */
 static bool has_stages(const strut_analysis *a) {
-  static const strut_option_id others[] = {STRUT_OPTION_LOAD, STRUT_OPTION_OVER, STRUT_OPTION_FROM,
-                                           STRUT_OPTION_UNTIL, STRUT_OPTION_STOP};
-  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-    if (strut_option_text(a->arguments, others[i])) return false;
-  return a->setup->experiment.stage_count > 0;
+  const strut_arguments *w = a->arguments;
+  return a->setup->experiment.stage_count > 0 &&
+         !(w->load || w->over || w->from || w->until || w->stop);
 }
 
 static strut_status compute_path(strut_analysis *a, strut_error *error) {
-  strut_path_options wanted;
-  strut_status status =
-      read_path_options(a->command, a->arguments, a->setup->experiment.path_friction, &wanted);
-  if (status == STRUT_OK && has_stages(a))
+  const strut_arguments *arguments = a->arguments;
+  strut_path_options wanted = {.at = arguments->at,
+                               .steps = (int32_t)arguments->steps.value,
+                               .branches = (int32_t)arguments->branches.value,
+                               .friction = arguments->friction.text
+                                               ? arguments->friction.index == 1
+                                               : a->setup->experiment.path_friction};
+  if (has_stages(a))
     return strut_path_follow_stages(a->model, &a->setup->experiment, &wanted, &a->result.path,
                                     error);
-  if (status == STRUT_OK)
-    status = read_followed(a->command, a->arguments, &a->setup->scene, &a->scenes, &wanted);
+  strut_status status = read_followed(arguments, &a->setup->scene, &a->scenes, &wanted);
   if (status != STRUT_OK) return status;
   return strut_path_follow(a->model, &a->setup->experiment, &wanted, &a->result.path, error);
 }
@@ -568,7 +518,26 @@ static strut_status draw_path(const strut_analysis *a, const strut_plot *plot, s
 
 static void free_path(strut_analysis *a) { strut_path_free(&a->result.path); }
 
-const strut_option strut_path_analysis_options[] = {STRUT_PATH_OPTIONS, END};
+const strut_option strut_path_analysis_options[] = {
+    {STRUT_FILLS(load), "load", "NAME",
+     "load to scale, or several: P,Q (default: all without a signal)"},
+    {STRUT_FILLS(over), "over", "WHAT",
+     "vary a parameter, an actuator, or a displacement NODE.x or NODE.y; also WHAT=FROM..UNTIL"},
+    {STRUT_FILLS(from), "from", "VALUE", "start value: a load factor, or in the unit of WHAT"},
+    {STRUT_FILLS(until), "until", "VALUE", "end value, likewise (default: load factor 1)"},
+    {STRUT_FILLS(stop), "stop", "NODE.x=VALUE",
+     "or end earlier, where a node has moved so far along x or y"},
+    {STRUT_FILLS(at), "at", "NAME", "equilibrium to start from (default: that of the start)"},
+    {STRUT_FILLS(friction), "friction", "none|kept",
+     "kept: contacts stick and slide as the path goes (default: as the file says)",
+     .words = "none|kept"},
+    {STRUT_FILLS(branches), "branches", "DEPTH",
+     "follow paths that leave at bifurcations: 1 of this path, 2 of its branches too, ...",
+     .least = 1, .most = 10},
+    {STRUT_FILLS(steps), "steps", "N",
+     "maximum number of steps (default " STRUT_TEXT_OF(STRUT_PATH_USUAL_STEPS) ")", .least = 1,
+     .most = 1000000},
+    {.name = NULL}};
 
 const strut_analysis_kind strut_path_analysis = {.files = {"path.json", "path.csv"},
                                                  .compute = compute_path,

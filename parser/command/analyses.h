@@ -6,7 +6,6 @@
 #ifndef STRUT_PARSER_COMMAND_ANALYSES_H
 #define STRUT_PARSER_COMMAND_ANALYSES_H
 
-#include "engine/base/number_text.h"
 #include "engine/output/draw/chart.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/form/form.h"
@@ -16,61 +15,6 @@
 #include "engine/statics/rigidity/rigidity.h"
 #include "parser/command/arguments.h"
 #include "parser/command/varied_scenes.h"
-
-/* ---- rows for tables of options ---- */
-
-#define STRUT_EQUILIBRIA_OPTIONS                                                                   \
-  {STRUT_OPTION_SUPPORTS, "supports", "NODES", "hold only these contact nodes, such as n1,n4"},    \
-      {STRUT_OPTION_STARTS, "starts", "N",                                                         \
-       "number of random starts per search (default automatic)"},                                  \
-      {STRUT_OPTION_SEED, "seed", "S", "seed of the random starts (default as the scene says)"}, { \
-    STRUT_OPTION_ALL, "all", NULL, "list every equilibrium, and the positions of those that stand" \
-  }
-
-#define STRUT_MODES_OPTIONS                                                                        \
-  {STRUT_OPTION_AT, "at", "NAME",                                                                  \
-   "equilibrium to linearise about (default: that of the start), or drawn"},                       \
-      {STRUT_OPTION_COUNT, "count", "N", "number of modes or bands, lowest first"},                \
-      {STRUT_OPTION_WAVE, "wave", NULL,                                                            \
-       "instead: waves of the structure repeated by its lattice, bands and gaps"},                 \
-  {                                                                                                \
-    STRUT_OPTION_STUCK, "stuck", NULL, "treat closed contacts as stuck instead of frictionless"    \
-  }
-
-#define STRUT_FORM_OPTIONS                                                                         \
-  {STRUT_OPTION_GIVEN, "given", "WHAT",                                                            \
-   "densities, lengths or prestress (default: by what the model gives)"},                          \
-      {STRUT_OPTION_LEAST_TENSION, "least-tension", "FORCE",                                       \
-       "lower bound on the tension of every cable"},                                               \
-      {STRUT_OPTION_LEAST_DENSITY, "least-density", "DENSITY",                                     \
-       "lower bound on the force density of every cable"},                                         \
-  {                                                                                                \
-    STRUT_OPTION_OBJECTIVE, "objective", "WHAT",                                                   \
-        "which prestress: minimal largest (default), sum or squares"                               \
-  }
-
-#define STRUT_SHAPE_OPTIONS                                                                        \
-  { STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (default), start, or an equilibrium" }
-
-#define STRUT_PATH_OPTIONS                                                                         \
-  {STRUT_OPTION_LOAD, "load", "NAME",                                                              \
-   "load to scale, or several: P,Q (default: all without a signal)"},                              \
-      {STRUT_OPTION_OVER, "over", "WHAT",                                                          \
-       "vary a parameter, an actuator, or a displacement NODE.x or NODE.y; also "                  \
-       "WHAT=FROM..UNTIL"},                                                                        \
-      {STRUT_OPTION_FROM, "from", "VALUE", "start value: a load factor, or in the unit of WHAT"},  \
-      {STRUT_OPTION_UNTIL, "until", "VALUE", "end value, likewise (default: load factor 1)"},      \
-      {STRUT_OPTION_STOP, "stop", "NODE.x=VALUE",                                                  \
-       "or end earlier, where a node has moved so far along x or y"},                              \
-      {STRUT_OPTION_AT, "at", "NAME", "equilibrium to start from (default: that of the start)"},   \
-      {STRUT_OPTION_FRICTION, "friction", "none|kept",                                             \
-       "kept: contacts stick and slide as the path goes (default: as the file says)"},             \
-      {STRUT_OPTION_BRANCHES, "branches", "DEPTH",                                                 \
-       "follow paths that leave at bifurcations: 1 of this path, 2 of its branches too, ..."},     \
-  {                                                                                                \
-    STRUT_OPTION_STEPS, "steps", "N",                                                              \
-        "maximum number of steps (default " STRUT_TEXT_OF(STRUT_PATH_USUAL_STEPS) ")"              \
-  }
 
 /* ---- shapes ---- */
 
@@ -120,7 +64,6 @@ STRUT_ANALYSES(STRUT_ANALYSIS_KIND)
 /** An analysis under way. What stands before `all` is the caller's, and stays while there are results. */
 struct strut_analysis {
   const strut_analysis_kind *kind;
-  const strut_command *command;     /* whose name messages have */
   const strut_arguments *arguments; /* while it computes */
   strut_setup *setup;               /* its interrupt is asked */
   const strut_model *model;         /* of the setup; NULL if uncompiled */

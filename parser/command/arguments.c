@@ -21,81 +21,59 @@ void strut_tell(const strut_listener *listener, strut_message_kind kind, const c
   listener->hear(listener->context, kind, command, text);
 }
 
-strut_status strut_usage_error(const strut_command *command, const strut_arguments *arguments,
-                               const char *format, ...) {
+strut_status strut_usage_error(const strut_arguments *arguments, const char *format, ...) {
   char text[STRUT_MESSAGE_MOST];
   va_list values;
   va_start(values, format);
   vsnprintf(text, sizeof text, format, values);
   va_end(values);
-  strut_tell(arguments->listener, STRUT_MESSAGE_USAGE, command->name, "%s", text);
+  strut_tell(arguments->listener, STRUT_MESSAGE_USAGE, arguments->command->name, "%s", text);
   return STRUT_USAGE;
 }
 
-const char *strut_option_text(const strut_arguments *arguments, strut_option_id id) {
-  assert(id >= STRUT_OPTION_TEXTS && id < STRUT_OPTION_TEXTS_END);
-  return arguments->texts[(int)id - (int)STRUT_OPTION_TEXTS];
-}
+/* ---- rows ---- */
 
-static const char *option_name_at(const void *context, size_t i) {
-  return ((const strut_command *)context)->options[i].name; /* NULL in the last row */
-}
-
-/* Where an option without value is kept, of those that calls of the library may have. */
-static bool *flag_of(strut_option_id id, strut_arguments *arguments) {
-  if (id == STRUT_OPTION_FORCE) return &arguments->force;
-  if (id == STRUT_OPTION_STUCK) return &arguments->stuck;
-  if (id == STRUT_OPTION_WAVE) return &arguments->wave;
-  return id == STRUT_OPTION_ALL ? &arguments->all : NULL;
-}
-
-static strut_status set_flag(const strut_command *command, const strut_option *option,
-                             const char *value, strut_arguments *arguments) {
-  bool *flag = flag_of(option->id, arguments);
-  bool yes = strcmp(value, "yes") == 0 || strcmp(value, "true") == 0;
-  if (!yes && strcmp(value, "no") != 0 && strcmp(value, "false") != 0)
-    return strut_usage_error(command, arguments, "--%s expects yes or no, not '%s'", option->name,
-                             value);
-  assert(flag);
-  if (flag) *flag = yes;
-  return STRUT_OK;
-}
-
-strut_status strut_argument_set(const strut_command *command, const char *name, const char *value,
-                                strut_arguments *arguments) {
-  const strut_option *option = command->options;
-  while (option->id != STRUT_OPTION_END && strcmp(option->name, name) != 0) option++;
-  if (option->id == STRUT_OPTION_END) {
-    const char *near = strut_did_you_mean(name, option_name_at, command);
-    return strut_usage_error(command, arguments, "unknown option '%s'%s%s%s", name,
-                             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+const strut_option *strut_command_option(const strut_command *command, size_t i) {
+  for (const strut_option *o = command->options; o && (o->name || o->table); o++) {
+    if (!o->table && !i--) return o;
+    for (const strut_option *row = o->table; row && row->name; row++)
+      if (!i--) return row;
   }
-  if (!option->argument) return set_flag(command, option, value, arguments);
-  arguments->texts[(int)option->id - (int)STRUT_OPTION_TEXTS] = value;
-  return STRUT_OK;
+  return NULL;
 }
 
-static const char *name_of(const strut_command *command, strut_option_id id) {
-  const strut_option *option = command->options;
-  while (option->id != STRUT_OPTION_END && option->id != id) option++;
-  assert(option->id == id);
-  return option->name;
+static const char *name_at(const void *command, size_t i) {
+  const strut_option *option = strut_command_option(command, i);
+  return option ? option->name : NULL;
 }
 
-strut_status strut_option_number(const strut_command *command, const strut_arguments *arguments,
-                                 strut_option_id id, strut_dimension dimension, double *value) {
-  const char *text = strut_option_text(arguments, id);
+const char *strut_given_text(const strut_option *option, const strut_arguments *arguments) {
+  if (option->kind < STRUT_OPTION_TEXT) return NULL;
+  return *(const char *const *)((const char *)arguments + option->member);
+}
+
+static const char *words_of(const strut_option *option) {
+  return option->key ? strut_key_at(option->key)->words : option->words;
+}
+
+const char *strut_option_word(const strut_option *option, int i, char *buffer, size_t size) {
+  const char *words = words_of(option);
+  return words ? strut_word_at(words, i, buffer, size) : NULL;
+}
+
+/* ---- values ---- */
+
+strut_status strut_quantity_read(const strut_arguments *arguments, const char *name,
+                                 const char *text, strut_dimension dimension, double *value) {
   strut_expression_error error = {0};
   strut_quantity quantity;
   char kind[64];
-  if (!text) return STRUT_OK; /* the command may not even have the option */
-  const char *name = name_of(command, id);
-  if (!strut_expression_evaluate(text, NULL, &quantity, &error)) {
-    return strut_usage_error(command, arguments, "--%s '%s': %s", name, text, error.message);
-  }
+  if (!text) return STRUT_OK;
+  if (!strut_expression_evaluate(text, NULL, &quantity, &error))
+    return strut_usage_error(arguments, "--%s '%s': %s", name, text, error.message);
   if (!quantity.bare && !strut_dimension_equal(quantity.dimension, dimension)) {
     const char *example = strut_dimension_example(dimension);
-    return strut_usage_error(command, arguments, "--%s expects %s%s%s, not '%s'", name,
+    return strut_usage_error(arguments, "--%s expects %s%s%s, not '%s'", name,
                              strut_dimension_name(dimension, kind, sizeof kind),
                              example ? ", such as " : "", example ? example : "", text);
   }
@@ -103,18 +81,107 @@ strut_status strut_option_number(const strut_command *command, const strut_argum
   return STRUT_OK;
 }
 
-strut_status strut_option_within(const strut_command *command, const strut_arguments *arguments,
-                                 strut_option_id id, strut_dimension dimension, double low,
-                                 double high, double *value) {
-  const char *text = strut_option_text(arguments, id);
-  strut_status status = strut_option_number(command, arguments, id, dimension, value);
-  if (status != STRUT_OK || !text || (*value >= low && *value <= high)) return status;
-  return strut_usage_error(command, arguments, "--%s expects a value from %g to %g, not '%s'",
-                           name_of(command, id), low, high, text);
+static strut_status read_number(const strut_option *option, const strut_arguments *arguments,
+                                strut_given_number *to) {
+  const double low = option->low, high = option->high;
+  strut_status status = strut_quantity_read(arguments, option->name, to->text,
+                                            strut_measure_dimension(option->measure), &to->value);
+  if (status || low == high || (to->value >= low && to->value <= high)) return status;
+  if (option->expected)
+    return strut_usage_error(arguments, "--%s %s", option->name, option->expected);
+  return strut_usage_error(arguments, "--%s expects a value from %g to %g, not '%s'", option->name,
+                           low, high, to->text);
 }
 
-size_t strut_option_numbers(const char *text, strut_dimension dimension, double *values,
-                            size_t most) {
+static strut_status read_whole(const strut_option *option, const strut_arguments *arguments,
+                               strut_given_whole *to) {
+  uint64_t sum = 0, most = (uint64_t)option->most;
+  bool good = *to->text;
+  for (const char *c = to->text; good && *c; c++) {
+    good = *c >= '0' && *c <= '9' && sum <= most / 10;
+    sum = 10 * sum + (uint64_t)(*c - '0');
+    good = good && sum <= most;
+  }
+  to->value = good ? (int64_t)sum : -1;
+  if (to->value >= option->least) return STRUT_OK;
+  return strut_usage_error(arguments,
+                           "--%s expects a whole number from %" PRId64 " to %" PRId64 ", not '%s'",
+                           option->name, option->least, option->most, to->text);
+}
+
+enum { WORD = 40, MOST_WORDS = 32 };
+
+static const char *word_at(const void *words, size_t i) {
+  return i < MOST_WORDS ? ((const char *const *)words)[i] : NULL;
+}
+
+/* A word of the language may have other spellings. */
+static strut_status read_word(const strut_option *option, const strut_arguments *arguments,
+                              strut_given_word *to) {
+  const strut_key *key = strut_key_at(option->key);
+  const strut_spelling *other =
+      option->key ? strut_spelling_find(key->section, key->name, to->text) : NULL;
+  char text[STRUT_MESSAGE_MOST / 2], copies[MOST_WORDS][WORD];
+  const char *words[MOST_WORDS], *near;
+  bool accepted = other && other->kind != STRUT_SPELLING_MISTAKE;
+  if (accepted && other->kind == STRUT_SPELLING_FORMER)
+    strut_tell(arguments->listener, STRUT_MESSAGE_NOTE, arguments->command->name,
+               "'%s' is now called '%s'", other->other, other->current);
+  to->index = strut_word_find(words_of(option), accepted ? other->current : to->text);
+  if (to->index >= 0) return STRUT_OK;
+  for (int i = 0; i < MOST_WORDS; i++) words[i] = strut_option_word(option, i, copies[i], WORD);
+  near = strut_did_you_mean(to->text, word_at, words);
+  return strut_usage_error(arguments, "--%s expects %s, not '%s'%s%s%s", option->name,
+                           strut_words_text(words_of(option), text, sizeof text), to->text,
+                           near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+}
+
+static strut_status read_words(const strut_option *option, const strut_arguments *arguments,
+                               strut_given_words *to) {
+  strut_status status = STRUT_OK;
+  to->set = 0;
+  for (const char *text = to->text; *text && !status;) {
+    char part[WORD];
+    size_t length = strcspn(text, ",");
+    strut_given_word one = {.text = part};
+    snprintf(part, sizeof part, "%.*s", (int)length, text);
+    status = read_word(option, arguments, &one);
+    if (!status) to->set |= 1U << one.index;
+    text += length + (text[length] == ',');
+  }
+  return status;
+}
+
+strut_status strut_argument_read(const strut_option *option, const char *text,
+                                 strut_arguments *arguments) {
+  void *to = (char *)arguments + option->member;
+  if (option->kind >= STRUT_OPTION_TEXT) *(const char **)to = text;
+  if (option->kind == STRUT_OPTION_FLAG) *(bool *)to = true;
+  if (option->kind == STRUT_OPTION_NUMBER) return read_number(option, arguments, to);
+  if (option->kind == STRUT_OPTION_WHOLE) return read_whole(option, arguments, to);
+  if (option->kind == STRUT_OPTION_WORD) return read_word(option, arguments, to);
+  return option->kind == STRUT_OPTION_WORDS ? read_words(option, arguments, to) : STRUT_OK;
+}
+
+strut_status strut_argument_set(const char *name, const char *value, strut_arguments *arguments) {
+  const strut_option *option;
+  size_t i = 0;
+  while ((option = strut_command_option(arguments->command, i)) && strcmp(option->name, name) != 0)
+    i++;
+  if (!option) {
+    const char *near = strut_did_you_mean(name, name_at, arguments->command);
+    return strut_usage_error(arguments, "unknown option '%s'%s%s%s", name,
+                             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+  }
+  if (option->argument) return strut_argument_read(option, value, arguments);
+  int yes = strut_switch_find(value);
+  if (yes < 0) return strut_usage_error(arguments, "--%s expects yes or no, not '%s'", name, value);
+  *(bool *)((char *)arguments + option->member) = yes;
+  return STRUT_OK;
+}
+
+size_t strut_quantities_read(const char *text, strut_dimension dimension, double *values,
+                             size_t most) {
   char part[100];
   size_t count = 0;
   for (const char *rest = text; rest; count++) {
@@ -139,49 +206,4 @@ bool strut_range_text_split(const char *text, strut_range_text *range) {
   if (low && (!dots || dots == low || !dots[2])) return false;
   if (low) range->low = low, range->low_length = (size_t)(dots - low), range->high = dots + 2;
   return length > 0;
-}
-
-strut_status strut_option_integer(const strut_command *command, const strut_arguments *arguments,
-                                  strut_option_id id, int64_t low, int64_t high, int64_t *value) {
-  const char *text = strut_option_text(arguments, id);
-  uint64_t sum = 0, most = high < 0 ? 0 : (uint64_t)high;
-  bool good = text && *text;
-  for (const char *c = text; good && *c; c++) {
-    good = *c >= '0' && *c <= '9' && sum <= most / 10;
-    sum = 10 * sum + (uint64_t)(*c - '0');
-    good = good && sum <= most;
-  }
-  if (!text) return STRUT_OK;
-  if (!good || (int64_t)sum < low)
-    return strut_usage_error(
-        command, arguments, "--%s expects a whole number from %" PRId64 " to %" PRId64 ", not '%s'",
-        name_of(command, id), low, high, text);
-  *value = (int64_t)sum;
-  return STRUT_OK;
-}
-
-static const char *word_at(const void *context, size_t i) {
-  return ((const char *const *)context)[i];
-}
-
-strut_status strut_option_word(const strut_command *command, const strut_arguments *arguments,
-                               strut_option_id id, const char *const *words, int *value) {
-  const char *text = strut_option_text(arguments, id);
-  if (!text) return STRUT_OK;
-  for (int i = 0; words[i]; i++) {
-    if (strcmp(words[i], text) != 0) continue;
-    *value = i;
-    return STRUT_OK;
-  }
-  const char *near = strut_did_you_mean(text, word_at, words);
-  char list[STRUT_MESSAGE_MOST / 2] = "";
-  for (size_t i = 0, used = 0; words[i] && used < sizeof list; i++)
-    used += (size_t)snprintf(list + used, sizeof list - used, "%s%s",
-                             i == 0         ? ""
-                             : words[i + 1] ? ", "
-                                            : " or ",
-                             words[i]);
-  return strut_usage_error(command, arguments, "--%s expects %s, not '%s'%s%s%s",
-                           name_of(command, id), list, text, near ? "; did you mean '" : "",
-                           near ? near : "", near ? "'?" : "");
 }

@@ -5,144 +5,113 @@
 #ifndef STRUT_PARSER_COMMAND_ARGUMENTS_H
 #define STRUT_PARSER_COMMAND_ARGUMENTS_H
 
+#include <float.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include "engine/base/status.h"
 #include "parser/command/messages.h"
-#include "parser/expression/units.h"
+#include "parser/language/keys.h"
 #include "parser/read/read_scene.h"
 
-/** Names an option; its value is the option's letter where it has one. */
-typedef enum strut_option_id {
-  STRUT_OPTION_END = 0,
-  STRUT_OPTION_HELP = 'h',
-  STRUT_OPTION_OUTPUT = 'o',
-  STRUT_OPTION_QUIET = 'q',
-  STRUT_OPTION_SET = 256, /* no letters from here on */
-  STRUT_OPTION_JSON,
-  STRUT_OPTION_FORCE,
-  STRUT_OPTION_STUCK,
-  STRUT_OPTION_WAVE,
-  STRUT_OPTION_OWN_MODEL,
-  STRUT_OPTION_ALL,
-  STRUT_OPTION_CSV,
-  STRUT_OPTION_NO_MOTION,
-  STRUT_OPTION_NO_STATES,
-  STRUT_OPTION_VARY,
-  STRUT_OPTION_COUNT_POINTS,
-  STRUT_OPTION_STATUS,
-  STRUT_OPTION_RETRY,
-  STRUT_OPTION_PARTS,    /* of exported scenes: the short one */
-  STRUT_OPTION_STUDY,    /* of keys --schema: that of a study */
-  STRUT_OPTION_BASINS,   /* of periodic motions */
-  STRUT_OPTION_SELECTOR, /* only selects a form of the command */
-  /* kept as text: strut_option_text, and arguments.h for numbers */
-  STRUT_OPTION_TEXTS,
-  STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
-  STRUT_OPTION_COUNT,
-  STRUT_OPTION_SUPPORTS,
-  STRUT_OPTION_STARTS,
-  STRUT_OPTION_SEED,
-  STRUT_OPTION_LOAD,
-  STRUT_OPTION_OVER, /* the parameter of a path */
-  STRUT_OPTION_UNTIL,
-  STRUT_OPTION_STOP, /* of a path: the displacement at which it ends */
-  STRUT_OPTION_STEPS,
-  STRUT_OPTION_BRANCHES,
-  STRUT_OPTION_FRICTION,
-  STRUT_OPTION_FROM,
-  STRUT_OPTION_GIVEN, /* of form: what determines it */
-  STRUT_OPTION_LEAST_TENSION,
-  STRUT_OPTION_LEAST_DENSITY,
-  STRUT_OPTION_OBJECTIVE,
-  STRUT_OPTION_PLOT,    /* FILE.svg|pdf|png: see plot_options.h */
-  STRUT_OPTION_WIDTH,   /* of a figure: column, page or a length */
-  STRUT_OPTION_DRAW,    /* which figure of a run */
-  STRUT_OPTION_SCALE,   /* X,Y: how much motion is exaggerated */
-  STRUT_OPTION_TIMES,   /* of snapshots */
-  STRUT_OPTION_ANIMATE, /* FILE.mp4|gif|webm */
-  STRUT_OPTION_SPEED,
-  STRUT_OPTION_FPS,
-  STRUT_OPTION_KIND, /* of a diagram from a table */
-  STRUT_OPTION_X,
-  STRUT_OPTION_Y,
-  STRUT_OPTION_BY,
-  STRUT_OPTION_PANELS,
-  STRUT_OPTION_BAND,
-  STRUT_OPTION_ONLY,
-  STRUT_OPTION_DIFFERENCE,
-  STRUT_OPTION_LABEL,
-  STRUT_OPTION_DOUBT,
-  STRUT_OPTION_TITLE,
-  STRUT_OPTION_X_LABEL,
-  STRUT_OPTION_Y_LABEL,
-  STRUT_OPTION_X_LIMITS,
-  STRUT_OPTION_Y_LIMITS,
-  STRUT_OPTION_COLORS, /* of a map */
-  STRUT_OPTION_ACCURACY,
-  STRUT_OPTION_INTEGRATOR,
-  STRUT_OPTION_STEP,
-  STRUT_OPTION_TOLERANCE,
-  STRUT_OPTION_STEADY,
-  STRUT_OPTION_BARS,
-  STRUT_OPTION_MASS_MODEL,
-  STRUT_OPTION_FRICTION_LAW,
-  STRUT_OPTION_DAMPING_LAW,
-  STRUT_OPTION_LOG,
-  STRUT_OPTION_EQUILIBRIA,
-  STRUT_OPTION_MEASURE, /* of a tradeoff */
-  STRUT_OPTION_STEP_SIZES,
-  STRUT_OPTION_CPU_TIME,
-  STRUT_OPTION_PERIODS,
-  STRUT_OPTION_POINTS,
-  STRUT_OPTION_BUDGET,
-  STRUT_OPTION_THREADS,
-  STRUT_OPTION_EMIT, /* a script for a cluster, and what it asks for: see sweep_emit.h */
-  STRUT_OPTION_SHARDS,
-  STRUT_OPTION_CPUS,
-  STRUT_OPTION_TIME,
-  STRUT_OPTION_MEMORY,
-  STRUT_OPTION_SHARD,
-  STRUT_OPTION_CHANNELS, /* of the library's run, and whether it records */
-  STRUT_OPTION_RECORD,
-  STRUT_OPTION_COMPUTE, /* of the library's sweep: what */
-  STRUT_OPTION_LOWEST,
-  STRUT_OPTION_LIMIT_EVALUATIONS,
-  STRUT_OPTION_LIMIT_TIME,
-  STRUT_OPTION_AND, /* of periodic motions: the second parameter, and where branches start */
-  STRUT_OPTION_VALUES,
-  STRUT_OPTION_TEXTS_END
-} strut_option_id;
+/** A number, a whole number, one of several words, or some of them that an option gives. Zero-initialise. */
+typedef struct strut_given_number {
+  const char *text; /* as it was given; NULL: it was not */
+  double value;     /* [SI] */
+} strut_given_number;
+typedef struct strut_given_whole {
+  const char *text;
+  int64_t value;
+} strut_given_whole;
+typedef struct strut_given_word {
+  const char *text;
+  int index;
+} strut_given_word;
+typedef struct strut_given_words {
+  const char *text; /* with commas between */
+  unsigned set;     /* a bit for each */
+} strut_given_words;
 
-/** One row of a command's option table, which ends with STRUT_OPTION_END. */
-typedef struct strut_option {
-  strut_option_id id;
-  const char *name;     /* without the two dashes */
-  const char *argument; /* placeholder in the help; NULL: takes no argument */
-  const char *help;
-} strut_option;
-
-/** The options of a call. Texts belong to who gave them. Zero-initialise. */
+/**
+ * The options of a call, each as its row of an option table reads it: one that was not given is false, NULL or has no
+ * text. Texts belong to who gave them. Zero-initialise.
+ */
 typedef struct strut_arguments {
-  const char *model;   /* the first positional argument, or NULL */
-  const char **models; /* (model_count) all positional arguments */
+  const struct strut_command *command;
+  const strut_listener *listener; /* hears what is wrong with an option, warnings and notes */
+  const char *model;              /* the first positional argument, or NULL */
+  const char **models;            /* (model_count) all positional arguments */
   size_t model_count;
-  const char *output;
-  bool help, json, quiet, force, stuck, wave, own_model, csv, no_motion, no_states;
-  bool all, count_points, status, retry;
-  bool no_notes; /* a model's notes have been printed */
-  const char *texts[STRUT_OPTION_TEXTS_END - STRUT_OPTION_TEXTS]; /* NULL where not given */
-  strut_override *overrides;                                      /* (override_count) of --set */
-  size_t *override_model; /* (override_count) how many models stand before each */
+  strut_override *overrides; /* (override_count) of --set */
+  size_t *override_model;    /* (override_count) how many models stand before each */
   size_t override_count;
   strut_override *varied; /* (varied_count) of --vary */
   size_t varied_count;
-  bool parts, study;
-  const strut_listener *listener; /* hears what is wrong with an option, warnings and notes */
-  bool basins;
+  bool no_notes; /* a model's notes have been printed */
+
+  bool help, json, csv, quiet, all, force, stuck, wave, basins, own_model, no_motion, no_states;
+  bool count_points, status, retry, parts, study;
+  const char *output, *plot, *animate, *width, *title, *scale, *times;
+  const char *at, *supports, *load, *over, *and_over, *from, *until, *stop, *values;
+  const char *shard, *time, *memory;
+  const char *x, *y, *by, *panels, *band, *only, *difference, *label, *doubt;
+  const char *x_label, *y_label, *x_limits, *y_limits;
+  strut_given_word integrator, bars, mass_model, friction_law, damping_law, friction, given;
+  strut_given_word objective, draw, kind, colors, log, equilibria, measure, emit, record, compute;
+  strut_given_words channels;
+  strut_given_number accuracy, budget, step, tolerance, steady, speed, fps, periods, cpu_time;
+  strut_given_number least_tension, least_density, limit_time;
+  strut_given_whole count, starts, seed, steps, branches, points, step_sizes, threads, shards, cpus;
+  strut_given_whole lowest, limit_evaluations;
 } strut_arguments;
+
+/** How an option is read; that of a row follows from the type of the member that it fills. */
+typedef enum strut_option_kind {
+  STRUT_OPTION_SELECTOR, /* only selects a form of the command */
+  STRUT_OPTION_FLAG,
+  STRUT_OPTION_SETTING, /* NAME=VALUE, and again */
+  STRUT_OPTION_TEXT,
+  STRUT_OPTION_NUMBER,
+  STRUT_OPTION_WHOLE,
+  STRUT_OPTION_WORD,
+  STRUT_OPTION_WORDS
+} strut_option_kind;
+
+/** One row of an option table, which ends with a row without name. */
+typedef struct strut_option {
+  strut_option_kind kind;
+  size_t
+      member; /* where in strut_arguments it is kept; all but flags and settings begin with a text there */
+  const char *name;     /* without the two dashes */
+  const char *argument; /* placeholder in the help; NULL: takes no argument */
+  const char *help;
+  char letter;           /* or 0 */
+  bool of_figure;        /* needs --plot */
+  strut_measure measure; /* of a number */
+  double low, high;      /* range of a number [SI]; both 0: any */
+  const char *expected;  /* what messages say where it is not in the range; NULL: the range */
+  int64_t least, most;   /* range of a whole number */
+  const char *words;     /* "bar|cable": one of them; of a text, what completes it */
+  int key;               /* of the language, whose words they are; 0: none */
+  const struct strut_option *table; /* instead of all this: the rows of another table */
+} strut_option;
+
+/** The beginning of a row: the member of strut_arguments that it fills. */
+#define STRUT_FILLS(MEMBER)                                                                        \
+  .kind = _Generic(((strut_arguments *)0)->MEMBER,                       \
+                   bool: STRUT_OPTION_FLAG,                              \
+                   strut_override *: STRUT_OPTION_SETTING,               \
+                   const char *: STRUT_OPTION_TEXT,                      \
+                   strut_given_number: STRUT_OPTION_NUMBER,              \
+                   strut_given_whole: STRUT_OPTION_WHOLE,                \
+                   strut_given_word: STRUT_OPTION_WORD, \
+                   strut_given_words: STRUT_OPTION_WORDS),                 \
+  .member = offsetof(strut_arguments, MEMBER)
+/** The same for a member of which only the text is read. */
+#define STRUT_FILLS_TEXT(MEMBER)                                                                   \
+  .kind = STRUT_OPTION_TEXT, .member = offsetof(strut_arguments, MEMBER.text)
 
 /** What a command computes of one model: analyses.h. */
 typedef struct strut_analysis_kind strut_analysis_kind;
@@ -173,38 +142,40 @@ typedef struct strut_command {
   const strut_refused_option *refused; /* ended by a row of NULL; NULL: none */
 } strut_command;
 
-/** The value given for an option that is kept as text, or NULL. */
-const char *strut_option_text(const strut_arguments *arguments, strut_option_id id);
+/* Ranges of numbers. */
+#define STRUT_ABOVE_ZERO .low = DBL_MIN, .high = HUGE_VAL, .expected = "must be greater than 0"
+#define STRUT_ACCURACY_RANGE                                                                       \
+  .low = DBL_MIN, .high = 1, .expected = "must be above 0 and at most 1, that is 100%"
 
+/** The i-th row of a command's table, those of its tables included; NULL after the last. */
+const strut_option *strut_command_option(const strut_command *command, size_t i);
+/** The text given for the option of a row; NULL where it was not, and of flags and settings. */
+const char *strut_given_text(const strut_option *option, const strut_arguments *arguments);
+
+/** Reads the value given for an option other than a setting. STRUT_USAGE; the listener hears why. */
+strut_status strut_argument_read(const strut_option *option, const char *text,
+                                 strut_arguments *arguments);
 /**
  * Sets an option of the command's table by name: "accuracy", "0.5 %". Options without value have "yes" or
  * "no". STRUT_USAGE where there is no such option, or no such value; the listener hears why.
  */
-strut_status strut_argument_set(const strut_command *command, const char *name, const char *value,
-                                strut_arguments *arguments);
+strut_status strut_argument_set(const char *name, const char *value, strut_arguments *arguments);
+/** The i-th word of an option, copied into buffer; NULL after the last. */
+const char *strut_option_word(const strut_option *option, int i, char *buffer, size_t size);
 
 /** Tells the listener "COMMAND: TEXT"; returns STRUT_USAGE. */
-strut_status strut_usage_error(const strut_command *command, const strut_arguments *arguments,
-                               const char *format, ...) __attribute__((format(printf, 3, 4)));
+strut_status strut_usage_error(const strut_arguments *arguments, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
-/* Options that are numbers, with units where they have a dimension; and options that are words. */
-
-/**
- * Reads an option such as --least-tension "5 N" into *value [SI], which keeps what it holds where the
- * option was not given. STRUT_USAGE; the listener hears why.
- */
-strut_status strut_option_number(const strut_command *command, const strut_arguments *arguments,
-                                 strut_option_id id, strut_dimension dimension, double *value);
-/** As strut_option_number, for a value from low to high [SI]. */
-strut_status strut_option_within(const strut_command *command, const strut_arguments *arguments,
-                                 strut_option_id id, strut_dimension dimension, double low,
-                                 double high, double *value);
+/** The value [SI] of --NAME where its dimension is known only now; *value stays where text is NULL. As above. */
+strut_status strut_quantity_read(const strut_arguments *arguments, const char *name,
+                                 const char *text, strut_dimension dimension, double *value);
 /**
  * Reads up to `most` values with commas between, such as "0 s, 80 ms", into values. Returns how many,
  * or 0 where the text is something else.
  */
-size_t strut_option_numbers(const char *text, strut_dimension dimension, double *values,
-                            size_t most);
+size_t strut_quantities_read(const char *text, strut_dimension dimension, double *values,
+                             size_t most);
 /** The parts of "NAME=LOW..HIGH" within an option's text, or of "NAME" alone. */
 typedef struct strut_range_text {
   const char *name, *low,
@@ -213,11 +184,5 @@ typedef struct strut_range_text {
 } strut_range_text;
 /** False where the text is neither, or a part of it is empty. */
 bool strut_range_text_split(const char *text, strut_range_text *range);
-/** As strut_option_number, for whole numbers from low to high. */
-strut_status strut_option_integer(const strut_command *command, const strut_arguments *arguments,
-                                  strut_option_id id, int64_t low, int64_t high, int64_t *value);
-/** As strut_option_number, for one of `words` (ended by NULL): its index into *value. */
-strut_status strut_option_word(const strut_command *command, const strut_arguments *arguments,
-                               strut_option_id id, const char *const *words, int *value);
 
 #endif

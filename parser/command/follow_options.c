@@ -8,7 +8,7 @@
 #include "engine/scene/things.h"
 #include "parser/command/arguments.h"
 
-enum { MOST_STEPS = 100000, MOST_AT = 8 };
+enum { MOST_AT = 8 };
 
 void strut_follow_source_free(strut_follow_source *source) {
   strut_varied_scenes_free(&source->scenes);
@@ -42,35 +42,34 @@ static bool take_range_apart(const char *text, range_text *r) {
 }
 
 /* The name must be that of a number of the scene. */
-static strut_status split_range(const strut_command *command, const strut_arguments *arguments,
-                                const strut_scene *scene, const char *text, range_text *r) {
+static strut_status split_range(const strut_arguments *arguments, const strut_scene *scene,
+                                const char *text, range_text *r) {
   if (!take_range_apart(text, r))
     return strut_usage_error(
-        command, arguments, "missing %s NAME=LOW..HIGH, such as %s frequency=8Hz..12Hz%s",
-        r->option, r->option, r->from || r->until ? ", or --over NAME, --from and --until" : "");
+        arguments, "missing %s NAME=LOW..HIGH, such as %s frequency=8Hz..12Hz%s", r->option,
+        r->option, r->from || r->until ? ", or --over NAME, --from and --until" : "");
   const strut_parameter *parameter = strut_find_parameter(scene, r->name);
   const char *near = parameter ? NULL : strut_did_you_mean(r->name, parameter_at, scene);
   if (!parameter)
-    return strut_usage_error(command, arguments, "%s: the model has no parameter '%s'%s%s%s",
-                             r->option, r->name, near ? "; did you mean '" : "", near ? near : "",
+    return strut_usage_error(arguments, "%s: the model has no parameter '%s'%s%s%s", r->option,
+                             r->name, near ? "; did you mean '" : "", near ? near : "",
                              near ? "'?" : "");
   if (!isfinite(parameter->value))
-    return strut_usage_error(command, arguments, "%s: parameter '%s' is a text, expected a number",
+    return strut_usage_error(arguments, "%s: parameter '%s' is a text, expected a number",
                              r->option, r->name);
   return STRUT_OK;
 }
 
-static strut_status read_ends(const strut_command *command, const strut_arguments *arguments,
-                              const range_text *r, strut_dimension dimension, double *low,
-                              double *high) {
-  if (strut_option_numbers(r->low, dimension, low, 1) == 1 &&
-      strut_option_numbers(r->high, dimension, high, 1) == 1 && *low < *high && isfinite(*low) &&
+static strut_status read_ends(const strut_arguments *arguments, const range_text *r,
+                              strut_dimension dimension, double *low, double *high) {
+  if (strut_quantities_read(r->low, dimension, low, 1) == 1 &&
+      strut_quantities_read(r->high, dimension, high, 1) == 1 && *low < *high && isfinite(*low) &&
       isfinite(*high))
     return STRUT_OK;
   const char *example = strut_dimension_example(dimension);
   return strut_usage_error(
-      command, arguments, "%s %s: expected two values LOW..HIGH, the lower one first%s%s",
-      r->option, r->name, example ? ", each such as " : "", example ? example : "");
+      arguments, "%s %s: expected two values LOW..HIGH, the lower one first%s%s", r->option,
+      r->name, example ? ", each such as " : "", example ? example : "");
 }
 
 /* The scene of a value of the first parameter, the second one being where the branches are. */
@@ -93,37 +92,33 @@ static double own_value(const strut_scene *scene, const char *name, double low, 
 }
 
 /* --over and --and */
-static strut_status read_ranges(const strut_command *command, const strut_arguments *arguments,
-                                const strut_scene *scene, strut_follow_source *source,
-                                strut_follow_options *wanted, strut_dimension *dimension) {
-  const char *and = strut_option_text(arguments, STRUT_OPTION_AND);
-  range_text first = {.option = "--over",
-                      .from = strut_option_text(arguments, STRUT_OPTION_FROM),
-                      .until = strut_option_text(arguments, STRUT_OPTION_UNTIL),
-                      .name = source->name};
+static strut_status read_ranges(const strut_arguments *arguments, const strut_scene *scene,
+                                strut_follow_source *source, strut_follow_options *wanted,
+                                strut_dimension *dimension) {
+  const bool both = arguments->and_over;
+  range_text first = {
+      .option = "--over", .from = arguments->from, .until = arguments->until, .name = source->name};
   range_text other = {.option = "--and", .name = source->second};
   strut_dimension dimensions[STRUT_MOST_VARIED] = {STRUT_DIM_NONE};
   strut_follow_second *second = &wanted->second;
-  strut_status status = split_range(command, arguments, scene,
-                                    strut_option_text(arguments, STRUT_OPTION_OVER), &first);
-  if (!status && and) status = split_range(command, arguments, scene, and, &other);
-  if (!status && and&&strcmp(source->name, source->second) == 0)
-    status = strut_usage_error(command, arguments, "--over and --and name the same parameter '%s'",
-                               source->name);
+  strut_status status = split_range(arguments, scene, arguments->over, &first);
+  if (!status && both) status = split_range(arguments, scene, arguments->and_over, &other);
+  if (!status && both && strcmp(source->name, source->second) == 0)
+    status =
+        strut_usage_error(arguments, "--over and --and name the same parameter '%s'", source->name);
   if (status) return status;
   const char *const names[STRUT_MOST_VARIED] = {source->name, source->second};
   source->scenes.purpose = STRUT_FOR_RUN_STEP_LATER;
-  status = strut_varied_scenes_open(arguments, names, and? 2 : 1, &source->scenes, dimensions);
-  if (!status)
-    status = read_ends(command, arguments, &first, dimensions[0], &wanted->low, &wanted->high);
-  if (!status && and)
-    status = read_ends(command, arguments, &other, dimensions[1], &second->low, &second->high);
+  status = strut_varied_scenes_open(arguments, names, both ? 2 : 1, &source->scenes, dimensions);
+  if (!status) status = read_ends(arguments, &first, dimensions[0], &wanted->low, &wanted->high);
+  if (!status && both)
+    status = read_ends(arguments, &other, dimensions[1], &second->low, &second->high);
   if (status) return status;
   *dimension = dimensions[0];
   wanted->name = source->name;
   wanted->unit = strut_unit_of(dimensions[0]);
   wanted->scenes = (strut_follow_scenes){setup_first, source};
-  if (!and) return STRUT_OK;
+  if (!both) return STRUT_OK;
   second->name = source->second;
   second->unit = strut_unit_of(dimensions[1]);
   second->value = source->second_value =
@@ -133,20 +128,19 @@ static strut_status read_ranges(const strut_command *command, const strut_argume
 }
 
 /* Values of --values, or the scene's own where it is within the range, or the middle. */
-static strut_status read_values(const strut_command *command, const strut_arguments *arguments,
-                                const strut_scene *scene, strut_dimension dimension,
-                                const strut_follow_options *wanted, double values[MOST_AT],
-                                size_t *count) {
-  const char *at = strut_option_text(arguments, STRUT_OPTION_VALUES);
+static strut_status read_values(const strut_arguments *arguments, const strut_scene *scene,
+                                strut_dimension dimension, const strut_follow_options *wanted,
+                                double values[MOST_AT], size_t *count) {
+  const char *at = arguments->values;
   *count = 1;
   values[0] = own_value(scene, wanted->name, wanted->low, wanted->high);
   if (!at) return STRUT_OK;
-  *count = strut_option_numbers(at, dimension, values, MOST_AT);
+  *count = strut_quantities_read(at, dimension, values, MOST_AT);
   bool good = *count > 0;
   for (size_t i = 0; i < *count; i++)
     good = good && values[i] >= wanted->low && values[i] <= wanted->high;
   if (good) return STRUT_OK;
-  return strut_usage_error(command, arguments,
+  return strut_usage_error(arguments,
                            "--values expects values of %s within the range, with commas between",
                            wanted->name);
 }
@@ -154,7 +148,7 @@ static strut_status read_values(const strut_command *command, const strut_argume
 /* Names of --at into source->from; returns how many, 0 where there are none. */
 static size_t read_names(const strut_arguments *arguments, strut_follow_source *source,
                          const char *names[STRUT_FOLLOW_MOST_STARTS]) {
-  const char *from = strut_option_text(arguments, STRUT_OPTION_AT);
+  const char *from = arguments->at;
   size_t count = 0, used = 0;
   while (from && *from && count < STRUT_FOLLOW_MOST_STARTS / MOST_AT) {
     while (*from == ' ') from++;
@@ -170,42 +164,31 @@ static size_t read_names(const strut_arguments *arguments, strut_follow_source *
   return count;
 }
 
-static strut_status check_names(const strut_command *command, const strut_arguments *arguments,
-                                const strut_scene *scene, const char *const *names, size_t count) {
+static strut_status check_names(const strut_arguments *arguments, const strut_scene *scene,
+                                const char *const *names, size_t count) {
   for (size_t i = 0; i < count; i++)
     if (strut_thing_find(scene, STRUT_THING_CONFIGURATION, names[i]) < 0)
-      return strut_usage_error(command, arguments, "--at: the model has no configuration '%s'",
-                               names[i]);
+      return strut_usage_error(arguments, "--at: the model has no configuration '%s'", names[i]);
   return STRUT_OK;
 }
 
-strut_status strut_follow_options_read(const strut_command *command,
-                                       const strut_arguments *arguments, const strut_scene *scene,
+strut_status strut_follow_options_read(const strut_arguments *arguments, const strut_scene *scene,
                                        strut_follow_source *source, strut_follow_options *wanted) {
   strut_dimension dimension = STRUT_DIM_NONE;
   const char *names[STRUT_FOLLOW_MOST_STARTS] = {NULL};
   double values[MOST_AT];
   size_t value_count = 0, name_count = read_names(arguments, source, names);
-  int64_t steps = 0;
-  strut_status status = read_ranges(command, arguments, scene, source, wanted, &dimension);
-  if (!status)
-    status = read_values(command, arguments, scene, dimension, wanted, values, &value_count);
-  if (!status) status = check_names(command, arguments, scene, names, name_count);
-  if (!status)
-    status = strut_option_integer(command, arguments, STRUT_OPTION_STEPS, 1, MOST_STEPS, &steps);
-  if (!status)
-    status = strut_option_number(command, arguments, STRUT_OPTION_ACCURACY, STRUT_DIM_NONE,
-                                 &wanted->accuracy);
-  if (!status && strut_option_text(arguments, STRUT_OPTION_ACCURACY) &&
-      !(wanted->accuracy > 0.0 && wanted->accuracy <= 0.1))
-    status = strut_usage_error(command, arguments, "--accuracy expects a value up to 10 %%");
+  strut_status status = read_ranges(arguments, scene, source, wanted, &dimension);
+  if (!status) status = read_values(arguments, scene, dimension, wanted, values, &value_count);
+  if (!status) status = check_names(arguments, scene, names, name_count);
   if (status) return status;
   for (size_t v = 0; v < value_count; v++)
     for (size_t k = 0; k < (name_count ? name_count : 1); k++)
       source->starts[wanted->start_count++] = (strut_follow_start){values[v], names[k]};
   wanted->starts = source->starts;
-  wanted->steps = (int32_t)steps;
+  wanted->steps = (int32_t)arguments->steps.value;
+  wanted->accuracy = arguments->accuracy.value;
   wanted->basins = arguments->basins;
-  wanted->method = strut_option_text(arguments, STRUT_OPTION_INTEGRATOR);
+  wanted->method = arguments->integrator.text;
   return STRUT_OK;
 }

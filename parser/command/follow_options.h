@@ -24,8 +24,7 @@ typedef struct strut_follow_source {
  * Reads --over, --and, --values, --at, --steps, --accuracy and --integrator for the scene as it was read.
  * STRUT_USAGE; the listener hears why. Free `source` in any case.
  */
-strut_status strut_follow_options_read(const strut_command *command,
-                                       const strut_arguments *arguments, const strut_scene *scene,
+strut_status strut_follow_options_read(const strut_arguments *arguments, const strut_scene *scene,
                                        strut_follow_source *source, strut_follow_options *wanted);
 void strut_follow_source_free(strut_follow_source *source);
 

@@ -3,91 +3,63 @@
 
 #include <stdio.h>
 
+#include "engine/base/number_text.h"
 #include "engine/integrate/integrator.h"
-#include "parser/command/arguments.h"
-#include "parser/language/keys.h"
+
+const strut_option strut_run_setting_options[] = {
+    {STRUT_FILLS(accuracy), "accuracy", "X",
+     "choose method and step for a relative error of the velocity of X, such as 1%",
+     STRUT_ACCURACY_RANGE},
+    {STRUT_FILLS(budget), "budget", "N",
+     "limit on the work of --accuracy, in units of one fine fixed-step run "
+     "(default " STRUT_TEXT_OF(STRUT_USUAL_BUDGET) ")",
+     STRUT_ABOVE_ZERO},
+    STRUT_METHOD_OPTION,
+    STRUT_STEP_OPTION,
+    STRUT_TOLERANCE_OPTION,
+    {STRUT_FILLS(steady), "steady", "TOLERANCE",
+     "stop once the motion repeats within TOLERANCE, such as 0.5%", STRUT_ABOVE_ZERO},
+    {.name = NULL}};
+
+const strut_option strut_fidelity_options[] = {
+    {STRUT_FILLS(bars), "bars", "MODEL", "elastic or rigid, instead of the file's",
+     .key = STRUT_KEY_SCENE_BARS},
+    {STRUT_FILLS(mass_model), "mass-model", "MODEL", "consistent or lumped, instead of the file's",
+     .key = STRUT_KEY_SCENE_MASS_MODEL},
+    {STRUT_FILLS(friction_law), "friction-law", "LAW",
+     "none, karnopp, coulomb, smooth, stribeck or lugre, instead of the file's",
+     .key = STRUT_KEY_FRICTION_LAW},
+    {STRUT_FILLS(damping_law), "damping-law", "LAW",
+     "of the ground: approach_only or hunt_crossley, instead of the file's",
+     .key = STRUT_KEY_GROUND_DAMPING_LAW},
+    {.name = NULL}};
 
 static strut_status refuse(const strut_arguments *arguments, const char *message) {
   strut_tell(arguments->listener, STRUT_MESSAGE_ERROR, NULL, "%s", message);
   return STRUT_USAGE;
 }
 
-static strut_status set_method(const strut_command *command, const strut_arguments *arguments,
-                               strut_experiment *e) {
-  const char *words[32] = {0};
-  int word = -1;
-  for (size_t i = 0; strut_integrator_at(i) && i + 1 < sizeof words / sizeof words[0]; i++)
-    words[i] = strut_integrator_at(i)->name;
-  strut_status status =
-      strut_option_word(command, arguments, STRUT_OPTION_INTEGRATOR, words, &word);
-  if (status == STRUT_OK && word >= 0) e->integrator = words[word];
-  return status;
-}
-
-static strut_status apply_settings(const strut_command *command, const strut_arguments *arguments,
-                                   strut_experiment *e) {
-  double steady = 0.0;
-  const struct {
-    strut_option_id id;
-    strut_dimension dimension;
-    double *value;
-  } numbers[] = {{STRUT_OPTION_ACCURACY, STRUT_DIM_NONE, &e->accuracy},
-                 {STRUT_OPTION_STEP, STRUT_DIM_TIME, &e->step},
-                 {STRUT_OPTION_TOLERANCE, STRUT_DIM_NONE, &e->tolerance},
-                 {STRUT_OPTION_BUDGET, STRUT_DIM_NONE, &e->budget},
-                 {STRUT_OPTION_STEADY, STRUT_DIM_NONE, &steady}};
-  strut_status status = set_method(command, arguments, e);
-  bool by_hand = strut_option_text(arguments, STRUT_OPTION_INTEGRATOR) ||
-                 strut_option_text(arguments, STRUT_OPTION_STEP);
-  for (size_t i = 0; i < sizeof numbers / sizeof numbers[0] && status == STRUT_OK; i++) {
-    status = strut_option_number(command, arguments, numbers[i].id, numbers[i].dimension,
-                                 numbers[i].value);
-    bool given = strut_option_text(arguments, numbers[i].id);
-    if (status == STRUT_OK && given && !(*numbers[i].value > 0.0))
-      return refuse(
-          arguments,
-          "--accuracy, --budget, --step, --tolerance and --steady must be greater than 0");
-  }
-  if (status != STRUT_OK) return status;
-  if (strut_option_text(arguments, STRUT_OPTION_STEADY)) {
-    if (!(e->periods > 0.0))
-      return refuse(arguments, "--steady compares periods: the run must be given in periods");
-    e->steady.wanted = true;
-    e->steady.tolerance = steady;
-  }
-  if (by_hand && strut_option_text(arguments, STRUT_OPTION_ACCURACY))
+static strut_status apply_settings(const strut_arguments *a, strut_experiment *e) {
+  bool by_hand = a->integrator.text || a->step.text;
+  if (a->integrator.text) e->integrator = strut_integrator_find(a->integrator.text)->name;
+  if (a->accuracy.text) e->accuracy = a->accuracy.value;
+  if (a->step.text) e->step = a->step.value;
+  if (a->tolerance.text) e->tolerance = a->tolerance.value;
+  if (a->budget.text) e->budget = a->budget.value;
+  if (a->steady.text && !(e->periods > 0.0))
+    return refuse(a, "--steady compares periods: the run must be given in periods");
+  if (a->steady.text) e->steady.wanted = true, e->steady.tolerance = a->steady.value;
+  if (by_hand && a->accuracy.text)
     return refuse(
-        arguments,
+        a,
         "--accuracy chooses method and step: give either --accuracy, or --integrator and --step");
   if (by_hand) e->accuracy = 0.0;
   bool stepless = e->step_chosen || (by_hand && e->step == 0.0);
   if (stepless && !strut_experiment_is_adaptive(e->integrator) && !(e->accuracy > 0.0) &&
-      !strut_option_text(arguments, STRUT_OPTION_STEP))
+      !a->step.text)
     return refuse(
-        arguments,
-        "the solver has no step, which only adaptive and adaptive8 do without: give --step");
-  if (e->accuracy > 1.0) return refuse(arguments, "--accuracy must be at most 1, that is 100%");
-  return STRUT_OK;
-}
-
-/* Reads an option whose words are those of a key: the word's index, as the reader stores it too. */
-static strut_status read_word(const strut_command *command, const strut_arguments *arguments,
-                              strut_option_id id, int key, int *word) {
-  enum { MOST = 8, LONGEST = 24 };
-  char text[MOST][LONGEST];
-  const char *words[MOST + 1] = {0};
-  for (int i = 0; i < MOST; i++)
-    if (!(words[i] = strut_word_at(strut_key_at(key)->words, i, text[i], LONGEST))) break;
-  const char *given = strut_option_text(arguments, id);
-  const strut_spelling *other =
-      given ? strut_spelling_find(strut_key_at(key)->section, strut_key_at(key)->name, given)
-            : NULL;
-  if (!other || other->kind == STRUT_SPELLING_MISTAKE)
-    return strut_option_word(command, arguments, id, words, word);
-  if (other->kind == STRUT_SPELLING_FORMER)
-    strut_tell(arguments->listener, STRUT_MESSAGE_NOTE, command->name, "'%s' is now called '%s'",
-               other->other, other->current);
-  *word = strut_word_find(strut_key_at(key)->words, other->current);
+        a, "the solver has no step, which only adaptive and adaptive8 do without: give --step");
+  if (e->accuracy > 1.0) return refuse(a, "--accuracy must be at most 1, that is 100%");
   return STRUT_OK;
 }
 
@@ -139,47 +111,30 @@ static strut_status set_damping(const strut_arguments *arguments, strut_scene *s
   return STRUT_OK;
 }
 
-static strut_status apply_fidelity(const strut_command *command, const strut_arguments *arguments,
-                                   strut_scene *scene) {
-  int bars = -1, mass = -1, friction = -1, damping = -1;
-  const struct {
-    strut_option_id id;
-    int key, *word;
-  } words[] = {{STRUT_OPTION_BARS, STRUT_KEY_SCENE_BARS, &bars},
-               {STRUT_OPTION_MASS_MODEL, STRUT_KEY_SCENE_MASS_MODEL, &mass},
-               {STRUT_OPTION_FRICTION_LAW, STRUT_KEY_FRICTION_LAW, &friction},
-               {STRUT_OPTION_DAMPING_LAW, STRUT_KEY_GROUND_DAMPING_LAW, &damping}};
-  strut_status status = STRUT_OK;
-  for (size_t i = 0; i < sizeof words / sizeof words[0] && status == STRUT_OK; i++)
-    status = read_word(command, arguments, words[i].id, words[i].key, words[i].word);
-  if (status != STRUT_OK) return status;
-  if (bars >= 0) scene->bar_model = (strut_bar_model)bars;
-  if (mass >= 0) scene->mass_model = (strut_mass_model)mass;
-  if (friction >= 0) status = set_friction(arguments, scene, (strut_friction_law)friction);
-  if (status == STRUT_OK && damping >= 0)
-    status = set_damping(arguments, scene, (strut_ground_damping)damping);
-  return status;
-}
-
 const strut_option *strut_run_option_given(const strut_arguments *arguments, size_t i) {
-  static const strut_option rows[] = {STRUT_RUN_SETTING_OPTIONS, STRUT_FIDELITY_OPTIONS};
-  for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++)
-    if (strut_option_text(arguments, rows[k].id) && !i--) return &rows[k];
+  const strut_option *const tables[] = {strut_run_setting_options, strut_fidelity_options};
+  for (size_t k = 0; k < sizeof tables / sizeof tables[0]; k++)
+    for (const strut_option *row = tables[k]; row->name; row++)
+      if (strut_given_text(row, arguments) && !i--) return row;
   return NULL;
 }
 
-strut_purpose strut_run_options_purpose(const strut_arguments *arguments) {
-  const char *method = strut_option_text(arguments, STRUT_OPTION_INTEGRATOR);
-  bool later = strut_option_text(arguments, STRUT_OPTION_ACCURACY) ||
-               strut_option_text(arguments, STRUT_OPTION_STEP) ||
-               (method && strut_experiment_is_adaptive(method));
+strut_purpose strut_run_options_purpose(const strut_arguments *a) {
+  const char *method = a->integrator.text;
+  bool later = a->accuracy.text || a->step.text || (method && strut_experiment_is_adaptive(method));
   return later ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
 }
 
-strut_status strut_run_options_apply(const strut_command *command, const strut_arguments *arguments,
-                                     strut_setup *setup) {
-  strut_status status = apply_settings(command, arguments, &setup->experiment);
-  if (status == STRUT_OK) status = apply_fidelity(command, arguments, &setup->scene);
-  if (status == STRUT_OK) strut_experiment_choose_step(&setup->experiment, &setup->scene);
+strut_status strut_run_options_apply(const strut_arguments *a, strut_setup *setup) {
+  strut_scene *scene = &setup->scene;
+  strut_status status = apply_settings(a, &setup->experiment);
+  if (status) return status;
+  if (a->bars.text) scene->bar_model = (strut_bar_model)a->bars.index;
+  if (a->mass_model.text) scene->mass_model = (strut_mass_model)a->mass_model.index;
+  if (a->friction_law.text)
+    status = set_friction(a, scene, (strut_friction_law)a->friction_law.index);
+  if (!status && a->damping_law.text)
+    status = set_damping(a, scene, (strut_ground_damping)a->damping_law.index);
+  if (!status) strut_experiment_choose_step(&setup->experiment, scene);
   return status;
 }

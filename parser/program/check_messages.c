@@ -186,14 +186,12 @@ bool strut_is_study(const char *path) {
 }
 
 /* Options of a model, which the points of a study would not have. */
-static strut_status refuse_options(const strut_command *command, const strut_arguments *arguments) {
-  for (size_t i = 0; strut_option_at(command, i); i++) {
-    const strut_option *option = strut_option_at(command, i);
-    bool text = option->id >= STRUT_OPTION_TEXTS && option->id < STRUT_OPTION_TEXTS_END;
-    if (text && strut_option_text(arguments, option->id))
-      return strut_print_usage_error(command, "--%s needs a model, not the study '%s'",
-                                     option->name, arguments->model);
-  }
+static strut_status refuse_options(const strut_arguments *arguments) {
+  const strut_option *option;
+  for (size_t i = 0; (option = strut_command_option(arguments->command, i)); i++)
+    if (strut_given_text(option, arguments))
+      return strut_usage_error(arguments, "--%s needs a model, not the study '%s'", option->name,
+                               arguments->model);
   return STRUT_OK;
 }
 
@@ -210,10 +208,10 @@ static strut_status print_json(strut_sweep_study *study, strut_status status,
   return strut_checked_print(&checked);
 }
 
-strut_status strut_check_study(const strut_command *command, const strut_arguments *arguments) {
+strut_status strut_check_study(const strut_arguments *arguments) {
   strut_sweep_study study = {.plan = {0}};
   strut_error error = {0};
-  strut_status status = refuse_options(command, arguments);
+  strut_status status = refuse_options(arguments);
   if (status != STRUT_OK) return status;
   status = strut_sweep_study_try(arguments, &study, &error);
   bool reported = status == STRUT_OK || status == STRUT_BAD_SCENE;

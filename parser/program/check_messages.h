@@ -74,6 +74,6 @@ void strut_checked_print_things(const strut_checked *checked);
 /** Is the file a study? False too where it cannot be read. */
 bool strut_is_study(const char *path);
 /** Checks the study that the arguments name and reports on it. */
-strut_status strut_check_study(const strut_command *command, const strut_arguments *arguments);
+strut_status strut_check_study(const strut_arguments *arguments);
 
 #endif

@@ -16,10 +16,10 @@ enum { DIGITS = 5 };
 
 static const strut_option options[] = {
     STRUT_SET_OPTION,
-    STRUT_RUN_SETTING_OPTIONS,
-    STRUT_FIDELITY_OPTIONS,
+    {.table = strut_run_setting_options},
+    {.table = strut_fidelity_options},
     STRUT_JSON_OPTION,
-    {STRUT_OPTION_END, NULL, NULL, NULL},
+    {.name = NULL},
 };
 
 static strut_rounded_quantity in(double value, const char *unit) {
@@ -147,7 +147,7 @@ static strut_status check_model(const strut_arguments *arguments, strut_open_rep
   strut_error error = {0};
   strut_status status = open_checked(arguments, &setup, report);
   if (status != STRUT_OK) return status;
-  status = strut_run_options_apply(&strut_command_check, arguments, &setup);
+  status = strut_run_options_apply(arguments, &setup);
   if (status == STRUT_OK) status = strut_model_compile(&setup.scene, &model, &error);
   if (status == STRUT_OK && has_fixed_method(&setup.experiment))
     status = strut_integrator_check(model, &setup.experiment, &error);
@@ -167,7 +167,7 @@ static strut_status check_model(const strut_arguments *arguments, strut_open_rep
 
 static strut_status run_check(const strut_arguments *arguments) {
   strut_open_report report = {.text = NULL};
-  if (strut_is_study(arguments->model)) return strut_check_study(&strut_command_check, arguments);
+  if (strut_is_study(arguments->model)) return strut_check_study(arguments);
   strut_status status = check_model(arguments, &report);
   strut_open_report_free(&report);
   return status;

@@ -168,7 +168,7 @@ static const char *parameter_at(const void *context, size_t i) {
   return NULL;
 }
 
-static strut_status check_settings(const strut_command *command, const strut_arguments *arguments,
+static strut_status check_settings(const strut_arguments *arguments,
                                    const compared_models *compared) {
   for (size_t i = 0; i < arguments->override_count; i++) {
     const char *name = arguments->overrides[i].name;
@@ -179,14 +179,10 @@ static strut_status check_settings(const strut_command *command, const strut_arg
                         strut_find_parameter(&compared->setups[k].scene, name));
     if (known) continue;
     const char *near = strut_did_you_mean(name, parameter_at, compared);
-    fprintf(stderr, "strut %s: --set %s: ", command->name, name);
-    if (owner == 0)
-      fprintf(stderr, "no model has such a parameter");
-    else
-      fprintf(stderr, "'%s' has no such parameter", arguments->models[owner - 1]);
-    if (near) fprintf(stderr, "; did you mean '%s'?", near);
-    fputc('\n', stderr);
-    return STRUT_USAGE;
+    return strut_usage_error(arguments, "--set %s: %s%s%s has %s parameter%s%s%s", name,
+                             owner ? "'" : "", owner ? arguments->models[owner - 1] : "no model",
+                             owner ? "'" : "", owner ? "no such" : "such a",
+                             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
   }
   return STRUT_OK;
 }
@@ -211,20 +207,15 @@ static strut_status find_differences(compared_models *compared) {
   return status == STRUT_OK ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
-static strut_status check_models(const strut_command *command, const strut_arguments *arguments) {
+static strut_status check_models(const strut_arguments *arguments) {
   size_t standard = 0;
   for (size_t i = 0; i < arguments->model_count; i++)
     standard += strcmp(arguments->models[i], "-") == 0;
-  if (standard > 1) {
-    fprintf(stderr, "strut %s: standard input can be read only once: give '-' once\n",
-            command->name);
-    return STRUT_USAGE;
-  }
-  if (arguments->model_count > STRUT_COMPARE_MOST) {
-    fprintf(stderr, "strut %s: %zu models given, at most %d can be compared\n", command->name,
-            arguments->model_count, STRUT_COMPARE_MOST);
-    return STRUT_USAGE;
-  }
+  if (standard > 1)
+    return strut_usage_error(arguments, "standard input can be read only once: give '-' once");
+  if (arguments->model_count > STRUT_COMPARE_MOST)
+    return strut_usage_error(arguments, "%zu models given, at most %d can be compared",
+                             arguments->model_count, STRUT_COMPARE_MOST);
   return STRUT_OK;
 }
 
@@ -234,10 +225,9 @@ static void free_compared(compared_models *compared) {
   *compared = (compared_models){0};
 }
 
-static strut_status open_compared(const strut_command *command, const strut_arguments *arguments,
-                                  compared_models *compared) {
+static strut_status open_compared(const strut_arguments *arguments, compared_models *compared) {
   size_t count = arguments->model_count;
-  strut_status status = check_models(command, arguments);
+  strut_status status = check_models(arguments);
   *compared = (compared_models){.count = 0};
   if (status != STRUT_OK) return status;
   compared->inputs = strut_arena_allocate(&compared->arena, count, sizeof *compared->inputs);
@@ -248,7 +238,7 @@ static strut_status open_compared(const strut_command *command, const strut_argu
     compared->count = i + 1;
     if (status == STRUT_OK || here == STRUT_NO_MEMORY) status = here;
   }
-  if (status == STRUT_OK) status = check_settings(command, arguments, compared);
+  if (status == STRUT_OK) status = check_settings(arguments, compared);
   if (status == STRUT_OK) status = find_differences(compared);
   if (status != STRUT_OK) free_compared(compared);
   return status;
@@ -258,20 +248,21 @@ enum { USUAL_COLUMNS = 100, FIXED_FILES = 3, FILE_NAME = 24, PATH = 4096 };
 static const double PAGE = 510.24, ONE = 249.45; /* 180 mm, 88 mm [pt] */
 
 static const strut_option options[] = {
-    {STRUT_OPTION_SET, "set", "NAME=VALUE",
+    {STRUT_FILLS(overrides), "set", "NAME=VALUE",
      "change a parameter of all models that have it; after a MODEL, of that one"},
-    {STRUT_OPTION_ACCURACY, "accuracy", "X",
+    {STRUT_FILLS(accuracy), "accuracy", "X",
      "relative accuracy of velocities, such as 1% (default " STRUT_TEXT_OF(
-         STRUT_COMPARE_USUAL_PERCENT) "%)"},
-    {STRUT_OPTION_NO_MOTION, "no-motion", NULL, "skip the simulated motion"},
-    {STRUT_OPTION_NO_STATES, "no-states", NULL, "skip the search for stable states"},
-    {STRUT_OPTION_OUTPUT, "output", "DIR",
-     "write compare.csv, .json, .svg and model-1.svg, ... into DIR"},
+         STRUT_COMPARE_USUAL_PERCENT) "%)",
+     STRUT_ACCURACY_RANGE},
+    {STRUT_FILLS(no_motion), "no-motion", NULL, "skip the simulated motion"},
+    {STRUT_FILLS(no_states), "no-states", NULL, "skip the search for stable states"},
+    STRUT_OUTPUT_OPTION("DIR", "write compare.csv, .json, .svg and model-1.svg, ... into DIR"),
     STRUT_JSON_OPTION,
     STRUT_THREADS_OPTION,
-    {STRUT_OPTION_CSV, "csv", NULL, "print CSV, one row per model"},
-    STRUT_PLOT_OPTIONS,
-    {STRUT_OPTION_END, NULL, NULL, NULL},
+    {STRUT_FILLS(csv), "csv", NULL, "print CSV, one row per model"},
+    STRUT_PLOT_OPTION,
+    {.table = strut_plot_setting_options},
+    {.name = NULL},
 };
 
 /* Names of all files that a comparison may write. */
@@ -383,33 +374,16 @@ static strut_status compare_models(const strut_arguments *arguments, const strut
   return status;
 }
 
-static strut_status read_options(const strut_arguments *arguments, strut_plot *plot,
-                                 strut_compare_options *wanted) {
-  strut_status status = strut_plot_read(&strut_command_compare, arguments, 0, plot);
-  if (status == STRUT_OK)
-    status = strut_option_number(&strut_command_compare, arguments, STRUT_OPTION_ACCURACY,
-                                 STRUT_DIM_NONE, &wanted->accuracy);
-  if (status != STRUT_OK) return status;
-  bool given = strut_option_text(arguments, STRUT_OPTION_ACCURACY);
-  if (given && !(wanted->accuracy > 0.0 && wanted->accuracy <= 1.0)) {
-    fputs("strut compare: --accuracy must be above 0 and at most 1, that is 100%\n", stderr);
-    return STRUT_USAGE;
-  }
-  if (arguments->json && arguments->csv) {
-    fputs("strut compare: give either --json or --csv, not both\n", stderr);
-    return STRUT_USAGE;
-  }
-  wanted->no_motion = arguments->no_motion;
-  wanted->no_states = arguments->no_states;
-  return STRUT_OK;
-}
-
 static strut_status run_compare(const strut_arguments *arguments) {
-  strut_compare_options wanted = {.accuracy = 0.0};
+  strut_compare_options wanted = {.accuracy = arguments->accuracy.value,
+                                  .no_motion = arguments->no_motion,
+                                  .no_states = arguments->no_states};
   compared_models models;
   strut_plot plot;
-  strut_status status = read_options(arguments, &plot, &wanted);
-  if (status == STRUT_OK) status = open_compared(&strut_command_compare, arguments, &models);
+  strut_status status = strut_plot_read(arguments, 0, &plot);
+  if (status == STRUT_OK && arguments->json && arguments->csv)
+    status = strut_usage_error(arguments, "give either --json or --csv, not both");
+  if (status == STRUT_OK) status = open_compared(arguments, &models);
   if (status != STRUT_OK) return status;
   status = compare_models(arguments, &plot, &wanted, &models);
   free_compared(&models);

@@ -8,6 +8,7 @@
 #include "engine/output/file.h"
 #include "parser/program/commands.h"
 #include "parser/program/installed.h"
+#include "parser/program/options.h"
 #include "parser/program/streams.h"
 
 enum { WIDTH = 36, LONGEST = 2 * STRUT_LONGEST_PATH };
@@ -105,7 +106,7 @@ static strut_status run_examples(const strut_arguments *arguments) {
   size_t root;
   strut_error error = {0};
   if (arguments->output && !arguments->model)
-    return strut_print_usage_error(&strut_command_examples, "missing NAME of what is copied");
+    return strut_usage_error(arguments, "missing NAME of what is copied");
   if (!find_models(&found, &root))
     return strut_print_failure(
         strut_fail(&error, STRUT_FILE_TROUBLE, "the models are not installed with this program"),
@@ -121,8 +122,8 @@ static strut_status run_examples(const strut_arguments *arguments) {
 }
 
 static const strut_option options[] = {
-    {STRUT_OPTION_OUTPUT, "output", "DIR", "copy into DIR instead of the current folder"},
-    {STRUT_OPTION_END, NULL, NULL, NULL},
+    STRUT_OUTPUT_OPTION("DIR", "copy into DIR instead of the current folder"),
+    {.name = NULL},
 };
 
 const strut_command strut_command_examples = {

@@ -48,16 +48,15 @@ static strut_status write_flat(const strut_arguments *arguments) {
 static strut_status run_export(const strut_arguments *arguments) {
   struct stat found;
   if (stat(arguments->model, &found) == 0 && S_ISDIR(found.st_mode))
-    return strut_print_usage_error(&strut_command_export, "the scene of a run is %s/scene.yaml",
-                                   arguments->model);
+    return strut_usage_error(arguments, "the scene of a run is %s/scene.yaml", arguments->model);
   return arguments->parts ? write_parts(arguments) : write_flat(arguments);
 }
 
 static const strut_option options[] = {
-    {STRUT_OPTION_OUTPUT, "output", "FILE", "file to write (default: print)"},
+    STRUT_OUTPUT_OPTION("FILE", "file to write (default: print)"),
     STRUT_SET_OPTION,
-    {STRUT_OPTION_PARTS, "parts", NULL, "keep parameters, groups and parts"},
-    {STRUT_OPTION_END, NULL, NULL, NULL},
+    {STRUT_FILLS(parts), "parts", NULL, "keep parameters, groups and parts"},
+    {.name = NULL},
 };
 
 const strut_command strut_command_export = {

@@ -10,27 +10,30 @@
 #include "parser/program/streams.h"
 #include "parser/yaml/diagnostics.h"
 
+/* In the order of `draws`. */
+static const char kinds[] = "curves|map";
+
 static const strut_option options[] = {
-    {STRUT_OPTION_PLOT, "plot", "FILE", "write the figure into FILE (.svg, .pdf or .png)"},
-    {STRUT_OPTION_WIDTH, "width", "WIDTH",
-     "width of the figure: page (180 mm, default), column (88 mm) or a length"},
-    {STRUT_OPTION_KIND, "kind", "KIND", "curves (default) or map"},
-    {STRUT_OPTION_X, "x", "COLUMN", "column of the x axis (default: the first)"},
-    {STRUT_OPTION_Y, "y", "COLUMN,...", "columns of the y axis (default: the second)"},
-    {STRUT_OPTION_BY, "by", "COLUMN", "one curve for each value of the column"},
-    {STRUT_OPTION_PANELS, "panels", "COLUMN", "one panel for each value of the column"},
-    {STRUT_OPTION_BAND, "band", "COLUMN=TEXT", "grey background where COLUMN is TEXT"},
-    {STRUT_OPTION_ONLY, "only", "COLUMN=TEXT", "only rows in which COLUMN is TEXT"},
-    {STRUT_OPTION_DIFFERENCE, "difference", "COLUMN",
+    {STRUT_FILLS(plot), "plot", "FILE", "write the figure into FILE (.svg, .pdf or .png)"},
+    STRUT_WIDTH_OPTION,
+    {STRUT_FILLS(kind), "kind", "KIND", "curves (default) or map", .words = kinds},
+    {STRUT_FILLS(x), "x", "COLUMN", "column of the x axis (default: the first)"},
+    {STRUT_FILLS(y), "y", "COLUMN,...", "columns of the y axis (default: the second)"},
+    {STRUT_FILLS(by), "by", "COLUMN", "one curve for each value of the column"},
+    {STRUT_FILLS(panels), "panels", "COLUMN", "one panel for each value of the column"},
+    {STRUT_FILLS(band), "band", "COLUMN=TEXT", "grey background where COLUMN is TEXT"},
+    {STRUT_FILLS(only), "only", "COLUMN=TEXT", "only rows in which COLUMN is TEXT"},
+    {STRUT_FILLS(difference), "difference", "COLUMN",
      "draw the column's second text minus its first; hatch maps where they differ"},
-    {STRUT_OPTION_LABEL, "label", "COLUMN", "values of a map"},
-    {STRUT_OPTION_DOUBT, "doubt", "COLUMN", "hatch a map where COLUMN is not 0"},
-    {STRUT_OPTION_LOG, "log", "AXES", "logarithmic axes: x, y or xy"},
-    {STRUT_OPTION_TITLE, "title", "TEXT", "title above the figure"},
-    STRUT_AXIS_OPTIONS,
-    {STRUT_OPTION_COLORS, "colors", "SCALE",
-     "colour scale of a map: auto (default), sequential, diverging or grey"},
-    {STRUT_OPTION_END, NULL, NULL, NULL},
+    {STRUT_FILLS(label), "label", "COLUMN", "values of a map"},
+    {STRUT_FILLS(doubt), "doubt", "COLUMN", "hatch a map where COLUMN is not 0"},
+    {STRUT_FILLS(log), "log", "AXES", "logarithmic axes: x, y or xy", .words = "x|y|xy"},
+    {STRUT_FILLS(title), "title", "TEXT", "title above the figure", .of_figure = true},
+    {.table = strut_axis_options},
+    {STRUT_FILLS(colors), "colors", "SCALE",
+     "colour scale of a map: auto (default), sequential, diverging or grey",
+     .words = "auto|sequential|diverging|grey"},
+    {.name = NULL},
 };
 
 static const char *column_name_at(const void *context, size_t i) {
@@ -39,8 +42,8 @@ static const char *column_name_at(const void *context, size_t i) {
 }
 
 /* The column of that name, of `length` bytes; STRUT_NO_COLUMN with a message. */
-static int find_column(const strut_table *table, const char *option, const char *name,
-                       size_t length) {
+static int find_column(const strut_arguments *arguments, const strut_table *table,
+                       const char *option, const char *name, size_t length) {
   char word[200];
   for (size_t i = 0; i < table->column_count; i++)
     if (strlen(table->columns[i].name) == length &&
@@ -48,170 +51,131 @@ static int find_column(const strut_table *table, const char *option, const char 
       return (int)i;
   snprintf(word, sizeof word, "%.*s", (int)length, name);
   const char *near = strut_did_you_mean(word, column_name_at, table);
-  fprintf(stderr, "strut plot: --%s: the table has no column '%s'", option, word);
-  if (near) fprintf(stderr, "; did you mean '%s'?", near);
-  fputc('\n', stderr);
+  strut_usage_error(arguments, "--%s: the table has no column '%s'%s%s%s", option, word,
+                    near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
   return STRUT_NO_COLUMN;
 }
 
-/* Reads an option that names a column: false with a message if the table has no such column. */
-static bool read_column(const strut_arguments *arguments, const strut_table *table,
-                        strut_option_id id, const char *option, int *column) {
-  const char *text = strut_option_text(arguments, id);
-  if (!text) return true;
-  *column = find_column(table, option, text, strlen(text));
-  return *column != STRUT_NO_COLUMN;
+/* Options that name a column, and where it goes. */
+typedef struct column_choice {
+  const char *option, *text;
+  int *column;
+  const char **value; /* of COLUMN=TEXT, else NULL */
+} column_choice;
+
+/* STRUT_USAGE with a message if the table has no such column. */
+static strut_status read_columns(const strut_arguments *arguments, const strut_table *table,
+                                 const column_choice *choices, size_t count) {
+  for (const column_choice *c = choices; c < choices + count; c++) {
+    if (!c->text) continue;
+    size_t length = c->value ? strcspn(c->text, "=") : strlen(c->text);
+    if (c->value && !c->text[length])
+      return strut_usage_error(arguments, "--%s expects COLUMN=TEXT, not '%s'", c->option, c->text);
+    if (c->value) *c->value = c->text + length + 1;
+    *c->column = find_column(arguments, table, c->option, c->text, length);
+    if (*c->column == STRUT_NO_COLUMN) return STRUT_USAGE;
+  }
+  return STRUT_OK;
 }
 
-static bool read_y(const strut_arguments *arguments, const strut_table *table,
-                   strut_table_figure *figure) {
-  const char *text = strut_option_text(arguments, STRUT_OPTION_Y);
+static strut_status read_y(const strut_arguments *arguments, const strut_table *table,
+                           strut_table_figure *figure) {
   figure->y_count = 1;
   figure->y[0] = table->column_count > 1 ? 1 : 0;
-  if (!text) return true;
+  if (!arguments->y) return STRUT_OK;
   figure->y_count = 0;
-  for (const char *at = text;; at++) {
+  for (const char *at = arguments->y;; at++) {
     size_t length = strcspn(at, ",");
-    if (figure->y_count == STRUT_MOST_Y) {
-      fprintf(stderr, "strut plot: --y: at most %d columns\n", STRUT_MOST_Y);
-      return false;
-    }
-    int column = find_column(table, "y", at, length);
-    if (column == STRUT_NO_COLUMN) return false;
+    if (figure->y_count == STRUT_MOST_Y)
+      return strut_usage_error(arguments, "--y: at most %d columns", STRUT_MOST_Y);
+    int column = find_column(arguments, table, "y", at, length);
+    if (column == STRUT_NO_COLUMN) return STRUT_USAGE;
     figure->y[figure->y_count++] = column;
     at += length;
-    if (!*at) return true;
+    if (!*at) return STRUT_OK;
   }
 }
-
-/* COLUMN=TEXT. */
-static bool read_match(const strut_arguments *arguments, const strut_table *table,
-                       strut_option_id id, const char *option, int *column, const char **value) {
-  const char *text = strut_option_text(arguments, id);
-  if (!text) return true;
-  const char *equals = strchr(text, '=');
-  if (!equals) {
-    fprintf(stderr, "strut plot: --%s expects COLUMN=TEXT, not '%s'\n", option, text);
-    return false;
-  }
-  *column = find_column(table, option, text, (size_t)(equals - text));
-  *value = equals + 1;
-  return *column != STRUT_NO_COLUMN;
-}
-
-static bool read_choice(const strut_arguments *arguments, const strut_table *table,
-                        strut_table_choice *choice) {
-  return read_match(arguments, table, STRUT_OPTION_ONLY, "only", &choice->only,
-                    &choice->only_value) &&
-         read_column(arguments, table, STRUT_OPTION_DIFFERENCE, "difference", &choice->difference);
-}
-
-static bool read_log(const strut_arguments *arguments, strut_table_figure *figure) {
-  const char *text = strut_option_text(arguments, STRUT_OPTION_LOG);
-  if (!text) return true;
-  figure->log_x = strcmp(text, "x") == 0 || strcmp(text, "xy") == 0;
-  figure->log_y = strcmp(text, "y") == 0 || strcmp(text, "xy") == 0;
-  if (figure->log_x || figure->log_y) return true;
-  fprintf(stderr, "strut plot: --log expects x, y or xy, not '%s'\n", text);
-  return false;
-}
-
-/* Words of --colors, in the order of strut_colours. */
-static const char *const scales[] = {"auto", "sequential", "diverging", "grey", NULL};
 
 static strut_status draw_map(const strut_arguments *arguments, const strut_plot *plot,
                              const strut_table *table, strut_error *error) {
   int third = table->column_count > 2 ? 2 : STRUT_NO_COLUMN;
-  strut_table_map_figure figure = {.title = strut_option_text(arguments, STRUT_OPTION_TITLE),
+  strut_table_map_figure figure = {.title = arguments->title,
                                    .width = plot->width,
                                    .y = table->column_count > 1 ? 1 : 0,
                                    .value = third,
                                    .panels = STRUT_NO_COLUMN,
                                    .doubt = STRUT_NO_COLUMN,
+                                   .colours = (strut_colours)arguments->colors.index,
                                    .choice = STRUT_TABLE_ALL};
-  bool good = read_column(arguments, table, STRUT_OPTION_X, "x", &figure.x) &&
-              read_column(arguments, table, STRUT_OPTION_Y, "y", &figure.y) &&
-              read_column(arguments, table, STRUT_OPTION_LABEL, "label", &figure.value) &&
-              read_column(arguments, table, STRUT_OPTION_PANELS, "panels", &figure.panels) &&
-              read_column(arguments, table, STRUT_OPTION_DOUBT, "doubt", &figure.doubt) &&
-              read_choice(arguments, table, &figure.choice) &&
-              strut_axes_read(&strut_command_plot, arguments, false, false, &figure.x_axis,
-                              &figure.y_axis) == STRUT_OK;
-  int colours = STRUT_COLOURS_AUTO;
-  if (good && strut_option_word(&strut_command_plot, arguments, STRUT_OPTION_COLORS, scales,
-                                &colours) != STRUT_OK)
-    return STRUT_USAGE;
-  figure.colours = (strut_colours)colours;
-  if (good && figure.value == STRUT_NO_COLUMN) {
-    fprintf(stderr, "strut plot: a map needs a third column\n");
-    good = false;
-  }
-  return good ? strut_table_map(plot->path, &figure, table, error) : STRUT_USAGE;
+  const column_choice choices[] = {
+      {"x", arguments->x, &figure.x, NULL},
+      {"y", arguments->y, &figure.y, NULL},
+      {"label", arguments->label, &figure.value, NULL},
+      {"panels", arguments->panels, &figure.panels, NULL},
+      {"doubt", arguments->doubt, &figure.doubt, NULL},
+      {"only", arguments->only, &figure.choice.only, &figure.choice.only_value},
+      {"difference", arguments->difference, &figure.choice.difference, NULL}};
+  strut_status status = read_columns(arguments, table, choices, sizeof choices / sizeof *choices);
+  if (!status) status = strut_axes_read(arguments, false, false, &figure.x_axis, &figure.y_axis);
+  if (!status && figure.value == STRUT_NO_COLUMN)
+    status = strut_usage_error(arguments, "a map needs a third column");
+  return status ? status : strut_table_map(plot->path, &figure, table, error);
 }
 
 static strut_status draw_curves(const strut_arguments *arguments, const strut_plot *plot,
                                 const strut_table *table, strut_error *error) {
-  strut_table_figure figure = {.title = strut_option_text(arguments, STRUT_OPTION_TITLE),
+  strut_table_figure figure = {.title = arguments->title,
                                .width = plot->width,
                                .by = STRUT_NO_COLUMN,
                                .panels = STRUT_NO_COLUMN,
                                .band = STRUT_NO_COLUMN,
+                               .log_x = arguments->log.text && arguments->log.index != 1,
+                               .log_y = arguments->log.text && arguments->log.index != 0,
                                .choice = STRUT_TABLE_ALL};
-  bool good =
-      read_column(arguments, table, STRUT_OPTION_X, "x", &figure.x) &&
-      read_y(arguments, table, &figure) &&
-      read_column(arguments, table, STRUT_OPTION_BY, "by", &figure.by) &&
-      read_column(arguments, table, STRUT_OPTION_PANELS, "panels", &figure.panels) &&
-      read_match(arguments, table, STRUT_OPTION_BAND, "band", &figure.band, &figure.band_value) &&
-      read_choice(arguments, table, &figure.choice) && read_log(arguments, &figure) &&
-      strut_axes_read(&strut_command_plot, arguments, figure.log_x, figure.log_y, &figure.x_axis,
-                      &figure.y_axis) == STRUT_OK;
-  return good ? strut_table_curves(plot->path, &figure, table, error) : STRUT_USAGE;
+  const column_choice choices[] = {
+      {"x", arguments->x, &figure.x, NULL},
+      {"by", arguments->by, &figure.by, NULL},
+      {"panels", arguments->panels, &figure.panels, NULL},
+      {"band", arguments->band, &figure.band, &figure.band_value},
+      {"only", arguments->only, &figure.choice.only, &figure.choice.only_value},
+      {"difference", arguments->difference, &figure.choice.difference, NULL}};
+  strut_status status = read_columns(arguments, table, choices, sizeof choices / sizeof *choices);
+  if (!status) status = read_y(arguments, table, &figure);
+  if (!status)
+    status = strut_axes_read(arguments, figure.log_x, figure.log_y, &figure.x_axis, &figure.y_axis);
+  return status ? status : strut_table_curves(plot->path, &figure, table, error);
 }
 
-/* Kinds of diagrams, and the options that belong to some of them only. */
-static const char *const kinds[] = {"curves", "map", NULL};
 static strut_status (*const draws[])(const strut_arguments *arguments, const strut_plot *plot,
                                      const strut_table *table,
                                      strut_error *error) = {draw_curves, draw_map};
-static const struct {
-  strut_option_id id;
-  const char *name;
-  unsigned kinds; /* a bit for each that has it */
-} limited[] = {
-    {STRUT_OPTION_BY, "by", 1},         {STRUT_OPTION_PANELS, "panels", 3},
-    {STRUT_OPTION_BAND, "band", 1},     {STRUT_OPTION_LABEL, "label", 2},
-    {STRUT_OPTION_DOUBT, "doubt", 2},   {STRUT_OPTION_LOG, "log", 1},
-    {STRUT_OPTION_ONLY, "only", 3},     {STRUT_OPTION_DIFFERENCE, "difference", 3},
-    {STRUT_OPTION_COLORS, "colors", 2},
-};
 
-static strut_status read_kind(const strut_arguments *arguments, int *kind) {
-  strut_status status =
-      strut_option_word(&strut_command_plot, arguments, STRUT_OPTION_KIND, kinds, kind);
-  for (size_t i = 0; i < sizeof limited / sizeof *limited && status == STRUT_OK; i++) {
-    if (!strut_option_text(arguments, limited[i].id) || limited[i].kinds >> *kind & 1) continue;
-    fprintf(stderr, "strut plot: --kind %s has no option --%s\n", kinds[*kind], limited[i].name);
-    status = STRUT_USAGE;
-  }
-  return status;
+/* Refuses options that belong to the other kind of diagram. */
+static strut_status check_kind(const strut_arguments *a) {
+  const bool map = a->kind.index == 1;
+  const char *other = map ? (a->by         ? "by"
+                             : a->band     ? "band"
+                             : a->log.text ? "log"
+                                           : NULL)
+                          : (a->label         ? "label"
+                             : a->doubt       ? "doubt"
+                             : a->colors.text ? "colors"
+                                              : NULL);
+  if (!other) return STRUT_OK;
+  return strut_usage_error(a, "--kind %s has no option --%s", map ? "map" : "curves", other);
 }
 
 static strut_status run_plot(const strut_arguments *arguments) {
   strut_plot plot;
   strut_table table;
   strut_error error = {0};
-  int kind = 0;
-  strut_status status = read_kind(arguments, &kind);
-  if (status == STRUT_OK) status = strut_plot_read(&strut_command_plot, arguments, 0, &plot);
+  strut_status status = check_kind(arguments);
+  if (status == STRUT_OK) status = strut_plot_read(arguments, 0, &plot);
   if (status != STRUT_OK) return status;
-  if (!plot.path) {
-    fprintf(stderr, "strut plot: missing --plot FILE\n");
-    return STRUT_USAGE;
-  }
+  if (!plot.path) return strut_usage_error(arguments, "missing --plot FILE");
   status = strut_table_read(arguments->model, &table);
   if (status != STRUT_OK) return status;
-  status = draws[kind](arguments, &plot, &table, &error);
+  status = draws[arguments->kind.index](arguments, &plot, &table, &error);
   if (error.message[0]) strut_print_error(&error);
   strut_arena_free(&table.arena);
   return status;

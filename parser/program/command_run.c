@@ -19,14 +19,17 @@
 
 static const strut_option options[] = {
     STRUT_SET_OPTION,
-    {STRUT_OPTION_OUTPUT, "output", "DIR", "write summary, scene and trajectories into DIR"},
-    {STRUT_OPTION_JSON, "json", NULL, "print the summary as one JSON object"},
-    {STRUT_OPTION_FORCE, "force", NULL, "run even if the step exceeds the stability limit"},
-    STRUT_RUN_SETTING_OPTIONS,
-    STRUT_FIDELITY_OPTIONS,
+    STRUT_OUTPUT_OPTION("DIR", "write summary, scene and trajectories into DIR"),
+    {STRUT_FILLS(json), "json", NULL, "print the summary as one JSON object"},
+    STRUT_FORCE_OPTION,
+    {.table = strut_run_setting_options},
+    {.table = strut_fidelity_options},
     STRUT_THREADS_OPTION,
-    STRUT_RUN_PICTURE_OPTIONS,
-    {STRUT_OPTION_END, NULL, NULL, NULL},
+    STRUT_PLOT_OPTION,
+    {.table = strut_plot_setting_options},
+    {.table = strut_run_figure_options},
+    {.table = strut_film_options},
+    {.name = NULL},
 };
 
 /* The files of -o DIR. All zero without it. */
@@ -143,10 +146,10 @@ static strut_status run_run(const strut_arguments *arguments) {
   strut_model *model = NULL;
   strut_error error = {0};
   strut_run_pictures pictures = {0};
-  strut_status status = strut_run_pictures_read(&strut_command_run, arguments, &pictures);
+  strut_status status = strut_run_pictures_read(arguments, &pictures);
   if (status == STRUT_OK) status = strut_open_model(arguments, STRUT_OPEN_FOR_RUN, &setup);
   if (status != STRUT_OK) return status;
-  status = strut_run_options_apply(&strut_command_run, arguments, &setup);
+  status = strut_run_options_apply(arguments, &setup);
   if (status != STRUT_OK) {
     strut_run_pictures_free(&pictures);
     strut_setup_free(&setup);

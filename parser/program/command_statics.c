@@ -50,18 +50,17 @@ static strut_status compute_and_report(const strut_arguments *arguments, const s
   return status;
 }
 
-strut_status strut_analysis_run(const strut_command *command, const strut_arguments *arguments) {
+strut_status strut_analysis_run(const strut_arguments *arguments) {
   strut_setup setup;
   strut_plot plot;
   strut_model *model = NULL;
   char *text = NULL;
   strut_error error = {0};
-  strut_analysis a = {.kind = command->analysis,
-                      .command = command,
+  strut_analysis a = {.kind = arguments->command->analysis,
                       .arguments = arguments,
                       .setup = &setup,
                       .scenes = {.file = strut_model_name(arguments)}};
-  strut_status status = strut_plot_read(command, arguments, 0, &plot);
+  strut_status status = strut_plot_read(arguments, 0, &plot);
   if (status == STRUT_OK) status = strut_check_output_writable(arguments, a.kind->files);
   if (status == STRUT_OK)
     status = strut_open_model_text(arguments, &text, &a.scenes.length, &setup);
@@ -84,17 +83,15 @@ strut_status strut_analysis_run(const strut_command *command, const strut_argume
 
 static const strut_refused_option refused[] = {STRUT_REFUSE_RUN_SETTINGS};
 
-#define END                                                                                        \
-  { STRUT_OPTION_END, NULL, NULL, NULL }
-
 static const strut_option equilibria_options[] = {
     STRUT_SET_OPTION,
     STRUT_THREADS_OPTION,
-    STRUT_EQUILIBRIA_OPTIONS,
-    {STRUT_OPTION_OUTPUT, "output", "DIR", "write equilibria.json into DIR"},
+    {.table = strut_equilibria_analysis_options},
+    STRUT_OUTPUT_OPTION("DIR", "write equilibria.json into DIR"),
     STRUT_JSON_OPTION,
-    STRUT_PLOT_OPTIONS,
-    END,
+    STRUT_PLOT_OPTION,
+    {.table = strut_plot_setting_options},
+    {.name = NULL},
 };
 
 const strut_command strut_command_equilibria = {
@@ -118,11 +115,12 @@ const strut_command strut_command_equilibria = {
 static const strut_option modes_options[] = {
     STRUT_SET_OPTION,
     STRUT_THREADS_OPTION,
-    STRUT_MODES_OPTIONS,
-    {STRUT_OPTION_OUTPUT, "output", "DIR", "write modes.json and modes.csv into DIR"},
+    {.table = strut_modes_analysis_options},
+    STRUT_OUTPUT_OPTION("DIR", "write modes.json and modes.csv into DIR"),
     STRUT_JSON_OPTION,
-    STRUT_PLOT_OPTIONS,
-    END,
+    STRUT_PLOT_OPTION,
+    {.table = strut_plot_setting_options},
+    {.name = NULL},
 };
 
 const strut_command strut_command_modes = {
@@ -140,13 +138,14 @@ const strut_command strut_command_modes = {
 };
 
 static const strut_option rigidity_options[] = {
-    STRUT_SHAPE_OPTIONS,
+    {.table = strut_rigidity_analysis_options},
     STRUT_SET_OPTION,
     STRUT_THREADS_OPTION,
-    {STRUT_OPTION_OUTPUT, "output", "DIR", "write rigidity.json into DIR"},
+    STRUT_OUTPUT_OPTION("DIR", "write rigidity.json into DIR"),
     STRUT_JSON_OPTION,
-    STRUT_PLOT_OPTIONS,
-    END,
+    STRUT_PLOT_OPTION,
+    {.table = strut_plot_setting_options},
+    {.name = NULL},
 };
 
 const strut_command strut_command_rigidity = {
@@ -165,14 +164,15 @@ const strut_command strut_command_rigidity = {
 };
 
 static const strut_option path_options[] = {
-    STRUT_PATH_OPTIONS,
+    {.table = strut_path_analysis_options},
     STRUT_SET_OPTION,
     STRUT_THREADS_OPTION,
-    {STRUT_OPTION_OUTPUT, "output", "DIR", "write path.json and path.csv into DIR"},
+    STRUT_OUTPUT_OPTION("DIR", "write path.json and path.csv into DIR"),
     STRUT_JSON_OPTION,
-    STRUT_PLOT_OPTIONS,
-    STRUT_AXIS_OPTIONS,
-    END,
+    STRUT_PLOT_OPTION,
+    {.table = strut_plot_setting_options},
+    {.table = strut_axis_options},
+    {.name = NULL},
 };
 
 static const strut_command_variant path_forms[] = {{"periodic", &strut_command_periodic},
@@ -204,12 +204,13 @@ static const strut_refused_option refused_by_form[] = {
     {"threads", "it computes one step after the other"}, STRUT_REFUSE_RUN_SETTINGS};
 
 static const strut_option form_options[] = {
-    STRUT_FORM_OPTIONS,
+    {.table = strut_form_analysis_options},
     STRUT_SET_OPTION,
-    {STRUT_OPTION_OUTPUT, "output", "FILE", "write the new model to FILE and print a report"},
-    {STRUT_OPTION_JSON, "json", NULL, "print the report as one JSON object instead of the model"},
-    STRUT_PLOT_OPTIONS,
-    END,
+    STRUT_OUTPUT_OPTION("FILE", "write the new model to FILE and print a report"),
+    {STRUT_FILLS(json), "json", NULL, "print the report as one JSON object instead of the model"},
+    STRUT_PLOT_OPTION,
+    {.table = strut_plot_setting_options},
+    {.name = NULL},
 };
 
 /* The new model, in the words of the file where that can be; `flat`: the model before. NULL: it was reported. */
@@ -246,14 +247,11 @@ static strut_status run_form(const strut_arguments *arguments) {
   strut_setup setup;
   strut_plot plot;
   strut_error error = {0};
-  strut_status status = strut_plot_read(&strut_command_form, arguments, 0, &plot);
+  strut_status status = strut_plot_read(arguments, 0, &plot);
   if (status == STRUT_OK) status = strut_try_file(arguments->output);
   if (status != STRUT_OK) return status;
   char *text = NULL;
-  strut_analysis a = {.kind = &strut_form_analysis,
-                      .command = &strut_command_form,
-                      .arguments = arguments,
-                      .setup = &setup};
+  strut_analysis a = {.kind = &strut_form_analysis, .arguments = arguments, .setup = &setup};
   status = strut_open_model_text(arguments, &text, &a.scenes.length, &setup);
   if (status != STRUT_OK) return status;
   a.scenes.text = text;

@@ -17,26 +17,28 @@
 #include "parser/program/sweep.h"
 
 static const strut_option options[] = {
-    {STRUT_OPTION_OUTPUT, "output", "DIR",
-     "results directory (default: named after STUDY); an unfinished sweep is resumed"},
-    STRUT_RUN_SETTING_OPTIONS,
+    STRUT_OUTPUT_OPTION(
+        "DIR", "results directory (default: named after STUDY); an unfinished sweep is resumed"),
+    {.table = strut_run_setting_options},
     STRUT_THREADS_OPTION,
-    {STRUT_OPTION_RETRY, "retry", NULL, "recompute points that failed"},
-    {STRUT_OPTION_SHARD, "shard", "K/N",
+    {STRUT_FILLS(retry), "retry", NULL, "recompute points that failed"},
+    {STRUT_FILLS(shard), "shard", "K/N",
      "only points K, K+N, K+2N, ... with K from 0 to N-1, of a search as one of N workers; or "
      "slurm/N, pbs/N, torque/N, lsf/N, sge/N, kubernetes/N, env:VARIABLE/N"},
-    {STRUT_OPTION_EMIT, "emit", "KIND", "only print a cluster script: slurm"},
-    {STRUT_OPTION_SHARDS, "shards", "N", "with --emit: number of shards"},
-    {STRUT_OPTION_CPUS, "cpus", "N", "with --emit: processors per task (default 1)"},
-    {STRUT_OPTION_TIME, "time", "TIME", "with --emit: time limit per task, such as 12:00:00"},
-    {STRUT_OPTION_MEMORY, "memory", "SIZE", "with --emit: memory per task, such as 2G"},
+    {STRUT_FILLS(emit), "emit", "KIND", "only print a cluster script: slurm", .words = "slurm"},
+    {STRUT_FILLS(shards), "shards", "N", "with --emit: number of shards", .least = 1,
+     .most = STRUT_MOST_SHARDS},
+    {STRUT_FILLS(cpus), "cpus", "N", "with --emit: processors per task (default 1)", .least = 1,
+     .most = 4096},
+    {STRUT_FILLS(time), "time", "TIME", "with --emit: time limit per task, such as 12:00:00"},
+    {STRUT_FILLS(memory), "memory", "SIZE", "with --emit: memory per task, such as 2G"},
     STRUT_SET_OPTION,
-    {STRUT_OPTION_PLOT, "plot", "FILE",
+    {STRUT_FILLS(plot), "plot", "FILE",
      "draw the first result over the first axis, or as a map of two (.svg, .pdf or .png)"},
-    {STRUT_OPTION_COUNT_POINTS, "count", NULL, "only print the number of points and the columns"},
-    {STRUT_OPTION_STATUS, "status", NULL, "only print what is done, missing and failed in DIR"},
-    {STRUT_OPTION_JSON, "json", NULL, "print one JSON object"},
-    {STRUT_OPTION_END, NULL, NULL, NULL},
+    {STRUT_FILLS(count_points), "count", NULL, "only print the number of points and the columns"},
+    {STRUT_FILLS(status), "status", NULL, "only print what is done, missing and failed in DIR"},
+    {STRUT_FILLS(json), "json", NULL, "print one JSON object"},
+    {.name = NULL},
 };
 
 static const char table_name[] = "table.csv";
@@ -57,7 +59,7 @@ static strut_status find_shard(const strut_arguments *arguments, strut_sweep_stu
       .count = getenv("SLURM_ARRAY_TASK_COUNT"),
       .variable = getenv,
   };
-  const char *text = strut_option_text(arguments, STRUT_OPTION_SHARD);
+  const char *text = arguments->shard;
   strut_error error = {0};
   *shard = (strut_shard){0};
   strut_status status = text ? strut_shard_read(text, &task, shard, &error) : STRUT_OK;
@@ -260,15 +262,11 @@ static strut_status emit_script(const strut_arguments *arguments, const strut_st
 
 /* A search decides by each point where the next one is. */
 static strut_status check_search(const strut_arguments *arguments, strut_sweep_study *study) {
-  if (arguments->retry) {
-    fputs(
-        "strut sweep: --retry cannot be used with a study that searches: each of its points "
-        "depends on those before it\n",
-        stderr);
-    return STRUT_USAGE;
-  }
-  bool several = strut_option_text(arguments, STRUT_OPTION_SHARD) ||
-                 strut_option_text(arguments, STRUT_OPTION_EMIT);
+  if (arguments->retry)
+    return strut_usage_error(arguments,
+                             "--retry cannot be used with a study that searches: each of its "
+                             "points depends on those before it");
+  bool several = arguments->shard || arguments->emit.text;
   return several ? strut_sweep_search_check_workers(study) : STRUT_OK;
 }
 
@@ -281,15 +279,13 @@ static strut_status compute_search(const strut_arguments *arguments, strut_sweep
 
 /* The branches of all points go into one folder. */
 static strut_status check_follow(const strut_arguments *arguments) {
-  const char *option = strut_option_text(arguments, STRUT_OPTION_SHARD)  ? "--shard"
-                       : strut_option_text(arguments, STRUT_OPTION_EMIT) ? "--emit"
-                                                                         : NULL;
+  const char *option = arguments->shard ? "--shard" : arguments->emit.text ? "--emit" : NULL;
   if (!option) return STRUT_OK;
-  fprintf(stderr,
-          "strut sweep: %s cannot be used with a study that follows motions: its points run on the "
-          "threads of one machine\n",
-          option);
-  return STRUT_USAGE;
+  return strut_usage_error(
+      arguments,
+      "%s cannot be used with a study that follows motions: its points run on the threads of one "
+      "machine",
+      option);
 }
 
 /* "gait" of "studies/gait.yaml": the usual directory of results; false if there is none. */
@@ -304,25 +300,24 @@ static bool name_results(const char *study, char name[PATH_MAX]) {
 /* --plot: the first result over the first axis, as `strut plot` draws it. */
 static strut_status plot_table(const strut_arguments *arguments, const strut_sweep_study *study) {
   const strut_sweep_plan *plan = &study->plan;
-  strut_arguments own = {.listener = arguments->listener, .quiet = arguments->quiet};
   char path[PATH_MAX];
   size_t y = plan->axis_columns;
   bool map = plan->axis_columns == 2 && !plan->columns[0].word && !plan->columns[1].word;
   while (y < plan->column_count && plan->columns[y].word) y++;
   if (y == plan->column_count || plan->axis_columns == 0)
-    return strut_print_usage_error(&strut_command_sweep,
-                                   "--plot needs a number among the results, and an axis");
+    return strut_usage_error(arguments, "--plot needs a number among the results, and an axis");
   if (snprintf(path, sizeof path, "%s/%s", arguments->output, table_name) >= (int)sizeof path)
-    return strut_print_usage_error(&strut_command_sweep, "the path of the table is too long");
-  own.model = path;
-  own.texts[STRUT_OPTION_PLOT - STRUT_OPTION_TEXTS] =
-      strut_option_text(arguments, STRUT_OPTION_PLOT);
-  own.texts[STRUT_OPTION_KIND - STRUT_OPTION_TEXTS] = map ? "map" : NULL;
-  own.texts[STRUT_OPTION_X - STRUT_OPTION_TEXTS] = plan->columns[0].name;
-  own.texts[STRUT_OPTION_Y - STRUT_OPTION_TEXTS] = plan->columns[map ? 1 : y].name;
-  own.texts[STRUT_OPTION_LABEL - STRUT_OPTION_TEXTS] = map ? plan->columns[y].name : NULL;
-  if (!map && plan->axis_columns > 1)
-    own.texts[STRUT_OPTION_BY - STRUT_OPTION_TEXTS] = plan->columns[1].name;
+    return strut_usage_error(arguments, "the path of the table is too long");
+  const strut_arguments own = {.command = &strut_command_plot,
+                               .listener = arguments->listener,
+                               .quiet = arguments->quiet,
+                               .model = path,
+                               .plot = arguments->plot,
+                               .kind.index = map,
+                               .x = plan->columns[0].name,
+                               .y = plan->columns[map ? 1 : y].name,
+                               .label = map ? plan->columns[y].name : NULL,
+                               .by = !map && plan->axis_columns > 1 ? plan->columns[1].name : NULL};
   return strut_command_plot.run(&own);
 }
 
@@ -330,42 +325,31 @@ static strut_status run_sweep(const strut_arguments *given) {
   strut_arguments own = *given, *arguments = &own;
   char results[PATH_MAX];
   strut_sweep_study study = {0};
-  if (strut_option_text(arguments, STRUT_OPTION_PLOT) &&
-      (arguments->count_points || arguments->status ||
-       strut_option_text(arguments, STRUT_OPTION_EMIT) ||
-       strut_option_text(arguments, STRUT_OPTION_SHARD)))
-    return strut_print_usage_error(&strut_command_sweep, "--plot needs the table of all points");
-  strut_status status = strut_try_file(strut_option_text(arguments, STRUT_OPTION_PLOT));
+  if (arguments->plot &&
+      (arguments->count_points || arguments->status || arguments->emit.text || arguments->shard))
+    return strut_usage_error(arguments, "--plot needs the table of all points");
+  strut_status status = strut_try_file(arguments->plot);
   if (status) return status;
   if (!arguments->output && name_results(arguments->model, results)) own.output = results;
   if (!arguments->output && !arguments->count_points)
-    return strut_print_usage_error(&strut_command_sweep, "missing -o DIR, the results directory");
-  if (arguments->retry && (arguments->count_points || arguments->status ||
-                           strut_option_text(arguments, STRUT_OPTION_EMIT))) {
-    fputs("strut sweep: --retry cannot be combined with --count, --status or --emit\n", stderr);
-    return STRUT_USAGE;
-  }
+    return strut_usage_error(arguments, "missing -o DIR, the results directory");
+  if (arguments->retry && (arguments->count_points || arguments->status || arguments->emit.text))
+    return strut_usage_error(arguments,
+                             "--retry cannot be combined with --count, --status or --emit");
   status = strut_sweep_study_open(arguments, &study);
-  if (!status && strut_option_text(arguments, STRUT_OPTION_PLOT) &&
-      (study.plan.study->search || study.plan.study->follow))
-    status =
-        strut_print_usage_error(&strut_command_sweep,
-                                "--plot is for studies of single points: searches and branches of "
-                                "motions are drawn in DIR");
-  if (!status && study.plan.study->sensitivity.wanted &&
-      (strut_option_text(arguments, STRUT_OPTION_SHARD) ||
-       strut_option_text(arguments, STRUT_OPTION_EMIT))) {
-    fputs(
-        "strut sweep: a sensitivity analysis needs all points in one file: run it without "
-        "--shard and --emit\n",
-        stderr);
-    status = STRUT_USAGE;
-  }
+  if (!status && arguments->plot && (study.plan.study->search || study.plan.study->follow))
+    status = strut_usage_error(arguments,
+                               "--plot is for studies of single points: searches and branches of "
+                               "motions are drawn in DIR");
+  if (!status && study.plan.study->sensitivity.wanted && (arguments->shard || arguments->emit.text))
+    status = strut_usage_error(arguments,
+                               "a sensitivity analysis needs all points in one file: run it "
+                               "without --shard and --emit");
   if (!status && study.plan.study->search) status = check_search(arguments, &study);
   if (!status && study.plan.study->follow) status = check_follow(arguments);
   if (!status && arguments->count_points)
     status = strut_print_block(strut_sweep_count_report(&study.plan, arguments->json));
-  else if (!status && strut_option_text(arguments, STRUT_OPTION_EMIT))
+  else if (!status && arguments->emit.text)
     status = emit_script(arguments, study.plan.study);
   else if (!status && arguments->status)
     status = show_status(arguments, &study);
@@ -375,7 +359,7 @@ static strut_status run_sweep(const strut_arguments *given) {
     status = strut_sweep_follow(arguments, &study);
   else if (!status)
     status = compute_points(arguments, &study);
-  if (strut_option_text(arguments, STRUT_OPTION_PLOT) &&
+  if (arguments->plot &&
       (status == STRUT_OK || status == STRUT_DIVERGED || status == STRUT_INACCURATE)) {
     strut_status plotted = plot_table(arguments, &study);
     if (plotted) status = plotted;
@@ -438,8 +422,8 @@ static strut_status run_merge(const strut_arguments *arguments) {
 }
 
 static const strut_option merge_options[] = {
-    {STRUT_OPTION_SELECTOR, "merge", NULL, "merge the shards in DIR"},
-    {STRUT_OPTION_END, NULL, NULL, NULL},
+    {.kind = STRUT_OPTION_SELECTOR, .name = "merge", NULL, "merge the shards in DIR"},
+    {.name = NULL},
 };
 
 const strut_command strut_command_merge = {

@@ -61,19 +61,19 @@ static bool write_drawn_value(const char *range, double u, char text[MOST_TEXT])
 }
 
 /* Checks NAME=LOW..HIGH or NAME=WORD,WORD. */
-static strut_status check_varied(const strut_command *command, const strut_override *varied) {
+static strut_status check_varied(const strut_arguments *arguments, const strut_override *varied) {
   const char *value = varied->value, *dots = strstr(value, "..");
   bool good = dots ? dots > value && dots[2] : *value && *value != ',';
   for (const char *c = value; *c && !dots; c++)
     good = good && !(*c == ',' && (c[1] == ',' || c[1] == '\0'));
   if (good && strlen(value) < MOST_TEXT / 3) return STRUT_OK;
-  fprintf(stderr, "strut %s: --vary expects NAME=LOW..HIGH or NAME=WORD,WORD,... and not '%s=%s'\n",
-          command->name, varied->name, value);
-  return STRUT_USAGE;
+  return strut_usage_error(arguments,
+                           "--vary expects NAME=LOW..HIGH or NAME=WORD,WORD,... and not '%s=%s'",
+                           varied->name, value);
 }
 
-static strut_status open_point(const strut_command *command, const strut_arguments *arguments,
-                               uint64_t *seed, size_t number, strut_setup *setup) {
+static strut_status open_point(const strut_arguments *arguments, uint64_t *seed, size_t number,
+                               strut_setup *setup) {
   size_t varied = arguments->varied_count, set = arguments->override_count;
   strut_override *overrides = strut_allocate(set + varied + 1, sizeof *overrides);
   char(*texts)[MOST_TEXT] = strut_allocate(varied + 1, sizeof *texts);
@@ -90,7 +90,7 @@ static strut_status open_point(const strut_command *command, const strut_argumen
     here.no_notes = number > 0;
     status = strut_open_model(&here, STRUT_OPEN_FOR_RUN, setup);
     if (status != STRUT_OK && varied > 0) {
-      fprintf(stderr, "strut %s: at operating point %zu:", command->name, number + 1);
+      fprintf(stderr, "strut tradeoff: at operating point %zu:", number + 1);
       for (size_t i = 0; i < varied; i++)
         fprintf(stderr, " --set '%s=%s'", overrides[set + i].name, overrides[set + i].value);
       fputc('\n', stderr);
@@ -108,23 +108,20 @@ static void free_points(operating_points *points) {
   *points = (operating_points){.count = 0};
 }
 
-static strut_status open_points(const strut_command *command, const strut_arguments *arguments,
-                                size_t count, uint64_t seed, operating_points *points) {
+static strut_status open_points(const strut_arguments *arguments, size_t count, uint64_t seed,
+                                operating_points *points) {
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < arguments->varied_count && status == STRUT_OK; i++)
-    status = check_varied(command, &arguments->varied[i]);
-  if (status == STRUT_OK && count > 1 && strcmp(arguments->model, "-") == 0) {
-    fprintf(stderr, "strut %s: operating points need a model file, not standard input\n",
-            command->name);
-    status = STRUT_USAGE;
-  }
+    status = check_varied(arguments, &arguments->varied[i]);
+  if (status == STRUT_OK && count > 1 && strcmp(arguments->model, "-") == 0)
+    status = strut_usage_error(arguments, "operating points need a model file, not standard input");
   *points = (operating_points){.count = 0};
   if (status != STRUT_OK) return status;
   points->setups = strut_allocate(count, sizeof *points->setups);
   points->list = strut_allocate(count, sizeof *points->list);
   if (!points->setups || !points->list) status = strut_print_out_of_memory();
   for (size_t p = 0; p < count && status == STRUT_OK; p++) {
-    status = open_point(command, arguments, &seed, p, &points->setups[p]);
+    status = open_point(arguments, &seed, p, &points->setups[p]);
     points->list[p] = &points->setups[p];
     if (status == STRUT_OK) points->count++;
   }
@@ -132,42 +129,44 @@ static strut_status open_points(const strut_command *command, const strut_argume
   return status;
 }
 
-enum { MOST_METHODS = 64, MOST_POINTS = 10000 };
+enum { MOST_METHODS = 64 };
 #define USUAL_POINTS 40
 #define USUAL_SEED 1
 static const double PAGE = 510.24; /* 180 mm [pt] */
-static const double LEAST_BUDGET = 1e-3, MOST_BUDGET = 1e7, MOST_PERIODS = 1e7;
 
 static const strut_option options[] = {
-    {STRUT_OPTION_ACCURACY, "accuracy", "X",
-     "recommend method and step for a relative error of X, such as 0.1%"},
-    {STRUT_OPTION_MEASURE, "measure", "WHAT",
-     "measured quantity: velocity, position or energy (default automatic)"},
-    {STRUT_OPTION_INTEGRATOR, "integrator", "NAME,...",
-     "only these methods, such as rk4,verlet-events"},
-    {STRUT_OPTION_STEP_SIZES, "step-sizes", "N",
+    {STRUT_FILLS(accuracy), "accuracy", "X",
+     "recommend method and step for a relative error of X, such as 0.1%", STRUT_ACCURACY_RANGE},
+    {STRUT_FILLS(measure), "measure", "WHAT",
+     "measured quantity: velocity, position or energy (default automatic)",
+     .words = "velocity|position|energy"},
+    {STRUT_FILLS_TEXT(integrator), "integrator", "NAME,...",
+     "only these methods, such as rk4,verlet-events", .words = STRUT_INTEGRATOR_WORDS},
+    {STRUT_FILLS(step_sizes), "step-sizes", "N",
      "steps per method, five per decade (default " STRUT_TEXT_OF(
-         STRUT_TRADEOFF_USUAL_STEPS) ", or as many as --accuracy takes)"},
-    {STRUT_OPTION_PERIODS, "periods", "N",
-     "maximum number of periods of a run (default " STRUT_TEXT_OF(
-         STRUT_TRADEOFF_USUAL_PERIODS) ")"},
-    {STRUT_OPTION_VARY, "vary", "NAME=RANGE",
+         STRUT_TRADEOFF_USUAL_STEPS) ", or as many as --accuracy takes)",
+     .least = 1, .most = STRUT_TRADEOFF_MOST_STEPS},
+    {STRUT_FILLS(periods), "periods", "N",
+     "maximum number of periods of a run (default " STRUT_TEXT_OF(STRUT_TRADEOFF_USUAL_PERIODS) ")",
+     .low = 1, .high = 1e7},
+    {STRUT_FILLS(varied), "vary", "NAME=RANGE",
      "draw a parameter at random: LOW..HIGH or WORD,WORD; may be repeated"},
-    {STRUT_OPTION_POINTS, "points", "N",
-     "number of points drawn with --vary (default " STRUT_TEXT_OF(USUAL_POINTS) ")"},
-    {STRUT_OPTION_SEED, "seed", "N",
-     "seed of the random points (default " STRUT_TEXT_OF(USUAL_SEED) ")"},
-    {STRUT_OPTION_CPU_TIME, "cpu-time", "TIME",
-     "begin no run after this CPU time (default " STRUT_TEXT_OF(STRUT_TRADEOFF_USUAL_BUDGET) " s)"},
-    {STRUT_OPTION_OWN_MODEL, "own-model", NULL, "skip variants of the model"},
+    {STRUT_FILLS(points), "points", "N",
+     "number of points drawn with --vary (default " STRUT_TEXT_OF(USUAL_POINTS) ")", .least = 1,
+     .most = 10000},
+    {STRUT_FILLS(seed), "seed", "N",
+     "seed of the random points (default " STRUT_TEXT_OF(USUAL_SEED) ")", .most = INT64_MAX / 10},
+    {STRUT_FILLS(cpu_time), "cpu-time", "TIME",
+     "begin no run after this CPU time (default " STRUT_TEXT_OF(STRUT_TRADEOFF_USUAL_BUDGET) " s)",
+     .measure = STRUT_MEASURE_TIME, .low = 1e-3, .high = 1e7},
+    {STRUT_FILLS(own_model), "own-model", NULL, "skip variants of the model"},
     STRUT_SET_OPTION,
-    {STRUT_OPTION_OUTPUT, "output", "DIR", "write tradeoff.csv, .json and .svg into DIR"},
+    STRUT_OUTPUT_OPTION("DIR", "write tradeoff.csv, .json and .svg into DIR"),
     STRUT_JSON_OPTION,
     STRUT_THREADS_OPTION,
-    {STRUT_OPTION_PLOT, "plot", "FILE", "draw error against cost into FILE (.svg, .pdf or .png)"},
-    {STRUT_OPTION_WIDTH, "width", "WIDTH",
-     "width of the figure: page (180 mm, default), column (88 mm) or a length"},
-    {STRUT_OPTION_END, NULL, NULL, NULL},
+    {STRUT_FILLS(plot), "plot", "FILE", "draw error against cost into FILE (.svg, .pdf or .png)"},
+    STRUT_WIDTH_OPTION,
+    {.name = NULL},
 };
 
 static const char *const file_names[] = {"tradeoff.csv", "tradeoff.json", "tradeoff.svg", NULL};
@@ -180,16 +179,9 @@ typedef struct tradeoff_request {
   uint64_t seed;
 } tradeoff_request;
 
-static strut_status bad_method(const char *name, int length) {
-  fprintf(stderr, "strut tradeoff: --integrator: unknown method '%.*s'; expected", length, name);
-  for (size_t i = 0; strut_integrator_at(i); i++)
-    fprintf(stderr, "%s %s", i ? "," : "", strut_integrator_at(i)->name);
-  fputc('\n', stderr);
-  return STRUT_USAGE;
-}
-
 static strut_status read_methods(const strut_arguments *arguments, tradeoff_request *w) {
-  const char *text = strut_option_text(arguments, STRUT_OPTION_INTEGRATOR);
+  const char *text = arguments->integrator.text;
+  char list[500];
   while (text) {
     size_t length = strcspn(text, ",");
     const strut_integrator *found = NULL;
@@ -198,7 +190,10 @@ static strut_status read_methods(const strut_arguments *arguments, tradeoff_requ
       if (strlen(name) == length && strncmp(name, text, length) == 0)
         found = strut_integrator_at(i);
     }
-    if (!found || w->study.method_count == MOST_METHODS) return bad_method(text, (int)length);
+    if (!found || w->study.method_count == MOST_METHODS)
+      return strut_usage_error(arguments, "--integrator: unknown method '%.*s'; expected %s",
+                               (int)length, text,
+                               strut_words_text(STRUT_INTEGRATOR_WORDS, list, sizeof list));
     w->methods[w->study.method_count++] = found;
     text = text[length] ? text + length + 1 : NULL;
   }
@@ -206,51 +201,18 @@ static strut_status read_methods(const strut_arguments *arguments, tradeoff_requ
   return STRUT_OK;
 }
 
-static strut_status read_numbers(const strut_arguments *arguments, tradeoff_request *w) {
-  const strut_command *command = &strut_command_tradeoff;
-  static const char *const measures[] = {"velocity", "position", "energy", NULL};
-  int64_t steps = 0, seed = USUAL_SEED, points = arguments->varied_count > 0 ? USUAL_POINTS : 1;
-  int measure = -1;
-  strut_status status =
-      strut_option_word(command, arguments, STRUT_OPTION_MEASURE, measures, &measure);
-  if (status == STRUT_OK)
-    status = strut_option_integer(command, arguments, STRUT_OPTION_STEP_SIZES, 1,
-                                  STRUT_TRADEOFF_MOST_STEPS, &steps);
-  if (status == STRUT_OK)
-    status = strut_option_integer(command, arguments, STRUT_OPTION_SEED, 0, INT64_MAX / 10, &seed);
-  if (status == STRUT_OK)
-    status = strut_option_integer(command, arguments, STRUT_OPTION_POINTS, 1, MOST_POINTS, &points);
-  if (status == STRUT_OK)
-    status = strut_option_within(command, arguments, STRUT_OPTION_PERIODS, STRUT_DIM_NONE, 1,
-                                 MOST_PERIODS, &w->study.periods);
-  if (status == STRUT_OK)
-    status = strut_option_within(command, arguments, STRUT_OPTION_CPU_TIME, STRUT_DIM_TIME,
-                                 LEAST_BUDGET, MOST_BUDGET, &w->study.budget);
-  if (status == STRUT_OK)
-    status = strut_option_number(command, arguments, STRUT_OPTION_ACCURACY, STRUT_DIM_NONE,
-                                 &w->study.accuracy);
-  if (status == STRUT_OK && strut_option_text(arguments, STRUT_OPTION_ACCURACY) &&
-      !(w->study.accuracy > 0.0 && w->study.accuracy <= 1.0))
-    status = strut_usage_error(command, arguments,
-                               "--accuracy must be above 0 and at most 1, that is 100%%");
-  w->study.steps = (int)steps;
-  w->study.measure = (strut_tradeoff_measure)(measure + 1);
-  w->points = (size_t)points;
-  w->seed = (uint64_t)seed;
-  return status;
-}
-
-static strut_status read_options(const strut_arguments *arguments, tradeoff_request *w) {
-  strut_status status = read_numbers(arguments, w);
-  if (status == STRUT_OK) status = read_methods(arguments, w);
-  if (status != STRUT_OK) return status;
-  w->study.own_model = arguments->own_model;
-  if (arguments->varied_count == 0 && (strut_option_text(arguments, STRUT_OPTION_POINTS) ||
-                                       strut_option_text(arguments, STRUT_OPTION_SEED))) {
-    fputs("strut tradeoff: --points and --seed need --vary\n", stderr);
-    return STRUT_USAGE;
-  }
-  return STRUT_OK;
+static strut_status read_options(const strut_arguments *a, tradeoff_request *w) {
+  w->study.steps = (int)a->step_sizes.value;
+  w->study.measure = (strut_tradeoff_measure)(a->measure.text ? a->measure.index + 1 : 0);
+  w->study.periods = a->periods.value;
+  w->study.budget = a->cpu_time.value;
+  w->study.accuracy = a->accuracy.value;
+  w->study.own_model = a->own_model;
+  w->points = a->varied_count == 0 ? 1 : a->points.text ? (size_t)a->points.value : USUAL_POINTS;
+  w->seed = a->seed.text ? (uint64_t)a->seed.value : USUAL_SEED;
+  if (a->varied_count == 0 && (a->points.text || a->seed.text))
+    return strut_usage_error(a, "--points and --seed need --vary");
+  return read_methods(a, w);
 }
 
 /* Writes all three files, or none. */
@@ -324,9 +286,8 @@ static strut_status run_tradeoff(const strut_arguments *arguments) {
   operating_points points = {0};
   strut_plot plot;
   strut_status status = read_options(arguments, &w);
-  if (status == STRUT_OK) status = strut_plot_read(&strut_command_tradeoff, arguments, PAGE, &plot);
-  if (status == STRUT_OK)
-    status = open_points(&strut_command_tradeoff, arguments, w.points, w.seed, &points);
+  if (status == STRUT_OK) status = strut_plot_read(arguments, PAGE, &plot);
+  if (status == STRUT_OK) status = open_points(arguments, w.points, w.seed, &points);
   if (status != STRUT_OK) return status;
   status = run_study(arguments, &plot, &w, &points);
   free_points(&points);

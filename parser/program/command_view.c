@@ -21,15 +21,15 @@ static const size_t ROOM = (size_t)1 << 24;
 /* Runs on one page. */
 enum { MOST_RUNS = 2 };
 
-static const char *const searches[] = {"all", "none", NULL};
 enum { SEARCH_ALL, SEARCH_NONE, SEARCH_OF_MODEL };
 
 static const strut_option options[] = {
-    {STRUT_OPTION_OUTPUT, "output", "FILE.html", "the page to write (default RUN.html)"},
-    {STRUT_OPTION_EQUILIBRIA, "equilibria", "WHICH",
-     "all or none (default: all of a MODEL, none of a RUN); of two, those of the first"},
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter of MODEL; may be repeated"},
-    {STRUT_OPTION_END, NULL, NULL, NULL},
+    STRUT_OUTPUT_OPTION("FILE.html", "the page to write (default RUN.html)"),
+    {STRUT_FILLS(equilibria), "equilibria", "WHICH",
+     "all or none (default: all of a MODEL, none of a RUN); of two, those of the first",
+     .words = "all|none"},
+    {STRUT_FILLS(overrides), "set", "NAME=VALUE", "change a parameter of MODEL; may be repeated"},
+    {.name = NULL},
 };
 
 static bool ends_with(const char *text, const char *end) {
@@ -59,10 +59,11 @@ static bool choose_page(const char *shown, char *text, size_t size) {
 }
 
 /* Checks before anything is computed that the page has a valid name and can be written. */
-static strut_status check_output(const char *path) {
+static strut_status check_output(const strut_arguments *arguments) {
+  const char *path = arguments->output;
   if (!ends_with(path, ".html") && !ends_with(path, ".htm"))
-    return strut_print_usage_error(&strut_command_view,
-                                   "'%s' is not the name of a page: it must end in .html", path);
+    return strut_usage_error(arguments, "'%s' is not the name of a page: it must end in .html",
+                             path);
   return strut_try_file(path);
 }
 
@@ -168,11 +169,10 @@ static strut_status open_all(const strut_arguments *arguments, strut_opened *ope
   for (size_t i = 0; i < arguments->model_count && status == STRUT_OK; i++) {
     strut_arguments one = *arguments;
     one.model = arguments->models[i];
-    status = strut_open_run(&strut_command_view, &one, ROOM, &opened[i]);
+    status = strut_open_run(&one, ROOM, &opened[i]);
     if (status == STRUT_OK && arguments->model_count > 1 && !opened[i].run)
-      status = strut_print_usage_error(&strut_command_view,
-                                       "two runs can be shown side by side, but '%s' is a model",
-                                       one.model);
+      status = strut_usage_error(
+          arguments, "two runs can be shown side by side, but '%s' is a model", one.model);
   }
   for (size_t i = 0; i < MOST_RUNS && status != STRUT_OK; i++) strut_opened_free(&opened[i]);
   return status;
@@ -183,16 +183,12 @@ static strut_status run_view(const strut_arguments *given) {
   strut_arguments with_output = *given, *arguments = &with_output;
   char page[PATH_MAX];
   if (arguments->model_count > MOST_RUNS)
-    return strut_print_usage_error(&strut_command_view, "unexpected argument '%s'",
-                                   arguments->models[MOST_RUNS]);
+    return strut_usage_error(arguments, "unexpected argument '%s'", arguments->models[MOST_RUNS]);
   if (!arguments->output && choose_page(arguments->model, page, sizeof page))
     arguments->output = page;
-  if (!arguments->output)
-    return strut_print_usage_error(&strut_command_view, "missing -o FILE.html");
-  int search = SEARCH_OF_MODEL;
-  strut_status status =
-      strut_option_word(&strut_command_view, arguments, STRUT_OPTION_EQUILIBRIA, searches, &search);
-  if (status == STRUT_OK) status = check_output(arguments->output);
+  if (!arguments->output) return strut_usage_error(arguments, "missing -o FILE.html");
+  int search = arguments->equilibria.text ? arguments->equilibria.index : SEARCH_OF_MODEL;
+  strut_status status = check_output(arguments);
   if (status == STRUT_OK) status = open_all(arguments, opened);
   if (status == STRUT_OK) {
     if (search == SEARCH_OF_MODEL && !opened->run) search = SEARCH_ALL;

@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/integrate/integrator.h"
 #include "parser/language/keys.h"
 #include "parser/program/commands.h"
 
@@ -39,10 +38,6 @@ static void offer_options(const completion *c, const strut_command *command) {
   }
 }
 
-static void offer_methods(const completion *c) {
-  for (size_t i = 0; strut_integrator_at(i); i++) offer(c, strut_integrator_at(i)->name);
-}
-
 static void offer_example(void *context, const char *model) { offer(context, model); }
 
 /* ---- the command line ---- */
@@ -54,7 +49,8 @@ static const char *complete_value(const strut_option *option, completion *c) {
     c->kept += (int)(comma + 1 - c->word);
     c->word = comma + 1;
   }
-  if (option->id == STRUT_OPTION_INTEGRATOR) offer_methods(c);
+  char word[40];
+  for (int i = 0; strut_option_word(option, i, word, sizeof word); i++) offer(c, word);
   if (strcmp(option->argument, "DIR") == 0) return ":folders";
   return strncmp(option->argument, "FILE", 4) == 0 ? ":files" : ":";
 }
@@ -67,7 +63,7 @@ static const strut_option *option_of(const strut_command *command, const char *w
   for (size_t i = 0; strut_option_at(command, i); i++) {
     const strut_option *option = strut_option_at(command, i);
     size_t length = strlen(option->name);
-    if (word[1] != '-' && (int)option->id == word[1] && !word[2]) return option;
+    if (word[1] != '-' && option->letter == word[1] && !word[2]) return option;
     if (word[1] != '-' || strncmp(word + 2, option->name, length) != 0) continue;
     if (word[2 + length] == '=') *value = word + 3 + length;
     if (*value || !word[2 + length]) return option;

@@ -35,21 +35,13 @@ static void print_time(double taken) {
   printf("\n  took %s\n", strut_quantity_of(taken, 3, "s").text);
 }
 
-enum { MOST_THREADS = 4096 };
-
 /* --threads, for all that computes on several. */
-static strut_status limit_threads(const strut_command *command, const strut_arguments *arguments) {
-  int64_t threads = 0;
-  char text[32];
-  strut_status status =
-      strut_option_integer(command, arguments, STRUT_OPTION_THREADS, 1, MOST_THREADS, &threads);
-  if (status != STRUT_OK || !threads) return status;
-  snprintf(text, sizeof text, "%d", (int)threads);
-  setenv("OMP_NUM_THREADS", text, 1);
+static void limit_threads(const strut_given_whole *threads) {
+  if (!threads->value) return;
+  setenv("OMP_NUM_THREADS", threads->text, 1);
 #ifdef _OPENMP
-  omp_set_num_threads((int)threads);
+  omp_set_num_threads((int)threads->value);
 #endif
-  return STRUT_OK;
 }
 
 /* Is help asked for, even where an option lacks its value? */
@@ -68,11 +60,11 @@ static strut_status run_command(const strut_command *command, int argc, char **a
     return STRUT_OK;
   }
   strut_status status = strut_arguments_read(command, argc, argv, &arguments);
-  if (status == STRUT_OK) status = limit_threads(command, &arguments);
+  if (status == STRUT_OK) limit_threads(&arguments.threads);
   if (status == STRUT_OK && arguments.help) {
     strut_command_help(command);
   } else if (status == STRUT_OK) {
-    status = command->run ? command->run(&arguments) : strut_analysis_run(command, &arguments);
+    status = command->run ? command->run(&arguments) : strut_analysis_run(&arguments);
     if (status == STRUT_OK && command->timed && !arguments.json && !arguments.quiet)
       print_time(now() - begin);
   }

@@ -253,16 +253,13 @@ static strut_status open_directory(const strut_arguments *arguments, size_t room
   return status;
 }
 
-strut_status strut_open_run(const strut_command *command, const strut_arguments *arguments,
-                            size_t room, strut_opened *opened) {
+strut_status strut_open_run(const strut_arguments *arguments, size_t room, strut_opened *opened) {
   strut_error error = {0};
   strut_arena arena = {0};
   *opened = (strut_opened){.run = is_directory(arguments->model)};
-  if (opened->run && arguments->override_count > 0) {
-    fprintf(stderr, "strut %s: --set needs a model, not the finished run '%s'\n", command->name,
-            arguments->model);
-    return STRUT_USAGE;
-  }
+  if (opened->run && arguments->override_count > 0)
+    return strut_usage_error(arguments, "--set needs a model, not the finished run '%s'",
+                             arguments->model);
   strut_status status;
   if (opened->run) {
     status = open_directory(arguments, room, &arena, opened, &error);

@@ -81,8 +81,7 @@ typedef struct strut_opened {
  * many frames of its trajectory.h5 as fit into `room` doubles; --set is refused then. Anything else is a
  * model, opened STRUT_OPEN_AS_RUN. Messages go to stderr; on failure nothing is left to free.
  */
-strut_status strut_open_run(const strut_command *command, const strut_arguments *arguments,
-                            size_t room, strut_opened *opened);
+strut_status strut_open_run(const strut_arguments *arguments, size_t room, strut_opened *opened);
 /** A zeroed struct is allowed. */
 void strut_opened_free(strut_opened *opened);
 
@@ -90,6 +89,6 @@ void strut_opened_free(strut_opened *opened);
  * Runs a command by its analysis: finds out whether all results can be written, opens and compiles the model,
  * computes, writes, prints and draws. Messages go to stderr.
  */
-strut_status strut_analysis_run(const strut_command *command, const strut_arguments *arguments);
+strut_status strut_analysis_run(const strut_arguments *arguments);
 
 #endif

@@ -8,23 +8,25 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/draw/canvas.h"
-#include "engine/output/file.h"
+#include "parser/program/open_model.h"
 #include "parser/program/streams.h"
 #include "parser/yaml/diagnostics.h"
 
-enum { MOST_OPTIONS = 48, FIRST_WITHOUT_LETTER = 256, POSITIONAL = 1, COLUMN = 24 };
+enum { MOST_OPTIONS = 48, FIRST = 256, POSITIONAL = 1, COLUMN = 24 };
 
 /* Every command has these, after its own. */
 static const strut_option common_options[] = {
-    {STRUT_OPTION_QUIET, "quiet", NULL, "print no report or progress, only warnings and errors"},
-    {STRUT_OPTION_HELP, "help", NULL, "print this help"},
+    {STRUT_FILLS(quiet), "quiet", NULL, "print no report or progress, only warnings and errors",
+     .letter = 'q'},
+    {STRUT_FILLS(help), "help", NULL, "print this help", .letter = 'h'},
 };
 enum { COMMON_OPTIONS = sizeof common_options / sizeof common_options[0] };
 
 const strut_option *strut_option_at(const strut_command *command, size_t i) {
+  const strut_option *own = strut_command_option(command, i);
   size_t count = 0;
-  while (command->options && command->options[count].id != STRUT_OPTION_END) count++;
-  if (i < count) return &command->options[i];
+  if (own) return own;
+  while (strut_command_option(command, count)) count++;
   return i < count + COMMON_OPTIONS ? &common_options[i - count] : NULL;
 }
 
@@ -83,66 +85,42 @@ static strut_status report_rejected(const strut_command *command, int code, char
 }
 
 /* One --set or --vary: splits NAME=VALUE in place. */
-static strut_status add_override(const strut_command *command, int id, char *text,
-                                 strut_arguments *to) {
+static strut_status add_override(const strut_option *option, char *text, strut_arguments *to) {
   char *equals = strchr(text, '=');
-  bool varied = id == STRUT_OPTION_VARY;
+  bool varied = option->member == offsetof(strut_arguments, varied);
   if (!equals || equals == text) {
-    fprintf(stderr, "strut %s: --%s expects NAME=%s, not '%s'\n", command->name,
-            varied ? "vary" : "set", varied ? "RANGE" : "VALUE", text);
-    return usage_error(command);
+    strut_usage_error(to, "--%s expects %s, not '%s'", option->name, option->argument, text);
+    return usage_error(to->command);
   }
   *equals = '\0';
+  const strut_override override = {text, equals + 1};
   if (varied) {
-    to->varied[to->varied_count++] = (strut_override){text, equals + 1};
+    to->varied[to->varied_count++] = override;
   } else {
     to->override_model[to->override_count] = to->model_count;
-    to->overrides[to->override_count++] = (strut_override){text, equals + 1};
+    to->overrides[to->override_count++] = override;
   }
   return STRUT_OK;
 }
 
-static strut_status add_model(const strut_command *command, const char *text, strut_arguments *to) {
-  if (!command->model || (to->model && !command->many)) {
-    fprintf(stderr, "strut %s: unexpected argument '%s'\n", command->name, text);
-    return usage_error(command);
+static strut_status add_model(const char *text, strut_arguments *to) {
+  if (!to->command->model || (to->model && !to->command->many)) {
+    strut_usage_error(to, "unexpected argument '%s'", text);
+    return usage_error(to->command);
   }
   if (!to->model) to->model = text;
   to->models[to->model_count++] = text;
   return STRUT_OK;
 }
 
-/* Stores one option or positional argument, with its value in optarg. */
-static strut_status store_option(const strut_command *command, int id, strut_arguments *to) {
-  if (id >= (int)STRUT_OPTION_TEXTS && id < (int)STRUT_OPTION_TEXTS_END) {
-    to->texts[id - (int)STRUT_OPTION_TEXTS] = optarg;
-    return STRUT_OK;
-  }
-  switch (id) {
-    case POSITIONAL: return add_model(command, optarg, to);
-    case STRUT_OPTION_SET:
-    case STRUT_OPTION_VARY: return add_override(command, id, optarg, to);
-    case STRUT_OPTION_OUTPUT: to->output = optarg; break;
-    case STRUT_OPTION_JSON: to->json = true; break;
-    case STRUT_OPTION_QUIET: to->quiet = true; break;
-    case STRUT_OPTION_FORCE: to->force = true; break;
-    case STRUT_OPTION_STUCK: to->stuck = true; break;
-    case STRUT_OPTION_WAVE: to->wave = true; break;
-    case STRUT_OPTION_OWN_MODEL: to->own_model = true; break;
-    case STRUT_OPTION_ALL: to->all = true; break;
-    case STRUT_OPTION_CSV: to->csv = true; break;
-    case STRUT_OPTION_NO_MOTION: to->no_motion = true; break;
-    case STRUT_OPTION_NO_STATES: to->no_states = true; break;
-    case STRUT_OPTION_COUNT_POINTS: to->count_points = true; break;
-    case STRUT_OPTION_STATUS: to->status = true; break;
-    case STRUT_OPTION_RETRY: to->retry = true; break;
-    case STRUT_OPTION_PARTS: to->parts = true; break;
-    case STRUT_OPTION_STUDY: to->study = true; break;
-    case STRUT_OPTION_BASINS: to->basins = true; break;
-    case STRUT_OPTION_HELP: to->help = true; break;
-    default: break;
-  }
-  return STRUT_OK;
+/* The option or positional argument that getopt found, with its value in optarg. */
+static strut_status store_option(int id, strut_arguments *to) {
+  size_t i = id >= FIRST ? (size_t)(id - FIRST) : 0;
+  if (id == POSITIONAL) return add_model(optarg, to);
+  while (id < FIRST && strut_option_at(to->command, i)->letter != id) i++;
+  const strut_option *option = strut_option_at(to->command, i);
+  if (option->kind == STRUT_OPTION_SETTING) return add_override(option, optarg, to);
+  return option->kind == STRUT_OPTION_SELECTOR ? STRUT_OK : strut_argument_read(option, optarg, to);
 }
 
 /* The table in getopt's form. "-" returns positional arguments in order, ":" suppresses messages. */
@@ -155,9 +133,9 @@ static void fill_getopt(const strut_command *command, char letters[2 * MOST_OPTI
   for (size_t i = 0; i < MOST_OPTIONS && strut_option_at(command, i); i++) {
     const strut_option *option = strut_option_at(command, i);
     int needs = option->argument ? required_argument : no_argument;
-    rows[i] = (struct option){option->name, needs, NULL, (int)option->id};
-    if ((int)option->id >= FIRST_WITHOUT_LETTER) continue;
-    *at++ = (char)option->id;
+    rows[i] = (struct option){option->name, needs, NULL, FIRST + (int)i};
+    if (!option->letter) continue;
+    *at++ = option->letter;
     if (option->argument) *at++ = ':';
   }
   *at = '\0';
@@ -176,16 +154,14 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
   char letters[2 * MOST_OPTIONS + 3];
   struct option rows[MOST_OPTIONS + 1] = {{0}};
   fill_getopt(command, letters, rows);
-  *arguments = (strut_arguments){.listener = strut_stderr_listener()};
+  *arguments = (strut_arguments){.command = command, .listener = strut_stderr_listener()};
   arguments->overrides = strut_allocate((size_t)argc, sizeof *arguments->overrides);
   arguments->override_model = strut_allocate((size_t)argc, sizeof *arguments->override_model);
   arguments->varied = strut_allocate((size_t)argc, sizeof *arguments->varied);
   arguments->models = strut_allocate((size_t)argc, sizeof *arguments->models);
   if (!arguments->overrides || !arguments->override_model || !arguments->varied ||
-      !arguments->models) {
-    fprintf(stderr, "strut %s: out of memory\n", command->name);
-    return STRUT_NO_MEMORY;
-  }
+      !arguments->models)
+    return strut_print_out_of_memory();
   strut_status status = STRUT_OK;
   opterr = 0;
   while (status == STRUT_OK) {
@@ -197,15 +173,14 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
       const char *word = argv[optind - (rows[row].has_arg && optarg == argv[optind - 1] ? 2 : 1)];
       status = unknown_option(command, word, rows[row].name);
     } else {
-      status = store_option(command, id, arguments);
+      status = store_option(id, arguments);
     }
   }
-  for (; status == STRUT_OK && optind < argc; optind++) { /* after "--" */
-    status = add_model(command, argv[optind], arguments);
-  }
+  for (; status == STRUT_OK && optind < argc; optind++) /* after "--" */
+    status = add_model(argv[optind], arguments);
   bool missing = command->model && !command->model_optional && !arguments->model;
   if (status == STRUT_OK && missing && !arguments->help) {
-    fprintf(stderr, "strut %s: missing %s\n", command->name, command->model);
+    strut_usage_error(arguments, "missing %s", command->model);
     status = usage_error(command);
   }
   return status;
@@ -221,9 +196,7 @@ void strut_arguments_free(strut_arguments *arguments) {
 
 static void print_option(const strut_option *option) {
   char left[64], letter[8] = "    ";
-  if ((int)option->id < FIRST_WITHOUT_LETTER) {
-    snprintf(letter, sizeof letter, "-%c, ", (char)option->id);
-  }
+  if (option->letter) snprintf(letter, sizeof letter, "-%c, ", option->letter);
   snprintf(left, sizeof left, "%s--%s%s%s", letter, option->name, option->argument ? " " : "",
            option->argument ? option->argument : "");
   printf("  %-*s %s\n", COLUMN, left, option->help);
@@ -259,35 +232,18 @@ const strut_command *strut_command_variant_of(const strut_command *command, int 
 
 /* Checks that the file can be created. */
 static strut_status try_path(const char *path) {
-  strut_file file;
   strut_error error = {0};
   strut_status status = strut_canvas_check_name(path, &error);
-  if (status == STRUT_OK) status = strut_file_open_path(&file, path, &error);
-  if (status == STRUT_OK) {
-    strut_file_abandon(&file);
-  } else {
-    strut_print_error(&error);
-  }
-  return status;
+  return status ? strut_print_failure(status, &error) : strut_try_file(path);
 }
 
-/* Reports the first option of a figure that was given without --plot. */
-static strut_status refuse_without_plot(const strut_command *command,
-                                        const strut_arguments *arguments) {
-  for (const strut_option *o = command->options; o->id != STRUT_OPTION_END; o++) {
-    bool figure = o->id == STRUT_OPTION_WIDTH || o->id == STRUT_OPTION_DRAW ||
-                  (o->id >= STRUT_OPTION_TITLE && o->id <= STRUT_OPTION_Y_LIMITS);
-    if (!figure || !strut_option_text(arguments, o->id)) continue;
-    fprintf(stderr, "strut %s: --%s needs --plot FILE\n", command->name, o->name);
-    return STRUT_USAGE;
-  }
-  return STRUT_OK;
-}
-
-strut_status strut_plot_read(const strut_command *command, const strut_arguments *arguments,
-                             double usual, strut_plot *plot) {
-  *plot = (strut_plot){.path = strut_option_text(arguments, STRUT_OPTION_PLOT)};
-  if (!plot->path) return refuse_without_plot(command, arguments);
-  strut_status status = strut_plot_settings_read(command, arguments, usual, plot);
-  return status == STRUT_OK ? try_path(plot->path) : status;
+strut_status strut_plot_read(const strut_arguments *arguments, double usual, strut_plot *plot) {
+  const strut_option *option;
+  *plot = (strut_plot){.path = arguments->plot};
+  for (size_t i = 0; !plot->path && (option = strut_option_at(arguments->command, i)); i++)
+    if (option->of_figure && strut_given_text(option, arguments))
+      return strut_usage_error(arguments, "--%s needs --plot FILE", option->name);
+  if (!plot->path) return STRUT_OK;
+  strut_status status = strut_plot_settings_read(arguments, usual, plot);
+  return status ? status : try_path(plot->path);
 }

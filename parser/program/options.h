@@ -29,11 +29,19 @@ void strut_command_help(const strut_command *command);
 /* Rows that tables of several commands have. */
 
 #define STRUT_SET_OPTION                                                                           \
-  { STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated" }
+  { STRUT_FILLS(overrides), "set", "NAME=VALUE", "change a parameter; may be repeated" }
 #define STRUT_JSON_OPTION                                                                          \
-  { STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object" }
+  { STRUT_FILLS(json), "json", NULL, "print everything as one JSON object" }
 #define STRUT_THREADS_OPTION                                                                       \
-  { STRUT_OPTION_THREADS, "threads", "N", "most threads (default: one per processor)" }
+  {                                                                                                \
+    STRUT_FILLS(threads), "threads", "N", "most threads (default: one per processor)",             \
+        .least = 1, .most = 4096                                                                   \
+  }
+#define STRUT_OUTPUT_OPTION(ARGUMENT, HELP)                                                        \
+  { STRUT_FILLS(output), "output", ARGUMENT, HELP, .letter = 'o' }
+/** The figure of a command: a file, and how it is drawn. */
+#define STRUT_PLOT_OPTION                                                                          \
+  { STRUT_FILLS(plot), "plot", "FILE", "draw a figure into FILE (.svg, .pdf or .png)" }
 
 /** Rows of refused options for commands that integrate nothing. */
 #define STRUT_REFUSE_RUN_SETTINGS                                                                  \
@@ -43,19 +51,11 @@ void strut_command_help(const strut_command *command);
     NULL, NULL                                                                                     \
   }
 
-/* Options of figures: file, width, title, axes. */
-
-/** Rows for a command's table of options. */
-#define STRUT_PLOT_OPTIONS                                                                         \
-  {STRUT_OPTION_PLOT, "plot", "FILE", "draw a figure into FILE (.svg, .pdf or .png)"},             \
-      STRUT_PLOT_SETTING_OPTIONS
-
 /**
  * Reads all before anything is computed, and checks that FILE can be written: STRUT_USAGE or
  * STRUT_FILE_TROUBLE with the reason on stderr, an option without --plot included. Leaves no trace.
  * `usual` is the default width [pt]; 0: a page's.
  */
-strut_status strut_plot_read(const strut_command *command, const strut_arguments *arguments,
-                             double usual, strut_plot *plot);
+strut_status strut_plot_read(const strut_arguments *arguments, double usual, strut_plot *plot);
 
 #endif

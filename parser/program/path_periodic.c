@@ -19,30 +19,37 @@ static const char *const file_names[] = {"branches.csv", "branches.json", "branc
                                          "curves.csv",   "curves.svg",    NULL};
 
 static const strut_option options[] = {
-    {STRUT_OPTION_SELECTOR, "periodic", NULL, "follow periodic motions instead of equilibria"},
-    {STRUT_OPTION_OVER, "over", "NAME=LOW..HIGH", "the parameter and its range"},
-    {STRUT_OPTION_FROM, "from", "VALUE", "low end of the range, if --over gives none"},
-    {STRUT_OPTION_UNTIL, "until", "VALUE", "high end, likewise"},
-    {STRUT_OPTION_AND, "and", "NAME=LOW..HIGH",
+    {.kind = STRUT_OPTION_SELECTOR,
+     .name = "periodic",
+     NULL,
+     "follow periodic motions instead of equilibria"},
+    {STRUT_FILLS(over), "over", "NAME=LOW..HIGH", "the parameter and its range"},
+    {STRUT_FILLS(from), "from", "VALUE", "low end of the range, if --over gives none"},
+    {STRUT_FILLS(until), "until", "VALUE", "high end, likewise"},
+    {STRUT_FILLS(and_over), "and", "NAME=LOW..HIGH",
      "a second parameter, over which curves of folds, doublings and grazings are followed"},
-    {STRUT_OPTION_VALUES, "values", "VALUE,...",
+    {STRUT_FILLS(values), "values", "VALUE,...",
      "values at which branches start (default: the model's own, or the middle)"},
-    {STRUT_OPTION_AT, "at", "NAME,...", "configurations to start from (default: the start)"},
-    {STRUT_OPTION_ACCURACY, "accuracy", "E",
-     "relative error of velocities (default " STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %)"},
-    {STRUT_OPTION_INTEGRATOR, "integrator", "NAME",
-     "method, which must locate events (default: rk4-events, or else adaptive)"},
-    {STRUT_OPTION_STEPS, "steps", "N",
+    {STRUT_FILLS(at), "at", "NAME,...", "configurations to start from (default: the start)"},
+    {STRUT_FILLS(accuracy), "accuracy", "E",
+     "relative error of velocities (default " STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %)",
+     .low = DBL_MIN, .high = 0.1, .expected = "expects a value up to 10 %"},
+    {STRUT_FILLS_TEXT(integrator), "integrator", "NAME",
+     "method, which must locate events (default: rk4-events, or else adaptive)",
+     .words = STRUT_INTEGRATOR_WORDS},
+    {STRUT_FILLS(steps), "steps", "N",
      "maximum number of steps each way (default " STRUT_TEXT_OF(
-         STRUT_FOLLOW_USUAL_STEPS) ", of curves " STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_CURVE_STEPS) ")"},
-    {STRUT_OPTION_BASINS, "basins", NULL, "kick the stable motions at the values of --values"},
+         STRUT_FOLLOW_USUAL_STEPS) ", of curves " STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_CURVE_STEPS) ")",
+     .least = 1, .most = 100000},
+    {STRUT_FILLS(basins), "basins", NULL, "kick the stable motions at the values of --values"},
     STRUT_SET_OPTION,
     STRUT_THREADS_OPTION,
-    {STRUT_OPTION_OUTPUT, "output", "DIR", "write branches.csv, .json and .svg into DIR"},
+    STRUT_OUTPUT_OPTION("DIR", "write branches.csv, .json and .svg into DIR"),
     STRUT_JSON_OPTION,
-    STRUT_PLOT_OPTIONS,
-    STRUT_AXIS_OPTIONS,
-    {STRUT_OPTION_END, NULL, NULL, NULL},
+    STRUT_PLOT_OPTION,
+    {.table = strut_plot_setting_options},
+    {.table = strut_axis_options},
+    {.name = NULL},
 };
 
 /* The curves over both parameters. */
@@ -127,13 +134,12 @@ static strut_status run_follow(const strut_arguments *arguments) {
   strut_follow_source source = {.scenes = {.file = strut_model_name(arguments)}};
   strut_follow_options wanted = {0};
   char *text = NULL;
-  strut_status status = strut_plot_read(&strut_command_periodic, arguments, 0, &plot);
+  strut_status status = strut_plot_read(arguments, 0, &plot);
   if (!status) status = strut_check_output_writable(arguments, file_names);
   if (!status) status = strut_open_model_text(arguments, &text, &source.scenes.length, &setup);
   if (status) return status;
   source.scenes.text = text;
-  status =
-      strut_follow_options_read(&strut_command_periodic, arguments, &setup.scene, &source, &wanted);
+  status = strut_follow_options_read(arguments, &setup.scene, &source, &wanted);
   strut_setup_free(&setup);
   if (!status) status = follow(arguments, &plot, &wanted);
   strut_follow_source_free(&source);

@@ -7,33 +7,33 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "parser/program/options.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"
 
-static strut_status read_film(const strut_command *command, const strut_arguments *arguments,
-                              strut_film *film) {
-  *film = (strut_film){.path = strut_option_text(arguments, STRUT_OPTION_ANIMATE), .speed = 1};
-  strut_status status = strut_option_within(command, arguments, STRUT_OPTION_SPEED, STRUT_DIM_NONE,
-                                            1e-9, 1e6, &film->speed);
-  if (status == STRUT_OK)
-    status = strut_option_within(command, arguments, STRUT_OPTION_FPS, STRUT_DIM_NONE, 1, 120,
-                                 &film->fps);
-  if (status == STRUT_OK && !film->path &&
-      (strut_option_text(arguments, STRUT_OPTION_SPEED) || film->fps != 0))
-    status = strut_usage_error(command, arguments, "--speed and --fps need --animate FILE");
-  return status;
-}
+const strut_option strut_film_options[] = {
+    {STRUT_FILLS(animate), "animate", "FILE", "make a film: FILE ends with .mp4, .webm or .gif"},
+    {STRUT_FILLS(speed), "speed", "SPEED",
+     "speed of the film, such as 1/10 or 5 (default 1, real time)", .low = 1e-9, .high = 1e6},
+    {STRUT_FILLS(fps), "fps", "NUMBER",
+     "frames per second (default " STRUT_TEXT_OF(STRUT_FILM_FPS) "; gif: " STRUT_TEXT_OF(
+         STRUT_FILM_GIF_FPS) ")",
+     .low = 1, .high = 120},
+    {.name = NULL}};
 
-strut_status strut_run_pictures_read(const strut_command *command, const strut_arguments *arguments,
-                                     strut_run_pictures *p) {
-  strut_status status = strut_plot_read(command, arguments, 0, &p->plot);
-  if (status == STRUT_OK)
-    status = strut_run_figure_read(command, arguments, &p->plot, &p->figure, p->times);
+strut_status strut_run_pictures_read(const strut_arguments *arguments, strut_run_pictures *p) {
+  strut_status status = strut_plot_read(arguments, 0, &p->plot);
+  if (!status) status = strut_run_figure_read(arguments, &p->plot, &p->figure, p->times);
   p->quiet = arguments->quiet;
   p->silent = arguments->quiet || arguments->json;
-  return status == STRUT_OK ? read_film(command, arguments, &p->film) : status;
+  p->film = (strut_film){.path = arguments->animate,
+                         .speed = arguments->speed.text ? arguments->speed.value : 1,
+                         .fps = arguments->fps.value};
+  if (!status && !p->film.path && (arguments->speed.text || arguments->fps.text))
+    return strut_usage_error(arguments, "--speed and --fps need --animate FILE");
+  return status;
 }
 
 strut_status strut_run_pictures_check(strut_run_pictures *p, const strut_experiment *experiment,

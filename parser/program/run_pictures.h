@@ -5,7 +5,6 @@
 #ifndef STRUT_PARSER_PROGRAM_RUN_PICTURES_H
 #define STRUT_PARSER_PROGRAM_RUN_PICTURES_H
 
-#include "engine/base/number_text.h"
 #include "engine/output/figures/run_figure.h"
 #include "engine/output/figures/run_film.h"
 #include "parser/program/options.h"
@@ -21,21 +20,11 @@ typedef struct strut_run_pictures {
   strut_sink *sink; /* fills the motion; NULL if nothing is drawn */
 } strut_run_pictures;
 
-/** Rows for the table of options. */
-#define STRUT_RUN_PICTURE_OPTIONS                                                                  \
-  STRUT_PLOT_OPTIONS, STRUT_RUN_FIGURE_OPTIONS,                                                    \
-      {STRUT_OPTION_ANIMATE, "animate", "FILE",                                                    \
-       "make a film: FILE ends with .mp4, .webm or .gif"},                                         \
-      {STRUT_OPTION_SPEED, "speed", "SPEED",                                                       \
-       "speed of the film, such as 1/10 or 5 (default 1, real time)"},                             \
-  {                                                                                                \
-    STRUT_OPTION_FPS, "fps", "NUMBER",                                                             \
-        "frames per second (default " STRUT_TEXT_OF(STRUT_FILM_FPS) "; gif: " STRUT_TEXT_OF(       \
-            STRUT_FILM_GIF_FPS) ")"                                                                \
-  }
+/** The table of what a film has beside a figure. */
+extern const strut_option strut_film_options[];
 
 /** Reads the options; STRUT_USAGE or STRUT_FILE_TROUBLE with the reason on stderr. */
-strut_status strut_run_pictures_read(const strut_command *command, const strut_arguments *arguments,
+strut_status strut_run_pictures_read(const strut_arguments *arguments,
                                      strut_run_pictures *pictures);
 /** Checks before the run that it will record what is to be drawn; STRUT_USAGE if not. */
 strut_status strut_run_pictures_check(strut_run_pictures *pictures,

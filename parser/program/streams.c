@@ -149,16 +149,6 @@ strut_status strut_print_failure(strut_status status, const strut_error *error) 
   return status;
 }
 
-strut_status strut_print_usage_error(const strut_command *command, const char *format, ...) {
-  va_list values;
-  va_start(values, format);
-  fprintf(stderr, "strut %s: ", command->name);
-  vfprintf(stderr, format, values);
-  fputc('\n', stderr);
-  va_end(values);
-  return STRUT_USAGE;
-}
-
 strut_status strut_print_out_of_memory(void) {
   strut_error error = {STRUT_NO_MEMORY, ""};
   strut_print_error(&error);

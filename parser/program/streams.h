@@ -34,9 +34,6 @@ void strut_print_error(const strut_error *error);
 strut_status strut_print_failure(strut_status status, const strut_error *error);
 /** Reports on stderr that memory is out; returns STRUT_NO_MEMORY. */
 strut_status strut_print_out_of_memory(void);
-/** Prints "strut COMMAND: MESSAGE" on stderr; returns STRUT_USAGE. */
-strut_status strut_print_usage_error(const strut_command *command, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
 
 /** Prints every message on stderr. */
 const strut_listener *strut_stderr_listener(void);

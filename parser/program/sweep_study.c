@@ -74,7 +74,7 @@ static strut_status setup_of(void *context, const strut_study_value *values, str
 }
 
 static strut_status apply_options(const void *context, strut_setup *setup) {
-  return strut_run_options_apply(&strut_command_sweep, context, setup);
+  return strut_run_options_apply(context, setup);
 }
 
 /* Makes the scenes of the open study those that options such as --accuracy ask for; STRUT_USAGE. */
@@ -82,8 +82,7 @@ static strut_status adjust_scenes(const strut_arguments *arguments, strut_study_
   const strut_option *first = strut_run_option_given(arguments, 0);
   if (!first) return STRUT_OK;
   if (file->study.compute != STRUT_COMPUTE_RUN || file->study.follow)
-    return strut_print_usage_error(&strut_command_sweep, "--%s is for studies of runs",
-                                   first->name);
+    return strut_usage_error(arguments, "--%s is for studies of runs", first->name);
   file->adjustment =
       (strut_study_adjustment){apply_options, arguments, strut_run_options_purpose(arguments)};
   return STRUT_OK;
@@ -105,7 +104,7 @@ static const char *const *list_words(const strut_arguments *arguments, strut_are
   for (size_t i = 0; words && i < options; i++) {
     const strut_option *o = strut_run_option_given(arguments, i);
     words[n++] = strut_arena_format(arena, "--%s", o->name);
-    words[n++] = strut_option_text(arguments, o->id);
+    words[n++] = strut_given_text(o, arguments);
     if (!words[n - 2]) return NULL;
   }
   *count = n;
@@ -123,7 +122,7 @@ static bool identify(const strut_arguments *arguments, const strut_study_file *f
     uint64_t sum = strut_checksum(text, length, seed);
     for (size_t k = 0; strut_run_option_given(arguments, k); k++) {
       const strut_option *o = strut_run_option_given(arguments, k);
-      const char *value = strut_option_text(arguments, o->id);
+      const char *value = strut_given_text(o, arguments);
       sum = strut_checksum(o->name, strlen(o->name), sum);
       sum = strut_checksum(value, strlen(value), sum);
     }
@@ -279,8 +278,6 @@ strut_status strut_sweep_texts_write(const strut_arguments *arguments,
   return for_each(arguments, study, write_copy, error);
 }
 
-enum { MOST_CPUS = 4096 };
-
 /* The paths of this program and of the current directory. */
 static strut_status find_places(char program[PATH_MAX], char folder[PATH_MAX]) {
   ssize_t length = readlink("/proc/self/exe", program, PATH_MAX - 1);
@@ -313,39 +310,21 @@ static strut_status print_script(const strut_arguments *arguments, strut_cluster
   return status;
 }
 
-/* Checks what does not depend on numbers. */
-static strut_status check_emit_options(const strut_arguments *arguments) {
-  const char *wrong = NULL;
-  if (strcmp(arguments->model, "-") == 0)
-    wrong = "--emit needs a file that the tasks can read, not standard input";
-  else if (!strut_option_text(arguments, STRUT_OPTION_SHARDS))
-    wrong = "--emit needs --shards N, the number of tasks";
-  if (!wrong) return STRUT_OK;
-  fprintf(stderr, "strut sweep: %s\n", wrong);
-  return STRUT_USAGE;
-}
-
 strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name) {
-  static const char *const kinds[] = {"slurm", NULL};
-  const strut_command *command = &strut_command_sweep;
   strut_cluster_script script = {.name = name,
                                  .study = arguments->model,
                                  .output = arguments->output,
-                                 .time = strut_option_text(arguments, STRUT_OPTION_TIME),
-                                 .memory = strut_option_text(arguments, STRUT_OPTION_MEMORY),
-                                 .cpus = 1};
-  int kind = 0;
-  strut_status status = strut_option_word(command, arguments, STRUT_OPTION_EMIT, kinds, &kind);
-  if (status == STRUT_OK) status = check_emit_options(arguments);
-  if (status == STRUT_OK)
-    status = strut_option_integer(command, arguments, STRUT_OPTION_SHARDS, 1, STRUT_MOST_SHARDS,
-                                  &script.shards);
-  if (status == STRUT_OK)
-    status =
-        strut_option_integer(command, arguments, STRUT_OPTION_CPUS, 1, MOST_CPUS, &script.cpus);
-  if (status != STRUT_OK) return status;
+                                 .time = arguments->time,
+                                 .memory = arguments->memory,
+                                 .shards = arguments->shards.value,
+                                 .cpus = arguments->cpus.text ? arguments->cpus.value : 1};
+  if (strcmp(arguments->model, "-") == 0)
+    return strut_usage_error(arguments,
+                             "--emit needs a file that the tasks can read, not standard input");
+  if (!arguments->shards.text)
+    return strut_usage_error(arguments, "--emit needs --shards N, the number of tasks");
   strut_arena arena = {0};
-  status = print_script(arguments, &script, &arena);
+  strut_status status = print_script(arguments, &script, &arena);
   strut_arena_free(&arena);
   return status;
 }

@@ -9,6 +9,7 @@
 
 #include "engine/output/hdf5_library.h"
 #include "engine/output/results.h"
+#include "engine/scene/study.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/command/analyses.h"
 #include "parser/command/run_settings.h"
@@ -474,9 +475,7 @@ static const strut_command *command_of(const char *name) {
 
 static const strut_option *option_of(const char *command, size_t i) {
   const strut_command *found = command_of(command);
-  for (size_t k = 0; found && found->options[k].id != STRUT_OPTION_END; k++)
-    if (k == i) return &found->options[k];
-  return NULL;
+  return found ? strut_command_option(found, i) : NULL;
 }
 
 const char *strutlib_option_name(const char *command, size_t i) {
@@ -505,13 +504,14 @@ strut_status abi_call_begin(abi_call *call, const strutlib_scene *scene,
       abi_lacks_pairs(error, options->count, options->names, options->values))
     return STRUT_USAGE;
   call->listener = abi_listen(messages);
-  call->arguments = (strut_arguments){.model = scene->source->name,
+  call->arguments = (strut_arguments){.command = command,
+                                      .model = scene->source->name,
                                       .overrides = scene->overrides,
                                       .override_count = scene->setting_count,
                                       .listener = &call->listener};
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < options->count && status == STRUT_OK; i++)
-    status = strut_argument_set(command, options->names[i], options->values[i], &call->arguments);
+    status = strut_argument_set(options->names[i], options->values[i], &call->arguments);
   if (status == STRUT_OK && control && control->interrupt) {
     abi_fail(error, STRUTLIB_INTERRUPTED, "interrupted before anything was computed");
     return STRUT_INTERRUPTED;
@@ -522,38 +522,35 @@ strut_status abi_call_begin(abi_call *call, const strutlib_scene *scene,
 
 /* The library's commands: of each the options that the program's command of that name has, files apart. */
 
-#define END                                                                                        \
-  { STRUT_OPTION_END, NULL, NULL, NULL }
-#define FORCE                                                                                      \
-  { STRUT_OPTION_FORCE, "force", NULL, "run even if the step exceeds the stability limit" }
-
 static const strut_option run_options[] = {
-    FORCE,
-    STRUT_RUN_SETTING_OPTIONS,
-    STRUT_FIDELITY_OPTIONS,
-    {STRUT_OPTION_CHANNELS, "channels", "NAME,...", "channels to record, instead of the scene's"},
-    {STRUT_OPTION_RECORD, "record", "YES|NO", "record channels (default yes)"},
-    END};
-static const strut_option simulation_options[] = {
-    FORCE,
-    {STRUT_OPTION_INTEGRATOR, "integrator", "NAME",
-     "integration method, instead of that of the file"},
-    {STRUT_OPTION_STEP, "step", "TIME", "time step, instead of that of the file"},
-    {STRUT_OPTION_TOLERANCE, "tolerance", "X", "error tolerance of adaptive and adaptive8"},
-    STRUT_FIDELITY_OPTIONS,
-    END};
+    STRUT_FORCE_OPTION,
+    {.table = strut_run_setting_options},
+    {.table = strut_fidelity_options},
+    {STRUT_FILLS(channels), "channels", "NAME,...", "channels to record, instead of the scene's",
+     .words = STRUT_CHANNEL_WORDS},
+    {STRUT_FILLS(record), "record", "YES|NO", "record channels (default yes)", .words = "yes|no"},
+    {.name = NULL}};
+static const strut_option simulation_options[] = {STRUT_FORCE_OPTION,
+                                                  STRUT_METHOD_OPTION,
+                                                  STRUT_STEP_OPTION,
+                                                  STRUT_TOLERANCE_OPTION,
+                                                  {.table = strut_fidelity_options},
+                                                  {.name = NULL}};
 static const strut_option sweep_options[] = {
-    {STRUT_OPTION_COMPUTE, "compute", "WHAT",
-     "run (default), equilibria, modes, rigidity, path or form"},
-    {STRUT_OPTION_AT, "at", "NAME", "equilibrium of modes, rigidity and path"},
-    {STRUT_OPTION_LOWEST, "lowest", "N", "number of energies, barriers and frequencies in a row"},
-    {STRUT_OPTION_LIMIT_EVALUATIONS, "limit_evaluations", "N",
-     "force evaluations after which a point fails"},
-    {STRUT_OPTION_LIMIT_TIME, "limit_time", "TIME", "time after which a point fails"},
-    {STRUT_OPTION_THREADS, "threads", "N", "number of threads (default automatic)"},
-    STRUT_RUN_SETTING_OPTIONS,
-    STRUT_FIDELITY_OPTIONS,
-    END};
+    {STRUT_FILLS(compute), "compute", "WHAT",
+     "run (default), equilibria, modes, rigidity, path or form", .key = STRUT_KEY_STUDY_COMPUTE},
+    {STRUT_FILLS(at), "at", "NAME", "equilibrium of modes, rigidity and path"},
+    {STRUT_FILLS(lowest), "lowest", "N", "number of energies, barriers and frequencies in a row",
+     .least = 1, .most = STRUT_STUDY_MOST_LOWEST},
+    {STRUT_FILLS(limit_evaluations), "limit_evaluations", "N",
+     "force evaluations after which a point fails", .least = 1, .most = INT64_MAX / 16},
+    {STRUT_FILLS(limit_time), "limit_time", "TIME", "time after which a point fails",
+     .measure = STRUT_MEASURE_TIME, .high = HUGE_VAL, .expected = "must not be below 0"},
+    {STRUT_FILLS(threads), "threads", "N", "number of threads (default automatic)", .least = 1,
+     .most = 4096},
+    {.table = strut_run_setting_options},
+    {.table = strut_fidelity_options},
+    {.name = NULL}};
 
 const strut_command abi_run_command = {.name = "run", .options = run_options},
                     abi_matrices_command = {.name = "matrices",

@@ -8,15 +8,15 @@
 #include "parser/command/plot_options.h"
 #include "parser/write/write_scene.h"
 
-#define END                                                                                        \
-  { STRUT_OPTION_END, NULL, NULL, NULL }
-static const strut_option svg_options[] = {STRUT_PLOT_SETTING_OPTIONS, STRUT_RUN_FIGURE_OPTIONS,
-                                           STRUT_AXIS_OPTIONS, END};
+static const strut_option svg_options[] = {{.table = strut_plot_setting_options},
+                                           {.table = strut_run_figure_options},
+                                           {.table = strut_axis_options},
+                                           {.name = NULL}};
 static const strut_command svg_command = {.name = "svg", .options = svg_options};
 
 strut_status abi_plot_read(const strut_arguments *arguments, const char *path, strut_plot *plot) {
   *plot = (strut_plot){.path = path};
-  return strut_plot_settings_read(&svg_command, arguments, 0, plot);
+  return strut_plot_settings_read(arguments, 0, plot);
 }
 
 strut_status abi_run_figure_read(const strut_arguments *arguments, strut_run_figure *figure,
@@ -24,7 +24,7 @@ strut_status abi_run_figure_read(const strut_arguments *arguments, strut_run_fig
   strut_plot plot;
   strut_status status = abi_plot_read(arguments, "", &plot);
   if (status != STRUT_OK) return status;
-  return strut_run_figure_read(&svg_command, arguments, &plot, figure, times);
+  return strut_run_figure_read(arguments, &plot, figure, times);
 }
 
 /* ---- figures ---- */
@@ -65,10 +65,10 @@ char *strutlib_result_svg(const strutlib_result *result, size_t count, const cha
   abi_enter(error);
   strut_listener listener = abi_listen(&messages);
   /* There is a figure: options that belong to one are in their place. */
-  strut_arguments arguments = {.listener = &listener};
+  strut_arguments arguments = {.command = &svg_command, .listener = &listener};
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < count && status == STRUT_OK; i++)
-    status = strut_argument_set(&svg_command, names[i], values[i], &arguments);
+    status = strut_argument_set(names[i], values[i], &arguments);
   if (status != STRUT_OK)
     abi_fail_with(error, status, &messages.error);
   else if (!result->draw)

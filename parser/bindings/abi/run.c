@@ -41,43 +41,11 @@ const strut_trajectory *abi_result_motion(const strutlib_result *result) {
 
 /* ---- what is recorded ---- */
 
-/* Of "position,force" the bits of one after the other. */
-static strut_status read_channels(const strut_arguments *given, const char *text,
-                                  unsigned *channels) {
-  strut_arguments one = *given;
-  const char *words[STRUT_CHANNEL_COUNT + 1] = {NULL};
-  for (size_t i = 0; i < STRUT_CHANNEL_COUNT; i++) words[i] = strut_channel_at(i)->name;
-  *channels = 0;
-  while (*text) {
-    char word[40];
-    size_t length = strcspn(text, ",");
-    int index = 0;
-    size_t kept = length < sizeof word ? length : sizeof word - 1;
-    memcpy(word, text, kept);
-    word[kept] = '\0';
-    one.texts[STRUT_OPTION_CHANNELS - STRUT_OPTION_TEXTS] = word;
-    strut_status status =
-        strut_option_word(&abi_run_command, &one, STRUT_OPTION_CHANNELS, words, &index);
-    if (status != STRUT_OK) return status;
-    *channels |= (unsigned)strut_channel_at((size_t)index)->id;
-    text += length;
-    if (*text) text++;
-  }
-  return STRUT_OK;
-}
-
 /* What the scene records and what the page and the figures show, unless the caller says. 0: nothing. */
-static strut_status choose_channels(const strut_arguments *arguments, const strut_setup *setup,
-                                    unsigned *channels) {
-  static const char *const answers[] = {"yes", "no", NULL};
-  const char *text = strut_option_text(arguments, STRUT_OPTION_CHANNELS);
-  int answer = 0;
-  *channels = setup->experiment.channels | strut_run_figure_channels(STRUT_RUN_OVERVIEW);
-  strut_status status =
-      strut_option_word(&abi_run_command, arguments, STRUT_OPTION_RECORD, answers, &answer);
-  if (status == STRUT_OK && text) status = read_channels(arguments, text, channels);
-  if (answer == 1) *channels = 0;
-  return status;
+static unsigned choose_channels(const strut_arguments *arguments, const strut_setup *setup) {
+  if (arguments->record.index == 1) return 0;
+  if (arguments->channels.text) return arguments->channels.set; /* bits in the table's order */
+  return setup->experiment.channels | strut_run_figure_channels(STRUT_RUN_OVERVIEW);
 }
 
 /* ---- the run ---- */
@@ -91,8 +59,7 @@ static strut_status open_setup(abi_call *call, const strutlib_scene *scene,
   if (status != STRUT_OK) return status;
   result->opened = true;
   status = strut_resolve_start_equilibrium(&result->setup, &what);
-  if (status == STRUT_OK)
-    status = strut_run_options_apply(&abi_run_command, arguments, &result->setup);
+  if (status == STRUT_OK) status = strut_run_options_apply(arguments, &result->setup);
   if (status == STRUT_OK) status = strut_model_compile(&result->setup.scene, &result->model, &what);
   if (status != STRUT_OK) abi_call_fail(call, status, &what);
   return status;
@@ -162,13 +129,13 @@ static strut_status run_model(abi_call *call, strutlib_result *result) {
   run_detail *run = strut_allocate(1, sizeof *run);
   strut_error what = {0};
   strut_sink *sink = NULL;
-  unsigned channels;
   if (!run) return (strut_status)abi_no_memory(call->error);
   run->base.release = release;
   result->detail = run;
   result->draw = draw;
-  strut_status status = choose_channels(&call->arguments, &result->setup, &channels);
-  if (status == STRUT_OK && channels) {
+  const unsigned channels = choose_channels(&call->arguments, &result->setup);
+  strut_status status = STRUT_OK;
+  if (channels) {
     sink = strut_trajectory_sink(&run->motion, &result->setup.scene, channels, ROOM);
     if (!sink) status = strut_no_memory(&what, "");
   }
@@ -223,8 +190,7 @@ static strut_status open_simulation(abi_call *call, const strutlib_scene *scene,
   if (status != STRUT_OK) return status;
   simulation->opened = true;
   status = strut_resolve_start_equilibrium(setup, &what);
-  if (status == STRUT_OK)
-    status = strut_run_options_apply(&abi_simulation_command, arguments, setup);
+  if (status == STRUT_OK) status = strut_run_options_apply(arguments, setup);
   if (status == STRUT_OK)
     status = strut_stepping_create(setup, arguments->force, abi_interrupt_of(call->control),
                                    &simulation->stepping, &what);

@@ -49,7 +49,6 @@ static strut_status compute_and_report(abi_call *call, const strutlib_scene *sce
   result->detail = d;
   result->draw = draw;
   *a = (strut_analysis){.kind = kind,
-                        .command = result->command,
                         .arguments = &call->arguments,
                         .setup = &result->setup,
                         .model = result->model,

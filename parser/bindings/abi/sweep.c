@@ -12,7 +12,6 @@
 #include "parser/command/run_settings.h"
 #include "parser/write/write_scene.h"
 
-enum { MOST_THREADS = 4096 };
 static const char slots_name[] = "points.slots", table_name[] = "table.csv";
 static const char *const files[] = {slots_name, table_name, NULL};
 
@@ -134,36 +133,15 @@ static strut_status add_kept(sweep *s, const char *word, strut_error *what) {
                     word, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
-static strut_status read_options(abi_call *call, sweep *s, strut_error *what) {
-  static const char *const computes[] = {
-#define COMPUTE_WORD(name, word) word,
-      STRUT_COMPUTE_TABLE(COMPUTE_WORD)
-#undef COMPUTE_WORD
-          NULL};
-  const strut_command *command = &abi_sweep_command;
-  const strut_arguments *a = &call->arguments;
-  int compute = STRUT_COMPUTE_RUN;
-  int64_t lowest = 0;
-  const char *at = strut_option_text(a, STRUT_OPTION_AT);
-  strut_status status = strut_option_word(command, a, STRUT_OPTION_COMPUTE, computes, &compute);
-  if (!status)
-    status = strut_option_integer(command, a, STRUT_OPTION_THREADS, 1, MOST_THREADS, &s->threads);
-  if (!status)
-    status =
-        strut_option_integer(command, a, STRUT_OPTION_LOWEST, 1, STRUT_STUDY_MOST_LOWEST, &lowest);
-  if (!status)
-    status = strut_option_integer(command, a, STRUT_OPTION_LIMIT_EVALUATIONS, 1, INT64_MAX / 16,
-                                  &s->study.limit.evaluations);
-  if (!status)
-    status = strut_option_number(command, a, STRUT_OPTION_LIMIT_TIME, STRUT_DIM_TIME,
-                                 &s->study.limit.time);
-  if (!status && s->study.limit.time < 0.0)
-    return strut_fail(what, STRUT_USAGE, "limit_time must not be below 0");
-  if (!status && at && !(s->study.at = strut_arena_text(&s->arena, at, strlen(at))))
+static strut_status read_options(const strut_arguments *a, sweep *s, strut_error *what) {
+  s->threads = a->threads.value;
+  s->study.limit.evaluations = a->limit_evaluations.value;
+  s->study.limit.time = a->limit_time.value;
+  s->study.compute = (uint32_t)a->compute.index;
+  s->study.lowest = (int32_t)a->lowest.value;
+  if (a->at && !(s->study.at = strut_arena_text(&s->arena, a->at, strlen(a->at))))
     return strut_no_memory(what, "");
-  s->study.compute = (uint32_t)compute;
-  s->study.lowest = (int32_t)lowest;
-  return status;
+  return STRUT_OK;
 }
 
 /* Applies the options of method and model to the scene itself, so that what is wrong with them is said once. */
@@ -178,7 +156,7 @@ static strut_status check_options(abi_call *call, sweep *s) {
   strut_status status = abi_setup(s->scene, s->purpose, &setup, call->error);
   s->located = status != STRUT_OK;
   if (status != STRUT_OK) return status;
-  status = strut_run_options_apply(&abi_sweep_command, a, &setup);
+  status = strut_run_options_apply(a, &setup);
   strut_setup_free(&setup);
   return status;
 }
@@ -231,8 +209,7 @@ static strut_status setup_of(void *context, const strut_study_value *values, str
   }
   strut_diagnostics_free(&found);
   strut_release(settings);
-  if (status == STRUT_OK &&
-      (status = strut_run_options_apply(&abi_sweep_command, &s->options, setup)) != STRUT_OK) {
+  if (status == STRUT_OK && (status = strut_run_options_apply(&s->options, setup)) != STRUT_OK) {
     strut_fail(error, status, "the options do not fit the scene of this point");
     strut_setup_free(setup);
   }
@@ -420,7 +397,7 @@ strutlib_result *strutlib_sweep(const strutlib_scene *scene, size_t axis_count,
     s.study.name = "sweep";
     s.study.quantities = strut_arena_allocate(&s.arena, keep_count, sizeof *s.study.quantities);
     if (!s.study.quantities) status = strut_no_memory(&what, "");
-    if (status == STRUT_OK) status = read_options(&call, &s, &what);
+    if (status == STRUT_OK) status = read_options(&call.arguments, &s, &what);
     if (status == STRUT_OK) status = check_options(&call, &s);
     if (status == STRUT_OK)
       status = add_axes(&s, axis_count, axes, point_count, points, words, &what);
