@@ -182,7 +182,7 @@ static strut_status check_losses(const strut_run *r) {
                                       [STRUT_LOSS_CONTACT] = "the ground's dampers",
                                       [STRUT_LOSS_FRICTION] = "friction"};
   const strut_balance_monitor *b = &r->watch.balance;
-  if (!(b->given > 0.0) || r->options->force) return STRUT_OK;
+  if (!(b->given > 0.0) || r->options->force || r->state->trouble) return STRUT_OK;
   bool contacts = b->giver != STRUT_LOSS_MEMBERS;
   return strut_fail(
       r->error, STRUT_DIVERGED,

@@ -213,6 +213,7 @@ static double error_to_reach(const strut_event_stepper *stepper, double part) {
 
 void strut_event_look_between(const strut_model *model, const strut_state *state,
                               strut_event_stepper *stepper, double h) {
+  if (strut_turns_due(state, stepper)) strut_turns_look(model, state, stepper, h);
   if (!(stepper->control.error <= 1.0)) return;
   strut_event_measure(model, state, stepper, stepper->next);
   double part = strut_event_between(model, state, stepper, h);
@@ -224,10 +225,9 @@ void strut_event_look_between(const strut_model *model, const strut_state *state
   if (part > 0.0) stepper->control.error = error_to_reach(stepper, part);
 }
 
-/* All stages of a step; its error into stepper->control. */
-STRUT_INLINE void take_stages(const strut_model *model, const strut_state *state,
-                              strut_event_stepper *stepper, double t, double h, unsigned terms,
-                              bool balance) {
+STRUT_INLINE void take(const strut_model *model, const strut_state *state,
+                       strut_event_stepper *stepper, double t, double h, unsigned terms,
+                       bool balance) {
   const strut_tableau *tableau = stepper->formula->tableau;
   double *v[STRUT_MOST_STAGES + 1], *a[STRUT_MOST_STAGES + 1];
   const int end = tableau->stages;
@@ -261,17 +261,6 @@ STRUT_INLINE void take_stages(const strut_model *model, const strut_state *state
   }
   evaluate_step_end(model, state, stepper, t + h, stepper->next, terms, balance);
   stepper->control.error = error_of(model, stepper, h, v, a);
-}
-
-/* Again, where a member has shrunk to nothing and turned its force round. */
-STRUT_INLINE void take(const strut_model *model, const strut_state *state,
-                       strut_event_stepper *stepper, double t, double h, unsigned terms,
-                       bool balance) {
-  bool again = false;
-  do {
-    take_stages(model, state, stepper, t, h, terms, balance);
-    again = strut_turns_due(state, stepper) && strut_turns_appear(model, state, stepper, h);
-  } while (again);
   strut_event_look_between(model, state, stepper, h);
 }
 

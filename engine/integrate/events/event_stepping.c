@@ -114,7 +114,8 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
   stepper->done = 0.0;
   stepper->chatter.at_once = stepper->chatter.switches = 0;
   stepper->chatter.pushed = -1;
-  stepper->tried = false;
+  stepper->tried = stepper->turns.on = false;
+  stepper->laws.count = stepper->turns.first;
   find_next_break(model, state, stepper, t, dt);
   stepper->looks = strut_drive_is_looked_at(model);
   if (stepper->next_break < HUGE_VAL) t += moment_before(t, dt);

@@ -410,9 +410,6 @@ int32_t strut_turns_list(const strut_model *model, strut_law_switch *item, uint3
 /** After a trial of h: finds whether one may turn round within it, and so counts. */
 void strut_turns_look(const strut_model *model, const strut_state *state,
                       strut_event_stepper *stepper, double h);
-/** The same; true where one has turned for which the trial did not reckon. */
-bool strut_turns_appear(const strut_model *model, const strut_state *state,
-                        strut_event_stepper *stepper, double h);
 static inline bool strut_turns_due(const strut_state *state, const strut_event_stepper *stepper) {
   return state->step >= stepper->turns.due;
 }

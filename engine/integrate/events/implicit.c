@@ -221,8 +221,7 @@ static void implicit_once(const strut_model *model, const strut_state *state,
 static void implicit_trial(const strut_model *model, const strut_state *state,
                            strut_event_stepper *stepper, double t, double h) {
   if (state->watched.rehearsals) strut_event_rehearse(implicit_once, model, state, stepper, t, h);
-  do implicit_once(model, state, stepper, t, h);
-  while (strut_turns_due(state, stepper) && strut_turns_appear(model, state, stepper, h));
+  implicit_once(model, state, stepper, t, h);
 }
 
 static const strut_step_formula formula = {.trial = implicit_trial,

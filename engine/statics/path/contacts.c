@@ -287,10 +287,8 @@ bool strut_path_pass_zero_length(strut_path_walk *w, int32_t member) {
   int32_t before = w->negative;
   char detail[300];
   strut_path_evaluate(s, w->y);
-  bool guided = s->model->scene->members[member].guide_count;
-  if (guided) strut_path_add_point(w, before);
-  if (guided || fabs(s->member[member].length) > STRUT_PATH_EVEN * s->size)
-    return false; /* it would be pulled through its guide, or has a direction */
+  if (fabs(s->member[member].length) > STRUT_PATH_EVEN * s->size)
+    return false; /* it has a direction */
   memset(row, 0, ((size_t)s->n + 1) * sizeof *row);
   for (uint32_t c = 0; c < 2; c++) {
     ahead[c] = beyond[c];

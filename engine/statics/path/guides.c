@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Elements along straight segments that shrink to nothing: as of a plain member, length and direction of a segment whose
- * nodes have passed one another since the last point count as negative, so that what acts before goes on smoothly.
- *
- * And cables that rub at their guides, in the equations of a path that keeps friction.
+ * Cables that rub at their guides, in the equations of a path that keeps friction.
  *
  * Which material lies between which guides is what the last point of the path left; what slips since then
  * follows from the tensions (capstan.h), so that forces depend on positions alone and their derivatives are
@@ -15,85 +12,9 @@
 #include <string.h>
 
 #include "engine/forces/capstan.h"
-#include "engine/forces/strains/path.h"
 #include "engine/statics/path/path_parts.h"
 
-static const double STEP = 1e-7;     /* of the size: differences */
-static const double NOTHING = 1e-12; /* of the size: a length that has no direction */
-
-/* Segments of an element whose force turns round where one shrinks to nothing; 0 of others. */
-static int32_t segments_of(const strut_path_system *s, const strut_element *e) {
-  bool straight = e->strain == STRUT_STRAIN_LENGTH && strut_element_is_of_member(e);
-  if (straight) return strut_path_turns_round(s, e->item) ? 1 : 0;
-  return e->strain == STRUT_STRAIN_PATH && !strut_has_capstan(e) ? e->nodes - 1 : 0;
-}
-
-/* Where segment k pointed at the last point. */
-static double *ahead_of(const strut_path_system *s, const strut_element *e, int32_t k) {
-  bool straight = e->strain == STRUT_STRAIN_LENGTH;
-  return straight ? &s->latest.ahead[2 * e->item] : &s->latest.segment[2 * (e->first + k)];
-}
-
-/* Its length [m] and direction, 0 where it has none. */
-static double measure_segment(const strut_path_system *s, const strut_element *e, int32_t k,
-                              double u[2]) {
-  const uint32_t *at = s->model->elements.at + e->first + k;
-  const double *a = s->latest.q + at[0], *b = s->latest.q + at[1];
-  double x = b[0] - a[0], y = b[1] - a[1], length = hypot(x, y);
-  u[0] = length > 0.0 ? x / length : 0.0, u[1] = length > 0.0 ? y / length : 0.0;
-  return length;
-}
-
-void strut_path_turn_segments(const strut_path_system *s, const strut_element *e,
-                              strut_element_pose *pose) {
-  for (int32_t k = 0; k < segments_of(s, e); k++) {
-    const double *ahead = ahead_of(s, e, k);
-    double u[2], length = measure_segment(s, e, k, u), *b = pose->b + 2 * k;
-    bool known = ahead[0] != 0.0 || ahead[1] != 0.0, tiny = length < NOTHING * s->size;
-    bool turned = u[0] * ahead[0] + u[1] * ahead[1] < 0.0;
-    if (!known || !(tiny || turned)) continue;
-    if (turned) pose->strain -= 2.0 * length;
-    for (int c = 0; c < 2; c++) {
-      double more = (tiny ? ahead[c] : -u[c]) - u[c];
-      b[c] -= more, b[c + 2] += more;
-    }
-  }
-}
-
-void strut_path_turn_bends(const strut_path_system *s, const strut_element *e, double force,
-                           double *k) {
-  int32_t n = 2 * e->nodes;
-  for (int32_t i = 0; i < segments_of(s, e); i++) {
-    const double *ahead = ahead_of(s, e, i);
-    double u[2], h[16] = {0};
-    measure_segment(s, e, i, u);
-    if (!(u[0] * ahead[0] + u[1] * ahead[1] < 0.0)) continue;
-    strut_strain_path_bend(s->model->elements.at + e->first + i, 2, s->latest.q, -2.0 * force, h);
-    for (int32_t a = 0; a < 16; a++) k[(2 * i + a / 4) * n + 2 * i + a % 4] += h[a];
-  }
-}
-
-double strut_path_segments_ahead(const strut_path_system *s, int32_t element, double *length) {
-  const strut_element *e = &s->model->elements.element[element];
-  double least = HUGE_VAL, u[2];
-  for (int32_t k = 0; k < segments_of(s, e); k++) {
-    const double *ahead = ahead_of(s, e, k);
-    double own = measure_segment(s, e, k, u), along = own * (u[0] * ahead[0] + u[1] * ahead[1]);
-    if (along < least) least = along, *length = own;
-  }
-  return least;
-}
-
-void strut_path_keep_segments(strut_path_system *s, bool known) {
-  for (int32_t i = 0; i < s->model->elements.count; i++) {
-    const strut_element *e = &s->model->elements.element[i];
-    for (int32_t k = 0; e->strain == STRUT_STRAIN_PATH && k + 1 < e->nodes; k++) {
-      double *ahead = ahead_of(s, e, k);
-      measure_segment(s, e, k, ahead);
-      if (!known) ahead[0] = ahead[1] = 0.0;
-    }
-  }
-}
+static const double STEP = 1e-7; /* of the size: differences */
 
 bool strut_path_rubs(const strut_path_system *s, int32_t i) {
   return s->elements.material && strut_has_capstan(&s->model->elements.element[i]);

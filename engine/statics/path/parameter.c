@@ -433,11 +433,29 @@ static double find_rate(const strut_path_system *s, int32_t i) {
   return rate * (high - low) / (2.0 * h);
 }
 
+/*
+ * Of a straight element whose nodes have passed one another since the last point strain and gradient count as negative,
+ * as those of a plain member.
+ */
+static void turn_round(const strut_path_system *s, const strut_element *e,
+                       strut_path_element *own) {
+  double *b = own->pose.b;
+  own->turned = false;
+  if (!strut_element_is_of_member(e) || !strut_path_turns_round(s, e->item)) return;
+  const double *ahead = &s->latest.ahead[2 * e->item];
+  own->turned = b[2] * ahead[0] + b[3] * ahead[1] < 0.0;
+  if (own->turned) own->pose.strain *= -1.0;
+  bool tiny = fabs(own->pose.strain) < STRUT_PATH_NOTHING * s->size;
+  for (int k = 0; k < 4; k++)
+    b[k] = tiny && (ahead[0] != 0.0 || ahead[1] != 0.0) ? (k < 2 ? -1.0 : 1.0) * ahead[k % 2]
+                                                        : (own->turned ? -b[k] : b[k]);
+}
+
 /* Strain and gradient at system->q, natural strain of its terms, force and slope of its piece. */
 static void evaluate_element(strut_path_system *s, int32_t i) {
   strut_path_element *own = &s->elements.element[i];
   strut_element_evaluate(s->model, i, s->equations.terms.rest, s->latest.q, own->turn, &own->pose);
-  strut_path_turn_segments(s, &s->model->elements.element[i], &own->pose);
+  turn_round(s, &s->model->elements.element[i], own);
   own->pose.natural = natural_in(&s->equations.terms, i);
   strut_law_response r =
       respond(&s->equations.terms, i, own->pose.strain, own->pose.natural, own->piece);
@@ -456,7 +474,7 @@ static void add_element(strut_path_system *s, int32_t i) {
   double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
   int32_t n = 2 * e->nodes;
   strut_element_stiffness(s->model, i, &own->pose, s->latest.q, k);
-  strut_path_turn_bends(s, e, own->pose.force, k);
+  if (own->turned) strut_element_bend(s->model, i, s->latest.q, -2.0 * own->pose.force, k);
   for (int32_t a = 0; a < n; a++) {
     int32_t row = s->potential->row_of[place_of(s, e, a)];
     if (row < 0) continue;

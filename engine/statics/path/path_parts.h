@@ -74,8 +74,8 @@ typedef struct strut_path_element {
   strut_element_pose pose; /* force and slope of its frozen piece; 0 where it does not act */
   double rate;             /* of its force with the parameter, its strain held */
   double turn;             /* value near which an angle is taken; NAN: its natural one */
-  bool acts;
-  int piece; /* of its law */
+  bool acts, turned;       /* straight, and shrunk to nothing since the last point */
+  int piece;               /* of its law */
 } strut_path_element;
 
 /** What may change about an element: whether it acts (kink -1), or on which side of a kink it is. */
@@ -123,21 +123,6 @@ void strut_path_pressures(const struct strut_path_system *system, double *pressu
 double strut_path_element_switch_value(const struct strut_path_system *system, int32_t which);
 bool strut_path_element_switch_is_on(const struct strut_path_system *system, int32_t which);
 void strut_path_element_switch_set(struct strut_path_system *system, int32_t which, bool on);
-
-/* Segments that shrink to nothing. For parameter.c and system.c. */
-
-/** Of an element evaluated at system->latest.q: strain and gradient with segments that have turned as negative. */
-void strut_path_turn_segments(const struct strut_path_system *system, const strut_element *element,
-                              strut_element_pose *pose);
-/** Likewise its stiffness (2 nodes, 2 nodes), of which `force` is one part. */
-void strut_path_turn_bends(const struct strut_path_system *system, const strut_element *element,
-                           double force, double *stiffness);
-/** How far, at least, the nodes of an element's segments are ahead in the last direction, and that segment's length [m];
-    INFINITY of elements that do not turn round. */
-double strut_path_segments_ahead(const struct strut_path_system *system, int32_t element,
-                                 double *length);
-/** The directions of cables at guides are those to compare with from now on, or there are none yet. */
-void strut_path_keep_segments(struct strut_path_system *system, bool known);
 
 /* Cables that rub at their guides, in a path that keeps friction. For parameter.c and walk.c. */
 
@@ -258,7 +243,6 @@ typedef struct strut_path_system {
   struct {
     uint8_t *pulling; /* (members) 1 where forces act, of whatever sign */
     double *ahead;    /* (2 members) directions at the last point kept; 0: none is known yet */
-    double *segment;  /* likewise of cables at guides, by the places of elements' nodes */
     double *q, *q_low, *g, *slope, *row; /* (length), (length), (n), (n) dg/dy_n, (n + 1) scratch */
     double forces;                       /* the largest force: what g is compared with [N] */
   } latest;
@@ -488,6 +472,8 @@ void strut_path_walk_branches(strut_path_walk *walk, strut_path *path,
 
 /** Switches this close to zero change together, in units of the structure's size. */
 #define STRUT_PATH_EVEN 1e-9
+/** A length that has no direction, likewise. */
+#define STRUT_PATH_NOTHING 1e-12
 
 /**
  * Throws the switch `which` at walk->y, and those that stand at zero there and are thrown with it,
@@ -503,8 +489,6 @@ bool strut_path_pass_corner(strut_path_walk *walk, int32_t which);
 bool strut_path_pass_zero_length(strut_path_walk *walk, int32_t member);
 /** Is this switch that of such a member? */
 bool strut_path_turns_round(const strut_path_system *system, int32_t which);
-/** After strut_path_evaluate: of such a member, its length or that of its segment which is turned furthest [m]. */
-double strut_path_shortest(const strut_path_system *system, int32_t member);
 /** Directions of members at the latest place count as theirs from now on, or what is found next. */
 void strut_path_keep_directions(strut_path_system *system);
 void strut_path_forget_directions(strut_path_system *system);

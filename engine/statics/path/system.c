@@ -47,12 +47,8 @@ static bool make_arrays(strut_path_system *s) {
     if (!(*arrays[i] = strut_arena_allocate(&s->arena, length + 1, sizeof(double)))) return false;
   s->latest.pulling = strut_arena_allocate(&s->arena, members, 1);
   s->latest.ahead = strut_arena_allocate(&s->arena, 2 * members, sizeof(double));
-  int32_t places = 0;
-  for (int32_t i = 0; i < s->model->elements.count; i++)
-    places += s->model->elements.element[i].nodes;
-  s->latest.segment = strut_arena_allocate(&s->arena, 2 * (size_t)places, sizeof(double));
   s->member = strut_arena_allocate(&s->arena, members, sizeof *s->member);
-  if (!s->latest.pulling || !s->latest.ahead || !s->latest.segment || !s->member) return false;
+  if (!s->latest.pulling || !s->latest.ahead || !s->member) return false;
   memset(s->latest.pulling, 1, members);
   return strut_path_elements_create(s->model, &s->arena, &s->elements) &&
          strut_path_contacts_create(s->model, &s->arena, &s->contacts) &&
@@ -132,29 +128,13 @@ static strut_dd coordinate(const strut_path_system *s, uint32_t at) {
   return (strut_dd){s->latest.q[at], s->latest.q_low[at]};
 }
 
-/* The element of a cable that runs through guides and is taut, or -1. */
-static int32_t running(const strut_path_system *s, int32_t j) {
-  const strut_element *e = strut_element_of_member(&s->model->elements, j);
-  int32_t i = e ? (int32_t)(e - s->model->elements.element) : -1;
-  return e && e->strain == STRUT_STRAIN_PATH && s->elements.element[i].acts ? i : -1;
-}
-
-/* Springs and bars whose force turns round where they shrink to nothing, and cables where one runs into its guide. */
+/* Springs and bars whose force turns round where they shrink to nothing. */
 bool strut_path_turns_round(const strut_path_system *s, int32_t j) {
-  if (j >= s->model->members.count) return false;
-  const strut_member *m = &s->model->scene->members[j];
-  if (m->guide_count) return running(s, j) >= 0;
-  return m->kind != STRUT_CABLE && s->equations.terms.rest[j] > 0.0;
+  return j < s->model->members.count && s->model->scene->members[j].kind != STRUT_CABLE &&
+         s->equations.terms.rest[j] > 0.0 && !s->model->scene->members[j].guide_count;
 }
 
-double strut_path_shortest(const strut_path_system *s, int32_t j) {
-  double length = fabs(s->member[j].length);
-  if (running(s, j) >= 0) strut_path_segments_ahead(s, running(s, j), &length);
-  return length;
-}
-
-static const double NOTHING = 1e-12; /* of the size: a length that has no direction */
-static const double SHORT = 1e-9;    /* likewise, the shortest length by which a force is divided */
+static const double SHORT = 1e-9; /* likewise, the shortest length by which a force is divided */
 
 /*
  * Length of a member, and what it is longer than its rest length. Where its nodes have passed one another since
@@ -168,11 +148,11 @@ static double measure_member(const strut_path_system *s, int32_t j, strut_path_m
   strut_dd length = dd_length(dx, dy);
   const double *ahead = &s->latest.ahead[2 * j];
   *m = (strut_path_member){.length = dd_double(length)};
-  bool turns = running(s, j) < 0 && strut_path_turns_round(s, j);
+  bool turns = strut_path_turns_round(s, j);
   if (turns && dx.hi * ahead[0] + dy.hi * ahead[1] < 0.0)
     length = dd_scale(length, -1.0), m->length = -m->length;
   if (m->length != 0) m->ux = dd_double(dd_div(dx, length)), m->uy = dd_double(dd_div(dy, length));
-  if (turns && fabs(m->length) < NOTHING * s->size &&
+  if (turns && fabs(m->length) < STRUT_PATH_NOTHING * s->size &&
       ahead[0] * ahead[0] + ahead[1] * ahead[1] > 0.0)
     m->ux = ahead[0], m->uy = ahead[1];
   return dd_double(dd_sub(length, rest));
@@ -460,8 +440,6 @@ static bool is_plain_cable(const strut_model *model, int32_t j) {
 /* How far the second node is ahead of the first, in the last direction [m]. */
 static double measure_ahead(const strut_path_system *s, int32_t j) {
   const strut_member_table *t = &s->model->members;
-  double length;
-  if (running(s, j) >= 0) return strut_path_segments_ahead(s, running(s, j), &length);
   strut_dd dx = dd_sub(coordinate(s, t->to[j]), coordinate(s, t->from[j]));
   strut_dd dy = dd_sub(coordinate(s, t->to[j] + 1), coordinate(s, t->from[j] + 1));
   const double *ahead = &s->latest.ahead[2 * j];
@@ -471,12 +449,10 @@ static double measure_ahead(const strut_path_system *s, int32_t j) {
 void strut_path_keep_directions(strut_path_system *s) {
   for (int32_t j = 0; j < s->model->members.count; j++)
     s->latest.ahead[2 * j] = s->member[j].ux, s->latest.ahead[2 * j + 1] = s->member[j].uy;
-  strut_path_keep_segments(s, true);
 }
 
 void strut_path_forget_directions(strut_path_system *s) {
   memset(s->latest.ahead, 0, 2 * (size_t)s->model->members.count * sizeof *s->latest.ahead);
-  strut_path_keep_segments(s, false);
 }
 
 double strut_path_switch_value(strut_path_system *s, int32_t which, const double *y) {

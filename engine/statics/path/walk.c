@@ -126,7 +126,7 @@ static bool is_passing_by(strut_path_walk *w, int32_t which, double place) {
   strut_path_system *s = &w->system;
   if (place < 0 || !strut_path_turns_round(s, which) || !strut_path_evaluate(s, w->spare))
     return false;
-  return strut_path_shortest(s, which) > STRUT_PATH_EVEN * s->size;
+  return fabs(s->member[which].length) > STRUT_PATH_EVEN * s->size;
 }
 
 /*
