@@ -51,6 +51,7 @@ typedef struct strut_implicit {
   double *matrix, *x;                 /* (n, n), (n) */
   size_t *pivot;
   double *known, time; /* (length) accelerations that the slopes are for, and when */
+  int64_t events;      /* and after how many events: modes may change where accelerations do not */
 } strut_implicit;
 
 /* Arrays of stepper->stage: results of positions and of velocities, then what a stage is evaluated at and gives. */
@@ -97,7 +98,8 @@ static void differentiate(const trial *c) {
   strut_implicit *m = c->m;
   const strut_step_end *now = c->stepper->now;
   size_t bytes = (size_t)c->model->length * sizeof(double);
-  if (m->time == c->t && !memcmp(m->known, now->a, bytes)) return;
+  bool same = m->time == c->t && m->events == c->state->events;
+  if (same && !memcmp(m->known, now->a, bytes)) return;
   double size = c->model->size, later = OF_STEP * c->h;
   double speed = fmax(c->stepper->control.speed, size * 1e-3);
   copy_now(c, &c->stepper->stage[Q]);
@@ -110,7 +112,7 @@ static void differentiate(const trial *c) {
   for (int p = 0; p < POWERS; p++)
     m->drift_power[p] = (c->state->latest->power[p] - now->power[p]) / later;
   memcpy(m->known, now->a, bytes);
-  m->time = c->t;
+  m->time = c->t, m->events = c->state->events;
 }
 
 /* Factors 1/(gamma h) - J, with positions eliminated. False: it is singular. */

@@ -235,13 +235,20 @@ static bool grazes(const strut_event_stepper *stepper, double beyond, double spe
          is_at_rest(stepper, beyond * stepper->control.frequency, h);
 }
 
+/* Likewise contact i, whose friction multiplies what its gap leaves open. */
+static bool touch_grazes(const strut_event_stepper *stepper, int32_t i, const strut_touch *touch,
+                         double h) {
+  double rubs = 1.0 + stepper->contacts.entry[i].friction.mu_kinetic;
+  return grazes(stepper, rubs * touch->gap, touch->into, h);
+}
+
 /* Whether an open contact whose gap is below 0 at the step's end has come down to it. One that has just
    opened may stand below 0 by rounding, on its way up. */
 static bool closes(const strut_contact_table *c, int32_t i, const strut_event_stepper *stepper,
                    double h) {
   strut_touch to;
   measure_at_end(c, &stepper->modes, stepper->next, i, STRUT_TERMS_ALL, &to);
-  if (grazes(stepper, to.gap, to.into, h)) return false;
+  if (touch_grazes(stepper, i, &to, h)) return false;
   return to.into < 0.0 || gap_at_end(c, &stepper->modes, i, stepper->now, STRUT_TERMS_ALL) > 0.0;
 }
 
@@ -249,7 +256,7 @@ static bool closes(const strut_contact_table *c, int32_t i, const strut_event_st
    One that has just touched may be above the ground by rounding while it still moves down. */
 static bool opens(const strut_event_stepper *stepper, int32_t i, const strut_touch *o, double h) {
   return o->gap > 0.0 && (o->into > 0.0 || stepper->now->touch[i].gap < 0.0) &&
-         !grazes(stepper, o->gap, o->into, h);
+         !touch_grazes(stepper, i, o, h);
 }
 
 /* What ends a mode of contact i, if it comes before `first`. */
