@@ -292,9 +292,11 @@ STRUT_INLINE double relative_error(const strut_model *model, const strut_step_co
 /* Errors of what rests may be so many times that of one step, where its length is near the limit of stability. */
 static const double REST = 30.0;
 
-/* Is this a speed, after a step of h, of which error control does not know the sign? */
+/* Is this a speed, after a step of h, of which error control does not know the sign? A step by derivatives keeps to
+   its modes, whose kinks these do not see. */
 STRUT_INLINE bool is_at_rest(const strut_event_stepper *stepper, double speed, double h) {
-  return stepper->formula->adaptive && fabs(speed) <= REST * allowed_speed(&stepper->control, h);
+  return stepper->formula->adaptive && !stepper->implicit &&
+         fabs(speed) <= REST * allowed_speed(&stepper->control, h);
 }
 
 /* New step after an error of stepper->control.error. */
