@@ -65,7 +65,7 @@ static void put_list(strut_json *json, struct cJSON *to, const strut_value_row *
     const char *name = value->name ? value->name(of, i) : NULL;
     const strut_scene *scene = value->scene ? value->scene(of, i) : of->scene;
     strut_result_object item = {(const char *)value->items + i * value->size, of, scene, i};
-    if (name || !value->name)
+    if ((name || !value->name) && strut_value_has(value, of, i))
       strut_json_values(json, strut_json_object(json, list, name), row->rows, &item);
   }
 }
@@ -160,7 +160,9 @@ static void add_cell(line *at, const strut_value_row *row, const strut_value *va
   char room[STRUT_VALUE_ROOM];
   const char *text;
   next_cell(at);
-  if (at->names)
+  if (at->names && value->own_unit)
+    strut_csv_add_text(at->csv, *value->own_unit ? "%s [%s]" : "%s", value->text, value->own_unit);
+  else if (at->names)
     strut_buffer_add(at->csv, "%s%s", at->part, row->column[0]);
   else if (value->kind == STRUT_VALUE_NUMBER)
     strut_csv_add_number(at->csv, value->number);
@@ -234,24 +236,35 @@ void strut_csv_add_values(strut_buffer *csv, const strut_value_rows *rows,
   add_columns(&(line){csv, false, ",", ""}, rows, of);
 }
 
-char *strut_values_csv(const strut_value_rows *rows, const char *key, const char *index,
+/* The names of the columns of an empty list are those of a struct of zeros. */
+static const double zeros[256];
+
+static void add_lines(strut_buffer *csv, const strut_value_rows *rows, const char *path,
+                      const char *const before[2], const strut_result_object *of) {
+  strut_value values[STRUT_MOST_VALUES];
+  size_t at = 0, length = strcspn(path, ".");
+  rows->fill(of, values);
+  while (!rows->row[at].key || strncmp(rows->row[at].key, path, length) != 0) at++;
+  bool none = !csv->length && !values[at].count;
+  assert(!none || values[at].size <= sizeof zeros);
+  for (size_t i = 0; i < values[at].count + none; i++) {
+    const char *item =
+        none ? (const char *)zeros : (const char *)values[at].items + i * values[at].size;
+    const strut_result_object within = {item, of, of->scene, i};
+    if (path[length]) add_lines(csv, rows->row[at].rows, path + length + 1, before, &within);
+    for (int names = !csv->length; names >= none && !path[length]; names--) {
+      line cells = {csv, names, "", ""};
+      strut_buffer_add(csv, "%s", before ? before[!names] : "");
+      add_columns(&cells, rows->row[at].rows, &within);
+      strut_buffer_add(csv, "\n");
+    }
+  }
+}
+
+char *strut_values_csv(const strut_value_rows *rows, const char *path, const char *const before[2],
                        const void *result, const strut_scene *scene) {
   strut_buffer csv = {0};
-  strut_value values[STRUT_MOST_VALUES];
-  strut_result_object whole = {result, NULL, scene, 0};
-  size_t of = 0;
-  rows->fill(&whole, values);
-  while (strcmp(rows->row[of].key, key) != 0) of++;
-  for (size_t i = 0; i <= values[of].count; i++) { /* the first line has the names */
-    size_t at = i ? i - 1 : 0;
-    line cells = {&csv, !i, "", ""};
-    const char *item = (const char *)values[of].items + at * values[of].size;
-    if (index) next_cell(&cells);
-    if (index && !i) strut_buffer_add(&csv, "%s", index);
-    if (index && i) strut_buffer_add(&csv, "%zu", i);
-    add_columns(&cells, rows->row[of].rows, &(strut_result_object){item, &whole, scene, at});
-    strut_buffer_add(&csv, "\n");
-  }
+  add_lines(&csv, rows, path, before, &(strut_result_object){result, NULL, scene, 0});
   return strut_buffer_take(&csv);
 }
 

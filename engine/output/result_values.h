@@ -25,11 +25,12 @@ STRUT_API void strut_csv_add_names(strut_buffer *csv, const strut_value_rows *ro
 STRUT_API void strut_csv_add_values(strut_buffer *csv, const strut_value_rows *rows,
                                     const strut_result_object *of);
 /**
- * The structs of the list `key` of a whole result, of which there is one at least, as a CSV in a block of
- * strut_allocate or NULL. With `index` the first column has that name and counts them from 1.
+ * The structs of a list, or of lists within one, "branches.points", as a CSV in a
+ * block of strut_allocate or NULL. `before`: what stands before the names, and before the values; NULL: nothing.
  */
-STRUT_API char *strut_values_csv(const strut_value_rows *rows, const char *key, const char *index,
-                                 const void *result, const struct strut_scene *scene);
+STRUT_API char *strut_values_csv(const strut_value_rows *rows, const char *path,
+                                 const char *const before[2], const void *result,
+                                 const struct strut_scene *scene);
 
 /** Appends rows of a Markdown table about the values, their keys after `before`. */
 STRUT_API void strut_values_describe(strut_buffer *page, const strut_value_rows *rows,

@@ -56,7 +56,7 @@ struct strut_value {
   strut_value_kind kind;
   double number; /* also of a count and a flag */
   int64_t integer;
-  const char *text;
+  const char *text, *own_unit; /* also the name of a number's column, which the row leaves empty */
   const void *items;           /* numbers, structs of a list, or a part */
   size_t count, size, columns; /* of items; bytes from one to the next; numbers of a thing */
   strut_value_name *name;
@@ -116,6 +116,11 @@ static inline const void *strut_result_whole(const strut_result_object *of) {
 
 #define STRUT_VALUE_AS_NUMBER(NUMBER)                                                              \
   (strut_value) { .kind = STRUT_VALUE_NUMBER, .number = (NUMBER) }
+/** In a column of its own name, where the row's is "". */
+#define STRUT_VALUE_AS_CALLED(NAME, UNIT, NUMBER)                                                  \
+  (strut_value) {                                                                                  \
+    .kind = STRUT_VALUE_NUMBER, .number = (NUMBER), .text = (NAME), .own_unit = (UNIT)             \
+  }
 #define STRUT_VALUE_AS_COUNT(NUMBER)                                                               \
   (strut_value) {                                                                                  \
     .kind = STRUT_VALUE_COUNT, .integer = (int64_t)(NUMBER), .number = (double)(NUMBER)            \
@@ -159,6 +164,12 @@ static inline const void *strut_result_whole(const strut_result_object *of) {
   (strut_value) {                                                                                  \
     .kind = STRUT_VALUE_LIST, .items = (ITEMS), .count = (size_t)(COUNT), .size = sizeof *(ITEMS), \
     .name = (NAME)                                                                                 \
+  }
+/** Only those that HAS says are there. */
+#define STRUT_VALUE_AS_LIST_WHERE(ITEMS, COUNT, HAS)                                               \
+  (strut_value) {                                                                                  \
+    .kind = STRUT_VALUE_LIST, .items = (ITEMS), .count = (size_t)(COUNT), .size = sizeof *(ITEMS), \
+    .has = (HAS)                                                                                   \
   }
 /** The same struct with each index. */
 #define STRUT_VALUE_AS_TIMES(COUNT)                                                                \

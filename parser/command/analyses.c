@@ -405,8 +405,7 @@ static char *modes_csv(const strut_analysis *a) {
   const void *result;
   const strut_value_rows *rows = modes_values(a, &result);
   bool wave = a->result.modes.wave;
-  return strut_values_csv(rows, wave ? "waves" : "modes", wave ? NULL : "mode", result,
-                          &a->setup->scene);
+  return strut_values_csv(rows, wave ? "waves" : "modes", NULL, result, &a->setup->scene);
 }
 
 static char *modes_table(const strut_analysis *a) {

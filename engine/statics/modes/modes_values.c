@@ -5,6 +5,7 @@
 #include "engine/statics/modes/waves.h"
 
 #define MODE(X)                                                                                    \
+  X(NULL, "", COUNT(of->index + 1), "", .column = {"mode"})                                        \
   X("frequency", "Hz", NUMBER(mode->angular_frequency / STRUT_TAU), "without damping",             \
     .column = {"frequency [Hz]"})                                                                  \
   X("angular_frequency", "1/s", NUMBER(mode->angular_frequency), "without damping")                \

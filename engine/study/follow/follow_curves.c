@@ -7,13 +7,12 @@
 #include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
-#include "engine/output/json_value.h"
+#include "engine/output/result_values.h"
 #include "engine/study/follow/follow_parts.h"
 
 /* Longest step of a parameter in its range; steps each way; drive steps that show a gap's extrema. */
 static const double LONGEST = 0.03;
 enum { STEPS_PER_PERIOD = 200, CURVE_KEYS = 4 };
-static const double DEGREES = 57.29577951308232;
 
 /* ---- following ---- */
 
@@ -85,90 +84,59 @@ strut_status strut_follow_find_curves(const strut_follow_options *o, strut_follo
   return status;
 }
 
-/* ---- curves.csv ---- */
+/* ---- values ---- */
 
-static void add_number(strut_buffer *csv, double value) {
-  char text[STRUT_NUMBER_TEXT] = "";
-  if (isfinite(value)) strut_number_text(value, text);
-  strut_buffer_add(csv, ",%s", text);
+#define POINT(X)                                                                                   \
+  X(NULL, "", COUNT(of->outer->index + 1), "", .column = {"curve"})                                \
+  X(NULL, "", TEXT(strut_follow_kind_word(c->kind)), "", .column = {"kind"})                       \
+  X(NULL, "", TEXT(c->node), "", .column = {"node"})                                               \
+  X(NULL, "", COUNT(c->repeats), "", .column = {"period_multiple"})                                \
+  X(NULL, "", NUMBER(p->arc), "", .column = {"arclength"})                                         \
+  X("values", "", NUMBERS(p->value, 2), "of both parameters")                                      \
+  X(NULL, "", CALLED(r->name, r->unit, p->value[0]), "", .column = {""})                           \
+  X(NULL, "", CALLED(r->second.name, r->second.unit, p->value[1]), "", .column = {""})             \
+  X("velocity", "m/s", NUMBER(p->velocity), "mean", .column = {"velocity [m/s]"})                  \
+  X(NULL, "", NUMBER(p->work), "", .column = {"work [J]"})                                         \
+  X(NULL, "", NUMBER(c->travels ? (double)NAN : p->amplitude), "", .column = {"amplitude [m]"})    \
+  X("amplitude", "m", IF(!c->travels, NUMBER(p->amplitude)), "half the largest range")             \
+  X("stable", "", FLAG(p->stable), "whether it is, beside the curve")                              \
+  X(NULL, "", TEXT(p->stable ? "yes" : "no"), "", .column = {"stable"})                            \
+  X(NULL, "", PART(p->multiplier), "", .rows = &strut_follow_multiplier_values)                    \
+  X(NULL, "",                                                                                      \
+    TEXT(p->cusp                 ? "cusp"                                                          \
+         : of->index == c->start ? "start"                                                         \
+                                 : ""),                                                            \
+    "", .column = {"point"})
+STRUT_VALUES_HERE(point_values, POINT, const strut_follow_result *r = strut_result_whole(of);
+                  const strut_follow_curve *c = of->outer->at;
+                  const strut_follow_curve_point *p = of->at)
+
+static strut_value cusp_of(const strut_result_object *of, size_t k) {
+  const strut_follow_curve_point *p = &((const strut_follow_curve *)of->at)->points[k];
+  return STRUT_VALUE_AS_IF(p->cusp, NUMBERS(p->value, 2));
 }
 
-/* "frequency [Hz]", or a text, as a cell. False: out of memory. */
-static bool add_cell(strut_buffer *csv, const char *name, const char *unit, const char *text) {
-  strut_arena arena = {0};
-  char *header, *cell;
-  const strut_slot_column column = {.name = name, .unit = unit};
-  const strut_study_value value = {.word = text ? text : ""};
-  bool fine = strut_follow_axis_cell(&column, value, &arena, &header, &cell);
-  if (fine) strut_buffer_add(csv, ",%s", *name ? header : cell);
-  strut_arena_free(&arena);
-  return fine;
-}
+#define CURVE(X)                                                                                   \
+  X("kind", "", TEXT(strut_follow_kind_word(c->kind)), "of its special points")                    \
+  X("node", "", TEXT(c->node), "that they are about")                                              \
+  X("period_multiple", "", COUNT(c->repeats), "drive periods of one repetition")                   \
+  X("begins", "", TEXT(c->ends[0]), "why")                                                         \
+  X("ends", "", TEXT(c->ends[1]), "why")                                                           \
+  X("cusps", "", ARRAY(c->count, cusp_of), "values of both parameters where two folds meet")       \
+  X("points", "", LIST(c->points, c->count), "all", .rows = &point_values)
+STRUT_VALUES_HERE(curve_values, CURVE, const strut_follow_curve *c = of->at)
+
+#define CURVES(X)                                                                                  \
+  X("and", "", TEXT(r->second.name), "the second parameter")                                       \
+  X("and_unit", "", TEXT(r->second.unit), "of it")                                                 \
+  X("and_from", "", NUMBER(r->second.low), "its range")                                            \
+  X("and_to", "", NUMBER(r->second.high), "its range")                                             \
+  X("and_at", "", NUMBER(r->second.value), "where the branches are")                               \
+  X("curves", "", LIST(r->curves, r->curve_count), "of special points", .rows = &curve_values)
+STRUT_VALUES(strut_follow_curves_values, CURVES, const strut_follow_result *r = of->at)
 
 char *strut_follow_curves_csv(const strut_follow_result *r) {
-  strut_buffer csv = {0};
-  strut_c_locale locale = strut_c_locale_enter();
-  strut_buffer_add(&csv, "curve,kind,node,period_multiple,arclength");
-  bool fine = add_cell(&csv, r->name, r->unit, NULL) &&
-              add_cell(&csv, r->second.name, r->second.unit, NULL);
-  strut_buffer_add(&csv,
-                   ",velocity [m/s],work [J],amplitude [m],stable,multiplier,"
-                   "multiplier_angle [deg],point\n");
-  for (size_t i = 0; i < r->curve_count; i++) {
-    const strut_follow_curve *c = &r->curves[i];
-    for (size_t k = 0; k < c->count; k++) {
-      const strut_follow_curve_point *p = &c->points[k];
-      strut_buffer_add(&csv, "%zu,%s", i + 1, strut_follow_kind_word(c->kind));
-      fine = fine && add_cell(&csv, "", "", c->node);
-      strut_buffer_add(&csv, ",%d", (int)c->repeats);
-      add_number(&csv, p->arc);
-      for (int v = 0; v < 2; v++) add_number(&csv, p->value[v]);
-      add_number(&csv, p->velocity);
-      add_number(&csv, p->work);
-      add_number(&csv, c->travels ? (double)NAN : p->amplitude);
-      strut_buffer_add(&csv, ",%s", p->stable ? "yes" : "no");
-      add_number(&csv, hypot(p->multiplier[0], p->multiplier[1]));
-      add_number(&csv, fabs(atan2(p->multiplier[1], p->multiplier[0])) * DEGREES);
-      strut_buffer_add(&csv, ",%s\n", p->cusp ? "cusp" : k == c->start ? "start" : "");
-    }
-  }
-  strut_c_locale_leave(locale);
-  char *text = strut_buffer_take(&csv);
-  if (fine) return text;
-  strut_release(text);
-  return NULL;
-}
-
-/* ---- within the other reports ---- */
-
-void strut_follow_curves_json(const strut_follow_result *r, strut_json *json) {
-  if (!r->second.name) return;
-  strut_json_text(json, json->root, "and", r->second.name);
-  strut_json_text(json, json->root, "and_unit", r->second.unit);
-  strut_json_number(json, json->root, "and_from", r->second.low);
-  strut_json_number(json, json->root, "and_to", r->second.high);
-  strut_json_number(json, json->root, "and_at", r->second.value);
-  struct cJSON *curves = strut_json_array(json, json->root, "curves");
-  for (size_t i = 0; i < r->curve_count; i++) {
-    const strut_follow_curve *c = &r->curves[i];
-    struct cJSON *row = strut_json_object(json, curves, NULL);
-    strut_json_text(json, row, "kind", strut_follow_kind_word(c->kind));
-    strut_json_text(json, row, "node", c->node);
-    strut_json_integer(json, row, "period_multiple", c->repeats);
-    strut_json_text(json, row, "begins", c->ends[0]);
-    strut_json_text(json, row, "ends", c->ends[1]);
-    struct cJSON *cusps = strut_json_array(json, row, "cusps");
-    struct cJSON *points = strut_json_array(json, row, "points");
-    for (size_t k = 0; k < c->count; k++) {
-      const strut_follow_curve_point *p = &c->points[k];
-      if (p->cusp) strut_json_numbers(json, cusps, NULL, p->value, 2);
-      struct cJSON *point = strut_json_object(json, points, NULL);
-      strut_json_numbers(json, point, "values", p->value, 2);
-      strut_json_number(json, point, "velocity", p->velocity);
-      if (!c->travels) strut_json_number(json, point, "amplitude", p->amplitude);
-      strut_json_bool(json, point, "stable", p->stable);
-    }
-  }
+  return strut_values_csv(&strut_follow_curves_values, "curves.points", NULL, r, NULL);
 }
 
 static const char *unit_of(const char *unit) { return *unit ? unit : "1"; }

@@ -23,8 +23,8 @@ strut_status strut_follow_push(strut_follow_system *s, const double *y, strut_fo
  */
 strut_status strut_follow_find_curves(const strut_follow_options *o, strut_follow_result *r,
                                       const strut_follow_system *like, strut_error *error);
-/** What the JSON text and the table tell of curves. */
-void strut_follow_curves_json(const strut_follow_result *r, strut_json *json);
+/** What results tell of curves, and tables of a multiplier; what the table tells of curves. */
+extern const strut_value_rows strut_follow_curves_values, strut_follow_multiplier_values;
 void strut_follow_curves_table(const strut_follow_result *r, strut_buffer *t);
 /** Header and cell of a column of the axes, as CSV, in the arena. False: out of memory. */
 bool strut_follow_axis_cell(const strut_slot_column *column, strut_study_value value,

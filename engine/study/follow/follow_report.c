@@ -5,121 +5,117 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/output/buffer.h"
-#include "engine/output/json_value.h"
+#include "engine/output/result_values.h"
 #include "engine/study/follow/follow_parts.h"
 
 static const double DEGREES = 57.29577951308232;
 /* Special points that change no stability are counted, not listed, beyond so many of a branch. */
 enum { MOST_LISTED = 12 };
 
-static void add_number(strut_buffer *csv, double value) {
-  strut_buffer_add(csv, ",");
-  strut_csv_add_number(csv, isfinite(value) ? value : (double)NAN);
+/* ---- values ---- */
+
+#define MULTIPLIER(X)                                                                              \
+  X(NULL, "", NUMBER(hypot(m[0], m[1])), "", .column = {"multiplier"})                             \
+  X(NULL, "", NUMBER(fabs(atan2(m[1], m[0])) * DEGREES), "", .column = {"multiplier_angle [deg]"})
+STRUT_VALUES(strut_follow_multiplier_values, MULTIPLIER, const double *m = of->at)
+
+#define MOTION(X)                                                                                  \
+  X("arclength", "1", NUMBER(p->arc), "along the branch", .column = {"arclength"})                 \
+  X("value", "", CALLED(r->name, r->unit, p->value), "of the parameter", .column = {""})           \
+  X("velocity", "m/s", NUMBER(p->velocity), "mean", .column = {"velocity [m/s]"})                  \
+  X("work", "J", NUMBER(p->work), "that goes in, for a drive period", .column = {"work [J]"})      \
+  X(NULL, "", NUMBER(b->travels ? (double)NAN : p->amplitude), "", .column = {"amplitude [m]"})    \
+  X("amplitude", "m", IF(!b->travels, NUMBER(p->amplitude)), "half the largest range")             \
+  X("multiplier", "1", NUMBERS(p->multiplier, 2), "the largest: real, imaginary")
+#define POINT(X)                                                                                   \
+  X(NULL, "", COUNT(of->outer->index + 1), "", .column = {"branch"})                               \
+  MOTION(X)                                                                                        \
+  X(NULL, "", COUNT(b->repeats), "", .column = {"period_multiple"})                                \
+  X("stable", "", FLAG(p->stable), "whether it is")                                                \
+  X(NULL, "", TEXT(p->stable ? "yes" : "no"), "", .column = {"stable"})                            \
+  X(NULL, "", PART(p->multiplier), "", .rows = &strut_follow_multiplier_values)                    \
+  X("point", "", IF(*word, TEXT(word)), "kind of a special one")                                   \
+  X(NULL, "", TEXT(word), "", .column = {"point"})                                                 \
+  X(NULL, "", TEXT(p->node), "", .column = {"node"})                                               \
+  X(NULL, "", TEXT(p->detail), "", .column = {"detail"})                                           \
+  X(NULL, "", TEXT(p->word), "", .column = {"word"})                                               \
+  X(NULL, "",                                                                                      \
+    TEXT(!p->detail   ? ""                                                                         \
+         : p->changes ? "yes"                                                                      \
+                      : "no"),                                                                     \
+    "", .column = {"changes_stability"})
+#define SPECIAL(X)                                                                                 \
+  X("point", "", TEXT(word), "its kind")                                                           \
+  MOTION(X)                                                                                        \
+  X("node", "", TEXT(p->node), "or member, or element, that it is about")                          \
+  X("detail", "", TEXT(p->detail), "a sentence")                                                   \
+  X("changes_stability", "", FLAG(p->changes), "whether it does")
+#define OF_POINT                                                                                   \
+  const strut_follow_result *r = strut_result_whole(of);                                           \
+  const strut_follow_branch *b = &((const strut_followed_branch *)of->outer->at)->branch;          \
+  const strut_follow_point *p = of->at;                                                            \
+  const char *word = strut_follow_kind_word(p->kind)
+STRUT_VALUES_HERE(point_values, POINT, OF_POINT)
+STRUT_VALUES_HERE(special_values, SPECIAL, OF_POINT)
+
+static bool is_special(const strut_result_object *of, size_t k) {
+  return ((const strut_followed_branch *)of->at)->branch.points[k].detail;
 }
 
-static void add_text(strut_buffer *csv, const char *text) {
-  strut_buffer_add(csv, ",");
-  strut_csv_add_text(csv, "%s", text ? text : "");
+#define BRANCH(X)                                                                                  \
+  X("start", "", TEXT(f->label), "the motion that it was followed from")                           \
+  X("doubled_from", "", IF(f->parent >= 0, COUNT(f->parent + 1)), "branch")                        \
+  X("period_multiple", "", COUNT(f->branch.repeats), "drive periods of one repetition")            \
+  X("begins", "", TEXT(f->branch.ends[0]), "why")                                                  \
+  X("ends", "", TEXT(f->branch.ends[1]), "why")                                                    \
+  X("special", "", LIST_WHERE(f->branch.points, f->branch.count, is_special),                      \
+    "points where something changes", .rows = &special_values)                                     \
+  X("points", "", LIST(f->branch.points, f->branch.count), "all", .rows = &point_values)
+STRUT_VALUES_HERE(branch_values, BRANCH, const strut_followed_branch *f = of->at)
+
+static const char *kick_name(const strut_result_object *of, size_t i) {
+  (void)of;
+  return strut_follow_kick_name((int)i);
 }
 
-/* Does stability change at a special point? Nothing of other points. */
-static const char *change_of(const strut_follow_point *p) {
-  if (!p->detail) return "";
-  return p->changes ? "yes" : "no";
+static strut_value kick_of(const strut_result_object *of, size_t i) {
+  return STRUT_VALUE_AS_NUMBER(((const strut_follow_basin *)of->at)->kick[i]);
 }
+
+#define BASIN(X)                                                                                   \
+  X("branch", "", COUNT(basin->branch + 1), "that the motion is on")                               \
+  X("value", "", NUMBER(basin->value), "of the parameter")                                         \
+  X(NULL, "m/s", MAP(STRUT_FOLLOW_KICKS, kick_name, kick_of), "")
+STRUT_VALUES_HERE(basin_values, BASIN, const strut_follow_basin *basin = of->at)
+
+static strut_value note_of(const strut_result_object *of, size_t i) {
+  return STRUT_VALUE_AS_TEXT(((const strut_follow_result *)of->at)->notes[i]);
+}
+
+#define FOLLOWED(X)                                                                                \
+  X("name", "", TEXT(r->title), "of the scene")                                                    \
+  X("over", "", TEXT(r->name), "the parameter")                                                    \
+  X("unit", "", TEXT(r->unit), "of it")                                                            \
+  X("from", "", NUMBER(r->low), "its range")                                                       \
+  X("to", "", NUMBER(r->high), "its range")                                                        \
+  X("method", "", TEXT(r->method), "of integration")                                               \
+  X("tolerance", "1", NUMBER(r->tolerance), "of motions")                                          \
+  X("branches", "", LIST(r->branches, r->count), "of periodic motions", .rows = &branch_values)    \
+  X("basins", "", IF(r->basin_count, LIST(r->basins, r->basin_count)),                             \
+    "smallest kicks that motions do not come back from", .rows = &basin_values)                    \
+  X(NULL, "", IF(r->second.name, SAME), "", .rows = &strut_follow_curves_values)                   \
+  X("notes", "", ARRAY(r->note_count, note_of), "sentences")
+STRUT_VALUES(strut_follow_values, FOLLOWED, const strut_follow_result *r = of->at)
 
 char *strut_follow_csv_beside(const strut_follow_result *r, const char *names, const char *values) {
-  strut_buffer csv = {0};
-  strut_c_locale locale = strut_c_locale_enter();
-  strut_buffer_add(&csv, "%sbranch,arclength", names);
-  add_text(&csv, r->name);
-  if (*r->unit) strut_buffer_add(&csv, " [%s]", r->unit);
-  strut_buffer_add(&csv,
-                   ",velocity [m/s],work [J],amplitude [m],period_multiple,stable,multiplier,"
-                   "multiplier_angle [deg],point,node,detail,word,changes_stability\n");
-  for (size_t i = 0; i < r->count; i++) {
-    const strut_follow_branch *b = &r->branches[i].branch;
-    for (size_t k = 0; k < b->count; k++) {
-      const strut_follow_point *p = &b->points[k];
-      strut_buffer_add(&csv, "%s%zu", values, i + 1);
-      add_number(&csv, p->arc);
-      add_number(&csv, p->value);
-      add_number(&csv, p->velocity);
-      add_number(&csv, p->work);
-      add_number(&csv, b->travels ? (double)NAN : p->amplitude);
-      strut_buffer_add(&csv, ",%d,%s", (int)b->repeats, p->stable ? "yes" : "no");
-      add_number(&csv, hypot(p->multiplier[0], p->multiplier[1]));
-      add_number(&csv, fabs(atan2(p->multiplier[1], p->multiplier[0])) * DEGREES);
-      add_text(&csv, strut_follow_kind_word(p->kind));
-      add_text(&csv, p->node);
-      add_text(&csv, p->detail);
-      add_text(&csv, p->word);
-      strut_buffer_add(&csv, ",%s\n", change_of(p));
-    }
-  }
-  strut_c_locale_leave(locale);
-  return strut_buffer_take(&csv);
+  const char *const before[] = {names, values};
+  return strut_values_csv(&strut_follow_values, "branches.points", before, r, NULL);
 }
 
 char *strut_follow_csv(const strut_follow_result *r) { return strut_follow_csv_beside(r, "", ""); }
 
-static void add_points(strut_json *json, struct cJSON *to, const strut_follow_branch *b,
-                       bool special) {
-  struct cJSON *points = strut_json_array(json, to, special ? "special" : "points");
-  for (size_t k = 0; k < b->count; k++) {
-    const strut_follow_point *p = &b->points[k];
-    if (special && !p->detail) continue;
-    struct cJSON *row = strut_json_object(json, points, NULL);
-    if (*strut_follow_kind_word(p->kind))
-      strut_json_text(json, row, "point", strut_follow_kind_word(p->kind));
-    strut_json_number(json, row, "value", p->value);
-    strut_json_number(json, row, "arclength", p->arc);
-    strut_json_number(json, row, "velocity", p->velocity);
-    strut_json_number(json, row, "work", p->work);
-    if (!b->travels) strut_json_number(json, row, "amplitude", p->amplitude);
-    if (!special) strut_json_bool(json, row, "stable", p->stable);
-    strut_json_numbers(json, row, "multiplier", p->multiplier, 2);
-    if (!special) continue;
-    strut_json_text(json, row, "node", p->node);
-    strut_json_text(json, row, "detail", p->detail);
-    strut_json_bool(json, row, "changes_stability", p->changes);
-  }
-}
-
 char *strut_follow_json(const strut_follow_result *r) {
-  strut_json json = strut_json_begin();
-  strut_json_text(&json, json.root, "name", r->title);
-  strut_json_text(&json, json.root, "over", r->name);
-  strut_json_text(&json, json.root, "unit", r->unit);
-  strut_json_number(&json, json.root, "from", r->low);
-  strut_json_number(&json, json.root, "to", r->high);
-  strut_json_text(&json, json.root, "method", r->method);
-  strut_json_number(&json, json.root, "tolerance", r->tolerance);
-  struct cJSON *branches = strut_json_array(&json, json.root, "branches");
-  for (size_t i = 0; i < r->count; i++) {
-    const strut_followed_branch *f = &r->branches[i];
-    struct cJSON *row = strut_json_object(&json, branches, NULL);
-    strut_json_text(&json, row, "start", f->label);
-    if (f->parent >= 0) strut_json_integer(&json, row, "doubled_from", f->parent + 1);
-    strut_json_integer(&json, row, "period_multiple", f->branch.repeats);
-    strut_json_text(&json, row, "begins", f->branch.ends[0]);
-    strut_json_text(&json, row, "ends", f->branch.ends[1]);
-    add_points(&json, row, &f->branch, true);
-    add_points(&json, row, &f->branch, false);
-  }
-  struct cJSON *basins = r->basin_count ? strut_json_array(&json, json.root, "basins") : NULL;
-  for (size_t i = 0; i < r->basin_count; i++) {
-    const strut_follow_basin *b = &r->basins[i];
-    struct cJSON *row = strut_json_object(&json, basins, NULL);
-    strut_json_integer(&json, row, "branch", (int64_t)b->branch + 1);
-    strut_json_number(&json, row, "value", b->value);
-    for (int k = 0; k < STRUT_FOLLOW_KICKS; k++)
-      strut_json_number(&json, row, strut_follow_kick_name(k), b->kick[k]);
-  }
-  strut_follow_curves_json(r, &json);
-  struct cJSON *notes = strut_json_array(&json, json.root, "notes");
-  for (size_t i = 0; i < r->note_count; i++) strut_json_text(&json, notes, NULL, r->notes[i]);
-  return strut_json_end(&json);
+  return strut_values_json(&strut_follow_values, r, NULL);
 }
 
 /* ---- the table ---- */

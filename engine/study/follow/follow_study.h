@@ -10,6 +10,7 @@
 #include "engine/output/draw/chart.h"
 #include "engine/run/follow/follow_parts.h"
 #include "engine/scene/study.h"
+#include "engine/scene/value_rows.h"
 
 enum { STRUT_FOLLOW_KICKS = 4, STRUT_FOLLOW_MOST_BASINS = 64, STRUT_FOLLOW_MOST_CURVES = 24 };
 enum { STRUT_FOLLOW_MOST_BRANCHES = 24, STRUT_FOLLOW_NOTE = 320, STRUT_FOLLOW_LABEL = 120 };
@@ -101,6 +102,7 @@ STRUT_API char *strut_follow_csv(const strut_follow_result *result);
 STRUT_API char *strut_follow_csv_beside(const strut_follow_result *result, const char *names,
                                         const char *values);
 STRUT_API char *strut_follow_json(const strut_follow_result *result);
+STRUT_API extern const strut_value_rows strut_follow_values;
 STRUT_API char *strut_follow_table(const strut_follow_result *result);
 
 /* follow_curves.c, of a result with a second parameter */
