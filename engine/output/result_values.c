@@ -45,16 +45,30 @@ static void put_things(strut_json *json, struct cJSON *to, const char *key,
   }
 }
 
+static double rounded(double value, int digits) {
+  if (!digits || value == 0.0 || !isfinite(value)) return value;
+  double unit = pow(10, digits - 1 - floor(log10(fabs(value))));
+  double result = round(value * unit) / unit;
+  return isfinite(result) ? result : value;
+}
+
 static void put_numbers(strut_json *json, struct cJSON *to, const char *key,
                         const strut_value *value) {
   struct cJSON *list = strut_json_array(json, to, key);
   for (size_t i = 0; i < value->count; i++) {
-    const void *item = (const char *)value->items + i * value->size;
-    if (value->columns)
-      strut_json_numbers(json, list, NULL, item, value->columns);
-    else
-      strut_json_number(json, list, NULL, *(const double *)item);
+    const double *item = (const void *)((const char *)value->items + i * value->size);
+    struct cJSON *row = value->columns ? strut_json_array(json, list, NULL) : list;
+    for (size_t k = 0; k < (value->columns ? value->columns : 1); k++)
+      strut_json_number(json, row, NULL, rounded(item[k], value->digits));
   }
+}
+
+static void put_indices(strut_json *json, struct cJSON *to, const char *key,
+                        const strut_value *value) {
+  struct cJSON *list = strut_json_array(json, to, key);
+  const int32_t *index = value->items;
+  for (size_t i = 0; i < value->count; i++)
+    if (index[i] >= 0) strut_json_integer(json, list, NULL, index[i]);
 }
 
 static void put_list(strut_json *json, struct cJSON *to, const strut_value_row *row,
@@ -92,12 +106,15 @@ static void put(strut_json *json, struct cJSON *to, const strut_value_row *row,
   }
   switch (value->kind) {
     case STRUT_VALUE_ABSENT: break;
-    case STRUT_VALUE_NUMBER: strut_json_number(json, to, row->key, value->number); break;
+    case STRUT_VALUE_NUMBER:
+      strut_json_number(json, to, row->key, rounded(value->number, value->digits));
+      break;
     case STRUT_VALUE_COUNT: strut_json_integer(json, to, row->key, value->integer); break;
     case STRUT_VALUE_FLAG: strut_json_bool(json, to, row->key, value->integer != 0); break;
     case STRUT_VALUE_TEXT:
     case STRUT_VALUE_WORDS: strut_json_text(json, to, row->key, text_of(value, of, room)); break;
     case STRUT_VALUE_NUMBERS: put_numbers(json, to, row->key, value); break;
+    case STRUT_VALUE_INDICES: put_indices(json, to, row->key, value); break;
     case STRUT_VALUE_NAMES: put_names(json, to, row->key, of, value); break;
     case STRUT_VALUE_THINGS: put_things(json, to, row->key, of, value); break;
     case STRUT_VALUE_MAP: put_map(json, to, row, of, value); break;

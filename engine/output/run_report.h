@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include "engine/output/json_value.h"
+#include "engine/base/memory.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
 
@@ -24,11 +24,26 @@ STRUT_API char *strut_summary_table(const strut_summary *summary, const strut_sc
 
 /* ---- rows of text, read back from summary.json ---- */
 
+typedef struct strut_shown_row {
+  const char *label, *value;
+} strut_shown_row;
+
+/** Rows of text, ready to show. Zero-initialise; release with strut_shown_free. */
+typedef struct strut_shown {
+  size_t count;
+  strut_shown_row *list; /* (count) */
+  bool failed;           /* memory was out */
+  strut_arena arena;
+} strut_shown;
+
+/** Appends a row; both texts are copied. */
+void strut_show(strut_shown *to, const char *label, const char *value);
+void strut_shown_free(strut_shown *shown);
 /**
- * Appends {label, value}, ready to show, to the array `to`. `summary` is the text of the file, or
- * NULL: then there are no rows. One that cannot be read makes a row that says so.
+ * Appends the rows of a summary, the text of the file, or NULL: then there are none. One that cannot be read
+ * makes a row that says so.
  */
-STRUT_API void strut_summary_rows(strut_json *json, struct cJSON *to, const char *summary,
+STRUT_API void strut_summary_rows(strut_shown *to, const char *summary,
                                   const strut_experiment *experiment, const strut_scene *scene);
 
 #endif

@@ -18,15 +18,21 @@ static strut_rounded_quantity in(double value, const char *unit) {
 }
 
 typedef struct rows {
-  strut_json *json;
-  cJSON *to;
+  strut_shown *to;
   const cJSON *from; /* the summary */
 } rows;
 
-static void show_row(rows *r, const char *label, const char *value) {
-  cJSON *row = strut_json_object(r->json, r->to, NULL);
-  strut_json_text(r->json, row, "label", label);
-  strut_json_text(r->json, row, "value", value);
+void strut_show(strut_shown *to, const char *label, const char *value) {
+  strut_shown_row *list = strut_reallocate(to->list, to->count + 1, sizeof *list);
+  const strut_shown_row row = {strut_arena_format(&to->arena, "%s", label),
+                               strut_arena_format(&to->arena, "%s", value)};
+  to->failed = to->failed || !list || !row.label || !row.value;
+  if (list) to->list = list, list[to->count++] = row;
+}
+
+void strut_shown_free(strut_shown *shown) {
+  strut_release(shown->list);
+  strut_arena_free(&shown->arena);
 }
 
 /* NAN if there is no such number. */
@@ -41,7 +47,7 @@ static const char *text(const cJSON *from, const char *key) {
 
 static void show_quantity(rows *r, const char *label, const char *key, const char *unit) {
   double value = number(r->from, key);
-  if (isfinite(value)) show_row(r, label, in(value, unit).text);
+  if (isfinite(value)) strut_show(r->to, label, in(value, unit).text);
 }
 
 static void show_status(rows *r) {
@@ -51,14 +57,14 @@ static void show_status(rows *r) {
   bool twice = reason && strncmp(reason, status, strlen(status)) == 0;
   snprintf(value, sizeof value, "%s%s%s", twice ? "" : status, reason && !twice ? ": " : "",
            reason ? reason : "");
-  show_row(r, "run", value);
+  strut_show(r->to, "run", value);
 }
 
 static void show_warnings(rows *r) {
   const cJSON *warnings = cJSON_GetObjectItemCaseSensitive(r->from, "warnings"), *warning;
   cJSON_ArrayForEach(warning, warnings) {
     const char *said = text(warning, "text");
-    if (said) show_row(r, "warning", said);
+    if (said) strut_show(r->to, "warning", said);
   }
 }
 
@@ -67,8 +73,8 @@ static void show_worth(rows *r) {
   const cJSON *accuracy = cJSON_GetObjectItemCaseSensitive(r->from, "accuracy");
   const char *worth = text(r->from, "worth"), *caveat = text(r->from, "caveat");
   const char *why = accuracy ? text(accuracy, "why") : caveat;
-  if (worth) show_row(r, "accuracy", worth);
-  if (why) show_row(r, worth ? "because" : "accuracy", why);
+  if (worth) strut_show(r->to, "accuracy", worth);
+  if (why) strut_show(r->to, worth ? "because" : "accuracy", why);
 }
 
 static void show_velocity(rows *r, const strut_experiment *experiment, const strut_scene *scene) {
@@ -81,7 +87,7 @@ static void show_velocity(rows *r, const strut_experiment *experiment, const str
   snprintf(value, sizeof value, "%s%s%s, from %s", in(number(r->from, "velocity"), "m/s").text,
            isfinite(spread) ? ", spread " : "", isfinite(spread) ? in(spread, "m/s").text : "",
            isfinite(from) ? in(from, "s").text : "the start");
-  show_row(r, label, value);
+  strut_show(r->to, label, value);
 }
 
 /* What is known of a measured value: spread, member, error. */
@@ -103,8 +109,8 @@ static void show_measured_value(rows *r, const cJSON *item, const char *unit) {
                      kept ? "known" : "not as accurate as requested, but known",
                      strut_quantity_of_any(expected, 2, unit).text);
   char *row = strut_buffer_take(&shown);
-  if (row) show_row(r, item->string, row);
-  if (!row) r->json->failed = true;
+  if (row) strut_show(r->to, item->string, row);
+  if (!row) r->to->failed = true;
   strut_release(row);
 }
 
@@ -122,11 +128,11 @@ static void show_steps(rows *r) {
   double step = number(r->from, "step"), limit = number(r->from, "step_limit");
   double steps = number(r->from, "steps"), settled = number(r->from, "settle_time");
   show_quantity(r, "duration", "duration", "s");
-  if (settled > 0) show_row(r, "settling time", in(settled, "s").text);
+  if (settled > 0) strut_show(r->to, "settling time", in(settled, "s").text);
   if (!isfinite(step) || !isfinite(steps)) return;
   snprintf(value, sizeof value, "%.0f of %s", steps, in(step, "s").text);
-  show_row(r, "steps", value);
-  show_row(r, "largest stable step", isfinite(limit) ? in(limit, "s").text : "no limit");
+  strut_show(r->to, "steps", value);
+  strut_show(r->to, "largest stable step", isfinite(limit) ? in(limit, "s").text : "no limit");
 }
 
 static void show_contacts(rows *r) {
@@ -138,13 +144,13 @@ static void show_contacts(rows *r) {
     if (!isfinite(duty) || !contact->string) continue;
     if (shown++ == MOST_CONTACTS) {
       snprintf(value, sizeof value, "%d more", cJSON_GetArraySize(contacts) - MOST_CONTACTS);
-      show_row(r, "contacts", value);
+      strut_show(r->to, "contacts", value);
       return;
     }
     snprintf(label, sizeof label, "contact of %s", contact->string);
     snprintf(value, sizeof value, "%.1f %% of the time, at most %s high", 100 * duty,
              in(height, "m").text);
-    show_row(r, label, value);
+    strut_show(r->to, label, value);
   }
 }
 
@@ -164,7 +170,7 @@ static void show_energy(rows *r) {
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     double amount = number(energy, parts[i].key);
     if (parts[i].kind != ENERGY && isfinite(amount) && amount != 0)
-      show_row(r, parts[i].label, in(amount, "J").text);
+      strut_show(r->to, parts[i].label, in(amount, "J").text);
   }
   double residual = number(energy, "residual"), moved = number(energy, "exchanged");
   if (!isfinite(moved)) moved = number(energy, "moved"); /* its name up to version 0.1 */
@@ -179,12 +185,12 @@ static void show_energy(rows *r) {
                                              : "");
   else
     snprintf(value, sizeof value, "%s", in(residual, "J").text);
-  show_row(r, "energy residual", value);
+  strut_show(r->to, "energy residual", value);
 }
 
-void strut_summary_rows(strut_json *json, cJSON *to, const char *summary,
-                        const strut_experiment *experiment, const strut_scene *scene) {
-  rows r = {.json = json, .to = to};
+void strut_summary_rows(strut_shown *to, const char *summary, const strut_experiment *experiment,
+                        const strut_scene *scene) {
+  rows r = {.to = to};
   if (!summary) return;
   strut_c_locale locale = strut_c_locale_enter();
   cJSON *root = cJSON_Parse(summary);
@@ -199,7 +205,7 @@ void strut_summary_rows(strut_json *json, cJSON *to, const char *summary,
     show_contacts(&r);
     show_energy(&r);
   } else {
-    show_row(&r, "summary", "summary.json cannot be read");
+    strut_show(to, "summary", "summary.json cannot be read");
   }
   cJSON_Delete(root);
   strut_c_locale_leave(locale);

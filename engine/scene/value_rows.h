@@ -25,6 +25,7 @@ typedef enum strut_value_kind {
   STRUT_VALUE_TEXT,    /* NULL: null */
   STRUT_VALUE_WORDS,   /* a text that is written when it is asked for; empty: null */
   STRUT_VALUE_NUMBERS, /* an array of numbers, or of arrays of `columns` of them; NULL: null */
+  STRUT_VALUE_INDICES, /* an array of int32_t, those below 0 left out */
   STRUT_VALUE_NAMES,   /* of things */
   STRUT_VALUE_THINGS,  /* a number for each of an owner's things, of nodes two */
   STRUT_VALUE_MAP,     /* a value of any kind under each name; an array of them without names */
@@ -54,6 +55,7 @@ enum { STRUT_VALUE_ROOM = 320 };
 
 struct strut_value {
   strut_value_kind kind;
+  int digits;    /* that numbers are rounded to; 0: all */
   double number; /* also of a count and a flag */
   int64_t integer;
   const char *text, *own_unit; /* also the name of a number's column, which the row leaves empty */
@@ -100,6 +102,11 @@ static inline const void *strut_result_whole(const strut_result_object *of) {
   return of->at;
 }
 
+static inline strut_value strut_value_rounded(strut_value value, int digits) {
+  value.digits = digits;
+  return value;
+}
+
 /** Defines the rows NAME of a table of X(key, unit, value, what, ...); the rest declares what values refer to. */
 #define STRUT_VALUES(NAME, TABLE, ...) STRUT_VALUES_OF(const, NAME, TABLE, __VA_ARGS__)
 /** The same for one file. */
@@ -141,6 +148,8 @@ static inline const void *strut_result_whole(const strut_result_object *of) {
     .kind = STRUT_VALUE_NUMBERS, .items = (ITEMS), .count = (size_t)(COUNT),                       \
     .columns = (size_t)(COLUMNS), .size = sizeof *(ITEMS)                                          \
   }
+#define STRUT_VALUE_AS_INDICES(ITEMS, COUNT)                                                       \
+  (strut_value) { .kind = STRUT_VALUE_INDICES, .items = (ITEMS), .count = (size_t)(COUNT) }
 #define STRUT_VALUE_AS_NAMES(NAME, COUNT)                                                          \
   (strut_value) { .kind = STRUT_VALUE_NAMES, .name = (NAME), .count = (size_t)(COUNT) }
 #define STRUT_VALUE_AS_THINGS(OWNER, COLUMNS, ITEMS, EACH, HAS)                                    \
@@ -184,6 +193,7 @@ static inline const void *strut_result_whole(const strut_result_object *of) {
                      strut_value_of_parameter)
 #define STRUT_VALUE_AS_WORDS(WRITE)                                                                \
   (strut_value) { .kind = STRUT_VALUE_WORDS, .write = (WRITE) }
+#define STRUT_VALUE_AS_ROUNDED(DIGITS, VALUE) strut_value_rounded(STRUT_VALUE_AS_##VALUE, DIGITS)
 /** Of a function that returns the value. */
 #define STRUT_VALUE_AS_BY(CALL) (CALL)
 #define STRUT_VALUE_AS_IF(THERE, VALUE)                                                            \

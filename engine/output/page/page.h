@@ -7,14 +7,8 @@
  * data are one JSON object in <script type="application/json" id="strut-data">, in which '<', '>' and
  * '&' are written as escapes, so that no name can end it; those of a second run, drawn pale behind
  * the first, are a like object in "strut-beside". On the page, strutPage.show(data, beside) replaces
- * what is shown by such objects any number of times. The object:
+ * what is shown by such objects any number of times. What it has are the rows of page_data.c, and
  *
- *   strut, name, description, source: texts
- *   label: text that tells two runs on one page apart, such as their directories; may be empty
- *   nodes: [{name, fixed: [bool, bool]}], members: [{name, from, to, kind: bar|spring|cable}]
- *   contacts: [node index, ...]
- *   ground: null or {height, slope [rad], belt_speed}
- *   start: [x, y, x, y, ...] [m] of all nodes at t = 0; size: largest extent [m]
  *   motion: null or {
  *     frames, recorded, every: as in strut_trajectory, status: completed|diverged|interrupted,
  *     track: node index or null for the centre of mass (as the scene measures)
@@ -22,16 +16,6 @@
  *       position are always there); other channels, where recorded, are blocks with their unit, things (nodes,
  *       members, ...) and components, for a common kind of chart;
  *     energy_names: [text, ...]; weights: [kg, ...] of the nodes, for the centre of mass }
- *   equilibria: null or [{name, label, fate, verdict, energy [J], stands: bool,
- *     position: [x, y, ...], force: [N, ...] of members, contacts: [node index, ...],
- *     normal: [N, ...], lowest: smallest eigenvalue [N/m]}]
- *   equilibria_remark: text; equilibria_left_out: how many are not listed for size; named ones and
- *     those that stand come first
- *   barriers: [{from, to, height [J]}]  indices into equilibria; only if both are listed
- *   parameters: [{label, value}]        as they were used, and a run's method and step
- *   summary: [{label, value}]           rows of text, ready to show, measured quantities among them
- *   yaml: text of the scene
- *   study: null
  *
  * Modes and paths are no part of it: JSON of their results has all their numbers. Data of such a
  * result are those of its structure, on which a page may draw them: as a motion with `made`:

@@ -6,15 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/memory.h"
 #include "engine/output/buffer.h"
 #include "engine/output/report/reports.h"
+#include "engine/output/result_values.h"
 #include "engine/output/run_report.h"
 #include "engine/scene/profile.h"
 
-/* The data of a page. First its cards: the choice of equilibria and their data. */
-
-struct cJSON;
+/* The data of a page. First its cards: the choice of equilibria. */
 
 /* Most cards, saddles among them, and numbers in all cards. */
 enum { MOST_CARDS = 40, MOST_SADDLES = 12, MOST_NUMBERS = 60000 };
@@ -83,239 +81,195 @@ static size_t choose_cards(const strut_equilibria *all, const strut_model *model
   return count;
 }
 
-static double rounded(double value) {
-  if (value == 0 || !isfinite(value)) return value;
-  double unit = pow(10, DIGITS - 1 - floor(log10(fabs(value))));
-  double result = round(value * unit) / unit;
-  return isfinite(result) ? result : value;
-}
+/* ---- values ---- */
 
-static void add_numbers(strut_json *json, struct cJSON *to, const char *key, const double *values,
-                        size_t count) {
-  struct cJSON *array = strut_json_array(json, to, key);
-  for (size_t i = 0; i < count; i++) strut_json_number(json, array, NULL, rounded(values[i]));
-}
+/* What a page shows, put together. */
+typedef struct content {
+  const strut_page *page;
+  size_t card_count; /* of the choices */
+  choice *choices;
+  int32_t *place; /* see choose_cards */
+  strut_shown parameters, summary;
+  char *yaml;
+  strut_arena *arena;
+  double middle[2], far; /* how far outlines of grounds are drawn */
+} content;
 
 /* Contact forces in the shape that is shown; of held contacts their reactions. */
-static void add_contacts(strut_json *json, struct cJSON *to, const strut_model *model,
-                         const strut_equilibrium *e) {
-  const double *up = model->contacts.normal;
-  struct cJSON *contacts = strut_json_array(json, to, "contacts");
-  struct cJSON *normal = strut_json_array(json, to, "normal");
-  bool rests = e->outcome == STRUT_OUTCOME_STANDS || !e->supports;
-  size_t count = rests ? (size_t)e->contact_count : e->supports->count;
-  for (size_t i = 0; i < count; i++) {
-    int32_t node = rests ? e->contacts[i] : e->supports->node[i];
-    strut_json_integer(json, contacts, NULL, node);
-    const double *reaction = e->reaction[node];
-    double pressing = rests ? e->normal[i] : reaction[0] * up[0] + reaction[1] * up[1];
-    strut_json_number(json, normal, NULL, rounded(pressing));
-  }
+static bool rests(const strut_equilibrium *e) {
+  return e->outcome == STRUT_OUTCOME_STANDS || !e->supports;
 }
 
-static void add_card(strut_json *json, struct cJSON *to, const strut_model *model,
-                     const strut_equilibrium *e) {
-  const strut_critical_point *point = &e->point;
-  int32_t first = point->label == STRUT_STABLE ? point->zero : 0; /* free motions apart */
-  strut_json_text(json, to, "name", e->name);
-  strut_json_text(json, to, "label", strut_stability_name(point->label));
-  strut_json_text(json, to, "fate", strut_outcome_name(e->outcome));
-  strut_json_text(json, to, "verdict", e->verdict);
-  strut_json_number(json, to, "energy", e->energy);
-  strut_json_bool(json, to, "stands", e->outcome == STRUT_OUTCOME_STANDS);
-  add_numbers(json, to, "position", point->q, 2 * (size_t)model->node_count);
-  add_numbers(json, to, "force", e->member_force, (size_t)model->members.count);
-  add_contacts(json, to, model, e);
-  strut_json_number(json, to, "lowest",
-                    first < point->eigenvalue_count ? point->eigenvalues[first] : (double)NAN);
+static const strut_equilibrium *equilibrium_of(const strut_result_object *of) {
+  const content *c = strut_result_whole(of);
+  return &c->page->equilibria->list[((const choice *)of->at)->index];
 }
 
-static void add_barriers(strut_json *json, const strut_equilibria *all, const int32_t *place) {
-  struct cJSON *barriers = strut_json_array(json, json->root, "barriers");
-  for (size_t i = 0; i < all->barrier_count; i++) {
-    const strut_barrier *b = &all->barriers[i];
-    if (place[b->from] < 0 || place[b->to] < 0) continue;
-    struct cJSON *row = strut_json_object(json, barriers, NULL);
-    strut_json_integer(json, row, "from", place[b->from]);
-    strut_json_integer(json, row, "to", place[b->to]);
-    strut_json_number(json, row, "height", b->height);
-  }
+static strut_value pressing(const strut_result_object *of, size_t i) {
+  const strut_equilibrium *e = equilibrium_of(of);
+  const double *up = ((const content *)of->outer->at)->page->model->contacts.normal;
+  const double *reaction = rests(e) ? up : e->reaction[e->supports->node[i]];
+  double normal = rests(e) ? e->normal[i] : reaction[0] * up[0] + reaction[1] * up[1];
+  return STRUT_VALUE_AS_ROUNDED(DIGITS, NUMBER(normal));
 }
 
-static void add_no_equilibria(strut_json *json, const strut_page *page) {
-  const strut_equilibria *all = page->equilibria;
-  const char *remark = all && all->remark[0] ? all->remark : page->remark;
-  strut_json_text(json, json->root, "equilibria", NULL);
-  strut_json_text(json, json->root, "equilibria_remark", remark ? remark : "");
-  strut_json_integer(json, json->root, "equilibria_left_out", 0);
-  strut_json_array(json, json->root, "barriers");
+#define CARD(X)                                                                                    \
+  X("name", "", TEXT(e->name), "its name")                                                         \
+  X("label", "", TEXT(strut_stability_name(point->label)), "stable, saddle, ...")                  \
+  X("fate", "", TEXT(strut_outcome_name(e->outcome)), "what becomes of it on the real ground")     \
+  X("verdict", "", TEXT(e->verdict), "a sentence")                                                 \
+  X("energy", "J", NUMBER(e->energy), "at rest")                                                   \
+  X("stands", "", FLAG(e->outcome == STRUT_OUTCOME_STANDS), "whether it does")                     \
+  X("position", "m", ROUNDED(DIGITS, NUMBERS(point->q, 2 * model->node_count)), "of nodes")        \
+  X("force", "N", ROUNDED(DIGITS, NUMBERS(e->member_force, model->members.count)), "of members")   \
+  X("contacts", "", INDICES(rests(e) ? e->contacts : e->supports->node, contacts), "node indices") \
+  X("normal", "N", ARRAY(contacts, pressing), "of the ground, or of supports")                     \
+  X("lowest", "N/m",                                                                               \
+    NUMBER(first < point->eigenvalue_count ? point->eigenvalues[first] : (double)NAN),             \
+    "eigenvalue")
+STRUT_VALUES_HERE(card_values, CARD, const strut_equilibrium *e = equilibrium_of(of);
+                  const strut_model *model = ((const content *)of->outer->at)->page->model;
+                  const strut_critical_point *point = &e->point;
+                  int32_t first = point->label == STRUT_STABLE ? point->zero
+                                                               : 0; /* free motions apart */
+                  size_t contacts = rests(e) ? (size_t)e->contact_count : e->supports->count)
+
+#define BARRIER(X)                                                                                 \
+  X("from", "", COUNT(place[barrier->from]), "index into equilibria")                              \
+  X("to", "", COUNT(place[barrier->to]), "likewise")                                               \
+  X("height", "J", NUMBER(barrier->height), "above it")
+STRUT_VALUES_HERE(barrier_values, BARRIER, const strut_barrier *barrier = of->at;
+                  const int32_t *place = ((const content *)of->outer->at)->place)
+
+static bool has_barrier(const strut_result_object *of, size_t i) {
+  const content *c = of->at;
+  const strut_barrier *b = &c->page->equilibria->barriers[i];
+  return c->place[b->from] >= 0 && c->place[b->to] >= 0;
 }
 
-static bool add_equilibria(strut_json *json, const strut_page *page) {
-  const strut_equilibria *all = page->equilibria;
-  if (!all || all->count == 0) {
-    add_no_equilibria(json, page);
-    return true;
-  }
-  choice *choices = strut_allocate(all->count, sizeof *choices);
-  int32_t *place = strut_allocate(all->count, sizeof *place);
-  bool good = choices && place;
-  if (good) {
-    size_t count = choose_cards(all, page->model, choices, place);
-    struct cJSON *cards = strut_json_array(json, json->root, "equilibria");
-    for (size_t i = 0; i < count; i++)
-      add_card(json, strut_json_object(json, cards, NULL), page->model,
-               &all->list[choices[i].index]);
-    strut_json_text(json, json->root, "equilibria_remark", all->remark);
-    strut_json_integer(json, json->root, "equilibria_left_out", (int64_t)(all->count - count));
-    add_barriers(json, all, place);
-  }
-  strut_release(choices);
-  strut_release(place);
-  return good;
+static strut_value fixed_of(const strut_result_object *of, size_t k) {
+  return STRUT_VALUE_AS_FLAG(((const strut_node *)of->at)->fixed[k]);
 }
 
-/* The object put together, safe inside <script>. */
+#define NODE(X)                                                                                    \
+  X("name", "", TEXT(node->name), "its name") X("fixed", "", ARRAY(2, fixed_of), "along x and y")
+STRUT_VALUES_HERE(node_values, NODE, const strut_node *node = of->at)
+
+#define MEMBER(X)                                                                                  \
+  X("name", "", TEXT(m->name), "its name")                                                         \
+  X("from", "", COUNT(m->node[0]), "node index")                                                   \
+  X("to", "", COUNT(m->node[1]), "node index")                                                     \
+  X("kind", "", TEXT(strut_member_kind_name(m->kind)), "bar, spring or cable")                     \
+  X("guides", "", IF(m->guide_count, INDICES(m->guides, m->guide_count)), "node indices")
+STRUT_VALUES_HERE(member_values, MEMBER, const strut_member *m = of->at)
+
+#define HINGE(X)                                                                                   \
+  X("name", "", TEXT(hinge->name), "its name")                                                     \
+  X("nodes", "", INDICES(hinge->node, 3), "indices")                                               \
+  X("rest_angle", "rad", NUMBER(strut_hinge_rest(of->scene, of->index)), "without moment")
+STRUT_VALUES_HERE(hinge_values, HINGE, const strut_hinge *hinge = of->at)
+
+#define CELL(X)                                                                                    \
+  X("name", "", TEXT(cell->name), "its name")                                                      \
+  X("nodes", "", INDICES(cell->node, cell->node_count), "indices")
+STRUT_VALUES_HERE(cell_values, CELL, const strut_cell *cell = of->at)
+
+#define COLLISION(X)                                                                               \
+  X("name", "", TEXT(c->name), "its name")                                                         \
+  X("thickness", "m", NUMBER(c->thickness), "of both together")                                    \
+  X("nodes", "", INDICES(c->node, 2), "indices")                                                   \
+  X("members", "", INDICES(c->member, 2), "indices")
+STRUT_VALUES_HERE(collision_values, COLLISION, const strut_collision *c = of->at)
+
+#define GROUND(X)                                                                                  \
+  X("height", "m", NUMBER(ground->height), "at x = 0")                                             \
+  X("slope", "rad", NUMBER(ground->slope), "of it")                                                \
+  X("belt_speed", "m/s", NUMBER(ground->belt_speed), "along it")
+STRUT_VALUES_HERE(ground_values, GROUND, const strut_ground *ground = of->at)
+
+#define SHOWN(X) X("label", "", TEXT(row->label), "text") X("value", "", TEXT(row->value), "text")
+STRUT_VALUES_HERE(shown_values, SHOWN, const strut_shown_row *row = of->at)
+
+static strut_value contact_name(const strut_result_object *of, size_t i) {
+  return STRUT_VALUE_AS_TEXT(strut_contact_name(of->scene, i));
+}
+
+static strut_value contact_node(const strut_result_object *of, size_t i) {
+  return STRUT_VALUE_AS_COUNT(of->scene->contacts[i].node);
+}
+
+static strut_value contact_ground(const strut_result_object *of, size_t i) {
+  return STRUT_VALUE_AS_COUNT(of->scene->contacts[i].ground);
+}
+
+/* The outline of one of several grounds, the solid to the right of its direction. */
+static strut_value surface_of(const strut_result_object *of, size_t g) {
+  const content *c = of->at;
+  const strut_ground *ground = &of->scene->grounds[g];
+  double(*points)[2] = strut_arena_allocate(c->arena, strut_outline_most(ground), sizeof *points);
+  size_t count = points ? strut_outline_of(ground, NULL, c->middle, c->far, points) : 0;
+  return STRUT_VALUE_AS_ROUNDED(DIGITS, TABLE(points, count, 2));
+}
+
+/* Everything but the motion: see page.h. */
+#define PAGE(X)                                                                                    \
+  X("strut", "", TEXT(STRUT_VERSION), "version")                                                   \
+  X("name", "", TEXT(s->name), "of the scene")                                                     \
+  X("description", "", TEXT(s->description), "of the scene")                                       \
+  X("source", "", TEXT(s->source), "of the scene")                                                 \
+  X("label", "", TEXT(page->label ? page->label : ""), "tells two runs on a page apart, or empty") \
+  X("nodes", "", LIST(s->nodes, s->node_count), "all", .rows = &node_values)                       \
+  X("members", "", LIST(s->members, s->member_count), "all", .rows = &member_values)               \
+  X("hinges", "", LIST(s->hinges, s->hinge_count), "all", .rows = &hinge_values)                   \
+  X("cells", "", LIST(s->cells, s->cell_count), "all", .rows = &cell_values)                       \
+  X("collisions", "", LIST(s->collisions, s->collision_count), "", .rows = &collision_values)      \
+  X("contacts", "", ARRAY(contacts, contact_node), "node indices")                                 \
+  X("contact_names", "", IF(grounds, ARRAY(contacts, contact_name)), "of several grounds")         \
+  X("contact_surfaces", "", IF(grounds, ARRAY(contacts, contact_ground)), "index into surfaces")   \
+  X("surfaces", "", IF(grounds, ARRAY(grounds, surface_of)), "outlines, the solid to their right") \
+  X("ground", "", KNOWN(s->ground.present, PART(&s->ground)), "one line", .rows = &ground_values)  \
+  X("start", "m", NUMBERS(m->start, 2 * m->node_count), "x and y of all nodes at t = 0")           \
+  X("size", "m", NUMBER(m->size), "largest extent")                                                \
+  X("equilibria", "", KNOWN(c->place, LIST(c->choices, c->card_count)), "", .rows = &card_values)  \
+  X("equilibria_remark", "", TEXT(remark ? remark : ""), "may be empty")                           \
+  X("equilibria_left_out", "", COUNT(c->place ? all->count - c->card_count : 0), "for size")       \
+  X("barriers", "", LIST_WHERE(all->barriers, c->place ? all->barrier_count : 0, has_barrier),     \
+    "between those that are listed", .rows = &barrier_values)                                      \
+  X("parameters", "", LIST(c->parameters.list, c->parameters.count), "", .rows = &shown_values)    \
+  X("summary", "", LIST(c->summary.list, c->summary.count), "", .rows = &shown_values)             \
+  X("yaml", "", TEXT(c->yaml), "text of the scene")                                                \
+  X("study", "", TEXT(NULL), "null")
+static const strut_equilibria no_equilibria;
+STRUT_VALUES_HERE(page_values, PAGE, const content *c = of->at; const strut_page *page = c->page;
+                  const strut_scene *s = of->scene; const strut_model *m = page->model;
+                  size_t grounds = s->ground_count, contacts = s->contact_count;
+                  const strut_equilibria *all = page->equilibria ? page->equilibria
+                                                                 : &no_equilibria;
+                  const char *remark = c->place || all->remark[0] ? all->remark : page->remark)
+
+/* ---- the object put together, safe inside <script> ---- */
 
 static const size_t MOST_BYTES = 4000000, MOST_YAML = 600000;
 
-static void add_row(strut_json *json, struct cJSON *rows, const char *label, const char *value) {
-  struct cJSON *row = strut_json_object(json, rows, NULL);
-  strut_json_text(json, row, "label", label);
-  strut_json_text(json, row, "value", value);
-}
-
-static void add_nodes(strut_json *json, const strut_scene *scene) {
-  struct cJSON *nodes = strut_json_array(json, json->root, "nodes");
-  for (size_t i = 0; i < scene->node_count; i++) {
-    struct cJSON *node = strut_json_object(json, nodes, NULL);
-    strut_json_text(json, node, "name", scene->nodes[i].name);
-    struct cJSON *fixed = strut_json_array(json, node, "fixed");
-    for (int c = 0; c < 2; c++) strut_json_bool(json, fixed, NULL, scene->nodes[i].fixed[c]);
-  }
-}
-
-static void add_members(strut_json *json, const strut_scene *scene) {
-  struct cJSON *members = strut_json_array(json, json->root, "members");
-  for (size_t i = 0; i < scene->member_count; i++) {
-    const strut_member *member = &scene->members[i];
-    struct cJSON *to = strut_json_object(json, members, NULL);
-    strut_json_text(json, to, "name", member->name);
-    strut_json_integer(json, to, "from", member->node[0]);
-    strut_json_integer(json, to, "to", member->node[1]);
-    strut_json_text(json, to, "kind", strut_member_kind_name(member->kind));
-    if (!member->guide_count) continue;
-    struct cJSON *guides = strut_json_array(json, to, "guides");
-    for (size_t k = 0; k < member->guide_count; k++)
-      strut_json_integer(json, guides, NULL, member->guides[k]);
-  }
-}
-
-static void add_hinges(strut_json *json, const strut_scene *scene) {
-  struct cJSON *hinges = strut_json_array(json, json->root, "hinges");
-  for (size_t i = 0; i < scene->hinge_count; i++) {
-    struct cJSON *to = strut_json_object(json, hinges, NULL);
-    strut_json_text(json, to, "name", scene->hinges[i].name);
-    struct cJSON *nodes = strut_json_array(json, to, "nodes");
-    for (int k = 0; k < 3; k++) strut_json_integer(json, nodes, NULL, scene->hinges[i].node[k]);
-    strut_json_number(json, to, "rest_angle", strut_hinge_rest(scene, i));
-  }
-}
-
-static void add_cells(strut_json *json, const strut_scene *scene) {
-  struct cJSON *cells = strut_json_array(json, json->root, "cells");
-  for (size_t i = 0; i < scene->cell_count; i++) {
-    const strut_cell *cell = &scene->cells[i];
-    struct cJSON *to = strut_json_object(json, cells, NULL);
-    strut_json_text(json, to, "name", cell->name);
-    struct cJSON *nodes = strut_json_array(json, to, "nodes");
-    for (size_t k = 0; k < cell->node_count; k++)
-      strut_json_integer(json, nodes, NULL, cell->node[k]);
-  }
-}
-
-static void add_collisions(strut_json *json, const strut_scene *scene) {
-  struct cJSON *collisions = strut_json_array(json, json->root, "collisions");
-  for (size_t i = 0; i < scene->collision_count; i++) {
-    const strut_collision *c = &scene->collisions[i];
-    struct cJSON *to = strut_json_object(json, collisions, NULL);
-    strut_json_text(json, to, "name", c->name);
-    strut_json_number(json, to, "thickness", c->thickness);
-    struct cJSON *nodes = strut_json_array(json, to, "nodes");
-    struct cJSON *members = strut_json_array(json, to, "members");
-    for (int k = 0; k < 2; k++) {
-      if (c->node[k] >= 0) strut_json_integer(json, nodes, NULL, c->node[k]);
-      if (c->member[k] >= 0) strut_json_integer(json, members, NULL, c->member[k]);
-    }
-  }
-}
-
-/* Outlines of several grounds, the solid to the right of their direction, and which one a contact is with. */
-static void add_surfaces(strut_json *json, const strut_scene *scene) {
-  struct cJSON *names = strut_json_array(json, json->root, "contact_names");
-  struct cJSON *of = strut_json_array(json, json->root, "contact_surfaces");
-  struct cJSON *surfaces = strut_json_array(json, json->root, "surfaces");
-  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-  for (size_t i = 0; i < scene->contact_count; i++) {
-    strut_json_text(json, names, NULL, strut_contact_name(scene, i));
-    strut_json_integer(json, of, NULL, scene->contacts[i].ground);
-  }
-  for (size_t i = 0; i < 2 * scene->node_count; i++) {
-    double x = scene->nodes[i / 2].start[i % 2];
-    low[i % 2] = fmin(low[i % 2], x), high[i % 2] = fmax(high[i % 2], x);
-  }
-  const double middle[2] = {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])};
-  double far = FAR * fmax(fmax(high[0] - low[0], high[1] - low[1]), LEAST_SIZE);
-  for (size_t g = 0; g < scene->ground_count; g++) {
-    strut_arena arena = {0};
-    double(*points)[2] =
-        strut_arena_allocate(&arena, strut_outline_most(&scene->grounds[g]), sizeof *points);
-    size_t count = points ? strut_outline_of(&scene->grounds[g], NULL, middle, far, points) : 0;
-    struct cJSON *to = strut_json_array(json, surfaces, NULL);
-    for (size_t k = 0; k < count; k++) {
-      struct cJSON *point = strut_json_array(json, to, NULL);
-      strut_json_number(json, point, NULL, rounded(points[k][0]));
-      strut_json_number(json, point, NULL, rounded(points[k][1]));
-    }
-    strut_arena_free(&arena);
-  }
-}
-
-static void add_ground(strut_json *json, const strut_scene *scene) {
-  struct cJSON *contacts = strut_json_array(json, json->root, "contacts");
-  for (size_t i = 0; i < scene->contact_count; i++)
-    strut_json_integer(json, contacts, NULL, scene->contacts[i].node);
-  if (scene->ground_count) add_surfaces(json, scene);
-  if (!scene->ground.present) {
-    strut_json_text(json, json->root, "ground", NULL);
-    return;
-  }
-  struct cJSON *ground = strut_json_object(json, json->root, "ground");
-  strut_json_number(json, ground, "height", scene->ground.height);
-  strut_json_number(json, ground, "slope", scene->ground.slope);
-  strut_json_number(json, ground, "belt_speed", scene->ground.belt_speed);
-}
-
 /* Parameters as they were used, with the method and step of a run. */
-static void add_parameters(strut_json *json, const strut_scene *scene,
-                           const strut_experiment *experiment, bool run) {
-  struct cJSON *rows = strut_json_array(json, json->root, "parameters");
+static void list_parameters(strut_shown *rows, const strut_scene *scene,
+                            const strut_experiment *experiment, bool run) {
+  char text[32];
   for (size_t i = 0; i < scene->parameter_count; i++)
-    add_row(json, rows, scene->parameters[i].name, scene->parameters[i].text);
+    strut_show(rows, scene->parameters[i].name, scene->parameters[i].text);
   if (!run) return;
   if (experiment->accuracy > 0) { /* chooses both */
-    char text[32];
     snprintf(text, sizeof text, "%g", experiment->accuracy);
-    add_row(json, rows, "accuracy", text);
+    strut_show(rows, "accuracy", text);
     return;
   }
-  add_row(json, rows, "integration method", experiment->integrator);
+  strut_show(rows, "integration method", experiment->integrator);
   if (experiment->step > 0)
-    add_row(json, rows, "integration step", strut_quantity_of(experiment->step, 4, "s").text);
+    strut_show(rows, "integration step", strut_quantity_of(experiment->step, 4, "s").text);
 }
 
 /* The scene's text; of a very long one its beginning, up to the end of a line. */
-static bool add_yaml(strut_json *json, const char *yaml) {
+static char *shown_yaml(const char *yaml) {
   size_t length = strlen(yaml), kept = length;
   if (length > MOST_YAML) {
     kept = MOST_YAML;
@@ -325,36 +279,43 @@ static bool add_yaml(strut_json *json, const char *yaml) {
   strut_buffer_add(&text, "%.*s", (int)kept, yaml);
   if (kept < length)
     strut_buffer_add(&text, "# ... and %zu bytes more, which are left out here\n", length - kept);
-  char *shown = strut_buffer_take(&text);
-  if (shown) strut_json_text(json, json->root, "yaml", shown);
-  strut_release(shown);
-  return shown;
+  return strut_buffer_take(&text);
+}
+
+/* Around all nodes at the start. */
+static void find_extent(content *c, const strut_scene *scene) {
+  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+  for (size_t i = 0; i < 2 * scene->node_count; i++) {
+    double x = scene->nodes[i / 2].start[i % 2];
+    low[i % 2] = fmin(low[i % 2], x), high[i % 2] = fmax(high[i % 2], x);
+  }
+  for (int k = 0; k < 2; k++) c->middle[k] = 0.5 * (low[k] + high[k]);
+  c->far = FAR * fmax(fmax(high[0] - low[0], high[1] - low[1]), LEAST_SIZE);
 }
 
 /* Everything but the motion. */
 static char *still_data(const strut_page *page) {
-  const strut_model *model = page->model;
-  const strut_scene *scene = model->scene;
+  const strut_scene *scene = page->model->scene;
+  strut_arena arena = {0};
+  content c = {.page = page, .arena = &arena, .yaml = shown_yaml(page->yaml)};
+  bool good = c.yaml;
+  find_extent(&c, scene);
+  list_parameters(&c.parameters, scene, page->experiment, page->motion != NULL);
+  strut_summary_rows(&c.summary, page->summary, page->experiment, scene);
+  if (page->equilibria && page->equilibria->count) {
+    c.choices = strut_arena_allocate(&arena, page->equilibria->count, sizeof *c.choices);
+    c.place = strut_arena_allocate(&arena, page->equilibria->count, sizeof *c.place);
+    good = good && c.choices && c.place;
+    if (good) c.card_count = choose_cards(page->equilibria, page->model, c.choices, c.place);
+  }
   strut_json json = strut_json_begin();
-  strut_json_text(&json, json.root, "strut", STRUT_VERSION);
-  strut_json_text(&json, json.root, "name", scene->name);
-  strut_json_text(&json, json.root, "description", scene->description);
-  strut_json_text(&json, json.root, "source", scene->source);
-  strut_json_text(&json, json.root, "label", page->label ? page->label : "");
-  add_nodes(&json, scene);
-  add_members(&json, scene);
-  add_hinges(&json, scene);
-  add_cells(&json, scene);
-  add_collisions(&json, scene);
-  add_ground(&json, scene);
-  strut_json_numbers(&json, json.root, "start", model->start, 2 * (size_t)model->node_count);
-  strut_json_number(&json, json.root, "size", model->size);
-  if (!add_equilibria(&json, page)) json.failed = true;
-  add_parameters(&json, scene, page->experiment, page->motion != NULL);
-  struct cJSON *rows = strut_json_array(&json, json.root, "summary");
-  strut_summary_rows(&json, rows, page->summary, page->experiment, scene);
-  if (!add_yaml(&json, page->yaml)) json.failed = true;
-  strut_json_text(&json, json.root, "study", NULL);
+  if (good)
+    strut_json_values(&json, json.root, &page_values, &(strut_result_object){&c, NULL, scene, 0});
+  json.failed = json.failed || !good || c.parameters.failed || c.summary.failed;
+  strut_shown_free(&c.parameters);
+  strut_shown_free(&c.summary);
+  strut_release(c.yaml);
+  strut_arena_free(&arena);
   return strut_json_end(&json);
 }
 
