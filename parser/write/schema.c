@@ -6,69 +6,18 @@
  */
 #include "parser/write/writer.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/output/json_value.h"
 
-/* ---- JSON ---- */
-
-static void begin_line(strut_json_writer *json) {
-  strut_put(&json->text, json->inside ? ",\n" : json->depth ? "\n" : "");
-  for (int i = 0; i < json->depth; i++) strut_put(&json->text, " ");
-  json->inside = true;
-}
-
-static void begin_value(strut_json_writer *json) {
-  if (!json->keyed) begin_line(json);
-  json->keyed = false;
-}
-
-void strut_json_open(strut_json_writer *json, char bracket) {
-  begin_value(json);
-  strut_put_part(&json->text, &bracket, 1);
-  json->depth++;
-  json->inside = false;
-}
-
-void strut_json_close(strut_json_writer *json, char bracket) {
-  json->depth--;
-  if (json->inside) {
-    strut_put(&json->text, "\n");
-    for (int i = 0; i < json->depth; i++) strut_put(&json->text, " ");
-  }
-  strut_put_part(&json->text, &bracket, 1);
-  json->inside = true;
-}
-
-void strut_json_key(strut_json_writer *json, const char *key) {
-  begin_line(json);
-  strut_put_quoted(&json->text, key);
-  strut_put(&json->text, ": ");
-  json->keyed = true;
-}
-
-void strut_json_put_text(strut_json_writer *json, const char *text) {
-  begin_value(json);
-  strut_put_quoted(&json->text, text); /* its escapes are those of JSON, too */
-}
-
-void strut_json_put_raw(strut_json_writer *json, const char *raw) {
-  begin_value(json);
-  strut_put(&json->text, raw);
-}
-
-char *strut_json_finish(strut_json_writer *json) {
-  strut_put(&json->text, "\n");
-  if (!json->text.failed) return json->text.text;
-  strut_release(json->text.text);
-  return NULL;
-}
-
-/* ---- the schema ---- */
+enum { DEEPEST = 64 };
 
 typedef struct schema {
-  strut_json_writer json;
+  strut_json json;
+  struct cJSON *open[DEEPEST]; /* (depth + 1) objects and lists */
+  int depth;
   bool wanted[STRUT_SECTION_COUNT]; /* something refers to it */
   bool study;
 } schema;
@@ -76,27 +25,28 @@ typedef struct schema {
 /* ---- fragments: members of an object that is open ---- */
 
 static void put_member(schema *s, const char *key, const char *raw) {
-  strut_json_key(&s->json, key);
-  strut_json_put_raw(&s->json, raw);
+  strut_json_raw(&s->json, s->open[s->depth], key, raw);
 }
 
 static void put_text_member(schema *s, const char *key, const char *text) {
-  strut_json_key(&s->json, key);
-  strut_json_put_text(&s->json, text);
+  strut_json_text(&s->json, s->open[s->depth], key, text);
 }
 
-static void put_number_member(schema *s, const char *key, double number) {
-  char text[STRUT_NUMBER_TEXT];
-  strut_number_text(number, text);
-  put_member(s, key, text);
-}
-
+/* Without a key in a list. */
 static void open_object(schema *s, const char *key) {
-  strut_json_key(&s->json, key);
-  strut_json_open(&s->json, '{');
+  assert(s->depth + 1 < DEEPEST);
+  s->open[s->depth + 1] = strut_json_object(&s->json, s->open[s->depth], key);
+  s->depth++;
 }
 
-static void close_object(schema *s) { strut_json_close(&s->json, '}'); }
+static void open_list(schema *s, const char *key) {
+  assert(s->depth + 1 < DEEPEST);
+  s->open[s->depth + 1] = strut_json_array(&s->json, s->open[s->depth], key);
+  s->depth++;
+}
+
+/* Object or list. */
+static void close_object(schema *s) { s->depth--; }
 
 /* A quantity is a number or an expression in a text; the schema does not say which texts are expressions. */
 #define NUMBER "[\"number\", \"string\"]"
@@ -159,19 +109,18 @@ static void put_names_of_things(schema *s) {
 static void put_words(schema *s, const strut_key *key) {
   char word[40];
   const strut_spelling *spelling;
-  strut_json_key(&s->json, "enum");
-  strut_json_open(&s->json, '[');
+  open_list(s, "enum");
   for (int i = 0; strut_word_at(key->words, i, word, sizeof word); i++)
-    strut_json_put_text(&s->json, word);
+    put_text_member(s, NULL, word);
   for (size_t i = 0; (spelling = strut_spelling_at(i)); i++)
     if (spelling->section == key->section && spelling->key &&
         strcmp(spelling->key, key->name) == 0 && spelling->kind != STRUT_SPELLING_MISTAKE)
-      strut_json_put_text(&s->json, spelling->other);
+      put_text_member(s, NULL, spelling->other);
   if (strcmp(key->words, "no|yes") == 0) {
-    strut_json_put_raw(&s->json, "false");
-    strut_json_put_raw(&s->json, "true");
+    put_member(s, NULL, "false");
+    put_member(s, NULL, "true");
   }
-  strut_json_close(&s->json, ']');
+  close_object(s);
 }
 
 static void put_axes_of_support(schema *s) { put_member(s, "enum", "[\"x\", \"y\"]"); }
@@ -182,13 +131,11 @@ static void put_law(schema *s) { put_section(s, STRUT_SECTION_LAW); }
 static void put_law_word(schema *s) {
   char word[40];
   const char *words = strut_key_at(STRUT_KEY_LAW_KIND)->words;
-  strut_json_key(&s->json, "enum");
-  strut_json_open(&s->json, '[');
-  for (int i = 0; strut_word_at(words, i, word, sizeof word); i++)
-    strut_json_put_text(&s->json, word);
-  strut_json_put_text(&s->json, "tension_only");
-  strut_json_put_text(&s->json, "compression_only");
-  strut_json_close(&s->json, ']');
+  open_list(s, "enum");
+  for (int i = 0; strut_word_at(words, i, word, sizeof word); i++) put_text_member(s, NULL, word);
+  put_text_member(s, NULL, "tension_only");
+  put_text_member(s, NULL, "compression_only");
+  close_object(s);
 }
 
 static void put_switch(schema *s) { put_member(s, "enum", "[true, false, \"yes\", \"no\"]"); }
@@ -268,15 +215,14 @@ static void put_axis(schema *s) {
 /* Known columns are offered, others are quantities that the model measures. */
 static void put_kept(schema *s) {
   const strut_key *key = strut_key_at(STRUT_KEY_STUDY_KEEP);
-  strut_json_key(&s->json, "anyOf");
-  strut_json_open(&s->json, '[');
-  strut_json_open(&s->json, '{');
+  open_list(s, "anyOf");
+  open_object(s, NULL);
   put_words(s, key);
   close_object(s);
-  strut_json_open(&s->json, '{');
+  open_object(s, NULL);
   put_scalar(s);
   close_object(s);
-  strut_json_close(&s->json, ']');
+  close_object(s);
 }
 
 /* Keys of several forms. */
@@ -445,8 +391,8 @@ static void put_limits(schema *s, const strut_key *key) {
     case STRUT_RANGE_NOT_NEGATIVE: put_member(s, "minimum", "0"); break;
     case STRUT_RANGE_ABOVE_ZERO: put_member(s, "exclusiveMinimum", "0"); break;
     case STRUT_RANGE_WHOLE:
-      put_number_member(s, "minimum", key->limits.least);
-      put_number_member(s, "maximum", key->limits.most);
+      strut_json_number(&s->json, s->open[s->depth], "minimum", key->limits.least);
+      strut_json_number(&s->json, s->open[s->depth], "maximum", key->limits.most);
       break;
   }
 }
@@ -481,7 +427,7 @@ static void put_description(schema *s, const strut_key *key, bool ticks) {
   }
   if (!text.failed) strut_put_without_links(&all, text.text, ticks);
   if (text.failed || all.failed)
-    s->json.text.failed = true;
+    s->json.failed = true;
   else if (!ticks || strchr(all.text, '`'))
     put_text_member(s, ticks ? "markdownDescription" : "description", all.text);
   strut_release(text.text);
@@ -578,8 +524,8 @@ static void put_definitions(schema *s) {
 }
 
 char *strut_schema_write(bool study) {
-  schema s = {.study = study};
-  strut_json_open(&s.json, '{');
+  schema s = {.json = strut_json_begin(), .study = study};
+  s.open[0] = s.json.root;
   put_text_member(&s, "$schema", "http://json-schema.org/draft-07/schema#");
   put_text_member(&s, "$comment", "generated by strut keys --schema; version 1 of the language");
   put_keys(&s, study ? STRUT_SECTION_STUDY : STRUT_SECTION_SCENE);
@@ -589,6 +535,5 @@ char *strut_schema_write(bool study) {
                "[{\"required\": [\"axes\"]}, {\"required\": [\"search\"]}, "
                "{\"required\": [\"sensitivity\"]}, {\"required\": [\"follow\"]}]");
   put_definitions(&s);
-  strut_json_close(&s.json, '}');
-  return strut_json_finish(&s.json);
+  return strut_json_end(&s.json);
 }

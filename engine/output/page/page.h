@@ -8,7 +8,6 @@
  * '&' are written as escapes, so that no name can end it; those of a second run, drawn pale behind
  * the first, are a like object in "strut-beside". On the page, strutPage.show(data, beside) replaces
  * what is shown by such objects any number of times. What it has are the rows of page_data.c, and
- *
  *   motion: null or {
  *     frames, recorded, every: as in strut_trajectory, status: completed|diverged|interrupted,
  *     track: node index or null for the centre of mass (as the scene measures)

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "engine/output/hdf5_library.h"
+#include "engine/output/json_value.h"
 #include "engine/output/results.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/command/analyses.h"
@@ -339,38 +340,37 @@ char *strutlib_schema(int study, strutlib_error **error) {
   return abi_give(strut_schema_write(study != 0), error);
 }
 
-static void put_places(strut_json_writer *json, const strut_tree *node) {
-  char number[24];
-  strut_json_open(json, '[');
-  for (int i = 0; i < 2; i++) {
-    snprintf(number, sizeof number, "%u", (unsigned)(i ? node->place.column : node->place.line));
-    strut_json_put_raw(json, number);
-  }
+static struct cJSON *put_places(strut_json *json, struct cJSON *to, const strut_tree *node) {
+  struct cJSON *place = strut_json_array(json, to, to == json->root ? "places" : NULL);
+  strut_json_integer(json, place, NULL, node->place.line);
+  strut_json_integer(json, place, NULL, node->place.column);
   if (node->kind == STRUT_TREE_SCALAR) {
-    strut_json_put_text(json, node->text);
+    strut_json_text(json, place, NULL, node->text);
   } else {
-    strut_json_open(json, '[');
-    for (const strut_tree *child = node->first; child; child = child->next) put_places(json, child);
-    strut_json_close(json, ']');
+    struct cJSON *list = strut_json_array(json, place, NULL);
+    for (const strut_tree *child = node->first; child; child = child->next)
+      put_places(json, list, child);
   }
-  if (node->kind == STRUT_TREE_MAP) strut_json_put_raw(json, "true");
-  strut_json_close(json, ']');
+  if (node->kind == STRUT_TREE_MAP) strut_json_bool(json, place, NULL, true);
+  return place;
 }
 
 char *strutlib_yaml_places(const char *name, const char *text, strutlib_error **error) {
   if (abi_lacks(error, name, "name") || abi_lacks(error, text, "text")) return NULL;
   strut_document document = {0};
   strut_diagnostics found = {0};
-  strut_json_writer json = {.depth = 0};
+  strut_json json = strut_json_begin();
+  struct cJSON *places = NULL;
   char *answer = NULL;
   abi_enter(error);
   strut_diagnostics_source(&found, name, text, strlen(text));
   strut_status status = strut_document_read(&document, &found);
-  if (!status) put_places(&json, document.root);
+  if (!status) places = put_places(&json, json.root, document.root);
   if (status == STRUT_BAD_SCENE)
     abi_fail_located(error, status, &found);
   else
-    answer = abi_give(status ? NULL : strut_json_finish(&json), error);
+    answer = abi_give(status || json.failed ? NULL : strut_json_print(places), error);
+  strut_release(strut_json_end(&json));
   strut_document_free(&document);
   strut_diagnostics_free(&found);
   abi_leave();
