@@ -99,8 +99,8 @@ STRUT_VALUES_HERE(hinge_values, HINGE, const strut_hinge *h = of->at; ELEMENTS;
 
 #define CELL(X)                                                                                    \
   X("drawn_area", "m^2", NUMBER(fabs(strut_cell_drawn(of->scene, of->index))), "as drawn", COLUMN) \
-  X("pressure", "N/m", NUMBER(cell->pressure), "inside", COLUMN)                                   \
-  X("outside", "N/m", NUMBER(cell->outside), "pressure", COLUMN)                                   \
+  X("pressure", "N/m", NUMBER(cell->pressure), "pressure inside", COLUMN)                          \
+  X("outside", "N/m", NUMBER(cell->outside), "pressure there", COLUMN)                             \
   X("content", "",                                                                                 \
     TEXT(strut_cell_is_elastic(cell)         ? "elastic"                                           \
          : cell->law == STRUT_LAW_PRESSURE   ? "given pressure"                                    \

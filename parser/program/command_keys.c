@@ -5,6 +5,11 @@
 
 #include "engine/output/report/reports.h"
 #include "engine/output/result_values.h"
+#include "engine/study/compare/compare.h"
+#include "engine/study/follow/follow_study.h"
+#include "engine/study/report/study_report.h"
+#include "engine/study/tradeoff/tradeoff.h"
+#include "parser/program/check_messages.h"
 #include "parser/program/commands.h"
 #include "parser/program/streams.h"
 #include "parser/write/writer.h"
@@ -68,10 +73,18 @@ static strut_status run_results(const strut_arguments *arguments) {
   static const struct {
     const char *command;
     const strut_value_rows *rows;
-  } results[] = {{"run", &strut_summary_values},       {"equilibria", &strut_equilibria_values},
-                 {"modes", &strut_modes_values},       {"modes --wave", &strut_waves_values},
-                 {"rigidity", &strut_rigidity_values}, {"form", &strut_form_values},
-                 {"path", &strut_path_values}};
+  } results[] = {{"run", &strut_summary_values},
+                 {"equilibria", &strut_equilibria_values},
+                 {"modes", &strut_modes_values},
+                 {"modes --wave", &strut_waves_values},
+                 {"rigidity", &strut_rigidity_values},
+                 {"form", &strut_form_values},
+                 {"path", &strut_path_values},
+                 {"path --periodic", &strut_follow_values},
+                 {"check", &strut_checked_values},
+                 {"compare", &strut_compare_values},
+                 {"tradeoff", &strut_tradeoff_values},
+                 {"sweep, of a study with `search`", &strut_search_report_values}};
   strut_buffer page = {0};
   (void)arguments;
   strut_buffer_add(
