@@ -9,6 +9,7 @@
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/tradeoff/tradeoff.h"
+#include "parser/command/schema.h"
 #include "parser/program/check_messages.h"
 #include "parser/program/commands.h"
 #include "parser/program/streams.h"

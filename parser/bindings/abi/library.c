@@ -13,6 +13,7 @@
 #include "parser/bindings/abi/handles.h"
 #include "parser/command/analyses.h"
 #include "parser/command/run_settings.h"
+#include "parser/command/schema.h"
 #include "parser/read/read_scene.h"
 #include "parser/write/writer.h"
 
