@@ -82,7 +82,7 @@ static strut_status run_results(const strut_arguments *arguments) {
                  {"form", &strut_form_values},
                  {"path", &strut_path_values},
                  {"path --periodic", &strut_follow_values},
-                 {"check", &strut_checked_values},
+                 {"check", &strut_check_values},
                  {"compare", &strut_compare_values},
                  {"tradeoff", &strut_tradeoff_values},
                  {"sweep, of a study with `search`", &strut_search_report_values}};
