@@ -37,8 +37,8 @@ typedef struct strut_shown {
 } strut_shown;
 
 /** Appends a row; both texts are copied. */
-void strut_show(strut_shown *to, const char *label, const char *value);
-void strut_shown_free(strut_shown *shown);
+STRUT_API void strut_show(strut_shown *to, const char *label, const char *value);
+STRUT_API void strut_shown_free(strut_shown *shown);
 /**
  * Appends the rows of a summary, the text of the file, or NULL: then there are none. One that cannot be read
  * makes a row that says so.

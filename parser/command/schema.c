@@ -4,13 +4,14 @@
  * a property's own description only, never that of a definition behind it, and report alternatives
  * ("anyOf") vaguely; so every property has its description, and alternatives are "if type ... then".
  */
-#include "parser/write/writer.h"
+#include "parser/command/schema.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/output/json_value.h"
+#include "parser/write/writer.h"
 
 enum { DEEPEST = 64 };
 

@@ -198,14 +198,14 @@ static strut_status refuse_options(const strut_arguments *arguments) {
 static strut_status print_json(strut_sweep_study *study, strut_status status,
                                const strut_error *error) {
   strut_study_file *file = &study->file;
-  strut_checked checked = {.valid = status == STRUT_OK, .study = study};
+  strut_check_result checked = {.valid = status == STRUT_OK, .study = study};
   strut_messages_add_diagnostics(&checked.messages, &file->diagnostics);
   for (size_t i = 0; i < file->table_count; i++)
     strut_messages_add_diagnostics(&checked.messages, &file->tables[i].diagnostics);
   if (file->model_diagnostics.file)
     strut_messages_add_diagnostics(&checked.messages, &file->model_diagnostics);
   if (status != STRUT_OK) strut_messages_add_error(&checked.messages, file->path, error->message);
-  return strut_checked_print(&checked);
+  return strut_check_print(&checked);
 }
 
 strut_status strut_check_study(const strut_arguments *arguments) {

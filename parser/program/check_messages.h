@@ -49,7 +49,7 @@ void strut_check_bands(const strut_model *model, const strut_experiment *experim
 
 struct strut_sweep_study;
 
-typedef struct strut_checked {
+typedef struct strut_check_result {
   bool valid;
   strut_messages messages;
   size_t unlisted;                       /* messages that were only counted */
@@ -60,14 +60,14 @@ typedef struct strut_checked {
   const strut_cost_estimate *estimate;
   double *drawn;        /* (length) the drawn shape */
   strut_findings found; /* warnings */
-} strut_checked;
+} strut_check_result;
 
-extern const strut_value_rows strut_checked_values;
+extern const strut_value_rows strut_check_values;
 
 /** Prints it as JSON and releases what it has found. */
-strut_status strut_checked_print(strut_checked *checked);
+strut_status strut_check_print(strut_check_result *checked);
 /** Prints a table for each kind of things of a model. */
-void strut_checked_print_things(const strut_checked *checked);
+void strut_check_print_things(const strut_check_result *checked);
 
 /* `strut check STUDY`: studies are edited beside models, and are checked likewise. */
 

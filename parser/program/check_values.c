@@ -21,7 +21,7 @@ enum { MOST_THINGS = 40, DIGITS = 5 };
 #define COLUMN .label = {""}
 
 static strut_element_pose pose_of(const strut_result_object *of, int32_t element) {
-  const strut_checked *c = strut_result_whole(of);
+  const strut_check_result *c = strut_result_whole(of);
   strut_element_pose pose;
   strut_element_evaluate(c->model, element, c->model->members.rest, c->drawn, (double)NAN, &pose);
   return pose;
@@ -29,7 +29,7 @@ static strut_element_pose pose_of(const strut_result_object *of, int32_t element
 
 /* Rest length, force and stiffness of a member as drawn; of one that is an element by its law. */
 static strut_rest rest_of(const strut_result_object *of) {
-  const strut_model *model = ((const strut_checked *)strut_result_whole(of))->model;
+  const strut_model *model = ((const strut_check_result *)strut_result_whole(of))->model;
   strut_rest rest = {0};
   strut_member_rest(of->scene, of->index, &rest);
   const strut_element *e = strut_element_of_member(&model->elements, (int32_t)of->index);
@@ -79,7 +79,7 @@ static strut_value way_of(const strut_result_object *of, size_t k) {
   X("nodes", "", IF(m->guide_count, ARRAY(m->guide_count + 2, way_of)), "that it runs over")
 STRUT_VALUES_HERE(member_values, MEMBER, const strut_member *m = of->at;
                   strut_rest rest = rest_of(of);
-                  const strut_model *model = ((const strut_checked *)of->outer->at)->model;
+                  const strut_model *model = ((const strut_check_result *)of->outer->at)->model;
                   bool stops = m->shortest > 0.0 || m->longest > 0.0;
                   bool lawful = m->law.kind != STRUT_LAW_LINEAR ||
                                 m->law.carries != STRUT_CARRIES_BOTH)
@@ -92,7 +92,8 @@ STRUT_VALUES_HERE(member_values, MEMBER, const strut_member *m = of->at;
   X("breaks_at", "N m", POSITIVE(h->breaks_at), "moment")                                          \
   X("released_at", "s", POSITIVE(h->released_at), "time")
 #define ELEMENTS                                                                                   \
-  const strut_element_table *elements = &((const strut_checked *)of->outer->at)->model->elements
+  const strut_element_table *elements =                                                            \
+      &((const strut_check_result *)of->outer->at)->model->elements
 STRUT_VALUES_HERE(hinge_values, HINGE, const strut_hinge *h = of->at; ELEMENTS;
                   int32_t i = strut_element_find(elements, STRUT_ELEMENT_HINGE, (int32_t)of->index);
                   strut_element_pose pose = pose_of(of, i))
@@ -158,7 +159,7 @@ static const char *method_name(const strut_result_object *of, size_t i) {
 }
 
 static strut_value method_limit(const strut_result_object *of, size_t i) {
-  const strut_checked *c = of->at;
+  const strut_check_result *c = of->at;
   double limit = strut_step_limit_of_method(&c->estimate->limits, strut_integrator_at(i));
   return STRUT_VALUE_AS_NUMBER(limit);
 }
@@ -209,7 +210,7 @@ STRUT_VALUES_HERE(warning_values, WARNING, const strut_finding *finding = of->at
   THINGS(X, collision, collisions)                                                                 \
   THINGS(X, distance, distances)                                                                   \
   X("warnings", "", LIST(c->found.items, c->found.count), "of the scene", .rows = &warning_values)
-STRUT_VALUES_HERE(scene_values, SCENE, const strut_checked *c = of->at;
+STRUT_VALUES_HERE(scene_values, SCENE, const strut_check_result *c = of->at;
                   const strut_cost_estimate *e = c->estimate)
 
 #define CHECKED(X)                                                                                 \
@@ -220,12 +221,12 @@ STRUT_VALUES_HERE(scene_values, SCENE, const strut_checked *c = of->at;
   X("messages", "", LIST(c->messages.list, c->messages.count), "errors, warnings and notes",       \
     .rows = &strut_message_values)                                                                 \
   X("unlisted", "", IF(!c->valid && !c->study, COUNT(c->unlisted)), "messages beyond the first")
-STRUT_VALUES(strut_checked_values, CHECKED, const strut_checked *c = of->at)
+STRUT_VALUES(strut_check_values, CHECKED, const strut_check_result *c = of->at)
 
-strut_status strut_checked_print(strut_checked *c) {
+strut_status strut_check_print(strut_check_result *c) {
   char *text = c->messages.failed
                    ? NULL
-                   : strut_values_json(&strut_checked_values, c, c->model ? c->model->scene : NULL);
+                   : strut_values_json(&strut_check_values, c, c->model ? c->model->scene : NULL);
   strut_release(c->messages.list);
   strut_arena_free(&c->messages.arena);
   strut_findings_free(&c->found);
@@ -284,7 +285,7 @@ static void print_things(const strut_value_row *row, const strut_value *list, in
     printf("  ... and %zu more; --json lists all\n", list->count - MOST_THINGS);
 }
 
-void strut_checked_print_things(const strut_checked *checked) {
+void strut_check_print_things(const strut_check_result *checked) {
   strut_value value[STRUT_MOST_VALUES];
   const strut_result_object of = {checked, NULL, checked->model->scene, 0};
   size_t names = 12; /* the width of their column, up to 40 */

@@ -87,24 +87,24 @@ static void print_run(const strut_cost_estimate *estimate, const strut_experimen
   }
 }
 
-static strut_status print_estimate(const strut_checked *c) {
+static strut_status print_estimate(const strut_check_result *c) {
   const strut_scene *scene = c->model->scene;
   printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
   print_counts(c->estimate);
   print_run(c->estimate, &c->setup->experiment);
-  strut_checked_print_things(c);
+  strut_check_print_things(c);
   return STRUT_OK;
 }
 
-static strut_status print_json(strut_checked *c, strut_open_report *report) {
+static strut_status print_json(strut_check_result *c, strut_open_report *report) {
   strut_status status = strut_setup_warn(c->setup, &c->found);
   strut_messages_add_diagnostics(&c->messages, &report->diagnostics);
   strut_messages_add_warnings(&c->messages, &c->found, &c->setup->scene, &report->diagnostics);
   c->messages.failed = c->messages.failed || status != STRUT_OK;
-  return strut_checked_print(c);
+  return strut_check_print(c);
 }
 
-static strut_status print_valid(const strut_arguments *arguments, strut_checked *c,
+static strut_status print_valid(const strut_arguments *arguments, strut_check_result *c,
                                 strut_open_report *report) {
   c->drawn = strut_allocate((size_t)c->model->length, sizeof *c->drawn);
   if (!c->drawn) return strut_print_out_of_memory();
@@ -124,10 +124,10 @@ static bool has_fixed_method(const strut_experiment *e) {
 /* What is wrong, as JSON; returns `status`. */
 static strut_status print_wrong(strut_status status, const strut_error *error,
                                 strut_open_report *report) {
-  strut_checked checked = {.unlisted = report->diagnostics.unstored};
+  strut_check_result checked = {.unlisted = report->diagnostics.unstored};
   strut_messages_add_diagnostics(&checked.messages, &report->diagnostics);
   strut_messages_add_error(&checked.messages, report->diagnostics.file, error->message);
-  strut_status printed = strut_checked_print(&checked);
+  strut_status printed = strut_check_print(&checked);
   return printed != STRUT_OK ? printed : status;
 }
 
@@ -154,7 +154,8 @@ static strut_status check_model(const strut_arguments *arguments, strut_open_rep
   if (status == STRUT_OK) status = strut_cost_estimate_describe(model, &estimate, &error);
   if (status == STRUT_OK) strut_check_bands(model, &setup.experiment);
   if (status == STRUT_OK) status = strut_warn_of_scene(&setup);
-  strut_checked checked = {.valid = true, .setup = &setup, .model = model, .estimate = &estimate};
+  strut_check_result checked = {
+      .valid = true, .setup = &setup, .model = model, .estimate = &estimate};
   if (status != STRUT_OK && error.message[0]) /* others are reported already */
     status =
         arguments->json ? print_wrong(status, &error, report) : strut_print_failure(status, &error);

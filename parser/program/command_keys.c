@@ -9,6 +9,7 @@
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/tradeoff/tradeoff.h"
+#include "parser/command/schema.h"
 #include "parser/program/check_messages.h"
 #include "parser/program/commands.h"
 #include "parser/program/streams.h"
@@ -81,7 +82,7 @@ static strut_status run_results(const strut_arguments *arguments) {
                  {"form", &strut_form_values},
                  {"path", &strut_path_values},
                  {"path --periodic", &strut_follow_values},
-                 {"check", &strut_checked_values},
+                 {"check", &strut_check_values},
                  {"compare", &strut_compare_values},
                  {"tradeoff", &strut_tradeoff_values},
                  {"sweep, of a study with `search`", &strut_search_report_values}};
@@ -104,8 +105,8 @@ static strut_status run_results(const strut_arguments *arguments) {
 }
 
 static const strut_option no_options[] = {
-    {.kind = STRUT_OPTION_SELECTOR, .name = "results", NULL, "print what commands find, as a page"},
-    {.name = NULL},
+    {STRUT_OPTION_SELECTOR, "results", NULL, "print what commands find, as a page"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
 static const strut_command strut_command_results = {
@@ -133,9 +134,9 @@ const strut_command strut_command_keys = {
 };
 
 static const strut_option options[] = {
-    {.kind = STRUT_OPTION_SELECTOR, .name = "schema", NULL, "print the language as a JSON Schema"},
-    {STRUT_FILLS(study), "study", NULL, "the schema of a study instead of a scene"},
-    {.name = NULL},
+    {STRUT_OPTION_SELECTOR, "schema", NULL, "print the language as a JSON Schema"},
+    {STRUT_OPTION_STUDY, "study", NULL, "the schema of a study instead of a scene"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
 static strut_status run_schema(const strut_arguments *arguments) {

@@ -108,9 +108,4 @@ bool strut_default_is_described(const strut_key *key);
  */
 void strut_put_without_links(strut_writer *writer, const char *markdown, bool ticks);
 
-/* ---- the schema for editors ---- */
-
-/** The schema of a scene, or of a study, in a block of strut_allocate (release it); NULL: no memory. */
-STRUT_API char *strut_schema_write(bool study);
-
 #endif
