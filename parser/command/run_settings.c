@@ -6,6 +6,15 @@
 #include "engine/base/number_text.h"
 #include "engine/integrate/integrator.h"
 
+const strut_option strut_method_options[] = {
+    {STRUT_FILLS(integrator), "integrator", "NAME",
+     "integration method, instead of that of the file", .words = STRUT_INTEGRATOR_WORDS},
+    {STRUT_FILLS(step), "step", "TIME", "time step, instead of that of the file",
+     .measure = STRUT_MEASURE_TIME, STRUT_ABOVE_ZERO},
+    {STRUT_FILLS(tolerance), "tolerance", "X", "error tolerance of adaptive and adaptive8",
+     STRUT_ABOVE_ZERO},
+    {.name = NULL}};
+
 const strut_option strut_run_setting_options[] = {
     {STRUT_FILLS(accuracy), "accuracy", "X",
      "choose method and step for a relative error of the velocity of X, such as 1%",
@@ -14,9 +23,7 @@ const strut_option strut_run_setting_options[] = {
      "limit on the work of --accuracy, in units of one fine fixed-step run "
      "(default " STRUT_TEXT_OF(STRUT_USUAL_BUDGET) ")",
      STRUT_ABOVE_ZERO},
-    STRUT_METHOD_OPTION,
-    STRUT_STEP_OPTION,
-    STRUT_TOLERANCE_OPTION,
+    {.table = strut_method_options},
     {STRUT_FILLS(steady), "steady", "TOLERANCE",
      "stop once the motion repeats within TOLERANCE, such as 0.5%", STRUT_ABOVE_ZERO},
     {.name = NULL}};
@@ -33,6 +40,9 @@ const strut_option strut_fidelity_options[] = {
      "of the ground: approach_only or hunt_crossley, instead of the file's",
      .key = STRUT_KEY_GROUND_DAMPING_LAW},
     {.name = NULL}};
+
+const strut_option strut_experiment_options[] = {
+    {.table = strut_run_setting_options}, {.table = strut_fidelity_options}, {.name = NULL}};
 
 static strut_status refuse(const strut_arguments *arguments, const char *message) {
   strut_tell(arguments->listener, STRUT_MESSAGE_ERROR, NULL, "%s", message);
@@ -112,11 +122,10 @@ static strut_status set_damping(const strut_arguments *arguments, strut_scene *s
 }
 
 const strut_option *strut_run_option_given(const strut_arguments *arguments, size_t i) {
-  const strut_option *const tables[] = {strut_run_setting_options, strut_fidelity_options};
-  for (size_t k = 0; k < sizeof tables / sizeof tables[0]; k++)
-    for (const strut_option *row = tables[k]; row->name; row++)
-      if (strut_given_text(row, arguments) && !i--) return row;
-  return NULL;
+  const strut_option *row;
+  for (size_t k = 0; (row = strut_option_row(strut_experiment_options, k)); k++)
+    if (strut_given_text(row, arguments) && !i--) break;
+  return row;
 }
 
 strut_purpose strut_run_options_purpose(const strut_arguments *a) {

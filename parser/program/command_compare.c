@@ -260,8 +260,7 @@ static const strut_option options[] = {
     STRUT_JSON_OPTION,
     STRUT_THREADS_OPTION,
     {STRUT_FILLS(csv), "csv", NULL, "print CSV, one row per model"},
-    STRUT_PLOT_OPTION,
-    {.table = strut_plot_setting_options},
+    {.table = strut_plot_options},
     {.name = NULL},
 };
 

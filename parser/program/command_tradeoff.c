@@ -165,7 +165,7 @@ static const strut_option options[] = {
     STRUT_JSON_OPTION,
     STRUT_THREADS_OPTION,
     {STRUT_FILLS(plot), "plot", "FILE", "draw error against cost into FILE (.svg, .pdf or .png)"},
-    STRUT_WIDTH_OPTION,
+    {.table = strut_width_options},
     {.name = NULL},
 };
 

@@ -14,6 +14,11 @@
 
 enum { MOST_OPTIONS = 48, FIRST = 256, POSITIONAL = 1, COLUMN = 24 };
 
+const strut_option strut_plot_options[] = {
+    {STRUT_FILLS(plot), "plot", "FILE", "draw a figure into FILE (.svg, .pdf or .png)"},
+    {.table = strut_plot_setting_options},
+    {.name = NULL}};
+
 /* Every command has these, after its own. */
 static const strut_option common_options[] = {
     {STRUT_FILLS(quiet), "quiet", NULL, "print no report or progress, only warnings and errors",
@@ -23,10 +28,10 @@ static const strut_option common_options[] = {
 enum { COMMON_OPTIONS = sizeof common_options / sizeof common_options[0] };
 
 const strut_option *strut_option_at(const strut_command *command, size_t i) {
-  const strut_option *own = strut_command_option(command, i);
+  const strut_option *own = strut_option_row(command->options, i);
   size_t count = 0;
   if (own) return own;
-  while (strut_command_option(command, count)) count++;
+  while (strut_option_row(command->options, count)) count++;
   return i < count + COMMON_OPTIONS ? &common_options[i - count] : NULL;
 }
 
@@ -35,53 +40,36 @@ static const char *option_name_at(const void *context, size_t i) {
   return option ? option->name : NULL;
 }
 
-static strut_status usage_error(const strut_command *command) {
-  fprintf(stderr, "'strut %s --help' lists the options\n", command->name);
-  return STRUT_USAGE;
-}
-
-/* Why the command cannot use an option that others have, or NULL. */
-static const char *reason_to_refuse(const strut_command *command, const char *name) {
-  const strut_refused_option *row = command->refused;
-  while (row && row->name && strcmp(row->name, name) != 0) row++;
-  return row ? row->reason : NULL;
+/* Says where the options are, behind a message. */
+static strut_status with_help(const strut_arguments *to, strut_status status) {
+  fprintf(stderr, "'strut %s --help' lists the options\n", to->command->name);
+  return status;
 }
 
 /* `word` starts with its dashes. `meant`: the option it abbreviates, or NULL to look for one. */
-static strut_status unknown_option(const strut_command *command, const char *word,
-                                   const char *meant) {
+static strut_status unknown_option(const strut_arguments *to, const char *word, const char *meant) {
   int length = (int)strcspn(word, "=");
   char name[64];
   snprintf(name, sizeof name, "%.*s", length > 2 ? length - 2 : 0, word + 2);
-  const char *reason = reason_to_refuse(command, name);
-  if (reason) {
-    fprintf(stderr, "strut %s: --%s cannot be used here: %s\n", command->name, name, reason);
-    return STRUT_USAGE;
-  }
-  if (!meant) meant = strut_did_you_mean(name, option_name_at, command);
-  fprintf(stderr, "strut %s: unknown option '%.*s'", command->name, length, word);
-  if (meant) fprintf(stderr, "; did you mean '--%s'?", meant);
-  fputc('\n', stderr);
-  return usage_error(command);
+  for (const strut_refused_option *row = to->command->refused; row && row->name; row++)
+    if (strcmp(row->name, name) == 0)
+      return strut_usage_error(to, "--%s cannot be used here: %s", name, row->reason);
+  if (!meant) meant = strut_did_you_mean(name, option_name_at, to->command);
+  return with_help(to, strut_usage_error(to, "unknown option '%.*s'%s%s%s", length, word,
+                                         meant ? "; did you mean '--" : "", meant ? meant : "",
+                                         meant ? "'?" : ""));
 }
 
 /* Reports why getopt rejected argv[optind - 1], or a letter in it. */
-static strut_status report_rejected(const strut_command *command, int code, char **argv) {
+static strut_status report_rejected(const strut_arguments *to, int code, char **argv) {
   const char *word = argv[optind - 1];
-  bool letter = strncmp(word, "--", 2) != 0;
-  if (code == ':' && letter) {
-    fprintf(stderr, "strut %s: option '-%c' needs a value\n", command->name, optopt);
-  } else if (code == ':') {
-    fprintf(stderr, "strut %s: option '%s' needs a value\n", command->name, word);
-  } else if (letter) {
-    fprintf(stderr, "strut %s: unknown option '-%c'\n", command->name, optopt);
-  } else if (optopt) {
-    int length = (int)strcspn(word, "=");
-    fprintf(stderr, "strut %s: option '%.*s' takes no value\n", command->name, length, word);
-  } else {
-    return unknown_option(command, word, NULL);
-  }
-  return usage_error(command);
+  if (strncmp(word, "--", 2) != 0)
+    return with_help(
+        to, strut_usage_error(
+                to, code == ':' ? "option '-%c' needs a value" : "unknown option '-%c'", optopt));
+  if (code != ':' && !optopt) return unknown_option(to, word, NULL);
+  return with_help(to, strut_usage_error(to, "option '%.*s' %s", (int)strcspn(word, "="), word,
+                                         code == ':' ? "needs a value" : "takes no value"));
 }
 
 /* One --set or --vary: splits NAME=VALUE in place. */
@@ -90,7 +78,7 @@ static strut_status add_override(const strut_option *option, char *text, strut_a
   bool varied = option->member == offsetof(strut_arguments, varied);
   if (!equals || equals == text) {
     strut_usage_error(to, "--%s expects %s, not '%s'", option->name, option->argument, text);
-    return usage_error(to->command);
+    return with_help(to, STRUT_USAGE);
   }
   *equals = '\0';
   const strut_override override = {text, equals + 1};
@@ -104,10 +92,8 @@ static strut_status add_override(const strut_option *option, char *text, strut_a
 }
 
 static strut_status add_model(const char *text, strut_arguments *to) {
-  if (!to->command->model || (to->model && !to->command->many)) {
-    strut_usage_error(to, "unexpected argument '%s'", text);
-    return usage_error(to->command);
-  }
+  if (!to->command->model || (to->model && !to->command->many))
+    return with_help(to, strut_usage_error(to, "unexpected argument '%s'", text));
   if (!to->model) to->model = text;
   to->models[to->model_count++] = text;
   return STRUT_OK;
@@ -168,10 +154,10 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
     int row = -1, id = getopt_long(argc, argv, letters, rows, &row);
     if (id == -1) break;
     if (id == '?' || id == ':') {
-      status = report_rejected(command, id, argv);
+      status = report_rejected(arguments, id, argv);
     } else if (row >= 0 && is_abbreviated(argv, &rows[row])) {
       const char *word = argv[optind - (rows[row].has_arg && optarg == argv[optind - 1] ? 2 : 1)];
-      status = unknown_option(command, word, rows[row].name);
+      status = unknown_option(arguments, word, rows[row].name);
     } else {
       status = store_option(id, arguments);
     }
@@ -179,10 +165,8 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
   for (; status == STRUT_OK && optind < argc; optind++) /* after "--" */
     status = add_model(argv[optind], arguments);
   bool missing = command->model && !command->model_optional && !arguments->model;
-  if (status == STRUT_OK && missing && !arguments->help) {
-    strut_usage_error(arguments, "missing %s", command->model);
-    status = usage_error(command);
-  }
+  if (status == STRUT_OK && missing && !arguments->help)
+    return with_help(arguments, strut_usage_error(arguments, "missing %s", command->model));
   return status;
 }
 

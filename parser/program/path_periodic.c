@@ -18,16 +18,18 @@
 static const char *const file_names[] = {"branches.csv", "branches.json", "branches.svg",
                                          "curves.csv",   "curves.svg",    NULL};
 
+#define RANGE .expected = "NAME=LOW..HIGH, such as frequency=8Hz..12Hz"
+
 static const strut_option options[] = {
     {.kind = STRUT_OPTION_SELECTOR,
      .name = "periodic",
      NULL,
      "follow periodic motions instead of equilibria"},
-    {STRUT_FILLS(over), "over", "NAME=LOW..HIGH", "the parameter and its range"},
+    {STRUT_FILLS(over), "over", "NAME=LOW..HIGH", "the parameter and its range", RANGE},
     {STRUT_FILLS(from), "from", "VALUE", "low end of the range, if --over gives none"},
     {STRUT_FILLS(until), "until", "VALUE", "high end, likewise"},
     {STRUT_FILLS(and_over), "and", "NAME=LOW..HIGH",
-     "a second parameter, over which curves of folds, doublings and grazings are followed"},
+     "a second parameter, over which curves of folds, doublings and grazings are followed", RANGE},
     {STRUT_FILLS(values), "values", "VALUE,...",
      "values at which branches start (default: the model's own, or the middle)"},
     {STRUT_FILLS(at), "at", "NAME,...", "configurations to start from (default: the start)"},
@@ -46,8 +48,7 @@ static const strut_option options[] = {
     STRUT_THREADS_OPTION,
     STRUT_OUTPUT_OPTION("DIR", "write branches.csv, .json and .svg into DIR"),
     STRUT_JSON_OPTION,
-    STRUT_PLOT_OPTION,
-    {.table = strut_plot_setting_options},
+    {.table = strut_plot_options},
     {.table = strut_axis_options},
     {.name = NULL},
 };
