@@ -265,21 +265,20 @@ static strut_status run_form(const strut_arguments *arguments) {
   return status;
 }
 
+static const char form_details[] =
+    "\n--given densities: the shape given by the force densities of the members, or the nearest\n"
+    "densities for which one exists. --given lengths: the shape given by the rest lengths.\n"
+    "--given prestress: the drawn shape, with rest lengths that hold it under gravity, loads and\n"
+    "ground forces, every cable in tension. By default, densities if the model gives force\n"
+    "densities, lengths if it gives rest lengths, otherwise prestress.\n"
+    "The new model is printed or written to FILE, with the parameters, groups and parts of the\n"
+    "old one where these can say it; it stays at rest when run without drives.\n";
+
 const strut_command strut_command_form = {
     .name = "form",
     .model = "MODEL",
     .summary = "finds an equilibrium shape or prestress, and writes that model",
-    .details =
-        "\n--given densities: the shape given by the force densities of the members, or the "
-        "nearest\n"
-        "densities for which one exists. --given lengths: the shape given by the rest lengths.\n"
-        "--given prestress: the drawn shape, with rest lengths that hold it under gravity, loads "
-        "and\n"
-        "ground forces, every cable in tension. By default, densities if the model gives force\n"
-        "densities, lengths if it gives rest lengths, otherwise prestress.\n"
-        "The new model is printed or written to FILE, with the parameters, groups and parts of "
-        "the\n"
-        "old one where these can say it; it stays at rest when run without drives.\n",
+    .details = form_details,
     .options = form_options,
     .run = run_form,
     .refused = refused,

@@ -99,10 +99,7 @@ static strut_status report(const strut_arguments *arguments, const strut_plot *p
   if (!status && plot->path)
     status = curves ? strut_follow_curves_figure(plot, result, &error)
                     : strut_follow_figure(plot, result, &error);
-  if (status) {
-    strut_print_error(&error);
-    return status;
-  }
+  if (status) return strut_print_failure(status, &error);
   return strut_print_report(
       arguments, arguments->json ? strut_follow_json(result) : strut_follow_table(result));
 }
@@ -153,23 +150,20 @@ static const strut_refused_option refused[] = {
     {"load", "periodic motions are followed over parameters: --over NAME=LOW..HIGH"},
     {NULL, NULL}};
 
+static const char periodic_details[] =
+    "\nRuns the model at each VALUE from each NAME until its motion is steady, and follows the\n"
+    "periodic motion both ways over the parameter, past folds. Tells at each point whether the\n"
+    "motion is stable, by its Floquet multipliers, and locates folds, period doublings (whose\n"
+    "branches it follows, too), tori, and where touchdowns, lift-offs, stick or slip begin or\n"
+    "cease within a period. Motions that travel along level ground repeat but for their travel.\n"
+    "--and follows these points over a second parameter: curves of folds, doublings, grazings and\n"
+    "lift-offs, with their cusps.\n";
+
 const strut_command strut_command_periodic = {
     .name = "path --periodic",
     .model = "MODEL",
     .summary = "follows periodic motions, stable or not, as a parameter changes",
-    .details =
-        "\nRuns the model at each VALUE from each NAME until its motion is steady, and follows "
-        "the\n"
-        "periodic motion both ways over the parameter, past folds. Tells at each point whether "
-        "the\n"
-        "motion is stable, by its Floquet multipliers, and locates folds, period doublings (whose\n"
-        "branches it follows, too), tori, and where touchdowns, lift-offs, stick or slip begin "
-        "or\n"
-        "cease within a period. Motions that travel along level ground repeat but for their "
-        "travel.\n"
-        "--and follows these points over a second parameter: curves of folds, doublings, grazings "
-        "and\n"
-        "lift-offs, with their cusps.\n",
+    .details = periodic_details,
     .options = options,
     .run = run_follow,
     .refused = refused,
