@@ -19,6 +19,9 @@ void strut_arguments_free(strut_arguments *arguments);
 /** The i-th option of a command, those of every command last; NULL after them. */
 const strut_option *strut_option_at(const strut_command *command, size_t i);
 
+/** The option that "--NAME", "--NAME=VALUE" or "-LETTER" is, and in *value what follows the name; NULL: none. */
+const strut_option *strut_option_of(const strut_command *command, char *word, char **value);
+
 /** The form of the command that one of its arguments words[0..count) selects, or the command itself. */
 const strut_command *strut_command_variant_of(const strut_command *command, int count,
                                               char **words);
