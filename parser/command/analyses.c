@@ -126,12 +126,12 @@ static strut_status choose_followed(const strut_arguments *arguments, const stru
                              name);
   if (parameter) {
     wanted->over = STRUT_PATH_OVER_SCENE;
-    wanted->name = name;
+    wanted->name = parameter->name;
     wanted->from = parameter->value;
     wanted->scene_at = strut_varied_scenes_at;
     wanted->context = scenes;
     scenes->purpose = STRUT_FOR_STATICS;
-    strut_status status = strut_varied_scenes_open(arguments, &name, 1, scenes, dimension);
+    strut_status status = strut_varied_scenes_open(arguments, &wanted->name, 1, scenes, dimension);
     wanted->unit = strut_unit_of(*dimension);
     return status;
   }
@@ -168,68 +168,38 @@ static strut_status read_stop(const strut_arguments *arguments, const strut_scen
                            scene->node_count ? scene->nodes[0].name : "node", text);
 }
 
-/* --over WHAT, or WHAT=FROM..UNTIL; texts in the arena, NULL where none is given. */
-typedef struct over_text {
-  const char *name, *from, *until;
-} over_text;
-
-static strut_status read_over(const strut_arguments *arguments, strut_arena *arena,
-                              over_text *over) {
-  const char *text = arguments->over;
-  strut_range_text r;
-  *over = (over_text){.name = NULL};
-  if (!text) return STRUT_OK;
-  if (!strut_range_text_split(text, &r))
-    return strut_usage_error(arguments, "--over expects WHAT or WHAT=FROM..UNTIL");
-  if (r.low && (arguments->from || arguments->until))
-    return strut_usage_error(arguments,
-                             "give either --over WHAT=FROM..UNTIL, or --from and --until");
-  over->name = strut_arena_text(arena, r.name, r.name_length);
-  if (r.low) over->from = strut_arena_text(arena, r.low, r.low_length);
-  over->until = r.high;
-  if (over->name && (over->from || !r.low)) return STRUT_OK;
-  strut_tell(arguments->listener, STRUT_MESSAGE_ERROR, NULL, "out of memory");
-  return STRUT_NO_MEMORY;
-}
-
-/* A value of --over WHAT=FROM..UNTIL. */
-static strut_status read_over_end(const strut_arguments *arguments, strut_dimension dimension,
-                                  const char *text, double *value) {
-  const char *example = strut_dimension_example(dimension);
-  if (!text || strut_quantities_read(text, dimension, value, 1) == 1) return STRUT_OK;
-  return strut_usage_error(arguments, "--over: expected a value%s%s, not '%s'",
-                           example ? " such as " : "", example ? example : "", text);
-}
-
-static strut_status read_followed(const strut_arguments *arguments, strut_scene *scene,
+static strut_status read_followed(const strut_arguments *arguments, const strut_scene *scene,
                                   strut_varied_scenes *scenes, strut_path_options *wanted) {
-  over_text over;
-  strut_status early = read_over(arguments, &scene->arena, &over);
-  if (early != STRUT_OK) return early;
-  const char *name = over.name;
+  const strut_given_range *over = &arguments->over;
+  const char *name = over->text ? over->name : NULL;
+  const char *from = over->high ? over->low : arguments->from;
+  const char *until = over->high ? over->high : arguments->until;
   strut_dimension dimension = STRUT_DIM_NONE;
   strut_status status = STRUT_OK;
   wanted->load = arguments->load;
   wanted->until = 1.0;
+  if (over->high && (arguments->from || arguments->until))
+    return strut_usage_error(arguments,
+                             "give either --over WHAT=FROM..UNTIL, or --from and --until");
   if (name && wanted->load)
     return strut_usage_error(arguments, "give either --load or --over, not both");
   if (name) status = choose_followed(arguments, scene, name, scenes, wanted, &dimension);
-  if (status == STRUT_OK && name && !over.until && !arguments->until) {
+  if (!status && name && !until) {
     const char *example = strut_dimension_example(dimension);
     return strut_usage_error(arguments, "missing --until VALUE, the end value of %s%s%s%s", name,
                              example ? ": such as --until \"" : "", example ? example : "",
                              example ? "\"" : "");
   }
-  if (status == STRUT_OK)
-    status = strut_quantity_read(arguments, "from", arguments->from, dimension, &wanted->from);
-  if (status == STRUT_OK)
-    status = strut_quantity_read(arguments, "until", arguments->until, dimension, &wanted->until);
-  if (status == STRUT_OK) status = read_over_end(arguments, dimension, over.from, &wanted->from);
-  if (status == STRUT_OK) status = read_over_end(arguments, dimension, over.until, &wanted->until);
-  if (status == STRUT_OK &&
+  if (!status)
+    status = strut_quantity_read(arguments, over->high ? "over" : "from", from, dimension,
+                                 &wanted->from);
+  if (!status)
+    status = strut_quantity_read(arguments, over->high ? "over" : "until", until, dimension,
+                                 &wanted->until);
+  if (!status &&
       !(isfinite(wanted->from) && isfinite(wanted->until) && wanted->from != wanted->until))
     return strut_usage_error(arguments, "--from and --until are equal");
-  return status == STRUT_OK ? read_stop(arguments, scene, &wanted->stop) : status;
+  return status ? status : read_stop(arguments, scene, &wanted->stop);
 }
 
 /* ---- equilibria ---- */
@@ -476,7 +446,7 @@ const strut_analysis_kind strut_form_analysis = {.uncompiled = true,
 static bool has_stages(const strut_analysis *a) {
   const strut_arguments *w = a->arguments;
   return a->setup->experiment.stage_count > 0 &&
-         !(w->load || w->over || w->from || w->until || w->stop);
+         !(w->load || w->over.text || w->from || w->until || w->stop);
 }
 
 static strut_status compute_path(strut_analysis *a, strut_error *error) {
@@ -522,7 +492,8 @@ const strut_option strut_path_analysis_options[] = {
     {STRUT_FILLS(load), "load", "NAME",
      "load to scale, or several: P,Q (default: all without a signal)"},
     {STRUT_FILLS(over), "over", "WHAT",
-     "vary a parameter, an actuator, or a displacement NODE.x or NODE.y; also WHAT=FROM..UNTIL"},
+     "vary a parameter, an actuator, or a displacement NODE.x or NODE.y; also WHAT=FROM..UNTIL",
+     .expected = "WHAT or WHAT=FROM..UNTIL"},
     {STRUT_FILLS(from), "from", "VALUE", "start value: a load factor, or in the unit of WHAT"},
     {STRUT_FILLS(until), "until", "VALUE", "end value, likewise (default: load factor 1)"},
     {STRUT_FILLS(stop), "stop", "NODE.x=VALUE",

@@ -33,17 +33,20 @@ strut_status strut_usage_error(const strut_arguments *arguments, const char *for
 
 /* ---- rows ---- */
 
-const strut_option *strut_command_option(const strut_command *command, size_t i) {
-  for (const strut_option *o = command->options; o && (o->name || o->table); o++) {
-    if (!o->table && !i--) return o;
-    for (const strut_option *row = o->table; row && row->name; row++)
-      if (!i--) return row;
+static const strut_option *row_at(const strut_option *table, size_t *i) {
+  for (const strut_option *o = table; o->name || o->table; o++) {
+    const strut_option *row = o->table ? row_at(o->table, i) : (*i)-- ? NULL : o;
+    if (row) return row;
   }
   return NULL;
 }
 
-static const char *name_at(const void *command, size_t i) {
-  const strut_option *option = strut_command_option(command, i);
+const strut_option *strut_option_row(const strut_option *table, size_t i) {
+  return table ? row_at(table, &i) : NULL;
+}
+
+static const char *name_at(const void *table, size_t i) {
+  const strut_option *option = strut_option_row(table, i);
   return option ? option->name : NULL;
 }
 
@@ -152,6 +155,19 @@ static strut_status read_words(const strut_option *option, const strut_arguments
   return status;
 }
 
+static strut_status read_range(const strut_option *option, const strut_arguments *arguments,
+                               strut_given_range *to) {
+  size_t name = strcspn(to->text, "=");
+  const char *low = to->text + name + 1, *dots = to->text[name] ? strstr(low, "..") : NULL;
+  bool good = name > 0 && name < sizeof to->name && (dots || !to->text[name]);
+  if (!good || (dots && (dots == low || dots - low >= (int)sizeof to->low || !dots[2])))
+    return strut_usage_error(arguments, "--%s expects %s", option->name, option->expected);
+  snprintf(to->name, sizeof to->name, "%.*s", (int)name, to->text);
+  snprintf(to->low, sizeof to->low, "%.*s", dots ? (int)(dots - low) : 0, low);
+  to->high = dots ? dots + 2 : NULL;
+  return STRUT_OK;
+}
+
 strut_status strut_argument_read(const strut_option *option, const char *text,
                                  strut_arguments *arguments) {
   void *to = (char *)arguments + option->member;
@@ -159,17 +175,17 @@ strut_status strut_argument_read(const strut_option *option, const char *text,
   if (option->kind == STRUT_OPTION_FLAG) *(bool *)to = true;
   if (option->kind == STRUT_OPTION_NUMBER) return read_number(option, arguments, to);
   if (option->kind == STRUT_OPTION_WHOLE) return read_whole(option, arguments, to);
+  if (option->kind == STRUT_OPTION_RANGE) return read_range(option, arguments, to);
   if (option->kind == STRUT_OPTION_WORD) return read_word(option, arguments, to);
   return option->kind == STRUT_OPTION_WORDS ? read_words(option, arguments, to) : STRUT_OK;
 }
 
 strut_status strut_argument_set(const char *name, const char *value, strut_arguments *arguments) {
-  const strut_option *option;
+  const strut_option *option, *table = arguments->command->options;
   size_t i = 0;
-  while ((option = strut_command_option(arguments->command, i)) && strcmp(option->name, name) != 0)
-    i++;
+  while ((option = strut_option_row(table, i)) && strcmp(option->name, name) != 0) i++;
   if (!option) {
-    const char *near = strut_did_you_mean(name, name_at, arguments->command);
+    const char *near = strut_did_you_mean(name, name_at, table);
     return strut_usage_error(arguments, "unknown option '%s'%s%s%s", name,
                              near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
   }
@@ -197,13 +213,4 @@ size_t strut_quantities_read(const char *text, strut_dimension dimension, double
     rest = rest[length] ? rest + length + 1 : NULL;
   }
   return count;
-}
-
-bool strut_range_text_split(const char *text, strut_range_text *range) {
-  size_t length = strcspn(text, "=");
-  const char *low = text[length] ? text + length + 1 : NULL, *dots = low ? strstr(low, "..") : NULL;
-  *range = (strut_range_text){.name = text, .name_length = length};
-  if (low && (!dots || dots == low || !dots[2])) return false;
-  if (low) range->low = low, range->low_length = (size_t)(dots - low), range->high = dots + 2;
-  return length > 0;
 }

@@ -29,6 +29,11 @@ typedef struct strut_given_word {
   const char *text;
   int index;
 } strut_given_word;
+typedef struct strut_given_range { /* NAME=LOW..HIGH, or NAME alone */
+  const char *text;
+  char name[128], low[128]; /* copies */
+  const char *high;         /* NULL: no range */
+} strut_given_range;
 typedef struct strut_given_words {
   const char *text; /* with commas between */
   unsigned set;     /* a bit for each */
@@ -54,13 +59,14 @@ typedef struct strut_arguments {
   bool help, json, csv, quiet, all, force, stuck, wave, basins, own_model, no_motion, no_states;
   bool count_points, status, retry, parts, study;
   const char *output, *plot, *animate, *width, *title, *scale, *times;
-  const char *at, *supports, *load, *over, *and_over, *from, *until, *stop, *values;
+  const char *at, *supports, *load, *from, *until, *stop, *values;
   const char *shard, *time, *memory;
   const char *x, *y, *by, *panels, *band, *only, *difference, *label, *doubt;
   const char *x_label, *y_label, *x_limits, *y_limits;
   strut_given_word integrator, bars, mass_model, friction_law, damping_law, friction, given;
   strut_given_word objective, draw, kind, colors, log, equilibria, measure, emit, record, compute;
   strut_given_words channels;
+  strut_given_range over, and_over;
   strut_given_number accuracy, budget, step, tolerance, steady, speed, fps, periods, cpu_time;
   strut_given_number least_tension, least_density, limit_time;
   strut_given_whole count, starts, seed, steps, branches, points, step_sizes, threads, shards, cpus;
@@ -76,25 +82,25 @@ typedef enum strut_option_kind {
   STRUT_OPTION_NUMBER,
   STRUT_OPTION_WHOLE,
   STRUT_OPTION_WORD,
-  STRUT_OPTION_WORDS
+  STRUT_OPTION_WORDS,
+  STRUT_OPTION_RANGE
 } strut_option_kind;
 
 /** One row of an option table, which ends with a row without name. */
 typedef struct strut_option {
   strut_option_kind kind;
-  size_t
-      member; /* where in strut_arguments it is kept; all but flags and settings begin with a text there */
+  size_t member;        /* of strut_arguments; there a text is first, but of flags and settings */
   const char *name;     /* without the two dashes */
   const char *argument; /* placeholder in the help; NULL: takes no argument */
   const char *help;
-  char letter;           /* or 0 */
-  bool of_figure;        /* needs --plot */
-  strut_measure measure; /* of a number */
-  double low, high;      /* range of a number [SI]; both 0: any */
-  const char *expected;  /* what messages say where it is not in the range; NULL: the range */
-  int64_t least, most;   /* range of a whole number */
-  const char *words;     /* "bar|cable": one of them; of a text, what completes it */
-  int key;               /* of the language, whose words they are; 0: none */
+  char letter;                      /* or 0 */
+  bool of_figure;                   /* needs --plot */
+  strut_measure measure;            /* of a number */
+  double low, high;                 /* range of a number [SI]; both 0: any */
+  const char *expected;             /* what messages say of another value; NULL: the range */
+  int64_t least, most;              /* range of a whole number */
+  const char *words;                /* "bar|cable": one of them; of a text, what completes it */
+  int key;                          /* of the language, whose words they are; 0: none */
   const struct strut_option *table; /* instead of all this: the rows of another table */
 } strut_option;
 
@@ -107,7 +113,8 @@ typedef struct strut_option {
                    strut_given_number: STRUT_OPTION_NUMBER,              \
                    strut_given_whole: STRUT_OPTION_WHOLE,                \
                    strut_given_word: STRUT_OPTION_WORD, \
-                   strut_given_words: STRUT_OPTION_WORDS),                 \
+                   strut_given_words: STRUT_OPTION_WORDS, \
+                   strut_given_range: STRUT_OPTION_RANGE),                 \
   .member = offsetof(strut_arguments, MEMBER)
 /** The same for a member of which only the text is read. */
 #define STRUT_FILLS_TEXT(MEMBER)                                                                   \
@@ -147,8 +154,8 @@ typedef struct strut_command {
 #define STRUT_ACCURACY_RANGE                                                                       \
   .low = DBL_MIN, .high = 1, .expected = "must be above 0 and at most 1, that is 100%"
 
-/** The i-th row of a command's table, those of its tables included; NULL after the last. */
-const strut_option *strut_command_option(const strut_command *command, size_t i);
+/** The i-th row of a table (or NULL), those of its tables included; NULL after the last. */
+const strut_option *strut_option_row(const strut_option *table, size_t i);
 /** The text given for the option of a row; NULL where it was not, and of flags and settings. */
 const char *strut_given_text(const strut_option *option, const strut_arguments *arguments);
 
@@ -176,13 +183,5 @@ strut_status strut_quantity_read(const strut_arguments *arguments, const char *n
  */
 size_t strut_quantities_read(const char *text, strut_dimension dimension, double *values,
                              size_t most);
-/** The parts of "NAME=LOW..HIGH" within an option's text, or of "NAME" alone. */
-typedef struct strut_range_text {
-  const char *name, *low,
-      *high; /* low, high: NULL without a range; `high` goes to the text's end */
-  size_t name_length, low_length;
-} strut_range_text;
-/** False where the text is neither, or a part of it is empty. */
-bool strut_range_text_split(const char *text, strut_range_text *range);
 
 #endif

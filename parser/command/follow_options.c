@@ -19,48 +19,35 @@ static const char *parameter_at(const void *context, size_t i) {
   return i < scene->parameter_count ? scene->parameters[i].name : NULL;
 }
 
-/* NAME=LOW..HIGH of an option, taken apart. */
-typedef struct range_text {
-  const char *option;       /* "--over" */
-  const char *from, *until; /* of --from and --until, where these may give the range */
-  char *name;               /* [STRUT_FOLLOW_NAME] */
-  char low[200];
-  const char *high;
-} range_text;
-
-/* False where the text, or the options, give no name and range. */
-static bool take_range_apart(const char *text, range_text *r) {
-  strut_range_text parts;
-  if (!text || !strut_range_text_split(text, &parts) || parts.name_length >= STRUT_FOLLOW_NAME)
-    return false;
-  snprintf(r->name, STRUT_FOLLOW_NAME, "%.*s", (int)parts.name_length, parts.name);
-  const char *low = parts.low ? parts.low : r->from;
-  r->high = parts.low ? parts.high : r->until;
-  if (!low || !r->high || (parts.low && (r->from || r->until))) return false;
-  int used = parts.low ? (int)parts.low_length : (int)strlen(low);
-  return snprintf(r->low, sizeof r->low, "%.*s", used, low) < (int)sizeof r->low;
-}
+/* A range whose ends may be those of --from and --until. */
+typedef struct followed {
+  const char *option; /* "--over" */
+  const strut_given_range *given;
+  const char *low, *high;
+} followed;
 
 /* The name must be that of a number of the scene. */
-static strut_status split_range(const strut_arguments *arguments, const strut_scene *scene,
-                                const char *text, range_text *r) {
-  if (!take_range_apart(text, r))
+static strut_status check_range(const strut_arguments *arguments, const strut_scene *scene,
+                                const followed *r) {
+  const bool apart = r->given == &arguments->over && (arguments->from || arguments->until);
+  const char *name = r->given->name;
+  if (!r->given->text || !r->low || !r->high || (apart && r->given->high))
     return strut_usage_error(
         arguments, "missing %s NAME=LOW..HIGH, such as %s frequency=8Hz..12Hz%s", r->option,
-        r->option, r->from || r->until ? ", or --over NAME, --from and --until" : "");
-  const strut_parameter *parameter = strut_find_parameter(scene, r->name);
-  const char *near = parameter ? NULL : strut_did_you_mean(r->name, parameter_at, scene);
+        r->option, apart ? ", or --over NAME, --from and --until" : "");
+  const strut_parameter *parameter = strut_find_parameter(scene, name);
+  const char *near = parameter ? NULL : strut_did_you_mean(name, parameter_at, scene);
   if (!parameter)
     return strut_usage_error(arguments, "%s: the model has no parameter '%s'%s%s%s", r->option,
-                             r->name, near ? "; did you mean '" : "", near ? near : "",
+                             name, near ? "; did you mean '" : "", near ? near : "",
                              near ? "'?" : "");
   if (!isfinite(parameter->value))
     return strut_usage_error(arguments, "%s: parameter '%s' is a text, expected a number",
-                             r->option, r->name);
+                             r->option, name);
   return STRUT_OK;
 }
 
-static strut_status read_ends(const strut_arguments *arguments, const range_text *r,
+static strut_status read_ends(const strut_arguments *arguments, const followed *r,
                               strut_dimension dimension, double *low, double *high) {
   if (strut_quantities_read(r->low, dimension, low, 1) == 1 &&
       strut_quantities_read(r->high, dimension, high, 1) == 1 && *low < *high && isfinite(*low) &&
@@ -69,7 +56,7 @@ static strut_status read_ends(const strut_arguments *arguments, const range_text
   const char *example = strut_dimension_example(dimension);
   return strut_usage_error(
       arguments, "%s %s: expected two values LOW..HIGH, the lower one first%s%s", r->option,
-      r->name, example ? ", each such as " : "", example ? example : "");
+      r->given->name, example ? ", each such as " : "", example ? example : "");
 }
 
 /* The scene of a value of the first parameter, the second one being where the branches are. */
@@ -95,19 +82,20 @@ static double own_value(const strut_scene *scene, const char *name, double low, 
 static strut_status read_ranges(const strut_arguments *arguments, const strut_scene *scene,
                                 strut_follow_source *source, strut_follow_options *wanted,
                                 strut_dimension *dimension) {
-  const bool both = arguments->and_over;
-  range_text first = {
-      .option = "--over", .from = arguments->from, .until = arguments->until, .name = source->name};
-  range_text other = {.option = "--and", .name = source->second};
+  const strut_given_range *over = &arguments->over, *and_over = &arguments->and_over;
+  const bool both = and_over->text;
+  const followed first = {"--over", over, over->high ? over->low : arguments->from,
+                          over->high ? over->high : arguments->until};
+  const followed other = {"--and", and_over, and_over->low, and_over->high};
+  const char *const names[STRUT_MOST_VARIED] = {over->name, and_over->name};
   strut_dimension dimensions[STRUT_MOST_VARIED] = {STRUT_DIM_NONE};
   strut_follow_second *second = &wanted->second;
-  strut_status status = split_range(arguments, scene, arguments->over, &first);
-  if (!status && both) status = split_range(arguments, scene, arguments->and_over, &other);
-  if (!status && both && strcmp(source->name, source->second) == 0)
+  strut_status status = check_range(arguments, scene, &first);
+  if (!status && both) status = check_range(arguments, scene, &other);
+  if (!status && both && strcmp(names[0], names[1]) == 0)
     status =
-        strut_usage_error(arguments, "--over and --and name the same parameter '%s'", source->name);
+        strut_usage_error(arguments, "--over and --and name the same parameter '%s'", names[0]);
   if (status) return status;
-  const char *const names[STRUT_MOST_VARIED] = {source->name, source->second};
   source->scenes.purpose = STRUT_FOR_RUN_STEP_LATER;
   status = strut_varied_scenes_open(arguments, names, both ? 2 : 1, &source->scenes, dimensions);
   if (!status) status = read_ends(arguments, &first, dimensions[0], &wanted->low, &wanted->high);
@@ -115,14 +103,13 @@ static strut_status read_ranges(const strut_arguments *arguments, const strut_sc
     status = read_ends(arguments, &other, dimensions[1], &second->low, &second->high);
   if (status) return status;
   *dimension = dimensions[0];
-  wanted->name = source->name;
+  wanted->name = names[0];
   wanted->unit = strut_unit_of(dimensions[0]);
   wanted->scenes = (strut_follow_scenes){setup_first, source};
   if (!both) return STRUT_OK;
-  second->name = source->second;
+  second->name = names[1];
   second->unit = strut_unit_of(dimensions[1]);
-  second->value = source->second_value =
-      own_value(scene, source->second, second->low, second->high);
+  second->value = source->second_value = own_value(scene, names[1], second->low, second->high);
   second->scenes = (strut_follow_plane){setup_both, source};
   return STRUT_OK;
 }

@@ -8,16 +8,14 @@
 #include "engine/study/follow/follow_study.h"
 #include "parser/command/varied_scenes.h"
 
-enum { STRUT_FOLLOW_MOST_STARTS = 64, STRUT_FOLLOW_NAME = 128 };
+enum { STRUT_FOLLOW_MOST_STARTS = 64 };
 
 /** Scenes over the parameter, and the options that refer to them. Must not move. Zero-initialise. */
 typedef struct strut_follow_source {
   strut_varied_scenes scenes;
-  char name[STRUT_FOLLOW_NAME];
   char from[1024]; /* names of configurations, each ended by NUL */
   strut_follow_start starts[STRUT_FOLLOW_MOST_STARTS];
-  char second[STRUT_FOLLOW_NAME]; /* name of the second parameter; "": there is none */
-  double second_value;            /* where the branches are [SI] */
+  double second_value; /* of the second parameter, where the branches are [SI] */
 } strut_follow_source;
 
 /**

@@ -3,8 +3,14 @@
 
 #include <string.h>
 
+const strut_option strut_width_options[] = {
+    {STRUT_FILLS(width), "width", "WIDTH",
+     "width of the figure: page (180 mm, default), column (88 mm) or a length", .of_figure = true,
+     .words = "page|column"},
+    {.name = NULL}};
+
 const strut_option strut_plot_setting_options[] = {
-    STRUT_WIDTH_OPTION,
+    {.table = strut_width_options},
     {STRUT_FILLS(title), "title", "TEXT", "title of the figure (default: the model's name)",
      .of_figure = true},
     {.name = NULL}};

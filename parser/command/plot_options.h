@@ -9,15 +9,9 @@
 #include "engine/output/figures/run_figure.h"
 #include "parser/command/arguments.h"
 
-/** Tables of options: width and title; what a figure of a run shows; labels and limits of one pair of axes. */
-extern const strut_option strut_plot_setting_options[], strut_run_figure_options[],
-    strut_axis_options[];
-#define STRUT_WIDTH_OPTION                                                                         \
-  {                                                                                                \
-    STRUT_FILLS(width), "width", "WIDTH",                                                          \
-        "width of the figure: page (180 mm, default), column (88 mm) or a length",                 \
-        .of_figure = true, .words = "page|column"                                                  \
-  }
+/** Tables of options: width; this and the title; what a figure of a run shows; labels and limits of one pair of axes. */
+extern const strut_option strut_width_options[], strut_plot_setting_options[],
+    strut_run_figure_options[], strut_axis_options[];
 
 /**
  * Reads all but the file into a plot. `usual` is the default width [pt]; 0: a page's. STRUT_USAGE; the

@@ -1,10 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/command/run_settings.h"
 
-#include <stdio.h>
-
 #include "engine/base/number_text.h"
 #include "engine/integrate/integrator.h"
+
+const strut_option strut_method_options[] = {
+    {STRUT_FILLS(integrator), "integrator", "NAME",
+     "integration method, instead of that of the file", .words = STRUT_INTEGRATOR_WORDS},
+    {STRUT_FILLS(step), "step", "TIME", "time step, instead of that of the file",
+     .measure = STRUT_MEASURE_TIME, STRUT_ABOVE_ZERO},
+    {STRUT_FILLS(tolerance), "tolerance", "X", "error tolerance of adaptive and adaptive8",
+     STRUT_ABOVE_ZERO},
+    {.name = NULL}};
 
 const strut_option strut_run_setting_options[] = {
     {STRUT_FILLS(accuracy), "accuracy", "X",
@@ -14,9 +21,7 @@ const strut_option strut_run_setting_options[] = {
      "limit on the work of --accuracy, in units of one fine fixed-step run "
      "(default " STRUT_TEXT_OF(STRUT_USUAL_BUDGET) ")",
      STRUT_ABOVE_ZERO},
-    STRUT_METHOD_OPTION,
-    STRUT_STEP_OPTION,
-    STRUT_TOLERANCE_OPTION,
+    {.table = strut_method_options},
     {STRUT_FILLS(steady), "steady", "TOLERANCE",
      "stop once the motion repeats within TOLERANCE, such as 0.5%", STRUT_ABOVE_ZERO},
     {.name = NULL}};
@@ -34,10 +39,8 @@ const strut_option strut_fidelity_options[] = {
      .key = STRUT_KEY_GROUND_DAMPING_LAW},
     {.name = NULL}};
 
-static strut_status refuse(const strut_arguments *arguments, const char *message) {
-  strut_tell(arguments->listener, STRUT_MESSAGE_ERROR, NULL, "%s", message);
-  return STRUT_USAGE;
-}
+const strut_option strut_experiment_options[] = {
+    {.table = strut_run_setting_options}, {.table = strut_fidelity_options}, {.name = NULL}};
 
 static strut_status apply_settings(const strut_arguments *a, strut_experiment *e) {
   bool by_hand = a->integrator.text || a->step.text;
@@ -47,26 +50,20 @@ static strut_status apply_settings(const strut_arguments *a, strut_experiment *e
   if (a->tolerance.text) e->tolerance = a->tolerance.value;
   if (a->budget.text) e->budget = a->budget.value;
   if (a->steady.text && !(e->periods > 0.0))
-    return refuse(a, "--steady compares periods: the run must be given in periods");
+    return strut_usage_error(a, "--steady compares periods: the run must be given in periods");
   if (a->steady.text) e->steady.wanted = true, e->steady.tolerance = a->steady.value;
   if (by_hand && a->accuracy.text)
-    return refuse(
+    return strut_usage_error(
         a,
         "--accuracy chooses method and step: give either --accuracy, or --integrator and --step");
   if (by_hand) e->accuracy = 0.0;
   bool stepless = e->step_chosen || (by_hand && e->step == 0.0);
   if (stepless && !strut_experiment_is_adaptive(e->integrator) && !(e->accuracy > 0.0) &&
       !a->step.text)
-    return refuse(
+    return strut_usage_error(
         a, "the solver has no step, which only adaptive and adaptive8 do without: give --step");
-  if (e->accuracy > 1.0) return refuse(a, "--accuracy must be at most 1, that is 100%");
+  if (e->accuracy > 1.0) return strut_usage_error(a, "--accuracy must be at most 1, that is 100%%");
   return STRUT_OK;
-}
-
-static strut_status refuse_fidelity(const strut_arguments *arguments, const char *option,
-                                    const char *needs) {
-  strut_tell(arguments->listener, STRUT_MESSAGE_ERROR, NULL, "--%s %s", option, needs);
-  return STRUT_USAGE;
 }
 
 static strut_status set_friction(const strut_arguments *arguments, strut_scene *scene,
@@ -77,46 +74,42 @@ static strut_status set_friction(const strut_arguments *arguments, strut_scene *
     if (f->law == STRUT_FRICTION_NONE) continue;
     any = true;
     for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
-      char needs[120];
       if (!strut_friction_needs(law, p) || !strut_friction_above_zero(p)) continue;
       if (strut_friction_value(f, p) > 0.0) continue;
-      snprintf(needs, sizeof needs, "%s needs ground.friction.%s in the model",
-               strut_friction_law_at(law)->word, strut_friction_key(p));
-      return refuse_fidelity(arguments, "friction-law", needs);
+      return strut_usage_error(arguments, "--friction-law %s needs ground.friction.%s in the model",
+                               strut_friction_law_at(law)->word, strut_friction_key(p));
     }
     f->law = law;
   }
-  return any ? STRUT_OK
-             : refuse_fidelity(arguments, "friction-law",
-                               "needs a ground with friction in the model");
+  if (any) return STRUT_OK;
+  return strut_usage_error(arguments, "--friction-law needs a ground with friction in the model");
 }
 
 static strut_status set_damping(const strut_arguments *arguments, strut_scene *scene,
                                 strut_ground_damping law) {
   bool damped = false, other = false;
   if (!strut_scene_has_ground(scene))
-    return refuse_fidelity(arguments, "damping-law", "needs a ground in the model");
+    return strut_usage_error(arguments, "--damping-law needs a ground in the model");
   for (size_t i = 0; i < scene->contact_count; i++) {
     bool crossley = law == STRUT_DAMPING_HUNT_CROSSLEY;
     damped = damped || (crossley ? scene->contacts[i].dissipation : scene->contacts[i].damping) > 0;
     other = other || (crossley ? scene->contacts[i].damping : scene->contacts[i].dissipation) > 0;
   }
   if (other && !damped)
-    return refuse_fidelity(arguments, "damping-law",
-                           law == STRUT_DAMPING_HUNT_CROSSLEY
-                               ? "hunt_crossley needs ground.dissipation in the model"
-                               : "approach_only needs ground.damping in the model");
+    return strut_usage_error(arguments, "--damping-law %s in the model",
+                             law == STRUT_DAMPING_HUNT_CROSSLEY
+                                 ? "hunt_crossley needs ground.dissipation"
+                                 : "approach_only needs ground.damping");
   scene->ground.damping_law = law;
   for (size_t g = 0; g < scene->ground_count; g++) scene->grounds[g].damping_law = law;
   return STRUT_OK;
 }
 
 const strut_option *strut_run_option_given(const strut_arguments *arguments, size_t i) {
-  const strut_option *const tables[] = {strut_run_setting_options, strut_fidelity_options};
-  for (size_t k = 0; k < sizeof tables / sizeof tables[0]; k++)
-    for (const strut_option *row = tables[k]; row->name; row++)
-      if (strut_given_text(row, arguments) && !i--) return row;
-  return NULL;
+  const strut_option *row;
+  for (size_t k = 0; (row = strut_option_row(strut_experiment_options, k)); k++)
+    if (strut_given_text(row, arguments) && !i--) break;
+  return row;
 }
 
 strut_purpose strut_run_options_purpose(const strut_arguments *a) {

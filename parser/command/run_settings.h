@@ -6,28 +6,14 @@
 #include "engine/scene/experiment.h"
 #include "parser/command/arguments.h"
 
-/** Tables of options that change how a scene is run without changing the file: method, step and accuracy. */
-extern const strut_option strut_run_setting_options[];
-/** Options that run a scene as another model of itself: rigid bars, lumped masses, other laws. */
-extern const strut_option strut_fidelity_options[];
-/** Rows that a run advanced from outside has, too. */
+/**
+ * Tables of options that change how a scene is run without changing the file: method, step and accuracy; those of
+ * them that a run has which is advanced from outside; rigid bars, lumped masses and other laws; the first and these.
+ */
+extern const strut_option strut_run_setting_options[], strut_method_options[],
+    strut_fidelity_options[], strut_experiment_options[];
 #define STRUT_FORCE_OPTION                                                                         \
   { STRUT_FILLS(force), "force", NULL, "run even if the step exceeds the stability limit" }
-#define STRUT_METHOD_OPTION                                                                        \
-  {                                                                                                \
-    STRUT_FILLS(integrator), "integrator", "NAME",                                                 \
-        "integration method, instead of that of the file", .words = STRUT_INTEGRATOR_WORDS         \
-  }
-#define STRUT_STEP_OPTION                                                                          \
-  {                                                                                                \
-    STRUT_FILLS(step), "step", "TIME", "time step, instead of that of the file",                   \
-        .measure = STRUT_MEASURE_TIME, STRUT_ABOVE_ZERO                                            \
-  }
-#define STRUT_TOLERANCE_OPTION                                                                     \
-  {                                                                                                \
-    STRUT_FILLS(tolerance), "tolerance", "X", "error tolerance of adaptive and adaptive8",         \
-        STRUT_ABOVE_ZERO                                                                           \
-  }
 
 /** The i-th of all these options that is given, or NULL. */
 const strut_option *strut_run_option_given(const strut_arguments *arguments, size_t i);

@@ -188,7 +188,7 @@ bool strut_is_study(const char *path) {
 /* Options of a model, which the points of a study would not have. */
 static strut_status refuse_options(const strut_arguments *arguments) {
   const strut_option *option;
-  for (size_t i = 0; (option = strut_command_option(arguments->command, i)); i++)
+  for (size_t i = 0; (option = strut_option_row(arguments->command->options, i)); i++)
     if (strut_given_text(option, arguments))
       return strut_usage_error(arguments, "--%s needs a model, not the study '%s'", option->name,
                                arguments->model);

@@ -16,8 +16,7 @@ enum { DIGITS = 5 };
 
 static const strut_option options[] = {
     STRUT_SET_OPTION,
-    {.table = strut_run_setting_options},
-    {.table = strut_fidelity_options},
+    {.table = strut_experiment_options},
     STRUT_JSON_OPTION,
     {.name = NULL},
 };

@@ -140,10 +140,7 @@ static strut_status open_one(const strut_arguments *arguments, compared_models *
   input->label = choose_label(arguments, compared, number, path);
   if (!input->label) return strut_print_out_of_memory();
   strut_status status = strut_file_read(path, &from.text, &from.length, &error);
-  if (status != STRUT_OK) {
-    strut_print_error(&error);
-    return status;
-  }
+  if (status != STRUT_OK) return strut_print_failure(status, &error);
   status = read_setup(compared, &from, NULL, 0, setup);
   if (status == STRUT_OK)
     status = split_settings(arguments, &setup->scene, compared, number, &from);
@@ -260,8 +257,7 @@ static const strut_option options[] = {
     STRUT_JSON_OPTION,
     STRUT_THREADS_OPTION,
     {STRUT_FILLS(csv), "csv", NULL, "print CSV, one row per model"},
-    STRUT_PLOT_OPTION,
-    {.table = strut_plot_setting_options},
+    {.table = strut_plot_options},
     {.name = NULL},
 };
 
@@ -307,8 +303,7 @@ static strut_status write_files(strut_results *files, const file_names *names,
   for (size_t i = 0; i < result->count && status == STRUT_OK; i++)
     status = draw_comparison(files->stage, names->pictures[i], ONE, result, i, 1, &error);
   if (status == STRUT_OK) status = strut_results_commit(files, &error);
-  if (status != STRUT_OK) strut_print_error(&error);
-  return status;
+  return strut_print_failure(status, &error);
 }
 
 static strut_status print_comparison(const strut_arguments *arguments,
@@ -395,24 +390,23 @@ static const strut_refused_option refused[] = {
     {"step", "every model is run to --accuracy, with the step that this takes"},
     {NULL, NULL}};
 
+static const char compare_details[] =
+    "\nFor each model, the results of check, rigidity, equilibria, modes and run:\n"
+    "counts, mass, self-stress, mechanisms; stable states and the lowest escape barrier of the\n"
+    "starting one; forces, frequencies and stiffness at rest (of each node under a unit load in\n"
+    "x and y, contacts held); the largest step; and for a model with a run the velocity, travel\n"
+    "per period, drive energy, cost of transport (drive power over weight times speed) and\n"
+    "duty factor of the steady motion, with the cost of a simulated second.\n"
+    "Then how the effective scenes differ from the first: + added, - removed, ~ changed.\n"
+    "Missing values are '-', left empty in CSV, and null with a reason in JSON.\n"
+    "'strut compare m.yaml m.yaml --set mu=0.2' compares a model with a variant of itself.\n";
+
 const strut_command strut_command_compare = {
     .name = "compare",
     .model = "MODEL...",
     .many = true,
     .summary = "compares models side by side: structure, statics and motion",
-    .details =
-        "\nFor each model, the results of check, rigidity, equilibria, modes and run:\n"
-        "counts, mass, self-stress, mechanisms; stable states and the lowest escape barrier of "
-        "the\n"
-        "starting one; forces, frequencies and stiffness at rest (of each node under a unit load "
-        "in\n"
-        "x and y, contacts held); the largest step; and for a model with a run the velocity, "
-        "travel\n"
-        "per period, drive energy, cost of transport (drive power over weight times speed) and\n"
-        "duty factor of the steady motion, with the cost of a simulated second.\n"
-        "Then how the effective scenes differ from the first: + added, - removed, ~ changed.\n"
-        "Missing values are '-', left empty in CSV, and null with a reason in JSON.\n"
-        "'strut compare m.yaml m.yaml --set mu=0.2' compares a model with a variant of itself.\n",
+    .details = compare_details,
     .options = options,
     .run = run_compare,
     .refused = refused,

@@ -22,11 +22,9 @@ static const strut_option options[] = {
     STRUT_OUTPUT_OPTION("DIR", "write summary, scene and trajectories into DIR"),
     {STRUT_FILLS(json), "json", NULL, "print the summary as one JSON object"},
     STRUT_FORCE_OPTION,
-    {.table = strut_run_setting_options},
-    {.table = strut_fidelity_options},
+    {.table = strut_experiment_options},
     STRUT_THREADS_OPTION,
-    STRUT_PLOT_OPTION,
-    {.table = strut_plot_setting_options},
+    {.table = strut_plot_options},
     {.table = strut_run_figure_options},
     {.table = strut_film_options},
     {.name = NULL},
@@ -170,26 +168,25 @@ static strut_status run_run(const strut_arguments *arguments) {
   return status;
 }
 
+static const char run_details[] =
+    "\nPrints a short table at the end, or with --json the whole summary. With -o, DIR receives\n"
+    "summary.json, scene.yaml (the scene as run: running it gives bit-identical results),\n"
+    "trajectory.h5 and, as CSV, nodes, members, contacts and energy, as the scene records them;\n"
+    "either all files are written or none.\n"
+    "--plot draws the final shape with curves of the last periods (overview), node\n"
+    "trajectories over the last period, magnified by --scale (period), shapes at several\n"
+    "instants (snapshots), or curves of everything recorded (curves). A run that diverged is\n"
+    "drawn up to that point.\n"
+    "--animate makes a film of the recorded motion with the program ffmpeg.\n"
+    "A result that is less accurate than requested is printed all the same, with a warning and\n"
+    "exit code 5.\n"
+    "Ctrl-C stops the run and keeps the results so far; a second Ctrl-C kills it.\n";
+
 const strut_command strut_command_run = {
     .name = "run",
     .model = "MODEL",
     .summary = "simulates a model",
-    .details =
-        "\nPrints a short table at the end, or with --json the whole summary. With -o, DIR "
-        "receives\n"
-        "summary.json, scene.yaml (the scene as run: running it gives bit-identical results),\n"
-        "trajectory.h5 and, as CSV, nodes, members, contacts and energy, as the scene records "
-        "them;\n"
-        "either all files are written or none.\n"
-        "--plot draws the final shape with curves of the last periods (overview), node\n"
-        "trajectories over the last period, magnified by --scale (period), shapes at several\n"
-        "instants (snapshots), or curves of everything recorded (curves). A run that diverged is\n"
-        "drawn up to that point.\n"
-        "--animate makes a film of the recorded motion with the program ffmpeg.\n"
-        "A result that is less accurate than requested is printed all the same, with a warning "
-        "and\n"
-        "exit code 5.\n"
-        "Ctrl-C stops the run and keeps the results so far; a second Ctrl-C kills it.\n",
+    .details = run_details,
     .options = options,
     .run = run_run,
 };

@@ -81,7 +81,13 @@ strut_status strut_analysis_run(const strut_arguments *arguments) {
   return status;
 }
 
-static const strut_refused_option refused[] = {STRUT_REFUSE_RUN_SETTINGS};
+/* The first is refused by form alone. */
+static const strut_refused_option refused[] = {
+    {"threads", "it computes one step after the other"},
+    {"accuracy", "equilibria are computed to rounding errors"},
+    {"integrator", "nothing is integrated over time"},
+    {"step", "nothing is integrated over time"},
+    {NULL, NULL}};
 
 static const strut_option equilibria_options[] = {
     STRUT_SET_OPTION,
@@ -89,8 +95,7 @@ static const strut_option equilibria_options[] = {
     {.table = strut_equilibria_analysis_options},
     STRUT_OUTPUT_OPTION("DIR", "write equilibria.json into DIR"),
     STRUT_JSON_OPTION,
-    STRUT_PLOT_OPTION,
-    {.table = strut_plot_setting_options},
+    {.table = strut_plot_options},
     {.name = NULL},
 };
 
@@ -108,7 +113,7 @@ const strut_command strut_command_equilibria = {
         "Exit code 3 if nothing ever comes to rest.\n",
     .options = equilibria_options,
     .analysis = &strut_equilibria_analysis,
-    .refused = refused,
+    .refused = refused + 1,
     .timed = true,
 };
 
@@ -118,8 +123,7 @@ static const strut_option modes_options[] = {
     {.table = strut_modes_analysis_options},
     STRUT_OUTPUT_OPTION("DIR", "write modes.json and modes.csv into DIR"),
     STRUT_JSON_OPTION,
-    STRUT_PLOT_OPTION,
-    {.table = strut_plot_setting_options},
+    {.table = strut_plot_options},
     {.name = NULL},
 };
 
@@ -133,7 +137,7 @@ const strut_command strut_command_modes = {
         "computed up to 400 coordinates, beyond that the ten lowest.\n",
     .options = modes_options,
     .analysis = &strut_modes_analysis,
-    .refused = refused,
+    .refused = refused + 1,
     .timed = true,
 };
 
@@ -143,8 +147,7 @@ static const strut_option rigidity_options[] = {
     STRUT_THREADS_OPTION,
     STRUT_OUTPUT_OPTION("DIR", "write rigidity.json into DIR"),
     STRUT_JSON_OPTION,
-    STRUT_PLOT_OPTION,
-    {.table = strut_plot_setting_options},
+    {.table = strut_plot_options},
     {.name = NULL},
 };
 
@@ -159,7 +162,7 @@ const strut_command strut_command_rigidity = {
         "count as one.\n",
     .options = rigidity_options,
     .analysis = &strut_rigidity_analysis,
-    .refused = refused,
+    .refused = refused + 1,
     .timed = true,
 };
 
@@ -169,8 +172,7 @@ static const strut_option path_options[] = {
     STRUT_THREADS_OPTION,
     STRUT_OUTPUT_OPTION("DIR", "write path.json and path.csv into DIR"),
     STRUT_JSON_OPTION,
-    STRUT_PLOT_OPTION,
-    {.table = strut_plot_setting_options},
+    {.table = strut_plot_options},
     {.table = strut_axis_options},
     {.name = NULL},
 };
@@ -196,20 +198,16 @@ const strut_command strut_command_path = {
     .options = path_options,
     .forms = path_forms,
     .analysis = &strut_path_analysis,
-    .refused = refused,
+    .refused = refused + 1,
     .timed = true,
 };
-
-static const strut_refused_option refused_by_form[] = {
-    {"threads", "it computes one step after the other"}, STRUT_REFUSE_RUN_SETTINGS};
 
 static const strut_option form_options[] = {
     {.table = strut_form_analysis_options},
     STRUT_SET_OPTION,
     STRUT_OUTPUT_OPTION("FILE", "write the new model to FILE and print a report"),
     {STRUT_FILLS(json), "json", NULL, "print the report as one JSON object instead of the model"},
-    STRUT_PLOT_OPTION,
-    {.table = strut_plot_setting_options},
+    {.table = strut_plot_options},
     {.name = NULL},
 };
 
@@ -267,22 +265,21 @@ static strut_status run_form(const strut_arguments *arguments) {
   return status;
 }
 
+static const char form_details[] =
+    "\n--given densities: the shape given by the force densities of the members, or the nearest\n"
+    "densities for which one exists. --given lengths: the shape given by the rest lengths.\n"
+    "--given prestress: the drawn shape, with rest lengths that hold it under gravity, loads and\n"
+    "ground forces, every cable in tension. By default, densities if the model gives force\n"
+    "densities, lengths if it gives rest lengths, otherwise prestress.\n"
+    "The new model is printed or written to FILE, with the parameters, groups and parts of the\n"
+    "old one where these can say it; it stays at rest when run without drives.\n";
+
 const strut_command strut_command_form = {
     .name = "form",
     .model = "MODEL",
     .summary = "finds an equilibrium shape or prestress, and writes that model",
-    .details =
-        "\n--given densities: the shape given by the force densities of the members, or the "
-        "nearest\n"
-        "densities for which one exists. --given lengths: the shape given by the rest lengths.\n"
-        "--given prestress: the drawn shape, with rest lengths that hold it under gravity, loads "
-        "and\n"
-        "ground forces, every cable in tension. By default, densities if the model gives force\n"
-        "densities, lengths if it gives rest lengths, otherwise prestress.\n"
-        "The new model is printed or written to FILE, with the parameters, groups and parts of "
-        "the\n"
-        "old one where these can say it; it stays at rest when run without drives.\n",
+    .details = form_details,
     .options = form_options,
     .run = run_form,
-    .refused = refused_by_form,
+    .refused = refused,
 };

@@ -370,24 +370,23 @@ static strut_status run_sweep(const strut_arguments *given) {
 
 static const strut_command_variant forms[] = {{"merge", &strut_command_merge}, {NULL, NULL}};
 
+static const char sweep_details[] =
+    "\nSTUDY is a file that names a model, axes over its parameters and what to keep of each run\n"
+    "(see 'strut keys'). DIR receives table.csv, one row per point, and points.slots, which\n"
+    "stores every result as soon as its point is finished. After any interruption the same\n"
+    "command resumes; the final table is the same byte for byte, whatever the number of\n"
+    "threads. Remove points.slots to start afresh.\n"
+    "An interrupted sweep leaves table-partial.csv, the rows that are done.\n"
+    "A failed point is a row that gives the reason; the exit code is then 3, and only --retry\n"
+    "recomputes it. Where an accuracy is requested, the column accuracy_kept says of each point\n"
+    "whether it was reached; the exit code is 5 if it was not everywhere. Ctrl-C stops after a\n"
+    "moment.\n";
+
 const strut_command strut_command_sweep = {
     .name = "sweep",
     .model = "STUDY",
     .summary = "computes a model at many parameter values, or searches for the best ones",
-    .details =
-        "\nSTUDY is a file that names a model, axes over its parameters and what to keep of each "
-        "run\n"
-        "(see 'strut keys'). DIR receives table.csv, one row per point, and points.slots, which\n"
-        "stores every result as soon as its point is finished. After any interruption the same\n"
-        "command resumes; the final table is the same byte for byte, whatever the number of\n"
-        "threads. Remove points.slots to start afresh.\n"
-        "An interrupted sweep leaves table-partial.csv, the rows that are done.\n"
-        "A failed point is a row that gives the reason; the exit code is then 3, and only --retry\n"
-        "recomputes it. Where an accuracy is requested, the column accuracy_kept says of each "
-        "point\n"
-        "whether it was reached; the exit code is 5 if it was not everywhere. Ctrl-C stops after "
-        "a\n"
-        "moment.\n",
+    .details = sweep_details,
     .options = options,
     .run = run_sweep,
     .forms = forms,
@@ -409,10 +408,7 @@ static strut_status run_merge(const strut_arguments *arguments) {
   strut_status early = strut_sweep_refine_merge(arguments, &refined);
   if (refined) return early;
   strut_status status = strut_merge(arguments->model, &merged, &error);
-  if (status != STRUT_OK) {
-    strut_print_error(&error);
-    return status;
-  }
+  if (status != STRUT_OK) return strut_print_failure(status, &error);
   if (!arguments->quiet) {
     printf("%s/table.csv: %lld points", arguments->model, (long long)merged.points);
     if (merged.shards) printf(" of %lld shards", (long long)merged.shards);

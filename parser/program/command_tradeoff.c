@@ -165,7 +165,7 @@ static const strut_option options[] = {
     STRUT_JSON_OPTION,
     STRUT_THREADS_OPTION,
     {STRUT_FILLS(plot), "plot", "FILE", "draw error against cost into FILE (.svg, .pdf or .png)"},
-    STRUT_WIDTH_OPTION,
+    {.table = strut_width_options},
     {.name = NULL},
 };
 
@@ -297,26 +297,23 @@ static strut_status run_tradeoff(const strut_arguments *arguments) {
 static const strut_refused_option refused[] = {
     {"step", "it runs each method with many steps; --step-sizes says how many"}, {NULL, NULL}};
 
+static const char tradeoff_details[] =
+    "\nRuns the model with every method, with steps from above the stability limit downwards,\n"
+    "and as variants (lumped masses, rigid bars, other laws of friction and ground), as far as\n"
+    "they apply. Errors are relative to references on which two methods agree; their remaining\n"
+    "difference is the floor of all errors. Costs are force evaluations relative to rk4 with the\n"
+    "scene's step; CPU times are as measured here, and decide nothing. The step error of a run is\n"
+    "kept apart from the model error of a variant.\n"
+    "Ends with the cheapest setting for each error, or for that of --accuracy with the cost of\n"
+    "half the error and how well the reference is known. Work is at most 30 reference runs.\n"
+    "With --vary, errors are median, 90th percentile and worst over random points, since a\n"
+    "single small error at a large step may be luck.\n";
+
 const strut_command strut_command_tradeoff = {
     .name = "tradeoff",
     .model = "MODEL",
     .summary = "measures error against cost of methods, steps and model variants",
-    .details =
-        "\nRuns the model with every method, with steps from above the stability limit downwards,\n"
-        "and as variants (lumped masses, rigid bars, other laws of friction and ground), as far "
-        "as\n"
-        "they apply. Errors are relative to references on which two methods agree; their "
-        "remaining\n"
-        "difference is the floor of all errors. Costs are force evaluations relative to rk4 with "
-        "the\n"
-        "scene's step; CPU times are as measured here, and decide nothing. The step error of a run "
-        "is\n"
-        "kept apart from the model error of a variant.\n"
-        "Ends with the cheapest setting for each error, or for that of --accuracy with the cost "
-        "of\n"
-        "half the error and how well the reference is known. Work is at most 30 reference runs.\n"
-        "With --vary, errors are median, 90th percentile and worst over random points, since a\n"
-        "single small error at a large step may be luck.\n",
+    .details = tradeoff_details,
     .options = options,
     .run = run_tradeoff,
     .refused = refused,

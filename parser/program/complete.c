@@ -55,22 +55,6 @@ static const char *complete_value(const strut_option *option, completion *c) {
   return strncmp(option->argument, "FILE", 4) == 0 ? ":files" : ":";
 }
 
-/* The option that `word` is, whole; its value follows "=" in *value, else NULL. */
-static const strut_option *option_of(const strut_command *command, const char *word,
-                                     const char **value) {
-  *value = NULL;
-  if (word[0] != '-' || !word[1]) return NULL;
-  for (size_t i = 0; strut_option_at(command, i); i++) {
-    const strut_option *option = strut_option_at(command, i);
-    size_t length = strlen(option->name);
-    if (word[1] != '-' && option->letter == word[1] && !word[2]) return option;
-    if (word[1] != '-' || strncmp(word + 2, option->name, length) != 0) continue;
-    if (word[2 + length] == '=') *value = word + 3 + length;
-    if (*value || !word[2 + length]) return option;
-  }
-  return NULL;
-}
-
 static const char *complete_argument(const strut_command *command, completion *c) {
   const char *model = command->model ? command->model : "";
   if (strncmp(model, "COMMAND", 7) == 0) offer_commands(c);
@@ -85,15 +69,17 @@ static const char *complete_argument(const strut_command *command, completion *c
 }
 
 static const char *complete_in(const strut_command *command, int count, char **words) {
-  const char *word = words[count - 1], *value;
+  char *word = words[count - 1], *value;
   completion c = {.word = word, .before = word};
-  const strut_option *option = option_of(command, word, &value);
+  const strut_option *option = word[0] == '-' ? strut_option_of(command, word, &value) : NULL;
   if (option && value && option->argument) {
     c.kept = (int)(value - word);
     c.word = value;
     return complete_value(option, &c);
   }
-  option = count > 1 ? option_of(command, words[count - 2], &value) : NULL;
+  option = count > 1 && words[count - 2][0] == '-'
+               ? strut_option_of(command, words[count - 2], &value)
+               : NULL;
   if (option && !value && option->argument) return complete_value(option, &c);
   if (word[0] != '-') return complete_argument(command, &c);
   offer_options(&c, command);

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/program/options.h"
 
-#include <assert.h>
-#include <getopt.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -12,7 +10,10 @@
 #include "parser/program/streams.h"
 #include "parser/yaml/diagnostics.h"
 
-enum { MOST_OPTIONS = 48, FIRST = 256, POSITIONAL = 1, COLUMN = 24 };
+const strut_option strut_plot_options[] = {
+    {STRUT_FILLS(plot), "plot", "FILE", "draw a figure into FILE (.svg, .pdf or .png)"},
+    {.table = strut_plot_setting_options},
+    {.name = NULL}};
 
 /* Every command has these, after its own. */
 static const strut_option common_options[] = {
@@ -23,10 +24,10 @@ static const strut_option common_options[] = {
 enum { COMMON_OPTIONS = sizeof common_options / sizeof common_options[0] };
 
 const strut_option *strut_option_at(const strut_command *command, size_t i) {
-  const strut_option *own = strut_command_option(command, i);
+  const strut_option *own = strut_option_row(command->options, i);
   size_t count = 0;
   if (own) return own;
-  while (strut_command_option(command, count)) count++;
+  while (strut_option_row(command->options, count)) count++;
   return i < count + COMMON_OPTIONS ? &common_options[i - count] : NULL;
 }
 
@@ -35,53 +36,40 @@ static const char *option_name_at(const void *context, size_t i) {
   return option ? option->name : NULL;
 }
 
-static strut_status usage_error(const strut_command *command) {
-  fprintf(stderr, "'strut %s --help' lists the options\n", command->name);
-  return STRUT_USAGE;
+/* Says where the options are, behind a message. */
+static strut_status with_help(const strut_arguments *to, strut_status status) {
+  fprintf(stderr, "'strut %s --help' lists the options\n", to->command->name);
+  return status;
 }
 
-/* Why the command cannot use an option that others have, or NULL. */
-static const char *reason_to_refuse(const strut_command *command, const char *name) {
-  const strut_refused_option *row = command->refused;
-  while (row && row->name && strcmp(row->name, name) != 0) row++;
-  return row ? row->reason : NULL;
+const strut_option *strut_option_of(const strut_command *command, char *word, char **value) {
+  const bool letter = word[1] != '-';
+  const size_t length = letter ? 2 : strcspn(word, "=");
+  const strut_option *row;
+  for (size_t i = 0; (row = strut_option_at(command, i)); i++)
+    if (letter ? row->letter && row->letter == word[1]
+               : strlen(row->name) + 2 == length && !strncmp(row->name, word + 2, length - 2))
+      break;
+  *value = !row || !word[length] ? NULL : word + length + !letter;
+  return row;
 }
 
-/* `word` starts with its dashes. `meant`: the option it abbreviates, or NULL to look for one. */
-static strut_status unknown_option(const strut_command *command, const char *word,
-                                   const char *meant) {
-  int length = (int)strcspn(word, "=");
+/* `word` starts with its dashes. */
+static strut_status unknown_option(const strut_arguments *to, const char *word) {
+  const size_t length = strcspn(word, "=") - 2;
+  const strut_option *row;
+  const char *meant = NULL; /* the first that it abbreviates, or one that is near */
   char name[64];
-  snprintf(name, sizeof name, "%.*s", length > 2 ? length - 2 : 0, word + 2);
-  const char *reason = reason_to_refuse(command, name);
-  if (reason) {
-    fprintf(stderr, "strut %s: --%s cannot be used here: %s\n", command->name, name, reason);
-    return STRUT_USAGE;
-  }
-  if (!meant) meant = strut_did_you_mean(name, option_name_at, command);
-  fprintf(stderr, "strut %s: unknown option '%.*s'", command->name, length, word);
-  if (meant) fprintf(stderr, "; did you mean '--%s'?", meant);
-  fputc('\n', stderr);
-  return usage_error(command);
-}
-
-/* Reports why getopt rejected argv[optind - 1], or a letter in it. */
-static strut_status report_rejected(const strut_command *command, int code, char **argv) {
-  const char *word = argv[optind - 1];
-  bool letter = strncmp(word, "--", 2) != 0;
-  if (code == ':' && letter) {
-    fprintf(stderr, "strut %s: option '-%c' needs a value\n", command->name, optopt);
-  } else if (code == ':') {
-    fprintf(stderr, "strut %s: option '%s' needs a value\n", command->name, word);
-  } else if (letter) {
-    fprintf(stderr, "strut %s: unknown option '-%c'\n", command->name, optopt);
-  } else if (optopt) {
-    int length = (int)strcspn(word, "=");
-    fprintf(stderr, "strut %s: option '%.*s' takes no value\n", command->name, length, word);
-  } else {
-    return unknown_option(command, word, NULL);
-  }
-  return usage_error(command);
+  snprintf(name, sizeof name, "%.*s", (int)length, word + 2);
+  for (const strut_refused_option *r = to->command->refused; r && r->name; r++)
+    if (strcmp(r->name, name) == 0)
+      return strut_usage_error(to, "--%s cannot be used here: %s", name, r->reason);
+  for (size_t i = 0; length && !meant && (row = strut_option_at(to->command, i)); i++)
+    if (strncmp(row->name, name, length) == 0) meant = row->name;
+  if (!meant) meant = strut_did_you_mean(name, option_name_at, to->command);
+  return with_help(to, strut_usage_error(to, "unknown option '--%s'%s%s%s", name,
+                                         meant ? "; did you mean '--" : "", meant ? meant : "",
+                                         meant ? "'?" : ""));
 }
 
 /* One --set or --vary: splits NAME=VALUE in place. */
@@ -90,7 +78,7 @@ static strut_status add_override(const strut_option *option, char *text, strut_a
   bool varied = option->member == offsetof(strut_arguments, varied);
   if (!equals || equals == text) {
     strut_usage_error(to, "--%s expects %s, not '%s'", option->name, option->argument, text);
-    return usage_error(to->command);
+    return with_help(to, STRUT_USAGE);
   }
   *equals = '\0';
   const strut_override override = {text, equals + 1};
@@ -104,56 +92,33 @@ static strut_status add_override(const strut_option *option, char *text, strut_a
 }
 
 static strut_status add_model(const char *text, strut_arguments *to) {
-  if (!to->command->model || (to->model && !to->command->many)) {
-    strut_usage_error(to, "unexpected argument '%s'", text);
-    return usage_error(to->command);
-  }
+  if (!to->command->model || (to->model && !to->command->many))
+    return with_help(to, strut_usage_error(to, "unexpected argument '%s'", text));
   if (!to->model) to->model = text;
   to->models[to->model_count++] = text;
   return STRUT_OK;
 }
 
-/* The option or positional argument that getopt found, with its value in optarg. */
-static strut_status store_option(int id, strut_arguments *to) {
-  size_t i = id >= FIRST ? (size_t)(id - FIRST) : 0;
-  if (id == POSITIONAL) return add_model(optarg, to);
-  while (id < FIRST && strut_option_at(to->command, i)->letter != id) i++;
-  const strut_option *option = strut_option_at(to->command, i);
-  if (option->kind == STRUT_OPTION_SETTING) return add_override(option, optarg, to);
-  return option->kind == STRUT_OPTION_SELECTOR ? STRUT_OK : strut_argument_read(option, optarg, to);
-}
-
-/* The table in getopt's form. "-" returns positional arguments in order, ":" suppresses messages. */
-static void fill_getopt(const strut_command *command, char letters[2 * MOST_OPTIONS + 3],
-                        struct option rows[MOST_OPTIONS + 1]) {
-  char *at = letters;
-  assert(!strut_option_at(command, MOST_OPTIONS));
-  *at++ = '-';
-  *at++ = ':';
-  for (size_t i = 0; i < MOST_OPTIONS && strut_option_at(command, i); i++) {
-    const strut_option *option = strut_option_at(command, i);
-    int needs = option->argument ? required_argument : no_argument;
-    rows[i] = (struct option){option->name, needs, NULL, FIRST + (int)i};
-    if (!option->letter) continue;
-    *at++ = option->letter;
-    if (option->argument) *at++ = ':';
+/* Reads an option, or several letters, at argv[*i]; its value may be the next word, which *i then is. */
+static strut_status read_option(strut_arguments *to, char **argv, int *i) {
+  const bool letters = argv[*i][1] != '-';
+  for (char *at = argv[*i], *value;; at++) {
+    const strut_option *option = strut_option_of(to->command, at, &value);
+    const int length = letters ? 1 : (int)strcspn(at, "=") - 1;
+    if (!option && !letters) return unknown_option(to, at);
+    if (!option) return with_help(to, strut_usage_error(to, "unknown option '-%c'", at[1]));
+    if (!letters && value && !option->argument)
+      return with_help(to, strut_usage_error(to, "option '-%.*s' takes no value", length, at + 1));
+    if (option->argument && !value && !(value = argv[++*i]))
+      return with_help(to, strut_usage_error(to, "option '-%.*s' needs a value", length, at + 1));
+    if (option->kind == STRUT_OPTION_SETTING) return add_override(option, value, to);
+    strut_status status = option->kind ? strut_argument_read(option, value, to) : STRUT_OK;
+    if (status || option->argument || !letters || !at[2]) return status;
   }
-  *at = '\0';
-}
-
-/* Did getopt accept an abbreviation of the long option it found? */
-static bool is_abbreviated(char **argv, const struct option *row) {
-  const char *word = argv[optind - 1];
-  if (row->has_arg && optarg == word) word = argv[optind - 2];
-  size_t length = strcspn(word, "=");
-  return length != strlen(row->name) + 2 || strncmp(word + 2, row->name, length - 2) != 0;
 }
 
 strut_status strut_arguments_read(const strut_command *command, int argc, char **argv,
                                   strut_arguments *arguments) {
-  char letters[2 * MOST_OPTIONS + 3];
-  struct option rows[MOST_OPTIONS + 1] = {{0}};
-  fill_getopt(command, letters, rows);
   *arguments = (strut_arguments){.command = command, .listener = strut_stderr_listener()};
   arguments->overrides = strut_allocate((size_t)argc, sizeof *arguments->overrides);
   arguments->override_model = strut_allocate((size_t)argc, sizeof *arguments->override_model);
@@ -163,26 +128,18 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
       !arguments->models)
     return strut_print_out_of_memory();
   strut_status status = STRUT_OK;
-  opterr = 0;
-  while (status == STRUT_OK) {
-    int row = -1, id = getopt_long(argc, argv, letters, rows, &row);
-    if (id == -1) break;
-    if (id == '?' || id == ':') {
-      status = report_rejected(command, id, argv);
-    } else if (row >= 0 && is_abbreviated(argv, &rows[row])) {
-      const char *word = argv[optind - (rows[row].has_arg && optarg == argv[optind - 1] ? 2 : 1)];
-      status = unknown_option(command, word, rows[row].name);
-    } else {
-      status = store_option(id, arguments);
-    }
+  bool options = true; /* until "--" */
+  for (int i = 1; i < argc && !status; i++) {
+    if (options && strcmp(argv[i], "--") == 0)
+      options = false;
+    else if (options && argv[i][0] == '-' && argv[i][1])
+      status = read_option(arguments, argv, &i);
+    else
+      status = add_model(argv[i], arguments);
   }
-  for (; status == STRUT_OK && optind < argc; optind++) /* after "--" */
-    status = add_model(argv[optind], arguments);
   bool missing = command->model && !command->model_optional && !arguments->model;
-  if (status == STRUT_OK && missing && !arguments->help) {
-    strut_usage_error(arguments, "missing %s", command->model);
-    status = usage_error(command);
-  }
+  if (status == STRUT_OK && missing && !arguments->help)
+    return with_help(arguments, strut_usage_error(arguments, "missing %s", command->model));
   return status;
 }
 
@@ -193,6 +150,8 @@ void strut_arguments_free(strut_arguments *arguments) {
   strut_release(arguments->models);
   *arguments = (strut_arguments){0};
 }
+
+enum { COLUMN = 24 };
 
 static void print_option(const strut_option *option) {
   char left[64], letter[8] = "    ";

@@ -19,6 +19,9 @@ void strut_arguments_free(strut_arguments *arguments);
 /** The i-th option of a command, those of every command last; NULL after them. */
 const strut_option *strut_option_at(const strut_command *command, size_t i);
 
+/** The option that "--NAME", "--NAME=VALUE" or "-LETTER" is, and in *value what follows the name; NULL: none. */
+const strut_option *strut_option_of(const strut_command *command, char *word, char **value);
+
 /** The form of the command that one of its arguments words[0..count) selects, or the command itself. */
 const strut_command *strut_command_variant_of(const strut_command *command, int count,
                                               char **words);
@@ -39,17 +42,8 @@ void strut_command_help(const strut_command *command);
   }
 #define STRUT_OUTPUT_OPTION(ARGUMENT, HELP)                                                        \
   { STRUT_FILLS(output), "output", ARGUMENT, HELP, .letter = 'o' }
-/** The figure of a command: a file, and how it is drawn. */
-#define STRUT_PLOT_OPTION                                                                          \
-  { STRUT_FILLS(plot), "plot", "FILE", "draw a figure into FILE (.svg, .pdf or .png)" }
-
-/** Rows of refused options for commands that integrate nothing. */
-#define STRUT_REFUSE_RUN_SETTINGS                                                                  \
-  {"accuracy", "equilibria are computed to rounding errors"},                                      \
-      {"integrator", "nothing is integrated over time"},                                           \
-      {"step", "nothing is integrated over time"}, {                                               \
-    NULL, NULL                                                                                     \
-  }
+/** The figure of a command: its file, width and title. */
+extern const strut_option strut_plot_options[];
 
 /**
  * Reads all before anything is computed, and checks that FILE can be written: STRUT_USAGE or

@@ -18,16 +18,18 @@
 static const char *const file_names[] = {"branches.csv", "branches.json", "branches.svg",
                                          "curves.csv",   "curves.svg",    NULL};
 
+#define RANGE .expected = "NAME=LOW..HIGH, such as frequency=8Hz..12Hz"
+
 static const strut_option options[] = {
     {.kind = STRUT_OPTION_SELECTOR,
      .name = "periodic",
      NULL,
      "follow periodic motions instead of equilibria"},
-    {STRUT_FILLS(over), "over", "NAME=LOW..HIGH", "the parameter and its range"},
+    {STRUT_FILLS(over), "over", "NAME=LOW..HIGH", "the parameter and its range", RANGE},
     {STRUT_FILLS(from), "from", "VALUE", "low end of the range, if --over gives none"},
     {STRUT_FILLS(until), "until", "VALUE", "high end, likewise"},
     {STRUT_FILLS(and_over), "and", "NAME=LOW..HIGH",
-     "a second parameter, over which curves of folds, doublings and grazings are followed"},
+     "a second parameter, over which curves of folds, doublings and grazings are followed", RANGE},
     {STRUT_FILLS(values), "values", "VALUE,...",
      "values at which branches start (default: the model's own, or the middle)"},
     {STRUT_FILLS(at), "at", "NAME,...", "configurations to start from (default: the start)"},
@@ -46,8 +48,7 @@ static const strut_option options[] = {
     STRUT_THREADS_OPTION,
     STRUT_OUTPUT_OPTION("DIR", "write branches.csv, .json and .svg into DIR"),
     STRUT_JSON_OPTION,
-    STRUT_PLOT_OPTION,
-    {.table = strut_plot_setting_options},
+    {.table = strut_plot_options},
     {.table = strut_axis_options},
     {.name = NULL},
 };
@@ -98,10 +99,7 @@ static strut_status report(const strut_arguments *arguments, const strut_plot *p
   if (!status && plot->path)
     status = curves ? strut_follow_curves_figure(plot, result, &error)
                     : strut_follow_figure(plot, result, &error);
-  if (status) {
-    strut_print_error(&error);
-    return status;
-  }
+  if (status) return strut_print_failure(status, &error);
   return strut_print_report(
       arguments, arguments->json ? strut_follow_json(result) : strut_follow_table(result));
 }
@@ -152,23 +150,20 @@ static const strut_refused_option refused[] = {
     {"load", "periodic motions are followed over parameters: --over NAME=LOW..HIGH"},
     {NULL, NULL}};
 
+static const char periodic_details[] =
+    "\nRuns the model at each VALUE from each NAME until its motion is steady, and follows the\n"
+    "periodic motion both ways over the parameter, past folds. Tells at each point whether the\n"
+    "motion is stable, by its Floquet multipliers, and locates folds, period doublings (whose\n"
+    "branches it follows, too), tori, and where touchdowns, lift-offs, stick or slip begin or\n"
+    "cease within a period. Motions that travel along level ground repeat but for their travel.\n"
+    "--and follows these points over a second parameter: curves of folds, doublings, grazings and\n"
+    "lift-offs, with their cusps.\n";
+
 const strut_command strut_command_periodic = {
     .name = "path --periodic",
     .model = "MODEL",
     .summary = "follows periodic motions, stable or not, as a parameter changes",
-    .details =
-        "\nRuns the model at each VALUE from each NAME until its motion is steady, and follows "
-        "the\n"
-        "periodic motion both ways over the parameter, past folds. Tells at each point whether "
-        "the\n"
-        "motion is stable, by its Floquet multipliers, and locates folds, period doublings (whose\n"
-        "branches it follows, too), tori, and where touchdowns, lift-offs, stick or slip begin "
-        "or\n"
-        "cease within a period. Motions that travel along level ground repeat but for their "
-        "travel.\n"
-        "--and follows these points over a second parameter: curves of folds, doublings, grazings "
-        "and\n"
-        "lift-offs, with their cusps.\n",
+    .details = periodic_details,
     .options = options,
     .run = run_follow,
     .refused = refused,

@@ -51,6 +51,7 @@ offers ":" run "$crawler" --step ""
 
 # Methods, also behind a comma.
 offers "rk4 rk4-events :" run --integrator rk
+offers "snapshots :" run --draw sn
 offers "rk4,verlet rk4,verlet-events :" tradeoff --integrator rk4,ver
 offers ":" run "$crawler" --set fr
 

@@ -96,6 +96,6 @@ same one out
 tells 1 "--over expects WHAT or WHAT=FROM..UNTIL" path truss.yaml --over load=1..
 tells 1 "give either --over WHAT=FROM..UNTIL, or --from and --until" path truss.yaml --over load=1..3 --until 5
 tells 1 "or --over NAME, --from and --until" path hop.yaml --periodic --over mass=1..2 --from 1
-tells 1 "--over: expected a value such as " path truss.yaml --over load=1..3kg
+tells 1 "--over expects a force, such as " path truss.yaml --over load=1..3kg
 expect 0 tradeoff hop.yaml --cpu-time 1s --step-sizes 2 --own-model --quiet --plot trade.svg
 grep -q '<svg' trade.svg || fail "no figure of a tradeoff"

@@ -475,7 +475,7 @@ static const strut_command *command_of(const char *name) {
 
 static const strut_option *option_of(const char *command, size_t i) {
   const strut_command *found = command_of(command);
-  return found ? strut_command_option(found, i) : NULL;
+  return found ? strut_option_row(found->options, i) : NULL;
 }
 
 const char *strutlib_option_name(const char *command, size_t i) {
@@ -524,16 +524,13 @@ strut_status abi_call_begin(abi_call *call, const strutlib_scene *scene,
 
 static const strut_option run_options[] = {
     STRUT_FORCE_OPTION,
-    {.table = strut_run_setting_options},
-    {.table = strut_fidelity_options},
+    {.table = strut_experiment_options},
     {STRUT_FILLS(channels), "channels", "NAME,...", "channels to record, instead of the scene's",
      .words = STRUT_CHANNEL_WORDS},
     {STRUT_FILLS(record), "record", "YES|NO", "record channels (default yes)", .words = "yes|no"},
     {.name = NULL}};
 static const strut_option simulation_options[] = {STRUT_FORCE_OPTION,
-                                                  STRUT_METHOD_OPTION,
-                                                  STRUT_STEP_OPTION,
-                                                  STRUT_TOLERANCE_OPTION,
+                                                  {.table = strut_method_options},
                                                   {.table = strut_fidelity_options},
                                                   {.name = NULL}};
 static const strut_option sweep_options[] = {
@@ -548,8 +545,7 @@ static const strut_option sweep_options[] = {
      .measure = STRUT_MEASURE_TIME, .high = HUGE_VAL, .expected = "must not be below 0"},
     {STRUT_FILLS(threads), "threads", "N", "number of threads (default automatic)", .least = 1,
      .most = 4096},
-    {.table = strut_run_setting_options},
-    {.table = strut_fidelity_options},
+    {.table = strut_experiment_options},
     {.name = NULL}};
 
 const strut_command abi_run_command = {.name = "run", .options = run_options},
