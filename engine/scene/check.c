@@ -60,15 +60,6 @@ static bool check_range(strut_checker *checker, const strut_checked *whose, cons
   return false;
 }
 
-/* Is it the key of the set that the object has? */
-static bool is_chosen(const strut_field *field, const char *object) {
-  if (!field->chosen) return true;
-  uint32_t tag = field->tag_size == sizeof(bool)
-                     ? *(const bool *)(object + field->tag)
-                     : *(const uint32_t *)(const void *)(object + field->tag);
-  return tag == field->tag_value;
-}
-
 bool strut_check_fields(strut_checker *checker, const strut_checked *whose,
                         strut_thing_section section, const void *object, const void *usual) {
   size_t count;
@@ -87,7 +78,7 @@ bool strut_check_fields(strut_checker *checker, const strut_checked *whose,
       if (value == 0.0 && range == STRUT_RANGE_ABOVE_ZERO) range = STRUT_RANGE_NOT_NEGATIVE;
     }
     memcpy(&value, at, sizeof value);
-    if (is_chosen(field, object))
+    if (strut_field_is_chosen(field, object))
       valid = check_range(checker, whose, rows[i].name, value, range) && valid;
   }
   return valid;

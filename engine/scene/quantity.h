@@ -181,10 +181,10 @@ typedef struct strut_quantity_definition {
   size_t length, depth;       /* instructions; the most numbers on the stack */
   strut_instruction *program; /* (length) */
   strut_reduction take;
-  double accuracy;          /* wanted, relative [1]; 0: that of the run */
-  double accuracy_absolute; /* wanted, in `unit`; 0: none */
-  double target;            /* of ARRIVAL, in the expression's SI unit */
-  const char *target_unit;  /* of ARRIVAL: that unit; "1": none */
+  double accuracy;           /* wanted; 0: that of the run */
+  const char *accuracy_unit; /* `unit`; NULL: it is relative */
+  double target;             /* of ARRIVAL, in the expression's SI unit */
+  const char *target_unit;   /* of ARRIVAL: that unit; "1": none */
 } strut_quantity_definition;
 
 /**
@@ -193,7 +193,7 @@ typedef struct strut_quantity_definition {
  */
 static inline double strut_quantity_allowed_error(const strut_quantity_definition *definition,
                                                   double accuracy, double value, double scale) {
-  if (definition->accuracy_absolute > 0.0) return definition->accuracy_absolute;
+  if (definition->accuracy_unit) return definition->accuracy;
   double part = definition->accuracy > 0.0 ? definition->accuracy : accuracy;
   return part * fmax(fabs(value), 1e-3 * scale);
 }

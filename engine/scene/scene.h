@@ -207,7 +207,8 @@ typedef struct strut_actuator {
   const char *name;
   int32_t member, signal;
   int32_t hinge; /* where member is -1 */
-  bool force; /* the signal is a force [N] or a moment [N m] added to the member's or hinge's own */
+  uint32_t
+      force; /* not 0: the signal is a force [N] (1) or a moment [N m] (2) added to the member's or hinge's own */
   int32_t cell; /* where both are -1 */
 } strut_actuator;
 

@@ -173,7 +173,10 @@ static double number_at(strut_field_type type, const void *value) {
     case STRUT_FIELD_OBJECT:
     case STRUT_FIELD_DOUBLE_PAIR:
     case STRUT_FIELD_BOOL_PAIR:
-    case STRUT_FIELD_TEXT: break;
+    case STRUT_FIELD_TEXT:
+    case STRUT_FIELD_INSTRUCTION:
+    case STRUT_FIELD_NODE_SET:
+    case STRUT_FIELD_TREE: break;
   }
   assert(false);
   return 0.0;
@@ -190,15 +193,30 @@ static void put_value(const numbers *to, strut_field_type type, const void *valu
   }
 }
 
+static void put_sets(const numbers *to, const strut_node_set *sets, size_t count) {
+  put(to, (double)count);
+  for (size_t i = 0; i < count; i++) {
+    put(to, (double)sets[i].count);
+    for (size_t k = 0; k < sets[i].count; k++) put(to, sets[i].node[k]);
+  }
+}
+
 static void put_list(const numbers *to, const strut_field *field, const char *object) {
   size_t size = field->type == STRUT_FIELD_INT32    ? sizeof(int32_t)
                 : field->type == STRUT_FIELD_DOUBLE ? sizeof(double)
                                                     : 2 * sizeof(double);
   size_t count = *(const size_t *)(const void *)(object + field->number);
-  const char *array;
+  const char *array, *second;
   memcpy(&array, object + field->offset, sizeof array);
+  memcpy(&second, object + field->beside, sizeof second);
+  if (field->type == STRUT_FIELD_NODE_SET) {
+    put_sets(to, (const strut_node_set *)(const void *)array, count);
+    return;
+  }
   put(to, (double)count);
   for (size_t i = 0; i < count && array; i++) put_value(to, field->type, array + i * size);
+  for (size_t i = 0; i < count && array && field->beside; i++)
+    put_value(to, field->type, second + i * size);
 }
 
 /* A field of an object of `size` bytes, unless it belongs to a larger one or what is at rest does not need it. */
@@ -252,14 +270,6 @@ static void put_things(const numbers *to, const strut_scene *scene, strut_thing 
   for (size_t i = 0; i < count; i++) put_thing(to, kind, strut_thing_object(scene, kind, i));
 }
 
-static void put_sets(const numbers *to, const strut_node_set *sets, size_t count) {
-  put(to, (double)count);
-  for (size_t i = 0; i < count; i++) {
-    put(to, (double)sets[i].count);
-    for (size_t k = 0; k < sets[i].count; k++) put(to, sets[i].node[k]);
-  }
-}
-
 static void put_configurations(const numbers *to, const strut_scene *scene) {
   put(to, (double)scene->configuration_count);
   for (size_t i = 0; i < scene->configuration_count; i++) {
@@ -306,7 +316,6 @@ void strut_setup_at_rest(const strut_setup *setup, strut_number_sink *sink, void
   put_section(&to, STRUT_FIELDS_GROUND, &scene->ground, sizeof scene->ground);
   put_section(&to, STRUT_FIELDS_SETTLE, &setup->experiment.settle, sizeof setup->experiment.settle);
   put_section(&to, STRUT_FIELDS_EQUILIBRIA, search, sizeof *search);
-  put_sets(&to, search->supports, search->support_count);
   for (int kind = 0; kind < STRUT_THING_COUNT; kind++)
     if (rest[kind] == AT_REST) put_things(&to, scene, (strut_thing)kind);
   put_configurations(&to, scene);

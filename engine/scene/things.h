@@ -82,6 +82,8 @@ typedef enum strut_key_need {
   STRUT_REQUIRED
 } strut_key_need;
 
+struct strut_tree;
+
 /** How a value is kept, see things_table.h. */
 typedef enum strut_field_role {
   STRUT_FIELD_BY_HAND,
@@ -105,7 +107,10 @@ typedef enum strut_field_type {
   STRUT_FIELD_BOOL,
   STRUT_FIELD_DOUBLE_PAIR,
   STRUT_FIELD_BOOL_PAIR,
-  STRUT_FIELD_TEXT /* const char *; of a WORD, the word itself */
+  STRUT_FIELD_TEXT,        /* const char *; of a WORD, the word itself */
+  STRUT_FIELD_INSTRUCTION, /* of a LIST that is a program */
+  STRUT_FIELD_NODE_SET,    /* of a LIST */
+  STRUT_FIELD_TREE         /* const strut_tree *: the value as the file has it */
 } strut_field_type;
 
 /** Where an object keeps a value. */
@@ -117,9 +122,15 @@ typedef struct strut_field {
   strut_thing kind; /* of references */
   int below;        /* of NESTED, SECTION and THINGS: the strut_section of the keys; else 0 */
   bool of_runs;     /* what is at rest does not depend on it */
-  bool chosen;      /* one of several keys: it sets the tag, of so many bytes, to the value */
+  bool later;       /* the section's reader reads it, when it knows what it needs */
+  bool turns;       /* an angle that is kept in turns */
+  uint32_t first;   /* of a WORD: the value of the first one */
+  size_t
+      beside; /* where a LIST has its second coordinates, or a number the text of its unit; 0: nowhere */
+  bool
+      chosen; /* one of several keys: that where the tag, of so many bytes, is from value to last */
   size_t tag, tag_size;
-  uint32_t tag_value;
+  uint32_t tag_value, tag_last;
 } strut_field;
 
 /* A field of a type that is not listed does not compile. */
@@ -128,10 +139,14 @@ typedef struct strut_field {
            uint32_t: STRUT_FIELD_UINT32, int64_t: STRUT_FIELD_INT64, \
            uint64_t: STRUT_FIELD_UINT64, bool: STRUT_FIELD_BOOL, \
            double *: STRUT_FIELD_DOUBLE_PAIR, bool *: STRUT_FIELD_BOOL_PAIR, \
-           const char *: STRUT_FIELD_TEXT)
+           const char *: STRUT_FIELD_TEXT, const struct strut_tree *: STRUT_FIELD_TREE)
 #define STRUT_ELEMENT_OF(lvalue)                                                                   \
   _Generic((lvalue), double *: STRUT_FIELD_DOUBLE, const double *: STRUT_FIELD_DOUBLE, \
-           int32_t *: STRUT_FIELD_INT32, double(*)[2]: STRUT_FIELD_DOUBLE_PAIR)
+           int32_t *: STRUT_FIELD_INT32, const int32_t *: STRUT_FIELD_INT32, \
+           strut_instruction *: STRUT_FIELD_INSTRUCTION, \
+           const strut_instruction *: STRUT_FIELD_INSTRUCTION, \
+           double(*)[2]: STRUT_FIELD_DOUBLE_PAIR, const char **: STRUT_FIELD_TEXT, \
+           strut_node_set *: STRUT_FIELD_NODE_SET)
 #define STRUT_MEMBER(object, member) (((object *)0)->member)
 #define STRUT_PLACE_OF(object, member)                                                             \
   .offset = offsetof(object, member), .size = sizeof STRUT_MEMBER(object, member),                 \
@@ -144,23 +159,43 @@ typedef struct strut_field {
   .role = STRUT_FIELD_VALUE, .type = STRUT_TYPE_OF(STRUT_MEMBER(object, member)),                  \
   STRUT_PLACE_OF(object, member)
 #define STRUT_FIELD_OF_NUMBERS(object, member) STRUT_FIELD_OF_FIELD(object, member)
+#define STRUT_FIELD_OF_UNIT(object, member, unit)                                                  \
+  .beside = offsetof(object, unit), STRUT_FIELD_OF_FIELD(object, member)
 #define STRUT_FIELD_OF_REFERENCE(object, member, KIND)                                             \
   .role = STRUT_FIELD_REFERENCE, .type = STRUT_FIELD_INT32, .kind = STRUT_THING_##KIND,            \
   STRUT_PLACE_OF(object, member)
 #define STRUT_FIELD_OF_LIST(object, member, count)                                                 \
   .role = STRUT_FIELD_LIST, .type = STRUT_ELEMENT_OF(STRUT_MEMBER(object, member)),                \
   .number = offsetof(object, count), .kind = STRUT_THING_COUNT, STRUT_PLACE_OF(object, member)
+#define STRUT_FIELD_OF_CURVE(object, x, y, count)                                                  \
+  .beside = offsetof(object, y), STRUT_FIELD_OF_LIST(object, x, count)
 #define STRUT_FIELD_OF_REFERENCES(object, member, count, KIND)                                     \
   .role = STRUT_FIELD_LIST, .type = STRUT_ELEMENT_OF(STRUT_MEMBER(object, member)),                \
   .number = offsetof(object, count), .kind = STRUT_THING_##KIND, STRUT_PLACE_OF(object, member)
 #define STRUT_FIELD_OF_NESTED(object, member, SECTION)                                             \
   .role = STRUT_FIELD_NESTED, STRUT_PLACE_OF(object, member), .below = STRUT_BELOW(SECTION)
+#define STRUT_FIELD_OF_SELF(object, SECTION)                                                       \
+  .role = STRUT_FIELD_NESTED, .size = sizeof(object), .object_size = sizeof(object),               \
+  .below = STRUT_BELOW(SECTION)
 #define STRUT_FIELD_OF_SECTION(SECTION) .role = STRUT_FIELD_SECTION, .below = STRUT_BELOW(SECTION)
 #define STRUT_FIELD_OF_THINGS(SECTION) .role = STRUT_FIELD_THINGS, .below = STRUT_BELOW(SECTION)
 #define STRUT_FIELD_OF_OF_RUNS(field) .of_runs = true, STRUT_FIELD_OF_##field
+#define STRUT_FIELD_OF_LATER(field) .later = true, STRUT_FIELD_OF_##field
+#define STRUT_FIELD_OF_TURNS(field) .turns = true, STRUT_FIELD_OF_##field
+#define STRUT_FIELD_OF_FROM(value, field) .first = value, STRUT_FIELD_OF_##field
 #define STRUT_FIELD_OF_CHOICE(object, member, value, field)                                        \
+  STRUT_FIELD_OF_AMONG(object, member, value, value, field)
+#define STRUT_FIELD_OF_AMONG(object, member, value, last, field)                                   \
   .chosen = true, .tag = offsetof(object, member),                                                 \
-  .tag_size = sizeof STRUT_MEMBER(object, member), .tag_value = value, STRUT_FIELD_OF_##field
+  .tag_size = sizeof STRUT_MEMBER(object, member), .tag_value = value, .tag_last = last,           \
+  STRUT_FIELD_OF_##field
+
+/** Does an object have the key: is it the chosen one of several? */
+static inline bool strut_field_is_chosen(const strut_field *field, const void *object) {
+  const void *at = (const char *)object + field->tag;
+  uint32_t tag = field->tag_size == sizeof(bool) ? *(const bool *)at : *(const uint32_t *)at;
+  return !field->chosen || (tag >= field->tag_value && tag <= field->tag_last);
+}
 
 /** A row of the table, as far as the engine needs it. */
 typedef struct strut_field_row {

@@ -11,13 +11,20 @@
  *
  *   FIELD(object, member)                    a number, pair, word, text or signal
  *   REFERENCE(object, member, KIND)          the index of a thing, or an array of them; -1: none
- *   LIST(object, member, count)              numbers or points, in memory of their own
+ *   LIST(object, member, count)              numbers, points, texts, sets of nodes or a program, in memory of their own
  *   REFERENCES(object, member, count, KIND)  likewise of indices
  *   NUMBERS(object, member)                  an array of numbers
  *   NESTED(object, member, SECTION)          a mapping of that section, kept in an object within this one
  *   SECTION(SECTION)                         a mapping whose keys have rows of their own
  *   THINGS(SECTION)                          a mapping of names to things that have the keys of the section
+ *   CURVE(object, x, y, count)               points in two arrays of numbers
+ *   UNIT(object, member, unit)               a number and the text of its unit, NULL or "1": none
+ *   SELF(object, SECTION)                    a mapping of that section, kept in the object itself
  *   CHOICE(object, tag, value, field)        one of several keys: it also sets `tag` to `value`
+ *   AMONG(object, tag, value, last, field)   one that belongs to tags from `value` to `last`, which others set
+ *   FROM(value, field)                       a word, of which the first means `value`
+ *   TURNS(field)                             an angle that is kept in turns
+ *   LATER(field)                             the section's reader reads it, as what has the measure CONTEXT
  *   OF_RUNS(field)                           what is at rest does not depend on it
  *   NONE                                     nothing is kept
  *   BY_HAND                                  the section's reader and writer have code for the key
@@ -70,8 +77,6 @@
   X(MEMBER, REFERENCE(strut_member, node, NODE)) \
   X(MEMBER, REFERENCES(strut_member, guides, guide_count, NODE)) \
   X(CELL, FIELD(strut_cell, law)) \
-  X(LAW, LIST(strut_law, x, count)) \
-  X(LAW, LIST(strut_law, force, count)) \
   X(GROUND, FIELD(strut_ground_section, ground.present)) \
   X(CONTACT, REFERENCE(strut_contact, node, NODE)) \
   X(CONTACT, REFERENCE(strut_contact, ground, GROUND)) \
@@ -86,7 +91,7 @@
   X(SCENE, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_scene, description), "What the scene shows.") \
   X(SCENE, SOURCE, "source", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_scene, source), "Where its numbers come from.") \
   X(SCENE, PARAMETERS, "parameters", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression or a quoted text", BY_HAND, "Named values for expressions, which `--set` may change.") \
-  X(SCENE, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node, a contact or a hinge", BY_HAND, "Defaults that members, nodes, contacts or hinges share. Own keys take precedence.") \
+  X(SCENE, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node, a contact or a hinge", NONE, "Defaults that members, nodes, contacts or hinges share. Own keys take precedence.") \
   X(SCENE, NODES, "nodes", THINGS, NONE, ANY, "", OPTIONAL, 0, "`[x, y]` or the keys of a node", THINGS(NODE), "The points of the structure; required unless parts are placed. Under the name of a placed thing, as under `members` and the like, keys change that thing; `*` stands for one part of a name between dots.") \
   X(SCENE, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", THINGS(MEMBER), "The bars, springs and cables between the nodes.") \
   X(SCENE, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", THINGS(HINGE), "Springs of the angle between two arms that meet at a node.") \
@@ -109,7 +114,7 @@
   X(SCENE, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, "", OPTIONAL, 0, "`{NODE: [x, y], ...}` or the keys of a [configuration](#configuration)", THINGS(CONFIGURATION), "Named shapes, to start from and to name equilibria. Nodes that are not listed stay as drawn.") \
   X(SCENE, INITIAL, "initial", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(INITIAL), "The state at t = 0; by default the drawn shape at rest.") \
   X(SCENE, EQUILIBRIA, "equilibria", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(EQUILIBRIA), "Settings of the search for equilibria.") \
-  X(SCENE, PATH, "path", FREE, NONE, ANY, "", OPTIONAL, 0, "the keys of a [path in stages](#path-in-stages)", BY_HAND, "What `strut path` follows by default, in stages.") \
+  X(SCENE, PATH, "path", FREE, NONE, ANY, "", OPTIONAL, 0, "the keys of a [path in stages](#path-in-stages)", SECTION(SCENE_PATH), "What `strut path` follows by default, in stages.") \
   X(SCENE, SOLVER, "solver", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(SOLVER), "Method, time step and accuracy. Required for a run.") \
   X(SCENE, RUN, "run", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(RUN), "Duration and measurement. Required for a run.") \
   X(SCENE, OUTPUT, "output", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(OUTPUT), "What a run records.") \
@@ -123,7 +128,7 @@
   X(SCENE, PLACE, "place", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [place](#place)", THINGS(PLACE), "Copies of parts. Things in a copy are called `NAME.THING`, in repeated copies `NAME.0.THING` and so on.") \
   X(SCENE, MERGE, "merge", FREE, NONE, ANY, "", OPTIONAL, 0, "touching, or {node: other node, ...}", BY_HAND, "Pairs of nodes to merge, or `touching`: all nodes at the same place. Masses add, supports unite.") \
   X(SCENE, LIMIT_THINGS, "limit_things", NUMBER, NONE, WHOLE(1, STRUT_MOST_THINGS), "500000", OPTIONAL, 0, "", BY_HAND, "Largest number of nodes, members and other things in all copies of parts and in beams, and of contacts with a profile.") \
-  X(SCENE, BASE, "base", TEXT, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "File of another scene, relative to this one, which the keys here change: mappings merge, other values are replaced, `NAME: remove` deletes.")
+  X(SCENE, BASE, "base", TEXT, NONE, ANY, "", OPTIONAL, 0, "", NONE, "File of another scene, relative to this one, which the keys here change: mappings merge, other values are replaced, `NAME: remove` deletes.")
 
 #define STRUT_NODE_FIELDS(X) \
   X(NODE, POSITION, "position", PAIR, LENGTH, ANY, "", REQUIRED, 0, "", FIELD(strut_node, position), "Position in the drawn shape.") \
@@ -174,14 +179,14 @@
 #define STRUT_CELL_FIELDS(X) \
   X(CELL, NODES, "nodes", NODE_RING, NONE, ANY, "", REQUIRED, 0, "", REFERENCES(strut_cell, node, node_count, NODE), "The corners `[a, b, c, ...]` in order, in either sense, up to 32. They need no members between them.") \
   X(CELL, PRESSURE, "pressure", NUMBER, STIFFNESS, ANY, "", OPTIONAL, 7, "", CHOICE(strut_cell, law, STRUT_LAW_PRESSURE, FIELD(strut_cell, pressure)), "Given pressure, an outward force per length of the boundary; negative: suction. An actuator may change it.") \
-  X(CELL, GAS, "gas", MAP, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "A closed gas. Its pressure follows from the area.") \
+  X(CELL, GAS, "gas", MAP, NONE, ANY, "", OPTIONAL, 7, "", AMONG(strut_cell, law, STRUT_LAW_ISOTHERMAL, STRUT_LAW_ISENTROPIC, LATER(SELF(strut_cell, GAS))), "A closed gas. Its pressure follows from the area.") \
   X(CELL, STIFFNESS, "stiffness", NUMBER, AREA_STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_cell, stiffness), "Elastic cell, instead of a pressure or gas: pressure per loss of area.") \
   X(CELL, DAMPING, "damping", NUMBER, AREA_DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_cell, damping), "Elastic cell: pressure per rate of loss of area.") \
   X(CELL, REST_AREA, "rest_area", NUMBER, AREA, ABOVE_ZERO, "as drawn", OPTIONAL, 0, "", FIELD(strut_cell, rest_area), "Elastic cell: area without pressure.") \
   X(CELL, LAW, "law", LAW, PRESSURE, ANY, "linear", OPTIONAL, 0, "", NESTED(strut_cell, elastic, LAW), "Elastic cell: minus the pressure as a function of area - rest area. With `compression_only` it only resists compression.")
 
 #define STRUT_GAS_FIELDS(X) \
-  X(GAS, KIND, "kind", WORD, NONE, ANY, "", REQUIRED, 0, "isothermal|isentropic", BY_HAND, "With the area A, and A0 as drawn: `isothermal`, p = pressure * A0 / A; `isentropic`, p = pressure * (A0 / A)^exponent.") \
+  X(GAS, KIND, "kind", WORD, NONE, ANY, "", REQUIRED, 0, "isothermal|isentropic", FROM(STRUT_LAW_ISOTHERMAL, FIELD(strut_cell, law)), "With the area A, and A0 as drawn: `isothermal`, p = pressure * A0 / A; `isentropic`, p = pressure * (A0 / A)^exponent.") \
   X(GAS, PRESSURE, "pressure", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_cell, pressure), "Absolute pressure as drawn.") \
   X(GAS, EXPONENT, "exponent", NUMBER, NONE, ABOVE_ZERO, "1.4", OPTIONAL, 0, "", FIELD(strut_cell, exponent), "Isentropic exponent, above 1.") \
   X(GAS, OUTSIDE, "outside", NUMBER, STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_cell, outside), "Absolute pressure outside.")
@@ -191,7 +196,7 @@
   X(COLLISION, MEMBER, "member", NAME, NONE, ANY, "", OPTIONAL, 8, "", CHOICE(strut_collision, member[1], UINT32_MAX, REFERENCE(strut_collision, member[0], MEMBER)), "The member that the `node` may touch: a straight rod with round ends.") \
   X(COLLISION, NODES, "nodes", NAME_PAIR, NONE, ANY, "", OPTIONAL, 8, "", REFERENCE(strut_collision, node, NODE), "Two nodes that may touch each other as discs.") \
   X(COLLISION, MEMBERS, "members", NAME_PAIR, NONE, ANY, "", OPTIONAL, 8, "", REFERENCE(strut_collision, member, MEMBER), "Two members that may touch each other. This stands for four collisions of an end with the other rod.") \
-  X(COLLISION, BETWEEN, "between", FREE, NONE, ANY, "", OPTIONAL, 8, "all, a group of members, or two of these", BY_HAND, "Every two straight members of all, of a group, or one of each of two groups. Pairs that share a node, cross, or are nearer than the thickness as drawn are left out. The collisions are called `NAME_FIRST_SECOND`.") \
+  X(COLLISION, BETWEEN, "between", FREE, NONE, ANY, "", OPTIONAL, 8, "all, a group of members, or two of these", NONE, "Every two straight members of all, of a group, or one of each of two groups. Pairs that share a node, cross, or are nearer than the thickness as drawn are left out. The collisions are called `NAME_FIRST_SECOND`.") \
   X(COLLISION, THICKNESS, "thickness", NUMBER, LENGTH, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_collision, thickness), "Distance of the two axes or centres at contact.") \
   X(COLLISION, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_collision, stiffness), "Force per depth.") \
   X(COLLISION, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_collision, damping), "Force per speed of approach in contact. A collision never pulls.") \
@@ -220,9 +225,9 @@
   X(LAW, GAP, "gap", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, gap), "Free play to either side of the rest length.") \
   X(LAW, SCALE, "scale", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, scale), "Elongation over which the slope of an exponential law grows by the factor e.") \
   X(LAW, YIELD, "yield", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, yield), "Force, or moment of a hinge, at which an elastic-plastic law yields.") \
-  X(LAW, COEFFICIENTS, "coefficients", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Coefficients of x, x^2, ... of a polynomial, such as `[10 N/m, 0, 1e5 N/m^3]`.") \
-  X(LAW, POINTS, "points", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Points `[[x, force], ...]` of a table, such as `[[-1 mm, -5 N], [0, 0], [2 mm, 3 N]]`, with increasing x, or of a curve, whose x may decrease. Beyond its ends the law continues straight.") \
-  X(LAW, CONTROL_POINTS, "control_points", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Control points `[[x, force], ...]` of one Bezier curve, at most 64, instead of `points`.") \
+  X(LAW, COEFFICIENTS, "coefficients", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 0, "", CHOICE(strut_law, kind, STRUT_LAW_POLYNOMIAL, LIST(strut_law, force, count)), "Coefficients of x, x^2, ... of a polynomial, such as `[10 N/m, 0, 1e5 N/m^3]`.") \
+  X(LAW, POINTS, "points", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", AMONG(strut_law, bezier, false, false, CURVE(strut_law, x, force, count)), "Points `[[x, force], ...]` of a table, such as `[[-1 mm, -5 N], [0, 0], [2 mm, 3 N]]`, with increasing x, or of a curve, whose x may decrease. Beyond its ends the law continues straight.") \
+  X(LAW, CONTROL_POINTS, "control_points", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", CHOICE(strut_law, bezier, true, CURVE(strut_law, x, force, count)), "Control points `[[x, force], ...]` of one Bezier curve, at most 64, instead of `points`.") \
   X(LAW, ROUNDING, "rounding", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_law, rounding), "Rounds the corners of a curve by parabolas, which take this share, below 1, of each piece.") \
   X(LAW, MIRRORED, "mirrored", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_law, mirrored), "The points of a table or curve, from `[0, 0]` on, also hold for negative x with the opposite force.") \
   X(LAW, SMOOTH, "smooth", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_law, smooth), "A table is a monotone spline through its points (Steffen), instead of straight lines.")
@@ -283,9 +288,9 @@
   X(ACTUATOR, MEMBER, "member", NAME, NONE, ANY, "", OPTIONAL, 6, "", REFERENCE(strut_actuator, member, MEMBER), "The member whose rest length it changes, or to which it adds a force.") \
   X(ACTUATOR, HINGE, "hinge", NAME, NONE, ANY, "", OPTIONAL, 6, "", REFERENCE(strut_actuator, hinge, HINGE), "The hinge whose rest angle it changes, or to which it adds a moment.") \
   X(ACTUATOR, CELL, "cell", NAME, NONE, ANY, "", OPTIONAL, 6, "", REFERENCE(strut_actuator, cell, CELL), "The cell whose given pressure it changes. For an isothermal gas it changes the pressure at the drawn area, by letting gas in or out.") \
-  X(ACTUATOR, SIGNAL, "signal", SIGNAL, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "Added to the rest length of the member, the rest angle of the hinge or the pressure of the cell.") \
-  X(ACTUATOR, FORCE, "force", SIGNAL, FORCE, ANY, "", OPTIONAL, 7, "", BY_HAND, "Instead of `signal`: a force in addition to the member's own, tension positive. Statics ignore it.") \
-  X(ACTUATOR, MOMENT, "moment", SIGNAL, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "Instead of `signal`: a moment in addition to the hinge's own; positive closes the angle. Statics ignore it.")
+  X(ACTUATOR, SIGNAL, "signal", SIGNAL, CONTEXT, ANY, "", OPTIONAL, 7, "", CHOICE(strut_actuator, force, 0, FIELD(strut_actuator, signal)), "Added to the rest length of the member, the rest angle of the hinge or the pressure of the cell.") \
+  X(ACTUATOR, FORCE, "force", SIGNAL, FORCE, ANY, "", OPTIONAL, 7, "", LATER(CHOICE(strut_actuator, force, 1, FIELD(strut_actuator, signal))), "Instead of `signal`: a force in addition to the member's own, tension positive. Statics ignore it.") \
+  X(ACTUATOR, MOMENT, "moment", SIGNAL, CONTEXT, ANY, "", OPTIONAL, 7, "", CHOICE(strut_actuator, force, 2, FIELD(strut_actuator, signal)), "Instead of `signal`: a moment in addition to the hinge's own; positive closes the angle. Statics ignore it.")
 
 #define STRUT_LOAD_FIELDS(X) \
   X(LOAD, NODE, "node", NAME, NONE, ANY, "", OPTIONAL, 6, "", REFERENCE(strut_load, node, NODE), "The node on which the force acts.") \
@@ -299,7 +304,7 @@
   X(UNBALANCE, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_unbalance, node, NODE), "The node about which it rotates.") \
   X(UNBALANCE, MASS, "mass", NUMBER, MASS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_unbalance, mass), "The rotating mass. It counts to the node's mass.") \
   X(UNBALANCE, RADIUS, "radius", NUMBER, LENGTH, NOT_NEGATIVE, "", REQUIRED, 0, "", OF_RUNS(FIELD(strut_unbalance, radius)), "Its distance from the node.") \
-  X(UNBALANCE, SPEED, "speed", NUMBER, CONTEXT, ANY, "", OPTIONAL, 9, "", BY_HAND, "Constant speed, counter-clockwise: 30 Hz (turns per second) or 188 rad/s. A plain number is in rad/s.") \
+  X(UNBALANCE, SPEED, "speed", NUMBER, CONTEXT, ANY, "", OPTIONAL, 9, "", OF_RUNS(CHOICE(strut_unbalance, signal, UINT32_MAX, FIELD(strut_unbalance, speed))), "Constant speed, counter-clockwise: 30 Hz (turns per second) or 188 rad/s. A plain number is in rad/s.") \
   X(UNBALANCE, SIGNAL, "angle", SIGNAL, ANGLE, ANY, "", OPTIONAL, 9, "", OF_RUNS(FIELD(strut_unbalance, signal)), "Instead of `speed`: the angle, a signal that must not jump.") \
   X(UNBALANCE, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", OF_RUNS(FIELD(strut_unbalance, phase)), "Added to the angle, measured from +x.")
 
@@ -311,14 +316,14 @@
   X(SLIDER, TRAVEL, "travel", SIGNAL, LENGTH, ANY, "", OPTIONAL, 1, "", OF_RUNS(CHOICE(strut_sliding_mass, travel, true, FIELD(strut_sliding_mass, signal))), "Likewise, as a length along the drawn member, which stretches with it.")
 
 #define STRUT_SIGNAL_FIELDS(X) \
-  X(SIGNAL, CONSTANT, "constant", NUMBER, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "A constant, for t >= 0.") \
-  X(SIGNAL, SINE, "sine", MAP, NONE, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_SINE, SECTION(SINE)), "amplitude * sin(2 pi frequency (t - start) + phase).") \
-  X(SIGNAL, HALF_SINE, "half_sine", MAP, NONE, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_HALF_SINE, SECTION(HALF_SINE)), "One half-wave of a sine, then 0.") \
-  X(SIGNAL, SQUARE, "square", MAP, NONE, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_SQUARE, SECTION(SQUARE)), "+amplitude in the first half of each period, -amplitude in the second.") \
-  X(SIGNAL, RAMP, "ramp", MAP, NONE, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_RAMP, SECTION(RAMP)), "Rises linearly from 0 at `start` to the amplitude at `stop`, and stays there.") \
-  X(SIGNAL, TABLE, "table", TABLE, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Points `[[t, value], ...]`, interpolated linearly; constant before the first and after the last. At two points of one time the signal jumps.") \
-  X(SIGNAL, SUM, "sum", SIGNALS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "The sum of the listed signals.") \
-  X(SIGNAL, EXPRESSION, "expression", EXPRESSION, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "An expression of the time `t`, parameters, [sensors](#sensor) and other signals, evaluated with the forces.") \
+  X(SIGNAL, CONSTANT, "constant", NUMBER, CONTEXT, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_CONSTANT, FIELD(strut_signal, amplitude)), "A constant, for t >= 0.") \
+  X(SIGNAL, SINE, "sine", MAP, NONE, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_SINE, LATER(SELF(strut_signal, SINE))), "amplitude * sin(2 pi frequency (t - start) + phase).") \
+  X(SIGNAL, HALF_SINE, "half_sine", MAP, NONE, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_HALF_SINE, LATER(SELF(strut_signal, HALF_SINE))), "One half-wave of a sine, then 0.") \
+  X(SIGNAL, SQUARE, "square", MAP, NONE, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_SQUARE, LATER(SELF(strut_signal, SQUARE))), "+amplitude in the first half of each period, -amplitude in the second.") \
+  X(SIGNAL, RAMP, "ramp", MAP, NONE, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_RAMP, LATER(SELF(strut_signal, RAMP))), "Rises linearly from 0 at `start` to the amplitude at `stop`, and stays there.") \
+  X(SIGNAL, TABLE, "table", TABLE, CONTEXT, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_TABLE, CURVE(strut_signal, time, value, point_count)), "Points `[[t, value], ...]`, interpolated linearly; constant before the first and after the last. At two points of one time the signal jumps.") \
+  X(SIGNAL, SUM, "sum", SIGNALS, CONTEXT, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_SUM, REFERENCES(strut_signal, terms, term_count, SIGNAL)), "The sum of the listed signals.") \
+  X(SIGNAL, EXPRESSION, "expression", EXPRESSION, CONTEXT, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_EXPRESSION, LIST(strut_signal, program.instruction, program.length)), "An expression of the time `t`, parameters, [sensors](#sensor) and other signals, evaluated with the forces.") \
   X(SIGNAL, STARTS, "starts", MAP, NONE, ANY, "", OPTIONAL, 0, "start", NESTED(strut_signal, trigger, STARTS), "Beside one of the keys above: the event at which the time of the signal begins. Before it, the signal is 0.") \
   X(SIGNAL, LAG, "lag", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_signal, lag), "Beside one of the keys above: time constant of a first-order lag, from 0 at t = 0. It precedes sampling.") \
   X(SIGNAL, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_signal, every), "Beside one of the keys above: samples the signal at multiples of this time and holds it in between.")
@@ -326,7 +331,7 @@
 #define STRUT_SINE_FIELDS(X) \
   X(SINE, AMPLITUDE, "amplitude", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_signal, amplitude), "Largest value.") \
   X(SINE, FREQUENCY, "frequency", NUMBER, FREQUENCY, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_signal, frequency), "Periods per second.") \
-  X(SINE, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", BY_HAND, "Phase angle at `start`.") \
+  X(SINE, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", TURNS(FIELD(strut_signal, phase)), "Phase angle at `start`.") \
   X(SINE, START, "start", NUMBER, TIME, ANY, "0", OPTIONAL, 0, "", FIELD(strut_signal, start), "The signal is 0 before this time.") \
   X(SINE, STOP, "stop", NUMBER, TIME, ANY, "never", OPTIONAL, 0, "", FIELD(strut_signal, stop), "The signal is 0 from this time on.")
 
@@ -338,7 +343,7 @@
 #define STRUT_SQUARE_FIELDS(X) \
   X(SQUARE, AMPLITUDE, "amplitude", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_signal, amplitude), "Largest value.") \
   X(SQUARE, FREQUENCY, "frequency", NUMBER, FREQUENCY, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_signal, frequency), "Periods per second.") \
-  X(SQUARE, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", BY_HAND, "Phase angle at `start`.") \
+  X(SQUARE, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", TURNS(FIELD(strut_signal, phase)), "Phase angle at `start`.") \
   X(SQUARE, START, "start", NUMBER, TIME, ANY, "0", OPTIONAL, 0, "", FIELD(strut_signal, start), "The signal is 0 before this time.") \
   X(SQUARE, STOP, "stop", NUMBER, TIME, ANY, "never", OPTIONAL, 0, "", FIELD(strut_signal, stop), "The signal is 0 from this time on.")
 
@@ -360,23 +365,23 @@
   X(SENSOR, DISTANCE, "distance", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_DISTANCE, REFERENCE(strut_sensor, item, DISTANCE)), "A distance spring: its distance [m].") \
   X(SENSOR, CONTACT_FORCE, "contact_force", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_CONTACT_FORCE, REFERENCE(strut_sensor, item, NODE)), "A node: its normal force on the ground [N], summed over several grounds.") \
   X(SENSOR, COLLISION_FORCE, "collision_force", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_COLLISION_FORCE, REFERENCE(strut_sensor, item, COLLISION)), "A collision: its force [N].") \
-  X(SENSOR, ALONG, "along", WORD, NONE, ANY, "", OPTIONAL, 0, "x|y", BY_HAND, "Direction of a position or a velocity.")
+  X(SENSOR, ALONG, "along", WORD, NONE, ANY, "", OPTIONAL, 0, "x|y", AMONG(strut_sensor, kind, STRUT_SENSOR_POSITION, STRUT_SENSOR_VELOCITY, FIELD(strut_sensor, along)), "Direction of a position or a velocity.")
 
 #define STRUT_STATE_FIELDS(X) \
-  X(STATE, RATE, "rate", EXPRESSION, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Its rate: an expression as of a signal, which may also use states.") \
-  X(STATE, START, "start", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Value at t = 0, with its unit.")
+  X(STATE, RATE, "rate", EXPRESSION, CONTEXT, ANY, "", REQUIRED, 0, "", LIST(strut_internal_state, rate.instruction, rate.length), "Its rate: an expression as of a signal, which may also use states.") \
+  X(STATE, START, "start", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", UNIT(strut_internal_state, start, unit), "Value at t = 0, with its unit.")
 
 #define STRUT_RELAY_FIELDS(X) \
   X(RELAY, KIND, "kind", WORD, NONE, ANY, "", REQUIRED, 0, "relay", NONE, "Kind of controller.") \
-  X(RELAY, OF, "of", EXPRESSION, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Input: a sensor, or an expression as of a signal.") \
-  X(RELAY, ON_ABOVE, "on_above", NUMBER, CONTEXT, ANY, "", OPTIONAL, 7, "", CHOICE(strut_relay, on_above, true, FIELD(strut_relay, upper)), "The relay switches on when the input rises above this value.") \
-  X(RELAY, OFF_BELOW, "off_below", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", CHOICE(strut_relay, on_above, true, FIELD(strut_relay, lower)), "With `on_above`: switches off when the input falls below this value.") \
-  X(RELAY, ON_BELOW, "on_below", NUMBER, CONTEXT, ANY, "", OPTIONAL, 7, "", CHOICE(strut_relay, on_above, false, FIELD(strut_relay, lower)), "Instead, as in a thermostat: switches on when the input falls below this value.") \
-  X(RELAY, OFF_ABOVE, "off_above", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", CHOICE(strut_relay, on_above, false, FIELD(strut_relay, upper)), "With `on_below`: switches off when the input rises above this value.") \
-  X(RELAY, ON_VALUE, "on_value", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_relay, on), "The signal while it is on.") \
-  X(RELAY, OFF_VALUE, "off_value", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", FIELD(strut_relay, off), "The signal while it is off.") \
-  X(RELAY, ON_AT_START, "on_at_start", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_relay, on_at_start), "State at t = 0 if the input lies between the thresholds.") \
-  X(RELAY, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", BY_HAND, "Sampling interval, at which the relay switches; 0: it switches when the input passes a threshold. Methods with events locate this instant, others switch at the end of the step.")
+  X(RELAY, OF, "of", EXPRESSION, CONTEXT, ANY, "", REQUIRED, 0, "", LIST(strut_signal, program.instruction, program.length), "Input: a sensor, or an expression as of a signal.") \
+  X(RELAY, ON_ABOVE, "on_above", NUMBER, CONTEXT, ANY, "", OPTIONAL, 7, "", CHOICE(strut_signal, relay.on_above, true, FIELD(strut_signal, relay.upper)), "The relay switches on when the input rises above this value.") \
+  X(RELAY, OFF_BELOW, "off_below", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", CHOICE(strut_signal, relay.on_above, true, FIELD(strut_signal, relay.lower)), "With `on_above`: switches off when the input falls below this value.") \
+  X(RELAY, ON_BELOW, "on_below", NUMBER, CONTEXT, ANY, "", OPTIONAL, 7, "", CHOICE(strut_signal, relay.on_above, false, FIELD(strut_signal, relay.lower)), "Instead, as in a thermostat: switches on when the input falls below this value.") \
+  X(RELAY, OFF_ABOVE, "off_above", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", CHOICE(strut_signal, relay.on_above, false, FIELD(strut_signal, relay.upper)), "With `on_below`: switches off when the input rises above this value.") \
+  X(RELAY, ON_VALUE, "on_value", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_signal, relay.on), "The signal while it is on.") \
+  X(RELAY, OFF_VALUE, "off_value", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", FIELD(strut_signal, relay.off), "The signal while it is off.") \
+  X(RELAY, ON_AT_START, "on_at_start", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_signal, relay.on_at_start), "State at t = 0 if the input lies between the thresholds.") \
+  X(RELAY, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_signal, every), "Sampling interval, at which the relay switches; 0: it switches when the input passes a threshold. Methods with events locate this instant, others switch at the end of the step.")
 
 #define STRUT_MAXWELL_FIELDS(X) \
   X(MAXWELL, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_maxwell, stiffness), "Stiffness k of the spring.") \
@@ -392,13 +397,13 @@
 
 #define STRUT_STARTS_FIELDS(X) \
   X(STARTS, CONTACT, "contact", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_trigger, kind, STRUT_TRIGGER_CONTACT, REFERENCE(strut_trigger, item, NODE)), "The node whose touchdown starts the signal.") \
-  X(STARTS, SENSOR, "sensor", NAME, NONE, ANY, "", OPTIONAL, 7, "", REFERENCE(strut_trigger, item, SENSOR), "The sensor that starts the signal, where it passes a level.") \
+  X(STARTS, SENSOR, "sensor", NAME, NONE, ANY, "", OPTIONAL, 7, "", AMONG(strut_trigger, kind, STRUT_TRIGGER_ABOVE, STRUT_TRIGGER_BELOW, REFERENCE(strut_trigger, item, SENSOR)), "The sensor that starts the signal, where it passes a level.") \
   X(STARTS, ABOVE, "above", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", CHOICE(strut_trigger, kind, STRUT_TRIGGER_ABOVE, FIELD(strut_trigger, level)), "The signal starts when the sensor rises above this level.") \
   X(STARTS, BELOW, "below", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", CHOICE(strut_trigger, kind, STRUT_TRIGGER_BELOW, FIELD(strut_trigger, level)), "The signal starts when the sensor falls below this level.") \
   X(STARTS, EACH, "each", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_trigger, each), "`yes`: the signal starts again each time.")
 
 #define STRUT_CONFIGURATION_FIELDS(X) \
-  X(CONFIGURATION, CONTACTS, "contacts", NODE_SETS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The nodes that touch the ground. Several lists are alternatives.") \
+  X(CONFIGURATION, CONTACTS, "contacts", NODE_SETS, NONE, ANY, "", OPTIONAL, 0, "", LIST(strut_configuration, sets, set_count), "The nodes that touch the ground. Several lists are alternatives.") \
   X(CONFIGURATION, SHAPE, "shape", THINGS, NONE, ANY, "", OPTIONAL, 0, "`[x, y]`", BY_HAND, "Approximate positions; other nodes are as drawn. Without `shape` the contacts alone identify the configuration.")
 
 #define STRUT_INITIAL_FIELDS(X) \
@@ -407,7 +412,7 @@
   X(INITIAL, POSITIONS, "positions", THINGS, NONE, ANY, "", OPTIONAL, 0, "`[x, y]`", BY_HAND, "Positions of single nodes, which override the configuration.") \
   X(INITIAL, VELOCITIES, "velocities", THINGS, NONE, ANY, "", OPTIONAL, 0, "`[vx, vy]`", BY_HAND, "Velocities of single nodes.") \
   X(INITIAL, VELOCITY, "velocity", PAIR, VELOCITY, ANY, "[0, 0]", OPTIONAL, 0, "", BY_HAND, "Velocity of all other nodes, in their free directions.") \
-  X(INITIAL, SETTLE, "settle", SETTLE, NONE, ANY, "false", OPTIONAL, 0, "", BY_HAND, "Lets the structure come to rest before t = 0, without actuators, driven loads, belt and (as in the paper) friction.")
+  X(INITIAL, SETTLE, "settle", SETTLE, NONE, ANY, "false", OPTIONAL, 0, "", CHOICE(strut_experiment, settle.wanted, true, LATER(NESTED(strut_experiment, settle, SETTLE))), "Lets the structure come to rest before t = 0, without actuators, driven loads, belt and (as in the paper) friction.")
 
 #define STRUT_SETTLE_FIELDS(X) \
   X(SETTLE, SPEED, "speed", NUMBER, VELOCITY, ABOVE_ZERO, "1e-8", WRITTEN, 0, "", FIELD(strut_settle, speed), "At rest, the speed of every node is below this.") \
@@ -419,7 +424,7 @@
   X(SETTLE, FRICTION, "friction", WORD, NONE, ANY, "none", OPTIONAL, 0, "none|kept", FIELD(strut_settle, friction), "`kept`: friction acts, as a body on a slope requires; `none`: no friction, as in the paper.")
 
 #define STRUT_EQUILIBRIA_FIELDS(X) \
-  X(EQUILIBRIA, SUPPORTS, "supports", NODE_SETS, NONE, ANY, "every pair that can carry", OPTIONAL, 0, "", BY_HAND, "Sets of contact nodes to support: the first node of each list is pinned, the others roll on the ground.") \
+  X(EQUILIBRIA, SUPPORTS, "supports", NODE_SETS, NONE, ANY, "every pair that can carry", OPTIONAL, 0, "", LIST(strut_search, supports, support_count), "Sets of contact nodes to support: the first node of each list is pinned, the others roll on the ground.") \
   X(EQUILIBRIA, STARTS, "starts", NUMBER, NONE, WHOLE(0, STRUT_MOST_STARTS), "until few equilibria can be missing", OPTIONAL, 0, "", FIELD(strut_search, starts), "Random starts for each set of supports.") \
   X(EQUILIBRIA, SEED, "seed", NUMBER, NONE, WHOLE(0, STRUT_MOST_SEED), "1", WRITTEN, 0, "", FIELD(strut_search, seed), "Seed of the random starts. The same seed gives the same result.")
 
@@ -440,15 +445,15 @@
 
 #define STRUT_MEASURE_FIELDS(X) \
   X(MEASURE, LAST, "last", NUMBER, CONTEXT, ABOVE_ZERO, "the whole run", OPTIONAL, 0, "", FIELD(strut_experiment, measure_last), "Length of the measuring window at the end of the run: a number of periods in a run by `periods`, otherwise a time.") \
-  X(MEASURE, STEADY, "steady", STEADY, NONE, ANY, "false", OPTIONAL, 0, "", BY_HAND, "Stops the run as soon as the motion repeats itself. The run needs `periods`, which are then an upper bound.") \
+  X(MEASURE, STEADY, "steady", STEADY, NONE, ANY, "false", OPTIONAL, 0, "", CHOICE(strut_experiment, steady.wanted, true, LATER(NESTED(strut_experiment, steady, STEADY))), "Stops the run as soon as the motion repeats itself. The run needs `periods`, which are then an upper bound.") \
   X(MEASURE, NODE, "node", NAME, NONE, ANY, "the centre of mass", OPTIONAL, 0, "", REFERENCE(strut_experiment, measure_node, NODE), "The node whose velocity is measured.") \
   X(MEASURE, QUANTITIES, "quantities", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression, whose mean is measured, or the keys of a [quantity](#quantity)", THINGS(QUANTITY), "Further quantities to measure over the window.")
 
 #define STRUT_QUANTITY_FIELDS(X) \
-  X(QUANTITY, OF, "of", EXPRESSION, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "An expression of columns of the motion, which [the language](language.md#measured-quantities) lists.") \
+  X(QUANTITY, OF, "of", EXPRESSION, NONE, ANY, "", REQUIRED, 0, "", LATER(LIST(strut_quantity_definition, program, length)), "An expression of columns of the motion, which [the language](language.md#measured-quantities) lists.") \
   X(QUANTITY, TAKE, "take", WORD, NONE, ANY, "mean", OPTIONAL, 0, "mean|min|max|range|rms|final|change|rate|rise|arrival", FIELD(strut_quantity_definition, take), "The number taken over the window: `mean` over time, `min`, `max`, `range` (max - min), `rms`, `final` value, `change` from first to last value, `rate` (change / time), `rise` (sum of all increases), or `arrival`, the time at which the expression first reaches or passes `target`, missing if never.") \
-  X(QUANTITY, ACCURACY, "accuracy", NUMBER, CONTEXT, ABOVE_ZERO, "that of the solver", OPTIONAL, 0, "", BY_HAND, "Desired accuracy: relative without a unit, such as 1 %, absolute with a unit, such as 0.1 mm.") \
-  X(QUANTITY, TARGET, "target", NUMBER, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Value for `take: arrival`, reached from below or above, in the unit of the expression.")
+  X(QUANTITY, ACCURACY, "accuracy", NUMBER, CONTEXT, ABOVE_ZERO, "that of the solver", OPTIONAL, 0, "", UNIT(strut_quantity_definition, accuracy, accuracy_unit), "Desired accuracy: relative without a unit, such as 1 %, absolute with a unit, such as 0.1 mm.") \
+  X(QUANTITY, TARGET, "target", NUMBER, CONTEXT, ANY, "", OPTIONAL, 0, "", CHOICE(strut_quantity_definition, take, STRUT_TAKE_ARRIVAL, UNIT(strut_quantity_definition, target, target_unit)), "Value for `take: arrival`, reached from below or above, in the unit of the expression.")
 
 #define STRUT_STEADY_FIELDS(X) \
   X(STEADY, TOLERANCE, "tolerance", NUMBER, NONE, ABOVE_ZERO, "0.5 %", WRITTEN, 0, "", FIELD(strut_steady, tolerance), "Largest relative difference of the velocity between repetitions.") \

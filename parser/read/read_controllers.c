@@ -278,7 +278,7 @@ bool strut_is_relay(const strut_tree *map) {
 
 /* The thresholds, in the unit of the input. */
 static bool read_thresholds(strut_reader *reader, const strut_tree *key, strut_owner owner,
-                            strut_fields *fields, strut_dimension input, strut_relay *relay) {
+                            strut_fields *fields, strut_dimension input, strut_signal *relay) {
   static const int pairs[2][2] = {{STRUT_KEY_RELAY_OFF_ABOVE, STRUT_KEY_RELAY_ON_BELOW},
                                   {STRUT_KEY_RELAY_ON_ABOVE, STRUT_KEY_RELAY_OFF_BELOW}};
   const int *pair = pairs[strut_slot_of(fields, STRUT_KEY_RELAY_ON_ABOVE)->state == STRUT_GIVEN];
@@ -327,13 +327,10 @@ static int32_t read_relay(strut_reader *reader, const strut_tree *key) {
       strut_slot_of(&fields, STRUT_KEY_RELAY_ON_VALUE)->state != STRUT_GIVEN)
     return -1;
   if (!strut_read_signal_program(reader, of, "of", owner, &signal.program, &input)) return -1;
-  strut_store_fields(reader, &fields, owner, &reader->scene->arena, &signal.relay,
-                     sizeof signal.relay);
+  strut_store_fields(reader, &fields, owner, &reader->scene->arena, &signal, sizeof signal);
   bool fine = read_thresholds(reader, key, owner, &fields,
-                              input.bare ? STRUT_DIM_NONE : input.dimension, &signal.relay);
+                              input.bare ? STRUT_DIM_NONE : input.dimension, &signal);
   fine = read_values(reader, owner, &fields, &signal.relay, &unit) && fine;
-  const strut_slot *every = strut_slot_of(&fields, STRUT_KEY_RELAY_EVERY);
-  if (every->state == STRUT_GIVEN) signal.every = every->number[0];
   return fine ? strut_add_controller_signal(reader, key, &signal, unit.dimension, unit.bare, NULL)
               : -1;
 }

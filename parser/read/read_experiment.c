@@ -51,9 +51,8 @@ static bool read_set(strut_reader *reader, const strut_tree *list, const char *k
   return fine;
 }
 
-/* `[n1, n4]`, or a list of such lists. */
-static bool read_sets(strut_reader *reader, const strut_slot *slot, strut_owner owner,
-                      strut_node_set **sets, size_t *count) {
+bool strut_read_node_sets(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                          strut_node_set **sets, size_t *count) {
   const strut_tree *list = slot->value;
   const char *key = slot->key->text;
   size_t lists = 0, alternatives;
@@ -116,12 +115,10 @@ static bool read_keys(strut_reader *reader, const strut_tree *map, strut_owner o
   strut_fields fields;
   if (!keys_only(reader, map, owner)) return false;
   strut_read_fields(reader, STRUT_SECTION_CONFIGURATION, map, owner, &fields);
-  const strut_slot *contacts = strut_slot_of(&fields, STRUT_KEY_CONFIGURATION_CONTACTS);
   const strut_slot *shape = strut_slot_of(&fields, STRUT_KEY_CONFIGURATION_SHAPE);
-  bool fine = !fields.broken;
-  if (contacts->state == STRUT_GIVEN)
-    fine =
-        read_sets(reader, contacts, owner, &configuration->sets, &configuration->set_count) && fine;
+  bool fine = strut_store_fields(reader, &fields, owner, &reader->scene->arena, configuration,
+                                 sizeof *configuration) &&
+              !fields.broken;
   configuration->shaped = shape->state == STRUT_GIVEN;
   if (configuration->shaped)
     fine =
@@ -199,11 +196,8 @@ void strut_read_search(strut_reader *reader) {
   if (!strut_read_section(reader, STRUT_KEY_SCENE_EQUILIBRIA, STRUT_SECTION_EQUILIBRIA,
                           search_owner.kind, &reader->search))
     return;
-  strut_store_fields(reader, &reader->search, search_owner, &reader->scene->arena, search,
-                     sizeof *search);
-  const strut_slot *supports = strut_slot_of(&reader->search, STRUT_KEY_EQUILIBRIA_SUPPORTS);
-  if (supports->state == STRUT_GIVEN &&
-      !read_sets(reader, supports, search_owner, &search->supports, &search->support_count))
+  if (!strut_store_fields(reader, &reader->search, search_owner, &reader->scene->arena, search,
+                          sizeof *search))
     reader->search.broken = true;
 }
 
@@ -221,30 +215,24 @@ static void store_velocity(strut_reader *reader, int32_t node, const double pair
   if (reader->velocity_source) reader->velocity_source[node] = value;
 }
 
-/*
- * `settle` and `steady` are true, false or a mapping of their own: false where there is no mapping to read.
- */
-static bool read_switch(strut_reader *reader, const strut_slot *slot, int key, strut_owner owner,
-                        bool *wanted) {
-  char expected[100];
+/* `settle` and `steady` are true, false or a mapping of their own, whose values are of `within`. */
+static void read_switch(strut_reader *reader, const strut_slot *slot, int key, const char *owner,
+                        strut_owner within, strut_fields *fields) {
+  char expected[100], *e = (char *)reader->experiment;
+  const strut_key *k = strut_key_at(key);
   const strut_tree *value = slot->value;
-  *wanted = value->kind == STRUT_TREE_MAP;
-  if (*wanted) return true;
-  int found = value->quoted ? -1 : strut_switch_find(value->text);
-  *wanted = found == 1;
+  if (slot->state != STRUT_GIVEN) return;
+  bool map = value->kind == STRUT_TREE_MAP;
+  int found = map ? 1 : value->quoted ? -1 : strut_switch_find(value->text);
+  if (found == 1) strut_store_choice(k, e);
   if (found < 0)
     strut_report_error(reader, value->place, "expected %s, for '%s' of %s, found %s",
-                       strut_key_expected(key, expected, sizeof expected), strut_key_at(key)->name,
-                       owner.kind, strut_found(reader, value));
-  return false;
-}
-
-static void read_settle(strut_reader *reader, const strut_slot *slot) {
-  strut_settle *settle = &reader->experiment->settle;
-  strut_owner initial = {"the initial state", NULL}, owner = {"the settling", NULL};
-  if (!read_switch(reader, slot, STRUT_KEY_INITIAL_SETTLE, initial, &settle->wanted)) return;
-  strut_read_fields(reader, STRUT_SECTION_SETTLE, slot->value, owner, &reader->settle);
-  strut_store_fields(reader, &reader->settle, owner, &reader->scene->arena, settle, sizeof *settle);
+                       strut_key_expected(key, expected, sizeof expected), k->name, owner,
+                       strut_found(reader, value));
+  if (!map) return;
+  strut_read_fields(reader, strut_section_below(k), value, within, fields);
+  strut_store_fields(reader, fields, within, &reader->scene->arena, e + k->field.offset,
+                     k->field.size);
 }
 
 /* Positions and velocities: of all nodes first, then of single ones. */
@@ -295,8 +283,9 @@ void strut_read_initial(strut_reader *reader) {
     return;
   read_state(reader, strut_find_configuration(reader, STRUT_KEY_INITIAL_CONFIGURATION));
   read_equilibrium(reader);
-  const strut_slot *settle = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_SETTLE);
-  if (settle->state == STRUT_GIVEN) read_settle(reader, settle);
+  read_switch(reader, strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_SETTLE),
+              STRUT_KEY_INITIAL_SETTLE, "the initial state", (strut_owner){"the settling", NULL},
+              &reader->settle);
 }
 
 /* Actuators, loads and signals, one after the other, for suggestions. */
@@ -391,14 +380,6 @@ static void read_last(strut_reader *reader, strut_fields *fields, int key, strut
     fields->broken = true;
 }
 
-static void read_steady(strut_reader *reader, const strut_slot *slot) {
-  strut_steady *steady = &reader->experiment->steady;
-  strut_owner measurement = {"the measurement", NULL}, owner = {"the steady state", NULL};
-  if (!read_switch(reader, slot, STRUT_KEY_MEASURE_STEADY, measurement, &steady->wanted)) return;
-  strut_read_fields(reader, STRUT_SECTION_STEADY, slot->value, owner, &reader->steady);
-  strut_store_fields(reader, &reader->steady, owner, &reader->scene->arena, steady, sizeof *steady);
-}
-
 static void read_run(strut_reader *reader) {
   strut_experiment *e = reader->experiment;
   strut_owner owner = {"the measurement", NULL}, run = {"the run", NULL};
@@ -411,8 +392,9 @@ static void read_run(strut_reader *reader) {
   if (measure->state == STRUT_GIVEN) {
     strut_read_fields(reader, STRUT_SECTION_MEASURE, measure->value,
                       (strut_owner){"the measurement", NULL}, &reader->measure);
-    const strut_slot *steady = strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_STEADY);
-    if (steady->state == STRUT_GIVEN) read_steady(reader, steady);
+    read_switch(reader, strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_STEADY),
+                STRUT_KEY_MEASURE_STEADY, owner.kind, (strut_owner){"the steady state", NULL},
+                &reader->steady);
     read_last(reader, &reader->measure, STRUT_KEY_MEASURE_LAST, owner, &e->measure_last);
     strut_store_fields(reader, &reader->measure, owner, &reader->scene->arena, e, sizeof *e);
     strut_read_quantities(reader, strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_QUANTITIES));

@@ -82,7 +82,6 @@ bool strut_read_sensor(strut_reader *reader, strut_fields *fields, strut_owner o
     known = known || strut_slot_of(fields, STRUT_KEY_SENSOR_LENGTH + k)->state == STRUT_GIVEN;
   (void)owner;
   if (fields->broken) return false;
-  if (along->state == STRUT_GIVEN) sensor->along = (uint32_t)along->word;
   if (!known)
     strut_report_error(reader, fields->key->place,
                        "sensor '%s' senses nothing; write one of length, force, angle, contact, "

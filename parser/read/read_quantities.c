@@ -349,7 +349,7 @@ static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_ow
     strut_report_error(reader, slot->value->place, "'accuracy' of %s must be above zero, found %g",
                        strut_owner_text(reader, owner), q.value);
   else
-    *(relative ? &d->accuracy : &d->accuracy_absolute) = q.value;
+    d->accuracy = q.value, d->accuracy_unit = relative ? NULL : d->unit;
 }
 
 /* The value that an arrival waits for, of the expression's dimension; NULL: that is not known. */
@@ -413,10 +413,10 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
   if (of && map) read_target(reader, &fields, owner, known ? &dimension : NULL, d);
   if (d->take == STRUT_TAKE_RATE) dimension.s -= 1.0f;
   if (d->take == STRUT_TAKE_ARRIVAL) dimension = STRUT_DIM_TIME;
-  read_accuracy(reader, strut_slot_of(&fields, STRUT_KEY_QUANTITY_ACCURACY), owner, dimension,
-                known, d);
   strut_dimension_suffix(dimension, unit, sizeof unit);
   d->unit = is_moment(d) ? "N m" : *unit ? strut_keep_text(reader, unit) : "1";
+  read_accuracy(reader, strut_slot_of(&fields, STRUT_KEY_QUANTITY_ACCURACY), owner, dimension,
+                known, d);
 }
 
 /* The name becomes a column of a study's table and a word of `keep`. */

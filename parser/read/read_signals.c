@@ -70,11 +70,8 @@ static bool read_wave(strut_reader *reader, strut_section section, const strut_t
   for (int i = 0; i < strut_section_size(section); i++) {
     const strut_slot *slot = &fields.slot[i];
     const strut_key *key = strut_key_at(strut_section_first(section) + i);
-    if (slot->state != STRUT_GIVEN) continue;
-    if (key->measure == STRUT_MEASURE_CONTEXT)
+    if (slot->state == STRUT_GIVEN && key->measure == STRUT_MEASURE_CONTEXT)
       fine = read_value(reader, slot->value, key->name, owner, m, &signal->amplitude) && fine;
-    else if (key->measure == STRUT_MEASURE_ANGLE)
-      signal->phase = slot->number[0] / STRUT_TAU; /* kept in turns */
   }
   strut_store_fields(reader, &fields, owner, &reader->scene->arena, signal, sizeof *signal);
   return fine;
@@ -417,7 +414,7 @@ static bool read_drive(strut_reader *reader, strut_fields *fields, strut_owner o
                        strut_owner_text(reader, owner));
     return false;
   }
-  actuator->force = k > 0;
+  actuator->force = (uint32_t)k;
   reader->signal_quantity = k == 2 ? "moment" : known && cell ? "pressure" : NULL;
   if (slot->state == STRUT_GIVEN)
     actuator->signal = strut_read_signal(reader, slot->value, strut_key_at(keys[k])->name, owner,

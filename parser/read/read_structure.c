@@ -375,15 +375,6 @@ bool strut_read_hinge(strut_reader *reader, strut_fields *fields, strut_owner ow
   return true;
 }
 
-bool strut_read_gas(strut_reader *reader, strut_fields *fields, strut_owner owner, void *object) {
-  strut_cell *cell = object;
-  (void)reader, (void)owner;
-  const strut_slot *kind = strut_slot_of(fields, STRUT_KEY_GAS_KIND);
-  if (kind->state == STRUT_GIVEN)
-    cell->law = kind->word ? STRUT_LAW_ISENTROPIC : STRUT_LAW_ISOTHERMAL;
-  return true;
-}
-
 bool strut_read_cell(strut_reader *reader, strut_fields *fields, strut_owner owner, void *object) {
   const strut_slot *gas = strut_slot_of(fields, STRUT_KEY_CELL_GAS);
   const strut_slot *pressure = strut_slot_of(fields, STRUT_KEY_CELL_PRESSURE);

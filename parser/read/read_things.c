@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "parser/read/reader.h"
 
 /* How a kind is read, beside the rows of its section. */
@@ -128,7 +129,6 @@ static strut_section_reader *const by_hand[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_MEMBER] = strut_read_member,
     [STRUT_SECTION_HINGE] = strut_read_hinge,
     [STRUT_SECTION_CELL] = strut_read_cell,
-    [STRUT_SECTION_GAS] = strut_read_gas,
     [STRUT_SECTION_COLLISION] = strut_read_collision,
     [STRUT_SECTION_DISTANCE] = strut_read_distance,
     [STRUT_SECTION_ACTUATOR] = strut_read_actuator,
@@ -154,7 +154,8 @@ static const char *store_text(strut_reader *reader, strut_arena *arena, const st
 static void store_value(strut_reader *reader, strut_arena *arena, const strut_key *key,
                         const strut_slot *slot, void *field) {
   bool word = key->type == STRUT_TYPE_WORD || key->type == STRUT_TYPE_WORDS;
-  double number = word ? (double)slot->word : slot->number[0];
+  double number = word ? (double)key->field.first + slot->word : slot->number[0];
+  if (key->field.turns) number /= STRUT_TAU;
   switch (key->field.type) {
     case STRUT_FIELD_DOUBLE: *(double *)field = number; break;
     case STRUT_FIELD_INT32: *(int32_t *)field = (int32_t)number; break;
@@ -167,13 +168,16 @@ static void store_value(strut_reader *reader, strut_arena *arena, const strut_ke
       for (int c = 0; c < 2; c++) ((bool *)field)[c] = (slot->word >> c & 1) != 0;
       break;
     case STRUT_FIELD_TEXT: *(const char **)field = store_text(reader, arena, key, slot); break;
+    case STRUT_FIELD_TREE: *(const strut_tree **)field = slot->value; break;
+    case STRUT_FIELD_INSTRUCTION:
+    case STRUT_FIELD_NODE_SET:
     case STRUT_FIELD_OBJECT: assert(false);
   }
 }
 
 void strut_store_choice(const strut_key *key, void *object) {
   char *tag = (char *)object + key->field.tag;
-  if (!key->field.chosen) return;
+  if (!key->field.chosen || key->field.tag_value != key->field.tag_last) return;
   if (key->field.tag_size == sizeof(bool))
     *(bool *)(void *)tag = key->field.tag_value != 0;
   else
@@ -229,10 +233,22 @@ static bool read_numbers(strut_reader *reader, const strut_key *key, const strut
   return fine;
 }
 
+static bool read_texts(strut_reader *reader, const strut_key *key, const strut_tree *list,
+                       strut_owner owner, const char **text, size_t *count) {
+  *count = 0;
+  for (const strut_tree *item = list->first; item; item = item->next)
+    if (strut_read_scalar(reader, item, key->name, owner, key->words))
+      text[(*count)++] = item->text;
+  return *count == list->count;
+}
+
 static bool store_list(strut_reader *reader, const strut_key *key, const strut_slot *slot,
                        strut_owner owner, strut_arena *arena, char *object) {
   const strut_field *field = &key->field;
   size_t count = slot->value->count;
+  if (field->type == STRUT_FIELD_NODE_SET)
+    return strut_read_node_sets(reader, slot, owner, (void *)(object + field->offset),
+                                (void *)(object + field->number));
   bool things = field->type == STRUT_FIELD_INT32;
   if (things && count > STRUT_MOST_ELEMENT_NODES) {
     strut_report_error(reader, slot->value->place, "%s has %zu nodes, at most %d are possible",
@@ -241,11 +257,15 @@ static bool store_list(strut_reader *reader, const strut_key *key, const strut_s
   }
   size_t size = things                                   ? sizeof(int32_t)
                 : field->type == STRUT_FIELD_DOUBLE_PAIR ? 2 * sizeof(double)
+                : field->type == STRUT_FIELD_TEXT        ? sizeof(const char *)
                                                          : sizeof(double);
   void *array = strut_reader_allocate(reader, arena, count, size);
   if (!array) return false;
   memcpy(object + field->offset, &array, sizeof array);
   *(size_t *)(void *)(object + field->number) = count;
+  if (field->type == STRUT_FIELD_TEXT)
+    return read_texts(reader, key, slot->value, owner, array,
+                      (size_t *)(void *)(object + field->number));
   return things ? read_references(reader, key, slot->value, owner, array)
                 : read_numbers(reader, key, slot->value, owner, array);
 }
@@ -283,9 +303,9 @@ static bool store_key(strut_reader *reader, const strut_key *key, strut_slot *sl
                       strut_owner owner, strut_arena *arena, char *object) {
   void *field = object + key->field.offset;
   bool fine = true;
+  if (key->measure == STRUT_MEASURE_CONTEXT || key->field.later) return true;
   switch (key->field.role) {
     case STRUT_FIELD_VALUE:
-      if (key->measure == STRUT_MEASURE_CONTEXT) return true;
       if (key->type == STRUT_TYPE_SIGNAL)
         fine = store_signal(reader, key, slot, owner, field);
       else if (!strut_diagnostics_full(reader->diagnostics)) /* else the object will not be used */

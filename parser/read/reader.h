@@ -424,6 +424,9 @@ int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const c
  * where the key is absent or was reported.
  */
 int32_t strut_find_configuration(strut_reader *reader, int key);
+/** `[n1, n4]`, or a list of such lists, in the scene's memory. */
+bool strut_read_node_sets(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                          strut_node_set **sets, size_t *count);
 /** Reads `{NODE: [x, y], ...}` and calls back for each node that could be read. */
 typedef void strut_pair_taker(strut_reader *reader, int32_t node, const double pair[2],
                               const strut_tree *value);
@@ -435,9 +438,9 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
 /** A thing whose value may be more than a mapping. False: it could not be read. */
 typedef bool strut_thing_reader(strut_reader *reader, const strut_tree *key, void *object);
 strut_thing_reader strut_read_node, strut_read_configuration;
-strut_section_reader strut_read_member, strut_read_hinge, strut_read_cell, strut_read_gas,
-    strut_read_collision, strut_read_distance, strut_read_actuator, strut_read_load,
-    strut_read_unbalance, strut_read_slider, strut_read_sensor, strut_read_trigger;
+strut_section_reader strut_read_member, strut_read_hinge, strut_read_cell, strut_read_collision,
+    strut_read_distance, strut_read_actuator, strut_read_load, strut_read_unbalance,
+    strut_read_slider, strut_read_sensor, strut_read_trigger;
 
 /** The law of a member or a hinge, whose strain and force have these dimensions. */
 bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner owner,

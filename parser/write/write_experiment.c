@@ -14,20 +14,6 @@
 /* Same bits? -0 and 0 differ. */
 static bool same(const double a[2], const double b[2]) { return memcmp(a, b, 2 * sizeof *a) == 0; }
 
-/* "[[n1, n4], [n2]]": always a list of lists, which cannot be mistaken for a position. */
-static void put_node_sets(strut_writer *writer, const strut_node_set *sets, size_t count) {
-  strut_put(writer, "[");
-  for (size_t i = 0; i < count; i++) {
-    strut_put(writer, i ? ", [" : "[");
-    for (size_t n = 0; n < sets[i].count; n++) {
-      if (n) strut_put(writer, ", ");
-      strut_put_name(writer, writer->scene->nodes[sets[i].node[n]].name);
-    }
-    strut_put(writer, "]");
-  }
-  strut_put(writer, "]");
-}
-
 /* The positions that are not as drawn. */
 static void put_shape(strut_writer *writer, const strut_configuration *c) {
   bool first = true;
@@ -48,15 +34,12 @@ static void put_configurations(strut_writer *writer) {
   const strut_scene *scene = writer->scene;
   if (scene->configuration_count) strut_put(writer, "configurations:\n");
   for (size_t i = 0; i < scene->configuration_count; i++) {
-    const strut_configuration *c = &scene->configurations[i];
+    const strut_configuration *c = &scene->configurations[i], usual = {0};
     strut_mapping mapping = STRUT_MAPPING_INLINE;
     strut_put(writer, "  ");
     strut_put_name(writer, c->name);
     strut_put(writer, ": {");
-    if (c->set_count) {
-      strut_put_key_name(writer, &mapping, STRUT_KEY_CONFIGURATION_CONTACTS);
-      put_node_sets(writer, c->sets, c->set_count);
-    }
+    strut_put_fields(writer, &mapping, STRUT_SECTION_CONFIGURATION, c, &usual, NULL);
     if (c->shaped) {
       strut_put_key_name(writer, &mapping, STRUT_KEY_CONFIGURATION_SHAPE);
       put_shape(writer, c);
@@ -65,23 +48,13 @@ static void put_configurations(strut_writer *writer) {
   }
 }
 
-static void put_supports(strut_writer *writer, strut_mapping *mapping, int key,
-                         const void *object) {
-  const strut_search *search = object;
-  if (!search->support_count) return;
-  strut_put_key_name(writer, mapping, key);
-  put_node_sets(writer, search->supports, search->support_count);
-}
-
 static void put_search(strut_writer *writer) {
   const strut_search *search = &writer->experiment->search,
                      *usual = &writer->usual.experiment.search;
-  strut_mapping mapping = STRUT_MAPPING_INLINE;
-  if (!search->support_count && !strut_fields_differ(STRUT_SECTION_EQUILIBRIA, search, usual))
-    return;
-  strut_put(writer, "equilibria: {");
-  strut_put_fields(writer, &mapping, STRUT_SECTION_EQUILIBRIA, search, usual, put_supports);
-  strut_put(writer, "}\n");
+  if (!strut_fields_differ(STRUT_SECTION_EQUILIBRIA, search, usual)) return;
+  strut_put(writer, "equilibria: ");
+  strut_put_mapping(writer, STRUT_SECTION_EQUILIBRIA, search, usual, NULL);
+  strut_put(writer, "\n");
 }
 
 static bool is_configuration(const strut_scene *scene, const char *name) {
@@ -123,11 +96,10 @@ static void put_settling_step(strut_writer *writer, strut_mapping *mapping, int 
 }
 
 static void put_settle(strut_writer *writer, const strut_settle *settle) {
-  strut_mapping mapping = STRUT_MAPPING_INLINE;
-  strut_put(writer, "  settle: {");
-  strut_put_fields(writer, &mapping, STRUT_SECTION_SETTLE, settle, &writer->usual.experiment.settle,
-                   put_settling_step);
-  strut_put(writer, "}\n");
+  strut_put(writer, "  settle: ");
+  strut_put_mapping(writer, STRUT_SECTION_SETTLE, settle, &writer->usual.experiment.settle,
+                    put_settling_step);
+  strut_put(writer, "\n");
 }
 
 static void put_initial(strut_writer *writer) {
@@ -203,16 +175,15 @@ static void put_path(strut_writer *writer) {
   if (e->path_friction) strut_put(writer, "  friction: kept\n");
   if (e->stage_count) strut_put(writer, "  stages:\n");
   for (size_t i = 0; i < e->stage_count; i++) {
-    strut_mapping mapping = STRUT_MAPPING_INLINE;
     strut_path_stage stage = e->stages[i];
     if (!stage.load) stage.load = none.load;
     if (!stage.over) stage.over = none.over;
     if (!stage.release) stage.release = none.release;
     /* always written but of a release: its default is another for each kind of stage */
     none.until = *stage.release ? stage.until : (double)NAN;
-    strut_put(writer, "    - {");
-    strut_put_fields(writer, &mapping, STRUT_SECTION_STAGE, &stage, &none, put_stage_by_hand);
-    strut_put(writer, "}\n");
+    strut_put(writer, "    - ");
+    strut_put_mapping(writer, STRUT_SECTION_STAGE, &stage, &none, put_stage_by_hand);
+    strut_put(writer, "\n");
   }
 }
 
@@ -261,23 +232,13 @@ static const char *period_name(const strut_scene *scene, const strut_experiment 
 
 static void put_measure_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                                 const void *object) {
-  const strut_experiment *e = object;
-  strut_mapping steady = STRUT_MAPPING_INLINE;
-  if (key == STRUT_KEY_MEASURE_STEADY && e->steady.wanted) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put(writer, "{");
-    strut_put_fields(writer, &steady, STRUT_SECTION_STEADY, &e->steady,
-                     &writer->usual.experiment.steady, NULL);
-    strut_put(writer, "}");
-  } else if (key == STRUT_KEY_MEASURE_QUANTITIES) {
-    strut_put_quantities(writer, mapping);
-  }
+  (void)object;
+  if (key == STRUT_KEY_MEASURE_QUANTITIES) strut_put_quantities(writer, mapping);
 }
 
 static void put_run_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                             const void *object) {
   const strut_experiment *e = object;
-  strut_mapping measure = STRUT_MAPPING_INLINE;
   bool measures =
       e->measure_last > 0.0 || e->measure_node >= 0 || e->steady.wanted || e->quantity_count;
   if (key == STRUT_KEY_RUN_OF && e->periods > 0.0) {
@@ -286,22 +247,18 @@ static void put_run_by_hand(strut_writer *writer, strut_mapping *mapping, int ke
     strut_put_name(writer, name ? name : strut_signal_name(writer, e->period_signal));
   } else if (key == STRUT_KEY_RUN_MEASURE && measures) {
     strut_put_key_name(writer, mapping, key);
-    strut_put(writer, "{");
-    strut_put_fields(writer, &measure, STRUT_SECTION_MEASURE, e, &writer->usual.experiment,
-                     put_measure_by_hand);
-    strut_put(writer, "}");
+    strut_put_mapping(writer, STRUT_SECTION_MEASURE, e, &writer->usual.experiment,
+                      put_measure_by_hand);
   }
 }
 
 /* One of the scene's mappings, on a line of its own. */
 static void put_section(strut_writer *writer, int key, strut_section section,
                         strut_put_by_hand *by_hand) {
-  strut_mapping top = STRUT_MAPPING_INLINE, mapping = STRUT_MAPPING_INLINE;
+  strut_mapping top = STRUT_MAPPING_INLINE;
   strut_put_key_name(writer, &top, key);
-  strut_put(writer, "{");
-  strut_put_fields(writer, &mapping, section, writer->experiment, &writer->usual.experiment,
-                   by_hand);
-  strut_put(writer, "}\n");
+  strut_put_mapping(writer, section, writer->experiment, &writer->usual.experiment, by_hand);
+  strut_put(writer, "\n");
 }
 
 void strut_put_experiment(strut_writer *writer) {
@@ -454,33 +411,6 @@ void strut_put_program(strut_writer *writer, const strut_instruction *program, s
   strut_release(part.text);
 }
 
-/* The expression; an accuracy: relative, or in the quantity's own unit; a target in the expression's. */
-static void put_quantity_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                                 const void *object) {
-  const strut_quantity_definition *d = object;
-  bool absolute = d->accuracy_absolute > 0.0;
-  if (key == STRUT_KEY_QUANTITY_OF) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_program(writer, d->program, d->length);
-  } else if (key == STRUT_KEY_QUANTITY_TARGET) {
-    if (d->take != STRUT_TAKE_ARRIVAL) return;
-    bool unit = d->target_unit && strcmp(d->target_unit, "1") != 0;
-    strut_put_key_name(writer, mapping, key);
-    strut_put(writer, unit ? "\"" : "");
-    strut_put_number(writer, d->target);
-    strut_put(writer, unit ? " " : "");
-    strut_put(writer, unit ? d->target_unit : "");
-    strut_put(writer, unit ? "\"" : "");
-  } else if (absolute || d->accuracy > 0.0) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put(writer, absolute ? "\"" : "");
-    strut_put_number(writer, absolute ? d->accuracy_absolute : d->accuracy);
-    strut_put(writer, absolute ? " " : "");
-    strut_put(writer, absolute ? d->unit : "");
-    strut_put(writer, absolute ? "\"" : "");
-  }
-}
-
 void strut_put_quantities(strut_writer *writer, strut_mapping *mapping) {
   const strut_experiment *e = writer->experiment;
   const strut_quantity_definition usual = {0};
@@ -488,13 +418,10 @@ void strut_put_quantities(strut_writer *writer, strut_mapping *mapping) {
   strut_put_key_name(writer, mapping, STRUT_KEY_MEASURE_QUANTITIES);
   strut_put(writer, "{");
   for (size_t i = 0; i < e->quantity_count; i++) {
-    strut_mapping inner = STRUT_MAPPING_INLINE;
     strut_put(writer, i ? ", " : "");
     strut_put_name(writer, e->quantities[i].name);
-    strut_put(writer, ": {");
-    strut_put_fields(writer, &inner, STRUT_SECTION_QUANTITY, &e->quantities[i], &usual,
-                     put_quantity_by_hand);
-    strut_put(writer, "}");
+    strut_put(writer, ": ");
+    strut_put_mapping(writer, STRUT_SECTION_QUANTITY, &e->quantities[i], &usual, NULL);
   }
   strut_put(writer, "}");
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/base/number_text.h"
+#include "engine/base/vec.h"
 #include "parser/write/writer.h"
 #include "parser/yaml/text.h"
 
@@ -118,9 +119,35 @@ static void put_words(strut_writer *writer, const strut_key *key, uint32_t bits)
   strut_put(writer, "]");
 }
 
-static void put_value(strut_writer *writer, const strut_key *key, const void *field) {
+/* The angle in radians that reads back as exactly this number of turns, if there is one. */
+static double radians(double turns) {
+  double angle = turns * STRUT_TAU, up = angle, down = angle;
+  for (int i = 0; i < 4; i++) {
+    if (up / STRUT_TAU == turns) return up;
+    if (down / STRUT_TAU == turns) return down;
+    up = nextafter(up, (double)INFINITY);
+    down = nextafter(down, -(double)INFINITY);
+  }
+  return angle;
+}
+
+/* A number, and the unit beside it in the object. */
+static void put_number(strut_writer *writer, const strut_field *field, const char *object) {
+  double number = *(const double *)(const void *)(object + field->offset);
+  const char *unit = NULL;
+  if (field->beside) memcpy(&unit, object + field->beside, sizeof unit);
+  if (unit && strcmp(unit, "1") == 0) unit = NULL;
+  strut_put(writer, unit ? "\"" : "");
+  strut_put_number(writer, field->turns ? radians(number) : number);
+  strut_put(writer, unit ? " " : "");
+  strut_put(writer, unit ? unit : "");
+  strut_put(writer, unit ? "\"" : "");
+}
+
+static void put_value(strut_writer *writer, const strut_key *key, const char *object) {
+  const void *field = object + key->field.offset;
   switch (key->field.type) {
-    case STRUT_FIELD_DOUBLE: strut_put_number(writer, *(const double *)field); break;
+    case STRUT_FIELD_DOUBLE: put_number(writer, &key->field, object); break;
     case STRUT_FIELD_INT32: strut_put_number(writer, *(const int32_t *)field); break;
     case STRUT_FIELD_INT64: strut_put_number(writer, (double)*(const int64_t *)field); break;
     case STRUT_FIELD_UINT64: strut_put_number(writer, (double)*(const uint64_t *)field); break;
@@ -128,7 +155,7 @@ static void put_value(strut_writer *writer, const strut_key *key, const void *fi
       if (key->type == STRUT_TYPE_WORDS)
         put_words(writer, key, *(const uint32_t *)field);
       else
-        put_word(writer, key, (int)*(const uint32_t *)field);
+        put_word(writer, key, (int)(*(const uint32_t *)field - key->field.first));
       break;
     case STRUT_FIELD_BOOL: put_word(writer, key, *(const bool *)field); break;
     case STRUT_FIELD_DOUBLE_PAIR: strut_put_pair(writer, field); break;
@@ -141,6 +168,9 @@ static void put_value(strut_writer *writer, const strut_key *key, const void *fi
       else
         strut_put_name(writer, *(const char *const *)field);
       break;
+    case STRUT_FIELD_INSTRUCTION:
+    case STRUT_FIELD_NODE_SET:
+    case STRUT_FIELD_TREE:
     case STRUT_FIELD_OBJECT: assert(false);
   }
 }
@@ -155,27 +185,56 @@ static void put_references(strut_writer *writer, const strut_key *key, const int
   bool list = count != 1 || key->field.role == STRUT_FIELD_LIST;
   for (size_t k = 0; k < count; k++) {
     if (list) strut_put(writer, k ? ", " : "[");
-    put_thing_name(writer, key->field.kind, index[k]);
+    if (key->field.kind == STRUT_THING_SIGNAL)
+      strut_put_signal_reference(writer, index[k]);
+    else
+      put_thing_name(writer, key->field.kind, index[k]);
   }
   if (list) strut_put(writer, "]");
 }
 
-static void put_list(strut_writer *writer, const strut_key *key, const char *object) {
-  size_t count = *(const size_t *)(const void *)(object + key->field.number);
-  const double *number;
-  memcpy(&number, object + key->field.offset, sizeof number);
-  if (key->field.type == STRUT_FIELD_INT32) {
-    put_references(writer, key, (const int32_t *)(const void *)number, count);
-    return;
+/* "[[n1, n4], [n2]]": always a list of lists, which cannot be mistaken for a position. */
+static void put_node_sets(strut_writer *writer, const strut_node_set *sets, size_t count) {
+  strut_put(writer, "[");
+  for (size_t i = 0; i < count; i++) {
+    strut_put(writer, i ? ", [" : "[");
+    for (size_t n = 0; n < sets[i].count; n++) {
+      if (n) strut_put(writer, ", ");
+      put_thing_name(writer, STRUT_THING_NODE, sets[i].node[n]);
+    }
+    strut_put(writer, "]");
   }
+  strut_put(writer, "]");
+}
+
+static void put_numbers(strut_writer *writer, const strut_field *field, const double *number,
+                        const double *second, size_t count) {
   for (size_t k = 0; k < count; k++) {
     strut_put(writer, k ? ", " : "[");
-    if (key->field.type == STRUT_FIELD_DOUBLE_PAIR)
+    if (field->type == STRUT_FIELD_DOUBLE_PAIR)
       strut_put_pair(writer, number + 2 * k);
+    else if (field->beside)
+      strut_put_pair(writer, (const double[2]){number[k], second[k]});
     else
       strut_put_number(writer, number[k]);
   }
   strut_put(writer, "]");
+}
+
+static void put_list(strut_writer *writer, const strut_key *key, const char *object) {
+  const strut_field *field = &key->field;
+  size_t count = *(const size_t *)(const void *)(object + field->number);
+  const void *array, *second;
+  memcpy(&array, object + field->offset, sizeof array);
+  memcpy(&second, object + field->beside, sizeof second);
+  if (field->type == STRUT_FIELD_INT32)
+    put_references(writer, key, array, count);
+  else if (field->type == STRUT_FIELD_INSTRUCTION)
+    strut_put_program(writer, array, count);
+  else if (field->type == STRUT_FIELD_NODE_SET)
+    put_node_sets(writer, array, count);
+  else
+    put_numbers(writer, field, array, second, count);
 }
 
 /* ---- does an object have a value for a key? ---- */
@@ -187,10 +246,10 @@ static bool values_equal(const strut_key *key, const void *a, const void *b) {
   return memcmp(a, b, key->field.size) == 0;
 }
 
-static bool is_chosen(const strut_field *field, const char *object) {
-  if (field->tag_size == sizeof(bool))
-    return *(const bool *)(object + field->tag) == (field->tag_value != 0);
-  return *(const uint32_t *)(const void *)(object + field->tag) == field->tag_value;
+static bool has_items(const strut_field *field, const char *object) {
+  const void *array;
+  memcpy(&array, object + field->offset, sizeof array);
+  return array && *(const size_t *)(const void *)(object + field->number) > 0;
 }
 
 static bool has_references(const strut_field *field, const char *object) {
@@ -208,13 +267,13 @@ static bool is_plain_law(const strut_law *law) {
 static bool differs(const strut_key *key, const char *object, const char *usual) {
   const strut_field *field = &key->field;
   const char *value = object + field->offset;
-  if (field->chosen && !is_chosen(field, object)) return false;
+  if (!strut_field_is_chosen(field, object)) return false;
   switch (field->role) {
     case STRUT_FIELD_VALUE:
       if (key->type == STRUT_TYPE_SIGNAL) return *(const int32_t *)(const void *)value >= 0;
       return field->chosen || !values_equal(key, value, usual + field->offset);
     case STRUT_FIELD_REFERENCE: return has_references(field, object);
-    case STRUT_FIELD_LIST: return *(const size_t *)(const void *)(object + field->number) > 0;
+    case STRUT_FIELD_LIST: return has_items(field, object);
     case STRUT_FIELD_NESTED:
       if (key->type == STRUT_TYPE_LAW) return !is_plain_law((const void *)value);
       return field->chosen ||
@@ -237,15 +296,11 @@ bool strut_fields_differ(strut_section section, const void *object, const void *
 
 static void put_nested(strut_writer *writer, const strut_key *key, const char *object,
                        const char *usual) {
-  strut_mapping inner = STRUT_MAPPING_INLINE;
-  if (key->type == STRUT_TYPE_LAW) {
-    strut_put_law(writer, (const void *)(object + key->field.offset));
-    return;
-  }
-  strut_put(writer, "{");
-  strut_put_fields(writer, &inner, strut_section_below(key), object + key->field.offset,
-                   usual + key->field.offset, NULL);
-  strut_put(writer, "}");
+  object += key->field.offset;
+  if (key->type == STRUT_TYPE_LAW)
+    strut_put_law(writer, (const void *)object);
+  else
+    strut_put_mapping(writer, strut_section_below(key), object, usual + key->field.offset, NULL);
 }
 
 static void put_key(strut_writer *writer, const strut_key *key, const char *object,
@@ -256,7 +311,7 @@ static void put_key(strut_writer *writer, const strut_key *key, const char *obje
       if (key->type == STRUT_TYPE_SIGNAL)
         strut_put_signal_reference(writer, *(const int32_t *)value);
       else
-        put_value(writer, key, value);
+        put_value(writer, key, object);
       break;
     case STRUT_FIELD_REFERENCE:
       put_references(writer, key, value, key->field.size / sizeof(int32_t));
@@ -275,15 +330,27 @@ void strut_put_fields(strut_writer *writer, strut_mapping *mapping, strut_sectio
   for (int i = 0; i < strut_section_size(section); i++) {
     int index = strut_section_first(section) + i;
     const strut_key *key = strut_key_at(index);
+    bool word = key->field.role == STRUT_FIELD_NONE && key->need == STRUT_REQUIRED;
     bool kept = key->field.role == STRUT_FIELD_VALUE && !key->field.chosen;
-    if (key->field.role == STRUT_FIELD_BY_HAND || key->field.role == STRUT_FIELD_SECTION ||
-        key->field.role == STRUT_FIELD_THINGS || key->field.role == STRUT_FIELD_NONE) {
+    if (word) { /* the only one that there is */
+      strut_put_key(writer, mapping, key->name);
+      strut_put(writer, key->words);
+    } else if (key->field.role == STRUT_FIELD_BY_HAND || key->field.role == STRUT_FIELD_SECTION ||
+               key->field.role == STRUT_FIELD_THINGS || key->field.role == STRUT_FIELD_NONE) {
       if (by_hand) by_hand(writer, mapping, index, object);
     } else if ((kept && key->need != STRUT_OPTIONAL) || differs(key, object, usual)) {
       strut_put_key(writer, mapping, key->name);
       put_key(writer, key, object, usual);
     }
   }
+}
+
+void strut_put_mapping(strut_writer *writer, strut_section section, const void *object,
+                       const void *usual, strut_put_by_hand *by_hand) {
+  strut_mapping mapping = STRUT_MAPPING_INLINE;
+  strut_put(writer, "{");
+  strut_put_fields(writer, &mapping, section, object, usual, by_hand);
+  strut_put(writer, "}");
 }
 
 void strut_put_things(strut_writer *writer, strut_thing kind, strut_section section,
@@ -293,12 +360,11 @@ void strut_put_things(strut_writer *writer, strut_thing kind, strut_section sect
   if (count) strut_put(writer, row->things);
   if (count) strut_put(writer, ":\n");
   for (size_t i = 0; i < count; i++) {
-    strut_mapping mapping = STRUT_MAPPING_INLINE;
     strut_put(writer, "  ");
     put_thing_name(writer, kind, (int32_t)i);
-    strut_put(writer, ": {");
-    strut_put_fields(writer, &mapping, section, strut_thing_object(writer->scene, kind, i),
-                     usual ? usual : row->usual, by_hand);
-    strut_put(writer, "}\n");
+    strut_put(writer, ": ");
+    strut_put_mapping(writer, section, strut_thing_object(writer->scene, kind, i),
+                      usual ? usual : row->usual, by_hand);
+    strut_put(writer, "\n");
   }
 }

@@ -19,18 +19,6 @@ const char *strut_signal_name(const strut_writer *writer, int32_t index) {
   return name ? name : index == writer->period_signal ? "signal_of_the_period" : NULL;
 }
 
-/* The angle in radians that reads back as exactly this number of turns, if there is one. */
-static double radians(double turns) {
-  double angle = turns * STRUT_TAU, up = angle, down = angle;
-  for (int i = 0; i < 4; i++) {
-    if (up / STRUT_TAU == turns) return up;
-    if (down / STRUT_TAU == turns) return down;
-    up = nextafter(up, (double)INFINITY);
-    down = nextafter(down, -(double)INFINITY);
-  }
-  return angle;
-}
-
 static void put_signal(strut_writer *writer, int32_t index);
 
 void strut_put_signal_reference(strut_writer *writer, int32_t index) {
@@ -41,112 +29,10 @@ void strut_put_signal_reference(strut_writer *writer, int32_t index) {
     put_signal(writer, index);
 }
 
-/* The phase is kept in turns and written as an angle. */
-static void put_phase(strut_writer *writer, strut_mapping *mapping, int key, const void *object) {
-  const strut_signal *signal = object;
-  if (signal->phase == 0.0 && !signbit(signal->phase)) return;
-  strut_put_key_name(writer, mapping, key);
-  strut_put_number(writer, radians(signal->phase));
-}
-
-static void put_wave(strut_writer *writer, const strut_signal *signal) {
-  strut_mapping mapping = STRUT_MAPPING_INLINE;
-  const strut_signal usual = strut_signal_default(signal->kind);
-  strut_put(writer, "{");
-  strut_put_fields(writer, &mapping, strut_wave_section(signal->kind), signal, &usual, put_phase);
-  strut_put(writer, "}");
-}
-
-static void put_table(strut_writer *writer, const strut_signal *s) {
-  strut_put(writer, "[");
-  for (size_t i = 0; i < s->point_count; i++) {
-    if (i) strut_put(writer, ", ");
-    strut_put_pair(writer, (const double[2]){s->time[i], s->value[i]});
-  }
-  strut_put(writer, "]");
-}
-
-static void put_trigger(strut_writer *writer, strut_mapping *mapping,
-                        const strut_trigger *trigger) {
-  const strut_scene *scene = writer->scene;
-  bool contact = trigger->kind == STRUT_TRIGGER_CONTACT;
-  strut_mapping inner = STRUT_MAPPING_INLINE;
-  if (trigger->kind == STRUT_TRIGGER_NONE) return;
-  strut_put_key_name(writer, mapping, STRUT_KEY_SIGNAL_STARTS);
-  strut_put(writer, "{");
-  strut_put_key_name(writer, &inner, contact ? STRUT_KEY_STARTS_CONTACT : STRUT_KEY_STARTS_SENSOR);
-  strut_put_name(writer,
-                 contact ? scene->nodes[trigger->item].name : scene->sensors[trigger->item].name);
-  if (!contact) {
-    strut_put_key_name(
-        writer, &inner,
-        trigger->kind == STRUT_TRIGGER_ABOVE ? STRUT_KEY_STARTS_ABOVE : STRUT_KEY_STARTS_BELOW);
-    strut_put_number(writer, trigger->level);
-  }
-  if (trigger->each) {
-    strut_put_key_name(writer, &inner, STRUT_KEY_STARTS_EACH);
-    strut_put(writer, "yes");
-  }
-  strut_put(writer, "}");
-}
-
-static void put_modifier(strut_writer *writer, strut_mapping *mapping, int key, double time) {
-  if (time == 0.0) return;
-  strut_put_key_name(writer, mapping, key);
-  strut_put_number(writer, time);
-}
-
 static void put_signal(strut_writer *writer, int32_t index) {
   const strut_signal *s = &writer->scene->signals[index];
-  strut_mapping mapping = STRUT_MAPPING_INLINE;
-  strut_put(writer, "{");
-  strut_put_key_name(writer, &mapping, STRUT_KEY_SIGNAL_CONSTANT + (int)s->kind);
-  if (s->kind == STRUT_CONSTANT) {
-    strut_put_number(writer, s->amplitude);
-  } else if (s->kind == STRUT_TABLE) {
-    put_table(writer, s);
-  } else if (s->kind == STRUT_EXPRESSION) {
-    strut_put_program(writer, s->program.instruction, s->program.length);
-  } else if (s->kind == STRUT_SUM) {
-    strut_put(writer, "[");
-    for (size_t i = 0; i < s->term_count; i++) {
-      if (i) strut_put(writer, ", ");
-      strut_put_signal_reference(writer, s->terms[i]);
-    }
-    strut_put(writer, "]");
-  } else {
-    put_wave(writer, s);
-  }
-  put_trigger(writer, &mapping, &s->trigger);
-  put_modifier(writer, &mapping, STRUT_KEY_SIGNAL_LAG, s->lag);
-  put_modifier(writer, &mapping, STRUT_KEY_SIGNAL_EVERY, s->every);
-  strut_put(writer, "}");
-}
-
-static void put_sensor_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                               const void *object) {
-  const strut_sensor *sensor = object;
-  bool directed = sensor->kind == STRUT_SENSOR_POSITION || sensor->kind == STRUT_SENSOR_VELOCITY;
-  if (key != STRUT_KEY_SENSOR_ALONG || !directed) return;
-  strut_put_key_name(writer, mapping, key);
-  strut_put(writer, sensor->along ? "y" : "x");
-}
-
-static void put_states(strut_writer *writer) {
-  const strut_scene *scene = writer->scene;
-  if (scene->state_count) strut_put(writer, "states:\n");
-  for (size_t i = 0; i < scene->state_count; i++) {
-    const strut_internal_state *state = &scene->states[i];
-    strut_put(writer, "  ");
-    strut_put_name(writer, state->name);
-    strut_put(writer, ": {rate: ");
-    strut_put_program(writer, state->rate.instruction, state->rate.length);
-    strut_put(writer, state->unit ? ", start: \"" : ", start: ");
-    strut_put_number(writer, state->start);
-    strut_put(writer, state->unit ? " " : "");
-    strut_put(writer, state->unit ? state->unit : "");
-    strut_put(writer, state->unit ? "\"}\n" : "}\n");
-  }
+  const strut_signal usual = strut_signal_default(s->kind);
+  strut_put_mapping(writer, STRUT_SECTION_SIGNAL, s, &usual, NULL);
 }
 
 static void put_named_signals(strut_writer *writer) {
@@ -168,41 +54,16 @@ static void put_relays(strut_writer *writer) {
   bool any = false;
   for (size_t i = 0; i < writer->scene->signal_count; i++) {
     const strut_signal *s = &writer->scene->signals[i];
-    const strut_relay usual = {.off = (double)NAN}; /* it is always written */
-    strut_mapping mapping = STRUT_MAPPING_INLINE;
+    strut_signal usual = strut_signal_default(STRUT_RELAY);
+    usual.relay.off = (double)NAN; /* it is always written */
     if (s->kind != STRUT_RELAY) continue;
     strut_put(writer, any ? "  " : "controllers:\n  ");
     any = true;
     strut_put_name(writer, s->name);
-    strut_put(writer, ": {");
-    strut_put_key_name(writer, &mapping, STRUT_KEY_RELAY_KIND);
-    strut_put(writer, "relay");
-    strut_put_key_name(writer, &mapping, STRUT_KEY_RELAY_OF);
-    strut_put_program(writer, s->program.instruction, s->program.length);
-    strut_put_fields(writer, &mapping, STRUT_SECTION_RELAY, &s->relay, &usual, NULL);
-    put_modifier(writer, &mapping, STRUT_KEY_RELAY_EVERY, s->every);
-    strut_put(writer, "}\n");
+    strut_put(writer, ": ");
+    strut_put_mapping(writer, STRUT_SECTION_RELAY, s, &usual, NULL);
+    strut_put(writer, "\n");
   }
-}
-
-/* What a signal adds to, or its force or moment. */
-static void put_actuator_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                                 const void *object) {
-  const strut_actuator *a = object;
-  int own = !a->force        ? STRUT_KEY_ACTUATOR_SIGNAL
-            : a->member >= 0 ? STRUT_KEY_ACTUATOR_FORCE
-                             : STRUT_KEY_ACTUATOR_MOMENT;
-  if (key != own) return;
-  strut_put_key_name(writer, mapping, key);
-  strut_put_signal_reference(writer, a->signal);
-}
-
-static void put_unbalance_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                                  const void *object) {
-  const strut_unbalance *u = object;
-  if (key != STRUT_KEY_UNBALANCE_SPEED || u->signal >= 0) return;
-  strut_put_key_name(writer, mapping, key);
-  strut_put_number(writer, u->speed);
 }
 
 static void put_slider_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
@@ -215,14 +76,12 @@ static void put_slider_by_hand(strut_writer *writer, strut_mapping *mapping, int
 
 void strut_put_drives(strut_writer *writer) {
   const strut_sliding_mass placed = {.share = (double)NAN}; /* the position is always written */
-  strut_put_things(writer, STRUT_THING_SENSOR, STRUT_SECTION_SENSOR, NULL, put_sensor_by_hand);
-  put_states(writer);
+  strut_put_things(writer, STRUT_THING_SENSOR, STRUT_SECTION_SENSOR, NULL, NULL);
+  strut_put_things(writer, STRUT_THING_STATE, STRUT_SECTION_STATE, NULL, NULL);
   put_named_signals(writer);
   put_relays(writer);
-  strut_put_things(writer, STRUT_THING_ACTUATOR, STRUT_SECTION_ACTUATOR, NULL,
-                   put_actuator_by_hand);
-  strut_put_things(writer, STRUT_THING_UNBALANCE, STRUT_SECTION_UNBALANCE, NULL,
-                   put_unbalance_by_hand);
+  strut_put_things(writer, STRUT_THING_ACTUATOR, STRUT_SECTION_ACTUATOR, NULL, NULL);
+  strut_put_things(writer, STRUT_THING_UNBALANCE, STRUT_SECTION_UNBALANCE, NULL, NULL);
   strut_put_things(writer, STRUT_THING_SLIDER, STRUT_SECTION_SLIDER, &placed, put_slider_by_hand);
   strut_put_things(writer, STRUT_THING_LOAD, STRUT_SECTION_LOAD, NULL, NULL);
 }
@@ -256,10 +115,7 @@ static void put_parameters(strut_writer *writer) {
 static void put_head_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                              const void *object) {
   const strut_scene *scene = object;
-  if (key == STRUT_KEY_SCENE_VERSION) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put(writer, strut_key_at(key)->words);
-  } else if (key == STRUT_KEY_SCENE_PARAMETERS && scene->parameter_count) {
+  if (key == STRUT_KEY_SCENE_PARAMETERS && scene->parameter_count) {
     strut_put_key_name(writer, mapping, key);
     put_parameters(writer);
   } else if (key == STRUT_KEY_SCENE_LATTICE && scene->lattice_count) {
@@ -332,33 +188,11 @@ static void put_nodes(strut_writer *writer) {
   }
 }
 
-/* The list of a law that has one. */
-static void put_law_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                            const void *object) {
-  const strut_law *law = object;
-  bool control = key == STRUT_KEY_LAW_CONTROL_POINTS,
-       points = control || key == STRUT_KEY_LAW_POINTS;
-  int list = points ? STRUT_LAW_PARAMETER_POINTS : STRUT_LAW_PARAMETER_COEFFICIENTS;
-  if (!strut_law_allows(law->kind, list) || (points && law->bezier != control)) return;
-  strut_put_key_name(writer, mapping, key);
-  for (size_t i = 0; i < law->count; i++) {
-    strut_put(writer, i ? ", " : "[");
-    if (points)
-      strut_put_pair(writer, (const double[2]){law->x[i], law->force[i]});
-    else
-      strut_put_number(writer, law->force[i]);
-  }
-  strut_put(writer, "]");
-}
-
 void strut_put_law(strut_writer *writer, const strut_law *law) {
   strut_law usual = {.kind = STRUT_LAW_LINEAR};
   for (int i = 0; i < STRUT_LAW_NUMBER_COUNT; i++) /* what a law needs is written, zero or not */
     if (strut_law_needs(law->kind, i)) *strut_law_number(&usual, i) = (double)NAN;
-  strut_mapping inner = STRUT_MAPPING_INLINE;
-  strut_put(writer, "{");
-  strut_put_fields(writer, &inner, STRUT_SECTION_LAW, law, &usual, put_law_by_hand);
-  strut_put(writer, "}");
+  strut_put_mapping(writer, STRUT_SECTION_LAW, law, &usual, NULL);
 }
 
 /* The nodes; groups have been applied. */
@@ -374,25 +208,6 @@ static void put_member_by_hand(strut_writer *writer, strut_mapping *mapping, int
   strut_put(writer, "]");
 }
 
-static void put_gas_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                            const void *object) {
-  const strut_cell *cell = object;
-  strut_put_key_name(writer, mapping, key);
-  strut_put(writer, cell->law == STRUT_LAW_ISENTROPIC ? "isentropic" : "isothermal");
-}
-
-static void put_cell_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                             const void *object) {
-  const strut_cell *cell = object, usual = strut_cell_default();
-  strut_mapping inner = STRUT_MAPPING_INLINE;
-  if (key != STRUT_KEY_CELL_GAS || cell->law == STRUT_LAW_PRESSURE || strut_cell_is_elastic(cell))
-    return;
-  strut_put_key_name(writer, mapping, key);
-  strut_put(writer, "{");
-  strut_put_fields(writer, &inner, STRUT_SECTION_GAS, cell, &usual, put_gas_by_hand);
-  strut_put(writer, "}");
-}
-
 static void put_distance_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                                  const void *object) {
   const strut_distance_spring *d = object;
@@ -405,12 +220,10 @@ static void put_distance_by_hand(strut_writer *writer, strut_mapping *mapping, i
 }
 
 static void put_rayleigh(strut_writer *writer) {
-  strut_mapping mapping = STRUT_MAPPING_INLINE;
   if (!strut_fields_differ(STRUT_SECTION_RAYLEIGH, writer->scene, &writer->usual.scene)) return;
-  strut_put(writer, "rayleigh: {");
-  strut_put_fields(writer, &mapping, STRUT_SECTION_RAYLEIGH, writer->scene, &writer->usual.scene,
-                   NULL);
-  strut_put(writer, "}\n");
+  strut_put(writer, "rayleigh: ");
+  strut_put_mapping(writer, STRUT_SECTION_RAYLEIGH, writer->scene, &writer->usual.scene, NULL);
+  strut_put(writer, "\n");
 }
 
 /* With these a friction is written: all its coefficients, of one with a signal none. */
@@ -441,11 +254,8 @@ static void put_friction_by_hand(strut_writer *writer, strut_mapping *mapping, i
 }
 
 static void put_friction(strut_writer *writer, const strut_friction *f) {
-  strut_mapping mapping = STRUT_MAPPING_INLINE;
   const strut_friction usual = usual_friction(f);
-  strut_put(writer, "{");
-  strut_put_fields(writer, &mapping, STRUT_SECTION_FRICTION, f, &usual, put_friction_by_hand);
-  strut_put(writer, "}");
+  strut_put_mapping(writer, STRUT_SECTION_FRICTION, f, &usual, put_friction_by_hand);
 }
 
 /* Contacts of the ground that is being written; those of further pieces are like that of the first. */
@@ -585,7 +395,7 @@ char *strut_setup_write(const strut_setup *setup) {
   put_nodes(&writer);
   strut_put_things(&writer, STRUT_THING_MEMBER, STRUT_SECTION_MEMBER, NULL, put_member_by_hand);
   strut_put_things(&writer, STRUT_THING_HINGE, STRUT_SECTION_HINGE, NULL, NULL);
-  strut_put_things(&writer, STRUT_THING_CELL, STRUT_SECTION_CELL, NULL, put_cell_by_hand);
+  strut_put_things(&writer, STRUT_THING_CELL, STRUT_SECTION_CELL, NULL, NULL);
   strut_put_things(&writer, STRUT_THING_COLLISION, STRUT_SECTION_COLLISION, NULL, NULL);
   strut_put_things(&writer, STRUT_THING_DISTANCE, STRUT_SECTION_DISTANCE, NULL,
                    put_distance_by_hand);

@@ -59,6 +59,9 @@ typedef void strut_put_by_hand(strut_writer *writer, strut_mapping *mapping, int
  */
 void strut_put_fields(strut_writer *writer, strut_mapping *mapping, strut_section section,
                       const void *object, const void *usual, strut_put_by_hand *by_hand);
+/** The same within braces. */
+void strut_put_mapping(strut_writer *writer, strut_section section, const void *object,
+                       const void *usual, strut_put_by_hand *by_hand);
 /** True where some field of the section differs between two objects. */
 bool strut_fields_differ(strut_section section, const void *object, const void *usual);
 

@@ -44,31 +44,20 @@ static const struct exception {
   strut_section section;
   const char *name, *reason;
 } exceptions[] = {
-    {STRUT_SECTION_SCENE, "base", "a path, from the folder of the file"},
     {STRUT_SECTION_PART, "use", "a path, from the folder of the file"},
     {STRUT_SECTION_PART, "isolated", "decides which names the reader finds"},
     {STRUT_SECTION_FRICTION, "mu", "sets two fields"},
-    {STRUT_SECTION_SIGNAL, "constant", "its unit is that of the signal's use"},
-    {STRUT_SECTION_SINE, "phase", "an angle, kept in turns"},
-    {STRUT_SECTION_SQUARE, "phase", "an angle, kept in turns"},
     {STRUT_SECTION_INITIAL, "velocity", "of every free node"},
-    {STRUT_SECTION_GAS, "kind", "one of the laws of cells"},
     {STRUT_SECTION_FRICTION, "mu_forward", "sets both coefficients of a direction"},
     {STRUT_SECTION_FRICTION, "mu_forward_static", "another name for mu_static"},
-    {STRUT_SECTION_UNBALANCE, "speed", "turns per second or an angular velocity"},
     {STRUT_SECTION_GROUND, "normal", "gives the slope"},
     {STRUT_SECTION_SETTLE, "step", "depends on the step of the run"},
-    {STRUT_SECTION_QUANTITY, "accuracy", "relative, or in the quantity's unit"},
-    {STRUT_SECTION_QUANTITY, "target", "in the expression's unit"},
     {STRUT_SECTION_STUDY, "model", "a path, from the study's folder"},
-    {STRUT_SECTION_STATE, "start", "its unit is that of the state"},
     {STRUT_SECTION_NETWORK, "scale", "gives the signal its unit"},
-    {STRUT_SECTION_RELAY, "every", "of the signal that the relay is"},
     {STRUT_SECTION_POINTS, "file", "a path, from the study's folder"},
     {STRUT_SECTION_RANGE, "count", "chooses the kind of range"},
     {STRUT_SECTION_RANGE, "scale", "chooses the kind of range"},
     {STRUT_SECTION_SCENE, "limit_things", "of the reader; the scene knows no parts"},
-    {STRUT_SECTION_SENSOR, "along", "turns with the copy of a part"},
 };
 
 static const char *reason_of(const strut_key *key) {

@@ -75,7 +75,7 @@ static void try_list(change *c, const strut_key *key, char *object) {
   size_t *count = (size_t *)(void *)(object + key->field.number);
   char *array;
   memcpy(&array, object + key->field.offset, sizeof array);
-  if (!*count) return;
+  if (!*count || !array) return;
   try_value(c, key, array, key->field.of_runs);
   --*count;
   assert_false(same_at_rest(c->setup, &c->before));
