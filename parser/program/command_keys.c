@@ -105,8 +105,8 @@ static strut_status run_results(const strut_arguments *arguments) {
 }
 
 static const strut_option no_options[] = {
-    {STRUT_OPTION_SELECTOR, "results", NULL, "print what commands find, as a page"},
-    {STRUT_OPTION_END, NULL, NULL, NULL},
+    {.kind = STRUT_OPTION_SELECTOR, .name = "results", NULL, "print what commands find, as a page"},
+    {.name = NULL},
 };
 
 static const strut_command strut_command_results = {
@@ -134,9 +134,9 @@ const strut_command strut_command_keys = {
 };
 
 static const strut_option options[] = {
-    {STRUT_OPTION_SELECTOR, "schema", NULL, "print the language as a JSON Schema"},
-    {STRUT_OPTION_STUDY, "study", NULL, "the schema of a study instead of a scene"},
-    {STRUT_OPTION_END, NULL, NULL, NULL},
+    {.kind = STRUT_OPTION_SELECTOR, .name = "schema", NULL, "print the language as a JSON Schema"},
+    {STRUT_FILLS(study), "study", NULL, "the schema of a study instead of a scene"},
+    {.name = NULL},
 };
 
 static strut_status run_schema(const strut_arguments *arguments) {
