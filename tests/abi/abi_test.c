@@ -473,8 +473,8 @@ TEST(the_language_is_a_schema) {
   strutlib_error *error;
   char *scene = strutlib_schema(0, &error), *study = strutlib_schema(1, NULL);
   assert_null(error);
-  assert_non_null(strstr(scene, "\"title\": \"scene\""));
-  assert_non_null(strstr(study, "\"title\": \"study\""));
+  assert_non_null(strstr(scene, "\"title\":\t\"scene\""));
+  assert_non_null(strstr(study, "\"title\":\t\"study\""));
   strutlib_release(scene);
   strutlib_release(study);
 }
