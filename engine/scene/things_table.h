@@ -81,7 +81,6 @@
   X(CONTACT, REFERENCE(strut_contact, node, NODE)) \
   X(CONTACT, REFERENCE(strut_contact, ground, GROUND)) \
   X(CONTACT, FIELD(strut_contact, piece)) \
-  X(SLIDER, REFERENCE(strut_sliding_mass, member, MEMBER)) \
   X(SETTLE, FIELD(strut_settle, wanted)) \
   X(SETTLE, FIELD(strut_settle, step))
 
@@ -264,7 +263,7 @@
 
 #define STRUT_FRICTION_FIELDS(X) \
   X(FRICTION, LAW, "law", WORD, NONE, ANY, "karnopp", WRITTEN, 0, STRUT_FRICTION_WORDS, FIELD(strut_friction, law), "`karnopp`: Coulomb friction with a stick band (the paper's law). `coulomb`: exact sticking; needs a method with events. `smooth`: -mu_kinetic N u / sqrt(u^2 + width^2); loaded contacts creep. `stribeck`: likewise, from mu_static to mu_kinetic as speed grows. `lugre`: bristles that bend before they slide, with these coefficients; on straight grounds at rest.") \
-  X(FRICTION, MU, "mu", FREE, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "a number, a signal or the name of one", BY_HAND, "Both friction coefficients. A signal changes them with time; where it is negative they are 0. Settling uses its value at t = 0.") \
+  X(FRICTION, MU, "mu", FREE, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "a number, a signal or the name of one", CHOICE(strut_friction, driven, true, LATER(REFERENCE(strut_friction, signal, SIGNAL))), "Both friction coefficients. A signal changes them with time; where it is negative they are 0. Settling uses its value at t = 0.") \
   X(FRICTION, MU_STATIC, "mu_static", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", FIELD(strut_friction, mu_static), "Coefficient of static friction; with `karnopp` and `coulomb` not below `mu_kinetic`.") \
   X(FRICTION, MU_KINETIC, "mu_kinetic", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", FIELD(strut_friction, mu_kinetic), "Coefficient of kinetic friction.") \
   X(FRICTION, MU_FORWARD, "mu_forward", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", BY_HAND, "Both coefficients against motion towards +x along the ground, if they depend on the direction.") \
@@ -309,7 +308,7 @@
   X(UNBALANCE, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", OF_RUNS(FIELD(strut_unbalance, phase)), "Added to the angle, measured from +x.")
 
 #define STRUT_SLIDER_FIELDS(X) \
-  X(SLIDER, MEMBER, "member", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The member on whose straight line, between its two nodes, the mass lies.") \
+  X(SLIDER, MEMBER, "member", NAME, NONE, ANY, "", REQUIRED, 0, "", LATER(REFERENCE(strut_sliding_mass, member, MEMBER)), "The member on whose straight line, between its two nodes, the mass lies.") \
   X(SLIDER, MASS, "mass", NUMBER, MASS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_sliding_mass, mass), "Point mass.") \
   X(SLIDER, POSITION, "position", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", FIELD(strut_sliding_mass, share), "Position from the member's first node: a share of the member, such as 50 %, or a length in the drawn shape.") \
   X(SLIDER, MOVES, "moves", SIGNAL, NONE, ANY, "", OPTIONAL, 1, "", OF_RUNS(CHOICE(strut_sliding_mass, travel, false, FIELD(strut_sliding_mass, signal))), "Added to the position as a share of the member: a signal that must not jump. Its corners are impulses.") \

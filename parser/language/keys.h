@@ -100,15 +100,21 @@ typedef struct strut_beam {
   const struct strut_tree *clamped_to[2]; /* what its ends are clamped to, or NULL */
 } strut_beam;
 
-/** The object of the section `place`, as far as its keys are kept by rows. */
+/** The objects of the sections `part`, `place` and `repeat`; values that are trees are read where they are used. */
+typedef struct strut_part_keys {
+  const struct strut_tree *use, *parameters, *merge, *ports;
+  bool isolated;
+} strut_part_keys;
+
 typedef struct strut_place_keys {
   uint32_t flip;      /* bits: x, y */
   double turn, at[2]; /* [rad], [m] */
+  const struct strut_tree *part, *scale, *onto, *set, *repeat;
 } strut_place_keys;
 
-/** The same of `repeat`. */
 typedef struct strut_repeat_keys {
   double turn, scale, about[2]; /* [rad], [1], [m] */
+  const struct strut_tree *count, *step, *next, *closed;
 } strut_repeat_keys;
 
 /** The object of the section `moves`. */
@@ -136,11 +142,13 @@ typedef struct strut_network {
   int64_t output; /* from 1 */
   uint32_t last;  /* 0: tanh, 1: linear */
   double every;   /* [s] */
+  const struct strut_tree *inputs, *scale;
 } strut_network;
 
 /** The object of the section `oscillator`. */
 typedef struct strut_oscillator {
   double frequency, phase, bias; /* [Hz], [rad] */
+  const struct strut_tree *coupling, *feedback;
 } strut_oscillator;
 
 /** The object of the section `sample`. */

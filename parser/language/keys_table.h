@@ -9,7 +9,7 @@
  * range: ANY, NOT_NEGATIVE, ABOVE_ZERO, or WHOLE(least, most) for whole numbers. need: REQUIRED keys must
  * be given; `strut export` always writes REQUIRED and WRITTEN keys, OPTIONAL ones only where they differ
  * from the default. set: a mapping may give only one of the keys of a set (not 0). Words are separated
- * by '|'; those of a nested mapping are what messages call it, if not by its key.
+ * by '|'; those of a nested mapping are what messages call it, if not by its key, and of NAMES what they are.
  */
 #ifndef STRUT_PARSER_LANGUAGE_KEYS_TABLE_H
 #define STRUT_PARSER_LANGUAGE_KEYS_TABLE_H
@@ -18,9 +18,9 @@
 
 /* clang-format off */
 #define STRUT_PART_KEYS(X) \
-  X(PART, USE, "use", TEXT, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "File of a scene whose structure is the part, relative to this file. The part's own keys override it.") \
-  X(PART, PARAMETERS, "parameters", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Default values, which `set` of a placement changes.") \
-  X(PART, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node or a contact", BY_HAND, "As in a scene, in addition to those of the scene.") \
+  X(PART, USE, "use", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_part_keys, use), "File of a scene whose structure is the part, relative to this file. The part's own keys override it.") \
+  X(PART, PARAMETERS, "parameters", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", FIELD(strut_part_keys, parameters), "Default values, which `set` of a placement changes.") \
+  X(PART, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node or a contact", NONE, "As in a scene, in addition to those of the scene.") \
   X(PART, NODES, "nodes", THINGS, NONE, ANY, "", OPTIONAL, 0, "`[x, y]` or the keys of a node", THINGS(NODE), "As in a scene, in the part's own coordinates.") \
   X(PART, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", THINGS(MEMBER), "As in a scene.") \
   X(PART, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", THINGS(HINGE), "As in a scene.") \
@@ -43,28 +43,28 @@
   X(PART, CONTACTS, "contacts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a contact", THINGS(CONTACT), "Nodes that may touch the ground, each with settings of its contact, or `{}`.") \
   X(PART, PARTS, "parts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a part", THINGS(PART), "Parts for use within this one.") \
   X(PART, PLACE, "place", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [place](#place)", THINGS(PLACE), "Copies of other parts within this one.") \
-  X(PART, MERGE, "merge", FREE, NONE, ANY, "", OPTIONAL, 0, "touching, or {node: other node, ...}", BY_HAND, "As in a scene, for nodes of the part.") \
-  X(PART, PORTS, "ports", THINGS, NONE, ANY, "all nodes", OPTIONAL, 0, "the name of a node", BY_HAND, "Names under which nodes are visible from outside; all other nodes are then hidden.") \
-  X(PART, ISOLATED, "isolated", WORD, NONE, ANY, "no, `yes` with `use`", OPTIONAL, 0, "no|yes", BY_HAND, "`yes`: the part sees only its own parameters, groups, signals and parts.")
+  X(PART, MERGE, "merge", FREE, NONE, ANY, "", OPTIONAL, 0, "touching, or {node: other node, ...}", FIELD(strut_part_keys, merge), "As in a scene, for nodes of the part.") \
+  X(PART, PORTS, "ports", THINGS, NONE, ANY, "all nodes", OPTIONAL, 0, "the name of a node", FIELD(strut_part_keys, ports), "Names under which nodes are visible from outside; all other nodes are then hidden.") \
+  X(PART, ISOLATED, "isolated", WORD, NONE, ANY, "no, `yes` with `use`", OPTIONAL, 0, "no|yes", FIELD(strut_part_keys, isolated), "`yes`: the part sees only its own parameters, groups, signals and parts.")
 
 #define STRUT_PLACE_KEYS(X) \
-  X(PLACE, PART, "part", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The part to copy.") \
+  X(PLACE, PART, "part", NAME, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_place_keys, part), "The part to copy.") \
   X(PLACE, FLIP, "flip", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|x|y|both", FIELD(strut_place_keys, flip), "Changes the sign of coordinates. The order is always flip, scale, turn, move.") \
-  X(PLACE, SCALE, "scale", FREE, NONE, ANY, "1", OPTIONAL, 0, "a number above zero, or fit", BY_HAND, "Factor of all lengths of the copy, but not of masses, forces and stiffnesses. `fit`: as `onto` requires.") \
+  X(PLACE, SCALE, "scale", FREE, NONE, ANY, "1", OPTIONAL, 0, "a number above zero, or fit", FIELD(strut_place_keys, scale), "Factor of all lengths of the copy, but not of masses, forces and stiffnesses. `fit`: as `onto` requires.") \
   X(PLACE, TURN, "turn", NUMBER, ANGLE, ANY, "0", OPTIONAL, 1, "", FIELD(strut_place_keys, turn), "Rotation of the copy about its origin, counter-clockwise.") \
   X(PLACE, AT, "at", PAIR, LENGTH, ANY, "[0, 0]", OPTIONAL, 2, "", FIELD(strut_place_keys, at), "Position of the copy's origin.") \
-  X(PLACE, ONTO, "onto", THINGS, NONE, ANY, "", OPTIONAL, 2, "the name of a node outside", BY_HAND, "Instead of `at`: one or two nodes of the copy and the placed nodes with which they merge. Two pairs also turn the copy, with `scale: fit` if their distances differ.") \
-  X(PLACE, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Parameters of the part. Expressions may use the copy's numbers `i` and, in a lattice, `j`.") \
-  X(PLACE, REPEAT, "repeat", FREE, NONE, ANY, "once", OPTIONAL, 0, "a number of copies, or the keys of repeat", BY_HAND, "Several copies.")
+  X(PLACE, ONTO, "onto", THINGS, NONE, ANY, "", OPTIONAL, 2, "the name of a node outside", FIELD(strut_place_keys, onto), "Instead of `at`: one or two nodes of the copy and the placed nodes with which they merge. Two pairs also turn the copy, with `scale: fit` if their distances differ.") \
+  X(PLACE, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", FIELD(strut_place_keys, set), "Parameters of the part. Expressions may use the copy's numbers `i` and, in a lattice, `j`.") \
+  X(PLACE, REPEAT, "repeat", FREE, NONE, ANY, "once", OPTIONAL, 0, "a number of copies, or the keys of repeat", FIELD(strut_place_keys, repeat), "Several copies.")
 
 #define STRUT_REPEAT_KEYS(X) \
-  X(REPEAT, COUNT, "count", FREE, NONE, ANY, "", REQUIRED, 0, "a whole number, or [n, m] for a lattice", BY_HAND, "Number of copies, numbered from 0.") \
-  X(REPEAT, STEP, "step", FREE, NONE, ANY, "[0, 0]", OPTIONAL, 0, "a displacement such as [1 m, 0], or two of a lattice", BY_HAND, "Displacement from each copy to the next, in the copy's own frame.") \
+  X(REPEAT, COUNT, "count", FREE, NONE, ANY, "", REQUIRED, 0, "a whole number, or [n, m] for a lattice", FIELD(strut_repeat_keys, count), "Number of copies, numbered from 0.") \
+  X(REPEAT, STEP, "step", FREE, NONE, ANY, "[0, 0]", OPTIONAL, 0, "a displacement such as [1 m, 0], or two of a lattice", FIELD(strut_repeat_keys, step), "Displacement from each copy to the next, in the copy's own frame.") \
   X(REPEAT, TURN, "turn", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_repeat_keys, turn), "Rotation of each copy against the one before.") \
   X(REPEAT, SCALE, "scale", NUMBER, NONE, ABOVE_ZERO, "1", OPTIONAL, 0, "", FIELD(strut_repeat_keys, scale), "Size of each copy divided by that of the one before.") \
   X(REPEAT, ABOUT, "about", PAIR, LENGTH, ANY, "[0, 0]", OPTIONAL, 0, "", FIELD(strut_repeat_keys, about), "The centre of `turn` and `scale`.") \
-  X(REPEAT, NEXT, "next", FREE, NONE, ANY, "", OPTIONAL, 0, "the keys of next, or two such mappings for a lattice", BY_HAND, "What a copy shares with the next one.") \
-  X(REPEAT, CLOSED, "closed", FREE, NONE, ANY, "no", OPTIONAL, 0, "yes, no, or {node: node of the first copy, ...}", BY_HAND, "`yes`: the first copy follows the last one. A mapping names other nodes of the first copy, as in a ring with a twist.")
+  X(REPEAT, NEXT, "next", FREE, NONE, ANY, "", OPTIONAL, 0, "the keys of next, or two such mappings for a lattice", FIELD(strut_repeat_keys, next), "What a copy shares with the next one.") \
+  X(REPEAT, CLOSED, "closed", FREE, NONE, ANY, "no", OPTIONAL, 0, "yes, no, or {node: node of the first copy, ...}", FIELD(strut_repeat_keys, closed), "`yes`: the first copy follows the last one. A mapping names other nodes of the first copy, as in a ring with a twist.")
 
 #define STRUT_NEXT_KEYS(X) \
   X(NEXT, MERGE, "merge", THINGS, NONE, ANY, "", OPTIONAL, 0, "the name of a node of the next copy", BY_HAND, "Nodes of a copy and those of the next copy with which they merge: `{b: a}`.") \
@@ -90,15 +90,15 @@
   X(BEAM, CLAMPED_TO, "clamped_to", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(CLAMPED_TO), "Members and other beams to which its ends keep their drawn angle.")
 
 #define STRUT_CLAMPED_TO_KEYS(X) \
-  X(CLAMPED_TO, START, "start", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A bar, spring or beam that ends at the first node.") \
-  X(CLAMPED_TO, END, "end", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A bar, spring or beam that ends at the second node.")
+  X(CLAMPED_TO, START, "start", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_beam, clamped_to[0]), "A bar, spring or beam that ends at the first node.") \
+  X(CLAMPED_TO, END, "end", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_beam, clamped_to[1]), "A bar, spring or beam that ends at the second node.")
 
 #define STRUT_OSCILLATOR_KEYS(X) \
   X(OSCILLATOR, FREQUENCY, "frequency", NUMBER, FREQUENCY, ANY, "", REQUIRED, 0, "", FIELD(strut_oscillator, frequency), "Natural frequency.") \
   X(OSCILLATOR, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_oscillator, phase), "Phase at t = 0.") \
-  X(OSCILLATOR, COUPLING, "coupling", THINGS, NONE, ANY, "", OPTIONAL, 0, "the strength K of the coupling to that oscillator [1/s]", BY_HAND, "Adds K sin(phase of the other - own phase - bias) to the rate of the phase.") \
+  X(OSCILLATOR, COUPLING, "coupling", THINGS, NONE, ANY, "", OPTIONAL, 0, "the strength K of the coupling to that oscillator [1/s]", FIELD(strut_oscillator, coupling), "Adds K sin(phase of the other - own phase - bias) to the rate of the phase.") \
   X(OSCILLATOR, BIAS, "bias", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_oscillator, bias), "Phase by which the others should be ahead.") \
-  X(OSCILLATOR, FEEDBACK, "feedback", EXPRESSION, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "An expression, as of a signal, that is added to the rate of the phase.")
+  X(OSCILLATOR, FEEDBACK, "feedback", EXPRESSION, CONTEXT, ANY, "", OPTIONAL, 0, "", FIELD(strut_oscillator, feedback), "An expression, as of a signal, that is added to the rate of the phase.")
 
 #define STRUT_CONTROLLER_KEYS(X) \
   X(CONTROLLER, SENSOR, "sensor", NAME, NONE, ANY, "", REQUIRED, 0, "", REFERENCE(strut_controller, sensor, SENSOR), "The controlled sensor, s.") \
@@ -117,10 +117,10 @@
 
 #define STRUT_NETWORK_KEYS(X) \
   X(NETWORK, FILE, "network", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_network, file), "File of weights, in the folder of the scene or below. Each line is a neuron: weights of the values of the layer before, then the bias, separated by commas. An empty line separates layers.") \
-  X(NETWORK, INPUTS, "inputs", FREE, NONE, ANY, "", REQUIRED, 0, "a list of expressions without unit", BY_HAND, "Inputs of the first layer, such as `[l/(1 mm), touch]`.") \
+  X(NETWORK, INPUTS, "inputs", FREE, NONE, ANY, "", REQUIRED, 0, "a list of expressions without unit", FIELD(strut_network, inputs), "Inputs of the first layer, such as `[l/(1 mm), touch]`.") \
   X(NETWORK, OUTPUT, "output", NUMBER, NONE, WHOLE(1, 1000), "1", OPTIONAL, 0, "", FIELD(strut_network, output), "Number of the neuron of the last layer that is the signal.") \
   X(NETWORK, LAST, "last", WORD, NONE, ANY, "tanh", OPTIONAL, 0, "tanh|linear", FIELD(strut_network, last), "Activation of the last layer; the others use tanh.") \
-  X(NETWORK, SCALE, "scale", NUMBER, CONTEXT, ANY, "1", OPTIONAL, 0, "", BY_HAND, "Factor and unit of the signal.") \
+  X(NETWORK, SCALE, "scale", NUMBER, CONTEXT, ANY, "1", OPTIONAL, 0, "", FIELD(strut_network, scale), "Factor and unit of the signal.") \
   X(NETWORK, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_network, every), "Sampling interval; 0: the controller is continuous.")
 
 #define STRUT_STUDY_KEYS(X) \
@@ -149,7 +149,7 @@
   X(STUDY, STIFFNESS_AT, "stiffness_at", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(STIFFNESS_AT), "With `compute: modes`: node and direction of the column `stiffness`.") \
   X(STUDY, SHAPE, "shape", THINGS, NONE, ANY, "", OPTIONAL, 0, "positions `[x, y]` of nodes", BY_HAND, "Positions of some or all nodes for the column `shape_distance`: the root mean square over nodes, after the best rigid motion, of the end of a run, the nearest stable state or the equilibrium of modes.") \
   X(STUDY, LIKE, "like", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, goal.like), "A configuration of the model with positions, instead of `shape`.") \
-  X(STUDY, CURVE, "curve", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "With `compute: path` and `over: NODE.x` or `NODE.y`: displacements and forces `[[-1 mm, 2 N], ...]` for the column `curve_distance`, the root mean square of the force differences.") \
+  X(STUDY, CURVE, "curve", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", LIST(strut_study, goal.curve, goal.curve_count), "With `compute: path` and `over: NODE.x` or `NODE.y`: displacements and forces `[[-1 mm, 2 N], ...]` for the column `curve_distance`, the root mean square of the force differences.") \
   X(STUDY, LIMIT, "limit", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(LIMIT), "Largest cost of a point. A point that needs more fails, and its row says so.") \
   X(STUDY, FORM, "form", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(FORM), "Settings of `compute: form`.") \
   X(STUDY, SEARCH, "search", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(SEARCH), "Searches for the parameters with the best value of a column, instead of computing a grid.") \
@@ -234,7 +234,7 @@
   X(REFINE, AXES, "axes", NAMES, NONE, ANY, "the axes with ranges", OPTIONAL, 0, "", BY_HAND, "The parameters of the two axes to divide.")
 
 #define STRUT_SENSITIVITY_KEYS(X) \
-  X(SENSITIVITY, OF, "of", NAMES, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "Columns of the table: numbers, or texts such as `outcome`.") \
+  X(SENSITIVITY, OF, "of", NAMES, NONE, ANY, "", REQUIRED, 0, "a column of the table", LIST(strut_study_sensitivity, of, of_count), "Columns of the table: numbers, or texts such as `outcome`.") \
   X(SENSITIVITY, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "a [distribution](#distribution)", THINGS(DISTRIBUTION), "The parameters, up to 20, and their distributions.") \
   X(SENSITIVITY, SAMPLES, "samples", NUMBER, NONE, WHOLE(0, 100000), "256", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, samples), "Base samples of Saltelli's design; n parameters need n + 2 points each. 0: derivatives only.") \
   X(SENSITIVITY, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, seed), "Seed of the points; the same seed gives the same points.") \
@@ -255,7 +255,7 @@
   X(STAGE, OVER, "over", TEXT, NONE, ANY, "", OPTIONAL, 7, "", FIELD(strut_path_stage, over), "Instead: an actuator, or a displacement `NODE.x` or `NODE.y`, which stays held afterwards.") \
   X(STAGE, RELEASE, "release", TEXT, NONE, ANY, "", OPTIONAL, 7, "", FIELD(strut_path_stage, release), "Instead: a held `NODE.x` or `NODE.y`, whose reaction is reduced to zero.") \
   X(STAGE, UNTIL, "until", NUMBER, CONTEXT, ANY, "load factor 1", OPTIONAL, 0, "", FIELD(strut_path_stage, until), "Value at the end of the stage: a load factor, or in the unit of `over`, where it is required.") \
-  X(STAGE, HOLD, "hold", NAMES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Coordinates `[NODE.x, NODE.y, ...]` that stay fixed from the start of the stage.") \
+  X(STAGE, HOLD, "hold", NAMES, NONE, ANY, "", OPTIONAL, 0, "", LIST(strut_path_stage, hold, hold_count), "Coordinates `[NODE.x, NODE.y, ...]` that stay fixed from the start of the stage.") \
   X(STAGE, STOP, "stop", FREE, NONE, ANY, "", OPTIONAL, 0, "`{NODE.x: LENGTH}`", BY_HAND, "Ends the stage when a node has moved this far in it.") \
   X(STAGE, STEPS, "steps", NUMBER, NONE, WHOLE(1, 1000000), "400", OPTIONAL, 0, "", FIELD(strut_path_stage, steps), "Maximum number of steps.")
 
@@ -279,11 +279,11 @@
   X(VARIABLE, INTEGER, "integer", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_search_variable, integer), "`yes`: whole numbers only, in the SI unit.")
 
 #define STRUT_FOLLOW_KEYS(X) \
-  X(FOLLOW, OVER, "over", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The parameter that varies.") \
+  X(FOLLOW, OVER, "over", NAME, NONE, ANY, "", REQUIRED, 0, "", LATER(FIELD(strut_study_follow, over)), "The parameter that varies.") \
   X(FOLLOW, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_follow, from), "Lower end of its range.") \
   X(FOLLOW, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_follow, to), "Upper end of its range.") \
-  X(FOLLOW, AT, "at", NUMBERS, CONTEXT, ANY, "the model's own value, or the middle", OPTIONAL, 0, "", BY_HAND, "Values at which runs find the first motions.") \
-  X(FOLLOW, START_FROM, "start_from", NAMES, NONE, ANY, "as the model says", OPTIONAL, 0, "", BY_HAND, "Configurations in whose equilibria these runs start.") \
+  X(FOLLOW, AT, "at", NUMBERS, CONTEXT, ANY, "the model's own value, or the middle", OPTIONAL, 0, "", LIST(strut_study_follow, at, at_count), "Values at which runs find the first motions.") \
+  X(FOLLOW, START_FROM, "start_from", NAMES, NONE, ANY, "as the model says", OPTIONAL, 0, "a configuration", LIST(strut_study_follow, start_from, start_count), "Configurations in whose equilibria these runs start.") \
   X(FOLLOW, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %", OPTIONAL, 0, "", FIELD(strut_study_follow, accuracy), "Relative error of velocities, at most 10 %.") \
   X(FOLLOW, INTEGRATOR, "integrator", WORD, NONE, ANY, "`rk4-events`, or `adaptive` where that cannot", OPTIONAL, 0, STRUT_INTEGRATOR_WORDS, FIELD(strut_study_follow, integrator), "Integration method; it must locate events if there are contacts or cables.") \
   X(FOLLOW, STEPS, "steps", NUMBER, NONE, WHOLE(1, 100000), STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_STEPS), OPTIONAL, 0, "", FIELD(strut_study_follow, steps), "Maximum number of steps of a branch in each direction.") \

@@ -215,9 +215,8 @@ bool strut_name_is_hidden(const strut_reader *reader, const strut_copy *scope, c
     prefix.text[length] = '\0';
     int32_t i = strut_name_map_find(&copies->ported, prefix.text);
     if (i < 0) continue;
-    strut_fields *fields = &copies->ported_copies[i]->placement->part->fields;
-    const strut_slot *ports = strut_slot_of(fields, STRUT_KEY_PART_PORTS);
-    return !strut_tree_find(ports->value, dot + 1, NULL);
+    const strut_tree *ports = copies->ported_copies[i]->placement->part->keys.ports;
+    return !strut_tree_find(ports, dot + 1, NULL);
   }
   return false;
 }

@@ -30,9 +30,9 @@ bool strut_frame_flips(const strut_frame *frame);
 typedef struct strut_part {
   const char *name;
   const strut_tree *key;
-  strut_copy *home;          /* the copy within whose part it is described; NULL: the scene */
-  strut_fields fields;       /* of the section part */
-  bool closed;               /* from another file: it sees no names of the scene */
+  strut_copy *home;    /* the copy within whose part it is described; NULL: the scene */
+  strut_fields fields; /* of the section part */
+  strut_part_keys keys;
   bool broken, placed, open; /* open: it is being copied */
 } strut_part;
 
@@ -207,6 +207,7 @@ typedef struct strut_placing {
   strut_placement *placement;
   strut_copy *outer;
   strut_fields fields;
+  strut_place_keys keys;
   strut_repetition repeat;
   strut_fields next[2]; /* of `repeat`, in each direction that it gives */
   bool varies;          /* some key mentions the copy's number */
@@ -247,7 +248,7 @@ size_t strut_count_things(strut_fields *fields);
 void strut_add_merger(strut_expansion *e, strut_copy *scope, const strut_tree *a,
                       const strut_tree *b, const strut_tree *place);
 /** Reads `merge`: `touching`, or a mapping of names. */
-void strut_read_merge(strut_expansion *e, const strut_slot *slot, strut_copy *scope, int key);
+void strut_read_merge(strut_expansion *e, const strut_tree *value, strut_copy *scope, int key);
 /** Lays the scene's own entries of a key over those of the copies, and joins both. */
 void strut_join_entries(strut_expansion *e, int key);
 

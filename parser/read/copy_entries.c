@@ -101,9 +101,8 @@ void strut_add_merger(strut_expansion *e, strut_copy *scope, const strut_tree *a
 }
 
 /* `touching`, or a mapping of names. */
-void strut_read_merge(strut_expansion *e, const strut_slot *slot, strut_copy *scope, int key) {
-  const strut_tree *value = slot->value;
-  if (slot->state != STRUT_GIVEN || e->weighing) return;
+void strut_read_merge(strut_expansion *e, const strut_tree *value, strut_copy *scope, int key) {
+  if (!value || e->weighing) return;
   e->reader->scope = scope; /* one message for all copies */
   if (value->kind == STRUT_TREE_SCALAR && strcmp(value->text, "touching") == 0)
     strut_add_merger(e, scope, NULL, NULL, value);

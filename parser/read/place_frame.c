@@ -46,10 +46,9 @@ static bool read_counts(strut_reader *reader, const strut_tree *value, strut_own
   return read_count(reader, value->first->next, owner, &r->count[1]) && fine;
 }
 
-static bool read_steps(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+static bool read_steps(strut_reader *reader, const strut_tree *value, strut_owner owner,
                        strut_repetition *r) {
-  const strut_tree *value = slot->value;
-  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
+  if (!value) return true;
   bool lists =
       value->kind == STRUT_TREE_LIST && value->count == 2 && value->first->kind == STRUT_TREE_LIST;
   if (lists != (r->numbers == 2)) {
@@ -67,10 +66,9 @@ static bool read_steps(strut_reader *reader, const strut_slot *slot, strut_owner
   return fine;
 }
 
-static bool read_next(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+static bool read_next(strut_reader *reader, const strut_tree *value, strut_owner owner,
                       strut_repetition *r) {
-  const strut_tree *value = slot->value;
-  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
+  if (!value) return true;
   bool list = value->kind == STRUT_TREE_LIST && value->count == 2;
   if (list != (r->numbers == 2) || (!list && value->kind != STRUT_TREE_MAP))
     return strut_refuse_form(reader, STRUT_KEY_REPEAT_NEXT, value, owner);
@@ -79,17 +77,16 @@ static bool read_next(strut_reader *reader, const strut_slot *slot, strut_owner 
   return true;
 }
 
-static bool read_closed(strut_reader *reader, const strut_slot *slot, strut_owner owner,
-                        strut_repetition *r) {
-  const strut_tree *value = slot->value;
-  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
+static bool read_closed(strut_reader *reader, const strut_tree *value, const strut_tree *key,
+                        strut_owner owner, strut_repetition *r) {
+  if (!value) return true;
   int word = value->kind == STRUT_TREE_SCALAR ? strut_switch_find(value->text) : 1;
   r->closed = word == 1;
   r->twist = value->kind == STRUT_TREE_MAP ? value : NULL;
   if (word < 0 || value->kind == STRUT_TREE_LIST)
     return strut_refuse_form(reader, STRUT_KEY_REPEAT_CLOSED, value, owner);
   if (!r->closed || (r->numbers == 1 && r->next[0])) return true;
-  strut_report_error(reader, slot->key->place,
+  strut_report_error(reader, key->place,
                      r->numbers > 1 ? "a lattice cannot be closed; close a ring and repeat the ring"
                                     : "'closed' needs 'next', which says what ties a copy to the "
                                       "next one");
@@ -108,19 +105,21 @@ bool strut_read_repeat(strut_reader *reader, const strut_slot *slot, const char 
   strut_fields fields;
   strut_read_fields(reader, STRUT_SECTION_REPEAT, value, owner, &fields);
   strut_require(reader, &fields, owner, slot->key->place);
-  const strut_slot *count = strut_slot_of(&fields, STRUT_KEY_REPEAT_COUNT);
   const strut_slot *turn = strut_slot_of(&fields, STRUT_KEY_REPEAT_TURN);
   const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_REPEAT_SCALE);
   const strut_slot *about = strut_slot_of(&fields, STRUT_KEY_REPEAT_ABOUT);
-  if (fields.broken || count->state != STRUT_GIVEN) return false;
-  if (!strut_check_companions(reader, &fields, owner)) return false;
-  if (!read_counts(reader, count->value, owner, r)) return false;
-  bool fine = read_steps(reader, strut_slot_of(&fields, STRUT_KEY_REPEAT_STEP), owner, r);
-  fine = read_next(reader, strut_slot_of(&fields, STRUT_KEY_REPEAT_NEXT), owner, r) && fine;
-  fine = read_closed(reader, strut_slot_of(&fields, STRUT_KEY_REPEAT_CLOSED), owner, r) && fine;
-  if (turn->state == STRUT_GIVEN) r->turn = turn->number[0];
-  if (scale->state == STRUT_GIVEN) r->scale = scale->number[0];
-  if (about->state == STRUT_GIVEN) memcpy(r->about, about->number, sizeof r->about);
+  strut_repeat_keys keys = {.scale = 1.0};
+  if (fields.broken ||
+      !strut_store_fields(reader, &fields, owner, &reader->scratch, &keys, sizeof keys) ||
+      !read_counts(reader, keys.count, owner, r))
+    return false;
+  bool fine = read_steps(reader, keys.step, owner, r);
+  fine = read_next(reader, keys.next, owner, r) && fine;
+  fine = read_closed(reader, keys.closed, strut_slot_of(&fields, STRUT_KEY_REPEAT_CLOSED)->key,
+                     owner, r) &&
+         fine;
+  r->turn = keys.turn, r->scale = keys.scale;
+  memcpy(r->about, keys.about, sizeof r->about);
   const strut_slot *odd = turn->key ? turn : scale->key ? scale : about;
   if (r->numbers < 2 || !odd->key) return fine;
   strut_report_error(
@@ -253,12 +252,11 @@ static const char *read_copy_numbers(const strut_repetition *r, const char *text
 
 bool strut_find_in_copy(strut_expansion *e, strut_copy *copy, const char *name,
                         double position[2]) {
-  strut_fields *fields = &copy->placement->part->fields;
-  const strut_slot *nodes = strut_slot_of(fields, STRUT_KEY_PART_NODES);
-  const strut_slot *ports = strut_slot_of(fields, STRUT_KEY_PART_PORTS);
-  const strut_slot *place = strut_slot_of(fields, STRUT_KEY_PART_PLACE);
-  const strut_tree *port =
-      ports->state == STRUT_GIVEN ? strut_tree_find(ports->value, name, NULL) : NULL;
+  strut_part *part = copy->placement->part;
+  const strut_slot *nodes = strut_slot_of(&part->fields, STRUT_KEY_PART_NODES);
+  const strut_slot *place = strut_slot_of(&part->fields, STRUT_KEY_PART_PLACE);
+  const strut_tree *ports = part->keys.ports;
+  const strut_tree *port = ports ? strut_tree_find(ports, name, NULL) : NULL;
   if (port && port->kind == STRUT_TREE_SCALAR) name = port->text;
   const strut_tree *value =
       nodes->state == STRUT_GIVEN ? strut_tree_find(nodes->value, name, NULL) : NULL;
@@ -273,7 +271,7 @@ bool strut_find_in_copy(strut_expansion *e, strut_copy *copy, const char *name,
     if (e->copies->depth >= STRUT_DEEPEST_PARTS || !strut_read_placement(e, k, copy, &p))
       return false;
     const char *rest = read_copy_numbers(&p.repeat, name + length + 1, number);
-    if (!rest || strut_slot_of(&p.fields, STRUT_KEY_PLACE_ONTO)->key) return false;
+    if (!rest || p.keys.onto) return false;
     strut_copy *scope, *inner = strut_make_copy(e, &p, first, &base, &scope);
     if (inner && (number[0] || number[1])) inner = strut_make_copy(e, &p, number, &base, &scope);
     if (!inner) return false;
@@ -299,11 +297,11 @@ static bool find_inside(strut_expansion *e, strut_copy *copy, const strut_tree *
 }
 
 /* Shifts, and with two pairs turns, the frame so that nodes of the copy lie on others. */
-static bool lay_onto(strut_expansion *e, strut_copy *copy, const strut_slot *onto, bool fit,
+static bool lay_onto(strut_expansion *e, strut_copy *copy, const strut_tree *map, bool fit,
                      strut_frame *frame) {
   strut_reader *reader = e->reader;
   double own[2][2], there[2][2];
-  const strut_tree *map = onto->value, *k = map->first;
+  const strut_tree *k = map->first;
   if (map->count < 1 || map->count > 2) {
     strut_report_error(reader, map->place,
                        "expected one or two pairs {own: there} for 'onto', found %u",
@@ -344,29 +342,24 @@ static bool lay_onto(strut_expansion *e, strut_copy *copy, const strut_slot *ont
 bool strut_read_frame(strut_expansion *e, strut_placing *p, strut_copy *copy, strut_frame *frame) {
   strut_reader *reader = e->reader;
   strut_owner owner = {"place", p->placement->key->text};
-  const strut_slot *flip = strut_slot_of(&p->fields, STRUT_KEY_PLACE_FLIP);
   const strut_slot *turn = strut_slot_of(&p->fields, STRUT_KEY_PLACE_TURN);
-  const strut_slot *at = strut_slot_of(&p->fields, STRUT_KEY_PLACE_AT);
-  const strut_slot *scale = strut_slot_of(&p->fields, STRUT_KEY_PLACE_SCALE);
-  const strut_slot *onto = strut_slot_of(&p->fields, STRUT_KEY_PLACE_ONTO);
-  bool fit = scale->state == STRUT_GIVEN && scale->value->kind == STRUT_TREE_SCALAR &&
-             strcmp(scale->value->text, "fit") == 0;
+  const strut_tree *scale = p->keys.scale, *onto = p->keys.onto;
+  bool fit = scale && scale->kind == STRUT_TREE_SCALAR && strcmp(scale->text, "fit") == 0;
   *frame = strut_frame_of_scene;
-  if (turn->state == STRUT_GIVEN) strut_frame_turn(frame, turn->number[0]);
-  if (at->state == STRUT_GIVEN) memcpy(frame->at, at->number, sizeof frame->at);
-  int flipped = flip->state == STRUT_GIVEN ? flip->word : 0; /* bits: x, y */
+  if (turn->state == STRUT_GIVEN) strut_frame_turn(frame, p->keys.turn);
+  memcpy(frame->at, p->keys.at, sizeof frame->at);
   for (int c = 0; c < 2; c++)
-    for (int row = 0; row < 2 && flipped >> c & 1; row++) frame->axes[row][c] *= -1.0;
-  if (scale->state == STRUT_GIVEN && !fit &&
-      !strut_read_number(reader, scale->value, "scale", owner, STRUT_DIM_NONE,
-                         STRUT_RANGE_ABOVE_ZERO, &frame->scale))
+    for (int row = 0; row < 2 && p->keys.flip >> c & 1; row++) frame->axes[row][c] *= -1.0;
+  if (scale && !fit &&
+      !strut_read_number(reader, scale, "scale", owner, STRUT_DIM_NONE, STRUT_RANGE_ABOVE_ZERO,
+                         &frame->scale))
     return false;
-  bool two = onto->state == STRUT_GIVEN && onto->value->count == 2;
+  bool two = onto && onto->count == 2;
   if ((fit && !two) || (two && turn->key)) {
-    strut_report_error(reader, fit && !two ? scale->value->place : turn->key->place,
+    strut_report_error(reader, fit && !two ? scale->place : turn->key->place,
                        fit && !two ? "'scale: fit' needs two pairs in 'onto'"
                                    : "two pairs in 'onto' turn the copy; leave 'turn' out");
     return false;
   }
-  return e->weighing || onto->state != STRUT_GIVEN || lay_onto(e, copy, onto, fit, frame);
+  return e->weighing || !onto || lay_onto(e, copy, onto, fit, frame);
 }

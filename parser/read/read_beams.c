@@ -281,15 +281,13 @@ static bool read_clamped_to(strut_reader *reader, const strut_slot *slot, strut_
   strut_owner owner = {"beam", b->name};
   if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
   strut_read_fields(reader, STRUT_SECTION_CLAMPED_TO, slot->value, owner, &fields);
+  strut_store_fields(reader, &fields, owner, &reader->scratch, b, sizeof *b);
   for (int k = 0; k < 2; k++) {
-    const strut_slot *end = strut_slot_of(&fields, STRUT_KEY_CLAMPED_TO_START + k);
-    if (end->state != STRUT_GIVEN) continue;
-    b->clamped_to[k] = end->value;
-    if (!(b->clamped >> k & 1u)) continue;
-    strut_report_error(reader, end->value->place,
+    const strut_tree *end = b->clamped_to[k];
+    if (!end || !(b->clamped >> k & 1u)) continue;
+    strut_report_error(reader, end->place,
                        "the %s of beam '%s' is clamped in a fixed direction and to '%s'; give one",
-                       k ? "end" : "start", b->name,
-                       strut_sanitised_text(reader, end->value->text));
+                       k ? "end" : "start", b->name, strut_sanitised_text(reader, end->text));
     return false;
   }
   return !fields.broken;

@@ -56,17 +56,17 @@ static bool put_coupling(builder *b, const strut_tree *key, strut_owner owner, i
   return true;
 }
 
-static bool read_feedback(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+static bool read_feedback(strut_reader *reader, const strut_tree *value, strut_owner owner,
                           strut_program *program, strut_dimension *rate) {
   strut_quantity q;
   char found[80];
   strut_dimension angular = {0, 0, -1, 1};
-  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
-  if (!strut_read_signal_program(reader, slot->value, "feedback", owner, program, &q)) return false;
+  if (!value) return true;
+  if (!strut_read_signal_program(reader, value, "feedback", owner, program, &q)) return false;
   if (strut_dimension_equal(q.dimension, angular)) *rate = angular;
   if (q.bare || strut_dimension_equal(q.dimension, *rate)) return true;
   strut_report_error(
-      reader, slot->value->place, "expected an angular velocity for 'feedback' of %s, found %s",
+      reader, value->place, "expected an angular velocity for 'feedback' of %s, found %s",
       strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
   return false;
 }
@@ -79,15 +79,13 @@ bool strut_read_oscillator(strut_reader *reader, const strut_tree *key, int32_t 
   strut_dimension rate = STRUT_DIM_FREQUENCY;
   builder b;
   strut_read_fields(reader, STRUT_SECTION_OSCILLATOR, key->next, owner, &fields);
-  const strut_slot *coupling = strut_slot_of(&fields, STRUT_KEY_OSCILLATOR_COUPLING);
-  bool fine = read_feedback(reader, strut_slot_of(&fields, STRUT_KEY_OSCILLATOR_FEEDBACK), owner,
-                            &feedback, &rate);
-  size_t couplings = coupling->state == STRUT_GIVEN ? coupling->value->count : 0;
+  strut_store_fields(reader, &fields, owner, &reader->scratch, &o, sizeof o);
+  bool fine = read_feedback(reader, o.feedback, owner, &feedback, &rate);
+  size_t couplings = o.coupling ? o.coupling->count : 0;
   if (fields.broken || !begin_program(reader, 2 + 9 * couplings + feedback.length, &b))
     return false;
-  strut_store_fields(reader, &fields, owner, &reader->scratch, &o, sizeof o);
   put_number(&b, STRUT_TAU * o.frequency, rate);
-  const strut_tree *other = couplings ? coupling->value->first : NULL;
+  const strut_tree *other = couplings ? o.coupling->first : NULL;
   for (; other; other = other->next->next)
     fine = put_coupling(&b, other, owner, state, o.bias, rate) && fine;
   for (size_t i = 0; i < feedback.length; i++) put(&b, feedback.instruction[i]);

@@ -156,11 +156,12 @@ static bool read_layers(network *n, char *text) {
 }
 
 /* Each input is a signal, so that neurons share it. */
-static bool read_inputs(network *n, const strut_slot *slot, strut_owner owner) {
+static bool read_inputs(network *n, strut_owner owner) {
   strut_reader *reader = n->reader;
-  if (slot->value->kind != STRUT_TREE_LIST || slot->value->count == 0)
-    return strut_refuse_form(reader, STRUT_KEY_NETWORK_INPUTS, slot->value, owner);
-  for (const strut_tree *item = slot->value->first; item; item = item->next) {
+  const strut_tree *list = n->keys.inputs;
+  if (list->kind != STRUT_TREE_LIST || list->count == 0)
+    return strut_refuse_form(reader, STRUT_KEY_NETWORK_INPUTS, list, owner);
+  for (const strut_tree *item = list->first; item; item = item->next) {
     strut_signal signal = strut_signal_default(STRUT_EXPRESSION);
     strut_quantity q;
     char found[80];
@@ -185,7 +186,8 @@ static bool read_inputs(network *n, const strut_slot *slot, strut_owner owner) {
 }
 
 /* The output times the scale, whose unit is that of the signal. */
-static int32_t add_output(network *n, const strut_slot *slot, strut_owner owner) {
+static int32_t add_output(network *n, strut_owner owner) {
+  const strut_tree *value = n->keys.scale;
   strut_quantity scale = {.value = 1.0, .bare = true};
   builder b;
   if (n->keys.output > (int64_t)n->before) {
@@ -194,9 +196,8 @@ static int32_t add_output(network *n, const strut_slot *slot, strut_owner owner)
                        (int)n->keys.output, n->before);
     return -1;
   }
-  if (slot->state == STRUT_GIVEN &&
-      (!strut_read_scalar(n->reader, slot->value, "scale", owner, "a number such as '5 mm'") ||
-       !strut_read_quantity(n->reader, slot->value, "scale", owner, &scale)))
+  if (value && (!strut_read_scalar(n->reader, value, "scale", owner, "a number such as '5 mm'") ||
+                !strut_read_quantity(n->reader, value, "scale", owner, &scale)))
     return -1;
   strut_dimension dimension = scale.bare ? STRUT_DIM_NONE : scale.dimension;
   if (!begin_program(n->reader, 3, &b)) return -1;
@@ -207,7 +208,7 @@ static int32_t add_output(network *n, const strut_slot *slot, strut_owner owner)
   signal.program = end_program(&b);
   signal.every = n->keys.every;
   return strut_add_controller_signal(n->reader, n->key, &signal, dimension, scale.bare,
-                                     scale.bare && slot->state == STRUT_GIVEN ? slot->value : NULL);
+                                     scale.bare ? value : NULL);
 }
 
 /* The text of the file that `value` names, relative to the file that says so. */
@@ -232,15 +233,14 @@ int32_t strut_read_network(strut_reader *reader, const strut_tree *key) {
   strut_safe_text text = {0};
   strut_read_fields(reader, STRUT_SECTION_NETWORK, key->next, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
-  const strut_slot *inputs = strut_slot_of(&fields, STRUT_KEY_NETWORK_INPUTS);
   const strut_slot *file = strut_slot_of(&fields, STRUT_KEY_NETWORK_FILE);
-  if (fields.broken || inputs->state != STRUT_GIVEN || file->state != STRUT_GIVEN) return -1;
+  if (fields.broken || file->state != STRUT_GIVEN) return -1;
   strut_store_fields(reader, &fields, owner, &reader->scratch, &n.keys, sizeof n.keys);
-  if (!read_inputs(&n, inputs, owner) || !open_network(&n, file->value, &text)) return -1;
+  if (!read_inputs(&n, owner) || !open_network(&n, file->value, &text)) return -1;
   n.passes = (double)n.before;
   n.weight = strut_reader_allocate(reader, &reader->scratch, n.before + MOST_NEURONS + 1,
                                    sizeof *n.weight);
   bool fine = n.weight && is_text(&n, &text) && read_layers(&n, text.text);
   strut_safe_text_free(&text);
-  return fine ? add_output(&n, strut_slot_of(&fields, STRUT_KEY_NETWORK_SCALE), owner) : -1;
+  return fine ? add_output(&n, owner) : -1;
 }

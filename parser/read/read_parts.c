@@ -32,10 +32,9 @@ static void read_part_list(strut_reader *reader, const strut_slot *slot, strut_c
     strut_owner owner = {"part", key->text};
     bool fine = strut_read_name(reader, key, "part");
     strut_read_fields(reader, STRUT_SECTION_PART, key->next, owner, &part->fields);
-    const strut_slot *use = strut_slot_of(&part->fields, STRUT_KEY_PART_USE);
-    const strut_slot *isolated = strut_slot_of(&part->fields, STRUT_KEY_PART_ISOLATED);
-    part->closed = isolated->state == STRUT_GIVEN && isolated->word == 1;
-    part->broken = !fine || part->fields.broken || use->key; /* a file that could not be read */
+    strut_store_fields(reader, &part->fields, owner, &reader->scratch, &part->keys,
+                       sizeof part->keys);
+    part->broken = !fine || part->fields.broken || part->keys.use; /* a file that was not read */
   }
 }
 
@@ -52,18 +51,18 @@ static strut_part *find_part(strut_reader *reader, const strut_copy *scope, cons
 }
 
 static strut_part *read_part_name(strut_reader *reader, const strut_copy *scope,
-                                  const strut_slot *slot, strut_owner owner) {
+                                  const strut_tree *name, strut_owner owner) {
   const strut_part_list *nearest = &reader->copies->parts;
-  if (slot->state != STRUT_GIVEN) return NULL;
-  strut_part *part = find_part(reader, scope, slot->value->text, &nearest);
+  if (!name) return NULL;
+  strut_part *part = find_part(reader, scope, name->text, &nearest);
   if (part || strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARTS)->state == STRUT_BROKEN)
     return part;
-  strut_report_error(reader, slot->value->place, "unknown part '%s' in 'part' of %s%s",
-                     strut_sanitised_text(reader, slot->value->text),
-                     strut_owner_text(reader, owner),
-                     strut_hint(reader, slot->value->text, part_name, nearest, nearest->count));
+  strut_report_error(reader, name->place, "unknown part '%s' in 'part' of %s%s",
+                     strut_sanitised_text(reader, name->text), strut_owner_text(reader, owner),
+                     strut_hint(reader, name->text, part_name, nearest, nearest->count));
   return NULL;
 }
+
 /* ---- scopes of copies ---- */
 
 static strut_copy *new_scope(strut_expansion *e, strut_scope_kind kind, const strut_placement *p,
@@ -103,10 +102,9 @@ static const char *copy_parameter_name(const void *context, size_t i) {
 
 /* The parameters of a copy: those of the part, with the values of `set`. */
 static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_copy *place,
-                                 const strut_slot *set) {
-  const strut_slot *slot = strut_slot_of(&copy->placement->part->fields, STRUT_KEY_PART_PARAMETERS);
-  const strut_tree *map = slot->state == STRUT_GIVEN ? slot->value : NULL;
-  const strut_tree *given = set->state == STRUT_GIVEN ? set->value->first : NULL;
+                                 const strut_tree *set) {
+  const strut_tree *map = copy->placement->part->keys.parameters;
+  const strut_tree *given = set ? set->first : NULL;
   bool fine = true;
   copy->parameters = strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0,
                                            sizeof *copy->parameters);
@@ -187,17 +185,16 @@ strut_copy *strut_make_copy(strut_expansion *e, strut_placing *p, const int64_t 
   place->prefix = copy->prefix = make_prefix(e, p->placement, number);
   place->prefix_length = copy->prefix_length = strlen(copy->prefix);
   copy->home = part->home;
-  copy->closed = part->closed;
+  copy->closed = part->keys.isolated;
   read_part_list(reader, strut_slot_of(&part->fields, STRUT_KEY_PART_PARTS), copy, &copy->parts);
   bool first = number[0] == 0 && number[1] == 0;
   reader->scope = place;
   if (!first && p->varies) {
     strut_owner owner = {"place", p->placement->key->text};
     strut_read_fields(reader, STRUT_SECTION_PLACE, p->placement->key->next, owner, &p->fields);
+    strut_store_fields(reader, &p->fields, owner, &reader->scratch, &p->keys, sizeof p->keys);
   }
-  bool fine =
-      read_copy_parameters(reader, copy, place, strut_slot_of(&p->fields, STRUT_KEY_PLACE_SET));
-  fine = fine && !p->fields.broken;
+  bool fine = read_copy_parameters(reader, copy, place, p->keys.set) && !p->fields.broken;
   if (fine && (first || p->varies)) fine = strut_read_frame(e, p, copy, base);
   if (!fine) return NULL;
   strut_frame repeated = strut_repeated_frame(&p->repeat, number);
@@ -224,8 +221,8 @@ static void enter_port(strut_expansion *e, const strut_port *port) {
 static void add_ports(strut_expansion *e, strut_copy *copy) {
   struct strut_copies *c = e->copies;
   strut_reader *reader = e->reader;
-  const strut_slot *slot = strut_slot_of(&copy->placement->part->fields, STRUT_KEY_PART_PORTS);
-  if (slot->state != STRUT_GIVEN) return;
+  const strut_tree *ports = copy->placement->part->keys.ports;
+  if (!ports) return;
   if (c->ported_count == c->ported_capacity) {
     size_t capacity = c->ported_capacity ? 2 * c->ported_capacity : 16;
     const strut_copy **more = strut_reallocate(c->ported_copies, capacity, sizeof *more);
@@ -237,7 +234,7 @@ static void add_ports(strut_expansion *e, strut_copy *copy) {
   if (!name) return;
   c->ported_copies[c->ported_count] = copy;
   strut_add_name(reader, &c->ported, name, c->ported_count++);
-  for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
+  for (const strut_tree *key = ports->first; key; key = key->next->next) {
     strut_port *port = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *port);
     if (!port) return;
     *port = (strut_port){.scope = copy, .key = key, .node = -1};
@@ -253,8 +250,7 @@ static void fill_copy(strut_expansion *e, strut_copy *copy) {
   strut_part *part = copy->placement->part;
   e->reader->scope = NULL;
   if (!e->weighing) strut_copy_things(e, &part->fields, copy);
-  strut_read_merge(e, strut_slot_of(&part->fields, STRUT_KEY_PART_MERGE), copy,
-                   STRUT_KEY_PART_MERGE);
+  strut_read_merge(e, part->keys.merge, copy, STRUT_KEY_PART_MERGE);
   expand_places(e, strut_slot_of(&part->fields, STRUT_KEY_PART_PLACE), copy);
   if (!e->weighing) add_ports(e, copy);
 }
@@ -270,7 +266,7 @@ static void link_copies(strut_expansion *e, strut_fields *next, strut_copy *plac
   link->frame = copy->frame;
   link->next = other, link->twist = twist;
   strut_copy_things(e, next, link);
-  strut_read_merge(e, strut_slot_of(next, STRUT_KEY_NEXT_MERGE), link, STRUT_KEY_NEXT_MERGE);
+  strut_read_merge(e, strut_slot_of(next, STRUT_KEY_NEXT_MERGE)->value, link, STRUT_KEY_NEXT_MERGE);
 }
 
 /* The keys of `next` in each direction, read once for all copies. False: one is broken. */
@@ -329,10 +325,9 @@ static void link_all(strut_expansion *e, strut_placing *p, strut_copy **copies,
 
 /* Refuses what would become too large, before it is copied. */
 static bool check_size(strut_expansion *e, const strut_placing *p, double copies, double each) {
-  const strut_slot *repeat = strut_slot_of((strut_fields *)&p->fields, STRUT_KEY_PLACE_REPEAT);
   double all = (double)e->copies->things + copies * each, most = e->reader->limit_things;
   if (all <= most) return true;
-  strut_report_error(e->reader, repeat->value ? repeat->value->place : p->placement->key->place,
+  strut_report_error(e->reader, p->keys.repeat ? p->keys.repeat->place : p->placement->key->place,
                      "the copies would have %.3g nodes, members and other things, at most %.0f are "
                      "possible%s",
                      all, most, strut_limit_hint(e->reader));
@@ -376,8 +371,7 @@ static void make_copies(strut_expansion *e, strut_placing *p) {
     if (strut_diagnostics_full(reader->diagnostics)) e->stopped = true;
   }
   link_all(e, p, copies, places);
-  const strut_slot *onto = strut_slot_of(&p->fields, STRUT_KEY_PLACE_ONTO);
-  const strut_tree *k = onto->state == STRUT_GIVEN ? onto->value->first : NULL;
+  const strut_tree *k = p->keys.onto ? p->keys.onto->first : NULL;
   for (; k && copies[0]; k = k->next->next) {
     /* own names are the copy's, the others those of the scope around it */
     strut_copy *link = new_scope(e, STRUT_SCOPE_LINK, p->placement, p->outer);
@@ -392,12 +386,13 @@ static void make_copies(strut_expansion *e, strut_placing *p) {
     other->tree.placed = true;
     other->tree.text = strut_arena_format(&reader->scratch, "next.%s", k->next->text);
     if (!other->tree.text) return;
-    strut_add_merger(e, link, k, &other->tree, onto->key);
+    strut_add_merger(e, link, k, &other->tree,
+                     strut_slot_of(&p->fields, STRUT_KEY_PLACE_ONTO)->key);
   }
 }
 
 /* Reports a part that contains itself. */
-static bool enter_part(strut_expansion *e, const strut_part *part, const strut_slot *slot) {
+static bool enter_part(strut_expansion *e, const strut_part *part, const strut_tree *name) {
   struct strut_copies *c = e->copies;
   char chain[600] = "";
   size_t used = 0;
@@ -407,7 +402,7 @@ static bool enter_part(strut_expansion *e, const strut_part *part, const strut_s
   }
   for (int i = 0; i < c->depth && used < sizeof chain - 80; i++)
     used += (size_t)snprintf(chain + used, sizeof chain - used, "%.60s -> ", c->chain[i]);
-  strut_report_error(e->reader, slot->value->place,
+  strut_report_error(e->reader, name->place,
                      part->open ? "part '%s' contains itself: %s%s"
                                 : "parts are placed within parts more than 16 deep: '%s' in %s%s",
                      part->name, chain, part->name);
@@ -442,9 +437,9 @@ bool strut_read_placement(strut_expansion *e, const strut_tree *key, strut_copy 
   bool fine = strut_read_name(reader, key, "placement");
   strut_read_fields(reader, STRUT_SECTION_PLACE, key->next, owner, &p->fields);
   strut_require(reader, &p->fields, owner, key->place);
+  strut_store_fields(reader, &p->fields, owner, &reader->scratch, &p->keys, sizeof p->keys);
   scope->numbers = 0;
-  placement->part =
-      read_part_name(reader, outer, strut_slot_of(&p->fields, STRUT_KEY_PLACE_PART), owner);
+  placement->part = read_part_name(reader, outer, p->keys.part, owner);
   fine = strut_read_repeat(reader, strut_slot_of(&p->fields, STRUT_KEY_PLACE_REPEAT), key->text,
                            &p->repeat) &&
          fine;
@@ -467,7 +462,7 @@ static void expand_place(strut_expansion *e, const strut_tree *key, strut_copy *
   if (!strut_read_placement(e, key, outer, &p)) return;
   strut_placement *placement = p.placement;
   strut_part *part = placement->part;
-  if (!enter_part(e, part, strut_slot_of(&p.fields, STRUT_KEY_PLACE_PART))) return;
+  if (!enter_part(e, part, p.keys.part)) return;
   if (!e->weighing) {
     if (c->placement_count == c->placement_capacity) {
       size_t capacity = c->placement_capacity ? 2 * c->placement_capacity : 16;
@@ -557,7 +552,8 @@ void strut_read_parts(strut_reader *reader) {
   if (!e.copies) return;
   read_part_list(reader, parts, NULL, &e.copies->parts);
   expand_scene(&e);
-  strut_read_merge(&e, merge, NULL, STRUT_KEY_SCENE_MERGE);
+  strut_read_merge(&e, merge->state == STRUT_GIVEN ? merge->value : NULL, NULL,
+                   STRUT_KEY_SCENE_MERGE);
   int first = strut_section_first(STRUT_SECTION_SCENE);
   for (int k = 0; k < strut_section_size(STRUT_SECTION_SCENE); k++)
     strut_join_entries(&e, first + k);

@@ -6,9 +6,8 @@
 #include "engine/scene/things.h"
 #include "parser/read/reader.h"
 
-/* The coordinate that a text names, "NODE.x"; -1, which was reported. */
-static int32_t read_coordinate(strut_reader *reader, const strut_tree *value, const char *key,
-                               strut_owner owner) {
+int32_t strut_read_coordinate(strut_reader *reader, const strut_tree *value, const char *key,
+                              strut_owner owner) {
   if (value->kind != STRUT_TREE_SCALAR) {
     strut_report_error(reader, value->place, "expected NODE.x or NODE.y for '%s' of %s, found %s",
                        key, strut_owner_text(reader, owner), strut_found(reader, value));
@@ -54,10 +53,10 @@ static bool read_followed(strut_reader *reader, strut_fields *fields, strut_owne
   *dimension = STRUT_DIM_NONE;
   if (load->state == STRUT_GIVEN) return (stage->load = read_loads(reader, load->value, owner));
   if (release->state == STRUT_GIVEN)
-    return read_coordinate(reader, release->value, "release", owner) >= 0;
+    return strut_read_coordinate(reader, release->value, "release", owner) >= 0;
   *dimension = STRUT_DIM_LENGTH;
   int32_t actuator = strut_find_thing(reader, STRUT_THING_ACTUATOR, NULL, over->value->text);
-  if (actuator < 0) return read_coordinate(reader, over->value, "over", owner) >= 0;
+  if (actuator < 0) return strut_read_coordinate(reader, over->value, "over", owner) >= 0;
   const strut_actuator *a = &reader->scene->actuators[actuator];
   if (a->member < 0) *dimension = a->hinge >= 0 ? STRUT_DIM_ANGLE : STRUT_DIM_STIFFNESS;
   if (!a->force) return true;
@@ -90,20 +89,6 @@ static bool read_until(strut_reader *reader, strut_fields *fields, strut_owner o
                                      STRUT_RANGE_ANY, &stage->until);
 }
 
-static bool read_hold(strut_reader *reader, const strut_slot *slot, strut_owner owner,
-                      strut_path_stage *stage) {
-  if (slot->state != STRUT_GIVEN) return true;
-  bool fine = true;
-  stage->hold =
-      strut_reader_allocate(reader, &reader->scene->arena, slot->value->count, sizeof *stage->hold);
-  for (const strut_tree *item = slot->value->first; item && stage->hold; item = item->next) {
-    int32_t at = read_coordinate(reader, item, "hold", owner);
-    stage->hold[stage->hold_count++] = at;
-    fine = fine && at >= 0;
-  }
-  return fine && stage->hold;
-}
-
 /* `stop: {NODE.x: LENGTH}` */
 static bool read_stop(strut_reader *reader, const strut_slot *slot, strut_owner owner,
                       strut_path_stage *stage) {
@@ -115,7 +100,7 @@ static bool read_stop(strut_reader *reader, const strut_slot *slot, strut_owner 
                        strut_owner_text(reader, owner), strut_found(reader, map));
     return false;
   }
-  stage->stop = read_coordinate(reader, map->first, "stop", owner);
+  stage->stop = strut_read_coordinate(reader, map->first, "stop", owner);
   if (stage->stop < 0 ||
       !strut_read_number(reader, map->first->next, "stop", owner, STRUT_DIM_LENGTH, STRUT_RANGE_ANY,
                          &stage->stop_distance))
@@ -139,16 +124,16 @@ static bool read_stage(strut_reader *reader, const strut_tree *item, int number,
     return false;
   }
   strut_read_fields(reader, STRUT_SECTION_STAGE, item, owner, &fields);
-  strut_store_fields(reader, &fields, owner, &reader->scene->arena, stage, sizeof *stage);
+  bool fine =
+      strut_store_fields(reader, &fields, owner, &reader->scene->arena, stage, sizeof *stage);
   if (fields.broken) return false;
   bool loads = strut_slot_of(&fields, STRUT_KEY_STAGE_LOAD)->state == STRUT_GIVEN;
   if (!loads && !stage->over && !stage->release) {
     strut_report_error(reader, item->place, "%s lacks 'load', 'over' or 'release'", owner.kind);
     return false;
   }
-  bool fine = read_followed(reader, &fields, owner, stage, &dimension) &&
-              read_until(reader, &fields, owner, dimension, stage);
-  fine = read_hold(reader, strut_slot_of(&fields, STRUT_KEY_STAGE_HOLD), owner, stage) && fine;
+  fine = read_followed(reader, &fields, owner, stage, &dimension) &&
+         read_until(reader, &fields, owner, dimension, stage) && fine;
   return read_stop(reader, strut_slot_of(&fields, STRUT_KEY_STAGE_STOP), owner, stage) && fine;
 }
 

@@ -168,9 +168,9 @@ static void store_value(strut_reader *reader, strut_arena *arena, const strut_ke
       for (int c = 0; c < 2; c++) ((bool *)field)[c] = (slot->word >> c & 1) != 0;
       break;
     case STRUT_FIELD_TEXT: *(const char **)field = store_text(reader, arena, key, slot); break;
-    case STRUT_FIELD_TREE: *(const strut_tree **)field = slot->value; break;
     case STRUT_FIELD_INSTRUCTION:
     case STRUT_FIELD_NODE_SET:
+    case STRUT_FIELD_TREE:
     case STRUT_FIELD_OBJECT: assert(false);
   }
 }
@@ -204,13 +204,15 @@ static bool store_signal(strut_reader *reader, const strut_key *key, const strut
 
 /* ---- references and lists ---- */
 
-/* The things that a name, or a list of names, refers to; -1 for what is unknown. */
+/* The things, or coordinates, that a name, or a list of names, refers to; -1 for what is unknown. */
 static bool read_references(strut_reader *reader, const strut_key *key, const strut_tree *value,
                             strut_owner owner, int32_t *index) {
   const strut_tree *item = value->kind == STRUT_TREE_LIST ? value->first : value;
   bool known = true;
   for (; item; item = item == value ? NULL : item->next) {
-    *index = strut_read_reference(reader, item, key->name, owner, key->field.kind);
+    *index = key->field.kind == STRUT_THING_COUNT
+                 ? strut_read_coordinate(reader, item, key->name, owner)
+                 : strut_read_reference(reader, item, key->name, owner, key->field.kind);
     known = *index++ >= 0 && known;
   }
   return known;
@@ -250,7 +252,7 @@ static bool store_list(strut_reader *reader, const strut_key *key, const strut_s
     return strut_read_node_sets(reader, slot, owner, (void *)(object + field->offset),
                                 (void *)(object + field->number));
   bool things = field->type == STRUT_FIELD_INT32;
-  if (things && count > STRUT_MOST_ELEMENT_NODES) {
+  if (things && field->kind != STRUT_THING_COUNT && count > STRUT_MOST_ELEMENT_NODES) {
     strut_report_error(reader, slot->value->place, "%s has %zu nodes, at most %d are possible",
                        strut_owner_text(reader, owner), count, STRUT_MOST_ELEMENT_NODES);
     return false;
@@ -303,6 +305,10 @@ static bool store_key(strut_reader *reader, const strut_key *key, strut_slot *sl
                       strut_owner owner, strut_arena *arena, char *object) {
   void *field = object + key->field.offset;
   bool fine = true;
+  if (key->field.type == STRUT_FIELD_TREE) {
+    *(const strut_tree **)field = slot->value;
+    return true;
+  }
   if (key->measure == STRUT_MEASURE_CONTEXT || key->field.later) return true;
   switch (key->field.role) {
     case STRUT_FIELD_VALUE:

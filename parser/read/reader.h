@@ -447,6 +447,9 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
                     strut_dimension strain, strut_dimension force, strut_law *law);
 void strut_read_rayleigh(strut_reader *reader);
 void strut_read_lattice(strut_reader *reader);
+/** The coordinate that a text names, "NODE.x"; -1, which was reported. */
+int32_t strut_read_coordinate(strut_reader *reader, const strut_tree *value, const char *key,
+                              strut_owner owner);
 /** Stages of a path: read_stages.c. */
 void strut_read_stages(strut_reader *reader);
 /** Collisions of all members or of groups become those of pairs. */

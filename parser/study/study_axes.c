@@ -549,21 +549,6 @@ static void read_values(strut_study_reader *r, strut_fields *fields, strut_study
   }
 }
 
-static void read_starts(strut_study_reader *r, const strut_slot *slot, strut_study_follow *f) {
-  if (slot->state != STRUT_GIVEN) return;
-  if (!slot->value->count || slot->value->count > STRUT_STUDY_FOLLOW_MOST_FROM) {
-    strut_report_error(r->reader, slot->value->place,
-                       "'start_from' may have 1 to %d configurations, found %zu",
-                       STRUT_STUDY_FOLLOW_MOST_FROM, (size_t)slot->value->count);
-    return;
-  }
-  f->start_from =
-      strut_reader_allocate(r->reader, &r->file->arena, slot->value->count, sizeof *f->start_from);
-  for (const strut_tree *item = slot->value->first; item && f->start_from; item = item->next)
-    if (strut_read_scalar(r->reader, item, "start_from", follow_owner, "a configuration"))
-      f->start_from[f->start_count++] = item->text;
-}
-
 /* The parameter, its range and its unit. */
 static void read_over(strut_study_reader *r, strut_fields *fields, strut_study_follow *f) {
   const strut_slot *over = strut_slot_of(fields, STRUT_KEY_FOLLOW_OVER);
@@ -601,7 +586,12 @@ void strut_study_read_follow(strut_study_reader *r, strut_fields *top) {
   if (accuracy->state == STRUT_GIVEN && f->accuracy > 0.1)
     strut_report_error(r->reader, accuracy->value->place,
                        "'accuracy' of what is followed may be up to 10 %%");
-  read_starts(r, strut_slot_of(&fields, STRUT_KEY_FOLLOW_START_FROM), f);
+  const strut_slot *starts = strut_slot_of(&fields, STRUT_KEY_FOLLOW_START_FROM);
+  if (starts->state == STRUT_GIVEN &&
+      (!starts->value->count || starts->value->count > STRUT_STUDY_FOLLOW_MOST_FROM))
+    strut_report_error(r->reader, starts->value->place,
+                       "'start_from' may have 1 to %d configurations, found %zu",
+                       STRUT_STUDY_FOLLOW_MOST_FROM, (size_t)starts->value->count);
   read_over(r, &fields, f);
   study->follow = f;
 }

@@ -386,17 +386,6 @@ void strut_study_read_sample(strut_study_reader *r, const strut_tree *value,
 
 static const strut_owner sensitivity_owner = {"the sensitivity analysis", NULL};
 
-static void read_of(strut_study_reader *r, const strut_slot *slot, strut_study_sensitivity *s) {
-  s->of = strut_reader_allocate(r->reader, &r->file->arena, slot->value->count + 1, sizeof *s->of);
-  if (!s->of) return;
-  for (const strut_tree *item = slot->value->first; item; item = item->next)
-    if (strut_read_scalar(r->reader, item, "of", sensitivity_owner, "a column of the table"))
-      s->of[s->of_count++] = item->text;
-  if (!slot->value->count)
-    strut_report_error(r->reader, slot->value->place,
-                       "expected columns of the table for 'of' of the sensitivity analysis");
-}
-
 /* The accuracy of the runs at the first point; 0 for that of rounding, or where no point can be read yet. */
 static double find_accuracy(strut_study_reader *r) {
   const strut_study *study = &r->file->study;
@@ -468,10 +457,12 @@ void strut_study_read_sensitivity(strut_study_reader *r, strut_fields *top) {
   if (!fields.broken) strut_require(r->reader, &fields, sensitivity_owner, slot->value->place);
   const strut_slot *of = strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_OF);
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_OVER);
-  if (of->state == STRUT_GIVEN) read_of(r, of, s);
-  if (over->state != STRUT_GIVEN || !study->axes || !r->file->columns) return;
   s->samples = 256, s->seed = 1, s->derivatives = true;
   strut_store_fields(r->reader, &fields, sensitivity_owner, &r->file->arena, s, sizeof *s);
+  if (of->state == STRUT_GIVEN && !of->value->count)
+    strut_report_error(r->reader, of->value->place,
+                       "expected columns of the table for 'of' of the sensitivity analysis");
+  if (over->state != STRUT_GIVEN || !study->axes || !r->file->columns) return;
   if (s->samples == 0 && !s->derivatives)
     strut_report_error(r->reader, slot->key->place,
                        "the sensitivity analysis has neither samples nor derivatives");

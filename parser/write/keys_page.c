@@ -97,7 +97,7 @@ void strut_put_key_type(strut_writer *writer, const strut_key *key) {
   if (types[key->type]) strut_put(writer, types[key->type]);
   if (key->type == STRUT_TYPE_THINGS || key->type == STRUT_TYPE_FREE) {
     strut_put(writer, key->words);
-  } else if (*key->words) {
+  } else if (*key->words && key->type != STRUT_TYPE_NAMES) {
     put_words(writer, key->words);
   }
   put_unit(writer, key);

@@ -128,15 +128,6 @@ static void put_initial(strut_writer *writer) {
   put_settle(writer, &writer->experiment->settle);
 }
 
-/* "n1.x" */
-static void put_coordinate(strut_writer *writer, int32_t at) {
-  strut_arena arena = {0};
-  const char *node = writer->scene->nodes[at / 2].name;
-  const char *name = strut_arena_format(&arena, "%s.%c", node, at % 2 ? 'y' : 'x');
-  strut_put_name(writer, name ? name : node);
-  strut_arena_free(&arena);
-}
-
 static void put_stage_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                               const void *object) {
   const strut_path_stage *stage = object;
@@ -151,17 +142,10 @@ static void put_stage_by_hand(strut_writer *writer, strut_mapping *mapping, int 
       before = ", ";
     }
     strut_put(writer, "]");
-  } else if (key == STRUT_KEY_STAGE_HOLD && stage->hold_count) {
-    strut_put_key_name(writer, mapping, key);
-    for (size_t i = 0; i < stage->hold_count; i++) {
-      strut_put(writer, i ? ", " : "[");
-      put_coordinate(writer, stage->hold[i]);
-    }
-    strut_put(writer, "]");
   } else if (key == STRUT_KEY_STAGE_STOP && stage->stop >= 0) {
     strut_put_key_name(writer, mapping, key);
     strut_put(writer, "{");
-    put_coordinate(writer, stage->stop);
+    strut_put_coordinate(writer, stage->stop);
     strut_put(writer, ": ");
     strut_put_number(writer, stage->stop_distance);
     strut_put(writer, "}");

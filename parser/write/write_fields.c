@@ -179,6 +179,14 @@ static void put_thing_name(strut_writer *writer, strut_thing kind, int32_t i) {
   strut_put_name(writer, strut_thing_name(writer->scene, kind, (size_t)i));
 }
 
+void strut_put_coordinate(strut_writer *writer, int32_t at) {
+  strut_arena arena = {0};
+  const char *node = writer->scene->nodes[at / 2].name;
+  const char *name = strut_arena_format(&arena, "%s.%c", node, at % 2 ? 'y' : 'x');
+  strut_put_name(writer, name ? name : node);
+  strut_arena_free(&arena);
+}
+
 /* A name, or "[a, b]". */
 static void put_references(strut_writer *writer, const strut_key *key, const int32_t *index,
                            size_t count) {
@@ -187,6 +195,8 @@ static void put_references(strut_writer *writer, const strut_key *key, const int
     if (list) strut_put(writer, k ? ", " : "[");
     if (key->field.kind == STRUT_THING_SIGNAL)
       strut_put_signal_reference(writer, index[k]);
+    else if (key->field.kind == STRUT_THING_COUNT)
+      strut_put_coordinate(writer, index[k]);
     else
       put_thing_name(writer, key->field.kind, index[k]);
   }
@@ -272,7 +282,9 @@ static bool differs(const strut_key *key, const char *object, const char *usual)
     case STRUT_FIELD_VALUE:
       if (key->type == STRUT_TYPE_SIGNAL) return *(const int32_t *)(const void *)value >= 0;
       return field->chosen || !values_equal(key, value, usual + field->offset);
-    case STRUT_FIELD_REFERENCE: return has_references(field, object);
+    case STRUT_FIELD_REFERENCE:
+      return has_references(field, object) && (!strut_field_is_chosen(field, usual) ||
+                                               !values_equal(key, value, usual + field->offset));
     case STRUT_FIELD_LIST: return has_items(field, object);
     case STRUT_FIELD_NESTED:
       if (key->type == STRUT_TYPE_LAW) return !is_plain_law((const void *)value);

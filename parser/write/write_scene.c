@@ -66,23 +66,16 @@ static void put_relays(strut_writer *writer) {
   }
 }
 
-static void put_slider_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                               const void *object) {
-  const strut_sliding_mass *s = object;
-  if (key != STRUT_KEY_SLIDER_MEMBER) return;
-  strut_put_key_name(writer, mapping, key);
-  strut_put_name(writer, writer->scene->members[s->member].name);
-}
-
 void strut_put_drives(strut_writer *writer) {
-  const strut_sliding_mass placed = {.share = (double)NAN}; /* the position is always written */
+  const strut_sliding_mass placed = {.member = -1,
+                                     .share = (double)NAN}; /* the position is always written */
   strut_put_things(writer, STRUT_THING_SENSOR, STRUT_SECTION_SENSOR, NULL, NULL);
   strut_put_things(writer, STRUT_THING_STATE, STRUT_SECTION_STATE, NULL, NULL);
   put_named_signals(writer);
   put_relays(writer);
   strut_put_things(writer, STRUT_THING_ACTUATOR, STRUT_SECTION_ACTUATOR, NULL, NULL);
   strut_put_things(writer, STRUT_THING_UNBALANCE, STRUT_SECTION_UNBALANCE, NULL, NULL);
-  strut_put_things(writer, STRUT_THING_SLIDER, STRUT_SECTION_SLIDER, &placed, put_slider_by_hand);
+  strut_put_things(writer, STRUT_THING_SLIDER, STRUT_SECTION_SLIDER, &placed, NULL);
   strut_put_things(writer, STRUT_THING_LOAD, STRUT_SECTION_LOAD, NULL, NULL);
 }
 
@@ -244,18 +237,9 @@ static bool has_friction(const strut_friction *f) {
   return frictions_differ(f, &none);
 }
 
-/* A coefficient that follows a signal. */
-static void put_friction_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                                 const void *object) {
-  const strut_friction *f = object;
-  if (key != STRUT_KEY_FRICTION_MU || !f->driven) return;
-  strut_put_key_name(writer, mapping, key);
-  strut_put_signal_reference(writer, f->signal);
-}
-
 static void put_friction(strut_writer *writer, const strut_friction *f) {
   const strut_friction usual = usual_friction(f);
-  strut_put_mapping(writer, STRUT_SECTION_FRICTION, f, &usual, put_friction_by_hand);
+  strut_put_mapping(writer, STRUT_SECTION_FRICTION, f, &usual, NULL);
 }
 
 /* Contacts of the ground that is being written; those of further pieces are like that of the first. */

@@ -28,6 +28,8 @@ void strut_put(strut_writer *writer, const char *text);
 void strut_put_part(strut_writer *writer, const char *text, size_t length);
 /** Appends a number as the shortest text that reads back to the same bits. */
 void strut_put_number(strut_writer *writer, double value);
+/** Appends "n1.x". */
+void strut_put_coordinate(strut_writer *writer, int32_t at);
 /** Appends "[x, y]". */
 void strut_put_pair(strut_writer *writer, const double pair[2]);
 /** Appends text in double quotes, with escapes. */

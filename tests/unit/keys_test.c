@@ -44,8 +44,6 @@ static const struct exception {
   strut_section section;
   const char *name, *reason;
 } exceptions[] = {
-    {STRUT_SECTION_PART, "use", "a path, from the folder of the file"},
-    {STRUT_SECTION_PART, "isolated", "decides which names the reader finds"},
     {STRUT_SECTION_FRICTION, "mu", "sets two fields"},
     {STRUT_SECTION_INITIAL, "velocity", "of every free node"},
     {STRUT_SECTION_FRICTION, "mu_forward", "sets both coefficients of a direction"},
@@ -53,7 +51,6 @@ static const struct exception {
     {STRUT_SECTION_GROUND, "normal", "gives the slope"},
     {STRUT_SECTION_SETTLE, "step", "depends on the step of the run"},
     {STRUT_SECTION_STUDY, "model", "a path, from the study's folder"},
-    {STRUT_SECTION_NETWORK, "scale", "gives the signal its unit"},
     {STRUT_SECTION_POINTS, "file", "a path, from the study's folder"},
     {STRUT_SECTION_RANGE, "count", "chooses the kind of range"},
     {STRUT_SECTION_RANGE, "scale", "chooses the kind of range"},
