@@ -192,7 +192,7 @@ static drive drive_of(const slow_world *w, const slow_instant *at, int what, siz
     const strut_actuator *a = &w->scene->actuators[i];
     int32_t mine = what == 0 ? a->member : what == 1 ? a->hinge : a->cell;
     bool kind = what == 0 || (a->member < 0 && (what == 1 || a->hinge < 0));
-    if (!kind || mine != (int32_t)item || a->force != force) continue;
+    if (!kind || mine != (int32_t)item || (a->force != 0) != force) continue;
     sum.value += slow_world_signal(w, at, a->signal);
     if (!force) sum.rate += slow_world_signal_rate(w, at, a->signal);
   }

@@ -79,7 +79,7 @@ static void add_column(const trial *c, int k, int32_t j, double step, double *ga
   double *at = &c->stepper->stage[k ? V : Q][m->coordinate[j]], before = *at;
   *at += step;
   step = *at - before;
-  evaluate(c, c->t);
+  evaluate(c, c->t + 2.0 * moment_before(c->t, c->stepper->control.longest));
   for (int32_t i = 0; i < m->n; i++)
     m->slope[k][i * m->n + j] =
         (c->stepper->stage[A][m->coordinate[i]] - now->a[m->coordinate[i]]) / step;
@@ -100,7 +100,9 @@ static void differentiate(const trial *c) {
   size_t bytes = (size_t)c->model->length * sizeof(double);
   bool same = m->time == c->t && m->events == c->state->events;
   if (same && !memcmp(m->known, now->a, bytes)) return;
-  double size = c->model->size, later = OF_STEP * c->h;
+  /* Signals are evaluated a moment before; a step that begins at a jump is about what is behind it. */
+  double size = c->model->size, behind = 2.0 * moment_before(c->t, c->stepper->control.longest);
+  double later = fmax(OF_STEP * c->h, 2.0 * behind);
   double speed = fmax(c->stepper->control.speed, size * 1e-3);
   copy_now(c, &c->stepper->stage[Q]);
   for (int k = 0; k < 2; k++)
@@ -242,6 +244,8 @@ static void *implicit_create(const strut_model *model, strut_state *state,
   if (!stepper || !m || !row_of) return NULL;
   if (!(m->coordinate = strut_arena_allocate(arena, both, sizeof *row_of))) return NULL;
   m->n = strut_number_free(model, NULL, row_of, m->coordinate);
+  for (int32_t k = 0; k < model->feedback.state_count; k++) /* internal ones are velocities, too */
+    m->coordinate[m->n++] = model->feedback.base + k;
   m->time = (double)NAN;
   size_t n = (size_t)m->n;
   double **const arrays[] = {&m->slope[0], &m->slope[1], &m->matrix, &m->gain[0],

@@ -208,9 +208,11 @@ static int32_t count_items(const strut_model *model) {
   return (int32_t)count;
 }
 
+/* -1: a load, or bristles. */
 static int32_t item_of(const strut_model *model, const strut_element *e) {
-  strut_thing thing = strut_element_thing(e->role);
   size_t before = 0;
+  if (e->role == STRUT_ELEMENT_LOAD || e->role == STRUT_ELEMENT_CONTACT) return -1;
+  strut_thing thing = strut_element_thing(e->role);
   for (int k = 0; kinds[k] != thing; k++) before += strut_thing_count(model->scene, kinds[k]);
   return (int32_t)before + e->item;
 }
@@ -226,9 +228,10 @@ static void fill_energies(const strut_vibration *v, const double *x, double *ene
   const strut_element_table *t = &v->model->elements;
   int32_t members = v->model->members.count;
   for (int32_t j = 0; j < members; j++) energy[j] = stretch_energy(v, j, x);
-  for (int32_t i = 0; i < t->count; i++)
-    if (t->element[i].role != STRUT_ELEMENT_LOAD)
-      energy[item_of(v->model, &t->element[i])] += element_energy(v, i, x);
+  for (int32_t i = 0; i < t->count; i++) {
+    int32_t item = item_of(v->model, &t->element[i]);
+    if (item >= 0) energy[item] += element_energy(v, i, x);
+  }
 }
 
 static energies energies_of(const strut_vibration *v, const double *x, const double *energy) {
