@@ -48,6 +48,7 @@ STRUT_API strut_thing strut_thing_of_column(strut_column_owner owner);
 typedef struct strut_ground_section {
   strut_ground ground;
   strut_contact contact;
+  double normal[2]; /* as the file gives it; the ground keeps the slope */
 } strut_ground_section;
 
 /* ---- fields ---- */
@@ -91,6 +92,7 @@ typedef enum strut_field_role {
   STRUT_FIELD_VALUE,
   STRUT_FIELD_REFERENCE,
   STRUT_FIELD_LIST,
+  STRUT_FIELD_PLACES,
   STRUT_FIELD_NESTED,
   STRUT_FIELD_SECTION,
   STRUT_FIELD_THINGS
@@ -169,6 +171,8 @@ typedef struct strut_field {
   .number = offsetof(object, count), .kind = STRUT_THING_COUNT, STRUT_PLACE_OF(object, member)
 #define STRUT_FIELD_OF_CURVE(object, x, y, count)                                                  \
   .beside = offsetof(object, y), STRUT_FIELD_OF_LIST(object, x, count)
+#define STRUT_FIELD_OF_PLACES(object, member)                                                      \
+  .role = STRUT_FIELD_PLACES, .type = STRUT_FIELD_DOUBLE_PAIR, STRUT_PLACE_OF(object, member)
 #define STRUT_FIELD_OF_REFERENCES(object, member, count, KIND)                                     \
   .role = STRUT_FIELD_LIST, .type = STRUT_ELEMENT_OF(STRUT_MEMBER(object, member)),                \
   .number = offsetof(object, count), .kind = STRUT_THING_##KIND, STRUT_PLACE_OF(object, member)

@@ -18,6 +18,7 @@
  *   SECTION(SECTION)                         a mapping whose keys have rows of their own
  *   THINGS(SECTION)                          a mapping of names to things that have the keys of the section
  *   CURVE(object, x, y, count)               points in two arrays of numbers
+ *   PLACES(object, member)                   positions of all nodes, of which those that are not as drawn are written
  *   UNIT(object, member, unit)               a number and the text of its unit, NULL or "1": none
  *   SELF(object, SECTION)                    a mapping of that section, kept in the object itself
  *   CHOICE(object, tag, value, field)        one of several keys: it also sets `tag` to `value`
@@ -247,7 +248,7 @@
   X(GROUND, NODES, "nodes", CONTACT_NODES, NONE, ANY, "all", OPTIONAL, 0, "", BY_HAND, "The nodes that may touch the ground. `all` leaves out nodes that a signal moves.") \
   X(GROUND, CONTACTS, "contacts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a contact", THINGS(CONTACT), "Settings of single contacts, by the name of the node.") \
   X(GROUND, THROUGH, "through", PAIR, LENGTH, ANY, "", OPTIONAL, 1, "", CHOICE(strut_ground_section, ground.placed, true, FIELD(strut_ground_section, ground.through)), "A point of the line, instead of `height`.") \
-  X(GROUND, NORMAL, "normal", PAIR, NONE, ANY, "", OPTIONAL, 2, "", BY_HAND, "A vector out of the solid, of any length, instead of `slope`.") \
+  X(GROUND, NORMAL, "normal", PAIR, NONE, ANY, "", OPTIONAL, 2, "", FIELD(strut_ground_section, normal), "A vector out of the solid, of any length, instead of `slope`.") \
   X(GROUND, PROFILE, "profile", PROFILE, NONE, ANY, "", OPTIONAL, 3, "", CHOICE(strut_ground_section, ground.shape, STRUT_GROUND_PROFILE, LIST(strut_ground_section, ground.points, ground.point_count)), "Points of a polyline, instead of a line. The solid is to the right of its direction; the ends continue straight; it must not cross itself.") \
   X(GROUND, CIRCLE, "circle", MAP, NONE, ANY, "", OPTIONAL, 3, "", CHOICE(strut_ground_section, ground.shape, STRUT_GROUND_CIRCLE, NESTED(strut_ground_section, ground, CIRCLE)), "A circle, instead of a line.") \
   X(GROUND, MOTION, "motion", MAP, NONE, ANY, "", OPTIONAL, 0, "", NESTED(strut_ground_section, ground, MOTION), "Displacements of the ground by signals.")
@@ -403,7 +404,7 @@
 
 #define STRUT_CONFIGURATION_FIELDS(X) \
   X(CONFIGURATION, CONTACTS, "contacts", NODE_SETS, NONE, ANY, "", OPTIONAL, 0, "", LIST(strut_configuration, sets, set_count), "The nodes that touch the ground. Several lists are alternatives.") \
-  X(CONFIGURATION, SHAPE, "shape", THINGS, NONE, ANY, "", OPTIONAL, 0, "`[x, y]`", BY_HAND, "Approximate positions; other nodes are as drawn. Without `shape` the contacts alone identify the configuration.")
+  X(CONFIGURATION, SHAPE, "shape", THINGS, NONE, ANY, "", OPTIONAL, 0, "`[x, y]`", CHOICE(strut_configuration, shaped, true, LATER(PLACES(strut_configuration, position))), "Approximate positions; other nodes are as drawn. Without `shape` the contacts alone identify the configuration.")
 
 #define STRUT_INITIAL_FIELDS(X) \
   X(INITIAL, CONFIGURATION, "configuration", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A configuration, or a text parameter that names one.") \

@@ -127,7 +127,7 @@
   X(STUDY, VERSION, "strut", VERSION, NONE, ANY, "", REQUIRED, 0, "1", NONE, "Version of the language.") \
   X(STUDY, NAME, "study", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, name), "Name of the study.") \
   X(STUDY, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, description), "Purpose of the study.") \
-  X(STUDY, MODEL, "model", TEXT, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "File of the model, in the folder of the study or below.") \
+  X(STUDY, MODEL, "model", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, model), "File of the model, in the folder of the study or below.") \
   X(STUDY, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression or a text", BY_HAND, "Values of the model's parameters at all points; `--set` takes precedence.") \
   X(STUDY, AXES, "axes", AXES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The points are all combinations of the axes; the last varies fastest. An axis is `{NAME: [...]}`, `{NAME: {...}}` (a [range](#range)), `{zip: {NAME: ..., NAME: ...}}`, `{points: FILE}` ([points](#points)) or `{sample: {...}}` ([sample](#sample)). Required without `search` or `sensitivity`; with one of these, each point has its own.") \
   X(STUDY, DERIVE, "derive", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Parameters that follow from others at each point, such as `{step: 1/(1000*frequency)}`.") \

@@ -434,10 +434,11 @@ static bool shape_is_alone(strut_reader *reader, strut_fields *fields, strut_own
 
 /* The slope of a line by its normal vector. */
 static bool read_normal(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                        strut_ground *ground) {
+                        strut_ground_section *section) {
+  strut_ground *ground = &section->ground;
   const strut_slot *normal = strut_slot_of(fields, STRUT_KEY_GROUND_NORMAL);
   if (normal->state != STRUT_GIVEN) return true;
-  const double *n = normal->number;
+  const double *n = section->normal;
   if (n[0] == 0.0 && n[1] == 0.0) {
     strut_report_error(reader, normal->value->place, "the normal of %s has no direction",
                        strut_owner_text(reader, owner));
@@ -532,8 +533,7 @@ static void read_one(strut_reader *reader, strut_fields *fields, strut_owner own
   strut_require(reader, fields, owner, place);
   strut_ground_section section = {.ground = *ground, .contact = strut_contact_default()};
   if (!strut_store_fields(reader, fields, owner, &reader->scene->arena, &section, sizeof section) ||
-      !shape_is_alone(reader, fields, owner) ||
-      !read_normal(reader, fields, owner, &section.ground))
+      !shape_is_alone(reader, fields, owner) || !read_normal(reader, fields, owner, &section))
     fields->broken = true;
   *ground = section.ground;
   ground_defaults defaults = read_defaults(reader, fields, &section.contact, owner);

@@ -322,6 +322,7 @@ static bool store_key(strut_reader *reader, const strut_key *key, strut_slot *sl
       break;
     case STRUT_FIELD_LIST: fine = store_list(reader, key, slot, owner, arena, object); break;
     case STRUT_FIELD_NESTED: fine = store_nested(reader, key, slot, owner, object); break;
+    case STRUT_FIELD_PLACES:
     case STRUT_FIELD_BY_HAND:
     case STRUT_FIELD_NONE:
     case STRUT_FIELD_SECTION:

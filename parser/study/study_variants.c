@@ -173,7 +173,6 @@ strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top,
   if (variants->state == STRUT_GIVEN && !count)
     strut_report_error(r->reader, variants->value->place, "there are no variants in 'variants'");
   if (model->state != STRUT_GIVEN) return STRUT_BAD_SCENE;
-  file->study.model = model->value->text;
   strut_status status = read_model(r, model->value, error);
   if (status != STRUT_OK) return status;
   file->sources = strut_reader_allocate(r->reader, &file->arena, count + 1, sizeof *file->sources);

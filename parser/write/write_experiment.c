@@ -9,44 +9,10 @@
 #include "parser/expression/expression.h"
 #include "parser/write/writer.h"
 
-/* ---- configurations, the search for equilibria and the initial state ---- */
+/* ---- the search for equilibria and the initial state ---- */
 
 /* Same bits? -0 and 0 differ. */
 static bool same(const double a[2], const double b[2]) { return memcmp(a, b, 2 * sizeof *a) == 0; }
-
-/* The positions that are not as drawn. */
-static void put_shape(strut_writer *writer, const strut_configuration *c) {
-  bool first = true;
-  strut_put(writer, "{");
-  for (size_t i = 0; i < writer->scene->node_count; i++) {
-    const strut_node *node = &writer->scene->nodes[i];
-    if (same(c->position[i], node->position)) continue;
-    if (!first) strut_put(writer, ", ");
-    first = false;
-    strut_put_name(writer, node->name);
-    strut_put(writer, ": ");
-    strut_put_pair(writer, c->position[i]);
-  }
-  strut_put(writer, "}");
-}
-
-static void put_configurations(strut_writer *writer) {
-  const strut_scene *scene = writer->scene;
-  if (scene->configuration_count) strut_put(writer, "configurations:\n");
-  for (size_t i = 0; i < scene->configuration_count; i++) {
-    const strut_configuration *c = &scene->configurations[i], usual = {0};
-    strut_mapping mapping = STRUT_MAPPING_INLINE;
-    strut_put(writer, "  ");
-    strut_put_name(writer, c->name);
-    strut_put(writer, ": {");
-    strut_put_fields(writer, &mapping, STRUT_SECTION_CONFIGURATION, c, &usual, NULL);
-    if (c->shaped) {
-      strut_put_key_name(writer, &mapping, STRUT_KEY_CONFIGURATION_SHAPE);
-      put_shape(writer, c);
-    }
-    strut_put(writer, "}\n");
-  }
-}
 
 static void put_search(strut_writer *writer) {
   const strut_search *search = &writer->experiment->search,
@@ -172,7 +138,7 @@ static void put_path(strut_writer *writer) {
 }
 
 void strut_put_shapes(strut_writer *writer) {
-  put_configurations(writer);
+  strut_put_things(writer, STRUT_THING_CONFIGURATION, STRUT_SECTION_CONFIGURATION, NULL, NULL);
   put_search(writer);
   put_path(writer);
   put_initial(writer);

@@ -286,6 +286,7 @@ static bool differs(const strut_key *key, const char *object, const char *usual)
       return has_references(field, object) && (!strut_field_is_chosen(field, usual) ||
                                                !values_equal(key, value, usual + field->offset));
     case STRUT_FIELD_LIST: return has_items(field, object);
+    case STRUT_FIELD_PLACES: return true;
     case STRUT_FIELD_NESTED:
       if (key->type == STRUT_TYPE_LAW) return !is_plain_law((const void *)value);
       return field->chosen ||
@@ -315,6 +316,22 @@ static void put_nested(strut_writer *writer, const strut_key *key, const char *o
     strut_put_mapping(writer, strut_section_below(key), object, usual + key->field.offset, NULL);
 }
 
+/* The positions that are not as drawn. */
+static void put_places(strut_writer *writer, const double (*position)[2]) {
+  bool first = true;
+  strut_put(writer, "{");
+  for (size_t i = 0; i < writer->scene->node_count; i++) {
+    const strut_node *node = &writer->scene->nodes[i];
+    if (memcmp(position[i], node->position, sizeof node->position) == 0) continue;
+    if (!first) strut_put(writer, ", ");
+    first = false;
+    strut_put_name(writer, node->name);
+    strut_put(writer, ": ");
+    strut_put_pair(writer, position[i]);
+  }
+  strut_put(writer, "}");
+}
+
 static void put_key(strut_writer *writer, const strut_key *key, const char *object,
                     const char *usual) {
   const void *value = object + key->field.offset;
@@ -329,6 +346,7 @@ static void put_key(strut_writer *writer, const strut_key *key, const char *obje
       put_references(writer, key, value, key->field.size / sizeof(int32_t));
       break;
     case STRUT_FIELD_LIST: put_list(writer, key, object); break;
+    case STRUT_FIELD_PLACES: put_places(writer, *(const double(*const *)[2])value); break;
     case STRUT_FIELD_NESTED: put_nested(writer, key, object, usual); break;
     case STRUT_FIELD_BY_HAND:
     case STRUT_FIELD_NONE:

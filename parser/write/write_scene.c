@@ -334,7 +334,7 @@ static void put_one_ground(strut_writer *writer, const strut_ground *ground, con
   strut_mapping mapping = {indent, indent};
   const strut_contact *first = first_contact(writer);
   if (!first) return;
-  strut_ground_section section = {*ground, *first};
+  strut_ground_section section = {.ground = *ground, .contact = *first};
   strut_put_fields(writer, &mapping, STRUT_SECTION_GROUND, &section, &usual, put_ground_by_hand);
 }
 
