@@ -80,7 +80,7 @@ static strut_setup wild_scene(uint64_t seed) {
   while (strut_integrator_at(methods)) methods++;
   do /* those that choose their steps take as many as such numbers need */
     method = strut_integrator_at((size_t)random_below(r, (int32_t)methods));
-  while (!strncmp(method->name, "adaptive", 8));
+  while (strut_integrator_controls_error(method));
   setup.experiment.integrator = method->name;
   setup.experiment.refine = 1;
   setup.experiment.step = any(r);
