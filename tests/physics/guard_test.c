@@ -57,8 +57,7 @@ static void check(const char *name) {
   if (s.limit_fell.limit > 0) {
     assert_non_null(strstr(error.message, "use solver.step <= "));
     assert_within(s.limit_fell.since, crossing, crossing + looks);
-    /* The numerical motion grows until it is seen; where steps end as it passes the supports, it stays large. */
-    assert_within(s.limit_fell.limit, reach / (method->events ? 32 : 26.5), step);
+    assert_within(s.limit_fell.limit, reach / 26.5, step);
   } else { /* all happened between two looks; the last one saw it coming */
     const char *last = strstr(error.message, ", at t = ");
     double time = last ? strtod(last + 9, NULL) : 0;

@@ -15,9 +15,6 @@
 enum { LONGEST_REST = 200 };         /* grid steps between two looks */
 static const double CAUTION = 0.125; /* of the time in which a member could shrink to nothing */
 static const double AT_GUIDE = 1e-6; /* of the size */
-/* Fixed steps see too little of a way beside a length of more than COARSE, unless the member turns by an angle the
-   square of whose sine is below STRAIGHT; they are cut to PART of that length. */
-static const double COARSE = 0.5, STRAIGHT = 2e-4, PART = 0.4;
 
 /* From the first node to the second at an end of a step, and its change over the step at that rate. */
 typedef struct span {
@@ -206,13 +203,10 @@ bool strut_turn_passes(const strut_model *model, const strut_event_stepper *step
 double strut_turn_between(const strut_model *model, const strut_event_stepper *stepper, int32_t k,
                           double h) {
   course c = course_of(stepper, k, h);
-  double least = nothing(model, stepper, k), shorter = fmin(c.a.length, c.b.length);
-  double way = hypot(c.b.x - c.a.x, c.b.y - c.a.y), across = c.a.x * c.b.y - c.a.y * c.b.x;
-  double both = c.a.length * c.b.length;
+  double least = nothing(model, stepper, k);
+  if (!stepper->formula->adaptive)
+    return 0.0; /* fixed steps are not cut: they end where they must */
   if (c.at > 0.0) return c.length > least ? 0.5 * c.at : 0.0;
-  if (!stepper->formula->adaptive && fmin(c.g[0], shorter) > least && way > COARSE * shorter &&
-      across * across > STRAIGHT * both * both)
-    return PART * c.a.length / way;
   return strut_event_dip(c.g[0], c.rate[0], c.g[1], c.rate[1], least);
 }
 
