@@ -38,4 +38,19 @@ for n in range(40):
         found = velocities(values, solver)
         error = max(abs(a - b) for a, b in zip(found, right))
         check(error <= part * v, f"run {n}, {solver}: {found}, expected {right}")
+
+# A mass misses the anchor of its spring, whose force turns round within a step; no step is longer than the grid's.
+MISS = """strut: 1
+nodes: {{a: {{position: [0, 0], fixed: both}}, m: {{position: [-1, {miss}], mass: 1}}}}
+members: {{s: {{kind: spring, nodes: [a, m], stiffness: 20, rest_length: 0.6}}}}
+initial: {{velocities: {{m: [3, 0]}}}}
+solver: {{integrator: {solver}}}
+run: {{duration: 2, measure: {{quantities: {{x: {{of: m.x, take: final}}}}}}}}
+"""
+for miss in (0.3, 0.01, 0.003, 1e-7):
+    ends = []
+    for solver in ("adaptive, step: 1 ms, tolerance: 1e-9", "rk4-events, step: 20 ms", "rk4-events, step: 5 ms"):
+        write("miss.yaml", MISS.format(miss=miss, solver=solver))
+        ends.append(json.loads(run("run", "miss.yaml", "--json").stdout)["measured"]["x"]["value"])
+    check(max(ends) - min(ends) < 1e-5, f"a miss of {miss} m: {ends}")
 finish()

@@ -17,7 +17,7 @@ static strut_setup tightening(const char *method, double step) {
   build_support(&setup.scene, 1, 0);
   build_mass(&setup.scene, 0, 0, MASS);
   setup.scene.nodes[2].fixed[0] = true;
-  setup.scene.nodes[2].velocity[1] = 1e-3;
+  setup.scene.nodes[2].velocity[1] = 1e-30; /* small until it is seen */
   int32_t signal = build_sine(&setup.scene, -STROKE, FREQUENCY);
   for (int32_t i = 0; i < 2; i++)
     build_actuator(&setup.scene,

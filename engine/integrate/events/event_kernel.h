@@ -199,7 +199,7 @@ STRUT_INLINE void accept_step(const strut_model *model, strut_state *state,
   stepper->now = now, stepper->next = next;
   if (model->terms & STRUT_TERM_ELEMENTS) strut_elements_keep_turns(model, state);
   if (model->terms & STRUT_TERM_MEMORY) strut_history_keep(model, state);
-  if (stepper->turns.on) strut_turns_keep(model, stepper);
+  if (stepper->turns.on) strut_turns_keep(model, state, stepper);
   stepper->fresh = true;
   for (int p = 0; p < STRUT_POWER_ROOM && balance; p += STRUT_LANES)
     strut_lanes_store(state->work + p,

@@ -402,6 +402,18 @@ static void show_piece(const strut_model *model, strut_state *state, strut_event
   stepper->view->smooth = true;
 }
 
+/* Speeds that errors compare with, how far margins of kinks go, and which contacts are at rest. */
+static void keep_scales(strut_event_stepper *stepper, const step_piece *piece) {
+  for (int32_t k = 0; k < stepper->laws.count; k++) {
+    int32_t i = stepper->laws.item[k].kink - 1;
+    if (i >= 0)
+      stepper->kinks.largest[i] = fmax(stepper->kinks.largest[i], fabs(stepper->now->tension[k]));
+  }
+  if (stepper->formula->adaptive) strut_contact_rest(stepper, piece->h, piece->event.kind);
+  stepper->control.fastest = fmax(stepper->control.fastest, stepper->control.own_speed);
+  stepper->control.speed = stepper->control.fastest;
+}
+
 /* Makes stepper->next the state. */
 static void accept_piece(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                          step_piece *piece) {
@@ -414,14 +426,7 @@ static void accept_piece(const strut_model *model, strut_state *state, strut_eve
   if (state->watched.variation) strut_variation_step(model, state, stepper, piece->t, piece->h);
   if (observed) keep_begin(model, state, stepper->view);
   accept_step(model, state, stepper, state->balance);
-  for (int32_t k = 0; k < stepper->laws.count && stepper->kinks.count; k++) {
-    int32_t i = stepper->laws.item[k].kink - 1;
-    if (i >= 0)
-      stepper->kinks.largest[i] = fmax(stepper->kinks.largest[i], fabs(stepper->now->tension[k]));
-  }
-  if (stepper->formula->adaptive) strut_contact_rest(stepper, piece->h, piece->event.kind);
-  stepper->control.fastest = fmax(stepper->control.fastest, stepper->control.own_speed);
-  stepper->control.speed = stepper->control.fastest;
+  if (stepper->scales) keep_scales(stepper, piece);
   if (observed) show_piece(model, state, stepper, piece);
   stepper->chatter.at_once = 0;
   if (piece->h > SEPARATES * (stepper->formula->adaptive ? stepper->control.h : piece->dt))

@@ -253,8 +253,10 @@ typedef struct strut_turns {
   const uint32_t *ends; /* (count, 2) their nodes */
   double *ahead; /* (count, 2) direction in which the step begins, or in which it has just passed */
   int64_t due;   /* the grid step from which on they are looked at */
-  bool on;       /* they count among the laws */
-  bool stepped;  /* a step has been accepted since the latest look */
+  int64_t step;  /* the grid step under way */
+  int32_t pieces; /* accepted in it */
+  bool on;        /* they count among the laws */
+  bool stepped;   /* a step has been accepted since the latest look */
 } strut_turns;
 
 /** Lengths of steps. */
@@ -304,7 +306,8 @@ struct strut_event_stepper {
   double done; /* of the grid step under way [s] */
   double
       next_break; /* when a drive or load jumps next, with the state's time_offset [s]; INFINITY: never */
-  bool looks; /* signals may ask for shorter steps */
+  bool looks;  /* signals may ask for shorter steps */
+  bool scales; /* an accepted step has scales to keep: error control, or kinks of signals */
   bool started;
   bool fresh;                      /* now->structure holds for now */
   bool tried;                      /* next is the end of the step that is due */
@@ -403,6 +406,7 @@ bool strut_event_rate(const strut_event_stepper *stepper, const strut_step_end *
 /** Before a step of a formula that predicts: the first touchdown or opening. */
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
                                 const strut_event_stepper *stepper, double h);
+
 /* ---- turns.c: members that shrink to nothing ---- */
 
 /** How many there are; into item and ends, unless these are NULL. */
@@ -415,7 +419,8 @@ static inline bool strut_turns_due(const strut_state *state, const strut_event_s
 }
 void strut_turns_measure(const strut_event_stepper *stepper, const strut_step_end *end);
 /** After a step has been accepted while they count. */
-void strut_turns_keep(const strut_model *model, strut_event_stepper *stepper);
+void strut_turns_keep(const strut_model *model, const strut_state *state,
+                      strut_event_stepper *stepper);
 /** To the forces of the structure: those that have turned since the step began go on as before. */
 void strut_turns_hold(const strut_model *model, const strut_state *state,
                       const strut_event_stepper *stepper, const double *q, const double *v);
@@ -435,6 +440,7 @@ void strut_event_note_stage(const strut_event_stepper *stepper, double at, bool 
 /** What the ends of a step of sufficient accuracy, and its stages, say about the time between. */
 void strut_event_look_between(const strut_model *model, const strut_state *state,
                               strut_event_stepper *stepper, double h);
+
 /* ---- contact_modes.c: what an event does is made of these ---- */
 
 /** Mode of contact i, which touches, from its speeds; with surfaces on `facet`, or -1: the nearest. */

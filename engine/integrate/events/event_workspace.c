@@ -193,6 +193,7 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
   stepper->middle = make_doubles(arena, (size_t)model->length, &failed);
   list_laws(model, state, stepper, &failed);
   if (!failed) list_turns(model, state, stepper, &failed);
+  stepper->scales = formula->adaptive || stepper->kinks.count;
   size_t switches = contacts + (size_t)(stepper->laws.count + stepper->turns.count);
   strut_chatter *chatter = &stepper->chatter;
   chatter->times = make(arena, switches, sizeof *chatter->times, &failed);

@@ -63,6 +63,7 @@ typedef struct trial {
   strut_event_stepper *stepper;
   strut_implicit *m;
   double t, h;
+  double behind; /* what jumps where the step begins: signals are evaluated a moment before [s] */
 } trial;
 
 static void evaluate(const trial *c, double t) {
@@ -79,7 +80,7 @@ static void add_column(const trial *c, int k, int32_t j, double step, double *ga
   double *at = &c->stepper->stage[k ? V : Q][m->coordinate[j]], before = *at;
   *at += step;
   step = *at - before;
-  evaluate(c, c->t + 2.0 * moment_before(c->t, c->stepper->control.longest));
+  evaluate(c, c->t + c->behind);
   for (int32_t i = 0; i < m->n; i++)
     m->slope[k][i * m->n + j] =
         (c->stepper->stage[A][m->coordinate[i]] - now->a[m->coordinate[i]]) / step;
@@ -100,9 +101,7 @@ static void differentiate(const trial *c) {
   size_t bytes = (size_t)c->model->length * sizeof(double);
   bool same = m->time == c->t && m->events == c->state->events;
   if (same && !memcmp(m->known, now->a, bytes)) return;
-  /* Signals are evaluated a moment before; a step that begins at a jump is about what is behind it. */
-  double size = c->model->size, behind = 2.0 * moment_before(c->t, c->stepper->control.longest);
-  double later = fmax(OF_STEP * c->h, 2.0 * behind);
+  double size = c->model->size, later = fmax(OF_STEP * c->h, 2.0 * c->behind);
   double speed = fmax(c->stepper->control.speed, size * 1e-3);
   copy_now(c, &c->stepper->stage[Q]);
   for (int k = 0; k < 2; k++)
@@ -195,7 +194,8 @@ static double estimate_error(const trial *c) {
 
 static void implicit_once(const strut_model *model, const strut_state *state,
                           strut_event_stepper *stepper, double t, double h) {
-  const trial c = {model, state, stepper, stepper->implicit, t, h};
+  double behind = 2.0 * moment_before(t, stepper->control.longest);
+  const trial c = {model, state, stepper, stepper->implicit, t, h, behind};
   double **w = stepper->stage, rate = 1.0 / (GAMMA * h), work[STAGES][POWERS];
   gsl_matrix_view view;
   gsl_permutation order;

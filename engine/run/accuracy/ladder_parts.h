@@ -49,7 +49,7 @@ typedef struct strut_ladder {
   strut_arena arena;
 } strut_ladder;
 
-/** Not positive before the first one. Where only one method suits the scene, all runs count as such. */
+/** How many of the runs were by a method with error control; at most zero as long as there are coarse runs only. */
 static inline int strut_ladder_runs_with_error_control(const strut_ladder *l) {
   return l->runs - l->coarse_runs;
 }

@@ -318,7 +318,8 @@ static const char *softest_node(const strut_compare_column *c, int axis) {
   X("parameters", "", PARAMETERS, "of its scene")                                                  \
   X("values", "", MAP(STRUT_COMPARE_QUANTITIES, quantity_name, quantity_value), "of the rows")     \
   X("reasons", "", MAP(STRUT_COMPARE_QUANTITIES, quantity_name, quantity_reason), "of null")       \
-  X("states", "", LIST(c->states, c->state_count), "it stands in", .rows = &state_values)          \
+  X("states", "", LIST(c->states, c->state_count), "equilibria in which it stands",                \
+    .rows = &state_values)                                                                         \
   X("barriers", "", LIST(c->barriers, c->barrier_count), "between", .rows = &barrier_values)       \
   X("shape", "", TEXT(c->shape), "that is evaluated and drawn")                                    \
   X("nodes", "", NAMED((const double(*)[2])c->q, c->q ? scene_of(c)->node_count : 0, node_name),   \

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Members that shrink to nothing. Their nodes pass one another, and what they carry there turns round: a step ends
- * there, and in the step itself the force goes on as before. A cable would be pulled through its guide: the run ends.
+ * Members that shrink to nothing. Their nodes pass one another, and the force that they carry turns round there: a step
+ * ends at that moment, and within the step the force keeps its direction. A cable that would be pulled through its guide
+ * ends the run.
  *
- * Nobody asks a member that cannot get there within a step; when that was looked up last, and how long it holds, is
- * told by lengths, speeds and accelerations.
+ * A member that cannot shrink to nothing within a step costs nothing: its length, speed and acceleration say for how
+ * many steps it need not be looked at.
  */
 #include <assert.h>
 #include <math.h>
@@ -15,6 +16,12 @@
 enum { LONGEST_REST = 200 };         /* grid steps between two looks */
 static const double CAUTION = 0.125; /* of the time in which a member could shrink to nothing */
 static const double AT_GUIDE = 1e-6; /* of the size */
+static const double SWINGS =
+    0.25; /* square of the sine of the angle from which on a node is not behind */
+/* Fixed steps see too little of a way beside a length of more than COARSE, unless the member turns by an angle the
+   square of whose sine is below STRAIGHT; they are cut to PART of that length, into MOST_PIECES at most. */
+static const double COARSE = 0.5, STRAIGHT = 2e-4, PART = 0.4;
+enum { MOST_PIECES = 400 };
 
 /* From the first node to the second at an end of a step, and its change over the step at that rate. */
 typedef struct span {
@@ -35,6 +42,12 @@ static span span_of(const strut_event_stepper *stepper, int32_t k, const double 
   const uint32_t *at = ends_of(stepper, k);
   double x = q[at[1]] - q[at[0]], y = q[at[1] + 1] - q[at[0] + 1];
   return (span){x, y, h * (v[at[1]] - v[at[0]]), h * (v[at[1] + 1] - v[at[0] + 1]), hypot(x, y)};
+}
+
+/* Has the second node passed the first, and not just swung round it? */
+static bool is_behind(const double *r, const span *s) {
+  double across = r[0] * s->y - r[1] * s->x;
+  return along(r, s->x, s->y) < 0.0 && across * across < SWINGS * s->length * s->length;
 }
 
 /* Lengths below this have no direction [m]. */
@@ -111,7 +124,7 @@ void strut_turns_look(const strut_model *model, const strut_state *state,
   stepper->laws.count = turns->first + (near ? turns->count : 0);
   stepper->laws.nearby_made = 0;
   memset(turns->ahead, 0, 2 * (size_t)turns->count * sizeof *turns->ahead);
-  if (near) strut_turns_keep(model, stepper), turns->stepped = false;
+  if (near) strut_turns_keep(model, state, stepper), turns->stepped = false;
 }
 
 /* The direction of the span, or if it is short, that of its change. */
@@ -120,14 +133,18 @@ static void point(const span *s, bool is_short, double *r) {
   if (length > 0.0) r[0] = x / length, r[1] = y / length;
 }
 
-void strut_turns_keep(const strut_model *model, strut_event_stepper *stepper) {
+void strut_turns_keep(const strut_model *model, const strut_state *state,
+                      strut_event_stepper *stepper) {
   const strut_step_end *now = stepper->now;
-  stepper->turns.stepped = true;
+  strut_turns *turns = &stepper->turns;
+  turns->stepped = true;
+  turns->pieces = turns->step == state->step ? turns->pieces + 1 : 0;
+  turns->step = state->step;
   for (int32_t k = stepper->turns.first; k < stepper->laws.count; k++) {
     span s = span_of(stepper, k, now->q, now->v, 1.0);
     double *r = ahead_of(stepper, k);
     bool is_short = s.length <= nothing(model, stepper, k), known = r[0] != 0.0 || r[1] != 0.0;
-    if (!known || (!is_short && along(r, s.x, s.y) > 0.0)) point(&s, is_short, r);
+    if (!known || !is_short) point(&s, is_short, r);
   }
   strut_turns_measure(stepper, now);
 }
@@ -156,7 +173,7 @@ void strut_turns_hold(const strut_model *model, const strut_state *state,
     const double *r = ahead_of(stepper, k);
     span s = span_of(stepper, k, q, v, 1.0);
     bool is_short = s.length <= nothing(model, stepper, k);
-    if (law->guide || !(is_short || along(r, s.x, s.y) < 0.0)) continue;
+    if (law->guide || !(is_short || is_behind(r, &s))) continue;
     double pull = force_at_nothing(model, state, stepper, k, q);
     double push[2] = {2.0 * pull * r[0], 2.0 * pull * r[1]}, u[2] = {0.0, 0.0};
     if (is_short) { /* without a length the damper has no direction either */
@@ -186,7 +203,7 @@ static course course_of(const strut_event_stepper *stepper, int32_t k, double h)
               .b = span_of(stepper, k, stepper->next->q, stepper->next->v, h)};
   c.g[0] = along(r, c.a.x, c.a.y), c.g[1] = along(r, c.b.x, c.b.y);
   c.rate[0] = along(r, c.a.dx, c.a.dy), c.rate[1] = along(r, c.b.dx, c.b.dy);
-  if (!(c.g[0] > 0.0 && c.g[1] < 0.0)) return c;
+  if (!(c.g[0] > 0.0 && is_behind(r, &c.b))) return c;
   double x = c.at = strut_event_cubic_root(c.g[0], c.rate[0], c.g[1], c.rate[1]), y = 1.0 - x;
   double a = y * y * (1.0 + 2.0 * x), b = 1.0 - a, da = x * y * y, db = -x * x * y;
   c.length = hypot(a * c.a.x + b * c.b.x + da * c.a.dx + db * c.b.dx,
@@ -194,19 +211,34 @@ static course course_of(const strut_event_stepper *stepper, int32_t k, double h)
   return c;
 }
 
+/* May the step be cut once more? */
+static bool may_cut(const strut_event_stepper *stepper) {
+  return stepper->formula->adaptive || stepper->turns.pieces < MOST_PIECES;
+}
+
+/* Do the nodes miss each other by too little for a shorter step? */
+static bool is_narrow(const strut_model *model, const strut_event_stepper *stepper, int32_t k,
+                      const course *c) {
+  return c->length <= nothing(model, stepper, k) || !may_cut(stepper);
+}
+
 bool strut_turn_passes(const strut_model *model, const strut_event_stepper *stepper, int32_t k,
                        double h) {
   course c = course_of(stepper, k, h);
-  return c.at > 0.0 ? c.length <= nothing(model, stepper, k) : c.g[1] < c.g[0];
+  if (c.at > 0.0) return is_narrow(model, stepper, k, &c);
+  return !(c.g[0] > 0.0) && c.g[1] < c.g[0];
 }
 
 double strut_turn_between(const strut_model *model, const strut_event_stepper *stepper, int32_t k,
                           double h) {
   course c = course_of(stepper, k, h);
-  double least = nothing(model, stepper, k);
-  if (!stepper->formula->adaptive)
-    return 0.0; /* fixed steps are not cut: they end where they must */
-  if (c.at > 0.0) return c.length > least ? 0.5 * c.at : 0.0;
+  double least = nothing(model, stepper, k), shorter = fmin(c.a.length, c.b.length);
+  double way = hypot(c.b.x - c.a.x, c.b.y - c.a.y), across = c.a.x * c.b.y - c.a.y * c.b.x;
+  double both = c.a.length * c.b.length;
+  if (c.at > 0.0) return is_narrow(model, stepper, k, &c) ? 0.0 : 0.5 * c.at;
+  if (!stepper->formula->adaptive && may_cut(stepper) && shorter > least &&
+      way > COARSE * shorter && across * across > STRAIGHT * both * both)
+    return PART * shorter / way;
   return strut_event_dip(c.g[0], c.rate[0], c.g[1], c.rate[1], least);
 }
 
