@@ -98,15 +98,6 @@ double strut_element_rate(const strut_model *model, int32_t element, const strut
   return sum;
 }
 
-void strut_element_stiffness(const strut_model *model, int32_t element,
-                             const strut_element_pose *pose, const double *q, double *k) {
-  assert(element >= 0 && element < model->elements.count);
-  int32_t n = 2 * model->elements.element[element].nodes;
-  for (int32_t i = 0; i < n; i++)
-    for (int32_t j = 0; j < n; j++) k[i * n + j] = pose->slope * pose->b[i] * pose->b[j];
-  strut_element_bend(model, element, q, pose->force, k);
-}
-
 double strut_member_elastic_tension(const strut_model *model, const double *rest, int32_t member,
                                     const double *q) {
   assert(member >= 0 && (size_t)member < model->scene->member_count);
@@ -128,28 +119,6 @@ double strut_member_path_length(const strut_model *model, int32_t member, const 
   double b[STRUT_MOST_GRADIENT];
   if (!e) return strut_member_length(&model->members, member, q);
   return strain_of(e, model->elements.at + e->first, q, 0.0, b);
-}
-
-void strut_elements_visit(const strut_model *model, const double *rest, const double *q,
-                          double least, bool stops, void *context, strut_visit_element *visit) {
-  strut_element_pose pose;
-  for (int32_t i = 0; i < model->elements.count; i++) {
-    const strut_element *e = &model->elements.element[i];
-    if (model->elements.scattered && !(stops && e->crowds) &&
-        strut_nearby_is_far(model, i, q, stops))
-      continue;
-    strut_element_evaluate(model, i, rest, q, (double)NAN, &pose);
-    bool stop = e->role == STRUT_ELEMENT_LONGEST || e->role == STRUT_ELEMENT_SHORTEST ||
-                e->role == STRUT_ELEMENT_COLLISION || e->strain == STRUT_STRAIN_FOOT;
-    if (stops && stop && !pose.acts) {
-      pose.acts = true;
-      pose.slope = e->numbers.stiffness;
-      visit(context, i, &pose);
-      continue;
-    }
-    if (!pose.acts || (e->carries && fabs(pose.force) <= least)) continue;
-    visit(context, i, &pose);
-  }
 }
 
 double strut_element_stiffest(const strut_model *model, int32_t element) {

@@ -50,10 +50,6 @@ double strut_element_rate(const strut_model *model, int32_t element, const strut
 /** h (2 nodes, 2 nodes) += t d2e/dq2. */
 void strut_element_bend(const strut_model *model, int32_t element, const double *q, double t,
                         double *h);
-/** k (2 nodes, 2 nodes): the tangent stiffness of a pose that was evaluated at q. */
-void strut_element_stiffness(const strut_model *model, int32_t element,
-                             const strut_element_pose *pose, const double *q, double *k);
-
 /**
  * Adds the forces of all elements at q and v to `force`, with the state's natural strains and frozen
  * modes; with the state's balance their powers.
@@ -83,15 +79,6 @@ STRUT_API double strut_member_elastic_tension(const strut_model *model, const do
 /** Length of member j at q, over its guides [m]. */
 STRUT_API double strut_member_path_length(const strut_model *model, int32_t member,
                                           const double *q);
-
-/** A visited element with its pose; `context` is the visitor's own. */
-typedef void strut_visit_element(void *context, int32_t element, const strut_element_pose *pose);
-/**
- * Calls `visit` for every element that acts at q with more than `least` in size, for one that carries
- * both signs always; with `stops` for all stops and collisions, too, those that do not act as if at their kink.
- */
-void strut_elements_visit(const strut_model *model, const double *rest, const double *q,
-                          double least, bool stops, void *context, strut_visit_element *visit);
 
 /**
  * True of a straight element that pushes and has shrunk to less than `share` of its natural length: it

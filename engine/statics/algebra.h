@@ -204,4 +204,19 @@ bool strut_spectrum_finish(strut_spectrum_workspace *room, const double *q, bool
 bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least,
                             bool careful, strut_spectrum *spectrum);
 
+/** The stiffness that forces give to some modes, summed force by force: stiff ones that a mode does not strain do not
+    blur it. Mode i's row r is vector[i mode_step + r row_step]. */
+typedef struct strut_mode_form {
+  const strut_model *model;
+  const int32_t *row_of; /* (length) */
+  int32_t count;         /* modes */
+  const double *vector;
+  size_t mode_step, row_step;
+  double *sum;   /* (count, count) lower triangle */
+  double *noise; /* (count) what rounding may have done to the diagonal */
+  double *along; /* (count) scratch */
+  double part;   /* the largest part that an element has in the diagonal */
+} strut_mode_form;
+void strut_mode_form_add(strut_mode_form *form, const strut_force *force, const double *q);
+
 #endif

@@ -9,8 +9,7 @@
 #ifndef STRUT_ENGINE_STATICS_POTENTIAL_H
 #define STRUT_ENGINE_STATICS_POTENTIAL_H
 
-#include "engine/model/model.h"
-#include "engine/model/sparse.h"
+#include "engine/forces/tangent.h"
 
 typedef struct strut_potential {
   const strut_model *model;
@@ -59,6 +58,10 @@ STRUT_API void strut_potential_force(const strut_potential *potential, const dou
  * stiffness times the last bit of a coordinate. A residual below it is meaningless.
  */
 STRUT_API double strut_potential_rounding(const strut_potential *potential, const double *q);
+
+/** To visit all its forces at q that act with more than `least` [N]. */
+strut_force_visit strut_potential_visit(const strut_potential *potential, const double *q,
+                                        double least);
 
 /** The largest stiffness of a model's members and elements [N/m]; see strut_element_stiffest. */
 STRUT_API double strut_stiffest(const strut_model *model);

@@ -170,7 +170,7 @@ MUTANTS = [
            ".height = points[way].potential - points[b].potential,",
            "a barrier's height is that of the way back", "cli_equilibria|equilibria|stand"),
     Mutant("modes-across-without-stretch", "engine/statics/modes/vibration.c",
-           "m->across = m->stretch * t->stiffness[j] / m->length;", "m->across = 0.0;",
+           "double across = any ? stretch * t->stiffness[j] / length", "double across = any ? 0.0",
            "frequencies do not know prestress", "natural_modes|cli_modes"),
     Mutant("decay-of-faster-root", "engine/statics/modes/eigenpairs.c",
            "mode->decay_rate = -fmax(re, other);", "mode->decay_rate = -fmin(re, other);",

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/forces/elements.h"
+#include "engine/forces/tangent.h"
 #include "engine/run/settle.h"
 #include "engine/scene/things.h"
 #include "engine/statics/equilibria/equilibria_parts.h"
@@ -16,25 +16,17 @@ static const double NEAR = 0.01;
 static const double AT_REST = 1e-8;
 
 /* A hinge pushes on its nodes with its moment over the arms, a cell with its pressure times lengths. */
-typedef struct element_sum {
-  const strut_model *model;
-  double sum;
-} element_sum;
-
-static void add_element_force(void *context, int32_t element, const strut_element_pose *pose) {
-  element_sum *s = context;
-  if (!strut_element_is_of_member(&s->model->elements.element[element]))
-    s->sum += fabs(pose->force) * hypot(pose->b[0], pose->b[1]);
-}
-
 static double sum_member_forces(const strut_model *model, const double *q) {
   const strut_member_table *t = &model->members;
-  double sum = 0.0;
+  strut_force_visit visit = {.model = model, .q = q, .rest = t->rest, .least = -HUGE_VAL};
+  double sum = 0.0, others = 0.0;
   for (int32_t j = 0; j < t->count; j++)
     sum += fabs(strut_member_elastic_tension(model, t->rest, j, q));
-  element_sum others = {model, 0.0};
-  strut_elements_visit(model, t->rest, q, -HUGE_VAL, false, &others, add_element_force);
-  return sum + others.sum;
+  for (const strut_force *force; (force = strut_force_next(&visit));)
+    if (force->kind == STRUT_FORCE_ELEMENT &&
+        !strut_element_is_of_member(&model->elements.element[force->index]))
+      others += fabs(force->pose.force) * hypot(force->pose.b[0], force->pose.b[1]);
+  return sum + others;
 }
 
 static bool find_closed(const strut_model *model, strut_arena *arena, strut_rest_state *rest) {

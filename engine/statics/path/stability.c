@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 
 #include <gsl/gsl_blas.h>
@@ -21,16 +22,6 @@ static const double ZERO_VALUE = 1e-13; /* of a soft mode's largest parts: no si
 static const double NO_VALUE = 1e-20;   /* of the largest eigenvalue, likewise */
 static const double ROUNDING = 2e-16;   /* of a double */
 
-/* Displacement of a member's second end relative to its first in a mode of the free coordinates. */
-static void relative_motion(const strut_path_system *s, int32_t j, size_t mode, double d[2]) {
-  const strut_member_table *t = &s->model->members;
-  for (uint32_t c = 0; c < 2; c++) {
-    int32_t a = s->potential->row_of[t->from[j] + c], b = s->potential->row_of[t->to[j] + c];
-    d[c] = (b >= 0 ? gsl_matrix_get(s->algebra.vectors, (size_t)b, mode) : 0.0) -
-           (a >= 0 ? gsl_matrix_get(s->algebra.vectors, (size_t)a, mode) : 0.0);
-  }
-}
-
 static double held_motion(const strut_path_system *s, int32_t k, size_t mode) {
   double sum = 0;
   for (int32_t i = 0; i < s->n; i++)
@@ -38,90 +29,30 @@ static double held_motion(const strut_path_system *s, int32_t k, size_t mode) {
   return sum;
 }
 
-/* ritz += factor part part^T */
-static void add_square(gsl_matrix *ritz, const double *part, double factor) {
-  for (size_t k = 0; k < ritz->size1; k++)
-    for (size_t l = 0; l < ritz->size1; l++)
-      *gsl_matrix_ptr(ritz, k, l) += factor * part[k] * part[l];
-}
-
-/* Displacement of a contact's node along a unit vector in a mode. */
-static double contact_motion(const strut_path_system *s, int32_t i, const double *unit,
-                             size_t mode) {
-  const int32_t *row = s->potential->row_of + s->model->contacts.at[i];
-  double sum = 0;
-  for (int c = 0; c < 2; c++)
-    if (row[c] >= 0) sum += unit[c] * gsl_matrix_get(s->algebra.vectors, (size_t)row[c], mode);
-  return sum;
-}
-
-static void project_contact(const strut_path_system *s, int32_t i, size_t first, gsl_matrix *ritz) {
-  const strut_contact_axes *axes = &s->contacts.contact[i].pose.axes;
-  double part[MOST_SOFT], along, across;
-  strut_path_contact_stiffness(s, i, &along, &across);
-  for (size_t k = 0; k < ritz->size1; k++) part[k] = contact_motion(s, i, axes->normal, first + k);
-  add_square(ritz, part, along);
-  for (size_t k = 0; k < ritz->size1; k++) part[k] = contact_motion(s, i, axes->tangent, first + k);
-  add_square(ritz, part, across);
-}
-
-/* slope b b' + t d2e/dq2 of an element, and the largest of its parts. */
-static void project_element(strut_path_system *s, int32_t i, size_t first, gsl_matrix *ritz) {
-  const strut_element *e = &s->model->elements.element[i];
-  const strut_element_pose *pose = &s->elements.element[i].pose;
-  const uint32_t *at = s->model->elements.at + e->first;
-  double along[MOST_SOFT], motion[MOST_SOFT][STRUT_MOST_GRADIENT];
-  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0};
-  int32_t n = 2 * e->nodes;
-  size_t count = ritz->size1;
-  strut_element_bend(s->model, i, s->latest.q, pose->force, bend);
-  for (size_t k = 0; k < count; k++) {
-    along[k] = 0.0;
-    for (int32_t c = 0; c < n; c++) {
-      int32_t row = s->potential->row_of[at[c / 2] + (uint32_t)(c % 2)];
-      motion[k][c] = row >= 0 ? gsl_matrix_get(s->algebra.vectors, (size_t)row, first + k) : 0.0;
-      along[k] += pose->b[c] * motion[k][c];
-    }
-  }
-  add_square(ritz, along, pose->slope);
-  for (size_t k = 0; k < count; k++)
-    for (size_t l = 0; l < count; l++) {
-      double sum = 0.0;
-      for (int32_t a = 0; a < n; a++)
-        for (int32_t b = 0; b < n; b++) sum += motion[k][a] * bend[a * n + b] * motion[l][b];
-      *gsl_matrix_ptr(ritz, k, l) += sum;
-      if (k == l)
-        s->spectrum.soft_parts =
-            fmax(s->spectrum.soft_parts, fmax(fabs(sum), fabs(pose->slope) * along[k] * along[k]));
-    }
-}
-
 /* The stiffness seen by the modes first, first + 1, ... */
 static void project(strut_path_system *s, size_t first, gsl_matrix *ritz) {
-  double along[MOST_SOFT], across[MOST_SOFT];
+  double noise[MOST_SOFT] = {0}, along[MOST_SOFT], sum[MOST_SOFT * MOST_SOFT] = {0};
   size_t count = ritz->size1;
-  gsl_matrix_set_zero(ritz);
-  for (int32_t j = 0; j < s->model->members.count; j++) {
-    const strut_path_member *m = &s->member[j];
-    if (!m->pulls) continue;
-    for (size_t k = 0; k < count; k++) {
-      double d[2];
-      relative_motion(s, j, first + k, d);
-      along[k] = m->length != 0 ? m->ux * d[0] + m->uy * d[1] : d[0];
-      across[k] = m->length != 0 ? m->ux * d[1] - m->uy * d[0] : d[1];
-    }
-    add_square(ritz, along, m->length != 0 ? s->equations.terms.stiffness[j] : m->across);
-    add_square(ritz, across, m->across);
-  }
-  s->spectrum.soft_parts = 0.0;
-  for (int32_t i = 0; i < s->model->elements.count; i++)
-    if (s->elements.element[i].acts) project_element(s, i, first, ritz);
-  for (int32_t i = 0; i < s->model->contacts.count; i++)
-    if (s->contacts.contact[i].touches) project_contact(s, i, first, ritz);
+  strut_mode_form form = {.model = s->model,
+                          .row_of = s->potential->row_of,
+                          .count = (int32_t)count,
+                          .vector = gsl_matrix_ptr(s->algebra.vectors, 0, first),
+                          .mode_step = 1,
+                          .row_step = s->algebra.vectors->tda,
+                          .sum = sum,
+                          .noise = noise,
+                          .along = along};
+  for (int32_t i = 0; i < strut_force_count(s->model, true); i++)
+    if (s->force[i].pose.acts) strut_mode_form_add(&form, &s->force[i], s->latest.q);
   for (int32_t i = 0; i < s->held.count; i++) {
     for (size_t k = 0; k < count; k++) along[k] = held_motion(s, i, first + k);
-    add_square(ritz, along, s->held.by);
+    for (size_t k = 0; k < count; k++)
+      for (size_t l = 0; l <= k; l++) sum[k * count + l] += s->held.by * along[k] * along[l];
   }
+  for (size_t k = 0; k < count; k++)
+    for (size_t l = 0; l < count; l++)
+      gsl_matrix_set(ritz, k, l, sum[k > l ? k * count + l : l * count + k]);
+  s->spectrum.soft_parts = form.part;
 }
 
 /* Ritz values and vectors in place of the soft eigenvalues; false: out of memory. */
@@ -153,7 +84,7 @@ static bool refine(strut_path_system *s, size_t first, size_t count) {
 static double largest_across(const strut_path_system *s) {
   double most = 0;
   for (int32_t j = 0; j < s->model->members.count; j++)
-    if (s->member[j].pulls) most = fmax(most, fabs(s->member[j].across));
+    if (s->force[j].pose.acts) most = fmax(most, fabs(s->force[j].across));
   return most;
 }
 

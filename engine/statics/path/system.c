@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stretches and gaps are differences of long numbers, made with twice a double's digits. */
-#include "engine/forces/tangent.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 
@@ -47,8 +46,10 @@ static bool make_arrays(strut_path_system *s) {
     if (!(*arrays[i] = strut_arena_allocate(&s->arena, length + 1, sizeof(double)))) return false;
   s->latest.pulling = strut_arena_allocate(&s->arena, members, 1);
   s->latest.ahead = strut_arena_allocate(&s->arena, 2 * members, sizeof(double));
-  s->member = strut_arena_allocate(&s->arena, members, sizeof *s->member);
-  if (!s->latest.pulling || !s->latest.ahead || !s->member) return false;
+  int32_t forces = strut_force_count(s->model, true);
+  s->force = strut_arena_allocate(&s->arena, (size_t)forces, sizeof *s->force);
+  if (!s->latest.pulling || !s->latest.ahead || !s->force) return false;
+  for (int32_t i = 0; i < forces; i++) strut_force_begin(s->model, i, &s->force[i]);
   memset(s->latest.pulling, 1, members);
   return strut_path_elements_create(s->model, &s->arena, &s->elements) &&
          strut_path_contacts_create(s->model, &s->arena, &s->contacts) &&
@@ -137,77 +138,76 @@ bool strut_path_turns_round(const strut_path_system *s, int32_t j) {
 static const double SHORT = 1e-9; /* likewise, the shortest length by which a force is divided */
 
 /*
- * Length of a member, and what it is longer than its rest length. Where its nodes have passed one another since
- * the last point kept both count as negative: what acts before goes on smoothly.
+ * A member with all digits; returns what it is longer than its rest length. Where its nodes have passed one another
+ * since the last point kept both count as negative: what acts before goes on smoothly.
  */
-static double measure_member(const strut_path_system *s, int32_t j, strut_path_member *m) {
+static double measure_member(const strut_path_system *s, int32_t j, strut_force *force) {
   const strut_member_table *t = &s->model->members;
   const strut_dd rest = {s->equations.terms.rest[j], s->equations.terms.rest_low[j]};
   strut_dd dx = dd_sub(coordinate(s, t->to[j]), coordinate(s, t->from[j]));
   strut_dd dy = dd_sub(coordinate(s, t->to[j] + 1), coordinate(s, t->from[j] + 1));
   strut_dd length = dd_length(dx, dy);
   const double *ahead = &s->latest.ahead[2 * j];
-  *m = (strut_path_member){.length = dd_double(length)};
+  strut_vec2 unit = {0.0, 0.0};
   bool turns = strut_path_turns_round(s, j);
-  if (turns && dx.hi * ahead[0] + dy.hi * ahead[1] < 0.0)
-    length = dd_scale(length, -1.0), m->length = -m->length;
-  if (m->length != 0) m->ux = dd_double(dd_div(dx, length)), m->uy = dd_double(dd_div(dy, length));
-  if (turns && fabs(m->length) < STRUT_PATH_NOTHING * s->size &&
+  if (turns && dx.hi * ahead[0] + dy.hi * ahead[1] < 0.0) length = dd_scale(length, -1.0);
+  double size = dd_double(length), stretch = dd_double(dd_sub(length, rest));
+  if (size != 0) unit = (strut_vec2){dd_double(dd_div(dx, length)), dd_double(dd_div(dy, length))};
+  if (turns && fabs(size) < STRUT_PATH_NOTHING * s->size &&
       ahead[0] * ahead[0] + ahead[1] * ahead[1] > 0.0)
-    m->ux = ahead[0], m->uy = ahead[1];
-  return dd_double(dd_sub(length, rest));
+    unit = (strut_vec2){ahead[0], ahead[1]};
+  /* of zero length and zero rest length: a spring alike in all directions */
+  double k = s->equations.terms.stiffness[j];
+  double divisor = copysign(fmax(fabs(size), SHORT * s->size), size);
+  double across = rest.hi > 0 ? k * stretch / divisor : k;
+  strut_force_set_member(k, across, unit, size, stretch, force);
+  return stretch;
 }
 
-static void add_stiffness(strut_path_system *s, const int32_t *row, int count, double (*block)[4]) {
-  for (int a = 0; a < count; a++)
-    for (int b = 0; b < count; b++)
-      if (row[a] >= 0 && row[b] >= 0)
-        *gsl_matrix_ptr(s->algebra.hessian, (size_t)row[a], (size_t)row[b]) += block[a][b];
-}
-
-/* Derivative of a member's force on its second node with respect to the parameter, at fixed nodes. */
-static void member_rate(const strut_path_system *s, int32_t j, double rate[2]) {
-  const strut_path_member *m = &s->member[j];
-  const uint32_t a = s->model->members.from[j], b = s->model->members.to[j];
-  double d[2], k = s->equations.terms.stiffness[j];
-  for (uint32_t c = 0; c < 2; c++) {
-    double there = s->potential->row_of[b + c] < 0 ? s->equations.rates.position[b + c] : 0;
-    double here = s->potential->row_of[a + c] < 0 ? s->equations.rates.position[a + c] : 0;
-    d[c] = there - here;
+void strut_path_add_force(strut_path_system *s, const strut_force *force, const double *gradient,
+                          const double *rate, const double *matrix) {
+  int32_t n = 2 * force->nodes;
+  for (int32_t a = 0; a < n; a++) {
+    int32_t row = s->potential->row_of[strut_force_coordinate(force, a)];
+    double pull = force->kind == STRUT_FORCE_ELEMENT ? gradient[a] : force->pose.force;
+    double slope = rate[a];
+    if (row < 0) continue;
+    s->latest.forces = fmax(s->latest.forces, fabs(pull));
+    for (int32_t b = 0; b < n; b++) {
+      uint32_t at = strut_force_coordinate(force, b);
+      int32_t column = s->potential->row_of[at];
+      if (column >= 0)
+        *gsl_matrix_ptr(s->algebra.hessian, (size_t)row, (size_t)column) += matrix[a * n + b];
+      else
+        slope += matrix[a * n + b] * s->equations.rates.position[at];
+    }
+    s->latest.g[row] += gradient[a];
+    s->latest.slope[row] += slope;
   }
-  double along = m->ux * d[0] + m->uy * d[1];
-  double tension = k * (along - s->equations.rates.rest[j]);
-  if (k > 0) tension += s->equations.rates.stiffness[j] * m->tension / k;
-  rate[0] = tension * m->ux + m->across * (d[0] - along * m->ux);
-  rate[1] = tension * m->uy + m->across * (d[1] - along * m->uy);
+}
+
+void strut_path_add_strain(strut_path_system *s, const strut_force *force, double rate) {
+  double matrix[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  double gradient[STRUT_MOST_GRADIENT], change[STRUT_MOST_GRADIENT];
+  strut_force_stiffness(s->model, force, s->latest.q, matrix);
+  if (force->kind == STRUT_FORCE_ELEMENT && s->elements.element[force->index].turned)
+    strut_force_bend(s->model, force, s->latest.q, -2.0, matrix);
+  for (int32_t k = 0; k < 2 * force->nodes; k++)
+    gradient[k] = force->pose.force * force->pose.b[k], change[k] = rate * force->pose.b[k];
+  strut_path_add_force(s, force, gradient, change, matrix);
 }
 
 static void add_members(strut_path_system *s) {
   for (int32_t j = 0; j < s->model->members.count; j++) {
-    strut_path_member *m = &s->member[j];
-    double stretch = measure_member(s, j, m), k = s->equations.terms.stiffness[j], rate[2];
-    m->pulls = s->latest.pulling[j];
-    if (!m->pulls) continue;
-    m->tension = k * stretch;
-    /* of zero length and zero rest length: a spring alike in all directions */
-    double least = SHORT * s->size, length = copysign(fmax(fabs(m->length), least), m->length);
-    m->across = s->equations.terms.rest[j] > 0 ? m->tension / length : k;
-    s->latest.forces = fmax(s->latest.forces, fabs(m->tension));
-    int32_t row[4];
-    double block[4][4], along = k - m->across;
-    const double u[2] = {m->ux, m->uy}, force[2] = {m->tension * m->ux, m->tension * m->uy};
-    strut_member_rows(s->model, s->potential->row_of, j, row);
-    member_rate(s, j, rate);
-    for (int a = 0; a < 4; a++) {
-      double sign = a < 2 ? -1.0 : 1.0;
-      if (row[a] >= 0)
-        s->latest.g[row[a]] += sign * force[a % 2], s->latest.slope[row[a]] += sign * rate[a % 2];
-      for (int b = 0; b < 4; b++) {
-        double entry = along * u[a % 2] * u[b % 2] + (a % 2 == b % 2 ? m->across : 0.0);
-        block[a][b] = a / 2 == b / 2 ? entry : -entry;
-      }
-    }
-    add_stiffness(s, row, 4, block);
+    strut_force *force = &s->force[j];
+    double stretch = measure_member(s, j, force);
+    force->pose.acts = s->latest.pulling[j];
+    if (force->pose.acts)
+      strut_path_add_strain(s, force,
+                            s->equations.rates.stiffness[j] * stretch -
+                                force->pose.slope * s->equations.rates.rest[j]);
+    else
+      force->pose.force = 0.0;
   }
 }
 
@@ -303,15 +303,15 @@ bool strut_path_evaluate(strut_path_system *s, const double *y) { return evaluat
 
 void strut_path_reactions(const strut_path_system *s, double *reaction, double *contact,
                           double *friction) {
-  const strut_member_table *t = &s->model->members;
   for (int32_t at = 0; at < s->model->length; at++) reaction[at] = -s->equations.terms.force[at];
-  for (int32_t j = 0; j < t->count; j++) {
-    const strut_path_member *m = &s->member[j];
-    double fx = m->tension * m->ux, fy = m->tension * m->uy;
-    reaction[t->from[j]] -= fx, reaction[t->from[j] + 1] -= fy;
-    reaction[t->to[j]] += fx, reaction[t->to[j] + 1] += fy;
+  for (int32_t i = 0; i < strut_force_count(s->model, false); i++) {
+    const strut_force *force = &s->force[i];
+    bool element = force->kind == STRUT_FORCE_ELEMENT;
+    bool rubs = element && force->pose.acts && strut_path_rubs(s, force->index);
+    if (rubs) strut_path_rubbing_reactions(s, force->index, reaction);
+    for (int32_t k = 0; k < 2 * force->nodes && !rubs; k++)
+      reaction[strut_force_coordinate(force, k)] += force->pose.force * force->pose.b[k];
   }
-  strut_path_element_reactions(s, reaction);
   strut_path_contact_reactions(s, reaction, contact, friction);
   for (int32_t at = 0; at < s->model->length; at++)
     reaction[at] =
@@ -448,7 +448,7 @@ static double measure_ahead(const strut_path_system *s, int32_t j) {
 
 void strut_path_keep_directions(strut_path_system *s) {
   for (int32_t j = 0; j < s->model->members.count; j++)
-    s->latest.ahead[2 * j] = s->member[j].ux, s->latest.ahead[2 * j + 1] = s->member[j].uy;
+    memcpy(&s->latest.ahead[2 * j], &s->force[j].pose.b[2], 2 * sizeof(double));
 }
 
 void strut_path_forget_directions(strut_path_system *s) {
@@ -458,7 +458,7 @@ void strut_path_forget_directions(strut_path_system *s) {
 double strut_path_switch_value(strut_path_system *s, int32_t which, const double *y) {
   int32_t members = s->model->members.count, elements = strut_path_first_element_switch(s);
   int32_t corners = strut_path_first_corner_switch(s), grips = strut_path_first_grip_switch(s);
-  strut_path_member m;
+  strut_force member;
   bool turns = strut_path_turns_round(s, which);
   if (which < members && !turns && !is_plain_cable(s->model, which)) return -HUGE_VAL;
   if (!place(s, y)) return (double)NAN;
@@ -466,7 +466,7 @@ double strut_path_switch_value(strut_path_system *s, int32_t which, const double
   if (which >= elements) return strut_path_element_switch_value(s, which - elements);
   if (which >= grips) return strut_path_grip_switch_value(s, which - grips);
   if (which >= corners) return strut_path_corner_value(s, which - corners);
-  return which < members ? measure_member(s, which, &m)
+  return which < members ? measure_member(s, which, &member)
                          : strut_path_contact_switch_value(s, which - members);
 }
 

@@ -169,71 +169,54 @@ typedef struct sums {
   int32_t touching;
 } sums;
 
-/* Along the member into the elastic part, across it into the geometric one. */
-static void add_member(void *context, int32_t j, const strut_member_tangent *m) {
-  sums *s = context;
-  const strut_vec2 u = m->pose.unit, turned = {u.y, -u.x};
-  int32_t row[4];
-  strut_member_rows(s->model, s->row_of, j, row);
-  if (!(m->pose.length > 0.0)) { /* an isotropic spring, or no direction */
-    const strut_stiffness_block all = strut_block_of(m->across, m->across, u);
-    if (m->across > 0.0) strut_block_add(&all, STRUT_MEMBER_ENTRIES, row, &s->elastic);
+/* Along its strain into the elastic part, across it into the geometric one; contacts into one of their own. */
+static void add_force(sums *s, const strut_force *force) {
+  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  int32_t n = 2 * force->nodes;
+  bool contact = force->kind == STRUT_FORCE_CONTACT;
+  strut_triplets *elastic = contact ? &s->contact : &s->elastic;
+  s->touching += contact;
+  if (contact || !(force->pose.strain > 0.0 || force->kind == STRUT_FORCE_ELEMENT)) {
+    strut_force_stiffness(s->model, force, s->q,
+                          k); /* or an isotropic spring, which has no direction */
+    if (contact || force->across > 0.0) strut_force_add(force, k, s->row_of, elastic);
     return;
   }
-  const strut_stiffness_block along = strut_block_of(m->along, 0.0, u);
-  const strut_stiffness_block across = strut_block_of(m->across, 0.0, turned);
-  strut_block_add(&along, STRUT_MEMBER_ENTRIES, row, &s->elastic);
-  strut_block_add(&across, STRUT_MEMBER_ENTRIES, row, &s->geometric);
-}
-
-static void add_element(void *context, int32_t i, const strut_element_pose *pose) {
-  sums *s = context;
-  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
-  int32_t n = 2 * s->model->elements.element[i].nodes;
-  for (int32_t r = 0; r < n; r++)
-    for (int32_t c = 0; c < n; c++) k[r * n + c] = pose->slope * pose->b[r] * pose->b[c];
-  strut_element_add(s->model, i, k, s->row_of, &s->elastic);
+  strut_force_square(force, force->pose.slope, k);
+  strut_force_add(force, k, s->row_of, elastic);
   memset(k, 0, (size_t)(n * n) * sizeof *k);
-  strut_element_bend(s->model, i, s->q, pose->force, k);
-  strut_element_add(s->model, i, k, s->row_of, &s->geometric);
+  strut_force_bend(s->model, force, s->q, 1.0, k);
+  strut_force_add(force, k, s->row_of, &s->geometric);
 }
 
-static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
-  sums *s = context;
-  const strut_contact_table *c = &s->model->contacts;
-  const strut_stiffness_block block =
-      strut_block_of_pose(contact->stiffness, contact->across, &contact->axes);
-  strut_block_add(&block, STRUT_CONTACT_ENTRIES, s->row_of + c->at[i], &s->contact);
-  s->touching++;
+/* Masses at the ends of a member, and what both share. */
+static void add_ends(sums *s, const uint32_t end[2], double first, double second, double shared) {
+  for (uint32_t k = 0; k < 2; k++) {
+    int32_t a = s->row_of[end[0] + k], b = s->row_of[end[1] + k];
+    if (a >= 0) strut_triplets_add(&s->mass, a, a, first);
+    if (b >= 0) strut_triplets_add(&s->mass, b, b, second);
+    if (a >= 0 && b >= 0 && shared > 0.0) strut_triplets_add(&s->mass, a, b, shared);
+  }
 }
 
-static void add_mass(const strut_model *model, sums *s) {
+static void add_masses(const strut_model *model, sums *s) {
   const strut_member_table *t = &model->members;
   bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
   for (int32_t at = 0; at < 2 * model->node_count; at++) {
     int32_t row = s->row_of[at];
     if (row >= 0) strut_triplets_add(&s->mass, row, row, model->point_mass[at / 2]);
   }
-  for (int32_t j = 0; j < t->count; j++)
-    for (uint32_t k = 0; k < 2; k++) {
-      int32_t a = s->row_of[t->from[j] + k], b = s->row_of[t->to[j] + k];
-      double own = consistent ? t->mass[j] / 3.0 : t->mass[j] / 2.0;
-      if (a >= 0) strut_triplets_add(&s->mass, a, a, own);
-      if (b >= 0) strut_triplets_add(&s->mass, b, b, own);
-      if (a >= 0 && b >= 0 && consistent) strut_triplets_add(&s->mass, a, b, t->mass[j] / 6.0);
-    }
-}
-
-static void add_sliding_masses(const strut_model *model, sums *s) {
-  for (int32_t i = 0; i < model->sliding.count; i++)
-    for (uint32_t k = 0; k < 2; k++) {
-      const strut_sliding_item *item = &model->sliding.item[i];
-      int32_t a = s->row_of[item->at[0] + k], b = s->row_of[item->at[1] + k];
-      double far = item->start, near = 1.0 - far;
-      if (a >= 0) strut_triplets_add(&s->mass, a, a, item->mass * near * near);
-      if (b >= 0) strut_triplets_add(&s->mass, b, b, item->mass * far * far);
-      if (a >= 0 && b >= 0) strut_triplets_add(&s->mass, a, b, item->mass * near * far);
-    }
+  for (int32_t j = 0; j < t->count; j++) {
+    const uint32_t end[2] = {t->from[j], t->to[j]};
+    double own = consistent ? t->mass[j] / 3.0 : t->mass[j] / 2.0;
+    add_ends(s, end, own, own, consistent ? t->mass[j] / 6.0 : 0.0);
+  }
+  for (int32_t i = 0; i < model->sliding.count; i++) {
+    const strut_sliding_item *item = &model->sliding.item[i];
+    double far = item->start, near = 1.0 - far;
+    add_ends(s, item->at, item->mass * near * near, item->mass * far * far,
+             item->mass * near * far);
+  }
 }
 
 static bool reserve(const strut_model *model, sums *s, strut_arena *scratch) {
@@ -243,7 +226,7 @@ static bool reserve(const strut_model *model, sums *s, strut_arena *scratch) {
                                 scratch) &&
          strut_triplets_reserve(&s->elastic, most + 1, scratch) &&
          strut_triplets_reserve(&s->geometric, most + 1, scratch) &&
-         strut_triplets_reserve(&s->contact, STRUT_CONTACT_ENTRIES * contacts + 1, scratch);
+         strut_triplets_reserve(&s->contact, 3 * contacts + 1, scratch);
 }
 
 strut_status strut_linear_matrices_build(const strut_model *model, const double *q,
@@ -257,10 +240,13 @@ strut_status strut_linear_matrices_build(const strut_model *model, const double 
   strut_status status = STRUT_NO_MEMORY;
   if (s.row_of && coordinate && reserve(model, &s, &scratch)) {
     int32_t n = matrices->n = strut_number_free(model, NULL, s.row_of, coordinate);
-    add_mass(model, &s);
-    add_sliding_masses(model, &s);
-    strut_tangent_visit(model, q, model->members.rest, -HUGE_VAL, STRUT_CLOSED_TOUCHING, &s,
-                        add_member, add_element, add_contact);
+    add_masses(model, &s);
+    strut_force_visit visit = {.model = model,
+                               .q = q,
+                               .rest = model->members.rest,
+                               .least = -HUGE_VAL,
+                               .closed = STRUT_CLOSED_TOUCHING};
+    for (const strut_force *force; (force = strut_force_next(&visit));) add_force(&s, force);
     matrices->mass = strut_sparse_build(n, &s.mass, arena);
     matrices->elastic = strut_sparse_build(n, &s.elastic, arena);
     matrices->geometric = strut_sparse_build(n, &s.geometric, arena);
