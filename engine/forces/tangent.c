@@ -163,15 +163,19 @@ void strut_force_add(const strut_force *force, const double *matrix, const int32
     }
 }
 
+/* A place k on the diagonal that an entry meets from both sides is BOTH - k. */
+enum { BOTH = -2 };
+
 void strut_force_scatter(const strut_force *force, const double *matrix, const int32_t *place,
                          double *value) {
   int32_t n = 2 * force->nodes;
   place += force->place;
   for (int32_t r = 0; r < n; r++)
-    for (int32_t c = 0; c <= r; c++, place++) {
-      bool both = r != c && strut_force_coordinate(force, r) == strut_force_coordinate(force, c);
-      if (*place >= 0) value[*place] += (both ? 2.0 : 1.0) * matrix[r * n + c];
-    }
+    for (int32_t c = 0; c <= r; c++, place++)
+      if (*place >= 0)
+        value[*place] += matrix[r * n + c];
+      else if (*place <= BOTH)
+        value[BOTH - *place] += 2.0 * matrix[r * n + c];
 }
 
 int32_t strut_number_free(const strut_model *model, const uint8_t *held, int32_t *row_of,
@@ -209,8 +213,10 @@ static int32_t find_place(const strut_sparse *pattern, int32_t row, int32_t colu
   return low;
 }
 
-static int32_t place_of(const strut_sparse *pattern, int32_t a, int32_t b) {
-  return a < 0 || b < 0 ? -1 : a > b ? find_place(pattern, a, b) : find_place(pattern, b, a);
+static int32_t place_of(const strut_sparse *pattern, int32_t a, int32_t b, bool diagonal) {
+  if (a < 0 || b < 0) return -1;
+  int32_t place = a > b ? find_place(pattern, a, b) : find_place(pattern, b, a);
+  return a == b && !diagonal ? BOTH - place : place;
 }
 
 void strut_tangent_find_places(const strut_model *model, const int32_t *row_of, bool contacts,
@@ -221,7 +227,7 @@ void strut_tangent_find_places(const strut_model *model, const int32_t *row_of, 
     for (int32_t r = 0; r < 2 * force.nodes; r++)
       for (int32_t c = 0; c <= r; c++)
         *place++ = place_of(pattern, row_of[strut_force_coordinate(&force, r)],
-                            row_of[strut_force_coordinate(&force, c)]);
+                            row_of[strut_force_coordinate(&force, c)], r == c);
   }
 }
 

@@ -99,7 +99,7 @@ STRUT_INLINE void strut_member_stiffness(double along, double across, strut_vec2
 /** Adds the lower triangle of a matrix (2 nodes, 2 nodes) of a force to the triplets. */
 void strut_force_add(const strut_force *force, const double *matrix, const int32_t *row_of,
                      strut_triplets *sum);
-/** The same to the values of a pattern; place: those of all forces, -1 where held. */
+/** The same to the values of a pattern; place: those of all forces, of strut_tangent_find_places. */
 void strut_force_scatter(const strut_force *force, const double *matrix, const int32_t *place,
                          double *value);
 

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/model/compile_parts.h"
+
 static void sum_forces(strut_potential *p) {
   const strut_model *model = p->model;
   const strut_scene *scene = model->scene;
@@ -35,30 +37,63 @@ static bool make_pattern(strut_potential *p) {
   return true;
 }
 
-strut_status strut_potential_create(const strut_model *model, const uint8_t *held, bool ground,
-                                    strut_potential **potential, strut_error *error) {
+static strut_status create(const strut_model *model, const uint8_t *held, const int32_t *rows,
+                           int32_t n, bool ground, strut_potential **potential,
+                           strut_error *error) {
   size_t length = (size_t)model->length;
   strut_potential *p = *potential = strut_allocate(1, sizeof *p);
-  if (!p) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!p) return strut_no_memory(error, "");
   p->model = model;
   p->ground = ground;
   p->coordinate = strut_arena_allocate(&p->arena, length, sizeof *p->coordinate);
   p->row_of = strut_arena_allocate(&p->arena, length, sizeof *p->row_of);
   p->force = strut_arena_allocate(&p->arena, length, sizeof *p->force);
   if (p->coordinate && p->row_of && p->force) {
-    p->n = strut_number_free(model, held, p->row_of, p->coordinate);
+    p->n = rows ? n : strut_number_free(model, held, p->row_of, p->coordinate);
+    for (int32_t at = model->length - 1; at >= 0 && rows; at--)
+      if ((p->row_of[at] = rows[at]) >= 0) p->coordinate[rows[at]] = at;
     sum_forces(p);
     if (make_pattern(p)) return STRUT_OK;
   }
   strut_potential_free(p);
   *potential = NULL;
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return strut_no_memory(error, "");
+}
+
+strut_status strut_potential_create(const strut_model *model, const uint8_t *held, bool ground,
+                                    strut_potential **potential, strut_error *error) {
+  return create(model, held, NULL, 0, ground, potential, error);
+}
+
+strut_status strut_potential_create_tied(const strut_model *model, const int32_t *rows, int32_t n,
+                                         strut_potential **potential, strut_error *error) {
+  return create(model, NULL, rows, n, false, potential, error);
+}
+
+void strut_potential_move(const strut_potential *p, const double *step, double factor,
+                          const double *q, double *to) {
+  for (int32_t at = 0; at < p->model->length; at++)
+    to[at] = p->row_of[at] < 0 ? q[at] : q[at] + factor * step[p->row_of[at]];
 }
 
 void strut_potential_free(strut_potential *potential) {
   if (!potential) return;
   strut_arena_free(&potential->arena);
   strut_release(potential);
+}
+
+/* Minus moment times angle of constant couples at q [J], each angle nearest to that in the shape `near`. */
+static double couples_potential(const strut_model *model, const double *near, const double *q) {
+  double sum = 0.0, b[STRUT_MOST_GRADIENT];
+  strut_element_pose pose;
+  for (int32_t i = 0; i < model->elements.count && model->elements.couples; i++) {
+    const strut_element *e = &model->elements.element[i];
+    if (e->role != STRUT_ELEMENT_LOAD) continue;
+    double at = strut_element_strain(model, i, near, strut_element_start(model, i), b);
+    strut_element_evaluate(model, i, model->members.rest, q, at, &pose);
+    sum += pose.energy;
+  }
+  return sum;
 }
 
 static double elastic_energy(const strut_potential *p, const double *q) {
@@ -84,7 +119,7 @@ double strut_potential_value_near(const strut_potential *p, const double *q, con
     double gap = strut_contact_gap(c, i, q);
     if (gap < 0.0) sum += 0.5 * c->entry[i].stiffness * gap * gap;
   }
-  return sum - work + strut_couples_potential(p->model, near, q);
+  return sum - work + couples_potential(p->model, near, q);
 }
 
 double strut_potential_energy(const strut_potential *p, const double *q) {
@@ -114,7 +149,9 @@ void strut_potential_force(const strut_potential *p, const double *q, double *su
 /* The same sums in the same order as the force, kept where they are free. */
 void strut_potential_gradient(const strut_potential *p, const double *q, double *g) {
   strut_force_visit visit = strut_potential_visit(p, q, -HUGE_VAL);
-  for (int32_t i = 0; i < p->n; i++) g[i] = -p->force[p->coordinate[i]];
+  for (int32_t i = 0; i < p->n; i++) g[i] = 0.0;
+  for (int32_t at = 0; at < p->model->length; at++)
+    if (p->row_of[at] >= 0) g[p->row_of[at]] -= p->force[at];
   for (const strut_force *force; (force = strut_force_next(&visit));)
     for (int32_t k = 0; k < 2 * force->nodes; k++) {
       int32_t row = p->row_of[strut_force_coordinate(force, k)];
@@ -144,6 +181,22 @@ double strut_potential_rounding(const strut_potential *p, const double *q) {
     if (free) largest = fmax(largest, bits);
   }
   return largest + forces * DBL_EPSILON;
+}
+
+double strut_element_stiffest(const strut_model *model, int32_t element) {
+  assert(element >= 0 && element < model->elements.count);
+  static const double places[] = {-0.3, -0.1, -0.01, 0.0, 0.01, 0.1, 0.3};
+  const strut_element *e = &model->elements.element[element];
+  double natural = strut_element_start(model, element), stiffest = 0.0;
+  double size = model->size > 0.0 ? model->size : 1.0;
+  bool angle = e->strain == STRUT_STRAIN_ANGLE;
+  if (e->strain == STRUT_STRAIN_AREA) return e->numbers.stiffness * size * size;
+  for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
+    double x = places[k] * (angle ? 1.0 : natural > 0.0 ? natural : size);
+    double slope = strut_law_respond(e->law, &e->numbers, natural + x, natural, -1).slope;
+    stiffest = fmax(stiffest, fabs(slope));
+  }
+  return angle ? stiffest / (size * size) : stiffest;
 }
 
 double strut_stiffest(const strut_model *model) {
@@ -178,4 +231,37 @@ void strut_potential_hessian_above(const strut_potential *p, const double *q, do
     strut_force_stiffness(p->model, force, q, matrix);
     strut_force_scatter(force, matrix, p->place, hessian->value);
   }
+}
+
+bool strut_force_has_collapsed(const strut_model *model, double share, const double *q,
+                               strut_force *force) {
+  const strut_member_table *t = &model->members;
+  const strut_element_pose *pose = &force->pose;
+  int32_t i = force->index;
+  if (force->kind == STRUT_FORCE_MEMBER)
+    return t->slack[i] != 0.0 && t->rest[i] * t->stiffness[i] > 0.0 &&
+           strut_member_length(t, i, q) < share * t->rest[i];
+  if (force->kind == STRUT_FORCE_CONTACT) return false;
+  const strut_element *own = &model->elements.element[i];
+  if (own->strain != STRUT_STRAIN_LENGTH || own->carries > 0) return false;
+  strut_element_evaluate(model, i, t->rest, q, (double)NAN, &force->pose);
+  return pose->strain < share * pose->natural && pose->force < 0.0;
+}
+
+/* True where an arm of some hinge is all but gone beside what it is at the start: its angle has no meaning then. */
+static bool have_hinges_collapsed(const strut_model *model, const double *q) {
+  const double gone = 1e-4; /* of the arm at the start */
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    const uint32_t *at = model->elements.at + e->first;
+    for (int k = 1; k < e->nodes && e->strain == STRUT_STRAIN_ANGLE; k++)
+      if (strut_distance(q + at[k], q + at[k - 1]) <
+          gone * strut_distance(model->start + at[k], model->start + at[k - 1]))
+        return true;
+  }
+  return false;
+}
+
+bool strut_shape_has_collapsed(const strut_model *model, const double *q) {
+  return have_hinges_collapsed(model, q) || strut_cell_that_collapsed(model, q) >= 0;
 }

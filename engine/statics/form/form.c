@@ -63,23 +63,6 @@ strut_status strut_form_set_force(strut_former *f, size_t j, double force, strut
   return STRUT_OK;
 }
 
-void strut_form_name_nodes(const strut_former *f, const uint8_t *marked, char *text, size_t size) {
-  assert(size > 20);
-  size_t used = 0, left = 0, room = size - 20;
-  *text = '\0';
-  for (size_t i = 0; i < f->scene->node_count; i++) {
-    if (!marked[i]) continue;
-    size_t need = strlen(f->scene->nodes[i].name) + 2;
-    if (left || used + need >= room) {
-      left++;
-      continue;
-    }
-    used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "",
-                             f->scene->nodes[i].name);
-  }
-  if (left) snprintf(text + used, size - used, " and %zu more", left);
-}
-
 /*
  * The force density method (Schek 1974): with densities q = force / length equilibrium is linear in
  * the positions, D x = f. Where that determines no shape, the nearest pair of shape and densities.

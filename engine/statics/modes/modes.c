@@ -92,6 +92,25 @@ static double remove_shares(const strut_modes_work *work, const double *vectors,
   return mass_product(work, x, x);
 }
 
+/* The rigid motions that supports and closed contacts leave, orthonormal in the mass. */
+static strut_status find_rigid(strut_modes_work *work, strut_error *error) {
+  const strut_vibration *v = work->v;
+  size_t n = (size_t)v->n;
+  work->rigid = strut_arena_allocate(work->arena, 3 * n, sizeof *work->rigid);
+  if (!work->rigid) return strut_no_memory(error, "");
+  int32_t count = strut_rigid_motions(v->shape, v->q, v->closed, work->rigid);
+  work->rigid_count = 0;
+  for (int32_t k = 0; k < count; k++) {
+    double *x = work->rigid + (size_t)work->rigid_count * n;
+    memmove(x, work->rigid + (size_t)k * n, n * sizeof *x);
+    double square = remove_shares(work, work->rigid, work->rigid_count, x);
+    if (!(square > 0)) continue;
+    for (size_t i = 0; i < n; i++) x[i] /= sqrt(square);
+    work->rigid_count++;
+  }
+  return STRUT_OK;
+}
+
 /*
  * The motions without stiffness, rearranged: first the rigid ones among them, then the rest.
  * Returns how many are rigid, or -1 when memory is out.
@@ -242,7 +261,7 @@ static strut_status solve_modes(strut_modes_work *work, int32_t wanted, strut_mo
   if (!work->set.noise || !work->set.error || !work->set.residual)
     return strut_no_memory(error, "");
   status = strut_modes_noise(work, modes->at_rest, error);
-  if (status == STRUT_OK) status = strut_modes_rigid(work, error);
+  if (status == STRUT_OK) status = find_rigid(work, error);
   if (status == STRUT_OK) status = strut_modes_measure(work, error);
   if (status == STRUT_OK && work->solver.no_memory) status = strut_no_memory(error, "");
   return status ? status : fill_modes(work, wanted, modes, error);

@@ -157,9 +157,6 @@ strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error
 /** Eigenvalues from strains, and their errors. */
 strut_status strut_modes_measure(strut_modes_work *work, strut_error *error);
 
-/** The rigid motions that supports and closed contacts leave. */
-strut_status strut_modes_rigid(strut_modes_work *work, strut_error *error);
-
 /** Damping of the modes into the list; `exactly`: the set holds all modes. */
 strut_status strut_modes_damping(const strut_modes_work *work, bool exactly, strut_mode *list,
                                  strut_error *error);

@@ -12,7 +12,7 @@
 enum { MOST_STEPS = 8, SAMPLES = 3 };
 
 static void move(strut_vibration *v, double *positions, const double *step, double sign) {
-  for (int32_t i = 0; i < v->n; i++) positions[v->shape->coordinate[i]] += sign * step[i];
+  strut_potential_move(v->shape, step, sign, positions, positions);
   strut_vibration_update(v);
 }
 

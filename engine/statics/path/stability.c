@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 
-#include <gsl/gsl_blas.h>
 #include <gsl/gsl_sort_vector.h>
 #include <math.h>
+#include <string.h>
 
 /*
  * Eigenvalues of the stiffness. The dense method is good to the last bit of the largest eigenvalue:
@@ -30,9 +31,9 @@ static double held_motion(const strut_path_system *s, int32_t k, size_t mode) {
 }
 
 /* The stiffness seen by the modes first, first + 1, ... */
-static void project(strut_path_system *s, size_t first, gsl_matrix *ritz) {
-  double noise[MOST_SOFT] = {0}, along[MOST_SOFT], sum[MOST_SOFT * MOST_SOFT] = {0};
-  size_t count = ritz->size1;
+static void project(strut_path_system *s, size_t first, size_t count, double *sum) {
+  double noise[MOST_SOFT] = {0}, along[MOST_SOFT];
+  memset(sum, 0, count * count * sizeof *sum);
   strut_mode_form form = {.model = s->model,
                           .row_of = s->potential->row_of,
                           .count = (int32_t)count,
@@ -50,34 +51,22 @@ static void project(strut_path_system *s, size_t first, gsl_matrix *ritz) {
       for (size_t l = 0; l <= k; l++) sum[k * count + l] += s->held.by * along[k] * along[l];
   }
   for (size_t k = 0; k < count; k++)
-    for (size_t l = 0; l < count; l++)
-      gsl_matrix_set(ritz, k, l, sum[k > l ? k * count + l : l * count + k]);
+    for (size_t l = 0; l < k; l++) sum[l * count + k] = sum[k * count + l];
   s->spectrum.soft_parts = form.part;
 }
 
 /* Ritz values and vectors in place of the soft eigenvalues; false: out of memory. */
 static bool refine(strut_path_system *s, size_t first, size_t count) {
-  gsl_matrix *ritz = gsl_matrix_alloc(count, count), *turn = gsl_matrix_alloc(count, count);
-  gsl_matrix *turned = gsl_matrix_alloc((size_t)s->n, count);
-  gsl_vector *values = gsl_vector_alloc(count);
-  gsl_eigen_symmv_workspace *eigen = gsl_eigen_symmv_alloc(count);
-  bool made = ritz && turn && turned && values && eigen;
-  if (made) {
-    project(s, first, ritz);
-    gsl_eigen_symmv(ritz, values, turn, eigen);
-    gsl_eigen_symmv_sort(values, turn, GSL_EIGEN_SORT_VAL_ASC);
-    gsl_matrix_view soft = gsl_matrix_submatrix(s->algebra.vectors, 0, first, (size_t)s->n, count);
-    gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1.0, &soft.matrix, turn, 0.0, turned);
-    gsl_matrix_memcpy(&soft.matrix, turned);
-    for (size_t k = 0; k < count; k++)
-      gsl_vector_set(s->algebra.values, first + k, gsl_vector_get(values, k));
+  double form[MOST_SOFT * MOST_SOFT], turn[MOST_SOFT * MOST_SOFT], row[MOST_SOFT];
+  project(s, first, count, form);
+  if (!strut_symmetric_eigen(form, count, row, turn)) return false;
+  for (size_t k = 0; k < count; k++) gsl_vector_set(s->algebra.values, first + k, row[k]);
+  for (size_t i = 0; i < (size_t)s->n; i++) {
+    double *soft = gsl_matrix_ptr(s->algebra.vectors, i, first);
+    memcpy(row, soft, count * sizeof *row);
+    for (size_t k = 0; k < count; k++) soft[k] = strut_dot(turn + k * count, row, (ptrdiff_t)count);
   }
-  gsl_matrix_free(ritz);
-  gsl_matrix_free(turn);
-  gsl_matrix_free(turned);
-  gsl_vector_free(values);
-  gsl_eigen_symmv_free(eigen);
-  return made;
+  return true;
 }
 
 /* The largest stiffness that tension lends: what a soft eigenvalue is a difference of. */

@@ -5,7 +5,6 @@
 
 #include <assert.h>
 #include <gsl/gsl_blas.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <string.h>
 
@@ -21,21 +20,20 @@ static const double LOOSE = 1e-8;      /* of the forces: what a motion without s
 static const double FRESH = 1e-3;      /* of the range: rates from so near by do for a correction */
 
 static bool make_matrices(strut_path_system *s) {
+  strut_arena *arena = &s->arena;
   size_t unknowns = (size_t)s->n + 1; /* all may be held: then the parameter alone is unknown */
   size_t n = s->n > 0 ? (size_t)s->n : 1;
-  s->algebra.hessian = gsl_matrix_alloc(n, n);
-  s->algebra.work = gsl_matrix_alloc(n, n);
-  s->algebra.vectors = gsl_matrix_alloc(n, n);
-  s->algebra.values = gsl_vector_alloc(n);
   s->algebra.eigen = gsl_eigen_symmv_alloc(n);
   s->algebra.values_only = gsl_eigen_symm_alloc(n);
-  s->algebra.bordered = gsl_matrix_alloc(unknowns, unknowns);
-  s->algebra.right = gsl_vector_alloc(unknowns);
-  s->algebra.solution = gsl_vector_alloc(unknowns);
-  s->algebra.order = gsl_permutation_alloc(unknowns);
-  return s->algebra.hessian && s->algebra.work && s->algebra.vectors && s->algebra.values &&
-         s->algebra.eigen && s->algebra.values_only && s->algebra.bordered && s->algebra.right &&
-         s->algebra.solution && s->algebra.order;
+  return (s->algebra.hessian = strut_arena_matrix(arena, n, n)) &&
+         (s->algebra.work = strut_arena_matrix(arena, n, n)) &&
+         (s->algebra.vectors = strut_arena_matrix(arena, n, n)) &&
+         (s->algebra.values = strut_arena_vector(arena, n)) &&
+         (s->algebra.bordered = strut_arena_matrix(arena, unknowns, unknowns)) &&
+         (s->algebra.right = strut_arena_vector(arena, unknowns)) &&
+         (s->algebra.solution = strut_arena_vector(arena, unknowns)) &&
+         (s->algebra.order = strut_arena_order(arena, unknowns)) && s->algebra.eigen &&
+         s->algebra.values_only;
 }
 
 static bool make_arrays(strut_path_system *s) {
@@ -70,14 +68,6 @@ strut_status strut_path_system_create(const strut_model *model, const uint8_t *h
 }
 
 void strut_path_system_free(strut_path_system *s) {
-  gsl_matrix_free(s->algebra.hessian);
-  gsl_matrix_free(s->algebra.work);
-  gsl_matrix_free(s->algebra.vectors);
-  gsl_matrix_free(s->algebra.bordered);
-  gsl_vector_free(s->algebra.values);
-  gsl_vector_free(s->algebra.right);
-  gsl_vector_free(s->algebra.solution);
-  gsl_permutation_free(s->algebra.order);
   gsl_eigen_symmv_free(s->algebra.eigen);
   gsl_eigen_symm_free(s->algebra.values_only);
   strut_potential_free(s->potential);
@@ -318,28 +308,20 @@ void strut_path_reactions(const strut_path_system *s, double *reaction, double *
         at < 2 * s->model->node_count && s->potential->row_of[at] < 0 ? 0.0 + reaction[at] : 0.0;
 }
 
-/* Solves [K + by slope; row] x = (top, bottom), rows brought to one size; false: singular. */
+/* Solves [K + by slope; row] x = (top, bottom); false: singular. */
 static bool solve_with(strut_path_system *s, const double *row, const double *top, double bottom,
                        double by) {
   size_t n = (size_t)s->n;
+  gsl_matrix *a = s->algebra.bordered;
   for (size_t i = 0; i <= n; i++) {
-    double most = 0;
-    for (size_t j = 0; j <= n; j++) {
-      double entry = i == n  ? row[j]
-                     : j < n ? s->size * (gsl_matrix_get(s->algebra.hessian, i, j) + (i == j) * by)
-                             : s->latest.slope[i];
-      gsl_matrix_set(s->algebra.bordered, i, j, entry);
-      most = fmax(most, fabs(entry));
-    }
-    if (!(most > 0) || !isfinite(most)) return false;
-    gsl_vector_set(s->algebra.right, i, (i == n ? bottom : top ? top[i] : 0.0) / most);
-    for (size_t j = 0; j <= n; j++) *gsl_matrix_ptr(s->algebra.bordered, i, j) /= most;
+    for (size_t j = 0; j < n; j++)
+      gsl_matrix_set(
+          a, i, j,
+          i == n ? row[j] : s->size * (gsl_matrix_get(s->algebra.hessian, i, j) + (i == j) * by));
+    gsl_matrix_set(a, i, n, i == n ? row[n] : s->latest.slope[i]);
+    gsl_vector_set(s->algebra.right, i, i == n ? bottom : top ? top[i] : 0.0);
   }
-  strut_lu_factor(s->algebra.bordered, s->algebra.order);
-  for (size_t i = 0; i <= n; i++)
-    if (gsl_matrix_get(s->algebra.bordered, i, i) == 0.0) return false;
-  return gsl_linalg_LU_solve(s->algebra.bordered, s->algebra.order, s->algebra.right,
-                             s->algebra.solution) == 0;
+  return strut_solve_rows(a, s->algebra.right, s->algebra.order, s->algebra.solution);
 }
 
 /* Do [K slope] x and `top` agree? */

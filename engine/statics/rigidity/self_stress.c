@@ -73,16 +73,9 @@ static size_t count_members(const double *row, size_t columns) {
  * left.
  */
 static bool add_if_independent(double *chosen, size_t count, size_t columns, const double *row) {
-  double *rest = chosen + count * columns, before = 0.0, after = 0.0;
+  double *rest = chosen + count * columns, before = strut_dot(row, row, (ptrdiff_t)columns);
   memcpy(rest, row, columns * sizeof *rest);
-  for (size_t k = 0; k < columns; k++) before += row[k] * row[k];
-  for (int twice = 0; twice < 2; twice++)
-    for (size_t i = 0; i < count; i++) {
-      double sum = 0.0;
-      for (size_t k = 0; k < columns; k++) sum += chosen[i * columns + k] * rest[k];
-      for (size_t k = 0; k < columns; k++) rest[k] -= sum * chosen[i * columns + k];
-    }
-  for (size_t k = 0; k < columns; k++) after += rest[k] * rest[k];
+  double after = strut_remove_shares(chosen, count, columns, rest);
   if (after <= 1e-8 * before) return false;
   for (size_t k = 0; k < columns; k++) rest[k] /= sqrt(after);
   return true;
@@ -229,11 +222,7 @@ static void measure_cables(search *s) {
   }
 }
 
-static double norm(const double *x, size_t n) {
-  double sum = 0.0;
-  for (size_t i = 0; i < n; i++) sum += x[i] * x[i];
-  return sqrt(sum);
-}
+static double norm(const double *x, size_t n) { return sqrt(strut_dot(x, x, (ptrdiff_t)n)); }
 
 /* The demand of the cable that is pressed most, relative to its coefficients; false: none is. */
 static bool demand_of_worst_cable(search *s) {
