@@ -3,11 +3,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/discrete_gradient.h"
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
+#include "engine/forces/drives/support_motion.h"
 #include "engine/forces/elements.h"
-#include "engine/forces/support_motion.h"
 #include "engine/forces/tangent.h"
+#include "engine/integrate/discrete_gradient.h"
 #include "engine/integrate/integrator.h"
 #include "engine/model/linear_solver.h"
 #include "engine/model/mass.h"

@@ -217,10 +217,10 @@ typedef struct strut_mode_form {
   int32_t count;         /* modes */
   const double *vector;
   size_t mode_step, row_step;
-  double *sum;   /* (count, count) lower triangle */
-  double *noise; /* (count) what rounding may have done to the diagonal */
-  double *along; /* (count) scratch */
-  double part;   /* the largest part that an element has in the diagonal */
+  double *sum;            /* (count, count) lower triangle */
+  double *noise;          /* (count) what rounding may have done to the diagonal */
+  double *along, *across; /* (count) scratch */
+  double part;            /* the largest part that an element has in the diagonal */
 } strut_mode_form;
 void strut_mode_form_add(strut_mode_form *form, const strut_force *force, const double *q);
 

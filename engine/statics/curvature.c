@@ -176,10 +176,8 @@ static void split_gradient(dense_curvature *r, const double *g, double still) {
   size_t n = (size_t)r->now.n;
   for (size_t i = 0; i < n; i++) {
     const double *mode = r->now.vector + i * n;
-    double sum = 0.0;
-    for (size_t k = 0; k < n; k++) sum += mode[k] * g[k];
-    r->part[i] = sum;
-    r->idle[i] = fabs(r->now.value[i]) <= 4.0 * r->now.noise[i] && fabs(sum) <= still;
+    r->part[i] = strut_dot(mode, g, r->now.n);
+    r->idle[i] = fabs(r->now.value[i]) <= 4.0 * r->now.noise[i] && fabs(r->part[i]) <= still;
   }
 }
 
@@ -249,10 +247,9 @@ static bool dense_rebalance(void *memory, const double *g, double *s) {
   bool any = false;
   for (size_t i = 0; i < n; i++) {
     const double *mode = r->now.vector + i * n;
-    double sum = 0.0;
     if (!(r->now.value[i] > stiff)) continue;
-    for (size_t k = 0; k < n; k++) sum += mode[k] * g[k];
-    for (size_t k = 0; k < n; k++) s[k] -= sum / r->now.value[i] * mode[k];
+    double share = strut_dot(mode, g, r->now.n) / r->now.value[i];
+    for (size_t k = 0; k < n; k++) s[k] -= share * mode[k];
     any = true;
   }
   return any;

@@ -16,8 +16,8 @@ struct strut_spectrum_workspace {
   double *raw, *value, *noise; /* (n) */
   double *work;                /* (n) */
   double *vector, *turned;     /* (n, n) */
-  double *along, *form_noise;  /* (n) of one force in each soft mode; noise of the form */
-  int32_t *order;              /* (n) */
+  double *along, *across, *form_noise; /* (n) of one force in each soft mode; noise of the form */
+  int32_t *order;                      /* (n) */
 };
 
 static double *numbers(strut_arena *arena, size_t count) {
@@ -50,8 +50,8 @@ strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential
   room->potential = potential;
   room->uneven = is_uneven(potential->model);
   double **square[] = {&room->soft, &room->vector, &room->turned};
-  double **line[] = {&room->raw,  &room->value, &room->noise,
-                     &room->work, &room->along, &room->form_noise};
+  double **line[] = {&room->raw,   &room->value,  &room->noise,     &room->work,
+                     &room->along, &room->across, &room->form_noise};
   bool good = true;
   for (size_t i = 0; i < sizeof square / sizeof square[0]; i++)
     good = good && (*square[i] = numbers(&room->arena, n * n));
@@ -101,23 +101,34 @@ static double moved(const strut_mode_form *form, int32_t mode, const strut_force
                  : form->vector[(size_t)mode * form->mode_step + (size_t)row * form->row_step];
 }
 
-/*
- * Adds stiffness x x', where x is how a force is strained, or turned, along b in the modes; and to each mode's noise
- * what the rounding of both amounts to. A member is by what its ends move apart, which a motion of both does not blur.
- */
-static void add_square(strut_mode_form *form, const strut_force *force, const double *b,
-                       double stiffness, double uncertain) {
+/* How a force is strained along b in a mode. A member is by what its ends move apart, which a motion of both does not blur. */
+static double change_of(const strut_mode_form *form, int32_t mode, const strut_force *force,
+                        const double *b) {
   bool member = force->kind == STRUT_FORCE_MEMBER;
-  const double bits = 8.0 * DBL_EPSILON, size = fabs(stiffness);
-  double *x = form->along;
+  double sum = 0.0;
+  for (int32_t k = member ? 2 : 0; k < 2 * force->nodes; k++)
+    sum += b[k] * (moved(form, mode, force, k) - (member ? moved(form, mode, force, k - 2) : 0.0));
+  return sum;
+}
+
+/*
+ * Adds slope x x' + across y y', where a force is strained by x along b and turns by y along side; and to each mode's
+ * noise what the rounding of both amounts to.
+ */
+static void add_squares(strut_mode_form *form, const strut_force *force, const double *b,
+                        double slope, const double *side, double uncertain) {
+  const double bits = 8.0 * DBL_EPSILON, turn = force->across, size = fabs(turn);
+  double *x = form->along, *y = form->across;
   for (int32_t i = 0; i < form->count; i++) {
-    x[i] = 0.0;
-    for (int32_t k = member ? 2 : 0; k < 2 * force->nodes; k++)
-      x[i] += b[k] * (moved(form, i, force, k) - (member ? moved(form, i, force, k - 2) : 0.0));
-    for (int32_t k = 0; k <= i; k++) form->sum[i * form->count + k] += stiffness * x[i] * x[k];
+    bool turns = force->kind == STRUT_FORCE_MEMBER || turn != 0.0;
+    x[i] = change_of(form, i, force, b);
+    y[i] = turns ? change_of(form, i, force, side) : 0.0;
+    for (int32_t k = 0; k <= i; k++)
+      form->sum[i * form->count + k] += slope * x[i] * x[k] + turn * y[i] * y[k];
     /* modes are known to some last bits, and so is what a member stretches and turns in them */
-    form->noise[i] += bits * size * fabs(x[i]) * (fabs(x[i]) + bits) + bits * bits * size +
-                      uncertain * x[i] * x[i];
+    form->noise[i] += bits * (slope * fabs(x[i]) * (fabs(x[i]) + bits) +
+                              size * fabs(y[i]) * (fabs(y[i]) + bits)) +
+                      bits * bits * (slope + size) + uncertain * y[i] * y[i];
   }
 }
 
@@ -167,11 +178,8 @@ void strut_mode_form_add(strut_mode_form *form, const strut_force *force, const 
     if (length == 0.0) slope = force->across;
     if (length != 0.0) uncertain = slope * strut_coordinate_rounding(from, to) / fabs(length);
   }
-  add_square(form, force, b, slope, 0.0);
-  if (force->kind == STRUT_FORCE_ELEMENT)
-    add_bend(form, force, q);
-  else if (force->across != 0.0 || uncertain > 0.0)
-    add_square(form, force, side, force->across, uncertain);
+  add_squares(form, force, b, slope, side, uncertain);
+  if (force->kind == STRUT_FORCE_ELEMENT) add_bend(form, force, q);
 }
 
 /* Replaces the first `count` eigenpairs by those of the form summed member by member. */
@@ -187,7 +195,8 @@ static bool refine(strut_spectrum_workspace *room, const double *q, int32_t coun
                           .row_step = 1,
                           .sum = room->soft,
                           .noise = room->form_noise,
-                          .along = room->along};
+                          .along = room->along,
+                          .across = room->across};
   strut_force_visit visit = strut_potential_visit(room->potential, q, room->least);
   for (const strut_force *force; (force = strut_force_next(&visit));)
     strut_mode_form_add(&form, force, q);

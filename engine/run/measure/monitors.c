@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/feedback.h"
-#include "engine/forces/moving_masses.h"
+#include "engine/forces/drives/feedback.h"
+#include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/surfaces.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/mass.h"

@@ -29,24 +29,6 @@ static double sum_member_forces(const strut_model *model, const double *q) {
   return sum + others;
 }
 
-static bool find_closed(const strut_model *model, strut_arena *arena, strut_rest_state *rest) {
-  const strut_contact_table *c = &model->contacts;
-  rest->closed = strut_arena_allocate(arena, (size_t)c->count, sizeof *rest->closed);
-  rest->normal = strut_arena_allocate(arena, (size_t)c->count, sizeof *rest->normal);
-  if (!rest->closed || !rest->normal) return false;
-  for (int32_t i = 0; i < c->count; i++) {
-    double gap = strut_contact_gap(c, i, rest->q);
-    if (!(gap < 0)) continue;
-    if (rest->closed_count && rest->closed[rest->closed_count - 1] == c->entry[i].node) {
-      rest->normal[rest->closed_count - 1] -= c->entry[i].stiffness * gap;
-      continue;
-    }
-    rest->closed[rest->closed_count] = c->entry[i].node;
-    rest->normal[rest->closed_count++] = -c->entry[i].stiffness * gap;
-  }
-  return true;
-}
-
 /* Fills in all fields but name and q, from q. */
 static strut_status judge_rest(const strut_model *model, strut_arena *arena, strut_rest_state *rest,
                                strut_error *error) {
@@ -54,7 +36,9 @@ static strut_status judge_rest(const strut_model *model, strut_arena *arena, str
   strut_status status = strut_potential_create(model, NULL, true, &potential, error);
   if (status) return status;
   double *g = strut_allocate((size_t)potential->n, sizeof *g);
-  if (g && find_closed(model, arena, rest)) {
+  strut_node_pushes pushes;
+  if (g && strut_closed_contacts(model, rest->q, 0.0, arena, &pushes)) {
+    rest->closed = pushes.node, rest->normal = pushes.normal, rest->closed_count = pushes.count;
     strut_potential_gradient(potential, rest->q, g);
     rest->residual = strut_largest_magnitude(g, potential->n);
     rest->scale = potential->force_scale;

@@ -31,7 +31,7 @@ void strut_level_frame_to_original(const strut_level_frame *level, size_t count,
   turn_vectors(level->cosine, level->sine, count, xy);
 }
 
-void strut_level_frame_from_original(const strut_level_frame *level, size_t count, double *xy) {
+static void level_frame_from_original(const strut_level_frame *level, size_t count, double *xy) {
   turn_vectors(level->cosine, -level->sine, count, xy);
 }
 
@@ -124,7 +124,7 @@ static bool bring_near(strut_level_frame *level) {
 
 /* Turns a force, of which rounding leaves no part along or across the ground where there is none. */
 static void turn_force(const strut_level_frame *level, double force[2]) {
-  strut_level_frame_from_original(level, 1, force);
+  level_frame_from_original(level, 1, force);
   double least = 16.0 * DBL_EPSILON * hypot(force[0], force[1]);
   for (int c = 0; c < 2; c++)
     if (fabs(force[c]) < least) force[c] = 0.0;
@@ -137,13 +137,13 @@ static void make_level(strut_level_frame *level) {
   s->ground.slope = 0.0;
   turn_force(level, s->gravity);
   for (size_t i = 0; i < s->node_count; i++) {
-    strut_level_frame_from_original(level, 1, s->nodes[i].position);
-    strut_level_frame_from_original(level, 1, s->nodes[i].start);
+    level_frame_from_original(level, 1, s->nodes[i].position);
+    level_frame_from_original(level, 1, s->nodes[i].start);
   }
   for (size_t i = 0; i < s->load_count; i++) turn_force(level, s->loads[i].force);
   for (size_t i = 0; i < s->configuration_count; i++)
     if (s->configurations[i].position)
-      strut_level_frame_from_original(level, s->node_count, s->configurations[i].position[0]);
+      level_frame_from_original(level, s->node_count, s->configurations[i].position[0]);
 }
 
 strut_status strut_level_frame_create(const strut_scene *original, strut_level_frame *level,

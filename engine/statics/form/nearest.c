@@ -15,6 +15,7 @@
 #include "engine/statics/algebra.h"
 #include "engine/statics/equilibria/equilibria_parts.h"
 #include "engine/statics/form/parts.h"
+#include "engine/statics/search/critical.h"
 
 enum { MOST_COORDINATES = 400, TURNS = 500, NEAREST_STEPS = 30, STEPS = 60, NULLITY = 3 };
 
@@ -142,21 +143,10 @@ static bool take_turns(strut_former *f, const double *drawn, double *x, double *
 /* Turns and shifts x so that it lies as the drawn shape does at the coordinates that are held. */
 static void lay_down(const strut_scene *scene, const uint8_t *held, const double *drawn,
                      double *x) {
-  double sine = 0, cosine = 0, centre[2][2] = {{0}}, n = (double)scene->node_count;
-  for (size_t i = 0; i < scene->node_count; i++)
-    for (size_t c = 0; c < 2; c++)
-      centre[0][c] += x[2 * i + c] / n, centre[1][c] += drawn[2 * i + c] / n;
+  const strut_rigid_fit fit = strut_rigid_fit_find((int32_t)scene->node_count, drawn, x, 1.0);
+  double shift[2] = {0}, count[2] = {0};
   for (size_t i = 0; i < scene->node_count; i++) {
-    double a[2] = {x[2 * i] - centre[0][0], x[2 * i + 1] - centre[0][1]};
-    double b[2] = {drawn[2 * i] - centre[1][0], drawn[2 * i + 1] - centre[1][1]};
-    cosine += a[0] * b[0] + a[1] * b[1], sine += a[0] * b[1] - a[1] * b[0];
-  }
-  double size = hypot(sine, cosine), shift[2] = {0}, count[2] = {0};
-  if (!(size > 0)) return;
-  for (size_t i = 0; i < scene->node_count; i++) {
-    double a[2] = {x[2 * i] - centre[0][0], x[2 * i + 1] - centre[0][1]};
-    x[2 * i] = centre[1][0] + (cosine * a[0] - sine * a[1]) / size;
-    x[2 * i + 1] = centre[1][1] + (sine * a[0] + cosine * a[1]) / size;
+    strut_rigid_fit_apply(&fit, x + 2 * i, x + 2 * i);
     for (size_t c = 0; c < 2; c++)
       if (held[2 * i + c]) shift[c] += drawn[2 * i + c] - x[2 * i + c], count[c] += 1;
   }

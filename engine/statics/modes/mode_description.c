@@ -213,10 +213,8 @@ void strut_modes_describe(const strut_modes_work *work, const double *x, strut_m
   double *energy = strut_allocate(items + 1, sizeof *energy);
   if (!energy) return; /* the mode stays, with fewer words */
   energies e = find_energies(v, x, energy);
-  double mass = 0.0, *product = v->work;
-  strut_vibration_multiply(v, v->m, x, product);
-  for (int32_t i = 0; i < v->n; i++) mass += x[i] * product[i];
-  double stiffness = mode->eigenvalue * mass;
+  strut_vibration_multiply(v, v->m, x, v->work);
+  double stiffness = mode->eigenvalue * strut_dot(x, v->work, v->n);
   bool geometric = e.all < 0.5 * fabs(stiffness);
   if (geometric)
     append_text(mode, "; %.0f %% of the stiffness is geometric",

@@ -132,11 +132,6 @@ typedef struct strut_modes_work {
   const strut_experiment *experiment; /* which may be interrupted */
 } strut_modes_work;
 
-/** The shape of that name, as strut_rest_state_find. */
-strut_status strut_modes_shape(const strut_model *model, const strut_experiment *experiment,
-                               const char *name, strut_arena *arena, strut_rest_state *rest,
-                               strut_error *error);
-
 /** All modes of a dense problem, or the lowest ones of a sparse one, into work->set. */
 strut_status strut_modes_dense(strut_modes_work *work, strut_error *error);
 strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_error *error);

@@ -283,8 +283,7 @@ static int32_t count_kernel(reduction *r, int32_t *first) {
   double *change = w->scale, *here = w->spare;
   int32_t count = 0;
   if (!strut_path_spectrum(s, r->centre, STRUT_PATH_VALUES)) return 0;
-  for (int32_t i = 0; i < s->n; i++)
-    here[i] = gsl_vector_get(s->algebra.values, (size_t)i), change[i] = 0;
+  for (int32_t i = 0; i < s->n; i++) here[i] = s->spectrum.value[i], change[i] = 0;
   for (int side = -1; side <= 1; side += 2) {
     double value = side * r->radius;
     memcpy(r->y, r->centre, strut_path_bytes(w));
@@ -296,12 +295,12 @@ static int32_t count_kernel(reduction *r, int32_t *first) {
     r->own[side > 0] = strut_arena_copy(&r->arena, r->y, 1, strut_path_bytes(w));
     if (!strut_path_spectrum(s, r->y, STRUT_PATH_VALUES)) continue;
     for (int32_t i = 0; i < s->n; i++)
-      change[i] = fmax(change[i], fabs(gsl_vector_get(s->algebra.values, (size_t)i) - here[i]));
+      change[i] = fmax(change[i], fabs(s->spectrum.value[i] - here[i]));
   }
   if (!strut_path_spectrum(s, r->centre, STRUT_PATH_VECTORS)) return 0;
   w->stiff = 0;
   for (int32_t i = 0; i < s->n; i++) {
-    double value = gsl_vector_get(s->algebra.values, (size_t)i);
+    double value = s->spectrum.value[i];
     w->stiff = fmax(w->stiff, fabs(value));
     if (fabs(value) > WITHIN * change[i]) continue;
     if (!count++) *first = i;
@@ -365,9 +364,9 @@ bool strut_path_is_rounding(strut_path_walk *w, const double *from, const double
   if (!strut_path_spectrum(s, centre, STRUT_PATH_VECTORS)) return false;
   double level = s->spectrum.noise * s->size, stiff = 0;
   for (int32_t i = 0; i < s->n; i++) {
-    double value = fabs(gsl_vector_get(s->algebra.values, (size_t)i));
+    double value = fabs(s->spectrum.value[i]);
     stiff = fmax(stiff, value);
-    if (value < fabs(gsl_vector_get(s->algebra.values, (size_t)first))) first = i;
+    if (value < fabs(s->spectrum.value[first])) first = i;
   }
   w->stiff = stiff * s->size;
   r.y = strut_arena_allocate(&r.arena, 1, strut_path_bytes(w));

@@ -252,6 +252,7 @@ typedef struct strut_path_system {
   } algebra;
   /** After strut_path_spectrum. */
   struct {
+    double *value; /* (n) ascending, of algebra.values */
     int32_t
         negative; /* eigenvalues below zero, and elements folded back, each of which has one inside */
     int32_t folded;    /* these */

@@ -32,7 +32,7 @@ static double held_motion(const strut_path_system *s, int32_t k, size_t mode) {
 
 /* The stiffness seen by the modes first, first + 1, ... */
 static void project(strut_path_system *s, size_t first, size_t count, double *sum) {
-  double noise[MOST_SOFT] = {0}, along[MOST_SOFT];
+  double noise[MOST_SOFT] = {0}, along[MOST_SOFT], across[MOST_SOFT];
   memset(sum, 0, count * count * sizeof *sum);
   strut_mode_form form = {.model = s->model,
                           .row_of = s->potential->row_of,
@@ -42,7 +42,8 @@ static void project(strut_path_system *s, size_t first, size_t count, double *su
                           .row_step = s->algebra.vectors->tda,
                           .sum = sum,
                           .noise = noise,
-                          .along = along};
+                          .along = along,
+                          .across = across};
   for (int32_t i = 0; i < strut_force_count(s->model, true); i++)
     if (s->force[i].pose.acts) strut_mode_form_add(&form, &s->force[i], s->latest.q);
   for (int32_t i = 0; i < s->held.count; i++) {
@@ -60,7 +61,7 @@ static bool refine(strut_path_system *s, size_t first, size_t count) {
   double form[MOST_SOFT * MOST_SOFT], turn[MOST_SOFT * MOST_SOFT], row[MOST_SOFT];
   project(s, first, count, form);
   if (!strut_symmetric_eigen(form, count, row, turn)) return false;
-  for (size_t k = 0; k < count; k++) gsl_vector_set(s->algebra.values, first + k, row[k]);
+  for (size_t k = 0; k < count; k++) s->spectrum.value[first + k] = row[k];
   for (size_t i = 0; i < (size_t)s->n; i++) {
     double *soft = gsl_matrix_ptr(s->algebra.vectors, i, first);
     memcpy(row, soft, count * sizeof *row);
@@ -87,16 +88,14 @@ static void find_vectors(strut_path_system *s) {
 static size_t find_soft(const strut_path_system *s, double below, size_t *first) {
   size_t count = 0, nearest = 0;
   for (size_t i = 1; i < (size_t)s->n; i++)
-    if (fabs(gsl_vector_get(s->algebra.values, i)) <
-        fabs(gsl_vector_get(s->algebra.values, nearest)))
-      nearest = i;
+    if (fabs(s->spectrum.value[i]) < fabs(s->spectrum.value[nearest])) nearest = i;
   *first = nearest;
-  if (fabs(gsl_vector_get(s->algebra.values, nearest)) > below) return 0;
+  if (fabs(s->spectrum.value[nearest]) > below) return 0;
   while (*first > 0 && nearest - *first < MOST_SOFT / 2 &&
-         fabs(gsl_vector_get(s->algebra.values, *first - 1)) <= below)
+         fabs(s->spectrum.value[*first - 1]) <= below)
     --*first;
   while (*first + count < (size_t)s->n && count < MOST_SOFT &&
-         fabs(gsl_vector_get(s->algebra.values, *first + count)) <= below)
+         fabs(s->spectrum.value[*first + count]) <= below)
     count++;
   return count;
 }
@@ -118,14 +117,13 @@ static bool find_unsymmetric(strut_path_system *s) {
       size_t from = gsl_permutation_get(order, k);
       gsl_vector_complex_view column = gsl_matrix_complex_column(vectors, from);
       const gsl_vector_view vector = gsl_vector_complex_real(&column.vector);
-      gsl_vector_set(s->algebra.values, k, gsl_vector_get(&real.vector, from));
+      s->spectrum.value[k] = gsl_vector_get(&real.vector, from);
       gsl_matrix_set_col(s->algebra.vectors, k, &vector.vector);
     }
-    double largest = fmax(fabs(gsl_vector_get(s->algebra.values, 0)),
-                          fabs(gsl_vector_get(s->algebra.values, n - 1)));
+    double largest = fmax(fabs(s->spectrum.value[0]), fabs(s->spectrum.value[n - 1]));
     s->spectrum.noise = ROUNDING * largest;
     for (size_t k = 0; k < n; k++)
-      s->spectrum.negative += gsl_vector_get(s->algebra.values, k) < -s->spectrum.noise;
+      s->spectrum.negative += s->spectrum.value[k] < -s->spectrum.noise;
   }
   gsl_vector_complex_free(values);
   gsl_matrix_complex_free(vectors);
@@ -147,8 +145,7 @@ bool strut_path_spectrum(strut_path_system *s, const double *y, strut_path_spect
     gsl_eigen_symm(s->algebra.work, s->algebra.values, s->algebra.values_only);
     gsl_sort_vector(s->algebra.values);
   }
-  double largest = fmax(fabs(gsl_vector_get(s->algebra.values, 0)),
-                        fabs(gsl_vector_get(s->algebra.values, (size_t)s->n - 1)));
+  double largest = fmax(fabs(s->spectrum.value[0]), fabs(s->spectrum.value[s->n - 1]));
   double below = (wanted == STRUT_PATH_SIGNS ? UNSIGNED : SOFT) * largest;
   size_t soft = find_soft(s, below, &first);
   if (soft && wanted != STRUT_PATH_VECTORS) {
@@ -161,7 +158,7 @@ bool strut_path_spectrum(strut_path_system *s, const double *y, strut_path_spect
   s->spectrum.noise = ROUNDING * largest;
   for (size_t i = 0; i < (size_t)s->n; i++) {
     bool is_soft = i >= first && i < first + soft;
-    if (gsl_vector_get(s->algebra.values, i) < (is_soft ? -zero : 0.0)) s->spectrum.negative++;
+    if (s->spectrum.value[i] < (is_soft ? -zero : 0.0)) s->spectrum.negative++;
   }
   return true;
 }

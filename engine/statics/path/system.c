@@ -63,8 +63,10 @@ strut_status strut_path_system_create(const strut_model *model, const uint8_t *h
   strut_status status = strut_potential_create(model, held, false, &s->potential, error);
   if (status) return status;
   s->n = s->potential->n;
-  if (s->n > STRUT_PATH_COORDINATES || make_matrices(s)) return STRUT_OK;
-  return strut_no_memory(error, "");
+  if (s->n > STRUT_PATH_COORDINATES) return STRUT_OK;
+  if (!make_matrices(s)) return strut_no_memory(error, "");
+  s->spectrum.value = s->algebra.values->data;
+  return STRUT_OK;
 }
 
 void strut_path_system_free(strut_path_system *s) {

@@ -160,8 +160,7 @@ void strut_path_count_negative(strut_path_walk *w) {
   strut_path_spectrum(&w->system, w->y,
                       STRUT_PATH_SIGNS); /* y is of the path: its value was not refused */
   w->negative = w->system.spectrum.negative;
-  for (int32_t i = 0; i < w->system.n; i++)
-    w->values[i] = gsl_vector_get(w->system.algebra.values, (size_t)i);
+  for (int32_t i = 0; i < w->system.n; i++) w->values[i] = w->system.spectrum.value[i];
 }
 
 /* Ends the path exactly at the requested value if this piece passes it. */

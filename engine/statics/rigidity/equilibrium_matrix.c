@@ -26,18 +26,16 @@ static int compare_rows(const void *a, const void *b) {
   return x < y ? -1 : x > y;
 }
 
-/* Gradient of an element times `scale`, with the entries of a node that it meets twice summed. */
-static void add_gradient(const strut_model *model, const strut_element *e, const double *q,
-                         double scale, strut_equilibrium_matrix *a) {
-  strut_element_pose pose;
+/* The column after the last: the gradient of a force times `scale`, with the entries of a node that it meets twice summed. */
+static void add_gradient(const strut_force *force, double scale, strut_equilibrium_matrix *a) {
   double entry[STRUT_MOST_GRADIENT][2];
-  size_t count = 0, n = 2 * (size_t)e->nodes;
-  strut_element_evaluate(model, (int32_t)(e - model->elements.element), model->members.rest, q,
-                         (double)NAN, &pose);
-  for (size_t k = 0; k < n; k++) {
-    uint32_t at = model->elements.at[(size_t)e->first + k / 2] + (uint32_t)(k % 2);
-    if (a->row_of[at] < 0) continue;
-    entry[count][0] = a->row_of[at], entry[count++][1] = scale * pose.b[k];
+  size_t count = 0;
+  int32_t j = a->columns++;
+  a->start[j + 1] = a->start[j];
+  a->curved[j] = -1;
+  for (int32_t k = 0; k < 2 * force->nodes; k++) {
+    int32_t row = a->row_of[strut_force_coordinate(force, k)];
+    if (row >= 0) entry[count][0] = row, entry[count++][1] = scale * force->pose.b[k];
   }
   qsort(entry, count, sizeof entry[0], compare_rows);
   for (size_t k = 0; k < count; k++) {
@@ -45,59 +43,43 @@ static void add_gradient(const strut_model *model, const strut_element *e, const
     while (k + 1 < count && entry[k + 1][0] == entry[k][0]) sum += entry[++k][1];
     add_entry(a, (int32_t)entry[k][0], sum);
   }
-  a->length[a->columns - 1] = scale * pose.strain;
+  a->length[j] = scale * force->pose.strain;
 }
 
-/* What the forces of a column lend to motions across it; false: out of memory. */
-static bool add_bend(const strut_model *model, const strut_element *e, const double *q,
-                     double scale, strut_arena *arena, strut_equilibrium_matrix *a) {
-  int32_t j = a->columns - 1;
+/* The column of an element, and what its forces lend to motions across it, where that bends; false: out of memory. */
+static bool add_element(const strut_model *model, const strut_element *e, const double *q,
+                        strut_arena *arena, strut_equilibrium_matrix *a) {
+  strut_force force;
+  double scale = e->role == STRUT_ELEMENT_CELL    ? 1.0 / a->size
+                 : e->role == STRUT_ELEMENT_HINGE ? a->size
+                                                  : 1.0;
+  int32_t element = (int32_t)(e - model->elements.element), j = a->columns;
+  strut_force_begin(model, model->members.count + element, &force);
+  strut_element_evaluate(model, element, model->members.rest, q, (double)NAN, &force.pose);
+  add_gradient(&force, scale, a);
+  if (strut_element_is_of_member(e) && e->strain == STRUT_STRAIN_LENGTH) return true;
   size_t n = 2 * (size_t)e->nodes;
-  double largest = 0.0, *bend = a->bend[j] = strut_arena_allocate(arena, n * n, sizeof *bend);
+  double *bend = a->bend[j] = strut_arena_allocate(arena, n * n, sizeof *bend);
   if (!bend) return false;
-  a->curved[j] = (int32_t)(e - model->elements.element);
-  strut_element_bend(model, a->curved[j], q, scale, bend);
-  for (size_t k = 0; k < n * n; k++) largest = fmax(largest, fabs(bend[k]));
-  a->curvature[j] = largest;
+  a->curved[j] = element;
+  strut_element_bend(model, element, q, scale, bend);
+  double largest = a->curvature[j] = strut_largest_magnitude(bend, (ptrdiff_t)(n * n));
   for (size_t k = 0; k < n * n && largest > 0; k++) bend[k] /= largest;
   return true;
 }
 
-/* The column of a hinge, a cell or a distance after the last. */
-static bool add_curved(const strut_model *model, const strut_element *e, const double *q,
-                       strut_arena *arena, strut_equilibrium_matrix *a) {
-  int32_t j = a->columns++;
-  double scale = e->role == STRUT_ELEMENT_CELL    ? 1.0 / a->size
-                 : e->role == STRUT_ELEMENT_HINGE ? a->size
-                                                  : 1.0;
-  a->start[j + 1] = a->start[j];
-  add_gradient(model, e, q, scale, a);
-  return add_bend(model, e, q, scale, arena, a);
-}
-
-/* The column after the last; rows of the node that comes first in the model come first. */
-static bool add_column(const strut_model *model, const double *q, strut_arena *arena,
+static bool add_member(const strut_model *model, const double *q, strut_arena *arena,
                        strut_equilibrium_matrix *a) {
+  const strut_member_table *t = &model->members;
   int32_t j = a->columns;
-  uint32_t from = model->members.from[j], to = model->members.to[j];
-  strut_vec2 span = strut_member_span(&model->members, j, q);
-  double length = a->length[j] = strut_vec2_length(span);
-  strut_vec2 u = strut_vec2_unit(span, length);
-  a->direction[j][0] = u.x, a->direction[j][1] = u.y;
-  double sign = from < to ? -1.0 : 1.0;
-  uint32_t first = from < to ? from : to, second = from < to ? to : from;
-  a->columns++;
-  a->curved[j] = -1;
-  a->start[j + 1] = a->start[j];
-  if (strut_member_is_element(&model->elements, j)) {
-    const strut_element *e = strut_element_of_member(&model->elements, j);
-    add_gradient(model, e, q, 1.0, a);
-    return e->strain == STRUT_STRAIN_LENGTH || add_bend(model, e, q, 1.0, arena, a);
-  }
-  add_entry(a, a->row_of[first], sign * u.x);
-  add_entry(a, a->row_of[first + 1], sign * u.y);
-  add_entry(a, a->row_of[second], -sign * u.x);
-  add_entry(a, a->row_of[second + 1], -sign * u.y);
+  strut_member_pose pose = strut_member_pose_at(t, t->rest, j, q);
+  strut_force force;
+  a->direction[j][0] = pose.unit.x, a->direction[j][1] = pose.unit.y;
+  if (strut_member_is_element(&model->elements, j))
+    return add_element(model, strut_element_of_member(&model->elements, j), q, arena, a);
+  strut_force_begin(model, j, &force);
+  strut_force_set_member(t->stiffness[j], 0.0, pose.unit, pose.length, pose.stretch, &force);
+  add_gradient(&force, 1.0, a);
   return true;
 }
 
@@ -116,7 +98,7 @@ static bool add_elements(const strut_model *model, const double *q, strut_arena 
     if (e->role == STRUT_ELEMENT_DISTANCE) element[cells + (size_t)e->item] = e;
   }
   for (size_t i = 0; i < all; i++)
-    if (!add_curved(model, element[i], q, arena, a)) return false;
+    if (!add_element(model, element[i], q, arena, a)) return false;
   return true;
 }
 
@@ -144,7 +126,7 @@ strut_status strut_equilibrium_matrix_build(const strut_model *model, const doub
     return STRUT_NO_MEMORY;
   a->rows = strut_number_free(model, NULL, a->row_of, a->coordinate);
   for (int32_t j = 0; j < model->members.count; j++)
-    if (!add_column(model, q, arena, a)) return STRUT_NO_MEMORY;
+    if (!add_member(model, q, arena, a)) return STRUT_NO_MEMORY;
   return add_elements(model, q, arena, a) ? STRUT_OK : STRUT_NO_MEMORY;
 }
 

@@ -114,10 +114,9 @@ static strut_status judge_tensegrity(const strut_model *model, const double *q, 
   *t = (strut_tensegrity){.self_stress = r->states.count > 0, .judged = r->judged != NULL};
   if (r->judged) {
     const strut_mechanisms *m = &r->mechanisms;
-    double largest = 0.0;
+    double largest = strut_largest_magnitude(r->judged, model->members.count);
     int32_t *scratch = strut_allocate((size_t)model->node_count + 1, sizeof *scratch);
     if (!scratch) return STRUT_NO_MEMORY;
-    for (int32_t j = 0; j < model->members.count; j++) largest = fmax(largest, fabs(r->judged[j]));
     t->cables = pulls_cables_only(model, r, largest);
     t->mechanism = m->infinitesimal > 0 && m->infinitesimal + m->rigid_body == m->count &&
                    (m->by_forces || (m->stiffener && m->stiffener_pulls));
@@ -272,8 +271,7 @@ static void choose_stress(strut_rigidity *r) {
 
 /* A cable under compression rules out super stability, whatever the matrix. */
 static void respect_cables(const strut_model *model, strut_rigidity *r) {
-  double largest = 0.0;
-  for (int32_t j = 0; j < r->matrix.columns; j++) largest = fmax(largest, fabs(r->judged[j]));
+  double largest = strut_largest_magnitude(r->judged, r->matrix.columns);
   for (int32_t j = 0; j < r->matrix.columns; j++)
     if (strut_column_is_cable(model, j) && r->judged[j] < -1e-9 * largest)
       r->stress.super_stable = false;

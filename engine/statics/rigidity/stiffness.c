@@ -149,8 +149,7 @@ static void judge(const strut_equilibrium_matrix *a, const double *force,
 
 /* Does a running cable or a hinge carry a part of the forces? Its energy is no quadratic form. */
 static bool are_elements_loaded(const strut_equilibrium_matrix *a, const double *force) {
-  double largest = 0.0;
-  for (int32_t j = 0; j < a->columns; j++) largest = fmax(largest, fabs(force[j]));
+  double largest = strut_largest_magnitude(force, a->columns);
   for (int32_t j = 0; j < a->columns; j++)
     if (a->curved[j] >= 0 && fabs(force[j]) > ROUNDING * largest) return true;
   return false;
