@@ -15,9 +15,10 @@ breaches() {
     find engine parser -type f \( -name '*.c' -o -name '*.h' \) | sort |
       xargs grep -nE '^[[:space:]]*#[[:space:]]*include' /dev/null || true
   ) | awk -v root="$1" '
-    # The rooms of methods with events are one folder here: a stepper and what it calls know each other.
+    # Rooms that are one folder here: a stepper with events and what it calls know each other, as do forces and drives.
     function folder(path) {
-      sub("/[^/]*$", "", path); sub("^engine/integrate/events/.*$", "engine/integrate/events", path); return path
+      sub("/[^/]*$", "", path); sub("^engine/integrate/events/.*$", "engine/integrate/events", path)
+      sub("^engine/forces/drives$", "engine/forces", path); return path
     }
     function stem(path) { sub("[.][ch]$", "", path); return path }
     function breach(why) { print place ": " why ": " text }

@@ -15,7 +15,6 @@
 #include "engine/forces/strains/path.h"
 #include "engine/forces/strains/reach.h"
 #include "engine/forces/strains/wrap.h"
-#include "engine/model/compile_parts.h"
 #include "engine/model/pose.h"
 
 /* The numbers that the function of a strain takes beside the positions, and those of its second derivative. */
@@ -98,15 +97,6 @@ double strut_element_rate(const strut_model *model, int32_t element, const strut
   return sum;
 }
 
-void strut_element_stiffness(const strut_model *model, int32_t element,
-                             const strut_element_pose *pose, const double *q, double *k) {
-  assert(element >= 0 && element < model->elements.count);
-  int32_t n = 2 * model->elements.element[element].nodes;
-  for (int32_t i = 0; i < n; i++)
-    for (int32_t j = 0; j < n; j++) k[i * n + j] = pose->slope * pose->b[i] * pose->b[j];
-  strut_element_bend(model, element, q, pose->force, k);
-}
-
 double strut_member_elastic_tension(const strut_model *model, const double *rest, int32_t member,
                                     const double *q) {
   assert(member >= 0 && (size_t)member < model->scene->member_count);
@@ -130,44 +120,6 @@ double strut_member_path_length(const strut_model *model, int32_t member, const 
   return strain_of(e, model->elements.at + e->first, q, 0.0, b);
 }
 
-void strut_elements_visit(const strut_model *model, const double *rest, const double *q,
-                          double least, bool stops, void *context, strut_visit_element *visit) {
-  strut_element_pose pose;
-  for (int32_t i = 0; i < model->elements.count; i++) {
-    const strut_element *e = &model->elements.element[i];
-    if (model->elements.scattered && !(stops && e->crowds) &&
-        strut_nearby_is_far(model, i, q, stops))
-      continue;
-    strut_element_evaluate(model, i, rest, q, (double)NAN, &pose);
-    bool stop = e->role == STRUT_ELEMENT_LONGEST || e->role == STRUT_ELEMENT_SHORTEST ||
-                e->role == STRUT_ELEMENT_COLLISION || e->strain == STRUT_STRAIN_FOOT;
-    if (stops && stop && !pose.acts) {
-      pose.acts = true;
-      pose.slope = e->numbers.stiffness;
-      visit(context, i, &pose);
-      continue;
-    }
-    if (!pose.acts || (e->carries && fabs(pose.force) <= least)) continue;
-    visit(context, i, &pose);
-  }
-}
-
-double strut_element_stiffest(const strut_model *model, int32_t element) {
-  assert(element >= 0 && element < model->elements.count);
-  static const double places[] = {-0.3, -0.1, -0.01, 0.0, 0.01, 0.1, 0.3};
-  const strut_element *e = &model->elements.element[element];
-  double natural = strut_element_start(model, element), stiffest = 0.0;
-  double size = model->size > 0.0 ? model->size : 1.0;
-  bool angle = e->strain == STRUT_STRAIN_ANGLE;
-  if (e->strain == STRUT_STRAIN_AREA) return e->numbers.stiffness * size * size;
-  for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
-    double x = places[k] * (angle ? 1.0 : natural > 0.0 ? natural : size);
-    double slope = strut_law_respond(e->law, &e->numbers, natural + x, natural, -1).slope;
-    stiffest = fmax(stiffest, fabs(slope));
-  }
-  return angle ? stiffest / (size * size) : stiffest;
-}
-
 double strut_elements_energy(const strut_model *model, const double *rest, const double *turn,
                              const double *q, const strut_nearby *near) {
   double sum = 0.0;
@@ -178,19 +130,6 @@ double strut_elements_energy(const strut_model *model, const double *rest, const
     if (!near && model->elements.scattered && strut_nearby_is_far(model, i, q, false)) continue;
     strut_element_evaluate(model, i, rest, q, turn ? turn[i] : (double)NAN, &pose);
     if (model->elements.element[i].role != STRUT_ELEMENT_LOAD) sum += pose.energy;
-  }
-  return sum;
-}
-
-double strut_couples_potential(const strut_model *model, const double *near, const double *q) {
-  double sum = 0.0, b[STRUT_MOST_GRADIENT];
-  strut_element_pose pose;
-  for (int32_t i = 0; i < model->elements.count && model->elements.couples; i++) {
-    const strut_element *e = &model->elements.element[i];
-    if (e->role != STRUT_ELEMENT_LOAD) continue;
-    double at = strut_element_strain(model, i, near, strut_element_start(model, i), b);
-    strut_element_evaluate(model, i, model->members.rest, q, at, &pose);
-    sum += pose.energy;
   }
   return sum;
 }
@@ -351,19 +290,6 @@ void strut_elements_keep_turns(const strut_model *model, strut_state *state) {
   }
 }
 
-bool strut_hinges_have_collapsed(const strut_model *model, const double *q) {
-  const double gone = 1e-4; /* of the arm at the start */
-  for (int32_t i = 0; i < model->elements.count; i++) {
-    const strut_element *e = &model->elements.element[i];
-    const uint32_t *at = model->elements.at + e->first;
-    for (int k = 1; k < e->nodes && e->strain == STRUT_STRAIN_ANGLE; k++)
-      if (strut_distance(q + at[k], q + at[k - 1]) <
-          gone * strut_distance(model->start + at[k], model->start + at[k - 1]))
-        return true;
-  }
-  return false;
-}
-
 int32_t strut_cell_that_collapsed(const strut_model *model, const double *q) {
   double b[STRUT_MOST_GRADIENT];
   for (int32_t i = 0; i < model->elements.count && model->scene->cell_count; i++) {
@@ -385,20 +311,6 @@ int32_t strut_member_that_is_wound_in(const strut_model *model, const double *re
       if (strut_axial_length(&e->numbers, natural) != natural) return e->item;
     }
   return -1;
-}
-
-bool strut_shape_has_collapsed(const strut_model *model, const double *q) {
-  return strut_hinges_have_collapsed(model, q) || strut_cell_that_collapsed(model, q) >= 0;
-}
-
-bool strut_element_has_collapsed(const strut_model *model, int32_t element, double share,
-                                 const double *q) {
-  assert(element >= 0 && element < model->elements.count);
-  const strut_element *e = &model->elements.element[element];
-  if (e->strain != STRUT_STRAIN_LENGTH || e->carries > 0) return false;
-  strut_element_pose pose;
-  strut_element_evaluate(model, element, model->members.rest, q, (double)NAN, &pose);
-  return pose.strain < share * pose.natural && pose.force < 0.0;
 }
 
 strut_element_motion strut_element_move(const strut_model *model, const strut_state *state,

@@ -50,10 +50,6 @@ double strut_element_rate(const strut_model *model, int32_t element, const strut
 /** h (2 nodes, 2 nodes) += t d2e/dq2. */
 void strut_element_bend(const strut_model *model, int32_t element, const double *q, double t,
                         double *h);
-/** k (2 nodes, 2 nodes): the tangent stiffness of a pose that was evaluated at q. */
-void strut_element_stiffness(const strut_model *model, int32_t element,
-                             const strut_element_pose *pose, const double *q, double *k);
-
 /**
  * Adds the forces of all elements at q and v to `force`, with the state's natural strains and frozen
  * modes; with the state's balance their powers.
@@ -65,18 +61,9 @@ void strut_elements_add_forces(const strut_model *model, const strut_state *stat
  * taken, so that they are continuous over whole turns.
  */
 void strut_elements_keep_turns(const strut_model *model, strut_state *state);
-/**
- * The largest slope of an element's law near its natural strain, as a stiffness [N/m]: that of a hinge
- * over the square of the model's size.
- */
-double strut_element_stiffest(const strut_model *model, int32_t element);
-
 /** Elastic energy of all elements but loads [J], or those `near`; turn: see strut_element_evaluate, or NULL. */
 double strut_elements_energy(const strut_model *model, const double *rest, const double *turn,
                              const double *q, const strut_nearby *near);
-/** Minus moment times angle of constant couples at q [J], each angle nearest to that in the shape `near`. */
-double strut_couples_potential(const strut_model *model, const double *near, const double *q);
-
 /** Elastic force of member j at q, of its spring or of its elements, tension positive [N]. */
 STRUT_API double strut_member_elastic_tension(const strut_model *model, const double *rest,
                                               int32_t member, const double *q);
@@ -84,35 +71,10 @@ STRUT_API double strut_member_elastic_tension(const strut_model *model, const do
 STRUT_API double strut_member_path_length(const strut_model *model, int32_t member,
                                           const double *q);
 
-/** A visited element with its pose; `context` is the visitor's own. */
-typedef void strut_visit_element(void *context, int32_t element, const strut_element_pose *pose);
-/**
- * Calls `visit` for every element that acts at q with more than `least` in size, for one that carries
- * both signs always; with `stops` for all stops and collisions, too, those that do not act as if at their kink.
- */
-void strut_elements_visit(const strut_model *model, const double *rest, const double *q,
-                          double least, bool stops, void *context, strut_visit_element *visit);
-
-/**
- * True of a straight element that pushes and has shrunk to less than `share` of its natural length: it
- * has no direction then, and its force no gradient.
- */
-bool strut_element_has_collapsed(const strut_model *model, int32_t element, double share,
-                                 const double *q);
-
-/**
- * True where an arm of some hinge is all but gone beside what it is at the start: its angle has no
- * meaning then, and its moment pushes with forces beyond all measure.
- */
-bool strut_hinges_have_collapsed(const strut_model *model, const double *q);
-
 /** A cell with next to no area left, or turned over, or -1: it encloses nothing any more. */
 STRUT_API int32_t strut_cell_that_collapsed(const strut_model *model, const double *q);
 /** A member whose stiffness follows its rest length, next to none of which is left, or -1. */
 STRUT_API int32_t strut_member_that_is_wound_in(const strut_model *model, const double *rest);
-/** True where a hinge or a cell has collapsed. */
-bool strut_shape_has_collapsed(const strut_model *model, const double *q);
-
 /** Strain beyond the natural one, its rate, and the force as if the element acted. */
 typedef struct strut_element_motion {
   double stretch, rate, force;

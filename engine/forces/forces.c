@@ -2,11 +2,11 @@
 /* Forces for single evaluations; integrators have the kernel in their own loops. */
 #include <assert.h>
 
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
+#include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/forces_kernel.h"
 #include "engine/forces/history.h"
 #include "engine/forces/mass_damping.h"
-#include "engine/forces/moving_masses.h"
 #include "engine/forces/rigid.h"
 #include "engine/forces/rubbing.h"
 

@@ -8,15 +8,15 @@
 #ifndef STRUT_ENGINE_FORCES_FORCES_KERNEL_H
 #define STRUT_ENGINE_FORCES_FORCES_KERNEL_H
 
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
+#include "engine/forces/drives/feedback.h"
+#include "engine/forces/drives/moving_masses.h"
+#include "engine/forces/drives/support_motion.h"
 #include "engine/forces/elements.h"
-#include "engine/forces/feedback.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/ground_kernel.h"
 #include "engine/forces/members_kernel.h"
-#include "engine/forces/moving_masses.h"
 #include "engine/forces/step_balance.h"
-#include "engine/forces/support_motion.h"
 #include "engine/forces/surfaces.h"
 #include "engine/model/mass_kernel.h"
 

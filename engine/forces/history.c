@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/forces/capstan.h"
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
 #include "engine/model/pose.h"
 
 /* An element's e0 as its member or hinge has it, before anything has yielded. */

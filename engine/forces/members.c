@@ -4,7 +4,7 @@
 #include <assert.h>
 #include <math.h>
 
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/history.h"

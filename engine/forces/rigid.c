@@ -13,6 +13,111 @@ static const double NEAR = 1e-13, ROUNDING = 4.5e-16;
 /* What a step may leave at worst. */
 static const double FAR = 1e-9;
 
+/* Rows of constraints, the matrix J M^-1 J' between them and its Cholesky factor. See rigid.h. */
+
+/* A pivot this small against its diagonal is what rounding leaves of a dependent row. */
+static const double DEPENDENT = 1e-11;
+/* Contacts give way by so much, so that friction is shared where rigid bars join stuck nodes. */
+static const double SHARING = 1e-9;
+
+/* Rows of all bars at q. */
+static void rigid_rows(strut_rigid *rigid, const double *q) {
+  rigid->rows = rigid->bars;
+  for (int32_t r = 0; r < rigid->bars; r++) {
+    const double *a = q + rigid->at[rigid->end[r][0]], *b = q + rigid->at[rigid->end[r][1]];
+    strut_vec2 span = strut_vec2_between(a, b);
+    rigid->row[r][0] = rigid->end[r][0], rigid->row[r][1] = rigid->end[r][1];
+    rigid->direction[r] = strut_vec2_unit(span, strut_vec2_length(span));
+  }
+}
+
+/* Appends the tangent of a contact. */
+static void rigid_add_foot(const strut_model *model, strut_rigid *rigid, int32_t contact) {
+  assert(contact >= 0 && contact < model->contacts.count);
+  int32_t r = rigid->rows++;
+  rigid->row[r][0] = -1, rigid->row[r][1] = rigid->foot[contact];
+  rigid->direction[r] = (strut_vec2){model->contacts.tangent[0], model->contacts.tangent[1]};
+}
+
+/* J x of row r. */
+static double rigid_along(const strut_rigid *rigid, int32_t r, const double *x) {
+  assert(r >= 0 && r < rigid->most);
+  const strut_vec2 u = rigid->direction[r];
+  const double *b = x + rigid->at[rigid->row[r][1]];
+  double sum = b[0] * u.x + b[1] * u.y;
+  if (rigid->row[r][0] < 0) return sum;
+  const double *a = x + rigid->at[rigid->row[r][0]];
+  return sum - (a[0] * u.x + a[1] * u.y);
+}
+
+/* The entry of J M^-1 J' between two rows. */
+static double between(const strut_rigid *rigid, int32_t r, int32_t s) {
+  assert(r >= 0 && r < rigid->most && s >= 0 && s < rigid->most);
+  const strut_vec2 u = rigid->direction[r], w = rigid->direction[s];
+  double sum = 0.0;
+  for (int e = 0; e < 2; e++)
+    for (int f = 0; f < 2; f++) {
+      int32_t i = rigid->row[r][e], j = rigid->row[s][f];
+      if (i < 0 || j < 0) continue;
+      size_t place = (size_t)i * (size_t)rigid->nodes + (size_t)j;
+      double part = u.x * w.x * rigid->inverse[0][place] + u.y * w.y * rigid->inverse[1][place];
+      sum += e == f ? part : -part;
+    }
+  return sum;
+}
+
+/* Builds and factorises J M^-1 J'. -1, or the bar whose row depends on the ones before it. */
+static int32_t rigid_factorise(strut_rigid *rigid) {
+  size_t n = (size_t)rigid->most;
+  double *m = rigid->matrix;
+  for (int32_t r = 0; r < rigid->rows; r++) {
+    double *row = m + (size_t)r * n;
+    double whole = between(rigid, r, r), pivot = r < rigid->bars ? whole : whole * (1.0 + SHARING);
+    for (int32_t s = 0; s < r; s++) {
+      const double *other = m + (size_t)s * n;
+      double sum = between(rigid, r, s);
+      for (int32_t k = 0; k < s; k++) sum -= row[k] * other[k];
+      row[s] = other[s] > 0.0 ? sum / other[s] : 0.0;
+      pivot -= row[s] * row[s];
+    }
+    bool fine = pivot > DEPENDENT * whole;
+    row[r] = fine ? sqrt(pivot) : 0.0; /* of a contact: it gets no friction */
+    if (!fine && r < rigid->bars) return r;
+  }
+  return -1;
+}
+
+/* right becomes (J M^-1 J')^-1 right. */
+static void rigid_solve(strut_rigid *rigid) {
+  size_t n = (size_t)rigid->most;
+  double *x = rigid->right;
+  for (int32_t r = 0; r < rigid->rows; r++) {
+    const double *row = rigid->matrix + (size_t)r * n;
+    double sum = x[r];
+    for (int32_t k = 0; k < r; k++) sum -= row[k] * x[k];
+    x[r] = row[r] > 0.0 ? sum / row[r] : 0.0;
+  }
+  for (int32_t r = rigid->rows - 1; r >= 0; r--) {
+    double sum = x[r];
+    for (int32_t k = r + 1; k < rigid->rows; k++)
+      sum -= rigid->matrix[(size_t)k * n + (size_t)r] * x[k];
+    double pivot = rigid->matrix[(size_t)r * n + (size_t)r];
+    x[r] = pivot > 0.0 ? sum / pivot : 0.0;
+  }
+}
+
+/* force += J' right. */
+static void rigid_spread(const strut_rigid *rigid, double *force) {
+  for (int32_t r = 0; r < rigid->rows; r++)
+    for (int e = 0; e < 2; e++) {
+      if (rigid->row[r][e] < 0) continue;
+      double *f = force + rigid->at[rigid->row[r][e]],
+             push = e ? rigid->right[r] : -rigid->right[r];
+      f[0] += push * rigid->direction[r].x;
+      f[1] += push * rigid->direction[r].y;
+    }
+}
+
 static bool is_rigid(const strut_model *model, int32_t j) {
   assert(j >= 0 && j < model->members.count);
   return model->scene->members[j].kind == STRUT_BAR;
@@ -103,14 +208,14 @@ static void move(const strut_model *model, double *scratch, strut_rigid *g, doub
   size_t bytes = (size_t)model->length * sizeof(double);
   memset(g->push, 0, bytes);
   memset(g->free, 0, bytes);
-  strut_rigid_spread(g, g->push);
+  rigid_spread(g, g->push);
   strut_mass_solve(model, g->push, g->free, scratch);
   for (int32_t i = 0; i < 2 * model->node_count; i++) x[i] += g->free[i];
 }
 
 void strut_rigid_filter(const strut_model *model, strut_rigid *g, double *v, double *scratch) {
-  for (int32_t r = 0; r < g->rows; r++) g->right[r] = -strut_rigid_along(g, r, v);
-  strut_rigid_solve(g);
+  for (int32_t r = 0; r < g->rows; r++) g->right[r] = -rigid_along(g, r, v);
+  rigid_solve(g);
   move(model, scratch, g, v);
 }
 
@@ -118,8 +223,8 @@ strut_rigid *strut_rigid_standing(const strut_model *model, const double *q, str
   double *scratch = strut_arena_allocate(arena, (size_t)model->length, sizeof *scratch);
   strut_rigid *g = scratch ? create(model, arena, scratch) : NULL;
   if (!g) return NULL;
-  strut_rigid_rows(g, q);
-  strut_rigid_factorise(g);
+  rigid_rows(g, q);
+  rigid_factorise(g);
   return g;
 }
 
@@ -128,8 +233,8 @@ void strut_rigid_begin(const strut_model *model, strut_state *state) {
   for (int32_t r = 0; r < g->bars; r++) g->length[r] = distance(g, r, state->q);
   memset(g->tension, 0, (size_t)g->bars * sizeof(double));
   g->failed = false;
-  strut_rigid_rows(g, state->q);
-  if (strut_rigid_factorise(g) >= 0)
+  rigid_rows(g, state->q);
+  if (rigid_factorise(g) >= 0)
     state->trouble = STRUT_FAILURE_RIGID;
   else
     strut_rigid_filter(model, g, state->v, state->buffers->mass_solve);
@@ -148,8 +253,8 @@ strut_status strut_rigid_check(const strut_model *model, strut_error *error) {
   strut_rigid *g = scratch ? create(model, &arena, scratch) : NULL;
   strut_status status = g ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   if (g) {
-    strut_rigid_rows(g, model->start);
-    bad = strut_rigid_factorise(g);
+    rigid_rows(g, model->start);
+    bad = rigid_factorise(g);
   }
   if (bad >= 0)
     status = strut_fail(error, STRUT_SINGULAR,
@@ -177,19 +282,19 @@ static int32_t find_stuck(const strut_model *model, strut_rigid *g, const double
 /* Multipliers of bars and of `stuck` for the acceleration a; false: bars depend on each other. */
 static bool hold(const strut_model *model, strut_rigid *g, const double *q, const double *v,
                  const double *a, int32_t stuck) {
-  strut_rigid_rows(g, q);
+  rigid_rows(g, q);
   for (int32_t r = 0; r < g->bars; r++) {
     const double *va = v + g->at[g->end[r][0]], *vb = v + g->at[g->end[r][1]];
     double wx = vb[0] - va[0], wy = vb[1] - va[1];
     double turn = g->direction[r].x * wy - g->direction[r].y * wx, length = distance(g, r, q);
-    g->right[r] = -strut_rigid_along(g, r, a) - (length > 0.0 ? turn * turn / length : 0.0);
+    g->right[r] = -rigid_along(g, r, a) - (length > 0.0 ? turn * turn / length : 0.0);
   }
   for (int32_t k = 0; k < stuck; k++) {
-    strut_rigid_add_foot(model, g, g->stuck[k]);
-    g->right[g->bars + k] = -strut_rigid_along(g, g->bars + k, a);
+    rigid_add_foot(model, g, g->stuck[k]);
+    g->right[g->bars + k] = -rigid_along(g, g->bars + k, a);
   }
-  if (strut_rigid_factorise(g) >= 0) return false;
-  strut_rigid_solve(g);
+  if (rigid_factorise(g) >= 0) return false;
+  rigid_solve(g);
   return true;
 }
 
@@ -246,7 +351,7 @@ void strut_rigid_accelerate(const strut_model *model, const strut_state *state, 
   }
   for (int32_t r = 0; r < g->bars; r++) g->tension[r] = -g->right[r];
   for (int32_t k = 0; k < stuck; k++) state->latest->friction[g->stuck[k]] = g->right[g->bars + k];
-  strut_rigid_spread(g, state->latest->force);
+  rigid_spread(g, state->latest->force);
   strut_mass_solve(model, state->latest->force, a, state->buffers->mass_solve);
   if (state->balance && before) accumulate(model, state, q, v);
 }
@@ -276,15 +381,15 @@ bool strut_rigid_project(const strut_model *model, strut_state *state, double *q
   strut_rigid *g = state->rigid;
   double left = departure(g, q);
   for (int round = 0; left > NEAR && round < MOST_ROUNDS; round++) {
-    strut_rigid_rows(g, q);
-    if (strut_rigid_factorise(g) >= 0) break;
+    rigid_rows(g, q);
+    if (rigid_factorise(g) >= 0) break;
     departure(g, q);
-    strut_rigid_solve(g);
+    rigid_solve(g);
     move(model, state->buffers->mass_solve, g, q);
     left = departure(g, q);
   }
-  strut_rigid_rows(g, q);
-  if (g->failed || !(left <= FAR) || strut_rigid_factorise(g) >= 0) {
+  rigid_rows(g, q);
+  if (g->failed || !(left <= FAR) || rigid_factorise(g) >= 0) {
     state->trouble = STRUT_FAILURE_RIGID;
     return false;
   }
@@ -300,103 +405,4 @@ double strut_rigid_tension(const strut_rigid *rigid, int32_t member) {
 
 void strut_rigid_add_tensions(const strut_rigid *rigid, double *force) {
   for (int32_t r = 0; r < rigid->bars; r++) force[rigid->member[r]] += rigid->tension[r];
-}
-
-/* Rows of constraints, the matrix J M^-1 J' between them and its Cholesky factor. See rigid.h. */
-
-/* A pivot this small against its diagonal is what rounding leaves of a dependent row. */
-static const double DEPENDENT = 1e-11;
-/* Contacts give way by so much, so that friction is shared where rigid bars join stuck nodes. */
-static const double SHARING = 1e-9;
-
-void strut_rigid_rows(strut_rigid *rigid, const double *q) {
-  rigid->rows = rigid->bars;
-  for (int32_t r = 0; r < rigid->bars; r++) {
-    const double *a = q + rigid->at[rigid->end[r][0]], *b = q + rigid->at[rigid->end[r][1]];
-    strut_vec2 span = strut_vec2_between(a, b);
-    rigid->row[r][0] = rigid->end[r][0], rigid->row[r][1] = rigid->end[r][1];
-    rigid->direction[r] = strut_vec2_unit(span, strut_vec2_length(span));
-  }
-}
-
-void strut_rigid_add_foot(const strut_model *model, strut_rigid *rigid, int32_t contact) {
-  assert(contact >= 0 && contact < model->contacts.count);
-  int32_t r = rigid->rows++;
-  rigid->row[r][0] = -1, rigid->row[r][1] = rigid->foot[contact];
-  rigid->direction[r] = (strut_vec2){model->contacts.tangent[0], model->contacts.tangent[1]};
-}
-
-double strut_rigid_along(const strut_rigid *rigid, int32_t r, const double *x) {
-  assert(r >= 0 && r < rigid->most);
-  const strut_vec2 u = rigid->direction[r];
-  const double *b = x + rigid->at[rigid->row[r][1]];
-  double sum = b[0] * u.x + b[1] * u.y;
-  if (rigid->row[r][0] < 0) return sum;
-  const double *a = x + rigid->at[rigid->row[r][0]];
-  return sum - (a[0] * u.x + a[1] * u.y);
-}
-
-/* The entry of J M^-1 J' between two rows. */
-static double between(const strut_rigid *rigid, int32_t r, int32_t s) {
-  assert(r >= 0 && r < rigid->most && s >= 0 && s < rigid->most);
-  const strut_vec2 u = rigid->direction[r], w = rigid->direction[s];
-  double sum = 0.0;
-  for (int e = 0; e < 2; e++)
-    for (int f = 0; f < 2; f++) {
-      int32_t i = rigid->row[r][e], j = rigid->row[s][f];
-      if (i < 0 || j < 0) continue;
-      size_t place = (size_t)i * (size_t)rigid->nodes + (size_t)j;
-      double part = u.x * w.x * rigid->inverse[0][place] + u.y * w.y * rigid->inverse[1][place];
-      sum += e == f ? part : -part;
-    }
-  return sum;
-}
-
-int32_t strut_rigid_factorise(strut_rigid *rigid) {
-  size_t n = (size_t)rigid->most;
-  double *m = rigid->matrix;
-  for (int32_t r = 0; r < rigid->rows; r++) {
-    double *row = m + (size_t)r * n;
-    double whole = between(rigid, r, r), pivot = r < rigid->bars ? whole : whole * (1.0 + SHARING);
-    for (int32_t s = 0; s < r; s++) {
-      const double *other = m + (size_t)s * n;
-      double sum = between(rigid, r, s);
-      for (int32_t k = 0; k < s; k++) sum -= row[k] * other[k];
-      row[s] = other[s] > 0.0 ? sum / other[s] : 0.0;
-      pivot -= row[s] * row[s];
-    }
-    bool fine = pivot > DEPENDENT * whole;
-    row[r] = fine ? sqrt(pivot) : 0.0; /* of a contact: it gets no friction */
-    if (!fine && r < rigid->bars) return r;
-  }
-  return -1;
-}
-
-void strut_rigid_solve(strut_rigid *rigid) {
-  size_t n = (size_t)rigid->most;
-  double *x = rigid->right;
-  for (int32_t r = 0; r < rigid->rows; r++) {
-    const double *row = rigid->matrix + (size_t)r * n;
-    double sum = x[r];
-    for (int32_t k = 0; k < r; k++) sum -= row[k] * x[k];
-    x[r] = row[r] > 0.0 ? sum / row[r] : 0.0;
-  }
-  for (int32_t r = rigid->rows - 1; r >= 0; r--) {
-    double sum = x[r];
-    for (int32_t k = r + 1; k < rigid->rows; k++)
-      sum -= rigid->matrix[(size_t)k * n + (size_t)r] * x[k];
-    double pivot = rigid->matrix[(size_t)r * n + (size_t)r];
-    x[r] = pivot > 0.0 ? sum / pivot : 0.0;
-  }
-}
-
-void strut_rigid_spread(const strut_rigid *rigid, double *force) {
-  for (int32_t r = 0; r < rigid->rows; r++)
-    for (int e = 0; e < 2; e++) {
-      if (rigid->row[r][e] < 0) continue;
-      double *f = force + rigid->at[rigid->row[r][e]],
-             push = e ? rigid->right[r] : -rigid->right[r];
-      f[0] += push * rigid->direction[r].x;
-      f[1] += push * rigid->direction[r].y;
-    }
 }

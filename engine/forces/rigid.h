@@ -68,19 +68,4 @@ void strut_rigid_add_tensions(const strut_rigid *rigid, double *force);
 /** That of one member [N]; 0 where it is no rigid bar. */
 double strut_rigid_tension(const strut_rigid *rigid, int32_t member);
 
-/* rigid.c: the linear algebra. */
-
-/** Rows of all bars at q. */
-void strut_rigid_rows(strut_rigid *rigid, const double *q);
-/** Appends the tangent of a contact. */
-void strut_rigid_add_foot(const strut_model *model, strut_rigid *rigid, int32_t contact);
-/** J x of row r. */
-double strut_rigid_along(const strut_rigid *rigid, int32_t r, const double *x);
-/** Builds and factorises J M^-1 J'. -1, or the bar whose row depends on the ones before it. */
-int32_t strut_rigid_factorise(strut_rigid *rigid);
-/** right becomes (J M^-1 J')^-1 right. */
-void strut_rigid_solve(strut_rigid *rigid);
-/** force += J' right. */
-void strut_rigid_spread(const strut_rigid *rigid, double *force);
-
 #endif

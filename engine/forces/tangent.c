@@ -5,47 +5,177 @@
 #include "engine/forces/rubbing.h"
 
 #include <assert.h>
+#include <string.h>
 
 #include "engine/forces/mass_damping.h"
+#include "engine/forces/nearby.h"
 
-void strut_block_add(const strut_stiffness_block *b, int count, const int32_t *row,
-                     strut_triplets *sum) {
-  for (int k = 0; k < count; k++) {
-    const strut_block_entry *e = &strut_block_entries[k];
-    if (row[e->row] < 0 || row[e->column] < 0) continue;
-    strut_triplets_add(sum, row[e->row], row[e->column],
-                       e->opposite ? -b->part[e->part] : b->part[e->part]);
+void strut_force_begin(const strut_model *model, int32_t number, strut_force *force) {
+  int32_t members = model->members.count, element = number - members;
+  int32_t contact = element - model->elements.count;
+  if (number < members) {
+    force->kind = STRUT_FORCE_MEMBER, force->index = number, force->nodes = 2;
+    force->end[0] = model->members.from[number], force->end[1] = model->members.to[number];
+    force->at = force->end;
+    force->place = 10 * number, force->damping = model->members.damping[number];
+  } else if (contact < 0) {
+    const strut_element *own = &model->elements.element[element];
+    force->kind = STRUT_FORCE_ELEMENT, force->index = element, force->nodes = own->nodes;
+    force->at = model->elements.at + own->first;
+    force->place = 10 * members + own->place, force->damping = own->damping;
+    force->across = 0.0;
+  } else {
+    force->kind = STRUT_FORCE_CONTACT, force->index = contact, force->nodes = 1;
+    force->at = &model->contacts.at[contact];
+    force->place = (int32_t)strut_tangent_entries(model, false) + 3 * contact;
+    force->damping = model->contacts.entry[contact].damping;
   }
 }
 
-void strut_element_add(const strut_model *model, int32_t element, const double *k,
-                       const int32_t *row_of, strut_triplets *sum) {
-  assert(element >= 0 && element < model->elements.count);
-  const strut_element *e = &model->elements.element[element];
-  const uint32_t *at = model->elements.at + e->first;
-  int32_t n = 2 * e->nodes;
+void strut_force_set_member(double stiffness, double across, strut_vec2 unit, double length,
+                            double stretch, strut_force *force) {
+  const double side[4] = {unit.y, -unit.x, -unit.y, unit.x};
+  force->pose.strain = length, force->pose.natural = length - stretch;
+  force->pose.force = stiffness * stretch, force->pose.slope = stiffness;
+  force->pose.b[0] = -unit.x, force->pose.b[1] = -unit.y;
+  force->pose.b[2] = unit.x, force->pose.b[3] = unit.y;
+  memcpy(force->side, side, sizeof side);
+  force->across = across;
+}
+
+void strut_force_set_contact(double stiffness, const strut_contact_pose *pose, strut_force *force) {
+  force->pose.strain = pose->gap, force->pose.natural = 0.0;
+  force->pose.force = stiffness * pose->gap, force->pose.slope = stiffness;
+  memcpy(force->pose.b, pose->axes.normal, 2 * sizeof(double));
+  memcpy(force->side, pose->axes.tangent, 2 * sizeof(double));
+  bool bends = pose->gap < 0.0 && pose->curvature != 0.0;
+  force->across = bends ? stiffness * pose->gap * pose->curvature : 0.0;
+}
+
+/* Does the member carry a force, of more than `least` if it is a cable? */
+static bool visit_member(const strut_force_visit *visit, strut_force *force) {
+  const strut_member_table *t = &visit->model->members;
+  int32_t j = force->index;
+  strut_member_pose pose = strut_member_pose_at(t, visit->rest, j, visit->q);
+  if (!pose.taut || (t->slack[j] == 0.0 && t->stiffness[j] * pose.stretch <= visit->least))
+    return false;
+  strut_force_set_member(t->stiffness[j], strut_member_across_stiffness(t, visit->rest, j, &pose),
+                         pose.unit, pose.length, pose.stretch, force);
+  return true;
+}
+
+static bool are_stops_closed(const strut_force_visit *visit) {
+  return visit->closed == STRUT_CLOSED_ALL || visit->closed == STRUT_CLOSED_UNDAMPED;
+}
+
+/* Stops and collisions that count as closed but do not act are as if at their kink. */
+static bool visit_element(const strut_force_visit *visit, strut_force *force) {
+  const strut_model *model = visit->model;
+  const strut_element *own = &model->elements.element[force->index];
+  bool stops = are_stops_closed(visit);
+  if (model->elements.scattered && !(stops && own->crowds) &&
+      strut_nearby_is_far(model, force->index, visit->q, stops))
+    return false;
+  strut_element_evaluate(model, force->index, visit->rest, visit->q, (double)NAN, &force->pose);
+  bool stop = own->role == STRUT_ELEMENT_LONGEST || own->role == STRUT_ELEMENT_SHORTEST ||
+              own->role == STRUT_ELEMENT_COLLISION || own->strain == STRUT_STRAIN_FOOT;
+  if (stops && stop && !force->pose.acts) {
+    force->pose.acts = true;
+    force->pose.slope = own->numbers.stiffness;
+    return true;
+  }
+  return force->pose.acts && !(own->carries && fabs(force->pose.force) <= visit->least);
+}
+
+static bool visit_contact(strut_force_visit *visit, strut_force *force) {
+  const strut_contact_table *c = &visit->model->contacts;
+  int32_t i = force->index;
+  bool touching = visit->closed == STRUT_CLOSED_TOUCHING;
+  if (c->surface && !touching) {
+    if (i == visit->surface_end)
+      visit->surface_end = strut_contacts_nearest(c, i, visit->q, visit->near);
+    if (i != visit->near[0] && i != visit->near[1]) return false;
+  }
+  strut_contact_pose pose = strut_contact_pose_at(c, i, visit->q, NULL, -1);
+  if (touching && (!(pose.gap < 0.0) || -c->entry[i].stiffness * pose.gap <= visit->least))
+    return false;
+  strut_force_set_contact(c->entry[i].stiffness, &pose, force);
+  return true;
+}
+
+const strut_force *strut_force_next(strut_force_visit *visit) {
+  strut_force *force = &visit->now;
+  int32_t count = strut_force_count(visit->model, visit->closed != STRUT_CLOSED_NONE);
+  while (visit->next < count) {
+    strut_force_begin(visit->model, visit->next++, force);
+    if (force->kind == STRUT_FORCE_MEMBER    ? visit_member(visit, force)
+        : force->kind == STRUT_FORCE_ELEMENT ? visit_element(visit, force)
+                                             : visit_contact(visit, force))
+      return force;
+  }
+  return NULL;
+}
+
+/* The products of members and contacts are made in the order that their steps have always had. */
+void strut_force_square(const strut_force *force, double factor, double *matrix) {
+  const double *b = force->pose.b;
+  bool turned = force->kind != STRUT_FORCE_ELEMENT;
+  int32_t n = 2 * force->nodes;
+  for (int32_t r = 0; r < n; r++)
+    for (int32_t c = 0; c < n; c++)
+      matrix[r * n + c] = turned ? factor * b[c] * b[r] : factor * b[r] * b[c];
+}
+
+void strut_force_bend(const strut_model *model, const strut_force *force, const double *q,
+                      double factor, double *matrix) {
+  const double *side = force->side;
+  int32_t n = 2 * force->nodes;
+  if (force->kind == STRUT_FORCE_ELEMENT)
+    strut_element_bend(model, force->index, q, factor * force->pose.force, matrix);
+  else if (force->across != 0.0)
+    for (int32_t r = 0; r < n; r++)
+      for (int32_t c = 0; c < n; c++)
+        matrix[r * n + c] += factor * force->across * side[c] * side[r];
+}
+
+void strut_force_stiffness(const strut_model *model, const strut_force *force, const double *q,
+                           double *matrix) {
+  const strut_vec2 unit = {force->pose.b[2], force->pose.b[3]};
+  if (force->kind == STRUT_FORCE_MEMBER) {
+    strut_member_stiffness(force->pose.slope, force->across, unit, matrix);
+    return;
+  }
+  strut_force_square(force, force->pose.slope, matrix);
+  strut_force_bend(model, force, q, 1.0, matrix);
+}
+
+void strut_force_add(const strut_force *force, const double *matrix, const int32_t *row_of,
+                     strut_triplets *sum) {
+  int32_t n = 2 * force->nodes;
   for (int32_t r = 0; r < n; r++)
     for (int32_t c = 0; c <= r; c++) {
-      int32_t row = row_of[at[r / 2] + (uint32_t)(r % 2)];
-      int32_t column = row_of[at[c / 2] + (uint32_t)(c % 2)];
+      int32_t row = row_of[strut_force_coordinate(force, r)];
+      int32_t column = row_of[strut_force_coordinate(force, c)];
       if (row < 0 || column < 0) continue;
       /* a cable that comes back to a node meets the diagonal from both sides */
-      strut_triplets_add(sum, row, column, (row == column && r != c ? 2.0 : 1.0) * k[r * n + c]);
+      double both = row == column && r != c ? 2.0 : 1.0;
+      strut_triplets_add(sum, row, column, both * matrix[r * n + c]);
     }
 }
 
-void strut_element_scatter(const strut_model *model, int32_t element, const double *k,
-                           const int32_t *place, double *value) {
-  assert(element >= 0 && element < model->elements.count);
-  const strut_element *e = &model->elements.element[element];
-  const uint32_t *at = model->elements.at + e->first;
-  int32_t n = 2 * e->nodes;
-  place += e->place;
+/* A place k on the diagonal that an entry meets from both sides is BOTH - k. */
+enum { BOTH = -2 };
+
+void strut_force_scatter(const strut_force *force, const double *matrix, const int32_t *place,
+                         double *value) {
+  int32_t n = 2 * force->nodes;
+  place += force->place;
   for (int32_t r = 0; r < n; r++)
-    for (int32_t c = 0; c <= r; c++, place++) {
-      bool both = r != c && at[r / 2] == at[c / 2] && r % 2 == c % 2;
-      if (*place >= 0) value[*place] += (both ? 2.0 : 1.0) * k[r * n + c];
-    }
+    for (int32_t c = 0; c <= r; c++, place++)
+      if (*place >= 0)
+        value[*place] += matrix[r * n + c];
+      else if (*place <= BOTH)
+        value[BOTH - *place] += 2.0 * matrix[r * n + c];
 }
 
 int32_t strut_number_free(const strut_model *model, const uint8_t *held, int32_t *row_of,
@@ -61,17 +191,12 @@ int32_t strut_number_free(const strut_model *model, const uint8_t *held, int32_t
 
 void strut_tangent_add_pattern(const strut_model *model, const int32_t *row_of, bool contacts,
                                strut_triplets *sum) {
-  const strut_stiffness_block zero = {{0}};
-  for (int32_t j = 0; j < model->members.count; j++) {
-    int32_t row[4];
-    strut_member_rows(model, row_of, j, row);
-    strut_block_add(&zero, STRUT_MEMBER_ENTRIES, row, sum);
-  }
   const double none[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0};
-  for (int32_t i = 0; i < model->elements.count; i++)
-    strut_element_add(model, i, none, row_of, sum);
-  for (int32_t i = 0; i < model->contacts.count && contacts; i++)
-    strut_block_add(&zero, STRUT_CONTACT_ENTRIES, row_of + model->contacts.at[i], sum);
+  strut_force force;
+  for (int32_t k = 0; k < strut_force_count(model, contacts); k++) {
+    strut_force_begin(model, k, &force);
+    strut_force_add(&force, none, row_of, sum);
+  }
 }
 
 /* Index of entry (row, column) among the pattern's values; the entry exists. */
@@ -88,36 +213,22 @@ static int32_t find_place(const strut_sparse *pattern, int32_t row, int32_t colu
   return low;
 }
 
-static int32_t place_of(const strut_sparse *pattern, int32_t a, int32_t b) {
-  return a < 0 || b < 0 ? -1 : a > b ? find_place(pattern, a, b) : find_place(pattern, b, a);
-}
-
-static int32_t *find_places(const strut_sparse *pattern, int count, const int32_t *row,
-                            int32_t *place) {
-  for (int k = 0; k < count; k++) {
-    *place++ =
-        place_of(pattern, row[strut_block_entries[k].row], row[strut_block_entries[k].column]);
-  }
-  return place;
+static int32_t place_of(const strut_sparse *pattern, int32_t a, int32_t b, bool diagonal) {
+  if (a < 0 || b < 0) return -1;
+  int32_t place = a > b ? find_place(pattern, a, b) : find_place(pattern, b, a);
+  return a == b && !diagonal ? BOTH - place : place;
 }
 
 void strut_tangent_find_places(const strut_model *model, const int32_t *row_of, bool contacts,
                                const strut_sparse *pattern, int32_t *place) {
-  for (int32_t j = 0; j < model->members.count; j++) {
-    int32_t row[4];
-    strut_member_rows(model, row_of, j, row);
-    place = find_places(pattern, STRUT_MEMBER_ENTRIES, row, place);
-  }
-  for (int32_t i = 0; i < model->elements.count; i++) {
-    const strut_element *e = &model->elements.element[i];
-    const uint32_t *at = model->elements.at + e->first;
-    for (int32_t r = 0; r < 2 * e->nodes; r++)
+  strut_force force;
+  for (int32_t k = 0; k < strut_force_count(model, contacts); k++) {
+    strut_force_begin(model, k, &force);
+    for (int32_t r = 0; r < 2 * force.nodes; r++)
       for (int32_t c = 0; c <= r; c++)
-        *place++ = place_of(pattern, row_of[at[r / 2] + (uint32_t)(r % 2)],
-                            row_of[at[c / 2] + (uint32_t)(c % 2)]);
+        *place++ = place_of(pattern, row_of[strut_force_coordinate(&force, r)],
+                            row_of[strut_force_coordinate(&force, c)], r == c);
   }
-  for (int32_t i = 0; i < model->contacts.count && contacts; i++)
-    place = find_places(pattern, STRUT_CONTACT_ENTRIES, row_of + model->contacts.at[i], place);
 }
 
 /* Normal force of a contact at rest, for the largest step: a body rests on two of them. */
@@ -140,66 +251,45 @@ typedef struct assembly {
   bool stiffest; /* whatever may hold does */
 } assembly;
 
-static void add_member(void *context, int32_t j, const strut_member_tangent *m) {
-  assert(j >= 0 && m);
-  assembly *a = context;
-  double k = a->model->members.damping[j];
-  strut_stiffness_block stiffness = strut_block_of(m->along, m->across, m->pose.unit);
-  strut_stiffness_block damper = strut_block_of(k, 0.0, m->pose.unit);
-  int32_t row[4];
-  strut_member_rows(a->model, a->row_of, j, row);
-  strut_block_add(&stiffness, STRUT_MEMBER_ENTRIES, row, &a->stiffness);
-  if (k > 0) strut_block_add(&damper, STRUT_MEMBER_ENTRIES, row, &a->damping);
-}
-
-static void add_element(void *context, int32_t i, const strut_element_pose *pose) {
-  assert(i >= 0 && pose);
-  assembly *a = context;
-  const strut_element *e = &a->model->elements.element[i];
-  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
-  int32_t n = 2 * e->nodes;
-  strut_element_stiffness(a->model, i, pose, a->q, k);
-  if (a->stiffest && strut_has_capstan(e)) { /* a cable that sticks at its guides */
-    strut_capstan_stiffness(a->model, i, a->q, k);
-    strut_element_bend(a->model, i, a->q, pose->force, k);
-  }
-  strut_element_add(a->model, i, k, a->row_of, &a->stiffness);
-  if (!(e->damping > 0.0)) return;
-  for (int32_t r = 0; r < n; r++)
-    for (int32_t c = 0; c < n; c++) k[r * n + c] = e->damping * pose->b[r] * pose->b[c];
-  strut_element_add(a->model, i, k, a->row_of, &a->damping);
-}
-
-static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
-  assert(i >= 0 && contact);
-  assembly *a = context;
-  const strut_contact_table *c = &a->model->contacts;
-  const strut_contact_entry *e = &c->entry[i];
-  const int32_t *row = a->row_of + c->at[i];
-  double damper = a->undamped ? 0.0 : e->damping + a->weight * e->dissipation;
+/* matrix: what damps a contact with the node's weight on it; false: nothing does. */
+static bool damp_contact(const assembly *a, const strut_force *contact, double *matrix) {
+  const strut_contact_entry *e = &a->model->contacts.entry[contact->index];
+  double damper = a->undamped ? 0.0 : contact->damping + a->weight * e->dissipation;
   double slide = strut_friction_slope(&e->friction, a->weight);
-  const double *n = contact->axes.normal, *t = contact->axes.tangent;
-  strut_stiffness_block damping,
-      stiffness = strut_block_of_pose(contact->stiffness, contact->across, &contact->axes);
-  for (int k = 0; k < STRUT_CONTACT_ENTRIES; k++) {
-    const strut_block_entry *at = &strut_block_entries[k];
-    damping.part[k] = damper * (n[at->row] * n[at->column]) + slide * t[at->row] * t[at->column];
+  const double *n = contact->pose.b, *t = contact->side;
+  for (int r = 0; r < 2; r++)
+    for (int c = 0; c < 2; c++) matrix[2 * r + c] = damper * (n[r] * n[c]) + slide * t[r] * t[c];
+  return !a->undamped || slide > 0.0;
+}
+
+static void add_force(assembly *a, const strut_force *force) {
+  double matrix[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  const strut_element *element =
+      force->kind == STRUT_FORCE_ELEMENT ? &a->model->elements.element[force->index] : NULL;
+  strut_force_stiffness(a->model, force, a->q, matrix);
+  if (a->stiffest && element &&
+      strut_has_capstan(element)) { /* a cable that sticks at its guides */
+    strut_capstan_stiffness(a->model, force->index, a->q, matrix);
+    strut_force_bend(a->model, force, a->q, 1.0, matrix);
   }
-  strut_block_add(&stiffness, STRUT_CONTACT_ENTRIES, row, &a->stiffness);
-  if (!a->undamped || slide > 0.0)
-    strut_block_add(&damping, STRUT_CONTACT_ENTRIES, row, &a->damping);
+  strut_force_add(force, matrix, a->row_of, &a->stiffness);
+  bool damps =
+      force->kind == STRUT_FORCE_CONTACT ? damp_contact(a, force, matrix) : force->damping > 0.0;
+  if (damps && force->kind != STRUT_FORCE_CONTACT)
+    strut_force_square(force, force->damping, matrix);
+  if (damps) strut_force_add(force, matrix, a->row_of, &a->damping);
 }
 
 /* Maxwell branches, as stiff as they are in fast motions. */
 static void add_maxwell(assembly *a, const double *rest) {
   const strut_feedback_table *f = &a->model->feedback;
+  strut_force force;
+  double matrix[16];
   for (int32_t i = 0; i < f->maxwell_count; i++) {
-    strut_member_pose pose =
-        strut_member_pose_at(&a->model->members, rest, f->maxwell[i].member, a->q);
-    strut_stiffness_block stiffness = strut_block_of(f->maxwell[i].stiffness, 0.0, pose.unit);
-    int32_t row[4];
-    strut_member_rows(a->model, a->row_of, f->maxwell[i].member, row);
-    strut_block_add(&stiffness, STRUT_MEMBER_ENTRIES, row, &a->stiffness);
+    strut_force_begin(a->model, f->maxwell[i].member, &force);
+    strut_member_pose pose = strut_member_pose_at(&a->model->members, rest, force.index, a->q);
+    strut_member_stiffness(f->maxwell[i].stiffness, 0.0, pose.unit, matrix);
+    strut_force_add(&force, matrix, a->row_of, &a->stiffness);
   }
 }
 
@@ -212,12 +302,14 @@ static void add_rubbing(assembly *a) {
     const strut_rubbing_entry *f = &a->model->rubbing.item[i];
     double b[STRUT_MOST_RUBBING], k[STRUT_MOST_RUBBING * STRUT_MOST_RUBBING];
     double slide = strut_friction_slope(&f->friction, resting_force(a->model));
+    strut_force force;
+    strut_force_begin(a->model, a->model->members.count + f->element, &force);
     int32_t side = 2 * strut_rubbing_slide(a->model, i, a->q, b);
     for (int32_t r = 0; r < side * side; r++) k[r] = slide * b[r / side] * b[r % side];
-    strut_element_add(a->model, f->element, k, a->row_of, &a->damping);
+    strut_force_add(&force, k, a->row_of, &a->damping);
     double bend = strut_friction_stiffness(&f->friction, resting_force(a->model));
     for (int32_t r = 0; r < side * side; r++) k[r] = bend * b[r / side] * b[r % side];
-    if (bend > 0.0) strut_element_add(a->model, f->element, k, a->row_of, &a->stiffness);
+    if (bend > 0.0) strut_force_add(&force, k, a->row_of, &a->stiffness);
   }
 }
 
@@ -233,8 +325,9 @@ static void collect_columns(assembly *a, const double *rest, strut_closed closed
   a->stiffness.count = a->damping.count = 0;
   a->stiffness.first = a->damping.first = first;
   a->stiffness.end = a->damping.end = end;
-  strut_tangent_visit(a->model, a->q, rest, -HUGE_VAL, closed, a, add_member, add_element,
-                      add_contact);
+  strut_force_visit visit = {
+      .model = a->model, .q = a->q, .rest = rest, .least = -HUGE_VAL, .closed = closed};
+  for (const strut_force *force; (force = strut_force_next(&visit));) add_force(a, force);
   if (a->stiffest) add_maxwell(a, rest);
   if (a->stiffest) add_rubbing(a);
   strut_mass_damping_add(a->model, a->row_of, &a->damping);
@@ -274,7 +367,7 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
   bool resting = closed == STRUT_CLOSED_ALL || closed == STRUT_CLOSED_UNDAMPED;
   size_t both = (size_t)model->length;
   size_t most = strut_tangent_entries(model, true) + strut_mass_damping_entries(model) +
-                STRUT_MEMBER_ENTRIES * (size_t)model->feedback.maxwell_count +
+                10 * (size_t)model->feedback.maxwell_count +
                 RUBBING_ENTRIES * (size_t)model->rubbing.count;
   int32_t *row_of = strut_arena_allocate(&scratch, both, sizeof *row_of);
   assembly a = {

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/forces/drives/feedback.h"
 #include "engine/forces/energy.h"
-#include "engine/forces/feedback.h"
 #include "engine/forces/rigid.h"
 #include "engine/model/linear_solver.h"
 

@@ -3,11 +3,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/discrete_gradient.h"
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
+#include "engine/forces/drives/support_motion.h"
 #include "engine/forces/elements.h"
-#include "engine/forces/support_motion.h"
 #include "engine/forces/tangent.h"
+#include "engine/integrate/discrete_gradient.h"
 #include "engine/integrate/integrator.h"
 #include "engine/model/linear_solver.h"
 #include "engine/model/mass.h"
@@ -18,7 +18,7 @@ typedef struct strut_midpoint_matrix {
   int32_t *coordinate; /* (n) where they stand in coordinate arrays */
   strut_sparse *matrix;
   double *mass;           /* M at the matrix's places */
-  int32_t *place;         /* (members, STRUT_MEMBER_ENTRIES) into its values; -1 where supported */
+  int32_t *place;         /* (members and elements) into its values; -1 where supported */
   strut_refactor *factor; /* NULL where nothing is free */
   double *lightness;      /* (members) inverse masses of their free ends, added [1/kg] */
   strut_vec2 *direction;  /* (members) that the factor was made with */
@@ -100,31 +100,31 @@ static strut_vec2 force_direction(const strut_discrete_gradient *step, int32_t j
 }
 
 /* Adds h^2/2 of what the forces of member j change by with its end: B, -B, B. */
-static void add_member(const strut_discrete_gradient *step, int32_t j, double tension,
-                       strut_midpoint_matrix *m) {
+static void add_member(const strut_model *model, const strut_discrete_gradient *step, int32_t j,
+                       double tension, strut_midpoint_matrix *m) {
   double half = 0.5 * step->h * step->h, lengths = step->lengths[j];
   strut_vec2 u = m->direction[j] = force_direction(step, j);
   bool shapeless = u.x == 0.0 && u.y == 0.0; /* as an isotropic spring */
   m->slope[j] = step->slope[j];
-  strut_stiffness_block block =
-      strut_block_of(step->slope[j], shapeless ? step->slope[j] : tension / lengths, u);
-  for (int k = 0; k < 3; k++) block.part[k] *= half;
-  strut_block_scatter(&block, STRUT_MEMBER_ENTRIES, m->place + STRUT_MEMBER_ENTRIES * j,
-                      m->matrix->value);
+  strut_force force;
+  double k[16];
+  strut_force_begin(model, j, &force);
+  strut_member_stiffness(step->slope[j], shapeless ? step->slope[j] : tension / lengths, u, k);
+  for (int i = 0; i < 16; i++) k[i] *= half;
+  strut_force_scatter(&force, k, m->place, m->matrix->value);
 }
 
 /* What the average force changes by with the end; it turns with half of the force there. */
 static void add_element(const strut_model *model, const strut_discrete_gradient *step, int32_t i,
                         const double *rest, const double *q, bool clip, strut_midpoint_matrix *m) {
   double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
-  int32_t n = 2 * model->elements.element[i].nodes;
-  strut_element_pose pose;
-  strut_element_evaluate(model, i, rest, q, step->strain0[i], &pose);
-  double half = 0.5 * step->h * step->h, along = half * step->element_slope[i];
-  for (int32_t r = 0; r < n; r++)
-    for (int32_t c = 0; c < n; c++) k[r * n + c] = along * pose.b[r] * pose.b[c];
-  if (!clip) strut_element_bend(model, i, q, 0.5 * half * pose.force, k);
-  strut_element_scatter(model, i, k, m->place + strut_places_of_elements(model), m->matrix->value);
+  strut_force force;
+  strut_force_begin(model, model->members.count + i, &force);
+  strut_element_evaluate(model, i, rest, q, step->strain0[i], &force.pose);
+  double half = 0.5 * step->h * step->h;
+  strut_force_square(&force, half * step->element_slope[i], k);
+  if (!clip) strut_force_bend(model, &force, q, 0.5 * half, k);
+  strut_force_scatter(&force, k, m->place, m->matrix->value);
 }
 
 /*
@@ -141,7 +141,7 @@ static bool strut_midpoint_matrix_update(const strut_model *model,
     double whole = 1.0 + 0.5 * step->h * model->mass_damping;
     for (int32_t k = 0; k < m->matrix->start[m->n]; k++) m->matrix->value[k] = whole * m->mass[k];
     for (int32_t j = 0; j < model->members.count; j++)
-      add_member(step, j, clip ? fmax(tension[j], 0.0) : tension[j], m);
+      add_member(model, step, j, clip ? fmax(tension[j], 0.0) : tension[j], m);
     for (int32_t i = 0; i < model->elements.count; i++)
       add_element(model, step, i, rest, q, clip, m);
     if (strut_refactor_apply(m->factor, m->matrix) < 0) return true;

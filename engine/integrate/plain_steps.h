@@ -7,9 +7,9 @@
 #ifndef STRUT_ENGINE_INTEGRATE_PLAIN_STEPS_H
 #define STRUT_ENGINE_INTEGRATE_PLAIN_STEPS_H
 
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
+#include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/forces_kernel.h"
-#include "engine/forces/moving_masses.h"
 
 /** Terms whose impulses and positions plain methods apply at the end of a step. */
 enum {

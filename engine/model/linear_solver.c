@@ -311,50 +311,6 @@ void strut_ldl_solve(strut_ldl *ldl, double *b) {
   for (int32_t i = 0; i < f->n; i++) b[f->order[i]] = x[i];
 }
 
-enum { SIDE_BY_SIDE = 4 };
-
-/* Four right-hand sides, row by row: as strut_factor_solve. */
-STRUT_CLONES static void solve_four(const strut_factor *factor, double *restrict b) {
-  const int32_t *start = factor->start, *row = factor->row;
-  const double *value = factor->value;
-  for (int32_t j = 0; j < factor->n; j++) {
-    double x[SIDE_BY_SIDE];
-    memcpy(x, b + SIDE_BY_SIDE * (size_t)j, sizeof x);
-    for (int32_t k = start[j]; k < start[j + 1]; k++) {
-      double *to = b + SIDE_BY_SIDE * (size_t)row[k];
-      for (int i = 0; i < SIDE_BY_SIDE; i++) to[i] -= value[k] * x[i];
-    }
-  }
-  for (int32_t j = factor->n - 1; j >= 0; j--) {
-    double sum[SIDE_BY_SIDE], *at = b + SIDE_BY_SIDE * (size_t)j;
-    for (int i = 0; i < SIDE_BY_SIDE; i++) sum[i] = at[i] * factor->inverse_diagonal[j];
-    for (int32_t k = start[j]; k < start[j + 1]; k++) {
-      const double *from = b + SIDE_BY_SIDE * (size_t)row[k];
-      for (int i = 0; i < SIDE_BY_SIDE; i++) sum[i] -= value[k] * from[i];
-    }
-    memcpy(at, sum, sizeof sum);
-  }
-}
-
-bool strut_ldl_solve_many(strut_ldl *ldl, double *b, size_t count) {
-  const strut_factor *f = ldl->factor;
-  size_t n = (size_t)f->n, k = 0;
-  double *x = count < SIDE_BY_SIDE ? NULL : strut_allocate(SIDE_BY_SIDE * n, sizeof *x);
-  if (count >= SIDE_BY_SIDE && !x) return false;
-  for (; k + SIDE_BY_SIDE <= count; k += SIDE_BY_SIDE, b += SIDE_BY_SIDE * n) {
-    for (size_t i = 0; i < n; i++)
-      for (size_t s = 0; s < SIDE_BY_SIDE; s++)
-        x[SIDE_BY_SIDE * i + s] = b[s * n + (size_t)f->order[i]];
-    solve_four(f, x);
-    for (size_t i = 0; i < n; i++)
-      for (size_t s = 0; s < SIDE_BY_SIDE; s++)
-        b[s * n + (size_t)f->order[i]] = x[SIDE_BY_SIDE * i + s];
-  }
-  for (; k < count; k++, b += n) strut_ldl_solve(ldl, b);
-  strut_release(x);
-  return true;
-}
-
 /* Hager's method: climbs to a column of A^-1 with a large sum; then Higham's second guess. */
 double strut_ldl_rcond(strut_ldl *ldl) {
   int32_t n = ldl->factor->n;

@@ -75,8 +75,6 @@ strut_status strut_ldl_factorise(strut_ldl *ldl, const strut_sparse *matrix, dou
                                  strut_inertia *inertia);
 /** b (n) becomes (matrix + shift I)^-1 b, in the matrix's own order. */
 void strut_ldl_solve(strut_ldl *ldl, double *b);
-/** The same, to the bit, of `count` right-hand sides one after the other: (count, n). False: out of memory. */
-bool strut_ldl_solve_many(strut_ldl *ldl, double *b, size_t count);
 /**
  * Estimate of 1 / (|A| |A^-1|) in the 1-norm of what was factorised last, by a few solves (Hager,
  * Higham); it is seldom off by more than a factor of 3. Solutions lose that many digits.

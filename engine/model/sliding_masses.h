@@ -5,7 +5,7 @@
  * A mass m at the share s of the line is at x = N q with N = (1 - s, s) at the member's two nodes, alike in
  * x and y. One at rest on its member adds m N'N to the mass matrix, which is factored with it. One that moves
  * stays out of that matrix M: its nodes answer through columns of M^-1 kept here, see
- * engine/forces/moving_masses.h.
+ * engine/forces/drives/moving_masses.h.
  */
 #ifndef STRUT_ENGINE_MODEL_SLIDING_MASSES_H
 #define STRUT_ENGINE_MODEL_SLIDING_MASSES_H

@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/forces/drives/support_motion.h"
 #include "engine/forces/energy.h"
 #include "engine/forces/forces.h"
-#include "engine/forces/support_motion.h"
 
 static bool create_pair(strut_measured_pair *pair, size_t things, strut_arena *arena) {
   pair->first = strut_arena_allocate(arena, things, sizeof(double));

@@ -8,10 +8,10 @@
 #include <time.h>
 
 #include "engine/base/subnormals.h"
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
+#include "engine/forces/drives/support_motion.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/history.h"
-#include "engine/forces/support_motion.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/run/settle.h"
 #include "engine/run/simulate_parts.h"

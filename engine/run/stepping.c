@@ -6,7 +6,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
 #include "engine/forces/forces.h"
 #include "engine/run/simulate_parts.h"
 

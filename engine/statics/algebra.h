@@ -65,11 +65,16 @@ STRUT_API void strut_tridiagonal_solve(const strut_tridiagonal *t, double *x);
  */
 bool strut_symmetric_eigen(double *matrix, size_t n, double *value, double *vector);
 
-/**
- * Factors the square matrix in place with row exchanges, as gsl_linalg_LU_solve wants it. A
- * singular matrix leaves a zero on the diagonal.
- */
-void strut_lu_factor(gsl_matrix *a, gsl_permutation *order);
+/** Zeros, owned by the arena; NULL: out of memory. */
+gsl_matrix *strut_arena_matrix(strut_arena *arena, size_t rows, size_t columns);
+gsl_vector *strut_arena_vector(strut_arena *arena, size_t size);
+gsl_permutation *strut_arena_order(strut_arena *arena, size_t size);
+
+/** Takes out of x (n) its shares in `count` orthonormal rows (count, n), twice for rounding; returns what is left, x.x. */
+double strut_remove_shares(const double *rows, size_t count, size_t n, double *x);
+
+/** Solves A x = right, with its rows brought to one size first; both are overwritten. False: singular. */
+bool strut_solve_rows(gsl_matrix *a, gsl_vector *right, gsl_permutation *order, gsl_vector *x);
 
 /* What statics needs of SPQR and ARPACK: a rank-revealing A E = Q R of a sparse matrix, and the lowest eigenpairs
  * of K x = z M x by shift-invert Lanczos.
@@ -203,5 +208,20 @@ bool strut_spectrum_finish(strut_spectrum_workspace *room, const double *q, bool
  */
 bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least,
                             bool careful, strut_spectrum *spectrum);
+
+/** The stiffness that forces give to some modes, summed force by force: stiff ones that a mode does not strain do not
+    blur it. Mode i's row r is vector[i mode_step + r row_step]. */
+typedef struct strut_mode_form {
+  const strut_model *model;
+  const int32_t *row_of; /* (length) */
+  int32_t count;         /* modes */
+  const double *vector;
+  size_t mode_step, row_step;
+  double *sum;            /* (count, count) lower triangle */
+  double *noise;          /* (count) what rounding may have done to the diagonal */
+  double *along, *across; /* (count) scratch */
+  double part;            /* the largest part that an element has in the diagonal */
+} strut_mode_form;
+void strut_mode_form_add(strut_mode_form *form, const strut_force *force, const double *q);
 
 #endif

@@ -176,10 +176,8 @@ static void split_gradient(dense_curvature *r, const double *g, double still) {
   size_t n = (size_t)r->now.n;
   for (size_t i = 0; i < n; i++) {
     const double *mode = r->now.vector + i * n;
-    double sum = 0.0;
-    for (size_t k = 0; k < n; k++) sum += mode[k] * g[k];
-    r->part[i] = sum;
-    r->idle[i] = fabs(r->now.value[i]) <= 4.0 * r->now.noise[i] && fabs(sum) <= still;
+    r->part[i] = strut_dot(mode, g, r->now.n);
+    r->idle[i] = fabs(r->now.value[i]) <= 4.0 * r->now.noise[i] && fabs(r->part[i]) <= still;
   }
 }
 
@@ -249,10 +247,9 @@ static bool dense_rebalance(void *memory, const double *g, double *s) {
   bool any = false;
   for (size_t i = 0; i < n; i++) {
     const double *mode = r->now.vector + i * n;
-    double sum = 0.0;
     if (!(r->now.value[i] > stiff)) continue;
-    for (size_t k = 0; k < n; k++) sum += mode[k] * g[k];
-    for (size_t k = 0; k < n; k++) s[k] -= sum / r->now.value[i] * mode[k];
+    double share = strut_dot(mode, g, r->now.n) / r->now.value[i];
+    for (size_t k = 0; k < n; k++) s[k] -= share * mode[k];
     any = true;
   }
   return any;
@@ -475,43 +472,6 @@ const strut_curvature strut_curvature_sparse = {sparse_decompose,          spars
                                                 sparse_rebalance,          sparse_newton_step,
                                                 sparse_unstable_direction, sparse_free};
 
-/* Turns rows and columns p, q so that their common entry becomes 0. */
-static void rotate(double a[3][3], double v[3][3], int p, int q) {
-  if (a[p][q] == 0.0) return;
-  double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
-  double t = (theta < 0 ? -1.0 : 1.0) / (fabs(theta) + sqrt(theta * theta + 1.0));
-  double c = 1.0 / sqrt(t * t + 1.0), s = t * c;
-  for (int i = 0; i < 3; i++) {
-    double x = a[i][p], y = a[i][q];
-    a[i][p] = c * x - s * y, a[i][q] = s * x + c * y;
-  }
-  for (int i = 0; i < 3; i++) {
-    double x = a[p][i], y = a[q][i];
-    a[p][i] = c * x - s * y, a[q][i] = s * x + c * y;
-    x = v[p][i], y = v[q][i];
-    v[p][i] = c * x - s * y, v[q][i] = s * x + c * y;
-  }
-}
-
-void strut_symmetric_3(double matrix[3][3], double value[3], double vector[3][3]) {
-  for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++) vector[i][k] = i == k ? 1.0 : 0.0;
-  for (int sweep = 0; sweep < 30; sweep++) {
-    rotate(matrix, vector, 0, 1);
-    rotate(matrix, vector, 0, 2);
-    rotate(matrix, vector, 1, 2);
-  }
-  for (int i = 0; i < 3; i++) value[i] = matrix[i][i];
-  for (int i = 1; i < 3; i++)
-    for (int k = i; k > 0 && value[k - 1] > value[k]; k--) {
-      double swap = value[k], row[3];
-      value[k] = value[k - 1], value[k - 1] = swap;
-      memcpy(row, vector[k], sizeof row);
-      memcpy(vector[k], vector[k - 1], sizeof row);
-      memcpy(vector[k - 1], row, sizeof row);
-    }
-}
-
 /* Displacement of coordinate `at` per unit of (along x, along y, rotation about the centre by 1/size). */
 typedef struct frame {
   double centre[2], size;
@@ -533,66 +493,67 @@ static void motion_at(const frame *f, const double *q, int32_t at, double row[3]
 
 /* Takes the directions of the earlier ones out of row `count`; false where nothing is left. */
 static bool make_orthonormal(double *motion, int32_t n, int32_t count) {
-  double *row = motion + (size_t)count * (size_t)n;
-  double before = sqrt(strut_dot(row, row, n));
-  for (int again = 0; again < 2; again++)
-    for (int32_t k = 0; k < count; k++) {
-      const double *other = motion + (size_t)k * (size_t)n;
-      double share = strut_dot(row, other, n);
-      for (int32_t i = 0; i < n; i++) row[i] -= share * other[i];
-    }
-  double length = sqrt(strut_dot(row, row, n));
-  if (!(length > 1e-9 * before)) return false;
-  for (int32_t i = 0; i < n; i++) row[i] /= length;
+  double *row = motion + (size_t)count * (size_t)n, before = strut_dot(row, row, n);
+  double left = strut_remove_shares(motion, (size_t)count, (size_t)n, row);
+  if (!(left > 1e-18 * before)) return false;
+  for (int32_t i = 0; i < n; i++) row[i] /= sqrt(left);
   return true;
 }
 
-int32_t strut_rigid_motions(const strut_potential *p, const double *q, double *motion) {
+/* held (3, 3) += row row' of a row of displacements in the motions. */
+static void hold(const double row[3], double held[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) held[3 * i + k] += row[i] * row[k];
+}
+
+int32_t strut_rigid_motions(const strut_potential *p, const double *q, const uint8_t *closed,
+                            double *motion) {
   const strut_model *model = p->model;
   frame f = frame_of(model, q);
-  double held[3][3] = {{0}}, value[3], vector[3][3], row[3];
-  if (!strut_model_may_turn(model)) held[2][2] = 1.0;
+  double held[9] = {0}, value[3], vector[9], row[3], beside[3];
+  if (!strut_model_may_turn(model)) held[8] = 1.0;
   for (int32_t at = 0; at < 2 * model->node_count; at++) {
     if (p->row_of[at] >= 0) continue;
     motion_at(&f, q, at, row);
-    for (int i = 0; i < 3; i++)
-      for (int k = 0; k < 3; k++) held[i][k] += row[i] * row[k];
+    hold(row, held);
   }
-  strut_symmetric_3(held, value, vector);
+  for (int32_t i = 0; i < model->contacts.count && closed; i++) {
+    if (!closed[i]) continue;
+    const strut_contact_pose pose = strut_contact_pose_at(&model->contacts, i, q, NULL, -1);
+    motion_at(&f, q, (int32_t)model->contacts.at[i], row);
+    motion_at(&f, q, (int32_t)model->contacts.at[i] + 1, beside);
+    for (int k = 0; k < 3; k++)
+      row[k] = pose.axes.normal[0] * row[k] + pose.axes.normal[1] * beside[k];
+    hold(row, held);
+  }
+  if (!strut_symmetric_eigen(held, 3, value, vector)) return 0;
   int32_t count = 0;
   for (int i = 0; i < 3 && p->n > 0; i++) {
     if (value[i] > 1e-14 * (1.0 + value[2])) continue;
     double *to = motion + (size_t)count * (size_t)p->n;
     for (int32_t k = 0; k < p->n; k++) {
       motion_at(&f, q, p->coordinate[k], row);
-      to[k] = vector[i][0] * row[0] + vector[i][1] * row[1] + vector[i][2] * row[2];
+      to[k] = vector[3 * i] * row[0] + vector[3 * i + 1] * row[1] + vector[3 * i + 2] * row[2];
     }
     if (make_orthonormal(motion, p->n, count)) count++;
   }
   return count;
 }
 
-int32_t strut_rigid_motions_free(const strut_sparse *hessian, double tolerance, int32_t count,
-                                 double *motion, double *work) {
+int32_t strut_rigid_motions_free(int32_t rows, double tolerance, int32_t count, double *motion,
+                                 double *image) {
   assert(count >= 0 && count <= 3);
-  size_t n = (size_t)hessian->n, kept = 0;
-  double form[3][3] = {{0}}, value[3], vector[3][3];
-  for (size_t i = 0; i < (size_t)count; i++)
-    strut_sparse_multiply(hessian, motion + i * n, work + i * n);
-  for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++)
-      form[i][k] = i < count && k < count
-                       ? strut_dot(work + (size_t)i * n, work + (size_t)k * n, hessian->n)
-                   : i == k ? HUGE_VAL
-                            : 0.0;
-  for (int i = 0; i < 3; i++)
-    if (form[i][i] == HUGE_VAL) form[i][i] = 1e300; /* no motion: sorted to the end */
-  strut_symmetric_3(form, value, vector);
-  memcpy(work, motion, (size_t)count * n * sizeof *work);
-  for (int i = 0; i < 3 && value[i] <= tolerance * tolerance; i++, kept++)
+  size_t n = (size_t)rows, all = (size_t)count, kept = 0;
+  double form[9], value[3], vector[9];
+  for (size_t i = 0; i < all; i++)
+    for (size_t k = 0; k < all; k++)
+      form[i * all + k] = strut_dot(image + i * n, image + k * n, rows);
+  if (!strut_symmetric_eigen(form, all, value, vector)) return 0;
+  memcpy(image, motion, all * n * sizeof *image);
+  for (; kept < all && value[kept] <= tolerance * tolerance; kept++)
     for (size_t at = 0; at < n; at++) {
       double sum = 0.0;
-      for (size_t k = 0; k < (size_t)count; k++) sum += vector[i][k] * work[k * n + at];
+      for (size_t k = 0; k < all; k++) sum += vector[kept * all + k] * image[k * n + at];
       motion[kept * n + at] = sum;
     }
   return (int32_t)kept;

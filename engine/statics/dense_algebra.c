@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <float.h>
 #include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stddef.h>
 
@@ -271,30 +272,50 @@ bool strut_symmetric_eigen(double *matrix, size_t n, double *value, double *vect
   return good;
 }
 
-/* The row from j on with the largest entry in column j. */
-static size_t find_pivot(const gsl_matrix *a, size_t j) {
-  size_t pivot = j;
-  for (size_t i = j + 1; i < a->size1; i++)
-    if (fabs(gsl_matrix_get(a, i, j)) > fabs(gsl_matrix_get(a, pivot, j))) pivot = i;
-  return pivot;
+gsl_matrix *strut_arena_matrix(strut_arena *arena, size_t rows, size_t columns) {
+  gsl_matrix *matrix = strut_arena_allocate(arena, 1, sizeof *matrix);
+  double *data = strut_arena_allocate(arena, rows * columns, sizeof *data);
+  if (!matrix || !data) return NULL;
+  *matrix = (gsl_matrix){.size1 = rows, .size2 = columns, .tda = columns, .data = data};
+  return matrix;
 }
 
-void strut_lu_factor(gsl_matrix *a, gsl_permutation *order) {
-  assert(a->size1 == a->size2 && order->size == a->size1);
-  gsl_permutation_init(order);
-  for (size_t j = 0; j < a->size1; j++) {
-    size_t pivot = find_pivot(a, j);
-    if (pivot != j) {
-      gsl_matrix_swap_rows(a, j, pivot);
-      gsl_permutation_swap(order, j, pivot);
+gsl_vector *strut_arena_vector(strut_arena *arena, size_t size) {
+  gsl_vector *vector = strut_arena_allocate(arena, 1, sizeof *vector);
+  double *data = strut_arena_allocate(arena, size, sizeof *data);
+  if (!vector || !data) return NULL;
+  *vector = (gsl_vector){.size = size, .stride = 1, .data = data};
+  return vector;
+}
+
+gsl_permutation *strut_arena_order(strut_arena *arena, size_t size) {
+  gsl_permutation *order = strut_arena_allocate(arena, 1, sizeof *order);
+  size_t *data = strut_arena_allocate(arena, size, sizeof *data);
+  if (!order || !data) return NULL;
+  *order = (gsl_permutation){.size = size, .data = data};
+  return order;
+}
+
+double strut_remove_shares(const double *rows, size_t count, size_t n, double *x) {
+  for (int twice = 0; twice < 2; twice++)
+    for (size_t k = 0; k < count; k++) {
+      double share = strut_dot(rows + k * n, x, (ptrdiff_t)n);
+      for (size_t i = 0; i < n; i++) x[i] -= share * rows[k * n + i];
     }
-    double diagonal = gsl_matrix_get(a, j, j);
-    if (diagonal == 0.0) continue;
-    for (size_t i = j + 1; i < a->size1; i++) {
-      double factor = gsl_matrix_get(a, i, j) / diagonal;
-      gsl_matrix_set(a, i, j, factor);
-      for (size_t k = j + 1; k < a->size1 && factor != 0.0; k++)
-        *gsl_matrix_ptr(a, i, k) -= factor * gsl_matrix_get(a, j, k);
-    }
+  return strut_dot(x, x, (ptrdiff_t)n);
+}
+
+bool strut_solve_rows(gsl_matrix *a, gsl_vector *right, gsl_permutation *order, gsl_vector *x) {
+  int sign;
+  for (size_t i = 0; i < a->size1; i++) {
+    gsl_vector_view row = gsl_matrix_row(a, i);
+    double most = fmax(-gsl_vector_min(&row.vector), gsl_vector_max(&row.vector));
+    if (!(most > 0) || !isfinite(most)) return false;
+    for (size_t j = 0; j < a->size2; j++) *gsl_matrix_ptr(a, i, j) /= most;
+    *gsl_vector_ptr(right, i) /= most;
   }
+  gsl_linalg_LU_decomp(a, order, &sign);
+  for (size_t i = 0; i < a->size1; i++)
+    if (gsl_matrix_get(a, i, i) == 0.0) return false;
+  return gsl_linalg_LU_solve(a, order, right, x) == 0;
 }

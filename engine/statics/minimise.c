@@ -25,6 +25,7 @@ struct strut_minimiser {
   double *g, *g_trial, *step; /* (n) */
   double *unbent;             /* (n) the step before its correction */
   double *trial, *before;     /* (length) */
+  bool stays;                 /* on a ridge, too */
   const strut_flag *interrupt;
   void (*visit)(void *context, const double *q); /* or NULL */
   void *visitor;
@@ -79,9 +80,7 @@ static bool decompose_hessian(strut_minimiser *m, const double *q) {
 
 /* trial = q + factor * step. */
 static void set_trial(strut_minimiser *m, const double *q, double factor) {
-  const strut_potential *p = m->potential;
-  memcpy(m->trial, q, (size_t)p->model->length * sizeof *q);
-  for (int32_t i = 0; i < p->n; i++) m->trial[p->coordinate[i]] += factor * m->step[i];
+  strut_potential_move(m->potential, m->step, factor, q, m->trial);
 }
 
 static void keep_trial(strut_minimiser *m, double *q) {
@@ -159,38 +158,20 @@ static bool move_end(const strut_potential *p, uint32_t from, uint32_t to, doubl
   return any;
 }
 
-/* The same of members with other laws, and of stops that push. */
-static bool leave_collapsed_elements(strut_minimiser *m, double *q, double far) {
-  const strut_element_table *t = &m->potential->model->elements;
-  bool any = false;
-  for (int32_t i = 0; i < t->count; i++)
-    if (strut_element_has_collapsed(m->potential->model, i, 1e-8, q) &&
-        move_end(m->potential, t->at[t->element[i].first], t->at[t->element[i].first + 1], far, q))
-      any = true;
-  return any;
-}
-
 /*
  * A member that has shrunk to a point pushes its ends apart, but its gradient is undefined: moves
  * its free end aside. False if there is no such member.
  */
 static bool leave_collapse(strut_minimiser *m, double *q) {
   const strut_potential *p = m->potential;
-  const strut_member_table *t = &p->model->members;
-  double far = 1e-3 * m->size;
+  strut_force force;
   bool any = false;
-  for (int32_t j = 0; j < t->count; j++) {
-    double *a = q + t->from[j], *b = q + t->to[j];
-    double dx = b[0] - a[0], dy = b[1] - a[1];
-    if (!(t->rest[j] * t->stiffness[j] > 0) || t->slack[j] == 0.0) continue;
-    if (dx * dx + dy * dy > 1e-16 * t->rest[j] * t->rest[j]) continue;
-    const int32_t *row = p->row_of + t->to[j];
-    double *moved = row[0] >= 0 || row[1] >= 0 ? b : a;
-    if (moved == a) row = p->row_of + t->from[j];
-    if (row[0] >= 0) moved[0] += far, any = true;
-    if (row[1] >= 0) moved[1] += 0.7 * far, any = true;
+  for (int32_t i = 0; i < strut_force_count(p->model, false); i++) {
+    strut_force_begin(p->model, i, &force);
+    if (strut_force_has_collapsed(p->model, 1e-8, q, &force) &&
+        move_end(p, force.at[0], force.at[1], 1e-3 * m->size, q))
+      any = true;
   }
-  if (leave_collapsed_elements(m, q, far)) any = true;
   if (any) strut_potential_gradient(p, q, m->g);
   return any;
 }
@@ -273,6 +254,8 @@ void strut_minimiser_watch(strut_minimiser *m, const strut_flag *interrupt) {
   m->interrupt = interrupt;
 }
 
+void strut_minimiser_stay(strut_minimiser *m) { m->stays = true; }
+
 void strut_minimiser_visit(strut_minimiser *m, void (*visit)(void *context, const double *q),
                            void *context) {
   m->visit = visit;
@@ -302,7 +285,8 @@ strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
     if (m->interrupt && *m->interrupt) return end;
     if (!decompose_hessian(m, q)) return end;
     if (end.residual <= allowed) {
-      if ((extra < 3 && leave_collapse(m, q) && ++extra) || leave_ridge(m, q, radius)) {
+      if (!m->stays &&
+          ((extra < 3 && leave_collapse(m, q) && ++extra) || leave_ridge(m, q, radius))) {
         energy = strut_potential_value(m->potential, q);
         continue;
       }

@@ -38,6 +38,9 @@ STRUT_API void strut_minimiser_free(strut_minimiser *minimiser);
 /** Descents end as exhausted soon after the flag is set. NULL: no flag. */
 void strut_minimiser_watch(strut_minimiser *minimiser, const strut_flag *interrupt);
 
+/** Descents end on a saddle, too, if they come upon one. */
+void strut_minimiser_stay(strut_minimiser *minimiser);
+
 /** Calls `visit` with every point q (length) that a descent keeps, its start and its end too; NULL: nothing. */
 void strut_minimiser_visit(strut_minimiser *minimiser,
                            void (*visit)(void *context, const double *q), void *context);

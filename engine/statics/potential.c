@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/tangent.h"
+#include "engine/model/compile_parts.h"
 
 static void sum_forces(strut_potential *p) {
   const strut_model *model = p->model;
@@ -37,30 +37,63 @@ static bool make_pattern(strut_potential *p) {
   return true;
 }
 
-strut_status strut_potential_create(const strut_model *model, const uint8_t *held, bool ground,
-                                    strut_potential **potential, strut_error *error) {
+static strut_status create(const strut_model *model, const uint8_t *held, const int32_t *rows,
+                           int32_t n, bool ground, strut_potential **potential,
+                           strut_error *error) {
   size_t length = (size_t)model->length;
   strut_potential *p = *potential = strut_allocate(1, sizeof *p);
-  if (!p) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!p) return strut_no_memory(error, "");
   p->model = model;
   p->ground = ground;
   p->coordinate = strut_arena_allocate(&p->arena, length, sizeof *p->coordinate);
   p->row_of = strut_arena_allocate(&p->arena, length, sizeof *p->row_of);
   p->force = strut_arena_allocate(&p->arena, length, sizeof *p->force);
   if (p->coordinate && p->row_of && p->force) {
-    p->n = strut_number_free(model, held, p->row_of, p->coordinate);
+    p->n = rows ? n : strut_number_free(model, held, p->row_of, p->coordinate);
+    for (int32_t at = model->length - 1; at >= 0 && rows; at--)
+      if ((p->row_of[at] = rows[at]) >= 0) p->coordinate[rows[at]] = at;
     sum_forces(p);
     if (make_pattern(p)) return STRUT_OK;
   }
   strut_potential_free(p);
   *potential = NULL;
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return strut_no_memory(error, "");
+}
+
+strut_status strut_potential_create(const strut_model *model, const uint8_t *held, bool ground,
+                                    strut_potential **potential, strut_error *error) {
+  return create(model, held, NULL, 0, ground, potential, error);
+}
+
+strut_status strut_potential_create_tied(const strut_model *model, const int32_t *rows, int32_t n,
+                                         strut_potential **potential, strut_error *error) {
+  return create(model, NULL, rows, n, false, potential, error);
+}
+
+void strut_potential_move(const strut_potential *p, const double *step, double factor,
+                          const double *q, double *to) {
+  for (int32_t at = 0; at < p->model->length; at++)
+    to[at] = p->row_of[at] < 0 ? q[at] : q[at] + factor * step[p->row_of[at]];
 }
 
 void strut_potential_free(strut_potential *potential) {
   if (!potential) return;
   strut_arena_free(&potential->arena);
   strut_release(potential);
+}
+
+/* Minus moment times angle of constant couples at q [J], each angle nearest to that in the shape `near`. */
+static double couples_potential(const strut_model *model, const double *near, const double *q) {
+  double sum = 0.0, b[STRUT_MOST_GRADIENT];
+  strut_element_pose pose;
+  for (int32_t i = 0; i < model->elements.count && model->elements.couples; i++) {
+    const strut_element *e = &model->elements.element[i];
+    if (e->role != STRUT_ELEMENT_LOAD) continue;
+    double at = strut_element_strain(model, i, near, strut_element_start(model, i), b);
+    strut_element_evaluate(model, i, model->members.rest, q, at, &pose);
+    sum += pose.energy;
+  }
+  return sum;
 }
 
 static double elastic_energy(const strut_potential *p, const double *q) {
@@ -86,7 +119,7 @@ double strut_potential_value_near(const strut_potential *p, const double *q, con
     double gap = strut_contact_gap(c, i, q);
     if (gap < 0.0) sum += 0.5 * c->entry[i].stiffness * gap * gap;
   }
-  return sum - work + strut_couples_potential(p->model, near, q);
+  return sum - work + couples_potential(p->model, near, q);
 }
 
 double strut_potential_energy(const strut_potential *p, const double *q) {
@@ -97,122 +130,73 @@ double strut_potential_energy(const strut_potential *p, const double *q) {
   return elastic_energy(p, q) - sum;
 }
 
-/* Forces of elements: added to (length) forces, or taken from a gradient over the free rows. */
-typedef struct element_sum {
-  const strut_potential *potential;
-  double *sum;
-  bool gradient;
-} element_sum;
-
-static void add_element_force(void *context, int32_t element, const strut_element_pose *pose) {
-  const element_sum *s = context;
-  const strut_element_table *t = &s->potential->model->elements;
-  const strut_element *e = &t->element[element];
-  for (int32_t k = 0; k < 2 * e->nodes; k++) {
-    uint32_t at = t->at[e->first + k / 2] + (uint32_t)(k % 2);
-    int32_t row = s->potential->row_of[at];
-    if (!s->gradient)
-      s->sum[at] -= pose->force * pose->b[k];
-    else if (row >= 0)
-      s->sum[row] += pose->force * pose->b[k];
-  }
+strut_force_visit strut_potential_visit(const strut_potential *p, const double *q, double least) {
+  return (strut_force_visit){.model = p->model,
+                             .q = q,
+                             .rest = p->model->members.rest,
+                             .least = least,
+                             .closed = p->ground ? STRUT_CLOSED_TOUCHING : STRUT_CLOSED_NONE};
 }
 
-void strut_potential_force(const strut_potential *p, const double *q, double *force) {
-  const strut_member_table *t = &p->model->members;
-  const strut_contact_table *c = &p->model->contacts;
-  memcpy(force, p->force, (size_t)p->model->length * sizeof *force);
-  for (int32_t j = 0; j < t->count; j++) {
-    strut_member_pose m = strut_member_pose_at(t, t->rest, j, q);
-    if (!m.taut) continue;
-    double tension = t->stiffness[j] * m.stretch, fx = tension * m.unit.x, fy = tension * m.unit.y;
-    double *a = force + t->from[j], *b = force + t->to[j];
-    a[0] += fx, a[1] += fy, b[0] -= fx, b[1] -= fy;
-  }
-  element_sum elements = {p, force, false};
-  strut_elements_visit(p->model, t->rest, q, -HUGE_VAL, false, &elements, add_element_force);
-  for (int32_t i = 0; i < c->count && p->ground; i++) {
-    strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
-    double *f = force + c->at[i];
-    if (!(pose.gap < 0.0)) continue;
-    double push = -c->entry[i].stiffness * pose.gap;
-    f[0] += push * pose.axes.normal[0], f[1] += push * pose.axes.normal[1];
-  }
+void strut_potential_force(const strut_potential *p, const double *q, double *sum) {
+  strut_force_visit visit = strut_potential_visit(p, q, -HUGE_VAL);
+  memcpy(sum, p->force, (size_t)p->model->length * sizeof *sum);
+  for (const strut_force *force; (force = strut_force_next(&visit));)
+    for (int32_t k = 0; k < 2 * force->nodes; k++)
+      sum[strut_force_coordinate(force, k)] -= force->pose.force * force->pose.b[k];
 }
 
 /* The same sums in the same order as the force, kept where they are free. */
 void strut_potential_gradient(const strut_potential *p, const double *q, double *g) {
-  const strut_member_table *t = &p->model->members;
-  const strut_contact_table *c = &p->model->contacts;
-  const int32_t *row = p->row_of;
-  for (int32_t i = 0; i < p->n; i++) g[i] = -p->force[p->coordinate[i]];
-  for (int32_t j = 0; j < t->count; j++) {
-    strut_member_pose m = strut_member_pose_at(t, t->rest, j, q);
-    if (!m.taut) continue;
-    double tension = t->stiffness[j] * m.stretch, fx = tension * m.unit.x, fy = tension * m.unit.y;
-    const int32_t *a = row + t->from[j], *b = row + t->to[j];
-    if (a[0] >= 0) g[a[0]] -= fx;
-    if (a[1] >= 0) g[a[1]] -= fy;
-    if (b[0] >= 0) g[b[0]] += fx;
-    if (b[1] >= 0) g[b[1]] += fy;
-  }
-  element_sum elements = {p, g, true};
-  strut_elements_visit(p->model, t->rest, q, -HUGE_VAL, false, &elements, add_element_force);
-  for (int32_t i = 0; i < c->count && p->ground; i++) {
-    strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
-    const int32_t *a = row + c->at[i];
-    if (!(pose.gap < 0.0)) continue;
-    double push = -c->entry[i].stiffness * pose.gap;
-    if (a[0] >= 0) g[a[0]] -= push * pose.axes.normal[0];
-    if (a[1] >= 0) g[a[1]] -= push * pose.axes.normal[1];
-  }
+  strut_force_visit visit = strut_potential_visit(p, q, -HUGE_VAL);
+  for (int32_t i = 0; i < p->n; i++) g[i] = 0.0;
+  for (int32_t at = 0; at < p->model->length; at++)
+    if (p->row_of[at] >= 0) g[p->row_of[at]] -= p->force[at];
+  for (const strut_force *force; (force = strut_force_next(&visit));)
+    for (int32_t k = 0; k < 2 * force->nodes; k++) {
+      int32_t row = p->row_of[strut_force_coordinate(force, k)];
+      if (row >= 0) g[row] += force->pose.force * force->pose.b[k];
+    }
 }
-
-typedef struct rounding_sum {
-  const strut_potential *potential;
-  const double *q;
-  double largest;
-} rounding_sum;
 
 /* The last bits of the coordinates, through the gradient to the strain, and back to a force. */
-static void add_element_rounding(void *context, int32_t element, const strut_element_pose *pose) {
-  rounding_sum *s = context;
-  const strut_element_table *t = &s->potential->model->elements;
-  const strut_element *e = &t->element[element];
-  double bits = fabs(pose->strain) * DBL_EPSILON, steepest = 0.0;
-  for (int32_t k = 0; k < e->nodes; k++) {
-    const double *at = s->q + t->at[e->first + k];
-    double slope = fmax(fabs(pose->b[2 * k]), fabs(pose->b[2 * k + 1]));
-    bits = fmax(bits, slope * strut_coordinate_rounding(at, at));
-    steepest = fmax(steepest, slope);
-  }
-  double force = fabs(pose->slope) * bits + fabs(pose->force) * DBL_EPSILON;
-  s->largest = fmax(s->largest, steepest * force);
-}
-
 double strut_potential_rounding(const strut_potential *p, const double *q) {
-  const strut_member_table *t = &p->model->members;
-  const strut_contact_table *c = &p->model->contacts;
+  strut_force_visit visit = strut_potential_visit(p, q, -HUGE_VAL);
   double largest = 0.0, forces = 0.0;
   for (int32_t at = 0; at < 2 * p->model->node_count; at++)
     if (p->row_of[at] >= 0) forces = fmax(forces, fabs(p->force[at]));
-  for (int32_t j = 0; j < t->count; j++) {
-    const int32_t *a = p->row_of + t->from[j], *b = p->row_of + t->to[j];
-    strut_member_pose m = strut_member_pose_at(t, t->rest, j, q);
-    if (!m.taut || (a[0] < 0 && a[1] < 0 && b[0] < 0 && b[1] < 0)) continue;
-    double bit = strut_coordinate_rounding(q + t->from[j], q + t->to[j]);
-    largest = fmax(largest, t->stiffness[j] * (bit + fabs(m.stretch) * DBL_EPSILON));
-  }
-  rounding_sum elements = {p, q, largest};
-  strut_elements_visit(p->model, t->rest, q, -HUGE_VAL, false, &elements, add_element_rounding);
-  largest = elements.largest;
-  for (int32_t i = 0; i < c->count && p->ground; i++) {
-    const double *at = q + c->at[i];
-    double gap = strut_contact_gap(c, i, q);
-    if (gap < 0.0)
-      largest = fmax(largest, c->entry[i].stiffness * strut_coordinate_rounding(at, at));
+  for (const strut_force *force; (force = strut_force_next(&visit));) {
+    double bits = force->kind == STRUT_FORCE_ELEMENT ? fabs(force->pose.strain) * DBL_EPSILON : 0.0;
+    double steepest = 0.0;
+    bool free = force->kind != STRUT_FORCE_MEMBER;
+    for (int32_t k = 0; k < force->nodes; k++) {
+      const double *at = q + force->at[k], *b = &force->pose.b[2 * k];
+      double slope = fmax(fabs(b[0]), fabs(b[1]));
+      if (force->kind != STRUT_FORCE_ELEMENT) slope = 1.0; /* a length in any direction */
+      free = free || p->row_of[force->at[k]] >= 0 || p->row_of[force->at[k] + 1] >= 0;
+      bits = fmax(bits, slope * strut_coordinate_rounding(at, at));
+      steepest = fmax(steepest, slope);
+    }
+    bits = steepest * (fabs(force->pose.slope) * bits + fabs(force->pose.force) * DBL_EPSILON);
+    if (free) largest = fmax(largest, bits);
   }
   return largest + forces * DBL_EPSILON;
+}
+
+double strut_element_stiffest(const strut_model *model, int32_t element) {
+  assert(element >= 0 && element < model->elements.count);
+  static const double places[] = {-0.3, -0.1, -0.01, 0.0, 0.01, 0.1, 0.3};
+  const strut_element *e = &model->elements.element[element];
+  double natural = strut_element_start(model, element), stiffest = 0.0;
+  double size = model->size > 0.0 ? model->size : 1.0;
+  bool angle = e->strain == STRUT_STRAIN_ANGLE;
+  if (e->strain == STRUT_STRAIN_AREA) return e->numbers.stiffness * size * size;
+  for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
+    double x = places[k] * (angle ? 1.0 : natural > 0.0 ? natural : size);
+    double slope = strut_law_respond(e->law, &e->numbers, natural + x, natural, -1).slope;
+    stiffest = fmax(stiffest, fabs(slope));
+  }
+  return angle ? stiffest / (size * size) : stiffest;
 }
 
 double strut_stiffest(const strut_model *model) {
@@ -237,43 +221,47 @@ void strut_potential_hessian(const strut_potential *p, const double *q, strut_sp
   strut_potential_hessian_above(p, q, 0.0, hessian);
 }
 
-typedef struct hessian_sum {
-  const strut_potential *potential;
-  const double *q;
-  double *value;
-} hessian_sum;
-
-static void add_member(void *context, int32_t j, const strut_member_tangent *m) {
-  const hessian_sum *sum = context;
-  const strut_stiffness_block block = strut_block_of(m->along, m->across, m->pose.unit);
-  const int32_t *place = sum->potential->place + STRUT_MEMBER_ENTRIES * j;
-  strut_block_scatter(&block, STRUT_MEMBER_ENTRIES, place, sum->value);
-}
-
-static void add_element(void *context, int32_t i, const strut_element_pose *pose) {
-  const hessian_sum *sum = context;
-  const strut_model *model = sum->potential->model;
-  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
-  strut_element_stiffness(model, i, pose, sum->q, k);
-  strut_element_scatter(model, i, k, sum->potential->place + strut_places_of_elements(model),
-                        sum->value);
-}
-
-static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
-  const hessian_sum *sum = context;
-  const strut_model *model = sum->potential->model;
-  const strut_stiffness_block block =
-      strut_block_of_pose(contact->stiffness, contact->across, &contact->axes);
-  const int32_t *place = sum->potential->place + strut_places_of_contacts(model);
-  strut_block_scatter(&block, STRUT_CONTACT_ENTRIES, place + STRUT_CONTACT_ENTRIES * i, sum->value);
-}
-
 void strut_potential_hessian_above(const strut_potential *p, const double *q, double least,
                                    strut_sparse *hessian) {
   assert(hessian->n == p->n);
-  hessian_sum sum = {p, q, hessian->value};
-  memset(sum.value, 0, (size_t)hessian->start[hessian->n] * sizeof *sum.value);
-  strut_tangent_visit(p->model, q, p->model->members.rest, least,
-                      p->ground ? STRUT_CLOSED_TOUCHING : STRUT_CLOSED_NONE, &sum, add_member,
-                      add_element, add_contact);
+  double matrix[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  strut_force_visit visit = strut_potential_visit(p, q, least);
+  memset(hessian->value, 0, (size_t)hessian->start[hessian->n] * sizeof *hessian->value);
+  for (const strut_force *force; (force = strut_force_next(&visit));) {
+    strut_force_stiffness(p->model, force, q, matrix);
+    strut_force_scatter(force, matrix, p->place, hessian->value);
+  }
+}
+
+bool strut_force_has_collapsed(const strut_model *model, double share, const double *q,
+                               strut_force *force) {
+  const strut_member_table *t = &model->members;
+  const strut_element_pose *pose = &force->pose;
+  int32_t i = force->index;
+  if (force->kind == STRUT_FORCE_MEMBER)
+    return t->slack[i] != 0.0 && t->rest[i] * t->stiffness[i] > 0.0 &&
+           strut_member_length(t, i, q) < share * t->rest[i];
+  if (force->kind == STRUT_FORCE_CONTACT) return false;
+  const strut_element *own = &model->elements.element[i];
+  if (own->strain != STRUT_STRAIN_LENGTH || own->carries > 0) return false;
+  strut_element_evaluate(model, i, t->rest, q, (double)NAN, &force->pose);
+  return pose->strain < share * pose->natural && pose->force < 0.0;
+}
+
+/* True where an arm of some hinge is all but gone beside what it is at the start: its angle has no meaning then. */
+static bool have_hinges_collapsed(const strut_model *model, const double *q) {
+  const double gone = 1e-4; /* of the arm at the start */
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    const uint32_t *at = model->elements.at + e->first;
+    for (int k = 1; k < e->nodes && e->strain == STRUT_STRAIN_ANGLE; k++)
+      if (strut_distance(q + at[k], q + at[k - 1]) <
+          gone * strut_distance(model->start + at[k], model->start + at[k - 1]))
+        return true;
+  }
+  return false;
+}
+
+bool strut_shape_has_collapsed(const strut_model *model, const double *q) {
+  return have_hinges_collapsed(model, q) || strut_cell_that_collapsed(model, q) >= 0;
 }

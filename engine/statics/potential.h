@@ -9,14 +9,13 @@
 #ifndef STRUT_ENGINE_STATICS_POTENTIAL_H
 #define STRUT_ENGINE_STATICS_POTENTIAL_H
 
-#include "engine/model/model.h"
-#include "engine/model/sparse.h"
+#include "engine/forces/tangent.h"
 
 typedef struct strut_potential {
   const strut_model *model;
   bool ground;           /* contacts push with c_g depth; false: no ground */
   int32_t n;             /* free coordinates */
-  int32_t *coordinate;   /* (n) index into coordinate arrays */
+  int32_t *coordinate;   /* (n) index into coordinate arrays, of tied ones the first */
   int32_t *row_of;       /* (length) row of a coordinate, -1 where held */
   strut_sparse *pattern; /* of the Hessian: every member and contact, touching or not */
   int32_t *place;     /* where the entries of members and contacts stand in the pattern's values */
@@ -32,7 +31,14 @@ typedef struct strut_potential {
 STRUT_API strut_status strut_potential_create(const strut_model *model, const uint8_t *held,
                                               bool ground, strut_potential **potential,
                                               strut_error *error);
+/** Likewise, without ground, of coordinates that move together: rows (length) from 0 to n - 1, -1 where held. */
+strut_status strut_potential_create_tied(const strut_model *model, const int32_t *rows, int32_t n,
+                                         strut_potential **potential, strut_error *error);
 STRUT_API void strut_potential_free(strut_potential *potential);
+
+/** to (length) = q + factor * step (n). */
+void strut_potential_move(const strut_potential *potential, const double *step, double factor,
+                          const double *q, double *to);
 
 /**
  * The potential that is stationary in equilibrium: (13), minus load times position, plus the energy
@@ -60,8 +66,28 @@ STRUT_API void strut_potential_force(const strut_potential *potential, const dou
  */
 STRUT_API double strut_potential_rounding(const strut_potential *potential, const double *q);
 
+/** To visit all its forces at q that act with more than `least` [N]. */
+strut_force_visit strut_potential_visit(const strut_potential *potential, const double *q,
+                                        double least);
+
 /** The largest stiffness of a model's members and elements [N/m]; see strut_element_stiffest. */
 STRUT_API double strut_stiffest(const strut_model *model);
+
+/**
+ * The largest slope of an element's law near its natural strain, as a stiffness [N/m]: that of a hinge
+ * over the square of the model's size.
+ */
+double strut_element_stiffest(const strut_model *model, int32_t element);
+
+/**
+ * True of a straight member or element that pushes and has shrunk to less than `share` of its natural length at q, with
+ * rest lengths as drawn: it has no direction then, and its force no gradient. force: as strut_force_begin leaves it.
+ */
+bool strut_force_has_collapsed(const strut_model *model, double share, const double *q,
+                               strut_force *force);
+
+/** True where a hinge or a cell has collapsed. */
+bool strut_shape_has_collapsed(const strut_model *model, const double *q);
 
 /** A Hessian of zeros to be filled, in the arena; NULL: out of memory. */
 STRUT_API strut_sparse *strut_potential_matrix(const strut_potential *potential,
@@ -79,20 +105,17 @@ STRUT_API void strut_potential_hessian_above(const strut_potential *potential, c
 /* The rigid-body motions of a whole structure that its supports leave free. */
 
 /**
- * Fills up to three orthonormal rows (3, n) of `motion` with motions that move no held coordinate;
- * returns how many there are.
+ * Fills up to three orthonormal rows (3, n) of `motion` with motions that move no held coordinate, and no contact
+ * along its normal where `closed` (contacts), which may be NULL, is 1; returns how many there are.
  */
 STRUT_API int32_t strut_rigid_motions(const strut_potential *potential, const double *q,
-                                      double *motion);
+                                      const uint8_t *closed, double *motion);
 
 /**
- * Finds the combinations of the first `count` rigid motions that the Hessian resists with no more than
- * `tolerance` [N/m]: they come first then; returns how many. work: (3 n).
+ * Finds the combinations of the first `count` rigid motions (count, n) that a stiffness resists with no more than
+ * `tolerance` [N/m]: they come first then; returns how many. image (count, n): its products with them, overwritten.
  */
-int32_t strut_rigid_motions_free(const strut_sparse *hessian, double tolerance, int32_t count,
-                                 double *motion, double *work);
-
-/** Eigenvalues, ascending, and eigenvectors, in rows, of a symmetric 3 x 3 matrix (Jacobi). */
-STRUT_API void strut_symmetric_3(double matrix[3][3], double value[3], double vector[3][3]);
+int32_t strut_rigid_motions_free(int32_t n, double tolerance, int32_t count, double *motion,
+                                 double *image);
 
 #endif

@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/tangent.h"
-
 struct strut_spectrum_workspace {
   const strut_potential *potential;
   strut_arena arena;
@@ -18,7 +16,7 @@ struct strut_spectrum_workspace {
   double *raw, *value, *noise; /* (n) */
   double *work;                /* (n) */
   double *vector, *turned;     /* (n, n) */
-  double *along, *across, *form_noise; /* (n) of one member in each soft mode; noise of the form */
+  double *along, *across, *form_noise; /* (n) of one force in each soft mode; noise of the form */
   int32_t *order;                      /* (n) */
 };
 
@@ -95,119 +93,93 @@ static bool fill_dense(strut_spectrum_workspace *room) {
   return true;
 }
 
-/* The change of a coordinate in mode i; 0 where it is held. */
-static double moved(const strut_spectrum_workspace *room, const double *mode, uint32_t at) {
-  int32_t row = room->potential->row_of[at];
-  return row < 0 ? 0.0 : mode[row];
+/* The change of a coordinate of a force in a mode; 0 where it is held. */
+static double moved(const strut_mode_form *form, int32_t mode, const strut_force *force,
+                    int32_t k) {
+  int32_t row = form->row_of[strut_force_coordinate(force, k)];
+  return row < 0 ? 0.0
+                 : form->vector[(size_t)mode * form->mode_step + (size_t)row * form->row_step];
+}
+
+/* How a force is strained along b in a mode. A member is by what its ends move apart, which a motion of both does not blur. */
+static double change_of(const strut_mode_form *form, int32_t mode, const strut_force *force,
+                        const double *b) {
+  bool member = force->kind == STRUT_FORCE_MEMBER;
+  double sum = 0.0;
+  for (int32_t k = member ? 2 : 0; k < 2 * force->nodes; k++)
+    sum += b[k] * (moved(form, mode, force, k) - (member ? moved(form, mode, force, k - 2) : 0.0));
+  return sum;
 }
 
 /*
- * Adds stiffness * x x' + geometric * y y' to the form on `count` modes, where x, y are how a
- * member stretches and turns in them; and to each mode's noise what the rounding of both amounts
- * to.
+ * Adds slope x x' + across y y', where a force is strained by x along b and turns by y along side; and to each mode's
+ * noise what the rounding of both amounts to.
  */
-static void add_form(strut_spectrum_workspace *room, int32_t count, double stiffness,
-                     double geometric, double uncertain) {
-  const double *x = room->along, *y = room->across;
-  for (int32_t i = 0; i < count; i++) {
+static void add_squares(strut_mode_form *form, const strut_force *force, const double *b,
+                        double slope, const double *side, double uncertain) {
+  const double bits = 8.0 * DBL_EPSILON, turn = force->across, size = fabs(turn);
+  double *x = form->along, *y = form->across;
+  for (int32_t i = 0; i < form->count; i++) {
+    bool turns = force->kind == STRUT_FORCE_MEMBER || turn != 0.0;
+    x[i] = change_of(form, i, force, b);
+    y[i] = turns ? change_of(form, i, force, side) : 0.0;
     for (int32_t k = 0; k <= i; k++)
-      room->soft[i * count + k] += stiffness * x[i] * x[k] + geometric * y[i] * y[k];
+      form->sum[i * form->count + k] += slope * x[i] * x[k] + turn * y[i] * y[k];
     /* modes are known to some last bits, and so is what a member stretches and turns in them */
-    double bits = 8.0 * DBL_EPSILON;
-    room->form_noise[i] += bits * (stiffness * fabs(x[i]) * (fabs(x[i]) + bits) +
-                                   fabs(geometric) * fabs(y[i]) * (fabs(y[i]) + bits)) +
-                           bits * bits * (stiffness + fabs(geometric)) + uncertain * y[i] * y[i];
+    form->noise[i] += bits * (slope * fabs(x[i]) * (fabs(x[i]) + bits) +
+                              size * fabs(y[i]) * (fabs(y[i]) + bits)) +
+                      bits * bits * (slope + size) + uncertain * y[i] * y[i];
   }
-}
-
-typedef struct form_sum {
-  strut_spectrum_workspace *room;
-  const double *q;
-  int32_t count;
-} form_sum;
-
-static void add_member(void *context, int32_t j, const strut_member_tangent *m) {
-  const form_sum *sum = context;
-  strut_spectrum_workspace *room = sum->room;
-  const strut_member_table *t = &room->potential->model->members;
-  uint32_t a = t->from[j], b = t->to[j];
-  double length = m->pose.length, bit = strut_coordinate_rounding(sum->q + a, sum->q + b);
-  if (!(length > 0.0) && t->rest[j] > 0.0) return;
-  strut_vec2 u = length > 0.0 ? m->pose.unit : (strut_vec2){1.0, 0.0};
-  for (int32_t i = 0; i < sum->count; i++) {
-    const double *mode = room->vector + (size_t)i * (size_t)room->potential->n;
-    double mx = moved(room, mode, b) - moved(room, mode, a);
-    double my = moved(room, mode, b + 1) - moved(room, mode, a + 1);
-    room->along[i] = u.x * mx + u.y * my;
-    room->across[i] = u.x * my - u.y * mx;
-  }
-  add_form(room, sum->count, m->along, m->across, length > 0.0 ? m->along * bit / length : 0.0);
 }
 
 /* The force that last bits of positions and strain are worth. */
-static double uncertain_force(const strut_model *model, int32_t i, const strut_element_pose *pose,
-                              const double *q) {
-  const strut_element *e = &model->elements.element[i];
-  double bits = fabs(pose->strain) * DBL_EPSILON;
-  for (int32_t k = 0; k < e->nodes; k++) {
-    const double *at = q + model->elements.at[e->first + k];
-    bits =
-        fmax(bits, hypot(pose->b[2 * k], pose->b[2 * k + 1]) * strut_coordinate_rounding(at, at));
+static double uncertain_force(const strut_force *force, const double *q) {
+  double bits = fabs(force->pose.strain) * DBL_EPSILON;
+  for (int32_t k = 0; k < force->nodes; k++) {
+    const double *at = q + force->at[k], *b = &force->pose.b[2 * k];
+    bits = fmax(bits, hypot(b[0], b[1]) * strut_coordinate_rounding(at, at));
   }
-  return fabs(pose->slope) * bits;
+  return fabs(force->pose.slope) * bits;
 }
 
-/* Along its gradient like a member; what its force adds by bending the strain directly. */
-static void add_element(void *context, int32_t i, const strut_element_pose *pose) {
-  const form_sum *sum = context;
-  strut_spectrum_workspace *room = sum->room;
-  const strut_model *model = room->potential->model;
-  const strut_element *e = &model->elements.element[i];
-  const uint32_t *at = model->elements.at + e->first;
-  int32_t n = 2 * e->nodes;
+/* What the force of an element adds by bending the strain directly. */
+static void add_bend(strut_mode_form *form, const strut_force *force, const double *q) {
+  int32_t n = 2 * force->nodes, count = form->count;
   double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0}, own[STRUT_MOST_GRADIENT];
-  strut_element_bend(model, i, sum->q, 1.0, bend);
-  double uncertain = uncertain_force(model, i, pose, sum->q);
-  for (int32_t k = 0; k < sum->count; k++) {
-    const double *mode = room->vector + (size_t)k * (size_t)room->potential->n;
-    room->along[k] = room->across[k] = 0.0;
-    for (int32_t r = 0; r < n; r++)
-      room->along[k] += pose->b[r] * moved(room, mode, at[r / 2] + (uint32_t)(r % 2));
-  }
-  add_form(room, sum->count, pose->slope, 0.0, 0.0);
-  for (int32_t k = 0; k < sum->count; k++) {
-    const double *mode = room->vector + (size_t)k * (size_t)room->potential->n;
+  double uncertain = uncertain_force(force, q), pull = force->pose.force;
+  strut_element_bend(form->model, force->index, q, 1.0, bend);
+  for (int32_t k = 0; k < count; k++) {
     for (int32_t r = 0; r < n; r++) {
       own[r] = 0.0;
-      for (int32_t c = 0; c < n; c++)
-        own[r] += bend[r * n + c] * moved(room, mode, at[c / 2] + (uint32_t)(c % 2));
+      for (int32_t c = 0; c < n; c++) own[r] += bend[r * n + c] * moved(form, k, force, c);
     }
     for (int32_t l = 0; l <= k; l++) {
-      const double *other = room->vector + (size_t)l * (size_t)room->potential->n;
-      double form = 0.0, size = 0.0;
+      double sum = 0.0, size = 0.0;
       for (int32_t r = 0; r < n; r++) {
-        double x = own[r] * moved(room, other, at[r / 2] + (uint32_t)(r % 2));
-        form += x, size += fabs(x);
+        double x = own[r] * moved(form, l, force, r);
+        sum += x, size += fabs(x);
       }
-      room->soft[k * sum->count + l] += pose->force * form;
-      if (l == k)
-        room->form_noise[k] += (16.0 * DBL_EPSILON * fabs(pose->force) + uncertain) * size;
+      form->sum[k * count + l] += pull * sum;
+      if (l < k) continue;
+      form->noise[k] += (16.0 * DBL_EPSILON * fabs(pull) + uncertain) * size;
+      form->part = fmax(form->part, fmax(fabs(pull * sum), fabs(force->pose.slope) *
+                                                               form->along[k] * form->along[k]));
     }
   }
 }
 
-static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
-  const form_sum *sum = context;
-  strut_spectrum_workspace *room = sum->room;
-  const strut_contact_table *c = &room->potential->model->contacts;
-  for (int32_t k = 0; k < sum->count; k++) {
-    const double *mode = room->vector + (size_t)k * (size_t)room->potential->n;
-    const double *n = contact->axes.normal, *t = contact->axes.tangent;
-    double x = moved(room, mode, c->at[i]), y = moved(room, mode, c->at[i] + 1);
-    room->along[k] = x * n[0] + y * n[1];
-    room->across[k] = contact->across != 0.0 ? x * t[0] + y * t[1] : 0.0;
+void strut_mode_form_add(strut_mode_form *form, const strut_force *force, const double *q) {
+  static const double right[4] = {-1.0, 0.0, 1.0, 0.0}, up[4] = {0.0, -1.0, 0.0, 1.0};
+  const double *b = force->pose.b, *side = force->side;
+  double length = force->pose.strain, slope = force->pose.slope, uncertain = 0.0;
+  if (force->kind == STRUT_FORCE_MEMBER) {
+    const double *from = q + force->at[0], *to = q + force->at[1];
+    if (length == 0.0) b = right, side = up; /* a spring alike in all directions, or none */
+    if (length == 0.0) slope = force->across;
+    if (length != 0.0) uncertain = slope * strut_coordinate_rounding(from, to) / fabs(length);
   }
-  add_form(room, sum->count, contact->stiffness, contact->across, 0.0);
+  add_squares(form, force, b, slope, side, uncertain);
+  if (force->kind == STRUT_FORCE_ELEMENT) add_bend(form, force, q);
 }
 
 /* Replaces the first `count` eigenpairs by those of the form summed member by member. */
@@ -215,10 +187,19 @@ static bool refine(strut_spectrum_workspace *room, const double *q, int32_t coun
   size_t n = (size_t)room->potential->n, m = (size_t)count;
   memset(room->soft, 0, m * m * sizeof *room->soft);
   memset(room->form_noise, 0, m * sizeof *room->form_noise);
-  form_sum sum = {room, q, count};
-  strut_tangent_visit(room->potential->model, q, room->potential->model->members.rest, room->least,
-                      room->potential->ground ? STRUT_CLOSED_TOUCHING : STRUT_CLOSED_NONE, &sum,
-                      add_member, add_element, add_contact);
+  strut_mode_form form = {.model = room->potential->model,
+                          .row_of = room->potential->row_of,
+                          .count = count,
+                          .vector = room->vector,
+                          .mode_step = n,
+                          .row_step = 1,
+                          .sum = room->soft,
+                          .noise = room->form_noise,
+                          .along = room->along,
+                          .across = room->across};
+  strut_force_visit visit = strut_potential_visit(room->potential, q, room->least);
+  for (const strut_force *force; (force = strut_force_next(&visit));)
+    strut_mode_form_add(&form, force, q);
   for (size_t i = 0; i < m; i++)
     for (size_t k = 0; k < i; k++) room->soft[k * m + i] = room->soft[i * m + k];
   if (!strut_eigen(room->soft, count, room->raw, room->work)) return false;

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/time.h>
 
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/history.h"
 #include "engine/model/pose.h"

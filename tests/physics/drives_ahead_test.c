@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Drives that are computed for many evaluations at once have the bits of those computed one by one. */
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
 
 #include "tests/support/structures.h"
 

@@ -186,7 +186,7 @@ TEST(refusals) {
   frame(&setup, false);
   for (int i = 0; i < 4; i++) setup.scene.nodes[i].fixed[0] = setup.scene.nodes[i].fixed[1] = false;
   assert_fails(find(&setup, (strut_form_options){0}, &form, &error), STRUT_NOT_SETTLED, error,
-               "at n1, n2, n3, n4");
+               "at n1, n2, n3 and n4");
   strut_setup_free(&setup);
   frame(&setup, false);
   setup.scene.members[5].node[1] = 0,

@@ -3,8 +3,8 @@
  * Every element, ground, drive, sensor and state once more: forces and accelerations of random scenes at
  * random instants, and whole motions by a Runge-Kutta method of the test's own, against the engine's.
  */
+#include "engine/forces/drives/support_motion.h"
 #include "engine/forces/history.h"
-#include "engine/forces/support_motion.h"
 #include "tests/models/run_model.h"
 #include "tests/physics/random_world.h"
 #include "tests/physics/slow_model.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Waveforms against their closed forms, and their rates against differences. */
 #include "engine/scene/signal.h"
-#include "engine/forces/signal_vector.h"
+#include "engine/forces/drives/signal_vector.h"
 #include "engine/scene/signal_motion.h"
 #include "tests/support/test.h"
 

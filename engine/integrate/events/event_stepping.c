@@ -7,10 +7,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/forces/drives/feedback.h"
+#include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/energy.h"
-#include "engine/forces/feedback.h"
 #include "engine/forces/history.h"
-#include "engine/forces/moving_masses.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/location/event_log.h"
 #include "engine/integrate/events/location/variation.h"

@@ -12,7 +12,7 @@
 
 #include <assert.h>
 
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
 #include "engine/integrate/integrator.h"
 
 /** Modes of a contact. u: sliding speed; N: normal force; s: the side, +-1. */

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
 #include "engine/integrate/integrator.h"
 #include "engine/run/accuracy/ladder_parts.h"
 

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
 #include "engine/integrate/integrator.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/scene/signal_program.h"

@@ -4,13 +4,13 @@
 #include <math.h>
 
 #include "engine/base/vec.h"
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
+#include "engine/forces/drives/moving_masses.h"
+#include "engine/forces/drives/support_motion.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/history.h"
-#include "engine/forces/moving_masses.h"
 #include "engine/forces/nearby.h"
-#include "engine/forces/support_motion.h"
 #include "engine/model/pose.h"
 #include "engine/model/surface_search.h"
 

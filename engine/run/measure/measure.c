@@ -5,9 +5,9 @@
 #include <float.h>
 #include <math.h>
 
-#include "engine/forces/moving_masses.h"
+#include "engine/forces/drives/moving_masses.h"
+#include "engine/forces/drives/support_motion.h"
 #include "engine/forces/rubbing.h"
-#include "engine/forces/support_motion.h"
 #include "engine/forces/surfaces.h"
 #include "engine/model/pose.h"
 #include "engine/model/surface_search.h"

@@ -4,9 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
+#include "engine/forces/drives/support_motion.h"
 #include "engine/forces/forces.h"
-#include "engine/forces/support_motion.h"
 
 bool strut_dense_create(const strut_model *model, strut_arena *arena, strut_dense *d) {
   double **const arrays[] = {&d->q, &d->v, &d->begin_q, &d->begin_v, &d->a[0], &d->a[1]};

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/feedback.h"
-#include "engine/forces/moving_masses.h"
+#include "engine/forces/drives/feedback.h"
+#include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/surfaces.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/mass.h"
@@ -27,48 +27,55 @@ typedef struct product {
   double *image, stiff, damp; /* factors of K and D */
 } product;
 
-static void apply_member(void *context, int32_t j, const strut_member_tangent *m) {
-  const product *p = context;
-  const strut_member_table *t = &p->model->members;
-  strut_vec2 u = m->pose.unit, motion = strut_member_span(t, j, p->motion);
-  if (!(m->pose.length > 0.0)) return;
-  double along = u.x * motion.x + u.y * motion.y, across = p->stiff * m->across;
-  double pull = (p->stiff * m->along - across + p->damp * t->damping[j]) * along;
-  double fx = across * motion.x + pull * u.x, fy = across * motion.y + pull * u.y;
-  double *a = p->image + t->from[j], *b = p->image + t->to[j];
-  a[0] -= fx, a[1] -= fy;
-  b[0] += fx, b[1] += fy;
-}
-
-static void apply_element(void *context, int32_t i, const strut_element_pose *pose) {
-  const product *p = context;
-  const strut_element_table *t = &p->model->elements;
-  const strut_element *e = &t->element[i];
-  const uint32_t *at = t->at + e->first;
-  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0};
-  int32_t n = 2 * e->nodes;
-  double along = strut_element_rate(p->model, i, pose, p->motion);
-  strut_element_bend(p->model, i, p->q, p->stiff * pose->force, bend);
-  for (int32_t r = 0; r < n; r++) {
-    double push = (p->stiff * pose->slope + p->damp * e->damping) * along * pose->b[r];
-    for (int32_t c = 0; c < n; c++)
-      push += bend[r * n + c] * p->motion[at[c / 2] + (uint32_t)(c % 2)];
-    p->image[at[r / 2] + (uint32_t)(r % 2)] += push;
+static void apply_member(const product *p, const strut_force *member) {
+  const double *unit = member->pose.b + 2;
+  uint32_t from = member->at[0], to = member->at[1];
+  const double motion[2] = {p->motion[to] - p->motion[from],
+                            p->motion[to + 1] - p->motion[from + 1]};
+  if (!(member->pose.strain > 0.0)) return;
+  double along = unit[0] * motion[0] + unit[1] * motion[1], across = p->stiff * member->across;
+  double pull = (p->stiff * member->pose.slope - across + p->damp * member->damping) * along;
+  for (uint32_t k = 0; k < 2; k++) {
+    double force = across * motion[k] + pull * unit[k];
+    p->image[from + k] -= force;
+    p->image[to + k] += force;
   }
 }
 
-static void apply_contact(void *context, int32_t i, const strut_closed_contact *contact) {
-  const product *p = context;
-  const strut_contact_table *c = &p->model->contacts;
-  const double *n = contact->axes.normal, *t = contact->axes.tangent, *at = p->motion + c->at[i];
-  double push = (p->stiff * contact->stiffness + p->damp * c->entry[i].damping) *
-                (at[0] * n[0] + at[1] * n[1]);
-  p->image[c->at[i]] += push * n[0];
-  p->image[c->at[i] + 1] += push * n[1];
-  if (contact->across == 0.0) return;
-  push = p->stiff * contact->across * (at[0] * t[0] + at[1] * t[1]);
-  p->image[c->at[i]] += push * t[0];
-  p->image[c->at[i] + 1] += push * t[1];
+/* An element or a contact. */
+static void apply_element(const product *p, const strut_force *force) {
+  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT], along = 0.0, across = 0.0;
+  int32_t n = 2 * force->nodes;
+  bool bends = force->kind == STRUT_FORCE_ELEMENT;
+  for (int32_t k = 0; k < n; k += 2) {
+    const double *motion = p->motion + force->at[k / 2];
+    along += force->pose.b[k] * motion[0] + force->pose.b[k + 1] * motion[1];
+  }
+  memset(bend, 0, (size_t)(n * n) * sizeof *bend);
+  if (bends) strut_force_bend(p->model, force, p->q, p->stiff, bend);
+  for (int32_t r = 0; r < n; r++) {
+    double push =
+        (p->stiff * force->pose.slope + p->damp * force->damping) * along * force->pose.b[r];
+    for (int32_t c = 0; c < n && bends; c++)
+      push += bend[r * n + c] * p->motion[strut_force_coordinate(force, c)];
+    p->image[strut_force_coordinate(force, r)] += push;
+  }
+  if (force->across == 0.0) return;
+  for (int32_t k = 0; k < n; k++)
+    across += p->motion[strut_force_coordinate(force, k)] * force->side[k];
+  for (int32_t k = 0; k < n; k++)
+    p->image[strut_force_coordinate(force, k)] +=
+        p->stiff * force->across * across * force->side[k];
+}
+
+static void apply_forces(const product *p, const double *rest, strut_closed closed) {
+  strut_force_visit visit = {
+      .model = p->model, .q = p->q, .rest = rest, .least = -HUGE_VAL, .closed = closed};
+  for (const strut_force *force; (force = strut_force_next(&visit));)
+    if (force->kind == STRUT_FORCE_MEMBER)
+      apply_member(p, force);
+    else
+      apply_element(p, force);
 }
 
 /* Adds noise to a motion, so that no eigenvector is missed for ever. */
@@ -94,8 +101,7 @@ static void iterate_power(const strut_model *model, const strut_state *state,
       model, state->q, w->motion, g->image, g->step * g->step * w->stiff, g->step * w->damp};
   /* implicit ground dampers: steps are refined while the ground is touched */
   strut_closed closed = g->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
-  strut_tangent_visit(model, state->q, state->latest->rest, -HUGE_VAL, closed, &p, apply_member,
-                      apply_element, apply_contact);
+  apply_forces(&p, state->latest->rest, closed);
   for (int32_t i = 0; i < n; i++)
     if (model->fixed[i]) g->image[i] = 0.0;
   strut_mass_solve(model, g->image, g->divided, g->scratch);
@@ -256,8 +262,7 @@ static double form_of_motion(const strut_model *model, const strut_state *state,
   double sum = 0.0;
   product p = {model, state->q, state->v, image, stiff, damp};
   memset(image, 0, (size_t)model->length * sizeof *image);
-  strut_tangent_visit(model, state->q, state->latest->rest, -HUGE_VAL, STRUT_CLOSED_TOUCHING, &p,
-                      apply_member, apply_element, apply_contact);
+  apply_forces(&p, state->latest->rest, STRUT_CLOSED_TOUCHING);
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     if (!model->fixed[i]) sum += image[i] * state->v[i];
   return sum;

@@ -45,16 +45,6 @@ double strut_landscape_pass(const void *landscape, const double *q);
  */
 int32_t strut_landscape_path(const strut_landscape *landscape, int32_t a, int32_t b);
 
-/** The lowest saddle that leads from minimum a down to minimum b the other way, or -1. */
-int32_t strut_landscape_direct(const strut_landscape *landscape, int32_t a, int32_t b);
-
-/**
- * Writes the minima between a and b on the shortest path over saddles up to `highest` to via
- * (minima), in order; returns their count.
- */
-int32_t strut_landscape_between(const strut_landscape *landscape, int32_t a, int32_t b,
-                                int32_t highest, int32_t *via);
-
 /* Where a change of shape pushes the bodies of a collision through each other.
  *
  * Collisions are springs of finite stiffness, and two rods that cross touch nowhere, so that the potential alone
@@ -73,17 +63,6 @@ int32_t strut_passage_find(const strut_model *model, const double *a, const doub
 /** The first collision of two rods that cross in one of the shapes a and b (length) only; -1: none. No motion
     leads from one to the other without pushing an end of one rod through the other. */
 int32_t strut_crossing_find(const strut_model *model, const double *a, const double *b);
-
-/**
- * through (set->count) gets for each saddle with one way down on either side a collision that is on one of
- * them, else -1. A floppy minimum is listed once for all shapes of its energy: a way to it leads through a
- * collision also where the straight way on to the shape that is listed does, or, where whole shapes are free
- * to be placed (`merged`), where crossing rods tell the two apart. STRUT_OK or STRUT_NO_MEMORY. The flag ends
- * it early; it may be NULL.
- */
-strut_status strut_passages_find(const strut_potential *potential, const strut_critical_set *set,
-                                 bool merged, const strut_flag *interrupt, int32_t *through,
-                                 strut_error *error);
 
 /* The scene as statics sees it: nothing moves by itself, the ground is level, and static supports
  * may take the ground's place, as in (12): contact nodes held in turn.
@@ -110,7 +89,6 @@ void strut_level_frame_place(const strut_level_frame *level, size_t count, doubl
 double strut_level_frame_work(const strut_level_frame *level, const double *weight);
 /** Turns count vectors (x, y) between level and original coordinates, in place. */
 void strut_level_frame_to_original(const strut_level_frame *level, size_t count, double *xy);
-void strut_level_frame_from_original(const strut_level_frame *level, size_t count, double *xy);
 
 /** More sets than this are not tried unless the scene names them. */
 enum { STRUT_MOST_SUPPORTS = 120 };
@@ -251,6 +229,14 @@ strut_status strut_equilibrium_search_fill(strut_equilibrium_search *search,
                                            const strut_node_set *set,
                                            const strut_critical_point *point);
 
+/** Nodes that the ground pushes, of one with several contacts the sum [N]. */
+typedef struct strut_node_pushes {
+  int32_t count, *node;
+  double *normal;
+} strut_node_pushes;
+/** By more than `least` at q. False: out of memory. */
+bool strut_closed_contacts(const strut_model *model, const double *q, double least,
+                           strut_arena *arena, strut_node_pushes *pushes);
 /** Nodes that touch the ground at q and with what force: contacts, contact_count, normal of e. */
 strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *search, const double *q,
                                                strut_equilibrium *e);

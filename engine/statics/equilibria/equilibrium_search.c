@@ -34,20 +34,15 @@ int32_t strut_equilibrium_search_add(strut_equilibrium_search *h) {
   return (int32_t)h->count++;
 }
 
-static double *copy_numbers(strut_arena *arena, const double *from, size_t count) {
-  double *copy = strut_arena_allocate(arena, count, sizeof *copy);
-  if (copy && from && count) memcpy(copy, from, count * sizeof *copy);
-  return copy;
-}
-
 static bool copy_point(strut_equilibrium_search *h, const strut_critical_point *from,
                        strut_critical_point *to) {
   strut_arena *arena = &h->out->arena;
   size_t length = (size_t)h->model->length;
   *to = *from;
-  to->q = copy_numbers(arena, from->q, length);
-  to->softest = copy_numbers(arena, from->softest, length);
-  to->eigenvalues = copy_numbers(arena, from->eigenvalues, (size_t)from->eigenvalue_count);
+  to->q = strut_arena_copy(arena, from->q, length, sizeof(double));
+  to->softest = strut_arena_copy(arena, from->softest, length, sizeof(double));
+  to->eigenvalues =
+      strut_arena_copy(arena, from->eigenvalues, (size_t)from->eigenvalue_count, sizeof(double));
   return to->q && to->softest && to->eigenvalues;
 }
 
@@ -116,25 +111,30 @@ strut_status strut_equilibrium_search_fill(strut_equilibrium_search *h,
   return STRUT_OK;
 }
 
+bool strut_closed_contacts(const strut_model *model, const double *q, double least,
+                           strut_arena *arena, strut_node_pushes *pushes) {
+  const strut_contact_table *c = &model->contacts;
+  pushes->count = 0;
+  pushes->node = strut_arena_allocate(arena, (size_t)c->count, sizeof *pushes->node);
+  pushes->normal = strut_arena_allocate(arena, (size_t)c->count, sizeof *pushes->normal);
+  if (!pushes->node || !pushes->normal) return false;
+  for (int32_t i = 0; i < c->count; i++) {
+    double normal = -c->entry[i].stiffness * strut_contact_gap(c, i, q);
+    if (!(normal > least)) continue;
+    bool again = pushes->count && pushes->node[pushes->count - 1] == c->entry[i].node;
+    if (!again) pushes->node[pushes->count++] = c->entry[i].node;
+    pushes->normal[pushes->count - 1] += normal;
+  }
+  return true;
+}
+
 strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *h, const double *q,
                                                strut_equilibrium *e) {
-  const strut_contact_table *c = &h->model->contacts;
-  size_t most = h->on_ground ? (size_t)c->count : 0;
-  e->contacts = strut_arena_allocate(&h->out->arena, most, sizeof *e->contacts);
-  e->normal = strut_arena_allocate(&h->out->arena, most, sizeof *e->normal);
-  if (!e->contacts || !e->normal) return strut_no_memory(h->error, "");
-  e->contact_count = 0;
-  for (size_t i = 0; i < most; i++) {
-    double normal = -c->entry[i].stiffness * strut_contact_gap(c, (int32_t)i, q);
-    if (!(normal > PULL * h->potential->force_scale)) continue;
-    bool again = e->contact_count && e->contacts[e->contact_count - 1] == c->entry[i].node;
-    if (again) { /* of a node with several contacts the sum */
-      e->normal[e->contact_count - 1] += normal;
-      continue;
-    }
-    e->contacts[e->contact_count] = c->entry[i].node;
-    e->normal[e->contact_count++] = normal;
-  }
+  strut_node_pushes pushes = {0};
+  double least = h->on_ground ? PULL * h->potential->force_scale : HUGE_VAL;
+  if (!strut_closed_contacts(h->model, q, least, &h->out->arena, &pushes))
+    return strut_no_memory(h->error, "");
+  e->contacts = pushes.node, e->normal = pushes.normal, e->contact_count = pushes.count;
   return STRUT_OK;
 }
 

@@ -14,232 +14,6 @@ static const double SAME_SHAPE = 1e-5, SAME_POTENTIAL = 1e-8;
 /* Scenes and supports that fix no more coordinates leave whole shapes free to be placed. */
 enum { FEW_FIXED = 3 };
 
-static bool is_pass(const strut_critical_point *p) {
-  return p->label == STRUT_SADDLE && p->negative == 1;
-}
-
-static bool leads_from(const strut_critical_point *pass, int32_t a) {
-  return pass->down[0] == a || pass->down[1] == a;
-}
-
-static bool is_unknown(const strut_critical_point *pass) {
-  return pass->down[0] < 0 || pass->down[1] < 0;
-}
-
-static strut_status find_lowest(strut_landscape *l, strut_error *error) {
-  const strut_critical_set *set = &l->set;
-  while ((size_t)l->minima < set->count && set->points[l->minima].label <= STRUT_FLOPPY)
-    l->minima++;
-  l->lowest = strut_arena_allocate(&l->arena, (size_t)l->minima, sizeof *l->lowest);
-  l->parent = strut_arena_allocate(&l->arena, (size_t)l->minima, sizeof *l->parent);
-  if (!l->lowest || !l->parent) return strut_no_memory(error, "");
-  for (int32_t i = 0; i < l->minima; i++) {
-    l->lowest[i] = HUGE_VAL;
-    for (size_t k = (size_t)l->minima; k < set->count; k++) {
-      const strut_critical_point *pass = &set->points[k];
-      /* a pass with unknown ends may lead anywhere */
-      if (!is_pass(pass) || !(leads_from(pass, i) || is_unknown(pass))) continue;
-      if (pass->potential > set->points[i].potential)
-        l->lowest[i] = fmin(l->lowest[i], pass->potential);
-    }
-  }
-  return STRUT_OK;
-}
-
-strut_status strut_landscape_create(const strut_potential *potential,
-                                    const strut_critical_effort *effort, strut_landscape *landscape,
-                                    strut_error *error) {
-  *landscape = (strut_landscape){.potential = potential};
-  landscape->merged = 2 * potential->model->node_count - potential->n <= FEW_FIXED;
-  strut_status status = strut_critical_search(potential, effort, &landscape->set, error);
-  if (status == STRUT_OK && potential->model->scene->collision_count) {
-    landscape->through =
-        strut_arena_allocate(&landscape->arena, landscape->set.count, sizeof *landscape->through);
-    status = landscape->through ? strut_passages_find(potential, &landscape->set, landscape->merged,
-                                                      effort->interrupt, landscape->through, error)
-                                : strut_no_memory(error, "");
-  }
-  return status ? status : find_lowest(landscape, error);
-}
-
-void strut_landscape_free(strut_landscape *landscape) {
-  strut_critical_free(&landscape->set);
-  strut_arena_free(&landscape->arena);
-  memset(landscape, 0, sizeof *landscape);
-}
-
-static double point_distance(const strut_landscape *l, const double *a, const double *b) {
-  const strut_model *model = l->potential->model;
-  if (l->merged) return strut_shape_distance(model, a, b, true, NULL);
-  double most = 0.0;
-  for (int32_t i = 0; i < 2 * model->node_count; i++) most = fmax(most, fabs(a[i] - b[i]));
-  return most;
-}
-
-int32_t strut_landscape_find(const strut_landscape *l, const double *q) {
-  double potential = strut_potential_value(l->potential, q), scale = 0.0;
-  double size = l->potential->model->size;
-  for (int32_t i = 0; i < l->minima; i++) scale = fmax(scale, fabs(l->set.points[i].potential));
-  for (int32_t i = 0; i < l->minima; i++) {
-    const strut_critical_point *p = &l->set.points[i];
-    if (fabs(p->potential - potential) > SAME_POTENTIAL * scale) continue;
-    /* a floppy shape is a whole family of one energy */
-    if (p->label == STRUT_FLOPPY || point_distance(l, p->q, q) <= SAME_SHAPE * size) return i;
-  }
-  return -1;
-}
-
-double strut_landscape_pass(const void *landscape, const double *q) {
-  const strut_landscape *l = landscape;
-  int32_t at = strut_landscape_find(l, q);
-  return at >= 0 && isfinite(l->lowest[at]) ? l->lowest[at] : -HUGE_VAL;
-}
-
-/* The root of a's tree. */
-static int32_t find_root(int32_t *parent, int32_t a) {
-  while (parent[a] != a) a = parent[a] = parent[parent[a]];
-  return a;
-}
-
-/* A pass whose two sides are both known, and lead through no body. */
-static bool connects(const strut_landscape *l, const strut_critical_point *pass) {
-  if (l->through && l->through[pass - l->set.points] >= 0) return false;
-  return is_pass(pass) && !is_unknown(pass) && pass->down[0] < l->minima &&
-         pass->down[1] < l->minima;
-}
-
-int32_t strut_landscape_path(const strut_landscape *l, int32_t a, int32_t b) {
-  assert(a >= 0 && a < l->minima && b >= 0 && b < l->minima);
-  const strut_critical_set *set = &l->set;
-  int32_t *parent = l->parent;
-  for (int32_t i = 0; i < l->minima; i++) parent[i] = i;
-  /* saddles come by energy: the one that connects a and b is the highest on the lowest path */
-  for (size_t k = (size_t)l->minima; k < set->count; k++) {
-    const strut_critical_point *pass = &set->points[k];
-    if (!connects(l, pass)) continue;
-    parent[find_root(parent, pass->down[0])] = find_root(parent, pass->down[1]);
-    if (find_root(parent, a) == find_root(parent, b)) return (int32_t)k;
-  }
-  return -1;
-}
-
-int32_t strut_landscape_direct(const strut_landscape *l, int32_t a, int32_t b) {
-  for (size_t k = (size_t)l->minima; k < l->set.count; k++) {
-    const strut_critical_point *pass = &l->set.points[k];
-    if (connects(l, pass) && leads_from(pass, a) && leads_from(pass, b)) return (int32_t)k;
-  }
-  return -1;
-}
-
-int32_t strut_landscape_between(const strut_landscape *l, int32_t a, int32_t b, int32_t highest,
-                                int32_t *via) {
-  assert(a >= 0 && a < l->minima && b >= 0 && b < l->minima);
-  int32_t *next = l->parent, count = 0;
-  for (int32_t i = 0; i < l->minima; i++) next[i] = -1;
-  next[b] = b;
-  /* in rounds from b, so that each minimum gets its successor on a shortest path */
-  for (bool grew = true; grew && next[a] < 0;) {
-    grew = false;
-    for (int32_t i = 0; i < l->minima; i++) via[i] = next[i];
-    for (int32_t k = l->minima; k <= highest; k++) {
-      const strut_critical_point *pass = &l->set.points[k];
-      for (int way = 0; way < 2 && connects(l, pass); way++) {
-        int32_t from = pass->down[way], to = pass->down[1 - way];
-        if (next[from] >= 0 || via[to] < 0) continue;
-        next[from] = to;
-        grew = true;
-      }
-    }
-  }
-  for (int32_t at = next[a]; at >= 0 && at != b; at = next[at]) via[count++] = at;
-  return count;
-}
-
-/* The first candidate at each of the landscape's minima, or -1. */
-static void find_representatives(const strut_equilibrium_search *h, int32_t *of_state) {
-  for (int32_t s = 0; s < h->landscape.minima; s++) of_state[s] = -1;
-  for (size_t i = 0; i < h->count; i++) {
-    const strut_candidate_equilibrium *f = &h->candidates[i];
-    if (f->e.outcome != STRUT_OUTCOME_STANDS || f->state < 0) continue;
-    if (of_state[f->state] < 0) of_state[f->state] = (int32_t)i;
-  }
-}
-
-static bool is_named(const strut_equilibrium_search *h, int32_t find) {
-  return find >= 0 && h->candidates[find].e.configured;
-}
-
-static bool is_next_to_named(const strut_equilibrium_search *h, const int32_t *of_state,
-                             int32_t s) {
-  for (int32_t t = 0; t < h->landscape.minima; t++) {
-    if (t == s || !is_named(h, of_state[t])) continue;
-    if (strut_landscape_direct(&h->landscape, t, s) >= 0) return true;
-  }
-  return false;
-}
-
-/* States that enter the table, at most STRUT_MOST_BARRIERS_BETWEEN; their count. */
-static int choose_states(const strut_equilibrium_search *h, const int32_t *of_state,
-                         int32_t *chosen) {
-  int32_t minima = h->landscape.minima;
-  bool names = false;
-  int count = 0;
-  for (int32_t s = 0; s < minima; s++) names = names || is_named(h, of_state[s]);
-  for (int pass = 0; pass < 2; pass++) /* named ones first: the limit must not drop them */
-    for (int32_t s = 0; s < minima && count < STRUT_MOST_BARRIERS_BETWEEN; s++) {
-      if (of_state[s] < 0 || is_named(h, of_state[s]) != (pass == 0)) continue;
-      if (pass == 1 && names && !is_next_to_named(h, of_state, s)) continue;
-      chosen[count++] = s;
-    }
-  return count;
-}
-
-static int32_t find_saddle(const strut_equilibrium_search *h, int32_t saddle) {
-  for (size_t i = 0; i < h->count; i++)
-    if (!h->candidates[i].e.supports && h->candidates[i].number == saddle) return (int32_t)i;
-  return -1;
-}
-
-/* The barrier from one of the landscape's minima to another; false: out of memory. */
-static bool fill_barrier(const strut_equilibrium_search *h, const int32_t *of_state, int32_t a,
-                         int32_t b, int32_t way, strut_barrier *barrier) {
-  const strut_landscape *l = &h->landscape;
-  const strut_critical_point *points = l->set.points;
-  int32_t direct = strut_landscape_direct(l, a, b);
-  *barrier = (strut_barrier){
-      .from = of_state[a],
-      .to = of_state[b],
-      .height = points[way].potential - points[a].potential,
-      .saddle = find_saddle(h, way),
-      .direct = direct >= 0 ? points[direct].potential - points[a].potential : (double)NAN,
-      .direct_saddle = direct >= 0 ? find_saddle(h, direct) : -1};
-  barrier->via = strut_arena_allocate(&h->out->arena, (size_t)l->minima, sizeof *barrier->via);
-  if (!barrier->via) return false;
-  barrier->via_count = strut_landscape_between(l, a, b, way, barrier->via);
-  for (int32_t i = 0; i < barrier->via_count; i++) barrier->via[i] = of_state[barrier->via[i]];
-  return true;
-}
-
-strut_status strut_barriers_find(strut_equilibrium_search *h) {
-  const strut_landscape *l = &h->landscape;
-  int32_t chosen[STRUT_MOST_BARRIERS_BETWEEN];
-  int32_t *of_state = strut_allocate((size_t)l->minima, sizeof *of_state);
-  size_t most = (size_t)STRUT_MOST_BARRIERS_BETWEEN * (STRUT_MOST_BARRIERS_BETWEEN - 1);
-  h->out->barriers = strut_arena_allocate(&h->out->arena, most, sizeof *h->out->barriers);
-  bool good = of_state && h->out->barriers;
-  if (good) find_representatives(h, of_state);
-  int count = good ? choose_states(h, of_state, chosen) : 0;
-  for (int a = 0; a < count; a++)
-    for (int b = 0; b < count && good; b++) {
-      int32_t way = a == b ? -1 : strut_landscape_path(l, chosen[a], chosen[b]);
-      if (way < 0) continue;
-      good = fill_barrier(h, of_state, chosen[a], chosen[b], way,
-                          &h->out->barriers[h->out->barrier_count++]);
-    }
-  strut_release(of_state);
-  return good ? STRUT_OK : strut_no_memory(h->error, "");
-}
-
 enum { RODS = 4, PARTS = 16 }; /* elements of two rods; parts of a motion, each all but straight */
 
 static const double DEEP = 0.5; /* of the thickness: axes closer than this are in each other */
@@ -354,9 +128,16 @@ static void follow(void *context, const double *q) {
   memcpy(way->last, q, (size_t)way->model->length * sizeof *q);
 }
 
-strut_status strut_passages_find(const strut_potential *potential, const strut_critical_set *set,
-                                 bool merged, const strut_flag *interrupt, int32_t *through,
-                                 strut_error *error) {
+/*
+ * through (set->count) gets for each saddle with one way down on either side a collision that is on one of
+ * them, else -1. A floppy minimum is listed once for all shapes of its energy: a way to it leads through a
+ * collision also where the straight way on to the shape that is listed does, or, where whole shapes are free
+ * to be placed (`merged`), where crossing rods tell the two apart. STRUT_OK or STRUT_NO_MEMORY. The flag ends
+ * it early; it may be NULL.
+ */
+static strut_status passages_find(const strut_potential *potential, const strut_critical_set *set,
+                                  bool merged, const strut_flag *interrupt, int32_t *through,
+                                  strut_error *error) {
   const strut_model *model = potential->model;
   size_t length = (size_t)model->length;
   strut_arena scratch = {0};
@@ -385,4 +166,235 @@ strut_status strut_passages_find(const strut_potential *potential, const strut_c
   strut_minimiser_free(minimiser);
   strut_arena_free(&scratch);
   return status;
+}
+
+static bool is_pass(const strut_critical_point *p) {
+  return p->label == STRUT_SADDLE && p->negative == 1;
+}
+
+static bool leads_from(const strut_critical_point *pass, int32_t a) {
+  return pass->down[0] == a || pass->down[1] == a;
+}
+
+static bool is_unknown(const strut_critical_point *pass) {
+  return pass->down[0] < 0 || pass->down[1] < 0;
+}
+
+static strut_status find_lowest(strut_landscape *l, strut_error *error) {
+  const strut_critical_set *set = &l->set;
+  while ((size_t)l->minima < set->count && set->points[l->minima].label <= STRUT_FLOPPY)
+    l->minima++;
+  l->lowest = strut_arena_allocate(&l->arena, (size_t)l->minima, sizeof *l->lowest);
+  l->parent = strut_arena_allocate(&l->arena, (size_t)l->minima, sizeof *l->parent);
+  if (!l->lowest || !l->parent) return strut_no_memory(error, "");
+  for (int32_t i = 0; i < l->minima; i++) {
+    l->lowest[i] = HUGE_VAL;
+    for (size_t k = (size_t)l->minima; k < set->count; k++) {
+      const strut_critical_point *pass = &set->points[k];
+      /* a pass with unknown ends may lead anywhere */
+      if (!is_pass(pass) || !(leads_from(pass, i) || is_unknown(pass))) continue;
+      if (pass->potential > set->points[i].potential)
+        l->lowest[i] = fmin(l->lowest[i], pass->potential);
+    }
+  }
+  return STRUT_OK;
+}
+
+strut_status strut_landscape_create(const strut_potential *potential,
+                                    const strut_critical_effort *effort, strut_landscape *landscape,
+                                    strut_error *error) {
+  *landscape = (strut_landscape){.potential = potential};
+  landscape->merged = 2 * potential->model->node_count - potential->n <= FEW_FIXED;
+  strut_status status = strut_critical_search(potential, effort, &landscape->set, error);
+  if (status == STRUT_OK && potential->model->scene->collision_count) {
+    landscape->through =
+        strut_arena_allocate(&landscape->arena, landscape->set.count, sizeof *landscape->through);
+    status = landscape->through ? passages_find(potential, &landscape->set, landscape->merged,
+                                                effort->interrupt, landscape->through, error)
+                                : strut_no_memory(error, "");
+  }
+  return status ? status : find_lowest(landscape, error);
+}
+
+void strut_landscape_free(strut_landscape *landscape) {
+  strut_critical_free(&landscape->set);
+  strut_arena_free(&landscape->arena);
+  memset(landscape, 0, sizeof *landscape);
+}
+
+static double point_distance(const strut_landscape *l, const double *a, const double *b) {
+  const strut_model *model = l->potential->model;
+  if (l->merged) return strut_shape_distance(model, a, b, true, NULL);
+  double most = 0.0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) most = fmax(most, fabs(a[i] - b[i]));
+  return most;
+}
+
+int32_t strut_landscape_find(const strut_landscape *l, const double *q) {
+  double potential = strut_potential_value(l->potential, q), scale = 0.0;
+  double size = l->potential->model->size;
+  for (int32_t i = 0; i < l->minima; i++) scale = fmax(scale, fabs(l->set.points[i].potential));
+  for (int32_t i = 0; i < l->minima; i++) {
+    const strut_critical_point *p = &l->set.points[i];
+    if (fabs(p->potential - potential) > SAME_POTENTIAL * scale) continue;
+    /* a floppy shape is a whole family of one energy */
+    if (p->label == STRUT_FLOPPY || point_distance(l, p->q, q) <= SAME_SHAPE * size) return i;
+  }
+  return -1;
+}
+
+double strut_landscape_pass(const void *landscape, const double *q) {
+  const strut_landscape *l = landscape;
+  int32_t at = strut_landscape_find(l, q);
+  return at >= 0 && isfinite(l->lowest[at]) ? l->lowest[at] : -HUGE_VAL;
+}
+
+/* The root of a's tree. */
+static int32_t find_root(int32_t *parent, int32_t a) {
+  while (parent[a] != a) a = parent[a] = parent[parent[a]];
+  return a;
+}
+
+/* A pass whose two sides are both known, and lead through no body. */
+static bool connects(const strut_landscape *l, const strut_critical_point *pass) {
+  if (l->through && l->through[pass - l->set.points] >= 0) return false;
+  return is_pass(pass) && !is_unknown(pass) && pass->down[0] < l->minima &&
+         pass->down[1] < l->minima;
+}
+
+int32_t strut_landscape_path(const strut_landscape *l, int32_t a, int32_t b) {
+  assert(a >= 0 && a < l->minima && b >= 0 && b < l->minima);
+  const strut_critical_set *set = &l->set;
+  int32_t *parent = l->parent;
+  for (int32_t i = 0; i < l->minima; i++) parent[i] = i;
+  /* saddles come by energy: the one that connects a and b is the highest on the lowest path */
+  for (size_t k = (size_t)l->minima; k < set->count; k++) {
+    const strut_critical_point *pass = &set->points[k];
+    if (!connects(l, pass)) continue;
+    parent[find_root(parent, pass->down[0])] = find_root(parent, pass->down[1]);
+    if (find_root(parent, a) == find_root(parent, b)) return (int32_t)k;
+  }
+  return -1;
+}
+
+/* The lowest saddle that leads from minimum a down to minimum b the other way, or -1. */
+static int32_t landscape_direct(const strut_landscape *l, int32_t a, int32_t b) {
+  for (size_t k = (size_t)l->minima; k < l->set.count; k++) {
+    const strut_critical_point *pass = &l->set.points[k];
+    if (connects(l, pass) && leads_from(pass, a) && leads_from(pass, b)) return (int32_t)k;
+  }
+  return -1;
+}
+
+/*
+ * Writes the minima between a and b on the shortest path over saddles up to `highest` to via
+ * (minima), in order; returns their count.
+ */
+static int32_t landscape_between(const strut_landscape *l, int32_t a, int32_t b, int32_t highest,
+                                 int32_t *via) {
+  assert(a >= 0 && a < l->minima && b >= 0 && b < l->minima);
+  int32_t *next = l->parent, count = 0;
+  for (int32_t i = 0; i < l->minima; i++) next[i] = -1;
+  next[b] = b;
+  /* in rounds from b, so that each minimum gets its successor on a shortest path */
+  for (bool grew = true; grew && next[a] < 0;) {
+    grew = false;
+    for (int32_t i = 0; i < l->minima; i++) via[i] = next[i];
+    for (int32_t k = l->minima; k <= highest; k++) {
+      const strut_critical_point *pass = &l->set.points[k];
+      for (int way = 0; way < 2 && connects(l, pass); way++) {
+        int32_t from = pass->down[way], to = pass->down[1 - way];
+        if (next[from] >= 0 || via[to] < 0) continue;
+        next[from] = to;
+        grew = true;
+      }
+    }
+  }
+  for (int32_t at = next[a]; at >= 0 && at != b; at = next[at]) via[count++] = at;
+  return count;
+}
+
+/* The first candidate at each of the landscape's minima, or -1. */
+static void find_representatives(const strut_equilibrium_search *h, int32_t *of_state) {
+  for (int32_t s = 0; s < h->landscape.minima; s++) of_state[s] = -1;
+  for (size_t i = 0; i < h->count; i++) {
+    const strut_candidate_equilibrium *f = &h->candidates[i];
+    if (f->e.outcome != STRUT_OUTCOME_STANDS || f->state < 0) continue;
+    if (of_state[f->state] < 0) of_state[f->state] = (int32_t)i;
+  }
+}
+
+static bool is_named(const strut_equilibrium_search *h, int32_t find) {
+  return find >= 0 && h->candidates[find].e.configured;
+}
+
+static bool is_next_to_named(const strut_equilibrium_search *h, const int32_t *of_state,
+                             int32_t s) {
+  for (int32_t t = 0; t < h->landscape.minima; t++) {
+    if (t == s || !is_named(h, of_state[t])) continue;
+    if (landscape_direct(&h->landscape, t, s) >= 0) return true;
+  }
+  return false;
+}
+
+/* States that enter the table, at most STRUT_MOST_BARRIERS_BETWEEN; their count. */
+static int choose_states(const strut_equilibrium_search *h, const int32_t *of_state,
+                         int32_t *chosen) {
+  int32_t minima = h->landscape.minima;
+  bool names = false;
+  int count = 0;
+  for (int32_t s = 0; s < minima; s++) names = names || is_named(h, of_state[s]);
+  for (int pass = 0; pass < 2; pass++) /* named ones first: the limit must not drop them */
+    for (int32_t s = 0; s < minima && count < STRUT_MOST_BARRIERS_BETWEEN; s++) {
+      if (of_state[s] < 0 || is_named(h, of_state[s]) != (pass == 0)) continue;
+      if (pass == 1 && names && !is_next_to_named(h, of_state, s)) continue;
+      chosen[count++] = s;
+    }
+  return count;
+}
+
+static int32_t find_saddle(const strut_equilibrium_search *h, int32_t saddle) {
+  for (size_t i = 0; i < h->count; i++)
+    if (!h->candidates[i].e.supports && h->candidates[i].number == saddle) return (int32_t)i;
+  return -1;
+}
+
+/* The barrier from one of the landscape's minima to another; false: out of memory. */
+static bool fill_barrier(const strut_equilibrium_search *h, const int32_t *of_state, int32_t a,
+                         int32_t b, int32_t way, strut_barrier *barrier) {
+  const strut_landscape *l = &h->landscape;
+  const strut_critical_point *points = l->set.points;
+  int32_t direct = landscape_direct(l, a, b);
+  *barrier = (strut_barrier){
+      .from = of_state[a],
+      .to = of_state[b],
+      .height = points[way].potential - points[a].potential,
+      .saddle = find_saddle(h, way),
+      .direct = direct >= 0 ? points[direct].potential - points[a].potential : (double)NAN,
+      .direct_saddle = direct >= 0 ? find_saddle(h, direct) : -1};
+  barrier->via = strut_arena_allocate(&h->out->arena, (size_t)l->minima, sizeof *barrier->via);
+  if (!barrier->via) return false;
+  barrier->via_count = landscape_between(l, a, b, way, barrier->via);
+  for (int32_t i = 0; i < barrier->via_count; i++) barrier->via[i] = of_state[barrier->via[i]];
+  return true;
+}
+
+strut_status strut_barriers_find(strut_equilibrium_search *h) {
+  const strut_landscape *l = &h->landscape;
+  int32_t chosen[STRUT_MOST_BARRIERS_BETWEEN];
+  int32_t *of_state = strut_allocate((size_t)l->minima, sizeof *of_state);
+  size_t most = (size_t)STRUT_MOST_BARRIERS_BETWEEN * (STRUT_MOST_BARRIERS_BETWEEN - 1);
+  h->out->barriers = strut_arena_allocate(&h->out->arena, most, sizeof *h->out->barriers);
+  bool good = of_state && h->out->barriers;
+  if (good) find_representatives(h, of_state);
+  int count = good ? choose_states(h, of_state, chosen) : 0;
+  for (int a = 0; a < count; a++)
+    for (int b = 0; b < count && good; b++) {
+      int32_t way = a == b ? -1 : strut_landscape_path(l, chosen[a], chosen[b]);
+      if (way < 0) continue;
+      good = fill_barrier(h, of_state, chosen[a], chosen[b], way,
+                          &h->out->barriers[h->out->barrier_count++]);
+    }
+  strut_release(of_state);
+  return good ? STRUT_OK : strut_no_memory(h->error, "");
 }

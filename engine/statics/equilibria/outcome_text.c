@@ -205,8 +205,7 @@ static bool describe_floppy_motion(strut_equilibrium_search *h, const strut_equi
 }
 
 static void describe_tipping(strut_equilibrium_search *h, const strut_candidate_equilibrium *finds,
-                             const strut_candidate_equilibrium *f, uint8_t *flag,
-                             strut_equilibrium *e) {
+                             uint8_t *flag, strut_equilibrium *e) {
   char names[NAMES];
   const strut_scene *scene = &h->level.scene;
   const char *over = e->tips_over >= 0 ? scene->nodes[e->tips_over].name : NULL;
@@ -214,7 +213,6 @@ static void describe_tipping(strut_equilibrium_search *h, const strut_candidate_
   for (int32_t i = 0; i < e->contact_count; i++) flag[e->contacts[i]] = 1;
   strut_list_nodes(scene, flag, sizeof names, names);
   const char *end = e->ends_as >= 0 ? finds[e->ends_as].e.name : NULL;
-  (void)f;
   int length = snprintf(e->verdict, sizeof e->verdict, "%s%.24s onto %s%s%.60s",
                         over ? "tips over " : "gives way", over ? over : "", names, end ? ": " : "",
                         end ? end : ""); /* a long list of names is cut */
@@ -244,7 +242,7 @@ static void describe_outcome(strut_equilibrium_search *h, strut_candidate_equili
         snprintf(e->verdict + used, room - (size_t)used, " by friction, with a coefficient of %.4g",
                  e->friction);
       break;
-    case STRUT_OUTCOME_TIPS: describe_tipping(h, finds, f, flag, e); break;
+    case STRUT_OUTCOME_TIPS: describe_tipping(h, finds, flag, e); break;
     case STRUT_OUTCOME_BELOW_GROUND:
       strut_list_nodes(&h->level.scene, e->below, sizeof names, names);
       snprintf(e->verdict, room, "below ground (%s)", names);

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/forces/elements.h"
+#include "engine/forces/tangent.h"
 #include "engine/run/settle.h"
 #include "engine/scene/things.h"
 #include "engine/statics/equilibria/equilibria_parts.h"
@@ -16,43 +16,17 @@ static const double NEAR = 0.01;
 static const double AT_REST = 1e-8;
 
 /* A hinge pushes on its nodes with its moment over the arms, a cell with its pressure times lengths. */
-typedef struct element_sum {
-  const strut_model *model;
-  double sum;
-} element_sum;
-
-static void add_element_force(void *context, int32_t element, const strut_element_pose *pose) {
-  element_sum *s = context;
-  if (!strut_element_is_of_member(&s->model->elements.element[element]))
-    s->sum += fabs(pose->force) * hypot(pose->b[0], pose->b[1]);
-}
-
 static double sum_member_forces(const strut_model *model, const double *q) {
   const strut_member_table *t = &model->members;
-  double sum = 0.0;
+  strut_force_visit visit = {.model = model, .q = q, .rest = t->rest, .least = -HUGE_VAL};
+  double sum = 0.0, others = 0.0;
   for (int32_t j = 0; j < t->count; j++)
     sum += fabs(strut_member_elastic_tension(model, t->rest, j, q));
-  element_sum others = {model, 0.0};
-  strut_elements_visit(model, t->rest, q, -HUGE_VAL, false, &others, add_element_force);
-  return sum + others.sum;
-}
-
-static bool find_closed(const strut_model *model, strut_arena *arena, strut_rest_state *rest) {
-  const strut_contact_table *c = &model->contacts;
-  rest->closed = strut_arena_allocate(arena, (size_t)c->count, sizeof *rest->closed);
-  rest->normal = strut_arena_allocate(arena, (size_t)c->count, sizeof *rest->normal);
-  if (!rest->closed || !rest->normal) return false;
-  for (int32_t i = 0; i < c->count; i++) {
-    double gap = strut_contact_gap(c, i, rest->q);
-    if (!(gap < 0)) continue;
-    if (rest->closed_count && rest->closed[rest->closed_count - 1] == c->entry[i].node) {
-      rest->normal[rest->closed_count - 1] -= c->entry[i].stiffness * gap;
-      continue;
-    }
-    rest->closed[rest->closed_count] = c->entry[i].node;
-    rest->normal[rest->closed_count++] = -c->entry[i].stiffness * gap;
-  }
-  return true;
+  for (const strut_force *force; (force = strut_force_next(&visit));)
+    if (force->kind == STRUT_FORCE_ELEMENT &&
+        !strut_element_is_of_member(&model->elements.element[force->index]))
+      others += fabs(force->pose.force) * hypot(force->pose.b[0], force->pose.b[1]);
+  return sum + others;
 }
 
 /* Fills in all fields but name and q, from q. */
@@ -62,7 +36,9 @@ static strut_status judge_rest(const strut_model *model, strut_arena *arena, str
   strut_status status = strut_potential_create(model, NULL, true, &potential, error);
   if (status) return status;
   double *g = strut_allocate((size_t)potential->n, sizeof *g);
-  if (g && find_closed(model, arena, rest)) {
+  strut_node_pushes pushes;
+  if (g && strut_closed_contacts(model, rest->q, 0.0, arena, &pushes)) {
+    rest->closed = pushes.node, rest->normal = pushes.normal, rest->closed_count = pushes.count;
     strut_potential_gradient(potential, rest->q, g);
     rest->residual = strut_largest_magnitude(g, potential->n);
     rest->scale = potential->force_scale;

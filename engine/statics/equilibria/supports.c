@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/statics/algebra.h"
 
 /* A structure is moved to the origin where it is this many of its sizes away: digits would be lost. */
 static const double FAR = 100.0;
@@ -30,7 +31,7 @@ void strut_level_frame_to_original(const strut_level_frame *level, size_t count,
   turn_vectors(level->cosine, level->sine, count, xy);
 }
 
-void strut_level_frame_from_original(const strut_level_frame *level, size_t count, double *xy) {
+static void level_frame_from_original(const strut_level_frame *level, size_t count, double *xy) {
   turn_vectors(level->cosine, -level->sine, count, xy);
 }
 
@@ -53,27 +54,22 @@ static int32_t find_oblique_node(const strut_scene *scene) {
   return -1;
 }
 
-static void *copy_array(strut_arena *arena, const void *from, size_t count, size_t size) {
-  void *copy = strut_arena_allocate(arena, count, size);
-  if (copy && count) memcpy(copy, from, count * size);
-  return copy;
-}
-
 static bool copy_arrays(strut_level_frame *level) {
   strut_scene *s = &level->scene;
-  s->nodes = copy_array(&level->arena, s->nodes, s->node_count, sizeof *s->nodes);
-  s->members = copy_array(&level->arena, s->members, s->member_count, sizeof *s->members);
-  s->hinges = copy_array(&level->arena, s->hinges, s->hinge_count, sizeof *s->hinges);
-  s->contacts = copy_array(&level->arena, s->contacts, s->contact_count, sizeof *s->contacts);
-  s->loads = copy_array(&level->arena, s->loads, s->load_count, sizeof *s->loads);
-  s->configurations = copy_array(&level->arena, s->configurations, s->configuration_count,
-                                 sizeof *s->configurations);
+  s->nodes = strut_arena_copy(&level->arena, s->nodes, s->node_count, sizeof *s->nodes);
+  s->members = strut_arena_copy(&level->arena, s->members, s->member_count, sizeof *s->members);
+  s->hinges = strut_arena_copy(&level->arena, s->hinges, s->hinge_count, sizeof *s->hinges);
+  s->contacts = strut_arena_copy(&level->arena, s->contacts, s->contact_count, sizeof *s->contacts);
+  s->loads = strut_arena_copy(&level->arena, s->loads, s->load_count, sizeof *s->loads);
+  s->configurations = strut_arena_copy(&level->arena, s->configurations, s->configuration_count,
+                                       sizeof *s->configurations);
   if (!s->nodes || !s->members || !s->hinges || !s->contacts || !s->loads || !s->configurations)
     return false;
   for (size_t i = 0; i < s->configuration_count; i++) {
     strut_configuration *c = &s->configurations[i];
     if (c->position)
-      c->position = copy_array(&level->arena, c->position, s->node_count, sizeof *c->position);
+      c->position =
+          strut_arena_copy(&level->arena, c->position, s->node_count, sizeof *c->position);
     if (c->shaped && !c->position) return false;
   }
   return true;
@@ -128,7 +124,7 @@ static bool bring_near(strut_level_frame *level) {
 
 /* Turns a force, of which rounding leaves no part along or across the ground where there is none. */
 static void turn_force(const strut_level_frame *level, double force[2]) {
-  strut_level_frame_from_original(level, 1, force);
+  level_frame_from_original(level, 1, force);
   double least = 16.0 * DBL_EPSILON * hypot(force[0], force[1]);
   for (int c = 0; c < 2; c++)
     if (fabs(force[c]) < least) force[c] = 0.0;
@@ -141,13 +137,13 @@ static void make_level(strut_level_frame *level) {
   s->ground.slope = 0.0;
   turn_force(level, s->gravity);
   for (size_t i = 0; i < s->node_count; i++) {
-    strut_level_frame_from_original(level, 1, s->nodes[i].position);
-    strut_level_frame_from_original(level, 1, s->nodes[i].start);
+    level_frame_from_original(level, 1, s->nodes[i].position);
+    level_frame_from_original(level, 1, s->nodes[i].start);
   }
   for (size_t i = 0; i < s->load_count; i++) turn_force(level, s->loads[i].force);
   for (size_t i = 0; i < s->configuration_count; i++)
     if (s->configurations[i].position)
-      strut_level_frame_from_original(level, s->node_count, s->configurations[i].position[0]);
+      level_frame_from_original(level, s->node_count, s->configurations[i].position[0]);
 }
 
 strut_status strut_level_frame_create(const strut_scene *original, strut_level_frame *level,
@@ -179,30 +175,21 @@ void strut_level_frame_free(strut_level_frame *level) {
 
 /* Rank of the rows (1, 0, -y) and (0, 1, x) of coordinates: of all nodes, or of those held. */
 static int rank_of_rigid(const strut_scene *scene, bool only_fixed) {
-  double rows[3][3] = {{0}}, size = 0.0;
+  double gram[9] = {0}, value[3], vector[9], size = 0.0;
+  const double *origin = scene->nodes[0].position;
   for (size_t i = 0; i < scene->node_count; i++)
-    for (int c = 0; c < 2; c++)
-      size = fmax(size, fabs(scene->nodes[i].position[c] - scene->nodes[0].position[c]));
+    for (int c = 0; c < 2; c++) size = fmax(size, fabs(scene->nodes[i].position[c] - origin[c]));
   for (size_t i = 0; i < scene->node_count && size > 0; i++)
     for (int c = 0; c < 2; c++) {
       if (only_fixed && !scene->nodes[i].fixed[c]) continue;
-      double x = (scene->nodes[i].position[0] - scene->nodes[0].position[0]) / size;
-      double y = (scene->nodes[i].position[1] - scene->nodes[0].position[1]) / size;
-      double row[3] = {c == 0, c == 1, c == 0 ? -y : x};
-      for (int k = 0; k < 3; k++) { /* orthogonalise against what is there, twice is enough */
-        for (int twice = 0; twice < 2; twice++) {
-          double dot = row[0] * rows[k][0] + row[1] * rows[k][1] + row[2] * rows[k][2];
-          for (int l = 0; l < 3; l++) row[l] -= dot * rows[k][l];
-        }
-        double norm = sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
-        bool empty = rows[k][0] == 0 && rows[k][1] == 0 && rows[k][2] == 0;
-        if (!empty) continue;
-        for (int l = 0; l < 3 && norm > 1e-6; l++) rows[k][l] = row[l] / norm;
-        break;
-      }
+      double x = (scene->nodes[i].position[0] - origin[0]) / size;
+      double y = (scene->nodes[i].position[1] - origin[1]) / size;
+      const double row[3] = {c == 0, c == 1, c == 0 ? -y : x};
+      for (int k = 0; k < 9; k++) gram[k] += row[k / 3] * row[k % 3];
     }
+  if (!strut_symmetric_eigen(gram, 3, value, vector)) return 0;
   int rank = 0;
-  for (int k = 0; k < 3; k++) rank += rows[k][0] != 0 || rows[k][1] != 0 || rows[k][2] != 0;
+  for (int k = 0; k < 3; k++) rank += value[k] > 1e-12 * (1.0 + value[2]);
   return rank;
 }
 

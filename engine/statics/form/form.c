@@ -13,6 +13,7 @@
 #include "engine/scene/things.h"
 #include "engine/statics/form/form.h"
 #include "engine/statics/minimise.h"
+#include "engine/statics/search/critical.h"
 
 /* Parts that all methods of form finding share. */
 
@@ -35,7 +36,8 @@ bool strut_form_touches(const strut_former *f, int32_t contact) {
   return strut_form_contact_as_drawn(f, contact).gap <= TOUCH * f->size;
 }
 
-strut_status strut_form_out_of_range(strut_error *error) {
+/* Sets the error that energies and forces overflow; returns its status. */
+static strut_status form_out_of_range(strut_error *error) {
   return strut_fail(error, STRUT_DIVERGED,
                     "energies and forces leave the range of numbers; check the units of sizes, "
                     "stiffnesses and loads");
@@ -50,7 +52,7 @@ strut_status strut_form_set_force(strut_former *f, size_t j, double force, strut
   double rest = m->axial_stiffness > 0 ? m->axial_stiffness * length / (m->axial_stiffness + force)
                 : m->stiffness > 0     ? length - force / m->stiffness
                                        : length;
-  if (!isfinite(force) || !isfinite(length)) return strut_form_out_of_range(error);
+  if (!isfinite(force) || !isfinite(length)) return form_out_of_range(error);
   bool carries = m->axial_stiffness > 0 || m->stiffness > 0 || force == 0;
   if (!carries || !isfinite(rest) || rest < 0)
     return strut_fail(error, STRUT_NOT_SETTLED,
@@ -61,23 +63,6 @@ strut_status strut_form_set_force(strut_former *f, size_t j, double force, strut
   m->rest_value = rest;
   f->form->largest_force = fmax(f->form->largest_force, fabs(force));
   return STRUT_OK;
-}
-
-void strut_form_name_nodes(const strut_former *f, const uint8_t *marked, char *text, size_t size) {
-  assert(size > 20);
-  size_t used = 0, left = 0, room = size - 20;
-  *text = '\0';
-  for (size_t i = 0; i < f->scene->node_count; i++) {
-    if (!marked[i]) continue;
-    size_t need = strlen(f->scene->nodes[i].name) + 2;
-    if (left || used + need >= room) {
-      left++;
-      continue;
-    }
-    used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "",
-                             f->scene->nodes[i].name);
-  }
-  if (left) snprintf(text + used, size - used, " and %zu more", left);
 }
 
 /*
@@ -222,7 +207,8 @@ static strut_status apply_solution(density_problem *p, strut_error *error) {
   return status;
 }
 
-strut_status strut_form_densities(strut_former *f, strut_error *error) {
+/* Shape and rest lengths from force densities. */
+static strut_status form_densities(strut_former *f, strut_error *error) {
   size_t nodes = f->scene->node_count, members = f->scene->member_count;
   density_problem p = {.f = f,
                        .q = strut_arena_allocate(&f->arena, members, sizeof(double)),
@@ -323,27 +309,15 @@ static void find_freedom(const strut_former *f, bool *shift, bool *turn) {
   }
 }
 
-/* Undoes the drift of a structure that nothing holds. */
-static bool undo_drift(const strut_former *f, double *q) {
-  const strut_scene *scene = f->scene;
-  double n = (double)scene->node_count, from[2] = {0}, to[2] = {0}, cosine = 0, sine = 0;
+/* Undoes the drift of a structure that nothing holds from where it started. */
+static bool undo_drift(const strut_former *f, const double *start, double *q) {
+  strut_rigid_fit fit = strut_rigid_fit_find((int32_t)f->scene->node_count, start, q, 1.0);
   bool shift, turn;
   find_freedom(f, &shift, &turn);
-  for (size_t i = 0; i < 2 * scene->node_count; i++)
-    from[i % 2] += q[i] / n, to[i % 2] += scene->nodes[i / 2].start[i % 2] / n;
-  for (size_t i = 0; i < scene->node_count; i++) {
-    double a[2] = {q[2 * i] - from[0], q[2 * i + 1] - from[1]};
-    double b[2] = {scene->nodes[i].start[0] - to[0], scene->nodes[i].start[1] - to[1]};
-    cosine += a[0] * b[0] + a[1] * b[1], sine += a[0] * b[1] - a[1] * b[0];
-  }
-  double size = hypot(cosine, sine);
-  if (!shift || !(size > 0)) return false;
-  if (!turn) cosine = size, sine = 0, to[1] = from[1];
-  for (size_t i = 0; i < scene->node_count; i++) {
-    double a[2] = {q[2 * i] - from[0], q[2 * i + 1] - from[1]};
-    q[2 * i] = to[0] + (cosine * a[0] - sine * a[1]) / size;
-    q[2 * i + 1] = to[1] + (sine * a[0] + cosine * a[1]) / size;
-  }
+  if (!shift) return false;
+  if (!turn) fit.cosine = 1.0, fit.sine = 0.0, fit.to[1] = fit.from[1];
+  for (size_t i = 0; i < f->scene->node_count; i++)
+    strut_rigid_fit_apply(&fit, q + 2 * i, q + 2 * i);
   return true;
 }
 
@@ -362,7 +336,7 @@ static strut_status judge(const strut_former *f, const strut_descent *d, const d
   size_t node = 0;
   bool finite = isfinite(d->residual);
   for (size_t i = 0; i < 2 * f->scene->node_count; i++) finite = finite && isfinite(q[i]);
-  if (!finite) return strut_form_out_of_range(error);
+  if (!finite) return form_out_of_range(error);
   double moved = farthest(f->scene, q, &node);
   const char *name = f->scene->nodes[node].name;
   if (d->end == STRUT_DESCENT_RUNAWAY)
@@ -397,7 +371,7 @@ static strut_status polish(strut_former *f, strut_error *error) {
     memcpy(q, model->start, (size_t)model->length * sizeof *q);
     strut_minimiser_watch(minimiser, f->experiment->interrupt);
     strut_descent descent = strut_minimise(minimiser, q, 0.0);
-    if (descent.end != STRUT_DESCENT_RUNAWAY && undo_drift(f, q))
+    if (descent.end != STRUT_DESCENT_RUNAWAY && undo_drift(f, model->start, q))
       descent = strut_polish(minimiser, q, 0.0);
     f->form->residual = descent.residual;
     status = judge(f, &descent, q, error);
@@ -446,7 +420,7 @@ static strut_status add_run(strut_former *f, strut_error *error) {
 static strut_status find(strut_former *f, strut_error *error) {
   strut_scene *scene = f->scene;
   strut_status status = STRUT_OK;
-  if (f->form->from == STRUT_FORM_DENSITIES) status = strut_form_densities(f, error);
+  if (f->form->from == STRUT_FORM_DENSITIES) status = form_densities(f, error);
   if (f->form->from == STRUT_FORM_PRESTRESS) status = strut_form_prestress(f, error);
   if (status != STRUT_OK) return status;
   fix_lengths(scene);

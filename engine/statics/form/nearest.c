@@ -12,7 +12,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/statics/algebra.h"
+#include "engine/statics/equilibria/equilibria_parts.h"
 #include "engine/statics/form/parts.h"
+#include "engine/statics/search/critical.h"
 
 enum { MOST_COORDINATES = 400, TURNS = 500, NEAREST_STEPS = 30, STEPS = 60, NULLITY = 3 };
 
@@ -24,8 +27,9 @@ static const double EXACT = 1e-10;   /* of density times size: what rounding may
 /* Pseudo-inverse times r for the transpose of a (rows >= columns): shortest x with a' x = r. */
 static bool shortest(gsl_matrix *a, const gsl_vector *r, gsl_vector *x) {
   size_t columns = a->size2;
-  gsl_matrix *v = gsl_matrix_alloc(columns, columns);
-  gsl_vector *s = gsl_vector_alloc(columns), *w = gsl_vector_alloc(columns);
+  strut_arena arena = {0};
+  gsl_matrix *v = strut_arena_matrix(&arena, columns, columns);
+  gsl_vector *s = strut_arena_vector(&arena, columns), *w = strut_arena_vector(&arena, columns);
   bool good = v && s && w && gsl_linalg_SV_decomp(a, v, s, w) == 0;
   if (good) {
     gsl_blas_dgemv(CblasTrans, 1.0, v, r, 0.0, w);
@@ -35,9 +39,7 @@ static bool shortest(gsl_matrix *a, const gsl_vector *r, gsl_vector *x) {
     }
     gsl_blas_dgemv(CblasNoTrans, 1.0, a, w, 0.0, x);
   }
-  gsl_matrix_free(v);
-  gsl_vector_free(s);
-  gsl_vector_free(w);
+  strut_arena_free(&arena);
   return good;
 }
 
@@ -117,13 +119,14 @@ static double project_densities(const strut_scene *scene, const gsl_matrix *u, c
 static bool take_turns(strut_former *f, const double *drawn, double *x, double *q) {
   const strut_scene *scene = f->scene;
   size_t n = scene->node_count, b = scene->member_count, tall = b > 2 * n ? b : 2 * n;
-  gsl_matrix *d = gsl_matrix_alloc(n, n), *vectors = gsl_matrix_alloc(n, n);
-  gsl_matrix *balance = gsl_matrix_alloc(tall, 2 * n), *v = gsl_matrix_alloc(2 * n, 2 * n);
-  gsl_vector *values = gsl_vector_alloc(n), *s = gsl_vector_alloc(2 * n);
-  gsl_vector *room = gsl_vector_alloc(2 * n);
-  gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(n);
-  const eigen_room eigen = {d, vectors, values, work};
-  bool good = d && vectors && balance && v && values && s && room && work;
+  strut_arena arena = {0};
+  const eigen_room eigen = {strut_arena_matrix(&arena, n, n), strut_arena_matrix(&arena, n, n),
+                            strut_arena_vector(&arena, n), gsl_eigen_symmv_alloc(n)};
+  gsl_matrix *balance = strut_arena_matrix(&arena, tall, 2 * n);
+  gsl_matrix *v = strut_arena_matrix(&arena, 2 * n, 2 * n);
+  gsl_vector *s = strut_arena_vector(&arena, 2 * n), *room = strut_arena_vector(&arena, 2 * n);
+  bool good =
+      eigen.matrix && eigen.vectors && eigen.values && eigen.work && balance && v && s && room;
   double largest = 0;
   for (size_t j = 0; j < b; j++) largest = fmax(largest, fabs(q[j]));
   for (int k = 0; k < TURNS && good; k++) {
@@ -132,35 +135,18 @@ static bool take_turns(strut_former *f, const double *drawn, double *x, double *
     if (good) changed = project_densities(scene, balance, s, q);
     if (moved <= SETTLED * f->size && changed <= SETTLED * largest) break;
   }
-  gsl_matrix_free(d);
-  gsl_matrix_free(vectors);
-  gsl_matrix_free(balance);
-  gsl_matrix_free(v);
-  gsl_vector_free(values);
-  gsl_vector_free(s);
-  gsl_vector_free(room);
-  gsl_eigen_symmv_free(work);
+  gsl_eigen_symmv_free(eigen.work);
+  strut_arena_free(&arena);
   return good;
 }
 
 /* Turns and shifts x so that it lies as the drawn shape does at the coordinates that are held. */
 static void lay_down(const strut_scene *scene, const uint8_t *held, const double *drawn,
                      double *x) {
-  double sine = 0, cosine = 0, centre[2][2] = {{0}}, n = (double)scene->node_count;
-  for (size_t i = 0; i < scene->node_count; i++)
-    for (size_t c = 0; c < 2; c++)
-      centre[0][c] += x[2 * i + c] / n, centre[1][c] += drawn[2 * i + c] / n;
+  const strut_rigid_fit fit = strut_rigid_fit_find((int32_t)scene->node_count, drawn, x, 1.0);
+  double shift[2] = {0}, count[2] = {0};
   for (size_t i = 0; i < scene->node_count; i++) {
-    double a[2] = {x[2 * i] - centre[0][0], x[2 * i + 1] - centre[0][1]};
-    double b[2] = {drawn[2 * i] - centre[1][0], drawn[2 * i + 1] - centre[1][1]};
-    cosine += a[0] * b[0] + a[1] * b[1], sine += a[0] * b[1] - a[1] * b[0];
-  }
-  double size = hypot(sine, cosine), shift[2] = {0}, count[2] = {0};
-  if (!(size > 0)) return;
-  for (size_t i = 0; i < scene->node_count; i++) {
-    double a[2] = {x[2 * i] - centre[0][0], x[2 * i + 1] - centre[0][1]};
-    x[2 * i] = centre[1][0] + (cosine * a[0] - sine * a[1]) / size;
-    x[2 * i + 1] = centre[1][1] + (sine * a[0] + cosine * a[1]) / size;
+    strut_rigid_fit_apply(&fit, x + 2 * i, x + 2 * i);
     for (size_t c = 0; c < 2; c++)
       if (held[2 * i + c]) shift[c] += drawn[2 * i + c] - x[2 * i + c], count[c] += 1;
   }
@@ -177,7 +163,7 @@ typedef struct joint {
   double *x, *q;
   const double *x_given, *q_given;
   gsl_matrix *slope; /* (n + members, n): the transpose of the derivative */
-  gsl_vector *force, *step;
+  gsl_vector *force, *step, *away;
 } joint;
 
 /* Net forces [unit size] and their derivatives. The largest force. */
@@ -219,14 +205,11 @@ static void deviation(const joint *p, gsl_vector *out) {
 /* One step: onto the linearised equilibria, at first to the one nearest to what was given. */
 static bool improve(joint *p, bool nearest) {
   const strut_scene *scene = p->f->scene;
-  gsl_vector *away = gsl_vector_alloc(p->step->size);
-  if (!away) return false;
-  deviation(p, away);
+  deviation(p, p->away);
   gsl_vector_scale(p->force, -1.0);
-  if (nearest) gsl_blas_dgemv(CblasTrans, 1.0, p->slope, away, 1.0, p->force);
+  if (nearest) gsl_blas_dgemv(CblasTrans, 1.0, p->slope, p->away, 1.0, p->force);
   bool good = shortest(p->slope, p->force, p->step);
-  if (nearest) gsl_vector_sub(p->step, away);
-  gsl_vector_free(away);
+  if (nearest) gsl_vector_sub(p->step, p->away);
   for (size_t i = 0; i < 2 * scene->node_count && good; i++)
     if (p->row_of[i] >= 0) p->x[i] += p->f->size * gsl_vector_get(p->step, (size_t)p->row_of[i]);
   for (size_t j = 0; j < scene->member_count && good; j++)
@@ -241,7 +224,7 @@ static strut_status not_found(const joint *p, strut_error *error) {
   for (size_t i = 0; i < 2 * p->f->scene->node_count; i++)
     if (p->row_of[i] >= 0 && fabs(gsl_vector_get(p->force, (size_t)p->row_of[i])) > EXACT)
       marked[i / 2] = 1;
-  strut_form_name_nodes(p->f, marked, names, sizeof names);
+  strut_list_nodes(p->f->scene, marked, sizeof names, names);
   strut_release(marked);
   return strut_fail(error, STRUT_NOT_SETTLED,
                     "no shape and densities near the given ones are in equilibrium: forces remain "
@@ -285,14 +268,13 @@ strut_status strut_form_nearest(strut_former *f, const uint8_t *held, bool stand
   memcpy(x_given, x, coordinates * sizeof *x);
   memcpy(q_given, q, members * sizeof *q);
   for (size_t j = 0; j < members; j++) p.unit = fmax(p.unit, fabs(q[j]));
-  p.slope = gsl_matrix_alloc((size_t)p.n + members, (size_t)p.n);
-  p.force = gsl_vector_alloc((size_t)p.n);
-  p.step = gsl_vector_alloc((size_t)p.n + members);
-  strut_status status =
-      p.slope && p.force && p.step && p.unit > 0 ? solve(&p, error) : strut_no_memory(error, "");
+  p.slope = strut_arena_matrix(&f->arena, (size_t)p.n + members, (size_t)p.n);
+  p.force = strut_arena_vector(&f->arena, (size_t)p.n);
+  p.step = strut_arena_vector(&f->arena, (size_t)p.n + members);
+  p.away = strut_arena_vector(&f->arena, (size_t)p.n + members);
+  strut_status status = p.slope && p.force && p.step && p.away && p.unit > 0
+                            ? solve(&p, error)
+                            : strut_no_memory(error, "");
   for (size_t i = 0; i < coordinates; i++) x[i] += origin[i % 2];
-  gsl_matrix_free(p.slope);
-  gsl_vector_free(p.force);
-  gsl_vector_free(p.step);
   return status;
 }

@@ -28,14 +28,6 @@ bool strut_form_touches(const strut_former *former, int32_t contact);
 /** Gives member j the rest length with which it carries `force` at the length it starts with. */
 strut_status strut_form_set_force(strut_former *former, size_t member, double force,
                                   strut_error *error);
-/** Sets the error that energies and forces overflow; returns its status. */
-strut_status strut_form_out_of_range(strut_error *error);
-/** A list such as "n1, n4 and n5" of the nodes marked (node_count), for sentences. */
-void strut_form_name_nodes(const strut_former *former, const uint8_t *marked, char *text,
-                           size_t size);
-
-/** Shape and rest lengths from force densities. */
-strut_status strut_form_densities(strut_former *former, strut_error *error);
 /**
  * Rest lengths from the drawn shape; start positions sink into the ground under the contact forces.
  */

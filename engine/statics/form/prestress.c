@@ -9,6 +9,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
+#include "engine/statics/equilibria/equilibria_parts.h"
 
 /*
  * Weighted least squares under equations and lower bounds, by an active set. Steps are taken in the
@@ -20,24 +21,20 @@ enum { ROUNDS = 1000 };
 static const double CUT = 1e-11;  /* of the largest singular value */
 static const double ZERO = 1e-12; /* of a step, of a multiplier */
 
-/* Columns that A maps to nothing: (count, k), for the caller to release; NULL: out of memory. */
-static gsl_matrix *null_space(int32_t rows, int32_t count, const double *equations) {
+/* Columns that A maps to nothing: (count, k); NULL: out of memory. */
+static gsl_matrix *null_space(int32_t rows, int32_t count, const double *equations,
+                              strut_arena *arena) {
   size_t n = (size_t)count, m = (size_t)rows, tall = m > n ? m : n, k = 0;
-  gsl_matrix *a = gsl_matrix_calloc(tall, n), *v = gsl_matrix_alloc(n, n), *basis = NULL;
-  gsl_vector *s = gsl_vector_alloc(n), *w = gsl_vector_alloc(n);
-  if (a && v && s && w) {
-    for (size_t i = 0; i < m; i++)
-      for (size_t j = 0; j < n; j++) gsl_matrix_set(a, i, j, equations[i * n + j]);
-    gsl_linalg_SV_decomp(a, v, s, w);
-    while (k < n && gsl_vector_get(s, k) > CUT * gsl_vector_get(s, 0)) k++;
-    basis = gsl_matrix_calloc(n, n - k + 1); /* one column to spare: GSL knows no empty matrix */
-    for (size_t i = 0; i < n && basis; i++)
-      for (size_t j = k; j < n; j++) gsl_matrix_set(basis, i, j - k, gsl_matrix_get(v, i, j));
-  }
-  gsl_matrix_free(a);
-  gsl_matrix_free(v);
-  gsl_vector_free(s);
-  gsl_vector_free(w);
+  gsl_matrix *a = strut_arena_matrix(arena, tall, n), *v = strut_arena_matrix(arena, n, n);
+  gsl_vector *s = strut_arena_vector(arena, n), *w = strut_arena_vector(arena, n);
+  if (!a || !v || !s || !w) return NULL;
+  for (size_t i = 0; i < m; i++)
+    for (size_t j = 0; j < n; j++) gsl_matrix_set(a, i, j, equations[i * n + j]);
+  gsl_linalg_SV_decomp(a, v, s, w);
+  while (k < n && gsl_vector_get(s, k) > CUT * gsl_vector_get(s, 0)) k++;
+  gsl_matrix *basis = strut_arena_matrix(arena, n, n - k);
+  for (size_t i = 0; i < n && basis; i++)
+    for (size_t j = k; j < n; j++) gsl_matrix_set(basis, i, j - k, gsl_matrix_get(v, i, j));
   return basis;
 }
 
@@ -80,10 +77,7 @@ static bool solve_step(problem *p, size_t size) {
   gsl_vector_view b = gsl_vector_subvector(p->right, 0, size);
   gsl_vector_view x = gsl_vector_subvector(p->solution, 0, size);
   gsl_permutation order = {size, p->order->data};
-  strut_lu_factor(&a.matrix, &order);
-  for (size_t i = 0; i < size; i++)
-    if (gsl_matrix_get(&a.matrix, i, i) == 0) return false;
-  return gsl_linalg_LU_solve(&a.matrix, &order, &b.vector, &x.vector) == 0;
+  return strut_solve_rows(&a.matrix, &b.vector, &order, &x.vector);
 }
 
 static double step_component(const problem *p, size_t i) {
@@ -129,30 +123,26 @@ static bool release_bound(problem *p) {
 bool strut_bounded_squares(int32_t rows, int32_t count, const double *equations,
                            const double *weight, const double *low, double *x) {
   size_t n = (size_t)count;
-  gsl_matrix *basis = null_space(rows, count, equations);
+  strut_arena arena = {0};
+  gsl_matrix *basis = null_space(rows, count, equations, &arena);
   problem p = {.count = n,
-               .free = basis ? basis->size2 - 1 : 0,
+               .free = basis ? basis->size2 : 0,
                .basis = basis,
                .weight = weight,
                .low = low,
                .x = x};
   size_t room = p.free + n + 1;
-  p.active = strut_allocate(n, 1);
-  p.system = gsl_matrix_alloc(room, room);
-  p.right = gsl_vector_alloc(room);
-  p.solution = gsl_vector_alloc(room);
-  p.order = gsl_permutation_alloc(room);
+  p.active = strut_arena_allocate(&arena, n, 1);
+  p.system = strut_arena_matrix(&arena, room, room);
+  p.right = strut_arena_vector(&arena, room);
+  p.solution = strut_arena_vector(&arena, room);
+  p.order = strut_arena_order(&arena, room);
   bool good = basis && p.active && p.system && p.right && p.solution && p.order;
   for (int k = 0; k < ROUNDS && good && p.free > 0; k++) {
     if (!solve_step(&p, find_step(&p))) break;
     if (advance_to_bound(&p) && !release_bound(&p)) break;
   }
-  gsl_matrix_free(basis);
-  strut_release(p.active);
-  gsl_matrix_free(p.system);
-  gsl_vector_free(p.right);
-  gsl_vector_free(p.solution);
-  gsl_permutation_free(p.order);
+  strut_arena_free(&arena);
   return good;
 }
 
@@ -303,7 +293,7 @@ static strut_status cannot_hold(const prestress *p, strut_error *error) {
     if (missing > MISSING) marked[f->potential->coordinate[i] / 2] = 1;
     worst = fmax(worst, missing);
   }
-  strut_form_name_nodes(f, marked, names, sizeof names);
+  strut_list_nodes(f->scene, marked, sizeof names, names);
   strut_release(marked);
   char cables[80] = "";
   if (f->options->least_density > 0)

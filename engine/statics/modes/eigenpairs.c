@@ -21,6 +21,7 @@ typedef struct dense {
   gsl_matrix *follow; /* (n - massive, massive) K00^-1 K01 */
   gsl_matrix *vector; /* (massive, massive) */
   gsl_vector *value;  /* (massive) */
+  strut_arena arena;
 } dense;
 
 static void fill_matrices(const dense *d) {
@@ -40,8 +41,8 @@ static void fill_matrices(const dense *d) {
 static bool condense(dense *d) {
   size_t light = d->n - d->massive;
   if (light == 0) return true;
-  d->follow = gsl_matrix_alloc(light, d->massive);
-  gsl_permutation *order = gsl_permutation_alloc(light);
+  d->follow = strut_arena_matrix(&d->arena, light, d->massive);
+  gsl_permutation *order = strut_arena_order(&d->arena, light);
   int sign = 0;
   bool good = d->follow && order;
   if (good) {
@@ -57,7 +58,6 @@ static bool condense(dense *d) {
     if (good)
       gsl_blas_dgemm(CblasTrans, CblasNoTrans, -1.0, &k01.matrix, d->follow, 1.0, &k11.matrix);
   }
-  gsl_permutation_free(order);
   return good;
 }
 
@@ -88,10 +88,10 @@ static bool allocate_dense(dense *d) {
   set->n = v->n, set->count = v->massive;
   set->value = strut_arena_allocate(d->work->arena, d->massive, sizeof *set->value);
   set->vector = strut_arena_allocate(d->work->arena, d->massive * d->n, sizeof *set->vector);
-  d->k = gsl_matrix_calloc(d->n, d->n);
-  d->m = gsl_matrix_calloc(d->n, d->n);
-  d->vector = gsl_matrix_calloc(d->massive, d->massive);
-  d->value = gsl_vector_calloc(d->massive);
+  d->k = strut_arena_matrix(&d->arena, d->n, d->n);
+  d->m = strut_arena_matrix(&d->arena, d->n, d->n);
+  d->vector = strut_arena_matrix(&d->arena, d->massive, d->massive);
+  d->value = strut_arena_vector(&d->arena, d->massive);
   if (!d->place || !set->value || !set->vector || !d->k || !d->m || !d->vector || !d->value)
     return false;
   for (size_t i = 0, heavy = 0, light = d->massive; i < d->n; i++)
@@ -116,11 +116,7 @@ static bool solve_dense(dense *d) {
 strut_status strut_modes_dense(strut_modes_work *work, strut_error *error) {
   dense d = {.work = work};
   bool good = allocate_dense(&d) && solve_dense(&d);
-  gsl_matrix_free(d.k);
-  gsl_matrix_free(d.m);
-  gsl_matrix_free(d.follow);
-  gsl_matrix_free(d.vector);
-  gsl_vector_free(d.value);
+  strut_arena_free(&d.arena);
   return good ? STRUT_OK : strut_no_memory(error, "for all modes");
 }
 
@@ -231,8 +227,7 @@ static bool fill_damping(const strut_modes_work *work, gsl_matrix *damping) {
   for (size_t j = 0; j < count; j++) {
     strut_vibration_multiply(work->v, work->v->d, set->vector + j * n, product);
     for (size_t i = 0; i < count; i++) {
-      double sum = 0.0;
-      for (size_t k = 0; k < n; k++) sum += set->vector[i * n + k] * product[k];
+      double sum = strut_dot(set->vector + i * n, product, (ptrdiff_t)n);
       if (i == j) sum += work->v->model->mass_damping; /* vectors have x' M x = 1 */
       gsl_matrix_set(damping, i, j, sum);
       any = any || sum != 0;
@@ -323,9 +318,8 @@ static void apply_modal_quotients(const strut_modes_work *work, strut_mode *list
   double *product = work->v->work;
   for (size_t j = 0; j < (size_t)work->set.count; j++) {
     const double *x = work->set.vector + j * n;
-    double sum = 0.0;
     strut_vibration_multiply(work->v, work->v->d, x, product);
-    for (size_t k = 0; k < n; k++) sum += x[k] * product[k];
+    double sum = strut_dot(x, product, (ptrdiff_t)n);
     apply_modal_quotient(work, j, sum + work->v->model->mass_damping, &list[j]);
   }
 }

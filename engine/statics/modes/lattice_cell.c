@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A cell of a structure that repeats: its nodes among those of its neighbours, and its equilibrium. */
-#include <float.h>
-#include <gsl/gsl_eigen.h>
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/vec.h"
-#include "engine/statics/curvature.h"
+#include "engine/statics/minimise.h"
 #include "engine/statics/modes/parts.h"
 
 static const double SAME_PLACE = 1e-6; /* distance, in shorter steps of the lattice */
@@ -128,166 +125,56 @@ strut_status strut_lattice_cell_create(const strut_model *model, strut_arena *ar
 
 /* ---- equilibrium ---- */
 
-enum { MOST_TRIALS = 300 };
+static const double MOST_LEFT = 16.0; /* force that rounding may leave, over the least */
 
-/* Newton's method within a trust region, over the coordinates of the cell. */
-typedef struct descent {
-  const strut_lattice_cell *cell;
-  strut_potential *potential;
-  strut_sparse *hessian;
-  gsl_matrix *matrix, *vectors;
-  gsl_vector *values;
-  gsl_eigen_symmv_workspace *workspace;
-  double *force;                   /* (length) [N] */
-  double *gradient, *part, *share; /* (n) */
-  uint8_t *idle;                   /* (n) */
-  double *trial;                   /* (length) [m] */
-  double largest;                  /* of the gradient [N] */
-  double noise;                    /* of the gradient, by rounding [N] */
-  strut_arena arena;
-} descent;
-
-static bool allocate(descent *d) {
-  size_t n = (size_t)d->cell->n, length = (size_t)d->cell->model->length;
-  d->hessian = strut_potential_matrix(d->potential, &d->arena);
-  d->force = strut_arena_allocate(&d->arena, length, sizeof(double));
-  d->trial = strut_arena_allocate(&d->arena, length, sizeof(double));
-  d->gradient = strut_arena_allocate(&d->arena, n, sizeof(double));
-  d->part = strut_arena_allocate(&d->arena, n, sizeof(double));
-  d->share = strut_arena_allocate(&d->arena, n, sizeof(double));
-  d->idle = strut_arena_allocate(&d->arena, n, 1);
-  d->matrix = gsl_matrix_alloc(n, n);
-  d->vectors = gsl_matrix_alloc(n, n);
-  d->values = gsl_vector_alloc(n);
-  d->workspace = gsl_eigen_symmv_alloc(n);
-  return d->hessian && d->force && d->trial && d->gradient && d->part && d->share && d->idle &&
-         d->matrix && d->vectors && d->values && d->workspace;
-}
-
-static void release(descent *d) {
-  if (d->matrix) gsl_matrix_free(d->matrix);
-  if (d->vectors) gsl_matrix_free(d->vectors);
-  if (d->values) gsl_vector_free(d->values);
-  if (d->workspace) gsl_eigen_symmv_free(d->workspace);
-  strut_potential_free(d->potential);
-  strut_arena_free(&d->arena);
-}
-
-/* The gradient at q; returns its largest entry. */
-static double evaluate(descent *d, const double *q) {
-  const strut_lattice_cell *cell = d->cell;
-  double largest = 0.0;
-  strut_potential_force(d->potential, q, d->force);
-  memset(d->gradient, 0, (size_t)cell->n * sizeof(double));
-  for (int32_t i = 0; i < cell->model->length; i++)
-    if (cell->row[i] >= 0) d->gradient[cell->row[i]] -= d->force[i];
-  for (int32_t r = 0; r < cell->n; r++)
-    if (!(fabs(d->gradient[r]) <= largest)) largest = fabs(d->gradient[r]);
-  return largest;
-}
-
-/* Eigenvalues of the cell's stiffness at q, and the gradient's share of each eigenvector. */
-static bool decompose(descent *d, const double *q, strut_quadratic *quadratic) {
-  const strut_lattice_cell *cell = d->cell;
-  const strut_sparse *h = d->hessian;
-  size_t n = (size_t)cell->n;
-  strut_potential_hessian(d->potential, q, d->hessian);
-  gsl_matrix_set_zero(d->matrix);
-  for (int32_t j = 0; j < h->n; j++)
-    for (int32_t at = h->start[j]; at < h->start[j + 1]; at++) {
-      int32_t a = cell->row[d->potential->coordinate[h->row[at]]];
-      int32_t b = cell->row[d->potential->coordinate[j]];
-      if (a < 0 || b < 0) continue;
-      *gsl_matrix_ptr(d->matrix, (size_t)a, (size_t)b) += h->value[at];
-      if (h->row[at] != j) *gsl_matrix_ptr(d->matrix, (size_t)b, (size_t)a) += h->value[at];
-    }
-  for (size_t i = 0; i < n * n; i++)
-    if (!isfinite(d->matrix->data[i])) return false;
-  if (gsl_eigen_symmv(d->matrix, d->values, d->vectors, d->workspace)) return false;
-  double scale = 0.0;
-  for (size_t i = 0; i < n; i++) scale = fmax(scale, fabs(gsl_vector_get(d->values, i)));
-  for (size_t i = 0; i < n; i++) {
-    d->part[i] = 0.0;
-    for (size_t k = 0; k < n; k++) d->part[i] += gsl_matrix_get(d->vectors, k, i) * d->gradient[k];
-    d->idle[i] = fabs(gsl_vector_get(d->values, i)) <= 1e-11 * scale &&
-                 fabs(d->part[i]) <= (double)n * d->noise;
-  }
-  *quadratic = (strut_quadratic){cell->n, d->values->data, d->part, d->idle, scale, 1e-12 * scale};
-  return true;
-}
-
-/* The trial shape after the shares of each eigenvector; returns what the model says it releases [J]. */
-static double move(descent *d, const strut_quadratic *quadratic, const double *q) {
-  const strut_lattice_cell *cell = d->cell;
-  double reduction = 0.0;
-  memcpy(d->trial, q, (size_t)cell->model->length * sizeof *q);
-  for (int32_t i = 0; i < cell->n; i++)
-    reduction -= d->share[i] * (d->part[i] + 0.5 * quadratic->value[i] * d->share[i]);
-  for (int32_t k = 0; k < cell->model->length; k++)
-    for (int32_t i = 0; i < cell->n && cell->row[k] >= 0; i++)
-      d->trial[k] += d->share[i] * gsl_matrix_get(d->vectors, (size_t)cell->row[k], (size_t)i);
-  return reduction;
-}
-
-static strut_status descend(descent *d, const strut_experiment *experiment, double *q,
-                            strut_error *error) {
-  const double(*step)[2] = d->cell->model->scene->lattice;
-  double radius = 0.1 * hypot(step[0][0], step[0][1]),
-         energy = strut_potential_value(d->potential, q);
-  strut_quadratic quadratic = {0};
-  bool fresh = true;
-  d->largest = evaluate(d, q);
-  for (int trial = 0; trial < MOST_TRIALS && !strut_experiment_interrupted(experiment); trial++) {
-    d->noise = 16.0 * strut_potential_rounding(d->potential, q);
-    if (d->largest <= d->noise) return STRUT_OK;
-    if (fresh && !decompose(d, q, &quadratic)) break;
-    strut_trust_step(&quadratic, radius, d->share);
-    double hoped = move(d, &quadratic, q), before = d->largest;
-    double released = energy - strut_potential_value(d->potential, d->trial);
-    double largest = evaluate(d, d->trial);
-    fresh = released > 1e-3 * hoped ||
-            largest < 0.5 * before; /* where energies only differ by rounding */
-    radius *= released > 0.5 * hoped || (fresh && largest < 0.5 * before) ? 2.0
-              : fresh                                                     ? 1.0
-                                                                          : 0.25;
-    if (fresh) {
-      memcpy(q, d->trial, (size_t)d->cell->model->length * sizeof *q);
-      energy -= released;
-      d->largest = largest;
-    } else {
-      evaluate(d, q);
-    }
-  }
-  if (strut_experiment_interrupted(experiment))
-    return strut_experiment_end(experiment, STRUT_OK, error);
+static strut_status not_found(const strut_lattice_cell *cell, const double *gradient,
+                              strut_error *error) {
   int32_t worst = 0;
-  for (int32_t r = 0; r < d->cell->n; r++)
-    if (fabs(d->gradient[r]) > fabs(d->gradient[worst])) worst = r;
+  for (int32_t r = 0; r < cell->n; r++)
+    if (fabs(gradient[r]) > fabs(gradient[worst])) worst = r;
   return strut_fail(
       error, STRUT_NOT_SETTLED,
       "the repeated structure finds no equilibrium near this shape: a force of %.3g N "
       "stays on node '%s'. Draw the cell in equilibrium among its neighbours, or hold "
       "what loads move",
-      fabs(d->gradient[worst]), d->cell->model->scene->nodes[d->cell->first[worst] / 2].name);
+      fabs(gradient[worst]), cell->model->scene->nodes[cell->first[worst] / 2].name);
 }
 
-strut_status strut_lattice_cell_settle(const strut_lattice_cell *cell,
-                                       const strut_experiment *experiment, double *q,
-                                       double *residual, strut_error *error) {
+/* Images lie whole steps away, to all digits. */
+static void place_images(const strut_lattice_cell *cell, double *q) {
   const strut_scene *scene = cell->model->scene;
-  descent d = {.cell = cell};
-  for (int32_t i = 0; i < cell->model->length;
-       i++) { /* images lie whole steps away, to all digits */
+  for (int32_t i = 0; i < cell->model->length; i++) {
     int32_t owner = cell->owner[i / 2];
     if (owner == i / 2) continue;
     q[i] = q[2 * owner + i % 2];
     for (int k = 0; k < scene->lattice_count; k++)
       q[i] += cell->shift[i / 2][k] * scene->lattice[k][i % 2];
   }
-  strut_status status = strut_potential_create(cell->model, NULL, false, &d.potential, error);
-  if (status == STRUT_OK && !allocate(&d)) status = strut_no_memory(error, "");
-  if (status == STRUT_OK) status = descend(&d, experiment, q, error);
-  *residual = d.largest;
-  release(&d);
+}
+
+strut_status strut_lattice_cell_settle(const strut_lattice_cell *cell,
+                                       const strut_experiment *experiment, double *q,
+                                       double *residual, strut_error *error) {
+  strut_potential *potential = NULL;
+  strut_minimiser *minimiser = NULL;
+  double *gradient = strut_allocate((size_t)cell->n, sizeof *gradient);
+  strut_status status =
+      gradient ? strut_potential_create_tied(cell->model, cell->row, cell->n, &potential, error)
+               : strut_no_memory(error, "");
+  if (status == STRUT_OK) status = strut_minimiser_create(potential, &minimiser, error);
+  if (status == STRUT_OK) {
+    strut_minimiser_watch(minimiser, experiment->interrupt);
+    strut_minimiser_stay(minimiser);
+    place_images(cell, q);
+    strut_descent descent = strut_minimise(minimiser, q, 0.0);
+    *residual = descent.residual;
+    status = strut_experiment_end(experiment, status, error);
+    strut_potential_gradient(potential, q, gradient);
+    if (status == STRUT_OK && !(descent.residual <= MOST_LEFT * descent.rounding))
+      status = not_found(cell, gradient, error);
+  }
+  strut_minimiser_free(minimiser);
+  strut_potential_free(potential);
+  strut_release(gradient);
   return status;
 }

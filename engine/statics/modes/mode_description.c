@@ -1,108 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/modes/parts.h"
 
-#include <gsl/gsl_eigen.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
-
-/* The motions of the plane as a whole that supports and closed contacts leave free. */
-
-/* A motion (a, b, w): a - w (y - y0) / size in x, b + w (x - x0) / size in y. */
-typedef struct pivot {
-  double x, y, size;
-} pivot;
-
-static pivot middle_of(const strut_vibration *v) {
-  pivot c = {0.0, 0.0, v->model->size > 0 ? v->model->size : 1.0};
-  for (int32_t i = 0; i < v->model->node_count; i++) c.x += v->q[2 * i], c.y += v->q[2 * i + 1];
-  c.x /= v->model->node_count;
-  c.y /= v->model->node_count;
-  return c;
-}
-
-/* Adds what holding direction (nx, ny) at coordinates `at` forbids: g += row row'. */
-static void add_constraint(const strut_vibration *v, const pivot *c, int32_t at, double nx,
-                           double ny, gsl_matrix *g) {
-  double x = (v->q[at] - c->x) / c->size, y = (v->q[at + 1] - c->y) / c->size;
-  double row[3] = {nx, ny, ny * x - nx * y};
-  for (size_t i = 0; i < 3; i++)
-    for (size_t k = 0; k < 3; k++)
-      gsl_matrix_set(g, i, k, gsl_matrix_get(g, i, k) + row[i] * row[k]);
-}
-
-static void add_constraints(const strut_vibration *v, const pivot *c, gsl_matrix *g) {
-  const strut_model *model = v->model;
-  const strut_contact_table *contacts = &model->contacts;
-  for (int32_t at = 0; at < 2 * model->node_count; at++)
-    if (v->shape->row_of[at] < 0) add_constraint(v, c, at & ~1, at % 2 == 0, at % 2 != 0, g);
-  for (int32_t i = 0; i < contacts->count; i++)
-    if (v->closed[i]) {
-      const strut_contact_pose pose = strut_vibration_contact(v, i);
-      add_constraint(v, c, (int32_t)contacts->at[i], pose.axes.normal[0], pose.axes.normal[1], g);
-    }
-}
-
-static void fill_motion(const strut_vibration *v, const pivot *c, const double motion[3],
-                        double *x) {
-  for (int32_t i = 0; i < v->n; i++) {
-    int32_t at = v->shape->coordinate[i], node = at / 2;
-    if (at % 2)
-      x[i] = motion[1] + motion[2] * (v->q[2 * node] - c->x) / c->size;
-    else
-      x[i] = motion[0] - motion[2] * (v->q[2 * node + 1] - c->y) / c->size;
-  }
-}
-
-/* Gram and Schmidt, twice, in the product of the mass; false: nothing is left of x. */
-static bool orthonormalise(const strut_modes_work *work, double *x, double *product) {
-  const strut_vibration *v = work->v;
-  double square = 0.0;
-  for (int pass = 0; pass < 2; pass++)
-    for (int32_t k = 0; k <= work->rigid_count; k++) {
-      const double *y = k < work->rigid_count ? work->rigid + (size_t)k * (size_t)v->n : x;
-      double share = 0.0;
-      strut_vibration_multiply(v, v->m, x, product);
-      for (int32_t i = 0; i < v->n; i++) share += y[i] * product[i];
-      square = share;
-      for (int32_t i = 0; i < v->n && k < work->rigid_count; i++) x[i] -= share * y[i];
-    }
-  if (!(square > 0)) return false;
-  for (int32_t i = 0; i < v->n; i++) x[i] /= sqrt(square);
-  return true;
-}
-
-strut_status strut_modes_rigid(strut_modes_work *work, strut_error *error) {
-  const strut_vibration *v = work->v;
-  pivot c = middle_of(v);
-  work->rigid_count = 0;
-  work->rigid = strut_arena_allocate(work->arena, 3 * (size_t)v->n, sizeof *work->rigid);
-  gsl_matrix *g = gsl_matrix_calloc(3, 3), *vector = gsl_matrix_alloc(3, 3);
-  gsl_vector *value = gsl_vector_alloc(3);
-  gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(3);
-  bool good = work->rigid && g && vector && value && w;
-  if (good) {
-    add_constraints(v, &c, g);
-    double trace = gsl_matrix_get(g, 0, 0) + gsl_matrix_get(g, 1, 1) + gsl_matrix_get(g, 2, 2);
-    good = gsl_eigen_symmv(g, value, vector, w) == 0 &&
-           gsl_eigen_symmv_sort(value, vector, GSL_EIGEN_SORT_VAL_ASC) == 0;
-    for (size_t i = 0; i < 3 && good; i++) {
-      if (gsl_vector_get(value, i) > 1e-12 * trace) break;
-      double motion[3], *x = work->rigid + (size_t)work->rigid_count * (size_t)v->n;
-      for (size_t k = 0; k < 3; k++) motion[k] = gsl_matrix_get(vector, k, i);
-      fill_motion(v, &c, motion, x);
-      if (orthonormalise(work, x, v->work)) work->rigid_count++;
-    }
-  }
-  gsl_matrix_free(g);
-  gsl_matrix_free(vector);
-  gsl_vector_free(value);
-  gsl_eigen_symmv_free(w);
-  return good ? STRUT_OK : strut_no_memory(error, "");
-}
 
 /* Description of a mode in words, from its computed quantities. */
 
@@ -185,18 +89,6 @@ typedef struct energies {
   double members, ground, all;
 } energies;
 
-/* Energy of an element's slope: of its law, not of the bend of its strain. */
-static double element_energy(const strut_vibration *v, int32_t i, const double *x) {
-  strut_element_pose pose;
-  double along = strut_vibration_pose(v, i, &pose) ? strut_vibration_strain(v, i, &pose, x) : 0.0;
-  return pose.slope * along * along;
-}
-
-static double stretch_energy(const strut_vibration *v, int32_t j, const double *x) {
-  double e = v->member[j].taut ? strut_vibration_spread(v, j, x).along : 0.0;
-  return v->model->members.stiffness[j] * e * e;
-}
-
 /* Things that store energy: items, in this order. */
 static const strut_thing kinds[] = {STRUT_THING_MEMBER,    STRUT_THING_HINGE,    STRUT_THING_CELL,
                                     STRUT_THING_COLLISION, STRUT_THING_DISTANCE, STRUT_THING_FOOT};
@@ -209,8 +101,10 @@ static int32_t count_items(const strut_model *model) {
 }
 
 /* -1: a load, or bristles. */
-static int32_t item_of(const strut_model *model, const strut_element *e) {
+static int32_t item_of(const strut_model *model, const strut_force *force) {
   size_t before = 0;
+  if (force->kind == STRUT_FORCE_MEMBER) return force->index;
+  const strut_element *e = &model->elements.element[force->index];
   if (e->role == STRUT_ELEMENT_LOAD || e->role == STRUT_ELEMENT_CONTACT) return -1;
   strut_thing thing = strut_element_thing(e->role);
   for (int k = 0; kinds[k] != thing; k++) before += strut_thing_count(model->scene, kinds[k]);
@@ -223,29 +117,17 @@ static const char *name_of_item(const strut_scene *scene, size_t j) {
   return strut_thing_name(scene, kinds[k], j);
 }
 
-/* Energies of the items in a motion; a member's with those of its elements. */
-static void fill_energies(const strut_vibration *v, const double *x, double *energy) {
-  const strut_element_table *t = &v->model->elements;
-  int32_t members = v->model->members.count;
-  for (int32_t j = 0; j < members; j++) energy[j] = stretch_energy(v, j, x);
-  for (int32_t i = 0; i < t->count; i++) {
-    int32_t item = item_of(v->model, &t->element[i]);
-    if (item >= 0) energy[item] += element_energy(v, i, x);
-  }
-}
-
-static energies energies_of(const strut_vibration *v, const double *x, const double *energy) {
+/* Energies of slopes, not of bends of strains, in a motion; `energy` of the items, a member's with those of its elements. */
+static energies find_energies(const strut_vibration *v, const double *x, double *energy) {
   energies e = {0};
-  const strut_contact_table *c = &v->model->contacts;
-  int32_t items = count_items(v->model);
-  for (int32_t j = 0; j < items; j++) e.members += energy[j];
-  for (int32_t i = 0; i < c->count; i++) {
-    double d[2];
-    if (!v->closed[i]) continue;
-    motion_of(v, x, c->entry[i].node, d);
-    const strut_contact_pose pose = strut_vibration_contact(v, i);
-    double depth = d[0] * pose.axes.normal[0] + d[1] * pose.axes.normal[1];
-    e.ground += c->entry[i].stiffness * depth * depth;
+  strut_force force;
+  for (int32_t i = 0; i < strut_force_count(v->model, true); i++) {
+    if (!strut_vibration_force_at(v, i, &force)) continue;
+    double along = strut_vibration_strain(v, &force, x), own = force.pose.slope * along * along;
+    bool ground = force.kind == STRUT_FORCE_CONTACT;
+    int32_t item = ground ? -1 : item_of(v->model, &force);
+    if (ground) e.ground += own;
+    if (item >= 0) energy[item] += own, e.members += own;
   }
   e.all = e.members + e.ground;
   return e;
@@ -294,10 +176,12 @@ static void describe_idle(const strut_modes_work *work, const double *x, strut_m
   const strut_vibration *v = work->v;
   double lead[2];
   largest_node(v, x, lead);
+  strut_force force;
   int32_t count = 0, first = -1;
   for (int32_t j = 0; j < v->model->members.count; j++) {
     if (work->idleness[j] != STRUT_JUST_TAUT) continue;
-    if (fabs(strut_vibration_spread(v, j, x).along) <= 1e-6 * hypot(lead[0], lead[1])) continue;
+    strut_vibration_force_at(v, j, &force);
+    if (fabs(strut_vibration_strain(v, &force, x)) <= 1e-6 * hypot(lead[0], lead[1])) continue;
     if (!count++) first = j;
   }
   mode->just_taut = count;
@@ -328,12 +212,9 @@ void strut_modes_describe(const strut_modes_work *work, const double *x, strut_m
   size_t items = (size_t)count_items(v->model);
   double *energy = strut_allocate(items + 1, sizeof *energy);
   if (!energy) return; /* the mode stays, with fewer words */
-  fill_energies(v, x, energy);
-  energies e = energies_of(v, x, energy);
-  double mass = 0.0, *product = v->work;
-  strut_vibration_multiply(v, v->m, x, product);
-  for (int32_t i = 0; i < v->n; i++) mass += x[i] * product[i];
-  double stiffness = mode->eigenvalue * mass;
+  energies e = find_energies(v, x, energy);
+  strut_vibration_multiply(v, v->m, x, v->work);
+  double stiffness = mode->eigenvalue * strut_dot(x, v->work, v->n);
   bool geometric = e.all < 0.5 * fabs(stiffness);
   if (geometric)
     append_text(mode, "; %.0f %% of the stiffness is geometric",

@@ -15,9 +15,9 @@
  * A structure that nothing holds never comes to rest, but if it is drawn in equilibrium its modes
  * are valid: some are the free motions.
  */
-strut_status strut_modes_shape(const strut_model *model, const strut_experiment *experiment,
-                               const char *name, strut_arena *arena, strut_rest_state *rest,
-                               strut_error *error) {
+static strut_status modes_shape(const strut_model *model, const strut_experiment *experiment,
+                                const char *name, strut_arena *arena, strut_rest_state *rest,
+                                strut_error *error) {
   strut_status status = strut_rest_state_find(model, experiment, name, arena, rest, error);
   if (status != STRUT_NOT_SETTLED || (name && strcmp(name, "start") != 0)) return status;
   strut_rest_state drawn = {0};
@@ -73,10 +73,8 @@ static strut_status check_problem(strut_modes_work *work, strut_error *error) {
 }
 
 static double mass_product(const strut_modes_work *work, const double *x, const double *y) {
-  double *product = work->v->work, sum = 0.0;
-  strut_vibration_multiply(work->v, work->v->m, x, product);
-  for (int32_t i = 0; i < work->v->n; i++) sum += y[i] * product[i];
-  return sum;
+  strut_vibration_multiply(work->v, work->v->m, x, work->v->work);
+  return strut_dot(y, work->v->work, work->v->n);
 }
 
 /* Takes from x its shares in the first `count` of the vectors; returns what is left, squared. */
@@ -90,6 +88,25 @@ static double remove_shares(const strut_modes_work *work, const double *vectors,
       for (size_t i = 0; i < n; i++) x[i] -= share * y[i];
     }
   return mass_product(work, x, x);
+}
+
+/* The rigid motions that supports and closed contacts leave, orthonormal in the mass. */
+static strut_status find_rigid(strut_modes_work *work, strut_error *error) {
+  const strut_vibration *v = work->v;
+  size_t n = (size_t)v->n;
+  work->rigid = strut_arena_allocate(work->arena, 3 * n, sizeof *work->rigid);
+  if (!work->rigid) return strut_no_memory(error, "");
+  int32_t count = strut_rigid_motions(v->shape, v->q, v->closed, work->rigid);
+  work->rigid_count = 0;
+  for (int32_t k = 0; k < count; k++) {
+    double *x = work->rigid + (size_t)work->rigid_count * n;
+    memmove(x, work->rigid + (size_t)k * n, n * sizeof *x);
+    double square = remove_shares(work, work->rigid, work->rigid_count, x);
+    if (!(square > 0)) continue;
+    for (size_t i = 0; i < n; i++) x[i] /= sqrt(square);
+    work->rigid_count++;
+  }
+  return STRUT_OK;
 }
 
 /*
@@ -242,7 +259,7 @@ static strut_status solve_modes(strut_modes_work *work, int32_t wanted, strut_mo
   if (!work->set.noise || !work->set.error || !work->set.residual)
     return strut_no_memory(error, "");
   status = strut_modes_noise(work, modes->at_rest, error);
-  if (status == STRUT_OK) status = strut_modes_rigid(work, error);
+  if (status == STRUT_OK) status = find_rigid(work, error);
   if (status == STRUT_OK) status = strut_modes_measure(work, error);
   if (status == STRUT_OK && work->solver.no_memory) status = strut_no_memory(error, "");
   return status ? status : fill_modes(work, wanted, modes, error);
@@ -269,8 +286,7 @@ strut_status strut_modes_find(const strut_model *model, const strut_experiment *
   strut_rest_state rest = {0};
   *modes = (strut_modes){0};
   strut_modes_work work = {.arena = &modes->arena, .experiment = experiment};
-  strut_status status =
-      strut_modes_shape(model, experiment, options->at, &modes->arena, &rest, error);
+  strut_status status = modes_shape(model, experiment, options->at, &modes->arena, &rest, error);
   if (status != STRUT_OK) return status;
   modes->at = rest.name;
   modes->left_out = left_out(model);

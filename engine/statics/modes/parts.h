@@ -4,7 +4,6 @@
 #define STRUT_ENGINE_STATICS_MODES_PARTS_H
 
 #include "engine/base/flag.h"
-#include "engine/forces/elements.h"
 #include "engine/model/linear_solver.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/modes/modes.h"
@@ -16,16 +15,6 @@
  * friction does not act.
  */
 
-/** A member in the shape. */
-typedef struct strut_vibration_member {
-  double ux, uy;  /* from its first node to the second; 0 where it has no length */
-  double stretch; /* [m] */
-  double across;  /* force / length: stiffness across it [N/m] */
-  double length;  /* [m] */
-  bool taut;      /* pulls or pushes */
-  int8_t state;   /* 1: taut, -1: slack, whatever the stretch; 0: by the stretch */
-} strut_vibration_member;
-
 typedef struct strut_vibration {
   const strut_model *model;
   strut_potential *shape; /* coordinates, and the pattern of all matrices here; owned */
@@ -33,16 +22,16 @@ typedef struct strut_vibration {
   double *q,
       *low; /* (length) positions, and how far from there to equilibrium: less than the last bits of q
                       change forces of stiff members. To first order [m] */
-  strut_vibration_member *member; /* (member_count) */
-  uint8_t *closed;                /* (contacts) 1 where the ground pushes, there with stiffness */
-  double *k, *m, *d;              /* K [N/m], M [kg], D [N s/m] in the pattern's places */
-  double *mass;                   /* (n) row sums of M: 0 where nothing has mass */
-  int32_t massive;                /* rows with mass */
-  double largest;                 /* an upper bound of the eigenvalues of K x = z M x [1/s^2] */
-  double *work;                   /* (n) */
+  int8_t *state;     /* (members, then elements) 1: acts, if a member, -1: does not,
+                                     whatever its strain; 0: by the strain */
+  uint8_t *closed;   /* (contacts) 1 where the ground pushes, there with stiffness */
+  double *k, *m, *d; /* K [N/m], M [kg], D [N s/m] in the pattern's places */
+  double *mass;      /* (n) row sums of M: 0 where nothing has mass */
+  int32_t massive;   /* rows with mass */
+  double largest;    /* an upper bound of the eigenvalues of K x = z M x [1/s^2] */
+  double *work;      /* (n) */
   strut_arena arena;
   double *own_mass; /* (n) diagonal of M without sliding masses */
-  bool *idle;       /* (elements) it does not act, whatever its strain */
 } strut_vibration;
 
 /**
@@ -55,10 +44,10 @@ strut_status strut_vibration_create(const strut_model *model, const double *q,
                                     strut_error *error);
 void strut_vibration_free(strut_vibration *vibration);
 
-/** Pose of contact i. */
-strut_contact_pose strut_vibration_contact(const strut_vibration *vibration, int32_t i);
+/** The force of that number in the shape (strut_force_begin), with `low` to first order; false: it does not act. */
+bool strut_vibration_force_at(const strut_vibration *vibration, int32_t number, strut_force *force);
 
-/** Computes members and K anew after a change of q or low. */
+/** Computes K anew after a change of q or low. */
 void strut_vibration_update(strut_vibration *vibration);
 
 /** force (n): net force of members, ground, gravity and constant loads on free coordinates [N]. */
@@ -68,40 +57,22 @@ void strut_vibration_force(const strut_vibration *vibration, double *force);
 void strut_vibration_multiply(const strut_vibration *vibration, const double *matrix,
                               const double *x, double *y);
 
-/** Relative motion of the ends of member j in the motion x (n), along it and across it. */
-typedef struct strut_end_displacement {
-  double along, across;
-} strut_end_displacement;
-strut_end_displacement strut_vibration_spread(const strut_vibration *vibration, int32_t j,
-                                              const double *x);
-
 /**
  * Does a member or an element that acts one way only sit at the edge of that, to the last bits of its length
  * or strain? Whether it acts is then rounding, unless loads decide it.
  */
-bool strut_vibration_is_borderline(const strut_vibration *vibration, int32_t member);
-bool strut_vibration_element_is_borderline(const strut_vibration *vibration, int32_t element);
+bool strut_vibration_is_borderline(const strut_vibration *vibration, int32_t number);
 
-/**
- * An element in the shape: strain, force and gradient, with `low` to first order. False where it does
- * not act.
- */
-bool strut_vibration_pose(const strut_vibration *vibration, int32_t element,
-                          strut_element_pose *pose);
-/** How the motion x (n) of its coordinate k (2 nodes) differs from that of an element's last node, or, of a foot, from
-    rest. */
-double strut_vibration_relative(const strut_vibration *vibration, int32_t element, int32_t k,
-                                const double *x);
-/** How the strain of an element changes in the motion x (n). */
-double strut_vibration_strain(const strut_vibration *vibration, int32_t element,
-                              const strut_element_pose *pose, const double *x);
+/** How the strain of a force changes in the motion x (n). */
+double strut_vibration_strain(const strut_vibration *vibration, const strut_force *force,
+                              const double *x);
 
-/** x' B x of an element, B the second derivative of its strain, and the sum of its terms' sizes. */
-typedef struct strut_element_bow {
+/** x' B x of a member or an element, B the second derivative of its strain, and the sum of its terms' sizes. */
+typedef struct strut_strain_bow {
   double sum, size;
-} strut_element_bow;
-strut_element_bow strut_vibration_bow(const strut_vibration *vibration, int32_t element,
-                                      const double *x);
+} strut_strain_bow;
+strut_strain_bow strut_vibration_bow(const strut_vibration *vibration, const strut_force *force,
+                                     const double *x);
 
 /**
  * x' K x from strains, and a bound of its rounding. Stiff members that a motion hardly strains add
@@ -161,11 +132,6 @@ typedef struct strut_modes_work {
   const strut_experiment *experiment; /* which may be interrupted */
 } strut_modes_work;
 
-/** The shape of that name, as strut_rest_state_find. */
-strut_status strut_modes_shape(const strut_model *model, const strut_experiment *experiment,
-                               const char *name, strut_arena *arena, strut_rest_state *rest,
-                               strut_error *error);
-
 /** All modes of a dense problem, or the lowest ones of a sparse one, into work->set. */
 strut_status strut_modes_dense(strut_modes_work *work, strut_error *error);
 strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_error *error);
@@ -185,9 +151,6 @@ strut_status strut_modes_settle(strut_modes_work *work, strut_error *error);
 strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error *error);
 /** Eigenvalues from strains, and their errors. */
 strut_status strut_modes_measure(strut_modes_work *work, strut_error *error);
-
-/** The rigid motions that supports and closed contacts leave. */
-strut_status strut_modes_rigid(strut_modes_work *work, strut_error *error);
 
 /** Damping of the modes into the list; `exactly`: the set holds all modes. */
 strut_status strut_modes_damping(const strut_modes_work *work, bool exactly, strut_mode *list,

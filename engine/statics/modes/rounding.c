@@ -6,14 +6,13 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "engine/model/pose.h"
 
 /* The shape below the last bits of its positions, and what last bits do to a stiffness. */
 
 enum { MOST_STEPS = 8, SAMPLES = 3 };
 
 static void move(strut_vibration *v, double *positions, const double *step, double sign) {
-  for (int32_t i = 0; i < v->n; i++) positions[v->shape->coordinate[i]] += sign * step[i];
+  strut_potential_move(v->shape, step, sign, positions, positions);
   strut_vibration_update(v);
 }
 
@@ -25,88 +24,68 @@ static double stirred(uint64_t i) {
   return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0;
 }
 
-/* Elements: the last bits of strain and natural strain, and of the positions they are made of. */
-static void sample_elements(const strut_modes_work *work, bool at_rest, uint64_t first,
-                            double *noise, double *x) {
-  const strut_vibration *v = work->v;
-  const strut_element_table *t = &v->model->elements;
-  strut_element_pose pose;
-  for (int32_t i = 0; i < t->count; i++) {
-    const strut_element *e = &t->element[i];
-    bool acts = strut_vibration_pose(v, i, &pose);
-    double bits = DBL_EPSILON * (fabs(pose.strain) + fabs(pose.natural));
-    if (e->strain == STRUT_STRAIN_ANGLE) bits += 4.0 * DBL_EPSILON; /* of directions */
-    for (int32_t k = 0; k < e->nodes && !at_rest; k++) {
-      const double *at = v->q + t->at[e->first + k];
-      bits += hypot(pose.b[2 * k], pose.b[2 * k + 1]) * strut_coordinate_rounding(at, at);
-    }
-    noise[i] = acts ? -pose.slope * bits * stirred(first + (uint64_t)i) : 0.0;
-    for (int32_t k = 0; k < 2 * e->nodes && at_rest; k++) {
-      int32_t row = v->shape->row_of[t->at[e->first + k / 2] + (uint32_t)(k % 2)];
-      if (row >= 0) x[row] -= noise[i] * pose.b[k];
-    }
+/* Last bits of a strain and of its natural one, and, in a shape that is not at rest, of the positions it is made of. */
+static double bits_of(const strut_vibration *v, const strut_force *force, bool at_rest) {
+  const strut_element_pose *pose = &force->pose;
+  if (force->kind == STRUT_FORCE_MEMBER) {
+    double rest = v->model->members.rest[force->index];
+    return DBL_EPSILON * (at_rest ? 0.5 * rest : pose->strain + rest);
   }
-}
-
-/* How the forces of elements follow once the shape has come to rest again. */
-static void settle_elements(const strut_modes_work *work, const double *moved, double *noise) {
-  const strut_vibration *v = work->v;
-  strut_element_pose pose;
-  for (int32_t i = 0; i < v->model->elements.count; i++) {
-    if (strut_vibration_pose(v, i, &pose))
-      noise[i] += pose.slope * strut_vibration_strain(v, i, &pose, moved);
+  double bits = DBL_EPSILON * (fabs(pose->strain) + fabs(pose->natural));
+  if (v->model->elements.element[force->index].strain == STRUT_STRAIN_ANGLE)
+    bits += 4.0 * DBL_EPSILON; /* of directions */
+  for (int32_t k = 0; k < force->nodes && !at_rest; k++) {
+    const double *at = v->q + force->at[k], *b = &pose->b[2 * k];
+    bits += hypot(b[0], b[1]) * strut_coordinate_rounding(at, at);
   }
+  return bits;
 }
 
 /*
- * Rest lengths off by up to half of their last bit: how the forces follow once it has come to rest
- * again; or, in a shape that is not at rest, lengths off by their last bits.
+ * Forces (members, then elements) that natural strains are off by, up to half of their last bit: how they follow once
+ * the shape has come to rest again; or, in a shape that is not at rest, strains off by their last bits.
  */
 static void sample_noise(strut_modes_work *work, bool at_rest, uint64_t sample, double *noise,
-                         double *elements, double *x) {
+                         double *x) {
   const strut_vibration *v = work->v;
-  const strut_member_table *t = &v->model->members;
-  uint64_t first = sample * (uint64_t)t->count;
+  uint64_t members = (uint64_t)v->model->members.count;
+  uint64_t elements = (uint64_t)v->model->elements.count;
+  int32_t count = strut_force_count(v->model, false);
+  strut_force force;
   memset(x, 0, (size_t)v->n * sizeof *x);
-  for (int32_t j = 0; j < t->count; j++) {
-    const strut_vibration_member *m = &v->member[j];
-    double bits = 0.5 * DBL_EPSILON * t->rest[j] * stirred(first + (uint64_t)j);
-    if (!at_rest) bits = DBL_EPSILON * (m->length + t->rest[j]) * stirred(first + (uint64_t)j);
-    noise[j] = m->taut ? -t->stiffness[j] * bits : 0.0;
-    if (!at_rest || !m->taut) continue;
-    double pull[2] = {noise[j] * m->ux, noise[j] * m->uy};
-    for (uint32_t c = 0; c < 2; c++) {
-      int32_t a = v->shape->row_of[t->from[j] + c], b = v->shape->row_of[t->to[j] + c];
-      if (a >= 0) x[a] += pull[c];
-      if (b >= 0) x[b] -= pull[c];
+  for (int32_t i = 0; i < count; i++) {
+    bool acts = strut_vibration_force_at(v, i, &force);
+    uint64_t own = (uint64_t)force.index, first = sample * members;
+    if (force.kind == STRUT_FORCE_ELEMENT) first = SAMPLES * members + sample * elements;
+    noise[i] =
+        acts ? -force.pose.slope * (bits_of(v, &force, at_rest) * stirred(first + own)) : 0.0;
+    for (int32_t k = 0; k < 2 * force.nodes && at_rest && acts; k++) {
+      int32_t row = v->shape->row_of[strut_force_coordinate(&force, k)];
+      if (row >= 0) x[row] -= noise[i] * force.pose.b[k];
     }
   }
-  uint64_t behind = SAMPLES * (uint64_t)t->count + sample * (uint64_t)v->model->elements.count;
-  sample_elements(work, at_rest, behind, elements, x);
-  if (at_rest) {
-    strut_modes_solve(&work->solver, x);
-    for (int32_t j = 0; j < t->count; j++)
-      if (v->member[j].taut) noise[j] += t->stiffness[j] * strut_vibration_spread(v, j, x).along;
-    settle_elements(work, x, elements);
-  }
-  for (int32_t j = 0; j < t->count; j++)
-    noise[j] = v->member[j].length > 0 ? noise[j] / v->member[j].length : 0.0;
+  if (!at_rest) return;
+  strut_modes_solve(&work->solver, x);
+  for (int32_t i = 0; i < count; i++)
+    if (strut_vibration_force_at(v, i, &force))
+      noise[i] += force.pose.slope * strut_vibration_strain(v, &force, x);
 }
 
-static void measure_noise(strut_modes_work *work, const double *noise, const double *elements) {
+static void measure_noise(strut_modes_work *work, const double *noise) {
   const strut_vibration *v = work->v;
   strut_eigen_set *set = &work->set;
+  strut_force force;
   for (int32_t i = 0; i < set->count; i++) {
     const double *x = set->vector + (size_t)i * (size_t)v->n;
-    double sum = 0.0;
-    for (int32_t j = 0; j < v->model->members.count; j++) {
+    double members = 0.0, elements = 0.0;
+    for (int32_t j = 0; j < strut_force_count(v->model, false); j++) {
       if (noise[j] == 0) continue;
-      double across = strut_vibration_spread(v, j, x).across;
-      sum += noise[j] * across * across;
+      strut_vibration_force_at(v, j, &force);
+      double change = noise[j] * strut_vibration_bow(v, &force, x).sum;
+      members += force.kind == STRUT_FORCE_MEMBER ? change : 0.0;
+      elements += force.kind == STRUT_FORCE_MEMBER ? 0.0 : fabs(change);
     }
-    sum = fabs(sum);
-    for (int32_t j = 0; j < v->model->elements.count; j++)
-      if (elements[j] != 0) sum += fabs(elements[j] * strut_vibration_bow(v, j, x).sum);
+    double sum = fabs(members) + elements;
     set->noise[i] = fmax(set->noise[i], 2.0 * sum); /* twice: few samples */
   }
 }
@@ -144,23 +123,19 @@ strut_status strut_modes_settle(strut_modes_work *work, strut_error *error) {
    the rounding of positions and what is below their last bits. */
 static const double KNOWN = 1e3, SOME = 1e-22;
 
-/* Largest noise of the forces of members (members) and elements [N]. */
-static strut_status sample_forces(strut_modes_work *work, bool at_rest, double *members,
-                                  double *elements, strut_error *error) {
+/* Largest noise of the forces of members and elements [N]. */
+static strut_status sample_forces(strut_modes_work *work, bool at_rest, double *noise,
+                                  strut_error *error) {
   const strut_vibration *v = work->v;
-  size_t member_count = (size_t)v->model->members.count;
-  size_t element_count = (size_t)v->model->elements.count;
+  size_t count = (size_t)strut_force_count(v->model, false);
   strut_arena scratch = {0};
   double *x = strut_arena_allocate(&scratch, (size_t)v->n, sizeof *x);
-  double *one = strut_arena_allocate(&scratch, member_count, sizeof *one);
-  double *other = strut_arena_allocate(&scratch, element_count, sizeof *other);
-  bool good = x && one && other;
+  double *one = strut_arena_allocate(&scratch, count, sizeof *one);
+  bool good = x && one;
   if (good && at_rest) strut_modes_factorise(&work->solver, STRUT_FIRM * v->largest);
   for (uint64_t sample = 0; sample < SAMPLES && good; sample++) {
-    sample_noise(work, at_rest, sample, one, other, x);
-    for (size_t j = 0; j < member_count; j++)
-      members[j] = fmax(members[j], fabs(one[j]) * v->member[j].length);
-    for (size_t i = 0; i < element_count; i++) elements[i] = fmax(elements[i], fabs(other[i]));
+    sample_noise(work, at_rest, sample, one, x);
+    for (size_t i = 0; i < count; i++) noise[i] = fmax(noise[i], fabs(one[i]));
   }
   strut_arena_free(&scratch);
   return good ? STRUT_OK : strut_no_memory(error, "");
@@ -170,70 +145,66 @@ static bool is_known(double force, double noise, double largest) {
   return fabs(force) > KNOWN * noise && fabs(force) > SOME * largest;
 }
 
-/* Borderline ones, which are made to act for now; their number. */
-static int32_t hold_borderline(strut_modes_work *work, uint8_t *member, uint8_t *element) {
+/* Borderline ones; members among them are made to act for now. Their number. */
+static int32_t hold_borderline(strut_modes_work *work, uint8_t *borderline) {
   strut_vibration *v = work->v;
   int32_t count = 0;
-  for (int32_t j = 0; j < v->model->members.count; j++)
-    if ((member[j] = strut_vibration_is_borderline(v, j))) v->member[j].state = 1, count++;
-  for (int32_t i = 0; i < v->model->elements.count; i++)
-    if ((element[i] = strut_vibration_element_is_borderline(v, i))) count++;
+  for (int32_t i = 0; i < strut_force_count(v->model, false); i++) {
+    if (!(borderline[i] = strut_vibration_is_borderline(v, i))) continue;
+    if (i < v->model->members.count) v->state[i] = 1;
+    count++;
+  }
   return count;
 }
 
-static void release_borderline(strut_modes_work *work, const uint8_t *member,
-                               const uint8_t *element, const double *member_noise,
-                               const double *element_noise) {
+/* The member whose force this is, or -1. */
+static int32_t member_of(const strut_model *model, const strut_force *force) {
+  if (force->kind == STRUT_FORCE_MEMBER) return force->index;
+  const strut_element *e = &model->elements.element[force->index];
+  return e->role == STRUT_ELEMENT_MEMBER ? e->item : -1;
+}
+
+static void release_borderline(strut_modes_work *work, const uint8_t *borderline,
+                               const double *noise) {
   strut_vibration *v = work->v;
-  const strut_member_table *t = &v->model->members;
-  for (int32_t j = 0; j < t->count; j++) {
-    strut_vibration_member *m = &v->member[j];
-    double force = t->stiffness[j] * m->stretch, most = t->stiffness[j] * m->length;
-    if (!member[j]) continue;
-    bool known = is_known(force, member_noise[j], most);
-    m->state = known ? 0 : -1;
-    if (!known) work->idleness[j] = STRUT_JUST_TAUT;
-  }
-  for (int32_t i = 0; i < v->model->elements.count; i++) {
-    const strut_element *e = &v->model->elements.element[i];
-    strut_element_pose pose;
-    if (!element[i]) continue;
-    bool acts = strut_vibration_pose(v, i, &pose);
-    v->idle[i] = !acts || !is_known(pose.force, element_noise[i], pose.slope * pose.strain);
-    if (v->idle[i] && e->role == STRUT_ELEMENT_MEMBER) work->idleness[e->item] = STRUT_JUST_TAUT;
+  strut_force force;
+  for (int32_t i = 0; i < strut_force_count(v->model, false); i++) {
+    if (!borderline[i]) continue;
+    bool acts = strut_vibration_force_at(v, i, &force);
+    double most = force.pose.slope * force.pose.strain;
+    int32_t member = member_of(v->model, &force);
+    v->state[i] = acts && is_known(force.pose.force, noise[i], most) ? 0 : -1;
+    if (v->state[i] && member >= 0) work->idleness[member] = STRUT_JUST_TAUT;
   }
 }
 
 static void find_slack(strut_modes_work *work) {
   const strut_vibration *v = work->v;
-  strut_element_pose pose;
-  for (int32_t j = 0; j < v->model->members.count; j++)
-    if (!v->member[j].taut && v->model->members.stiffness[j] > 0 && work->idleness[j] == STRUT_ACTS)
-      work->idleness[j] = STRUT_SLACK;
-  for (int32_t i = 0; i < v->model->elements.count; i++) {
-    const strut_element *e = &v->model->elements.element[i];
-    if (e->role != STRUT_ELEMENT_MEMBER || work->idleness[e->item] != STRUT_ACTS) continue;
-    if (!strut_vibration_pose(v, i, &pose)) work->idleness[e->item] = STRUT_SLACK;
+  strut_force force;
+  for (int32_t i = 0; i < strut_force_count(v->model, false); i++) {
+    bool acts = strut_vibration_force_at(v, i, &force);
+    int32_t member = member_of(v->model, &force);
+    bool plain = force.kind == STRUT_FORCE_MEMBER;
+    if (acts || member < 0 || (plain && !(force.pose.slope > 0))) continue;
+    if (work->idleness[member] == STRUT_ACTS) work->idleness[member] = STRUT_SLACK;
   }
 }
 
 strut_status strut_modes_loosen(strut_modes_work *work, bool at_rest, strut_error *error) {
   strut_vibration *v = work->v;
-  size_t members = (size_t)v->model->members.count, elements = (size_t)v->model->elements.count;
+  size_t members = (size_t)v->model->members.count;
+  size_t count = (size_t)strut_force_count(v->model, false);
   strut_arena scratch = {0};
-  uint8_t *member = strut_arena_allocate(&scratch, members, sizeof *member);
-  uint8_t *element = strut_arena_allocate(&scratch, elements, sizeof *element);
-  double *member_noise = strut_arena_allocate(&scratch, members, sizeof *member_noise);
-  double *element_noise = strut_arena_allocate(&scratch, elements, sizeof *element_noise);
+  uint8_t *borderline = strut_arena_allocate(&scratch, count, sizeof *borderline);
+  double *noise = strut_arena_allocate(&scratch, count, sizeof *noise);
   work->idleness = strut_arena_allocate(work->arena, members, sizeof *work->idleness);
-  bool good = member && element && member_noise && element_noise && work->idleness;
+  bool good = borderline && noise && work->idleness;
   strut_status status = good ? STRUT_OK : strut_no_memory(error, "");
-  if (good && hold_borderline(work, member, element) > 0) {
+  if (good && hold_borderline(work, borderline) > 0) {
     strut_vibration_update(v);
     if (at_rest) status = strut_modes_settle(work, error);
-    if (status == STRUT_OK)
-      status = sample_forces(work, at_rest, member_noise, element_noise, error);
-    if (status == STRUT_OK) release_borderline(work, member, element, member_noise, element_noise);
+    if (status == STRUT_OK) status = sample_forces(work, at_rest, noise, error);
+    if (status == STRUT_OK) release_borderline(work, borderline, noise);
     strut_vibration_update(v);
   }
   if (status == STRUT_OK) find_slack(work);
@@ -244,16 +215,15 @@ strut_status strut_modes_loosen(strut_modes_work *work, bool at_rest, strut_erro
 strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error *error) {
   strut_vibration *v = work->v;
   double *step = strut_arena_allocate(work->arena, (size_t)v->n, sizeof *step);
-  double *noise = strut_arena_allocate(work->arena, (size_t)v->model->members.count, sizeof *noise);
-  double *elements =
-      strut_arena_allocate(work->arena, (size_t)v->model->elements.count, sizeof *elements);
-  if (!step || !noise || !elements) return strut_no_memory(error, "");
+  double *noise =
+      strut_arena_allocate(work->arena, (size_t)strut_force_count(v->model, false), sizeof *noise);
+  if (!step || !noise) return strut_no_memory(error, "");
   if (at_rest) strut_modes_factorise(&work->solver, STRUT_FIRM * v->largest);
   strut_status status = STRUT_OK;
   for (uint64_t sample = 0; sample < SAMPLES && status == STRUT_OK; sample++) {
     status = strut_experiment_end(work->experiment, status, error);
-    sample_noise(work, at_rest, sample, noise, elements, step);
-    measure_noise(work, noise, elements);
+    sample_noise(work, at_rest, sample, noise, step);
+    measure_noise(work, noise);
   }
   return status;
 }

@@ -5,59 +5,43 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/tangent.h"
-#include "engine/model/pose.h"
+#include "engine/base/vec.h"
 
 static const double EDGE =
     8.0; /* last bits that a length and a rest length are known to, together */
 
-static void place_member(strut_vibration *v, int32_t j) {
+/* Member j with `low`; does it pull or push? */
+static bool place_member(const strut_vibration *v, int32_t j, strut_force *force) {
   const strut_member_table *t = &v->model->members;
-  strut_vibration_member *m = &v->member[j];
-  uint32_t a = t->from[j], b = t->to[j];
-  double dx = v->q[b] - v->q[a], dy = v->q[b + 1] - v->q[a + 1];
-  double x = v->low[b] - v->low[a], y = v->low[b + 1] - v->low[a + 1];
-  m->length = hypot(dx + x, dy + y);
-  bool any = m->length > 0;
-  m->ux = any ? (dx + x) / m->length : 0.0;
-  m->uy = any ? (dy + y) / m->length : 0.0;
-  m->stretch = hypot(dx, dy) - t->rest[j] + (m->ux * x + m->uy * y);
-  m->taut = m->state ? m->state > 0 : m->stretch > t->slack[j];
+  const double *from = v->q + t->from[j], *to = v->q + t->to[j];
+  const strut_vec2 low = strut_vec2_between(v->low + t->from[j], v->low + t->to[j]);
+  double dx = to[0] - from[0], dy = to[1] - from[1], length = hypot(dx + low.x, dy + low.y);
+  bool any = length > 0;
+  strut_vec2 unit = {any ? (dx + low.x) / length : 0.0, any ? (dy + low.y) / length : 0.0};
+  double stretch = hypot(dx, dy) - t->rest[j] + (unit.x * low.x + unit.y * low.y);
   /* of zero length and zero rest length: an isotropic spring */
-  if (any)
-    m->across = m->stretch * t->stiffness[j] / m->length;
-  else
-    m->across = t->rest[j] > 0 ? 0.0 : t->stiffness[j];
+  double across = any ? stretch * t->stiffness[j] / length : t->rest[j] > 0 ? 0.0 : t->stiffness[j];
+  strut_force_set_member(t->stiffness[j], across, unit, length, stretch, force);
+  return v->state[j] ? v->state[j] > 0 : stretch > t->slack[j];
 }
 
-static void add_member(strut_vibration *v, int32_t j) {
-  const strut_vibration_member *m = &v->member[j];
-  const strut_member_table *t = &v->model->members;
-  if (!m->taut) return;
-  const strut_vec2 along = {m->ux, m->uy};
-  const strut_stiffness_block spring = strut_block_of(t->stiffness[j], m->across, along);
-  const strut_stiffness_block damper = strut_block_of(t->damping[j], 0.0, along);
-  const int32_t *place = v->shape->place + STRUT_MEMBER_ENTRIES * j;
-  strut_block_scatter(&spring, STRUT_MEMBER_ENTRIES, place, v->k);
-  strut_block_scatter(&damper, STRUT_MEMBER_ENTRIES, place, v->d);
-}
-
-bool strut_vibration_pose(const strut_vibration *v, int32_t i, strut_element_pose *pose) {
-  const strut_element *e = &v->model->elements.element[i];
-  const uint32_t *at = v->model->elements.at + e->first;
-  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0}, low[STRUT_MOST_GRADIENT];
+/* Strain, force and gradient of an element, with `low` to first order; does it act? */
+static bool place_element(const strut_vibration *v, strut_force *force) {
+  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT], low[STRUT_MOST_GRADIENT];
+  strut_element_pose *pose = &force->pose;
   double change = 0.0;
-  int32_t n = 2 * e->nodes;
+  int32_t n = 2 * force->nodes;
   bool any = false;
-  strut_element_evaluate(v->model, i, v->model->members.rest, v->q, (double)NAN, pose);
-  if (v->idle[i]) pose->acts = false;
+  strut_element_evaluate(v->model, force->index, v->model->members.rest, v->q, (double)NAN, pose);
+  if (v->state[v->model->members.count + force->index] < 0) pose->acts = false;
   for (int32_t k = 0; k < n; k++) {
-    low[k] = v->low[at[k / 2] + (uint32_t)(k % 2)];
+    low[k] = v->low[strut_force_coordinate(force, k)];
     any = any || low[k] != 0.0;
     change += pose->b[k] * low[k];
   }
   if (!any || !pose->acts) return pose->acts;
-  strut_element_bend(v->model, i, v->q, 1.0, bend);
+  memset(bend, 0, (size_t)(n * n) * sizeof *bend);
+  strut_element_bend(v->model, force->index, v->q, 1.0, bend);
   for (int32_t r = 0; r < n; r++)
     for (int32_t c = 0; c < n; c++) pose->b[r] += bend[r * n + c] * low[c];
   pose->strain += change;
@@ -65,102 +49,67 @@ bool strut_vibration_pose(const strut_vibration *v, int32_t i, strut_element_pos
   return true;
 }
 
-/* Is a length the natural one to its last bits? */
-static bool is_at_edge(double stretch, double length, double natural) {
-  return fabs(stretch) <= EDGE * DBL_EPSILON * (fabs(length) + fabs(natural));
-}
-
-bool strut_vibration_is_borderline(const strut_vibration *v, int32_t j) {
-  const strut_vibration_member *m = &v->member[j];
-  const strut_member_table *t = &v->model->members;
-  return t->slack[j] > -HUGE_VAL && is_at_edge(m->stretch, m->length, t->rest[j]);
-}
-
-bool strut_vibration_element_is_borderline(const strut_vibration *v, int32_t i) {
-  const strut_element *e = &v->model->elements.element[i];
-  strut_element_pose pose;
-  strut_element_evaluate(v->model, i, v->model->members.rest, v->q, (double)NAN, &pose);
-  return e->carries && is_at_edge(pose.strain - pose.natural, pose.strain, pose.natural);
-}
-
-/* Do the nodes of a strain alone decide it, so that it feels no shift? A foot's is one above the ground. */
-static bool is_relative(const strut_element *e) { return e->strain != STRUT_STRAIN_FOOT; }
-
-static void add_element(strut_vibration *v, int32_t i) {
-  const strut_element *e = &v->model->elements.element[i];
-  const int32_t *place = v->shape->place + strut_places_of_elements(v->model);
-  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0};
-  double d[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
-  strut_element_pose pose;
-  if (!strut_vibration_pose(v, i, &pose)) return;
-  strut_element_bend(v->model, i, v->q, pose.force, k);
-  int32_t n = 2 * e->nodes;
-  for (int32_t r = 0; r < n; r++)
-    for (int32_t c = 0; c < n; c++) {
-      d[r * n + c] = e->damping * pose.b[r] * pose.b[c];
-      k[r * n + c] += pose.slope * pose.b[r] * pose.b[c];
-    }
-  strut_element_scatter(v->model, i, k, place, v->k);
-  strut_element_scatter(v->model, i, d, place, v->d);
-}
-
-strut_contact_pose strut_vibration_contact(const strut_vibration *v, int32_t i) {
-  strut_contact_pose pose = strut_contact_pose_at(&v->model->contacts, i, v->q, NULL, -1);
-  const double *low = v->low + v->model->contacts.at[i];
+bool strut_vibration_force_at(const strut_vibration *v, int32_t number, strut_force *force) {
+  strut_force_begin(v->model, number, force);
+  if (force->kind == STRUT_FORCE_MEMBER) return place_member(v, number, force);
+  if (force->kind == STRUT_FORCE_ELEMENT) return place_element(v, force);
+  const strut_contact_table *contacts = &v->model->contacts;
+  strut_contact_pose pose = strut_contact_pose_at(contacts, force->index, v->q, NULL, -1);
+  const double *low = v->low + force->at[0];
   pose.gap += low[0] * pose.axes.normal[0] + low[1] * pose.axes.normal[1];
-  return pose;
+  strut_force_set_contact(contacts->entry[force->index].stiffness, &pose, force);
+  return v->closed[force->index];
 }
 
-static void add_contact(strut_vibration *v, int32_t i) {
-  const strut_contact_table *c = &v->model->contacts;
-  if (!v->closed[i]) return;
-  const strut_contact_pose pose = strut_vibration_contact(v, i);
-  const double *n = pose.axes.normal, *t = pose.axes.tangent;
-  double across = c->entry[i].stiffness * pose.gap * pose.curvature;
-  const int32_t *place =
-      v->shape->place + strut_places_of_contacts(v->model) + STRUT_CONTACT_ENTRIES * i;
-  for (int a = 0; a < 2; a++)
-    for (int b = 0; b <= a; b++, place++) {
-      if (*place < 0) continue;
-      v->k[*place] += c->entry[i].stiffness * n[a] * n[b] + across * t[a] * t[b];
-      v->d[*place] += c->entry[i].damping * n[a] * n[b];
-    }
-}
-
-/* Where they are at t = 0. */
-static void add_sliding_masses(strut_vibration *v) {
-  for (int32_t i = 0; i < v->model->sliding.count; i++) {
-    const strut_sliding_item *s = &v->model->sliding.item[i];
-    const int32_t *place = v->shape->place + STRUT_MEMBER_ENTRIES * s->member;
-    const double part[2] = {1.0 - s->start, s->start};
-    for (int k = 0; k < STRUT_MEMBER_ENTRIES; k++) {
-      const strut_block_entry *e = &strut_block_entries[k];
-      if (place[k] < 0 || e->part == 1) continue;
-      v->m[place[k]] += s->mass * part[e->row / 2] * part[e->column / 2];
-    }
+bool strut_vibration_is_borderline(const strut_vibration *v, int32_t number) {
+  strut_force force;
+  strut_vibration_force_at(v, number, &force);
+  const strut_element_pose *pose = &force.pose;
+  double beyond = pose->strain - pose->natural;
+  bool one_sided;
+  if (force.kind == STRUT_FORCE_MEMBER) {
+    if (!(pose->slope > 0.0)) return false; /* an element acts in its place */
+    one_sided = v->model->members.slack[number] > -HUGE_VAL;
+    beyond = pose->force / pose->slope;
+  } else {
+    one_sided = v->model->elements.element[force.index].carries;
   }
+  return one_sided &&
+         fabs(beyond) <= EDGE * DBL_EPSILON * (fabs(pose->strain) + fabs(pose->natural));
+}
+
+/* Masses of a member's ends, and what both share, along x and y alike. */
+static void add_ends(strut_vibration *v, int32_t member, double first, double second,
+                     double shared) {
+  strut_force force;
+  double mass[16] = {0};
+  strut_force_begin(v->model, member, &force);
+  for (int k = 0; k < 2; k++) {
+    mass[5 * k] = first, mass[5 * k + 10] = second;
+    mass[5 * k + 8] = shared;
+  }
+  strut_force_scatter(&force, mass, v->shape->place, v->m);
 }
 
 static void add_masses(strut_vibration *v) {
   const strut_model *model = v->model;
-  const strut_member_table *t = &model->members;
+  const double *mass = model->members.mass;
   bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
-  const int32_t *place = v->shape->place;
-  for (int32_t j = 0; j < t->count; j++)
-    for (int i = 0; i < STRUT_MEMBER_ENTRIES; i++, place++) {
-      const strut_block_entry *e = &strut_block_entries[i];
-      if (*place < 0 || e->part == 1 || !(t->mass[j] > 0)) continue; /* x and y are apart */
-      if (!e->opposite)
-        v->m[*place] += consistent ? t->mass[j] / 3.0 : t->mass[j] / 2.0;
-      else if (consistent)
-        v->m[*place] += t->mass[j] / 6.0;
-    }
+  for (int32_t j = 0; j < model->members.count; j++) {
+    double own = consistent ? mass[j] / 3.0 : mass[j] / 2.0;
+    if (mass[j] > 0) add_ends(v, j, own, own, consistent ? mass[j] / 6.0 : 0.0);
+  }
   const strut_sparse *a = v->shape->pattern;
   for (int32_t i = 0; i < v->n; i++) {
     v->m[a->start[i]] += model->point_mass[v->shape->coordinate[i] / 2];
     v->own_mass[i] = v->m[a->start[i]];
   }
-  add_sliding_masses(v);
+  for (int32_t i = 0; i < model->sliding.count; i++) { /* where they are at t = 0 */
+    const strut_sliding_item *item = &model->sliding.item[i];
+    double far = item->start, near = 1.0 - far;
+    add_ends(v, item->member, item->mass * near * near, item->mass * far * far,
+             item->mass * near * far);
+  }
   for (int32_t j = 0; j < v->n; j++)
     for (int32_t at = a->start[j]; at < a->start[j + 1]; at++) {
       v->mass[j] += v->m[at];
@@ -188,15 +137,18 @@ static void bound_spectrum(strut_vibration *v) {
 }
 
 void strut_vibration_update(strut_vibration *v) {
+  double matrix[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  strut_force force;
   const strut_sparse *a = v->shape->pattern;
   memset(v->k, 0, (size_t)a->start[v->n] * sizeof *v->k);
   memset(v->d, 0, (size_t)a->start[v->n] * sizeof *v->d);
-  for (int32_t j = 0; j < v->model->members.count; j++) {
-    place_member(v, j);
-    add_member(v, j);
+  for (int32_t i = 0; i < strut_force_count(v->model, true); i++) {
+    if (!strut_vibration_force_at(v, i, &force)) continue;
+    strut_force_stiffness(v->model, &force, v->q, matrix);
+    strut_force_scatter(&force, matrix, v->shape->place, v->k);
+    strut_force_square(&force, force.damping, matrix);
+    strut_force_scatter(&force, matrix, v->shape->place, v->d);
   }
-  for (int32_t i = 0; i < v->model->elements.count; i++) add_element(v, i);
-  for (int32_t i = 0; i < v->model->contacts.count; i++) add_contact(v, i);
   bound_spectrum(v);
 }
 
@@ -204,7 +156,6 @@ static bool allocate(strut_vibration *v) {
   const strut_model *model = v->model;
   size_t n = (size_t)v->n, entries = (size_t)v->shape->pattern->start[n];
   v->q = strut_arena_allocate(&v->arena, (size_t)model->length, sizeof *v->q);
-  v->member = strut_arena_allocate(&v->arena, (size_t)model->members.count, sizeof *v->member);
   v->closed = strut_arena_allocate(&v->arena, (size_t)model->contacts.count, sizeof *v->closed);
   v->k = strut_arena_allocate(&v->arena, entries, sizeof *v->k);
   v->m = strut_arena_allocate(&v->arena, entries, sizeof *v->m);
@@ -213,8 +164,8 @@ static bool allocate(strut_vibration *v) {
   v->mass = strut_arena_allocate(&v->arena, n, sizeof *v->mass);
   v->own_mass = strut_arena_allocate(&v->arena, n, sizeof *v->own_mass);
   v->work = strut_arena_allocate(&v->arena, n, sizeof *v->work);
-  v->idle = strut_arena_allocate(&v->arena, (size_t)model->elements.count, sizeof *v->idle);
-  return v->idle && v->low && v->q && v->member && v->closed && v->k && v->m && v->d && v->mass &&
+  v->state = strut_arena_allocate(&v->arena, (size_t)strut_force_count(model, false), 1);
+  return v->state && v->low && v->q && v->closed && v->k && v->m && v->d && v->mass &&
          v->own_mass && v->work;
 }
 
@@ -250,38 +201,15 @@ void strut_vibration_free(strut_vibration *vibration) {
   strut_release(vibration);
 }
 
-static void add_to(double *force, int32_t row, double value) {
-  if (row >= 0) force[row] += value;
-}
-
-void strut_vibration_force(const strut_vibration *v, double *force) {
-  const strut_model *model = v->model;
-  const strut_member_table *t = &model->members;
-  const int32_t *row_of = v->shape->row_of;
-  for (int32_t i = 0; i < v->n; i++) force[i] = v->shape->force[v->shape->coordinate[i]];
-  for (int32_t j = 0; j < t->count; j++) {
-    const strut_vibration_member *m = &v->member[j];
-    if (!m->taut) continue;
-    double x = t->stiffness[j] * m->stretch * m->ux, y = t->stiffness[j] * m->stretch * m->uy;
-    add_to(force, row_of[t->from[j]], x);
-    add_to(force, row_of[t->from[j] + 1], y);
-    add_to(force, row_of[t->to[j]], -x);
-    add_to(force, row_of[t->to[j] + 1], -y);
-  }
-  for (int32_t i = 0; i < model->elements.count; i++) {
-    const strut_element *e = &model->elements.element[i];
-    strut_element_pose pose;
-    if (!strut_vibration_pose(v, i, &pose)) continue;
-    for (int32_t k = 0; k < 2 * e->nodes; k++)
-      add_to(force, row_of[model->elements.at[e->first + k / 2] + (uint32_t)(k % 2)],
-             -pose.b[k] * pose.force);
-  }
-  const strut_contact_table *c = &model->contacts;
-  for (int32_t i = 0; i < c->count; i++) {
-    if (!v->closed[i]) continue;
-    const strut_contact_pose pose = strut_vibration_contact(v, i);
-    for (uint32_t k = 0; k < 2; k++)
-      add_to(force, row_of[c->at[i] + k], -c->entry[i].stiffness * pose.gap * pose.axes.normal[k]);
+void strut_vibration_force(const strut_vibration *v, double *sum) {
+  strut_force force;
+  for (int32_t i = 0; i < v->n; i++) sum[i] = v->shape->force[v->shape->coordinate[i]];
+  for (int32_t i = 0; i < strut_force_count(v->model, true); i++) {
+    if (!strut_vibration_force_at(v, i, &force)) continue;
+    for (int32_t k = 0; k < 2 * force.nodes; k++) {
+      int32_t row = v->shape->row_of[strut_force_coordinate(&force, k)];
+      if (row >= 0) sum[row] -= force.pose.force * force.pose.b[k];
+    }
   }
 }
 
@@ -292,37 +220,28 @@ void strut_vibration_multiply(const strut_vibration *v, const double *matrix, co
   strut_sparse_multiply(&a, x, y);
 }
 
-strut_end_displacement strut_vibration_spread(const strut_vibration *v, int32_t j,
-                                              const double *x) {
-  const strut_member_table *t = &v->model->members;
+/* How coordinate k of a force moves, beside that of its last node if its nodes alone decide its strain. */
+static double relative_motion(const strut_vibration *v, const strut_force *force, int32_t k,
+                              const double *x) {
+  bool foot = force->kind == STRUT_FORCE_ELEMENT &&
+              v->model->elements.element[force->index].strain == STRUT_STRAIN_FOOT;
+  bool grounded = foot || force->kind == STRUT_FORCE_CONTACT;
   const int32_t *row_of = v->shape->row_of;
-  double d[2];
-  for (uint32_t c = 0; c < 2; c++) {
-    int32_t a = row_of[t->from[j] + c], b = row_of[t->to[j] + c];
-    d[c] = (b >= 0 ? x[b] : 0.0) - (a >= 0 ? x[a] : 0.0);
-  }
-  double ux = v->member[j].ux, uy = v->member[j].uy;
-  return (strut_end_displacement){ux * d[0] + uy * d[1], ux * d[1] - uy * d[0]};
-}
-
-double strut_vibration_relative(const strut_vibration *v, int32_t element, int32_t k,
-                                const double *x) {
-  const strut_element *e = &v->model->elements.element[element];
-  const uint32_t *at = v->model->elements.at + e->first;
-  uint32_t axis = (uint32_t)(k % 2);
-  int32_t own = v->shape->row_of[at[k / 2] + axis];
-  int32_t last = is_relative(e) ? v->shape->row_of[at[e->nodes - 1] + axis] : -1;
+  int32_t own = row_of[strut_force_coordinate(force, k)];
+  int32_t last =
+      grounded ? -1 : row_of[strut_force_coordinate(force, 2 * force->nodes - 2 + k % 2)];
   return (own >= 0 ? x[own] : 0.0) - (last >= 0 ? x[last] : 0.0);
 }
 
-double strut_vibration_strain(const strut_vibration *v, int32_t element,
-                              const strut_element_pose *pose, const double *x) {
-  const strut_element *e = &v->model->elements.element[element];
+static double change_along(const strut_vibration *v, const strut_force *force, const double *b,
+                           const double *x) {
   double sum = 0.0;
-  int32_t nodes = is_relative(e) ? e->nodes - 1 : e->nodes;
-  for (int32_t k = 0; k < 2 * nodes; k++)
-    sum += pose->b[k] * strut_vibration_relative(v, element, k, x);
+  for (int32_t k = 0; k < 2 * force->nodes; k++) sum += b[k] * relative_motion(v, force, k, x);
   return sum;
+}
+
+double strut_vibration_strain(const strut_vibration *v, const strut_force *force, const double *x) {
+  return change_along(v, force, force->pose.b, x);
 }
 
 /* Relative rounding of a difference of coordinates, and of an energy made of it. */
@@ -335,62 +254,52 @@ static void add_square(double stiffness, double along, double far, strut_vibrati
   sum->rounding += fabs(stiffness) * bits * (2.0 * fabs(along) + bits);
 }
 
-static void add_member_energy(const strut_vibration *v, int32_t j, const double *x,
-                              strut_vibration_energy *sum) {
-  const strut_vibration_member *m = &v->member[j];
-  if (!m->taut) return;
-  const strut_end_displacement d = strut_vibration_spread(v, j, x);
-  double across = m->across * d.across * d.across;
-  add_square(v->model->members.stiffness[j], d.along, hypot(d.along, d.across), sum);
-  sum->value += across;
-  sum->rounding += BITS * fabs(across);
-}
-
-static void add_element_energy(const strut_vibration *v, int32_t i, const double *x,
-                               strut_vibration_energy *sum) {
-  const strut_element *e = &v->model->elements.element[i];
-  const uint32_t *at = v->model->elements.at + e->first;
-  strut_element_pose pose;
-  if (!strut_vibration_pose(v, i, &pose)) return;
-  double far = 0.0, blur = BITS; /* relative, of second derivatives */
-  for (int32_t k = 0; k < e->nodes && e->strain == STRUT_STRAIN_ANGLE; k++) {
-    const double *place = v->q + at[k];
-    blur += 2.0 * hypot(pose.b[2 * k], pose.b[2 * k + 1]) * strut_coordinate_rounding(place, place);
+/* What the force of an element adds by bending the strain, whose second derivatives are known to `blur`. */
+static void add_bow(const strut_vibration *v, const strut_force *force, const double *x,
+                    strut_vibration_energy *sum) {
+  double blur = BITS;
+  bool angle = v->model->elements.element[force->index].strain == STRUT_STRAIN_ANGLE;
+  for (int32_t k = 0; k < force->nodes && angle; k++) {
+    const double *place = v->q + force->at[k], *b = &force->pose.b[2 * k];
+    blur += 2.0 * hypot(b[0], b[1]) * strut_coordinate_rounding(place, place);
   }
-  for (int32_t k = 0; k < 2 * e->nodes; k++)
-    far += fabs(pose.b[k] * strut_vibration_relative(v, i, k, x));
-  const strut_element_bow bow = strut_vibration_bow(v, i, x);
-  add_square(pose.slope, strut_vibration_strain(v, i, &pose, x), far, sum);
-  sum->value += pose.force * bow.sum;
-  sum->rounding += blur * fabs(pose.force) * bow.size;
+  const strut_strain_bow bow = strut_vibration_bow(v, force, x);
+  sum->value += force->pose.force * bow.sum;
+  sum->rounding += blur * fabs(force->pose.force) * bow.size;
 }
 
-static void add_contact_energy(const strut_vibration *v, int32_t i, const double *x,
-                               strut_vibration_energy *sum) {
-  const strut_contact_table *c = &v->model->contacts;
-  if (!v->closed[i]) return;
-  const strut_contact_pose pose = strut_vibration_contact(v, i);
-  const double *n = pose.axes.normal, *t = pose.axes.tangent;
-  double d[2], stiffness = c->entry[i].stiffness;
-  for (uint32_t k = 0; k < 2; k++) {
-    int32_t row = v->shape->row_of[c->at[i] + k];
-    d[k] = row >= 0 ? x[row] : 0.0;
+static void add_energy(const strut_vibration *v, const strut_force *force, const double *x,
+                       strut_vibration_energy *sum) {
+  double far = 0.0;
+  for (int32_t k = 0; k < 2 * force->nodes; k += 2) {
+    const double *b = &force->pose.b[k];
+    double d[2] = {relative_motion(v, force, k, x), relative_motion(v, force, k + 1, x)};
+    far += force->kind == STRUT_FORCE_ELEMENT ? fabs(b[0] * d[0]) + fabs(b[1] * d[1])
+                                              : hypot(d[0], d[1]);
   }
-  add_square(stiffness, n[0] * d[0] + n[1] * d[1], hypot(d[0], d[1]), sum);
-  add_square(stiffness * pose.gap * pose.curvature, t[0] * d[0] + t[1] * d[1], hypot(d[0], d[1]),
-             sum);
+  add_square(force->pose.slope, strut_vibration_strain(v, force, x), far, sum);
+  if (force->kind == STRUT_FORCE_ELEMENT)
+    add_bow(v, force, x, sum);
+  else if (force->across != 0.0)
+    add_square(force->across, change_along(v, force, force->side, x), far, sum);
 }
 
-strut_element_bow strut_vibration_bow(const strut_vibration *v, int32_t i, const double *x) {
-  const strut_element *e = &v->model->elements.element[i];
-  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0};
-  strut_element_bow bow = {0.0, 0.0};
-  strut_element_bend(v->model, i, v->q, 1.0, bend);
-  int32_t n = 2 * e->nodes;
+strut_strain_bow strut_vibration_bow(const strut_vibration *v, const strut_force *force,
+                                     const double *x) {
+  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  strut_strain_bow bow = {0.0, 0.0};
+  int32_t n = 2 * force->nodes;
+  if (force->kind == STRUT_FORCE_MEMBER) {
+    double across = change_along(v, force, force->side, x);
+    if (force->pose.strain > 0) bow.sum = bow.size = across * across / force->pose.strain;
+    return bow;
+  }
+  memset(bend, 0, (size_t)(n * n) * sizeof *bend);
+  strut_element_bend(v->model, force->index, v->q, 1.0, bend);
   for (int32_t r = 0; r < n; r++) {
-    double own = strut_vibration_relative(v, i, r, x);
+    double own = relative_motion(v, force, r, x);
     for (int32_t c = 0; c < n; c++) {
-      double part = own * bend[r * n + c] * strut_vibration_relative(v, i, c, x);
+      double part = own * bend[r * n + c] * relative_motion(v, force, c, x);
       bow.sum += part, bow.size += fabs(part);
     }
   }
@@ -399,8 +308,8 @@ strut_element_bow strut_vibration_bow(const strut_vibration *v, int32_t i, const
 
 strut_vibration_energy strut_vibration_energy_of(const strut_vibration *v, const double *x) {
   strut_vibration_energy sum = {0.0, 0.0};
-  for (int32_t j = 0; j < v->model->members.count; j++) add_member_energy(v, j, x, &sum);
-  for (int32_t i = 0; i < v->model->elements.count; i++) add_element_energy(v, i, x, &sum);
-  for (int32_t i = 0; i < v->model->contacts.count; i++) add_contact_energy(v, i, x, &sum);
+  strut_force force;
+  for (int32_t i = 0; i < strut_force_count(v->model, true); i++)
+    if (strut_vibration_force_at(v, i, &force)) add_energy(v, &force, x, &sum);
   return sum;
 }

@@ -111,36 +111,25 @@ static double stiffness_of(const strut_path_system *s, int32_t i) {
 }
 
 /* The ground as a spring that is there or not, whatever the sign of the gap. */
-static void add_contact(strut_path_system *s, int32_t i) {
-  uint32_t at = s->model->contacts.at[i];
-  const int32_t *row = s->potential->row_of + at;
-  const strut_contact_pose *pose = &s->contacts.contact[i].pose;
-  const double *n = pose->axes.normal, *t = pose->axes.tangent;
-  double k = stiffness_of(s, i), force = k * pose->gap, across = force * pose->curvature;
-  double gradient[2], rate[2], block[2][2];
-  for (int a = 0; a < 2; a++)
-    for (int b = 0; b < 2; b++) block[a][b] = k * n[a] * n[b] + across * t[a] * t[b];
+static void add_contact(strut_path_system *s, int32_t i, strut_force *force) {
+  const strut_path_contact *own = &s->contacts.contact[i];
+  double gradient[2], rate[2], block[4], stiffness = stiffness_of(s, i);
+  strut_force_set_contact(stiffness, &own->pose, force);
+  force->across = stiffness * own->pose.gap * own->pose.curvature;
+  strut_force_stiffness(s->model, force, s->latest.q, block);
   strut_path_friction_block(s, i, block);
-  gradient_in(s, &s->equations.terms, i, pose, gradient);
+  if (own->sticks) force->across += s->contacts.grip;
+  gradient_in(s, &s->equations.terms, i, &own->pose, gradient);
   find_rate(s, i, rate);
-  s->latest.forces = fmax(s->latest.forces, fabs(force));
-  for (uint32_t a = 0; a < 2; a++) {
-    if (row[a] < 0) continue;
-    s->latest.g[row[a]] += gradient[a];
-    for (uint32_t b = 0; b < 2; b++)
-      if (row[b] >= 0)
-        *gsl_matrix_ptr(s->algebra.hessian, (size_t)row[a], (size_t)row[b]) += block[a][b];
-      else
-        rate[a] +=
-            block[a][b] * s->equations.rates.position[at + b]; /* it is moved on the ground */
-    s->latest.slope[row[a]] += rate[a];
-  }
+  strut_path_add_force(s, force, gradient, rate, block);
 }
 
 void strut_path_add_contacts(strut_path_system *s) {
+  strut_force *force = strut_path_element_force(s, s->model->elements.count);
   for (int32_t i = 0; i < s->model->contacts.count; i++) {
     s->contacts.contact[i].pose = pose_in(s, &s->equations.terms, i);
-    if (s->contacts.contact[i].touches) add_contact(s, i);
+    force[i].pose.acts = s->contacts.contact[i].touches;
+    if (force[i].pose.acts) add_contact(s, i, &force[i]);
   }
 }
 
@@ -154,14 +143,6 @@ void strut_path_contact_reactions(const strut_path_system *s, double *reaction, 
     friction[i] = 0.0 + strut_path_friction_force(s, &s->equations.terms, i, own->pose.gap);
     for (uint32_t c = 0; c < 2; c++) reaction[s->model->contacts.at[i] + c] += gradient[c];
   }
-}
-
-void strut_path_contact_stiffness(const strut_path_system *s, int32_t i, double *along,
-                                  double *across) {
-  const strut_contact_pose *pose = &s->contacts.contact[i].pose;
-  const strut_path_contact *own = &s->contacts.contact[i];
-  *along = stiffness_of(s, i);
-  *across = *along * pose->gap * pose->curvature + (own->sticks ? s->contacts.grip : 0.0);
 }
 
 double strut_path_contact_switch_value(const strut_path_system *s, int32_t i) {
@@ -287,7 +268,7 @@ bool strut_path_pass_zero_length(strut_path_walk *w, int32_t member) {
   int32_t before = w->negative;
   char detail[300];
   strut_path_evaluate(s, w->y);
-  if (fabs(s->member[member].length) > STRUT_PATH_EVEN * s->size)
+  if (fabs(s->force[member].pose.strain) > STRUT_PATH_EVEN * s->size)
     return false; /* it has a direction */
   memset(row, 0, ((size_t)s->n + 1) * sizeof *row);
   for (uint32_t c = 0; c < 2; c++) {

@@ -56,12 +56,11 @@ static int32_t count_null(strut_path_walk *w, const strut_path_piece *piece, con
   for (int32_t i = 0; i < s->n; i++) w->scale[i] = 0;
   for (int end = 0; end < 2; end++) {
     if (!strut_path_spectrum(s, end ? piece->to : piece->from, STRUT_PATH_VALUES)) return 0;
-    for (int32_t i = 0; i < s->n; i++)
-      w->scale[i] = fmax(w->scale[i], fabs(gsl_vector_get(s->algebra.values, (size_t)i)));
+    for (int32_t i = 0; i < s->n; i++) w->scale[i] = fmax(w->scale[i], fabs(s->spectrum.value[i]));
   }
   if (!strut_path_spectrum(s, y, STRUT_PATH_VECTORS)) return 0;
   for (int32_t i = 0; i < s->n; i++)
-    if (fabs(gsl_vector_get(s->algebra.values, (size_t)i)) <= VANISHED * w->scale[i])
+    if (fabs(s->spectrum.value[i]) <= VANISHED * w->scale[i])
       if (!count++) *first = i;
   return count;
 }
@@ -119,9 +118,7 @@ static bool meet_critical(strut_path_walk *w, const strut_path_piece *piece, con
   if (!c->null) { /* it passes within rounding: nearest to zero */
     c->null = 1;
     for (int32_t i = 1; i < s->n; i++)
-      if (fabs(gsl_vector_get(s->algebra.values, (size_t)i)) <
-          fabs(gsl_vector_get(s->algebra.values, (size_t)first)))
-        first = i;
+      if (fabs(s->spectrum.value[i]) < fabs(s->spectrum.value[first])) first = i;
   }
   if (c->null < abs(crossed)) c->null = abs(crossed);
   for (int32_t k = first; k < first + c->null && k < s->n; k++) {
@@ -168,7 +165,7 @@ bool strut_path_find_criticals(strut_path_walk *w, const strut_path_piece *whole
   int32_t before = w->negative, after = s->spectrum.negative, folded = s->spectrum.folded;
   int32_t sense = after > before ? 1 : -1, count = sense * (after - before), i = 0;
   bool turned = strut_path_turns(w, w->tangent, w->next_tangent), leads_on = false, met = false;
-  for (int32_t k = 0; k < s->n; k++) w->values[k] = gsl_vector_get(s->algebra.values, (size_t)k);
+  for (int32_t k = 0; k < s->n; k++) w->values[k] = s->spectrum.value[k];
   w->negative = after;
   if (before < 0 || !(piece->length > 0)) return false;
   while (i < count && !leads_on) {

@@ -33,7 +33,7 @@ double strut_path_measure_eigenvalue(strut_path_system *s, const double *y,
   assert(which >= 0 && which < s->n);
   (void)piece;
   if (!strut_path_spectrum(s, y, STRUT_PATH_VALUES)) return (double)NAN;
-  return gsl_vector_get(s->algebra.values, (size_t)which);
+  return s->spectrum.value[which];
 }
 
 /* Linear interpolation between two points; must be corrected afterwards. */
@@ -110,10 +110,9 @@ static bool interpolate(const strut_path_system *s, const trials *t, double leng
 /* Is another eigenvalue as near to zero? Then their order changes where they pass it: each is smooth on one side. */
 static bool is_one_of_several(strut_path_system *s, const double *y, int32_t which) {
   if (which < 0 || !strut_path_spectrum(s, y, STRUT_PATH_VALUES)) return false;
-  double value = fabs(gsl_vector_get(s->algebra.values, (size_t)which));
+  double value = fabs(s->spectrum.value[which]);
   for (int32_t i = 0; i < s->n; i++)
-    if (i != which && fabs(gsl_vector_get(s->algebra.values, (size_t)i)) < ALIKE * value)
-      return true;
+    if (i != which && fabs(s->spectrum.value[i]) < ALIKE * value) return true;
   return false;
 }
 

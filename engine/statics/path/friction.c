@@ -82,7 +82,7 @@ double strut_path_friction_force(const strut_path_system *s, const strut_path_te
   return -own->direction * limit_of(s, terms, i, gap);
 }
 
-void strut_path_friction_block(const strut_path_system *s, int32_t i, double block[2][2]) {
+void strut_path_friction_block(const strut_path_system *s, int32_t i, double block[4]) {
   const strut_path_contact *own = &s->contacts.contact[i];
   const double *n = own->pose.axes.normal, *t = own->pose.axes.tangent;
   if (!own->grips) return;
@@ -90,9 +90,9 @@ void strut_path_friction_block(const strut_path_system *s, int32_t i, double blo
   double per_gap = -strut_path_friction_force(s, &s->equations.terms, i, 1.0); /* where it slides */
   for (int a = 0; a < 2; a++)
     for (int b = 0; b < 2; b++)
-      block[a][b] += own->sticks
-                         ? s->contacts.grip * own->tangent[a] * own->tangent[b]
-                         : per_gap * t[a] * n[b] + force * own->pose.curvature * n[a] * t[b];
+      block[2 * a + b] += own->sticks
+                              ? s->contacts.grip * own->tangent[a] * own->tangent[b]
+                              : per_gap * t[a] * n[b] + force * own->pose.curvature * n[a] * t[b];
 }
 
 bool strut_path_slides(const strut_path_system *s) {

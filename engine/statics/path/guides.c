@@ -69,20 +69,17 @@ static void find_rate(strut_path_system *s, int32_t i, double *rate) {
   for (int32_t k = 0; k < 2 * e->nodes; k++) rate[k] = by * (high.force[k] - low.force[k]) / apart;
 }
 
-static uint32_t place_of(const strut_path_system *s, const strut_element *e, int32_t k) {
-  return s->model->elements.at[e->first + k / 2] + (uint32_t)(k % 2);
-}
-
 void strut_path_add_rubbing(strut_path_system *s, int32_t i) {
   const strut_element *e = &s->model->elements.element[i];
+  strut_force *force = strut_path_element_force(s, i);
   double rate[STRUT_MOST_GRADIENT], h = STEP * s->size;
   int32_t n = 2 * e->nodes;
   strut_capstan_rest here, low, high;
   find_in(s, &s->equations.terms, i, s->latest.q, &here);
-  s->elements.element[i].pose.force = here.tension[0];
+  force->pose.force = here.tension[0];
   find_rate(s, i, rate);
   for (int32_t b = 0; b < n; b++) {
-    uint32_t at = place_of(s, e, b);
+    uint32_t at = strut_force_coordinate(force, b);
     int32_t column = s->potential->row_of[at];
     double q = s->latest.q[at], moved = column < 0 ? s->equations.rates.position[at] : 0.0;
     if (column < 0 && moved == 0.0) continue;
@@ -92,7 +89,7 @@ void strut_path_add_rubbing(strut_path_system *s, int32_t i) {
     find_in(s, &s->equations.terms, i, s->latest.q, &high);
     s->latest.q[at] = q;
     for (int32_t a = 0; a < n; a++) {
-      int32_t row = s->potential->row_of[place_of(s, e, a)];
+      int32_t row = s->potential->row_of[strut_force_coordinate(force, a)];
       double slope = (high.force[a] - low.force[a]) / (2.0 * h);
       rate[a] += slope * moved;
       if (row >= 0 && column >= 0)
@@ -100,17 +97,18 @@ void strut_path_add_rubbing(strut_path_system *s, int32_t i) {
     }
   }
   for (int32_t a = 0; a < n; a++) {
-    int32_t row = s->potential->row_of[place_of(s, e, a)];
+    int32_t row = s->potential->row_of[strut_force_coordinate(force, a)];
     s->latest.forces = fmax(s->latest.forces, fabs(here.force[a]));
     if (row >= 0) s->latest.g[row] -= here.force[a], s->latest.slope[row] -= rate[a];
   }
 }
 
 void strut_path_rubbing_reactions(const strut_path_system *s, int32_t i, double *reaction) {
-  const strut_element *e = &s->model->elements.element[i];
+  const strut_force *force = strut_path_element_force(s, i);
   strut_capstan_rest here;
   find_in(s, &s->equations.terms, i, s->latest.q, &here);
-  for (int32_t k = 0; k < 2 * e->nodes; k++) reaction[place_of(s, e, k)] -= here.force[k];
+  for (int32_t k = 0; k < 2 * force->nodes; k++)
+    reaction[strut_force_coordinate(force, k)] -= here.force[k];
 }
 
 /* Says where a cable begins to slip over a guide, or to stick to it. */

@@ -45,20 +45,10 @@ typedef struct reduction {
   gsl_vector *right, *solution;
   gsl_permutation *order;
   double *y, *own[2]; /* (2 n + 2) scratch; the path that is walked, before and after */
-  int terms;          /* of the polynomial */
+  strut_arena arena;
+  int terms; /* of the polynomial */
   double polynomial[MOST_NULL][MOST_TERMS];
 } reduction;
-
-static void free_reduction(reduction *r) {
-  gsl_matrix_free(r->basis);
-  gsl_matrix_free(r->system);
-  gsl_vector_free(r->right);
-  gsl_vector_free(r->solution);
-  gsl_permutation_free(r->order);
-  strut_release(r->y);
-  strut_release(r->own[0]);
-  strut_release(r->own[1]);
-}
 
 /* F + N b = 0 on the plane basis' (y - centre) = z: the matrix [s K, slope, N; basis', 0] at y. */
 static bool fill_system(reduction *r, const double *y) {
@@ -77,21 +67,6 @@ static bool fill_system(reduction *r, const double *y) {
     for (size_t j = 0; j <= n; j++)
       gsl_matrix_set(r->system, n + k, j, gsl_matrix_get(r->basis, j, k));
   return true;
-}
-
-static bool solve_system(reduction *r) {
-  size_t count = r->right->size;
-  for (size_t i = 0; i < count; i++) { /* rows of one size */
-    double most = 0;
-    for (size_t j = 0; j < count; j++) most = fmax(most, fabs(gsl_matrix_get(r->system, i, j)));
-    if (!(most > 0) || !isfinite(most)) return false;
-    for (size_t j = 0; j < count; j++) *gsl_matrix_ptr(r->system, i, j) /= most;
-    *gsl_vector_ptr(r->right, i) /= most;
-  }
-  strut_lu_factor(r->system, r->order);
-  for (size_t i = 0; i < count; i++)
-    if (gsl_matrix_get(r->system, i, i) == 0.0) return false;
-  return gsl_linalg_LU_solve(r->system, r->order, r->right, r->solution) == 0;
 }
 
 /* r->y becomes the solution over centre + radius z, and b (null) what equilibrium lacks there. */
@@ -113,7 +88,7 @@ static bool reduce(reduction *r, const double *z, double *b) {
                 ((r->y[j] - r->centre[j]) + (r->y[count + j] - r->centre[count + j]));
       gsl_vector_set(r->right, n + k, left);
     }
-    if (!solve_system(r)) return false;
+    if (!strut_solve_rows(r->system, r->right, r->order, r->solution)) return false;
     for (size_t j = 0; j < count; j++) {
       double step = gsl_vector_get(r->solution, j);
       change = fmax(change, fabs(step));
@@ -165,9 +140,11 @@ static bool fit_polynomial(reduction *r) {
   double z[MOST_SPACE] = {0}, b[MOST_NULL], terms[MOST_TERMS];
   r->terms = list_terms(d, z, terms, NULL);
   size_t pairs = (size_t)r->terms, rows = 2 * pairs, columns = (size_t)r->terms;
-  gsl_matrix *a = gsl_matrix_alloc(rows, columns), *values = gsl_matrix_alloc(rows, MOST_NULL);
-  gsl_vector *tau = gsl_vector_alloc(columns), *x = gsl_vector_alloc(columns);
-  gsl_vector *left = gsl_vector_alloc(rows);
+  gsl_matrix *a = strut_arena_matrix(&r->arena, rows, columns);
+  gsl_matrix *values = strut_arena_matrix(&r->arena, rows, MOST_NULL);
+  gsl_vector *tau = strut_arena_vector(&r->arena, columns);
+  gsl_vector *x = strut_arena_vector(&r->arena, columns);
+  gsl_vector *left = strut_arena_vector(&r->arena, rows);
   bool made = a && values && tau && x && left;
   r->w->failed = r->w->failed || !made;
   uint64_t seed = 59;
@@ -188,54 +165,36 @@ static bool fit_polynomial(reduction *r) {
     for (size_t i = 0; i < columns && made; i++)
       r->polynomial[k][i] = gsl_vector_get(x, i) / (most > 0 ? most : 1.0);
   }
-  gsl_matrix_free(a);
-  gsl_matrix_free(values);
-  gsl_vector_free(tau);
-  gsl_vector_free(x);
-  gsl_vector_free(left);
   return made;
-}
-
-/* Solves the small system (count, count) in place by elimination with row exchanges. */
-static bool solve_small(int count, double (*a)[MOST_SPACE + 1]) {
-  for (int j = 0; j < count; j++) {
-    int pivot = j;
-    for (int i = j + 1; i < count; i++)
-      if (fabs(a[i][j]) > fabs(a[pivot][j])) pivot = i;
-    if (!(fabs(a[pivot][j]) > 0)) return false;
-    for (int k = 0; k <= count; k++) {
-      double swap = a[j][k];
-      a[j][k] = a[pivot][k], a[pivot][k] = swap;
-    }
-    for (int i = 0; i < count; i++) {
-      double factor = i == j ? 0.0 : a[i][j] / a[j][j];
-      for (int k = j; k <= count && factor != 0.0; k++) a[i][k] -= factor * a[j][k];
-    }
-  }
-  for (int j = 0; j < count; j++) a[j][count] /= a[j][j];
-  return true;
 }
 
 /* Newton's method for a zero of the polynomial on the unit sphere. */
 static bool find_root(const reduction *r, double *z) {
   int d = r->space;
-  double terms[MOST_TERMS], rate[MOST_TERMS][MOST_SPACE], a[MOST_SPACE][MOST_SPACE + 1];
+  double terms[MOST_TERMS], rate[MOST_TERMS][MOST_SPACE];
+  double a[MOST_SPACE * MOST_SPACE], right[MOST_SPACE], change[MOST_SPACE];
+  size_t rows[MOST_SPACE];
+  gsl_permutation order = {(size_t)d, rows};
   for (int turn = 0; turn < ROOT_ITERATIONS; turn++) {
     double step = 0, square = 0;
     list_terms(d, z, terms, rate);
     memset(a, 0, sizeof a);
+    memset(right, 0, sizeof right);
     for (int k = 0; k < r->null; k++)
       for (int t = 0; t < r->terms; t++) {
-        a[k][d] -= r->polynomial[k][t] * terms[t];
-        for (int c = 0; c < d; c++) a[k][c] += r->polynomial[k][t] * rate[t][c];
+        right[k] -= r->polynomial[k][t] * terms[t];
+        for (int c = 0; c < d; c++) a[k * d + c] += r->polynomial[k][t] * rate[t][c];
       }
-    for (int c = 0; c < d; c++) a[d - 1][c] = z[c];
-    if (!solve_small(d, a)) return false;
-    for (int c = 0; c < d; c++) step += a[c][d] * a[c][d];
+    for (int c = 0; c < d; c++) a[(d - 1) * d + c] = z[c];
+    gsl_matrix_view matrix = gsl_matrix_view_array(a, (size_t)d, (size_t)d);
+    gsl_vector_view b = gsl_vector_view_array(right, (size_t)d);
+    gsl_vector_view x = gsl_vector_view_array(change, (size_t)d);
+    if (!strut_solve_rows(&matrix.matrix, &b.vector, &order, &x.vector)) return false;
+    for (int c = 0; c < d; c++) step += change[c] * change[c];
     step = sqrt(step);
     if (!isfinite(step)) return false;
     for (int c = 0; c < d; c++) {
-      z[c] += a[c][d] * fmin(1.0, SMALL_STEP / step);
+      z[c] += change[c] * fmin(1.0, SMALL_STEP / step);
       square += z[c] * z[c];
     }
     for (int c = 0; c < d; c++) z[c] /= sqrt(square);
@@ -297,7 +256,7 @@ static bool search_sphere(reduction *r, strut_path_rays *rays) {
   int d = r->space, starts = STARTS << d;
   double z[MOST_SPACE];
   uint64_t seed = 1;
-  double(*root)[MOST_SPACE] = strut_allocate(STRUT_PATH_RAYS, sizeof *root);
+  double(*root)[MOST_SPACE] = strut_arena_allocate(&r->arena, STRUT_PATH_RAYS, sizeof *root);
   int32_t count = 0;
   bool all = true;
   r->w->failed = r->w->failed || !root;
@@ -313,7 +272,6 @@ static bool search_sphere(reduction *r, strut_path_rays *rays) {
     if (!known) memcpy(root[count++], z, sizeof z);
   }
   for (int32_t i = 0; i < count && !r->w->failed; i++) all = keep_ray(r, root[i], rays) && all;
-  strut_release(root);
   mark_own(r, rays);
   return all;
 }
@@ -325,8 +283,7 @@ static int32_t count_kernel(reduction *r, int32_t *first) {
   double *change = w->scale, *here = w->spare;
   int32_t count = 0;
   if (!strut_path_spectrum(s, r->centre, STRUT_PATH_VALUES)) return 0;
-  for (int32_t i = 0; i < s->n; i++)
-    here[i] = gsl_vector_get(s->algebra.values, (size_t)i), change[i] = 0;
+  for (int32_t i = 0; i < s->n; i++) here[i] = s->spectrum.value[i], change[i] = 0;
   for (int side = -1; side <= 1; side += 2) {
     double value = side * r->radius;
     memcpy(r->y, r->centre, strut_path_bytes(w));
@@ -335,16 +292,15 @@ static int32_t count_kernel(reduction *r, int32_t *first) {
       r->y[j] += side * r->radius * w->tangent[j];
     }
     if (strut_path_correct(s, w->tangent, value, r->y) < 0) continue;
-    double *own = r->own[side > 0] = strut_allocate(1, strut_path_bytes(w));
-    if (own) memcpy(own, r->y, strut_path_bytes(w));
+    r->own[side > 0] = strut_arena_copy(&r->arena, r->y, 1, strut_path_bytes(w));
     if (!strut_path_spectrum(s, r->y, STRUT_PATH_VALUES)) continue;
     for (int32_t i = 0; i < s->n; i++)
-      change[i] = fmax(change[i], fabs(gsl_vector_get(s->algebra.values, (size_t)i) - here[i]));
+      change[i] = fmax(change[i], fabs(s->spectrum.value[i] - here[i]));
   }
   if (!strut_path_spectrum(s, r->centre, STRUT_PATH_VECTORS)) return 0;
   w->stiff = 0;
   for (int32_t i = 0; i < s->n; i++) {
-    double value = gsl_vector_get(s->algebra.values, (size_t)i);
+    double value = s->spectrum.value[i];
     w->stiff = fmax(w->stiff, fabs(value));
     if (fabs(value) > WITHIN * change[i]) continue;
     if (!count++) *first = i;
@@ -376,7 +332,7 @@ static bool make_basis(reduction *r, int32_t first) {
   if (!fill_system(r, r->centre)) return false;
   gsl_vector_set_zero(r->right);
   gsl_vector_set(r->right, n + m, 1.0); /* the parameter changes by 1, nothing along the kernel */
-  if (!solve_system(r)) return false;
+  if (!strut_solve_rows(r->system, r->right, r->order, r->solution)) return false;
   gsl_vector_const_view change = gsl_vector_const_subvector(r->solution, 0, n + 1);
   double length = gsl_blas_dnrm2(&change.vector);
   for (size_t j = 0; j <= n; j++)
@@ -386,10 +342,11 @@ static bool make_basis(reduction *r, int32_t first) {
 
 static bool allocate_reduction(reduction *r) {
   size_t n = (size_t)r->w->system.n, d = (size_t)r->space;
-  r->basis = gsl_matrix_alloc(n + 1, d);
-  r->system = gsl_matrix_alloc(n + d, n + d);
-  r->right = gsl_vector_alloc(n + d), r->solution = gsl_vector_alloc(n + d);
-  r->order = gsl_permutation_alloc(n + d);
+  r->basis = strut_arena_matrix(&r->arena, n + 1, d);
+  r->system = strut_arena_matrix(&r->arena, n + d, n + d);
+  r->right = strut_arena_vector(&r->arena, n + d);
+  r->solution = strut_arena_vector(&r->arena, n + d);
+  r->order = strut_arena_order(&r->arena, n + d);
   if (!r->basis || !r->system || !r->right || !r->solution || !r->order) r->w->failed = true;
   return !r->w->failed;
 }
@@ -407,16 +364,16 @@ bool strut_path_is_rounding(strut_path_walk *w, const double *from, const double
   if (!strut_path_spectrum(s, centre, STRUT_PATH_VECTORS)) return false;
   double level = s->spectrum.noise * s->size, stiff = 0;
   for (int32_t i = 0; i < s->n; i++) {
-    double value = fabs(gsl_vector_get(s->algebra.values, (size_t)i));
+    double value = fabs(s->spectrum.value[i]);
     stiff = fmax(stiff, value);
-    if (value < fabs(gsl_vector_get(s->algebra.values, (size_t)first))) first = i;
+    if (value < fabs(s->spectrum.value[first])) first = i;
   }
   w->stiff = stiff * s->size;
-  r.y = strut_allocate(1, strut_path_bytes(w));
+  r.y = strut_arena_allocate(&r.arena, 1, strut_path_bytes(w));
   w->failed = w->failed || !r.y;
   bool found = !w->failed && allocate_reduction(&r) && make_basis(&r, first) && reduce(&r, z, b);
   if (found) lack = fabs(b[0]) * w->stiff;
-  free_reduction(&r);
+  strut_arena_free(&r.arena);
   return found && lack <= ROUNDED * level;
 }
 
@@ -447,10 +404,10 @@ void strut_path_find_rays(strut_path_walk *w, const double *y, strut_path_rays *
   for (size_t i = 0; i < sizeof RADII / sizeof *RADII && !w->failed; i++) {
     reduction r = {.w = w, .centre = y, .radius = RADII[i]};
     strut_path_rays found = {.ray = room[other], .radius = RADII[i]};
-    r.y = strut_allocate(1, strut_path_bytes(w));
+    r.y = strut_arena_allocate(&r.arena, 1, strut_path_bytes(w));
     w->failed = w->failed || !r.y;
     bool all = r.y && find_at_radius(&r, &found);
-    free_reduction(&r);
+    strut_arena_free(&r.arena);
     if (found.count > best.count) best = found, other = 1 - other;
     if (all) break;
   }

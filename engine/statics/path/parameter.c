@@ -418,7 +418,8 @@ static double find_rate(const strut_path_system *s, int32_t i) {
   const strut_path_parameter *p = &s->parameter;
   const strut_path_element *own = &s->elements.element[i];
   const strut_element *e = &s->model->elements.element[i];
-  double strain = own->pose.strain, natural = own->pose.natural;
+  const strut_element_pose *pose = &strut_path_element_force(s, i)->pose;
+  double strain = pose->strain, natural = pose->natural;
   if (p->options->over == STRUT_PATH_OVER_SCENE) {
     double low = respond(&p->low, i, strain, natural_in(&p->low, i), own->piece).force;
     double high = respond(&p->high, i, strain, natural_in(&p->high, i), own->piece).force;
@@ -437,15 +438,15 @@ static double find_rate(const strut_path_system *s, int32_t i) {
  * Of a straight element whose nodes have passed one another since the last point strain and gradient count as negative,
  * as those of a plain member.
  */
-static void turn_round(const strut_path_system *s, const strut_element *e,
-                       strut_path_element *own) {
-  double *b = own->pose.b;
+static void turn_round(const strut_path_system *s, const strut_element *e, strut_path_element *own,
+                       strut_element_pose *pose) {
+  double *b = pose->b;
   own->turned = false;
   if (!strut_element_is_of_member(e) || !strut_path_turns_round(s, e->item)) return;
   const double *ahead = &s->latest.ahead[2 * e->item];
   own->turned = b[2] * ahead[0] + b[3] * ahead[1] < 0.0;
-  if (own->turned) own->pose.strain *= -1.0;
-  bool tiny = fabs(own->pose.strain) < STRUT_PATH_NOTHING * s->size;
+  if (own->turned) pose->strain *= -1.0;
+  bool tiny = fabs(pose->strain) < STRUT_PATH_NOTHING * s->size;
   for (int k = 0; k < 4; k++)
     b[k] = tiny && (ahead[0] != 0.0 || ahead[1] != 0.0) ? (k < 2 ? -1.0 : 1.0) * ahead[k % 2]
                                                         : (own->turned ? -b[k] : b[k]);
@@ -454,43 +455,15 @@ static void turn_round(const strut_path_system *s, const strut_element *e,
 /* Strain and gradient at system->q, natural strain of its terms, force and slope of its piece. */
 static void evaluate_element(strut_path_system *s, int32_t i) {
   strut_path_element *own = &s->elements.element[i];
-  strut_element_evaluate(s->model, i, s->equations.terms.rest, s->latest.q, own->turn, &own->pose);
-  turn_round(s, &s->model->elements.element[i], own);
-  own->pose.natural = natural_in(&s->equations.terms, i);
-  strut_law_response r =
-      respond(&s->equations.terms, i, own->pose.strain, own->pose.natural, own->piece);
-  own->pose.force = own->acts ? r.force : 0.0;
-  own->pose.slope = own->acts ? r.slope : 0.0;
+  strut_element_pose *pose = &strut_path_element_force(s, i)->pose;
+  strut_element_evaluate(s->model, i, s->equations.terms.rest, s->latest.q, own->turn, pose);
+  turn_round(s, &s->model->elements.element[i], own, pose);
+  pose->natural = natural_in(&s->equations.terms, i);
+  strut_law_response r = respond(&s->equations.terms, i, pose->strain, pose->natural, own->piece);
+  pose->acts = own->acts;
+  pose->force = own->acts ? r.force : 0.0;
+  pose->slope = own->acts ? r.slope : 0.0;
   own->rate = own->acts ? find_rate(s, i) : 0.0;
-}
-
-static uint32_t place_of(const strut_path_system *s, const strut_element *e, int32_t k) {
-  return s->model->elements.at[e->first + k / 2] + (uint32_t)(k % 2);
-}
-
-static void add_element(strut_path_system *s, int32_t i) {
-  const strut_element *e = &s->model->elements.element[i];
-  const strut_path_element *own = &s->elements.element[i];
-  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
-  int32_t n = 2 * e->nodes;
-  strut_element_stiffness(s->model, i, &own->pose, s->latest.q, k);
-  if (own->turned) strut_element_bend(s->model, i, s->latest.q, -2.0 * own->pose.force, k);
-  for (int32_t a = 0; a < n; a++) {
-    int32_t row = s->potential->row_of[place_of(s, e, a)];
-    if (row < 0) continue;
-    double pull = own->pose.force * own->pose.b[a], slope = own->rate * own->pose.b[a];
-    s->latest.forces = fmax(s->latest.forces, fabs(pull));
-    for (int32_t b = 0; b < n; b++) {
-      uint32_t at = place_of(s, e, b);
-      int32_t column = s->potential->row_of[at];
-      if (column >= 0)
-        *gsl_matrix_ptr(s->algebra.hessian, (size_t)row, (size_t)column) += k[a * n + b];
-      else
-        slope += k[a * n + b] * s->equations.rates.position[at];
-    }
-    s->latest.g[row] += pull;
-    s->latest.slope[row] += slope;
-  }
 }
 
 void strut_path_add_elements(strut_path_system *s) {
@@ -500,24 +473,13 @@ void strut_path_add_elements(strut_path_system *s) {
     if (strut_path_rubs(s, i))
       strut_path_add_rubbing(s, i);
     else
-      add_element(s, i);
-  }
-}
-
-void strut_path_element_reactions(const strut_path_system *s, double *reaction) {
-  for (int32_t i = 0; i < s->model->elements.count; i++) {
-    const strut_element *e = &s->model->elements.element[i];
-    const strut_element_pose *pose = &s->elements.element[i].pose;
-    bool rubs = strut_path_rubs(s, i) && s->elements.element[i].acts;
-    if (rubs) strut_path_rubbing_reactions(s, i, reaction);
-    for (int32_t k = 0; k < 2 * e->nodes && !rubs; k++)
-      reaction[place_of(s, e, k)] += pose->force * pose->b[k];
+      strut_path_add_strain(s, strut_path_element_force(s, i), s->elements.element[i].rate);
   }
 }
 
 void strut_path_keep_turns(strut_path_system *s) {
   for (int32_t i = 0; i < s->model->elements.count; i++)
-    s->elements.element[i].turn = s->elements.element[i].pose.strain;
+    s->elements.element[i].turn = strut_path_element_force(s, i)->pose.strain;
 }
 
 double strut_path_element_tension(const strut_path_system *s, int32_t member) {
@@ -525,7 +487,7 @@ double strut_path_element_tension(const strut_path_system *s, int32_t member) {
   const strut_element *e = strut_element_of_member(t, member);
   double sum = 0.0;
   for (; e; e = e->sibling >= 0 ? &t->element[e->sibling] : NULL) {
-    double force = s->elements.element[e - t->element].pose.force;
+    double force = strut_path_element_force(s, (int32_t)(e - t->element))->pose.force;
     if (e->carries) force = e->carries * fmax(e->carries * force, 0.0); /* at a kink, rounding */
     sum += force;
   }
@@ -536,7 +498,7 @@ void strut_path_element_forces(const strut_path_system *s, strut_element_role ro
   const strut_element_table *t = &s->model->elements;
   for (int32_t i = 0; i < t->count; i++)
     if (t->element[i].role == role)
-      force[t->element[i].item] = s->elements.element[i].pose.force + 0.0; /* no -0 */
+      force[t->element[i].item] = strut_path_element_force(s, i)->pose.force + 0.0; /* no -0 */
 }
 
 void strut_path_pressures(const strut_path_system *s, double *pressure) {
@@ -544,7 +506,7 @@ void strut_path_pressures(const strut_path_system *s, double *pressure) {
   for (int32_t i = 0; i < t->count; i++)
     if (t->element[i].role == STRUT_ELEMENT_CELL)
       pressure[t->element[i].item] =
-          now->element[i].numbers.outside - s->elements.element[i].pose.force;
+          now->element[i].numbers.outside - strut_path_element_force(s, i)->pose.force;
 }
 
 /*

@@ -7,7 +7,6 @@
 #include <gsl/gsl_permutation.h>
 
 #include "engine/base/double_double.h"
-#include "engine/forces/elements.h"
 #include "engine/statics/path/path.h"
 #include "engine/statics/potential.h"
 
@@ -71,11 +70,10 @@ struct strut_path_system;
 
 /** An element at the point that was evaluated last. */
 typedef struct strut_path_element {
-  strut_element_pose pose; /* force and slope of its frozen piece; 0 where it does not act */
-  double rate;             /* of its force with the parameter, its strain held */
-  double turn;             /* value near which an angle is taken; NAN: its natural one */
-  bool acts, turned;       /* straight, and shrunk to nothing since the last point */
-  int piece;               /* of its law */
+  double rate;       /* of its force with the parameter, its strain held */
+  double turn;       /* value near which an angle is taken; NAN: its natural one */
+  bool acts, turned; /* straight, and shrunk to nothing since the last point */
+  int piece;         /* of its law */
 } strut_path_element;
 
 /** What may change about an element: whether it acts (kink -1), or on which side of a kink it is. */
@@ -106,8 +104,6 @@ bool strut_path_elements_create(const strut_model *model, strut_arena *arena,
 
 /** Adds forces, stiffness and the parameter's slope of all elements at system->q. */
 void strut_path_add_elements(struct strut_path_system *system);
-/** Adds the forces that hold them, on all coordinates, to the reactions (length). */
-void strut_path_element_reactions(const struct strut_path_system *system, double *reaction);
 /** Angles are taken near those of the last evaluation from now on. */
 void strut_path_keep_turns(struct strut_path_system *system);
 
@@ -167,9 +163,6 @@ void strut_path_add_contacts(struct strut_path_system *system);
 /** The normal forces, friction along the tangents, and what they take from the reactions (length). */
 void strut_path_contact_reactions(const struct strut_path_system *system, double *reaction,
                                   double *contact, double *friction);
-/** Stiffness of contact i along its normal and its tangent [N/m]. */
-void strut_path_contact_stiffness(const struct strut_path_system *system, int32_t contact,
-                                  double *along, double *across);
 /** Name of its ground, "the ground" where there is only one. */
 const char *strut_path_ground_name(const struct strut_path_system *system, int32_t contact);
 
@@ -192,7 +185,7 @@ double strut_path_friction_force(const struct strut_path_system *system,
                                  const strut_path_terms *terms, int32_t contact, double gap);
 /** Adds the stiffness; where the contact slides it has no symmetry. */
 void strut_path_friction_block(const struct strut_path_system *system, int32_t contact,
-                               double block[2][2]);
+                               double block[4]);
 /** Does some contact slide? */
 bool strut_path_slides(const struct strut_path_system *system);
 /** Is the kinetic coefficient of a contact another than the static one? */
@@ -210,15 +203,6 @@ void strut_path_grip_set(struct strut_path_system *system, int32_t contact, bool
 
 enum { STRUT_PATH_MOTIONS = 3 };
 
-/** A member as it lies, to all digits. */
-typedef struct strut_path_member {
-  double length, tension, ux, uy; /* [m], [N], direction from its first node to the second; of a
-                                     member that has shrunk to nothing and turned round, the negative
-                                     of both, and so smooth */
-  double across;                  /* stiffness across its direction: tension / length [N/m] */
-  bool pulls;                     /* or pushes */
-} strut_path_member;
-
 typedef struct strut_path_system {
   const strut_model *model;
   strut_potential *potential; /* for the numbers of its free coordinates */
@@ -229,7 +213,12 @@ typedef struct strut_path_system {
   double stop_at; /* position of the coordinate at which the path stops [m] */
   double size;    /* [m] */
   strut_path_parameter parameter;
-  strut_path_member *member; /* (members) */
+  /**
+   * (members, elements, contacts) Forces at the point that was evaluated last, with what is taut, acts and touches
+   * frozen: pose.acts. Of a member that has shrunk to nothing and turned round, length and direction are the negative,
+   * and so smooth.
+   */
+  strut_force *force;
   strut_path_elements elements;
   strut_path_contacts contacts;
   /** The numbers of the equations, and their rates with the parameter. */
@@ -263,6 +252,7 @@ typedef struct strut_path_system {
   } algebra;
   /** After strut_path_spectrum. */
   struct {
+    double *value; /* (n) ascending, of algebra.values */
     int32_t
         negative; /* eigenvalues below zero, and elements folded back, each of which has one inside */
     int32_t folded;    /* these */
@@ -285,6 +275,17 @@ void strut_path_system_free(strut_path_system *system);
 void strut_path_unplace(const strut_path_system *system, const double *q, double *y);
 /** The parameter's value at y. */
 double strut_path_value(const strut_path_system *system, const double *y);
+
+/** The force of an element. */
+static inline strut_force *strut_path_element_force(const strut_path_system *system,
+                                                    int32_t element) {
+  return &system->force[system->model->members.count + element];
+}
+/** Adds a force with its gradient, that one's rate with the parameter (2 nodes each), and its matrix (2 nodes, 2 nodes). */
+void strut_path_add_force(strut_path_system *system, const strut_force *force,
+                          const double *gradient, const double *rate, const double *matrix);
+/** The same of a member or an element whose force changes with the parameter by `rate` where its strain does not. */
+void strut_path_add_strain(strut_path_system *system, const strut_force *force, double rate);
 
 /** Everything at y, which need be no equilibrium; false: no scene has this value. */
 bool strut_path_evaluate(strut_path_system *system, const double *y);

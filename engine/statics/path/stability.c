@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/base/vec.h"
+#include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 
-#include <gsl/gsl_blas.h>
 #include <gsl/gsl_sort_vector.h>
 #include <math.h>
+#include <string.h>
 
 /*
  * Eigenvalues of the stiffness. The dense method is good to the last bit of the largest eigenvalue:
@@ -21,16 +23,6 @@ static const double ZERO_VALUE = 1e-13; /* of a soft mode's largest parts: no si
 static const double NO_VALUE = 1e-20;   /* of the largest eigenvalue, likewise */
 static const double ROUNDING = 2e-16;   /* of a double */
 
-/* Displacement of a member's second end relative to its first in a mode of the free coordinates. */
-static void relative_motion(const strut_path_system *s, int32_t j, size_t mode, double d[2]) {
-  const strut_member_table *t = &s->model->members;
-  for (uint32_t c = 0; c < 2; c++) {
-    int32_t a = s->potential->row_of[t->from[j] + c], b = s->potential->row_of[t->to[j] + c];
-    d[c] = (b >= 0 ? gsl_matrix_get(s->algebra.vectors, (size_t)b, mode) : 0.0) -
-           (a >= 0 ? gsl_matrix_get(s->algebra.vectors, (size_t)a, mode) : 0.0);
-  }
-}
-
 static double held_motion(const strut_path_system *s, int32_t k, size_t mode) {
   double sum = 0;
   for (int32_t i = 0; i < s->n; i++)
@@ -38,122 +30,51 @@ static double held_motion(const strut_path_system *s, int32_t k, size_t mode) {
   return sum;
 }
 
-/* ritz += factor part part^T */
-static void add_square(gsl_matrix *ritz, const double *part, double factor) {
-  for (size_t k = 0; k < ritz->size1; k++)
-    for (size_t l = 0; l < ritz->size1; l++)
-      *gsl_matrix_ptr(ritz, k, l) += factor * part[k] * part[l];
-}
-
-/* Displacement of a contact's node along a unit vector in a mode. */
-static double contact_motion(const strut_path_system *s, int32_t i, const double *unit,
-                             size_t mode) {
-  const int32_t *row = s->potential->row_of + s->model->contacts.at[i];
-  double sum = 0;
-  for (int c = 0; c < 2; c++)
-    if (row[c] >= 0) sum += unit[c] * gsl_matrix_get(s->algebra.vectors, (size_t)row[c], mode);
-  return sum;
-}
-
-static void project_contact(const strut_path_system *s, int32_t i, size_t first, gsl_matrix *ritz) {
-  const strut_contact_axes *axes = &s->contacts.contact[i].pose.axes;
-  double part[MOST_SOFT], along, across;
-  strut_path_contact_stiffness(s, i, &along, &across);
-  for (size_t k = 0; k < ritz->size1; k++) part[k] = contact_motion(s, i, axes->normal, first + k);
-  add_square(ritz, part, along);
-  for (size_t k = 0; k < ritz->size1; k++) part[k] = contact_motion(s, i, axes->tangent, first + k);
-  add_square(ritz, part, across);
-}
-
-/* slope b b' + t d2e/dq2 of an element, and the largest of its parts. */
-static void project_element(strut_path_system *s, int32_t i, size_t first, gsl_matrix *ritz) {
-  const strut_element *e = &s->model->elements.element[i];
-  const strut_element_pose *pose = &s->elements.element[i].pose;
-  const uint32_t *at = s->model->elements.at + e->first;
-  double along[MOST_SOFT], motion[MOST_SOFT][STRUT_MOST_GRADIENT];
-  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0};
-  int32_t n = 2 * e->nodes;
-  size_t count = ritz->size1;
-  strut_element_bend(s->model, i, s->latest.q, pose->force, bend);
-  for (size_t k = 0; k < count; k++) {
-    along[k] = 0.0;
-    for (int32_t c = 0; c < n; c++) {
-      int32_t row = s->potential->row_of[at[c / 2] + (uint32_t)(c % 2)];
-      motion[k][c] = row >= 0 ? gsl_matrix_get(s->algebra.vectors, (size_t)row, first + k) : 0.0;
-      along[k] += pose->b[c] * motion[k][c];
-    }
-  }
-  add_square(ritz, along, pose->slope);
-  for (size_t k = 0; k < count; k++)
-    for (size_t l = 0; l < count; l++) {
-      double sum = 0.0;
-      for (int32_t a = 0; a < n; a++)
-        for (int32_t b = 0; b < n; b++) sum += motion[k][a] * bend[a * n + b] * motion[l][b];
-      *gsl_matrix_ptr(ritz, k, l) += sum;
-      if (k == l)
-        s->spectrum.soft_parts =
-            fmax(s->spectrum.soft_parts, fmax(fabs(sum), fabs(pose->slope) * along[k] * along[k]));
-    }
-}
-
 /* The stiffness seen by the modes first, first + 1, ... */
-static void project(strut_path_system *s, size_t first, gsl_matrix *ritz) {
-  double along[MOST_SOFT], across[MOST_SOFT];
-  size_t count = ritz->size1;
-  gsl_matrix_set_zero(ritz);
-  for (int32_t j = 0; j < s->model->members.count; j++) {
-    const strut_path_member *m = &s->member[j];
-    if (!m->pulls) continue;
-    for (size_t k = 0; k < count; k++) {
-      double d[2];
-      relative_motion(s, j, first + k, d);
-      along[k] = m->length != 0 ? m->ux * d[0] + m->uy * d[1] : d[0];
-      across[k] = m->length != 0 ? m->ux * d[1] - m->uy * d[0] : d[1];
-    }
-    add_square(ritz, along, m->length != 0 ? s->equations.terms.stiffness[j] : m->across);
-    add_square(ritz, across, m->across);
-  }
-  s->spectrum.soft_parts = 0.0;
-  for (int32_t i = 0; i < s->model->elements.count; i++)
-    if (s->elements.element[i].acts) project_element(s, i, first, ritz);
-  for (int32_t i = 0; i < s->model->contacts.count; i++)
-    if (s->contacts.contact[i].touches) project_contact(s, i, first, ritz);
+static void project(strut_path_system *s, size_t first, size_t count, double *sum) {
+  double noise[MOST_SOFT] = {0}, along[MOST_SOFT], across[MOST_SOFT];
+  memset(sum, 0, count * count * sizeof *sum);
+  strut_mode_form form = {.model = s->model,
+                          .row_of = s->potential->row_of,
+                          .count = (int32_t)count,
+                          .vector = gsl_matrix_ptr(s->algebra.vectors, 0, first),
+                          .mode_step = 1,
+                          .row_step = s->algebra.vectors->tda,
+                          .sum = sum,
+                          .noise = noise,
+                          .along = along,
+                          .across = across};
+  for (int32_t i = 0; i < strut_force_count(s->model, true); i++)
+    if (s->force[i].pose.acts) strut_mode_form_add(&form, &s->force[i], s->latest.q);
   for (int32_t i = 0; i < s->held.count; i++) {
     for (size_t k = 0; k < count; k++) along[k] = held_motion(s, i, first + k);
-    add_square(ritz, along, s->held.by);
+    for (size_t k = 0; k < count; k++)
+      for (size_t l = 0; l <= k; l++) sum[k * count + l] += s->held.by * along[k] * along[l];
   }
+  for (size_t k = 0; k < count; k++)
+    for (size_t l = 0; l < k; l++) sum[l * count + k] = sum[k * count + l];
+  s->spectrum.soft_parts = form.part;
 }
 
 /* Ritz values and vectors in place of the soft eigenvalues; false: out of memory. */
 static bool refine(strut_path_system *s, size_t first, size_t count) {
-  gsl_matrix *ritz = gsl_matrix_alloc(count, count), *turn = gsl_matrix_alloc(count, count);
-  gsl_matrix *turned = gsl_matrix_alloc((size_t)s->n, count);
-  gsl_vector *values = gsl_vector_alloc(count);
-  gsl_eigen_symmv_workspace *eigen = gsl_eigen_symmv_alloc(count);
-  bool made = ritz && turn && turned && values && eigen;
-  if (made) {
-    project(s, first, ritz);
-    gsl_eigen_symmv(ritz, values, turn, eigen);
-    gsl_eigen_symmv_sort(values, turn, GSL_EIGEN_SORT_VAL_ASC);
-    gsl_matrix_view soft = gsl_matrix_submatrix(s->algebra.vectors, 0, first, (size_t)s->n, count);
-    gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1.0, &soft.matrix, turn, 0.0, turned);
-    gsl_matrix_memcpy(&soft.matrix, turned);
-    for (size_t k = 0; k < count; k++)
-      gsl_vector_set(s->algebra.values, first + k, gsl_vector_get(values, k));
+  double form[MOST_SOFT * MOST_SOFT], turn[MOST_SOFT * MOST_SOFT], row[MOST_SOFT];
+  project(s, first, count, form);
+  if (!strut_symmetric_eigen(form, count, row, turn)) return false;
+  for (size_t k = 0; k < count; k++) s->spectrum.value[first + k] = row[k];
+  for (size_t i = 0; i < (size_t)s->n; i++) {
+    double *soft = gsl_matrix_ptr(s->algebra.vectors, i, first);
+    memcpy(row, soft, count * sizeof *row);
+    for (size_t k = 0; k < count; k++) soft[k] = strut_dot(turn + k * count, row, (ptrdiff_t)count);
   }
-  gsl_matrix_free(ritz);
-  gsl_matrix_free(turn);
-  gsl_matrix_free(turned);
-  gsl_vector_free(values);
-  gsl_eigen_symmv_free(eigen);
-  return made;
+  return true;
 }
 
 /* The largest stiffness that tension lends: what a soft eigenvalue is a difference of. */
 static double largest_across(const strut_path_system *s) {
   double most = 0;
   for (int32_t j = 0; j < s->model->members.count; j++)
-    if (s->member[j].pulls) most = fmax(most, fabs(s->member[j].across));
+    if (s->force[j].pose.acts) most = fmax(most, fabs(s->force[j].across));
   return most;
 }
 
@@ -167,16 +88,14 @@ static void find_vectors(strut_path_system *s) {
 static size_t find_soft(const strut_path_system *s, double below, size_t *first) {
   size_t count = 0, nearest = 0;
   for (size_t i = 1; i < (size_t)s->n; i++)
-    if (fabs(gsl_vector_get(s->algebra.values, i)) <
-        fabs(gsl_vector_get(s->algebra.values, nearest)))
-      nearest = i;
+    if (fabs(s->spectrum.value[i]) < fabs(s->spectrum.value[nearest])) nearest = i;
   *first = nearest;
-  if (fabs(gsl_vector_get(s->algebra.values, nearest)) > below) return 0;
+  if (fabs(s->spectrum.value[nearest]) > below) return 0;
   while (*first > 0 && nearest - *first < MOST_SOFT / 2 &&
-         fabs(gsl_vector_get(s->algebra.values, *first - 1)) <= below)
+         fabs(s->spectrum.value[*first - 1]) <= below)
     --*first;
   while (*first + count < (size_t)s->n && count < MOST_SOFT &&
-         fabs(gsl_vector_get(s->algebra.values, *first + count)) <= below)
+         fabs(s->spectrum.value[*first + count]) <= below)
     count++;
   return count;
 }
@@ -198,14 +117,13 @@ static bool find_unsymmetric(strut_path_system *s) {
       size_t from = gsl_permutation_get(order, k);
       gsl_vector_complex_view column = gsl_matrix_complex_column(vectors, from);
       const gsl_vector_view vector = gsl_vector_complex_real(&column.vector);
-      gsl_vector_set(s->algebra.values, k, gsl_vector_get(&real.vector, from));
+      s->spectrum.value[k] = gsl_vector_get(&real.vector, from);
       gsl_matrix_set_col(s->algebra.vectors, k, &vector.vector);
     }
-    double largest = fmax(fabs(gsl_vector_get(s->algebra.values, 0)),
-                          fabs(gsl_vector_get(s->algebra.values, n - 1)));
+    double largest = fmax(fabs(s->spectrum.value[0]), fabs(s->spectrum.value[n - 1]));
     s->spectrum.noise = ROUNDING * largest;
     for (size_t k = 0; k < n; k++)
-      s->spectrum.negative += gsl_vector_get(s->algebra.values, k) < -s->spectrum.noise;
+      s->spectrum.negative += s->spectrum.value[k] < -s->spectrum.noise;
   }
   gsl_vector_complex_free(values);
   gsl_matrix_complex_free(vectors);
@@ -227,8 +145,7 @@ bool strut_path_spectrum(strut_path_system *s, const double *y, strut_path_spect
     gsl_eigen_symm(s->algebra.work, s->algebra.values, s->algebra.values_only);
     gsl_sort_vector(s->algebra.values);
   }
-  double largest = fmax(fabs(gsl_vector_get(s->algebra.values, 0)),
-                        fabs(gsl_vector_get(s->algebra.values, (size_t)s->n - 1)));
+  double largest = fmax(fabs(s->spectrum.value[0]), fabs(s->spectrum.value[s->n - 1]));
   double below = (wanted == STRUT_PATH_SIGNS ? UNSIGNED : SOFT) * largest;
   size_t soft = find_soft(s, below, &first);
   if (soft && wanted != STRUT_PATH_VECTORS) {
@@ -241,7 +158,7 @@ bool strut_path_spectrum(strut_path_system *s, const double *y, strut_path_spect
   s->spectrum.noise = ROUNDING * largest;
   for (size_t i = 0; i < (size_t)s->n; i++) {
     bool is_soft = i >= first && i < first + soft;
-    if (gsl_vector_get(s->algebra.values, i) < (is_soft ? -zero : 0.0)) s->spectrum.negative++;
+    if (s->spectrum.value[i] < (is_soft ? -zero : 0.0)) s->spectrum.negative++;
   }
   return true;
 }

@@ -106,7 +106,7 @@ static bool find_side(strut_path_walk *w, const double *y, const double *tangent
   double level = fmax(BLURRED * s->spectrum.noise, ROUNDED / step * s->elements.noise);
   *found = (side){s->spectrum.negative, way_of(tangent[s->n])};
   for (int32_t i = 0; i < s->n; i++)
-    if (fabs(gsl_vector_get(s->algebra.values, (size_t)i)) < level) *blurred = true;
+    if (fabs(s->spectrum.value[i]) < level) *blurred = true;
   return true;
 }
 
@@ -183,7 +183,7 @@ static bool is_confirmed(strut_path_walk *w, check *c, side after) {
 static bool is_critical(const strut_path_walk *w) {
   const strut_path_system *s = &w->system;
   for (int32_t i = 0; i < s->n; i++) {
-    double here = w->values[i], there = gsl_vector_get(s->algebra.values, (size_t)i);
+    double here = w->values[i], there = s->spectrum.value[i];
     double near = fmin(fabs(here), fabs(there));
     if (fabs(there - here) > fmax(SOON * near, BLURRED * s->spectrum.noise)) return true;
   }

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stretches and gaps are differences of long numbers, made with twice a double's digits. */
-#include "engine/forces/tangent.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 
 #include <assert.h>
 #include <gsl/gsl_blas.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <string.h>
 
@@ -22,21 +20,20 @@ static const double LOOSE = 1e-8;      /* of the forces: what a motion without s
 static const double FRESH = 1e-3;      /* of the range: rates from so near by do for a correction */
 
 static bool make_matrices(strut_path_system *s) {
+  strut_arena *arena = &s->arena;
   size_t unknowns = (size_t)s->n + 1; /* all may be held: then the parameter alone is unknown */
   size_t n = s->n > 0 ? (size_t)s->n : 1;
-  s->algebra.hessian = gsl_matrix_alloc(n, n);
-  s->algebra.work = gsl_matrix_alloc(n, n);
-  s->algebra.vectors = gsl_matrix_alloc(n, n);
-  s->algebra.values = gsl_vector_alloc(n);
   s->algebra.eigen = gsl_eigen_symmv_alloc(n);
   s->algebra.values_only = gsl_eigen_symm_alloc(n);
-  s->algebra.bordered = gsl_matrix_alloc(unknowns, unknowns);
-  s->algebra.right = gsl_vector_alloc(unknowns);
-  s->algebra.solution = gsl_vector_alloc(unknowns);
-  s->algebra.order = gsl_permutation_alloc(unknowns);
-  return s->algebra.hessian && s->algebra.work && s->algebra.vectors && s->algebra.values &&
-         s->algebra.eigen && s->algebra.values_only && s->algebra.bordered && s->algebra.right &&
-         s->algebra.solution && s->algebra.order;
+  return (s->algebra.hessian = strut_arena_matrix(arena, n, n)) &&
+         (s->algebra.work = strut_arena_matrix(arena, n, n)) &&
+         (s->algebra.vectors = strut_arena_matrix(arena, n, n)) &&
+         (s->algebra.values = strut_arena_vector(arena, n)) &&
+         (s->algebra.bordered = strut_arena_matrix(arena, unknowns, unknowns)) &&
+         (s->algebra.right = strut_arena_vector(arena, unknowns)) &&
+         (s->algebra.solution = strut_arena_vector(arena, unknowns)) &&
+         (s->algebra.order = strut_arena_order(arena, unknowns)) && s->algebra.eigen &&
+         s->algebra.values_only;
 }
 
 static bool make_arrays(strut_path_system *s) {
@@ -47,8 +44,10 @@ static bool make_arrays(strut_path_system *s) {
     if (!(*arrays[i] = strut_arena_allocate(&s->arena, length + 1, sizeof(double)))) return false;
   s->latest.pulling = strut_arena_allocate(&s->arena, members, 1);
   s->latest.ahead = strut_arena_allocate(&s->arena, 2 * members, sizeof(double));
-  s->member = strut_arena_allocate(&s->arena, members, sizeof *s->member);
-  if (!s->latest.pulling || !s->latest.ahead || !s->member) return false;
+  int32_t forces = strut_force_count(s->model, true);
+  s->force = strut_arena_allocate(&s->arena, (size_t)forces, sizeof *s->force);
+  if (!s->latest.pulling || !s->latest.ahead || !s->force) return false;
+  for (int32_t i = 0; i < forces; i++) strut_force_begin(s->model, i, &s->force[i]);
   memset(s->latest.pulling, 1, members);
   return strut_path_elements_create(s->model, &s->arena, &s->elements) &&
          strut_path_contacts_create(s->model, &s->arena, &s->contacts) &&
@@ -64,19 +63,13 @@ strut_status strut_path_system_create(const strut_model *model, const uint8_t *h
   strut_status status = strut_potential_create(model, held, false, &s->potential, error);
   if (status) return status;
   s->n = s->potential->n;
-  if (s->n > STRUT_PATH_COORDINATES || make_matrices(s)) return STRUT_OK;
-  return strut_no_memory(error, "");
+  if (s->n > STRUT_PATH_COORDINATES) return STRUT_OK;
+  if (!make_matrices(s)) return strut_no_memory(error, "");
+  s->spectrum.value = s->algebra.values->data;
+  return STRUT_OK;
 }
 
 void strut_path_system_free(strut_path_system *s) {
-  gsl_matrix_free(s->algebra.hessian);
-  gsl_matrix_free(s->algebra.work);
-  gsl_matrix_free(s->algebra.vectors);
-  gsl_matrix_free(s->algebra.bordered);
-  gsl_vector_free(s->algebra.values);
-  gsl_vector_free(s->algebra.right);
-  gsl_vector_free(s->algebra.solution);
-  gsl_permutation_free(s->algebra.order);
   gsl_eigen_symmv_free(s->algebra.eigen);
   gsl_eigen_symm_free(s->algebra.values_only);
   strut_potential_free(s->potential);
@@ -137,77 +130,76 @@ bool strut_path_turns_round(const strut_path_system *s, int32_t j) {
 static const double SHORT = 1e-9; /* likewise, the shortest length by which a force is divided */
 
 /*
- * Length of a member, and what it is longer than its rest length. Where its nodes have passed one another since
- * the last point kept both count as negative: what acts before goes on smoothly.
+ * A member with all digits; returns what it is longer than its rest length. Where its nodes have passed one another
+ * since the last point kept both count as negative: what acts before goes on smoothly.
  */
-static double measure_member(const strut_path_system *s, int32_t j, strut_path_member *m) {
+static double measure_member(const strut_path_system *s, int32_t j, strut_force *force) {
   const strut_member_table *t = &s->model->members;
   const strut_dd rest = {s->equations.terms.rest[j], s->equations.terms.rest_low[j]};
   strut_dd dx = dd_sub(coordinate(s, t->to[j]), coordinate(s, t->from[j]));
   strut_dd dy = dd_sub(coordinate(s, t->to[j] + 1), coordinate(s, t->from[j] + 1));
   strut_dd length = dd_length(dx, dy);
   const double *ahead = &s->latest.ahead[2 * j];
-  *m = (strut_path_member){.length = dd_double(length)};
+  strut_vec2 unit = {0.0, 0.0};
   bool turns = strut_path_turns_round(s, j);
-  if (turns && dx.hi * ahead[0] + dy.hi * ahead[1] < 0.0)
-    length = dd_scale(length, -1.0), m->length = -m->length;
-  if (m->length != 0) m->ux = dd_double(dd_div(dx, length)), m->uy = dd_double(dd_div(dy, length));
-  if (turns && fabs(m->length) < STRUT_PATH_NOTHING * s->size &&
+  if (turns && dx.hi * ahead[0] + dy.hi * ahead[1] < 0.0) length = dd_scale(length, -1.0);
+  double size = dd_double(length), stretch = dd_double(dd_sub(length, rest));
+  if (size != 0) unit = (strut_vec2){dd_double(dd_div(dx, length)), dd_double(dd_div(dy, length))};
+  if (turns && fabs(size) < STRUT_PATH_NOTHING * s->size &&
       ahead[0] * ahead[0] + ahead[1] * ahead[1] > 0.0)
-    m->ux = ahead[0], m->uy = ahead[1];
-  return dd_double(dd_sub(length, rest));
+    unit = (strut_vec2){ahead[0], ahead[1]};
+  /* of zero length and zero rest length: a spring alike in all directions */
+  double k = s->equations.terms.stiffness[j];
+  double divisor = copysign(fmax(fabs(size), SHORT * s->size), size);
+  double across = rest.hi > 0 ? k * stretch / divisor : k;
+  strut_force_set_member(k, across, unit, size, stretch, force);
+  return stretch;
 }
 
-static void add_stiffness(strut_path_system *s, const int32_t *row, int count, double (*block)[4]) {
-  for (int a = 0; a < count; a++)
-    for (int b = 0; b < count; b++)
-      if (row[a] >= 0 && row[b] >= 0)
-        *gsl_matrix_ptr(s->algebra.hessian, (size_t)row[a], (size_t)row[b]) += block[a][b];
-}
-
-/* Derivative of a member's force on its second node with respect to the parameter, at fixed nodes. */
-static void member_rate(const strut_path_system *s, int32_t j, double rate[2]) {
-  const strut_path_member *m = &s->member[j];
-  const uint32_t a = s->model->members.from[j], b = s->model->members.to[j];
-  double d[2], k = s->equations.terms.stiffness[j];
-  for (uint32_t c = 0; c < 2; c++) {
-    double there = s->potential->row_of[b + c] < 0 ? s->equations.rates.position[b + c] : 0;
-    double here = s->potential->row_of[a + c] < 0 ? s->equations.rates.position[a + c] : 0;
-    d[c] = there - here;
+void strut_path_add_force(strut_path_system *s, const strut_force *force, const double *gradient,
+                          const double *rate, const double *matrix) {
+  int32_t n = 2 * force->nodes;
+  for (int32_t a = 0; a < n; a++) {
+    int32_t row = s->potential->row_of[strut_force_coordinate(force, a)];
+    double pull = force->kind == STRUT_FORCE_ELEMENT ? gradient[a] : force->pose.force;
+    double slope = rate[a];
+    if (row < 0) continue;
+    s->latest.forces = fmax(s->latest.forces, fabs(pull));
+    for (int32_t b = 0; b < n; b++) {
+      uint32_t at = strut_force_coordinate(force, b);
+      int32_t column = s->potential->row_of[at];
+      if (column >= 0)
+        *gsl_matrix_ptr(s->algebra.hessian, (size_t)row, (size_t)column) += matrix[a * n + b];
+      else
+        slope += matrix[a * n + b] * s->equations.rates.position[at];
+    }
+    s->latest.g[row] += gradient[a];
+    s->latest.slope[row] += slope;
   }
-  double along = m->ux * d[0] + m->uy * d[1];
-  double tension = k * (along - s->equations.rates.rest[j]);
-  if (k > 0) tension += s->equations.rates.stiffness[j] * m->tension / k;
-  rate[0] = tension * m->ux + m->across * (d[0] - along * m->ux);
-  rate[1] = tension * m->uy + m->across * (d[1] - along * m->uy);
+}
+
+void strut_path_add_strain(strut_path_system *s, const strut_force *force, double rate) {
+  double matrix[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  double gradient[STRUT_MOST_GRADIENT], change[STRUT_MOST_GRADIENT];
+  strut_force_stiffness(s->model, force, s->latest.q, matrix);
+  if (force->kind == STRUT_FORCE_ELEMENT && s->elements.element[force->index].turned)
+    strut_force_bend(s->model, force, s->latest.q, -2.0, matrix);
+  for (int32_t k = 0; k < 2 * force->nodes; k++)
+    gradient[k] = force->pose.force * force->pose.b[k], change[k] = rate * force->pose.b[k];
+  strut_path_add_force(s, force, gradient, change, matrix);
 }
 
 static void add_members(strut_path_system *s) {
   for (int32_t j = 0; j < s->model->members.count; j++) {
-    strut_path_member *m = &s->member[j];
-    double stretch = measure_member(s, j, m), k = s->equations.terms.stiffness[j], rate[2];
-    m->pulls = s->latest.pulling[j];
-    if (!m->pulls) continue;
-    m->tension = k * stretch;
-    /* of zero length and zero rest length: a spring alike in all directions */
-    double least = SHORT * s->size, length = copysign(fmax(fabs(m->length), least), m->length);
-    m->across = s->equations.terms.rest[j] > 0 ? m->tension / length : k;
-    s->latest.forces = fmax(s->latest.forces, fabs(m->tension));
-    int32_t row[4];
-    double block[4][4], along = k - m->across;
-    const double u[2] = {m->ux, m->uy}, force[2] = {m->tension * m->ux, m->tension * m->uy};
-    strut_member_rows(s->model, s->potential->row_of, j, row);
-    member_rate(s, j, rate);
-    for (int a = 0; a < 4; a++) {
-      double sign = a < 2 ? -1.0 : 1.0;
-      if (row[a] >= 0)
-        s->latest.g[row[a]] += sign * force[a % 2], s->latest.slope[row[a]] += sign * rate[a % 2];
-      for (int b = 0; b < 4; b++) {
-        double entry = along * u[a % 2] * u[b % 2] + (a % 2 == b % 2 ? m->across : 0.0);
-        block[a][b] = a / 2 == b / 2 ? entry : -entry;
-      }
-    }
-    add_stiffness(s, row, 4, block);
+    strut_force *force = &s->force[j];
+    double stretch = measure_member(s, j, force);
+    force->pose.acts = s->latest.pulling[j];
+    if (force->pose.acts)
+      strut_path_add_strain(s, force,
+                            s->equations.rates.stiffness[j] * stretch -
+                                force->pose.slope * s->equations.rates.rest[j]);
+    else
+      force->pose.force = 0.0;
   }
 }
 
@@ -303,43 +295,35 @@ bool strut_path_evaluate(strut_path_system *s, const double *y) { return evaluat
 
 void strut_path_reactions(const strut_path_system *s, double *reaction, double *contact,
                           double *friction) {
-  const strut_member_table *t = &s->model->members;
   for (int32_t at = 0; at < s->model->length; at++) reaction[at] = -s->equations.terms.force[at];
-  for (int32_t j = 0; j < t->count; j++) {
-    const strut_path_member *m = &s->member[j];
-    double fx = m->tension * m->ux, fy = m->tension * m->uy;
-    reaction[t->from[j]] -= fx, reaction[t->from[j] + 1] -= fy;
-    reaction[t->to[j]] += fx, reaction[t->to[j] + 1] += fy;
+  for (int32_t i = 0; i < strut_force_count(s->model, false); i++) {
+    const strut_force *force = &s->force[i];
+    bool element = force->kind == STRUT_FORCE_ELEMENT;
+    bool rubs = element && force->pose.acts && strut_path_rubs(s, force->index);
+    if (rubs) strut_path_rubbing_reactions(s, force->index, reaction);
+    for (int32_t k = 0; k < 2 * force->nodes && !rubs; k++)
+      reaction[strut_force_coordinate(force, k)] += force->pose.force * force->pose.b[k];
   }
-  strut_path_element_reactions(s, reaction);
   strut_path_contact_reactions(s, reaction, contact, friction);
   for (int32_t at = 0; at < s->model->length; at++)
     reaction[at] =
         at < 2 * s->model->node_count && s->potential->row_of[at] < 0 ? 0.0 + reaction[at] : 0.0;
 }
 
-/* Solves [K + by slope; row] x = (top, bottom), rows brought to one size; false: singular. */
+/* Solves [K + by slope; row] x = (top, bottom); false: singular. */
 static bool solve_with(strut_path_system *s, const double *row, const double *top, double bottom,
                        double by) {
   size_t n = (size_t)s->n;
+  gsl_matrix *a = s->algebra.bordered;
   for (size_t i = 0; i <= n; i++) {
-    double most = 0;
-    for (size_t j = 0; j <= n; j++) {
-      double entry = i == n  ? row[j]
-                     : j < n ? s->size * (gsl_matrix_get(s->algebra.hessian, i, j) + (i == j) * by)
-                             : s->latest.slope[i];
-      gsl_matrix_set(s->algebra.bordered, i, j, entry);
-      most = fmax(most, fabs(entry));
-    }
-    if (!(most > 0) || !isfinite(most)) return false;
-    gsl_vector_set(s->algebra.right, i, (i == n ? bottom : top ? top[i] : 0.0) / most);
-    for (size_t j = 0; j <= n; j++) *gsl_matrix_ptr(s->algebra.bordered, i, j) /= most;
+    for (size_t j = 0; j < n; j++)
+      gsl_matrix_set(
+          a, i, j,
+          i == n ? row[j] : s->size * (gsl_matrix_get(s->algebra.hessian, i, j) + (i == j) * by));
+    gsl_matrix_set(a, i, n, i == n ? row[n] : s->latest.slope[i]);
+    gsl_vector_set(s->algebra.right, i, i == n ? bottom : top ? top[i] : 0.0);
   }
-  strut_lu_factor(s->algebra.bordered, s->algebra.order);
-  for (size_t i = 0; i <= n; i++)
-    if (gsl_matrix_get(s->algebra.bordered, i, i) == 0.0) return false;
-  return gsl_linalg_LU_solve(s->algebra.bordered, s->algebra.order, s->algebra.right,
-                             s->algebra.solution) == 0;
+  return strut_solve_rows(a, s->algebra.right, s->algebra.order, s->algebra.solution);
 }
 
 /* Do [K slope] x and `top` agree? */
@@ -448,7 +432,7 @@ static double measure_ahead(const strut_path_system *s, int32_t j) {
 
 void strut_path_keep_directions(strut_path_system *s) {
   for (int32_t j = 0; j < s->model->members.count; j++)
-    s->latest.ahead[2 * j] = s->member[j].ux, s->latest.ahead[2 * j + 1] = s->member[j].uy;
+    memcpy(&s->latest.ahead[2 * j], &s->force[j].pose.b[2], 2 * sizeof(double));
 }
 
 void strut_path_forget_directions(strut_path_system *s) {
@@ -458,7 +442,7 @@ void strut_path_forget_directions(strut_path_system *s) {
 double strut_path_switch_value(strut_path_system *s, int32_t which, const double *y) {
   int32_t members = s->model->members.count, elements = strut_path_first_element_switch(s);
   int32_t corners = strut_path_first_corner_switch(s), grips = strut_path_first_grip_switch(s);
-  strut_path_member m;
+  strut_force member;
   bool turns = strut_path_turns_round(s, which);
   if (which < members && !turns && !is_plain_cable(s->model, which)) return -HUGE_VAL;
   if (!place(s, y)) return (double)NAN;
@@ -466,7 +450,7 @@ double strut_path_switch_value(strut_path_system *s, int32_t which, const double
   if (which >= elements) return strut_path_element_switch_value(s, which - elements);
   if (which >= grips) return strut_path_grip_switch_value(s, which - grips);
   if (which >= corners) return strut_path_corner_value(s, which - corners);
-  return which < members ? measure_member(s, which, &m)
+  return which < members ? measure_member(s, which, &member)
                          : strut_path_contact_switch_value(s, which - members);
 }
 

@@ -55,7 +55,7 @@ static strut_path_state keep_state(strut_path_walk *w, const double *y, double a
   memcpy(state.q, s->latest.q, length * sizeof *s->latest.q);
   for (size_t j = 0; j < members; j++) {
     bool cable = scene->members[j].kind == STRUT_CABLE; /* at a kink a rounding may push */
-    state.force[j] = cable ? fmax(s->member[j].tension, 0.0) : s->member[j].tension;
+    state.force[j] = cable ? fmax(s->force[j].pose.force, 0.0) : s->force[j].pose.force;
     if (strut_element_of_member(&model->elements, (int32_t)j))
       state.force[j] += strut_path_element_tension(s, (int32_t)j);
   }
@@ -126,7 +126,7 @@ static bool is_passing_by(strut_path_walk *w, int32_t which, double place) {
   strut_path_system *s = &w->system;
   if (place < 0 || !strut_path_turns_round(s, which) || !strut_path_evaluate(s, w->spare))
     return false;
-  return fabs(s->member[which].length) > STRUT_PATH_EVEN * s->size;
+  return fabs(s->force[which].pose.strain) > STRUT_PATH_EVEN * s->size;
 }
 
 /*
@@ -160,8 +160,7 @@ void strut_path_count_negative(strut_path_walk *w) {
   strut_path_spectrum(&w->system, w->y,
                       STRUT_PATH_SIGNS); /* y is of the path: its value was not refused */
   w->negative = w->system.spectrum.negative;
-  for (int32_t i = 0; i < w->system.n; i++)
-    w->values[i] = gsl_vector_get(w->system.algebra.values, (size_t)i);
+  for (int32_t i = 0; i < w->system.n; i++) w->values[i] = w->system.spectrum.value[i];
 }
 
 /* Ends the path exactly at the requested value if this piece passes it. */

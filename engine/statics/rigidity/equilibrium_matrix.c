@@ -26,18 +26,16 @@ static int compare_rows(const void *a, const void *b) {
   return x < y ? -1 : x > y;
 }
 
-/* Gradient of an element times `scale`, with the entries of a node that it meets twice summed. */
-static void add_gradient(const strut_model *model, const strut_element *e, const double *q,
-                         double scale, strut_equilibrium_matrix *a) {
-  strut_element_pose pose;
+/* The column after the last: the gradient of a force times `scale`, with the entries of a node that it meets twice summed. */
+static void add_gradient(const strut_force *force, double scale, strut_equilibrium_matrix *a) {
   double entry[STRUT_MOST_GRADIENT][2];
-  size_t count = 0, n = 2 * (size_t)e->nodes;
-  strut_element_evaluate(model, (int32_t)(e - model->elements.element), model->members.rest, q,
-                         (double)NAN, &pose);
-  for (size_t k = 0; k < n; k++) {
-    uint32_t at = model->elements.at[(size_t)e->first + k / 2] + (uint32_t)(k % 2);
-    if (a->row_of[at] < 0) continue;
-    entry[count][0] = a->row_of[at], entry[count++][1] = scale * pose.b[k];
+  size_t count = 0;
+  int32_t j = a->columns++;
+  a->start[j + 1] = a->start[j];
+  a->curved[j] = -1;
+  for (int32_t k = 0; k < 2 * force->nodes; k++) {
+    int32_t row = a->row_of[strut_force_coordinate(force, k)];
+    if (row >= 0) entry[count][0] = row, entry[count++][1] = scale * force->pose.b[k];
   }
   qsort(entry, count, sizeof entry[0], compare_rows);
   for (size_t k = 0; k < count; k++) {
@@ -45,59 +43,43 @@ static void add_gradient(const strut_model *model, const strut_element *e, const
     while (k + 1 < count && entry[k + 1][0] == entry[k][0]) sum += entry[++k][1];
     add_entry(a, (int32_t)entry[k][0], sum);
   }
-  a->length[a->columns - 1] = scale * pose.strain;
+  a->length[j] = scale * force->pose.strain;
 }
 
-/* What the forces of a column lend to motions across it; false: out of memory. */
-static bool add_bend(const strut_model *model, const strut_element *e, const double *q,
-                     double scale, strut_arena *arena, strut_equilibrium_matrix *a) {
-  int32_t j = a->columns - 1;
+/* The column of an element, and what its forces lend to motions across it, where that bends; false: out of memory. */
+static bool add_element(const strut_model *model, const strut_element *e, const double *q,
+                        strut_arena *arena, strut_equilibrium_matrix *a) {
+  strut_force force;
+  double scale = e->role == STRUT_ELEMENT_CELL    ? 1.0 / a->size
+                 : e->role == STRUT_ELEMENT_HINGE ? a->size
+                                                  : 1.0;
+  int32_t element = (int32_t)(e - model->elements.element), j = a->columns;
+  strut_force_begin(model, model->members.count + element, &force);
+  strut_element_evaluate(model, element, model->members.rest, q, (double)NAN, &force.pose);
+  add_gradient(&force, scale, a);
+  if (strut_element_is_of_member(e) && e->strain == STRUT_STRAIN_LENGTH) return true;
   size_t n = 2 * (size_t)e->nodes;
-  double largest = 0.0, *bend = a->bend[j] = strut_arena_allocate(arena, n * n, sizeof *bend);
+  double *bend = a->bend[j] = strut_arena_allocate(arena, n * n, sizeof *bend);
   if (!bend) return false;
-  a->curved[j] = (int32_t)(e - model->elements.element);
-  strut_element_bend(model, a->curved[j], q, scale, bend);
-  for (size_t k = 0; k < n * n; k++) largest = fmax(largest, fabs(bend[k]));
-  a->curvature[j] = largest;
+  a->curved[j] = element;
+  strut_element_bend(model, element, q, scale, bend);
+  double largest = a->curvature[j] = strut_largest_magnitude(bend, (ptrdiff_t)(n * n));
   for (size_t k = 0; k < n * n && largest > 0; k++) bend[k] /= largest;
   return true;
 }
 
-/* The column of a hinge, a cell or a distance after the last. */
-static bool add_curved(const strut_model *model, const strut_element *e, const double *q,
-                       strut_arena *arena, strut_equilibrium_matrix *a) {
-  int32_t j = a->columns++;
-  double scale = e->role == STRUT_ELEMENT_CELL    ? 1.0 / a->size
-                 : e->role == STRUT_ELEMENT_HINGE ? a->size
-                                                  : 1.0;
-  a->start[j + 1] = a->start[j];
-  add_gradient(model, e, q, scale, a);
-  return add_bend(model, e, q, scale, arena, a);
-}
-
-/* The column after the last; rows of the node that comes first in the model come first. */
-static bool add_column(const strut_model *model, const double *q, strut_arena *arena,
+static bool add_member(const strut_model *model, const double *q, strut_arena *arena,
                        strut_equilibrium_matrix *a) {
+  const strut_member_table *t = &model->members;
   int32_t j = a->columns;
-  uint32_t from = model->members.from[j], to = model->members.to[j];
-  strut_vec2 span = strut_member_span(&model->members, j, q);
-  double length = a->length[j] = strut_vec2_length(span);
-  strut_vec2 u = strut_vec2_unit(span, length);
-  a->direction[j][0] = u.x, a->direction[j][1] = u.y;
-  double sign = from < to ? -1.0 : 1.0;
-  uint32_t first = from < to ? from : to, second = from < to ? to : from;
-  a->columns++;
-  a->curved[j] = -1;
-  a->start[j + 1] = a->start[j];
-  if (strut_member_is_element(&model->elements, j)) {
-    const strut_element *e = strut_element_of_member(&model->elements, j);
-    add_gradient(model, e, q, 1.0, a);
-    return e->strain == STRUT_STRAIN_LENGTH || add_bend(model, e, q, 1.0, arena, a);
-  }
-  add_entry(a, a->row_of[first], sign * u.x);
-  add_entry(a, a->row_of[first + 1], sign * u.y);
-  add_entry(a, a->row_of[second], -sign * u.x);
-  add_entry(a, a->row_of[second + 1], -sign * u.y);
+  strut_member_pose pose = strut_member_pose_at(t, t->rest, j, q);
+  strut_force force;
+  a->direction[j][0] = pose.unit.x, a->direction[j][1] = pose.unit.y;
+  if (strut_member_is_element(&model->elements, j))
+    return add_element(model, strut_element_of_member(&model->elements, j), q, arena, a);
+  strut_force_begin(model, j, &force);
+  strut_force_set_member(t->stiffness[j], 0.0, pose.unit, pose.length, pose.stretch, &force);
+  add_gradient(&force, 1.0, a);
   return true;
 }
 
@@ -116,7 +98,7 @@ static bool add_elements(const strut_model *model, const double *q, strut_arena 
     if (e->role == STRUT_ELEMENT_DISTANCE) element[cells + (size_t)e->item] = e;
   }
   for (size_t i = 0; i < all; i++)
-    if (!add_curved(model, element[i], q, arena, a)) return false;
+    if (!add_element(model, element[i], q, arena, a)) return false;
   return true;
 }
 
@@ -144,7 +126,7 @@ strut_status strut_equilibrium_matrix_build(const strut_model *model, const doub
     return STRUT_NO_MEMORY;
   a->rows = strut_number_free(model, NULL, a->row_of, a->coordinate);
   for (int32_t j = 0; j < model->members.count; j++)
-    if (!add_column(model, q, arena, a)) return STRUT_NO_MEMORY;
+    if (!add_member(model, q, arena, a)) return STRUT_NO_MEMORY;
   return add_elements(model, q, arena, a) ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
@@ -169,71 +151,54 @@ typedef struct sums {
   int32_t touching;
 } sums;
 
-/* Along the member into the elastic part, across it into the geometric one. */
-static void add_member(void *context, int32_t j, const strut_member_tangent *m) {
-  sums *s = context;
-  const strut_vec2 u = m->pose.unit, turned = {u.y, -u.x};
-  int32_t row[4];
-  strut_member_rows(s->model, s->row_of, j, row);
-  if (!(m->pose.length > 0.0)) { /* an isotropic spring, or no direction */
-    const strut_stiffness_block all = strut_block_of(m->across, m->across, u);
-    if (m->across > 0.0) strut_block_add(&all, STRUT_MEMBER_ENTRIES, row, &s->elastic);
+/* Along its strain into the elastic part, across it into the geometric one; contacts into one of their own. */
+static void add_force(sums *s, const strut_force *force) {
+  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  int32_t n = 2 * force->nodes;
+  bool contact = force->kind == STRUT_FORCE_CONTACT;
+  strut_triplets *elastic = contact ? &s->contact : &s->elastic;
+  s->touching += contact;
+  if (contact || !(force->pose.strain > 0.0 || force->kind == STRUT_FORCE_ELEMENT)) {
+    strut_force_stiffness(s->model, force, s->q,
+                          k); /* or an isotropic spring, which has no direction */
+    if (contact || force->across > 0.0) strut_force_add(force, k, s->row_of, elastic);
     return;
   }
-  const strut_stiffness_block along = strut_block_of(m->along, 0.0, u);
-  const strut_stiffness_block across = strut_block_of(m->across, 0.0, turned);
-  strut_block_add(&along, STRUT_MEMBER_ENTRIES, row, &s->elastic);
-  strut_block_add(&across, STRUT_MEMBER_ENTRIES, row, &s->geometric);
-}
-
-static void add_element(void *context, int32_t i, const strut_element_pose *pose) {
-  sums *s = context;
-  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
-  int32_t n = 2 * s->model->elements.element[i].nodes;
-  for (int32_t r = 0; r < n; r++)
-    for (int32_t c = 0; c < n; c++) k[r * n + c] = pose->slope * pose->b[r] * pose->b[c];
-  strut_element_add(s->model, i, k, s->row_of, &s->elastic);
+  strut_force_square(force, force->pose.slope, k);
+  strut_force_add(force, k, s->row_of, elastic);
   memset(k, 0, (size_t)(n * n) * sizeof *k);
-  strut_element_bend(s->model, i, s->q, pose->force, k);
-  strut_element_add(s->model, i, k, s->row_of, &s->geometric);
+  strut_force_bend(s->model, force, s->q, 1.0, k);
+  strut_force_add(force, k, s->row_of, &s->geometric);
 }
 
-static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
-  sums *s = context;
-  const strut_contact_table *c = &s->model->contacts;
-  const strut_stiffness_block block =
-      strut_block_of_pose(contact->stiffness, contact->across, &contact->axes);
-  strut_block_add(&block, STRUT_CONTACT_ENTRIES, s->row_of + c->at[i], &s->contact);
-  s->touching++;
+/* Masses at the ends of a member, and what both share. */
+static void add_ends(sums *s, const uint32_t end[2], double first, double second, double shared) {
+  for (uint32_t k = 0; k < 2; k++) {
+    int32_t a = s->row_of[end[0] + k], b = s->row_of[end[1] + k];
+    if (a >= 0) strut_triplets_add(&s->mass, a, a, first);
+    if (b >= 0) strut_triplets_add(&s->mass, b, b, second);
+    if (a >= 0 && b >= 0 && shared > 0.0) strut_triplets_add(&s->mass, a, b, shared);
+  }
 }
 
-static void add_mass(const strut_model *model, sums *s) {
+static void add_masses(const strut_model *model, sums *s) {
   const strut_member_table *t = &model->members;
   bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
   for (int32_t at = 0; at < 2 * model->node_count; at++) {
     int32_t row = s->row_of[at];
     if (row >= 0) strut_triplets_add(&s->mass, row, row, model->point_mass[at / 2]);
   }
-  for (int32_t j = 0; j < t->count; j++)
-    for (uint32_t k = 0; k < 2; k++) {
-      int32_t a = s->row_of[t->from[j] + k], b = s->row_of[t->to[j] + k];
-      double own = consistent ? t->mass[j] / 3.0 : t->mass[j] / 2.0;
-      if (a >= 0) strut_triplets_add(&s->mass, a, a, own);
-      if (b >= 0) strut_triplets_add(&s->mass, b, b, own);
-      if (a >= 0 && b >= 0 && consistent) strut_triplets_add(&s->mass, a, b, t->mass[j] / 6.0);
-    }
-}
-
-static void add_sliding_masses(const strut_model *model, sums *s) {
-  for (int32_t i = 0; i < model->sliding.count; i++)
-    for (uint32_t k = 0; k < 2; k++) {
-      const strut_sliding_item *item = &model->sliding.item[i];
-      int32_t a = s->row_of[item->at[0] + k], b = s->row_of[item->at[1] + k];
-      double far = item->start, near = 1.0 - far;
-      if (a >= 0) strut_triplets_add(&s->mass, a, a, item->mass * near * near);
-      if (b >= 0) strut_triplets_add(&s->mass, b, b, item->mass * far * far);
-      if (a >= 0 && b >= 0) strut_triplets_add(&s->mass, a, b, item->mass * near * far);
-    }
+  for (int32_t j = 0; j < t->count; j++) {
+    const uint32_t end[2] = {t->from[j], t->to[j]};
+    double own = consistent ? t->mass[j] / 3.0 : t->mass[j] / 2.0;
+    add_ends(s, end, own, own, consistent ? t->mass[j] / 6.0 : 0.0);
+  }
+  for (int32_t i = 0; i < model->sliding.count; i++) {
+    const strut_sliding_item *item = &model->sliding.item[i];
+    double far = item->start, near = 1.0 - far;
+    add_ends(s, item->at, item->mass * near * near, item->mass * far * far,
+             item->mass * near * far);
+  }
 }
 
 static bool reserve(const strut_model *model, sums *s, strut_arena *scratch) {
@@ -243,7 +208,7 @@ static bool reserve(const strut_model *model, sums *s, strut_arena *scratch) {
                                 scratch) &&
          strut_triplets_reserve(&s->elastic, most + 1, scratch) &&
          strut_triplets_reserve(&s->geometric, most + 1, scratch) &&
-         strut_triplets_reserve(&s->contact, STRUT_CONTACT_ENTRIES * contacts + 1, scratch);
+         strut_triplets_reserve(&s->contact, 3 * contacts + 1, scratch);
 }
 
 strut_status strut_linear_matrices_build(const strut_model *model, const double *q,
@@ -257,10 +222,13 @@ strut_status strut_linear_matrices_build(const strut_model *model, const double 
   strut_status status = STRUT_NO_MEMORY;
   if (s.row_of && coordinate && reserve(model, &s, &scratch)) {
     int32_t n = matrices->n = strut_number_free(model, NULL, s.row_of, coordinate);
-    add_mass(model, &s);
-    add_sliding_masses(model, &s);
-    strut_tangent_visit(model, q, model->members.rest, -HUGE_VAL, STRUT_CLOSED_TOUCHING, &s,
-                        add_member, add_element, add_contact);
+    add_masses(model, &s);
+    strut_force_visit visit = {.model = model,
+                               .q = q,
+                               .rest = model->members.rest,
+                               .least = -HUGE_VAL,
+                               .closed = STRUT_CLOSED_TOUCHING};
+    for (const strut_force *force; (force = strut_force_next(&visit));) add_force(&s, force);
     matrices->mass = strut_sparse_build(n, &s.mass, arena);
     matrices->elastic = strut_sparse_build(n, &s.elastic, arena);
     matrices->geometric = strut_sparse_build(n, &s.geometric, arena);

@@ -201,18 +201,12 @@ const char *strut_motion_kind_name(strut_motion_kind kind) {
   return names[kind];
 }
 
-static void remove_direction(double *x, const double *unit, size_t n) {
-  double sum = strut_dot(x, unit, (ptrdiff_t)n);
-  for (size_t c = 0; c < n; c++) x[c] -= sum * unit[c];
-}
-
 /* Collects the null space beside the rigid motions, vectors with the largest remainder first. */
 static void collect(sorter *s, const double *space, size_t count, size_t rigid) {
   double *rest = s->turned;
   memcpy(rest, space, count * s->rows * sizeof *rest);
   for (size_t i = 0; i < count; i++)
-    for (size_t r = 0; r < rigid; r++)
-      remove_direction(rest + i * s->rows, s->motion + r * s->rows, s->rows);
+    strut_remove_shares(s->motion, rigid, s->rows, rest + i * s->rows);
   for (size_t k = 0; k < s->n; k++) {
     double best = -1.0, *chosen = s->inner + k * s->rows;
     for (size_t i = 0; i < count; i++) {
@@ -221,11 +215,9 @@ static void collect(sorter *s, const double *space, size_t count, size_t rigid) 
       best = left;
       memcpy(chosen, rest + i * s->rows, s->rows * sizeof *rest);
     }
-    for (size_t r = 0; r < rigid + k; r++) /* again: once leaves rounding */
-      remove_direction(chosen, s->motion + r * s->rows, s->rows);
-    double norm = sqrt(strut_dot(chosen, chosen, (ptrdiff_t)s->rows));
+    double norm = sqrt(strut_remove_shares(s->motion, rigid + k, s->rows, chosen));
     for (size_t c = 0; c < s->rows; c++) chosen[c] /= norm;
-    for (size_t i = 0; i < count; i++) remove_direction(rest + i * s->rows, chosen, s->rows);
+    for (size_t i = 0; i < count; i++) strut_remove_shares(chosen, 1, s->rows, rest + i * s->rows);
   }
 }
 
@@ -308,7 +300,7 @@ static bool separate(sorter *s, size_t *silent) {
 static int32_t rigid_motions(const sorter *s, double *motion) {
   strut_potential *rows = NULL;
   if (strut_potential_create(s->model, NULL, false, &rows, NULL) != STRUT_OK) return -1;
-  int32_t count = strut_rigid_motions(rows, s->q, motion);
+  int32_t count = strut_rigid_motions(rows, s->q, NULL, motion);
   strut_potential_free(rows);
   return count;
 }

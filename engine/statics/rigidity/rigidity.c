@@ -6,8 +6,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "engine/forces/elements.h"
-#include "engine/model/pose.h"
+#include "engine/forces/tangent.h"
 
 static const double NONE = 1e-9;    /* of the largest force: no force */
 static const double ON_LINE = 1e-9; /* of the size: a node on the outline */
@@ -115,10 +114,9 @@ static strut_status judge_tensegrity(const strut_model *model, const double *q, 
   *t = (strut_tensegrity){.self_stress = r->states.count > 0, .judged = r->judged != NULL};
   if (r->judged) {
     const strut_mechanisms *m = &r->mechanisms;
-    double largest = 0.0;
+    double largest = strut_largest_magnitude(r->judged, model->members.count);
     int32_t *scratch = strut_allocate((size_t)model->node_count + 1, sizeof *scratch);
     if (!scratch) return STRUT_NO_MEMORY;
-    for (int32_t j = 0; j < model->members.count; j++) largest = fmax(largest, fabs(r->judged[j]));
     t->cables = pulls_cables_only(model, r, largest);
     t->mechanism = m->infinitesimal > 0 && m->infinitesimal + m->rigid_body == m->count &&
                    (m->by_forces || (m->stiffener && m->stiffener_pulls));
@@ -177,25 +175,22 @@ static bool measure_forces(const strut_model *model, const double *q, strut_rigi
 /* Adds what acts beside the members; also to the scale of balance. */
 static void add_outer_forces(const strut_model *model, const double *q, double *net,
                              double *scale) {
-  const strut_contact_table *c = &model->contacts;
+  strut_force_visit visit = {.model = model,
+                             .q = q,
+                             .rest = model->members.rest,
+                             .least = -HUGE_VAL,
+                             .closed = STRUT_CLOSED_TOUCHING};
   for (int32_t at = 0; at < 2 * model->node_count && model->constant_force; at++) {
     net[at] += model->constant_force[at];
     *scale = fmax(*scale, fabs(model->constant_force[at]));
   }
-  for (int32_t i = 0; i < model->elements.count; i++) {
-    const strut_element *e = &model->elements.element[i];
-    const uint32_t *at = model->elements.at + e->first;
-    strut_element_pose pose;
-    if (e->role != STRUT_ELEMENT_COLLISION && e->role != STRUT_ELEMENT_LOAD) continue;
-    strut_element_evaluate(model, i, model->members.rest, q, (double)NAN, &pose);
-    for (int32_t k = 0; k < 2 * e->nodes; k++)
-      net[at[k / 2] + (uint32_t)(k % 2)] -= pose.force * pose.b[k];
-  }
-  for (int32_t i = 0; i < c->count; i++) {
-    strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
-    if (!(pose.gap < 0)) continue;
-    for (int k = 0; k < 2; k++)
-      net[c->at[i] + (uint32_t)k] -= c->entry[i].stiffness * pose.gap * pose.axes.normal[k];
+  for (const strut_force *force; (force = strut_force_next(&visit));) {
+    const strut_element *e =
+        force->kind == STRUT_FORCE_ELEMENT ? &model->elements.element[force->index] : NULL;
+    bool outer = force->kind == STRUT_FORCE_CONTACT ||
+                 (e && (e->role == STRUT_ELEMENT_COLLISION || e->role == STRUT_ELEMENT_LOAD));
+    for (int32_t k = 0; k < 2 * force->nodes && outer; k++)
+      net[strut_force_coordinate(force, k)] -= force->pose.force * force->pose.b[k];
   }
 }
 
@@ -276,8 +271,7 @@ static void choose_stress(strut_rigidity *r) {
 
 /* A cable under compression rules out super stability, whatever the matrix. */
 static void respect_cables(const strut_model *model, strut_rigidity *r) {
-  double largest = 0.0;
-  for (int32_t j = 0; j < r->matrix.columns; j++) largest = fmax(largest, fabs(r->judged[j]));
+  double largest = strut_largest_magnitude(r->judged, r->matrix.columns);
   for (int32_t j = 0; j < r->matrix.columns; j++)
     if (strut_column_is_cable(model, j) && r->judged[j] < -1e-9 * largest)
       r->stress.super_stable = false;

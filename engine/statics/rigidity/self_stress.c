@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
 
 static const double TINY = 1e-11;      /* beside the largest force: rounding */
@@ -12,21 +13,14 @@ static const double PIVOT_SHARE = 0.1; /* of the largest entry: what a pivot mus
 static const double MOST_WORK = 4e8;   /* multiplications spent on locality */
 static const double LEADS = 0.01;      /* of the largest: what a force made 1 must have */
 
-/* The largest magnitude in a row. */
-static double peak_of(const double *row, size_t columns) {
-  double largest = 0.0;
-  for (size_t k = 0; k < columns; k++)
-    if (fabs(row[k]) > largest) largest = fabs(row[k]);
-  return largest;
-}
-
 /*
  * Reduced echelon form, members from `shift` on: 1 at its own pivot, 0 at the others. `peak` has room for
  * the peaks of the rows.
  */
 static void reduce_echelon(double *rows, size_t count, size_t columns, size_t shift, double *peak) {
   size_t done = 0;
-  for (size_t i = 0; i < count; i++) peak[i] = peak_of(rows + i * columns, columns);
+  for (size_t i = 0; i < count; i++)
+    peak[i] = strut_largest_magnitude(rows + i * columns, (ptrdiff_t)columns);
   for (size_t c = 0; c < columns && done < count; c++) {
     size_t j = (c + shift) % columns, best = done;
     double largest = 0.0;
@@ -49,15 +43,14 @@ static void reduce_echelon(double *rows, size_t count, size_t columns, size_t sh
       for (size_t k = 0; k < columns; k++)
         rows[i * columns + k] -= factor * rows[done * columns + k];
       rows[i * columns + j] = 0.0;
-      if (i > done) peak[i] = peak_of(rows + i * columns, columns);
+      if (i > done) peak[i] = strut_largest_magnitude(rows + i * columns, (ptrdiff_t)columns);
     }
     done++;
   }
 }
 
 static void drop_rounding(double *row, size_t columns) {
-  double largest = 0.0;
-  for (size_t k = 0; k < columns; k++) largest = fmax(largest, fabs(row[k]));
+  double largest = strut_largest_magnitude(row, (ptrdiff_t)columns);
   for (size_t k = 0; k < columns; k++)
     if (fabs(row[k]) <= TINY * largest) row[k] = 0.0;
 }
@@ -73,16 +66,9 @@ static size_t count_members(const double *row, size_t columns) {
  * left.
  */
 static bool add_if_independent(double *chosen, size_t count, size_t columns, const double *row) {
-  double *rest = chosen + count * columns, before = 0.0, after = 0.0;
+  double *rest = chosen + count * columns, before = strut_dot(row, row, (ptrdiff_t)columns);
   memcpy(rest, row, columns * sizeof *rest);
-  for (size_t k = 0; k < columns; k++) before += row[k] * row[k];
-  for (int twice = 0; twice < 2; twice++)
-    for (size_t i = 0; i < count; i++) {
-      double sum = 0.0;
-      for (size_t k = 0; k < columns; k++) sum += chosen[i * columns + k] * rest[k];
-      for (size_t k = 0; k < columns; k++) rest[k] -= sum * chosen[i * columns + k];
-    }
-  for (size_t k = 0; k < columns; k++) after += rest[k] * rest[k];
+  double after = strut_remove_shares(chosen, count, columns, rest);
   if (after <= 1e-8 * before) return false;
   for (size_t k = 0; k < columns; k++) rest[k] /= sqrt(after);
   return true;
@@ -128,8 +114,7 @@ static bool choose_local(const double *basis, size_t count, size_t columns, size
 /* The member whose force is made 1. */
 static size_t unit_member(const strut_model *model, const double *force, size_t columns) {
   static const strut_member_kind order[] = {STRUT_CABLE, STRUT_SPRING, STRUT_BAR};
-  double largest = 0.0;
-  for (size_t j = 0; j < columns; j++) largest = fmax(largest, fabs(force[j]));
+  double largest = strut_largest_magnitude(force, (ptrdiff_t)columns);
   for (int i = 0; i < 3; i++)
     for (size_t j = 0; j < model->scene->member_count; j++)
       if (model->scene->members[j].kind == order[i] && fabs(force[j]) > LEADS * largest) return j;
@@ -199,11 +184,10 @@ typedef struct search {
  */
 static void combine_states(const strut_self_stress *states, size_t members, const double *weight,
                            double *force) {
-  double largest = 0.0;
   memset(force, 0, members * sizeof *force);
   for (size_t i = 0; i < (size_t)states->count; i++)
     for (size_t j = 0; j < members; j++) force[j] += weight[i] * states->force[i * members + j];
-  for (size_t j = 0; j < members; j++) largest = fmax(largest, fabs(force[j]));
+  double largest = strut_largest_magnitude(force, (ptrdiff_t)members);
   for (size_t j = 0; j < members && largest > 0; j++) force[j] /= largest;
 }
 
@@ -229,11 +213,7 @@ static void measure_cables(search *s) {
   }
 }
 
-static double norm(const double *x, size_t n) {
-  double sum = 0.0;
-  for (size_t i = 0; i < n; i++) sum += x[i] * x[i];
-  return sqrt(sum);
-}
+static double norm(const double *x, size_t n) { return sqrt(strut_dot(x, x, (ptrdiff_t)n)); }
 
 /* The demand of the cable that is pressed most, relative to its coefficients; false: none is. */
 static bool demand_of_worst_cable(search *s) {

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/rigidity/rigidity.h"
 
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_linalg.h>
 #include <math.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/vec.h"
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/potential.h"
@@ -146,8 +149,7 @@ static void judge(const strut_equilibrium_matrix *a, const double *force,
 
 /* Does a running cable or a hinge carry a part of the forces? Its energy is no quadratic form. */
 static bool are_elements_loaded(const strut_equilibrium_matrix *a, const double *force) {
-  double largest = 0.0;
-  for (int32_t j = 0; j < a->columns; j++) largest = fmax(largest, fabs(force[j]));
+  double largest = strut_largest_magnitude(force, a->columns);
   for (int32_t j = 0; j < a->columns; j++)
     if (a->curved[j] >= 0 && fabs(force[j]) > ROUNDING * largest) return true;
   return false;
@@ -191,7 +193,7 @@ struct strut_node_stiffness {
   double *k;     /* (n, n) K, then its Cholesky factor in the lower triangle */
   double *rigid; /* (rigid_count, n) orthonormal */
   int32_t rigid_count;
-  double *load; /* (n) */
+  double *load; /* (3, n); (n) of them a load */
   strut_potential *potential;
   strut_arena arena;
 };
@@ -222,67 +224,38 @@ static void hold_contacts(stiff *s, const strut_model *model, const double *q,
   }
 }
 
-static double largest_diagonal(const stiff *s) {
-  double largest = 0.0;
-  for (size_t i = 0; i < s->n; i++) largest = fmax(largest, fabs(s->k[i * s->n + i]));
-  return largest;
-}
-
-/* x' K y */
-static double form(const stiff *s, const double *x, const double *y) {
-  double sum = 0.0;
-  for (size_t i = 0; i < s->n; i++)
-    for (size_t j = 0; j < s->n; j++) sum += x[i] * s->k[i * s->n + j] * y[j];
-  return sum;
-}
-
 /* Finds the rigid motions without stiffness in K, as combinations, and adds stiffness against them. */
 static void lift_rigid(stiff *s) {
-  double a[3][3] = {{0}}, value[3], vector[3][3], largest = largest_diagonal(s);
-  int32_t count = s->rigid_count, kept = 0;
-  for (int32_t i = 0; i < 3; i++)
-    for (int32_t j = 0; j < 3; j++) {
-      bool both = i < count && j < count;
-      a[i][j] = both ? form(s, s->rigid + (size_t)i * s->n, s->rigid + (size_t)j * s->n)
-                     : (i == j) * 2.0 * largest * (double)s->n; /* unused: sorted to the end */
-    }
-  strut_symmetric_3(a, value, vector);
-  while (kept < count && fabs(value[kept]) <= NOTHING * largest) kept++;
-  for (size_t i = 0; i < s->n; i++) {
-    double r[3] = {0, 0, 0}, combined[3];
-    for (int32_t m = 0; m < count; m++) r[m] = s->rigid[(size_t)m * s->n + i];
-    for (int32_t m = 0; m < kept; m++)
-      combined[m] = vector[m][0] * r[0] + vector[m][1] * r[1] + vector[m][2] * r[2];
-    for (int32_t m = 0; m < kept; m++) s->rigid[(size_t)m * s->n + i] = combined[m];
+  size_t n = s->n;
+  double largest = 0.0;
+  gsl_matrix_view k = gsl_matrix_view_array(s->k, n, n);
+  for (size_t i = 0; i < n; i++) largest = fmax(largest, fabs(s->k[i * n + i]));
+  for (size_t m = 0; m < (size_t)s->rigid_count; m++) {
+    gsl_vector_view x = gsl_vector_view_array(s->rigid + m * n, n);
+    gsl_vector_view image = gsl_vector_view_array(s->load + m * n, n);
+    gsl_blas_dsymv(CblasLower, 1.0, &k.matrix, &x.vector, 0.0, &image.vector);
   }
-  s->rigid_count = kept;
-  for (int32_t m = 0; m < kept; m++) {
-    const double *x = s->rigid + (size_t)m * s->n;
-    for (size_t i = 0; i < s->n; i++)
-      for (size_t j = 0; j < s->n; j++) s->k[i * s->n + j] += largest * x[i] * x[j];
+  s->rigid_count =
+      strut_rigid_motions_free((int32_t)n, NOTHING * largest, s->rigid_count, s->rigid, s->load);
+  for (size_t m = 0; m < (size_t)s->rigid_count; m++) {
+    gsl_vector_view x = gsl_vector_view_array(s->rigid + m * n, n);
+    gsl_blas_dsyr(CblasLower, largest, &x.vector, &k.matrix);
   }
 }
 
 /* False where K is not positive definite. */
 static bool factorise(stiff *s) {
-  for (size_t j = 0; j < s->n; j++) {
-    double *row = s->k + j * s->n, before = row[j];
-    for (size_t i = 0; i <= j; i++) {
-      double *other = s->k + i * s->n, sum = row[i];
-      for (size_t m = 0; m < i; m++) sum -= row[m] * other[m];
-      if (i < j)
-        row[i] = sum / other[i];
-      else if (!(sum > PIVOT * before))
-        return false;
-      else
-        row[j] = sqrt(sum);
-    }
+  gsl_matrix_view k = gsl_matrix_view_array(s->k, s->n, s->n);
+  for (size_t i = 0; i < s->n; i++) s->load[i] = s->k[i * s->n + i];
+  bool good = gsl_linalg_cholesky_decomp1(&k.matrix) == 0;
+  for (size_t i = 0; i < s->n && good; i++) {
+    double root = s->k[i * s->n + i];
+    good = root * root > PIVOT * s->load[i];
   }
-  return true;
+  return good;
 }
 
 double strut_node_stiffness_along(stiff *s, int32_t node, const double direction[2]) {
-  double compliance = 0.0;
   const int32_t *row_of = &s->potential->row_of[2 * node];
   for (size_t i = 0; i < s->n; i++) s->load[i] = 0.0;
   for (int d = 0; d < 2; d++)
@@ -294,13 +267,10 @@ double strut_node_stiffness_along(stiff *s, int32_t node, const double direction
       if (row_of[d] >= 0) along += direction[d] * x[row_of[d]];
     for (size_t i = 0; i < s->n; i++) s->load[i] -= along * x[i];
   }
-  for (size_t i = 0; i < s->n; i++) { /* |L^-1 d|^2 = d' K^-1 d */
-    const double *row = s->k + i * s->n;
-    double sum = s->load[i];
-    for (size_t m = 0; m < i; m++) sum -= row[m] * s->load[m];
-    s->load[i] = sum / row[i];
-    compliance += s->load[i] * s->load[i];
-  }
+  gsl_matrix_view factor = gsl_matrix_view_array(s->k, s->n, s->n);
+  gsl_vector_view load = gsl_vector_view_array(s->load, s->n);
+  gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, &factor.matrix, &load.vector);
+  double compliance = strut_dot(s->load, s->load, (ptrdiff_t)s->n); /* |L^-1 d|^2 = d' K^-1 d */
   return compliance > 0.0 ? 1.0 / compliance : (double)NAN;
 }
 
@@ -310,7 +280,7 @@ static strut_status fill_stiffness(stiff *s, const strut_model *model, const dou
   strut_linear_matrices matrices;
   s->k = strut_arena_allocate(&s->arena, s->n * s->n, sizeof *s->k);
   s->rigid = strut_arena_allocate(&s->arena, 3 * s->n, sizeof *s->rigid);
-  s->load = strut_arena_allocate(&s->arena, s->n, sizeof *s->load);
+  s->load = strut_arena_allocate(&s->arena, 3 * s->n, sizeof *s->load);
   strut_status status = s->k && s->rigid && s->load
                             ? strut_linear_matrices_build(model, q, &s->arena, &matrices)
                             : STRUT_NO_MEMORY;
@@ -319,7 +289,7 @@ static strut_status fill_stiffness(stiff *s, const strut_model *model, const dou
   add_sparse(s, matrices.geometric);
   add_sparse(s, matrices.contact);
   hold_contacts(s, model, q, s->potential->row_of);
-  s->rigid_count = strut_rigid_motions(s->potential, q, s->rigid);
+  s->rigid_count = strut_rigid_motions(s->potential, q, NULL, s->rigid);
   lift_rigid(s);
   if (!factorise(s)) *reason = "a motion has no stiffness";
   return STRUT_OK;

@@ -39,10 +39,6 @@ typedef struct search {
   strut_error *error;
 } search;
 
-static bool is_minimum(const strut_critical_point *point) {
-  return point->label == STRUT_STABLE || point->label == STRUT_FLOPPY;
-}
-
 static bool reserve_hits(search *s) {
   if ((int64_t)s->all.count <= s->room) return true;
   int64_t room = 2 * (int64_t)s->all.count + 16;
@@ -69,7 +65,7 @@ static strut_status read_result(search *s, const strut_task *task,
   if (task->kind == STRUT_TASK_RANDOM) s->hits[index]++;
   if (!down) return STRUT_OK;
   s->all.points[index].found--;
-  if (is_minimum(&s->all.points[index]))
+  if (strut_is_minimum(&s->all.points[index]))
     s->all.points[task->from].down[task->side > 0 ? 0 : 1] = index;
   return STRUT_OK;
 }
@@ -140,7 +136,7 @@ typedef struct meetings {
 static meetings count_meetings(const search *s) {
   meetings m = {0};
   for (size_t i = 0; i < s->all.count; i++) {
-    if (!is_minimum(&s->all.points[i])) continue;
+    if (!strut_is_minimum(&s->all.points[i])) continue;
     m.distinct += s->hits[i] > 0;
     m.once += s->hits[i] == 1;
     m.twice += s->hits[i] == 2;
@@ -219,7 +215,7 @@ static strut_status shake_rare_minima(search *s) {
   if (s->potential->n == 0 || s->potential->n > STRUT_DENSE_STATICS) return STRUT_OK;
   for (; s->shaken < end && !status; s->shaken++) {
     const double *q = s->all.points[s->shaken].q;
-    if (!is_minimum(&s->all.points[s->shaken]) || s->hits[s->shaken] > 1) continue;
+    if (!strut_is_minimum(&s->all.points[s->shaken]) || s->hits[s->shaken] > 1) continue;
     for (int64_t k = 0; k < SHAKES && !status && !is_over_budget(s, CLIMBS_BY); k++)
       status = add_task(
           s, (strut_task){
@@ -269,7 +265,7 @@ static strut_status climb_modes(search *s) {
     const strut_critical_point *point = &s->all.points[s->climbed];
     int64_t modes = s->potential->n < MODES_CLIMBED ? s->potential->n : MODES_CLIMBED;
     const double *q = point->q;
-    if (!is_minimum(point)) continue;
+    if (!strut_is_minimum(point)) continue;
     for (int64_t k = 0; k < 2 * modes && !status; k++)
       status = climb_from(
           s,
@@ -284,9 +280,9 @@ static strut_status climb_pairs(search *s) {
   strut_status status = STRUT_OK;
   size_t end = s->all.count;
   for (; s->paired < end && !status; s->paired++) {
-    if (!is_minimum(&s->all.points[s->paired])) continue;
+    if (!strut_is_minimum(&s->all.points[s->paired])) continue;
     for (size_t i = 0; i <= s->paired && !status; i++) {
-      if (!is_minimum(&s->all.points[i])) continue;
+      if (!strut_is_minimum(&s->all.points[i])) continue;
       const double *a = s->all.points[i].q, *b;
       for (int32_t k = i == s->paired; k < 3 && !status; k++) {
         b = strut_stationary_set_placement(&s->all, (int32_t)s->paired, k);
@@ -308,7 +304,7 @@ static strut_status descend_from_saddles(search *s, size_t begin) {
   for (size_t i = begin; i < end && !status && !is_over_budget(s, 1.0); i++) {
     const strut_critical_point *point = &s->all.points[i];
     const double *q = point->q, *direction = point->softest;
-    if (is_minimum(point) || point->negative != 1) continue;
+    if (strut_is_minimum(point) || point->negative != 1) continue;
     for (int k = 0; k < 2 && !status; k++)
       status = add_task(s, (strut_task){.kind = STRUT_TASK_DOWN,
                                         .q = q,
@@ -323,11 +319,11 @@ static strut_status descend_from_saddles(search *s, size_t begin) {
 static strut_task random_climb_task(const search *s, int64_t number) {
   strut_task task = {.kind = STRUT_TASK_CLIMB_RANDOM, .number = number};
   int64_t minima = 0, wanted;
-  for (size_t i = 0; i < s->all.count; i++) minima += is_minimum(&s->all.points[i]);
+  for (size_t i = 0; i < s->all.count; i++) minima += strut_is_minimum(&s->all.points[i]);
   if (number % 2 || minima == 0) return task;
   wanted = number / 2 % minima;
   for (size_t i = 0; i < s->all.count && !task.q; i++)
-    if (is_minimum(&s->all.points[i]) && wanted-- == 0) task.q = s->all.points[i].q;
+    if (strut_is_minimum(&s->all.points[i]) && wanted-- == 0) task.q = s->all.points[i].q;
   return task;
 }
 
@@ -341,7 +337,7 @@ static strut_status climb_hints(search *s) {
 static int64_t count_passes(const search *s) {
   int64_t count = 0;
   for (size_t i = 0; i < s->all.count; i++)
-    count += !is_minimum(&s->all.points[i]) && s->all.points[i].negative == 1;
+    count += !strut_is_minimum(&s->all.points[i]) && s->all.points[i].negative == 1;
   return count;
 }
 
@@ -382,7 +378,7 @@ static strut_status find_saddles(search *s) {
 }
 
 static int kind_rank(const strut_critical_point *point) {
-  return is_minimum(point) ? 0 : point->label == STRUT_SADDLE ? 1 : 2;
+  return strut_is_minimum(point) ? 0 : point->label == STRUT_SADDLE ? 1 : 2;
 }
 
 static bool comes_before(const strut_critical_point *a, const strut_critical_point *b) {

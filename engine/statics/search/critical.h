@@ -57,13 +57,13 @@ STRUT_API strut_status strut_critical_search(const strut_potential *potential,
                                              strut_critical_set *set, strut_error *error);
 STRUT_API void strut_critical_free(strut_critical_set *set);
 
-/**
- * Classifies one stationary point q: label, eigenvalues, zero modes. The point's arrays are in the
- * arena.
- */
-STRUT_API strut_status strut_critical_judge(const strut_potential *potential, const double *q,
-                                            strut_arena *arena, strut_critical_point *point,
-                                            strut_error *error);
+/** The rigid motion that brings one shape nearest to another by least squares: x is mirrored first if side is -1. */
+typedef struct strut_rigid_fit {
+  double from[2], to[2], cosine, sine, side;
+} strut_rigid_fit;
+/** Of q onto a, both (2 nodes); shapes without extent are only shifted. */
+strut_rigid_fit strut_rigid_fit_find(int32_t nodes, const double *a, const double *q, double side);
+void strut_rigid_fit_apply(const strut_rigid_fit *fit, const double at[2], double moved[2]);
 
 /**
  * Largest distance between corresponding nodes after the best rigid motion carries b onto a, mirror
@@ -140,8 +140,6 @@ void strut_stationary_set_start(strut_stationary_set *set, const strut_potential
                                 strut_arena *arena);
 void strut_stationary_set_free(strut_stationary_set *set);
 
-/** Index of the point that q equals, or -1. */
-int32_t strut_stationary_set_find(const strut_stationary_set *set, const double *q);
 /** Finds or judges and adds q; *index is its point, whose `found` has grown by one. */
 strut_status strut_stationary_set_add(strut_stationary_set *set, const double *q, int32_t *index,
                                       bool *fresh, strut_error *error);
@@ -185,22 +183,5 @@ bool strut_climb_away(strut_climber *climber, int32_t mode, double far, double *
 /** Number of folds of a shape: mirror images of the whole, of either side of a member, and
     of single nodes across the line through two of their neighbours. */
 int64_t strut_fold_count(const strut_potential *potential);
-/** q (length) becomes fold number `fold` of itself; held coordinates stay. */
-void strut_fold(const strut_potential *potential, int64_t fold, double *q);
-
-/** Random shape number `index` of `seed`: positions at random, or a shaken or folded start. */
-void strut_random_shape(const strut_potential *potential, uint64_t seed, uint64_t index, double *q);
-
-/**
- * Replaces nodes of q by those of `other`, chosen by the bits of random number `index` of `seed`.
- */
-void strut_cross(const strut_potential *potential, uint64_t seed, uint64_t index,
-                 const double *other, double *q);
-
-/** q shaken by a random part of the structure's size, from a hundredth to a half. */
-void strut_shake(const strut_potential *potential, uint64_t seed, uint64_t index, double *q);
-
-/** Bits of a generator that is a counter: the same for the same (seed, index, counter). */
-uint64_t strut_counted_bits(uint64_t seed, uint64_t index, uint64_t *counter);
 
 #endif

@@ -3,6 +3,7 @@
 #ifndef STRUT_ENGINE_STATICS_SEARCH_CRITICAL_POINT_H
 #define STRUT_ENGINE_STATICS_SEARCH_CRITICAL_POINT_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "engine/base/status.h"
@@ -33,6 +34,10 @@ typedef struct strut_critical_point {
   int32_t shape;       /* points of one number are mirror images of each other, not merged */
   int32_t down[2];     /* of a saddle with one negative: minima downhill either way, or -1 */
 } strut_critical_point;
+
+static inline bool strut_is_minimum(const strut_critical_point *point) {
+  return point->label == STRUT_STABLE || point->label == STRUT_FLOPPY;
+}
 
 /** What independent random starts tell about minima that none of them has met. */
 typedef struct strut_missed {

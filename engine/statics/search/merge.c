@@ -3,7 +3,6 @@
 
 #include <assert.h>
 #include <float.h>
-#include <gsl/gsl_eigen.h>
 #include <math.h>
 #include <string.h>
 
@@ -11,6 +10,266 @@
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/potential.h"
+
+/* Distance of two shapes after the best rigid motion (Procrustes in the plane). */
+
+strut_rigid_fit strut_rigid_fit_find(int32_t nodes, const double *a, const double *q, double side) {
+  strut_rigid_fit fit = {.cosine = 1.0, .side = side};
+  double along = 0.0, across = 0.0;
+  for (int32_t at = 0; at < 2 * nodes; at++) fit.to[at % 2] += a[at], fit.from[at % 2] += q[at];
+  for (int c = 0; c < 2; c++) fit.to[c] /= nodes, fit.from[c] /= nodes;
+  for (int32_t i = 0; i < nodes; i++) {
+    double ax = a[2 * i] - fit.to[0], ay = a[2 * i + 1] - fit.to[1];
+    double bx = side * (q[2 * i] - fit.from[0]), by = q[2 * i + 1] - fit.from[1];
+    along += ax * bx + ay * by;
+    across += ay * bx - ax * by;
+  }
+  double size = sqrt(along * along + across * across);
+  if (size > 0) fit.cosine = along / size, fit.sine = across / size;
+  return fit;
+}
+
+void strut_rigid_fit_apply(const strut_rigid_fit *fit, const double at[2], double moved[2]) {
+  double x = fit->side * (at[0] - fit->from[0]), y = at[1] - fit->from[1];
+  moved[0] = fit->to[0] + (fit->cosine * x - fit->sine * y);
+  moved[1] = fit->to[1] + (fit->sine * x + fit->cosine * y);
+}
+
+/* b, mirrored in x where `side` is -1, turned and shifted onto a by least squares. */
+static double aligned_distance(const strut_model *model, const double *a, const double *b,
+                               double side) {
+  const strut_rigid_fit fit = strut_rigid_fit_find(model->node_count, a, b, side);
+  double largest = 0.0, moved[2];
+  for (int32_t at = 0; at < 2 * model->node_count; at += 2) {
+    strut_rigid_fit_apply(&fit, b + at, moved);
+    largest = fmax(largest, hypot(a[at] - moved[0], a[at + 1] - moved[1]));
+  }
+  return largest;
+}
+
+double strut_shape_distance(const strut_model *model, const double *a, const double *b, bool mirror,
+                            bool *mirrored) {
+  double plain = aligned_distance(model, a, b, 1.0);
+  double other = mirror ? aligned_distance(model, a, b, -1.0) : HUGE_VAL;
+  if (mirrored) *mirrored = other < plain;
+  return fmin(plain, other);
+}
+
+/*
+ * Classifies a stationary point: small structures by all eigenvalues, large ones by a factor's
+ * signs.
+ */
+
+typedef struct judgement {
+  const strut_potential *potential;
+  strut_sparse *hessian; /* at the shape, without cables and contacts that rounding alone closes */
+  double least;          /* [N] what they must pull or push by */
+  double *motion;        /* (3, n) rigid-body motions without stiffness, orthonormal */
+  int32_t rigid;         /* number of rigid-body motions */
+  double *work;          /* (3 n) */
+  const strut_sparse_algebra_library *sparse; /* for large ones; a browser has none */
+} judgement;
+
+/* The direction of a mode without its share of rigid-body motions; false where little is left. */
+static bool without_rigid(const judgement *j, const double *mode, double *direction) {
+  size_t n = (size_t)j->potential->n;
+  memcpy(direction, mode, n * sizeof *direction);
+  double square = strut_remove_shares(j->motion, (size_t)j->rigid, n, direction);
+  if (square < 0.25) return false;
+  for (size_t i = 0; i < n; i++) direction[i] /= sqrt(square);
+  return true;
+}
+
+/* The first of `count` modes (count, n), softest first, that is no rigid motion, as the softest. */
+static void set_softest(const judgement *j, const double *modes, int32_t count, double *direction,
+                        strut_critical_point *point) {
+  const strut_potential *p = j->potential;
+  for (size_t i = 0; i < (size_t)count; i++) {
+    if (!without_rigid(j, modes + i * (size_t)p->n, direction)) continue;
+    for (int32_t k = 0; k < p->n; k++) point->softest[p->coordinate[k]] = direction[k];
+    return;
+  }
+}
+
+static double largest_diagonal(const strut_sparse *h) {
+  double largest = 0.0;
+  for (int32_t j = 0; j < h->n; j++) largest = fmax(largest, fabs(h->value[h->start[j]]));
+  return largest;
+}
+
+/* Large structures: signs of the pivots, and the lowest eigenvalues by Lanczos's method. */
+
+enum { WANTED = 6 };
+
+/*
+ * Negative eigenvalues of H + shift; -1 without memory. A shift that meets a zero pivot is moved.
+ */
+static int32_t count_negative(const judgement *j, strut_ldl *ldl, double shift) {
+  strut_inertia inertia;
+  for (int i = 0; i < 8; i++, shift *= 1.125) {
+    strut_status status = strut_ldl_factorise(ldl, j->hessian, shift, &inertia);
+    if (status == STRUT_OK) return inertia.negative;
+    if (status == STRUT_NO_MEMORY) return -1;
+  }
+  return -1;
+}
+
+typedef struct shifted {
+  strut_ldl *ldl;
+  size_t n;
+} shifted;
+
+static void solve(void *context, double *x) {
+  const shifted *factor = context;
+  strut_ldl_solve(factor->ldl, x);
+}
+
+static void copy(void *context, const double *x, double *y) {
+  const shifted *factor = context;
+  memcpy(y, x, factor->n * sizeof *y);
+}
+
+/* Those next above minus the shift of a factor that is positive definite, the shift as small as powers of ten allow. */
+static strut_status find_lowest(const judgement *j, strut_ldl *ldl, double shift, double *value,
+                                double *vector, strut_error *error) {
+  strut_inertia inertia;
+  int left = 25;
+  while (left-- > 0 && (strut_ldl_factorise(ldl, j->hessian, shift, &inertia) != STRUT_OK ||
+                        inertia.negative > 0))
+    shift *= 10.0;
+  shifted factor = {ldl, (size_t)j->hessian->n};
+  const strut_lanczos_problem problem = {
+      .n = j->hessian->n, .shift = -shift, .context = &factor, .solve = solve, .mass = copy};
+  if (left < 0) return strut_no_memory(error, "");
+  return j->sparse->lowest_eigenpairs(&problem, WANTED, value, vector, error);
+}
+
+/* Signs of D and the lowest eigenvalues. */
+static strut_status judge_sparse(const judgement *j, strut_arena *arena,
+                                 strut_critical_point *point, strut_error *error) {
+  size_t n = (size_t)j->hessian->n;
+  strut_arena scratch = {0};
+  strut_ldl *ldl = NULL;
+  double noise = 64.0 * DBL_EPSILON * largest_diagonal(j->hessian) + 1e-300;
+  double *vector = strut_arena_allocate(&scratch, WANTED * n, sizeof *vector);
+  point->eigenvalues = strut_arena_allocate(arena, WANTED, sizeof *point->eigenvalues);
+  bool good = vector && point->eigenvalues && !strut_ldl_create(j->hessian, &ldl, NULL);
+  int32_t above = good ? count_negative(j, ldl, -noise) : -1;
+  /* where none is below the upper bound, none is below the lower one */
+  int32_t below = above > 0 ? count_negative(j, ldl, noise) : above;
+  strut_status status = strut_no_memory(error, "");
+  if (below >= 0) {
+    point->negative = below;
+    point->zero = above > below ? above - below : 0;
+    status = find_lowest(j, ldl, noise, point->eigenvalues, vector, error);
+  }
+  if (!status) {
+    point->eigenvalue_count = WANTED;
+    set_softest(j, vector, WANTED, j->work, point);
+  }
+  strut_ldl_free(ldl);
+  strut_arena_free(&scratch);
+  return status;
+}
+
+/* Classification of a stationary point: eigenvalues, motions without stiffness, label. */
+
+static const double LARGEST = 1e150; /* entry of a stiffness matrix */
+
+const char *strut_stability_name(strut_stability stability) {
+  static const char *const names[] = {"stable", "floppy", "saddle", "maximum"};
+  assert((size_t)stability < sizeof names / sizeof names[0]);
+  return names[stability];
+}
+
+/* Few coordinates: all eigenvalues, each with its own error. */
+static strut_status judge_dense(const judgement *j, const double *q, strut_arena *arena,
+                                strut_critical_point *point, strut_error *error) {
+  int32_t n = j->potential->n;
+  strut_spectrum spectrum;
+  strut_spectrum_workspace *room = strut_spectrum_create(j->potential);
+  bool good = room && strut_spectrum_compute(room, q, j->least, true, &spectrum);
+  point->eigenvalues = strut_arena_allocate(arena, (size_t)n, sizeof *point->eigenvalues);
+  if (good && point->eigenvalues) {
+    for (int32_t i = 0; i < n; i++) {
+      double value = point->eigenvalues[i] = spectrum.value[i], wrong = 16.0 * spectrum.noise[i];
+      if (value < -wrong) point->negative++;
+      if (fabs(value) <= wrong) point->zero++;
+    }
+    point->eigenvalue_count = n;
+    set_softest(j, spectrum.vector, n, j->work, point);
+  }
+  strut_spectrum_free(room);
+  return good && point->eigenvalues ? STRUT_OK : strut_no_memory(error, "");
+}
+
+static strut_stability label_of(const strut_critical_point *point, int32_t n) {
+  if (point->negative > 0)
+    return point->negative == n - point->rigid ? STRUT_MAXIMUM : STRUT_SADDLE;
+  return point->zero > point->rigid ? STRUT_FLOPPY : STRUT_STABLE;
+}
+
+/* True if products of two entries, as factors and eigenvalues form them, cannot overflow. */
+static bool is_finite(const strut_sparse *h) {
+  for (int32_t k = 0; k < h->start[h->n]; k++)
+    if (!(fabs(h->value[k]) < LARGEST)) return false;
+  return true;
+}
+
+static strut_status judge_point(judgement *j, const double *q, strut_arena *arena,
+                                strut_critical_point *point, strut_error *error) {
+  const strut_potential *p = j->potential;
+  double size = p->model->size > 0 ? p->model->size : 1.0;
+  strut_potential_gradient(p, q, j->work);
+  point->residual = strut_largest_magnitude(j->work, p->n);
+  point->potential = strut_potential_value(p, q);
+  j->least = 32.0 * strut_potential_rounding(p, q);
+  strut_potential_hessian_above(p, q, j->least, j->hessian);
+  double noise = p->n * DBL_EPSILON * largest_diagonal(j->hessian) + 64.0 * j->least / size;
+  j->rigid = strut_rigid_motions(p, q, NULL, j->motion);
+  for (int32_t i = 0; i < j->rigid * p->n; i += p->n)
+    strut_sparse_multiply(j->hessian, j->motion + i, j->work + i);
+  j->rigid = strut_rigid_motions_free(p->n, noise, j->rigid, j->motion, j->work);
+  point->rigid = j->rigid;
+  bool dense =
+      p->n <= STRUT_DENSE_STATICS || strut_sparse_algebra_load(&j->sparse, NULL) != STRUT_OK;
+  strut_status status =
+      dense ? judge_dense(j, q, arena, point, error) : judge_sparse(j, arena, point, error);
+  if (status) return status;
+  if (point->zero < point->rigid) point->zero = point->rigid;
+  point->label = label_of(point, p->n);
+  return STRUT_OK;
+}
+
+/*
+ * Classifies one stationary point q: label, eigenvalues, zero modes. The point's arrays are in the
+ * arena.
+ */
+static strut_status critical_judge(const strut_potential *potential, const double *q,
+                                   strut_arena *arena, strut_critical_point *point,
+                                   strut_error *error) {
+  size_t n = (size_t)potential->n, length = (size_t)potential->model->length;
+  strut_arena scratch = {0};
+  judgement j = {.potential = potential};
+  *point = (strut_critical_point){.found = 1, .placements = 1, .down = {-1, -1}};
+  point->q = strut_arena_allocate(arena, length, sizeof *point->q);
+  point->softest = strut_arena_allocate(arena, length, sizeof *point->softest);
+  j.motion = strut_arena_allocate(&scratch, 3 * n, sizeof *j.motion);
+  j.work = strut_arena_allocate(&scratch, 3 * n, sizeof *j.work);
+  j.hessian = strut_potential_matrix(potential, &scratch);
+  strut_status status = strut_no_memory(error, "");
+  if (point->q && point->softest && j.motion && j.work && j.hessian) {
+    memcpy(point->q, q, length * sizeof *q);
+    status = judge_point(&j, q, arena, point, error);
+  }
+  bool finite = !status || !j.hessian || is_finite(j.hessian);
+  strut_arena_free(&scratch);
+  if (!finite)
+    return strut_fail(error, STRUT_DIVERGED,
+                      "the structure moves to where energies and stiffnesses leave the range of "
+                      "numbers; check the units of sizes, stiffnesses and loads");
+  return status;
+}
 
 /* Largest factor by which a soft direction may enlarge the distance within which points are one. */
 static const double MOST_BLUR = 1000.0;
@@ -112,7 +371,8 @@ static int32_t find_point(const strut_stationary_set *g, const double *q, double
   return -1;
 }
 
-int32_t strut_stationary_set_find(const strut_stationary_set *g, const double *q) {
+/* Index of the point that q equals, or -1. */
+static int32_t stationary_set_find(const strut_stationary_set *g, const double *q) {
   return find_point(g, q, strut_potential_value(g->potential, q));
 }
 
@@ -146,10 +406,6 @@ static bool reserve_points(strut_stationary_set *g) {
   return true;
 }
 
-static bool is_minimum(const strut_critical_point *point) {
-  return point->label == STRUT_STABLE || point->label == STRUT_FLOPPY;
-}
-
 /* One of a continuum: some motion that is no rigid one meets no stiffness. */
 static bool is_degenerate(const strut_critical_point *point) { return point->zero > point->rigid; }
 
@@ -157,7 +413,7 @@ static bool is_degenerate(const strut_critical_point *point) { return point->zer
 static int32_t find_degenerate(const strut_stationary_set *g, const strut_critical_point *point) {
   for (size_t i = 0; i < g->count; i++)
     if ((is_degenerate(point) || is_degenerate(&g->points[i])) &&
-        is_minimum(point) == is_minimum(&g->points[i]) &&
+        strut_is_minimum(point) == strut_is_minimum(&g->points[i]) &&
         same_energy(g, point->potential, g->points[i].potential))
       return (int32_t)i;
   return -1;
@@ -181,10 +437,10 @@ static void make_degenerate(strut_critical_point *known, const strut_critical_po
 strut_status strut_stationary_set_add(strut_stationary_set *g, const double *q, int32_t *index,
                                       bool *fresh, strut_error *error) {
   strut_critical_point point;
-  *index = strut_stationary_set_find(g, q);
+  *index = stationary_set_find(g, q);
   *fresh = *index < 0;
   if (*fresh) {
-    strut_status status = strut_critical_judge(g->potential, q, g->arena, &point, error);
+    strut_status status = critical_judge(g->potential, q, g->arena, &point, error);
     if (status) return status;
     *index = find_degenerate(g, &point);
     *fresh = *index < 0;
@@ -226,315 +482,4 @@ void strut_number_shapes(const strut_stationary_set *like, strut_critical_point 
         points[i].shape = points[k].shape;
     if (points[i].shape < 0) points[i].shape = next++;
   }
-}
-
-/* Distance of two shapes after the best rigid motion (Procrustes in the plane). */
-
-static void centre_of(const strut_model *model, const double *q, double centre[2]) {
-  centre[0] = centre[1] = 0.0;
-  for (int32_t at = 0; at < 2 * model->node_count; at++) centre[at % 2] += q[at];
-  for (int c = 0; c < 2; c++) centre[c] /= model->node_count;
-}
-
-/* b, mirrored in x where `side` is -1, turned and shifted onto a by least squares. */
-static double aligned_distance(const strut_model *model, const double *a, const double *b,
-                               double side) {
-  double p[2], r[2], along = 0.0, across = 0.0, largest = 0.0;
-  centre_of(model, a, p);
-  centre_of(model, b, r);
-  for (int32_t i = 0; i < model->node_count; i++) {
-    double ax = a[2 * i] - p[0], ay = a[2 * i + 1] - p[1];
-    double bx = side * (b[2 * i] - r[0]), by = b[2 * i + 1] - r[1];
-    along += ax * bx + ay * by;
-    across += ay * bx - ax * by;
-  }
-  double size = sqrt(along * along + across * across);
-  double c = size > 0 ? along / size : 1.0, s = size > 0 ? across / size : 0.0;
-  for (int32_t i = 0; i < model->node_count; i++) {
-    double ax = a[2 * i] - p[0], ay = a[2 * i + 1] - p[1];
-    double bx = side * (b[2 * i] - r[0]), by = b[2 * i + 1] - r[1];
-    largest = fmax(largest, hypot(ax - (c * bx - s * by), ay - (s * bx + c * by)));
-  }
-  return largest;
-}
-
-double strut_shape_distance(const strut_model *model, const double *a, const double *b, bool mirror,
-                            bool *mirrored) {
-  double plain = aligned_distance(model, a, b, 1.0);
-  double other = mirror ? aligned_distance(model, a, b, -1.0) : HUGE_VAL;
-  if (mirrored) *mirrored = other < plain;
-  return fmin(plain, other);
-}
-
-/*
- * Classifies a stationary point: small structures by all eigenvalues, large ones by a factor's
- * signs.
- */
-
-typedef struct judgement {
-  const strut_potential *potential;
-  strut_sparse *hessian; /* at the shape, without cables and contacts that rounding alone closes */
-  double least;          /* [N] what they must pull or push by */
-  double *motion;        /* (3, n) rigid-body motions without stiffness, orthonormal */
-  int32_t rigid;         /* number of rigid-body motions */
-  double *work;          /* (3 n) */
-} judgement;
-
-/* The direction of a mode without its share of rigid-body motions; false where little is left. */
-static bool without_rigid(const judgement *j, const double *mode, double *direction) {
-  size_t n = (size_t)j->potential->n;
-  double square = 0.0;
-  memcpy(direction, mode, n * sizeof *direction);
-  for (size_t k = 0; k < (size_t)j->rigid; k++) {
-    const double *motion = j->motion + k * n;
-    double share = 0.0;
-    for (size_t i = 0; i < n; i++) share += motion[i] * mode[i];
-    for (size_t i = 0; i < n; i++) direction[i] -= share * motion[i];
-  }
-  for (size_t i = 0; i < n; i++) square += direction[i] * direction[i];
-  if (square < 0.25) return false;
-  for (size_t i = 0; i < n; i++) direction[i] /= sqrt(square);
-  return true;
-}
-
-/* The first of `count` modes (count, n), softest first, that is no rigid motion, as the softest. */
-static void set_softest(const judgement *j, const double *modes, int32_t count, double *direction,
-                        strut_critical_point *point) {
-  const strut_potential *p = j->potential;
-  for (size_t i = 0; i < (size_t)count; i++) {
-    if (!without_rigid(j, modes + i * (size_t)p->n, direction)) continue;
-    for (int32_t k = 0; k < p->n; k++) point->softest[p->coordinate[k]] = direction[k];
-    return;
-  }
-}
-
-/* Large structures: signs of the pivots, and the lowest eigenvalues by subspace iteration. */
-
-enum { WANTED = 6, SPACE = 12, TURNS = 40 };
-
-typedef struct lowest {
-  const strut_sparse *hessian;
-  strut_ldl *ldl;
-  double *space, *image; /* (SPACE, n) */
-  double value[SPACE];
-  double form[SPACE * SPACE], basis[SPACE * SPACE];
-  gsl_eigen_symmv_workspace *workspace;
-} lowest;
-
-static void orthonormalise(lowest *l) {
-  size_t n = (size_t)l->hessian->n;
-  for (size_t k = 0; k < SPACE; k++) {
-    double *x = l->space + k * n;
-    for (int again = 0; again < 2; again++)
-      for (size_t e = 0; e < k; e++) {
-        double share = strut_dot(x, l->space + e * n, (ptrdiff_t)n);
-        for (size_t i = 0; i < n; i++) x[i] -= share * l->space[e * n + i];
-      }
-    double length = sqrt(strut_dot(x, x, (ptrdiff_t)n));
-    for (size_t i = 0; i < n; i++) x[i] /= length;
-  }
-}
-
-/* Rayleigh-Ritz in the space: values ascending, vectors turned accordingly. */
-static void project_subspace(lowest *l) {
-  size_t n = (size_t)l->hessian->n, order[SPACE];
-  double raw[SPACE];
-  for (size_t k = 0; k < SPACE; k++)
-    strut_sparse_multiply(l->hessian, l->space + k * n, l->image + k * n);
-  for (size_t i = 0; i < SPACE; i++)
-    for (size_t k = 0; k <= i; k++)
-      l->form[i * SPACE + k] = l->form[k * SPACE + i] =
-          strut_dot(l->space + i * n, l->image + k * n, (ptrdiff_t)n);
-  gsl_matrix_view form = gsl_matrix_view_array(l->form, SPACE, SPACE);
-  gsl_matrix_view basis = gsl_matrix_view_array(l->basis, SPACE, SPACE);
-  gsl_vector_view value = gsl_vector_view_array(raw, SPACE);
-  gsl_eigen_symmv(&form.matrix, &value.vector, &basis.matrix, l->workspace);
-  for (size_t i = 0; i < SPACE; i++) {
-    size_t k = i;
-    for (; k > 0 && raw[order[k - 1]] > raw[i]; k--) order[k] = order[k - 1];
-    order[k] = i;
-  }
-  memset(l->image, 0, SPACE * n * sizeof *l->image);
-  for (size_t i = 0; i < SPACE; i++) {
-    l->value[i] = raw[order[i]];
-    for (size_t k = 0; k < SPACE; k++) {
-      double weight = l->basis[k * SPACE + order[i]];
-      for (size_t at = 0; at < n; at++) l->image[i * n + at] += weight * l->space[k * n + at];
-    }
-  }
-  double *swap = l->space;
-  l->space = l->image, l->image = swap;
-}
-
-/* False: out of memory. */
-static bool iterate_subspace(lowest *l, double scale) {
-  size_t n = (size_t)l->hessian->n;
-  double before[WANTED] = {0};
-  for (size_t i = 0; i < SPACE * n; i++) l->space[i] = sin(1.0 + 12.9898 * (double)i);
-  for (int turn = 0; turn < TURNS; turn++) {
-    bool settled = turn > 1;
-    if (!strut_ldl_solve_many(l->ldl, l->space, SPACE)) return false;
-    orthonormalise(l);
-    project_subspace(l);
-    for (int i = 0; i < WANTED; i++) {
-      double change = fabs(l->value[i] - before[i]);
-      settled = settled && change <= fmax(1e-8 * fabs(l->value[i]), 1e-15 * scale);
-      before[i] = l->value[i];
-    }
-    if (settled) break;
-  }
-  return true;
-}
-
-/*
- * Negative eigenvalues of H + shift; -1 without memory. A shift that meets a zero pivot is moved.
- */
-static int32_t count_negative(const lowest *l, double shift, strut_inertia *inertia) {
-  for (int i = 0; i < 8; i++, shift *= 1.125) {
-    strut_status status = strut_ldl_factorise(l->ldl, l->hessian, shift, inertia);
-    if (status == STRUT_OK) return inertia->negative;
-    if (status == STRUT_NO_MEMORY) return -1;
-  }
-  return -1;
-}
-
-/* A factor of H + shift that is positive definite, the shift as small as powers of ten allow. */
-static bool factorise_above(const lowest *l, double shift) {
-  strut_inertia inertia;
-  for (int i = 0; i < 25; i++, shift *= 10.0)
-    if (strut_ldl_factorise(l->ldl, l->hessian, shift, &inertia) == STRUT_OK &&
-        inertia.negative == 0)
-      return true;
-  return false;
-}
-
-/* Signs of D and the lowest eigenvalues; false: out of memory. */
-static bool judge_sparse(const judgement *j, strut_arena *arena, strut_critical_point *point) {
-  size_t n = (size_t)j->hessian->n;
-  strut_arena scratch = {0};
-  lowest l = {.hessian = j->hessian};
-  double scale = 0.0;
-  for (size_t i = 0; i < n; i++) scale = fmax(scale, fabs(l.hessian->value[l.hessian->start[i]]));
-  double noise = 64.0 * DBL_EPSILON * scale + 1e-300;
-  strut_inertia inertia;
-  l.space = strut_arena_allocate(&scratch, SPACE * n, sizeof *l.space);
-  l.image = strut_arena_allocate(&scratch, SPACE * n, sizeof *l.image);
-  l.workspace = gsl_eigen_symmv_alloc(SPACE);
-  point->eigenvalues = strut_arena_allocate(arena, WANTED, sizeof *point->eigenvalues);
-  bool good = l.space && l.image && l.workspace && point->eigenvalues &&
-              strut_ldl_create(j->hessian, &l.ldl, NULL) == STRUT_OK;
-  int32_t above = good ? count_negative(&l, -noise, &inertia) : -1;
-  /* where none is below the upper bound, none is below the lower one, and its factor serves */
-  int32_t below = above > 0 ? count_negative(&l, noise, &inertia) : above;
-  good = good && below >= 0 && above >= 0 && (below == 0 || factorise_above(&l, noise));
-  if (good) {
-    point->negative = below;
-    point->zero = above > below ? above - below : 0;
-    good = iterate_subspace(&l, scale);
-  }
-  if (good) {
-    memcpy(point->eigenvalues, l.value, WANTED * sizeof *l.value);
-    point->eigenvalue_count = WANTED;
-    set_softest(j, l.space, SPACE, j->work, point);
-  }
-  if (l.workspace) gsl_eigen_symmv_free(l.workspace);
-  strut_ldl_free(l.ldl);
-  strut_arena_free(&scratch);
-  return good;
-}
-
-/* Classification of a stationary point: eigenvalues, motions without stiffness, label. */
-
-static const double LARGEST = 1e150; /* entry of a stiffness matrix */
-
-const char *strut_stability_name(strut_stability stability) {
-  static const char *const names[] = {"stable", "floppy", "saddle", "maximum"};
-  assert((size_t)stability < sizeof names / sizeof names[0]);
-  return names[stability];
-}
-
-/* Few coordinates: all eigenvalues, each with its own error. */
-static bool judge_dense(const judgement *j, const double *q, strut_arena *arena,
-                        strut_critical_point *point) {
-  int32_t n = j->potential->n;
-  strut_spectrum spectrum;
-  strut_spectrum_workspace *room = strut_spectrum_create(j->potential);
-  bool good = room && strut_spectrum_compute(room, q, j->least, true, &spectrum);
-  point->eigenvalues = strut_arena_allocate(arena, (size_t)n, sizeof *point->eigenvalues);
-  if (good && point->eigenvalues) {
-    for (int32_t i = 0; i < n; i++) {
-      double value = point->eigenvalues[i] = spectrum.value[i], error = 16.0 * spectrum.noise[i];
-      if (value < -error) point->negative++;
-      if (fabs(value) <= error) point->zero++;
-    }
-    point->eigenvalue_count = n;
-    set_softest(j, spectrum.vector, n, j->work, point);
-  }
-  strut_spectrum_free(room);
-  return good && point->eigenvalues;
-}
-
-static strut_stability label_of(const strut_critical_point *point, int32_t n) {
-  if (point->negative > 0)
-    return point->negative == n - point->rigid ? STRUT_MAXIMUM : STRUT_SADDLE;
-  return point->zero > point->rigid ? STRUT_FLOPPY : STRUT_STABLE;
-}
-
-static double largest_diagonal(const strut_sparse *h) {
-  double largest = 0.0;
-  for (int32_t j = 0; j < h->n; j++) largest = fmax(largest, fabs(h->value[h->start[j]]));
-  return largest;
-}
-
-/* True if products of two entries, as factors and eigenvalues form them, cannot overflow. */
-static bool is_finite(const strut_sparse *h) {
-  for (int32_t k = 0; k < h->start[h->n]; k++)
-    if (!(fabs(h->value[k]) < LARGEST)) return false;
-  return true;
-}
-
-static bool judge_point(judgement *j, const double *q, strut_arena *arena,
-                        strut_critical_point *point) {
-  const strut_potential *p = j->potential;
-  double size = p->model->size > 0 ? p->model->size : 1.0;
-  strut_potential_gradient(p, q, j->work);
-  for (int32_t i = 0; i < p->n; i++) point->residual = fmax(point->residual, fabs(j->work[i]));
-  point->potential = strut_potential_value(p, q);
-  j->least = 32.0 * strut_potential_rounding(p, q);
-  strut_potential_hessian_above(p, q, j->least, j->hessian);
-  double noise = p->n * DBL_EPSILON * largest_diagonal(j->hessian) + 64.0 * j->least / size;
-  j->rigid = strut_rigid_motions(p, q, j->motion);
-  j->rigid = strut_rigid_motions_free(j->hessian, noise, j->rigid, j->motion, j->work);
-  point->rigid = j->rigid;
-  bool dense = p->n <= STRUT_DENSE_STATICS;
-  if (!(dense ? judge_dense(j, q, arena, point) : judge_sparse(j, arena, point))) return false;
-  if (point->zero < point->rigid) point->zero = point->rigid;
-  point->label = label_of(point, p->n);
-  return true;
-}
-
-strut_status strut_critical_judge(const strut_potential *potential, const double *q,
-                                  strut_arena *arena, strut_critical_point *point,
-                                  strut_error *error) {
-  size_t n = (size_t)potential->n, length = (size_t)potential->model->length;
-  strut_arena scratch = {0};
-  judgement j = {.potential = potential};
-  *point = (strut_critical_point){.found = 1, .placements = 1, .down = {-1, -1}};
-  point->q = strut_arena_allocate(arena, length, sizeof *point->q);
-  point->softest = strut_arena_allocate(arena, length, sizeof *point->softest);
-  j.motion = strut_arena_allocate(&scratch, 3 * n, sizeof *j.motion);
-  j.work = strut_arena_allocate(&scratch, 3 * n, sizeof *j.work);
-  j.hessian = strut_potential_matrix(potential, &scratch);
-  bool good = point->q && point->softest && j.motion && j.work && j.hessian;
-  if (good) {
-    memcpy(point->q, q, length * sizeof *q);
-    good = judge_point(&j, q, arena, point);
-  }
-  bool finite = good || !j.hessian || is_finite(j.hessian);
-  strut_arena_free(&scratch);
-  if (!finite)
-    return strut_fail(error, STRUT_DIVERGED,
-                      "the structure moves to where energies and stiffnesses leave the range of "
-                      "numbers; check the units of sizes, stiffnesses and loads");
-  return good ? STRUT_OK : strut_no_memory(error, "");
 }

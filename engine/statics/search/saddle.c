@@ -119,9 +119,7 @@ static bool decompose_hessian(strut_climber *c, const double *q, bool careful) {
 }
 
 static void set_trial(strut_climber *c, const double *q) {
-  const strut_potential *p = c->potential;
-  memcpy(c->trial, q, (size_t)p->model->length * sizeof *q);
-  for (int32_t i = 0; i < p->n; i++) c->trial[p->coordinate[i]] += c->step[i];
+  strut_potential_move(c->potential, c->step, 1.0, q, c->trial);
 }
 
 /* Balances modes much stiffer than mu, except followed ones, at the step's end. */
@@ -192,10 +190,8 @@ static bool climb_once(strut_climber *c, double *q, double *radius) {
 }
 
 static double evaluate_gradient(strut_climber *c, const double *q) {
-  double largest = 0.0;
   strut_potential_gradient(c->potential, q, c->g);
-  for (int32_t i = 0; i < c->potential->n; i++) largest = fmax(largest, fabs(c->g[i]));
-  return largest;
+  return strut_largest_magnitude(c->g, c->potential->n);
 }
 
 /* Newton steps as long as they become shorter. */
@@ -217,15 +213,13 @@ static void polish_saddle(strut_climber *c, double *q) {
 
 /* A member with a rest length that has shrunk to a point pushes nowhere: no gradient is defined. */
 static bool has_collapsed(const strut_climber *c, const double *q) {
-  const strut_member_table *t = &c->potential->model->members;
-  for (int32_t j = 0; j < t->count; j++) {
-    double length = strut_member_length(t, j, q);
-    if (t->slack[j] != 0.0 && t->rest[j] > 0 && t->stiffness[j] > 0 && length < 1e-7 * t->rest[j])
-      return true;
+  const strut_model *model = c->potential->model;
+  strut_force force;
+  for (int32_t i = 0; i < strut_force_count(model, false); i++) {
+    strut_force_begin(model, i, &force);
+    if (strut_force_has_collapsed(model, 1e-7, q, &force)) return true;
   }
-  for (int32_t i = 0; i < c->potential->model->elements.count; i++)
-    if (strut_element_has_collapsed(c->potential->model, i, 1e-7, q)) return true;
-  return strut_shape_has_collapsed(c->potential->model, q);
+  return strut_shape_has_collapsed(model, q);
 }
 
 /* True if the climb has no end: bars that only stretch, bodies that only rise. */

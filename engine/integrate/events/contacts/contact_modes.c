@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
 #include "engine/forces/history.h"
 #include "engine/integrate/events/event_kernel.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Modes of elements with memory: sliders that hold or give way, and what breaks. See event_stepping.h. */
 #include "engine/forces/capstan.h"
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
 #include "engine/forces/history.h"
 
 #include <assert.h>

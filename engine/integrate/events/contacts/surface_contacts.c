@@ -4,7 +4,7 @@
 #include <assert.h>
 #include <string.h>
 
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
 #include "engine/forces/surfaces.h"
 #include "engine/integrate/events/event_kernel.h"
 

@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
-#include "engine/forces/feedback.h"
+#include "engine/forces/drives/feedback.h"
 #include "engine/forces/nearby.h"
 #include "engine/integrate/events/event_kernel.h"
 

@@ -11,8 +11,8 @@
  * A rest length that jumps changes a spring at once and gives a damper no blow, as everywhere else.
  * Ground and rigid bars are not in it.
  */
-#ifndef STRUT_ENGINE_FORCES_DISCRETE_GRADIENT_H
-#define STRUT_ENGINE_FORCES_DISCRETE_GRADIENT_H
+#ifndef STRUT_ENGINE_INTEGRATE_DISCRETE_GRADIENT_H
+#define STRUT_ENGINE_INTEGRATE_DISCRETE_GRADIENT_H
 
 #include "engine/model/state.h"
 

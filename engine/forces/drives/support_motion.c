@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/forces/support_motion.h"
+#include "engine/forces/drives/support_motion.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Sensors, and the drives that follow them, at every force evaluation. */
-#ifndef STRUT_ENGINE_FORCES_FEEDBACK_H
-#define STRUT_ENGINE_FORCES_FEEDBACK_H
+#ifndef STRUT_ENGINE_FORCES_DRIVES_FEEDBACK_H
+#define STRUT_ENGINE_FORCES_DRIVES_FEEDBACK_H
 
 #include "engine/model/state.h"
 

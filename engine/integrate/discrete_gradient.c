@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/forces/discrete_gradient.h"
+#include "engine/integrate/discrete_gradient.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
+#include "engine/forces/drives/feedback.h"
+#include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/elements.h"
-#include "engine/forces/feedback.h"
 #include "engine/forces/history.h"
 #include "engine/forces/mass_damping.h"
-#include "engine/forces/moving_masses.h"
 #include "engine/model/pose.h"
 
 bool strut_discrete_gradient_create(const strut_model *model, strut_state *state,

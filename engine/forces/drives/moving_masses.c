@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/forces/moving_masses.h"
+#include "engine/forces/drives/moving_masses.h"
 
 #include <assert.h>
 #include <float.h>

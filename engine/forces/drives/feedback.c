@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Hot where a scene has sensors. See feedback.h. */
-#include "engine/forces/feedback.h"
+#include "engine/forces/drives/feedback.h"
 
 #include <assert.h>
 #include <math.h>
 
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/energy.h"
 #include "engine/forces/forces.h"

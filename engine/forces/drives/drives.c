@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Hot: what changes with time alone: driven rest lengths (6) and loads on a signal. */
-#include "engine/forces/drives.h"
+#include "engine/forces/drives/drives.h"
 
 #include <math.h>
 
-#include "engine/forces/feedback.h"
+#include "engine/forces/drives/feedback.h"
+#include "engine/forces/drives/moving_masses.h"
+#include "engine/forces/drives/signal_vector.h"
 #include "engine/forces/history.h"
-#include "engine/forces/moving_masses.h"
-#include "engine/forces/signal_vector.h"
 #include "engine/forces/strains/angle.h"
 #include "engine/forces/strains/path.h"
 #include "engine/scene/signal_bounds.h"

@@ -3,8 +3,8 @@
  * Hot: a signal at many times at once. Sines, and sums of them, go by vectors, with the bits of
  * strut_signal_evaluate; all other signals through it.
  */
-#ifndef STRUT_ENGINE_FORCES_SIGNAL_VECTOR_H
-#define STRUT_ENGINE_FORCES_SIGNAL_VECTOR_H
+#ifndef STRUT_ENGINE_FORCES_DRIVES_SIGNAL_VECTOR_H
+#define STRUT_ENGINE_FORCES_DRIVES_SIGNAL_VECTOR_H
 
 #include "engine/base/vec.h"
 #include "engine/model/hot.h"

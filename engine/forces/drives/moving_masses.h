@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Masses that move in the structure: along members, and turning out of balance. */
-#ifndef STRUT_ENGINE_FORCES_MOVING_MASSES_H
-#define STRUT_ENGINE_FORCES_MOVING_MASSES_H
+#ifndef STRUT_ENGINE_FORCES_DRIVES_MOVING_MASSES_H
+#define STRUT_ENGINE_FORCES_DRIVES_MOVING_MASSES_H
 
 #include "engine/model/state.h"
 

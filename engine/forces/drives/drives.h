@@ -2,8 +2,8 @@
 /**
  * Drives: terms that change with time alone, applied to the state, and computed for many evaluations at once.
  */
-#ifndef STRUT_ENGINE_FORCES_DRIVES_H
-#define STRUT_ENGINE_FORCES_DRIVES_H
+#ifndef STRUT_ENGINE_FORCES_DRIVES_DRIVES_H
+#define STRUT_ENGINE_FORCES_DRIVES_DRIVES_H
 
 #include "engine/model/hot.h"
 #include "engine/model/state.h"

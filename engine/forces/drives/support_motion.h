@@ -6,8 +6,8 @@
  * coordinates c is R = M_cf a_f + M_cc a_c - F_c. Its work is that of the energy balance's power
  * -a_c' M_cf v_f - F_c' v_c, which needs no a_f, and the change of v_c' M_cf v_f + v_c' M_cc v_c / 2.
  */
-#ifndef STRUT_ENGINE_FORCES_SUPPORT_MOTION_H
-#define STRUT_ENGINE_FORCES_SUPPORT_MOTION_H
+#ifndef STRUT_ENGINE_FORCES_DRIVES_SUPPORT_MOTION_H
+#define STRUT_ENGINE_FORCES_DRIVES_SUPPORT_MOTION_H
 
 #include "engine/model/state.h"
 
