@@ -13,12 +13,12 @@
 #include "engine/base/vec.h"
 #include "engine/scene/check_rules.h"
 
-void strut_report_finding(strut_checker *checker, strut_subject subject, size_t index,
+bool strut_report_finding(strut_checker *checker, strut_subject subject, size_t index,
                           const char *key, const char *format, ...) {
   strut_findings *f = checker->findings;
   if (f->count >= STRUT_FINDINGS_MOST) {
     f->unstored++;
-    return;
+    return false;
   }
   char text[600];
   va_list arguments;
@@ -30,7 +30,7 @@ void strut_report_finding(strut_checker *checker, strut_subject subject, size_t 
     strut_finding *items = strut_reallocate(f->items, capacity, sizeof *items);
     if (!items) {
       checker->out_of_memory = true;
-      return;
+      return false;
     }
     f->items = items;
     f->capacity = capacity;
@@ -38,26 +38,27 @@ void strut_report_finding(strut_checker *checker, strut_subject subject, size_t 
   char *message = strut_arena_text(&f->arena, text, strlen(text));
   if (!message) {
     checker->out_of_memory = true;
-    return;
+    return false;
   }
   f->items[f->count++] = (strut_finding){subject, index, key, message};
+  return false;
 }
 
 static bool check_range(strut_checker *checker, const strut_checked *whose, const char *name,
                         double value, strut_key_range range) {
   const char *key = whose->key ? whose->key : name;
   if (!isfinite(value))
-    strut_report_finding(checker, whose->subject, whose->index, key,
-                         "the %s of %s is not a finite number", name, whose->owner);
-  else if (range == STRUT_RANGE_NOT_NEGATIVE && value < 0.0)
-    strut_report_finding(checker, whose->subject, whose->index, key,
-                         "the %s of %s must not be negative, found %g", name, whose->owner, value);
-  else if (range == STRUT_RANGE_ABOVE_ZERO && value <= 0.0)
-    strut_report_finding(checker, whose->subject, whose->index, key,
-                         "the %s of %s must be above zero, found %g", name, whose->owner, value);
-  else
-    return true;
-  return false;
+    return strut_report_finding(checker, whose->subject, whose->index, key,
+                                "the %s of %s is not a finite number", name, whose->owner);
+  if (range == STRUT_RANGE_NOT_NEGATIVE && value < 0.0)
+    return strut_report_finding(checker, whose->subject, whose->index, key,
+                                "the %s of %s must not be negative, found %g", name, whose->owner,
+                                value);
+  if (range == STRUT_RANGE_ABOVE_ZERO && value <= 0.0)
+    return strut_report_finding(checker, whose->subject, whose->index, key,
+                                "the %s of %s must be above zero, found %g", name, whose->owner,
+                                value);
+  return true;
 }
 
 bool strut_check_fields(strut_checker *checker, const strut_checked *whose,
@@ -197,28 +198,23 @@ static const char *rest_key(strut_rest_kind kind) {
 /* Does the member join nodes that exist, each to a different one? */
 static bool check_ends(strut_checker *checker, size_t index, const char *owner) {
   const strut_member *m = &checker->scene->members[index];
-  if (m->guide_count + 2 > STRUT_MOST_ELEMENT_NODES) {
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
-                         "%s runs over %zu nodes, more than %d", owner, m->guide_count + 2,
-                         (int)STRUT_MOST_ELEMENT_NODES);
-    return false;
-  }
+  if (m->guide_count + 2 > STRUT_MOST_ELEMENT_NODES)
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
+                                "%s runs over %zu nodes, more than %d", owner, m->guide_count + 2,
+                                (int)STRUT_MOST_ELEMENT_NODES);
   for (size_t k = 0; k < m->guide_count + 2; k++) {
     int32_t node = strut_member_node(m, k), before = k ? strut_member_node(m, k - 1) : -1;
-    if (node < 0 || (size_t)node >= checker->scene->node_count) {
-      strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
-                           "%s joins a node that does not exist", owner);
-      return false;
-    }
+    if (node < 0 || (size_t)node >= checker->scene->node_count)
+      return strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
+                                  "%s joins a node that does not exist", owner);
     if (node != before) continue;
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes", "%s joins node '%s' to itself",
-                         owner, checker->scene->nodes[node].name);
-    return false;
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
+                                "%s joins node '%s' to itself", owner,
+                                checker->scene->nodes[node].name);
   }
   if (!m->guide_count || m->kind != STRUT_BAR) return true;
-  strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
-                       "%s runs over guides, which a bar cannot", owner);
-  return false;
+  return strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
+                              "%s runs over guides, which a bar cannot", owner);
 }
 
 /* Checks each number of a member by itself. */
@@ -228,8 +224,8 @@ static bool check_numbers(strut_checker *checker, size_t index, const char *owne
   bool valid = strut_check_fields(checker, &whose, STRUT_FIELDS_MEMBER, m,
                                   strut_thing_at(STRUT_THING_MEMBER)->usual);
   if (rest_key(m->rest_kind) && (unsigned)m->kind <= STRUT_CABLE) return valid;
-  strut_report_finding(checker, STRUT_ON_MEMBER, index, "kind", "%s is of an unknown kind", owner);
-  return false;
+  return strut_report_finding(checker, STRUT_ON_MEMBER, index, "kind", "%s is of an unknown kind",
+                              owner);
 }
 
 /* Checks the numbers of a member together. */
@@ -242,32 +238,31 @@ static bool check_law(strut_checker *checker, size_t index, const char *owner) {
   if (!strut_check_member_law(checker, index, owner)) return false;
   strut_check_maxwell(checker, index, owner);
   if (m->stiffness > 0.0 && m->axial_stiffness > 0.0)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "axial_stiffness",
-                         "%s has both a stiffness and an axial_stiffness; give one", owner);
-  else if (m->damping > 0.0 && m->damping_ratio > 0.0)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "damping_ratio",
-                         "%s has both a damping and a damping_ratio; give one", owner);
-  else if (!elastic && m->damping_ratio > 0.0)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "damping_ratio",
-                         "the damping_ratio of %s needs a stiffness", owner);
-  else if (!elastic && m->damping == 0.0 && m->maxwell.stiffness == 0.0 &&
-           !strut_is_pulled(checker->scene, (int32_t)index, -1))
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, NULL,
-                         "%s has neither stiffness nor damping, so it does nothing", owner);
-  else if (force && !linear)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
-                         "the %s of %s needs a linear law; give its rest_length", key, owner);
-  else if (force && !elastic && m->rest_value != 0.0)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, key, "the %s of %s needs a stiffness",
-                         key, owner);
-  else if (force && m->kind == STRUT_CABLE && m->rest_value < 0.0)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
-                         "the %s of %s must not be negative, since a cable cannot push; "
-                         "give a slack cable its rest_length",
-                         key, owner);
-  else
-    return true;
-  return false;
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index, "axial_stiffness",
+                                "%s has both a stiffness and an axial_stiffness; give one", owner);
+  if (m->damping > 0.0 && m->damping_ratio > 0.0)
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index, "damping_ratio",
+                                "%s has both a damping and a damping_ratio; give one", owner);
+  if (!elastic && m->damping_ratio > 0.0)
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index, "damping_ratio",
+                                "the damping_ratio of %s needs a stiffness", owner);
+  if (!elastic && m->damping == 0.0 && m->maxwell.stiffness == 0.0 &&
+      !strut_is_pulled(checker->scene, (int32_t)index, -1))
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index, NULL,
+                                "%s has neither stiffness nor damping, so it does nothing", owner);
+  if (force && !linear)
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
+                                "the %s of %s needs a linear law; give its rest_length", key,
+                                owner);
+  if (force && !elastic && m->rest_value != 0.0)
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
+                                "the %s of %s needs a stiffness", key, owner);
+  if (force && m->kind == STRUT_CABLE && m->rest_value < 0.0)
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
+                                "the %s of %s must not be negative, since a cable cannot push; "
+                                "give a slack cable its rest_length",
+                                key, owner);
+  return true;
 }
 
 /* Checks the geometry of a member: a direction as drawn and at the start, and a rest length. */

@@ -169,17 +169,13 @@ static bool check_length(strut_checker *checker) {
   const strut_experiment usual = {0};
   const strut_checked whose = {STRUT_ON_RUN, 0, "the run", NULL};
   if (!strut_check_fields(checker, &whose, STRUT_FIELDS_RUN, e, &usual)) return false;
-  if (e->duration > 0.0 && e->periods > 0.0) {
-    strut_report_finding(checker, STRUT_ON_RUN, 0, "periods",
-                         "the run has both a duration and a number of periods; give one");
-    return false;
-  }
+  if (e->duration > 0.0 && e->periods > 0.0)
+    return strut_report_finding(checker, STRUT_ON_RUN, 0, "periods",
+                                "the run has both a duration and a number of periods; give one");
   if (e->periods == 0.0) return e->duration > 0.0;
-  if (!strut_exists(e->period_signal, checker->scene->signal_count)) {
-    strut_report_finding(checker, STRUT_ON_RUN, 0, "of",
-                         "a run in periods needs a signal to define the period");
-    return false;
-  }
+  if (!strut_exists(e->period_signal, checker->scene->signal_count))
+    return strut_report_finding(checker, STRUT_ON_RUN, 0, "of",
+                                "a run in periods needs a signal to define the period");
   if (checker->wild[e->period_signal]) return false; /* reported there */
   double period = strut_signal_period(checker->scene->signals, e->period_signal);
   if (period > 0.0 && isfinite(period * e->periods)) return true;
@@ -301,11 +297,9 @@ static bool check_carrier(strut_checker *checker, size_t i, const char *owner) {
     fault = "runs over guides; only members between two nodes carry sliders";
   else if (strut_member_ends(m))
     fault = "breaks or is released; take breaks_at and released_at away";
-  if (fault) {
-    strut_report_finding(checker, STRUT_ON_SLIDER, i, "member", "%s is on member '%s', which %s",
-                         owner, m->name, fault);
-    return false;
-  }
+  if (fault)
+    return strut_report_finding(checker, STRUT_ON_SLIDER, i, "member",
+                                "%s is on member '%s', which %s", owner, m->name, fault);
   for (int k = 0; k < 2; k++) {
     const strut_node *node = &scene->nodes[m->node[k]];
     if (node_moves(scene, m->node[k]))
@@ -363,25 +357,22 @@ static bool check_signal(strut_checker *checker, size_t i, const char *owner) {
   const char *key = s->travel ? "travel" : "moves";
   double when;
   if (s->signal == -1) return true;
-  if (!strut_exists(s->signal, scene->signal_count)) {
-    strut_report_finding(checker, STRUT_ON_SLIDER, i, key, "%s has a signal that does not exist",
-                         owner);
-    return false;
-  }
+  if (!strut_exists(s->signal, scene->signal_count))
+    return strut_report_finding(checker, STRUT_ON_SLIDER, i, key,
+                                "%s has a signal that does not exist", owner);
   if (checker->wild[s->signal]) return false;
-  if (!strut_signal_is_wave(scene->signals, s->signal)) {
-    strut_report_finding(checker, STRUT_ON_SLIDER, i, key,
-                         "%s moves by an expression, a lag, samples or a start, whose acceleration "
-                         "is not known; use waves, ramps, tables and sums of them",
-                         owner);
-    return false;
-  }
+  if (!strut_signal_is_wave(scene->signals, s->signal))
+    return strut_report_finding(
+        checker, STRUT_ON_SLIDER, i, key,
+        "%s moves by an expression, a lag, samples or a start, whose acceleration "
+        "is not known; use waves, ramps, tables and sums of them",
+        owner);
   if (!strut_signal_value_jumps(scene->signals, s->signal, HUGE_VAL, &when)) return true;
-  strut_report_finding(checker, STRUT_ON_SLIDER, i, key,
-                       "the signal that moves %s jumps at t = %g s, but a mass cannot jump; use a "
-                       "ramp, a table, or waves that begin and stop at zero",
-                       owner, when);
-  return false;
+  return strut_report_finding(
+      checker, STRUT_ON_SLIDER, i, key,
+      "the signal that moves %s jumps at t = %g s, but a mass cannot jump; use a "
+      "ramp, a table, or waves that begin and stop at zero",
+      owner, when);
 }
 
 void strut_check_sliding_masses(strut_checker *checker) {

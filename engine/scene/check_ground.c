@@ -272,23 +272,20 @@ void strut_check_ground(strut_checker *checker) {
 static bool check_foot(strut_checker *checker, size_t index, const char *owner) {
   const strut_scene *scene = checker->scene;
   const strut_foot *f = &scene->feet[index];
-  if (!strut_exists(f->member, scene->member_count) || !strut_exists(f->node, scene->node_count)) {
-    strut_report_finding(checker, STRUT_ON_FOOT, index, "member",
-                         "%s is at a member or a node that does not exist", owner);
-    return false;
-  }
+  if (!strut_exists(f->member, scene->member_count) || !strut_exists(f->node, scene->node_count))
+    return strut_report_finding(checker, STRUT_ON_FOOT, index, "member",
+                                "%s is at a member or a node that does not exist", owner);
   if (checker->loose[f->member]) return false; /* it is reported there */
   const strut_member *m = &scene->members[f->member];
   const char *member = m->name, *node = scene->nodes[f->node].name;
   if (m->node[0] != f->node && m->node[1] != f->node)
-    strut_report_finding(checker, STRUT_ON_FOOT, index, "node",
-                         "%s is at node '%s', which is no end of member '%s'", owner, node, member);
-  else if (m->guide_count)
-    strut_report_finding(checker, STRUT_ON_FOOT, index, "member",
-                         "%s is at a running cable; a foot needs a straight member", owner);
-  else
-    return true;
-  return false;
+    return strut_report_finding(checker, STRUT_ON_FOOT, index, "node",
+                                "%s is at node '%s', which is no end of member '%s'", owner, node,
+                                member);
+  if (m->guide_count)
+    return strut_report_finding(checker, STRUT_ON_FOOT, index, "member",
+                                "%s is at a running cable; a foot needs a straight member", owner);
+  return true;
 }
 
 void strut_check_feet(strut_checker *checker) {
@@ -336,28 +333,23 @@ static bool check_set(sets_check *check, const strut_node_set *set, strut_subjec
   strut_checker *checker = check->checker;
   const strut_scene *scene = checker->scene;
   check->now++;
-  if (!set->count) {
-    strut_report_finding(checker, subject, index, key, "the %s of %s have an empty list", key,
-                         owner);
-    return false;
-  }
+  if (!set->count)
+    return strut_report_finding(checker, subject, index, key, "the %s of %s have an empty list",
+                                key, owner);
   for (size_t i = 0; i < set->count; i++) {
     int32_t n = set->node[i];
-    if (n < 0 || (size_t)n >= scene->node_count) {
-      strut_report_finding(checker, subject, index, key,
-                           "the %s of %s name a node that does not exist", key, owner);
-      return false;
-    }
+    if (n < 0 || (size_t)n >= scene->node_count)
+      return strut_report_finding(checker, subject, index, key,
+                                  "the %s of %s name a node that does not exist", key, owner);
     char node[200];
     strut_format_name(node, "node", scene->nodes[n].name, (size_t)n);
     bool twice = check->stamp[n] == check->now;
     check->stamp[n] = check->now;
     if (check->touches[n] && !twice) continue;
-    strut_report_finding(checker, subject, index, key,
-                         twice ? "the %s of %s name %s twice"
-                               : "the %s of %s name %s, but 'nodes' of the ground lacks it",
-                         key, owner, node);
-    return false;
+    return strut_report_finding(checker, subject, index, key,
+                                twice ? "the %s of %s name %s twice"
+                                      : "the %s of %s name %s, but 'nodes' of the ground lacks it",
+                                key, owner, node);
   }
   return true;
 }

@@ -20,8 +20,8 @@ typedef struct strut_checker {
   bool *wild; /* (signal_count) true where a signal must not be evaluated */
 } strut_checker;
 
-/** Adds a finding; sets out_of_memory where that fails. */
-void strut_report_finding(strut_checker *checker, strut_subject subject, size_t index,
+/** Adds a finding; sets out_of_memory where that fails. Returns false, for `return strut_report_finding(...)`. */
+bool strut_report_finding(strut_checker *checker, strut_subject subject, size_t index,
                           const char *key, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 

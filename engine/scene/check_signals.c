@@ -15,11 +15,9 @@ enum { MOST_TERMS = 10000, DEEPEST_SUM = 64 };
 
 static bool check_table(strut_checker *checker, size_t index, const char *owner) {
   const strut_signal *s = &checker->scene->signals[index];
-  if (!s->point_count) {
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "table", "the table of %s has no points",
-                         owner);
-    return false;
-  }
+  if (!s->point_count)
+    return strut_report_finding(checker, STRUT_ON_SIGNAL, index, "table",
+                                "the table of %s has no points", owner);
   for (size_t i = 0; i < s->point_count; i++) {
     if (!isfinite(s->time[i]) || !isfinite(s->value[i]))
       strut_report_finding(checker, STRUT_ON_SIGNAL, index, "table",
@@ -61,29 +59,25 @@ static bool check_sum(strut_checker *checker, size_t index, const char *owner, u
   uint64_t terms = 1;
   if (strut_signal_has_program(s) && !strut_check_program(checker, index, owner)) return false;
   if (s->kind == STRUT_RELAY && !strut_check_relay(checker, index, owner)) return false;
-  if (s->kind == STRUT_SUM && !s->term_count) {
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum", "the sum of %s has no terms",
-                         owner);
-    return false;
-  }
+  if (s->kind == STRUT_SUM && !s->term_count)
+    return strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum",
+                                "the sum of %s has no terms", owner);
   for (size_t i = 0; i < part_count(s); i++) {
     int32_t term = part_of(s, i);
     if (term < 0 && strut_signal_has_program(s)) continue;
-    if (term < 0 || (size_t)term >= index) {
-      strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum",
-                           "term %zu of %s is not a signal that comes before it", i + 1, owner);
-      return false;
-    }
+    if (term < 0 || (size_t)term >= index)
+      return strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum",
+                                  "term %zu of %s is not a signal that comes before it", i + 1,
+                                  owner);
     if (checker->wild[term]) return false; /* reported there */
     terms += size[term];
     if (depth[term] >= depth[index]) depth[index] = depth[term] + 1;
   }
   size[index] = terms > MOST_TERMS ? MOST_TERMS + 1 : (uint32_t)terms;
   if (terms <= MOST_TERMS && depth[index] <= DEEPEST_SUM) return true;
-  strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL,
-                       "%s has more than %d terms, or sums within sums more than %d deep", owner,
-                       MOST_TERMS, DEEPEST_SUM);
-  return false;
+  return strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL,
+                              "%s has more than %d terms, or sums within sums more than %d deep",
+                              owner, MOST_TERMS, DEEPEST_SUM);
 }
 
 /* Checks the numbers of a waveform. */
@@ -105,14 +99,12 @@ static bool check_wave(strut_checker *checker, size_t index, const char *owner) 
         strut_check_number(checker, &whose, STRUT_FIELDS_SINE, "frequency", s->frequency) && valid;
   if (!valid) return false;
   if (s->kind == STRUT_RAMP && !isfinite(s->stop))
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "stop", "%s needs a stop", owner);
-  else if (!(s->stop > s->start))
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "stop",
-                         "the stop of %s must come after its start, found %g s after %g s", owner,
-                         s->stop, s->start);
-  else
-    return true;
-  return false;
+    return strut_report_finding(checker, STRUT_ON_SIGNAL, index, "stop", "%s needs a stop", owner);
+  if (!(s->stop > s->start))
+    return strut_report_finding(checker, STRUT_ON_SIGNAL, index, "stop",
+                                "the stop of %s must come after its start, found %g s after %g s",
+                                owner, s->stop, s->start);
+  return true;
 }
 
 /* Times at which a signal jumps per second; tables and ramps jump as often as they are long. */
@@ -315,10 +307,9 @@ static bool check_program(strut_checker *checker, const strut_program *program, 
   bool valid = program->length > 0;
   for (size_t i = 0; i < program->length && valid; i++) {
     const strut_instruction *p = &program->instruction[i];
-    if (p->operation == STRUT_OPERATION_NUMBER && !isfinite(p->number)) {
-      strut_report_finding(checker, subject, index, key, "a number of %s is not finite", owner);
-      return false;
-    }
+    if (p->operation == STRUT_OPERATION_NUMBER && !isfinite(p->number))
+      return strut_report_finding(checker, subject, index, key, "a number of %s is not finite",
+                                  owner);
     valid = is_known(checker->scene, p, signals);
     if (!valid) break;
     size_t operands = (size_t)strut_operation_operands(p->operation);
@@ -327,14 +318,13 @@ static bool check_program(strut_checker *checker, const strut_program *program, 
     if (valid && top > most) most = top;
   }
   if (!valid || top != 1)
-    strut_report_finding(checker, subject, index, key, "the program of %s is not valid", owner);
-  else if (most > STRUT_MOST_PROGRAM_DEPTH)
-    strut_report_finding(checker, subject, index, key,
-                         "the expression of %s needs more than %d intermediate numbers", owner,
-                         STRUT_MOST_PROGRAM_DEPTH);
-  else
-    return true;
-  return false;
+    return strut_report_finding(checker, subject, index, key, "the program of %s is not valid",
+                                owner);
+  if (most > STRUT_MOST_PROGRAM_DEPTH)
+    return strut_report_finding(checker, subject, index, key,
+                                "the expression of %s needs more than %d intermediate numbers",
+                                owner, STRUT_MOST_PROGRAM_DEPTH);
+  return true;
 }
 
 bool strut_check_program(strut_checker *checker, size_t index, const char *owner) {
@@ -346,31 +336,30 @@ bool strut_check_relay(strut_checker *checker, size_t index, const char *owner) 
   const strut_signal *s = &checker->scene->signals[index];
   const strut_relay *r = &s->relay;
   if (!isfinite(r->upper) || !isfinite(r->lower) || !isfinite(r->on) || !isfinite(r->off))
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL,
-                         "the numbers of relay %s are not finite", owner);
-  else if (!s->name)
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL, "the relay of %s needs a name",
-                         owner);
-  else if (s->lag > 0.0 || s->trigger.kind != STRUT_TRIGGER_NONE)
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL,
-                         "relay %s has a lag or a trigger; give it to a signal that uses the relay",
-                         owner);
-  else if (r->lower > r->upper)
-    strut_report_finding(
+    return strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL,
+                                "the numbers of relay %s are not finite", owner);
+  if (!s->name)
+    return strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL,
+                                "the relay of %s needs a name", owner);
+  if (s->lag > 0.0 || s->trigger.kind != STRUT_TRIGGER_NONE)
+    return strut_report_finding(
+        checker, STRUT_ON_SIGNAL, index, NULL,
+        "relay %s has a lag or a trigger; give it to a signal that uses the relay", owner);
+  if (r->lower > r->upper)
+    return strut_report_finding(
         checker, STRUT_ON_SIGNAL, index, r->on_above ? "off_below" : "off_above",
         r->on_above ? "%s is on above %g and off below %g, so that both hold in between; "
                       "let it be off below a lesser value"
                     : "%s is on below %g and off above %g, so that both hold in between; "
                       "let it be off above a greater value",
         owner, r->on_above ? r->upper : r->lower, r->on_above ? r->lower : r->upper);
-  else if (r->lower == r->upper && !(s->every > 0.0))
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, r->on_above ? "off_below" : "off_above",
-                         "the thresholds of %s are equal, so that it would switch without end; set "
-                         "them apart, or sample it ('every')",
-                         owner);
-  else
-    return true;
-  return false;
+  if (r->lower == r->upper && !(s->every > 0.0))
+    return strut_report_finding(
+        checker, STRUT_ON_SIGNAL, index, r->on_above ? "off_below" : "off_above",
+        "the thresholds of %s are equal, so that it would switch without end; set "
+        "them apart, or sample it ('every')",
+        owner);
+  return true;
 }
 
 void strut_check_states(strut_checker *checker) {
@@ -393,15 +382,14 @@ static bool check_trigger(strut_checker *checker, size_t index, const char *owne
   bool contact = trigger->kind == STRUT_TRIGGER_CONTACT;
   if (!strut_exists(trigger->item, contact ? scene->node_count : scene->sensor_count) ||
       (unsigned)trigger->kind > STRUT_TRIGGER_BELOW || !isfinite(trigger->level))
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "starts", "what starts %s does not exist",
-                         owner);
-  else if (contact && (!strut_scene_has_ground(scene) || !touches(scene, trigger->item)))
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "starts",
-                         "%s starts with the touchdown of node '%s', which cannot touch the ground",
-                         owner, scene->nodes[trigger->item].name);
-  else
-    return true;
-  return false;
+    return strut_report_finding(checker, STRUT_ON_SIGNAL, index, "starts",
+                                "what starts %s does not exist", owner);
+  if (contact && (!strut_scene_has_ground(scene) || !touches(scene, trigger->item)))
+    return strut_report_finding(
+        checker, STRUT_ON_SIGNAL, index, "starts",
+        "%s starts with the touchdown of node '%s', which cannot touch the ground", owner,
+        scene->nodes[trigger->item].name);
+  return true;
 }
 
 bool strut_check_modifiers(strut_checker *checker, size_t index, const char *owner) {

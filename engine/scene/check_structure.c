@@ -39,18 +39,16 @@ static bool check_law_numbers(strut_checker *checker, strut_subject subject, siz
                       : (unsigned)law->carries > STRUT_CARRIES_COMPRESSION
                           ? "carries an unknown sign"
                           : fault_of_lists(law);
-  if (fault) {
-    strut_report_finding(checker, subject, index, "law", "the law of %s %s", owner, fault);
-    return false;
-  }
+  if (fault)
+    return strut_report_finding(checker, subject, index, "law", "the law of %s %s", owner, fault);
   bool valid = true;
   for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++) {
     double value = strut_law_value(law, p);
     bool needed = strut_law_needs(law->kind, p);
     if (isfinite(value) && !(needed && strut_law_above_zero(p) && !(value > 0.0))) continue;
-    strut_report_finding(checker, subject, index, "law", "the law of %s needs a %s%s", owner,
-                         strut_law_key(p), strut_law_above_zero(p) ? " above zero" : "");
-    valid = false;
+    valid =
+        strut_report_finding(checker, subject, index, "law", "the law of %s needs a %s%s", owner,
+                             strut_law_key(p), strut_law_above_zero(p) ? " above zero" : "");
   }
   return valid;
 }
@@ -60,14 +58,13 @@ static bool check_law(strut_checker *checker, strut_subject subject, size_t inde
                       const char *owner, const strut_law *law, bool stiffness) {
   if (!check_law_numbers(checker, subject, index, owner, law)) return false;
   if (stiffness && strut_law_at(law->kind)->own)
-    strut_report_finding(checker, subject, index, "stiffness",
-                         "%s gives a stiffness beside its law, which has its own", owner);
-  else if (!stiffness && !strut_law_at(law->kind)->own && law->kind != STRUT_LAW_LINEAR)
-    strut_report_finding(checker, subject, index, "law", "the law %s of %s needs a stiffness",
-                         strut_law_at(law->kind)->word, owner);
-  else
-    return true;
-  return false;
+    return strut_report_finding(checker, subject, index, "stiffness",
+                                "%s gives a stiffness beside its law, which has its own", owner);
+  if (!stiffness && !strut_law_at(law->kind)->own && law->kind != STRUT_LAW_LINEAR)
+    return strut_report_finding(checker, subject, index, "law",
+                                "the law %s of %s needs a stiffness", strut_law_at(law->kind)->word,
+                                owner);
+  return true;
 }
 
 /* Does the second slope of an elastic-plastic law lie between 0 and the first? `stiffness`: the first. */
@@ -75,11 +72,11 @@ static bool check_hardening(strut_checker *checker, strut_subject subject, size_
                             const char *owner, const strut_law *law, double stiffness) {
   if (law->kind != STRUT_LAW_ELASTIC_PLASTIC) return true;
   if (law->second_stiffness >= 0.0 && law->second_stiffness < stiffness) return true;
-  strut_report_finding(checker, subject, index, "law",
-                       "the second_stiffness of %s must be at least 0 and below its stiffness, "
-                       "found %g beside %g",
-                       owner, law->second_stiffness, stiffness);
-  return false;
+  return strut_report_finding(
+      checker, subject, index, "law",
+      "the second_stiffness of %s must be at least 0 and below its stiffness, "
+      "found %g beside %g",
+      owner, law->second_stiffness, stiffness);
 }
 
 static bool check_end_of_member(strut_checker *checker, size_t index, const char *owner) {
@@ -87,16 +84,15 @@ static bool check_end_of_member(strut_checker *checker, size_t index, const char
   bool rigid = m->kind == STRUT_BAR && checker->scene->bar_model == STRUT_BARS_RIGID;
   const char *key = m->breaks_at > 0.0 ? "breaks_at" : "released_at";
   if (strut_member_ends(m) && rigid)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
-                         "%s is a rigid bar, which cannot break or be released; make the member a "
-                         "spring, or bars: elastic",
-                         owner);
-  else if (m->breaks_at > 0.0 && m->law.carries == STRUT_CARRIES_COMPRESSION)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
-                         "%s carries compression only, so that no tension breaks it", owner);
-  else
-    return true;
-  return false;
+    return strut_report_finding(
+        checker, STRUT_ON_MEMBER, index, key,
+        "%s is a rigid bar, which cannot break or be released; make the member a "
+        "spring, or bars: elastic",
+        owner);
+  if (m->breaks_at > 0.0 && m->law.carries == STRUT_CARRIES_COMPRESSION)
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
+                                "%s carries compression only, so that no tension breaks it", owner);
+  return true;
 }
 
 static bool check_guide_friction(strut_checker *checker, size_t index, const char *owner,
@@ -129,12 +125,11 @@ static bool check_guide_radius(strut_checker *checker, size_t index, const char 
   for (size_t k = 1; k <= m->guide_count && circles; k++) {
     if (m->guide_side != STRUT_GUIDE_AS_DRAWN || !strut_member_is_straight_at(scene, m, k))
       continue;
-    strut_report_finding(
+    return strut_report_finding(
         checker, STRUT_ON_MEMBER, index, "guide_radius",
         "%s is drawn straight over '%s': say by guide_side on which side of it its "
         "guides are",
         owner, scene->nodes[strut_member_node(m, k)].name);
-    return false;
   }
   for (size_t k = 0; k <= m->guide_count && circles; k++) {
     int32_t a = strut_member_node(m, k), b = strut_member_node(m, k + 1);
@@ -142,10 +137,10 @@ static bool check_guide_radius(strut_checker *checker, size_t index, const char 
                         ? 2.0 * m->guide_radius
                         : m->guide_radius;
     if (strut_distance(scene->nodes[a].position, scene->nodes[b].position) > across) continue;
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "guide_radius",
-                         "nodes '%s' and '%s' of %s are too close for guides with this radius",
-                         scene->nodes[a].name, scene->nodes[b].name, owner);
-    return false;
+    return strut_report_finding(
+        checker, STRUT_ON_MEMBER, index, "guide_radius",
+        "nodes '%s' and '%s' of %s are too close for guides with this radius", scene->nodes[a].name,
+        scene->nodes[b].name, owner);
   }
   return !fault;
 }
@@ -156,35 +151,30 @@ static bool check_stops(strut_checker *checker, size_t index, const char *owner)
   bool stiff = m->stop_stiffness > 0.0 || m->stiffness > 0.0 || m->axial_stiffness > 0.0 ||
                strut_law_at(m->law.kind)->own;
   if (m->longest > 0.0 && m->shortest >= m->longest)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "longest",
-                         "the longest of %s, %g m, must be above its shortest, %g m", owner,
-                         m->longest, m->shortest);
-  else if (!stops && (m->stop_stiffness > 0.0 || m->stop_damping > 0.0))
-    strut_report_finding(checker, STRUT_ON_MEMBER, index,
-                         m->stop_stiffness > 0.0 ? "stop_stiffness" : "stop_damping",
-                         "%s describes stops, but has neither a shortest nor a longest", owner);
-  else if (stops && !stiff)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "stop_stiffness",
-                         "the stops of %s need a stop_stiffness", owner);
-  else
-    return true;
-  return false;
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index, "longest",
+                                "the longest of %s, %g m, must be above its shortest, %g m", owner,
+                                m->longest, m->shortest);
+  if (!stops && (m->stop_stiffness > 0.0 || m->stop_damping > 0.0))
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index,
+                                m->stop_stiffness > 0.0 ? "stop_stiffness" : "stop_damping",
+                                "%s describes stops, but has neither a shortest nor a longest",
+                                owner);
+  if (stops && !stiff)
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index, "stop_stiffness",
+                                "the stops of %s need a stop_stiffness", owner);
+  return true;
 }
 
 bool strut_check_member_law(strut_checker *checker, size_t index, const char *owner) {
   const strut_member *m = &checker->scene->members[index];
   bool stiffness = m->stiffness > 0.0 || m->axial_stiffness > 0.0;
   if (!check_law(checker, STRUT_ON_MEMBER, index, owner, &m->law, stiffness)) return false;
-  if (m->kind == STRUT_CABLE && m->law.carries == STRUT_CARRIES_COMPRESSION) {
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "law",
-                         "%s is a cable, which cannot carry compression", owner);
-    return false;
-  }
-  if (m->law.kind == STRUT_LAW_LOGARITHMIC && m->rest_value <= 0.0) {
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "law",
-                         "the law logarithmic of %s needs a rest length above zero", owner);
-    return false;
-  }
+  if (m->kind == STRUT_CABLE && m->law.carries == STRUT_CARRIES_COMPRESSION)
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index, "law",
+                                "%s is a cable, which cannot carry compression", owner);
+  if (m->law.kind == STRUT_LAW_LOGARITHMIC && m->rest_value <= 0.0)
+    return strut_report_finding(checker, STRUT_ON_MEMBER, index, "law",
+                                "the law logarithmic of %s needs a rest length above zero", owner);
   strut_rest rest;
   bool known = !checker->loose[index] && strut_member_rest(checker->scene, index, &rest);
   double slope = known ? rest.stiffness : HUGE_VAL;
@@ -255,25 +245,19 @@ static const double THIN = 1e-9;
 static bool check_corners(strut_checker *checker, size_t index, const char *owner) {
   const strut_scene *scene = checker->scene;
   const strut_cell *c = &scene->cells[index];
-  if (c->node_count < 3 || c->node_count > STRUT_MOST_ELEMENT_NODES) {
-    strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
-                         "%s has %zu nodes, expected 3 to %d", owner, c->node_count,
-                         STRUT_MOST_ELEMENT_NODES);
-    return false;
-  }
+  if (c->node_count < 3 || c->node_count > STRUT_MOST_ELEMENT_NODES)
+    return strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
+                                "%s has %zu nodes, expected 3 to %d", owner, c->node_count,
+                                STRUT_MOST_ELEMENT_NODES);
   for (size_t k = 0; k < c->node_count; k++) {
-    if (c->node[k] < 0 || (size_t)c->node[k] >= scene->node_count) {
-      strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
-                           "%s has a node that does not exist", owner);
-      return false;
-    }
+    if (c->node[k] < 0 || (size_t)c->node[k] >= scene->node_count)
+      return strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
+                                  "%s has a node that does not exist", owner);
     for (size_t i = 0; i < k; i++)
-      if (c->node[i] == c->node[k]) {
-        strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
-                             "%s names node '%s' twice, expected each corner once", owner,
-                             scene->nodes[c->node[k]].name);
-        return false;
-      }
+      if (c->node[i] == c->node[k])
+        return strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
+                                    "%s names node '%s' twice, expected each corner once", owner,
+                                    scene->nodes[c->node[k]].name);
   }
   return true;
 }
@@ -398,24 +382,21 @@ static bool check_bodies(strut_checker *checker, size_t index, const char *owner
     if ((c->node[k] == -1 || strut_exists(c->node[k], scene->node_count)) &&
         (c->member[k] == -1 || strut_exists(c->member[k], scene->member_count)))
       continue;
-    strut_report_finding(checker, STRUT_ON_COLLISION, index, NULL,
-                         "%s is of a node or a member that does not exist", owner);
-    return false;
+    return strut_report_finding(checker, STRUT_ON_COLLISION, index, NULL,
+                                "%s is of a node or a member that does not exist", owner);
   }
   if (bodies != 2 || (c->node[0] == -1 && c->node[1] != -1) ||
-      (c->member[0] == -1 && c->member[1] != -1)) {
-    strut_report_finding(checker, STRUT_ON_COLLISION, index, NULL,
-                         "%s must be of two nodes, of two members, or of a node and a member",
-                         owner);
-    return false;
-  }
+      (c->member[0] == -1 && c->member[1] != -1))
+    return strut_report_finding(
+        checker, STRUT_ON_COLLISION, index, NULL,
+        "%s must be of two nodes, of two members, or of a node and a member", owner);
   for (int k = 0; k < 2; k++) {
     if (c->member[k] < 0 || !scene->members[c->member[k]].guide_count) continue;
-    strut_report_finding(checker, STRUT_ON_COLLISION, index, k ? "members" : "member",
-                         "%s is of member '%s', which runs over guides; only straight members "
-                         "collide",
-                         owner, scene->members[c->member[k]].name);
-    return false;
+    return strut_report_finding(
+        checker, STRUT_ON_COLLISION, index, k ? "members" : "member",
+        "%s is of member '%s', which runs over guides; only straight members "
+        "collide",
+        owner, scene->members[c->member[k]].name);
   }
   return true;
 }
@@ -485,27 +466,23 @@ static bool check_ends(strut_checker *checker, size_t index, const char *owner) 
   const int32_t node[3] = {d->node[0], line ? d->line[0] : d->node[1], line ? d->line[1] : -1};
   const char *key = line ? "line" : "nodes";
   for (int k = 0; k < (line ? 3 : 2); k++) {
-    if (!strut_exists(node[k], scene->node_count)) {
-      strut_report_finding(checker, STRUT_ON_DISTANCE, index, key,
-                           "%s is of a node that does not exist", owner);
-      return false;
-    }
+    if (!strut_exists(node[k], scene->node_count))
+      return strut_report_finding(checker, STRUT_ON_DISTANCE, index, key,
+                                  "%s is of a node that does not exist", owner);
     for (int i = 0; i < k; i++)
-      if (node[i] == node[k]) {
-        strut_report_finding(checker, STRUT_ON_DISTANCE, index, key,
-                             "%s names node '%s' twice, expected different nodes", owner,
-                             scene->nodes[node[k]].name);
-        return false;
-      }
+      if (node[i] == node[k])
+        return strut_report_finding(checker, STRUT_ON_DISTANCE, index, key,
+                                    "%s names node '%s' twice, expected different nodes", owner,
+                                    scene->nodes[node[k]].name);
   }
   if (!line) return true;
   const strut_node *a = &scene->nodes[d->line[0]], *b = &scene->nodes[d->line[1]];
   bool drawn = strut_distance(a->position, b->position) == 0.0;
   if (!drawn && strut_distance(a->start, b->start) > 0.0) return true;
-  strut_report_finding(checker, STRUT_ON_DISTANCE, index, key,
-                       "nodes '%s' and '%s' %s in one place, so the line of %s has no direction",
-                       a->name, b->name, drawn ? "are drawn" : "start", owner);
-  return false;
+  return strut_report_finding(
+      checker, STRUT_ON_DISTANCE, index, key,
+      "nodes '%s' and '%s' %s in one place, so the line of %s has no direction", a->name, b->name,
+      drawn ? "are drawn" : "start", owner);
 }
 
 void strut_check_distances(strut_checker *checker) {

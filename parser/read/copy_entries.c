@@ -235,16 +235,15 @@ static bool check_value(strut_reader *reader, const strut_tree *key, int of) {
   if (value->kind == STRUT_TREE_MAP || is_removal(value)) {
     strut_tree *at = of == STRUT_KEY_SCENE_NODES ? strut_tree_find(value, "position", NULL) : NULL;
     if (!at) return true;
-    strut_report_error(reader, at->place,
-                       "'%s' is placed, so its position is given by its part; give other keys here",
-                       strut_sanitised_text(reader, key->text));
-    return false;
+    return strut_report_error(
+        reader, at->place,
+        "'%s' is placed, so its position is given by its part; give other keys here",
+        strut_sanitised_text(reader, key->text));
   }
-  strut_report_error(
+  return strut_report_error(
       reader, value->place,
       "'%s' is placed already; expected keys that it should have, or remove, found %s",
       strut_sanitised_text(reader, key->text), strut_found(reader, value));
-  return false;
 }
 
 /* The entries of copies by name. */

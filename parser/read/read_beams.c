@@ -78,11 +78,11 @@ static bool check_ends(strut_reader *reader, const strut_tree *key, const strut_
   for (int k = 0; k < 2; k++) {
     const strut_node *end = &nodes[b->node[k]];
     if (!(b->clamped >> k & 1u) || (end->fixed[0] && end->fixed[1])) continue;
-    strut_report_error(reader, clamped->value->place,
-                       "beam '%s' is clamped at node '%s', which is not fixed; write fixed: both "
-                       "for it, or join the beam to another by a hinge",
-                       b->name, end->name);
-    return false;
+    return strut_report_error(
+        reader, clamped->value->place,
+        "beam '%s' is clamped at node '%s', which is not fixed; write fixed: both "
+        "for it, or join the beam to another by a hinge",
+        b->name, end->name);
   }
   double length = part_length(reader, b);
   if (length > 0.0) return true;
@@ -285,10 +285,10 @@ static bool read_clamped_to(strut_reader *reader, const strut_slot *slot, strut_
   for (int k = 0; k < 2; k++) {
     const strut_tree *end = b->clamped_to[k];
     if (!end || !(b->clamped >> k & 1u)) continue;
-    strut_report_error(reader, end->place,
-                       "the %s of beam '%s' is clamped in a fixed direction and to '%s'; give one",
-                       k ? "end" : "start", b->name, strut_sanitised_text(reader, end->text));
-    return false;
+    return strut_report_error(
+        reader, end->place,
+        "the %s of beam '%s' is clamped in a fixed direction and to '%s'; give one",
+        k ? "end" : "start", b->name, strut_sanitised_text(reader, end->text));
   }
   return !fields.broken;
 }
@@ -327,22 +327,21 @@ static bool find_target(strut_reader *reader, const strut_beam *b, int end,
   }
   target->end = ends[1] == b->node[end];
   if (m && target->beam)
-    strut_report_error(reader, value->place,
-                       "there are a member and a beam '%s'; rename one of them", name);
-  else if (target->beam == b)
-    strut_report_error(reader, value->place, "beam '%s' is clamped to itself", name);
-  else if (m && m->kind == STRUT_CABLE)
-    strut_report_error(reader, value->place,
-                       "beam '%s' is clamped to cable '%s', which has no direction of its own; "
-                       "clamp it to a bar or to a beam",
-                       b->name, name);
-  else if (ends[0] != b->node[end] && ends[1] != b->node[end])
-    strut_report_error(reader, value->place,
-                       "beam '%s' %s at node '%s', which is no end of %s '%s'", b->name, which,
-                       node->name, m ? "member" : "beam", name);
-  else
-    return true;
-  return false;
+    return strut_report_error(reader, value->place,
+                              "there are a member and a beam '%s'; rename one of them", name);
+  if (target->beam == b)
+    return strut_report_error(reader, value->place, "beam '%s' is clamped to itself", name);
+  if (m && m->kind == STRUT_CABLE)
+    return strut_report_error(
+        reader, value->place,
+        "beam '%s' is clamped to cable '%s', which has no direction of its own; "
+        "clamp it to a bar or to a beam",
+        b->name, name);
+  if (ends[0] != b->node[end] && ends[1] != b->node[end])
+    return strut_report_error(reader, value->place,
+                              "beam '%s' %s at node '%s', which is no end of %s '%s'", b->name,
+                              which, node->name, m ? "member" : "beam", name);
+  return true;
 }
 
 /* Stiffness of the half part at an end. */

@@ -59,13 +59,11 @@ bool strut_read_node_sets(strut_reader *reader, const strut_slot *slot, strut_ow
   bool fine = true;
   for (const strut_tree *item = list->first; item; item = item->next)
     if (item->kind == STRUT_TREE_LIST) lists++;
-  if (!list->count || (lists && lists != list->count)) {
-    strut_report_error(
+  if (!list->count || (lists && lists != list->count))
+    return strut_report_error(
         reader, list->place,
         "expected nodes such as [n1, n2], or a list of such lists, for '%s' of %s, found %s", key,
         strut_owner_text(reader, owner), lists ? "a list of both" : strut_found(reader, list));
-    return false;
-  }
   if (!nodes_known(reader)) return false;
   alternatives = lists ? lists : 1;
   *sets = strut_reader_allocate(reader, &reader->scene->arena, alternatives, sizeof **sets);
@@ -99,12 +97,11 @@ static bool keys_only(strut_reader *reader, const strut_tree *map, strut_owner o
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     if (is_key(reader, key) || strut_find_thing(reader, STRUT_THING_NODE, NULL, key->text) < 0)
       continue;
-    strut_report_error(
+    fine = strut_report_error(
         reader, key->place,
         "node '%s' of %s belongs in its 'shape', as in {contacts: [...], shape: {%s: ...}}",
         strut_sanitised_text(reader, key->text), strut_owner_text(reader, owner),
         strut_sanitised_text(reader, key->text));
-    fine = false;
   }
   return fine;
 }
@@ -137,12 +134,10 @@ bool strut_read_configuration(strut_reader *reader, const strut_tree *key, void 
   if (!configuration->position) return false;
   for (size_t i = 0; i < scene->node_count; i++)
     memcpy(configuration->position[i], scene->nodes[i].position, sizeof *configuration->position);
-  if (value->kind != STRUT_TREE_MAP) {
-    strut_report_error(reader, value->place,
-                       "expected positions such as {n1: [10 mm, 0]} for %s, found %s",
-                       strut_owner_text(reader, owner), strut_found(reader, value));
-    return false;
-  }
+  if (value->kind != STRUT_TREE_MAP)
+    return strut_report_error(reader, value->place,
+                              "expected positions such as {n1: [10 mm, 0]} for %s, found %s",
+                              strut_owner_text(reader, owner), strut_found(reader, value));
   for (const strut_tree *k = value->first; k; k = k->next->next) keys |= is_key(reader, k);
   if (keys) return read_keys(reader, value, owner, configuration);
   configuration->shaped = true; /* `{}` is the drawn shape */

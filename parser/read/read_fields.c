@@ -155,11 +155,10 @@ bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tre
   while (words.count < 32 &&
          strut_word_at(key->words, words.count, words.word[words.count], sizeof words.word[0]))
     words.count++;
-  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found '%s'%s", expected,
-                     key->name, strut_owner_text(reader, owner),
-                     strut_sanitised_text(reader, value->text),
-                     strut_hint(reader, value->text, name_of_words, &words, (size_t)words.count));
-  return false;
+  return strut_report_error(
+      reader, value->place, "expected %s for '%s' of %s, found '%s'%s", expected, key->name,
+      strut_owner_text(reader, owner), strut_sanitised_text(reader, value->text),
+      strut_hint(reader, value->text, name_of_words, &words, (size_t)words.count));
 }
 
 /* A list of words without repetition; bits gets one bit for each. */
@@ -172,9 +171,8 @@ static bool read_words(strut_reader *reader, const strut_key *key, const strut_t
     if (!strut_read_word(reader, key, item, owner, &word)) {
       fine = false;
     } else if (*bits & 1 << word) {
-      strut_report_error(reader, item->place, "'%s' appears twice in '%s' of %s", item->text,
-                         key->name, strut_owner_text(reader, owner));
-      fine = false;
+      fine = strut_report_error(reader, item->place, "'%s' appears twice in '%s' of %s", item->text,
+                                key->name, strut_owner_text(reader, owner));
     } else {
       *bits |= 1 << word;
     }
@@ -194,11 +192,11 @@ static bool read_fixed(strut_reader *reader, const strut_key *key, const strut_t
 static bool refuse_value(strut_reader *reader, int key, const strut_tree *value,
                          strut_owner owner) {
   char expected[300];
-  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s",
-                     strut_key_expected(key, expected, sizeof expected), strut_key_at(key)->name,
-                     strut_owner_text(reader, owner), strut_found(reader, value),
-                     strut_lacks_space(value) ? "; write a space after the colon" : "");
-  return false;
+  return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s",
+                            strut_key_expected(key, expected, sizeof expected),
+                            strut_key_at(key)->name, strut_owner_text(reader, owner),
+                            strut_found(reader, value),
+                            strut_lacks_space(value) ? "; write a space after the colon" : "");
 }
 
 /* Is the value a scalar, list or mapping, as the type requires? Its content is not checked. */
@@ -244,11 +242,10 @@ static bool shape_fits(strut_key_type type, const strut_tree *value) {
 
 static bool read_version(strut_reader *reader, const strut_tree *value) {
   if (strcmp(value->text, "1") == 0) return true;
-  strut_report_error(reader, value->place,
-                     "expected the language version 1 for 'strut', found '%s'; "
-                     "this program knows version 1 only",
-                     strut_sanitised_text(reader, value->text));
-  return false;
+  return strut_report_error(reader, value->place,
+                            "expected the language version 1 for 'strut', found '%s'; "
+                            "this program knows version 1 only",
+                            strut_sanitised_text(reader, value->text));
 }
 
 static bool read_number(strut_reader *reader, const strut_key *key, const strut_tree *value,

@@ -209,13 +209,12 @@ static bool turn_friction(strut_reader *reader, const strut_tree *key, const dou
   if (!reader->scope || !f->directional) return true;
   strut_place_vector(reader, NULL, ahead);
   double forward = strut_dot(ahead, along, 2);
-  if (fabs(forward) < 1e-9) {
-    strut_report_error(reader, key->place,
-                       "contact '%s' has a friction with a direction, but its copy stands upright "
-                       "on the ground; give its contact where it is placed",
-                       strut_local_name(reader, key->text));
-    return false;
-  }
+  if (fabs(forward) < 1e-9)
+    return strut_report_error(
+        reader, key->place,
+        "contact '%s' has a friction with a direction, but its copy stands upright "
+        "on the ground; give its contact where it is placed",
+        strut_local_name(reader, key->text));
   if (forward > 0.0) return true;
   double statics = f->mu_static, kinetics = f->mu_kinetic;
   f->mu_static = f->mu_static_backward, f->mu_kinetic = f->mu_kinetic_backward;
@@ -279,9 +278,8 @@ static bool mark_nodes(strut_reader *reader, strut_fields *fields, strut_owner o
     if (node < 0) {
       fine = false;
     } else if (touches[node]) {
-      strut_report_error(reader, item->place, "node '%s' appears twice in 'nodes' of %s",
-                         item->text, strut_owner_text(reader, owner));
-      fine = false;
+      fine = strut_report_error(reader, item->place, "node '%s' appears twice in 'nodes' of %s",
+                                item->text, strut_owner_text(reader, owner));
     } else {
       touches[node] = 1;
     }
@@ -332,10 +330,9 @@ static bool add_copied(strut_reader *reader, unsigned char *touches, const strut
     if (node < 0) {
       fine = false;
     } else if (entry[node] && entry[node]->next->first != key->next->first) {
-      strut_report_error(reader, key->place,
-                         "node '%s' has two different contacts, of the parts that share it",
-                         reader->scene->nodes[node].name);
-      fine = false;
+      fine = strut_report_error(reader, key->place,
+                                "node '%s' has two different contacts, of the parts that share it",
+                                reader->scene->nodes[node].name);
     } else {
       touches[node] = 1, entry[node] = key;
     }
@@ -425,9 +422,8 @@ static bool shape_is_alone(strut_reader *reader, strut_fields *fields, strut_own
   for (size_t i = 0; shape->key && i < sizeof of_lines / sizeof of_lines[0]; i++) {
     const strut_slot *slot = strut_slot_of(fields, of_lines[i]);
     if (!slot->key) continue;
-    strut_report_error(reader, slot->key->place, "%s is a %s, so it has no '%s'",
-                       strut_owner_text(reader, owner), shape->key->text, slot->key->text);
-    return false;
+    return strut_report_error(reader, slot->key->place, "%s is a %s, so it has no '%s'",
+                              strut_owner_text(reader, owner), shape->key->text, slot->key->text);
   }
   return true;
 }
@@ -439,11 +435,9 @@ static bool read_normal(strut_reader *reader, strut_fields *fields, strut_owner 
   const strut_slot *normal = strut_slot_of(fields, STRUT_KEY_GROUND_NORMAL);
   if (normal->state != STRUT_GIVEN) return true;
   const double *n = section->normal;
-  if (n[0] == 0.0 && n[1] == 0.0) {
-    strut_report_error(reader, normal->value->place, "the normal of %s has no direction",
-                       strut_owner_text(reader, owner));
-    return false;
-  }
+  if (n[0] == 0.0 && n[1] == 0.0)
+    return strut_report_error(reader, normal->value->place, "the normal of %s has no direction",
+                              strut_owner_text(reader, owner));
   ground->slope = n[0] == 0.0 ? (n[1] > 0.0 ? 0.0 : STRUT_PI) : atan2(-n[0], n[1]);
   if (!ground->placed && n[1] < 0.0) { /* steeper than a ground without a point may be */
     ground->placed = true;

@@ -26,10 +26,9 @@ typedef struct network {
 
 static bool fail_network(network *n, const char *what, const char *text) {
   const strut_tree *value = strut_tree_find(n->key->next, "network", NULL);
-  strut_report_error(n->reader, value->place, "network '%s', line %zu: %s%s",
-                     strut_sanitised_text(n->reader, value->text), n->line, what,
-                     text ? strut_sanitised_text(n->reader, text) : "");
-  return false;
+  return strut_report_error(n->reader, value->place, "network '%s', line %zu: %s%s",
+                            strut_sanitised_text(n->reader, value->text), n->line, what,
+                            text ? strut_sanitised_text(n->reader, text) : "");
 }
 
 /* A signal of the network with a name of its own. */
@@ -168,14 +167,12 @@ static bool read_inputs(network *n, strut_owner owner) {
     if (!strut_read_scalar(reader, item, "inputs", owner, "an expression without unit") ||
         !strut_read_signal_program(reader, item, "inputs", owner, &signal.program, &q))
       return false;
-    if (!q.bare && !strut_dimension_equal(q.dimension, STRUT_DIM_NONE)) {
-      strut_report_error(
+    if (!q.bare && !strut_dimension_equal(q.dimension, STRUT_DIM_NONE))
+      return strut_report_error(
           reader, item->place,
           "expected a number without unit for 'inputs' of %s, found %s; divide it by "
           "what is usual",
           strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
-      return false;
-    }
     const char *name =
         strut_arena_format(&reader->scratch, "%s_in_%zu", n->key->text, n->before + 1);
     int32_t index = add_neuron(n, name, &signal);

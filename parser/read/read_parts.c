@@ -116,13 +116,12 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
     strut_declare_parameter(reader, key, p);
     p->of_part = values++;
     p->of_part->scope = copy;
-    if (!copy->closed && strut_parameter_find(reader, key->text)) {
-      strut_report_error(reader, key->place,
-                         "the scene has a parameter '%s' already, which the part sees; give this "
-                         "one another name",
-                         key->text);
-      fine = false;
-    }
+    if (!copy->closed && strut_parameter_find(reader, key->text))
+      fine = strut_report_error(
+          reader, key->place,
+          "the scene has a parameter '%s' already, which the part sees; give this "
+          "one another name",
+          key->text);
   }
   for (; given; given = given->next->next) {
     size_t i = 0;
@@ -132,11 +131,10 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
       copy->parameters[i].of_part->given_scope = place;
       continue;
     }
-    strut_report_error(
+    fine = strut_report_error(
         reader, given->place, "part '%s' has no parameter '%s'%s", copy->placement->part->name,
         strut_sanitised_text(reader, given->text),
         strut_hint(reader, given->text, copy_parameter_name, copy, copy->parameter_count));
-    fine = false;
   }
   for (size_t i = 0; i < copy->parameter_count; i++) {
     strut_parameter_state *p = &copy->parameters[i];

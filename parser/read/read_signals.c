@@ -85,10 +85,9 @@ static bool read_table(strut_reader *reader, const strut_tree *list, strut_owner
   if (!time || !value) return false;
   for (const strut_tree *point = list->first; point; point = point->next) {
     if (point->kind != STRUT_TREE_LIST || point->count != 2) {
-      strut_report_error(reader, point->place,
-                         "expected a point such as [0.1 s, 2] for 'table' of %s, found %s",
-                         strut_owner_text(reader, owner), strut_found(reader, point));
-      fine = false;
+      fine = strut_report_error(reader, point->place,
+                                "expected a point such as [0.1 s, 2] for 'table' of %s, found %s",
+                                strut_owner_text(reader, owner), strut_found(reader, point));
       continue;
     }
     size_t i = signal->point_count++;
@@ -135,18 +134,16 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
   m->bare = q.bare;
   m->dimension = q.dimension;
   bool scaled = strut_scope_scale(reader, value) != 1.0;
-  if (scaled) {
-    strut_report_error(reader, value->place,
-                       "the lengths in an expression are not scaled, but this copy is; make the "
-                       "size a parameter of the part and 'set' it");
-    return false;
-  }
+  if (scaled)
+    return strut_report_error(
+        reader, value->place,
+        "the lengths in an expression are not scaled, but this copy is; make the "
+        "size a parameter of the part and 'set' it");
   if (!m->expected || q.bare || strut_dimension_equal(q.dimension, *m->expected)) return true;
-  strut_report_error(
+  return strut_report_error(
       reader, value->place, "expected %s for 'expression' of %s, found %s",
       strut_expected_quantity(reader->signal_quantity, *m->expected, wanted, sizeof wanted),
       strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
-  return false;
 }
 
 /* The event with which the signal's time begins. */
@@ -160,19 +157,15 @@ bool strut_read_trigger(strut_reader *reader, strut_fields *fields, strut_owner 
   bool level = strut_slot_of(fields, key)->state == STRUT_GIVEN;
   bool sensed = sensor->state == STRUT_GIVEN;
   if (fields->broken) return false;
-  if (contact->state != STRUT_GIVEN && !sensed) {
-    strut_report_error(reader, fields->map->place,
-                       "%s names no event; write {contact: NODE}, or {sensor: NAME, above: LEVEL}",
-                       owner.kind);
-    return false;
-  }
-  if (sensed != level) {
-    strut_report_error(reader, fields->map->place,
-                       sensed ? "%s needs a level, 'above' or 'below', of its sensor"
-                              : "%s gives a level, which only a sensor passes",
-                       owner.kind);
-    return false;
-  }
+  if (contact->state != STRUT_GIVEN && !sensed)
+    return strut_report_error(
+        reader, fields->map->place,
+        "%s names no event; write {contact: NODE}, or {sensor: NAME, above: LEVEL}", owner.kind);
+  if (sensed != level)
+    return strut_report_error(reader, fields->map->place,
+                              sensed ? "%s needs a level, 'above' or 'below', of its sensor"
+                                     : "%s gives a level, which only a sensor passes",
+                              owner.kind);
   if (!sensed || trigger->item < 0) return trigger->item >= 0;
   strut_dimension dimension = strut_sensor_dimension(reader->scene->sensors[trigger->item].kind);
   return strut_store_number(reader, fields, key, owner, dimension, trigger);
@@ -401,19 +394,15 @@ static bool read_drive(strut_reader *reader, strut_fields *fields, strut_owner o
                        "frequency: 10 Hz}}, or a signal's name; or 'force' or 'moment' instead",
                        strut_owner_text(reader, owner));
   if (k == 3) return false;
-  if (known && slot->key && k > 0 && cell) {
-    strut_report_error(reader, slot->key->place,
-                       "%s gives a '%s' to a cell, whose pressure a 'signal' drives",
-                       strut_owner_text(reader, owner), strut_key_at(keys[k])->name);
-    return false;
-  }
-  if (known && slot->key && k > 0 && hinge != (k == 2)) {
-    strut_report_error(reader, slot->key->place,
-                       hinge ? "%s gives a 'force' to a hinge, which takes a 'moment'"
-                             : "%s gives a 'moment' to a member, which takes a 'force'",
-                       strut_owner_text(reader, owner));
-    return false;
-  }
+  if (known && slot->key && k > 0 && cell)
+    return strut_report_error(reader, slot->key->place,
+                              "%s gives a '%s' to a cell, whose pressure a 'signal' drives",
+                              strut_owner_text(reader, owner), strut_key_at(keys[k])->name);
+  if (known && slot->key && k > 0 && hinge != (k == 2))
+    return strut_report_error(reader, slot->key->place,
+                              hinge ? "%s gives a 'force' to a hinge, which takes a 'moment'"
+                                    : "%s gives a 'moment' to a member, which takes a 'force'",
+                              strut_owner_text(reader, owner));
   actuator->force = (uint32_t)k;
   reader->signal_quantity = k == 2 ? "moment" : known && cell ? "pressure" : NULL;
   if (slot->state == STRUT_GIVEN)
@@ -481,11 +470,10 @@ static bool read_speed(strut_reader *reader, const strut_tree *value, strut_owne
   bool turns = !q.bare && strut_dimension_equal(q.dimension, STRUT_DIM_FREQUENCY);
   *speed = turns ? STRUT_TAU * q.value : q.value;
   if (turns || q.bare || strut_dimension_equal(q.dimension, angular)) return true;
-  strut_report_error(reader, value->place,
-                     "expected a speed such as '30 Hz' or '188 rad/s' for 'speed' of %s, found %s",
-                     strut_owner_text(reader, owner),
-                     strut_dimension_name(q.dimension, found, sizeof found));
-  return false;
+  return strut_report_error(
+      reader, value->place,
+      "expected a speed such as '30 Hz' or '188 rad/s' for 'speed' of %s, found %s",
+      strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
 }
 
 /* The angle counts from the copy's own x, and in a mirrored one clockwise. */
@@ -510,12 +498,11 @@ bool strut_read_unbalance(strut_reader *reader, strut_fields *fields, strut_owne
   const strut_slot *speed = strut_slot_of(fields, STRUT_KEY_UNBALANCE_SPEED);
   const strut_slot *signal = strut_slot_of(fields, STRUT_KEY_UNBALANCE_SIGNAL);
   bool fine = speed->state != STRUT_GIVEN || read_speed(reader, speed->value, owner, &u->speed);
-  if (speed->state == STRUT_ABSENT && signal->state == STRUT_ABSENT && !fields->broken) {
-    strut_report_error(reader, fields->key->place,
-                       "%s lacks 'speed', expected one such as '30 Hz', or 'angle' with a signal",
-                       strut_owner_text(reader, owner));
-    fine = false;
-  }
+  if (speed->state == STRUT_ABSENT && signal->state == STRUT_ABSENT && !fields->broken)
+    fine = strut_report_error(
+        reader, fields->key->place,
+        "%s lacks 'speed', expected one such as '30 Hz', or 'angle' with a signal",
+        strut_owner_text(reader, owner));
   turn_unbalance(reader, signal, u);
   return fine;
 }
@@ -556,11 +543,10 @@ static bool read_position(strut_reader *reader, const strut_tree *value, strut_o
     if (length > 0.0) s->share *= strut_scope_scale(reader, value) / length;
     return length > 0.0;
   }
-  strut_report_error(
+  return strut_report_error(
       reader, value->place,
       "expected a share such as '50 %%', or a length, for 'position' of %s, found %s",
       strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
-  return false;
 }
 
 bool strut_read_slider(strut_reader *reader, strut_fields *fields, strut_owner owner,

@@ -59,12 +59,11 @@ static bool read_place_and_keys(strut_reader *reader, const strut_tree *key, str
     strut_place_point(reader, value, node->position);
     return fine;
   }
-  if (value->kind == STRUT_TREE_SCALAR) {
-    strut_report_error(reader, value->place,
-                       "expected a position such as [10 mm, 0], or a mapping, for %s, found %s",
-                       strut_owner_text(reader, owner), strut_found(reader, value));
-    return false;
-  }
+  if (value->kind == STRUT_TREE_SCALAR)
+    return strut_report_error(
+        reader, value->place,
+        "expected a position such as [10 mm, 0], or a mapping, for %s, found %s",
+        strut_owner_text(reader, owner), strut_found(reader, value));
   strut_fields fields;
   strut_read_fields(reader, STRUT_SECTION_NODE, value, owner, &fields);
   strut_apply_groups(reader, &fields, STRUT_KEY_NODE_GROUP, owner);
@@ -195,10 +194,9 @@ static bool read_points(strut_reader *reader, const strut_slot *slot, strut_owne
   for (const strut_tree *point = fine ? list->first : NULL; point; point = point->next) {
     size_t i = law->count++;
     if (point->kind != STRUT_TREE_LIST || point->count != 2) {
-      strut_report_error(reader, point->place,
-                         "expected a point such as [2 mm, 3 N] for '%s' of %s, found %s", key,
-                         strut_owner_text(reader, owner), strut_found(reader, point));
-      fine = false;
+      fine = strut_report_error(reader, point->place,
+                                "expected a point such as [2 mm, 3 N] for '%s' of %s, found %s",
+                                key, strut_owner_text(reader, owner), strut_found(reader, point));
       continue;
     }
     fine =
@@ -207,11 +205,11 @@ static bool read_points(strut_reader *reader, const strut_slot *slot, strut_owne
         strut_read_number(reader, point->first->next, key, owner, force, STRUT_RANGE_ANY, &y[i]) &&
         fine;
     if (!fine || i == 0 || x[i] > x[i - 1] || law->kind == STRUT_LAW_FOLDING) continue;
-    strut_report_error(reader, point->place,
-                       "expected points with increasing x for 'points' of %s, found %g after %g; "
-                       "a law that folds back is of the kind curve",
-                       strut_owner_text(reader, owner), x[i], x[i - 1]);
-    fine = false;
+    fine = strut_report_error(
+        reader, point->place,
+        "expected points with increasing x for 'points' of %s, found %g after %g; "
+        "a law that folds back is of the kind curve",
+        strut_owner_text(reader, owner), x[i], x[i - 1]);
   }
   law->x = x, law->force = y;
   return fine;
@@ -238,11 +236,10 @@ static bool check_needs(strut_reader *reader, strut_fields *fields, strut_owner 
   }
   bool points = strut_slot_of(fields, STRUT_KEY_LAW_POINTS)->state != STRUT_ABSENT;
   bool control = strut_slot_of(fields, STRUT_KEY_LAW_CONTROL_POINTS)->state != STRUT_ABSENT;
-  if (law->kind == STRUT_LAW_FOLDING && points == control) {
-    strut_report_error(reader, fields->map->place, "%s needs 'points' or 'control_points', %s",
-                       strut_owner_text(reader, owner), points ? "not both" : "and has neither");
-    fine = false;
-  }
+  if (law->kind == STRUT_LAW_FOLDING && points == control)
+    fine = strut_report_error(
+        reader, fields->map->place, "%s needs 'points' or 'control_points', %s",
+        strut_owner_text(reader, owner), points ? "not both" : "and has neither");
   return fine;
 }
 
@@ -260,10 +257,9 @@ static bool read_word(strut_reader *reader, const strut_tree *value, strut_owner
   }
   law->kind = (strut_law_kind)(word - 2);
   if (!strut_law_at(law->kind)->needs && law->kind != STRUT_LAW_FOLDING) return true;
-  strut_report_error(reader, value->place,
-                     "the law %s of %s needs numbers: write a mapping {kind: %s, ...}", value->text,
-                     strut_owner_text(reader, owner), value->text);
-  return false;
+  return strut_report_error(reader, value->place,
+                            "the law %s of %s needs numbers: write a mapping {kind: %s, ...}",
+                            value->text, strut_owner_text(reader, owner), value->text);
 }
 
 bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner owner,
@@ -299,12 +295,10 @@ static bool read_path(strut_reader *reader, const strut_slot *slot, strut_owner 
   if (slot->state != STRUT_GIVEN) return false;
   size_t count = slot->value->count;
   bool known = true;
-  if (count > STRUT_MOST_ELEMENT_NODES) {
-    strut_report_error(reader, slot->value->place,
-                       "%s runs over %zu nodes, at most %d are possible",
-                       strut_owner_text(reader, owner), count, STRUT_MOST_ELEMENT_NODES);
-    return false;
-  }
+  if (count > STRUT_MOST_ELEMENT_NODES)
+    return strut_report_error(reader, slot->value->place,
+                              "%s runs over %zu nodes, at most %d are possible",
+                              strut_owner_text(reader, owner), count, STRUT_MOST_ELEMENT_NODES);
   if (count > 2)
     member->guides =
         strut_reader_allocate(reader, &reader->scene->arena, count - 2, sizeof(int32_t));
@@ -385,13 +379,12 @@ bool strut_read_cell(strut_reader *reader, strut_fields *fields, strut_owner own
   for (size_t k = 0; k < sizeof own / sizeof own[0] && !elastic; k++)
     if (strut_slot_of(fields, own[k])->key) elastic = strut_slot_of(fields, own[k]);
   bool other = gas->state != STRUT_ABSENT || pressure->state != STRUT_ABSENT;
-  if (elastic && other) {
-    strut_report_error(reader, elastic->key->place,
-                       "%s gives '%s' beside '%s'; a cell is elastic, or has a pressure, or a gas",
-                       strut_owner_text(reader, owner), elastic->key->text,
-                       gas->state != STRUT_ABSENT ? "gas" : "pressure");
-    return false;
-  }
+  if (elastic && other)
+    return strut_report_error(
+        reader, elastic->key->place,
+        "%s gives '%s' beside '%s'; a cell is elastic, or has a pressure, or a gas",
+        strut_owner_text(reader, owner), elastic->key->text,
+        gas->state != STRUT_ABSENT ? "gas" : "pressure");
   if (elastic) {
     cell->law = STRUT_LAW_LINEAR;
     return true;
@@ -400,11 +393,11 @@ bool strut_read_cell(strut_reader *reader, strut_fields *fields, strut_owner own
     return strut_read_nested(reader, strut_key_at(STRUT_KEY_CELL_GAS), gas, owner, object,
                              sizeof(strut_cell));
   if (other || fields->broken) return true;
-  strut_report_error(reader, fields->key->place,
-                     "%s lacks 'pressure', expected a pressure such as '500 N/m', or 'gas', or the "
-                     "'stiffness' of its area",
-                     strut_owner_text(reader, owner));
-  return false;
+  return strut_report_error(
+      reader, fields->key->place,
+      "%s lacks 'pressure', expected a pressure such as '500 N/m', or 'gas', or the "
+      "'stiffness' of its area",
+      strut_owner_text(reader, owner));
 }
 
 /* Is there one of the three forms? If not, that is reported. */

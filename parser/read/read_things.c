@@ -252,11 +252,10 @@ static bool store_list(strut_reader *reader, const strut_key *key, const strut_s
     return strut_read_node_sets(reader, slot, owner, (void *)(object + field->offset),
                                 (void *)(object + field->number));
   bool things = field->type == STRUT_FIELD_INT32;
-  if (things && field->kind != STRUT_THING_COUNT && count > STRUT_MOST_ELEMENT_NODES) {
-    strut_report_error(reader, slot->value->place, "%s has %zu nodes, at most %d are possible",
-                       strut_owner_text(reader, owner), count, STRUT_MOST_ELEMENT_NODES);
-    return false;
-  }
+  if (things && field->kind != STRUT_THING_COUNT && count > STRUT_MOST_ELEMENT_NODES)
+    return strut_report_error(reader, slot->value->place,
+                              "%s has %zu nodes, at most %d are possible",
+                              strut_owner_text(reader, owner), count, STRUT_MOST_ELEMENT_NODES);
   size_t size = things                                   ? sizeof(int32_t)
                 : field->type == STRUT_FIELD_DOUBLE_PAIR ? 2 * sizeof(double)
                 : field->type == STRUT_FIELD_TEXT        ? sizeof(const char *)

@@ -13,16 +13,17 @@
 /* Longest text from the file in a message, and most names compared for suggestions. */
 enum { SHOWN = 60, MOST_SUGGESTIONS = 200000, LONGEST_NAME = 255 };
 
-void strut_report_error(strut_reader *reader, strut_place place, const char *format, ...) {
+bool strut_report_error(strut_reader *reader, strut_place place, const char *format, ...) {
   char text[1200] = "";
   va_list arguments;
   reader->failed = true;
-  if (strut_error_is_repeated(reader, place, format)) return;
+  if (strut_error_is_repeated(reader, place, format)) return false;
   va_start(arguments, format);
   if (!strut_diagnostics_full(reader->diagnostics)) vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
   strut_diagnose(reader->diagnostics, place, "%s", text);
   strut_error_remember(reader, place, format);
+  return false;
 }
 
 void *strut_reader_allocate(strut_reader *reader, strut_arena *arena, size_t count, size_t size) {
@@ -154,9 +155,8 @@ static bool is_scalar(const strut_tree *value) {
 bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
                        strut_owner owner, const char *expected) {
   if (is_scalar(value)) return true;
-  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected, key,
-                     strut_owner_text(reader, owner), strut_found(reader, value));
-  return false;
+  return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected,
+                            key, strut_owner_text(reader, owner), strut_found(reader, value));
 }
 
 /* The place in the file of an error within an expression; the whole value if quotes or escapes hide it. */
@@ -217,10 +217,9 @@ static bool in_range(strut_reader *reader, const strut_tree *value, const char *
   bool below = range == STRUT_RANGE_NOT_NEGATIVE ? number < 0.0
                                                  : range == STRUT_RANGE_ABOVE_ZERO && number <= 0.0;
   if (!below) return true;
-  strut_report_error(
+  return strut_report_error(
       reader, value->place, "'%s' of %s must %s, found %g", key, strut_owner_text(reader, owner),
       range == STRUT_RANGE_NOT_NEGATIVE ? "not be negative" : "be above zero", number);
-  return false;
 }
 
 bool strut_check_whole(strut_reader *reader, const strut_tree *value, const strut_key *key,
@@ -233,10 +232,9 @@ bool strut_check_whole(strut_reader *reader, const strut_tree *value, const stru
   if (number == floor(number) && number >= limits.least && number <= limits.most) return true;
   char least[40] = "";
   if (limits.least > 0.0) snprintf(least, sizeof least, "from %.0f ", limits.least);
-  strut_report_error(reader, value->place, "'%s' of %s must be a whole number %s%s %.0f, found %g",
-                     key->name, strut_owner_text(reader, owner), least, *least ? "to" : "up to",
-                     limits.most, number);
-  return false;
+  return strut_report_error(
+      reader, value->place, "'%s' of %s must be a whole number %s%s %.0f, found %g", key->name,
+      strut_owner_text(reader, owner), least, *least ? "to" : "up to", limits.most, number);
 }
 
 /* Lengths of a scaled copy are longer, areas more so; other numbers stay. */
@@ -263,11 +261,10 @@ bool strut_read_number(strut_reader *reader, const strut_tree *value, const char
     strut_dimension turned = quantity.dimension;
     turned.angle = -1.0f;
     bool per_angle = quantity.dimension.angle == 0.0f && strut_dimension_equal(turned, dimension);
-    strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s", expected,
-                       key, strut_owner_text(reader, owner),
-                       strut_dimension_name(quantity.dimension, found, sizeof found),
-                       per_angle ? "; write (...)/(1 rad)" : "");
-    return false;
+    return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s",
+                              expected, key, strut_owner_text(reader, owner),
+                              strut_dimension_name(quantity.dimension, found, sizeof found),
+                              per_angle ? "; write (...)/(1 rad)" : "");
   }
   *number = quantity.value;
   if (!in_range(reader, value, key, owner, range, quantity.value)) return false;
@@ -284,11 +281,10 @@ bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *
   }
   const char *example = strut_dimension_example(dimension);
   bool longer = value->kind == STRUT_TREE_LIST && value->count > 2;
-  strut_report_error(
+  return strut_report_error(
       reader, value->place, "expected two numbers such as [%s, 0] for '%s' of %s, found %s%s",
       example ? example : "1", key, strut_owner_text(reader, owner), strut_found(reader, value),
       longer ? "; scenes are planar, and the decimal mark is a point" : "");
-  return false;
 }
 
 /* Names as they are called within a copy; those of other things are "". */

@@ -184,9 +184,9 @@ bool strut_tree_is_study(const strut_tree *root);
 
 /**
  * Reports at a place. Once the diagnostics are full a message is only counted, and the functions below
- * that make its parts return "".
+ * that make its parts return "". Returns false, for `return strut_report_error(...)`.
  */
-void strut_report_error(strut_reader *reader, strut_place place, const char *format, ...)
+bool strut_report_error(strut_reader *reader, strut_place place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /** "member 'm1'", for use within a message; lives in scratch. */
 const char *strut_owner_text(strut_reader *reader, strut_owner owner);

@@ -24,12 +24,11 @@ bool strut_study_read_value(strut_study_reader *r, along *a, const strut_tree *v
     s->dimension = q.dimension;
   }
   if (q.bare || (!s->bare && strut_dimension_equal(q.dimension, s->dimension))) return true;
-  strut_report_error(reader, value->place, "expected %s for '%s' of axis '%s', found %s",
-                     s->bare ? "a number without unit, as before,"
-                             : strut_expected_number(s->dimension, expected, sizeof expected),
-                     key, a->parameter->name,
-                     strut_dimension_name(q.dimension, found, sizeof found));
-  return false;
+  return strut_report_error(
+      reader, value->place, "expected %s for '%s' of axis '%s', found %s",
+      s->bare ? "a number without unit, as before,"
+              : strut_expected_number(s->dimension, expected, sizeof expected),
+      key, a->parameter->name, strut_dimension_name(q.dimension, found, sizeof found));
 }
 
 bool strut_study_store_value(strut_study_reader *r, along *a, strut_fields *fields, int key,
@@ -48,20 +47,18 @@ static bool read_list(strut_study_reader *r, along *a) {
   const char **words = strut_reader_allocate(r->reader, arena, count, sizeof *words);
   bool fine = numbers && words;
   a->count = (int64_t)count;
-  if (!count) {
-    strut_report_error(r->reader, a->value->place, "axis '%s' has no values", a->parameter->name);
-    return false;
-  }
+  if (!count)
+    return strut_report_error(r->reader, a->value->place, "axis '%s' has no values",
+                              a->parameter->name);
   for (const strut_tree *item = a->value->first; item && fine; item = item->next, i++) {
     if (!a->parameter->text) {
       fine = strut_study_read_value(r, a, item, a->parameter->name, i == 0, &numbers[i]) && fine;
     } else if (strut_read_scalar(r->reader, item, a->parameter->name, owner_of(a), "a text")) {
       words[i] = item->text;
       if (strlen(item->text) < 24) continue;
-      strut_report_error(r->reader, item->place,
-                         "texts of an axis may have at most 23 bytes, found %zu",
-                         strlen(item->text));
-      fine = false;
+      fine = strut_report_error(r->reader, item->place,
+                                "texts of an axis may have at most 23 bytes, found %zu",
+                                strlen(item->text));
     } else {
       fine = false;
     }
@@ -73,9 +70,8 @@ static bool read_list(strut_study_reader *r, along *a) {
 }
 
 static bool refuse_range(strut_study_reader *r, const along *a, const char *why) {
-  strut_report_error(r->reader, a->value->place, "the range of axis '%s' %s", a->parameter->name,
-                     why);
-  return false;
+  return strut_report_error(r->reader, a->value->place, "the range of axis '%s' %s",
+                            a->parameter->name, why);
 }
 
 /* from, to and step: how many values? The last is `to` itself where the steps meet it. */
@@ -160,11 +156,10 @@ bool strut_study_begin_along(strut_study_reader *r, along *a, strut_place place)
                                 .dimension = parameter->dimension,
                                 .place = place};
   if (!is_reserved(r, parameter->name)) return true;
-  strut_report_error(
+  return strut_report_error(
       r->reader, place,
       "the table has a column '%s' of its own: give the model's parameter another name",
       parameter->name);
-  return false;
 }
 
 /* A parameter with its values. */
@@ -233,13 +228,11 @@ static void read_axis(strut_study_reader *r, const strut_tree *item, strut_study
     a.setting = &r->file->columns[r->file->column_count++];
     fine = read_along(r, &a) && fine;
     axis->column_count++;
-    if (fine && axis->column_count > 1 && a.count != axis->count) {
-      strut_report_error(
+    if (fine && axis->column_count > 1 && a.count != axis->count)
+      fine = strut_report_error(
           r->reader, key->next->place,
           "zipped parameters need equally many values: '%s' has %lld values, '%s' %lld",
           columns[0].name, (long long)axis->count, a.parameter->name, (long long)a.count);
-      fine = false;
-    }
     if (axis->column_count == 1) axis->count = a.count;
   }
 }
@@ -354,12 +347,11 @@ static bool choose_axes(strut_study_reader *r, const strut_slot *refine, const s
     }
     return true;
   }
-  strut_report_error(
+  return strut_report_error(
       r->reader, refine->key->place,
       "'refine' divides two axes with ranges of more than one value, found %zu; name "
       "them: axes: [NAME, NAME]",
       count == 2 ? (size_t)1 : count);
-  return false;
 }
 
 /* Gives an axis the values of the finest grid; those of the coarsest keep their bits. */
@@ -526,11 +518,9 @@ static void read_values(strut_study_reader *r, strut_fields *fields, strut_study
   bool fine = from->state == STRUT_GIVEN && to->state == STRUT_GIVEN &&
               strut_study_store_value(r, a, fields, STRUT_KEY_FOLLOW_FROM, true, f) &&
               strut_study_store_value(r, a, fields, STRUT_KEY_FOLLOW_TO, false, f);
-  if (fine && !(f->from < f->to)) {
-    strut_report_error(r->reader, to->value->place,
-                       "'to' of what is followed must be above 'from'");
-    fine = false;
-  }
+  if (fine && !(f->from < f->to))
+    fine = strut_report_error(r->reader, to->value->place,
+                              "'to' of what is followed must be above 'from'");
   if (!fine || at->state != STRUT_GIVEN) return;
   if (!at->value->count || at->value->count > STRUT_STUDY_FOLLOW_MOST_AT) {
     strut_report_error(r->reader, at->value->place, "'at' may have 1 to %d values, found %zu",

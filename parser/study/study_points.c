@@ -270,12 +270,10 @@ static bool read_numbers(strut_study_reader *r, strut_study_along *a, const stru
   const char *name = slot->key->text;
   const strut_owner owner = {"parameter", a->parameter->name};
   bool fine = true;
-  if (slot->value->count != wanted) {
-    strut_report_error(r->reader, slot->value->place,
-                       "expected %zu numbers for '%s' of %s, found %s", wanted, name,
-                       strut_owner_text(r->reader, owner), strut_found(r->reader, slot->value));
-    return false;
-  }
+  if (slot->value->count != wanted)
+    return strut_report_error(
+        r->reader, slot->value->place, "expected %zu numbers for '%s' of %s, found %s", wanted,
+        name, strut_owner_text(r->reader, owner), strut_found(r->reader, slot->value));
   for (const strut_tree *item = slot->value->first; item; item = item->next, i++) {
     bool bare = d->kind == STRUT_DISTRIBUTION_LOGNORMAL && i == 1;
     bool read = bare ? strut_read_number(r->reader, item, name, owner, STRUT_DIM_NONE,
@@ -299,11 +297,10 @@ static bool read_parameter(strut_study_reader *r, strut_study_along *a, strut_di
   const strut_owner owner = {"parameter", a->parameter->name};
   bool fine = strut_study_begin_along(r, a, a->key->place);
   a->column->unit = "1";
-  if (a->parameter->text) {
-    strut_report_error(r->reader, a->key->place,
-                       "parameter '%s' is a text, which has no distribution", a->parameter->name);
-    return false;
-  }
+  if (a->parameter->text)
+    return strut_report_error(r->reader, a->key->place,
+                              "parameter '%s' is a text, which has no distribution",
+                              a->parameter->name);
   strut_read_fields(r->reader, STRUT_SECTION_DISTRIBUTION, a->value, owner, &fields);
   if (fields.broken) return false;
   for (int k = 0; k < STRUT_DISTRIBUTION_COUNT; k++) {
@@ -342,12 +339,10 @@ bool strut_study_read_distributions(strut_study_reader *r, const strut_tree *ove
                                     strut_owner owner, size_t most, strut_study_axis *axis,
                                     strut_distribution *distributions) {
   bool fine = true;
-  if (over->count == 0 || over->count > most) {
-    strut_report_error(r->reader, over->place,
-                       "expected 1 to %zu parameters for 'over' of %s, found %zu", most,
-                       strut_owner_text(r->reader, owner), (size_t)over->count);
-    return false;
-  }
+  if (over->count == 0 || over->count > most)
+    return strut_report_error(r->reader, over->place,
+                              "expected 1 to %zu parameters for 'over' of %s, found %zu", most,
+                              strut_owner_text(r->reader, owner), (size_t)over->count);
   axis->columns =
       strut_reader_allocate(r->reader, &r->file->arena, over->count, sizeof *axis->columns);
   if (!axis->columns) return false;

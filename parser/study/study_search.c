@@ -23,9 +23,8 @@ size_t strut_study_search_columns(const strut_slot *slot) {
 }
 
 static bool refuse(strut_study_reader *r, const strut_study_along *a, const char *why) {
-  strut_report_error(r->reader, a->value->place, "variable '%s' of the search %s",
-                     a->parameter->name, why);
-  return false;
+  return strut_report_error(r->reader, a->value->place, "variable '%s' of the search %s",
+                            a->parameter->name, why);
 }
 
 static bool read_choices(strut_study_reader *r, strut_study_along *a, strut_search_variable *v) {
