@@ -24,14 +24,6 @@ static bool read_count(strut_reader *reader, const strut_tree *value, strut_owne
       strut_owner_text(reader, owner), STRUT_MOST_COPIES, number);
 }
 
-bool strut_refuse_form(strut_reader *reader, int key, const strut_tree *value, strut_owner owner) {
-  char expected[200];
-  return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
-                            strut_key_expected(key, expected, sizeof expected),
-                            strut_key_at(key)->name, strut_owner_text(reader, owner),
-                            strut_found(reader, value));
-}
-
 /* A number, or [n, m]. */
 static bool read_counts(strut_reader *reader, const strut_tree *value, strut_owner owner,
                         strut_repetition *r) {
@@ -106,8 +98,7 @@ bool strut_read_repeat(strut_reader *reader, const strut_slot *slot, const char 
   const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_REPEAT_SCALE);
   const strut_slot *about = strut_slot_of(&fields, STRUT_KEY_REPEAT_ABOUT);
   strut_repeat_keys keys = {.scale = 1.0};
-  if (fields.broken ||
-      !strut_store_fields(reader, &fields, owner, &reader->scratch, &keys, sizeof keys) ||
+  if (fields.broken || !strut_store(reader, &fields, owner, &keys) ||
       !read_counts(reader, keys.count, owner, r))
     return false;
   bool fine = read_steps(reader, keys.step, owner, r);

@@ -232,7 +232,7 @@ int32_t strut_read_network(strut_reader *reader, const strut_tree *key) {
   strut_require(reader, &fields, owner, key->place);
   const strut_slot *file = strut_slot_of(&fields, STRUT_KEY_NETWORK_FILE);
   if (fields.broken || file->state != STRUT_GIVEN) return -1;
-  strut_store_fields(reader, &fields, owner, &reader->scratch, &n.keys, sizeof n.keys);
+  strut_store(reader, &fields, owner, &n.keys);
   if (!read_inputs(&n, owner) || !open_network(&n, file->value, &text)) return -1;
   n.passes = (double)n.before;
   n.weight = strut_reader_allocate(reader, &reader->scratch, n.before + MOST_NEURONS + 1,

@@ -24,19 +24,13 @@ static const char *signal_name(const void *context, size_t i) {
 /* Appends a signal; returns its index, or -1 where memory is out. */
 static int32_t add_signal(strut_reader *reader, const strut_signal *signal, const meaning *m,
                           const strut_tree *value) {
-  if (reader->signal_count == reader->signal_capacity) {
-    size_t capacity = reader->signal_capacity ? 2 * reader->signal_capacity : 16;
-    strut_signal *signals = strut_reallocate(reader->signals, capacity, sizeof *signals);
-    if (signals) reader->signals = signals;
-    strut_signal_state *state = strut_reallocate(reader->signal_state, capacity, sizeof *state);
-    if (state) reader->signal_state = state;
-    if (!signals || !state) {
-      reader->out_of_memory = true;
-      return -1;
-    }
-    reader->signal_capacity = capacity;
+  size_t i = reader->signal_count, states = reader->signal_capacity;
+  if (!strut_grow(&reader->signal_state, &states, i, sizeof *reader->signal_state) ||
+      !strut_grow(&reader->signals, &reader->signal_capacity, i, sizeof *reader->signals)) {
+    reader->out_of_memory = true;
+    return -1;
   }
-  size_t i = reader->signal_count++;
+  reader->signal_count++;
   reader->signals[i] = *signal;
   reader->signal_state[i] = (strut_signal_state){m->dimension, m->bare, value, NULL};
   return (int32_t)i;
@@ -73,7 +67,7 @@ static bool read_wave(strut_reader *reader, strut_section section, const strut_t
     if (slot->state == STRUT_GIVEN && key->measure == STRUT_MEASURE_CONTEXT)
       fine = read_value(reader, slot->value, key->name, owner, m, &signal->amplitude) && fine;
   }
-  strut_store_fields(reader, &fields, owner, &reader->scene->arena, signal, sizeof *signal);
+  strut_store(reader, &fields, owner, signal);
   return fine;
 }
 
@@ -189,8 +183,7 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   if (kinds != 1 || fields.broken) return -1;
   const strut_tree *value = fields.slot[chosen].value;
   strut_signal signal = strut_signal_default((strut_signal_kind)chosen);
-  bool fine =
-      strut_store_fields(reader, &fields, owner, &reader->scene->arena, &signal, sizeof signal);
+  bool fine = strut_store(reader, &fields, owner, &signal);
   if (signal.kind == STRUT_CONSTANT)
     fine = read_value(reader, value, "constant", owner, &m, &signal.amplitude) && fine;
   else if (signal.kind == STRUT_TABLE)

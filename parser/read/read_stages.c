@@ -118,9 +118,7 @@ static bool read_stage(strut_reader *reader, const strut_tree *item, int number,
     return strut_report_error(reader, item->place,
                               "expected a stage such as {load: NAME}, found %s",
                               strut_found(reader, item));
-  strut_read_fields(reader, STRUT_SECTION_STAGE, item, owner, &fields);
-  bool fine =
-      strut_store_fields(reader, &fields, owner, &reader->scene->arena, stage, sizeof *stage);
+  bool fine = strut_read_object(reader, STRUT_SECTION_STAGE, item, owner, &fields, stage);
   if (fields.broken) return false;
   bool loads = strut_slot_of(&fields, STRUT_KEY_STAGE_LOAD)->state == STRUT_GIVEN;
   if (!loads && !stage->over && !stage->release)
@@ -186,7 +184,7 @@ void strut_read_stages(strut_reader *reader) {
   }
   strut_read_fields(reader, STRUT_SECTION_SCENE_PATH, slot->value, owner, &path);
   if (path.broken) return;
-  strut_store_fields(reader, &path, owner, &reader->scene->arena, e, sizeof *e);
+  strut_store(reader, &path, owner, e);
   const strut_slot *stages = strut_slot_of(&path, STRUT_KEY_SCENE_PATH_STAGES);
   if (stages->state == STRUT_ABSENT &&
       strut_slot_of(&path, STRUT_KEY_SCENE_PATH_FRICTION)->state == STRUT_ABSENT)

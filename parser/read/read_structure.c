@@ -68,7 +68,7 @@ static bool read_place_and_keys(strut_reader *reader, const strut_tree *key, str
   strut_read_fields(reader, STRUT_SECTION_NODE, value, owner, &fields);
   strut_apply_groups(reader, &fields, STRUT_KEY_NODE_GROUP, owner);
   strut_require(reader, &fields, owner, key->place);
-  strut_store_fields(reader, &fields, owner, &reader->scene->arena, node, sizeof *node);
+  strut_store(reader, &fields, owner, node);
   note_moves(reader, strut_slot_of(&fields, STRUT_KEY_NODE_MOVES), node);
   strut_place_point(reader, strut_slot_of(&fields, STRUT_KEY_NODE_POSITION)->value, node->position);
   return turn_support(reader, strut_slot_of(&fields, STRUT_KEY_NODE_FIXED), node) && !fields.broken;
@@ -98,8 +98,7 @@ static void read_moves_of(strut_reader *reader, size_t node) {
   strut_moves moves = {{-1, -1}};
   strut_fields fields;
   strut_enter_scope(reader, source->key);
-  strut_read_fields(reader, STRUT_SECTION_MOVES, reader->node_moves[node], owner, &fields);
-  strut_store_fields(reader, &fields, owner, &reader->scratch, &moves, sizeof moves);
+  strut_read_object(reader, STRUT_SECTION_MOVES, reader->node_moves[node], owner, &fields, &moves);
   if (fields.broken) source->broken = true;
   for (int c = 0; c < 2; c++) {
     const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_MOVES_ALONG_X + c);
@@ -275,7 +274,7 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
   const strut_slot *coefficients = strut_slot_of(&fields, STRUT_KEY_LAW_COEFFICIENTS);
   const strut_slot *control = strut_slot_of(&fields, STRUT_KEY_LAW_CONTROL_POINTS);
   const strut_slot *points = strut_slot_of(&fields, STRUT_KEY_LAW_POINTS);
-  strut_store_fields(reader, &fields, within, &reader->scene->arena, law, sizeof *law);
+  strut_store(reader, &fields, within, law);
   bool fine = !fields.broken && check_needs(reader, &fields, within, law);
   fine = read_numbers(reader, &fields, within, strain, force, law) && fine;
   if (!fine) return false;
@@ -289,38 +288,11 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
 
 /* ---- members ---- */
 
-/* The nodes of `nodes: [a, b]` or `[a, p, q, b]`; -1 for what is unknown. */
-static bool read_path(strut_reader *reader, const strut_slot *slot, strut_owner owner,
-                      strut_member *member) {
-  if (slot->state != STRUT_GIVEN) return false;
-  size_t count = slot->value->count;
-  bool known = true;
-  if (count > STRUT_MOST_ELEMENT_NODES)
-    return strut_report_error(reader, slot->value->place,
-                              "%s runs over %zu nodes, at most %d are possible",
-                              strut_owner_text(reader, owner), count, STRUT_MOST_ELEMENT_NODES);
-  if (count > 2)
-    member->guides =
-        strut_reader_allocate(reader, &reader->scene->arena, count - 2, sizeof(int32_t));
-  if (count > 2 && !member->guides) return false;
-  const strut_tree *item = slot->value->first;
-  for (size_t k = 0; k < count; k++, item = item->next) {
-    int32_t node = strut_read_reference(reader, item, "nodes", owner, STRUT_THING_NODE);
-    known = known && node >= 0;
-    if (k == 0 || k + 1 == count)
-      member->node[k ? 1 : 0] = node;
-    else
-      member->guides[member->guide_count++] = node;
-  }
-  return known;
-}
-
 bool strut_read_member(strut_reader *reader, strut_fields *fields, strut_owner owner,
                        void *object) {
   if (strut_slot_of(fields, STRUT_KEY_MEMBER_MASS)->state == STRUT_BROKEN)
     reader->masses_unknown = true;
-  if (!read_path(reader, strut_slot_of(fields, STRUT_KEY_MEMBER_NODES), owner, object))
-    fields->unresolved = true;
+  (void)owner, (void)object;
   return true;
 }
 
@@ -329,8 +301,7 @@ void strut_read_rayleigh(strut_reader *reader) {
   strut_owner owner = {"rayleigh", NULL};
   if (strut_read_section(reader, STRUT_KEY_SCENE_RAYLEIGH, STRUT_SECTION_RAYLEIGH, owner.kind,
                          &fields))
-    strut_store_fields(reader, &fields, owner, &reader->scene->arena, reader->scene,
-                       sizeof *reader->scene);
+    strut_store(reader, &fields, owner, reader->scene);
 }
 
 void strut_read_lattice(strut_reader *reader) {
@@ -421,24 +392,6 @@ bool strut_read_collision(strut_reader *reader, strut_fields *fields, strut_owne
   return false;
 }
 
-/* x, y, or an angle, turned with the copy that it is in. */
-static bool read_direction(strut_reader *reader, const strut_tree *value, strut_owner owner,
-                           double *direction) {
-  bool y = strcmp(value->text, "y") == 0;
-  double angle = y ? 0.25 * STRUT_TAU : 0.0;
-  if (value->kind != STRUT_TREE_SCALAR)
-    return strut_refuse_form(reader, STRUT_KEY_DISTANCE_ALONG, value, owner);
-  if (!y && strcmp(value->text, "x") != 0 &&
-      !strut_read_number(reader, value, "along", owner, STRUT_DIM_ANGLE, STRUT_RANGE_ANY, &angle))
-    return false;
-  *direction = angle;
-  if (!strut_scope_of(reader, value)) return true;
-  double vector[2] = {y ? 0.0 : cos(angle), y ? 1.0 : sin(angle)};
-  strut_place_vector(reader, value, vector);
-  *direction = atan2(vector[1], vector[0]);
-  return true;
-}
-
 /* Is it one of the two forms? If not, that is reported. */
 bool strut_read_distance(strut_reader *reader, strut_fields *fields, strut_owner owner,
                          void *object) {
@@ -461,5 +414,5 @@ bool strut_read_distance(strut_reader *reader, strut_fields *fields, strut_owner
     fields->unresolved = true;
     return false;
   }
-  return !directed || read_direction(reader, along->value, owner, &d->along);
+  return true;
 }

@@ -114,14 +114,6 @@ const char *strut_format_cycle(strut_reader *reader, const char *(*name)(strut_r
   return kept(reader, strut_arena_format(&reader->scratch, "%s%s", text, name(reader, first)));
 }
 
-bool strut_is_null(const strut_tree *value) {
-  static const char *const nulls[] = {"", "~", "null", "Null", "NULL"};
-  if (value->kind != STRUT_TREE_SCALAR || value->quoted) return false;
-  for (size_t i = 0; i < sizeof nulls / sizeof nulls[0]; i++)
-    if (strcmp(value->text, nulls[i]) == 0) return true;
-  return false;
-}
-
 bool strut_lacks_space(const strut_tree *value) {
   if (value->kind != STRUT_TREE_SCALAR || value->quoted) return false;
   size_t word = strspn(value->text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_");

@@ -106,25 +106,20 @@ static bool read_range(strut_study_reader *r, along *a) {
   strut_fields fields;
   if (a->parameter->text)
     return refuse_range(r, a, "is for numbers; the parameter is a text: give a list of texts");
-  strut_read_fields(r->reader, STRUT_SECTION_RANGE, a->value, owner_of(a), &fields);
-  if (!fields.broken) strut_require(r->reader, &fields, owner_of(a), a->value->place);
-  if (fields.broken) return false;
-  const strut_slot *by = strut_slot_of(&fields, STRUT_KEY_RANGE_STEP);
-  const strut_slot *count = strut_slot_of(&fields, STRUT_KEY_RANGE_COUNT);
-  const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_RANGE_SCALE);
-  bool logarithmic = scale->state == STRUT_GIVEN && scale->word == 1;
-  bool fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_FROM, true, a->column);
-  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_TO, false, a->column) && fine;
-  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_STEP, false, a->column) && fine;
-  if (by->state != STRUT_GIVEN && count->state != STRUT_GIVEN)
-    return refuse_range(r, a, "lacks 'step' or 'count'");
+  strut_range_keys keys = {0};
+  if (!strut_read_object(r->reader, STRUT_SECTION_RANGE, a->value, owner_of(a), &fields, &keys))
+    return false;
+  bool fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_FROM, true, &keys);
+  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_TO, false, &keys) && fine;
+  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_STEP, false, &keys) && fine;
+  a->column->from = keys.from, a->column->to = keys.to, a->column->step = keys.step;
+  bool stepped = strut_slot_of(&fields, STRUT_KEY_RANGE_STEP)->state == STRUT_GIVEN;
+  if (!stepped && keys.count == 0.0) return refuse_range(r, a, "lacks 'step' or 'count'");
   if (!fine) return false;
-  if (count->state == STRUT_GIVEN) return count_even(r, a, count->number[0], logarithmic);
-  if (logarithmic)
-    return refuse_range(r, a,
-                        "needs 'count' instead of 'step' where it is "
-                        "logarithmic");
-  return count_steps(r, a, a->column->step);
+  if (keys.count > 0.0) return count_even(r, a, keys.count, keys.scale == 1);
+  if (keys.scale == 1)
+    return refuse_range(r, a, "needs 'count' instead of 'step' where it is logarithmic");
+  return count_steps(r, a, keys.step);
 }
 
 /* Names of the table's own columns, which no axis may have. */
@@ -365,12 +360,11 @@ void strut_study_read_refine(strut_study_reader *r, const strut_slot *slot) {
   strut_study *study = &r->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  strut_read_fields(r->reader, STRUT_SECTION_REFINE, slot->value, refine_owner, &fields);
-  if (!fields.broken) strut_require(r->reader, &fields, refine_owner, slot->value->place);
-  if (fields.broken || r->reader->failed) return; /* the axes may be incomplete */
-  strut_store_fields(r->reader, &fields, refine_owner, &r->file->arena, study, sizeof *study);
+  bool fine =
+      strut_read_object(r->reader, STRUT_SECTION_REFINE, slot->value, refine_owner, &fields, study);
   int32_t depth = study->refine.depth;
   study->refine.depth = 0;
+  if (!fine || r->reader->failed) return; /* the axes may be incomplete */
   if (!choose_axes(r, slot, strut_slot_of(&fields, STRUT_KEY_REFINE_AXES))) return;
   double points = 1.0;
   for (int i = 0; i < 2; i++) refine_axis(&study->axes[study->refine.axes[i]], depth);
@@ -461,13 +455,9 @@ void strut_study_read_goals(strut_study_reader *r, strut_fields *top) {
   const strut_slot *like = strut_slot_of(top, STRUT_KEY_STUDY_LIKE);
   const strut_slot *curve = strut_slot_of(top, STRUT_KEY_STUDY_CURVE);
   strut_fields fields;
-  if (stiffness->state == STRUT_GIVEN) {
-    const strut_owner owner = {"the stiffness", NULL};
-    strut_read_fields(r->reader, STRUT_SECTION_STIFFNESS_AT, stiffness->value, owner, &fields);
-    if (!fields.broken) strut_require(r->reader, &fields, owner, stiffness->value->place);
-    strut_store_fields(r->reader, &fields, owner, &r->file->arena, &r->file->study,
-                       sizeof(strut_study));
-  }
+  if (stiffness->state == STRUT_GIVEN)
+    strut_read_object(r->reader, STRUT_SECTION_STIFFNESS_AT, stiffness->value,
+                      ((strut_owner){"the stiffness", NULL}), &fields, &r->file->study);
   if (shape->state == STRUT_GIVEN && like->state == STRUT_GIVEN)
     strut_report_error(r->reader, like->key->place,
                        "'shape' and 'like' of the study exclude each other");
@@ -569,9 +559,7 @@ void strut_study_read_follow(strut_study_reader *r, strut_fields *top) {
   if (!study->axes) strut_study_read_axes(r, NULL, search); /* the study has none */
   strut_study_follow *f = strut_reader_allocate(r->reader, &r->file->arena, 1, sizeof *f);
   if (!f) return;
-  strut_read_fields(r->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields);
-  if (!fields.broken) strut_require(r->reader, &fields, follow_owner, slot->value->place);
-  strut_store_fields(r->reader, &fields, follow_owner, &r->file->arena, f, sizeof *f);
+  strut_read_object(r->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields, f);
   const strut_slot *accuracy = strut_slot_of(&fields, STRUT_KEY_FOLLOW_ACCURACY);
   if (accuracy->state == STRUT_GIVEN && f->accuracy > 0.1)
     strut_report_error(r->reader, accuracy->value->place,

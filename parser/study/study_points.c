@@ -237,12 +237,9 @@ void strut_study_read_points(strut_study_reader *r, const strut_tree *value,
   table t = {.r = r};
   if (value->kind == STRUT_TREE_MAP) {
     strut_fields fields;
-    strut_read_fields(r->reader, STRUT_SECTION_POINTS, value, owner, &fields);
-    if (!fields.broken) strut_require(r->reader, &fields, owner, value->place);
-    if (fields.broken) return;
-    const strut_slot *columns = strut_slot_of(&fields, STRUT_KEY_POINTS_COLUMNS);
-    name = strut_slot_of(&fields, STRUT_KEY_POINTS_FILE)->value;
-    if (columns->state == STRUT_GIVEN) t.columns = columns->value;
+    strut_points_keys keys = {0};
+    if (!strut_read_object(r->reader, STRUT_SECTION_POINTS, value, owner, &fields, &keys)) return;
+    name = keys.file, t.columns = keys.columns;
     for (const strut_tree *item = t.columns ? t.columns->first : NULL; item; item = item->next)
       if (!strut_read_scalar(r->reader, item, "columns", owner, "a column's name")) return;
   }
@@ -366,11 +363,9 @@ void strut_study_read_sample(strut_study_reader *r, const strut_tree *value,
   strut_fields fields;
   strut_sample_keys keys = {.count = 1, .scheme = STRUT_SAMPLE_SOBOL, .seed = 1};
   strut_distribution distributions[STRUT_SAMPLE_MOST_NUMBERS] = {0};
-  strut_read_fields(r->reader, STRUT_SECTION_SAMPLE, value, sample_owner, &fields);
-  if (!fields.broken) strut_require(r->reader, &fields, sample_owner, value->place);
+  strut_read_object(r->reader, STRUT_SECTION_SAMPLE, value, sample_owner, &fields, &keys);
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SAMPLE_OVER);
   if (over->state != STRUT_GIVEN) return;
-  strut_store_fields(r->reader, &fields, sample_owner, &r->file->arena, &keys, sizeof keys);
   axis->count = keys.count;
   bool fine = strut_study_read_distributions(r, over->value, sample_owner,
                                              STRUT_SAMPLE_MOST_NUMBERS, axis, distributions);
@@ -448,12 +443,11 @@ void strut_study_read_sensitivity(strut_study_reader *r, strut_fields *top) {
   strut_study_exclude(r, top, slot, others, sizeof others / sizeof others[0]);
   if (!study->axes) /* the study has no others */
     strut_study_read_axes(r, NULL, strut_slot_of(top, STRUT_KEY_STUDY_SEARCH));
-  strut_read_fields(r->reader, STRUT_SECTION_SENSITIVITY, slot->value, sensitivity_owner, &fields);
-  if (!fields.broken) strut_require(r->reader, &fields, sensitivity_owner, slot->value->place);
+  s->samples = 256, s->seed = 1, s->derivatives = true;
+  strut_read_object(r->reader, STRUT_SECTION_SENSITIVITY, slot->value, sensitivity_owner, &fields,
+                    s);
   const strut_slot *of = strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_OF);
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_OVER);
-  s->samples = 256, s->seed = 1, s->derivatives = true;
-  strut_store_fields(r->reader, &fields, sensitivity_owner, &r->file->arena, s, sizeof *s);
   if (of->state == STRUT_GIVEN && !of->value->count)
     strut_report_error(r->reader, of->value->place,
                        "expected columns of the table for 'of' of the sensitivity analysis");
