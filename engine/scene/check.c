@@ -268,26 +268,18 @@ static bool check_law(strut_checker *checker) {
 static void check_shape(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   const strut_member *m = &scene->members[checker->index];
-  const strut_node *a, *b;
-  double drawn, start, least = HUGE_VAL;
-  for (size_t k = 0; k <= m->guide_count && least > 0.0; k++) {
-    a = &scene->nodes[strut_member_node(m, k)], b = &scene->nodes[strut_member_node(m, k + 1)];
-    drawn = strut_distance(a->position, b->position), start = strut_distance(a->start, b->start);
-    least = fmin(drawn, start);
+  double drawn = 0.0;
+  bool free_length = m->rest_kind == STRUT_REST_LENGTH && m->rest_value == 0.0;
+  for (size_t k = 0; k <= m->guide_count; k++) {
+    int32_t a = strut_member_node(m, k), b = strut_member_node(m, k + 1);
+    double start = strut_distance(scene->nodes[a].start, scene->nodes[b].start);
+    drawn = strut_distance(scene->nodes[a].position, scene->nodes[b].position);
     if (isnan(drawn) || isnan(start)) return; /* reported at the node */
+    if (!free_length && !strut_check_apart(checker, "nodes", a, b, "")) return;
   }
   const char *key = rest_key(m->rest_kind);
-  bool free_length = m->rest_kind == STRUT_REST_LENGTH && m->rest_value == 0.0;
   strut_rest rest;
-  if (drawn == 0.0 && !free_length)
-    strut_fault_of(checker, "nodes",
-                   "nodes '%s' and '%s' are drawn in one place, so %s has no direction", a->name,
-                   b->name, checker->owner);
-  else if (start == 0.0 && !free_length)
-    strut_fault_of(checker, "nodes",
-                   "nodes '%s' and '%s' start in one place, so %s has no direction", a->name,
-                   b->name, checker->owner);
-  else if (!strut_member_rest(scene, checker->index, &rest) && m->axial_stiffness > 0.0)
+  if (!strut_member_rest(scene, checker->index, &rest) && m->axial_stiffness > 0.0)
     strut_fault_of(checker, key,
                    "the axial_stiffness of %s needs a rest length above zero, but its %s is %g "
                    "(drawn length %g m, axial_stiffness %g N)",

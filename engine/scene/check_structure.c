@@ -166,31 +166,37 @@ bool strut_check_member_law(strut_checker *checker) {
          check_stops(checker);
 }
 
-/* Do the nodes of a hinge exist, are they three, and do both arms have a direction? */
-static void check_arms(strut_checker *checker) {
+/* Do all nodes exist, each named but once? */
+static bool check_nodes(strut_checker *checker, const char *key, const int32_t *node, size_t count,
+                        const char *expected) {
   const strut_scene *scene = checker->scene;
-  const strut_hinge *h = &scene->hinges[checker->index];
-  for (int k = 0; k < 3; k++)
-    if (h->node[k] < 0 || (size_t)h->node[k] >= scene->node_count) {
-      strut_fault(checker, "nodes", "is at a node that does not exist");
-      return;
-    }
-  for (int k = 0; k < 3; k++)
-    if (h->node[k] == h->node[(k + 1) % 3]) {
-      strut_fault(checker, "nodes", "names node '%s' twice, expected three different nodes",
-                  scene->nodes[h->node[k]].name);
-      return;
-    }
-  const strut_node *b = &scene->nodes[h->node[1]];
-  for (int k = 0; k < 3; k += 2) {
-    const strut_node *end = &scene->nodes[h->node[k]];
-    bool drawn = strut_distance(b->position, end->position) == 0.0;
-    if (!drawn && strut_distance(b->start, end->start) != 0.0) continue;
-    strut_fault_of(checker, "nodes",
-                   "nodes '%s' and '%s' %s in one place, so an arm of %s has no direction", b->name,
-                   end->name, drawn ? "are drawn" : "start", checker->owner);
-    return;
+  for (size_t k = 0; k < count; k++) {
+    if (!strut_exists(node[k], scene->node_count))
+      return strut_fault(checker, key, "names a node that does not exist");
+    for (size_t i = 0; i < k; i++)
+      if (node[i] == node[k])
+        return strut_fault(checker, key, "names node '%s' twice, expected %s",
+                           scene->nodes[node[k]].name, expected);
   }
+  return true;
+}
+
+bool strut_check_apart(strut_checker *checker, const char *key, int32_t first, int32_t second,
+                       const char *what) {
+  const strut_node *a = &checker->scene->nodes[first], *b = &checker->scene->nodes[second];
+  bool drawn = strut_distance(a->position, b->position) == 0.0;
+  if (!drawn && strut_distance(a->start, b->start) != 0.0) return true;
+  return strut_fault_of(checker, key,
+                        "nodes '%s' and '%s' %s in one place, so %s%s has no direction", a->name,
+                        b->name, drawn ? "are drawn" : "start", what, checker->owner);
+}
+
+/* Are the nodes of a hinge three, and do both arms have a direction? */
+static bool check_arms(strut_checker *checker) {
+  const int32_t *node = checker->scene->hinges[checker->index].node;
+  return check_nodes(checker, "nodes", node, 3, "three different nodes") &&
+         strut_check_apart(checker, "nodes", node[1], node[0], "an arm of ") &&
+         strut_check_apart(checker, "nodes", node[1], node[2], "an arm of ");
 }
 
 void strut_check_hinges(strut_checker *checker) {
@@ -219,20 +225,11 @@ static const double THIN = 1e-9;
 
 /* Do the corners exist, each but once? */
 static bool check_corners(strut_checker *checker) {
-  const strut_scene *scene = checker->scene;
-  const strut_cell *c = &scene->cells[checker->index];
+  const strut_cell *c = &checker->scene->cells[checker->index];
   if (c->node_count < 3 || c->node_count > STRUT_MOST_ELEMENT_NODES)
     return strut_fault(checker, "nodes", "has %zu nodes, expected 3 to %d", c->node_count,
                        STRUT_MOST_ELEMENT_NODES);
-  for (size_t k = 0; k < c->node_count; k++) {
-    if (c->node[k] < 0 || (size_t)c->node[k] >= scene->node_count)
-      return strut_fault(checker, "nodes", "has a node that does not exist");
-    for (size_t i = 0; i < k; i++)
-      if (c->node[i] == c->node[k])
-        return strut_fault(checker, "nodes", "names node '%s' twice, expected each corner once",
-                           scene->nodes[c->node[k]].name);
-  }
-  return true;
+  return check_nodes(checker, "nodes", c->node, c->node_count, "each corner once");
 }
 
 typedef struct polygon {
@@ -420,26 +417,12 @@ void strut_check_collisions(strut_checker *checker) {
 
 /* Do its nodes exist, and differ where they must? */
 static bool check_ends(strut_checker *checker) {
-  const strut_scene *scene = checker->scene;
-  const strut_distance_spring *d = &scene->distances[checker->index];
+  const strut_distance_spring *d = &checker->scene->distances[checker->index];
   bool line = d->line[0] != -1 || d->line[1] != -1;
   const int32_t node[3] = {d->node[0], line ? d->line[0] : d->node[1], line ? d->line[1] : -1};
   const char *key = line ? "line" : "nodes";
-  for (int k = 0; k < (line ? 3 : 2); k++) {
-    if (!strut_exists(node[k], scene->node_count))
-      return strut_fault(checker, key, "is of a node that does not exist");
-    for (int i = 0; i < k; i++)
-      if (node[i] == node[k])
-        return strut_fault(checker, key, "names node '%s' twice, expected different nodes",
-                           scene->nodes[node[k]].name);
-  }
-  if (!line) return true;
-  const strut_node *a = &scene->nodes[d->line[0]], *b = &scene->nodes[d->line[1]];
-  bool drawn = strut_distance(a->position, b->position) == 0.0;
-  if (!drawn && strut_distance(a->start, b->start) > 0.0) return true;
-  return strut_fault_of(checker, key,
-                        "nodes '%s' and '%s' %s in one place, so the line of %s has no direction",
-                        a->name, b->name, drawn ? "are drawn" : "start", checker->owner);
+  return check_nodes(checker, key, node, line ? 3 : 2, "different nodes") &&
+         (!line || strut_check_apart(checker, key, node[1], node[2], "the line of "));
 }
 
 void strut_check_distances(strut_checker *checker) {

@@ -155,12 +155,15 @@ enum {
 static const struct type_row {
   unsigned shapes;
   uint32_t least, most;
-  const char *expected;
+  const char *expected, *reference;
 } types[] = {
-#define TYPE_ROW(TYPE, shapes, least, most, expected) {STRUT_SHAPE_##shapes, least, most, expected},
+#define TYPE_ROW(TYPE, shapes, least, most, expected, reference)                                   \
+  {STRUT_SHAPE_##shapes, least, most, expected, reference},
     STRUT_KEY_TYPES(TYPE_ROW)
 #undef TYPE_ROW
 };
+
+const char *strut_type_reference(strut_key_type type) { return types[type].reference; }
 
 bool strut_shape_fits(strut_key_type type, const strut_tree *value) {
   const struct type_row *row = &types[type];

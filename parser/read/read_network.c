@@ -193,8 +193,8 @@ static int32_t add_output(network *n, strut_owner owner) {
                        (int)n->keys.output, n->before);
     return -1;
   }
-  if (value && (!strut_read_scalar(n->reader, value, "scale", owner, "a number such as '5 mm'") ||
-                !strut_read_quantity(n->reader, value, "scale", owner, &scale)))
+  if (value &&
+      !strut_read_any_quantity(n->reader, value, "scale", owner, "a number such as '5 mm'", &scale))
     return -1;
   strut_dimension dimension = scale.bare ? STRUT_DIM_NONE : scale.dimension;
   if (!begin_program(n->reader, 3, &b)) return -1;

@@ -43,9 +43,7 @@ static bool read_value(strut_reader *reader, const strut_tree *value, const char
   if (m->expected || !m->bare)
     return strut_read_number(reader, value, key, owner, m->expected ? *m->expected : m->dimension,
                              STRUT_RANGE_ANY, number);
-  if (!strut_read_scalar(reader, value, key, owner, "a number") ||
-      !strut_read_quantity(reader, value, key, owner, &quantity))
-    return false;
+  if (!strut_read_any_quantity(reader, value, key, owner, "a number", &quantity)) return false;
   *number = quantity.value;
   if (strut_dimension_equal(quantity.dimension, STRUT_DIM_LENGTH) && !quantity.bare)
     *number *= strut_scope_scale(reader, value);
@@ -121,7 +119,7 @@ static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner o
 
 static bool read_expression(strut_reader *reader, const strut_tree *value, strut_owner owner,
                             meaning *m, strut_signal *signal) {
-  char wanted[200], found[80];
+  char wanted[200];
   strut_quantity q;
   if (!strut_read_signal_program(reader, value, "expression", owner, &signal->program, &q))
     return false;
@@ -134,10 +132,8 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
         "the lengths in an expression are not scaled, but this copy is; make the "
         "size a parameter of the part and 'set' it");
   if (!m->expected || q.bare || strut_dimension_equal(q.dimension, *m->expected)) return true;
-  return strut_report_error(
-      reader, value->place, "expected %s for 'expression' of %s, found %s",
-      strut_expected_quantity(reader->signal_quantity, *m->expected, wanted, sizeof wanted),
-      strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
+  strut_expected_quantity(reader->signal_quantity, *m->expected, wanted, sizeof wanted);
+  return strut_refuse_dimension(reader, value, "expression", owner, wanted, q.dimension);
 }
 
 /* The event with which the signal's time begins. */
@@ -456,17 +452,12 @@ static bool read_speed(strut_reader *reader, const strut_tree *value, strut_owne
                        double *speed) {
   const strut_dimension angular = {0, 0, -1, 1};
   strut_quantity q;
-  char found[80];
-  if (!strut_read_scalar(reader, value, "speed", owner, "a number") ||
-      !strut_read_quantity(reader, value, "speed", owner, &q))
-    return false;
+  if (!strut_read_any_quantity(reader, value, "speed", owner, "a number", &q)) return false;
   bool turns = !q.bare && strut_dimension_equal(q.dimension, STRUT_DIM_FREQUENCY);
   *speed = turns ? STRUT_TAU * q.value : q.value;
   if (turns || q.bare || strut_dimension_equal(q.dimension, angular)) return true;
-  return strut_report_error(
-      reader, value->place,
-      "expected a speed such as '30 Hz' or '188 rad/s' for 'speed' of %s, found %s",
-      strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
+  return strut_refuse_dimension(reader, value, "speed", owner,
+                                "a speed such as '30 Hz' or '188 rad/s'", q.dimension);
 }
 
 /* The angle counts from the copy's own x, and in a mirrored one clockwise. */
@@ -525,10 +516,7 @@ static double drawn_length(const strut_scene *scene, int32_t member) {
 static bool read_position(strut_reader *reader, const strut_tree *value, strut_owner owner,
                           strut_sliding_mass *s) {
   strut_quantity q;
-  char found[80];
-  if (!strut_read_scalar(reader, value, "position", owner, "a number") ||
-      !strut_read_quantity(reader, value, "position", owner, &q))
-    return false;
+  if (!strut_read_any_quantity(reader, value, "position", owner, "a number", &q)) return false;
   s->share = q.value;
   if (q.bare || strut_dimension_equal(q.dimension, STRUT_DIM_NONE)) return true;
   if (strut_dimension_equal(q.dimension, STRUT_DIM_LENGTH)) {
@@ -536,10 +524,8 @@ static bool read_position(strut_reader *reader, const strut_tree *value, strut_o
     if (length > 0.0) s->share *= strut_scope_scale(reader, value) / length;
     return length > 0.0;
   }
-  return strut_report_error(
-      reader, value->place,
-      "expected a share such as '50 %%', or a length, for 'position' of %s, found %s",
-      strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
+  return strut_refuse_dimension(reader, value, "position", owner,
+                                "a share such as '50 %', or a length,", q.dimension);
 }
 
 bool strut_read_slider(strut_reader *reader, strut_fields *fields, strut_owner owner,

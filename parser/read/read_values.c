@@ -167,6 +167,20 @@ bool strut_read_quantity(strut_reader *reader, const strut_tree *value, const ch
   return strut_read_program(reader, value, key, owner, NULL, quantity);
 }
 
+bool strut_read_any_quantity(strut_reader *reader, const strut_tree *value, const char *key,
+                             strut_owner owner, const char *expected, strut_quantity *quantity) {
+  return strut_read_scalar(reader, value, key, owner, expected) &&
+         strut_read_quantity(reader, value, key, owner, quantity);
+}
+
+bool strut_refuse_dimension(strut_reader *reader, const strut_tree *value, const char *key,
+                            strut_owner owner, const char *expected, strut_dimension found) {
+  char name[80];
+  return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected,
+                            key, strut_owner_text(reader, owner),
+                            strut_dimension_name(found, name, sizeof name));
+}
+
 /* A parameter that is called like a unit is reported once, however often the unit is used. */
 static bool is_reported(strut_reader *reader, strut_piece name) {
   char text[LONGEST_NAME + 1];

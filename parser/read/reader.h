@@ -217,6 +217,12 @@ bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char
 /** A number of any dimension. */
 bool strut_read_quantity(strut_reader *reader, const strut_tree *value, const char *key,
                          strut_owner owner, strut_quantity *quantity);
+/** The same of a value that may be no scalar, which is reported; `expected` says what it should be. */
+bool strut_read_any_quantity(strut_reader *reader, const strut_tree *value, const char *key,
+                             strut_owner owner, const char *expected, strut_quantity *quantity);
+/** Reports a quantity of another dimension than is `expected`. */
+bool strut_refuse_dimension(strut_reader *reader, const strut_tree *value, const char *key,
+                            strut_owner owner, const char *expected, strut_dimension found);
 /** The same of an expression of columns, whose program the compiler makes. */
 bool strut_read_program(strut_reader *reader, const strut_tree *value, const char *key,
                         strut_owner owner, strut_compiler *compiler, strut_quantity *quantity);

@@ -231,9 +231,7 @@ static void read_path_value(strut_study_reader *r, strut_fields *fields, int key
   const strut_slot *slot = strut_slot_of(fields, key);
   strut_study *study = &r->file->study;
   if (slot->state != STRUT_GIVEN) return;
-  if (!strut_read_scalar(r->reader, slot->value, k->name, path_owner, "a number") ||
-      !strut_read_quantity(r->reader, slot->value, k->name, path_owner, &q))
-    return;
+  if (!strut_read_any_quantity(r->reader, slot->value, k->name, path_owner, "a number", &q)) return;
   memcpy((char *)study + k->field.offset, &q.value, sizeof q.value);
   strut_store_choice(k, study);
   *unit = q.bare ? NULL : strut_dimension_unit(q.dimension);

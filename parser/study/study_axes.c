@@ -12,23 +12,21 @@ static strut_owner owner_of(const along *a) { return (strut_owner){"axis", a->pa
 bool strut_study_read_value(strut_study_reader *r, along *a, const strut_tree *value,
                             const char *key, bool first, double *number) {
   strut_quantity q;
-  char expected[200], found[80];
+  char expected[200];
   strut_reader *reader = r->reader;
   strut_setting *s = a->setting;
-  if (!strut_read_scalar(reader, value, key, owner_of(a), "a number") ||
-      !strut_read_quantity(reader, value, key, owner_of(a), &q))
-    return false;
+  if (!strut_read_any_quantity(reader, value, key, owner_of(a), "a number", &q)) return false;
   *number = q.value;
   if (first && s->bare && !q.bare) {
     s->bare = false;
     s->dimension = q.dimension;
   }
   if (q.bare || (!s->bare && strut_dimension_equal(q.dimension, s->dimension))) return true;
-  return strut_report_error(
-      reader, value->place, "expected %s for '%s' of axis '%s', found %s",
+  return strut_refuse_dimension(
+      reader, value, key, owner_of(a),
       s->bare ? "a number without unit, as before,"
               : strut_expected_number(s->dimension, expected, sizeof expected),
-      key, a->parameter->name, strut_dimension_name(q.dimension, found, sizeof found));
+      q.dimension);
 }
 
 bool strut_study_store_value(strut_study_reader *r, along *a, strut_fields *fields, int key,
