@@ -41,6 +41,18 @@ void *strut_reallocate(void *block, size_t count, size_t size) {
   return realloc(block, count * size > 0 ? count * size : 1);
 }
 
+bool strut_grow(void *block, size_t *capacity, size_t count, size_t size) {
+  void *items;
+  if (count < *capacity) return true;
+  size_t more = *capacity ? 2 * *capacity : 16;
+  memcpy(&items, block, sizeof items);
+  items = strut_reallocate(items, more, size);
+  if (!items) return false;
+  memcpy(block, &items, sizeof items);
+  *capacity = more;
+  return true;
+}
+
 void strut_release(void *block) { free(block); }
 
 /* Offset of the first byte at or after `used` whose address is a multiple of `alignment`. */

@@ -8,6 +8,7 @@
 #ifndef STRUT_ENGINE_BASE_MEMORY_H
 #define STRUT_ENGINE_BASE_MEMORY_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -17,6 +18,11 @@
 STRUT_API void *strut_allocate(size_t count, size_t size);
 /** Grows or shrinks a block of strut_allocate; new bytes are not zeroed. NULL leaves the old one. */
 STRUT_API void *strut_reallocate(void *block, size_t count, size_t size);
+/**
+ * Makes room for one more than `count` items of `size` bytes: `block` is the address of a pointer to a block of
+ * strut_allocate, *capacity what it has room for. False: memory is out, and the block is as it was.
+ */
+STRUT_API bool strut_grow(void *block, size_t *capacity, size_t count, size_t size);
 /** Frees a block of strut_allocate; NULL is allowed. */
 STRUT_API void strut_release(void *block);
 

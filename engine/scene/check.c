@@ -13,55 +13,70 @@
 #include "engine/base/vec.h"
 #include "engine/scene/check_rules.h"
 
-void strut_report_finding(strut_checker *checker, strut_subject subject, size_t index,
-                          const char *key, const char *format, ...) {
+static bool report(strut_checker *checker, strut_finding finding, const char *owner,
+                   const char *format, va_list arguments) {
   strut_findings *f = checker->findings;
   if (f->count >= STRUT_FINDINGS_MOST) {
     f->unstored++;
-    return;
+    return false;
   }
-  char text[600];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  if (f->count == f->capacity) {
-    size_t capacity = f->capacity ? 2 * f->capacity : 16;
-    strut_finding *items = strut_reallocate(f->items, capacity, sizeof *items);
-    if (!items) {
-      checker->out_of_memory = true;
-      return;
-    }
-    f->items = items;
-    f->capacity = capacity;
-  }
-  char *message = strut_arena_text(&f->arena, text, strlen(text));
-  if (!message) {
-    checker->out_of_memory = true;
-    return;
-  }
-  f->items[f->count++] = (strut_finding){subject, index, key, message};
-}
-
-static bool check_range(strut_checker *checker, const strut_checked *whose, const char *name,
-                        double value, strut_key_range range) {
-  const char *key = whose->key ? whose->key : name;
-  if (!isfinite(value))
-    strut_report_finding(checker, whose->subject, whose->index, key,
-                         "the %s of %s is not a finite number", name, whose->owner);
-  else if (range == STRUT_RANGE_NOT_NEGATIVE && value < 0.0)
-    strut_report_finding(checker, whose->subject, whose->index, key,
-                         "the %s of %s must not be negative, found %g", name, whose->owner, value);
-  else if (range == STRUT_RANGE_ABOVE_ZERO && value <= 0.0)
-    strut_report_finding(checker, whose->subject, whose->index, key,
-                         "the %s of %s must be above zero, found %g", name, whose->owner, value);
-  else
-    return true;
+  char text[800];
+  int used = owner ? snprintf(text, sizeof text, "%s ", owner) : 0;
+  vsnprintf(text + used, 600, format, arguments);
+  finding.message = strut_arena_text(&f->arena, text, strlen(text));
+  bool kept = finding.message && strut_grow(&f->items, &f->capacity, f->count, sizeof *f->items);
+  if (kept) f->items[f->count++] = finding;
+  if (!kept) checker->out_of_memory = true;
   return false;
 }
 
-bool strut_check_fields(strut_checker *checker, const strut_checked *whose,
-                        strut_thing_section section, const void *object, const void *usual) {
+bool strut_report_finding(strut_checker *checker, strut_subject subject, size_t index,
+                          const char *key, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  report(checker, (strut_finding){subject, index, key, NULL}, NULL, format, arguments);
+  va_end(arguments);
+  return false;
+}
+
+bool strut_fault(strut_checker *checker, const char *key, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  report(checker, (strut_finding){checker->subject, checker->index, key, NULL}, checker->owner,
+         format, arguments);
+  va_end(arguments);
+  return false;
+}
+
+void strut_check_begin(strut_checker *checker, strut_thing kind, size_t index) {
+  checker->subject = strut_on_thing(kind), checker->index = index, checker->within = NULL;
+  strut_format_name(checker->owner, strut_thing_at(kind)->word,
+                    strut_thing_name(checker->scene, kind, index), index);
+}
+
+void strut_check_begin_with(strut_checker *checker, strut_subject subject, size_t index,
+                            const char *owner) {
+  checker->subject = subject, checker->index = index, checker->within = NULL;
+  snprintf(checker->owner, sizeof checker->owner, "%s", owner);
+}
+
+static bool check_range(strut_checker *checker, const char *name, double value,
+                        strut_key_range range) {
+  const char *key = checker->within ? checker->within : name;
+  if (!isfinite(value))
+    return strut_fault_of(checker, key, "the %s of %s is not a finite number", name,
+                          checker->owner);
+  if (range == STRUT_RANGE_NOT_NEGATIVE && value < 0.0)
+    return strut_fault_of(checker, key, "the %s of %s must not be negative, found %g", name,
+                          checker->owner, value);
+  if (range == STRUT_RANGE_ABOVE_ZERO && value <= 0.0)
+    return strut_fault_of(checker, key, "the %s of %s must be above zero, found %g", name,
+                          checker->owner, value);
+  return true;
+}
+
+bool strut_check_fields(strut_checker *checker, strut_thing_section section, const void *object,
+                        const void *usual) {
   size_t count;
   const strut_field_row *rows = strut_fields_of(section, &count);
   bool valid = true;
@@ -79,18 +94,18 @@ bool strut_check_fields(strut_checker *checker, const strut_checked *whose,
     }
     memcpy(&value, at, sizeof value);
     if (strut_field_is_chosen(field, object))
-      valid = check_range(checker, whose, rows[i].name, value, range) && valid;
+      valid = check_range(checker, rows[i].name, value, range) && valid;
   }
   return valid;
 }
 
-bool strut_check_number(strut_checker *checker, const strut_checked *whose,
-                        strut_thing_section section, const char *key, double value) {
+bool strut_check_number(strut_checker *checker, strut_thing_section section, const char *key,
+                        double value) {
   size_t count, i = 0;
   const strut_field_row *rows = strut_fields_of(section, &count);
   while (i < count && strcmp(rows[i].name, key) != 0) i++;
   assert(i < count);
-  return check_range(checker, whose, key, value, rows[i].limits.range);
+  return check_range(checker, key, value, rows[i].limits.range);
 }
 
 /*
@@ -111,16 +126,16 @@ const char *strut_format_name(char buffer[200], const char *kind, const char *na
   return buffer;
 }
 
-static void check_name(strut_checker *checker, strut_name_map *map, strut_subject subject,
-                       const char *kind, const char *name, size_t index) {
-  if (!name || !*name) {
-    strut_report_finding(checker, subject, index, NULL, "%s number %zu has no name", kind,
-                         index + 1);
-    return;
-  }
-  int32_t first = strut_name_map_add(map, name, (int32_t)index);
+static void check_name(strut_checker *checker, strut_name_map *map, strut_thing kind, size_t i) {
+  const char *name = strut_thing_name(checker->scene, kind, i), *word = strut_thing_at(kind)->word;
+  bool named = name && *name;
+  int32_t first = named ? strut_name_map_add(map, name, (int32_t)i) : -1;
+  if (!named)
+    strut_report_finding(checker, strut_on_thing(kind), i, NULL, "%s number %zu has no name", word,
+                         i + 1);
   if (first >= 0)
-    strut_report_finding(checker, subject, index, NULL, "there are two %ss '%s'", kind, name);
+    strut_report_finding(checker, strut_on_thing(kind), i, NULL, "there are two %ss '%s'", word,
+                         name);
   if (first == -2) checker->out_of_memory = true;
 }
 
@@ -138,9 +153,7 @@ void strut_check_names(strut_checker *checker) {
     size_t count = strut_thing_count(scene, kind);
     if (count && !strut_name_map_reserve(&names, count)) checker->out_of_memory = true;
     for (size_t i = 0; i < count; i++)
-      if (is_named(scene, kind, i))
-        check_name(checker, &names, strut_on_thing(kind), strut_thing_at(kind)->word,
-                   strut_thing_name(scene, kind, i), i);
+      if (is_named(scene, kind, i)) check_name(checker, &names, kind, i);
     strut_name_map_free(&names);
   }
 }
@@ -155,10 +168,8 @@ void strut_check_nodes(strut_checker *checker) {
     strut_report_finding(checker, STRUT_ON_SCENE, 0, "nodes", "the scene has no nodes");
   for (size_t i = 0; i < scene->node_count; i++) {
     const strut_node *node = &scene->nodes[i];
-    char owner[200];
-    strut_format_name(owner, "node", node->name, i);
-    const strut_checked whose = {STRUT_ON_NODE, i, owner, NULL};
-    strut_check_fields(checker, &whose, STRUT_FIELDS_NODE, node, usual);
+    strut_check_begin(checker, STRUT_THING_NODE, i);
+    strut_check_fields(checker, STRUT_FIELDS_NODE, node, usual);
     const struct {
       const char *key, *what;
       const double *at;
@@ -169,21 +180,19 @@ void strut_check_nodes(strut_checker *checker) {
       bool finite = isfinite(places[k].at[0]) && isfinite(places[k].at[1]);
       if (finite && away <= FARTHEST) continue;
       if (finite)
-        strut_report_finding(checker, STRUT_ON_NODE, i, places[k].key,
-                             "the %s of %s is more than %g m away", places[k].what, owner,
-                             FARTHEST);
+        strut_fault_of(checker, places[k].key, "the %s of %s is more than %g m away",
+                       places[k].what, checker->owner, FARTHEST);
       else
-        strut_report_finding(checker, STRUT_ON_NODE, i, places[k].key, "the %s of %s is not finite",
-                             places[k].what, owner);
+        strut_fault_of(checker, places[k].key, "the %s of %s is not finite", places[k].what,
+                       checker->owner);
       break;
     }
     for (size_t c = 0; c < 2; c++) {
       if (!isfinite(node->velocity[c]))
-        strut_report_finding(checker, STRUT_ON_NODE, i, "velocity",
-                             "the velocity of %s is not finite", owner);
+        strut_fault_of(checker, "velocity", "the velocity of %s is not finite", checker->owner);
       else if (node->fixed[c] && node->velocity[c] != 0.0)
-        strut_report_finding(checker, STRUT_ON_NODE, i, "velocity",
-                             "%s is fixed in %c and cannot have a velocity there", owner, "xy"[c]);
+        strut_fault(checker, "velocity", "is fixed in %c and cannot have a velocity there",
+                    "xy"[c]);
     }
   }
 }
@@ -195,115 +204,91 @@ static const char *rest_key(strut_rest_kind kind) {
 }
 
 /* Does the member join nodes that exist, each to a different one? */
-static bool check_ends(strut_checker *checker, size_t index, const char *owner) {
-  const strut_member *m = &checker->scene->members[index];
-  if (m->guide_count + 2 > STRUT_MOST_ELEMENT_NODES) {
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
-                         "%s runs over %zu nodes, more than %d", owner, m->guide_count + 2,
-                         (int)STRUT_MOST_ELEMENT_NODES);
-    return false;
-  }
+static bool check_ends(strut_checker *checker) {
+  const strut_member *m = &checker->scene->members[checker->index];
+  if (m->guide_count + 2 > STRUT_MOST_ELEMENT_NODES)
+    return strut_fault(checker, "nodes", "runs over %zu nodes, more than %d", m->guide_count + 2,
+                       (int)STRUT_MOST_ELEMENT_NODES);
   for (size_t k = 0; k < m->guide_count + 2; k++) {
     int32_t node = strut_member_node(m, k), before = k ? strut_member_node(m, k - 1) : -1;
-    if (node < 0 || (size_t)node >= checker->scene->node_count) {
-      strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
-                           "%s joins a node that does not exist", owner);
-      return false;
-    }
+    if (node < 0 || (size_t)node >= checker->scene->node_count)
+      return strut_fault(checker, "nodes", "joins a node that does not exist");
     if (node != before) continue;
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes", "%s joins node '%s' to itself",
-                         owner, checker->scene->nodes[node].name);
-    return false;
+    return strut_fault(checker, "nodes", "joins node '%s' to itself",
+                       checker->scene->nodes[node].name);
   }
   if (!m->guide_count || m->kind != STRUT_BAR) return true;
-  strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
-                       "%s runs over guides, which a bar cannot", owner);
-  return false;
+  return strut_fault(checker, "nodes", "runs over guides, which a bar cannot");
 }
 
 /* Checks each number of a member by itself. */
-static bool check_numbers(strut_checker *checker, size_t index, const char *owner) {
-  const strut_member *m = &checker->scene->members[index];
-  const strut_checked whose = {STRUT_ON_MEMBER, index, owner, NULL};
-  bool valid = strut_check_fields(checker, &whose, STRUT_FIELDS_MEMBER, m,
+static bool check_numbers(strut_checker *checker) {
+  const strut_member *m = &checker->scene->members[checker->index];
+  bool valid = strut_check_fields(checker, STRUT_FIELDS_MEMBER, m,
                                   strut_thing_at(STRUT_THING_MEMBER)->usual);
   if (rest_key(m->rest_kind) && (unsigned)m->kind <= STRUT_CABLE) return valid;
-  strut_report_finding(checker, STRUT_ON_MEMBER, index, "kind", "%s is of an unknown kind", owner);
-  return false;
+  return strut_fault(checker, "kind", "is of an unknown kind");
 }
 
 /* Checks the numbers of a member together. */
-static bool check_law(strut_checker *checker, size_t index, const char *owner) {
-  const strut_member *m = &checker->scene->members[index];
+static bool check_law(strut_checker *checker) {
+  const strut_member *m = &checker->scene->members[checker->index];
   const char *key = rest_key(m->rest_kind);
   bool force = m->rest_kind == STRUT_REST_PRETENSION || m->rest_kind == STRUT_REST_FORCE_DENSITY;
   bool given = m->stiffness > 0.0 || m->axial_stiffness > 0.0;
   bool elastic = given || strut_law_at(m->law.kind)->own, linear = m->law.kind == STRUT_LAW_LINEAR;
-  if (!strut_check_member_law(checker, index, owner)) return false;
-  strut_check_maxwell(checker, index, owner);
+  if (!strut_check_member_law(checker)) return false;
+  strut_check_maxwell(checker);
   if (m->stiffness > 0.0 && m->axial_stiffness > 0.0)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "axial_stiffness",
-                         "%s has both a stiffness and an axial_stiffness; give one", owner);
-  else if (m->damping > 0.0 && m->damping_ratio > 0.0)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "damping_ratio",
-                         "%s has both a damping and a damping_ratio; give one", owner);
-  else if (!elastic && m->damping_ratio > 0.0)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "damping_ratio",
-                         "the damping_ratio of %s needs a stiffness", owner);
-  else if (!elastic && m->damping == 0.0 && m->maxwell.stiffness == 0.0 &&
-           !strut_is_pulled(checker->scene, (int32_t)index, -1))
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, NULL,
-                         "%s has neither stiffness nor damping, so it does nothing", owner);
-  else if (force && !linear)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
-                         "the %s of %s needs a linear law; give its rest_length", key, owner);
-  else if (force && !elastic && m->rest_value != 0.0)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, key, "the %s of %s needs a stiffness",
-                         key, owner);
-  else if (force && m->kind == STRUT_CABLE && m->rest_value < 0.0)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
-                         "the %s of %s must not be negative, since a cable cannot push; "
-                         "give a slack cable its rest_length",
-                         key, owner);
-  else
-    return true;
-  return false;
+    return strut_fault(checker, "axial_stiffness",
+                       "has both a stiffness and an axial_stiffness; give one");
+  if (m->damping > 0.0 && m->damping_ratio > 0.0)
+    return strut_fault(checker, "damping_ratio",
+                       "has both a damping and a damping_ratio; give one");
+  if (!elastic && m->damping_ratio > 0.0)
+    return strut_fault_of(checker, "damping_ratio", "the damping_ratio of %s needs a stiffness",
+                          checker->owner);
+  if (!elastic && m->damping == 0.0 && m->maxwell.stiffness == 0.0 &&
+      !strut_is_pulled(checker->scene, (int32_t)checker->index, -1))
+    return strut_fault(checker, NULL, "has neither stiffness nor damping, so it does nothing");
+  if (force && !linear)
+    return strut_fault_of(checker, key, "the %s of %s needs a linear law; give its rest_length",
+                          key, checker->owner);
+  if (force && !elastic && m->rest_value != 0.0)
+    return strut_fault_of(checker, key, "the %s of %s needs a stiffness", key, checker->owner);
+  if (force && m->kind == STRUT_CABLE && m->rest_value < 0.0)
+    return strut_fault_of(checker, key,
+                          "the %s of %s must not be negative, since a cable cannot push; "
+                          "give a slack cable its rest_length",
+                          key, checker->owner);
+  return true;
 }
 
 /* Checks the geometry of a member: a direction as drawn and at the start, and a rest length. */
-static void check_shape(strut_checker *checker, size_t index, const char *owner) {
+static void check_shape(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_member *m = &scene->members[index];
-  const strut_node *a, *b;
-  double drawn, start, least = HUGE_VAL;
-  for (size_t k = 0; k <= m->guide_count && least > 0.0; k++) {
-    a = &scene->nodes[strut_member_node(m, k)], b = &scene->nodes[strut_member_node(m, k + 1)];
-    drawn = strut_distance(a->position, b->position), start = strut_distance(a->start, b->start);
-    least = fmin(drawn, start);
+  const strut_member *m = &scene->members[checker->index];
+  double drawn = 0.0;
+  bool free_length = m->rest_kind == STRUT_REST_LENGTH && m->rest_value == 0.0;
+  for (size_t k = 0; k <= m->guide_count; k++) {
+    int32_t a = strut_member_node(m, k), b = strut_member_node(m, k + 1);
+    double start = strut_distance(scene->nodes[a].start, scene->nodes[b].start);
+    drawn = strut_distance(scene->nodes[a].position, scene->nodes[b].position);
     if (isnan(drawn) || isnan(start)) return; /* reported at the node */
+    if (!free_length && !strut_check_apart(checker, "nodes", a, b, "")) return;
   }
   const char *key = rest_key(m->rest_kind);
-  bool free_length = m->rest_kind == STRUT_REST_LENGTH && m->rest_value == 0.0;
   strut_rest rest;
-  if (drawn == 0.0 && !free_length)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
-                         "nodes '%s' and '%s' are drawn in one place, so %s has no direction",
-                         a->name, b->name, owner);
-  else if (start == 0.0 && !free_length)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
-                         "nodes '%s' and '%s' start in one place, so %s has no direction", a->name,
-                         b->name, owner);
-  else if (!strut_member_rest(scene, index, &rest) && m->axial_stiffness > 0.0)
-    strut_report_finding(
-        checker, STRUT_ON_MEMBER, index, key,
-        "the axial_stiffness of %s needs a rest length above zero, but its %s is %g "
-        "(drawn length %g m, axial_stiffness %g N)",
-        owner, key, m->rest_value, drawn, m->axial_stiffness);
-  else if (!strut_member_rest(scene, index, &rest))
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
-                         "the %s %g of %s would need a rest length below zero "
-                         "(drawn length %g m, stiffness %g N/m)",
-                         key, m->rest_value, owner, drawn, m->stiffness);
+  if (!strut_member_rest(scene, checker->index, &rest) && m->axial_stiffness > 0.0)
+    strut_fault_of(checker, key,
+                   "the axial_stiffness of %s needs a rest length above zero, but its %s is %g "
+                   "(drawn length %g m, axial_stiffness %g N)",
+                   checker->owner, key, m->rest_value, drawn, m->axial_stiffness);
+  else if (!strut_member_rest(scene, checker->index, &rest))
+    strut_fault_of(checker, key,
+                   "the %s %g of %s would need a rest length below zero "
+                   "(drawn length %g m, stiffness %g N/m)",
+                   key, m->rest_value, checker->owner, drawn, m->stiffness);
 }
 
 /* Steps lead somewhere, and two of them span the plane. */
@@ -325,15 +310,15 @@ static void check_lattice(strut_checker *checker) {
 }
 
 void strut_check_members(strut_checker *checker) {
-  const strut_checked rayleigh = {STRUT_ON_SCENE, 0, "rayleigh in the scene", "rayleigh"};
-  strut_check_fields(checker, &rayleigh, STRUT_FIELDS_RAYLEIGH, checker->scene, NULL);
+  strut_check_begin_with(checker, STRUT_ON_SCENE, 0, "rayleigh in the scene");
+  checker->within = "rayleigh";
+  strut_check_fields(checker, STRUT_FIELDS_RAYLEIGH, checker->scene, NULL);
   check_lattice(checker);
   for (size_t i = 0; i < checker->scene->member_count; i++) {
-    char owner[200];
-    strut_format_name(owner, "member", checker->scene->members[i].name, i);
-    checker->loose[i] = !check_ends(checker, i, owner);
-    bool valid = check_numbers(checker, i, owner) && check_law(checker, i, owner);
-    if (valid && !checker->loose[i]) check_shape(checker, i, owner);
+    strut_check_begin(checker, STRUT_THING_MEMBER, i);
+    checker->loose[i] = !check_ends(checker);
+    bool valid = check_numbers(checker) && check_law(checker);
+    if (valid && !checker->loose[i]) check_shape(checker);
   }
 }
 
@@ -386,18 +371,16 @@ void strut_check_use(strut_checker *checker) {
     if (strut_exists(scene->loads[i].node, scene->node_count)) state[scene->loads[i].node] |= USED;
   for (size_t i = 0; i < scene->node_count; i++) {
     const strut_node *node = &scene->nodes[i];
-    char owner[200];
-    strut_format_name(owner, "node", node->name, i);
+    strut_check_begin(checker, STRUT_THING_NODE, i);
     if (node->mass != 0.0) state[i] |= USED | HEAVY;
     if (!(state[i] & USED))
-      strut_report_finding(checker, STRUT_ON_NODE, i, NULL,
-                           "nothing uses %s: it has no member, no load and no mass", owner);
+      strut_fault_of(checker, NULL, "nothing uses %s: it has no member, no load and no mass",
+                     checker->owner);
     else if (checker->purpose == STRUT_FOR_RUN && !checker->resting && !(state[i] & HEAVY) &&
              !(node->fixed[0] && node->fixed[1]))
-      strut_report_finding(checker, STRUT_ON_NODE, i, "mass",
-                           "%s has no mass, so a run cannot move it; "
-                           "give it or one of its members a mass, or fix it",
-                           owner);
+      strut_fault(checker, "mass",
+                  "has no mass, so a run cannot move it; "
+                  "give it or one of its members a mass, or fix it");
   }
   strut_release(state);
 }

@@ -36,7 +36,6 @@ static const char *fault_of_motion(const strut_scene *scene, size_t i) {
 static void check_motions(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   double when;
-  char owner[200];
   for (size_t i = 0; i < scene->support_motion_count; i++) {
     const strut_support_motion *m = &scene->support_motions[i];
     if (!strut_exists(m->node, scene->node_count)) {
@@ -44,57 +43,49 @@ static void check_motions(strut_checker *checker) {
                            "motion number %zu is of a node that does not exist", i + 1);
       continue;
     }
-    strut_format_name(owner, "node", scene->nodes[m->node].name, (size_t)m->node);
+    strut_check_begin(checker, STRUT_THING_NODE, (size_t)m->node);
     const char *fault = fault_of_motion(scene, i);
     if (fault)
-      strut_report_finding(checker, STRUT_ON_NODE, (size_t)m->node, "moves", "%s %s", owner, fault);
+      strut_fault(checker, "moves", "%s", fault);
     else if (!strut_exists(m->signal, scene->signal_count))
-      strut_report_finding(checker, STRUT_ON_NODE, (size_t)m->node, "moves",
-                           "%s moves by a signal that does not exist", owner);
+      strut_fault(checker, "moves", "moves by a signal that does not exist");
     else if (!checker->wild[m->signal] && !strut_signal_is_wave(scene->signals, m->signal))
-      strut_report_finding(
-          checker, STRUT_ON_NODE, (size_t)m->node, "moves",
-          "%s moves by an expression, a lag, samples or a start, whose acceleration is "
-          "not known; use waves, ramps, tables and sums of them",
-          owner);
+      strut_fault(checker, "moves",
+                  "moves by an expression, a lag, samples or a start, whose acceleration is "
+                  "not known; use waves, ramps, tables and sums of them");
     else if (!checker->wild[m->signal] &&
              strut_signal_value_jumps(scene->signals, m->signal, HUGE_VAL, &when))
-      strut_report_finding(checker, STRUT_ON_NODE, (size_t)m->node, "moves",
-                           "the signal that moves %s in %c jumps at t = %g s, but a support cannot "
-                           "jump; use a ramp or a table",
-                           owner, "xy"[m->axis], when);
+      strut_fault_of(checker, "moves",
+                     "the signal that moves %s in %c jumps at t = %g s, but a support cannot "
+                     "jump; use a ramp or a table",
+                     checker->owner, "xy"[m->axis], when);
   }
 }
 
 static void check_unbalances(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  char owner[200];
   double when;
   for (size_t i = 0; i < scene->unbalance_count; i++) {
     const strut_unbalance *u = &scene->unbalances[i];
-    strut_format_name(owner, "unbalance", u->name, i);
-    const strut_checked whose = {STRUT_ON_UNBALANCE, i, owner, NULL};
-    strut_check_fields(checker, &whose, STRUT_FIELDS_UNBALANCE, u, NULL);
-    strut_check_number(checker, &whose, STRUT_FIELDS_UNBALANCE, "speed", u->speed);
+    strut_check_begin(checker, STRUT_THING_UNBALANCE, i);
+    strut_check_fields(checker, STRUT_FIELDS_UNBALANCE, u, NULL);
+    strut_check_number(checker, STRUT_FIELDS_UNBALANCE, "speed", u->speed);
     if (!strut_exists(u->node, scene->node_count))
-      strut_report_finding(checker, STRUT_ON_UNBALANCE, i, "node",
-                           "%s rotates about a node that does not exist", owner);
+      strut_fault(checker, "node", "rotates about a node that does not exist");
     if (u->signal == -1) continue;
     if (!strut_exists(u->signal, scene->signal_count))
-      strut_report_finding(checker, STRUT_ON_UNBALANCE, i, "angle",
-                           "%s has a signal that does not exist", owner);
+      strut_fault(checker, "angle", "has a signal that does not exist");
     else if (!checker->wild[u->signal] && !strut_signal_is_wave(scene->signals, u->signal))
-      strut_report_finding(checker, STRUT_ON_UNBALANCE, i, "angle",
-                           "the angle of %s is an expression, a lag, samples or a start, whose "
-                           "acceleration is not known; use waves, ramps, tables and sums of them",
-                           owner);
+      strut_fault_of(checker, "angle",
+                     "the angle of %s is an expression, a lag, samples or a start, whose "
+                     "acceleration is not known; use waves, ramps, tables and sums of them",
+                     checker->owner);
     else if (!checker->wild[u->signal] &&
              strut_signal_value_jumps(scene->signals, u->signal, HUGE_VAL, &when))
-      strut_report_finding(
-          checker, STRUT_ON_UNBALANCE, i, "angle",
-          "the angle of %s jumps at t = %g s, but a rotating mass cannot jump; use "
-          "a ramp or a table",
-          owner, when);
+      strut_fault_of(checker, "angle",
+                     "the angle of %s jumps at t = %g s, but a rotating mass cannot jump; use "
+                     "a ramp or a table",
+                     checker->owner, when);
   }
 }
 
@@ -102,64 +93,55 @@ void strut_check_drives(strut_checker *checker) {
   check_motions(checker);
   check_unbalances(checker);
   const strut_scene *scene = checker->scene;
-  char owner[200];
   for (size_t i = 0; i < scene->actuator_count; i++) {
     const strut_actuator *a = &scene->actuators[i];
-    strut_format_name(owner, "actuator", a->name, i);
+    strut_check_begin(checker, STRUT_THING_ACTUATOR, i);
     bool hinge = a->member < 0 && strut_exists(a->hinge, scene->hinge_count);
     bool cell = a->member < 0 && a->hinge < 0 && strut_exists(a->cell, scene->cell_count);
     strut_law_kind law = cell ? scene->cells[a->cell].law : STRUT_LAW_PRESSURE;
     if (law != STRUT_LAW_PRESSURE && law != STRUT_LAW_ISOTHERMAL)
-      strut_report_finding(
-          checker, STRUT_ON_ACTUATOR, i, "cell",
-          "%s drives the pressure of cell '%s', but that of an isentropic gas or an "
-          "elastic cell follows from its area; give the cell a pressure or an "
-          "isothermal gas",
-          owner, scene->cells[a->cell].name);
+      strut_fault(checker, "cell",
+                  "drives the pressure of cell '%s', but that of an isentropic gas or an "
+                  "elastic cell follows from its area; give the cell a pressure or an "
+                  "isothermal gas",
+                  scene->cells[a->cell].name);
     else if (cell && a->force)
-      strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "cell",
-                           "%s gives a force to a cell, whose pressure a signal drives", owner);
+      strut_fault(checker, "cell", "gives a force to a cell, whose pressure a signal drives");
     else if (!hinge && !cell && !strut_exists(a->member, scene->member_count))
-      strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "member",
-                           "%s drives a member that does not exist", owner);
+      strut_fault(checker, "member", "drives a member that does not exist");
     else if (!hinge && !cell && scene->bar_model == STRUT_BARS_RIGID &&
              scene->members[a->member].kind == STRUT_BAR)
-      strut_report_finding(
-          checker, STRUT_ON_ACTUATOR, i, "member",
-          "%s drives a bar, but bars are rigid; make the member a spring, or bars: elastic", owner);
+      strut_fault(checker, "member",
+                  "drives a bar, but bars are rigid; make the member a spring, or bars: elastic");
     else if (!hinge && !cell && a->force && scene->members[a->member].guide_radius > 0.0)
-      strut_report_finding(
-          checker, STRUT_ON_ACTUATOR, i, "member",
-          "%s gives a force along '%s', whose guides have a radius; drive its rest "
-          "length instead",
-          owner, scene->members[a->member].name);
+      strut_fault(checker, "member",
+                  "gives a force along '%s', whose guides have a radius; drive its rest "
+                  "length instead",
+                  scene->members[a->member].name);
     else if (!hinge && !cell && !a->force && scene->members[a->member].axial_stiffness > 0.0 &&
              scene->members[a->member].law.kind == STRUT_LAW_ELASTIC_PLASTIC)
-      strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "member",
-                           "%s drives the rest length of an elastic-plastic member with an "
-                           "axial_stiffness, of which it is not defined how much set is wound in; "
-                           "give the member its stiffness instead",
-                           owner);
+      strut_fault(checker, "member",
+                  "drives the rest length of an elastic-plastic member with an "
+                  "axial_stiffness, of which it is not defined how much set is wound in; "
+                  "give the member its stiffness instead");
     if (!strut_exists(a->signal, scene->signal_count))
-      strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "signal", "%s has no signal", owner);
+      strut_fault(checker, "signal", "has no signal");
     else if (!checker->wild[a->signal])
-      strut_check_driven_rate(checker, i, owner);
+      strut_check_driven_rate(checker);
   }
   for (size_t i = 0; i < scene->load_count; i++) {
     const strut_load *l = &scene->loads[i];
-    strut_format_name(owner, "load", l->name, i);
+    strut_check_begin(checker, STRUT_THING_LOAD, i);
     const char *key = !l->couple ? "node" : l->hinge >= 0 ? "hinge" : "member";
     if (!(!l->couple      ? strut_exists(l->node, scene->node_count)
           : l->hinge >= 0 ? strut_exists(l->hinge, scene->hinge_count)
                           : strut_exists(l->member, scene->member_count)))
-      strut_report_finding(checker, STRUT_ON_LOAD, i, key, "%s acts on a %s that does not exist",
-                           owner, key);
+      strut_fault(checker, key, "acts on a %s that does not exist", key);
     if (!isfinite(l->force[0] + l->force[1] + l->moment))
-      strut_report_finding(checker, STRUT_ON_LOAD, i, l->couple ? "moment" : "force",
-                           "the %s of %s is not finite", l->couple ? "moment" : "force", owner);
+      strut_fault_of(checker, l->couple ? "moment" : "force", "the %s of %s is not finite",
+                     l->couple ? "moment" : "force", checker->owner);
     if (l->signal != -1 && !strut_exists(l->signal, scene->signal_count))
-      strut_report_finding(checker, STRUT_ON_LOAD, i, "signal",
-                           "%s has a signal that does not exist", owner);
+      strut_fault(checker, "signal", "has a signal that does not exist");
   }
 }
 
@@ -167,19 +149,15 @@ void strut_check_drives(strut_checker *checker) {
 static bool check_length(strut_checker *checker) {
   const strut_experiment *e = checker->experiment;
   const strut_experiment usual = {0};
-  const strut_checked whose = {STRUT_ON_RUN, 0, "the run", NULL};
-  if (!strut_check_fields(checker, &whose, STRUT_FIELDS_RUN, e, &usual)) return false;
-  if (e->duration > 0.0 && e->periods > 0.0) {
-    strut_report_finding(checker, STRUT_ON_RUN, 0, "periods",
-                         "the run has both a duration and a number of periods; give one");
-    return false;
-  }
+  strut_check_begin_with(checker, STRUT_ON_RUN, 0, "the run");
+  if (!strut_check_fields(checker, STRUT_FIELDS_RUN, e, &usual)) return false;
+  if (e->duration > 0.0 && e->periods > 0.0)
+    return strut_report_finding(checker, STRUT_ON_RUN, 0, "periods",
+                                "the run has both a duration and a number of periods; give one");
   if (e->periods == 0.0) return e->duration > 0.0;
-  if (!strut_exists(e->period_signal, checker->scene->signal_count)) {
-    strut_report_finding(checker, STRUT_ON_RUN, 0, "of",
-                         "a run in periods needs a signal to define the period");
-    return false;
-  }
+  if (!strut_exists(e->period_signal, checker->scene->signal_count))
+    return strut_report_finding(checker, STRUT_ON_RUN, 0, "of",
+                                "a run in periods needs a signal to define the period");
   if (checker->wild[e->period_signal]) return false; /* reported there */
   double period = strut_signal_period(checker->scene->signals, e->period_signal);
   if (period > 0.0 && isfinite(period * e->periods)) return true;
@@ -217,9 +195,8 @@ static void check_step(strut_checker *checker, bool length_known) {
                            "the solver has no step, expected a time such as '0.1 ms'");
     return;
   }
-  const strut_checked whose = {STRUT_ON_SOLVER, 0, "the solver", NULL};
-  if (!strut_check_number(checker, &whose, STRUT_FIELDS_SOLVER, "step", e->step) || !length_known)
-    return;
+  strut_check_begin_with(checker, STRUT_ON_SOLVER, 0, "the solver");
+  if (!strut_check_number(checker, STRUT_FIELDS_SOLVER, "step", e->step) || !length_known) return;
   double duration = strut_experiment_span(e, checker->scene).duration;
   if (e->step > duration)
     strut_report_finding(checker, STRUT_ON_SOLVER, 0, "step",
@@ -236,11 +213,8 @@ void strut_check_experiment(strut_checker *checker) {
   const strut_experiment *e = checker->experiment;
   const strut_settle *settle = &e->settle;
   const strut_experiment usual = {0};
-  const strut_checked settling = {STRUT_ON_INITIAL, 0, "settling", NULL};
-  const strut_checked window = {STRUT_ON_RUN, 0, "the measuring window", NULL};
-  const strut_checked record = {STRUT_ON_OUTPUT, 0, "the output", NULL};
-  if (settle->wanted)
-    strut_check_fields(checker, &settling, STRUT_FIELDS_SETTLE, settle, &usual.settle);
+  strut_check_begin_with(checker, STRUT_ON_INITIAL, 0, "settling");
+  if (settle->wanted) strut_check_fields(checker, STRUT_FIELDS_SETTLE, settle, &usual.settle);
   if (settle->wanted && !isfinite(settle->step))
     strut_report_finding(checker, STRUT_ON_INITIAL, 0, "step",
                          "the step of settling is not finite");
@@ -261,8 +235,10 @@ void strut_check_experiment(strut_checker *checker) {
   check_step(checker, length_known);
   if (e->measure_node != -1 && !strut_exists(e->measure_node, scene->node_count))
     strut_report_finding(checker, STRUT_ON_RUN, 0, "node", "the measured node does not exist");
-  bool measure = strut_check_fields(checker, &window, STRUT_FIELDS_MEASURE, e, &usual);
-  bool output = strut_check_fields(checker, &record, STRUT_FIELDS_OUTPUT, e, &usual);
+  strut_check_begin_with(checker, STRUT_ON_RUN, 0, "the measuring window");
+  bool measure = strut_check_fields(checker, STRUT_FIELDS_MEASURE, e, &usual);
+  strut_check_begin_with(checker, STRUT_ON_OUTPUT, 0, "the output");
+  bool output = strut_check_fields(checker, STRUT_FIELDS_OUTPUT, e, &usual);
   if (!length_known) return;
   if (measure) check_window(checker, STRUT_ON_RUN, "cannot measure over", e->measure_last);
   if (output) check_window(checker, STRUT_ON_OUTPUT, "cannot record", e->output_last);
@@ -293,7 +269,8 @@ static bool node_moves(const strut_scene *scene, int32_t node) {
 }
 
 /* Can the member carry a mass that slides? */
-static bool check_carrier(strut_checker *checker, size_t i, const char *owner) {
+static bool check_carrier(strut_checker *checker) {
+  size_t i = checker->index;
   const strut_scene *scene = checker->scene;
   const strut_member *m = &scene->members[scene->sliding_masses[i].member];
   const char *fault = NULL;
@@ -301,23 +278,19 @@ static bool check_carrier(strut_checker *checker, size_t i, const char *owner) {
     fault = "runs over guides; only members between two nodes carry sliders";
   else if (strut_member_ends(m))
     fault = "breaks or is released; take breaks_at and released_at away";
-  if (fault) {
-    strut_report_finding(checker, STRUT_ON_SLIDER, i, "member", "%s is on member '%s', which %s",
-                         owner, m->name, fault);
-    return false;
-  }
+  if (fault) return strut_fault(checker, "member", "is on member '%s', which %s", m->name, fault);
   for (int k = 0; k < 2; k++) {
     const strut_node *node = &scene->nodes[m->node[k]];
     if (node_moves(scene, m->node[k]))
-      strut_report_finding(checker, STRUT_ON_SLIDER, i, "member",
-                           "%s is on a member whose node '%s' moves by a signal; sliders need "
-                           "members between free or fixed nodes",
-                           owner, node->name);
+      strut_fault(checker, "member",
+                  "is on a member whose node '%s' moves by a signal; sliders need "
+                  "members between free or fixed nodes",
+                  node->name);
     else if (!(node->fixed[0] && node->fixed[1]) && !node_has_mass(scene, m->node[k]))
-      strut_report_finding(checker, STRUT_ON_SLIDER, i, "member",
-                           "%s is on a member whose node '%s' has no mass but the slider's; give "
-                           "the node or the member a mass",
-                           owner, node->name);
+      strut_fault(checker, "member",
+                  "is on a member whose node '%s' has no mass but the slider's; give "
+                  "the node or the member a mass",
+                  node->name);
     else
       continue;
     return false;
@@ -328,17 +301,18 @@ static bool check_carrier(strut_checker *checker, size_t i, const char *owner) {
 static bool outside(double share) { return !(share >= -ROUNDING && share <= 1.0 + ROUNDING); }
 
 /* Reports the first sampled time at which the mass is beyond an end of its member. */
-static void check_way(strut_checker *checker, size_t i, const char *owner) {
+static void check_way(strut_checker *checker) {
+  size_t i = checker->index;
   const strut_scene *scene = checker->scene;
   const strut_experiment *e = checker->experiment;
   const strut_sliding_mass *s = &scene->sliding_masses[i];
   double time[MOST_TURNS], until = e->duration > 0.0 ? e->duration : 1.0, first = HUGE_VAL;
   if (s->signal < 0) {
     if (outside(s->share))
-      strut_report_finding(checker, STRUT_ON_SLIDER, i, "position",
-                           "%s is at %.6g of its member, which is beyond its ends; expected a "
-                           "share from 0 to 1",
-                           owner, s->share);
+      strut_fault(checker, "position",
+                  "is at %.6g of its member, which is beyond its ends; expected a "
+                  "share from 0 to 1",
+                  s->share);
     return;
   }
   size_t count = strut_signal_times(scene->signals, s->signal, 0.0, HUGE_VAL, time, MOST_TURNS);
@@ -350,59 +324,50 @@ static void check_way(strut_checker *checker, size_t i, const char *owner) {
     if (t < first && outside(strut_sliding_mass_share(scene, i, t))) first = t;
   }
   if (!(first < HUGE_VAL)) return;
-  strut_report_finding(checker, STRUT_ON_SLIDER, i, s->travel ? "travel" : "moves",
-                       "%s is at %.6g of its member at t = %g s, which is beyond its ends; "
-                       "expected shares from 0 to 1",
-                       owner, strut_sliding_mass_share(scene, i, first), first);
+  strut_fault(checker, s->travel ? "travel" : "moves",
+              "is at %.6g of its member at t = %g s, which is beyond its ends; "
+              "expected shares from 0 to 1",
+              strut_sliding_mass_share(scene, i, first), first);
 }
 
 /* Has the motion an acceleration, and no jumps? */
-static bool check_signal(strut_checker *checker, size_t i, const char *owner) {
+static bool check_signal(strut_checker *checker) {
+  size_t i = checker->index;
   const strut_scene *scene = checker->scene;
   const strut_sliding_mass *s = &scene->sliding_masses[i];
   const char *key = s->travel ? "travel" : "moves";
   double when;
   if (s->signal == -1) return true;
-  if (!strut_exists(s->signal, scene->signal_count)) {
-    strut_report_finding(checker, STRUT_ON_SLIDER, i, key, "%s has a signal that does not exist",
-                         owner);
-    return false;
-  }
+  if (!strut_exists(s->signal, scene->signal_count))
+    return strut_fault(checker, key, "has a signal that does not exist");
   if (checker->wild[s->signal]) return false;
-  if (!strut_signal_is_wave(scene->signals, s->signal)) {
-    strut_report_finding(checker, STRUT_ON_SLIDER, i, key,
-                         "%s moves by an expression, a lag, samples or a start, whose acceleration "
-                         "is not known; use waves, ramps, tables and sums of them",
-                         owner);
-    return false;
-  }
+  if (!strut_signal_is_wave(scene->signals, s->signal))
+    return strut_fault(checker, key,
+                       "moves by an expression, a lag, samples or a start, whose acceleration "
+                       "is not known; use waves, ramps, tables and sums of them");
   if (!strut_signal_value_jumps(scene->signals, s->signal, HUGE_VAL, &when)) return true;
-  strut_report_finding(checker, STRUT_ON_SLIDER, i, key,
-                       "the signal that moves %s jumps at t = %g s, but a mass cannot jump; use a "
-                       "ramp, a table, or waves that begin and stop at zero",
-                       owner, when);
-  return false;
+  return strut_fault_of(checker, key,
+                        "the signal that moves %s jumps at t = %g s, but a mass cannot jump; use a "
+                        "ramp, a table, or waves that begin and stop at zero",
+                        checker->owner, when);
 }
 
 void strut_check_sliding_masses(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  char owner[200];
   for (size_t i = 0; i < scene->sliding_count; i++) {
     const strut_sliding_mass *s = &scene->sliding_masses[i];
-    strut_format_name(owner, "slider", s->name, i);
-    const strut_checked whose = {STRUT_ON_SLIDER, i, owner, NULL};
-    strut_check_fields(checker, &whose, STRUT_FIELDS_SLIDER, s, NULL);
+    strut_check_begin(checker, STRUT_THING_SLIDER, i);
+    strut_check_fields(checker, STRUT_FIELDS_SLIDER, s, NULL);
     bool placed = isfinite(s->share);
     if (!strut_exists(s->member, scene->member_count)) {
-      strut_report_finding(checker, STRUT_ON_SLIDER, i, "member",
-                           "%s is on a member that does not exist", owner);
+      strut_fault(checker, "member", "is on a member that does not exist");
       continue;
     }
     if (checker->loose[s->member]) continue;
-    bool carried = check_carrier(checker, i, owner);
+    bool carried = check_carrier(checker);
     if (carried && s->signal >= 0 && scene->bar_model == STRUT_BARS_RIGID)
-      strut_report_finding(checker, STRUT_ON_SLIDER, i, s->travel ? "travel" : "moves",
-                           "%s moves, but bars are rigid; make them elastic, bars: elastic", owner);
-    if (check_signal(checker, i, owner) && placed) check_way(checker, i, owner);
+      strut_fault(checker, s->travel ? "travel" : "moves",
+                  "moves, but bars are rigid; make them elastic, bars: elastic");
+    if (check_signal(checker) && placed) check_way(checker);
   }
 }

@@ -28,8 +28,7 @@ static const char *fault_of_ground(const strut_scene *scene, const strut_contact
 }
 
 /* Reports it of a subject that rubs there. */
-static void report_ground(strut_checker *checker, strut_subject subject, size_t index,
-                          const strut_contact *c, const char *owner) {
+static void report_ground(strut_checker *checker, const strut_contact *c) {
   const strut_scene *scene = checker->scene;
   const char *fault = fault_of_ground(scene, c);
   const char *name = scene->ground_count ? scene->grounds[c->ground].name : NULL;
@@ -40,17 +39,15 @@ static void report_ground(strut_checker *checker, strut_subject subject, size_t 
 #pragma GCC diagnostic ignored "-Wformat-nonliteral"
   snprintf(what, sizeof what, fault, name);
 #pragma GCC diagnostic pop
-  strut_report_finding(checker, subject, index, NULL, "%s %s", owner, what);
+  strut_fault(checker, NULL, "%s", what);
 }
 
-static void check_friction(strut_checker *checker, size_t index, const char *owner) {
-  const strut_friction *f = &checker->scene->contacts[index].friction;
+static void check_friction(strut_checker *checker) {
+  const strut_friction *f = &checker->scene->contacts[checker->index].friction;
   if ((unsigned)f->law >= STRUT_FRICTION_LAW_COUNT) {
-    strut_report_finding(checker, STRUT_ON_CONTACT, index, "law",
-                         "the friction law of %s is unknown", owner);
+    strut_fault_of(checker, "law", "the friction law of %s is unknown", checker->owner);
     return;
   }
-  const strut_checked whose = {STRUT_ON_CONTACT, index, owner, NULL};
   const strut_friction none = {0};
   const strut_scene *scene = checker->scene;
   const char *fault = !f->driven                                      ? NULL
@@ -61,95 +58,88 @@ static void check_friction(strut_checker *checker, size_t index, const char *own
                       : !scene->ground_count ? "which needs its ground in the list of grounds"
                                              : NULL;
   if (fault)
-    strut_report_finding(checker, STRUT_ON_CONTACT, index, "mu",
-                         "the friction of %s follows a signal, %s", owner, fault);
-  strut_check_fields(checker, &whose, STRUT_FIELDS_FRICTION, f, &none);
+    strut_fault_of(checker, "mu", "the friction of %s follows a signal, %s", checker->owner, fault);
+  strut_check_fields(checker, STRUT_FIELDS_FRICTION, f, &none);
   if (strut_friction_has_bristles(f->law) && f->mu_static == 0.0 && f->mu_kinetic > 0.0)
-    strut_report_finding(
-        checker, STRUT_ON_CONTACT, index, "mu_static",
-        "the friction of %s has bristles that hold nothing: its mu_static is 0, but "
-        "its mu_kinetic is not",
-        owner);
+    strut_fault_of(checker, "mu_static",
+                   "the friction of %s has bristles that hold nothing: its mu_static is 0, but "
+                   "its mu_kinetic is not",
+                   checker->owner);
   if (strut_friction_holds_too_little(f))
-    strut_report_finding(checker, STRUT_ON_CONTACT, index, "mu_static",
-                         "the friction of %s has static friction below kinetic friction", owner);
+    strut_fault_of(checker, "mu_static",
+                   "the friction of %s has static friction below kinetic friction", checker->owner);
   for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++)
     if (strut_friction_needs(f->law, p) && strut_friction_value(f, p) == 0.0)
-      strut_check_number(checker, &whose, STRUT_FIELDS_FRICTION, strut_friction_key(p), 0.0);
+      strut_check_number(checker, STRUT_FIELDS_FRICTION, strut_friction_key(p), 0.0);
 }
 
-static void check_line(strut_checker *checker, size_t index, const char *owner) {
-  const strut_ground *g = &checker->scene->grounds[index];
-  const strut_checked whose = {STRUT_ON_GROUND, index, owner, NULL};
-  strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "height", g->height);
-  strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "slope", g->slope);
+static void check_line(strut_checker *checker) {
+  const strut_ground *g = &checker->scene->grounds[checker->index];
+  strut_check_number(checker, STRUT_FIELDS_GROUND, "height", g->height);
+  strut_check_number(checker, STRUT_FIELDS_GROUND, "slope", g->slope);
   for (int c = 0; c < 2; c++)
-    strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "through", g->through[c]);
+    strut_check_number(checker, STRUT_FIELDS_GROUND, "through", g->through[c]);
   if (!g->placed && fabs(cos(g->slope)) < 1e-12)
-    strut_report_finding(checker, STRUT_ON_GROUND, index, "slope",
-                         "%s is upright, so that it has no height at x = 0; give a point of it, "
-                         "through: [x, y]",
-                         owner);
+    strut_fault(checker, "slope",
+                "is upright, so that it has no height at x = 0; give a point of it, "
+                "through: [x, y]");
 }
 
-static void check_profile(strut_checker *checker, size_t index, const char *owner) {
+static void check_profile(strut_checker *checker) {
   size_t segment, other;
   strut_profile_fault fault =
-      strut_profile_check(&checker->scene->grounds[index], &segment, &other);
+      strut_profile_check(&checker->scene->grounds[checker->index], &segment, &other);
   switch (fault) {
     case STRUT_PROFILE_FINE: break;
     case STRUT_PROFILE_NO_MEMORY: checker->out_of_memory = true; break;
     case STRUT_PROFILE_SHORT:
-      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
-                           "the profile of %s needs at least two points", owner);
+      strut_fault_of(checker, "profile", "the profile of %s needs at least two points",
+                     checker->owner);
       break;
     case STRUT_PROFILE_POINT:
-      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
-                           "point %zu of the profile of %s is not finite", segment + 1, owner);
+      strut_fault_of(checker, "profile", "point %zu of the profile of %s is not finite",
+                     segment + 1, checker->owner);
       break;
     case STRUT_PROFILE_ZERO:
-      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
-                           "points %zu and %zu of the profile of %s are one point", segment + 1,
-                           segment + 2, owner);
+      strut_fault_of(checker, "profile", "points %zu and %zu of the profile of %s are one point",
+                     segment + 1, segment + 2, checker->owner);
       break;
     case STRUT_PROFILE_BACK:
-      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
-                           "the profile of %s turns back onto itself at point %zu", owner,
-                           segment + 1);
+      strut_fault_of(checker, "profile", "the profile of %s turns back onto itself at point %zu",
+                     checker->owner, segment + 1);
       break;
     case STRUT_PROFILE_CROSSES:
-      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
-                           "the profile of %s crosses itself: its segments %zu and %zu meet; its "
-                           "ends continue straight",
-                           owner, other + 1, segment + 1);
+      strut_fault_of(checker, "profile",
+                     "the profile of %s crosses itself: its segments %zu and %zu meet; its "
+                     "ends continue straight",
+                     checker->owner, other + 1, segment + 1);
       break;
   }
 }
 
 /* A displacement that jumps would take the ground through nodes. */
-static void check_motion(strut_checker *checker, size_t index, const char *owner) {
+static void check_motion(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_ground *g = &scene->grounds[index];
+  const strut_ground *g = &scene->grounds[checker->index];
   double when;
   for (int c = 0; c < 2; c++) {
     const char *axis = c ? "y" : "x";
     if (!g->moves[c]) continue;
     int32_t signal = g->motion[c];
     if (signal < 0 || (size_t)signal >= scene->signal_count)
-      strut_report_finding(checker, STRUT_ON_GROUND, index, "motion",
-                           "the motion of %s in %s has no signal", owner, axis);
+      strut_fault_of(checker, "motion", "the motion of %s in %s has no signal", checker->owner,
+                     axis);
     else if (!checker->wild[signal] && !strut_signal_is_wave(scene->signals, signal))
-      strut_report_finding(
-          checker, STRUT_ON_GROUND, index, "motion",
-          "the motion of %s in %s is an expression, a lag, samples or a start, whose "
-          "acceleration is not known; use waves, ramps, tables and sums of them",
-          owner, axis);
+      strut_fault_of(checker, "motion",
+                     "the motion of %s in %s is an expression, a lag, samples or a start, whose "
+                     "acceleration is not known; use waves, ramps, tables and sums of them",
+                     checker->owner, axis);
     else if (!checker->wild[signal] &&
              strut_signal_value_jumps(scene->signals, signal, HUGE_VAL, &when))
-      strut_report_finding(checker, STRUT_ON_GROUND, index, "motion",
-                           "the motion of %s in %s jumps; use a ramp, a table, or waves that begin "
-                           "and stop at zero",
-                           owner, axis);
+      strut_fault_of(checker, "motion",
+                     "the motion of %s in %s jumps; use a ramp, a table, or waves that begin "
+                     "and stop at zero",
+                     checker->owner, axis);
   }
 }
 
@@ -160,31 +150,26 @@ static void check_grounds(strut_checker *checker) {
   for (size_t i = 0; i < scene->ground_count; i++) {
     const strut_ground *g = &scene->grounds[i];
     bool single = scene->ground_count == 1 && !(g->name && *g->name), used = false;
-    char owner[200];
-    if (single)
-      snprintf(owner, sizeof owner, "the ground");
-    else
-      strut_format_name(owner, "ground", g->name, i);
-    const strut_checked whose = {STRUT_ON_GROUND, i, owner, NULL};
-    const strut_checked circle = {STRUT_ON_GROUND, i, owner, "circle"};
-    strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "belt_speed", g->belt_speed);
+    strut_check_begin(checker, STRUT_THING_GROUND, i);
+    if (single) strut_check_begin_with(checker, STRUT_ON_GROUND, i, "the ground");
+    strut_check_number(checker, STRUT_FIELDS_GROUND, "belt_speed", g->belt_speed);
     if ((unsigned)g->damping_law >= STRUT_DAMPING_COUNT)
-      strut_report_finding(checker, STRUT_ON_GROUND, i, "damping_law",
-                           "the damping law of %s is unknown", owner);
+      strut_fault_of(checker, "damping_law", "the damping law of %s is unknown", checker->owner);
     switch (g->shape) {
-      case STRUT_GROUND_LINE: check_line(checker, i, owner); break;
-      case STRUT_GROUND_PROFILE: check_profile(checker, i, owner); break;
+      case STRUT_GROUND_LINE: check_line(checker); break;
+      case STRUT_GROUND_PROFILE: check_profile(checker); break;
       case STRUT_GROUND_CIRCLE:
+        checker->within = "circle";
         for (int c = 0; c < 2; c++)
-          strut_check_number(checker, &circle, STRUT_FIELDS_CIRCLE, "centre", g->centre[c]);
-        strut_check_number(checker, &circle, STRUT_FIELDS_CIRCLE, "radius", g->radius);
+          strut_check_number(checker, STRUT_FIELDS_CIRCLE, "centre", g->centre[c]);
+        strut_check_number(checker, STRUT_FIELDS_CIRCLE, "radius", g->radius);
+        checker->within = NULL;
         break;
     }
-    check_motion(checker, i, owner);
+    check_motion(checker);
     for (size_t k = 0; k < scene->contact_count; k++)
       used = used || scene->contacts[k].ground == (int32_t)i;
-    if (!used)
-      strut_report_finding(checker, STRUT_ON_GROUND, i, "nodes", "no node may touch %s", owner);
+    if (!used) strut_fault_of(checker, "nodes", "no node may touch %s", checker->owner);
   }
 }
 
@@ -218,36 +203,33 @@ static void check_contacts(strut_checker *checker, const size_t *pieces) {
   const strut_scene *scene = checker->scene;
   for (size_t i = 0; i < scene->contact_count; i++) {
     const strut_contact *c = &scene->contacts[i];
+    strut_check_begin(checker, STRUT_THING_CONTACT, i);
     if (c->node < 0 || (size_t)c->node >= scene->node_count) {
-      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
-                           "contact number %zu is of a node that does not exist", i + 1);
+      strut_fault_of(checker, NULL, "contact number %zu is of a node that does not exist", i + 1);
       continue;
     }
-    char owner[200];
-    strut_format_name(owner, "the contact of node", scene->nodes[c->node].name, (size_t)c->node);
+    strut_format_name(checker->owner, "the contact of node", scene->nodes[c->node].name,
+                      (size_t)c->node);
     if (i && !follows(&scene->contacts[i - 1], c))
-      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
-                           "%s is out of order: contacts follow their nodes, one for each at most",
-                           owner);
+      strut_fault(checker, NULL,
+                  "is out of order: contacts follow their nodes, one for each at most");
     bool again =
         i && scene->contacts[i - 1].node == c->node && scene->contacts[i - 1].ground == c->ground;
     if (!has_surface(scene, c, pieces))
-      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
-                           "%s is with a ground, or a piece of one, that does not exist", owner);
+      strut_fault(checker, NULL, "is with a ground, or a piece of one, that does not exist");
     else if (strut_friction_has_bristles(c->friction.law) && !again)
-      report_ground(checker, STRUT_ON_CONTACT, i, c, owner);
-    const strut_checked whose = {STRUT_ON_CONTACT, i, owner, NULL};
-    strut_check_fields(checker, &whose, STRUT_FIELDS_CONTACT, c, NULL);
-    check_friction(checker, i, owner);
+      report_ground(checker, c);
+    strut_check_fields(checker, STRUT_FIELDS_CONTACT, c, NULL);
+    check_friction(checker);
   }
 }
 
 void strut_check_ground(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   const strut_ground *g = &scene->ground;
-  const strut_checked whose = {STRUT_ON_GROUND, 0, "the ground", NULL};
-  strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "height", g->height);
-  strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "belt_speed", g->belt_speed);
+  strut_check_begin_with(checker, STRUT_ON_GROUND, 0, "the ground");
+  strut_check_number(checker, STRUT_FIELDS_GROUND, "height", g->height);
+  strut_check_number(checker, STRUT_FIELDS_GROUND, "belt_speed", g->belt_speed);
   if (!(fabs(g->slope) < QUARTER_TURN))
     strut_report_finding(
         checker, STRUT_ON_GROUND, 0, "slope",
@@ -269,26 +251,20 @@ void strut_check_ground(strut_checker *checker) {
 
 /* ---- feet ---- */
 
-static bool check_foot(strut_checker *checker, size_t index, const char *owner) {
+static bool check_foot(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_foot *f = &scene->feet[index];
-  if (!strut_exists(f->member, scene->member_count) || !strut_exists(f->node, scene->node_count)) {
-    strut_report_finding(checker, STRUT_ON_FOOT, index, "member",
-                         "%s is at a member or a node that does not exist", owner);
-    return false;
-  }
+  const strut_foot *f = &scene->feet[checker->index];
+  if (!strut_exists(f->member, scene->member_count) || !strut_exists(f->node, scene->node_count))
+    return strut_fault(checker, "member", "is at a member or a node that does not exist");
   if (checker->loose[f->member]) return false; /* it is reported there */
   const strut_member *m = &scene->members[f->member];
   const char *member = m->name, *node = scene->nodes[f->node].name;
   if (m->node[0] != f->node && m->node[1] != f->node)
-    strut_report_finding(checker, STRUT_ON_FOOT, index, "node",
-                         "%s is at node '%s', which is no end of member '%s'", owner, node, member);
-  else if (m->guide_count)
-    strut_report_finding(checker, STRUT_ON_FOOT, index, "member",
-                         "%s is at a running cable; a foot needs a straight member", owner);
-  else
-    return true;
-  return false;
+    return strut_fault(checker, "node", "is at node '%s', which is no end of member '%s'", node,
+                       member);
+  if (m->guide_count)
+    return strut_fault(checker, "member", "is at a running cable; a foot needs a straight member");
+  return true;
 }
 
 void strut_check_feet(strut_checker *checker) {
@@ -296,27 +272,21 @@ void strut_check_feet(strut_checker *checker) {
   for (size_t i = 0; i < scene->foot_count; i++) {
     const strut_foot *f = &scene->feet[i];
     bool touches = false;
-    char owner[200];
-    strut_format_name(owner, "foot", f->name, i);
-    const strut_checked whose = {STRUT_ON_FOOT, i, owner, NULL};
-    if (!strut_check_fields(checker, &whose, STRUT_FIELDS_FOOT, f, NULL) ||
-        !check_foot(checker, i, owner))
-      continue;
+    strut_check_begin(checker, STRUT_THING_FOOT, i);
+    if (!strut_check_fields(checker, STRUT_FIELDS_FOOT, f, NULL) || !check_foot(checker)) continue;
     for (size_t k = 0; k < i; k++)
       if (scene->feet[k].node == f->node)
-        strut_report_finding(checker, STRUT_ON_FOOT, i, "node",
-                             "node '%s' has a foot already, '%s'", scene->nodes[f->node].name,
-                             scene->feet[k].name);
+        strut_fault_of(checker, "node", "node '%s' has a foot already, '%s'",
+                       scene->nodes[f->node].name, scene->feet[k].name);
     for (size_t k = 0; k < scene->contact_count; k++) {
       const strut_contact *c = &scene->contacts[k];
       if (c->node != f->node) continue;
       touches = true;
-      report_ground(checker, STRUT_ON_FOOT, i, c, owner);
+      report_ground(checker, c);
     }
     if (!touches)
-      strut_report_finding(checker, STRUT_ON_FOOT, i, "node",
-                           "%s is at node '%s', which may touch no ground", owner,
-                           scene->nodes[f->node].name);
+      strut_fault(checker, "node", "is at node '%s', which may touch no ground",
+                  scene->nodes[f->node].name);
   }
 }
 
@@ -330,69 +300,61 @@ typedef struct sets_check {
   uint64_t now;
 } sets_check;
 
-/* Checks one set; the finding is about `subject`, `index`, `key`. False: it is invalid. */
-static bool check_set(sets_check *check, const strut_node_set *set, strut_subject subject,
-                      size_t index, const char *key, const char *owner) {
+/* Checks one set, of this key. False: it is invalid. */
+static bool check_set(sets_check *check, const strut_node_set *set, const char *key) {
   strut_checker *checker = check->checker;
   const strut_scene *scene = checker->scene;
   check->now++;
-  if (!set->count) {
-    strut_report_finding(checker, subject, index, key, "the %s of %s have an empty list", key,
-                         owner);
-    return false;
-  }
+  if (!set->count)
+    return strut_fault_of(checker, key, "the %s of %s have an empty list", key, checker->owner);
   for (size_t i = 0; i < set->count; i++) {
     int32_t n = set->node[i];
-    if (n < 0 || (size_t)n >= scene->node_count) {
-      strut_report_finding(checker, subject, index, key,
-                           "the %s of %s name a node that does not exist", key, owner);
-      return false;
-    }
+    if (n < 0 || (size_t)n >= scene->node_count)
+      return strut_fault_of(checker, key, "the %s of %s name a node that does not exist", key,
+                            checker->owner);
     char node[200];
     strut_format_name(node, "node", scene->nodes[n].name, (size_t)n);
     bool twice = check->stamp[n] == check->now;
     check->stamp[n] = check->now;
     if (check->touches[n] && !twice) continue;
-    strut_report_finding(checker, subject, index, key,
-                         twice ? "the %s of %s name %s twice"
-                               : "the %s of %s name %s, but 'nodes' of the ground lacks it",
-                         key, owner, node);
-    return false;
+    return strut_fault_of(checker, key,
+                          twice ? "the %s of %s name %s twice"
+                                : "the %s of %s name %s, but 'nodes' of the ground lacks it",
+                          key, checker->owner, node);
   }
   return true;
 }
 
 static void check_sets(sets_check *check, const strut_node_set *sets, size_t count,
-                       strut_subject subject, size_t index, const char *key, const char *owner) {
-  const strut_scene *scene = check->checker->scene;
-  if (count && scene->ground_count && subject == STRUT_ON_EQUILIBRIA) {
-    strut_report_finding(check->checker, subject, index, key,
-                         "the %s of %s take the place of one straight line at rest, and the scene "
-                         "has other grounds; leave them out",
-                         key, owner);
+                       const char *key) {
+  strut_checker *checker = check->checker;
+  const strut_scene *scene = checker->scene;
+  if (count && scene->ground_count && checker->subject == STRUT_ON_EQUILIBRIA) {
+    strut_fault_of(checker, key,
+                   "the %s of %s take the place of one straight line at rest, and the scene "
+                   "has other grounds; leave them out",
+                   key, checker->owner);
     return;
   }
   if (count && !strut_scene_has_ground(scene)) {
-    strut_report_finding(check->checker, subject, index, key,
-                         "the %s of %s need a ground to rest on, and the scene has none", key,
-                         owner);
+    strut_fault_of(checker, key, "the %s of %s need a ground to rest on, and the scene has none",
+                   key, checker->owner);
     return;
   }
   for (size_t i = 0; i < count; i++)
-    if (!check_set(check, &sets[i], subject, index, key, owner)) return;
+    if (!check_set(check, &sets[i], key)) return;
 }
 
-static void check_positions(strut_checker *checker, size_t index, const char *owner) {
+static void check_positions(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_configuration *c = &scene->configurations[index];
+  const strut_configuration *c = &scene->configurations[checker->index];
   for (size_t i = 0; i < scene->node_count; i++) {
     const double *drawn = scene->nodes[i].position;
     if (isfinite(c->position[i][0]) && isfinite(c->position[i][1])) continue;
     if (!isfinite(drawn[0]) || !isfinite(drawn[1])) continue; /* reported at the node */
     char node[200];
-    strut_report_finding(checker, STRUT_ON_CONFIGURATION, index, NULL,
-                         "the position of %s in %s is not finite",
-                         strut_format_name(node, "node", scene->nodes[i].name, i), owner);
+    strut_fault_of(checker, NULL, "the position of %s in %s is not finite",
+                   strut_format_name(node, "node", scene->nodes[i].name, i), checker->owner);
     return;
   }
 }
@@ -431,15 +393,14 @@ void strut_check_shapes(strut_checker *checker) {
   }
   for (size_t i = 0; !checker->out_of_memory && i < scene->configuration_count; i++) {
     const strut_configuration *c = &scene->configurations[i];
-    char owner[200];
-    strut_format_name(owner, "configuration", c->name, i);
-    check_positions(checker, i, owner);
-    check_sets(&check, c->sets, c->set_count, STRUT_ON_CONFIGURATION, i, "contacts", owner);
+    strut_check_begin(checker, STRUT_THING_CONFIGURATION, i);
+    check_positions(checker);
+    check_sets(&check, c->sets, c->set_count, "contacts");
   }
   if (!checker->out_of_memory) {
     const strut_search *search = &checker->experiment->search;
-    check_sets(&check, search->supports, search->support_count, STRUT_ON_EQUILIBRIA, 0, "supports",
-               "the search for equilibria");
+    strut_check_begin_with(checker, STRUT_ON_EQUILIBRIA, 0, "the search for equilibria");
+    check_sets(&check, search->supports, search->support_count, "supports");
     check_search(checker);
   }
   strut_release(check.touches);

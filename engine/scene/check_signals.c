@@ -13,27 +13,24 @@
 
 enum { MOST_TERMS = 10000, DEEPEST_SUM = 64 };
 
-static bool check_table(strut_checker *checker, size_t index, const char *owner) {
-  const strut_signal *s = &checker->scene->signals[index];
-  if (!s->point_count) {
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "table", "the table of %s has no points",
-                         owner);
-    return false;
-  }
+static bool check_table(strut_checker *checker) {
+  const strut_signal *s = &checker->scene->signals[checker->index];
+  if (!s->point_count)
+    return strut_fault_of(checker, "table", "the table of %s has no points", checker->owner);
   for (size_t i = 0; i < s->point_count; i++) {
     if (!isfinite(s->time[i]) || !isfinite(s->value[i]))
-      strut_report_finding(checker, STRUT_ON_SIGNAL, index, "table",
-                           "point %zu in the table of %s is not finite", i + 1, owner);
+      strut_fault_of(checker, "table", "point %zu in the table of %s is not finite", i + 1,
+                     checker->owner);
     else if (i && s->time[i] < s->time[i - 1])
-      strut_report_finding(
-          checker, STRUT_ON_SIGNAL, index, "table",
-          "the times in the table of %s must increase, but point %zu at %g s follows %g s", owner,
-          i + 1, s->time[i], s->time[i - 1]);
+      strut_fault_of(
+          checker, "table",
+          "the times in the table of %s must increase, but point %zu at %g s follows %g s",
+          checker->owner, i + 1, s->time[i], s->time[i - 1]);
     else if (i > 1 && s->time[i] <= s->time[i - 2])
-      strut_report_finding(
-          checker, STRUT_ON_SIGNAL, index, "table",
+      strut_fault_of(
+          checker, "table",
           "the table of %s has three points at %g s, expected at most two, between which it jumps",
-          owner, s->time[i]);
+          checker->owner, s->time[i]);
     else
       continue;
     return false;
@@ -55,42 +52,34 @@ static size_t part_count(const strut_signal *s) {
 }
 
 /* Counts parts and depth of a sum or an expression, whose signals have been checked before. */
-static bool check_sum(strut_checker *checker, size_t index, const char *owner, uint32_t *size,
-                      uint32_t *depth) {
-  const strut_signal *s = &checker->scene->signals[index];
+static bool check_sum(strut_checker *checker, uint32_t *size, uint32_t *depth) {
+  const strut_signal *s = &checker->scene->signals[checker->index];
   uint64_t terms = 1;
-  if (strut_signal_has_program(s) && !strut_check_program(checker, index, owner)) return false;
-  if (s->kind == STRUT_RELAY && !strut_check_relay(checker, index, owner)) return false;
-  if (s->kind == STRUT_SUM && !s->term_count) {
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum", "the sum of %s has no terms",
-                         owner);
-    return false;
-  }
+  size_t index = checker->index;
+  if (strut_signal_has_program(s) && !strut_check_program(checker)) return false;
+  if (s->kind == STRUT_RELAY && !strut_check_relay(checker)) return false;
+  if (s->kind == STRUT_SUM && !s->term_count)
+    return strut_fault_of(checker, "sum", "the sum of %s has no terms", checker->owner);
   for (size_t i = 0; i < part_count(s); i++) {
     int32_t term = part_of(s, i);
     if (term < 0 && strut_signal_has_program(s)) continue;
-    if (term < 0 || (size_t)term >= index) {
-      strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum",
-                           "term %zu of %s is not a signal that comes before it", i + 1, owner);
-      return false;
-    }
+    if (term < 0 || (size_t)term >= index)
+      return strut_fault_of(checker, "sum", "term %zu of %s is not a signal that comes before it",
+                            i + 1, checker->owner);
     if (checker->wild[term]) return false; /* reported there */
     terms += size[term];
     if (depth[term] >= depth[index]) depth[index] = depth[term] + 1;
   }
   size[index] = terms > MOST_TERMS ? MOST_TERMS + 1 : (uint32_t)terms;
   if (terms <= MOST_TERMS && depth[index] <= DEEPEST_SUM) return true;
-  strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL,
-                       "%s has more than %d terms, or sums within sums more than %d deep", owner,
-                       MOST_TERMS, DEEPEST_SUM);
-  return false;
+  return strut_fault(checker, NULL, "has more than %d terms, or sums within sums more than %d deep",
+                     MOST_TERMS, DEEPEST_SUM);
 }
 
 /* Checks the numbers of a waveform. */
-static bool check_wave(strut_checker *checker, size_t index, const char *owner) {
-  const strut_signal *s = &checker->scene->signals[index];
+static bool check_wave(strut_checker *checker) {
+  const strut_signal *s = &checker->scene->signals[checker->index];
   bool wave = s->kind == STRUT_SINE || s->kind == STRUT_HALF_SINE || s->kind == STRUT_SQUARE;
-  const strut_checked whose = {STRUT_ON_SIGNAL, index, owner, NULL};
   const struct {
     const char *key;
     double value;
@@ -98,21 +87,17 @@ static bool check_wave(strut_checker *checker, size_t index, const char *owner) 
   bool valid = true; /* as of a sine, whatever the wave */
   for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
     valid =
-        strut_check_number(checker, &whose, STRUT_FIELDS_SINE, numbers[i].key, numbers[i].value) &&
-        valid;
+        strut_check_number(checker, STRUT_FIELDS_SINE, numbers[i].key, numbers[i].value) && valid;
   if (wave)
-    valid =
-        strut_check_number(checker, &whose, STRUT_FIELDS_SINE, "frequency", s->frequency) && valid;
+    valid = strut_check_number(checker, STRUT_FIELDS_SINE, "frequency", s->frequency) && valid;
   if (!valid) return false;
   if (s->kind == STRUT_RAMP && !isfinite(s->stop))
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "stop", "%s needs a stop", owner);
-  else if (!(s->stop > s->start))
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "stop",
-                         "the stop of %s must come after its start, found %g s after %g s", owner,
-                         s->stop, s->start);
-  else
-    return true;
-  return false;
+    return strut_fault(checker, "stop", "needs a stop");
+  if (!(s->stop > s->start))
+    return strut_fault_of(checker, "stop",
+                          "the stop of %s must come after its start, found %g s after %g s",
+                          checker->owner, s->stop, s->start);
+  return true;
 }
 
 /* Times at which a signal jumps per second; tables and ramps jump as often as they are long. */
@@ -124,41 +109,39 @@ static double jump_rate(const strut_signal *s) {
 /* A run stops at each jump: more of them than this in a step, or in a run without one, are a mistake. */
 static const double MOST_JUMPS_OF_STEP = 1e3, MOST_JUMPS_OF_RUN = 1e9;
 
-static void check_jumps(strut_checker *checker, size_t index, const char *owner) {
+static void check_jumps(strut_checker *checker) {
   const strut_experiment *e = checker->experiment;
-  const strut_signal *s = &checker->scene->signals[index];
+  const strut_signal *s = &checker->scene->signals[checker->index];
   bool step = e->step > 0.0 && isfinite(e->step);
   double rate = jump_rate(s), span = step ? e->step : e->duration;
   if (checker->purpose != STRUT_FOR_RUN || !(span > 0.0 && isfinite(span))) return;
   if (rate * span <= (step ? MOST_JUMPS_OF_STEP : MOST_JUMPS_OF_RUN)) return;
   bool sampled = s->every > 0.0 && s->every * rate <= 1.0;
-  strut_report_finding(
-      checker, STRUT_ON_SIGNAL, index, sampled ? "every" : "frequency",
-      "%s jumps %.3g times within %s of %g s, expected at most %g; give %s%s", owner, rate * span,
-      step ? "a step" : "the run", span, step ? MOST_JUMPS_OF_STEP : MOST_JUMPS_OF_RUN,
-      sampled ? "a longer 'every'" : "a lower frequency", step ? " or a smaller step" : "");
+  strut_fault(checker, sampled ? "every" : "frequency",
+              "jumps %.3g times within %s of %g s, expected at most %g; give %s%s", rate * span,
+              step ? "a step" : "the run", span, step ? MOST_JUMPS_OF_STEP : MOST_JUMPS_OF_RUN,
+              sampled ? "a longer 'every'" : "a lower frequency", step ? " or a smaller step" : "");
 }
 
-/* Formats the name of a signal for messages: its own, or that of its first user. */
-static void call_signal(char owner[200], const strut_scene *scene, const size_t *user, size_t i) {
+/* Begins with a signal, by a name for messages: its own, or that of its first user. */
+static void call_signal(strut_checker *checker, const size_t *user, size_t i) {
+  const strut_scene *scene = checker->scene;
   char thing[200];
   size_t u = user[i];
-  if (scene->signals[i].name || !u) {
-    strut_format_name(owner, "signal", scene->signals[i].name, i);
-    return;
-  }
+  strut_check_begin(checker, STRUT_THING_SIGNAL, i);
+  if (scene->signals[i].name || !u) return;
   size_t drives = scene->actuator_count + scene->load_count;
   if (u > drives) {
     int32_t node = scene->support_motions[u - 1 - drives].node;
     strut_format_name(thing, "node", scene->nodes[node].name, (size_t)node);
-    snprintf(owner, 200, "the signal of %.180s", thing);
+    snprintf(checker->owner, 200, "the signal of %.180s", thing);
     return;
   }
   bool actuator = u <= scene->actuator_count;
   size_t index = actuator ? u - 1 : u - 1 - scene->actuator_count;
   strut_format_name(thing, actuator ? "actuator" : "load",
                     actuator ? scene->actuators[index].name : scene->loads[index].name, index);
-  snprintf(owner, 200, "the signal of %.180s", thing);
+  snprintf(checker->owner, 200, "the signal of %.180s", thing);
 }
 
 /*
@@ -194,20 +177,19 @@ void strut_check_signals(strut_checker *checker) {
   if (!checker->out_of_memory) find_users(scene, user);
   for (size_t i = 0; !checker->out_of_memory && i < scene->signal_count; i++) {
     const strut_signal *s = &scene->signals[i];
-    char owner[200];
-    call_signal(owner, scene, user, i);
+    call_signal(checker, user, i);
     size[i] = depth[i] = 1;
     if ((unsigned)s->kind >= STRUT_SIGNAL_KINDS) {
-      strut_report_finding(checker, STRUT_ON_SIGNAL, i, NULL, "%s is of an unknown kind", owner);
+      strut_fault(checker, NULL, "is of an unknown kind");
       checker->wild[i] = true;
       continue;
     }
-    bool modified = strut_check_modifiers(checker, i, owner);
-    checker->wild[i] = !modified || (s->kind == STRUT_TABLE ? !check_table(checker, i, owner)
+    bool modified = strut_check_modifiers(checker);
+    checker->wild[i] = !modified || (s->kind == STRUT_TABLE ? !check_table(checker)
                                      : s->kind == STRUT_SUM || strut_signal_has_program(s)
-                                         ? !check_sum(checker, i, owner, size, depth)
-                                         : !check_wave(checker, i, owner));
-    if (!checker->wild[i]) check_jumps(checker, i, owner);
+                                         ? !check_sum(checker, size, depth)
+                                         : !check_wave(checker));
+    if (!checker->wild[i]) check_jumps(checker);
   }
   strut_release(size);
   strut_release(depth);
@@ -216,28 +198,27 @@ void strut_check_signals(strut_checker *checker) {
 
 /* ---- sensors, programs, relays and internal states ---- */
 
-void strut_check_maxwell(strut_checker *checker, size_t index, const char *owner) {
+void strut_check_maxwell(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_member *member = &scene->members[index];
+  const strut_member *member = &scene->members[checker->index];
   const strut_maxwell *m = &member->maxwell;
   const strut_maxwell none = {0};
-  const strut_checked whose = {STRUT_ON_MEMBER, index, owner, "maxwell"};
   if (memcmp(m, &none, sizeof none) == 0) return;
-  if (!strut_check_fields(checker, &whose, STRUT_FIELDS_MAXWELL, m, &none)) return;
+  checker->within = "maxwell";
+  bool valid = strut_check_fields(checker, STRUT_FIELDS_MAXWELL, m, &none);
+  checker->within = NULL;
+  if (!valid) return;
   if ((m->damping > 0.0) == (m->time > 0.0))
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "maxwell",
-                         "the Maxwell branch of %s needs either a damping or a time", owner);
+    strut_fault_of(checker, "maxwell", "the Maxwell branch of %s needs either a damping or a time",
+                   checker->owner);
   else if (member->kind == STRUT_CABLE || member->law.carries != STRUT_CARRIES_BOTH)
-    strut_report_finding(
-        checker, STRUT_ON_MEMBER, index, "maxwell",
-        "%s carries one sign only, but its Maxwell branch both; put a spring or a bar "
-        "with the branch beside it",
-        owner);
+    strut_fault(checker, "maxwell",
+                "carries one sign only, but its Maxwell branch both; put a spring or a bar "
+                "with the branch beside it");
   else if (member->kind == STRUT_BAR && scene->bar_model == STRUT_BARS_RIGID)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "maxwell",
-                         "%s has a Maxwell branch, but bars are rigid; make it a spring, or bars: "
-                         "elastic",
-                         owner);
+    strut_fault(checker, "maxwell",
+                "has a Maxwell branch, but bars are rigid; make it a spring, or bars: "
+                "elastic");
 }
 
 static bool touches(const strut_scene *scene, int32_t node) {
@@ -252,8 +233,7 @@ static void check_sensor(strut_checker *checker, size_t index) {
   bool known = true;
   bool contact = s->kind == STRUT_SENSOR_CONTACT || s->kind == STRUT_SENSOR_CONTACT_FORCE;
   const char *key = s->kind == STRUT_SENSOR_CONTACT ? "contact" : "contact_force";
-  char owner[200];
-  strut_format_name(owner, "sensor", s->name, index);
+  strut_check_begin(checker, STRUT_THING_SENSOR, index);
   switch (s->kind) {
     case STRUT_SENSOR_LENGTH:
     case STRUT_SENSOR_FORCE: known = strut_exists(s->item, scene->member_count); break;
@@ -272,23 +252,19 @@ static void check_sensor(strut_checker *checker, size_t index) {
     case STRUT_SENSOR_KINDS: known = false;
   }
   if (!known)
-    strut_report_finding(checker, STRUT_ON_SENSOR, index, NULL,
-                         "%s is of a thing that does not exist", owner);
+    strut_fault(checker, NULL, "is of a thing that does not exist");
   else if (contact && !strut_scene_has_ground(scene))
-    strut_report_finding(checker, STRUT_ON_SENSOR, index, key,
-                         "%s is of a contact, but there is no ground; add 'ground' to the scene",
-                         owner);
+    strut_fault(checker, key, "is of a contact, but there is no ground; add 'ground' to the scene");
   else if (contact && !touches(scene, s->item))
-    strut_report_finding(checker, STRUT_ON_SENSOR, index, key,
-                         "%s is of node '%s', which cannot touch the ground; list it in 'nodes' of "
-                         "the ground",
-                         owner, scene->nodes[s->item].name);
+    strut_fault(checker, key,
+                "is of node '%s', which cannot touch the ground; list it in 'nodes' of "
+                "the ground",
+                scene->nodes[s->item].name);
   else if (s->kind == STRUT_SENSOR_FORCE && scene->bar_model == STRUT_BARS_RIGID &&
            scene->members[s->item].kind == STRUT_BAR)
-    strut_report_finding(checker, STRUT_ON_SENSOR, index, "force",
-                         "%s is of the force of a bar, but bars are rigid; make the member a "
-                         "spring, or bars: elastic",
-                         owner);
+    strut_fault(checker, "force",
+                "is of the force of a bar, but bars are rigid; make the member a "
+                "spring, or bars: elastic");
 }
 
 void strut_check_sensors(strut_checker *checker) {
@@ -310,15 +286,13 @@ static bool is_known(const strut_scene *scene, const strut_instruction *p, size_
 }
 
 static bool check_program(strut_checker *checker, const strut_program *program, size_t signals,
-                          strut_subject subject, size_t index, const char *key, const char *owner) {
+                          const char *key) {
   size_t top = 0, most = 0;
   bool valid = program->length > 0;
   for (size_t i = 0; i < program->length && valid; i++) {
     const strut_instruction *p = &program->instruction[i];
-    if (p->operation == STRUT_OPERATION_NUMBER && !isfinite(p->number)) {
-      strut_report_finding(checker, subject, index, key, "a number of %s is not finite", owner);
-      return false;
-    }
+    if (p->operation == STRUT_OPERATION_NUMBER && !isfinite(p->number))
+      return strut_fault_of(checker, key, "a number of %s is not finite", checker->owner);
     valid = is_known(checker->scene, p, signals);
     if (!valid) break;
     size_t operands = (size_t)strut_operation_operands(p->operation);
@@ -327,88 +301,76 @@ static bool check_program(strut_checker *checker, const strut_program *program, 
     if (valid && top > most) most = top;
   }
   if (!valid || top != 1)
-    strut_report_finding(checker, subject, index, key, "the program of %s is not valid", owner);
-  else if (most > STRUT_MOST_PROGRAM_DEPTH)
-    strut_report_finding(checker, subject, index, key,
-                         "the expression of %s needs more than %d intermediate numbers", owner,
-                         STRUT_MOST_PROGRAM_DEPTH);
-  else
-    return true;
-  return false;
+    return strut_fault_of(checker, key, "the program of %s is not valid", checker->owner);
+  if (most > STRUT_MOST_PROGRAM_DEPTH)
+    return strut_fault_of(checker, key,
+                          "the expression of %s needs more than %d intermediate numbers",
+                          checker->owner, STRUT_MOST_PROGRAM_DEPTH);
+  return true;
 }
 
-bool strut_check_program(strut_checker *checker, size_t index, const char *owner) {
-  return check_program(checker, &checker->scene->signals[index].program, index, STRUT_ON_SIGNAL,
-                       index, "expression", owner);
+bool strut_check_program(strut_checker *checker) {
+  return check_program(checker, &checker->scene->signals[checker->index].program, checker->index,
+                       "expression");
 }
 
-bool strut_check_relay(strut_checker *checker, size_t index, const char *owner) {
-  const strut_signal *s = &checker->scene->signals[index];
+bool strut_check_relay(strut_checker *checker) {
+  const strut_signal *s = &checker->scene->signals[checker->index];
   const strut_relay *r = &s->relay;
   if (!isfinite(r->upper) || !isfinite(r->lower) || !isfinite(r->on) || !isfinite(r->off))
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL,
-                         "the numbers of relay %s are not finite", owner);
-  else if (!s->name)
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL, "the relay of %s needs a name",
-                         owner);
-  else if (s->lag > 0.0 || s->trigger.kind != STRUT_TRIGGER_NONE)
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL,
-                         "relay %s has a lag or a trigger; give it to a signal that uses the relay",
-                         owner);
-  else if (r->lower > r->upper)
-    strut_report_finding(
-        checker, STRUT_ON_SIGNAL, index, r->on_above ? "off_below" : "off_above",
+    return strut_fault_of(checker, NULL, "the numbers of relay %s are not finite", checker->owner);
+  if (!s->name)
+    return strut_fault_of(checker, NULL, "the relay of %s needs a name", checker->owner);
+  if (s->lag > 0.0 || s->trigger.kind != STRUT_TRIGGER_NONE)
+    return strut_fault_of(
+        checker, NULL, "relay %s has a lag or a trigger; give it to a signal that uses the relay",
+        checker->owner);
+  if (r->lower > r->upper)
+    return strut_fault_of(
+        checker, r->on_above ? "off_below" : "off_above",
         r->on_above ? "%s is on above %g and off below %g, so that both hold in between; "
                       "let it be off below a lesser value"
                     : "%s is on below %g and off above %g, so that both hold in between; "
                       "let it be off above a greater value",
-        owner, r->on_above ? r->upper : r->lower, r->on_above ? r->lower : r->upper);
-  else if (r->lower == r->upper && !(s->every > 0.0))
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, r->on_above ? "off_below" : "off_above",
-                         "the thresholds of %s are equal, so that it would switch without end; set "
-                         "them apart, or sample it ('every')",
-                         owner);
-  else
-    return true;
-  return false;
+        checker->owner, r->on_above ? r->upper : r->lower, r->on_above ? r->lower : r->upper);
+  if (r->lower == r->upper && !(s->every > 0.0))
+    return strut_fault_of(
+        checker, r->on_above ? "off_below" : "off_above",
+        "the thresholds of %s are equal, so that it would switch without end; set "
+        "them apart, or sample it ('every')",
+        checker->owner);
+  return true;
 }
 
 void strut_check_states(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   for (size_t i = 0; i < scene->state_count; i++) {
-    char owner[200];
-    strut_format_name(owner, "state", scene->states[i].name, i);
+    strut_check_begin(checker, STRUT_THING_STATE, i);
     if (!isfinite(scene->states[i].start))
-      strut_report_finding(checker, STRUT_ON_STATE, i, "start", "the start of %s is not finite",
-                           owner);
-    check_program(checker, &scene->states[i].rate, scene->signal_count, STRUT_ON_STATE, i, "rate",
-                  owner);
+      strut_fault_of(checker, "start", "the start of %s is not finite", checker->owner);
+    check_program(checker, &scene->states[i].rate, scene->signal_count, "rate");
   }
 }
 
-static bool check_trigger(strut_checker *checker, size_t index, const char *owner) {
+static bool check_trigger(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_trigger *trigger = &scene->signals[index].trigger;
+  const strut_trigger *trigger = &scene->signals[checker->index].trigger;
   if (trigger->kind == STRUT_TRIGGER_NONE) return true;
   bool contact = trigger->kind == STRUT_TRIGGER_CONTACT;
   if (!strut_exists(trigger->item, contact ? scene->node_count : scene->sensor_count) ||
       (unsigned)trigger->kind > STRUT_TRIGGER_BELOW || !isfinite(trigger->level))
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "starts", "what starts %s does not exist",
-                         owner);
-  else if (contact && (!strut_scene_has_ground(scene) || !touches(scene, trigger->item)))
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "starts",
-                         "%s starts with the touchdown of node '%s', which cannot touch the ground",
-                         owner, scene->nodes[trigger->item].name);
-  else
-    return true;
-  return false;
+    return strut_fault_of(checker, "starts", "what starts %s does not exist", checker->owner);
+  if (contact && (!strut_scene_has_ground(scene) || !touches(scene, trigger->item)))
+    return strut_fault(checker, "starts",
+                       "starts with the touchdown of node '%s', which cannot touch the ground",
+                       scene->nodes[trigger->item].name);
+  return true;
 }
 
-bool strut_check_modifiers(strut_checker *checker, size_t index, const char *owner) {
-  const strut_signal *s = &checker->scene->signals[index];
-  bool trigger = check_trigger(checker, index, owner);
-  const strut_checked whose = {STRUT_ON_SIGNAL, index, owner, NULL};
-  return strut_check_fields(checker, &whose, STRUT_FIELDS_SIGNAL, s,
+bool strut_check_modifiers(strut_checker *checker) {
+  const strut_signal *s = &checker->scene->signals[checker->index];
+  bool trigger = check_trigger(checker);
+  return strut_check_fields(checker, STRUT_FIELDS_SIGNAL, s,
                             strut_thing_at(STRUT_THING_SIGNAL)->usual) &&
          trigger;
 }
@@ -422,22 +384,21 @@ static bool may_describe(const strut_checker *checker) {
   return checker->findings->unstored == 0;
 }
 
-void strut_check_driven_rate(strut_checker *checker, size_t actuator, const char *owner) {
+void strut_check_driven_rate(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_actuator *a = &scene->actuators[actuator];
+  const strut_actuator *a = &scene->actuators[checker->index];
   if (a->force || !may_describe(checker)) return;
   strut_signal_traits traits = strut_signal_describe(scene, a->signal);
   const char *what = a->member >= 0 ? "length" : "angle";
   if (traits.sensor >= 0)
-    strut_report_finding(checker, STRUT_ON_ACTUATOR, actuator, "signal",
-                         "%s drives a rest %s by sensor '%s', whose rate is not known; sample the "
-                         "signal ('every'), let it lag ('lag'), or drive a load",
-                         owner, what, scene->sensors[traits.sensor].name);
+    strut_fault(checker, "signal",
+                "drives a rest %s by sensor '%s', whose rate is not known; sample the "
+                "signal ('every'), let it lag ('lag'), or drive a load",
+                what, scene->sensors[traits.sensor].name);
   else if (traits.damped >= 0)
-    strut_report_finding(
-        checker, STRUT_ON_ACTUATOR, actuator, "signal",
-        "the rate of the rest %s that %s drives follows sensor '%s', the force of a "
-        "member with a damper, which follows such rates; sample the signal "
-        "('every')",
-        what, owner, scene->sensors[traits.damped].name);
+    strut_fault_of(checker, "signal",
+                   "the rate of the rest %s that %s drives follows sensor '%s', the force of a "
+                   "member with a damper, which follows such rates; sample the signal "
+                   "('every')",
+                   what, checker->owner, scene->sensors[traits.damped].name);
 }

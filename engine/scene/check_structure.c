@@ -31,110 +31,90 @@ static const char *fault_of_lists(const strut_law *law) {
 }
 
 /* The law of `owner` by itself. */
-static bool check_law_numbers(strut_checker *checker, strut_subject subject, size_t index,
-                              const char *owner, const strut_law *law) {
+static bool check_law_numbers(strut_checker *checker, const strut_law *law) {
   bool unknown = (unsigned)law->kind >= STRUT_LAW_COUNT || law->kind == STRUT_LAW_AXIAL;
   const char *fault = unknown                            ? "is of an unknown kind"
                       : strut_law_is_of_cells(law->kind) ? "is for cells only"
                       : (unsigned)law->carries > STRUT_CARRIES_COMPRESSION
                           ? "carries an unknown sign"
                           : fault_of_lists(law);
-  if (fault) {
-    strut_report_finding(checker, subject, index, "law", "the law of %s %s", owner, fault);
-    return false;
-  }
+  if (fault) return strut_fault_of(checker, "law", "the law of %s %s", checker->owner, fault);
   bool valid = true;
   for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++) {
     double value = strut_law_value(law, p);
     bool needed = strut_law_needs(law->kind, p);
     if (isfinite(value) && !(needed && strut_law_above_zero(p) && !(value > 0.0))) continue;
-    strut_report_finding(checker, subject, index, "law", "the law of %s needs a %s%s", owner,
-                         strut_law_key(p), strut_law_above_zero(p) ? " above zero" : "");
-    valid = false;
+    valid = strut_fault_of(checker, "law", "the law of %s needs a %s%s", checker->owner,
+                           strut_law_key(p), strut_law_above_zero(p) ? " above zero" : "");
   }
   return valid;
 }
 
 /* Is the law valid, and the stiffness given where and only where the law does not bring its own? */
-static bool check_law(strut_checker *checker, strut_subject subject, size_t index,
-                      const char *owner, const strut_law *law, bool stiffness) {
-  if (!check_law_numbers(checker, subject, index, owner, law)) return false;
+static bool check_law(strut_checker *checker, const strut_law *law, bool stiffness) {
+  if (!check_law_numbers(checker, law)) return false;
   if (stiffness && strut_law_at(law->kind)->own)
-    strut_report_finding(checker, subject, index, "stiffness",
-                         "%s gives a stiffness beside its law, which has its own", owner);
-  else if (!stiffness && !strut_law_at(law->kind)->own && law->kind != STRUT_LAW_LINEAR)
-    strut_report_finding(checker, subject, index, "law", "the law %s of %s needs a stiffness",
-                         strut_law_at(law->kind)->word, owner);
-  else
-    return true;
-  return false;
+    return strut_fault(checker, "stiffness", "gives a stiffness beside its law, which has its own");
+  if (!stiffness && !strut_law_at(law->kind)->own && law->kind != STRUT_LAW_LINEAR)
+    return strut_fault_of(checker, "law", "the law %s of %s needs a stiffness",
+                          strut_law_at(law->kind)->word, checker->owner);
+  return true;
 }
 
 /* Does the second slope of an elastic-plastic law lie between 0 and the first? `stiffness`: the first. */
-static bool check_hardening(strut_checker *checker, strut_subject subject, size_t index,
-                            const char *owner, const strut_law *law, double stiffness) {
+static bool check_hardening(strut_checker *checker, const strut_law *law, double stiffness) {
   if (law->kind != STRUT_LAW_ELASTIC_PLASTIC) return true;
   if (law->second_stiffness >= 0.0 && law->second_stiffness < stiffness) return true;
-  strut_report_finding(checker, subject, index, "law",
-                       "the second_stiffness of %s must be at least 0 and below its stiffness, "
-                       "found %g beside %g",
-                       owner, law->second_stiffness, stiffness);
-  return false;
+  return strut_fault_of(checker, "law",
+                        "the second_stiffness of %s must be at least 0 and below its stiffness, "
+                        "found %g beside %g",
+                        checker->owner, law->second_stiffness, stiffness);
 }
 
-static bool check_end_of_member(strut_checker *checker, size_t index, const char *owner) {
-  const strut_member *m = &checker->scene->members[index];
+static bool check_end_of_member(strut_checker *checker) {
+  const strut_member *m = &checker->scene->members[checker->index];
   bool rigid = m->kind == STRUT_BAR && checker->scene->bar_model == STRUT_BARS_RIGID;
   const char *key = m->breaks_at > 0.0 ? "breaks_at" : "released_at";
   if (strut_member_ends(m) && rigid)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
-                         "%s is a rigid bar, which cannot break or be released; make the member a "
-                         "spring, or bars: elastic",
-                         owner);
-  else if (m->breaks_at > 0.0 && m->law.carries == STRUT_CARRIES_COMPRESSION)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
-                         "%s carries compression only, so that no tension breaks it", owner);
-  else
-    return true;
-  return false;
+    return strut_fault(checker, key,
+                       "is a rigid bar, which cannot break or be released; make the member a "
+                       "spring, or bars: elastic");
+  if (m->breaks_at > 0.0 && m->law.carries == STRUT_CARRIES_COMPRESSION)
+    return strut_fault(checker, key, "carries compression only, so that no tension breaks it");
+  return true;
 }
 
-static bool check_guide_friction(strut_checker *checker, size_t index, const char *owner,
-                                 double length) {
-  const strut_member *m = &checker->scene->members[index];
+static bool check_guide_friction(strut_checker *checker, double length) {
+  const strut_member *m = &checker->scene->members[checker->index];
   const char *fault = m->guide_friction == 0.0 ? NULL
                       : !m->guide_count        ? "has guide_friction, but runs over no guides"
                       : m->law.kind != STRUT_LAW_LINEAR || m->kind != STRUT_CABLE
                           ? "has guide_friction; only linear cables may rub"
                       : !(length > 0.0) ? "has guide_friction, which needs a rest length above zero"
                                         : NULL;
-  if (fault)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "guide_friction", "%s %s", owner, fault);
+  if (fault) strut_fault(checker, "guide_friction", "%s", fault);
   return !fault;
 }
 
 /* Circles about guides: each on a side of the cable, away from the points before and behind it. */
-static bool check_guide_radius(strut_checker *checker, size_t index, const char *owner) {
+static bool check_guide_radius(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_member *m = &scene->members[index];
+  const strut_member *m = &scene->members[checker->index];
   const char *fault = m->guide_radius == 0.0 ? NULL
                       : !m->guide_count      ? "has guide_radius, but runs over no guides"
                       : m->guide_friction > 0.0
                           ? "has guide_radius and guide_friction; only guides "
                             "that are points rub"
                           : NULL;
-  if (fault)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "guide_radius", "%s %s", owner, fault);
-  bool circles = m->guide_radius > 0.0 && !fault && !checker->loose[index];
+  if (fault) strut_fault(checker, "guide_radius", "%s", fault);
+  bool circles = m->guide_radius > 0.0 && !fault && !checker->loose[checker->index];
   for (size_t k = 1; k <= m->guide_count && circles; k++) {
     if (m->guide_side != STRUT_GUIDE_AS_DRAWN || !strut_member_is_straight_at(scene, m, k))
       continue;
-    strut_report_finding(
-        checker, STRUT_ON_MEMBER, index, "guide_radius",
-        "%s is drawn straight over '%s': say by guide_side on which side of it its "
-        "guides are",
-        owner, scene->nodes[strut_member_node(m, k)].name);
-    return false;
+    return strut_fault(checker, "guide_radius",
+                       "is drawn straight over '%s': say by guide_side on which side of it its "
+                       "guides are",
+                       scene->nodes[strut_member_node(m, k)].name);
   }
   for (size_t k = 0; k <= m->guide_count && circles; k++) {
     int32_t a = strut_member_node(m, k), b = strut_member_node(m, k + 1);
@@ -142,107 +122,99 @@ static bool check_guide_radius(strut_checker *checker, size_t index, const char 
                         ? 2.0 * m->guide_radius
                         : m->guide_radius;
     if (strut_distance(scene->nodes[a].position, scene->nodes[b].position) > across) continue;
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "guide_radius",
-                         "nodes '%s' and '%s' of %s are too close for guides with this radius",
-                         scene->nodes[a].name, scene->nodes[b].name, owner);
-    return false;
+    return strut_fault_of(checker, "guide_radius",
+                          "nodes '%s' and '%s' of %s are too close for guides with this radius",
+                          scene->nodes[a].name, scene->nodes[b].name, checker->owner);
   }
   return !fault;
 }
 
-static bool check_stops(strut_checker *checker, size_t index, const char *owner) {
-  const strut_member *m = &checker->scene->members[index];
+static bool check_stops(strut_checker *checker) {
+  const strut_member *m = &checker->scene->members[checker->index];
   bool stops = m->shortest > 0.0 || m->longest > 0.0;
   bool stiff = m->stop_stiffness > 0.0 || m->stiffness > 0.0 || m->axial_stiffness > 0.0 ||
                strut_law_at(m->law.kind)->own;
   if (m->longest > 0.0 && m->shortest >= m->longest)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "longest",
-                         "the longest of %s, %g m, must be above its shortest, %g m", owner,
-                         m->longest, m->shortest);
-  else if (!stops && (m->stop_stiffness > 0.0 || m->stop_damping > 0.0))
-    strut_report_finding(checker, STRUT_ON_MEMBER, index,
-                         m->stop_stiffness > 0.0 ? "stop_stiffness" : "stop_damping",
-                         "%s describes stops, but has neither a shortest nor a longest", owner);
-  else if (stops && !stiff)
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "stop_stiffness",
-                         "the stops of %s need a stop_stiffness", owner);
-  else
-    return true;
-  return false;
+    return strut_fault_of(checker, "longest",
+                          "the longest of %s, %g m, must be above its shortest, %g m",
+                          checker->owner, m->longest, m->shortest);
+  if (!stops && (m->stop_stiffness > 0.0 || m->stop_damping > 0.0))
+    return strut_fault(checker, m->stop_stiffness > 0.0 ? "stop_stiffness" : "stop_damping",
+                       "describes stops, but has neither a shortest nor a longest");
+  if (stops && !stiff)
+    return strut_fault_of(checker, "stop_stiffness", "the stops of %s need a stop_stiffness",
+                          checker->owner);
+  return true;
 }
 
-bool strut_check_member_law(strut_checker *checker, size_t index, const char *owner) {
-  const strut_member *m = &checker->scene->members[index];
+bool strut_check_member_law(strut_checker *checker) {
+  const strut_member *m = &checker->scene->members[checker->index];
   bool stiffness = m->stiffness > 0.0 || m->axial_stiffness > 0.0;
-  if (!check_law(checker, STRUT_ON_MEMBER, index, owner, &m->law, stiffness)) return false;
-  if (m->kind == STRUT_CABLE && m->law.carries == STRUT_CARRIES_COMPRESSION) {
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "law",
-                         "%s is a cable, which cannot carry compression", owner);
-    return false;
-  }
-  if (m->law.kind == STRUT_LAW_LOGARITHMIC && m->rest_value <= 0.0) {
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "law",
-                         "the law logarithmic of %s needs a rest length above zero", owner);
-    return false;
-  }
+  if (!check_law(checker, &m->law, stiffness)) return false;
+  if (m->kind == STRUT_CABLE && m->law.carries == STRUT_CARRIES_COMPRESSION)
+    return strut_fault(checker, "law", "is a cable, which cannot carry compression");
+  if (m->law.kind == STRUT_LAW_LOGARITHMIC && m->rest_value <= 0.0)
+    return strut_fault_of(
+        checker, "law", "the law logarithmic of %s needs a rest length above zero", checker->owner);
   strut_rest rest;
-  bool known = !checker->loose[index] && strut_member_rest(checker->scene, index, &rest);
+  bool known =
+      !checker->loose[checker->index] && strut_member_rest(checker->scene, checker->index, &rest);
   double slope = known ? rest.stiffness : HUGE_VAL;
-  if (!check_guide_friction(checker, index, owner, known ? rest.length : 1.0) ||
-      !check_guide_radius(checker, index, owner))
+  if (!check_guide_friction(checker, known ? rest.length : 1.0) || !check_guide_radius(checker))
     return false;
-  return check_hardening(checker, STRUT_ON_MEMBER, index, owner, &m->law, slope) &&
-         check_end_of_member(checker, index, owner) && check_stops(checker, index, owner);
+  return check_hardening(checker, &m->law, slope) && check_end_of_member(checker) &&
+         check_stops(checker);
 }
 
-/* Do the nodes of a hinge exist, are they three, and do both arms have a direction? */
-static void check_arms(strut_checker *checker, size_t index, const char *owner) {
+/* Do all nodes exist, each named but once? */
+static bool check_nodes(strut_checker *checker, const char *key, const int32_t *node, size_t count,
+                        const char *expected) {
   const strut_scene *scene = checker->scene;
-  const strut_hinge *h = &scene->hinges[index];
-  for (int k = 0; k < 3; k++)
-    if (h->node[k] < 0 || (size_t)h->node[k] >= scene->node_count) {
-      strut_report_finding(checker, STRUT_ON_HINGE, index, "nodes",
-                           "%s is at a node that does not exist", owner);
-      return;
-    }
-  for (int k = 0; k < 3; k++)
-    if (h->node[k] == h->node[(k + 1) % 3]) {
-      strut_report_finding(checker, STRUT_ON_HINGE, index, "nodes",
-                           "%s names node '%s' twice, expected three different nodes", owner,
-                           scene->nodes[h->node[k]].name);
-      return;
-    }
-  const strut_node *b = &scene->nodes[h->node[1]];
-  for (int k = 0; k < 3; k += 2) {
-    const strut_node *end = &scene->nodes[h->node[k]];
-    bool drawn = strut_distance(b->position, end->position) == 0.0;
-    if (!drawn && strut_distance(b->start, end->start) != 0.0) continue;
-    strut_report_finding(checker, STRUT_ON_HINGE, index, "nodes",
-                         "nodes '%s' and '%s' %s in one place, so an arm of %s has no direction",
-                         b->name, end->name, drawn ? "are drawn" : "start", owner);
-    return;
+  for (size_t k = 0; k < count; k++) {
+    if (!strut_exists(node[k], scene->node_count))
+      return strut_fault(checker, key, "names a node that does not exist");
+    for (size_t i = 0; i < k; i++)
+      if (node[i] == node[k])
+        return strut_fault(checker, key, "names node '%s' twice, expected %s",
+                           scene->nodes[node[k]].name, expected);
   }
+  return true;
+}
+
+bool strut_check_apart(strut_checker *checker, const char *key, int32_t first, int32_t second,
+                       const char *what) {
+  const strut_node *a = &checker->scene->nodes[first], *b = &checker->scene->nodes[second];
+  bool drawn = strut_distance(a->position, b->position) == 0.0;
+  if (!drawn && strut_distance(a->start, b->start) != 0.0) return true;
+  return strut_fault_of(checker, key,
+                        "nodes '%s' and '%s' %s in one place, so %s%s has no direction", a->name,
+                        b->name, drawn ? "are drawn" : "start", what, checker->owner);
+}
+
+/* Are the nodes of a hinge three, and do both arms have a direction? */
+static bool check_arms(strut_checker *checker) {
+  const int32_t *node = checker->scene->hinges[checker->index].node;
+  return check_nodes(checker, "nodes", node, 3, "three different nodes") &&
+         strut_check_apart(checker, "nodes", node[1], node[0], "an arm of ") &&
+         strut_check_apart(checker, "nodes", node[1], node[2], "an arm of ");
 }
 
 void strut_check_hinges(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   for (size_t i = 0; i < scene->hinge_count; i++) {
     const strut_hinge *h = &scene->hinges[i];
-    char owner[200];
-    strut_format_name(owner, "hinge", h->name, i);
-    const strut_checked whose = {STRUT_ON_HINGE, i, owner, NULL};
-    bool valid = strut_check_fields(checker, &whose, STRUT_FIELDS_HINGE, h,
+    strut_check_begin(checker, STRUT_THING_HINGE, i);
+    bool valid = strut_check_fields(checker, STRUT_FIELDS_HINGE, h,
                                     strut_thing_at(STRUT_THING_HINGE)->usual) &&
-                 check_law(checker, STRUT_ON_HINGE, i, owner, &h->law, h->stiffness > 0.0) &&
-                 check_hardening(checker, STRUT_ON_HINGE, i, owner, &h->law, h->stiffness);
+                 check_law(checker, &h->law, h->stiffness > 0.0) &&
+                 check_hardening(checker, &h->law, h->stiffness);
     if (valid && h->law.kind == STRUT_LAW_LOGARITHMIC)
-      strut_report_finding(checker, STRUT_ON_HINGE, i, "law",
-                           "the law logarithmic is for members, not for %s", owner);
+      strut_fault_of(checker, "law", "the law logarithmic is for members, not for %s",
+                     checker->owner);
     else if (valid && h->stiffness == 0.0 && h->damping == 0.0 && !strut_law_at(h->law.kind)->own &&
              !strut_is_pulled(scene, -1, (int32_t)i))
-      strut_report_finding(checker, STRUT_ON_HINGE, i, NULL,
-                           "%s has neither stiffness nor damping, so it does nothing", owner);
-    check_arms(checker, i, owner);
+      strut_fault(checker, NULL, "has neither stiffness nor damping, so it does nothing");
+    check_arms(checker);
   }
 }
 
@@ -252,30 +224,12 @@ void strut_check_hinges(strut_checker *checker) {
 static const double THIN = 1e-9;
 
 /* Do the corners exist, each but once? */
-static bool check_corners(strut_checker *checker, size_t index, const char *owner) {
-  const strut_scene *scene = checker->scene;
-  const strut_cell *c = &scene->cells[index];
-  if (c->node_count < 3 || c->node_count > STRUT_MOST_ELEMENT_NODES) {
-    strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
-                         "%s has %zu nodes, expected 3 to %d", owner, c->node_count,
-                         STRUT_MOST_ELEMENT_NODES);
-    return false;
-  }
-  for (size_t k = 0; k < c->node_count; k++) {
-    if (c->node[k] < 0 || (size_t)c->node[k] >= scene->node_count) {
-      strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
-                           "%s has a node that does not exist", owner);
-      return false;
-    }
-    for (size_t i = 0; i < k; i++)
-      if (c->node[i] == c->node[k]) {
-        strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
-                             "%s names node '%s' twice, expected each corner once", owner,
-                             scene->nodes[c->node[k]].name);
-        return false;
-      }
-  }
-  return true;
+static bool check_corners(strut_checker *checker) {
+  const strut_cell *c = &checker->scene->cells[checker->index];
+  if (c->node_count < 3 || c->node_count > STRUT_MOST_ELEMENT_NODES)
+    return strut_fault(checker, "nodes", "has %zu nodes, expected 3 to %d", c->node_count,
+                       STRUT_MOST_ELEMENT_NODES);
+  return check_nodes(checker, "nodes", c->node, c->node_count, "each corner once");
 }
 
 typedef struct polygon {
@@ -329,32 +283,30 @@ static size_t crossing_side(const polygon *p, size_t *other) {
 }
 
 /* An area as drawn, without crossing sides, and one of the same sense at the start. */
-static void check_area(strut_checker *checker, size_t index, const char *owner) {
+static void check_area(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_cell *c = &scene->cells[index];
+  const strut_cell *c = &scene->cells[checker->index];
   polygon drawn = polygon_of(scene, c, false), start = polygon_of(scene, c, true);
   double area = area_of(&drawn), circumference = circumference_of(&drawn);
   size_t n = c->node_count, j = 0, i = crossing_side(&drawn, &j);
   if (!isfinite(area) || !isfinite(area_of(&start))) return; /* reported at the node */
   if (i < n)
-    strut_report_finding(
-        checker, STRUT_ON_CELL, index, "nodes",
+    strut_fault_of(
+        checker, "nodes",
         "the sides '%s'-'%s' and '%s'-'%s' of %s cross, expected corners in order around the cell",
         scene->nodes[c->node[i]].name, scene->nodes[c->node[(i + 1) % n]].name,
-        scene->nodes[c->node[j]].name, scene->nodes[c->node[(j + 1) % n]].name, owner);
+        scene->nodes[c->node[j]].name, scene->nodes[c->node[(j + 1) % n]].name, checker->owner);
   else if (!(fabs(area) > THIN * circumference * circumference / 16.0))
-    strut_report_finding(checker, STRUT_ON_CELL, index, "nodes", "%s is drawn without an area",
-                         owner);
+    strut_fault(checker, "nodes", "is drawn without an area");
   else if (!(area_of(&start) / area > STRUT_CELL_COLLAPSED))
-    strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
-                         "%s starts without an area, or turned over beside how it is drawn", owner);
+    strut_fault(checker, "nodes", "starts without an area, or turned over beside how it is drawn");
 }
 
 /* Is the law of an elastic cell one that works on an area, and does it do anything? */
-static void check_elastic(strut_checker *checker, size_t index, const char *owner) {
-  const strut_cell *c = &checker->scene->cells[index];
-  if (!check_law(checker, STRUT_ON_CELL, index, owner, &c->elastic, c->stiffness > 0.0) ||
-      !check_hardening(checker, STRUT_ON_CELL, index, owner, &c->elastic, c->stiffness))
+static void check_elastic(strut_checker *checker) {
+  const strut_cell *c = &checker->scene->cells[checker->index];
+  if (!check_law(checker, &c->elastic, c->stiffness > 0.0) ||
+      !check_hardening(checker, &c->elastic, c->stiffness))
     return;
   const char *fault =
       c->elastic.kind == STRUT_LAW_LOGARITHMIC
@@ -362,7 +314,7 @@ static void check_elastic(strut_checker *checker, size_t index, const char *owne
       : c->stiffness == 0.0 && c->damping == 0.0 && !strut_law_at(c->elastic.kind)->own
           ? "has neither stiffness nor damping, so it does nothing"
           : NULL;
-  if (fault) strut_report_finding(checker, STRUT_ON_CELL, index, NULL, "%s %s", owner, fault);
+  if (fault) strut_fault(checker, NULL, "%s", fault);
 }
 
 void strut_check_cells(strut_checker *checker) {
@@ -370,52 +322,43 @@ void strut_check_cells(strut_checker *checker) {
   for (size_t i = 0; i < scene->cell_count; i++) {
     const strut_cell *c = &scene->cells[i];
     bool elastic = c->law == STRUT_LAW_LINEAR, gas = !elastic && c->law != STRUT_LAW_PRESSURE;
-    char owner[200];
-    strut_format_name(owner, "cell", c->name, i);
+    strut_check_begin(checker, STRUT_THING_CELL, i);
     if ((unsigned)c->law >= STRUT_LAW_COUNT || !(elastic || strut_law_is_of_cells(c->law)))
-      strut_report_finding(checker, STRUT_ON_CELL, i, "gas", "%s has a law that is not for cells",
-                           owner);
-    const strut_checked whose = {STRUT_ON_CELL, i, owner, NULL};
-    bool fine = strut_check_fields(checker, &whose, gas ? STRUT_FIELDS_GAS : STRUT_FIELDS_CELL, c,
+      strut_fault(checker, "gas", "has a law that is not for cells");
+    bool fine = strut_check_fields(checker, gas ? STRUT_FIELDS_GAS : STRUT_FIELDS_CELL, c,
                                    strut_thing_at(STRUT_THING_CELL)->usual);
     if (fine && c->law == STRUT_LAW_ISENTROPIC && !(c->exponent > 1.0))
-      strut_report_finding(checker, STRUT_ON_CELL, i, "exponent",
-                           "the exponent of %s must be above 1, found %g", owner, c->exponent);
-    if (fine && elastic) check_elastic(checker, i, owner);
-    if (check_corners(checker, i, owner)) check_area(checker, i, owner);
+      strut_fault_of(checker, "exponent", "the exponent of %s must be above 1, found %g",
+                     checker->owner, c->exponent);
+    if (fine && elastic) check_elastic(checker);
+    if (check_corners(checker)) check_area(checker);
   }
 }
 
 /* ---- collisions ---- */
 
 /* Do two bodies exist, and do both members run straight? */
-static bool check_bodies(strut_checker *checker, size_t index, const char *owner) {
+static bool check_bodies(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_collision *c = &scene->collisions[index];
+  const strut_collision *c = &scene->collisions[checker->index];
   int bodies = 0;
   for (int k = 0; k < 2; k++) {
     bodies += (c->node[k] != -1) + (c->member[k] != -1);
     if ((c->node[k] == -1 || strut_exists(c->node[k], scene->node_count)) &&
         (c->member[k] == -1 || strut_exists(c->member[k], scene->member_count)))
       continue;
-    strut_report_finding(checker, STRUT_ON_COLLISION, index, NULL,
-                         "%s is of a node or a member that does not exist", owner);
-    return false;
+    return strut_fault(checker, NULL, "is of a node or a member that does not exist");
   }
   if (bodies != 2 || (c->node[0] == -1 && c->node[1] != -1) ||
-      (c->member[0] == -1 && c->member[1] != -1)) {
-    strut_report_finding(checker, STRUT_ON_COLLISION, index, NULL,
-                         "%s must be of two nodes, of two members, or of a node and a member",
-                         owner);
-    return false;
-  }
+      (c->member[0] == -1 && c->member[1] != -1))
+    return strut_fault(checker, NULL,
+                       "must be of two nodes, of two members, or of a node and a member");
   for (int k = 0; k < 2; k++) {
     if (c->member[k] < 0 || !scene->members[c->member[k]].guide_count) continue;
-    strut_report_finding(checker, STRUT_ON_COLLISION, index, k ? "members" : "member",
-                         "%s is of member '%s', which runs over guides; only straight members "
-                         "collide",
-                         owner, scene->members[c->member[k]].name);
-    return false;
+    return strut_fault(checker, k ? "members" : "member",
+                       "is of member '%s', which runs over guides; only straight members "
+                       "collide",
+                       scene->members[c->member[k]].name);
   }
   return true;
 }
@@ -436,24 +379,23 @@ static int32_t shared_node(const strut_scene *scene, const strut_collision *c) {
 }
 
 /* Friction of a collision: smooth, or Stribeck's with both further numbers. */
-static void check_rubbing(strut_checker *checker, size_t index, const char *owner) {
-  const strut_friction *f = &checker->scene->collisions[index].friction;
+static void check_rubbing(strut_checker *checker) {
+  const strut_friction *f = &checker->scene->collisions[checker->index].friction;
   const strut_friction none = {STRUT_FRICTION_NONE};
-  const strut_checked whose = {STRUT_ON_COLLISION, index, owner, "friction"};
   if (f->mu_kinetic == 0.0 && f->width == 0.0 && f->mu_static == 0.0) return;
-  strut_check_fields(checker, &whose, STRUT_FIELDS_RUBBING, f, &none);
+  checker->within = "friction";
+  strut_check_fields(checker, STRUT_FIELDS_RUBBING, f, &none);
+  checker->within = NULL;
 }
 
 void strut_check_collisions(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   for (size_t i = 0; i < scene->collision_count; i++) {
     const strut_collision *c = &scene->collisions[i];
-    char owner[200];
-    strut_format_name(owner, "collision", c->name, i);
-    const strut_checked whose = {STRUT_ON_COLLISION, i, owner, NULL};
-    strut_check_fields(checker, &whose, STRUT_FIELDS_COLLISION, c, NULL);
-    check_rubbing(checker, i, owner);
-    if (!check_bodies(checker, i, owner)) continue;
+    strut_check_begin(checker, STRUT_THING_COLLISION, i);
+    strut_check_fields(checker, STRUT_FIELDS_COLLISION, c, NULL);
+    check_rubbing(checker);
+    if (!check_bodies(checker)) continue;
     int32_t shared = shared_node(scene, c);
     bool ends = c->member[0] < 0 ||
                 (strut_exists(scene->members[c->member[0]].node[0], scene->node_count) &&
@@ -462,64 +404,36 @@ void strut_check_collisions(strut_checker *checker) {
     const char *key = c->node[1] >= 0 ? "nodes" : c->member[1] >= 0 ? "members" : "node";
     const char *name = scene->nodes[shared].name;
     if (c->node[1] >= 0)
-      strut_report_finding(checker, STRUT_ON_COLLISION, i, key,
-                           "%s names node '%s' twice, expected two different nodes", owner, name);
+      strut_fault(checker, key, "names node '%s' twice, expected two different nodes", name);
     else if (c->member[1] >= 0)
-      strut_report_finding(checker, STRUT_ON_COLLISION, i, key,
-                           "%s is of members that share node '%s' and so always touch", owner,
-                           name);
+      strut_fault(checker, key, "is of members that share node '%s' and so always touch", name);
     else
-      strut_report_finding(checker, STRUT_ON_COLLISION, i, key,
-                           "%s is of node '%s' and a member that ends there, so they always touch",
-                           owner, name);
+      strut_fault(checker, key,
+                  "is of node '%s' and a member that ends there, so they always touch", name);
   }
 }
 
 /* ---- distances ---- */
 
 /* Do its nodes exist, and differ where they must? */
-static bool check_ends(strut_checker *checker, size_t index, const char *owner) {
-  const strut_scene *scene = checker->scene;
-  const strut_distance_spring *d = &scene->distances[index];
+static bool check_ends(strut_checker *checker) {
+  const strut_distance_spring *d = &checker->scene->distances[checker->index];
   bool line = d->line[0] != -1 || d->line[1] != -1;
   const int32_t node[3] = {d->node[0], line ? d->line[0] : d->node[1], line ? d->line[1] : -1};
   const char *key = line ? "line" : "nodes";
-  for (int k = 0; k < (line ? 3 : 2); k++) {
-    if (!strut_exists(node[k], scene->node_count)) {
-      strut_report_finding(checker, STRUT_ON_DISTANCE, index, key,
-                           "%s is of a node that does not exist", owner);
-      return false;
-    }
-    for (int i = 0; i < k; i++)
-      if (node[i] == node[k]) {
-        strut_report_finding(checker, STRUT_ON_DISTANCE, index, key,
-                             "%s names node '%s' twice, expected different nodes", owner,
-                             scene->nodes[node[k]].name);
-        return false;
-      }
-  }
-  if (!line) return true;
-  const strut_node *a = &scene->nodes[d->line[0]], *b = &scene->nodes[d->line[1]];
-  bool drawn = strut_distance(a->position, b->position) == 0.0;
-  if (!drawn && strut_distance(a->start, b->start) > 0.0) return true;
-  strut_report_finding(checker, STRUT_ON_DISTANCE, index, key,
-                       "nodes '%s' and '%s' %s in one place, so the line of %s has no direction",
-                       a->name, b->name, drawn ? "are drawn" : "start", owner);
-  return false;
+  return check_nodes(checker, key, node, line ? 3 : 2, "different nodes") &&
+         (!line || strut_check_apart(checker, key, node[1], node[2], "the line of "));
 }
 
 void strut_check_distances(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   for (size_t i = 0; i < scene->distance_count; i++) {
     const strut_distance_spring *d = &scene->distances[i];
-    char owner[200];
-    strut_format_name(owner, "distance", d->name, i);
-    const strut_checked whose = {STRUT_ON_DISTANCE, i, owner, NULL};
-    bool valid = strut_check_fields(checker, &whose, STRUT_FIELDS_DISTANCE, d,
+    strut_check_begin(checker, STRUT_THING_DISTANCE, i);
+    bool valid = strut_check_fields(checker, STRUT_FIELDS_DISTANCE, d,
                                     strut_thing_at(STRUT_THING_DISTANCE)->usual) &&
-                 check_ends(checker, i, owner) &&
-                 check_law(checker, STRUT_ON_DISTANCE, i, owner, &d->law, d->stiffness > 0.0) &&
-                 check_hardening(checker, STRUT_ON_DISTANCE, i, owner, &d->law, d->stiffness);
+                 check_ends(checker) && check_law(checker, &d->law, d->stiffness > 0.0) &&
+                 check_hardening(checker, &d->law, d->stiffness);
     const char *fault =
         !isfinite(d->along) ? "has a direction that is not finite"
         : d->law.kind == STRUT_LAW_LOGARITHMIC
@@ -527,8 +441,7 @@ void strut_check_distances(strut_checker *checker) {
         : d->stiffness == 0.0 && d->damping == 0.0 && !strut_law_at(d->law.kind)->own
             ? "has neither stiffness nor damping, so it does nothing"
             : NULL;
-    if (valid && fault)
-      strut_report_finding(checker, STRUT_ON_DISTANCE, i, NULL, "%s %s", owner, fault);
+    if (valid && fault) strut_fault(checker, NULL, "%s", fault);
   }
 }
 

@@ -93,6 +93,7 @@ typedef enum strut_field_role {
   STRUT_FIELD_REFERENCE,
   STRUT_FIELD_LIST,
   STRUT_FIELD_PLACES,
+  STRUT_FIELD_PATH,
   STRUT_FIELD_NESTED,
   STRUT_FIELD_SECTION,
   STRUT_FIELD_THINGS
@@ -126,9 +127,10 @@ typedef struct strut_field {
   bool of_runs;     /* what is at rest does not depend on it */
   bool later;       /* the section's reader reads it, when it knows what it needs */
   bool turns;       /* an angle that is kept in turns */
+  bool direction;   /* an angle, also x or y, that turns with a copy of a part */
   uint32_t first;   /* of a WORD: the value of the first one */
   size_t
-      beside; /* where a LIST has its second coordinates, or a number the text of its unit; 0: nowhere */
+      beside; /* where a LIST has its second coordinates, a PATH its guides, or a number the text of its unit; 0: nowhere */
   bool
       chosen; /* one of several keys: that where the tag, of so many bytes, is from value to last */
   size_t tag, tag_size;
@@ -173,6 +175,9 @@ typedef struct strut_field {
   .beside = offsetof(object, y), STRUT_FIELD_OF_LIST(object, x, count)
 #define STRUT_FIELD_OF_PLACES(object, member)                                                      \
   .role = STRUT_FIELD_PLACES, .type = STRUT_FIELD_DOUBLE_PAIR, STRUT_PLACE_OF(object, member)
+#define STRUT_FIELD_OF_PATH(object, ends, guides, count)                                           \
+  .role = STRUT_FIELD_PATH, .kind = STRUT_THING_NODE, .beside = offsetof(object, guides),          \
+  .number = offsetof(object, count), STRUT_PLACE_OF(object, ends)
 #define STRUT_FIELD_OF_REFERENCES(object, member, count, KIND)                                     \
   .role = STRUT_FIELD_LIST, .type = STRUT_ELEMENT_OF(STRUT_MEMBER(object, member)),                \
   .number = offsetof(object, count), .kind = STRUT_THING_##KIND, STRUT_PLACE_OF(object, member)
@@ -186,6 +191,8 @@ typedef struct strut_field {
 #define STRUT_FIELD_OF_OF_RUNS(field) .of_runs = true, STRUT_FIELD_OF_##field
 #define STRUT_FIELD_OF_LATER(field) .later = true, STRUT_FIELD_OF_##field
 #define STRUT_FIELD_OF_TURNS(field) .turns = true, STRUT_FIELD_OF_##field
+#define STRUT_FIELD_OF_DIRECTION(object, member)                                                   \
+  .direction = true, STRUT_FIELD_OF_FIELD(object, member)
 #define STRUT_FIELD_OF_FROM(value, field) .first = value, STRUT_FIELD_OF_##field
 #define STRUT_FIELD_OF_CHOICE(object, member, value, field)                                        \
   STRUT_FIELD_OF_AMONG(object, member, value, value, field)

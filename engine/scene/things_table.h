@@ -18,6 +18,8 @@
  *   SECTION(SECTION)                         a mapping whose keys have rows of their own
  *   THINGS(SECTION)                          a mapping of names to things that have the keys of the section
  *   CURVE(object, x, y, count)               points in two arrays of numbers
+ *   PATH(object, ends, guides, count)        nodes along a path: its two ends, and those between them in memory of their own
+ *   DIRECTION(object, member)                x, y or an angle
  *   PLACES(object, member)                   positions of all nodes, of which those that are not as drawn are written
  *   UNIT(object, member, unit)               a number and the text of its unit, NULL or "1": none
  *   SELF(object, SECTION)                    a mapping of that section, kept in the object itself
@@ -143,7 +145,7 @@
 
 #define STRUT_MEMBER_FIELDS(X) \
   X(MEMBER, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", NONE, "Groups that provide defaults; later groups take precedence.") \
-  X(MEMBER, NODES, "nodes", NODE_PATH, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The two nodes that the member joins. A cable or spring may run over further nodes in between, its guides, `[a, p, q, b]`; it then has one force along its whole length, and its mass is lumped.") \
+  X(MEMBER, NODES, "nodes", NODE_PATH, NONE, ANY, "", REQUIRED, 0, "", PATH(strut_member, node, guides, guide_count), "The two nodes that the member joins. A cable or spring may run over further nodes in between, its guides, `[a, p, q, b]`; it then has one force along its whole length, and its mass is lumped.") \
   X(MEMBER, KIND, "kind", WORD, NONE, ANY, "", REQUIRED, 0, "bar|spring|cable", FIELD(strut_member, kind), "Bars and springs carry tension and compression; a cable carries tension only, and no force while slack. `strut` means `bar`, `string` means `cable`.") \
   X(MEMBER, STIFFNESS, "stiffness", NUMBER, STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 1, "", FIELD(strut_member, stiffness), "Force per elongation.") \
   X(MEMBER, AXIAL_STIFFNESS, "axial_stiffness", NUMBER, FORCE, NOT_NEGATIVE, "", OPTIONAL, 1, "", FIELD(strut_member, axial_stiffness), "EA; the stiffness is EA / rest length, also while an actuator changes the rest length.") \
@@ -204,7 +206,7 @@
 
 #define STRUT_DISTANCE_FIELDS(X) \
   X(DISTANCE, NODES, "nodes", NAME_PAIR, NONE, ANY, "", OPTIONAL, 8, "", REFERENCE(strut_distance_spring, node, NODE), "Two nodes `[a, b]`. The distance is that of b from a in the direction `along`; it may be negative.") \
-  X(DISTANCE, ALONG, "along", FREE, NONE, ANY, "", OPTIONAL, 0, "x, y, or an angle from +x", BY_HAND, "Direction of the distance between two nodes. It turns with a copy of a part.") \
+  X(DISTANCE, ALONG, "along", FREE, NONE, ANY, "", OPTIONAL, 0, "x, y, or an angle from +x", CHOICE(strut_distance_spring, line[0], UINT32_MAX, DIRECTION(strut_distance_spring, along)), "Direction of the distance between two nodes. It turns with a copy of a part.") \
   X(DISTANCE, NODE, "node", NAME, NONE, ANY, "", OPTIONAL, 8, "", CHOICE(strut_distance_spring, node[1], UINT32_MAX, REFERENCE(strut_distance_spring, node[0], NODE)), "The node whose distance from the `line` counts.") \
   X(DISTANCE, LINE, "line", NAME_PAIR, NONE, ANY, "", OPTIONAL, 0, "", REFERENCE(strut_distance_spring, line, NODE), "Two nodes `[a, b]`. The distance is that of the `node` from the straight line through them, positive to the left of the direction from a to b.") \
   X(DISTANCE, STIFFNESS, "stiffness", NUMBER, STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_distance_spring, stiffness), "Force per distance.") \

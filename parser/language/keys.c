@@ -9,6 +9,7 @@
 #include "engine/base/number_text.h"
 #include "engine/scene/sample.h"
 #include "engine/scene/study.h"
+#include "parser/yaml/document.h"
 
 /* clang-format off */
 #define STRUT_BELOW(SECTION) STRUT_SECTION_##SECTION
@@ -133,30 +134,46 @@ strut_section strut_section_find(const char *name) {
 
 strut_dimension strut_measure_dimension(strut_measure measure) {
   switch (measure) {
-    case STRUT_MEASURE_LENGTH: return STRUT_DIM_LENGTH;
-    case STRUT_MEASURE_MASS: return STRUT_DIM_MASS;
-    case STRUT_MEASURE_TIME: return STRUT_DIM_TIME;
-    case STRUT_MEASURE_FREQUENCY: return STRUT_DIM_FREQUENCY;
-    case STRUT_MEASURE_ANGLE: return STRUT_DIM_ANGLE;
-    case STRUT_MEASURE_VELOCITY: return STRUT_DIM_VELOCITY;
-    case STRUT_MEASURE_ACCELERATION: return STRUT_DIM_ACCELERATION;
-    case STRUT_MEASURE_FORCE: return STRUT_DIM_FORCE;
-    case STRUT_MEASURE_STIFFNESS: return STRUT_DIM_STIFFNESS;
-    case STRUT_MEASURE_DAMPING: return STRUT_DIM_DAMPING;
-    case STRUT_MEASURE_DISSIPATION: return STRUT_DIM_DISSIPATION;
-    case STRUT_MEASURE_ANGULAR_STIFFNESS: return STRUT_DIM_ANGULAR_STIFFNESS;
-    case STRUT_MEASURE_BENDING_STIFFNESS: return STRUT_DIM_BENDING_STIFFNESS;
-    case STRUT_MEASURE_ANGULAR_DAMPING: return STRUT_DIM_ANGULAR_DAMPING;
-    case STRUT_MEASURE_MOMENT: return STRUT_DIM_MOMENT;
-    case STRUT_MEASURE_AREA: return STRUT_DIM_AREA;
-    case STRUT_MEASURE_PRESSURE: return STRUT_DIM_STIFFNESS;
-    case STRUT_MEASURE_CONDUCTANCE: return STRUT_DIM_CONDUCTANCE;
-    case STRUT_MEASURE_AREA_STIFFNESS: return STRUT_DIM_AREA_STIFFNESS;
-    case STRUT_MEASURE_AREA_DAMPING: return STRUT_DIM_AREA_DAMPING;
-    case STRUT_MEASURE_NONE:
-    case STRUT_MEASURE_CONTEXT: break;
+#define MEASURE_ROW(MEASURE, dimension)                                                            \
+  case STRUT_MEASURE_##MEASURE: return STRUT_DIM_##dimension;
+    STRUT_MEASURES(MEASURE_ROW)
+#undef MEASURE_ROW
   }
   return STRUT_DIM_NONE;
+}
+
+/* ---- types ---- */
+
+enum {
+  STRUT_SHAPE_ANY = 0,
+  STRUT_SHAPE_SCALAR = 1,
+  STRUT_SHAPE_ALL = 2,
+  STRUT_SHAPE_LIST = 4,
+  STRUT_SHAPE_MAP = 8
+};
+
+static const struct type_row {
+  unsigned shapes;
+  uint32_t least, most;
+  const char *expected, *reference;
+} types[] = {
+#define TYPE_ROW(TYPE, shapes, least, most, expected, reference)                                   \
+  {STRUT_SHAPE_##shapes, least, most, expected, reference},
+    STRUT_KEY_TYPES(TYPE_ROW)
+#undef TYPE_ROW
+};
+
+const char *strut_type_reference(strut_key_type type) { return types[type].reference; }
+
+bool strut_shape_fits(strut_key_type type, const strut_tree *value) {
+  const struct type_row *row = &types[type];
+  if (row->shapes == STRUT_SHAPE_ANY) return true;
+  if (value->kind == STRUT_TREE_MAP) return row->shapes & STRUT_SHAPE_MAP;
+  if (value->kind == STRUT_TREE_LIST)
+    return row->shapes & STRUT_SHAPE_LIST && value->count >= row->least &&
+           value->count <= row->most;
+  return row->shapes & STRUT_SHAPE_ALL ? strcmp(value->text, "all") == 0
+                                       : row->shapes & STRUT_SHAPE_SCALAR && !strut_is_null(value);
 }
 
 /* Quantities that share their dimension with a better known one. */
@@ -238,62 +255,26 @@ const char *strut_words_text(const char *words, char *buffer, size_t size) {
 
 const char *strut_key_expected(int key, char *buffer, size_t size) {
   const strut_key *k = strut_key_at(key);
-  char text[400];
-  const char *example;
-  switch (k->type) {
-    case STRUT_TYPE_NUMBER:
-      if (k->measure == STRUT_MEASURE_CONTEXT)
-        snprintf(buffer, size, "a number");
-      else
-        strut_expected_quantity(k->name, strut_measure_dimension(k->measure), buffer, size);
-      break;
-    case STRUT_TYPE_PAIR:
-      example = strut_dimension_example(strut_measure_dimension(k->measure));
-      snprintf(buffer, size, "two numbers such as [%s, 0]", example ? example : "1");
-      break;
-    case STRUT_TYPE_WORD: strut_words_text(k->words, buffer, size); break;
-    case STRUT_TYPE_WORDS:
-      snprintf(buffer, size, "a list of %s", strut_words_text(k->words, text, sizeof text));
-      break;
-    case STRUT_TYPE_KEEP:
-      snprintf(buffer, size, "a list of %s, and of measured quantities",
-               strut_words_text(k->words, text, sizeof text));
-      break;
-    case STRUT_TYPE_FIXED:
-      snprintf(buffer, size, "%s, or a list of x and y",
-               strut_words_text(k->words, text, sizeof text));
-      break;
-    case STRUT_TYPE_VERSION: return "the language version 1";
-    case STRUT_TYPE_TEXT: return "a text";
-    case STRUT_TYPE_NAME: return "a name";
-    case STRUT_TYPE_NODE_PATH: return "two nodes such as [n1, n2], or the nodes of a running cable";
-    case STRUT_TYPE_NODE_RING: return "three nodes or more such as [n1, n2, n3]";
-    case STRUT_TYPE_NAME_PAIR: return "two names such as [a, b]";
-    case STRUT_TYPE_NAMES: return "a list of names such as [a, b]";
-    case STRUT_TYPE_NODE_TRIPLE: return "three nodes such as [n1, n2, n3]";
-    case STRUT_TYPE_NUMBERS: return "a list of numbers";
-    case STRUT_TYPE_POINTS: return "a list of points such as [[0, 0], [2 mm, 3 N]]";
-    case STRUT_TYPE_PROFILE: return "a list of points such as [[0, 0], [10 mm, 0], [20 mm, 5 mm]]";
-    case STRUT_TYPE_LAW:
-      return "a law such as {kind: bilinear, knee: 2 mm, second_stiffness: 5 N/m}";
-    case STRUT_TYPE_CONTACT_NODES: return "all, or a list of nodes such as [n1, n2]";
-    case STRUT_TYPE_NODE_SETS: return "nodes such as [n1, n2], or a list of such lists";
-    case STRUT_TYPE_GROUPS: return "a group, or a list of groups";
-    case STRUT_TYPE_SIGNAL:
-      return "a signal such as {sine: {amplitude: 1 mm, frequency: 10 Hz}}, or a signal's name";
-    case STRUT_TYPE_SIGNALS: return "a list of signals";
-    case STRUT_TYPE_TABLE: return "a list of points such as [[0 s, 0], [1 s, 2]]";
-    case STRUT_TYPE_SETTLE: return "true, or a mapping such as {limit: 100 s}";
-    case STRUT_TYPE_STEADY: return "true, or a mapping such as {tolerance: 0.5 %}";
-    case STRUT_TYPE_EXPRESSION:
-      if (k->measure == STRUT_MEASURE_CONTEXT)
-        return "an expression of t and sensors such as '2 mm * sin(2*pi*10 Hz*t)'";
-      return "an expression such as com.vy, n1.y - n2.y or m1.force";
-    case STRUT_TYPE_AXES: return "a list of axes such as [{friction: [0.1, 0.2]}]";
-    case STRUT_TYPE_TIMES: return "a list of times such as [0 s, 20 ms]";
-    case STRUT_TYPE_FREE: return k->words;
-    case STRUT_TYPE_MAP: return "a mapping {key: value, ...}";
-    case STRUT_TYPE_THINGS: return "a mapping {name: ..., ...}";
-  }
+  const strut_dimension dimension = strut_measure_dimension(k->measure);
+  const char *expected = types[k->type].expected, *example = strut_dimension_example(dimension);
+  bool context = k->measure == STRUT_MEASURE_CONTEXT;
+  char words[400];
+  if (k->type == STRUT_TYPE_EXPRESSION && context)
+    return "an expression of t and sensors such as '2 mm * sin(2*pi*10 Hz*t)'";
+  if (expected) return expected;
+  if (k->type == STRUT_TYPE_FREE) return k->words;
+  if (k->type == STRUT_TYPE_NUMBER)
+    return context ? "a number" : strut_expected_quantity(k->name, dimension, buffer, size);
+  strut_words_text(k->words, words, sizeof words);
+  if (k->type == STRUT_TYPE_PAIR)
+    snprintf(buffer, size, "two numbers such as [%s, 0]", example ? example : "1");
+  else if (k->type == STRUT_TYPE_WORDS)
+    snprintf(buffer, size, "a list of %s", words);
+  else if (k->type == STRUT_TYPE_KEEP)
+    snprintf(buffer, size, "a list of %s, and of measured quantities", words);
+  else if (k->type == STRUT_TYPE_FIXED)
+    snprintf(buffer, size, "%s, or a list of x and y", words);
+  else
+    snprintf(buffer, size, "%s", words);
   return buffer;
 }

@@ -23,66 +23,67 @@ typedef enum strut_section {
       STRUT_SECTION_COUNT
 } strut_section;
 
+/* clang-format off */
+/**
+ * The types of values, X(TYPE, shape, least, most, what messages expect, what the reference says): whether the value is a scalar or the name of
+ * one (SCALAR), a list with so many items (LIST), a mapping (MAP), or one of several; ANY where its reader reports it.
+ * What messages expect is NULL where it depends on the key (keys.c).
+ */
+#define STRUT_KEY_TYPES(X) \
+  X(VERSION, SCALAR, 0, 0, "the language version 1", "") \
+  X(TEXT, SCALAR, 0, 0, "a text", "text") \
+  X(NUMBER, ANY, 0, 0, NULL, "number") /* an expression of the key's dimension */ \
+  X(PAIR, ANY, 0, 0, NULL, "two numbers") /* a list of two such numbers */ \
+  X(WORD, ANY, 0, 0, NULL, "") /* one of the key's words */ \
+  X(WORDS, LIST, 0, UINT32_MAX, NULL, "list of ") \
+  X(FIXED, SCALAR | STRUT_SHAPE_LIST, 0, UINT32_MAX, NULL, "") /* one of the words, or a list of x and y */ \
+  X(NAME, SCALAR, 0, 0, "a name", "name") \
+  X(NODE_PATH, LIST, 2, UINT32_MAX, "two nodes such as [n1, n2], or the nodes of a running cable", "names of two nodes or more") \
+  X(NODE_TRIPLE, LIST, 3, 3, "three nodes such as [n1, n2, n3]", "names of three nodes") \
+  X(NUMBERS, LIST, 0, UINT32_MAX, "a list of numbers", "list of numbers") \
+  X(POINTS, LIST, 0, UINT32_MAX, "a list of points such as [[0, 0], [2 mm, 3 N]]", "list of `[x, force]`") \
+  X(PROFILE, LIST, 0, UINT32_MAX, "a list of points such as [[0, 0], [10 mm, 0], [20 mm, 5 mm]]", "list of `[x, y]` [m]") \
+  X(LAW, SCALAR | STRUT_SHAPE_MAP, 0, 0, "a law such as {kind: bilinear, knee: 2 mm, second_stiffness: 5 N/m}", "[law](#law), or the kind of one") \
+  X(CONTACT_NODES, ALL | STRUT_SHAPE_LIST, 0, UINT32_MAX, "all, or a list of nodes such as [n1, n2]", "`all`, or list of nodes") \
+  X(NODE_SETS, LIST, 0, UINT32_MAX, "nodes such as [n1, n2], or a list of such lists", "list of nodes, or list of such lists") \
+  X(GROUPS, SCALAR | STRUT_SHAPE_LIST, 0, UINT32_MAX, "a group, or a list of groups", "group, or list of groups") \
+  X(SIGNAL, SCALAR | STRUT_SHAPE_MAP, 0, 0, "a signal such as {sine: {amplitude: 1 mm, frequency: 10 Hz}}, or a signal's name", "[signal](#signal), or the name of one") \
+  X(SIGNALS, LIST, 0, UINT32_MAX, "a list of signals", "list of signals") \
+  X(TABLE, LIST, 0, UINT32_MAX, "a list of points such as [[0 s, 0], [1 s, 2]]", "list of `[t, value]`") \
+  X(SETTLE, SCALAR | STRUT_SHAPE_MAP, 0, 0, "true, or a mapping such as {limit: 100 s}", "`true`, `false`, or [mapping](#settle)") \
+  X(STEADY, SCALAR | STRUT_SHAPE_MAP, 0, 0, "true, or a mapping such as {tolerance: 0.5 %}", "`true`, `false`, or [mapping](#steady)") \
+  X(EXPRESSION, SCALAR, 0, 0, "an expression such as com.vy, n1.y - n2.y or m1.force", "") /* CONTEXT: of sensors */ \
+  X(KEEP, LIST, 0, UINT32_MAX, NULL, "list of quantities, or of ") /* the key's words and quantities */ \
+  X(AXES, LIST, 0, UINT32_MAX, "a list of axes such as [{friction: [0.1, 0.2]}]", "list of axes") \
+  X(TIMES, LIST, 0, UINT32_MAX, "a list of times such as [0 s, 20 ms]", "list of times [s]") \
+  X(MAP, MAP, 0, 0, "a mapping {key: value, ...}", "") /* the keys of the section that has the key's name */ \
+  X(THINGS, MAP, 0, 0, "a mapping {name: ..., ...}", "names, each with ") /* from names to things, described by `words` */ \
+  X(NODE_RING, LIST, 3, UINT32_MAX, "three nodes or more such as [n1, n2, n3]", "names of three nodes or more") \
+  X(NAME_PAIR, LIST, 2, 2, "two names such as [a, b]", "two names") \
+  X(FREE, ANY, 0, 0, NULL, "") /* several forms, described by `words` */ \
+  X(NAMES, LIST, 0, UINT32_MAX, "a list of names such as [a, b]", "list of names")
+
+/** The dimensions of numbers, X(MEASURE, dimension); CONTEXT: it depends on the use of the mapping. */
+#define STRUT_MEASURES(X) \
+  X(NONE, NONE) X(CONTEXT, NONE) X(LENGTH, LENGTH) X(MASS, MASS) X(TIME, TIME) X(FREQUENCY, FREQUENCY) X(ANGLE, ANGLE) \
+  X(VELOCITY, VELOCITY) X(ACCELERATION, ACCELERATION) X(FORCE, FORCE) X(STIFFNESS, STIFFNESS) X(DAMPING, DAMPING) \
+  X(DISSIPATION, DISSIPATION) X(ANGULAR_STIFFNESS, ANGULAR_STIFFNESS) X(ANGULAR_DAMPING, ANGULAR_DAMPING) \
+  X(MOMENT, MOMENT) X(BENDING_STIFFNESS, BENDING_STIFFNESS) X(AREA, AREA) \
+  X(PRESSURE, STIFFNESS) /* in the plane: force per length, which acts on an area */ \
+  X(CONDUCTANCE, CONDUCTANCE) X(AREA_STIFFNESS, AREA_STIFFNESS) X(AREA_DAMPING, AREA_DAMPING)
+
 typedef enum strut_key_type {
-  STRUT_TYPE_VERSION,       /* the integer 1 */
-  STRUT_TYPE_TEXT,          /* any text */
-  STRUT_TYPE_NUMBER,        /* an expression of the key's dimension */
-  STRUT_TYPE_PAIR,          /* a list of two such numbers */
-  STRUT_TYPE_WORD,          /* one of the key's words */
-  STRUT_TYPE_WORDS,         /* a list of them */
-  STRUT_TYPE_FIXED,         /* none, x, y, both, or a list of x and y */
-  STRUT_TYPE_NAME,          /* the name of a thing */
-  STRUT_TYPE_NODE_PATH,     /* the names of two nodes or more */
-  STRUT_TYPE_NODE_TRIPLE,   /* the names of three nodes */
-  STRUT_TYPE_NUMBERS,       /* a list of numbers */
-  STRUT_TYPE_POINTS,        /* a list of [x, y] */
-  STRUT_TYPE_PROFILE,       /* a list of [x, y], lengths */
-  STRUT_TYPE_LAW,           /* the name of a law, or the keys of law */
-  STRUT_TYPE_CONTACT_NODES, /* all, or a list of nodes */
-  STRUT_TYPE_NODE_SETS,     /* a list of nodes, or a list of such lists */
-  STRUT_TYPE_GROUPS,        /* the name of a group, or a list of them */
-  STRUT_TYPE_SIGNAL,        /* a signal or its name */
-  STRUT_TYPE_SIGNALS,       /* a list of signals */
-  STRUT_TYPE_TABLE,         /* a list of [t, value] */
-  STRUT_TYPE_SETTLE,        /* true, false or the keys of settle */
-  STRUT_TYPE_STEADY,        /* true, false or the keys of steady */
-  STRUT_TYPE_EXPRESSION,    /* an expression of columns of the motion; CONTEXT: of sensors */
-  STRUT_TYPE_KEEP,          /* a list of the key's words and of quantities */
-  STRUT_TYPE_AXES,          /* a list of axes of a study */
-  STRUT_TYPE_TIMES,         /* a list of times */
-  STRUT_TYPE_MAP,           /* the keys of the section that has the key's name */
-  STRUT_TYPE_THINGS,        /* a mapping from names to things, described by `words` */
-  STRUT_TYPE_NODE_RING,     /* the names of three nodes or more */
-  STRUT_TYPE_NAME_PAIR,     /* the names of two things */
-  STRUT_TYPE_FREE,          /* several forms, described by `words` */
-  STRUT_TYPE_NAMES          /* a list of names */
+#define STRUT_KEY_TYPE_ROW(TYPE, ...) STRUT_TYPE_##TYPE,
+  STRUT_KEY_TYPES(STRUT_KEY_TYPE_ROW)
+#undef STRUT_KEY_TYPE_ROW
 } strut_key_type;
 
-/** The dimension of a number; CONTEXT: it depends on the use of the mapping. */
 typedef enum strut_measure {
-  STRUT_MEASURE_NONE,
-  STRUT_MEASURE_CONTEXT,
-  STRUT_MEASURE_LENGTH,
-  STRUT_MEASURE_MASS,
-  STRUT_MEASURE_TIME,
-  STRUT_MEASURE_FREQUENCY,
-  STRUT_MEASURE_ANGLE,
-  STRUT_MEASURE_VELOCITY,
-  STRUT_MEASURE_ACCELERATION,
-  STRUT_MEASURE_FORCE,
-  STRUT_MEASURE_STIFFNESS,
-  STRUT_MEASURE_DAMPING,
-  STRUT_MEASURE_DISSIPATION,
-  STRUT_MEASURE_ANGULAR_STIFFNESS,
-  STRUT_MEASURE_ANGULAR_DAMPING,
-  STRUT_MEASURE_MOMENT,
-  STRUT_MEASURE_BENDING_STIFFNESS,
-  STRUT_MEASURE_AREA,
-  STRUT_MEASURE_PRESSURE, /* in the plane: force per length, which acts on an area */
-  STRUT_MEASURE_CONDUCTANCE,
-  STRUT_MEASURE_AREA_STIFFNESS,
-  STRUT_MEASURE_AREA_DAMPING
+#define STRUT_MEASURE_ROW(MEASURE, dimension) STRUT_MEASURE_##MEASURE,
+  STRUT_MEASURES(STRUT_MEASURE_ROW)
+#undef STRUT_MEASURE_ROW
 } strut_measure;
+/* clang-format on */
 
 enum { STRUT_USUAL_PARTS = 10 };
 
@@ -116,6 +117,21 @@ typedef struct strut_repeat_keys {
   double turn, scale, about[2]; /* [rad], [1], [m] */
   const struct strut_tree *count, *step, *next, *closed;
 } strut_repeat_keys;
+
+/** The object of the section `next`; its things have none. */
+typedef struct strut_next_keys {
+  const struct strut_tree *merge;
+} strut_next_keys;
+
+/** The objects of the sections `range` and `points` of a study's axes. */
+typedef struct strut_range_keys {
+  double from, to, step, count;
+  uint32_t scale; /* 1: logarithmic */
+} strut_range_keys;
+
+typedef struct strut_points_keys {
+  const struct strut_tree *file, *columns;
+} strut_points_keys;
 
 /** The object of the section `moves`. */
 typedef struct strut_moves {
@@ -228,6 +244,10 @@ STRUT_API strut_section strut_wave_section(strut_signal_kind kind);
 STRUT_API strut_section strut_section_below(const strut_key *key);
 
 STRUT_API strut_dimension strut_measure_dimension(strut_measure measure);
+/** What the reference says of a type, before the key's words; "" where these are all. */
+const char *strut_type_reference(strut_key_type type);
+/** Is the value a scalar, list or mapping, as its type requires? */
+bool strut_shape_fits(strut_key_type type, const struct strut_tree *value);
 /** "a length such as '10 mm'"; written into buffer. */
 STRUT_API const char *strut_expected_number(strut_dimension dimension, char *buffer, size_t size);
 /** The same of a key or a quantity whose dimension may be better known as another: moments are no energies. */

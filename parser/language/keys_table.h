@@ -67,7 +67,7 @@
   X(REPEAT, CLOSED, "closed", FREE, NONE, ANY, "no", OPTIONAL, 0, "yes, no, or {node: node of the first copy, ...}", FIELD(strut_repeat_keys, closed), "`yes`: the first copy follows the last one. A mapping names other nodes of the first copy, as in a ring with a twist.")
 
 #define STRUT_NEXT_KEYS(X) \
-  X(NEXT, MERGE, "merge", THINGS, NONE, ANY, "", OPTIONAL, 0, "the name of a node of the next copy", BY_HAND, "Nodes of a copy and those of the next copy with which they merge: `{b: a}`.") \
+  X(NEXT, MERGE, "merge", THINGS, NONE, ANY, "", OPTIONAL, 0, "the name of a node of the next copy", FIELD(strut_next_keys, merge), "Nodes of a copy and those of the next copy with which they merge: `{b: a}`.") \
   X(NEXT, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", THINGS(MEMBER), "Members between the two copies; `next.NAME` is a node of the next one.") \
   X(NEXT, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", THINGS(HINGE), "Likewise, between the two copies.") \
   X(NEXT, CELLS, "cells", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a cell", THINGS(CELL), "Likewise, between the two copies.") \
@@ -156,11 +156,11 @@
   X(STUDY, FOLLOW, "follow", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(FOLLOW), "Follows periodic motions, stable or not, over a parameter, as `strut path --periodic` does, instead of running the points.")
 
 #define STRUT_RANGE_KEYS(X) \
-  X(RANGE, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_column, from), "First value.") \
-  X(RANGE, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_column, to), "Last value, if a whole number of steps leads to it.") \
-  X(RANGE, STEP, "step", NUMBER, CONTEXT, ANY, "", OPTIONAL, 4, "", FIELD(strut_study_column, step), "Difference between successive values.") \
-  X(RANGE, COUNT, "count", NUMBER, NONE, ABOVE_ZERO, "", OPTIONAL, 4, "", BY_HAND, "Number of values, including both ends.") \
-  X(RANGE, SCALE, "scale", WORD, NONE, ANY, "linear", OPTIONAL, 0, "linear|log", BY_HAND, "`log`: equal ratios instead of equal differences; needs `count`.")
+  X(RANGE, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_range_keys, from), "First value.") \
+  X(RANGE, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_range_keys, to), "Last value, if a whole number of steps leads to it.") \
+  X(RANGE, STEP, "step", NUMBER, CONTEXT, ANY, "", OPTIONAL, 4, "", FIELD(strut_range_keys, step), "Difference between successive values.") \
+  X(RANGE, COUNT, "count", NUMBER, NONE, ABOVE_ZERO, "", OPTIONAL, 4, "", FIELD(strut_range_keys, count), "Number of values, including both ends.") \
+  X(RANGE, SCALE, "scale", WORD, NONE, ANY, "linear", OPTIONAL, 0, "linear|log", FIELD(strut_range_keys, scale), "`log`: equal ratios instead of equal differences; needs `count`.")
 
 #define STRUT_VARIANT_KEYS(X) \
   X(VARIANT, SOLVER, "solver", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(SOLVER), "Keys that replace those of the study and of the model.") \
@@ -207,8 +207,8 @@
   X(FORM, OBJECTIVE, "objective", WORD, NONE, ANY, "largest", OPTIONAL, 0, "largest|sum|squares", FIELD(strut_study, form.objective), "What the prestress minimises: the largest force, the sum of the forces (both as magnitudes), or the sum of squares of the cables' force densities.")
 
 #define STRUT_POINTS_KEYS(X) \
-  X(POINTS, FILE, "file", TEXT, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "A CSV file with a header, below the folder of the study. `NAME [UNIT]` is the heading of a parameter; without a unit, values are in SI.") \
-  X(POINTS, COLUMNS, "columns", NAMES, NONE, ANY, "all but `point`, `status` and `message`", OPTIONAL, 0, "", BY_HAND, "The columns to use; others are skipped.")
+  X(POINTS, FILE, "file", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_points_keys, file), "A CSV file with a header, below the folder of the study. `NAME [UNIT]` is the heading of a parameter; without a unit, values are in SI.") \
+  X(POINTS, COLUMNS, "columns", NAMES, NONE, ANY, "all but `point`, `status` and `message`", OPTIONAL, 0, "", FIELD(strut_points_keys, columns), "The columns to use; others are skipped.")
 
 #define STRUT_SAMPLE_KEYS(X) \
   X(SAMPLE, COUNT, "count", NUMBER, NONE, WHOLE(1, 1000000), "", REQUIRED, 0, "", FIELD(strut_sample_keys, count), "Number of points.") \

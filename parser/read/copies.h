@@ -75,12 +75,6 @@ struct strut_copy {
   const strut_tree *twist; /* LINK that closes: {own: other}, or NULL */
 };
 
-/** An entry, or a value, that belongs to a scope of its own. */
-typedef struct strut_placed_tree {
-  strut_tree tree; /* `placed` is set */
-  strut_copy *scope;
-} strut_placed_tree;
-
 /** The scope of a placed tree; else the reader's. */
 strut_copy *strut_scope_of(const strut_reader *reader, const strut_tree *tree);
 
@@ -227,8 +221,6 @@ strut_copy *strut_make_copy(strut_expansion *e, strut_placing *p, const int64_t 
 
 /* place_frame.c */
 
-/** Reports a value of another form than the key has; returns false. */
-bool strut_refuse_form(strut_reader *reader, int key, const strut_tree *value, strut_owner owner);
 /** Reads `repeat` of the placement of that name; absent: one copy without a number. */
 bool strut_read_repeat(strut_reader *reader, const strut_slot *slot, const char *name,
                        strut_repetition *repeat);

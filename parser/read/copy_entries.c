@@ -27,14 +27,9 @@ static void append(strut_entry_list *list, strut_tree *key) {
 void strut_remember_node(strut_expansion *e, const strut_tree *key) {
   struct strut_copies *c = e->copies;
   strut_reader *reader = e->reader;
-  if (c->node_count == c->node_capacity) {
-    size_t capacity = c->node_capacity ? 2 * c->node_capacity : 256;
-    const strut_tree **nodes = strut_reallocate(c->nodes, capacity, sizeof *nodes);
-    if (!nodes) {
-      reader->out_of_memory = e->stopped = true;
-      return;
-    }
-    c->nodes = nodes, c->node_capacity = capacity;
+  if (!strut_grow(&c->nodes, &c->node_capacity, c->node_count, sizeof *c->nodes)) {
+    reader->out_of_memory = e->stopped = true;
+    return;
   }
   c->nodes[c->node_count] = key;
   strut_add_name(reader, &c->node_entries, key->text, c->node_count++);
@@ -150,101 +145,33 @@ strut_section strut_section_of_things(int scene_key) {
   return kind.things ? kind.section : STRUT_SECTION_COUNT;
 }
 
-static void *allocate(strut_reader *reader, size_t size) {
-  return strut_reader_allocate(reader, &reader->scratch, 1, size);
-}
-
-/* A copy of one node of the tree that shares its children. */
-static strut_tree *copied(strut_reader *reader, const strut_tree *from) {
-  size_t size = from->placed ? sizeof(strut_placed_tree) : sizeof(strut_tree);
-  strut_tree *copy = allocate(reader, size);
-  if (copy) memcpy(copy, from, size);
-  if (copy) copy->next = NULL;
-  return copy;
-}
-
-/* A copy of a whole value that keeps the scene as its scope. */
-static strut_tree *kept_in_scene(strut_reader *reader, const strut_tree *from) {
-  strut_placed_tree *copy = allocate(reader, sizeof *copy);
-  if (!copy) return NULL;
-  copy->tree = *from;
-  copy->tree.placed = true;
-  copy->tree.next = copy->tree.first = NULL;
-  strut_tree **end = &copy->tree.first;
-  for (const strut_tree *child = from->first; child; child = child->next) {
-    *end = kept_in_scene(reader, child);
-    if (!*end) return NULL;
-    end = &(*end)->next;
-  }
-  return &copy->tree;
-}
-
-/* Does a mapping give this key, or another one of its set? */
-static bool gives(const strut_tree *map, const char *name, strut_section section) {
-  int key = section == STRUT_SECTION_COUNT ? -1 : strut_key_find(section, name);
-  int set = key < 0 ? 0 : strut_key_at(key)->set;
-  for (const strut_tree *k = map->first; k; k = k->next->next) {
-    if (strcmp(k->text, name) == 0) return true;
-    int other = set ? strut_key_find(section, k->text) : -1;
-    if (other >= 0 && strut_key_at(other)->set == set) return true;
-  }
-  return false;
-}
-
-/* `[x, y]` of a node as {position: [x, y]}. */
-static bool write_out_position(strut_reader *reader, strut_tree *value) {
-  strut_tree *list = copied(reader, value), *key = copied(reader, value);
-  if (!list || !key) return false;
-  *key = (strut_tree){.kind = STRUT_TREE_SCALAR, .place = value->place, .text = "position"};
-  key->next = list;
-  value->kind = STRUT_TREE_MAP;
-  value->count = 1;
-  value->first = key;
-  return true;
-}
-
-/* Lays the mapping `over` on the value of a copied entry, whose head is its own. */
+/* Lays the mapping `over` on the value of an entry, whose head is its own. */
 static void lay_over(strut_reader *reader, strut_tree *value, const strut_tree *over,
                      strut_section section) {
-  strut_tree *first = NULL, **end = &first;
-  uint32_t count = 0;
-  if (value->kind == STRUT_TREE_LIST && !write_out_position(reader, value)) return;
-  if (value->kind != STRUT_TREE_MAP) return;
-  for (const strut_tree *k = value->first; k; k = k->next->next) {
-    if (gives(over, k->text, section)) continue;
-    strut_tree *key = copied(reader, k), *below = copied(reader, k->next);
-    if (!key || !below) return;
-    *end = key, key->next = below, end = &below->next, count++;
-  }
-  for (const strut_tree *k = over->first; k; k = k->next->next) {
-    strut_tree *key = copied(reader, k), *below = kept_in_scene(reader, k->next);
-    if (!key || !below) return;
-    *end = key, key->next = below, end = &below->next, count++;
-  }
-  value->first = first;
-  value->count = count & STRUT_TREE_COUNT_MASK;
-}
-
-static bool is_removal(const strut_tree *value) {
-  return value->kind == STRUT_TREE_SCALAR && !value->quoted && strcmp(value->text, "remove") == 0;
+  const strut_overlay overlay = {.arena = &reader->scratch, .of_scene = true, .whole = true};
+  if (value->kind == STRUT_TREE_SCALAR) return;
+  strut_tree *joined = strut_lay_over(&overlay, (strut_mapping_kind){section, false}, value, over);
+  if (!joined) reader->out_of_memory = true;
+  if (!joined) return;
+  joined->next = value->next;
+  *value = *joined;
 }
 
 /* Can the value be laid over a placed thing? If not, that is reported. */
 static bool check_value(strut_reader *reader, const strut_tree *key, int of) {
   const strut_tree *value = key->next;
-  if (value->kind == STRUT_TREE_MAP || is_removal(value)) {
+  if (value->kind == STRUT_TREE_MAP || strut_is_removal(value)) {
     strut_tree *at = of == STRUT_KEY_SCENE_NODES ? strut_tree_find(value, "position", NULL) : NULL;
     if (!at) return true;
-    strut_report_error(reader, at->place,
-                       "'%s' is placed, so its position is given by its part; give other keys here",
-                       strut_sanitised_text(reader, key->text));
-    return false;
+    return strut_report_error(
+        reader, at->place,
+        "'%s' is placed, so its position is given by its part; give other keys here",
+        strut_sanitised_text(reader, key->text));
   }
-  strut_report_error(
+  return strut_report_error(
       reader, value->place,
       "'%s' is placed already; expected keys that it should have, or remove, found %s",
       strut_sanitised_text(reader, key->text), strut_found(reader, value));
-  return false;
 }
 
 /* The entries of copies by name. */
@@ -289,7 +216,7 @@ static bool is_of_placement(const strut_reader *reader, const char *name) {
 /* Does the entry lack what one that stands by itself needs? Then a placed thing was meant. */
 static bool lacks_body(const strut_tree *own, int key) {
   const strut_tree *value = own->next;
-  if (is_removal(value)) return true;
+  if (strut_is_removal(value)) return true;
   if (value->kind != STRUT_TREE_MAP) return false;
   if (key == STRUT_KEY_SCENE_NODES) return !strut_tree_find(value, "position", NULL);
   return key == STRUT_KEY_SCENE_MEMBERS && !strut_tree_find(value, "nodes", NULL);
@@ -306,7 +233,7 @@ static bool apply(strut_reader *reader, const strut_tree *own, placed_index *all
     if (pattern && !strut_name_matches(full.text, all->key[i]->text)) continue;
     if (!found) fine = check_value(reader, own, key);
     found = true;
-    if (fine && is_removal(own->next)) {
+    if (fine && strut_is_removal(own->next)) {
       all->removed[i] = true;
       strut_add_name(reader, &reader->copies->removed, all->key[i]->text, i);
     } else if (fine) {
@@ -340,7 +267,7 @@ static void unlink_removed(placed_index *all, strut_tree **placed, size_t *place
 
 strut_tree *strut_lay_over_copies(strut_reader *reader, const strut_tree *own, strut_tree **placed,
                                   size_t *placed_count, uint32_t *count, int key) {
-  strut_tree *first = NULL, **end = &first;
+  strut_tree_builder rest = strut_tree_begin(&reader->scratch, own);
   placed_index all = {0};
   bool indexed = false;
   for (const strut_tree *k = own->first; k; k = k->next->next) {
@@ -348,12 +275,10 @@ strut_tree *strut_lay_over_copies(strut_reader *reader, const strut_tree *own, s
     if (may && !indexed && !index_placed(reader, *placed, *placed_count, &all)) break;
     indexed = indexed || may;
     if (may && apply(reader, k, &all, key)) continue;
-    strut_tree *name = copied(reader, k), *value = copied(reader, k->next);
-    if (!name || !value) break;
-    *end = name, name->next = value, end = &value->next;
-    ++*count;
+    if (!strut_tree_share(&rest, &reader->scratch, k, k->next)) reader->out_of_memory = true;
   }
+  *count = rest.map ? rest.map->count : 0;
   if (indexed) unlink_removed(&all, placed, placed_count);
   strut_name_map_free(&all.names);
-  return first;
+  return rest.map ? rest.map->first : NULL;
 }

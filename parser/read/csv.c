@@ -34,19 +34,11 @@ static void step(reader *r) {
   }
 }
 
-static bool grow(reader *r) {
-  size_t capacity = 2 * r->cell_capacity + 1024;
-  const char **cells = strut_reallocate(r->cell, capacity, sizeof *cells);
-  if (cells) r->cell = cells;
-  strut_place *places = strut_reallocate(r->place, capacity, sizeof *places);
-  if (places) r->place = places;
-  if (!cells || !places) return false;
-  r->cell_capacity = capacity;
-  return true;
-}
-
 static void keep(reader *r, const char *cell, strut_place place) {
-  r->failed = r->failed || !cell || (r->cell_count == r->cell_capacity && !grow(r));
+  size_t places = r->cell_capacity;
+  r->failed = r->failed || !cell ||
+              !strut_grow(&r->place, &places, r->cell_count, sizeof *r->place) ||
+              !strut_grow(&r->cell, &r->cell_capacity, r->cell_count, sizeof *r->cell);
   if (r->failed) return;
   r->place[r->cell_count] = place;
   r->cell[r->cell_count++] = cell;

@@ -169,11 +169,10 @@ static bool check_names(strut_reader *reader, const strut_tree *value, const cha
   bool fine = true,
        known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUPS)->state != STRUT_BROKEN;
   const strut_tree *item = value->kind == STRUT_TREE_LIST ? value->first : value;
-  if (value->kind == STRUT_TREE_LIST && value->count > STRUT_MOST_GROUPS) {
-    strut_report_error(reader, value->place, "%s names %u groups, expected at most %d",
-                       strut_owner_text(reader, owner), (unsigned)value->count, STRUT_MOST_GROUPS);
-    return false;
-  }
+  if (value->kind == STRUT_TREE_LIST && value->count > STRUT_MOST_GROUPS)
+    return strut_report_error(reader, value->place, "%s names %u groups, expected at most %d",
+                              strut_owner_text(reader, owner), (unsigned)value->count,
+                              STRUT_MOST_GROUPS);
   const strut_namespace names = {"group", &reader->group_names, group_name, reader,
                                  reader->group_count};
   for (; item && known; item = value == item ? NULL : item->next)

@@ -101,64 +101,51 @@ bool strut_says_otherwise(strut_mapping_kind kind, const strut_tree *map, const 
 
 /* ---- trees ---- */
 
-/* A copy of the node that shares its children; NULL: memory is out. */
-static strut_tree *copied(strut_arena *arena, const strut_tree *node) {
-  strut_tree *copy = strut_arena_allocate(arena, 1, sizeof *copy);
-  if (!copy) return NULL;
-  *copy = *node;
-  copy->next = NULL;
-  return copy;
-}
-
 static strut_tree *marked_node(const strut_overlay *o, const strut_tree *node) {
-  strut_tree *copy = copied(o->arena, node);
+  strut_tree *copy = strut_tree_copy(o->arena, node);
   if (copy) copy->place.line |= o->mark;
   return copy;
 }
 
-strut_tree *strut_mark_tree(const strut_overlay *o, const strut_tree *node) {
-  strut_tree *copy = marked_node(o, node);
-  if (!copy || !o->mark) return copy;
+/* A copy of what is laid over, all the way down where its nodes are not as they were. */
+static strut_tree *marked_tree(const strut_overlay *o, const strut_tree *node) {
+  strut_placed_tree placed = {*node, NULL};
+  if (o->of_scene) placed.tree.placed = true;
+  strut_tree *copy = marked_node(o, o->of_scene ? &placed.tree : node);
+  if (!copy || !(o->mark || o->of_scene)) return copy;
   strut_tree **end = &copy->first;
   for (const strut_tree *child = node->first; child; child = child->next) {
-    *end = strut_mark_tree(o, child);
+    *end = marked_tree(o, child);
     if (!*end) return NULL;
     end = &(*end)->next;
   }
   return copy;
 }
 
-static bool is_removal(const strut_tree *value) {
+bool strut_is_removal(const strut_tree *value) {
   return value->kind == STRUT_TREE_SCALAR && !value->quoted && strcmp(value->text, "remove") == 0;
 }
 
 /* `[x, y]` of a node as {position: [x, y]}. NULL: memory is out. */
 static strut_tree *written_out(strut_arena *arena, const strut_tree *list) {
-  strut_tree *map = copied(arena, list), *key = copied(arena, list), *value = copied(arena, list);
-  if (!map || !key || !value) return NULL;
-  *key = (strut_tree){.kind = STRUT_TREE_SCALAR, .place = list->place, .text = "position"};
-  key->next = value;
-  map->kind = STRUT_TREE_MAP;
-  map->count = 1;
-  map->first = key;
-  return map;
+  strut_tree_builder map = strut_tree_begin(arena, list);
+  strut_tree *key = strut_tree_scalar(arena, list, "position");
+  return strut_tree_append(&map, key, strut_tree_copy(arena, list)) ? map.map : NULL;
+}
+
+static bool is_node(strut_mapping_kind kind) {
+  return kind.section == STRUT_SECTION_NODE && !kind.things;
 }
 
 /* The value of a key that both mappings have. */
 static strut_tree *joined(const strut_overlay *o, strut_mapping_kind kind, const strut_tree *below,
                           const strut_tree *over) {
-  bool node = kind.section == STRUT_SECTION_NODE && !kind.things;
-  bool list_below = below->kind == STRUT_TREE_LIST, list_over = over->kind == STRUT_TREE_LIST;
-  if (node && list_below && over->kind == STRUT_TREE_MAP)
-    below = written_out(o->arena, below);
-  else if (node && list_over && below->kind == STRUT_TREE_MAP)
-    over = written_out(o->arena, over);
-  if (!below || !over) return NULL;
   bool part = kind.section == STRUT_SECTION_PART && !kind.things;
-  if (part && strut_tree_find(over, "use", NULL)) return strut_mark_tree(o, over);
-  if (below->kind == STRUT_TREE_MAP && over->kind == STRUT_TREE_MAP)
-    return strut_lay_over(o, kind, below, over);
-  return strut_mark_tree(o, over);
+  bool maps = below->kind == STRUT_TREE_MAP && over->kind == STRUT_TREE_MAP;
+  bool place = is_node(kind) && below->kind + over->kind == STRUT_TREE_MAP + STRUT_TREE_LIST;
+  if (o->whole || !(maps || place) || (part && strut_tree_find(over, "use", NULL)))
+    return marked_tree(o, over);
+  return strut_lay_over(o, kind, below, over);
 }
 
 static const char *name_at(const void *context, size_t i) {
@@ -169,7 +156,7 @@ static const char *name_at(const void *context, size_t i) {
 
 /* Takes away what is not there? Things of copies are looked for when these are made. */
 static bool removes_nothing(const strut_overlay *o, const strut_tree *base, const strut_tree *key) {
-  if (!o->diagnostics || !is_removal(key->next) || strpbrk(key->text, ".*")) return false;
+  if (!o->diagnostics || !strut_is_removal(key->next) || strpbrk(key->text, ".*")) return false;
   const char *meant = base->count <= 1000 ? strut_did_you_mean(key->text, name_at, base) : NULL;
   int shown = (int)strcspn(key->text, "\n");
   strut_diagnose(o->diagnostics, key->place, "there is no '%.*s' to remove%s%.64s%s",
@@ -178,43 +165,31 @@ static bool removes_nothing(const strut_overlay *o, const strut_tree *base, cons
   return true;
 }
 
-/* A mapping that grows. */
-typedef struct builder {
-  strut_tree *map, **end;
-} builder;
-
-static bool append(builder *b, strut_tree *key, strut_tree *value) {
-  if (!key || !value) return false;
-  *b->end = key;
-  key->next = value;
-  b->end = &value->next;
-  b->map->count++;
-  return true;
-}
-
 /* The keys of the base, changed or not, then those that it has not. */
 static bool join(const strut_overlay *o, const key_index *below, const strut_tree *base,
-                 const key_index *above, const strut_tree *over, builder *b) {
+                 const key_index *above, const strut_tree *over, strut_tree_builder *b) {
   for (const strut_tree *k = base->first; k; k = k->next->next) {
     const strut_tree *by = same_key(above, k);
-    if (by ? is_removal(by->next) : is_replaced(above, k)) continue;
+    if (by ? strut_is_removal(by->next) : is_replaced(above, k)) continue;
     strut_mapping_kind value = strut_kind_below(below->kind, k->text);
-    bool fine = by ? append(b, marked_node(o, by), joined(o, value, k->next, by->next))
-                   : append(b, copied(o->arena, k), copied(o->arena, k->next));
+    bool fine = by ? strut_tree_append(b, marked_node(o, by), joined(o, value, k->next, by->next))
+                   : strut_tree_share(b, o->arena, k, k->next);
     if (!fine) return false;
   }
   for (const strut_tree *k = over->first; k; k = k->next->next) {
     if (same_key(below, k) || removes_nothing(o, base, k)) continue;
-    if (!append(b, marked_node(o, k), strut_mark_tree(o, k->next))) return false;
+    if (!strut_tree_append(b, marked_node(o, k), marked_tree(o, k->next))) return false;
   }
   return true;
 }
 
 strut_tree *strut_lay_over(const strut_overlay *o, strut_mapping_kind kind, const strut_tree *base,
                            const strut_tree *over) {
-  strut_tree *map = copied(o->arena, base);
+  if (is_node(kind) && base->kind == STRUT_TREE_LIST) base = written_out(o->arena, base);
+  if (is_node(kind) && over->kind == STRUT_TREE_LIST) over = written_out(o->arena, over);
+  strut_tree *map = base && over ? strut_tree_copy(o->arena, base) : NULL;
   if (!map) return NULL;
-  builder b = {map, &map->first};
+  strut_tree_builder b = {map, &map->first};
   key_index below = {0}, above = {0};
   map->count = 0;
   map->first = NULL;
@@ -256,15 +231,6 @@ static const char *flat(comparison *c, const strut_tree *tree) {
     text = join_texts(c, text, flat(c, t), "");
   }
   return join_texts(c, text, map ? "}" : "]", "");
-}
-
-static bool equal(const strut_tree *a, const strut_tree *b) {
-  if (a->kind != b->kind) return false;
-  if (a->kind == STRUT_TREE_SCALAR) return strcmp(a->text, b->text) == 0;
-  const strut_tree *x = a->first, *y = b->first;
-  for (; x && y; x = x->next, y = y->next)
-    if (!equal(x, y)) return false;
-  return !x && !y;
 }
 
 static void add(comparison *c, const char *where, const strut_tree *was, const strut_tree *is) {
@@ -313,7 +279,7 @@ static void compare_maps(comparison *c, const char *where, const strut_tree *a,
 static void compare(comparison *c, const char *where, const strut_tree *a, const strut_tree *b) {
   if (a->kind == STRUT_TREE_MAP && b->kind == STRUT_TREE_MAP)
     compare_maps(c, where, a, b);
-  else if (!equal(a, b))
+  else if (!strut_tree_equal(a, b))
     add(c, where, a, b);
 }
 

@@ -35,16 +35,18 @@ STRUT_API bool strut_says_otherwise(strut_mapping_kind kind, const strut_tree *m
 #define STRUT_OVERLAY_LINE ((uint32_t)1 << 30)
 
 typedef struct strut_overlay {
-  strut_arena *arena;             /* of the result, which shares what did not change */
-  uint32_t mark;                  /* is set in the line of every place of what is laid over */
+  strut_arena *arena; /* of the result, which shares what did not change */
+  uint32_t mark;      /* is set in the line of every place of what is laid over */
+  bool of_scene;      /* what is laid over belongs to the scene, not to a copy of a part */
+  bool whole;         /* keys within keys are replaced together */
   strut_diagnostics *diagnostics; /* receives removals of what is not there; NULL: they stay */
 } strut_overlay;
 
 /** `base` with the keys of `over`, both mappings of a kind; the base's order. NULL: memory is out. */
 STRUT_API strut_tree *strut_lay_over(const strut_overlay *overlay, strut_mapping_kind kind,
                                      const strut_tree *base, const strut_tree *over);
-/** A copy of the whole tree with marked places. NULL: memory is out. */
-STRUT_API strut_tree *strut_mark_tree(const strut_overlay *overlay, const strut_tree *tree);
+/** Does the value take its key away: is it `remove`? */
+bool strut_is_removal(const strut_tree *value);
 
 /* Differences between two scenes, as texts; those of many copies of a part as one. */
 

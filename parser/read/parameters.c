@@ -164,13 +164,11 @@ static bool read_given(strut_reader *reader, strut_parameter_state *p,
     p->quantity.bare = false;
     p->quantity.dimension = declared->dimension;
   }
-  if (fine && !declared->bare &&
-      !strut_dimension_equal(p->quantity.dimension, declared->dimension)) {
-    strut_report_error(reader, p->of_part->given->place, "expected %s for '%s' in 'set', found %s",
-                       strut_expected_number(declared->dimension, expected, sizeof expected),
-                       p->name, strut_dimension_name(p->quantity.dimension, found, sizeof found));
-    fine = false;
-  }
+  if (fine && !declared->bare && !strut_dimension_equal(p->quantity.dimension, declared->dimension))
+    fine = strut_report_error(
+        reader, p->of_part->given->place, "expected %s for '%s' in 'set', found %s",
+        strut_expected_number(declared->dimension, expected, sizeof expected), p->name,
+        strut_dimension_name(p->quantity.dimension, found, sizeof found));
   reader->scope = before;
   return fine;
 }
@@ -251,27 +249,23 @@ static bool check_parameter_name(strut_reader *reader, const strut_tree *key) {
   const char *c = key->text;
   size_t length = strlen(c);
   if (!strut_read_name(reader, key, "parameter")) return false;
-  if (strcmp(c, "pi") == 0 || strut_function_find(c, length)) {
-    strut_report_error(reader, key->place,
-                       "'%s' cannot be the name of a parameter: expressions use it", c);
-    return false;
-  }
-  if (is_copy_number(reader, c)) {
-    strut_report_error(reader, key->place,
-                       "'%s' cannot be the name of a parameter in a scene that places parts: it is "
-                       "the number of a copy",
-                       c);
-    return false;
-  }
+  if (strcmp(c, "pi") == 0 || strut_function_find(c, length))
+    return strut_report_error(reader, key->place,
+                              "'%s' cannot be the name of a parameter: expressions use it", c);
+  if (is_copy_number(reader, c))
+    return strut_report_error(
+        reader, key->place,
+        "'%s' cannot be the name of a parameter in a scene that places parts: it is "
+        "the number of a copy",
+        c);
   for (size_t i = 0; i < length; i++) {
     bool letter = (c[i] >= 'a' && c[i] <= 'z') || (c[i] >= 'A' && c[i] <= 'Z') || c[i] == '_';
     if (letter || (i && c[i] >= '0' && c[i] <= '9')) continue;
-    strut_report_error(
+    return strut_report_error(
         reader, key->place,
         "'%s' cannot be the name of a parameter, expected a letter, then letters, digits "
         "and '_', so that it can stand in expressions",
         c);
-    return false;
   }
   return true;
 }

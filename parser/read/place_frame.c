@@ -18,19 +18,10 @@ static bool read_count(strut_reader *reader, const strut_tree *value, strut_owne
     *count = (int64_t)number;
     return true;
   }
-  strut_report_error(
+  return strut_report_error(
       reader, value->place,
       "the number of copies of %s must be a whole number from 1 to %.0f, found %.15g",
       strut_owner_text(reader, owner), STRUT_MOST_COPIES, number);
-  return false;
-}
-
-bool strut_refuse_form(strut_reader *reader, int key, const strut_tree *value, strut_owner owner) {
-  char expected[200];
-  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
-                     strut_key_expected(key, expected, sizeof expected), strut_key_at(key)->name,
-                     strut_owner_text(reader, owner), strut_found(reader, value));
-  return false;
 }
 
 /* A number, or [n, m]. */
@@ -51,14 +42,12 @@ static bool read_steps(strut_reader *reader, const strut_tree *value, strut_owne
   if (!value) return true;
   bool lists =
       value->kind == STRUT_TREE_LIST && value->count == 2 && value->first->kind == STRUT_TREE_LIST;
-  if (lists != (r->numbers == 2)) {
-    strut_report_error(reader, value->place,
-                       r->numbers == 2
-                           ? "a lattice has two steps, as in [[1 m, 0], [0, 1 m]], found %s"
-                           : "one count has one step, as in [1 m, 0], found %s",
-                       strut_found(reader, value));
-    return false;
-  }
+  if (lists != (r->numbers == 2))
+    return strut_report_error(reader, value->place,
+                              r->numbers == 2
+                                  ? "a lattice has two steps, as in [[1 m, 0], [0, 1 m]], found %s"
+                                  : "one count has one step, as in [1 m, 0], found %s",
+                              strut_found(reader, value));
   const strut_tree *item = lists ? value->first : value;
   bool fine = true;
   for (int k = 0; k < r->numbers; k++, item = item->next)
@@ -86,11 +75,11 @@ static bool read_closed(strut_reader *reader, const strut_tree *value, const str
   if (word < 0 || value->kind == STRUT_TREE_LIST)
     return strut_refuse_form(reader, STRUT_KEY_REPEAT_CLOSED, value, owner);
   if (!r->closed || (r->numbers == 1 && r->next[0])) return true;
-  strut_report_error(reader, key->place,
-                     r->numbers > 1 ? "a lattice cannot be closed; close a ring and repeat the ring"
-                                    : "'closed' needs 'next', which says what ties a copy to the "
-                                      "next one");
-  return false;
+  return strut_report_error(reader, key->place,
+                            r->numbers > 1
+                                ? "a lattice cannot be closed; close a ring and repeat the ring"
+                                : "'closed' needs 'next', which says what ties a copy to the "
+                                  "next one");
 }
 
 bool strut_read_repeat(strut_reader *reader, const strut_slot *slot, const char *name,
@@ -109,8 +98,7 @@ bool strut_read_repeat(strut_reader *reader, const strut_slot *slot, const char 
   const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_REPEAT_SCALE);
   const strut_slot *about = strut_slot_of(&fields, STRUT_KEY_REPEAT_ABOUT);
   strut_repeat_keys keys = {.scale = 1.0};
-  if (fields.broken ||
-      !strut_store_fields(reader, &fields, owner, &reader->scratch, &keys, sizeof keys) ||
+  if (fields.broken || !strut_store(reader, &fields, owner, &keys) ||
       !read_counts(reader, keys.count, owner, r))
     return false;
   bool fine = read_steps(reader, keys.step, owner, r);
@@ -122,11 +110,10 @@ bool strut_read_repeat(strut_reader *reader, const strut_slot *slot, const char 
   memcpy(r->about, keys.about, sizeof r->about);
   const strut_slot *odd = turn->key ? turn : scale->key ? scale : about;
   if (r->numbers < 2 || !odd->key) return fine;
-  strut_report_error(
+  return strut_report_error(
       reader, odd->key->place,
       "a lattice has steps only, no '%s'; place a row that turns, and repeat the row",
       odd->key->text);
-  return false;
 }
 
 void strut_frame_turn(strut_frame *f, double angle) {
@@ -203,12 +190,11 @@ static bool find_outside(strut_expansion *e, strut_copy *outer, const strut_tree
   int32_t i = strut_name_resolve_last(reader, full.text, &resolved)
                   ? strut_name_map_find(&e->copies->node_entries, resolved.text)
                   : -1;
-  if (i < 0 || strut_name_is_hidden(reader, outer, resolved.text)) {
-    strut_report_error(reader, name->place,
-                       "unknown node '%s' in 'onto'; it names a node of what is placed before",
-                       strut_sanitised_text(reader, name->text));
-    return false;
-  }
+  if (i < 0 || strut_name_is_hidden(reader, outer, resolved.text))
+    return strut_report_error(
+        reader, name->place,
+        "unknown node '%s' in 'onto'; it names a node of what is placed before",
+        strut_sanitised_text(reader, name->text));
   const strut_tree *key = e->copies->nodes[i];
   strut_copy *before = strut_enter_scope(reader, key);
   bool fine = read_position(reader, key->next, position);
@@ -302,12 +288,10 @@ static bool lay_onto(strut_expansion *e, strut_copy *copy, const strut_tree *map
   strut_reader *reader = e->reader;
   double own[2][2], there[2][2];
   const strut_tree *k = map->first;
-  if (map->count < 1 || map->count > 2) {
-    strut_report_error(reader, map->place,
-                       "expected one or two pairs {own: there} for 'onto', found %u",
-                       (unsigned)map->count);
-    return false;
-  }
+  if (map->count < 1 || map->count > 2)
+    return strut_report_error(reader, map->place,
+                              "expected one or two pairs {own: there} for 'onto', found %u",
+                              (unsigned)map->count);
   for (unsigned n = 0; n < map->count; n++, k = k->next->next) {
     if (!strut_read_scalar(reader, k->next, "onto", (strut_owner){"a placement", NULL},
                            "the name of a node") ||
@@ -320,12 +304,10 @@ static bool lay_onto(strut_expansion *e, strut_copy *copy, const strut_tree *map
     double a[2] = {own[1][0] - own[0][0], own[1][1] - own[0][1]};
     double b[2] = {there[1][0] - there[0][0], there[1][1] - there[0][1]};
     double la = hypot(a[0], a[1]), lb = hypot(b[0], b[1]);
-    if (la == 0.0 || lb == 0.0 || (!fit && fabs(la / lb - 1.0) > 1e-9)) {
-      strut_report_error(reader, map->place,
-                         "the two nodes of the copy are %.6g m apart, those outside %.6g m%s", la,
-                         lb, la > 0.0 && lb > 0.0 ? "; say 'scale: fit', or change one" : "");
-      return false;
-    }
+    if (la == 0.0 || lb == 0.0 || (!fit && fabs(la / lb - 1.0) > 1e-9))
+      return strut_report_error(
+          reader, map->place, "the two nodes of the copy are %.6g m apart, those outside %.6g m%s",
+          la, lb, la > 0.0 && lb > 0.0 ? "; say 'scale: fit', or change one" : "");
     strut_frame turn = strut_frame_of_scene;
     double c = (a[0] * b[0] + a[1] * b[1]) / (la * lb), s = (a[0] * b[1] - a[1] * b[0]) / (la * lb);
     turn.axes[0][0] = turn.axes[1][1] = c, turn.axes[0][1] = -s, turn.axes[1][0] = s;
@@ -355,11 +337,9 @@ bool strut_read_frame(strut_expansion *e, strut_placing *p, strut_copy *copy, st
                          &frame->scale))
     return false;
   bool two = onto && onto->count == 2;
-  if ((fit && !two) || (two && turn->key)) {
-    strut_report_error(reader, fit && !two ? scale->place : turn->key->place,
-                       fit && !two ? "'scale: fit' needs two pairs in 'onto'"
-                                   : "two pairs in 'onto' turn the copy; leave 'turn' out");
-    return false;
-  }
+  if ((fit && !two) || (two && turn->key))
+    return strut_report_error(reader, fit && !two ? scale->place : turn->key->place,
+                              fit && !two ? "'scale: fit' needs two pairs in 'onto'"
+                                          : "two pairs in 'onto' turn the copy; leave 'turn' out");
   return e->weighing || !onto || lay_onto(e, copy, onto, fit, frame);
 }

@@ -49,26 +49,16 @@ static const char *clamp_name(strut_reader *reader, const strut_beam *b, bool en
   return name ? name : "";
 }
 
-/* Is the name free? If not, that is reported once for the beam. */
-static bool claim_name(strut_reader *reader, strut_beam *b, const char *kind, strut_name_map *map,
-                       const char *name, size_t index) {
-  if (strut_name_map_find(map, name) < 0) {
-    strut_add_name(reader, map, name, index);
-    return true;
-  }
+/* A thing of the beam; NULL where its name is taken, which is reported once for the beam. */
+static void *add_thing(strut_reader *reader, strut_beam *b, strut_thing kind, const char *name) {
+  if (strut_name_map_find(&reader->things[kind].names, name) < 0)
+    return strut_add_thing(reader, kind, b->key, name);
   if (!b->broken)
     strut_report_error(reader, b->key->place,
                        "beam '%s' makes a %s '%s', but there is another one; rename one of them",
-                       b->name, kind, name);
+                       b->name, strut_thing_at(kind)->word, name);
   b->broken = reader->ends_unknown = true;
-  return false;
-}
-
-static void *lengthen(strut_reader *reader, strut_arena *arena, const void *old, size_t count,
-                      size_t more, size_t size) {
-  void *array = strut_reader_allocate(reader, arena, count + more, size);
-  if (array && count) memcpy(array, old, count * size);
-  return array;
+  return NULL;
 }
 
 /* Ends that are known and apart, and held where they are clamped. */
@@ -78,11 +68,11 @@ static bool check_ends(strut_reader *reader, const strut_tree *key, const strut_
   for (int k = 0; k < 2; k++) {
     const strut_node *end = &nodes[b->node[k]];
     if (!(b->clamped >> k & 1u) || (end->fixed[0] && end->fixed[1])) continue;
-    strut_report_error(reader, clamped->value->place,
-                       "beam '%s' is clamped at node '%s', which is not fixed; write fixed: both "
-                       "for it, or join the beam to another by a hinge",
-                       b->name, end->name);
-    return false;
+    return strut_report_error(
+        reader, clamped->value->place,
+        "beam '%s' is clamped at node '%s', which is not fixed; write fixed: both "
+        "for it, or join the beam to another by a hinge",
+        b->name, end->name);
   }
   double length = part_length(reader, b);
   if (length > 0.0) return true;
@@ -103,7 +93,7 @@ static bool read_beam(strut_reader *reader, const strut_tree *key, strut_beam *b
                     .parts = STRUT_USUAL_PARTS};
   strut_read_fields_of(reader, STRUT_SECTION_BEAM, key, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
-  fine = strut_store_fields(reader, &fields, owner, &reader->scratch, b, sizeof *b) && fine;
+  fine = strut_store(reader, &fields, owner, b) && fine;
   const strut_slot *clamped = strut_slot_of(&fields, STRUT_KEY_BEAM_CLAMPED);
   fine = read_clamped_to(reader, strut_slot_of(&fields, STRUT_KEY_BEAM_CLAMPED_TO), b) && fine;
   return fine && !fields.broken && check_ends(reader, key, clamped, b);
@@ -115,15 +105,11 @@ static void add_node(strut_reader *reader, strut_beam *b, const char *name, doub
   strut_scene *scene = reader->scene;
   const double *from = scene->nodes[b->node[0]].position, *to = scene->nodes[b->node[1]].position;
   size_t i = scene->node_count;
-  if (!claim_name(reader, b, "node", &reader->things[STRUT_THING_NODE].names, name, i)) return;
-  strut_node *node = &scene->nodes[i];
-  *node = strut_node_default();
-  node->name = name;
+  strut_node *node = add_thing(reader, b, STRUT_THING_NODE, name);
+  if (!node) return;
   node->fixed[0] = node->fixed[1] = held >= 0;
   if (held >= 0) reader->node_moves[i] = reader->node_moves[held]; /* a clamp moves with its end */
   for (int d = 0; d < 2; d++) node->position[d] = node->start[d] = from[d] + s * (to[d] - from[d]);
-  reader->things[STRUT_THING_NODE].source[i] = (strut_source){b->key, b->key->next, false};
-  scene->node_count++;
 }
 
 static void add_nodes(strut_reader *reader, strut_beam *b) {
@@ -164,14 +150,11 @@ void strut_read_beams(strut_reader *reader) {
     reader->beam_count = 0;
   }
   if (!reader->beam_count || strut_diagnostics_full(reader->diagnostics)) return;
-  scene->nodes = lengthen(reader, &scene->arena, scene->nodes, scene->node_count, parts + clamps,
-                          sizeof *scene->nodes);
-  reader->things[STRUT_THING_NODE].source =
-      lengthen(reader, &reader->scratch, reader->things[STRUT_THING_NODE].source, scene->node_count,
-               parts + clamps, sizeof *reader->things[STRUT_THING_NODE].source);
-  reader->node_moves = lengthen(reader, &reader->scratch, reader->node_moves, scene->node_count,
-                                parts + clamps, sizeof *reader->node_moves);
-  if (!scene->nodes || !reader->things[STRUT_THING_NODE].source || !reader->node_moves) return;
+  const strut_tree **moves = strut_reader_allocate(
+      reader, &reader->scratch, scene->node_count + parts + clamps, sizeof *moves);
+  if (!moves || !strut_reserve_things(reader, STRUT_THING_NODE, parts + clamps)) return;
+  memcpy(moves, reader->node_moves, scene->node_count * sizeof *moves);
+  reader->node_moves = moves;
   for (size_t i = 0; i < reader->beam_count; i++) add_nodes(reader, &reader->beams[i]);
 }
 
@@ -182,32 +165,18 @@ static size_t count_parts(const strut_reader *reader) {
 }
 
 static void add_part(strut_reader *reader, strut_beam *b, int32_t k) {
-  strut_scene *scene = reader->scene;
-  size_t i = scene->member_count;
-  const char *name = part_name(reader, b, (size_t)k);
-  if (!claim_name(reader, b, "member", &reader->things[STRUT_THING_MEMBER].names, name, i)) return;
-  strut_member *m = &scene->members[i];
-  *m = strut_member_default();
-  m->name = name;
+  strut_member *m = add_thing(reader, b, STRUT_THING_MEMBER, part_name(reader, b, (size_t)k));
+  if (!m) return;
   m->node[0] = node_of(b, k - 1), m->node[1] = node_of(b, k);
   m->axial_stiffness = b->axial_stiffness;
   m->damping = b->damping * b->axial_stiffness / part_length(reader, b);
   m->mass = b->mass / (double)b->parts;
-  reader->things[STRUT_THING_MEMBER].source[i] = (strut_source){b->key, b->key->next, false};
-  scene->member_count++;
 }
 
 void strut_add_beam_members(strut_reader *reader) {
-  strut_scene *scene = reader->scene;
   size_t parts = count_parts(reader);
-  if (!parts) return;
-  scene->members = lengthen(reader, &scene->arena, scene->members, scene->member_count, parts,
-                            sizeof *scene->members);
-  reader->things[STRUT_THING_MEMBER].source =
-      lengthen(reader, &reader->scratch, reader->things[STRUT_THING_MEMBER].source,
-               scene->member_count, parts, sizeof *reader->things[STRUT_THING_MEMBER].source);
-  for (size_t i = 0;
-       i < reader->beam_count && scene->members && reader->things[STRUT_THING_MEMBER].source; i++) {
+  if (!parts || !strut_reserve_things(reader, STRUT_THING_MEMBER, parts)) return;
+  for (size_t i = 0; i < reader->beam_count; i++) {
     strut_beam *b = &reader->beams[i];
     for (int32_t k = 1; k <= b->parts && !b->broken; k++) add_part(reader, b, k);
   }
@@ -215,18 +184,12 @@ void strut_add_beam_members(strut_reader *reader) {
 
 static void put_hinge(strut_reader *reader, strut_beam *b, const char *name, const int32_t node[3],
                       double stiffness, double damping, double rest_angle) {
-  strut_scene *scene = reader->scene;
-  size_t i = scene->hinge_count;
-  if (!claim_name(reader, b, "hinge", &reader->things[STRUT_THING_HINGE].names, name, i)) return;
-  strut_hinge *h = &scene->hinges[i];
-  *h = strut_hinge_default();
-  h->name = name;
+  strut_hinge *h = add_thing(reader, b, STRUT_THING_HINGE, name);
+  if (!h) return;
   for (int k = 0; k < 3; k++) h->node[k] = node[k];
   h->stiffness = stiffness;
   h->damping = damping;
   h->rest_angle = rest_angle;
-  reader->things[STRUT_THING_HINGE].source[i] = (strut_source){b->key, b->key->next, false};
-  scene->hinge_count++;
 }
 
 /* A hinge that is straight at rest; `parts`: of those that meet there, as many as bend. */
@@ -250,17 +213,9 @@ static void add_hinges(strut_reader *reader, strut_beam *b) {
 }
 
 void strut_add_beam_hinges(strut_reader *reader) {
-  strut_scene *scene = reader->scene;
   size_t most = count_parts(reader) + 2 * reader->beam_count;
-  if (!reader->beam_count) return;
-  scene->hinges = lengthen(reader, &scene->arena, scene->hinges, scene->hinge_count, most,
-                           sizeof *scene->hinges);
-  reader->things[STRUT_THING_HINGE].source =
-      lengthen(reader, &reader->scratch, reader->things[STRUT_THING_HINGE].source,
-               scene->hinge_count, most, sizeof *reader->things[STRUT_THING_HINGE].source);
-  for (size_t i = 0;
-       i < reader->beam_count && scene->hinges && reader->things[STRUT_THING_HINGE].source; i++)
-    add_hinges(reader, &reader->beams[i]);
+  if (!reader->beam_count || !strut_reserve_things(reader, STRUT_THING_HINGE, most)) return;
+  for (size_t i = 0; i < reader->beam_count; i++) add_hinges(reader, &reader->beams[i]);
   add_coupling_hinges(reader);
 }
 
@@ -280,15 +235,14 @@ static bool read_clamped_to(strut_reader *reader, const strut_slot *slot, strut_
   strut_fields fields;
   strut_owner owner = {"beam", b->name};
   if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
-  strut_read_fields(reader, STRUT_SECTION_CLAMPED_TO, slot->value, owner, &fields);
-  strut_store_fields(reader, &fields, owner, &reader->scratch, b, sizeof *b);
+  strut_read_object(reader, STRUT_SECTION_CLAMPED_TO, slot->value, owner, &fields, b);
   for (int k = 0; k < 2; k++) {
     const strut_tree *end = b->clamped_to[k];
     if (!end || !(b->clamped >> k & 1u)) continue;
-    strut_report_error(reader, end->place,
-                       "the %s of beam '%s' is clamped in a fixed direction and to '%s'; give one",
-                       k ? "end" : "start", b->name, strut_sanitised_text(reader, end->text));
-    return false;
+    return strut_report_error(
+        reader, end->place,
+        "the %s of beam '%s' is clamped in a fixed direction and to '%s'; give one",
+        k ? "end" : "start", b->name, strut_sanitised_text(reader, end->text));
   }
   return !fields.broken;
 }
@@ -327,22 +281,21 @@ static bool find_target(strut_reader *reader, const strut_beam *b, int end,
   }
   target->end = ends[1] == b->node[end];
   if (m && target->beam)
-    strut_report_error(reader, value->place,
-                       "there are a member and a beam '%s'; rename one of them", name);
-  else if (target->beam == b)
-    strut_report_error(reader, value->place, "beam '%s' is clamped to itself", name);
-  else if (m && m->kind == STRUT_CABLE)
-    strut_report_error(reader, value->place,
-                       "beam '%s' is clamped to cable '%s', which has no direction of its own; "
-                       "clamp it to a bar or to a beam",
-                       b->name, name);
-  else if (ends[0] != b->node[end] && ends[1] != b->node[end])
-    strut_report_error(reader, value->place,
-                       "beam '%s' %s at node '%s', which is no end of %s '%s'", b->name, which,
-                       node->name, m ? "member" : "beam", name);
-  else
-    return true;
-  return false;
+    return strut_report_error(reader, value->place,
+                              "there are a member and a beam '%s'; rename one of them", name);
+  if (target->beam == b)
+    return strut_report_error(reader, value->place, "beam '%s' is clamped to itself", name);
+  if (m && m->kind == STRUT_CABLE)
+    return strut_report_error(
+        reader, value->place,
+        "beam '%s' is clamped to cable '%s', which has no direction of its own; "
+        "clamp it to a bar or to a beam",
+        b->name, name);
+  if (ends[0] != b->node[end] && ends[1] != b->node[end])
+    return strut_report_error(reader, value->place,
+                              "beam '%s' %s at node '%s', which is no end of %s '%s'", b->name,
+                              which, node->name, m ? "member" : "beam", name);
+  return true;
 }
 
 /* Stiffness of the half part at an end. */
@@ -478,7 +431,6 @@ static size_t count_hinges(const joints *j, int32_t root) {
 }
 
 static void add_coupling_hinges(strut_reader *reader) {
-  strut_scene *scene = reader->scene;
   joints j;
   size_t more = 0;
   bool any = false;
@@ -488,12 +440,7 @@ static void add_coupling_hinges(strut_reader *reader) {
   join_all(&j);
   for (int32_t e = 0; e < 2 * (int32_t)reader->beam_count; e++)
     if (root_of(&j, e) == e) more += count_hinges(&j, e);
-  scene->hinges = lengthen(reader, &scene->arena, scene->hinges, scene->hinge_count, more,
-                           sizeof *scene->hinges);
-  reader->things[STRUT_THING_HINGE].source =
-      lengthen(reader, &reader->scratch, reader->things[STRUT_THING_HINGE].source,
-               scene->hinge_count, more, sizeof *reader->things[STRUT_THING_HINGE].source);
-  if (!scene->hinges || !reader->things[STRUT_THING_HINGE].source || reader->failed) return;
+  if (reader->failed || !strut_reserve_things(reader, STRUT_THING_HINGE, more)) return;
   for (int32_t e = 0; e < 2 * (int32_t)reader->beam_count; e++)
     if (root_of(&j, e) == e) add_coupling(&j, e);
 }

@@ -41,9 +41,9 @@ static bool read_set(strut_reader *reader, const strut_tree *value, strut_owner 
   set->group = value->text;
   for (size_t j = 0; j < reader->scene->member_count; j++)
     if (belongs(reader, j, *set)) return true;
-  strut_report_error(reader, value->place, "no straight member is of group '%s', which %s names",
-                     strut_sanitised_text(reader, value->text), strut_owner_text(reader, owner));
-  return false;
+  return strut_report_error(
+      reader, value->place, "no straight member is of group '%s', which %s names",
+      strut_sanitised_text(reader, value->text), strut_owner_text(reader, owner));
 }
 
 static double side_of(const double *a, const double *b, const double *p) {
@@ -137,9 +137,8 @@ static bool find_pairs(strut_reader *reader, const strut_source *source, const s
       return false;
   pairs->count = add_pairs(reader, c, pairs->set, NULL);
   if (pairs->count <= MOST_PAIRS) return true;
-  strut_report_error(reader, between->place, "%s stands for more than %d pairs of members",
-                     strut_owner_text(reader, owner), (int)MOST_PAIRS);
-  return false;
+  return strut_report_error(reader, between->place, "%s stands for more than %d pairs of members",
+                            strut_owner_text(reader, owner), (int)MOST_PAIRS);
 }
 
 /* Puts all pairs in place of the collisions that were read, with their names. */

@@ -59,13 +59,11 @@ bool strut_read_node_sets(strut_reader *reader, const strut_slot *slot, strut_ow
   bool fine = true;
   for (const strut_tree *item = list->first; item; item = item->next)
     if (item->kind == STRUT_TREE_LIST) lists++;
-  if (!list->count || (lists && lists != list->count)) {
-    strut_report_error(
+  if (!list->count || (lists && lists != list->count))
+    return strut_report_error(
         reader, list->place,
         "expected nodes such as [n1, n2], or a list of such lists, for '%s' of %s, found %s", key,
         strut_owner_text(reader, owner), lists ? "a list of both" : strut_found(reader, list));
-    return false;
-  }
   if (!nodes_known(reader)) return false;
   alternatives = lists ? lists : 1;
   *sets = strut_reader_allocate(reader, &reader->scene->arena, alternatives, sizeof **sets);
@@ -99,12 +97,11 @@ static bool keys_only(strut_reader *reader, const strut_tree *map, strut_owner o
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     if (is_key(reader, key) || strut_find_thing(reader, STRUT_THING_NODE, NULL, key->text) < 0)
       continue;
-    strut_report_error(
+    fine = strut_report_error(
         reader, key->place,
         "node '%s' of %s belongs in its 'shape', as in {contacts: [...], shape: {%s: ...}}",
         strut_sanitised_text(reader, key->text), strut_owner_text(reader, owner),
         strut_sanitised_text(reader, key->text));
-    fine = false;
   }
   return fine;
 }
@@ -116,9 +113,7 @@ static bool read_keys(strut_reader *reader, const strut_tree *map, strut_owner o
   if (!keys_only(reader, map, owner)) return false;
   strut_read_fields(reader, STRUT_SECTION_CONFIGURATION, map, owner, &fields);
   const strut_slot *shape = strut_slot_of(&fields, STRUT_KEY_CONFIGURATION_SHAPE);
-  bool fine = strut_store_fields(reader, &fields, owner, &reader->scene->arena, configuration,
-                                 sizeof *configuration) &&
-              !fields.broken;
+  bool fine = strut_store(reader, &fields, owner, configuration) && !fields.broken;
   configuration->shaped = shape->state == STRUT_GIVEN;
   if (configuration->shaped)
     fine =
@@ -137,12 +132,10 @@ bool strut_read_configuration(strut_reader *reader, const strut_tree *key, void 
   if (!configuration->position) return false;
   for (size_t i = 0; i < scene->node_count; i++)
     memcpy(configuration->position[i], scene->nodes[i].position, sizeof *configuration->position);
-  if (value->kind != STRUT_TREE_MAP) {
-    strut_report_error(reader, value->place,
-                       "expected positions such as {n1: [10 mm, 0]} for %s, found %s",
-                       strut_owner_text(reader, owner), strut_found(reader, value));
-    return false;
-  }
+  if (value->kind != STRUT_TREE_MAP)
+    return strut_report_error(reader, value->place,
+                              "expected positions such as {n1: [10 mm, 0]} for %s, found %s",
+                              strut_owner_text(reader, owner), strut_found(reader, value));
   for (const strut_tree *k = value->first; k; k = k->next->next) keys |= is_key(reader, k);
   if (keys) return read_keys(reader, value, owner, configuration);
   configuration->shaped = true; /* `{}` is the drawn shape */
@@ -196,9 +189,7 @@ void strut_read_search(strut_reader *reader) {
   if (!strut_read_section(reader, STRUT_KEY_SCENE_EQUILIBRIA, STRUT_SECTION_EQUILIBRIA,
                           search_owner.kind, &reader->search))
     return;
-  if (!strut_store_fields(reader, &reader->search, search_owner, &reader->scene->arena, search,
-                          sizeof *search))
-    reader->search.broken = true;
+  if (!strut_store(reader, &reader->search, search_owner, search)) reader->search.broken = true;
 }
 
 /* ---- the initial state; solver, run and output ---- */
@@ -387,7 +378,7 @@ static void read_run(strut_reader *reader) {
   if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_SECTION_RUN, run.kind, &reader->run))
     return;
   read_of(reader);
-  strut_store_fields(reader, &reader->run, run, &reader->scene->arena, e, sizeof *e);
+  strut_store(reader, &reader->run, run, e);
   const strut_slot *measure = strut_slot_of(&reader->run, STRUT_KEY_RUN_MEASURE);
   if (measure->state == STRUT_GIVEN) {
     strut_read_fields(reader, STRUT_SECTION_MEASURE, measure->value,
@@ -396,7 +387,7 @@ static void read_run(strut_reader *reader) {
                 STRUT_KEY_MEASURE_STEADY, owner.kind, (strut_owner){"the steady state", NULL},
                 &reader->steady);
     read_last(reader, &reader->measure, STRUT_KEY_MEASURE_LAST, owner, &e->measure_last);
-    strut_store_fields(reader, &reader->measure, owner, &reader->scene->arena, e, sizeof *e);
+    strut_store(reader, &reader->measure, owner, e);
     strut_read_quantities(reader, strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_QUANTITIES));
   }
   if (reader->measure.broken) reader->run.broken = true;
@@ -418,16 +409,15 @@ static void choose_settling_step(strut_reader *reader) {
 
 void strut_read_experiment(strut_reader *reader) {
   strut_experiment *e = reader->experiment;
-  strut_arena *arena = &reader->scene->arena;
   strut_owner solver = {"the solver", NULL}, output = {"the output", NULL};
   read_run(reader);
   if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_SECTION_SOLVER, solver.kind,
                          &reader->solver))
-    strut_store_fields(reader, &reader->solver, solver, arena, e, sizeof *e);
+    strut_store(reader, &reader->solver, solver, e);
   choose_settling_step(reader);
   if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, output.kind,
                           &reader->output))
     return;
-  strut_store_fields(reader, &reader->output, output, arena, e, sizeof *e);
+  strut_store(reader, &reader->output, output, e);
   read_last(reader, &reader->output, STRUT_KEY_OUTPUT_LAST, output, &e->output_last);
 }

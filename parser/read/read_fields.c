@@ -155,11 +155,10 @@ bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tre
   while (words.count < 32 &&
          strut_word_at(key->words, words.count, words.word[words.count], sizeof words.word[0]))
     words.count++;
-  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found '%s'%s", expected,
-                     key->name, strut_owner_text(reader, owner),
-                     strut_sanitised_text(reader, value->text),
-                     strut_hint(reader, value->text, name_of_words, &words, (size_t)words.count));
-  return false;
+  return strut_report_error(
+      reader, value->place, "expected %s for '%s' of %s, found '%s'%s", expected, key->name,
+      strut_owner_text(reader, owner), strut_sanitised_text(reader, value->text),
+      strut_hint(reader, value->text, name_of_words, &words, (size_t)words.count));
 }
 
 /* A list of words without repetition; bits gets one bit for each. */
@@ -172,9 +171,8 @@ static bool read_words(strut_reader *reader, const strut_key *key, const strut_t
     if (!strut_read_word(reader, key, item, owner, &word)) {
       fine = false;
     } else if (*bits & 1 << word) {
-      strut_report_error(reader, item->place, "'%s' appears twice in '%s' of %s", item->text,
-                         key->name, strut_owner_text(reader, owner));
-      fine = false;
+      fine = strut_report_error(reader, item->place, "'%s' appears twice in '%s' of %s", item->text,
+                                key->name, strut_owner_text(reader, owner));
     } else {
       *bits |= 1 << word;
     }
@@ -191,64 +189,21 @@ static bool read_fixed(strut_reader *reader, const strut_key *key, const strut_t
   return read_words(reader, &in_list, value, owner, bits);
 }
 
-static bool refuse_value(strut_reader *reader, int key, const strut_tree *value,
-                         strut_owner owner) {
+bool strut_refuse_form(strut_reader *reader, int key, const strut_tree *value, strut_owner owner) {
   char expected[300];
-  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s",
-                     strut_key_expected(key, expected, sizeof expected), strut_key_at(key)->name,
-                     strut_owner_text(reader, owner), strut_found(reader, value),
-                     strut_lacks_space(value) ? "; write a space after the colon" : "");
-  return false;
-}
-
-/* Is the value a scalar, list or mapping, as the type requires? Its content is not checked. */
-static bool shape_fits(strut_key_type type, const strut_tree *value) {
-  bool scalar = value->kind == STRUT_TREE_SCALAR && !strut_is_null(value);
-  switch (type) {
-    case STRUT_TYPE_WORDS:
-    case STRUT_TYPE_KEEP:
-    case STRUT_TYPE_SIGNALS:
-    case STRUT_TYPE_AXES:
-    case STRUT_TYPE_TIMES:
-    case STRUT_TYPE_TABLE:
-    case STRUT_TYPE_NODE_SETS: return value->kind == STRUT_TREE_LIST;
-    case STRUT_TYPE_NODE_PATH: return value->kind == STRUT_TREE_LIST && value->count >= 2;
-    case STRUT_TYPE_NODE_RING: return value->kind == STRUT_TREE_LIST && value->count >= 3;
-    case STRUT_TYPE_NAME_PAIR: return value->kind == STRUT_TREE_LIST && value->count == 2;
-    case STRUT_TYPE_NODE_TRIPLE: return value->kind == STRUT_TREE_LIST && value->count == 3;
-    case STRUT_TYPE_NUMBERS:
-    case STRUT_TYPE_NAMES:
-    case STRUT_TYPE_PROFILE:
-    case STRUT_TYPE_POINTS: return value->kind == STRUT_TREE_LIST;
-    case STRUT_TYPE_MAP:
-    case STRUT_TYPE_THINGS: return value->kind == STRUT_TREE_MAP;
-    case STRUT_TYPE_SIGNAL:
-    case STRUT_TYPE_LAW:
-    case STRUT_TYPE_SETTLE:
-    case STRUT_TYPE_STEADY: return scalar || value->kind == STRUT_TREE_MAP;
-    case STRUT_TYPE_GROUPS:
-    case STRUT_TYPE_FIXED: return scalar || value->kind == STRUT_TREE_LIST;
-    case STRUT_TYPE_CONTACT_NODES:
-      return value->kind == STRUT_TREE_LIST || (scalar && strcmp(value->text, "all") == 0);
-    case STRUT_TYPE_VERSION:
-    case STRUT_TYPE_TEXT:
-    case STRUT_TYPE_NAME:
-    case STRUT_TYPE_EXPRESSION: return scalar;
-    case STRUT_TYPE_NUMBER:
-    case STRUT_TYPE_PAIR:
-    case STRUT_TYPE_FREE:
-    case STRUT_TYPE_WORD: break; /* their readers report it */
-  }
-  return true;
+  return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s",
+                            strut_key_expected(key, expected, sizeof expected),
+                            strut_key_at(key)->name, strut_owner_text(reader, owner),
+                            strut_found(reader, value),
+                            strut_lacks_space(value) ? "; write a space after the colon" : "");
 }
 
 static bool read_version(strut_reader *reader, const strut_tree *value) {
   if (strcmp(value->text, "1") == 0) return true;
-  strut_report_error(reader, value->place,
-                     "expected the language version 1 for 'strut', found '%s'; "
-                     "this program knows version 1 only",
-                     strut_sanitised_text(reader, value->text));
-  return false;
+  return strut_report_error(reader, value->place,
+                            "expected the language version 1 for 'strut', found '%s'; "
+                            "this program knows version 1 only",
+                            strut_sanitised_text(reader, value->text));
 }
 
 static bool read_number(strut_reader *reader, const strut_key *key, const strut_tree *value,
@@ -282,8 +237,8 @@ void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
   *slot = (strut_slot){.key = key_tree, .value = value};
   bool bodies = key == STRUT_KEY_SCENE_COLLISIONS && value->kind == STRUT_TREE_SCALAR;
   if (bodies && strcmp(value->text, "all") == 0) return; /* strut_read_bodies takes it */
-  bool fine = shape_fits(k->type, value) ? read_typed(reader, k, value, owner, slot)
-                                         : refuse_value(reader, key, value, owner);
+  bool fine = strut_shape_fits(k->type, value) ? read_typed(reader, k, value, owner, slot)
+                                               : strut_refuse_form(reader, key, value, owner);
   slot->state = fine ? STRUT_GIVEN : STRUT_BROKEN;
 }
 

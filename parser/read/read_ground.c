@@ -108,8 +108,7 @@ static void add_layer(strut_reader *reader, friction_layers *f, strut_fields *fi
   f->last = fields->map;
   f->owner = owner;
   if (fields->broken) f->broken = true;
-  strut_store_fields(reader, fields, owner, &reader->scene->arena, &f->friction,
-                     sizeof f->friction);
+  strut_store(reader, fields, owner, &f->friction);
   for (int i = 0; i < strut_section_size(STRUT_SECTION_FRICTION); i++)
     if (fields->slot[i].state == STRUT_GIVEN) f->given |= 1u << i;
   set_coefficients(reader, f, fields, owner);
@@ -209,13 +208,12 @@ static bool turn_friction(strut_reader *reader, const strut_tree *key, const dou
   if (!reader->scope || !f->directional) return true;
   strut_place_vector(reader, NULL, ahead);
   double forward = strut_dot(ahead, along, 2);
-  if (fabs(forward) < 1e-9) {
-    strut_report_error(reader, key->place,
-                       "contact '%s' has a friction with a direction, but its copy stands upright "
-                       "on the ground; give its contact where it is placed",
-                       strut_local_name(reader, key->text));
-    return false;
-  }
+  if (fabs(forward) < 1e-9)
+    return strut_report_error(
+        reader, key->place,
+        "contact '%s' has a friction with a direction, but its copy stands upright "
+        "on the ground; give its contact where it is placed",
+        strut_local_name(reader, key->text));
   if (forward > 0.0) return true;
   double statics = f->mu_static, kinetics = f->mu_kinetic;
   f->mu_static = f->mu_static_backward, f->mu_kinetic = f->mu_kinetic_backward;
@@ -233,7 +231,7 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
     strut_enter_scope(reader, key);
     strut_read_fields(reader, STRUT_SECTION_CONTACT, key->next, owner, &fields);
     strut_apply_groups(reader, &fields, STRUT_KEY_CONTACT_GROUP, owner);
-    strut_store_fields(reader, &fields, owner, &reader->scene->arena, contact, sizeof *contact);
+    strut_store(reader, &fields, owner, contact);
     own_friction(reader, &fields, owner, &layers);
     fine = turn_friction(reader, key, defaults->along, &layers.friction) && fine && !fields.broken;
   }
@@ -279,9 +277,8 @@ static bool mark_nodes(strut_reader *reader, strut_fields *fields, strut_owner o
     if (node < 0) {
       fine = false;
     } else if (touches[node]) {
-      strut_report_error(reader, item->place, "node '%s' appears twice in 'nodes' of %s",
-                         item->text, strut_owner_text(reader, owner));
-      fine = false;
+      fine = strut_report_error(reader, item->place, "node '%s' appears twice in 'nodes' of %s",
+                                item->text, strut_owner_text(reader, owner));
     } else {
       touches[node] = 1;
     }
@@ -332,10 +329,9 @@ static bool add_copied(strut_reader *reader, unsigned char *touches, const strut
     if (node < 0) {
       fine = false;
     } else if (entry[node] && entry[node]->next->first != key->next->first) {
-      strut_report_error(reader, key->place,
-                         "node '%s' has two different contacts, of the parts that share it",
-                         reader->scene->nodes[node].name);
-      fine = false;
+      fine = strut_report_error(reader, key->place,
+                                "node '%s' has two different contacts, of the parts that share it",
+                                reader->scene->nodes[node].name);
     } else {
       touches[node] = 1, entry[node] = key;
     }
@@ -425,9 +421,8 @@ static bool shape_is_alone(strut_reader *reader, strut_fields *fields, strut_own
   for (size_t i = 0; shape->key && i < sizeof of_lines / sizeof of_lines[0]; i++) {
     const strut_slot *slot = strut_slot_of(fields, of_lines[i]);
     if (!slot->key) continue;
-    strut_report_error(reader, slot->key->place, "%s is a %s, so it has no '%s'",
-                       strut_owner_text(reader, owner), shape->key->text, slot->key->text);
-    return false;
+    return strut_report_error(reader, slot->key->place, "%s is a %s, so it has no '%s'",
+                              strut_owner_text(reader, owner), shape->key->text, slot->key->text);
   }
   return true;
 }
@@ -439,11 +434,9 @@ static bool read_normal(strut_reader *reader, strut_fields *fields, strut_owner 
   const strut_slot *normal = strut_slot_of(fields, STRUT_KEY_GROUND_NORMAL);
   if (normal->state != STRUT_GIVEN) return true;
   const double *n = section->normal;
-  if (n[0] == 0.0 && n[1] == 0.0) {
-    strut_report_error(reader, normal->value->place, "the normal of %s has no direction",
-                       strut_owner_text(reader, owner));
-    return false;
-  }
+  if (n[0] == 0.0 && n[1] == 0.0)
+    return strut_report_error(reader, normal->value->place, "the normal of %s has no direction",
+                              strut_owner_text(reader, owner));
   ground->slope = n[0] == 0.0 ? (n[1] > 0.0 ? 0.0 : STRUT_PI) : atan2(-n[0], n[1]);
   if (!ground->placed && n[1] < 0.0) { /* steeper than a ground without a point may be */
     ground->placed = true;
@@ -502,10 +495,7 @@ static void merge_contacts(strut_reader *reader, const contact_list *lists) {
   size_t grounds = scene->ground_count, total = 0;
   size_t *next = strut_reader_allocate(reader, &reader->scratch, grounds, sizeof *next);
   for (size_t g = 0; g < grounds; g++) total += lists[g].count;
-  scene->contacts = strut_reader_allocate(reader, &scene->arena, total, sizeof *scene->contacts);
-  reader->things[STRUT_THING_CONTACT].source = strut_reader_allocate(
-      reader, &reader->scratch, total, sizeof *reader->things[STRUT_THING_CONTACT].source);
-  if (!next || !scene->contacts || !reader->things[STRUT_THING_CONTACT].source) return;
+  if (!next || !strut_reserve_things(reader, STRUT_THING_CONTACT, total)) return;
   for (int32_t node = 0; (size_t)node < scene->node_count; node++)
     for (size_t g = 0; g < grounds; g++)
       for (; next[g] < lists[g].count && lists[g].contact[next[g]].node == node; next[g]++) {
@@ -532,8 +522,8 @@ static void read_one(strut_reader *reader, strut_fields *fields, strut_owner own
                      strut_place place, strut_ground *ground, contact_list *list) {
   strut_require(reader, fields, owner, place);
   strut_ground_section section = {.ground = *ground, .contact = strut_contact_default()};
-  if (!strut_store_fields(reader, fields, owner, &reader->scene->arena, &section, sizeof section) ||
-      !shape_is_alone(reader, fields, owner) || !read_normal(reader, fields, owner, &section))
+  if (!strut_store(reader, fields, owner, &section) || !shape_is_alone(reader, fields, owner) ||
+      !read_normal(reader, fields, owner, &section))
     fields->broken = true;
   *ground = section.ground;
   ground_defaults defaults = read_defaults(reader, fields, &section.contact, owner);
@@ -590,27 +580,22 @@ void strut_read_ground(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUNDS);
   if (!map || strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key) return;
   contact_list *lists = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *lists);
-  scene->grounds = strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->grounds);
   reader->grounds =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->grounds);
-  reader->things[STRUT_THING_GROUND].source = strut_reader_allocate(
-      reader, &reader->scratch, map->count, sizeof *reader->things[STRUT_THING_GROUND].source);
-  if (!lists || !scene->grounds || !reader->grounds || !reader->things[STRUT_THING_GROUND].source)
+  if (!lists || !reader->grounds || !strut_reserve_things(reader, STRUT_THING_GROUND, map->count))
     return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    size_t g = strut_next_entry(reader, &scene->ground_count);
+    size_t g = scene->ground_count;
     strut_owner owner = {"ground", strut_keep_text(reader, key->text)};
-    scene->grounds[g] = (strut_ground){.name = owner.name};
+    strut_add_thing(reader, STRUT_THING_GROUND, key, owner.name);
     lists[g] = (contact_list){0};
-    strut_add_name(reader, &reader->things[STRUT_THING_GROUND].names, owner.name, g);
     bool fine = strut_read_name(reader, key, "ground");
     strut_read_fields(reader, STRUT_SECTION_GROUND, key->next, owner, &reader->grounds[g]);
     read_one(reader, &reader->grounds[g], owner, key->place, &scene->grounds[g], &lists[g]);
     if (!fine) reader->grounds[g].broken = true;
     if (reader->grounds[g].broken)
       reader->ground.broken = true; /* so that what depends on it is not reported */
-    reader->things[STRUT_THING_GROUND].source[g] =
-        (strut_source){key, key->next, reader->grounds[g].broken};
+    reader->things[STRUT_THING_GROUND].source[g].broken = reader->grounds[g].broken;
   }
   merge_contacts(reader, lists);
 }

@@ -26,10 +26,9 @@ typedef struct network {
 
 static bool fail_network(network *n, const char *what, const char *text) {
   const strut_tree *value = strut_tree_find(n->key->next, "network", NULL);
-  strut_report_error(n->reader, value->place, "network '%s', line %zu: %s%s",
-                     strut_sanitised_text(n->reader, value->text), n->line, what,
-                     text ? strut_sanitised_text(n->reader, text) : "");
-  return false;
+  return strut_report_error(n->reader, value->place, "network '%s', line %zu: %s%s",
+                            strut_sanitised_text(n->reader, value->text), n->line, what,
+                            text ? strut_sanitised_text(n->reader, text) : "");
 }
 
 /* A signal of the network with a name of its own. */
@@ -168,14 +167,12 @@ static bool read_inputs(network *n, strut_owner owner) {
     if (!strut_read_scalar(reader, item, "inputs", owner, "an expression without unit") ||
         !strut_read_signal_program(reader, item, "inputs", owner, &signal.program, &q))
       return false;
-    if (!q.bare && !strut_dimension_equal(q.dimension, STRUT_DIM_NONE)) {
-      strut_report_error(
+    if (!q.bare && !strut_dimension_equal(q.dimension, STRUT_DIM_NONE))
+      return strut_report_error(
           reader, item->place,
           "expected a number without unit for 'inputs' of %s, found %s; divide it by "
           "what is usual",
           strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
-      return false;
-    }
     const char *name =
         strut_arena_format(&reader->scratch, "%s_in_%zu", n->key->text, n->before + 1);
     int32_t index = add_neuron(n, name, &signal);
@@ -196,8 +193,8 @@ static int32_t add_output(network *n, strut_owner owner) {
                        (int)n->keys.output, n->before);
     return -1;
   }
-  if (value && (!strut_read_scalar(n->reader, value, "scale", owner, "a number such as '5 mm'") ||
-                !strut_read_quantity(n->reader, value, "scale", owner, &scale)))
+  if (value &&
+      !strut_read_any_quantity(n->reader, value, "scale", owner, "a number such as '5 mm'", &scale))
     return -1;
   strut_dimension dimension = scale.bare ? STRUT_DIM_NONE : scale.dimension;
   if (!begin_program(n->reader, 3, &b)) return -1;
@@ -235,7 +232,7 @@ int32_t strut_read_network(strut_reader *reader, const strut_tree *key) {
   strut_require(reader, &fields, owner, key->place);
   const strut_slot *file = strut_slot_of(&fields, STRUT_KEY_NETWORK_FILE);
   if (fields.broken || file->state != STRUT_GIVEN) return -1;
-  strut_store_fields(reader, &fields, owner, &reader->scratch, &n.keys, sizeof n.keys);
+  strut_store(reader, &fields, owner, &n.keys);
   if (!read_inputs(&n, owner) || !open_network(&n, file->value, &text)) return -1;
   n.passes = (double)n.before;
   n.weight = strut_reader_allocate(reader, &reader->scratch, n.before + MOST_NEURONS + 1,

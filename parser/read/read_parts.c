@@ -32,8 +32,7 @@ static void read_part_list(strut_reader *reader, const strut_slot *slot, strut_c
     strut_owner owner = {"part", key->text};
     bool fine = strut_read_name(reader, key, "part");
     strut_read_fields(reader, STRUT_SECTION_PART, key->next, owner, &part->fields);
-    strut_store_fields(reader, &part->fields, owner, &reader->scratch, &part->keys,
-                       sizeof part->keys);
+    strut_store(reader, &part->fields, owner, &part->keys);
     part->broken = !fine || part->fields.broken || part->keys.use; /* a file that was not read */
   }
 }
@@ -116,13 +115,12 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
     strut_declare_parameter(reader, key, p);
     p->of_part = values++;
     p->of_part->scope = copy;
-    if (!copy->closed && strut_parameter_find(reader, key->text)) {
-      strut_report_error(reader, key->place,
-                         "the scene has a parameter '%s' already, which the part sees; give this "
-                         "one another name",
-                         key->text);
-      fine = false;
-    }
+    if (!copy->closed && strut_parameter_find(reader, key->text))
+      fine = strut_report_error(
+          reader, key->place,
+          "the scene has a parameter '%s' already, which the part sees; give this "
+          "one another name",
+          key->text);
   }
   for (; given; given = given->next->next) {
     size_t i = 0;
@@ -132,11 +130,10 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
       copy->parameters[i].of_part->given_scope = place;
       continue;
     }
-    strut_report_error(
+    fine = strut_report_error(
         reader, given->place, "part '%s' has no parameter '%s'%s", copy->placement->part->name,
         strut_sanitised_text(reader, given->text),
         strut_hint(reader, given->text, copy_parameter_name, copy, copy->parameter_count));
-    fine = false;
   }
   for (size_t i = 0; i < copy->parameter_count; i++) {
     strut_parameter_state *p = &copy->parameters[i];
@@ -192,7 +189,7 @@ strut_copy *strut_make_copy(strut_expansion *e, strut_placing *p, const int64_t 
   if (!first && p->varies) {
     strut_owner owner = {"place", p->placement->key->text};
     strut_read_fields(reader, STRUT_SECTION_PLACE, p->placement->key->next, owner, &p->fields);
-    strut_store_fields(reader, &p->fields, owner, &reader->scratch, &p->keys, sizeof p->keys);
+    strut_store(reader, &p->fields, owner, &p->keys);
   }
   bool fine = read_copy_parameters(reader, copy, place, p->keys.set) && !p->fields.broken;
   if (fine && (first || p->varies)) fine = strut_read_frame(e, p, copy, base);
@@ -223,12 +220,10 @@ static void add_ports(strut_expansion *e, strut_copy *copy) {
   strut_reader *reader = e->reader;
   const strut_tree *ports = copy->placement->part->keys.ports;
   if (!ports) return;
-  if (c->ported_count == c->ported_capacity) {
-    size_t capacity = c->ported_capacity ? 2 * c->ported_capacity : 16;
-    const strut_copy **more = strut_reallocate(c->ported_copies, capacity, sizeof *more);
-    if (!more) reader->out_of_memory = e->stopped = true;
-    if (!more) return;
-    c->ported_copies = more, c->ported_capacity = capacity;
+  if (!strut_grow(&c->ported_copies, &c->ported_capacity, c->ported_count,
+                  sizeof *c->ported_copies)) {
+    reader->out_of_memory = e->stopped = true;
+    return;
   }
   const char *name = strut_arena_text(&reader->scratch, copy->prefix, copy->prefix_length - 1);
   if (!name) return;
@@ -266,7 +261,9 @@ static void link_copies(strut_expansion *e, strut_fields *next, strut_copy *plac
   link->frame = copy->frame;
   link->next = other, link->twist = twist;
   strut_copy_things(e, next, link);
-  strut_read_merge(e, strut_slot_of(next, STRUT_KEY_NEXT_MERGE)->value, link, STRUT_KEY_NEXT_MERGE);
+  strut_next_keys keys = {0};
+  strut_store(e->reader, next, ((strut_owner){"'next'", NULL}), &keys);
+  strut_read_merge(e, keys.merge, link, STRUT_KEY_NEXT_MERGE);
 }
 
 /* The keys of `next` in each direction, read once for all copies. False: one is broken. */
@@ -437,7 +434,7 @@ bool strut_read_placement(strut_expansion *e, const strut_tree *key, strut_copy 
   bool fine = strut_read_name(reader, key, "placement");
   strut_read_fields(reader, STRUT_SECTION_PLACE, key->next, owner, &p->fields);
   strut_require(reader, &p->fields, owner, key->place);
-  strut_store_fields(reader, &p->fields, owner, &reader->scratch, &p->keys, sizeof p->keys);
+  strut_store(reader, &p->fields, owner, &p->keys);
   scope->numbers = 0;
   placement->part = read_part_name(reader, outer, p->keys.part, owner);
   fine = strut_read_repeat(reader, strut_slot_of(&p->fields, STRUT_KEY_PLACE_REPEAT), key->text,
@@ -464,12 +461,10 @@ static void expand_place(strut_expansion *e, const strut_tree *key, strut_copy *
   strut_part *part = placement->part;
   if (!enter_part(e, part, p.keys.part)) return;
   if (!e->weighing) {
-    if (c->placement_count == c->placement_capacity) {
-      size_t capacity = c->placement_capacity ? 2 * c->placement_capacity : 16;
-      strut_placement **more = strut_reallocate(c->placements, capacity, sizeof *more);
-      if (!more) reader->out_of_memory = e->stopped = true;
-      if (!more) return;
-      c->placements = more, c->placement_capacity = capacity;
+    if (!strut_grow(&c->placements, &c->placement_capacity, c->placement_count,
+                    sizeof *c->placements)) {
+      reader->out_of_memory = e->stopped = true;
+      return;
     }
     c->placements[c->placement_count] = placement;
     strut_add_name(reader, &c->placement_names, placement->name, c->placement_count++);

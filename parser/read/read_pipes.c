@@ -27,15 +27,11 @@ static const char *name_of(strut_reader *reader, const strut_tree *key, const ch
 /* A sensor of the pressure at one end; its index, or -1. */
 static int32_t add_sensor(strut_reader *reader, const strut_tree *key, const char *end,
                           int32_t cell) {
-  strut_scene *scene = reader->scene;
-  strut_things_read *sensors = &reader->things[STRUT_THING_SENSOR];
-  const char *name = name_of(reader, key, end, &sensors->names);
+  const char *name = name_of(reader, key, end, &reader->things[STRUT_THING_SENSOR].names);
   if (!name) return -1;
-  size_t i = strut_next_entry(reader, &scene->sensor_count);
-  scene->sensors[i] = (strut_sensor){.name = name, .kind = STRUT_SENSOR_PRESSURE, .item = cell};
-  strut_add_name(reader, &sensors->names, name, i);
-  sensors->source[i] = (strut_source){key, key->next, false};
-  return (int32_t)i;
+  strut_sensor *sensor = strut_add_thing(reader, STRUT_THING_SENSOR, key, name);
+  sensor->kind = STRUT_SENSOR_PRESSURE, sensor->item = cell;
+  return (int32_t)(sensor - reader->scene->sensors);
 }
 
 /* What has flowed changes the pressure of the drawn area by so much. */
@@ -59,18 +55,12 @@ static bool add_signal(strut_reader *reader, const strut_tree *key, const char *
 }
 
 void strut_add_pipe_drives(strut_reader *reader) {
-  strut_scene *scene = reader->scene;
-  strut_things_read *actuators = &reader->things[STRUT_THING_ACTUATOR];
-  for (size_t k = 0; k < reader->pipe_drive_count && scene->actuators; k++) {
+  for (size_t k = 0; k < reader->pipe_drive_count && reader->scene->actuators; k++) {
     const strut_pipe_drive *d = &reader->pipe_drives[k];
-    const char *name = name_of(reader, d->key, d->end, &actuators->names);
+    const char *name = name_of(reader, d->key, d->end, &reader->things[STRUT_THING_ACTUATOR].names);
     if (!name) continue;
-    size_t i = strut_next_entry(reader, &scene->actuator_count);
-    scene->actuators[i] = *(const strut_actuator *)strut_thing_at(STRUT_THING_ACTUATOR)->usual;
-    scene->actuators[i].name = name, scene->actuators[i].cell = d->cell;
-    scene->actuators[i].signal = d->signal;
-    strut_add_name(reader, &actuators->names, name, i);
-    actuators->source[i] = (strut_source){d->key, d->key->next, false};
+    strut_actuator *actuator = strut_add_thing(reader, STRUT_THING_ACTUATOR, d->key, name);
+    actuator->cell = d->cell, actuator->signal = d->signal;
   }
 }
 
@@ -108,9 +98,8 @@ static void read_pipe(strut_reader *reader, const strut_tree *key) {
   bool fine = strut_check_variable_name(reader, key, "state");
   strut_read_fields_of(reader, STRUT_SECTION_PIPE, key, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
-  if (fields.broken || !fine ||
-      !strut_store_fields(reader, &fields, owner, &reader->scratch, &pipe, sizeof pipe) ||
-      pipe.cell[0] < 0 || pipe.cell[1] < 0)
+  if (fields.broken || !fine || !strut_store(reader, &fields, owner, &pipe) || pipe.cell[0] < 0 ||
+      pipe.cell[1] < 0)
     return;
   if (pipe.cell[0] == pipe.cell[1]) {
     strut_report_error(reader, key->place, "pipe '%s' joins cell '%s' to itself", key->text,

@@ -44,8 +44,7 @@ static void read_head(strut_reader *reader) {
                                 strut_measure_dimension(strut_key_at(key)->measure), slot->number);
     if (!fine) slot->state = STRUT_BROKEN;
   }
-  strut_store_fields(reader, &reader->top, owner, &reader->scene->arena, reader->scene,
-                     sizeof *reader->scene);
+  strut_store(reader, &reader->top, owner, reader->scene);
 }
 
 /* Stops behind the section in which the diagnostics became full. */
@@ -143,6 +142,7 @@ bool strut_tree_is_study(const strut_tree *root) {
 void strut_reader_target(strut_reader *reader, strut_setup *setup) {
   reader->setup = setup;
   reader->scene = &setup->scene;
+  reader->keep = &setup->scene.arena;
   reader->experiment = &setup->experiment;
 }
 

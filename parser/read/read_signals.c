@@ -24,19 +24,13 @@ static const char *signal_name(const void *context, size_t i) {
 /* Appends a signal; returns its index, or -1 where memory is out. */
 static int32_t add_signal(strut_reader *reader, const strut_signal *signal, const meaning *m,
                           const strut_tree *value) {
-  if (reader->signal_count == reader->signal_capacity) {
-    size_t capacity = reader->signal_capacity ? 2 * reader->signal_capacity : 16;
-    strut_signal *signals = strut_reallocate(reader->signals, capacity, sizeof *signals);
-    if (signals) reader->signals = signals;
-    strut_signal_state *state = strut_reallocate(reader->signal_state, capacity, sizeof *state);
-    if (state) reader->signal_state = state;
-    if (!signals || !state) {
-      reader->out_of_memory = true;
-      return -1;
-    }
-    reader->signal_capacity = capacity;
+  size_t i = reader->signal_count, states = reader->signal_capacity;
+  if (!strut_grow(&reader->signal_state, &states, i, sizeof *reader->signal_state) ||
+      !strut_grow(&reader->signals, &reader->signal_capacity, i, sizeof *reader->signals)) {
+    reader->out_of_memory = true;
+    return -1;
   }
-  size_t i = reader->signal_count++;
+  reader->signal_count++;
   reader->signals[i] = *signal;
   reader->signal_state[i] = (strut_signal_state){m->dimension, m->bare, value, NULL};
   return (int32_t)i;
@@ -49,9 +43,7 @@ static bool read_value(strut_reader *reader, const strut_tree *value, const char
   if (m->expected || !m->bare)
     return strut_read_number(reader, value, key, owner, m->expected ? *m->expected : m->dimension,
                              STRUT_RANGE_ANY, number);
-  if (!strut_read_scalar(reader, value, key, owner, "a number") ||
-      !strut_read_quantity(reader, value, key, owner, &quantity))
-    return false;
+  if (!strut_read_any_quantity(reader, value, key, owner, "a number", &quantity)) return false;
   *number = quantity.value;
   if (strut_dimension_equal(quantity.dimension, STRUT_DIM_LENGTH) && !quantity.bare)
     *number *= strut_scope_scale(reader, value);
@@ -73,7 +65,7 @@ static bool read_wave(strut_reader *reader, strut_section section, const strut_t
     if (slot->state == STRUT_GIVEN && key->measure == STRUT_MEASURE_CONTEXT)
       fine = read_value(reader, slot->value, key->name, owner, m, &signal->amplitude) && fine;
   }
-  strut_store_fields(reader, &fields, owner, &reader->scene->arena, signal, sizeof *signal);
+  strut_store(reader, &fields, owner, signal);
   return fine;
 }
 
@@ -85,10 +77,9 @@ static bool read_table(strut_reader *reader, const strut_tree *list, strut_owner
   if (!time || !value) return false;
   for (const strut_tree *point = list->first; point; point = point->next) {
     if (point->kind != STRUT_TREE_LIST || point->count != 2) {
-      strut_report_error(reader, point->place,
-                         "expected a point such as [0.1 s, 2] for 'table' of %s, found %s",
-                         strut_owner_text(reader, owner), strut_found(reader, point));
-      fine = false;
+      fine = strut_report_error(reader, point->place,
+                                "expected a point such as [0.1 s, 2] for 'table' of %s, found %s",
+                                strut_owner_text(reader, owner), strut_found(reader, point));
       continue;
     }
     size_t i = signal->point_count++;
@@ -128,25 +119,21 @@ static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner o
 
 static bool read_expression(strut_reader *reader, const strut_tree *value, strut_owner owner,
                             meaning *m, strut_signal *signal) {
-  char wanted[200], found[80];
+  char wanted[200];
   strut_quantity q;
   if (!strut_read_signal_program(reader, value, "expression", owner, &signal->program, &q))
     return false;
   m->bare = q.bare;
   m->dimension = q.dimension;
   bool scaled = strut_scope_scale(reader, value) != 1.0;
-  if (scaled) {
-    strut_report_error(reader, value->place,
-                       "the lengths in an expression are not scaled, but this copy is; make the "
-                       "size a parameter of the part and 'set' it");
-    return false;
-  }
+  if (scaled)
+    return strut_report_error(
+        reader, value->place,
+        "the lengths in an expression are not scaled, but this copy is; make the "
+        "size a parameter of the part and 'set' it");
   if (!m->expected || q.bare || strut_dimension_equal(q.dimension, *m->expected)) return true;
-  strut_report_error(
-      reader, value->place, "expected %s for 'expression' of %s, found %s",
-      strut_expected_quantity(reader->signal_quantity, *m->expected, wanted, sizeof wanted),
-      strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
-  return false;
+  strut_expected_quantity(reader->signal_quantity, *m->expected, wanted, sizeof wanted);
+  return strut_refuse_dimension(reader, value, "expression", owner, wanted, q.dimension);
 }
 
 /* The event with which the signal's time begins. */
@@ -160,19 +147,15 @@ bool strut_read_trigger(strut_reader *reader, strut_fields *fields, strut_owner 
   bool level = strut_slot_of(fields, key)->state == STRUT_GIVEN;
   bool sensed = sensor->state == STRUT_GIVEN;
   if (fields->broken) return false;
-  if (contact->state != STRUT_GIVEN && !sensed) {
-    strut_report_error(reader, fields->map->place,
-                       "%s names no event; write {contact: NODE}, or {sensor: NAME, above: LEVEL}",
-                       owner.kind);
-    return false;
-  }
-  if (sensed != level) {
-    strut_report_error(reader, fields->map->place,
-                       sensed ? "%s needs a level, 'above' or 'below', of its sensor"
-                              : "%s gives a level, which only a sensor passes",
-                       owner.kind);
-    return false;
-  }
+  if (contact->state != STRUT_GIVEN && !sensed)
+    return strut_report_error(
+        reader, fields->map->place,
+        "%s names no event; write {contact: NODE}, or {sensor: NAME, above: LEVEL}", owner.kind);
+  if (sensed != level)
+    return strut_report_error(reader, fields->map->place,
+                              sensed ? "%s needs a level, 'above' or 'below', of its sensor"
+                                     : "%s gives a level, which only a sensor passes",
+                              owner.kind);
   if (!sensed || trigger->item < 0) return trigger->item >= 0;
   strut_dimension dimension = strut_sensor_dimension(reader->scene->sensors[trigger->item].kind);
   return strut_store_number(reader, fields, key, owner, dimension, trigger);
@@ -196,8 +179,7 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   if (kinds != 1 || fields.broken) return -1;
   const strut_tree *value = fields.slot[chosen].value;
   strut_signal signal = strut_signal_default((strut_signal_kind)chosen);
-  bool fine =
-      strut_store_fields(reader, &fields, owner, &reader->scene->arena, &signal, sizeof signal);
+  bool fine = strut_store(reader, &fields, owner, &signal);
   if (signal.kind == STRUT_CONSTANT)
     fine = read_value(reader, value, "constant", owner, &m, &signal.amplitude) && fine;
   else if (signal.kind == STRUT_TABLE)
@@ -401,19 +383,15 @@ static bool read_drive(strut_reader *reader, strut_fields *fields, strut_owner o
                        "frequency: 10 Hz}}, or a signal's name; or 'force' or 'moment' instead",
                        strut_owner_text(reader, owner));
   if (k == 3) return false;
-  if (known && slot->key && k > 0 && cell) {
-    strut_report_error(reader, slot->key->place,
-                       "%s gives a '%s' to a cell, whose pressure a 'signal' drives",
-                       strut_owner_text(reader, owner), strut_key_at(keys[k])->name);
-    return false;
-  }
-  if (known && slot->key && k > 0 && hinge != (k == 2)) {
-    strut_report_error(reader, slot->key->place,
-                       hinge ? "%s gives a 'force' to a hinge, which takes a 'moment'"
-                             : "%s gives a 'moment' to a member, which takes a 'force'",
-                       strut_owner_text(reader, owner));
-    return false;
-  }
+  if (known && slot->key && k > 0 && cell)
+    return strut_report_error(reader, slot->key->place,
+                              "%s gives a '%s' to a cell, whose pressure a 'signal' drives",
+                              strut_owner_text(reader, owner), strut_key_at(keys[k])->name);
+  if (known && slot->key && k > 0 && hinge != (k == 2))
+    return strut_report_error(reader, slot->key->place,
+                              hinge ? "%s gives a 'force' to a hinge, which takes a 'moment'"
+                                    : "%s gives a 'moment' to a member, which takes a 'force'",
+                              strut_owner_text(reader, owner));
   actuator->force = (uint32_t)k;
   reader->signal_quantity = k == 2 ? "moment" : known && cell ? "pressure" : NULL;
   if (slot->state == STRUT_GIVEN)
@@ -474,18 +452,12 @@ static bool read_speed(strut_reader *reader, const strut_tree *value, strut_owne
                        double *speed) {
   const strut_dimension angular = {0, 0, -1, 1};
   strut_quantity q;
-  char found[80];
-  if (!strut_read_scalar(reader, value, "speed", owner, "a number") ||
-      !strut_read_quantity(reader, value, "speed", owner, &q))
-    return false;
+  if (!strut_read_any_quantity(reader, value, "speed", owner, "a number", &q)) return false;
   bool turns = !q.bare && strut_dimension_equal(q.dimension, STRUT_DIM_FREQUENCY);
   *speed = turns ? STRUT_TAU * q.value : q.value;
   if (turns || q.bare || strut_dimension_equal(q.dimension, angular)) return true;
-  strut_report_error(reader, value->place,
-                     "expected a speed such as '30 Hz' or '188 rad/s' for 'speed' of %s, found %s",
-                     strut_owner_text(reader, owner),
-                     strut_dimension_name(q.dimension, found, sizeof found));
-  return false;
+  return strut_refuse_dimension(reader, value, "speed", owner,
+                                "a speed such as '30 Hz' or '188 rad/s'", q.dimension);
 }
 
 /* The angle counts from the copy's own x, and in a mirrored one clockwise. */
@@ -510,12 +482,11 @@ bool strut_read_unbalance(strut_reader *reader, strut_fields *fields, strut_owne
   const strut_slot *speed = strut_slot_of(fields, STRUT_KEY_UNBALANCE_SPEED);
   const strut_slot *signal = strut_slot_of(fields, STRUT_KEY_UNBALANCE_SIGNAL);
   bool fine = speed->state != STRUT_GIVEN || read_speed(reader, speed->value, owner, &u->speed);
-  if (speed->state == STRUT_ABSENT && signal->state == STRUT_ABSENT && !fields->broken) {
-    strut_report_error(reader, fields->key->place,
-                       "%s lacks 'speed', expected one such as '30 Hz', or 'angle' with a signal",
-                       strut_owner_text(reader, owner));
-    fine = false;
-  }
+  if (speed->state == STRUT_ABSENT && signal->state == STRUT_ABSENT && !fields->broken)
+    fine = strut_report_error(
+        reader, fields->key->place,
+        "%s lacks 'speed', expected one such as '30 Hz', or 'angle' with a signal",
+        strut_owner_text(reader, owner));
   turn_unbalance(reader, signal, u);
   return fine;
 }
@@ -545,10 +516,7 @@ static double drawn_length(const strut_scene *scene, int32_t member) {
 static bool read_position(strut_reader *reader, const strut_tree *value, strut_owner owner,
                           strut_sliding_mass *s) {
   strut_quantity q;
-  char found[80];
-  if (!strut_read_scalar(reader, value, "position", owner, "a number") ||
-      !strut_read_quantity(reader, value, "position", owner, &q))
-    return false;
+  if (!strut_read_any_quantity(reader, value, "position", owner, "a number", &q)) return false;
   s->share = q.value;
   if (q.bare || strut_dimension_equal(q.dimension, STRUT_DIM_NONE)) return true;
   if (strut_dimension_equal(q.dimension, STRUT_DIM_LENGTH)) {
@@ -556,11 +524,8 @@ static bool read_position(strut_reader *reader, const strut_tree *value, strut_o
     if (length > 0.0) s->share *= strut_scope_scale(reader, value) / length;
     return length > 0.0;
   }
-  strut_report_error(
-      reader, value->place,
-      "expected a share such as '50 %%', or a length, for 'position' of %s, found %s",
-      strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
-  return false;
+  return strut_refuse_dimension(reader, value, "position", owner,
+                                "a share such as '50 %', or a length,", q.dimension);
 }
 
 bool strut_read_slider(strut_reader *reader, strut_fields *fields, strut_owner owner,

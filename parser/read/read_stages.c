@@ -60,11 +60,11 @@ static bool read_followed(strut_reader *reader, strut_fields *fields, strut_owne
   const strut_actuator *a = &reader->scene->actuators[actuator];
   if (a->member < 0) *dimension = a->hinge >= 0 ? STRUT_DIM_ANGLE : STRUT_DIM_STIFFNESS;
   if (!a->force) return true;
-  strut_report_error(reader, over->value->place,
-                     "actuator '%s' in 'over' of %s gives a force, which statics leaves out; use a "
-                     "load",
-                     a->name, strut_owner_text(reader, owner));
-  return false;
+  return strut_report_error(
+      reader, over->value->place,
+      "actuator '%s' in 'over' of %s gives a force, which statics leaves out; use a "
+      "load",
+      a->name, strut_owner_text(reader, owner));
 }
 
 /* Where it ends: 1 of a load, 0 of a release, else it must be given. */
@@ -73,18 +73,15 @@ static bool read_until(strut_reader *reader, strut_fields *fields, strut_owner o
   const strut_slot *until = strut_slot_of(fields, STRUT_KEY_STAGE_UNTIL);
   bool given = until->state == STRUT_GIVEN;
   stage->until = stage->load ? 1.0 : 0.0;
-  if (stage->release && given) {
-    strut_report_error(reader, until->key->place,
-                       "%s gives 'until' beside 'release', which ends without reaction",
-                       strut_owner_text(reader, owner));
-    return false;
-  }
-  if (stage->over && !given) {
-    strut_report_error(reader, strut_slot_of(fields, STRUT_KEY_STAGE_OVER)->key->place,
-                       "%s lacks 'until', the end value of '%s'", strut_owner_text(reader, owner),
-                       strut_sanitised_text(reader, stage->over));
-    return false;
-  }
+  if (stage->release && given)
+    return strut_report_error(reader, until->key->place,
+                              "%s gives 'until' beside 'release', which ends without reaction",
+                              strut_owner_text(reader, owner));
+  if (stage->over && !given)
+    return strut_report_error(reader, strut_slot_of(fields, STRUT_KEY_STAGE_OVER)->key->place,
+                              "%s lacks 'until', the end value of '%s'",
+                              strut_owner_text(reader, owner),
+                              strut_sanitised_text(reader, stage->over));
   return !given || strut_read_number(reader, until->value, "until", owner, dimension,
                                      STRUT_RANGE_ANY, &stage->until);
 }
@@ -95,20 +92,19 @@ static bool read_stop(strut_reader *reader, const strut_slot *slot, strut_owner 
   stage->stop = -1;
   if (slot->state != STRUT_GIVEN) return true;
   const strut_tree *map = slot->value;
-  if (map->kind != STRUT_TREE_MAP || map->count != 1) {
-    strut_report_error(reader, map->place, "expected {NODE.x: LENGTH} for 'stop' of %s, found %s",
-                       strut_owner_text(reader, owner), strut_found(reader, map));
-    return false;
-  }
+  if (map->kind != STRUT_TREE_MAP || map->count != 1)
+    return strut_report_error(reader, map->place,
+                              "expected {NODE.x: LENGTH} for 'stop' of %s, found %s",
+                              strut_owner_text(reader, owner), strut_found(reader, map));
   stage->stop = strut_read_coordinate(reader, map->first, "stop", owner);
   if (stage->stop < 0 ||
       !strut_read_number(reader, map->first->next, "stop", owner, STRUT_DIM_LENGTH, STRUT_RANGE_ANY,
                          &stage->stop_distance))
     return false;
   if (stage->stop_distance != 0.0) return true;
-  strut_report_error(reader, map->first->next->place, "'stop' of %s is 0, where the stage begins",
-                     strut_owner_text(reader, owner));
-  return false;
+  return strut_report_error(reader, map->first->next->place,
+                            "'stop' of %s is 0, where the stage begins",
+                            strut_owner_text(reader, owner));
 }
 
 static bool read_stage(strut_reader *reader, const strut_tree *item, int number,
@@ -118,20 +114,16 @@ static bool read_stage(strut_reader *reader, const strut_tree *item, int number,
   strut_dimension dimension;
   snprintf(name, sizeof name, "stage %d", number);
   strut_owner owner = {strut_keep_text(reader, name), NULL};
-  if (item->kind != STRUT_TREE_MAP) {
-    strut_report_error(reader, item->place, "expected a stage such as {load: NAME}, found %s",
-                       strut_found(reader, item));
-    return false;
-  }
-  strut_read_fields(reader, STRUT_SECTION_STAGE, item, owner, &fields);
-  bool fine =
-      strut_store_fields(reader, &fields, owner, &reader->scene->arena, stage, sizeof *stage);
+  if (item->kind != STRUT_TREE_MAP)
+    return strut_report_error(reader, item->place,
+                              "expected a stage such as {load: NAME}, found %s",
+                              strut_found(reader, item));
+  bool fine = strut_read_object(reader, STRUT_SECTION_STAGE, item, owner, &fields, stage);
   if (fields.broken) return false;
   bool loads = strut_slot_of(&fields, STRUT_KEY_STAGE_LOAD)->state == STRUT_GIVEN;
-  if (!loads && !stage->over && !stage->release) {
-    strut_report_error(reader, item->place, "%s lacks 'load', 'over' or 'release'", owner.kind);
-    return false;
-  }
+  if (!loads && !stage->over && !stage->release)
+    return strut_report_error(reader, item->place, "%s lacks 'load', 'over' or 'release'",
+                              owner.kind);
   fine = read_followed(reader, &fields, owner, stage, &dimension) &&
          read_until(reader, &fields, owner, dimension, stage) && fine;
   return read_stop(reader, strut_slot_of(&fields, STRUT_KEY_STAGE_STOP), owner, stage) && fine;
@@ -153,12 +145,11 @@ static bool check_releases(strut_reader *reader, const strut_tree *item) {
     if (over >= 0) held[over] = 1;
     if (!stage->release) continue;
     int32_t at = strut_coordinate_find(scene, stage->release);
-    if (k == 0 || !held[at]) {
-      strut_report_error(reader, item->place, "stage %zu releases '%s', which %s", k + 1,
-                         strut_sanitised_text(reader, stage->release),
-                         held[at] ? "must have been held in a stage before" : "nothing holds");
-      fine = false;
-    }
+    if (k == 0 || !held[at])
+      fine =
+          strut_report_error(reader, item->place, "stage %zu releases '%s', which %s", k + 1,
+                             strut_sanitised_text(reader, stage->release),
+                             held[at] ? "must have been held in a stage before" : "nothing holds");
     held[at] = 0;
   }
   return fine;
@@ -171,10 +162,10 @@ static bool check_ends(strut_reader *reader, const strut_tree *item) {
     for (size_t i = k; i-- > 0 && stage[k].load;) {
       if (!stage[i].load || strcmp(stage[i].load, stage[k].load) != 0) continue;
       if (stage[i].until != stage[k].until || stage[i].stop >= 0) break;
-      strut_report_error(reader, item->place,
-                         "stage %zu ends where it starts: stage %zu took load '%s' to %g already",
-                         k + 1, i + 1, stage[k].load, stage[k].until);
-      return false;
+      return strut_report_error(
+          reader, item->place,
+          "stage %zu ends where it starts: stage %zu took load '%s' to %g already", k + 1, i + 1,
+          stage[k].load, stage[k].until);
     }
   return true;
 }
@@ -193,7 +184,7 @@ void strut_read_stages(strut_reader *reader) {
   }
   strut_read_fields(reader, STRUT_SECTION_SCENE_PATH, slot->value, owner, &path);
   if (path.broken) return;
-  strut_store_fields(reader, &path, owner, &reader->scene->arena, e, sizeof *e);
+  strut_store(reader, &path, owner, e);
   const strut_slot *stages = strut_slot_of(&path, STRUT_KEY_SCENE_PATH_STAGES);
   if (stages->state == STRUT_ABSENT &&
       strut_slot_of(&path, STRUT_KEY_SCENE_PATH_FRICTION)->state == STRUT_ABSENT)

@@ -59,17 +59,16 @@ static bool read_place_and_keys(strut_reader *reader, const strut_tree *key, str
     strut_place_point(reader, value, node->position);
     return fine;
   }
-  if (value->kind == STRUT_TREE_SCALAR) {
-    strut_report_error(reader, value->place,
-                       "expected a position such as [10 mm, 0], or a mapping, for %s, found %s",
-                       strut_owner_text(reader, owner), strut_found(reader, value));
-    return false;
-  }
+  if (value->kind == STRUT_TREE_SCALAR)
+    return strut_report_error(
+        reader, value->place,
+        "expected a position such as [10 mm, 0], or a mapping, for %s, found %s",
+        strut_owner_text(reader, owner), strut_found(reader, value));
   strut_fields fields;
   strut_read_fields(reader, STRUT_SECTION_NODE, value, owner, &fields);
   strut_apply_groups(reader, &fields, STRUT_KEY_NODE_GROUP, owner);
   strut_require(reader, &fields, owner, key->place);
-  strut_store_fields(reader, &fields, owner, &reader->scene->arena, node, sizeof *node);
+  strut_store(reader, &fields, owner, node);
   note_moves(reader, strut_slot_of(&fields, STRUT_KEY_NODE_MOVES), node);
   strut_place_point(reader, strut_slot_of(&fields, STRUT_KEY_NODE_POSITION)->value, node->position);
   return turn_support(reader, strut_slot_of(&fields, STRUT_KEY_NODE_FIXED), node) && !fields.broken;
@@ -99,8 +98,7 @@ static void read_moves_of(strut_reader *reader, size_t node) {
   strut_moves moves = {{-1, -1}};
   strut_fields fields;
   strut_enter_scope(reader, source->key);
-  strut_read_fields(reader, STRUT_SECTION_MOVES, reader->node_moves[node], owner, &fields);
-  strut_store_fields(reader, &fields, owner, &reader->scratch, &moves, sizeof moves);
+  strut_read_object(reader, STRUT_SECTION_MOVES, reader->node_moves[node], owner, &fields, &moves);
   if (fields.broken) source->broken = true;
   for (int c = 0; c < 2; c++) {
     const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_MOVES_ALONG_X + c);
@@ -195,10 +193,9 @@ static bool read_points(strut_reader *reader, const strut_slot *slot, strut_owne
   for (const strut_tree *point = fine ? list->first : NULL; point; point = point->next) {
     size_t i = law->count++;
     if (point->kind != STRUT_TREE_LIST || point->count != 2) {
-      strut_report_error(reader, point->place,
-                         "expected a point such as [2 mm, 3 N] for '%s' of %s, found %s", key,
-                         strut_owner_text(reader, owner), strut_found(reader, point));
-      fine = false;
+      fine = strut_report_error(reader, point->place,
+                                "expected a point such as [2 mm, 3 N] for '%s' of %s, found %s",
+                                key, strut_owner_text(reader, owner), strut_found(reader, point));
       continue;
     }
     fine =
@@ -207,11 +204,11 @@ static bool read_points(strut_reader *reader, const strut_slot *slot, strut_owne
         strut_read_number(reader, point->first->next, key, owner, force, STRUT_RANGE_ANY, &y[i]) &&
         fine;
     if (!fine || i == 0 || x[i] > x[i - 1] || law->kind == STRUT_LAW_FOLDING) continue;
-    strut_report_error(reader, point->place,
-                       "expected points with increasing x for 'points' of %s, found %g after %g; "
-                       "a law that folds back is of the kind curve",
-                       strut_owner_text(reader, owner), x[i], x[i - 1]);
-    fine = false;
+    fine = strut_report_error(
+        reader, point->place,
+        "expected points with increasing x for 'points' of %s, found %g after %g; "
+        "a law that folds back is of the kind curve",
+        strut_owner_text(reader, owner), x[i], x[i - 1]);
   }
   law->x = x, law->force = y;
   return fine;
@@ -238,11 +235,10 @@ static bool check_needs(strut_reader *reader, strut_fields *fields, strut_owner 
   }
   bool points = strut_slot_of(fields, STRUT_KEY_LAW_POINTS)->state != STRUT_ABSENT;
   bool control = strut_slot_of(fields, STRUT_KEY_LAW_CONTROL_POINTS)->state != STRUT_ABSENT;
-  if (law->kind == STRUT_LAW_FOLDING && points == control) {
-    strut_report_error(reader, fields->map->place, "%s needs 'points' or 'control_points', %s",
-                       strut_owner_text(reader, owner), points ? "not both" : "and has neither");
-    fine = false;
-  }
+  if (law->kind == STRUT_LAW_FOLDING && points == control)
+    fine = strut_report_error(
+        reader, fields->map->place, "%s needs 'points' or 'control_points', %s",
+        strut_owner_text(reader, owner), points ? "not both" : "and has neither");
   return fine;
 }
 
@@ -260,10 +256,9 @@ static bool read_word(strut_reader *reader, const strut_tree *value, strut_owner
   }
   law->kind = (strut_law_kind)(word - 2);
   if (!strut_law_at(law->kind)->needs && law->kind != STRUT_LAW_FOLDING) return true;
-  strut_report_error(reader, value->place,
-                     "the law %s of %s needs numbers: write a mapping {kind: %s, ...}", value->text,
-                     strut_owner_text(reader, owner), value->text);
-  return false;
+  return strut_report_error(reader, value->place,
+                            "the law %s of %s needs numbers: write a mapping {kind: %s, ...}",
+                            value->text, strut_owner_text(reader, owner), value->text);
 }
 
 bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner owner,
@@ -279,7 +274,7 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
   const strut_slot *coefficients = strut_slot_of(&fields, STRUT_KEY_LAW_COEFFICIENTS);
   const strut_slot *control = strut_slot_of(&fields, STRUT_KEY_LAW_CONTROL_POINTS);
   const strut_slot *points = strut_slot_of(&fields, STRUT_KEY_LAW_POINTS);
-  strut_store_fields(reader, &fields, within, &reader->scene->arena, law, sizeof *law);
+  strut_store(reader, &fields, within, law);
   bool fine = !fields.broken && check_needs(reader, &fields, within, law);
   fine = read_numbers(reader, &fields, within, strain, force, law) && fine;
   if (!fine) return false;
@@ -293,40 +288,11 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
 
 /* ---- members ---- */
 
-/* The nodes of `nodes: [a, b]` or `[a, p, q, b]`; -1 for what is unknown. */
-static bool read_path(strut_reader *reader, const strut_slot *slot, strut_owner owner,
-                      strut_member *member) {
-  if (slot->state != STRUT_GIVEN) return false;
-  size_t count = slot->value->count;
-  bool known = true;
-  if (count > STRUT_MOST_ELEMENT_NODES) {
-    strut_report_error(reader, slot->value->place,
-                       "%s runs over %zu nodes, at most %d are possible",
-                       strut_owner_text(reader, owner), count, STRUT_MOST_ELEMENT_NODES);
-    return false;
-  }
-  if (count > 2)
-    member->guides =
-        strut_reader_allocate(reader, &reader->scene->arena, count - 2, sizeof(int32_t));
-  if (count > 2 && !member->guides) return false;
-  const strut_tree *item = slot->value->first;
-  for (size_t k = 0; k < count; k++, item = item->next) {
-    int32_t node = strut_read_reference(reader, item, "nodes", owner, STRUT_THING_NODE);
-    known = known && node >= 0;
-    if (k == 0 || k + 1 == count)
-      member->node[k ? 1 : 0] = node;
-    else
-      member->guides[member->guide_count++] = node;
-  }
-  return known;
-}
-
 bool strut_read_member(strut_reader *reader, strut_fields *fields, strut_owner owner,
                        void *object) {
   if (strut_slot_of(fields, STRUT_KEY_MEMBER_MASS)->state == STRUT_BROKEN)
     reader->masses_unknown = true;
-  if (!read_path(reader, strut_slot_of(fields, STRUT_KEY_MEMBER_NODES), owner, object))
-    fields->unresolved = true;
+  (void)owner, (void)object;
   return true;
 }
 
@@ -335,8 +301,7 @@ void strut_read_rayleigh(strut_reader *reader) {
   strut_owner owner = {"rayleigh", NULL};
   if (strut_read_section(reader, STRUT_KEY_SCENE_RAYLEIGH, STRUT_SECTION_RAYLEIGH, owner.kind,
                          &fields))
-    strut_store_fields(reader, &fields, owner, &reader->scene->arena, reader->scene,
-                       sizeof *reader->scene);
+    strut_store(reader, &fields, owner, reader->scene);
 }
 
 void strut_read_lattice(strut_reader *reader) {
@@ -385,13 +350,12 @@ bool strut_read_cell(strut_reader *reader, strut_fields *fields, strut_owner own
   for (size_t k = 0; k < sizeof own / sizeof own[0] && !elastic; k++)
     if (strut_slot_of(fields, own[k])->key) elastic = strut_slot_of(fields, own[k]);
   bool other = gas->state != STRUT_ABSENT || pressure->state != STRUT_ABSENT;
-  if (elastic && other) {
-    strut_report_error(reader, elastic->key->place,
-                       "%s gives '%s' beside '%s'; a cell is elastic, or has a pressure, or a gas",
-                       strut_owner_text(reader, owner), elastic->key->text,
-                       gas->state != STRUT_ABSENT ? "gas" : "pressure");
-    return false;
-  }
+  if (elastic && other)
+    return strut_report_error(
+        reader, elastic->key->place,
+        "%s gives '%s' beside '%s'; a cell is elastic, or has a pressure, or a gas",
+        strut_owner_text(reader, owner), elastic->key->text,
+        gas->state != STRUT_ABSENT ? "gas" : "pressure");
   if (elastic) {
     cell->law = STRUT_LAW_LINEAR;
     return true;
@@ -400,11 +364,11 @@ bool strut_read_cell(strut_reader *reader, strut_fields *fields, strut_owner own
     return strut_read_nested(reader, strut_key_at(STRUT_KEY_CELL_GAS), gas, owner, object,
                              sizeof(strut_cell));
   if (other || fields->broken) return true;
-  strut_report_error(reader, fields->key->place,
-                     "%s lacks 'pressure', expected a pressure such as '500 N/m', or 'gas', or the "
-                     "'stiffness' of its area",
-                     strut_owner_text(reader, owner));
-  return false;
+  return strut_report_error(
+      reader, fields->key->place,
+      "%s lacks 'pressure', expected a pressure such as '500 N/m', or 'gas', or the "
+      "'stiffness' of its area",
+      strut_owner_text(reader, owner));
 }
 
 /* Is there one of the three forms? If not, that is reported. */
@@ -426,24 +390,6 @@ bool strut_read_collision(strut_reader *reader, strut_fields *fields, strut_owne
                      alone && pair ? "names a node beside a pair" : "does not name two things");
   fields->unresolved = true;
   return false;
-}
-
-/* x, y, or an angle, turned with the copy that it is in. */
-static bool read_direction(strut_reader *reader, const strut_tree *value, strut_owner owner,
-                           double *direction) {
-  bool y = strcmp(value->text, "y") == 0;
-  double angle = y ? 0.25 * STRUT_TAU : 0.0;
-  if (value->kind != STRUT_TREE_SCALAR)
-    return strut_refuse_form(reader, STRUT_KEY_DISTANCE_ALONG, value, owner);
-  if (!y && strcmp(value->text, "x") != 0 &&
-      !strut_read_number(reader, value, "along", owner, STRUT_DIM_ANGLE, STRUT_RANGE_ANY, &angle))
-    return false;
-  *direction = angle;
-  if (!strut_scope_of(reader, value)) return true;
-  double vector[2] = {y ? 0.0 : cos(angle), y ? 1.0 : sin(angle)};
-  strut_place_vector(reader, value, vector);
-  *direction = atan2(vector[1], vector[0]);
-  return true;
 }
 
 /* Is it one of the two forms? If not, that is reported. */
@@ -468,5 +414,5 @@ bool strut_read_distance(strut_reader *reader, strut_fields *fields, strut_owner
     fields->unresolved = true;
     return false;
   }
-  return !directed || read_direction(reader, along->value, owner, &d->along);
+  return true;
 }

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* All things of a scene, kind by kind, by the rows of their keys. See reader.h. */
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "parser/read/reader.h"
+#include "parser/read/copies.h"
 
 /* How a kind is read, beside the rows of its section. */
 typedef struct kind {
@@ -91,34 +92,54 @@ static bool read_thing(strut_reader *reader, strut_thing thing, const strut_tree
   return fine && !fields.unresolved;
 }
 
-void strut_read_things(strut_reader *reader, strut_thing thing) {
-  const kind *k = &kinds[thing];
+bool strut_reserve_things(strut_reader *reader, strut_thing thing, size_t more) {
   const strut_thing_row *row = strut_thing_at(thing);
   strut_things_read *things = &reader->things[thing];
-  strut_scene *scene = reader->scene;
-  size_t *count = (size_t *)(void *)((char *)scene + row->count);
+  char *at = (char *)reader->scene + row->array, *before;
+  size_t count = strut_thing_count(reader->scene, thing);
+  char *array = strut_reader_allocate(reader, &reader->scene->arena, count + more, row->size);
+  strut_source *source =
+      strut_reader_allocate(reader, &reader->scratch, count + more, sizeof *source);
+  if (!array || !source) return false;
+  memcpy(&before, at, sizeof before);
+  if (count) memcpy(array, before, count * row->size);
+  if (count) memcpy(source, things->source, count * sizeof *source);
+  memcpy(at, &array, sizeof array);
+  things->source = source;
+  return true;
+}
+
+void *strut_add_thing(strut_reader *reader, strut_thing thing, const strut_tree *key,
+                      const char *name) {
+  const strut_thing_row *row = strut_thing_at(thing);
+  char *array, *scene = (char *)reader->scene;
+  size_t i = strut_next_entry(reader, (size_t *)(void *)(scene + row->count));
+  memcpy(&array, scene + row->array, sizeof array);
+  char *object = array + i * row->size;
+  memcpy(object, row->usual, row->size);
+  memcpy(object + row->name, &name, sizeof name);
+  strut_add_name(reader, &reader->things[thing].names, name, i);
+  reader->things[thing].source[i] = (strut_source){key, key->next, false};
+  return object;
+}
+
+void strut_read_things(strut_reader *reader, strut_thing thing) {
+  const kind *k = &kinds[thing];
+  strut_things_read *things = &reader->things[thing];
   const strut_tree *map = strut_entries(reader, k->key);
   bool broken = strut_slot_of(&reader->top, k->key)->state == STRUT_BROKEN;
   if (broken && k->joins) reader->ends_unknown = true;
   if (broken && k->heavy) reader->masses_unknown = true;
   bool of_pipes = thing == STRUT_THING_SENSOR || thing == STRUT_THING_ACTUATOR;
   size_t most = (map ? map->count : 0) + (of_pipes ? strut_pipes_most(reader) : 0);
-  if (!most) return;
-  char *array = strut_reader_allocate(reader, &scene->arena, most, row->size);
-  things->source = strut_reader_allocate(reader, &reader->scratch, most, sizeof *things->source);
-  memcpy((char *)scene + row->array, &array, sizeof array);
-  if (!array || !things->source || !map) return;
+  if (!most || !strut_reserve_things(reader, thing, most) || !map) return;
   strut_reserve_names(reader, &things->names, map->count);
   for (const strut_tree *key = strut_first_entry(reader, map); key;
        key = strut_following_entry(reader, key)) {
-    size_t i = strut_next_entry(reader, count);
-    char *object = array + i * row->size;
     const char *name = strut_keep_text(reader, key->text);
-    memcpy(object, row->usual, row->size);
-    memcpy(object + row->name, &name, sizeof name);
-    strut_add_name(reader, &things->names, name, i);
-    bool fine = read_thing(reader, thing, key, name, object);
-    things->source[i] = (strut_source){key, key->next, !fine};
+    size_t i = strut_thing_count(reader->scene, thing);
+    void *object = strut_add_thing(reader, thing, key, name);
+    things->source[i].broken = !read_thing(reader, thing, key, name, object);
   }
 }
 
@@ -218,6 +239,49 @@ static bool read_references(strut_reader *reader, const strut_key *key, const st
   return known;
 }
 
+/* `[a, b]` or `[a, p, q, b]`; -1 for what is unknown. */
+static bool store_path(strut_reader *reader, const strut_key *key, const strut_tree *list,
+                       strut_owner owner, char *object) {
+  size_t count = list->count, *between = (size_t *)(void *)(object + key->field.number);
+  int32_t *ends = (int32_t *)(void *)(object + key->field.offset), *guides = NULL;
+  bool known = true;
+  if (count > STRUT_MOST_ELEMENT_NODES)
+    return strut_report_error(reader, list->place,
+                              "%s runs over %zu nodes, at most %d are possible",
+                              strut_owner_text(reader, owner), count, STRUT_MOST_ELEMENT_NODES);
+  if (count > 2)
+    guides = strut_reader_allocate(reader, &reader->scene->arena, count - 2, sizeof *guides);
+  if (count > 2 && !guides) return false;
+  memcpy(object + key->field.beside, &guides, sizeof guides);
+  for (const strut_tree *item = list->first; item; item = item->next) {
+    bool end = item == list->first || !item->next;
+    int32_t node = strut_read_reference(reader, item, key->name, owner, key->field.kind);
+    known = known && node >= 0;
+    if (end)
+      ends[item == list->first ? 0 : 1] = node;
+    else
+      guides[(*between)++] = node;
+  }
+  return known;
+}
+
+/* x, y, or an angle, turned with the copy that it is in. */
+static bool store_direction(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                            strut_owner owner, double *direction) {
+  if (!strut_read_scalar(reader, value, key->name, owner, key->words)) return false;
+  bool y = strcmp(value->text, "y") == 0;
+  double angle = y ? 0.25 * STRUT_TAU : 0.0;
+  if (!y && strcmp(value->text, "x") != 0 &&
+      !strut_read_number(reader, value, key->name, owner, STRUT_DIM_ANGLE, STRUT_RANGE_ANY, &angle))
+    return false;
+  *direction = angle;
+  if (!strut_scope_of(reader, value)) return true;
+  double vector[2] = {y ? 0.0 : cos(angle), y ? 1.0 : sin(angle)};
+  strut_place_vector(reader, value, vector);
+  *direction = atan2(vector[1], vector[0]);
+  return true;
+}
+
 static bool read_numbers(strut_reader *reader, const strut_key *key, const strut_tree *list,
                          strut_owner owner, double *number) {
   strut_dimension dimension = key->type == STRUT_TYPE_PROFILE ? STRUT_DIM_LENGTH : STRUT_DIM_TIME;
@@ -252,11 +316,10 @@ static bool store_list(strut_reader *reader, const strut_key *key, const strut_s
     return strut_read_node_sets(reader, slot, owner, (void *)(object + field->offset),
                                 (void *)(object + field->number));
   bool things = field->type == STRUT_FIELD_INT32;
-  if (things && field->kind != STRUT_THING_COUNT && count > STRUT_MOST_ELEMENT_NODES) {
-    strut_report_error(reader, slot->value->place, "%s has %zu nodes, at most %d are possible",
-                       strut_owner_text(reader, owner), count, STRUT_MOST_ELEMENT_NODES);
-    return false;
-  }
+  if (things && field->kind != STRUT_THING_COUNT && count > STRUT_MOST_ELEMENT_NODES)
+    return strut_report_error(reader, slot->value->place,
+                              "%s has %zu nodes, at most %d are possible",
+                              strut_owner_text(reader, owner), count, STRUT_MOST_ELEMENT_NODES);
   size_t size = things                                   ? sizeof(int32_t)
                 : field->type == STRUT_FIELD_DOUBLE_PAIR ? 2 * sizeof(double)
                 : field->type == STRUT_FIELD_TEXT        ? sizeof(const char *)
@@ -284,9 +347,8 @@ bool strut_read_nested(strut_reader *reader, const strut_key *key, const strut_s
   strut_read_fields(reader, strut_section_below(key), slot->value, within, &fields);
   fields.key = slot->key;
   strut_require(reader, &fields, within, slot->key->place);
-  bool fine =
-      strut_store_fields(reader, &fields, within, &reader->scene->arena, object, object_size);
-  return fine && !fields.broken;
+  return strut_store_fields(reader, &fields, within, reader->keep, object, object_size) &&
+         !fields.broken;
 }
 
 /* A law's strain and force follow from what its force measures: a moment acts on an angle, a pressure on an area. */
@@ -314,12 +376,15 @@ static bool store_key(strut_reader *reader, const strut_key *key, strut_slot *sl
     case STRUT_FIELD_VALUE:
       if (key->type == STRUT_TYPE_SIGNAL)
         fine = store_signal(reader, key, slot, owner, field);
+      else if (key->field.direction)
+        fine = store_direction(reader, key, slot->value, owner, field);
       else if (!strut_diagnostics_full(reader->diagnostics)) /* else the object will not be used */
         store_value(reader, arena, key, slot, field);
       break;
     case STRUT_FIELD_REFERENCE:
       fine = read_references(reader, key, slot->value, owner, field);
       break;
+    case STRUT_FIELD_PATH: fine = store_path(reader, key, slot->value, owner, object); break;
     case STRUT_FIELD_LIST: fine = store_list(reader, key, slot, owner, arena, object); break;
     case STRUT_FIELD_NESTED: fine = store_nested(reader, key, slot, owner, object); break;
     case STRUT_FIELD_PLACES:
@@ -333,7 +398,7 @@ static bool store_key(strut_reader *reader, const strut_key *key, strut_slot *sl
 }
 
 static bool is_reference(const strut_field *field) {
-  return field->role == STRUT_FIELD_REFERENCE ||
+  return field->role == STRUT_FIELD_REFERENCE || field->role == STRUT_FIELD_PATH ||
          (field->role == STRUT_FIELD_LIST && field->type == STRUT_FIELD_INT32);
 }
 
@@ -355,4 +420,11 @@ bool strut_store_fields(strut_reader *reader, strut_fields *fields, strut_owner 
   if (by_hand[fields->section])
     fine = by_hand[fields->section](reader, fields, owner, object) && fine;
   return fine;
+}
+
+bool strut_read_sized_object(strut_reader *reader, strut_section section, const strut_tree *map,
+                             strut_owner owner, strut_fields *fields, void *object, size_t size) {
+  strut_read_fields(reader, section, map, owner, fields);
+  if (!fields->broken) strut_require(reader, fields, owner, map->place);
+  return strut_store_fields(reader, fields, owner, reader->keep, object, size) && !fields->broken;
 }

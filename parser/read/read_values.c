@@ -13,16 +13,17 @@
 /* Longest text from the file in a message, and most names compared for suggestions. */
 enum { SHOWN = 60, MOST_SUGGESTIONS = 200000, LONGEST_NAME = 255 };
 
-void strut_report_error(strut_reader *reader, strut_place place, const char *format, ...) {
+bool strut_report_error(strut_reader *reader, strut_place place, const char *format, ...) {
   char text[1200] = "";
   va_list arguments;
   reader->failed = true;
-  if (strut_error_is_repeated(reader, place, format)) return;
+  if (strut_error_is_repeated(reader, place, format)) return false;
   va_start(arguments, format);
   if (!strut_diagnostics_full(reader->diagnostics)) vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
   strut_diagnose(reader->diagnostics, place, "%s", text);
   strut_error_remember(reader, place, format);
+  return false;
 }
 
 void *strut_reader_allocate(strut_reader *reader, strut_arena *arena, size_t count, size_t size) {
@@ -113,14 +114,6 @@ const char *strut_format_cycle(strut_reader *reader, const char *(*name)(strut_r
   return kept(reader, strut_arena_format(&reader->scratch, "%s%s", text, name(reader, first)));
 }
 
-bool strut_is_null(const strut_tree *value) {
-  static const char *const nulls[] = {"", "~", "null", "Null", "NULL"};
-  if (value->kind != STRUT_TREE_SCALAR || value->quoted) return false;
-  for (size_t i = 0; i < sizeof nulls / sizeof nulls[0]; i++)
-    if (strcmp(value->text, nulls[i]) == 0) return true;
-  return false;
-}
-
 bool strut_lacks_space(const strut_tree *value) {
   if (value->kind != STRUT_TREE_SCALAR || value->quoted) return false;
   size_t word = strspn(value->text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_");
@@ -154,9 +147,8 @@ static bool is_scalar(const strut_tree *value) {
 bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
                        strut_owner owner, const char *expected) {
   if (is_scalar(value)) return true;
-  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected, key,
-                     strut_owner_text(reader, owner), strut_found(reader, value));
-  return false;
+  return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected,
+                            key, strut_owner_text(reader, owner), strut_found(reader, value));
 }
 
 /* The place in the file of an error within an expression; the whole value if quotes or escapes hide it. */
@@ -173,6 +165,20 @@ static strut_place place_within(const strut_tree *value, const strut_expression_
 bool strut_read_quantity(strut_reader *reader, const strut_tree *value, const char *key,
                          strut_owner owner, strut_quantity *quantity) {
   return strut_read_program(reader, value, key, owner, NULL, quantity);
+}
+
+bool strut_read_any_quantity(strut_reader *reader, const strut_tree *value, const char *key,
+                             strut_owner owner, const char *expected, strut_quantity *quantity) {
+  return strut_read_scalar(reader, value, key, owner, expected) &&
+         strut_read_quantity(reader, value, key, owner, quantity);
+}
+
+bool strut_refuse_dimension(strut_reader *reader, const strut_tree *value, const char *key,
+                            strut_owner owner, const char *expected, strut_dimension found) {
+  char name[80];
+  return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected,
+                            key, strut_owner_text(reader, owner),
+                            strut_dimension_name(found, name, sizeof name));
 }
 
 /* A parameter that is called like a unit is reported once, however often the unit is used. */
@@ -217,10 +223,9 @@ static bool in_range(strut_reader *reader, const strut_tree *value, const char *
   bool below = range == STRUT_RANGE_NOT_NEGATIVE ? number < 0.0
                                                  : range == STRUT_RANGE_ABOVE_ZERO && number <= 0.0;
   if (!below) return true;
-  strut_report_error(
+  return strut_report_error(
       reader, value->place, "'%s' of %s must %s, found %g", key, strut_owner_text(reader, owner),
       range == STRUT_RANGE_NOT_NEGATIVE ? "not be negative" : "be above zero", number);
-  return false;
 }
 
 bool strut_check_whole(strut_reader *reader, const strut_tree *value, const strut_key *key,
@@ -233,10 +238,9 @@ bool strut_check_whole(strut_reader *reader, const strut_tree *value, const stru
   if (number == floor(number) && number >= limits.least && number <= limits.most) return true;
   char least[40] = "";
   if (limits.least > 0.0) snprintf(least, sizeof least, "from %.0f ", limits.least);
-  strut_report_error(reader, value->place, "'%s' of %s must be a whole number %s%s %.0f, found %g",
-                     key->name, strut_owner_text(reader, owner), least, *least ? "to" : "up to",
-                     limits.most, number);
-  return false;
+  return strut_report_error(
+      reader, value->place, "'%s' of %s must be a whole number %s%s %.0f, found %g", key->name,
+      strut_owner_text(reader, owner), least, *least ? "to" : "up to", limits.most, number);
 }
 
 /* Lengths of a scaled copy are longer, areas more so; other numbers stay. */
@@ -263,11 +267,10 @@ bool strut_read_number(strut_reader *reader, const strut_tree *value, const char
     strut_dimension turned = quantity.dimension;
     turned.angle = -1.0f;
     bool per_angle = quantity.dimension.angle == 0.0f && strut_dimension_equal(turned, dimension);
-    strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s", expected,
-                       key, strut_owner_text(reader, owner),
-                       strut_dimension_name(quantity.dimension, found, sizeof found),
-                       per_angle ? "; write (...)/(1 rad)" : "");
-    return false;
+    return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s",
+                              expected, key, strut_owner_text(reader, owner),
+                              strut_dimension_name(quantity.dimension, found, sizeof found),
+                              per_angle ? "; write (...)/(1 rad)" : "");
   }
   *number = quantity.value;
   if (!in_range(reader, value, key, owner, range, quantity.value)) return false;
@@ -284,11 +287,10 @@ bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *
   }
   const char *example = strut_dimension_example(dimension);
   bool longer = value->kind == STRUT_TREE_LIST && value->count > 2;
-  strut_report_error(
+  return strut_report_error(
       reader, value->place, "expected two numbers such as [%s, 0] for '%s' of %s, found %s%s",
       example ? example : "1", key, strut_owner_text(reader, owner), strut_found(reader, value),
       longer ? "; scenes are planar, and the decimal mark is a point" : "");
-  return false;
 }
 
 /* Names as they are called within a copy; those of other things are "". */

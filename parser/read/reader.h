@@ -134,6 +134,7 @@ typedef struct strut_reader {
   strut_diagnostics *diagnostics;
   strut_document document;
   strut_arena scratch; /* freed with the reader */
+  strut_arena *keep;   /* of what outlives it: the scene's, or a study's */
   strut_purpose purpose;
   strut_fields top;
   strut_things_read things[STRUT_THING_COUNT]; /* signals: their names are the next ones */
@@ -184,9 +185,9 @@ bool strut_tree_is_study(const strut_tree *root);
 
 /**
  * Reports at a place. Once the diagnostics are full a message is only counted, and the functions below
- * that make its parts return "".
+ * that make its parts return "". Returns false, for `return strut_report_error(...)`.
  */
-void strut_report_error(strut_reader *reader, strut_place place, const char *format, ...)
+bool strut_report_error(strut_reader *reader, strut_place place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /** "member 'm1'", for use within a message; lives in scratch. */
 const char *strut_owner_text(strut_reader *reader, strut_owner owner);
@@ -206,8 +207,6 @@ strut_place strut_root_place(const strut_reader *reader);
 /** "a -> b -> a" from the names of a stack, shortened in the middle; lives in scratch. */
 const char *strut_format_cycle(strut_reader *reader, const char *(*name)(strut_reader *, size_t),
                                size_t first, size_t depth);
-/** True for a plain empty scalar, ~ and null. */
-bool strut_is_null(const strut_tree *value);
 /** True for a plain text such as `mass:1 kg`, which lacks the space that would make it a key. */
 bool strut_lacks_space(const strut_tree *value);
 /** The same of a text whose key would be `name`. */
@@ -218,6 +217,12 @@ bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char
 /** A number of any dimension. */
 bool strut_read_quantity(strut_reader *reader, const strut_tree *value, const char *key,
                          strut_owner owner, strut_quantity *quantity);
+/** The same of a value that may be no scalar, which is reported; `expected` says what it should be. */
+bool strut_read_any_quantity(strut_reader *reader, const strut_tree *value, const char *key,
+                             strut_owner owner, const char *expected, strut_quantity *quantity);
+/** Reports a quantity of another dimension than is `expected`. */
+bool strut_refuse_dimension(strut_reader *reader, const strut_tree *value, const char *key,
+                            strut_owner owner, const char *expected, strut_dimension found);
 /** The same of an expression of columns, whose program the compiler makes. */
 bool strut_read_program(strut_reader *reader, const strut_tree *value, const char *key,
                         strut_owner owner, strut_compiler *compiler, strut_quantity *quantity);
@@ -312,6 +317,8 @@ void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner
 /** One of the words of `key`; false for another text, which was reported. */
 bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tree *value,
                      strut_owner owner, int *word);
+/** Reports a value of another form than the key has; returns false. */
+bool strut_refuse_form(strut_reader *reader, int key, const strut_tree *value, strut_owner owner);
 /** Reads a value by the table's line for the key. */
 void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
                      const strut_tree *value, strut_owner owner, strut_slot *slot);
@@ -348,6 +355,14 @@ bool strut_check_companions(strut_reader *reader, strut_fields *fields, strut_ow
  */
 bool strut_store_fields(strut_reader *reader, strut_fields *fields, strut_owner owner,
                         strut_arena *arena, void *object, size_t object_size);
+/** The same of a whole object, whose type is that of the section; texts in the reader's memory for what it keeps. */
+#define strut_store(reader, fields, owner, object)                                                 \
+  strut_store_fields(reader, fields, owner, (reader)->keep, object, sizeof *(object))
+/** Reads a mapping with all that it requires, and stores it. False: some of it could not be read. */
+bool strut_read_sized_object(strut_reader *reader, strut_section section, const strut_tree *map,
+                             strut_owner owner, strut_fields *fields, void *object, size_t size);
+#define strut_read_object(reader, section, map, owner, fields, object)                             \
+  strut_read_sized_object(reader, section, map, owner, fields, object, sizeof *(object))
 /** Stores the value of a key that is given, by its row; `dimension` is that of a number. */
 bool strut_store_number(strut_reader *reader, strut_fields *fields, int key, strut_owner owner,
                         strut_dimension dimension, void *object);
@@ -394,6 +409,11 @@ const char *strut_parameter_name(const void *reader, size_t i);
 
 /* The sections, in the order in which they are read. */
 
+/** Makes room for so many more things of a kind; false: memory is out. */
+bool strut_reserve_things(strut_reader *reader, strut_thing kind, size_t more);
+/** Appends a thing with its defaults, where there is room, and enters its name and its place. */
+void *strut_add_thing(strut_reader *reader, strut_thing kind, const strut_tree *key,
+                      const char *name);
 /** All things of a kind, by its row in read_things.c. */
 void strut_read_things(strut_reader *reader, strut_thing kind);
 /** The key of the scene whose mapping has the things of the kind. */

@@ -206,37 +206,15 @@ static text_file *load(loader *l, const strut_tree *name, const char *key, bool 
 
 /* ---- what a part takes of a file ---- */
 
-static bool add(strut_tree *map, strut_tree ***end, strut_tree *key, strut_tree *value) {
-  if (!key || !value) return false;
-  **end = key;
-  key->next = value;
-  *end = &value->next;
-  map->count++;
-  return true;
-}
-
-static strut_tree *copied(loader *l, const strut_tree *node) {
-  strut_tree *copy = strut_arena_allocate(&l->document->arena, 1, sizeof *copy);
-  if (!copy) return NULL;
-  *copy = *node;
-  copy->next = NULL;
-  return copy;
-}
-
-/* A mapping without entries, where the node stands. */
-static strut_tree *empty_map(loader *l, const strut_tree *node) {
-  strut_tree *map = copied(l, node);
-  if (!map) return NULL;
-  *map = (strut_tree){.kind = STRUT_TREE_MAP, .place = node->place, .text = ""};
-  return map;
-}
-
 /* Adds the entry, with an empty mapping where `value` is NULL, unless there is one of that name. */
-static bool add_once(loader *l, strut_tree *map, strut_tree ***end, strut_name_map *names,
+static bool add_once(loader *l, strut_tree_builder *map, strut_name_map *names,
                      const strut_tree *key, const strut_tree *value) {
+  strut_arena *arena = &l->document->arena;
   int32_t known = strut_name_map_add(names, key->text, 0);
   if (known != -1) return known >= 0;
-  return add(map, end, copied(l, key), value ? copied(l, value) : empty_map(l, key));
+  return strut_tree_append(
+      map, strut_tree_copy(arena, key),
+      value ? strut_tree_copy(arena, value) : strut_tree_begin(arena, key).map);
 }
 
 /* The contacts of a ground whose nodes are listed: of the ground's keys these belong to the structure. */
@@ -244,18 +222,16 @@ static strut_tree *contacts_of(loader *l, const strut_tree *ground) {
   const strut_tree *nodes = strut_tree_find(ground, "nodes", NULL);
   const strut_tree *own = strut_tree_find(ground, "contacts", NULL);
   if (own && own->kind != STRUT_TREE_MAP) own = NULL;
-  strut_tree *map = empty_map(l, ground);
-  if (!map) return NULL;
-  strut_tree **end = &map->first;
+  strut_tree_builder map = strut_tree_begin(&l->document->arena, ground);
   strut_name_map names = {0};
-  bool fine = true;
+  bool fine = map.map != NULL;
   for (const strut_tree *k = own ? own->first : NULL; k && fine; k = k->next->next)
-    fine = add_once(l, map, &end, &names, k, k->next);
+    fine = add_once(l, &map, &names, k, k->next);
   const strut_tree *item = nodes && nodes->kind == STRUT_TREE_LIST ? nodes->first : NULL;
   for (; item && fine; item = item->next)
-    if (item->kind == STRUT_TREE_SCALAR) fine = add_once(l, map, &end, &names, item, NULL);
+    if (item->kind == STRUT_TREE_SCALAR) fine = add_once(l, &map, &names, item, NULL);
   strut_name_map_free(&names);
-  return fine ? map : NULL;
+  return fine ? map.map : NULL;
 }
 
 /* Of a scene's keys those that a part has too; unknown ones, so that they are reported. */
@@ -266,40 +242,29 @@ static bool is_taken(const char *key) {
 
 /* The scene as a part. NULL: memory is out. */
 static strut_tree *make_part(loader *l, const strut_tree *root) {
-  strut_tree *part = empty_map(l, root), **end = part ? &part->first : NULL;
-  if (!part) return NULL;
+  strut_arena *arena = &l->document->arena;
+  strut_tree_builder part = strut_tree_begin(arena, root);
   for (const strut_tree *k = root->first; k; k = k->next->next)
-    if (is_taken(k->text) && !add(part, &end, copied(l, k), copied(l, k->next))) return NULL;
+    if (is_taken(k->text) && !strut_tree_share(&part, arena, k, k->next)) return NULL;
   strut_tree *key = NULL, *ground = strut_tree_find(root, "ground", &key);
-  if (!ground || ground->kind != STRUT_TREE_MAP) return part;
-  strut_tree *contacts = contacts_of(l, ground), *name = copied(l, key);
+  if (!ground || ground->kind != STRUT_TREE_MAP) return part.map;
+  strut_tree *contacts = contacts_of(l, ground), *name = strut_tree_scalar(arena, key, "contacts");
   if (!contacts || !name) return NULL;
-  name->text = "contacts";
-  if (contacts->count && !add(part, &end, name, contacts)) return NULL;
-  return part;
+  if (contacts->count && !strut_tree_append(&part, name, contacts)) return NULL;
+  return part.map;
 }
 
 /* ---- the files of a tree ---- */
 
-/* Takes a key out of a mapping whose entries are not shared. */
-static void drop_key(strut_tree *map, const char *name) {
-  strut_tree **link = &map->first;
-  while (*link && strcmp((*link)->text, name) != 0) link = &(*link)->next->next;
-  if (!*link) return;
-  *link = (*link)->next->next;
-  map->count--;
-}
-
 /* `isolated: yes` in place of `use`, which has been done. False: memory is out. */
 static bool isolate(loader *l, strut_tree *part, const strut_tree *name) {
-  strut_tree *key = copied(l, name), *value = copied(l, name), **end = &part->first;
-  if (!key || !value) return false;
-  drop_key(part, "use");
-  drop_key(part, "isolated");
-  key->quoted = value->quoted = false;
-  key->text = "isolated", value->text = "yes";
-  while (*end) end = &(*end)->next;
-  return add(part, &end, key, value);
+  strut_arena *arena = &l->document->arena;
+  strut_tree_builder b = {part, &part->first};
+  strut_tree_drop(part, "use");
+  strut_tree_drop(part, "isolated");
+  while (*b.end) b.end = &(*b.end)->next;
+  return strut_tree_append(&b, strut_tree_scalar(arena, name, "isolated"),
+                           strut_tree_scalar(arena, name, "yes"));
 }
 
 /* Files that each use another twice would make a tree that is too large to be written or compared. */
@@ -339,25 +304,19 @@ static strut_tree *use_file(loader *l, strut_tree *part) {
 static strut_tree *with_files(loader *l, strut_tree *map) {
   const strut_tree *parts = strut_tree_find(map, "parts", NULL);
   if (!parts || parts->kind != STRUT_TREE_MAP) return map;
-  strut_tree *result = copied(l, map), *inner = copied(l, parts);
-  if (!result || !inner) return NULL;
-  strut_tree **end = &inner->first;
-  inner->first = NULL;
-  inner->count = 0;
+  strut_arena *arena = &l->document->arena;
+  strut_tree_builder inner = strut_tree_begin(arena, parts), result = strut_tree_begin(arena, map);
   for (const strut_tree *k = parts->first; k; k = k->next->next) {
-    strut_tree *part = copied(l, k->next);
+    strut_tree *part = strut_tree_copy(arena, k->next);
     bool keys = part && part->kind == STRUT_TREE_MAP;
     if (keys) part = with_files(l, part); /* before those of its file come in */
     if (keys && part) part = use_file(l, part);
-    if (l->out_of_memory || !add(inner, &end, copied(l, k), part)) return NULL;
-  }
-  end = &result->first;
-  result->first = NULL;
-  result->count = 0;
-  for (const strut_tree *k = map->first; k; k = k->next->next)
-    if (!add(result, &end, copied(l, k), k->next == parts ? inner : copied(l, k->next)))
+    if (l->out_of_memory || !strut_tree_append(&inner, strut_tree_copy(arena, k), part))
       return NULL;
-  return result;
+  }
+  for (const strut_tree *k = map->first; k; k = k->next->next)
+    if (!strut_tree_share(&result, arena, k, k->next == parts ? inner.map : k->next)) return NULL;
+  return result.map;
 }
 
 /* Sets the file's scene; a base that cannot be read was reported. */
@@ -375,9 +334,9 @@ static bool lay_over_base(loader *l, text_file *f) {
   if (!f->scene) l->out_of_memory = true;
   if (!f->scene) return false;
   f->scene->place = f->text->place;
-  drop_key(f->scene, "base");
+  strut_tree_drop(f->scene, "base");
   if (!strut_tree_find(f->text, "strut", NULL))
-    drop_key(f->scene, "strut"); /* every file says it itself */
+    strut_tree_drop(f->scene, "strut"); /* every file says it itself */
   return l->diagnostics->count == before;
 }
 

@@ -208,7 +208,7 @@ static void read_figure(strut_study_reader *r, const strut_tree *key, strut_stud
   strut_read_name(r->reader, key, "figure");
   strut_read_fields(r->reader, STRUT_SECTION_FIGURE, key->next, owner, &fields);
   *figure = (strut_study_figure){.name = key->text, .from = -HUGE_VAL, .to = HUGE_VAL};
-  strut_store_fields(r->reader, &fields, owner, &r->file->arena, figure, sizeof *figure);
+  strut_store(r->reader, &fields, owner, figure);
   check_limits(r, strut_slot_of(&fields, STRUT_KEY_FIGURE_X_LIMITS), key, figure->x_limits);
   check_limits(r, strut_slot_of(&fields, STRUT_KEY_FIGURE_Y_LIMITS), key, figure->y_limits);
   require_columns(r, &fields, key, figure);
@@ -231,9 +231,7 @@ static void read_path_value(strut_study_reader *r, strut_fields *fields, int key
   const strut_slot *slot = strut_slot_of(fields, key);
   strut_study *study = &r->file->study;
   if (slot->state != STRUT_GIVEN) return;
-  if (!strut_read_scalar(r->reader, slot->value, k->name, path_owner, "a number") ||
-      !strut_read_quantity(r->reader, slot->value, k->name, path_owner, &q))
-    return;
+  if (!strut_read_any_quantity(r->reader, slot->value, k->name, path_owner, "a number", &q)) return;
   memcpy((char *)study + k->field.offset, &q.value, sizeof q.value);
   strut_store_choice(k, study);
   *unit = q.bare ? NULL : strut_dimension_unit(q.dimension);
@@ -243,8 +241,7 @@ static void read_path(strut_study_reader *r, const strut_slot *slot) {
   strut_study *study = &r->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  strut_read_fields(r->reader, STRUT_SECTION_PATH, slot->value, path_owner, &fields);
-  strut_store_fields(r->reader, &fields, path_owner, &r->file->arena, study, sizeof *study);
+  strut_read_object(r->reader, STRUT_SECTION_PATH, slot->value, path_owner, &fields, study);
   read_path_value(r, &fields, STRUT_KEY_PATH_FROM, &study->path.from_unit);
   read_path_value(r, &fields, STRUT_KEY_PATH_UNTIL, &study->path.until_unit);
   if (fields.broken) return;
@@ -256,14 +253,6 @@ static void read_path(strut_study_reader *r, const strut_slot *slot) {
     strut_report_error(r->reader, slot->value->place, "'from' and 'until' of the path are equal");
 }
 
-static void read_form(strut_study_reader *r, const strut_slot *slot) {
-  strut_fields fields;
-  if (slot->state != STRUT_GIVEN) return;
-  strut_read_fields(r->reader, STRUT_SECTION_FORM, slot->value, form_owner, &fields);
-  strut_store_fields(r->reader, &fields, form_owner, &r->file->arena, &r->file->study,
-                     sizeof(strut_study));
-}
-
 /* Wall time ends only what can be interrupted. */
 static void read_limit(strut_study_reader *r, strut_fields *top, const strut_slot *slot) {
   strut_study *study = &r->file->study;
@@ -271,21 +260,21 @@ static void read_limit(strut_study_reader *r, strut_fields *top, const strut_slo
   if (slot->state != STRUT_GIVEN) return;
   strut_read_fields(r->reader, STRUT_SECTION_LIMIT, slot->value, limit_owner, &fields);
   fields.outer = top;
-  strut_store_fields(r->reader, &fields, limit_owner, &r->file->arena, study, sizeof *study);
+  strut_store(r->reader, &fields, limit_owner, study);
 }
 
 static void read_rest(strut_study_reader *r, strut_fields *top) {
   strut_study *study = &r->file->study;
   const strut_slot *check = strut_slot_of(top, STRUT_KEY_STUDY_CHECK);
+  const strut_slot *form = strut_slot_of(top, STRUT_KEY_STUDY_FORM);
   strut_fields fields;
   study->name = study->description = "";
-  strut_store_fields(r->reader, top, study_owner, &r->file->arena, study, sizeof *study);
-  if (check->state == STRUT_GIVEN) {
-    strut_read_fields(r->reader, STRUT_SECTION_CHECK, check->value, check_owner, &fields);
-    strut_store_fields(r->reader, &fields, check_owner, &r->file->arena, study, sizeof *study);
-  }
+  strut_store(r->reader, top, study_owner, study);
+  if (check->state == STRUT_GIVEN)
+    strut_read_object(r->reader, STRUT_SECTION_CHECK, check->value, check_owner, &fields, study);
   read_path(r, strut_slot_of(top, STRUT_KEY_STUDY_PATH));
-  read_form(r, strut_slot_of(top, STRUT_KEY_STUDY_FORM));
+  if (form->state == STRUT_GIVEN)
+    strut_read_object(r->reader, STRUT_SECTION_FORM, form->value, form_owner, &fields, study);
   read_limit(r, top, strut_slot_of(top, STRUT_KEY_STUDY_LIMIT));
   read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
@@ -378,6 +367,7 @@ strut_status strut_study_open(const char *path, const strut_override *overrides,
   strut_setup_init(&setup);
   strut_reader_target(reader, &setup);
   reader->diagnostics = &file->diagnostics;
+  reader->keep = &file->arena;
   strut_diagnostics_source(&file->diagnostics, path, file->text, file->length);
   strut_study_reader r = {.reader = reader, .file = file};
   strut_c_locale locale = strut_c_locale_enter();

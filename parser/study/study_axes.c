@@ -12,24 +12,21 @@ static strut_owner owner_of(const along *a) { return (strut_owner){"axis", a->pa
 bool strut_study_read_value(strut_study_reader *r, along *a, const strut_tree *value,
                             const char *key, bool first, double *number) {
   strut_quantity q;
-  char expected[200], found[80];
+  char expected[200];
   strut_reader *reader = r->reader;
   strut_setting *s = a->setting;
-  if (!strut_read_scalar(reader, value, key, owner_of(a), "a number") ||
-      !strut_read_quantity(reader, value, key, owner_of(a), &q))
-    return false;
+  if (!strut_read_any_quantity(reader, value, key, owner_of(a), "a number", &q)) return false;
   *number = q.value;
   if (first && s->bare && !q.bare) {
     s->bare = false;
     s->dimension = q.dimension;
   }
   if (q.bare || (!s->bare && strut_dimension_equal(q.dimension, s->dimension))) return true;
-  strut_report_error(reader, value->place, "expected %s for '%s' of axis '%s', found %s",
-                     s->bare ? "a number without unit, as before,"
-                             : strut_expected_number(s->dimension, expected, sizeof expected),
-                     key, a->parameter->name,
-                     strut_dimension_name(q.dimension, found, sizeof found));
-  return false;
+  return strut_refuse_dimension(
+      reader, value, key, owner_of(a),
+      s->bare ? "a number without unit, as before,"
+              : strut_expected_number(s->dimension, expected, sizeof expected),
+      q.dimension);
 }
 
 bool strut_study_store_value(strut_study_reader *r, along *a, strut_fields *fields, int key,
@@ -48,20 +45,18 @@ static bool read_list(strut_study_reader *r, along *a) {
   const char **words = strut_reader_allocate(r->reader, arena, count, sizeof *words);
   bool fine = numbers && words;
   a->count = (int64_t)count;
-  if (!count) {
-    strut_report_error(r->reader, a->value->place, "axis '%s' has no values", a->parameter->name);
-    return false;
-  }
+  if (!count)
+    return strut_report_error(r->reader, a->value->place, "axis '%s' has no values",
+                              a->parameter->name);
   for (const strut_tree *item = a->value->first; item && fine; item = item->next, i++) {
     if (!a->parameter->text) {
       fine = strut_study_read_value(r, a, item, a->parameter->name, i == 0, &numbers[i]) && fine;
     } else if (strut_read_scalar(r->reader, item, a->parameter->name, owner_of(a), "a text")) {
       words[i] = item->text;
       if (strlen(item->text) < 24) continue;
-      strut_report_error(r->reader, item->place,
-                         "texts of an axis may have at most 23 bytes, found %zu",
-                         strlen(item->text));
-      fine = false;
+      fine = strut_report_error(r->reader, item->place,
+                                "texts of an axis may have at most 23 bytes, found %zu",
+                                strlen(item->text));
     } else {
       fine = false;
     }
@@ -73,9 +68,8 @@ static bool read_list(strut_study_reader *r, along *a) {
 }
 
 static bool refuse_range(strut_study_reader *r, const along *a, const char *why) {
-  strut_report_error(r->reader, a->value->place, "the range of axis '%s' %s", a->parameter->name,
-                     why);
-  return false;
+  return strut_report_error(r->reader, a->value->place, "the range of axis '%s' %s",
+                            a->parameter->name, why);
 }
 
 /* from, to and step: how many values? The last is `to` itself where the steps meet it. */
@@ -110,25 +104,20 @@ static bool read_range(strut_study_reader *r, along *a) {
   strut_fields fields;
   if (a->parameter->text)
     return refuse_range(r, a, "is for numbers; the parameter is a text: give a list of texts");
-  strut_read_fields(r->reader, STRUT_SECTION_RANGE, a->value, owner_of(a), &fields);
-  if (!fields.broken) strut_require(r->reader, &fields, owner_of(a), a->value->place);
-  if (fields.broken) return false;
-  const strut_slot *by = strut_slot_of(&fields, STRUT_KEY_RANGE_STEP);
-  const strut_slot *count = strut_slot_of(&fields, STRUT_KEY_RANGE_COUNT);
-  const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_RANGE_SCALE);
-  bool logarithmic = scale->state == STRUT_GIVEN && scale->word == 1;
-  bool fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_FROM, true, a->column);
-  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_TO, false, a->column) && fine;
-  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_STEP, false, a->column) && fine;
-  if (by->state != STRUT_GIVEN && count->state != STRUT_GIVEN)
-    return refuse_range(r, a, "lacks 'step' or 'count'");
+  strut_range_keys keys = {0};
+  if (!strut_read_object(r->reader, STRUT_SECTION_RANGE, a->value, owner_of(a), &fields, &keys))
+    return false;
+  bool fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_FROM, true, &keys);
+  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_TO, false, &keys) && fine;
+  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_STEP, false, &keys) && fine;
+  a->column->from = keys.from, a->column->to = keys.to, a->column->step = keys.step;
+  bool stepped = strut_slot_of(&fields, STRUT_KEY_RANGE_STEP)->state == STRUT_GIVEN;
+  if (!stepped && keys.count == 0.0) return refuse_range(r, a, "lacks 'step' or 'count'");
   if (!fine) return false;
-  if (count->state == STRUT_GIVEN) return count_even(r, a, count->number[0], logarithmic);
-  if (logarithmic)
-    return refuse_range(r, a,
-                        "needs 'count' instead of 'step' where it is "
-                        "logarithmic");
-  return count_steps(r, a, a->column->step);
+  if (keys.count > 0.0) return count_even(r, a, keys.count, keys.scale == 1);
+  if (keys.scale == 1)
+    return refuse_range(r, a, "needs 'count' instead of 'step' where it is logarithmic");
+  return count_steps(r, a, keys.step);
 }
 
 /* Names of the table's own columns, which no axis may have. */
@@ -160,11 +149,10 @@ bool strut_study_begin_along(strut_study_reader *r, along *a, strut_place place)
                                 .dimension = parameter->dimension,
                                 .place = place};
   if (!is_reserved(r, parameter->name)) return true;
-  strut_report_error(
+  return strut_report_error(
       r->reader, place,
       "the table has a column '%s' of its own: give the model's parameter another name",
       parameter->name);
-  return false;
 }
 
 /* A parameter with its values. */
@@ -233,13 +221,11 @@ static void read_axis(strut_study_reader *r, const strut_tree *item, strut_study
     a.setting = &r->file->columns[r->file->column_count++];
     fine = read_along(r, &a) && fine;
     axis->column_count++;
-    if (fine && axis->column_count > 1 && a.count != axis->count) {
-      strut_report_error(
+    if (fine && axis->column_count > 1 && a.count != axis->count)
+      fine = strut_report_error(
           r->reader, key->next->place,
           "zipped parameters need equally many values: '%s' has %lld values, '%s' %lld",
           columns[0].name, (long long)axis->count, a.parameter->name, (long long)a.count);
-      fine = false;
-    }
     if (axis->column_count == 1) axis->count = a.count;
   }
 }
@@ -354,12 +340,11 @@ static bool choose_axes(strut_study_reader *r, const strut_slot *refine, const s
     }
     return true;
   }
-  strut_report_error(
+  return strut_report_error(
       r->reader, refine->key->place,
       "'refine' divides two axes with ranges of more than one value, found %zu; name "
       "them: axes: [NAME, NAME]",
       count == 2 ? (size_t)1 : count);
-  return false;
 }
 
 /* Gives an axis the values of the finest grid; those of the coarsest keep their bits. */
@@ -373,12 +358,11 @@ void strut_study_read_refine(strut_study_reader *r, const strut_slot *slot) {
   strut_study *study = &r->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  strut_read_fields(r->reader, STRUT_SECTION_REFINE, slot->value, refine_owner, &fields);
-  if (!fields.broken) strut_require(r->reader, &fields, refine_owner, slot->value->place);
-  if (fields.broken || r->reader->failed) return; /* the axes may be incomplete */
-  strut_store_fields(r->reader, &fields, refine_owner, &r->file->arena, study, sizeof *study);
+  bool fine =
+      strut_read_object(r->reader, STRUT_SECTION_REFINE, slot->value, refine_owner, &fields, study);
   int32_t depth = study->refine.depth;
   study->refine.depth = 0;
+  if (!fine || r->reader->failed) return; /* the axes may be incomplete */
   if (!choose_axes(r, slot, strut_slot_of(&fields, STRUT_KEY_REFINE_AXES))) return;
   double points = 1.0;
   for (int i = 0; i < 2; i++) refine_axis(&study->axes[study->refine.axes[i]], depth);
@@ -469,13 +453,9 @@ void strut_study_read_goals(strut_study_reader *r, strut_fields *top) {
   const strut_slot *like = strut_slot_of(top, STRUT_KEY_STUDY_LIKE);
   const strut_slot *curve = strut_slot_of(top, STRUT_KEY_STUDY_CURVE);
   strut_fields fields;
-  if (stiffness->state == STRUT_GIVEN) {
-    const strut_owner owner = {"the stiffness", NULL};
-    strut_read_fields(r->reader, STRUT_SECTION_STIFFNESS_AT, stiffness->value, owner, &fields);
-    if (!fields.broken) strut_require(r->reader, &fields, owner, stiffness->value->place);
-    strut_store_fields(r->reader, &fields, owner, &r->file->arena, &r->file->study,
-                       sizeof(strut_study));
-  }
+  if (stiffness->state == STRUT_GIVEN)
+    strut_read_object(r->reader, STRUT_SECTION_STIFFNESS_AT, stiffness->value,
+                      ((strut_owner){"the stiffness", NULL}), &fields, &r->file->study);
   if (shape->state == STRUT_GIVEN && like->state == STRUT_GIVEN)
     strut_report_error(r->reader, like->key->place,
                        "'shape' and 'like' of the study exclude each other");
@@ -526,11 +506,9 @@ static void read_values(strut_study_reader *r, strut_fields *fields, strut_study
   bool fine = from->state == STRUT_GIVEN && to->state == STRUT_GIVEN &&
               strut_study_store_value(r, a, fields, STRUT_KEY_FOLLOW_FROM, true, f) &&
               strut_study_store_value(r, a, fields, STRUT_KEY_FOLLOW_TO, false, f);
-  if (fine && !(f->from < f->to)) {
-    strut_report_error(r->reader, to->value->place,
-                       "'to' of what is followed must be above 'from'");
-    fine = false;
-  }
+  if (fine && !(f->from < f->to))
+    fine = strut_report_error(r->reader, to->value->place,
+                              "'to' of what is followed must be above 'from'");
   if (!fine || at->state != STRUT_GIVEN) return;
   if (!at->value->count || at->value->count > STRUT_STUDY_FOLLOW_MOST_AT) {
     strut_report_error(r->reader, at->value->place, "'at' may have 1 to %d values, found %zu",
@@ -579,9 +557,7 @@ void strut_study_read_follow(strut_study_reader *r, strut_fields *top) {
   if (!study->axes) strut_study_read_axes(r, NULL, search); /* the study has none */
   strut_study_follow *f = strut_reader_allocate(r->reader, &r->file->arena, 1, sizeof *f);
   if (!f) return;
-  strut_read_fields(r->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields);
-  if (!fields.broken) strut_require(r->reader, &fields, follow_owner, slot->value->place);
-  strut_store_fields(r->reader, &fields, follow_owner, &r->file->arena, f, sizeof *f);
+  strut_read_object(r->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields, f);
   const strut_slot *accuracy = strut_slot_of(&fields, STRUT_KEY_FOLLOW_ACCURACY);
   if (accuracy->state == STRUT_GIVEN && f->accuracy > 0.1)
     strut_report_error(r->reader, accuracy->value->place,

@@ -237,12 +237,9 @@ void strut_study_read_points(strut_study_reader *r, const strut_tree *value,
   table t = {.r = r};
   if (value->kind == STRUT_TREE_MAP) {
     strut_fields fields;
-    strut_read_fields(r->reader, STRUT_SECTION_POINTS, value, owner, &fields);
-    if (!fields.broken) strut_require(r->reader, &fields, owner, value->place);
-    if (fields.broken) return;
-    const strut_slot *columns = strut_slot_of(&fields, STRUT_KEY_POINTS_COLUMNS);
-    name = strut_slot_of(&fields, STRUT_KEY_POINTS_FILE)->value;
-    if (columns->state == STRUT_GIVEN) t.columns = columns->value;
+    strut_points_keys keys = {0};
+    if (!strut_read_object(r->reader, STRUT_SECTION_POINTS, value, owner, &fields, &keys)) return;
+    name = keys.file, t.columns = keys.columns;
     for (const strut_tree *item = t.columns ? t.columns->first : NULL; item; item = item->next)
       if (!strut_read_scalar(r->reader, item, "columns", owner, "a column's name")) return;
   }
@@ -270,12 +267,10 @@ static bool read_numbers(strut_study_reader *r, strut_study_along *a, const stru
   const char *name = slot->key->text;
   const strut_owner owner = {"parameter", a->parameter->name};
   bool fine = true;
-  if (slot->value->count != wanted) {
-    strut_report_error(r->reader, slot->value->place,
-                       "expected %zu numbers for '%s' of %s, found %s", wanted, name,
-                       strut_owner_text(r->reader, owner), strut_found(r->reader, slot->value));
-    return false;
-  }
+  if (slot->value->count != wanted)
+    return strut_report_error(
+        r->reader, slot->value->place, "expected %zu numbers for '%s' of %s, found %s", wanted,
+        name, strut_owner_text(r->reader, owner), strut_found(r->reader, slot->value));
   for (const strut_tree *item = slot->value->first; item; item = item->next, i++) {
     bool bare = d->kind == STRUT_DISTRIBUTION_LOGNORMAL && i == 1;
     bool read = bare ? strut_read_number(r->reader, item, name, owner, STRUT_DIM_NONE,
@@ -299,11 +294,10 @@ static bool read_parameter(strut_study_reader *r, strut_study_along *a, strut_di
   const strut_owner owner = {"parameter", a->parameter->name};
   bool fine = strut_study_begin_along(r, a, a->key->place);
   a->column->unit = "1";
-  if (a->parameter->text) {
-    strut_report_error(r->reader, a->key->place,
-                       "parameter '%s' is a text, which has no distribution", a->parameter->name);
-    return false;
-  }
+  if (a->parameter->text)
+    return strut_report_error(r->reader, a->key->place,
+                              "parameter '%s' is a text, which has no distribution",
+                              a->parameter->name);
   strut_read_fields(r->reader, STRUT_SECTION_DISTRIBUTION, a->value, owner, &fields);
   if (fields.broken) return false;
   for (int k = 0; k < STRUT_DISTRIBUTION_COUNT; k++) {
@@ -342,12 +336,10 @@ bool strut_study_read_distributions(strut_study_reader *r, const strut_tree *ove
                                     strut_owner owner, size_t most, strut_study_axis *axis,
                                     strut_distribution *distributions) {
   bool fine = true;
-  if (over->count == 0 || over->count > most) {
-    strut_report_error(r->reader, over->place,
-                       "expected 1 to %zu parameters for 'over' of %s, found %zu", most,
-                       strut_owner_text(r->reader, owner), (size_t)over->count);
-    return false;
-  }
+  if (over->count == 0 || over->count > most)
+    return strut_report_error(r->reader, over->place,
+                              "expected 1 to %zu parameters for 'over' of %s, found %zu", most,
+                              strut_owner_text(r->reader, owner), (size_t)over->count);
   axis->columns =
       strut_reader_allocate(r->reader, &r->file->arena, over->count, sizeof *axis->columns);
   if (!axis->columns) return false;
@@ -371,11 +363,9 @@ void strut_study_read_sample(strut_study_reader *r, const strut_tree *value,
   strut_fields fields;
   strut_sample_keys keys = {.count = 1, .scheme = STRUT_SAMPLE_SOBOL, .seed = 1};
   strut_distribution distributions[STRUT_SAMPLE_MOST_NUMBERS] = {0};
-  strut_read_fields(r->reader, STRUT_SECTION_SAMPLE, value, sample_owner, &fields);
-  if (!fields.broken) strut_require(r->reader, &fields, sample_owner, value->place);
+  strut_read_object(r->reader, STRUT_SECTION_SAMPLE, value, sample_owner, &fields, &keys);
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SAMPLE_OVER);
   if (over->state != STRUT_GIVEN) return;
-  strut_store_fields(r->reader, &fields, sample_owner, &r->file->arena, &keys, sizeof keys);
   axis->count = keys.count;
   bool fine = strut_study_read_distributions(r, over->value, sample_owner,
                                              STRUT_SAMPLE_MOST_NUMBERS, axis, distributions);
@@ -453,12 +443,11 @@ void strut_study_read_sensitivity(strut_study_reader *r, strut_fields *top) {
   strut_study_exclude(r, top, slot, others, sizeof others / sizeof others[0]);
   if (!study->axes) /* the study has no others */
     strut_study_read_axes(r, NULL, strut_slot_of(top, STRUT_KEY_STUDY_SEARCH));
-  strut_read_fields(r->reader, STRUT_SECTION_SENSITIVITY, slot->value, sensitivity_owner, &fields);
-  if (!fields.broken) strut_require(r->reader, &fields, sensitivity_owner, slot->value->place);
+  s->samples = 256, s->seed = 1, s->derivatives = true;
+  strut_read_object(r->reader, STRUT_SECTION_SENSITIVITY, slot->value, sensitivity_owner, &fields,
+                    s);
   const strut_slot *of = strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_OF);
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_OVER);
-  s->samples = 256, s->seed = 1, s->derivatives = true;
-  strut_store_fields(r->reader, &fields, sensitivity_owner, &r->file->arena, s, sizeof *s);
   if (of->state == STRUT_GIVEN && !of->value->count)
     strut_report_error(r->reader, of->value->place,
                        "expected columns of the table for 'of' of the sensitivity analysis");

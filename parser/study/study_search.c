@@ -23,9 +23,8 @@ size_t strut_study_search_columns(const strut_slot *slot) {
 }
 
 static bool refuse(strut_study_reader *r, const strut_study_along *a, const char *why) {
-  strut_report_error(r->reader, a->value->place, "variable '%s' of the search %s",
-                     a->parameter->name, why);
-  return false;
+  return strut_report_error(r->reader, a->value->place, "variable '%s' of the search %s",
+                            a->parameter->name, why);
 }
 
 static bool read_choices(strut_study_reader *r, strut_study_along *a, strut_search_variable *v) {
@@ -67,10 +66,8 @@ static bool read_range(strut_study_reader *r, strut_study_along *a, strut_search
   strut_fields fields;
   const strut_owner owner = {"variable", a->parameter->name};
   if (a->parameter->text) return refuse(r, a, "is a text: give a list of the texts to choose from");
-  strut_read_fields(r->reader, STRUT_SECTION_VARIABLE, a->value, owner, &fields);
-  if (!fields.broken) strut_require(r->reader, &fields, owner, a->value->place);
-  if (fields.broken) return false;
-  strut_store_fields(r->reader, &fields, owner, &r->file->arena, v, sizeof *v);
+  if (!strut_read_object(r->reader, STRUT_SECTION_VARIABLE, a->value, owner, &fields, v))
+    return false;
   const strut_slot *start = strut_slot_of(&fields, STRUT_KEY_VARIABLE_START);
   bool fine = strut_study_store_value(r, a, &fields, STRUT_KEY_VARIABLE_FROM, true, v);
   fine = strut_study_store_value(r, a, &fields, STRUT_KEY_VARIABLE_TO, false, v) && fine;
@@ -269,10 +266,8 @@ void strut_study_read_search(strut_study_reader *r, const strut_slot *slot) {
   if (slot->state != STRUT_GIVEN) return;
   strut_study_search *search = strut_reader_allocate(r->reader, &r->file->arena, 1, sizeof *search);
   if (!search) return;
-  strut_read_fields(r->reader, STRUT_SECTION_SEARCH, slot->value, search_owner, &fields);
-  if (!fields.broken) strut_require(r->reader, &fields, search_owner, slot->value->place);
   *search = (strut_study_search){.starts = 1, .evaluations = 200, .seed = 1};
-  strut_store_fields(r->reader, &fields, search_owner, &r->file->arena, search, sizeof *search);
+  strut_read_object(r->reader, STRUT_SECTION_SEARCH, slot->value, search_owner, &fields, search);
   read_goal(r, &fields, slot, search);
   read_conditions(r, strut_slot_of(&fields, STRUT_KEY_SEARCH_SUBJECT_TO), search);
   refuse_others(r, slot);

@@ -60,41 +60,13 @@ static void put_expression_type(strut_writer *writer, const strut_key *key) {
 }
 
 void strut_put_key_type(strut_writer *writer, const strut_key *key) {
-  static const char *const types[] = {
-      [STRUT_TYPE_TEXT] = "text",
-      [STRUT_TYPE_NUMBER] = "number",
-      [STRUT_TYPE_PAIR] = "two numbers",
-      [STRUT_TYPE_WORDS] = "list of ",
-      [STRUT_TYPE_NAME] = "name",
-      [STRUT_TYPE_NODE_PATH] = "names of two nodes or more",
-      [STRUT_TYPE_NODE_TRIPLE] = "names of three nodes",
-      [STRUT_TYPE_NAME_PAIR] = "two names",
-      [STRUT_TYPE_NODE_RING] = "names of three nodes or more",
-      [STRUT_TYPE_NUMBERS] = "list of numbers",
-      [STRUT_TYPE_NAMES] = "list of names",
-      [STRUT_TYPE_POINTS] = "list of `[x, force]`",
-      [STRUT_TYPE_PROFILE] = "list of `[x, y]` [m]",
-      [STRUT_TYPE_LAW] = "[law](#law), or the kind of one",
-      [STRUT_TYPE_CONTACT_NODES] = "`all`, or list of nodes",
-      [STRUT_TYPE_NODE_SETS] = "list of nodes, or list of such lists",
-      [STRUT_TYPE_GROUPS] = "group, or list of groups",
-      [STRUT_TYPE_SIGNAL] = "[signal](#signal), or the name of one",
-      [STRUT_TYPE_SIGNALS] = "list of signals",
-      [STRUT_TYPE_TABLE] = "list of `[t, value]`",
-      [STRUT_TYPE_KEEP] = "list of quantities, or of ",
-      [STRUT_TYPE_AXES] = "list of axes",
-      [STRUT_TYPE_TIMES] = "list of times [s]",
-      [STRUT_TYPE_SETTLE] = "`true`, `false`, or [mapping](#settle)",
-      [STRUT_TYPE_STEADY] = "`true`, `false`, or [mapping](#steady)",
-      [STRUT_TYPE_THINGS] = "names, each with ",
-      [STRUT_TYPE_FREE] = ""};
   if (key->type == STRUT_TYPE_MAP) {
     put_section_link(writer, strut_section_name(strut_section_below(key)));
     return;
   }
   if (key->type == STRUT_TYPE_EXPRESSION) put_expression_type(writer, key);
   if (key->limits.range == STRUT_RANGE_WHOLE) strut_put(writer, "whole ");
-  if (types[key->type]) strut_put(writer, types[key->type]);
+  strut_put(writer, strut_type_reference(key->type));
   if (key->type == STRUT_TYPE_THINGS || key->type == STRUT_TYPE_FREE) {
     strut_put(writer, key->words);
   } else if (*key->words && key->type != STRUT_TYPE_NAMES) {

@@ -146,22 +146,24 @@ void strut_put_shapes(strut_writer *writer) {
 
 /* ---- solver, run and output ---- */
 
+/* What `of` may name, and the signal of one; -1: none. */
+static const strut_thing drivers[] = {STRUT_THING_ACTUATOR, STRUT_THING_LOAD, STRUT_THING_SIGNAL};
+enum { DRIVERS = sizeof drivers / sizeof drivers[0] };
+
+static int32_t signal_of(const strut_scene *scene, strut_thing kind, size_t i) {
+  if (kind == STRUT_THING_SIGNAL) return (int32_t)i;
+  return kind == STRUT_THING_LOAD ? scene->loads[i].signal : scene->actuators[i].signal;
+}
+
 /* Would `of: name` refer to this signal? */
 static bool refers_to(const strut_scene *scene, const char *name, int32_t signal) {
   bool found = false;
-  for (size_t i = 0; i < scene->actuator_count; i++)
-    if (strcmp(scene->actuators[i].name, name) == 0) {
-      if (scene->actuators[i].signal != signal) return false;
-      found = true;
-    }
-  for (size_t i = 0; i < scene->load_count; i++)
-    if (strcmp(scene->loads[i].name, name) == 0 && scene->loads[i].signal >= 0) {
-      if (scene->loads[i].signal != signal) return false;
-      found = true;
-    }
-  for (size_t i = 0; i < scene->signal_count; i++)
-    if (scene->signals[i].name && strcmp(scene->signals[i].name, name) == 0) {
-      if ((int32_t)i != signal) return false;
+  for (size_t k = 0; k < DRIVERS; k++)
+    for (size_t i = 0; i < strut_thing_count(scene, drivers[k]); i++) {
+      const char *own = strut_thing_name(scene, drivers[k], i);
+      int32_t of = signal_of(scene, drivers[k], i);
+      if (!own || strcmp(own, name) != 0 || of < 0) continue;
+      if (of != signal) return false;
       found = true;
     }
   return found;
@@ -169,14 +171,14 @@ static bool refers_to(const strut_scene *scene, const char *name, int32_t signal
 
 /* A name that `of` may use for the signal whose periods count; NULL: the signal needs a name first. */
 static const char *period_name(const strut_scene *scene, const strut_experiment *e) {
-  if (e->period_of && refers_to(scene, e->period_of, e->period_signal)) return e->period_of;
   const char *own = scene->signals[e->period_signal].name;
+  if (e->period_of && refers_to(scene, e->period_of, e->period_signal)) return e->period_of;
   if (own && refers_to(scene, own, e->period_signal)) return own;
-  for (size_t i = 0; i < scene->actuator_count; i++)
-    if (refers_to(scene, scene->actuators[i].name, e->period_signal))
-      return scene->actuators[i].name;
-  for (size_t i = 0; i < scene->load_count; i++)
-    if (refers_to(scene, scene->loads[i].name, e->period_signal)) return scene->loads[i].name;
+  for (size_t k = 0; k < DRIVERS; k++)
+    for (size_t i = 0; i < strut_thing_count(scene, drivers[k]); i++) {
+      const char *name = strut_thing_name(scene, drivers[k], i);
+      if (name && refers_to(scene, name, e->period_signal)) return name;
+    }
   return NULL;
 }
 

@@ -135,6 +135,10 @@ static double radians(double turns) {
 static void put_number(strut_writer *writer, const strut_field *field, const char *object) {
   double number = *(const double *)(const void *)(object + field->offset);
   const char *unit = NULL;
+  if (field->direction && (number == 0.0 || number == 0.25 * STRUT_TAU)) {
+    strut_put(writer, number == 0.0 ? "x" : "y");
+    return;
+  }
   if (field->beside) memcpy(&unit, object + field->beside, sizeof unit);
   if (unit && strcmp(unit, "1") == 0) unit = NULL;
   strut_put(writer, unit ? "\"" : "");
@@ -201,6 +205,19 @@ static void put_references(strut_writer *writer, const strut_key *key, const int
       put_thing_name(writer, key->field.kind, index[k]);
   }
   if (list) strut_put(writer, "]");
+}
+
+/* "[a, p, q, b]" */
+static void put_path(strut_writer *writer, const strut_field *field, const char *object) {
+  const int32_t *ends = (const int32_t *)(const void *)(object + field->offset), *guides;
+  size_t count = *(const size_t *)(const void *)(object + field->number);
+  memcpy(&guides, object + field->beside, sizeof guides);
+  strut_put(writer, "[");
+  for (size_t k = 0; k < count + 2; k++) {
+    if (k) strut_put(writer, ", ");
+    put_thing_name(writer, field->kind, k == 0 ? ends[0] : k > count ? ends[1] : guides[k - 1]);
+  }
+  strut_put(writer, "]");
 }
 
 /* "[[n1, n4], [n2]]": always a list of lists, which cannot be mistaken for a position. */
@@ -286,6 +303,7 @@ static bool differs(const strut_key *key, const char *object, const char *usual)
       return has_references(field, object) && (!strut_field_is_chosen(field, usual) ||
                                                !values_equal(key, value, usual + field->offset));
     case STRUT_FIELD_LIST: return has_items(field, object);
+    case STRUT_FIELD_PATH:
     case STRUT_FIELD_PLACES: return true;
     case STRUT_FIELD_NESTED:
       if (key->type == STRUT_TYPE_LAW) return !is_plain_law((const void *)value);
@@ -346,6 +364,7 @@ static void put_key(strut_writer *writer, const strut_key *key, const char *obje
       put_references(writer, key, value, key->field.size / sizeof(int32_t));
       break;
     case STRUT_FIELD_LIST: put_list(writer, key, object); break;
+    case STRUT_FIELD_PATH: put_path(writer, &key->field, object); break;
     case STRUT_FIELD_PLACES: put_places(writer, *(const double(*const *)[2])value); break;
     case STRUT_FIELD_NESTED: put_nested(writer, key, object, usual); break;
     case STRUT_FIELD_BY_HAND:

@@ -188,30 +188,6 @@ void strut_put_law(strut_writer *writer, const strut_law *law) {
   strut_put_mapping(writer, STRUT_SECTION_LAW, law, &usual, NULL);
 }
 
-/* The nodes; groups have been applied. */
-static void put_member_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                               const void *object) {
-  const strut_member *m = object;
-  if (key != STRUT_KEY_MEMBER_NODES) return;
-  strut_put_key_name(writer, mapping, key);
-  for (size_t k = 0; k < m->guide_count + 2; k++) {
-    strut_put(writer, k ? ", " : "[");
-    strut_put_name(writer, writer->scene->nodes[strut_member_node(m, k)].name);
-  }
-  strut_put(writer, "]");
-}
-
-static void put_distance_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                                 const void *object) {
-  const strut_distance_spring *d = object;
-  if (key != STRUT_KEY_DISTANCE_ALONG || d->line[0] >= 0) return;
-  strut_put_key_name(writer, mapping, key);
-  if (d->along == 0.0 || d->along == 0.25 * STRUT_TAU)
-    strut_put(writer, d->along == 0.0 ? "x" : "y");
-  else
-    strut_put_number(writer, d->along);
-}
-
 static void put_rayleigh(strut_writer *writer) {
   if (!strut_fields_differ(STRUT_SECTION_RAYLEIGH, writer->scene, &writer->usual.scene)) return;
   strut_put(writer, "rayleigh: ");
@@ -377,12 +353,11 @@ char *strut_setup_write(const strut_setup *setup) {
   strut_c_locale locale = strut_c_locale_enter();
   put_head(&writer);
   put_nodes(&writer);
-  strut_put_things(&writer, STRUT_THING_MEMBER, STRUT_SECTION_MEMBER, NULL, put_member_by_hand);
+  strut_put_things(&writer, STRUT_THING_MEMBER, STRUT_SECTION_MEMBER, NULL, NULL);
   strut_put_things(&writer, STRUT_THING_HINGE, STRUT_SECTION_HINGE, NULL, NULL);
   strut_put_things(&writer, STRUT_THING_CELL, STRUT_SECTION_CELL, NULL, NULL);
   strut_put_things(&writer, STRUT_THING_COLLISION, STRUT_SECTION_COLLISION, NULL, NULL);
-  strut_put_things(&writer, STRUT_THING_DISTANCE, STRUT_SECTION_DISTANCE, NULL,
-                   put_distance_by_hand);
+  strut_put_things(&writer, STRUT_THING_DISTANCE, STRUT_SECTION_DISTANCE, NULL, NULL);
   strut_put_things(&writer, STRUT_THING_FOOT, STRUT_SECTION_FOOT, NULL, NULL);
   put_rayleigh(&writer);
   put_ground(&writer);

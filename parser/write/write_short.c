@@ -138,37 +138,6 @@ typedef struct short_writer {
   const strut_setup *setup;
 } short_writer;
 
-static strut_tree *new_scalar(short_writer *w, const strut_tree *like, const char *text) {
-  strut_tree *node = strut_arena_allocate(&w->document.arena, 1, sizeof *node);
-  if (!node || !text) return NULL;
-  *node = (strut_tree){.kind = STRUT_TREE_SCALAR, .place = like->place, .text = text};
-  return node;
-}
-
-static strut_tree *new_map(short_writer *w, const strut_tree *like) {
-  strut_tree *map = new_scalar(w, like, "");
-  if (map) map->kind = STRUT_TREE_MAP;
-  return map;
-}
-
-static strut_tree *copied(short_writer *w, const strut_tree *from) {
-  strut_tree *copy = new_scalar(w, from, "");
-  if (!copy) return NULL;
-  *copy = *from;
-  copy->next = NULL;
-  return copy;
-}
-
-static bool append(strut_tree *map, strut_tree *key, strut_tree *value) {
-  strut_tree **end = &map->first;
-  if (!key || !value) return false;
-  while (*end) end = &(*end)->next;
-  *end = key;
-  key->next = value;
-  map->count++;
-  return true;
-}
-
 /* ---- parameters as they were set ---- */
 
 static const strut_declared *find_declared(const strut_scene_source *source, const char *name) {
@@ -190,39 +159,34 @@ static strut_tree *set_value(short_writer *w, const strut_tree *like, const stru
   const strut_declared *declared = find_declared(w->source, set->name);
   char number[STRUT_NUMBER_TEXT];
   if (!declared || declared->text || declared->bare) {
-    strut_tree *text = new_scalar(w, like, set->value);
+    strut_tree *text = strut_tree_scalar(&w->document.arena, like, set->value);
     if (text) text->quoted = declared && declared->text;
     return text;
   }
   strut_number_text(value_of(&w->setup->scene, set->name), number);
   const char *unit = strut_dimension_unit(declared->dimension);
-  if (strcmp(unit, "SI") == 0) return new_scalar(w, like, set->value); /* it has none */
+  if (strcmp(unit, "SI") == 0)
+    return strut_tree_scalar(&w->document.arena, like, set->value); /* it has none */
   bool plain = strcmp(unit, "1") == 0;
-  return new_scalar(w, like,
-                    strut_arena_format(&w->document.arena, "%s%s%s", number, plain ? "" : " ",
-                                       plain ? "" : unit));
+  return strut_tree_scalar(&w->document.arena, like,
+                           strut_arena_format(&w->document.arena, "%s%s%s", number,
+                                              plain ? "" : " ", plain ? "" : unit));
 }
 
 /* {parameters: {NAME: VALUE, ...}} */
 static strut_tree *settings_tree(short_writer *w, const strut_tree *root,
                                  const strut_override *overrides, size_t count) {
-  strut_tree *map = new_map(w, root), *inner = new_map(w, root);
-  for (size_t i = 0; i < count && inner; i++)
-    if (!append(inner, new_scalar(w, root, overrides[i].name), set_value(w, root, &overrides[i])))
+  strut_arena *arena = &w->document.arena;
+  strut_tree_builder map = strut_tree_begin(arena, root), inner = strut_tree_begin(arena, root);
+  for (size_t i = 0; i < count; i++)
+    if (!strut_tree_append(&inner, strut_tree_scalar(arena, root, overrides[i].name),
+                           set_value(w, root, &overrides[i])))
       return NULL;
-  return map && append(map, new_scalar(w, root, "parameters"), inner) ? map : NULL;
+  strut_tree *name = strut_tree_scalar(arena, root, "parameters");
+  return strut_tree_append(&map, name, inner.map) ? map.map : NULL;
 }
 
 /* ---- what has changed ---- */
-
-static bool same_tree(const strut_tree *a, const strut_tree *b) {
-  if (a->kind != b->kind || a->quoted != b->quoted || a->count != b->count) return false;
-  if (a->kind == STRUT_TREE_SCALAR) return strcmp(a->text, b->text) == 0;
-  const strut_tree *x = a->first, *y = b->first;
-  for (; x && y; x = x->next, y = y->next)
-    if (!same_tree(x, y)) return false;
-  return !x && !y;
-}
 
 /* Both texts have their keys in one order, so that a key is looked for where the last one was found. */
 static const strut_tree *find_from(const strut_tree *map, const strut_tree **at, const char *name) {
@@ -236,29 +200,26 @@ static const strut_tree *find_from(const strut_tree *map, const strut_tree **at,
 /* The keys of `after` that `before` has not, or with another value, and removals of those that are gone. */
 static strut_tree *difference(short_writer *w, strut_mapping_kind kind, const strut_tree *before,
                               const strut_tree *after) {
-  strut_tree *map = new_map(w, after), **end = map ? &map->first : NULL;
+  strut_arena *arena = &w->document.arena;
+  strut_tree_builder map = strut_tree_begin(arena, after);
   const strut_tree *at = before->first;
-  if (!map) return NULL;
+  if (!map.map) return NULL;
   for (const strut_tree *k = after->first; k; k = k->next->next) {
     const strut_tree *was = find_from(before, &at, k->text);
-    if (was && same_tree(was->next, k->next)) continue;
+    if (was && strut_tree_equal(was->next, k->next)) continue;
     bool maps = was && was->next->kind == STRUT_TREE_MAP && k->next->kind == STRUT_TREE_MAP;
-    strut_tree *key = copied(w, k);
     strut_mapping_kind below = strut_kind_below(kind, k->text);
-    strut_tree *value = maps ? difference(w, below, was->next, k->next) : copied(w, k->next);
-    if (!key || !value) return NULL;
-    *end = key, key->next = value, end = &value->next;
-    map->count++;
+    strut_tree *value =
+        maps ? difference(w, below, was->next, k->next) : strut_tree_copy(arena, k->next);
+    if (!strut_tree_append(&map, strut_tree_copy(arena, k), value)) return NULL;
   }
   at = after->first;
   for (const strut_tree *k = before->first; k; k = k->next->next) {
-    if (find_from(after, &at, k->text) || strut_says_otherwise(kind, map, k->text)) continue;
-    strut_tree *key = copied(w, k), *value = new_scalar(w, k, "remove");
-    if (!key || !value) return NULL;
-    *end = key, key->next = value, end = &value->next;
-    map->count++;
+    if (find_from(after, &at, k->text) || strut_says_otherwise(kind, map.map, k->text)) continue;
+    strut_tree *value = strut_tree_scalar(arena, k, "remove");
+    if (!strut_tree_append(&map, strut_tree_copy(arena, k), value)) return NULL;
   }
-  return map;
+  return map.map;
 }
 
 /* Cuts out the record of parameters, whose values stand in the numbers. */
@@ -308,25 +269,16 @@ static bool drop_unused_groups(short_writer *w, strut_tree *root) {
   strut_tree *key = NULL, *groups = strut_tree_find(root, "groups", &key);
   strut_name_map names = {0};
   if (!groups || groups->kind != STRUT_TREE_MAP) return true;
-  strut_tree *kept = new_map(w, groups), **end = kept ? &kept->first : NULL;
-  bool fine = kept && collect_groups(root, &names);
-  for (const strut_tree *k = groups->first; k && fine; k = k->next->next) {
-    if (k->place.file && strut_name_map_find(&names, k->text) < 0) continue;
-    strut_tree *name = copied(w, k), *value = copied(w, k->next);
-    fine = name && value;
-    if (!fine) break;
-    *end = name, name->next = value, end = &value->next;
-    kept->count++;
-  }
+  strut_tree_builder kept = strut_tree_begin(&w->document.arena, groups);
+  bool fine = kept.map && collect_groups(root, &names);
+  for (const strut_tree *k = groups->first; k && fine; k = k->next->next)
+    if (!k->place.file || strut_name_map_find(&names, k->text) >= 0)
+      fine = strut_tree_share(&kept, &w->document.arena, k, k->next);
   strut_name_map_free(&names);
   if (!fine) return false;
-  kept->next = groups->next;
-  if (kept->count) key->next = kept;
-  if (kept->count) return true;
-  strut_tree **link = &root->first;
-  while (*link != key) link = &(*link)->next->next;
-  *link = groups->next;
-  root->count--;
+  kept.map->next = groups->next;
+  key->next = kept.map;
+  if (!kept.map->count) strut_tree_drop(root, "groups");
   return true;
 }
 

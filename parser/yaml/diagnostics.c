@@ -31,16 +31,6 @@ static void tidy(char *message, int written) {
     if ((unsigned char)*c < 0x20 || *c == 0x7F) *c = ' ';
 }
 
-static bool grow_list(strut_diagnostic **list, size_t count, size_t *room) {
-  if (count < *room) return true;
-  size_t capacity = *room ? 2 * *room : 16;
-  void *items = strut_reallocate(*list, capacity, sizeof **list);
-  if (!items) return false;
-  *list = items;
-  *room = capacity;
-  return true;
-}
-
 /* The message in the arena, or NULL. */
 static const char *compose(strut_diagnostics *diagnostics, const char *format, va_list arguments) {
   char message[MESSAGE_MOST] = "";
@@ -60,7 +50,8 @@ void strut_diagnose(strut_diagnostics *diagnostics, strut_place place, const cha
   va_start(arguments, format);
   const char *copy = compose(diagnostics, format, arguments);
   va_end(arguments);
-  if (!copy || !grow_list(&diagnostics->items, diagnostics->count, &diagnostics->capacity)) {
+  if (!copy || !strut_grow(&diagnostics->items, &diagnostics->capacity, diagnostics->count,
+                           sizeof *diagnostics->items)) {
     diagnostics->unstored++;
     diagnostics->out_of_memory = true;
     return;
@@ -117,7 +108,8 @@ void strut_note(strut_diagnostics *diagnostics, strut_place place, const char *f
   const char *copy = compose(diagnostics, format, arguments);
   va_end(arguments);
   if (!copy || has_note(diagnostics, place, copy) ||
-      !grow_list(&diagnostics->notes, diagnostics->note_count, &diagnostics->note_capacity))
+      !strut_grow(&diagnostics->notes, &diagnostics->note_capacity, diagnostics->note_count,
+                  sizeof *diagnostics->notes))
     return;
   diagnostics->notes[diagnostics->note_count++] =
       (strut_diagnostic){.place = place, .message = copy};

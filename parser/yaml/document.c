@@ -419,3 +419,60 @@ strut_tree *strut_tree_find(const strut_tree *map, const char *key, strut_tree *
   }
   return NULL;
 }
+
+strut_tree *strut_tree_copy(strut_arena *arena, const strut_tree *node) {
+  size_t size = node->placed ? sizeof(strut_placed_tree) : sizeof *node;
+  strut_tree *copy = strut_arena_copy(arena, node, 1, size);
+  if (copy) copy->next = NULL;
+  return copy;
+}
+
+strut_tree *strut_tree_scalar(strut_arena *arena, const strut_tree *like, const char *text) {
+  strut_tree node = {.kind = STRUT_TREE_SCALAR, .place = like->place, .text = text};
+  return text ? strut_tree_copy(arena, &node) : NULL;
+}
+
+strut_tree_builder strut_tree_begin(strut_arena *arena, const strut_tree *like) {
+  strut_tree *map = strut_tree_scalar(arena, like, "");
+  if (map) map->kind = STRUT_TREE_MAP;
+  return (strut_tree_builder){map, map ? &map->first : NULL};
+}
+
+bool strut_tree_append(strut_tree_builder *builder, strut_tree *key, strut_tree *value) {
+  if (!builder->map || !key || !value) return false;
+  *builder->end = key;
+  key->next = value;
+  builder->end = &value->next;
+  builder->map->count = (builder->map->count + 1) & STRUT_TREE_COUNT_MASK;
+  return true;
+}
+
+bool strut_tree_share(strut_tree_builder *builder, strut_arena *arena, const strut_tree *key,
+                      const strut_tree *value) {
+  return strut_tree_append(builder, strut_tree_copy(arena, key), strut_tree_copy(arena, value));
+}
+
+void strut_tree_drop(strut_tree *map, const char *key) {
+  strut_tree **link = &map->first;
+  while (*link && strcmp((*link)->text, key) != 0) link = &(*link)->next->next;
+  if (!*link) return;
+  *link = (*link)->next->next;
+  map->count--;
+}
+
+bool strut_tree_equal(const strut_tree *a, const strut_tree *b) {
+  if (a->kind != b->kind || a->count != b->count) return false;
+  if (a->kind == STRUT_TREE_SCALAR) return strcmp(a->text, b->text) == 0;
+  const strut_tree *x = a->first, *y = b->first;
+  for (; x && y; x = x->next, y = y->next)
+    if (!strut_tree_equal(x, y)) return false;
+  return !x && !y;
+}
+
+bool strut_is_null(const strut_tree *value) {
+  static const char *const nulls[] = {"", "~", "null", "Null", "NULL"};
+  if (value->kind != STRUT_TREE_SCALAR || value->quoted) return false;
+  for (size_t i = 0; i < sizeof nulls / sizeof nulls[0]; i++)
+    if (strcmp(value->text, nulls[i]) == 0) return true;
+  return false;
+}
