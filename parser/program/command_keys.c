@@ -85,7 +85,11 @@ static strut_status run_results(const strut_arguments *arguments) {
                  {"check", &strut_check_values},
                  {"compare", &strut_compare_values},
                  {"tradeoff", &strut_tradeoff_values},
-                 {"sweep, of a study with `search`", &strut_search_report_values}};
+                 {"sweep", &strut_sweep_end_values},
+                 {"sweep, of a study with `search`", &strut_search_report_values},
+                 {"sweep --count", &strut_sweep_count_values},
+                 {"sweep --status", &strut_slots_progress_values},
+                 {"sweep --status, of shards", &strut_shards_progress_values}};
   strut_buffer page = {0};
   (void)arguments;
   strut_buffer_add(
