@@ -11,7 +11,10 @@
 #include "engine/output/result_values.h"
 #include "engine/scene/scene.h"
 
-enum { DIGITS = 4, MOST_ITEMS = 100, MOST_INLINE = 10, TITLE = 80, WIDEST = 40 };
+enum { DIGITS = 6, MOST_INLINE = 10, TITLE = 80, WIDEST = 40 };
+
+/* Part of the largest of several forces below which one is rounding, and shown as 0. */
+static const double ROUNDING = 1e-12;
 
 /* ---- texts of values ---- */
 
@@ -61,13 +64,13 @@ static void add_value(strut_buffer *text, const strut_value_row *row, const stru
     strut_buffer_add(text, value->integer ? "yes" : "no");
   else if (!several && written)
     strut_buffer_add(text, "%s", written);
-  for (size_t i = 0; several && i < value->count; i++) {
-    size_t before = text->length;
-    if (i && before) strut_buffer_add(text, i < MOST_INLINE ? ", " : ", ...");
-    if (i == MOST_INLINE) return;
-    const char *name = value->name && value->kind == STRUT_VALUE_NAMES ? value->name(of, i) : "";
-    strut_value item = {.kind = STRUT_VALUE_TEXT, .text = name};
+  for (size_t i = 0, shown = 0; several && i < value->count; i++) {
+    strut_value item = {.kind = STRUT_VALUE_NUMBER};
+    if (value->kind == STRUT_VALUE_NAMES) item = STRUT_VALUE_AS_TEXT(value->name(of, i));
     if (value->kind == STRUT_VALUE_MAP) item = value->value(of, i);
+    if (item.kind == STRUT_VALUE_TEXT && !item.text) continue;
+    if (shown) strut_buffer_add(text, shown < MOST_INLINE ? ", " : ", ...");
+    if (shown++ == MOST_INLINE) return;
     if (value->kind == STRUT_VALUE_NUMBERS)
       add_number(text, row, value,
                  *(const double *)(const void *)((const char *)value->items + i * value->size));
@@ -93,6 +96,12 @@ typedef struct cell_table {
   bool failed;
   strut_arena arena;
 } cell_table;
+
+/* What limits tables. */
+typedef struct table_page {
+  int width;
+  size_t most; /* structs of a list */
+} table_page;
 
 /* Letters of a UTF-8 text, as a terminal's columns. */
 static int letters(const char *text) {
@@ -127,11 +136,29 @@ static void put_cell(cell_table *table, const char *title, const strut_value_row
   strut_release(text);
 }
 
+/* A cell for each thing: "a", "a support x". */
+static void put_things(cell_table *table, const strut_value_row *row, const strut_result_object *of,
+                       const strut_value *value) {
+  char title[TITLE];
+  double largest = 0.0;
+  for (size_t k = 0; k < value->columns * value->count; k++)
+    if (strut_value_has(value, of, k))
+      largest = fmax(largest, fabs(strut_value_item(value, of, k)));
+  for (size_t k = 0; k < value->columns * value->count; k++) {
+    const char *name = strut_owner_name(value->owner, of->scene, k / value->columns);
+    if (!strut_value_has(value, of, k)) continue;
+    snprintf(title, sizeof title, "%.50s%s", name, row->label[k % value->columns]);
+    double number = strut_value_item(value, of, k);
+    if (fabs(number) <= ROUNDING * largest) number = 0.0;
+    put_cell(table, title, row, of, &STRUT_VALUE_AS_NUMBER(number));
+  }
+}
+
 /* Cells of all values with a label but lists. */
 static void put_cells(cell_table *table, const strut_value_rows *rows, const char *part,
                       const strut_result_object *of) {
   strut_value values[STRUT_MOST_VALUES];
-  char title[TITLE];
+  char title[TITLE], prefix[TITLE];
   rows->fill(of, values);
   for (size_t i = 0; i < rows->count; i++) {
     const strut_value_row *row = &rows->row[i];
@@ -143,10 +170,13 @@ static void put_cells(cell_table *table, const strut_value_rows *rows, const cha
     } else if (!row->label[0] || value->kind == STRUT_VALUE_PART || row->rows) {
       continue;
     } else if (value->kind == STRUT_VALUE_MAP && value->name) {
+      const char *before = *row->label[0] ? title_of(row, part, NULL, prefix) : part;
       for (size_t k = 0; k < value->count; k++) {
         const strut_value item = value->value(of, k);
-        put_cell(table, title_of(row, part, value->name(of, k), title), row, of, &item);
+        put_cell(table, title_of(row, before, value->name(of, k), title), row, of, &item);
       }
+    } else if (value->kind == STRUT_VALUE_THINGS) {
+      put_things(table, row, of, value);
     } else {
       put_cell(table, title_of(row, part, value->own_unit ? value->text : NULL, title), row, of,
                value);
@@ -195,20 +225,23 @@ static void add_lines(strut_buffer *text, const cell_table *table) {
   }
 }
 
+static int width_of_item(const cell_table *table, size_t item) {
+  int width = 0;
+  for (size_t k = 0; k < table->count; k++)
+    if (letters(table->column[k].cell[item]) > width) width = letters(table->column[k].cell[item]);
+  return width;
+}
+
 /* A line for each value, with as many structs side by side as there is width for. */
 static void add_columns(strut_buffer *text, const cell_table *table, int width) {
-  int titles = 0, widths[MOST_ITEMS];
+  int titles = 0;
   for (size_t k = 0; k < table->count; k++)
     if (table->column[k].width && letters(table->column[k].title) > titles)
       titles = letters(table->column[k].title);
   for (size_t first = 0, end; first < table->items; first = end) {
     int used = titles + 2;
     for (end = first; end < table->items; end++) {
-      widths[end] = 0;
-      for (size_t k = 0; k < table->count; k++)
-        if (letters(table->column[k].cell[end]) > widths[end])
-          widths[end] = letters(table->column[k].cell[end]);
-      used += widths[end] + 2;
+      used += width_of_item(table, end) + 2;
       if (used > width && end > first) break;
     }
     if (first) strut_buffer_add(text, "\n");
@@ -217,31 +250,34 @@ static void add_columns(strut_buffer *text, const cell_table *table, int width) 
       if (!column->width) continue;
       add_padded(text, column->title, titles, false);
       for (size_t i = first; i < end; i++)
-        add_padded(text, column->cell[i], table->items > 1 ? widths[i] : 0, true);
+        add_padded(text, column->cell[i], table->items > 1 ? width_of_item(table, i) : 0, true);
       strut_buffer_add(text, "\n");
     }
   }
 }
 
 static void add_lists(strut_buffer *text, const strut_value_rows *rows,
-                      const strut_result_object *of, const char *before, int width);
+                      const strut_result_object *of, const char *before, const table_page *page);
 
 /* A table of the structs of a list, then the lists within each. */
 static void add_list(strut_buffer *text, const strut_value_row *row, const strut_result_object *of,
-                     const strut_value *list, const char *before, int width) {
+                     const strut_value *list, const char *before, const table_page *page) {
   static const strut_value_row name_row = {.unit = "", .label = {""}};
   cell_table *table = strut_allocate(1, sizeof *table);
-  strut_result_object item[MOST_ITEMS];
   char title[TITLE], within[2 * TITLE];
   int all = 0, shown = 0;
+  size_t more = 0;
   text->failed = text->failed || !table;
   if (!table) return;
-  table->items = list->count < MOST_ITEMS ? list->count : MOST_ITEMS;
+  table->items = list->count < page->most ? list->count : page->most;
+  strut_result_object *item = strut_arena_allocate(&table->arena, table->items + 1, sizeof *item);
+  table->failed = !item;
   title_of(row, "", NULL, title);
-  for (size_t i = 0; i < list->count && table->item < table->items; i++) {
+  for (size_t i = 0; item && i < list->count; i++) {
     const strut_scene *scene = list->scene ? list->scene(of, i) : of->scene;
     const char *name = list->name ? list->name(of, i) : NULL;
     if ((list->name && !name) || !strut_value_has(list, of, i)) continue;
+    if (table->item == table->items && ++more) continue;
     item[table->item] =
         (strut_result_object){(const char *)list->items + i * list->size, of, scene, i};
     table->next = 0;
@@ -255,44 +291,44 @@ static void add_list(strut_buffer *text, const strut_value_row *row, const strut
   text->failed = text->failed || table->failed;
   if (all) strut_buffer_add(text, "\n%s%s\n", before, title);
   bool few = 2 * (int)table->items <= shown;
-  if (all > (few ? width : 2 * width) && !text->failed)
-    add_columns(text, table, width);
+  if (all > (few ? page->width : 2 * page->width) && !text->failed)
+    add_columns(text, table, page->width);
   else if (all && !text->failed)
     add_lines(text, table);
-  if (list->count > MOST_ITEMS)
-    strut_buffer_add(text, "  ... and %zu more: JSON and CSV have all\n", list->count - MOST_ITEMS);
+  if (more) strut_buffer_add(text, "  ... and %zu more: JSON and CSV have all\n", more);
   for (size_t i = 0; i < table->items && !text->failed; i++) {
     const cell_column *first = table->column;
     bool named = table->count && !first->number && first->cell[i];
     snprintf(within, sizeof within, named ? "%.80s: " : "%s %zu: ", named ? first->cell[i] : title,
              item[i].index + 1);
-    add_lists(text, row->rows, &item[i], within, width);
+    add_lists(text, row->rows, &item[i], within, page);
   }
   strut_arena_free(&table->arena);
   strut_release(table);
 }
 
 static void add_lists(strut_buffer *text, const strut_value_rows *rows,
-                      const strut_result_object *of, const char *before, int width) {
+                      const strut_result_object *of, const char *before, const table_page *page) {
   strut_value value[STRUT_MOST_VALUES];
   rows->fill(of, value);
   for (size_t i = 0; i < rows->count; i++) {
     const strut_value_row *row = &rows->row[i];
     const strut_result_object within = {value[i].items, of, of->scene, 0};
     if (value[i].kind == STRUT_VALUE_LIST && row->label[0])
-      add_list(text, row, of, &value[i], before, width);
+      add_list(text, row, of, &value[i], before, page);
     else if (value[i].kind == STRUT_VALUE_MAP && row->rows && row->label[0])
       for (size_t k = 0; k < value[i].count; k++) {
         const strut_value list = value[i].value(of, k);
-        add_list(text, row, of, &list, before, width);
+        add_list(text, row, of, &list, before, page);
       }
-    else if (value[i].kind == STRUT_VALUE_PART && !row->key)
-      add_lists(text, row->rows, value[i].items == of->at ? of : &within, before, width);
+    else if (value[i].kind == STRUT_VALUE_PART && (!row->key || row->label[0]))
+      add_lists(text, row->rows, value[i].items == of->at ? of : &within, before, page);
   }
 }
 
 char *strut_values_text(const strut_value_rows *rows, const void *result, const strut_scene *scene,
-                        int width) {
+                        int width, size_t most) {
+  const table_page page = {width, most};
   strut_buffer text = {0};
   const strut_result_object whole = {result, NULL, scene, 0};
   strut_c_locale locale = strut_c_locale_enter();
@@ -305,7 +341,7 @@ char *strut_values_text(const strut_value_rows *rows, const void *result, const 
     text.failed = text.failed || table->failed;
     strut_arena_free(&table->arena);
     strut_release(table);
-    add_lists(&text, rows, &whole, "", width);
+    add_lists(&text, rows, &whole, "", &page);
   }
   text.failed = text.failed || !table;
   strut_c_locale_leave(locale);

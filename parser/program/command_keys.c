@@ -3,8 +3,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/output/report/reports.h"
 #include "engine/output/result_values.h"
+#include "engine/statics/form/form.h"
+#include "engine/statics/modes/modes.h"
+#include "engine/statics/modes/waves.h"
+#include "engine/statics/rigidity/rigidity.h"
 #include "engine/study/compare/compare.h"
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/report/study_report.h"

@@ -11,9 +11,6 @@
 #include "parser/program/streams.h"
 #include "parser/yaml/diagnostics.h"
 
-/* Width of texts that no terminal shows. */
-enum { USUAL_COLUMNS = 100 };
-
 static strut_status print_help(const strut_arguments *arguments);
 
 static const strut_command help_command = {
@@ -95,12 +92,14 @@ void strut_program_help(void) {
       "4 file or memory trouble, 5 less accurate than requested, 130 interrupted.\n");
 }
 
+int strut_report_width(void) { return strut_terminal_columns(STDOUT_FILENO, STRUT_REPORT_WIDTH); }
+
 strut_status strut_print_values(const strut_arguments *arguments, const strut_value_rows *values,
                                 const void *result, const strut_scene *scene) {
-  const int width = strut_terminal_columns(STDOUT_FILENO, USUAL_COLUMNS);
-  return strut_print_report(arguments, arguments->json
-                                           ? strut_values_json(values, result, scene)
-                                           : strut_values_text(values, result, scene, width));
+  return strut_print_report(
+      arguments, arguments->json ? strut_values_json(values, result, scene)
+                                 : strut_values_text(values, result, scene, strut_report_width(),
+                                                     STRUT_REPORT_ROWS));
 }
 
 /* The help of a word that is no command: a key or section of the language, or none. */

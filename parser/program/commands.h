@@ -46,6 +46,8 @@ void strut_program_help(void);
 /** Calls `each` with FOLDER/NAME.yaml of every model that comes with strut, in order. */
 void strut_examples_list(void (*each)(void *context, const char *model), void *context);
 
+/** Width of what is printed. */
+int strut_report_width(void);
 /** Prints a result as JSON where that is wanted, or else as text unless --quiet suppresses it. */
 strut_status strut_print_values(const strut_arguments *arguments, const strut_value_rows *rows,
                                 const void *result, const struct strut_scene *scene);

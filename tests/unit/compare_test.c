@@ -82,7 +82,7 @@ static strut_status make(const strut_compare_options *options, bool tell) {
   strut_status status = strut_compare_make(inputs, 2, options, &result, &error);
   if (status != STRUT_OK) assert_int_equal(error.status, status);
   if (status == STRUT_OK && tell) {
-    char *texts[] = {strut_values_text(&strut_compare_values, &result, NULL, 60),
+    char *texts[] = {strut_values_text(&strut_compare_values, &result, NULL, 60, STRUT_REPORT_ROWS),
                      strut_compare_csv(&result), strut_compare_json(&result)};
     for (int i = 0; i < 3; i++) {
       if (!texts[i]) status = STRUT_NO_MEMORY;
