@@ -30,7 +30,7 @@ breaches() {
         "engine/run/orbit|engine/run|engine/run/accuracy|engine/run/follow|engine/statics|engine/statics/search|" \
         "engine/statics/equilibria|" \
         "engine/statics/modes engine/statics/rigidity engine/statics/form engine/statics/path|" \
-        "engine/output|engine/output/draw engine/output/report|" \
+        "engine/output|engine/output/draw|" \
         "engine/output/figures engine/output/page|engine/study/results|" \
         "engine/study/sensitivity|" \
         "engine/study/cluster engine/study/tradeoff engine/study/sweep|" \

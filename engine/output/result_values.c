@@ -145,7 +145,7 @@ void strut_json_values(strut_json *json, struct cJSON *to, const strut_value_row
   assert(rows->count <= STRUT_MOST_VALUES);
   rows->fill(of, value);
   for (size_t i = 0; i < rows->count; i++)
-    if (rows->row[i].key || value[i].kind >= STRUT_VALUE_MAP)
+    if (rows->row[i].key || value[i].kind == STRUT_VALUE_MAP || value[i].kind == STRUT_VALUE_PART)
       put(json, to, &rows->row[i], of, &value[i]);
 }
 
@@ -224,6 +224,20 @@ static void add_part(line *at, const strut_value_row *row, const strut_result_ob
   at->part = outer;
 }
 
+static void add_map(line *at, const strut_value_row *row, const strut_value *value,
+                    const strut_result_object *of) {
+  for (size_t k = 0; k < value->count; k++) {
+    const strut_value item = value->value(of, k);
+    const char *unit = item.own_unit ? item.own_unit : "";
+    if (!at->names) {
+      add_cell(at, row, &item, of);
+      continue;
+    }
+    next_cell(at);
+    strut_csv_add_text(at->csv, *unit ? "%s [%s]" : "%s", value->name(of, k), unit);
+  }
+}
+
 static void add_columns(line *at, const strut_value_rows *rows, const strut_result_object *of) {
   strut_value values[STRUT_MOST_VALUES];
   rows->fill(of, values);
@@ -238,6 +252,8 @@ static void add_columns(line *at, const strut_value_rows *rows, const strut_resu
       add_things(at, row, value, of);
     else if (value->kind == STRUT_VALUE_NUMBERS)
       add_numbers(at, row, value);
+    else if (value->kind == STRUT_VALUE_MAP)
+      add_map(at, row, value, of);
     else
       add_cell(at, row, value, of);
   }

@@ -32,6 +32,16 @@ STRUT_API char *strut_values_csv(const strut_value_rows *rows, const char *path,
                                  const char *const before[2], const void *result,
                                  const struct strut_scene *scene);
 
+/** Width of texts that no terminal shows; most structs of a list, unless all are wanted. */
+enum { STRUT_REPORT_WIDTH = 100, STRUT_REPORT_ROWS = 60 };
+/**
+ * What people read of a result, in a block of strut_allocate or NULL: values with a label, those of the struct
+ * each in a line, those of a list in a table with a line for each struct or, of few that are wider than `width`, a
+ * column for each. An empty label is the key; behind it "%" says how a ratio is shown.
+ */
+STRUT_API char *strut_values_text(const strut_value_rows *rows, const void *result,
+                                  const struct strut_scene *scene, int width, size_t most);
+
 /** Appends rows of a Markdown table about the values, their keys after `before`. */
 STRUT_API void strut_values_describe(strut_buffer *page, const strut_value_rows *rows,
                                      const char *before);

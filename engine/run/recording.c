@@ -72,7 +72,8 @@ static bool create_parts(const strut_experiment *experiment, strut_recording *r)
 static strut_status begin_sinks(strut_recording *r, strut_error *error) {
   for (; r->begun < r->sink_count; r->begun++) {
     strut_sink *sink = r->sinks[r->begun];
-    strut_status status = sink->begin(sink->context, &r->parts[r->begun].layout, error);
+    strut_status status =
+        !sink->begin ? STRUT_OK : sink->begin(sink->context, &r->parts[r->begun].layout, error);
     if (status) return status;
   }
   return STRUT_OK;
@@ -136,6 +137,7 @@ static strut_status flush_rows(strut_recording *r, strut_error *error) {
   r->row_count = 0;
   for (size_t s = 0; s < r->begun && count; s++) {
     const double *rows = select_rows(r, &r->parts[s], count);
+    if (!r->sinks[s]->rows) continue;
     strut_status status = r->sinks[s]->rows(r->sinks[s]->context, rows, count, error);
     if (status) return status;
   }
@@ -177,6 +179,7 @@ strut_status strut_recording_finish(strut_recording *r, strut_status run_status,
   if (status) run_status = status;
   for (size_t s = 0; s < r->begun; s++) {
     strut_error own = {0};
+    if (!r->sinks[s]->end) continue;
     strut_status ended = r->sinks[s]->end(r->sinks[s]->context, run_status, &own);
     if (!ended || status) continue;
     status = ended;
@@ -188,6 +191,6 @@ strut_status strut_recording_finish(strut_recording *r, strut_status run_status,
 
 void strut_recording_free(strut_recording *r) {
   for (size_t s = 0; s < r->begun; s++)
-    r->sinks[s]->end(r->sinks[s]->context, STRUT_FILE_TROUBLE, NULL);
+    if (r->sinks[s]->end) r->sinks[s]->end(r->sinks[s]->context, STRUT_FILE_TROUBLE, NULL);
   strut_arena_free(&r->arena);
 }

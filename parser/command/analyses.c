@@ -9,13 +9,12 @@
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
 #include "engine/output/figures/statics_figures.h"
-#include "engine/output/report/reports.h"
+#include "engine/output/path_csv.h"
 #include "engine/output/result_values.h"
 #include "engine/scene/things.h"
 #include "parser/yaml/diagnostics.h"
 
 strut_status strut_analysis_compute(strut_analysis *a, strut_error *error) {
-  a->all = a->arguments->all;
   strut_status status = a->kind->compute(a, error);
   a->arguments = NULL;
   return status;
@@ -215,8 +214,10 @@ static strut_status compute_equilibria(strut_analysis *a, strut_error *error) {
                                            .seed = &seed,
                                            .supports = set,
                                            .interrupt = a->setup->experiment.interrupt};
-  return strut_equilibria_find(a->model, &a->setup->experiment, &wanted, &a->result.equilibria,
-                               error);
+  status =
+      strut_equilibria_find(a->model, &a->setup->experiment, &wanted, &a->result.equilibria, error);
+  a->result.equilibria.shows_all = arguments->all;
+  return status;
 }
 
 static strut_status judge_equilibria(const strut_analysis *a, strut_error *error) {
@@ -227,10 +228,6 @@ static strut_status judge_equilibria(const strut_analysis *a, strut_error *error
 static const strut_value_rows *equilibria_values(const strut_analysis *a, const void **result) {
   *result = &a->result.equilibria;
   return &strut_equilibria_values;
-}
-
-static char *equilibria_table(const strut_analysis *a) {
-  return strut_equilibria_table(&a->result.equilibria, a->model, a->all);
 }
 
 static void warn_of_equilibria(const strut_analysis *a, const strut_listener *listener) {
@@ -263,7 +260,6 @@ const strut_analysis_kind strut_equilibria_analysis = {.files = {"equilibria.jso
                                                        .compute = compute_equilibria,
                                                        .verdict = judge_equilibria,
                                                        .values = equilibria_values,
-                                                       .table = equilibria_table,
                                                        .warn = warn_of_equilibria,
                                                        .draw = draw_equilibria,
                                                        .release = free_equilibria};
@@ -299,11 +295,6 @@ static char *modes_csv(const strut_analysis *a) {
   return strut_values_csv(rows, wave ? "waves" : "modes", NULL, result, &a->setup->scene);
 }
 
-static char *modes_table(const strut_analysis *a) {
-  return a->result.modes.wave ? strut_waves_table(a->model, &a->result.modes.waves)
-                              : strut_modes_table(a->model, &a->result.modes.found);
-}
-
 static void warn_of_modes(const strut_analysis *a, const strut_listener *listener) {
   const double *q = a->result.modes.wave ? a->result.modes.waves.q : a->result.modes.found.q;
   strut_warn_of_overload(listener, a->model, q, "in this shape");
@@ -335,7 +326,6 @@ const strut_analysis_kind strut_modes_analysis = {.files = {"modes.json", "modes
                                                   .compute = compute_modes,
                                                   .values = modes_values,
                                                   .csv = modes_csv,
-                                                  .table = modes_table,
                                                   .warn = warn_of_modes,
                                                   .draw = draw_modes,
                                                   .release = free_modes};
@@ -357,10 +347,6 @@ static const strut_value_rows *rigidity_values(const strut_analysis *a, const vo
   return &strut_rigidity_values;
 }
 
-static char *rigidity_table(const strut_analysis *a) {
-  return strut_rigidity_table(&a->result.rigidity.found, a->model, a->result.rigidity.shape.name);
-}
-
 static strut_status draw_rigidity(const strut_analysis *a, const strut_plot *plot,
                                   strut_error *error) {
   const strut_named_shape *shape = &a->result.rigidity.shape;
@@ -377,7 +363,6 @@ const strut_option strut_rigidity_analysis_options[] = {
 const strut_analysis_kind strut_rigidity_analysis = {.files = {"rigidity.json"},
                                                      .compute = compute_rigidity,
                                                      .values = rigidity_values,
-                                                     .table = rigidity_table,
                                                      .draw = draw_rigidity,
                                                      .release = free_rigidity};
 
@@ -409,10 +394,6 @@ static const strut_value_rows *form_values(const strut_analysis *a, const void *
   return &strut_form_values;
 }
 
-static char *form_table(const strut_analysis *a) {
-  return strut_form_table(&a->result.form.found, a->setup);
-}
-
 static strut_status draw_form(const strut_analysis *a, const strut_plot *plot, strut_error *error) {
   strut_model *model = NULL;
   strut_status status = strut_model_compile(&a->setup->scene, &model, error);
@@ -434,11 +415,8 @@ const strut_option strut_form_analysis_options[] = {
      "which prestress: minimal largest (default), sum or squares", .words = "largest|sum|squares"},
     {.name = NULL}};
 
-const strut_analysis_kind strut_form_analysis = {.uncompiled = true,
-                                                 .compute = compute_form,
-                                                 .values = form_values,
-                                                 .table = form_table,
-                                                 .draw = draw_form};
+const strut_analysis_kind strut_form_analysis = {
+    .uncompiled = true, .compute = compute_form, .values = form_values, .draw = draw_form};
 
 /* ---- path ---- */
 
@@ -472,10 +450,6 @@ static const strut_value_rows *path_values(const strut_analysis *a, const void *
 
 static char *path_csv(const strut_analysis *a) {
   return strut_path_csv(&a->result.path, &a->setup->scene);
-}
-
-static char *path_table(const strut_analysis *a) {
-  return strut_path_table(&a->result.path, &a->setup->scene);
 }
 
 static void warn_of_path(const strut_analysis *a, const strut_listener *listener) {
@@ -514,7 +488,6 @@ const strut_analysis_kind strut_path_analysis = {.files = {"path.json", "path.cs
                                                  .compute = compute_path,
                                                  .values = path_values,
                                                  .csv = path_csv,
-                                                 .table = path_table,
                                                  .warn = warn_of_path,
                                                  .draw = draw_path,
                                                  .release = free_path};
@@ -523,4 +496,12 @@ char *strut_analysis_json(const strut_analysis *a) {
   const void *result;
   const strut_value_rows *rows = a->kind->values(a, &result);
   return strut_values_json(rows, result, &a->setup->scene);
+}
+
+char *strut_analysis_text(const strut_analysis *a, int width) {
+  const void *result;
+  const strut_value_rows *rows = a->kind->values(a, &result);
+  bool all = a->kind == &strut_equilibria_analysis && a->result.equilibria.shows_all;
+  return strut_values_text(rows, result, &a->setup->scene, width,
+                           all ? SIZE_MAX : STRUT_REPORT_ROWS);
 }

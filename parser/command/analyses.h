@@ -47,7 +47,6 @@ struct strut_analysis_kind {
   /** Rows of the result and, into *result, what they are of; strut_analysis_json writes it. */
   const strut_value_rows *(*values)(const strut_analysis *a, const void **result);
   char *(*csv)(const strut_analysis *a); /* NULL: no such file */
-  char *(*table)(const strut_analysis *a);
   /** Tells the listener what is doubtful in the result. May be NULL. */
   void (*warn)(const strut_analysis *a, const strut_listener *listener);
   strut_status (*draw)(const strut_analysis *a, const strut_plot *plot, strut_error *error);
@@ -68,7 +67,6 @@ struct strut_analysis {
   strut_setup *setup;               /* its interrupt is asked */
   const strut_model *model;         /* of the setup; NULL if uncompiled */
   strut_varied_scenes scenes;       /* the setup's text, for those over a parameter */
-  bool all;                         /* the table lists every equilibrium */
   strut_arena arena;
   union {
     strut_equilibria equilibria;
@@ -92,6 +90,8 @@ struct strut_analysis {
 
 /** The result as JSON, in a block of strut_allocate; NULL where memory is out. */
 char *strut_analysis_json(const strut_analysis *a);
+/** What people read of it. */
+char *strut_analysis_text(const strut_analysis *a, int width);
 
 /** Computes; a->result is zero before. Call strut_analysis_free in any case. */
 strut_status strut_analysis_compute(strut_analysis *a, strut_error *error);

@@ -241,7 +241,7 @@ static strut_status open_compared(const strut_arguments *arguments, compared_mod
   return status;
 }
 
-enum { USUAL_COLUMNS = 100, FIXED_FILES = 3, FILE_NAME = 24, PATH = 4096 };
+enum { FIXED_FILES = 3, FILE_NAME = 24, PATH = 4096 };
 static const double PAGE = 510.24, ONE = 249.45; /* 180 mm, 88 mm [pt] */
 
 static const strut_option options[] = {
@@ -308,12 +308,8 @@ static strut_status write_files(strut_results *files, const file_names *names,
 
 static strut_status print_comparison(const strut_arguments *arguments,
                                      const strut_compare *result) {
-  if (arguments->quiet && !arguments->json && !arguments->csv) return STRUT_OK;
-  char *text = arguments->json  ? strut_compare_json(result)
-               : arguments->csv ? strut_compare_csv(result)
-                                : strut_compare_table(
-                                      result, strut_terminal_columns(STDOUT_FILENO, USUAL_COLUMNS));
-  return strut_print_block(text);
+  return arguments->csv ? strut_print_block(strut_compare_csv(result))
+                        : strut_print_values(arguments, &strut_compare_values, result, NULL);
 }
 
 /* Repeats on stderr what could not be computed, or not as accurately as requested. */

@@ -3,8 +3,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/output/report/reports.h"
 #include "engine/output/result_values.h"
+#include "engine/statics/form/form.h"
+#include "engine/statics/modes/modes.h"
+#include "engine/statics/modes/waves.h"
+#include "engine/statics/rigidity/rigidity.h"
 #include "engine/study/compare/compare.h"
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/report/study_report.h"
@@ -85,7 +88,11 @@ static strut_status run_results(const strut_arguments *arguments) {
                  {"check", &strut_check_values},
                  {"compare", &strut_compare_values},
                  {"tradeoff", &strut_tradeoff_values},
-                 {"sweep, of a study with `search`", &strut_search_report_values}};
+                 {"sweep", &strut_sweep_end_values},
+                 {"sweep, of a study with `search`", &strut_search_report_values},
+                 {"sweep --count", &strut_sweep_count_values},
+                 {"sweep --status", &strut_slots_progress_values},
+                 {"sweep --status, of shards", &strut_shards_progress_values}};
   strut_buffer page = {0};
   (void)arguments;
   strut_buffer_add(

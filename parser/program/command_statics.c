@@ -33,7 +33,9 @@ static strut_status report(const strut_arguments *arguments, const strut_analysi
   strut_release(csv);
   if (status == STRUT_OK && arguments->json) return strut_print_report(arguments, json);
   strut_release(json);
-  return status == STRUT_OK ? strut_print_report(arguments, kind->table(a)) : status;
+  return status == STRUT_OK
+             ? strut_print_report(arguments, strut_analysis_text(a, strut_report_width()))
+             : status;
 }
 
 static strut_status compute_and_report(const strut_arguments *arguments, const strut_plot *plot,
@@ -232,7 +234,7 @@ static strut_status report_form(const strut_arguments *arguments, const strut_an
   if (status == STRUT_OK && arguments->output)
     status = strut_file_write_path(arguments->output, model, error);
   if (arguments->json || arguments->output)
-    text = arguments->json ? strut_analysis_json(a) : a->kind->table(a);
+    text = arguments->json ? strut_analysis_json(a) : strut_analysis_text(a, strut_report_width());
   if (status == STRUT_OK && !text && (arguments->json || arguments->output))
     status = strut_print_out_of_memory();
   if (status == STRUT_OK && !silent) status = strut_print(text ? text : model);

@@ -83,21 +83,22 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
   status = strut_shards_find(arguments->output, &found, arena, &error);
   if (status) return strut_print_failure(status, &error);
   if (!shard.count && found.count) {
-    char *text = NULL;
-    status = strut_shards_report(arguments->output, &found, arena, arguments->json, &text, &error);
-    if (!status) return strut_print_block(text);
-    strut_release(text);
-    return strut_print_failure(status, &error);
+    strut_shards_progress progress;
+    status = strut_shards_progress_find(arguments->output, &found, arena, &progress, &error);
+    if (status) return strut_print_failure(status, &error);
+    return strut_print_values(arguments, &strut_shards_progress_values, &progress, NULL);
   }
   status = strut_slots_read(path, &slots, &there, &error);
   if (status) return strut_print_failure(status, &error);
-  status = study->plan.study->search
-               ? strut_sweep_search_status(slots, arguments->output, arguments->json)
-           : study->plan.study->refine.depth
-               ? strut_sweep_refine_status(&study->plan, arguments->output, slots, arguments->json)
-               : strut_print_block(strut_sweep_status_report(slots, arguments->json));
+  strut_slots_progress progress;
+  strut_slots_progress_find(slots, &progress);
+  progress.searches = study->plan.study->search != NULL;
+  progress.finished = progress.searches && strut_sweep_search_is_finished(arguments->output);
+  if (study->plan.study->refine.depth)
+    status = strut_sweep_refine_status(&study->plan, arguments->output, slots, &progress, &error);
   strut_slots_close(slots);
-  return status;
+  if (status) return strut_print_failure(status, &error);
+  return strut_print_values(arguments, &strut_slots_progress_values, &progress, NULL);
 }
 
 /* A study that is run, and where its results go. */
@@ -201,11 +202,10 @@ static strut_status complete_sweep(const strut_arguments *arguments, strut_sweep
   if (!shard.count)
     status = strut_sweep_figures_draw(&study->plan, arguments->output, table, refinement);
   if (status) return status;
-  if (!arguments->quiet || arguments->json)
-    status = strut_print_block(strut_sweep_end_report(state, table, arguments->json));
+  status = strut_print_values(arguments, &strut_sweep_end_values, &(strut_sweep_end){state, table},
+                              NULL);
   if (!status && !shard.count)
-    status = strut_sweep_sensitivity_complete(&study->plan, slots, arguments->output,
-                                              !arguments->quiet && !arguments->json);
+    status = strut_sweep_sensitivity_complete(arguments, &study->plan, slots);
   return status ? status
                 : strut_sweep_judge(state->points, state->failed, strut_slots_inaccurate(slots));
 }
@@ -348,7 +348,7 @@ static strut_status run_sweep(const strut_arguments *given) {
   if (!status && study.plan.study->search) status = check_search(arguments, &study);
   if (!status && study.plan.study->follow) status = check_follow(arguments);
   if (!status && arguments->count_points)
-    status = strut_print_block(strut_sweep_count_report(&study.plan, arguments->json));
+    status = strut_print_values(arguments, &strut_sweep_count_values, &study.plan, NULL);
   else if (!status && arguments->emit.text)
     status = emit_script(arguments, study.plan.study);
   else if (!status && arguments->status)

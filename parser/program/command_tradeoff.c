@@ -231,9 +231,9 @@ static strut_status write_files(const char *stage, const strut_tradeoff *result,
 
 static strut_status print_study(const strut_arguments *arguments, const strut_tradeoff *result,
                                 const char *json) {
-  if (arguments->json) return strut_print(json);
-  if (arguments->quiet) return STRUT_OK;
-  return strut_print_block(strut_tradeoff_table(result));
+  return arguments->json ? strut_print(json)
+                         : strut_print_values(arguments, &strut_tradeoff_values, result,
+                                              &result->setups[0]->scene);
 }
 
 static strut_status report_study(const strut_arguments *arguments, strut_results *files,

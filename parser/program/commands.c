@@ -4,7 +4,11 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "engine/output/result_values.h"
+#include "parser/program/progress.h"
+#include "parser/program/streams.h"
 #include "parser/yaml/diagnostics.h"
 
 static strut_status print_help(const strut_arguments *arguments);
@@ -86,6 +90,16 @@ void strut_program_help(void) {
       "describes a run, finds the equilibria of another, and computes the points of a study.\n\n"
       "Exit codes: 0 success, 1 wrong usage, 2 invalid scene, 3 computation failed,\n"
       "4 file or memory trouble, 5 less accurate than requested, 130 interrupted.\n");
+}
+
+int strut_report_width(void) { return strut_terminal_columns(STDOUT_FILENO, STRUT_REPORT_WIDTH); }
+
+strut_status strut_print_values(const strut_arguments *arguments, const strut_value_rows *values,
+                                const void *result, const strut_scene *scene) {
+  return strut_print_report(
+      arguments, arguments->json ? strut_values_json(values, result, scene)
+                                 : strut_values_text(values, result, scene, strut_report_width(),
+                                                     STRUT_REPORT_ROWS));
 }
 
 /* The help of a word that is no command: a key or section of the language, or none. */

@@ -5,6 +5,7 @@
 #ifndef STRUT_PARSER_PROGRAM_COMMANDS_H
 #define STRUT_PARSER_PROGRAM_COMMANDS_H
 
+#include "engine/scene/value_rows.h"
 #include "parser/program/options.h"
 
 extern const strut_command strut_command_check;
@@ -44,6 +45,12 @@ void strut_program_help(void);
 
 /** Calls `each` with FOLDER/NAME.yaml of every model that comes with strut, in order. */
 void strut_examples_list(void (*each)(void *context, const char *model), void *context);
+
+/** Width of what is printed. */
+int strut_report_width(void);
+/** Prints a result as JSON where that is wanted, or else as text unless --quiet suppresses it. */
+strut_status strut_print_values(const strut_arguments *arguments, const strut_value_rows *rows,
+                                const void *result, const struct strut_scene *scene);
 
 /** Prints the words that complete the last of `words` (count >= 0), which may be empty. */
 strut_status strut_complete(int count, char **words);

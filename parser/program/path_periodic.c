@@ -100,8 +100,7 @@ static strut_status report(const strut_arguments *arguments, const strut_plot *p
     status = curves ? strut_follow_curves_figure(plot, result, &error)
                     : strut_follow_figure(plot, result, &error);
   if (status) return strut_print_failure(status, &error);
-  return strut_print_report(
-      arguments, arguments->json ? strut_follow_json(result) : strut_follow_table(result));
+  return strut_print_values(arguments, &strut_follow_values, result, NULL);
 }
 
 static strut_status follow(const strut_arguments *arguments, const strut_plot *plot,

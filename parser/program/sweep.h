@@ -7,6 +7,7 @@
 #define STRUT_PARSER_PROGRAM_SWEEP_H
 
 #include "engine/output/record_files.h"
+#include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
 #include "engine/study/sweep/sweep.h"
@@ -63,9 +64,10 @@ strut_status strut_sweep_figures_draw(const strut_sweep_plan *plan, const char *
 /** Takes note of what all files of a directory hold: `own`, and those of other shards. */
 void strut_sweep_refine_learn(strut_refinement *refinement, const char *directory,
                               strut_shard shard, strut_slots *own);
-/** Prints how far the refinement in a directory is. */
+/** How far the refinement in a directory is. */
 strut_status strut_sweep_refine_status(const strut_sweep_plan *plan, const char *directory,
-                                       strut_slots *slots, bool json);
+                                       strut_slots *slots, strut_slots_progress *progress,
+                                       strut_error *error);
 /**
  * Writes directory/table.csv of the shards of a refined study, in place of strut_merge. *merged is true if
  * the study in the directory is a refined one; otherwise nothing is done.
@@ -76,9 +78,9 @@ strut_status strut_sweep_refine_merge(const strut_arguments *arguments, bool *me
 
 /** Checks that what is analysed are columns. STRUT_BAD_SCENE with the reason. */
 strut_status strut_sweep_sensitivity_check(const strut_sweep_plan *plan, strut_error *error);
-/** Writes sensitivity.csv and sensitivity.svg into the directory, and prints the report if wanted. */
-strut_status strut_sweep_sensitivity_complete(const strut_sweep_plan *plan, strut_slots *slots,
-                                              const char *directory, bool report);
+/** Writes sensitivity.csv and sensitivity.svg into the directory, and prints what is in the former. */
+strut_status strut_sweep_sensitivity_complete(const strut_arguments *arguments,
+                                              const strut_sweep_plan *plan, strut_slots *slots);
 
 /** A progress bar on a terminal, occasional lines elsewhere. */
 typedef struct strut_sweep_progress {
@@ -123,8 +125,8 @@ strut_status strut_sweep_search_check_workers(strut_sweep_study *study);
  */
 strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
                                 strut_shard worker);
-/** Prints how far the searches in a directory are. */
-strut_status strut_sweep_search_status(strut_slots *slots, const char *directory, bool json);
+/** Are all searches in a directory finished? */
+bool strut_sweep_search_is_finished(const char *directory);
 /** Adds the columns of a study that follows motions, and checks that its first point has some. */
 strut_status strut_sweep_follow_check(strut_sweep_study *study, strut_error *error);
 /** Does what the command does with a study that follows motions, once it is open. */

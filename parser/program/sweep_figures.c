@@ -8,6 +8,7 @@
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/sweep/study_runs.h"
+#include "parser/program/commands.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
 #include "parser/program/sweep.h"
@@ -253,9 +254,8 @@ static strut_status print_report(const strut_arguments *arguments, const strut_s
                                  strut_slots *slots, const char *report) {
   if (arguments->json) return strut_print(report);
   if (arguments->quiet) return STRUT_OK;
-  char *text = strut_follow_points_table(plan, slots);
-  strut_status status = text ? strut_print(text) : strut_print_out_of_memory();
-  strut_release(text);
+  const strut_follow_points_rows rows = {plan, slots};
+  strut_status status = strut_print_values(arguments, &strut_follow_points_values, &rows, NULL);
   if (!status) printf("%s/%s\n", arguments->output, branches_name);
   return status;
 }

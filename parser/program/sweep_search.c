@@ -9,6 +9,7 @@
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/sensitivity/sensitivity.h"
+#include "parser/program/commands.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
 #include "parser/program/sweep.h"
@@ -170,9 +171,9 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
   strut_file_remove(arguments->output, STRUT_PARTIAL_TABLE);
   status = strut_sweep_figures_draw(&study->plan, arguments->output, table, NULL);
   if (!status) status = draw_winner(arguments, &study->plan, best);
-  if (!status && (!arguments->quiet || arguments->json))
-    status =
-        strut_print_block(strut_search_report(&study->plan, result, state, table, arguments->json));
+  const strut_search_report report = {
+      &study->plan, study->plan.study->search, result, {state, table}};
+  if (!status) status = strut_print_values(arguments, &strut_search_report_values, &report, NULL);
   if (status) return status;
   bool found = false;
   for (size_t i = 0; i < result->worth_count; i++)
@@ -188,28 +189,12 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
 }
 
 /* The table is written at the end. */
-static bool is_finished(const char *directory) {
+bool strut_sweep_search_is_finished(const char *directory) {
   strut_arena arena = {0};
   const char *table = strut_arena_format(&arena, "%s/%s", directory, table_name);
   bool finished = table && access(table, F_OK) == 0;
   strut_arena_free(&arena);
   return finished;
-}
-
-strut_status strut_sweep_search_status(strut_slots *slots, const char *directory, bool json) {
-  char text[300];
-  const strut_slots_description *plan = strut_slots_description_of(slots);
-  bool over = is_finished(directory);
-  long long failed = (long long)strut_slots_failed(slots);
-  long long done = (long long)(plan->count - strut_slots_missing(slots));
-  snprintf(text, sizeof text,
-           json ? "{\"points\": %lld, \"done\": %lld, \"failed\": %lld, \"finished\": %s}\n"
-                : "at most %lld points, %lld done, %lld of the done failed: %s\n",
-           (long long)plan->count, done, failed,
-           json   ? over ? "true" : "false"
-           : over ? "the searches are finished"
-                  : "the searches are not finished");
-  return strut_print(text);
 }
 
 strut_status strut_sweep_search_check_workers(strut_sweep_study *study) {
@@ -283,23 +268,17 @@ void strut_sweep_refine_learn(strut_refinement *refinement, const char *director
 }
 
 strut_status strut_sweep_refine_status(const strut_sweep_plan *plan, const char *directory,
-                                       strut_slots *slots, bool json) {
+                                       strut_slots *slots, strut_slots_progress *progress,
+                                       strut_error *error) {
   strut_refinement *r = NULL;
-  strut_error error = {0};
-  int64_t wanted, done;
-  char text[300];
-  strut_status status = strut_refinement_create(plan, &r, &error);
-  if (status) return strut_print_failure(status, &error);
+  strut_status status = strut_refinement_create(plan, &r, error);
+  if (status) return status;
   strut_sweep_refine_learn(r, directory, (strut_shard){0}, slots);
   strut_refinement_choose(r);
-  strut_refinement_count(r, slots, &wanted, &done);
-  long long failed = (long long)strut_slots_failed(slots);
-  snprintf(text, sizeof text,
-           json ? "{\"points\": %lld, \"done\": %lld, \"failed\": %lld, \"most_points\": %lld}\n"
-                : "%lld points wanted so far, %lld done, %lld failed; the finest grid has %lld\n",
-           (long long)wanted, (long long)done, failed, (long long)plan->points);
+  strut_refinement_count(r, slots, &progress->points, &progress->done);
+  progress->most_points = plan->points;
   strut_refinement_free(r);
-  return strut_print(text);
+  return STRUT_OK;
 }
 
 /* ---- shards ---- */
@@ -354,7 +333,7 @@ static strut_status merge_shards(const strut_sweep_study *study, const char *dir
 /* Each worker of a search writes all files itself. Has one? */
 static strut_status check_searches(const char *directory, bool quiet) {
   strut_error error = {0};
-  if (!is_finished(directory))
+  if (!strut_sweep_search_is_finished(directory))
     return strut_print_failure(
         strut_fail(&error, STRUT_FILE_TROUBLE,
                    "'%s': the searches are not finished: run the study again to resume them",
@@ -419,8 +398,9 @@ strut_status strut_sweep_sensitivity_check(const strut_sweep_plan *plan, strut_e
                     missing, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
-strut_status strut_sweep_sensitivity_complete(const strut_sweep_plan *plan, strut_slots *slots,
-                                              const char *directory, bool report) {
+strut_status strut_sweep_sensitivity_complete(const strut_arguments *arguments,
+                                              const strut_sweep_plan *plan, strut_slots *slots) {
+  const char *directory = arguments->output;
   strut_sensitivity_result result = {0};
   strut_arena arena = {0};
   strut_error error = {0};
@@ -429,12 +409,12 @@ strut_status strut_sweep_sensitivity_complete(const strut_sweep_plan *plan, stru
   const char *path = strut_arena_format(&arena, "%s/sensitivity.svg", directory);
   strut_status status = path ? STRUT_OK : strut_no_memory(&error, "");
   if (!status) status = strut_sensitivity_find(plan->study, slots, &result, &error);
-  if (!status) status = strut_sensitivity_write(plan->study, slots, &result, directory, &error);
+  if (!status) status = strut_sensitivity_write(&result, directory, &error);
   if (!status)
     status = strut_sensitivity_figure(plan->study, slots, &result, path, PAGE, &drawn, &error);
   if (status) strut_print_failure(status, &error);
-  if (!status && report)
-    status = strut_print_block(strut_sensitivity_report(plan, slots, &result, directory));
+  if (!status && !arguments->json)
+    status = strut_print_values(arguments, &strut_sensitivity_values, &result, NULL);
   strut_arena_free(&result.arena);
   strut_arena_free(&arena);
   return status;

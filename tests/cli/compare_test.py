@@ -8,6 +8,7 @@ import io
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -238,8 +239,9 @@ members:
     same("stiffness of a spring", found["models"][0]["values"]["stiffness_x"], 100)
     check(found["models"][0]["reasons"].get("stiffness_y") is not None, "a spring without tension resists across")
     out = run("compare", "one.yaml", "two.yaml", "--no-states", "--no-motion").stdout
-    for line in ("two against one", "+ members.ac", "- parameters.unlike", "~ members.ab.stiffness: 100 -> 200"):
-        check(line in out, f"the table lacks '{line}'")
+    for line in ("two: against the first", "members.ac +added", "parameters.unlike +removed",
+                 "members.ab.stiffness +changed +100 +200"):
+        check(re.search(line, out), f"the table lacks '{line}'")
 
     # ---- files ----
     run("compare", "one.yaml", "two.yaml", SQUARE, "--no-motion", "-q", "-o", "kept")
@@ -296,7 +298,7 @@ members:
     done = run("compare", "--set", "stiff=1e6", "one.yaml", "one.yaml", "--no-states", "--no-motion")
     check(done.stderr.count("note:") == 1, f"not one note on --set: {done.stderr}")
     done = run("compare", CRAWLER, PENDULUM, "--no-states", "--no-motion")
-    check("crawler:  Nine-member multistable crawler\n" in done.stdout, f"no name of the scene: {done.stdout[:300]}")
+    check("Nine-member multistable crawler" in done.stdout, f"no name of the scene: {done.stdout[:300]}")
     refused(1, "--accuracy", "one.yaml", "--accuracy", "0")
     refused(1, "--accuracy", "one.yaml", "--accuracy", "200%")
     refused(1, "--csv", "one.yaml", "--csv", "--json")

@@ -155,7 +155,7 @@ holds '.rank == 5 and .self_stress.count == 2 and .mechanisms.count == 3 and
   ([.self_stress.states[].moments.hd | fabs] | max) < 1e-12 and
   (.self_stress.states | map(select((.moments.ha | fabs) > 0.01)) | length) > 0 and
   (.super_stability | startswith("not judged: elements"))'
-shows 0 "7 members and hinges - 8 free coordinates" rigidity triangle.yaml
+shows 0 "members - coordinates  -1" rigidity triangle.yaml
 formats 0 matrices triangle.yaml -o matrices &&
   { tail -n 1 matrices/columns.csv | grep -q '^7,hd,hinge,d,c,b$' || fail "columns of hinges in the matrices"; }
 
@@ -224,11 +224,12 @@ members: {string: {kind: cable, nodes: [left, ring, right], stiffness: 1 kN/m, r
           hold: {kind: spring, nodes: [ring, right], stiffness: 1 N/m}}
 loads: {pull: {node: ring, force: [0, -10 N]}}
 END
-shows 0 '  right support x            9.20054 N             0 N             0 N' path slack.yaml --over ring.y --until 0.31
+expect 0 path slack.yaml --over ring.y --until 0.31
+grep -qE 'right support x +9.20054 N +0 N' out || fail "a force that is rounding"
 yaml chain.yaml <<'END'
 nodes: {a: {position: [0, 0], fixed: both}, b: [1, 0.3], c: {position: [2, 0], fixed: both}}
 members: {one: {kind: bar, nodes: [a, b], stiffness: 1 N/m, rest_length: sqrt(1.09)*1 m*(1 + 2.3e-16)},
           two: {kind: bar, nodes: [b, c], stiffness: 1 N/m, rest_length: sqrt(1.09)*1 m*(1 + 2.3e-16)}}
 END
-shows 0 '  equilibrium        yes: net force on a free coordinate up to 0 N' rigidity chain.yaml
+shows 0 '  equilibrium                              yes' rigidity chain.yaml
 out_has_not 'fN'

@@ -7,16 +7,15 @@ crawler=$here/../../models/crawler/crawler.yaml
 # First what stands and its barriers, then counts; --all has every row. Shapes are told apart.
 expect 0 equilibria "$crawler"
 err_empty
-for text in "I                  n1,n4        stable        22.7061 J" "equilibrium  " "III" "collapsed" \
-  "1 crossing" "from               to                        barrier         direct  over" \
-  "not shown: 4 that tip over" "unstable (saddles and maxima); --all lists them"; do
+for text in "I                 stable  22.7061 J" "equilibrium  " "III" "collapsed" "1 crossing" \
+  "barrier  over" "others, that --all lists  203"; do
   out_has "$text"
 done
 out_has_not "below ground ("
 [ "$(wc -l <out)" -lt 45 ] || fail "the short table is long"
 expect 0 equilibria "$crawler" --all --starts 60
 for text in "tips over n4 onto n2 and n4: II" "below ground (" "presses with" "held-n1-n2-1 " \
-  "  between III and III-2"; do out_has "$text"; done
+  "III, III-2"; do out_has "$text"; done
 
 # Numbers in names grow with the energy, and so does the list.
 expect 0 equilibria "$here/../../models/basics/von-mises-truss.yaml" --json
@@ -112,7 +111,7 @@ nodes: {a: {position: [0.269, 1.695], fixed: both}, b: {position: [1.528, 0.51],
 members: {p: {kind: bar, nodes: [a, c], stiffness: 3 kN/m}, q: {kind: bar, nodes: [b, c], stiffness: 7 kN/m},
           r: {kind: bar, nodes: [b, d], stiffness: 7 kN/m}, s: {kind: bar, nodes: [c, d], stiffness: 7 kN/m}}
 END
-shows 0 "stable              0 J" equilibria four-bars.yaml --all
+shows 0 "stable      0 J" equilibria four-bars.yaml --all
 out_has_not "fJ"
 
 # Large ones end soon, and say so.
@@ -133,7 +132,7 @@ out_has_not "fJ"
     printf '  t%s: {group: cable, nodes: [a%s, b%s]}\n' $k $n $n
   done
 } >tower.yaml
-shows 0 "cut short: a search of all shapes, bounded to some ten seconds of work" equilibria tower.yaml
+shows 0 "a search of all shapes, bounded to some ten seconds of work" equilibria tower.yaml
 expect 0 equilibria "$crawler" --starts 20
 out_has_not "cut short"
 # A configuration without contacts lies on the side on which it is drawn, though others are alike but for a turn.
@@ -148,5 +147,5 @@ gravity: [0, -9.81 m/s^2]
 ground: {stiffness: 100 kN/m, damping: 50 N s/m}
 configurations: {standing: {}}
 YAML
-shows 0 "standing           a,b " equilibria sides.yaml
-shows 0 "modes at standing, on a, b" modes sides.yaml --at standing
+shows 0 "a, b" equilibria sides.yaml
+shows 0 "modes at          standing" modes sides.yaml --at standing

@@ -59,7 +59,7 @@ def balance(force):
 # ---- the same bytes from one thread and from several, and the folds of the harmonic balance
 
 check("points             3" in run("check", "study.yaml").stdout, "check tells the points")
-check("3 points" in run("sweep", "study.yaml", "--count").stdout, "the count")
+check("points   3\n" in run("sweep", "study.yaml", "--count").stdout, "the count")
 report = json.loads(run("sweep", "study.yaml", "-o", "out", "--json").stdout)
 run("sweep", "study.yaml", "-o", "one", "--threads", "1", "-q")
 for name in ("branches.csv", "branches.svg", "report.json", "table.csv", "widest.svg"):
@@ -80,7 +80,7 @@ for force in ("0.1", "0.15"):
 check([p["axes"]["force"] for p in report["points"]] == [0.06, 0.1, 0.15], "axes of the report")
 check([s["point"] for s in report["points"][2]["result"]["branches"][0]["special"]] == ["fold", "fold"], "the report")
 check(report == json.load(open(path("out", "report.json"), encoding="utf-8")), "report.json")
-check("3 done" in run("sweep", "study.yaml", "-o", "out", "--status").stdout, "status")
+check("done     3\n" in run("sweep", "study.yaml", "-o", "out", "--status").stdout, "status")
 
 # ---- one point alone is what `strut path --periodic` finds
 

@@ -20,7 +20,7 @@ END
 
 expect 0 modes frame.yaml
 err_empty
-for text in "Frame: modes at" "8 coordinates, all modes computed" "rigid-body" \
+for text in "modes at " "coordinates       8" "rigid-body" \
   "the structure rotates freely" "19.0307 Hz" "elastic" "of the energy"; do out_has "$text"; done
 expect 0 modes frame.yaml --json
 err_empty
@@ -67,7 +67,7 @@ nodes: {a: {position: [-1, 0], fixed: both}, b: {position: [0, 0], mass: 1}, c: 
 members: {ab: {kind: cable, nodes: [a, b], stiffness: 1e13, rest_length: 1 - 1e-13},
           bc: {kind: cable, nodes: [b, c], stiffness: 1e13, rest_length: 1 - 1e-13}}
 END
-shows 0 "not known" modes string.yaml
+shows 0 "unknown" modes string.yaml
 out_has "rounding hides its frequency, about 0.225 Hz"
 shows 0 '"kind":	"unknown"' modes string.yaml --json
 near '[.modes[] | select(.frequency == null and .eigenvalue == null and .error > 1e-8)] | length' 1 0
@@ -80,9 +80,9 @@ for cells in 8 16 23; do
   near '[.modes[] | select(.frequency > 0) | .frequency] | min | if . > 1 then 1 else 0 end' 1 0
   near '.just_taut | length' "3 * $cells + 1" 0
 done
-shows 0 "just taut, without prestress: foot and 48 more" modes "$arch" --set cells=16 --count 1
+shows 0 "just taut, without prestress  foot, " modes "$arch" --set cells=16 --count 1
 out_has "members are just taut"
-shows 0 "without force      foot and 48 more" rigidity "$arch" --set cells=16
+shows 0 "without force                            foot, " rigidity "$arch" --set cells=16
 tells 3 "396 modes have no stiffness" modes "$arch" --set cells=200 --count 4
 # Two ropes as one running cable, and a spring that only pulls, likewise.
 yaml vee.yaml <<'END'
@@ -112,11 +112,11 @@ gravity: [0, -9.81]
 ground: {stiffness: 1e5, damping: 20, nodes: [a, b]}
 END
 expect 0 modes standing.yaml
-for text in "on a, b" "6 coordinates" "the structure moves along x" "the ground"; do out_has "$text"; done
-shows 0 "4 coordinates" modes standing.yaml --stuck
+for text in "  a, b" "  6" "the structure moves along x" "the ground"; do out_has "$text"; done
+shows 0 "coordinates       4" modes standing.yaml --stuck
 grep -q rigid-body out && fail "held along the ground it has no rigid motion"
 
 # A name that only the list of all equilibria gives.
-shows 0 "modes at a-b-1, on" modes standing.yaml --at a-b-1
+shows 0 "modes at          a-b-1" modes standing.yaml --at a-b-1
 tells 1 "unknown equilibrium 'a-b-99'" modes standing.yaml --at a-b-99
 tells 1 "choose one of: start, drawn" modes standing.yaml --at top-1

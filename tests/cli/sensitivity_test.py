@@ -87,7 +87,7 @@ sensitivity: {of: [frequency_1, total_mass],
         row = pick(cut, condition, "share", **{"long [m]": "2"})
         check(abs(float(row["value"]) - share) < 0.05 and row["used"] == "128", str(row))
         check(condition in report, report)
-    check(len([line for line in report.splitlines() if line.split()[-1:] == ["128"]]) == 2, report)
+    check(len([line for line in report.splitlines() if "  share  " in line]) >= 6, report)
     check("first_order  stiff" in said and "total_mass > 0" not in said, said)
     picture = read("product/sensitivity.svg").decode()
     check(picture.startswith("<?xml") and len(picture) > 2000, "the figure")
@@ -222,7 +222,7 @@ keep: [frequencies]
     said = run("sweep", "right.yaml", "-o", "right", "--shard", "0/2", code=1).stderr
     check("needs all points in one file" in said, said)
     said = run("sweep", "right.yaml", "--count").stdout
-    check("17 points" in said, said)
+    check("points   17\n" in said, said)
 
 
 products()

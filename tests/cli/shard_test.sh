@@ -23,7 +23,7 @@ for count in 1 2 5 20; do
     expect 0 sweep study.yaml -o "in-$count" --shard "$shard/$count" --quiet
     shard=$((shard - 1))
   done
-  shows 0 "0 computed in" sweep study.yaml -o "in-$count" --shard "0/$count"
+  shows 0 "computed  0" sweep study.yaml -o "in-$count" --shard "0/$count"
   absent "in-$count/table.csv"
   shows 0 "in-$count/table.csv: 18 points of $count shards" sweep --merge "in-$count"
   same "in-$count/table.csv" whole/table.csv
@@ -44,9 +44,10 @@ rm in-5/shards/shard-0001-of-0005.slots in-5/shards/shard-0003-of-0005.slots
 rm in-5/table.csv
 tells 4 "2 of 5 shards are missing (1, 3)" sweep --merge in-5
 absent in-5/table.csv
-shows 0 "shard 0: 4 points: 4 done, 0 missing, 0 of the done failed" sweep study.yaml -o in-5 --status
-out_has "shard 1: not started"
-shows 0 '{"shard": 4, "points": 3, "done": 3, "missing": 0, "failed": 0}]}' sweep study.yaml -o in-5 --status --json
+shows 0 "0       4     4        0       0" sweep study.yaml -o in-5 --status
+expect 0 sweep study.yaml -o in-5 --status --json
+jq -e '.shard_count == 5 and .shards[1] == {"shard": 1, "done": 0} and
+  .shards[4] == {"shard": 4, "points": 3, "done": 3, "missing": 0, "failed": 0}' out >/dev/null || fail "the status"
 expect 0 sweep study.yaml -o in-5 --shard 1/5 --quiet --set seconds=0.02
 tells 1 "shards 0 and 1 belong to different studies, which differ in the model" sweep --merge in-5
 expect 4 sweep --merge nowhere

@@ -205,7 +205,7 @@ if answer:
 out = os.path.join(here, "deep", "out")
 done = run(BALL, "--step-sizes", "4", "-o", out, "--own-model")
 check(sorted(files_in(out)) == ["tradeoff.csv", "tradeoff.json", "tradeoff.svg"], f"files: {files_in(out)}")
-if "The cheapest setting" not in done.stdout or "\n    0.5 % " not in done.stdout:
+if "cheapest setting" not in done.stdout or not re.search(r"^ *0.5 % ", done.stdout, re.M):
     fail(f"the table lacks something: {done.stdout}")
 written = json.load(open(os.path.join(out, "tradeoff.json")))
 rows = list(csv.DictReader(open(os.path.join(out, "tradeoff.csv"), newline="")))
@@ -265,7 +265,7 @@ for file, accuracy in (("models/basics/sliding-block.yaml", "1e-4"), (HOPPER, "0
                        ("models/gallery/two-mass-crawler.yaml", "0.1%")):
     what, words = f"{file} to {accuracy}", (file, "--accuracy", accuracy, "--own-model", "--measure", "velocity")
     report, answer = run(*words).stdout, read(*words)
-    solver = re.search(r"For an error of .*: (solver: {.*})", report)
+    solver = re.search(r"(solver: {.*})", report)
     if not answer or not solver:
         fail(f"{what}: no recommendation: {report[-800:]}")
         continue
@@ -289,20 +289,19 @@ for file, accuracy in (("models/basics/sliding-block.yaml", "1e-4"), (HOPPER, "0
     least = answer["base_evaluations"] * sum(r["evaluations"] for r in answer["settings"] if not r["diverged"])
     if not least <= work["evaluations"] <= 30 * work["unit"] or work["limit"] != 30 or work["cut_by_time"]:
         fail(f"{what}: work {work}, of which settings {least}")
-    # The same bytes again, with another limit of CPU time too, but for CPU times.
-    again = run(*words, "--cpu-time", "5000 s").stdout
-
-    def stable(text):
-        table, rest = text.split("  (* Pareto", 1)
-        return [line[:48] + line[57:] for line in table.splitlines()], re.sub(r"took .*", "", rest)
-
-    check(stable(again) == stable(report), f"{what}: two reports differ: {report} {again}")
+    # The same numbers again, with another limit of CPU time too, but for CPU times.
+    again = read(*words, "--cpu-time", "5000 s")
+    for result in (answer, again):
+        del result["spent_seconds"], result["base_seconds"]
+        for setting in result["settings"]:
+            del setting["cpu"], setting["seconds"]
+    check(again == answer, f"{what}: two reports differ: {answer} {again}")
 
 # ---- What the reference does not tell is not claimed; a limit of time that cuts is reported.
 done = run(OSCILLATOR, "--accuracy", "1e-15")
-check("For an error of 1e-13 %: not known: the references differ by" in done.stdout, f"1e-15: {done.stdout[-500:]}")
+check("not known: the references differ by more" in done.stdout, f"1e-15: {done.stdout[-500:]}")
 done = run(OSCILLATOR, "--accuracy", "1e-6", "--measure", "energy", "--integrator", "rk4")
-if "solver: {integrator: rk4, step: " not in done.stdout or " times a reference run" in done.stdout:
+if "solver: {integrator: rk4, step: " not in done.stdout:
     fail(f"energy: {done.stdout[-500:]}")
 done = run("models/crawler/crawler.yaml", "--accuracy", "1%", "--cpu-time", "2 s")
 check("cut by --cpu-time" in done.stdout, f"a cut study: {done.stdout[-500:]}")

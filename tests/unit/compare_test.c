@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Comparing: differences of texts, every allocation failing once, an interrupt, what is reported. */
 #include "engine/study/compare/compare.h"
+#include "engine/output/result_values.h"
 #include "parser/read/overlay.h"
 #include "parser/read/read_scene.h"
 #include "tests/support/check.h"
@@ -81,8 +82,8 @@ static strut_status make(const strut_compare_options *options, bool tell) {
   strut_status status = strut_compare_make(inputs, 2, options, &result, &error);
   if (status != STRUT_OK) assert_int_equal(error.status, status);
   if (status == STRUT_OK && tell) {
-    char *texts[] = {strut_compare_table(&result, 60), strut_compare_csv(&result),
-                     strut_compare_json(&result)};
+    char *texts[] = {strut_values_text(&strut_compare_values, &result, NULL, 60, STRUT_REPORT_ROWS),
+                     strut_compare_csv(&result), strut_compare_json(&result)};
     for (int i = 0; i < 3; i++) {
       if (!texts[i]) status = STRUT_NO_MEMORY;
       strut_release(texts[i]);

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "engine/output/buffer.h"
-#include "engine/output/report/reports.h"
 #include "engine/output/result_values.h"
 #include "engine/output/run_report.h"
 #include "engine/scene/profile.h"

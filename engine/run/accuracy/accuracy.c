@@ -47,6 +47,22 @@ strut_status strut_accuracy_run(strut_accuracy *a, const strut_experiment *exper
   return status;
 }
 
+strut_status strut_accuracy_deliver(strut_accuracy *a, const strut_experiment *experiment,
+                                    strut_summary *run) {
+  a->check_evaluations -= run->spent.evaluations;
+  if (!a->options->sink_count && !a->options->to && run->status == STRUT_OK) {
+    *a->summary = *run;
+    *run = (strut_summary){0};
+    return STRUT_OK;
+  }
+  strut_experiment e = *experiment; /* the same run again, whose cost is counted once */
+  strut_accuracy_begin_phase(a, "recording the answer");
+  a->allowed = INT64_MAX; /* the same run was within the budget before */
+  e.output_every = a->experiment.output_every;
+  e.output_last = a->experiment.output_last;
+  return strut_accuracy_run(a, &e, a->options, a->summary);
+}
+
 /* No method supports both rigid bars and exact friction. */
 static strut_status refuse_exact_friction(const strut_accuracy *a) {
   const strut_model *model = a->model;
@@ -212,16 +228,11 @@ static strut_status record_track_rows(void *context, const double *rows, size_t 
   return STRUT_OK;
 }
 
-static strut_status end_track(void *context, strut_status status, strut_error *error) {
-  (void)context, (void)status, (void)error;
-  return STRUT_OK;
-}
-
 strut_status strut_track_create(const strut_model *model, size_t capacity, strut_arena *arena,
                                 strut_track *t) {
   size_t both = 2 * (size_t)model->node_count;
   *t = (strut_track){.model = model, .capacity = capacity};
-  t->sink = (strut_sink){t, begin_track, record_track_rows, end_track, STRUT_CHANNEL_POSITION};
+  t->sink = (strut_sink){t, begin_track, record_track_rows, NULL, STRUT_CHANNEL_POSITION};
   t->time = strut_arena_allocate(arena, capacity, sizeof(double));
   t->position = strut_arena_allocate(arena, capacity * both, sizeof(double));
   return t->time && t->position ? STRUT_OK : STRUT_NO_MEMORY;

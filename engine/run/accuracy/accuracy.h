@@ -76,6 +76,11 @@ void strut_accuracy_begin_phase(const strut_accuracy *a, const char *name);
 double strut_accuracy_least_budget(const strut_accuracy *a);
 /** Force evaluations left for the next run, at least 1. */
 int64_t strut_accuracy_evaluations_left(const strut_accuracy *a);
+/**
+ * The answer of the request is a run that was a check until now; where it is recorded it is made again.
+ */
+strut_status strut_accuracy_deliver(strut_accuracy *a, const strut_experiment *experiment,
+                                    strut_summary *run);
 /** Runs the model with another experiment; STRUT_WORK_LIMIT if it exceeds the evaluations left. */
 strut_status strut_accuracy_run(strut_accuracy *a, const strut_experiment *experiment,
                                 const strut_run_options *options, strut_summary *summary);

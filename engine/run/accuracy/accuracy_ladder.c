@@ -375,23 +375,6 @@ static strut_status check_sensitivity(strut_ladder *l) {
   return status == STRUT_DIVERGED ? STRUT_OK : status;
 }
 
-/* Delivers the latest run; repeats it where it is recorded. */
-static strut_status deliver_answer(strut_ladder *l) {
-  strut_accuracy *a = l->a;
-  a->check_evaluations -= l->now->cost;
-  if (!a->options->sink_count && !a->options->to && l->now->s.status == STRUT_OK) {
-    *a->summary = l->now->s;
-    l->now->s = (strut_summary){0};
-    return STRUT_OK;
-  }
-  strut_experiment e = l->now->e; /* the same run again, whose cost is counted once */
-  strut_accuracy_begin_phase(a, "recording the answer");
-  a->allowed = INT64_MAX; /* the same run was within the budget before */
-  e.output_every = a->experiment.output_every;
-  e.output_last = a->experiment.output_last;
-  return strut_accuracy_run(a, &e, a->options, a->summary);
-}
-
 strut_status strut_accuracy_climb_ladder(strut_accuracy *a) {
   strut_ladder l = {.a = a,
                     .change = HUGE_VAL,
@@ -414,7 +397,7 @@ strut_status strut_accuracy_climb_ladder(strut_accuracy *a) {
     strut_ladder_judge_last(&l);
     status = check_sensitivity(&l);
   }
-  if (!status) status = deliver_answer(&l);
+  if (!status) status = strut_accuracy_deliver(a, &l.now->e, &l.now->s);
   if (!status) strut_ladder_report(&l);
   for (int k = 0; k < 3; k++) strut_summary_free(&l.rung[k].s);
   strut_arena_free(&l.arena);

@@ -38,17 +38,6 @@ typedef struct fast_motion {
   double fast, slow; /* twice the kinetic energy, summed over steps [J] */
 } fast_motion;
 
-static strut_status begin_velocity_rows(void *context, const strut_record_layout *layout,
-                                        strut_error *error) {
-  (void)context, (void)layout, (void)error;
-  return STRUT_OK;
-}
-
-static strut_status end_velocity_rows(void *context, strut_status status, strut_error *error) {
-  (void)context, (void)status, (void)error;
-  return STRUT_OK;
-}
-
 /*
  * Adds three successive velocities: the second difference is fast, the mean without the rigid
  * translation slow.
@@ -181,8 +170,7 @@ static double distance_of_ends(const midpoint_runs *h) {
 static strut_status run_with_half_step(midpoint_runs *h, bool *kept) {
   strut_accuracy *a = h->a;
   strut_span span = strut_experiment_span(&a->experiment, a->scene);
-  strut_sink sink = {&h->fast_motion, begin_velocity_rows, read_velocity_rows, end_velocity_rows,
-                     STRUT_CHANNEL_VELOCITY};
+  strut_sink sink = {&h->fast_motion, NULL, read_velocity_rows, NULL, STRUT_CHANNEL_VELOCITY};
   strut_sink *sinks[] = {&sink};
   strut_run_options quiet = *a->options;
   quiet.sinks = sinks, quiet.sink_count = 1, quiet.to = NULL;
@@ -225,21 +213,6 @@ static void report_midpoint(midpoint_runs *h, double explicit_evaluations) {
            s->step, s->step / a->coarse.step, explicit_evaluations, h->change, h->share);
 }
 
-/* Delivers the finest run; repeats it where it is recorded. */
-static strut_status deliver_answer(midpoint_runs *h) {
-  strut_accuracy *a = h->a;
-  a->check_evaluations -= h->now.spent.evaluations;
-  if (!a->options->sink_count && !a->options->to) {
-    *a->summary = h->now;
-    h->now = (strut_summary){0};
-    return STRUT_OK;
-  }
-  a->allowed = INT64_MAX; /* the same run was within the budget before */
-  h->e.output_every = a->experiment.output_every;
-  h->e.output_last = a->experiment.output_last;
-  return strut_accuracy_run(a, &h->e, a->options, a->summary);
-}
-
 /*
  * Time of an evaluation with its share of the factorisation over that of an explicit method, as
  * measured on trees and nets, halved: the other strategies take longer to check than to run.
@@ -264,7 +237,7 @@ static strut_status halve_until_kept(midpoint_runs *h, bool *done) {
     next = 2.0 * (double)h->now.spent.evaluations;
     if (*done) break;
   }
-  if (!status && *done) status = deliver_answer(h);
+  if (!status && *done) status = strut_accuracy_deliver(h->a, &h->e, &h->now);
   if (!status && *done) report_midpoint(h, explicit_evaluations);
   return status;
 }

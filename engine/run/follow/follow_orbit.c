@@ -98,21 +98,6 @@ static bool differentiate_at(strut_follow_walk *w, const trial *t) {
 }
 
 /*
- * Broyden's update: the derivative that would have predicted the residual f behind the full step w->right.
- */
-static void update_derivative(strut_follow_walk *w, const double *f) {
-  strut_follow_system *s = w->s;
-  double size = 0.0;
-  for (size_t j = 0; j <= s->n; j++) size += w->right[j] * w->right[j];
-  if (!(size > 0.0)) return;
-  for (size_t i = 0; i < s->n; i++) {
-    for (size_t j = 0; j < s->n; j++)
-      s->derivative.jacobian[i * s->n + j] += f[i] * w->right[j] / size;
-    s->derivative.column[i] += f[i] * w->right[s->n] / size;
-  }
-}
-
-/*
  * The derivative of an earlier point serves, updated, while it makes the residual fall; where it does not,
  * a new one is made at the best point so far, and its steps are halved until the residual falls.
  */
@@ -142,7 +127,10 @@ static bool iterate(strut_follow_walk *w, const strut_follow_section *p, trial *
       wanted = true; /* at the better point, before this step */
       continue;
     }
-    if (part == 1.0) update_derivative(w, next->f);
+    if (part == 1.0) {
+      const strut_follow_border border = {1, {w->s->derivative.column}, {p->normal}};
+      strut_follow_update(w->s, &border, next->f, w->right);
+    }
     slow = size_of(next) > SLOW * size_of(here) ? slow + 1 : 0;
     trial keep = *here;
     *here = *next, *next = keep;

@@ -127,42 +127,12 @@ static double off_plane(const strut_follow_surface *u, const strut_follow_surfac
   return sum;
 }
 
-/* Newton's step into u->x, whose right side it holds. False: singular, or too long. */
-static bool solve(strut_follow_surface *u, const double *const rows[2]) {
-  const strut_follow_system *s = &u->s;
-  size_t n = s->n, m = u->m;
-  double most = 0.0;
-  for (size_t i = 0; i < n; i++) {
-    for (size_t j = 0; j < n; j++)
-      u->matrix[i * m + j] = s->derivative.jacobian[i * n + j] - (i == j);
-    u->matrix[i * m + n] = s->derivative.column[i];
-    u->matrix[i * m + n + 1] = u->second_column[i];
-  }
-  for (size_t k = 0; k < 2; k++) memcpy(u->matrix + (n + k) * m, rows[k], m * sizeof(double));
-  for (size_t i = 0; i < m * m; i++) most = fmax(most, fabs(u->matrix[i]));
-  if (!strut_solve_dense(u->matrix, u->x, m, 1e-14 * most)) return false;
-  for (size_t i = 0; i < m; i++)
-    if (!(fabs(u->x[i]) <= LONGEST)) return false;
-  return true;
-}
-
-/* Broyden's update: the derivative that would have predicted the residual f behind the step u->x. */
-static void update_derivative(strut_follow_surface *u, const double *f) {
-  strut_follow_system *s = &u->s;
-  double size = 0.0;
-  for (size_t j = 0; j < u->m; j++) size += u->x[j] * u->x[j];
-  if (!(size > 0.0)) return;
-  for (size_t i = 0; i < s->n; i++) {
-    for (size_t j = 0; j < s->n; j++) s->derivative.jacobian[i * s->n + j] += f[i] * u->x[j] / size;
-    s->derivative.column[i] += f[i] * u->x[s->n] / size;
-    u->second_column[i] += f[i] * u->x[s->n + 1] / size;
-  }
-}
-
 bool strut_follow_surface_correct(strut_follow_surface *u, strut_follow_surface_point *p,
                                   const strut_follow_surface_point *base,
                                   const double *const rows[2], const double offset[2]) {
   strut_follow_system *s = &u->s;
+  const strut_follow_border border = {
+      2, {s->derivative.column, u->second_column}, {rows[0], rows[1]}};
   double before = HUGE_VAL, left = HUGE_VAL;
   int made = 0;
   for (int round = 0; round < MOST_ROUNDS; round++) {
@@ -181,11 +151,13 @@ bool strut_follow_surface_correct(strut_follow_surface *u, strut_follow_surface_
       if (made++ == MOST_DERIVATIVES) return false;
       if (!differentiate(u, p->y, p->value, u->f)) return false;
     } else if (round > 0) {
-      update_derivative(u, u->f);
+      strut_follow_update(s, &border, u->f, u->x);
     }
     for (size_t i = 0; i < s->n; i++) u->x[i] = -u->f[i];
     for (size_t k = 0; k < 2; k++) u->x[s->n + k] = -off[k];
-    if (!solve(u, rows)) return false;
+    if (!strut_follow_solve_with(s, &border, u->matrix, u->x)) return false;
+    for (size_t i = 0; i < u->m; i++)
+      if (!(fabs(u->x[i]) <= LONGEST)) return false;
     strut_follow_surface_move(u, p, u->x, 1.0);
     before = left;
   }

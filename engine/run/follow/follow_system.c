@@ -389,14 +389,32 @@ void strut_follow_centre(const strut_follow_system *s, double *y) {
   for (int32_t i = 0; i < 2 * m->node_count; i++) y[i] -= mean * t[i % 2];
 }
 
-bool strut_follow_solve(strut_follow_system *s, const double *normal, double *x) {
-  size_t n = s->n, m = n + 1;
-  double *a = s->buffers.matrix, most = 0.0;
+bool strut_follow_solve_with(const strut_follow_system *s, const strut_follow_border *border,
+                             double *a, double *x) {
+  size_t n = s->n, m = n + border->count;
+  double most = 0.0;
   for (size_t i = 0; i < n; i++) {
     for (size_t j = 0; j < n; j++) a[i * m + j] = s->derivative.jacobian[i * n + j] - (i == j);
-    a[i * m + n] = s->derivative.column[i];
+    for (size_t k = 0; k < border->count; k++) a[i * m + n + k] = border->column[k][i];
   }
-  memcpy(a + n * m, normal, m * sizeof(double));
+  for (size_t k = 0; k < border->count; k++)
+    memcpy(a + (n + k) * m, border->row[k], m * sizeof(double));
   for (size_t i = 0; i < m * m; i++) most = fmax(most, fabs(a[i]));
   return strut_solve_dense(a, x, m, 1e-14 * most);
+}
+
+bool strut_follow_solve(strut_follow_system *s, const double *normal, double *x) {
+  const strut_follow_border border = {1, {s->derivative.column}, {normal}};
+  return strut_follow_solve_with(s, &border, s->buffers.matrix, x);
+}
+
+void strut_follow_update(strut_follow_system *s, const strut_follow_border *border, const double *f,
+                         const double *x) {
+  double size = 0.0;
+  for (size_t j = 0; j < s->n + border->count; j++) size += x[j] * x[j];
+  if (!(size > 0.0)) return;
+  for (size_t i = 0; i < s->n; i++) {
+    for (size_t j = 0; j < s->n; j++) s->derivative.jacobian[i * s->n + j] += f[i] * x[j] / size;
+    for (size_t k = 0; k < border->count; k++) border->column[k][i] += f[i] * x[s->n + k] / size;
+  }
 }

@@ -125,4 +125,17 @@ static inline double strut_follow_unit(const strut_follow_system *s, size_t i) {
  */
 bool strut_follow_solve(strut_follow_system *s, const double *normal, double *right);
 
+/** Columns (n) beside jacobian - 1, and rows (n + count) below: one for each parameter. */
+typedef struct strut_follow_border {
+  size_t count;
+  double *column[2];
+  const double *row[2];
+} strut_follow_border;
+/** The same of any border; scratch (n + count, n + count). */
+bool strut_follow_solve_with(const strut_follow_system *s, const strut_follow_border *border,
+                             double *scratch, double *right);
+/** Broyden's update: the derivative that would have predicted the residual f (n) behind the step x. */
+void strut_follow_update(strut_follow_system *s, const strut_follow_border *border, const double *f,
+                         const double *x);
+
 #endif

@@ -19,7 +19,7 @@ static void write_warning(const strut_result_object *of, char text[STRUT_VALUE_R
     "lowest eigenvalue where it is not")                                                           \
   X("growth_rate", "1/s", NUMBER(how->unstable ? how->growth_rate : (double)NAN),                  \
     "of that motion without damping")                                                              \
-  X("warning", "", WORDS(write_warning), "in words")
+  X("warning", "", WORDS(write_warning), "in words", .label = {""})
 STRUT_VALUES(strut_settle_values, SETTLE, const strut_settle_summary *how = of->at)
 
 /* ---- groups ---- */

@@ -98,6 +98,7 @@ typedef struct strut_barrier {
 
 typedef struct strut_equilibria {
   size_t count;
+  bool shows_all;          /* what people read lists those that do not stand, too */
   strut_equilibrium *list; /* by supports in the scene's order; those of the real ground last */
   size_t barrier_count;
   strut_barrier *barriers;

@@ -556,19 +556,39 @@ static double start_of(const strut_result_object *of, size_t k) {
   return of->scene->nodes[k / 2].start[k % 2];
 }
 
+static const char *member_name(const strut_result_object *of, size_t j) {
+  return of->scene->members[j].name;
+}
+
+#define MEMBER(X)                                                                                  \
+  X(NULL, "", TEXT(strut_member_kind_name(of->scene->members[j].kind)), "", .label = {"kind"})     \
+  X(NULL, "m", NUMBER(form->length[j]), "", .label = {"length"})                                   \
+  X(NULL, "m", NUMBER(form->rest[j]), "", .label = {"rest length"})                                \
+  X(NULL, "N", NUMBER(form->force[j]), "", .label = {"force"})                                     \
+  X(NULL, "N/m", NUMBER(form->density[j]), "", .label = {"force density"})
+STRUT_VALUES_HERE(member_values, MEMBER, const strut_form *form = of->outer->at;
+                  size_t j = of->index)
+
 #define FORM(X)                                                                                    \
-  X("from", "", TEXT(strut_form_source_name(form->from)), "what was given")                        \
-  X("moved", "m", NUMBER(form->moved), "largest displacement of a node from where it was drawn")   \
-  X("residual", "N", NUMBER(form->residual), "largest net force on a free coordinate")             \
+  X("from", "", TEXT(strut_form_source_name(form->from)), "what was given", .label = {"form by"})  \
+  X("moved", "m", NUMBER(form->moved), "largest displacement of a node from where it was drawn",   \
+    .label = {"displacement"})                                                                     \
+  X("residual", "N", NUMBER(form->residual), "largest net force on a free coordinate",             \
+    .label = {"residual force"})                                                                   \
   X("density_change", "1", NUMBER(form->density_change),                                           \
-    "largest change of a force density, of the largest one")                                       \
-  X("least_tension", "N", NUMBER(form->least_tension), "lower bound for the cables")               \
-  X("run_added", "", FLAG(form->run_added), "whether a step and 10 s were given to it")            \
-  X("driven", "", FLAG(form->driven), "whether drives or loads will move it")                      \
-  X("massless", "", FLAG(form->massless), "whether a node that can move has no mass")              \
+    "largest change of a force density, of the largest one", .label = {""})                        \
+  X("least_tension", "N", NUMBER(form->least_tension), "lower bound for the cables",               \
+    .label = {""})                                                                                 \
+  X("run_added", "", FLAG(form->run_added), "whether a step and 10 s were given to it",            \
+    .label = {""})                                                                                 \
+  X("driven", "", FLAG(form->driven), "whether drives or loads will move it", .label = {""})       \
+  X("massless", "", FLAG(form->massless), "whether a node that can move has no mass",              \
+    .label = {"without mass"})                                                                     \
   X("nodes", "m", OF_EACH(NODE, start_of), "positions")                                            \
   X("lengths", "m", OF(MEMBER, form->length), "of members")                                        \
   X("rest_lengths", "m", OF(MEMBER, form->rest), "of members")                                     \
   X("forces", "N", OF(MEMBER, form->force), "tensions of members")                                 \
-  X("densities", "N/m", OF(MEMBER, form->density), "forces over lengths")
+  X("densities", "N/m", OF(MEMBER, form->density), "forces over lengths")                          \
+  X(NULL, "", NAMED(form->length, of->scene->member_count, member_name), "",                       \
+    .rows = &member_values, .label = {"member"})
 STRUT_VALUES(strut_form_values, FORM, const strut_form *form = of->at)

@@ -5,24 +5,29 @@
 #include "engine/statics/modes/waves.h"
 
 #define MODE(X)                                                                                    \
-  X(NULL, "", COUNT(of->index + 1), "", .column = {"mode"})                                        \
+  X(NULL, "", COUNT(of->index + 1), "", .column = {"mode"}, .label = {"mode"})                     \
   X("frequency", "Hz", NUMBER(mode->angular_frequency / STRUT_TAU), "without damping",             \
     .column = {"frequency [Hz]"})                                                                  \
+  X(NULL, "Hz", NUMBER(known ? mode->angular_frequency / STRUT_TAU : (double)NAN), "",             \
+    .label = {"frequency"})                                                                        \
   X("angular_frequency", "1/s", NUMBER(mode->angular_frequency), "without damping")                \
   X("eigenvalue", "1/s^2", NUMBER(mode->eigenvalue), "its square; below zero: it grows")           \
   X("damping_ratio", "1", NUMBER(mode->damping_ratio), "null: nothing oscillates",                 \
-    .column = {"damping ratio"})                                                                   \
+    .column = {"damping ratio"}, .label = {"damping"})                                             \
   X("damped_frequency", "Hz", NUMBER(mode->damped_frequency / STRUT_TAU), "0 where it creeps",     \
     .column = {"damped frequency [Hz]"})                                                           \
   X("decay_rate", "1/s", NUMBER(mode->decay_rate),                                                 \
     "of the amplitude; the slower, where it creeps", .column = {"decay rate [1/s]"})               \
   X("residual", "1", NUMBER(mode->residual), "of the eigenproblem, relative")                      \
-  X("error", "1", NUMBER(mode->error), "bound of the eigenvalue's, relative", .column = {"error"}) \
+  X("error", "1", NUMBER(mode->error), "bound of the eigenvalue's, relative", .column = {"error"}, \
+    .label = {""})                                                                                 \
   X("kind", "", TEXT(strut_mode_kind_name(mode->kind)), "rigid-body, mechanism, elastic, ...",     \
-    .column = {"kind"})                                                                            \
-  X("description", "", TEXT(mode->description), "in words", .column = {"description"})             \
+    .column = {"kind"}, .label = {""})                                                             \
+  X("description", "", TEXT(mode->description), "in words", .column = {"description"},             \
+    .label = {""})                                                                                 \
   X("shape", "1", OF(NODE, mode->shape), "the largest entry is 1")
-STRUT_VALUES(strut_mode_values, MODE, const strut_mode *mode = of->at)
+STRUT_VALUES(strut_mode_values, MODE, const strut_mode *mode = of->at;
+             bool known = mode->kind != STRUT_MODE_UNKNOWN)
 
 static const char *closed_name(const strut_result_object *of, size_t i) {
   return of->scene->nodes[((const strut_modes *)of->at)->closed[i]].name;
@@ -42,38 +47,47 @@ static const char *just_taut_name(const strut_result_object *of, size_t i) {
 }
 
 #define MODES(X)                                                                                   \
-  X("at", "", TEXT(modes->at), "name of the equilibrium")                                          \
+  X("at", "", TEXT(modes->at), "name of the equilibrium", .label = {"modes at"})                   \
   X("nodes", "m", OF(NODE, modes->q), "its positions")                                             \
-  X("coordinates", "", COUNT(modes->coordinates), "free ones")                                     \
-  X("contacts", "", NAMES(closed_name, modes->closed_count), "nodes that touch the ground")        \
-  X("slack", "", NAMES(slack_name, of->scene->member_count), "members that take no part")          \
+  X("coordinates", "", COUNT(modes->coordinates), "free ones", .label = {""})                      \
+  X("contacts", "", NAMES(closed_name, modes->closed_count), "nodes that touch the ground",        \
+    .label = {"on"})                                                                               \
+  X("slack", "", NAMES(slack_name, of->scene->member_count), "members that take no part",          \
+    .label = {""})                                                                                 \
   X("just_taut", "", NAMES(just_taut_name, of->scene->member_count),                               \
-    "members without a force that would act one way only, counted as slack")                       \
+    "members without a force that would act one way only, counted as slack",                       \
+    .label = {"just taut, without prestress"})                                                     \
   X("method", "", TEXT(modes->dense ? "dense" : "sparse"), "all modes, or the lowest")             \
-  X("condition", "1", NUMBER(modes->condition), "largest eigenvalue over the smallest, not zero")  \
-  X("at_rest", "", FLAG(modes->at_rest), "whether the shape is an equilibrium")                    \
+  X("condition", "1", NUMBER(modes->condition), "largest eigenvalue over the smallest, not zero",  \
+    .label = {"condition number"})                                                                 \
+  X("at_rest", "", FLAG(modes->at_rest), "whether the shape is an equilibrium",                    \
+    .label = {"an equilibrium"})                                                                   \
   X("settle", "", IF(modes->settle.evaluations, PART(&modes->settle)), "how it was found",         \
-    .rows = &strut_settle_values)                                                                  \
+    .rows = &strut_settle_values, .label = {""})                                                   \
   X("damping", "", TEXT(modes->damped_exactly ? "quadratic eigenproblem" : "modal quotient"),      \
-    "how it was computed")                                                                         \
-  X("left_out", "", TEXT(modes->left_out), "what acts in a run, but not here")                     \
-  X("modes", "", LIST(modes->list, modes->count), "by eigenvalue", .rows = &strut_mode_values)
+    "how it was computed", .label = {"damping by"})                                                \
+  X("left_out", "", TEXT(modes->left_out), "what acts in a run, but not here",                     \
+    .label = {"without"})                                                                          \
+  X("modes", "", LIST(modes->list, modes->count), "by eigenvalue", .rows = &strut_mode_values,     \
+    .label = {""})
 STRUT_VALUES(strut_modes_values, MODES, const strut_modes *modes = of->at)
 
 /* ---- waves ---- */
 
+#define NUMBERED(X) X(NULL, "", COUNT(of->index + 1), "", .label = {"band"})
 #define BAND(X)                                                                                    \
-  X("low", "Hz", NUMBER(band->low.frequency), "lowest frequency")                                  \
+  NUMBERED(X)                                                                                      \
+  X("low", "Hz", NUMBER(band->low.frequency), "lowest frequency", .label = {"lowest"})             \
   X("low_at", "1", NUMBERS(band->low.phase, waves->steps), "its wave, in turns for each step")     \
-  X("high", "Hz", NUMBER(band->high.frequency), "highest frequency")                               \
+  X("high", "Hz", NUMBER(band->high.frequency), "highest frequency", .label = {"highest"})         \
   X("high_at", "1", NUMBERS(band->high.phase, waves->steps), "its wave, likewise")
 STRUT_VALUES_HERE(band_values, BAND, const strut_wave_band *band = of->at;
                   const strut_waves *waves = of->outer->at)
 
 #define GAP(X)                                                                                     \
-  X("below", "", COUNT(gap->below), "bands below it")                                              \
-  X("low", "Hz", NUMBER(gap->low), "where it begins")                                              \
-  X("high", "Hz", NUMBER(gap->high), "where it ends")
+  X("below", "", COUNT(gap->below), "bands below it", .label = {"above band"})                     \
+  X("low", "Hz", NUMBER(gap->low), "where it begins", .label = {"from"})                           \
+  X("high", "Hz", NUMBER(gap->high), "where it ends", .label = {"to"})
 STRUT_VALUES_HERE(gap_values, GAP, const strut_wave_gap *gap = of->at)
 
 #define CORNER(X)                                                                                  \
@@ -92,19 +106,34 @@ STRUT_VALUES_HERE(corner_values, CORNER, const strut_wave_corner *corner = of->a
     .column = {"band"})
 STRUT_VALUES(strut_wave_values, SAMPLE, const strut_waves *waves = of->outer->at)
 
+static strut_value speed_of(const strut_result_object *of, size_t i) {
+  const strut_waves *waves = of->at;
+  size_t each = (size_t)waves->acoustic;
+  return STRUT_VALUE_AS_NUMBER(waves->speed[i / each][i % each]);
+}
+
 #define WAVES(X)                                                                                   \
-  X("at", "", TEXT(waves->at), "the shape that the equilibrium was found from")                    \
+  X("at", "", TEXT(waves->at), "the shape that the equilibrium was found from",                    \
+    .label = {"waves at"})                                                                         \
   X("lattice", "m", TABLE(of->scene->lattice, waves->steps, 2), "steps from a cell to the next")   \
   X("nodes", "m", OF(NODE, waves->q), "positions at the equilibrium")                              \
-  X("moved", "m", NUMBER(waves->moved), "largest displacement of a node from that shape")          \
-  X("residual", "N", NUMBER(waves->residual), "largest net force on a node")                       \
-  X("coordinates", "", COUNT(waves->band_count), "of a cell: the number of bands")                 \
-  X("images", "", COUNT(waves->images), "nodes that are those of neighbouring cells")              \
-  X("samples", "", COUNT(waves->count + waves->inside), "of the wave vector")                      \
+  X("moved", "m", NUMBER(waves->moved), "largest displacement of a node from that shape",          \
+    .label = {""})                                                                                 \
+  X("residual", "N", NUMBER(waves->residual), "largest net force on a node",                       \
+    .label = {"residual force"})                                                                   \
+  X("coordinates", "", COUNT(waves->band_count), "of a cell: the number of bands",                 \
+    .label = {"coordinates of a cell"})                                                            \
+  X(NULL, "m/s", ARRAY((size_t)waves->steps *(size_t)waves->acoustic, speed_of), "",               \
+    .label = {"speed of long waves"})                                                              \
+  X("images", "", COUNT(waves->images), "nodes that are those of neighbouring cells",              \
+    .label = {"nodes of the next cells"})                                                          \
+  X("samples", "", COUNT(waves->count + waves->inside), "of the wave vector",                      \
+    .label = {"samples of the wave vector"})                                                       \
   X("speeds", "m/s", TABLE(waves->speed, waves->steps, waves->acoustic), "of long waves")          \
-  X("bands", "", LIST(waves->band, waves->shown), "ascending", .rows = &band_values)               \
+  X("bands", "", LIST(waves->band, waves->shown), "ascending", .rows = &band_values,               \
+    .label = {""})                                                                                 \
   X("gaps", "", LIST(waves->gaps, waves->gap_count), "frequencies that no wave has",               \
-    .rows = &gap_values)                                                                           \
+    .rows = &gap_values, .label = {""})                                                            \
   X("corners", "", LIST(waves->corner, waves->corner_count), "of the line through the zone",       \
     .rows = &corner_values)                                                                        \
   X("waves", "", LIST(waves->along, waves->count), "samples along it", .rows = &strut_wave_values)

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a path has, a row for each value. */
+#include <math.h>
+
 #include "engine/statics/path/path.h"
 
 static bool over_load(const strut_path *path) { return path->over == STRUT_PATH_OVER_LOAD; }
@@ -72,7 +74,135 @@ STRUT_VALUES_HERE(walk_values, WALK, const strut_path *walk = of->at)
 STRUT_VALUES_HERE(branch_values, BRANCH, const strut_path *branch = of->at;
                   const strut_path *path = of->outer->at)
 
+/* ---- what people read ---- */
+
+enum { MOST_POINTS = 20 };
+static const double ROUNDING = 1e-12; /* of the largest force */
+
+/* The force that goes with the parameter: of a displaced coordinate its reaction, 0 where it is rounding. */
+static double force_of(const strut_result_object *of, const strut_path_state *state) {
+  const strut_path *path = of->outer->at;
+  double largest = 0.0;
+  if (path->coordinate < 0)
+    return over_load(path) && path->reference > 0 ? state->factor * path->reference : (double)NAN;
+  for (size_t k = 0; k < path->point_count; k++)
+    for (size_t j = 0; j < of->scene->member_count; j++)
+      largest = fmax(largest, fabs(path->points[k].at.force[j]));
+  double force = state->reaction[path->coordinate];
+  return fabs(force) > ROUNDING * largest ? force : 0.0;
+}
+
+/* The node that is farthest from where the path began at some point of it; a free one if there is. */
+static size_t farthest_node(const strut_path *path, const strut_scene *scene) {
+  const double *from = path->points[0].at.q;
+  double most = -1;
+  size_t best = 0;
+  for (int pass = 0; pass < 2 && most < 0; pass++)
+    for (size_t k = 0; k < path->point_count; k++)
+      for (size_t i = 0; i < scene->node_count; i++) {
+        const double *q = path->points[k].at.q;
+        if (pass == 0 && scene->nodes[i].fixed[0] && scene->nodes[i].fixed[1]) continue;
+        double away = hypot(q[2 * i] - from[2 * i], q[2 * i + 1] - from[2 * i + 1]);
+        if (away > most * (1 + 1e-9)) most = away, best = i;
+      }
+  return best;
+}
+
+static double move_of(const strut_result_object *of, const strut_path_state *state, size_t axis) {
+  const strut_path *path = of->outer->at;
+  size_t at = 2 * farthest_node(path, of->scene) + axis;
+  return state->q[at] - path->points[0].at.q[at];
+}
+
+static const char *stability_of(const strut_path *path) {
+  size_t stable = 0;
+  for (size_t k = 0; k < path->point_count; k++) stable += path->points[k].negative == 0;
+  return stable == path->point_count ? "stable" : stable ? "stable in part" : "unstable";
+}
+
+#define FACTOR(X, STATE)                                                                           \
+  X(NULL, "",                                                                                      \
+    ROUNDED(8, CALLED(over_load(path) ? "factor" : path->name, path->unit, (STATE)->factor)), "",  \
+    .label = {""})
+#define SHOWN(X, STATE)                                                                            \
+  FACTOR(X, STATE)                                                                                 \
+  X(NULL, "N", ROUNDED(8, NUMBER(force_of(of, STATE))), "", .label = {"force"})                    \
+  X(NULL, "m", ROUNDED(6, NUMBER(move_of(of, STATE, 0))), "", .label = {"moves x"})                \
+  X(NULL, "m", ROUNDED(6, NUMBER(move_of(of, STATE, 1))), "", .label = {"moves y"})
+#define SHOWN_POINT(X)                                                                             \
+  SHOWN(X, &point->at)                                                                             \
+  X(NULL, "", TEXT(point->negative ? "unstable" : "stable"), "", .label = {"is"})
+STRUT_VALUES_HERE(shown_point_values, SHOWN_POINT, const strut_path_point *point = of->at;
+                  const strut_path *path = of->outer->at)
+#define SHOWN_EVENT(X)                                                                             \
+  SHOWN(X, &event->at)                                                                             \
+  X(NULL, "", TEXT(strut_path_event_name(event->kind)), "", .label = {"event"})                    \
+  X(NULL, "", TEXT(event->detail), "", .label = {"detail"})
+STRUT_VALUES_HERE(shown_event_values, SHOWN_EVENT, const strut_path_event *event = of->at;
+                  const strut_path *path = of->outer->at)
+
+/* Forces where something happens. */
+#define END_FORCES(X)                                                                              \
+  X(NULL, "", TEXT(point == path->points ? "start" : "end"), "", .label = {"at"})                  \
+  FACTOR(X, &point->at)                                                                            \
+  X(NULL, "", SAME, "", .rows = &strut_path_state_values)
+STRUT_VALUES_HERE(end_force_values, END_FORCES, const strut_path_point *point = of->at;
+                  const strut_path *path = of->outer->at)
+#define EVENT_FORCES(X)                                                                            \
+  X(NULL, "", TEXT(strut_path_event_name(event->kind)), "", .label = {"at"})                       \
+  FACTOR(X, &event->at)                                                                            \
+  X(NULL, "", SAME, "", .rows = &strut_path_state_values)
+STRUT_VALUES_HERE(event_force_values, EVENT_FORCES, const strut_path_event *event = of->at;
+                  const strut_path *path = of->outer->at)
+
+/* Of a branch or a stage. */
+#define SUMMARY(X)                                                                                 \
+  X(NULL, "", COUNT(of->index + 1), "", .label = {"number"})                                       \
+  X(NULL, "", IF(branch, COUNT(walk->from.path)), "", .label = {"leaves branch"})                  \
+  X(NULL, "", TEXT(over_load(walk) ? "loads" : walk->name), "", .label = {"over"})                 \
+  X(NULL, "", CALLED(NULL, walk->unit, branch ? walk->from.factor : walk->points[0].at.factor),    \
+    "", .label = {"from"})                                                                         \
+  X(NULL, "", CALLED(NULL, walk->unit, walk->points[walk->point_count - 1].at.factor), "",         \
+    .label = {"to"})                                                                               \
+  X(NULL, "", COUNT(walk->point_count), "", .label = {"points"})                                   \
+  X(NULL, "", COUNT(walk->event_count), "", .label = {"events"})                                   \
+  X(NULL, "", TEXT(stability_of(walk)), "", .label = {"is"})                                       \
+  X(NULL, "", IF(branch && walk->from.twin, COUNT(walk->from.twin)), "",                           \
+    .label = {"twin of branch"})                                                                   \
+  X(NULL, "", TEXT(walk->remark), "", .label = {"remark"})
+STRUT_VALUES_HERE(summary_values, SUMMARY, const strut_path *walk = of->at;
+                  const strut_path *path = of->outer->at;
+                  bool branch = path->branches && walk >= path->branches &&
+                                walk < path->branches + path->branch_count)
+
+static bool is_sampled(const strut_result_object *of, size_t k) {
+  const strut_path *path = of->at;
+  return k % ((path->point_count + MOST_POINTS - 1) / MOST_POINTS) == 0 ||
+         k + 1 == path->point_count;
+}
+
+static bool is_end(const strut_result_object *of, size_t k) {
+  return k == 0 || k + 1 == ((const strut_path *)of->at)->point_count;
+}
+
 #define PATH(X)                                                                                    \
+  X(NULL, "", TEXT(path->name), "", .label = {"path over"})                                        \
+  X(NULL, "", COUNT(path->point_count), "", .label = {"points"})                                   \
+  X(NULL, "", TEXT(path->remark), "", .label = {"remark"})                                         \
+  X(NULL, "", TEXT(of->scene->nodes[farthest_node(path, of->scene)].name), "",                     \
+    .label = {"moves most"})                                                                       \
+  X(NULL, "", LIST_WHERE(path->points, path->point_count, is_sampled), "",                         \
+    .rows = &shown_point_values, .label = {"points"})                                              \
+  X(NULL, "", LIST(path->events, path->event_count), "", .rows = &shown_event_values,              \
+    .label = {"events"})                                                                           \
+  X(NULL, "", LIST_WHERE(path->points, path->point_count, is_end), "", .rows = &end_force_values,  \
+    .label = {"forces"})                                                                           \
+  X(NULL, "", LIST(path->events, path->event_count), "", .rows = &event_force_values,              \
+    .label = {"forces at events"})                                                                 \
+  X(NULL, "", IF(path->branches, LIST(path->branches, path->branch_count)), "",                    \
+    .rows = &summary_values, .label = {"branches"})                                                \
+  X(NULL, "", IF(path->stages, LIST(path->stages, path->stage_count)), "",                         \
+    .rows = &summary_values, .label = {"stages before"})                                           \
   X(NULL, "", SAME, "", .rows = &walk_values)                                                      \
   X("branches", "", IF(path->branches, LIST(path->branches, path->branch_count)),                  \
     "paths that leave at bifurcations", .rows = &branch_values)                                    \

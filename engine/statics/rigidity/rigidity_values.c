@@ -127,7 +127,7 @@ static double density_of(const strut_result_object *of, size_t j) {
     "of distances")
 
 #define STATE(X)                                                                                   \
-  X("forces", "N", OF(MEMBER, of->at), "of members, up to a factor")                               \
+  X("forces", "N", OF(MEMBER, of->at), "of members, up to a factor", .label = {""})                \
   X("force_densities", "N/m", OF_EACH(MEMBER, density_of), "of members, up to the same factor")    \
   OTHERS(X, "")                                                                                    \
   X("feasible", "", FLAG(r->states.cables_pull[of->index]), "whether no cable is compressed")
@@ -151,8 +151,9 @@ static strut_value list_of_states(const strut_rigidity *r) {
 }
 
 #define SELF_STRESS(X)                                                                             \
-  X("count", "", COUNT(r->states.count), "of independent states, s")                               \
-  X("states", "", BY(list_of_states(r)), "null: too many to list", .rows = &state_values)          \
+  X("count", "", COUNT(r->states.count), "of independent states, s", .label = {"s"})               \
+  X("states", "", BY(list_of_states(r)), "null: too many to list", .rows = &state_values,          \
+    .label = {"states, up to a factor"})                                                           \
   X("feasible", "", IF(listed && !r->feasible, TEXT(NULL)), "null: none is known")                 \
   X(NULL, "", IF(listed && r->feasible, PART(r->feasible)), "", .rows = &feasible_values)
 STRUT_VALUES_HERE(self_stress_values, SELF_STRESS, const strut_rigidity *r = of->at;
@@ -176,22 +177,23 @@ static void write_test(const strut_result_object *of, char text[STRUT_VALUE_ROOM
 
 #define MODE(X)                                                                                    \
   X("kind", "", TEXT(strut_motion_kind_name(mode->kind)),                                          \
-    "rigid-body, infinitesimal, finite, ...")                                                      \
+    "rigid-body, infinitesimal, finite, ...", .label = {""})                                       \
   X("stiffness", "N/m", NUMBER(mode->stiffness), "by the forces in the shape")                     \
   X("stress_form", "1/m", NUMBER(mode->stress_form), "by the state that stiffens")                 \
   X("moved", "m", NUMBER(mode->moved), "followed: largest change of a distance between nodes")     \
   X("strain", "1", NUMBER(mode->strain), "and of a member's length, relative")                     \
-  X("test", "", WORDS(write_test), "in words")                                                     \
+  X("test", "", WORDS(write_test), "in words", .label = {""})                                      \
   X("nodes", "1", OF_EACH(NODE, motion_of), "motion: the node that moves most moves by 1")
 STRUT_VALUES_HERE(mode_values, MODE, const strut_mechanism *mode = of->at)
 
 #define MECHANISMS(X)                                                                              \
-  X("count", "", COUNT(m->count), "of independent ones, f")                                        \
-  X("rigid_body", "", COUNT(m->rigid_body), "of the whole")                                        \
-  X("infinitesimal", "", COUNT(m->infinitesimal), "some self-stress stiffens them")                \
-  X("finite", "", COUNT(m->finite), "member lengths stay")                                         \
-  X("undecided", "", COUNT(m->undecided), "neither is known")                                      \
-  X("modes", "", LIST(m->list, m->count), "null: too many to list", .rows = &mode_values)          \
+  X("count", "", COUNT(m->count), "of independent ones, f", .label = {"f"})                        \
+  X("rigid_body", "", COUNT(m->rigid_body), "of the whole", .label = {""})                         \
+  X("infinitesimal", "", COUNT(m->infinitesimal), "some self-stress stiffens them", .label = {""}) \
+  X("finite", "", COUNT(m->finite), "member lengths stay", .label = {""})                          \
+  X("undecided", "", COUNT(m->undecided), "neither is known", .label = {""})                       \
+  X("modes", "", LIST(m->list, m->count), "null: too many to list", .rows = &mode_values,          \
+    .label = {""})                                                                                 \
   X(NULL, "", IF(listed && m->stiffener, PART(m->stiffener)), "", .rows = &stiffener_values)
 STRUT_VALUES_HERE(mechanism_values, MECHANISMS, const strut_mechanisms *m = of->at;
                   bool listed = m->list || !m->count)
@@ -199,8 +201,10 @@ STRUT_VALUES_HERE(mechanism_values, MECHANISMS, const strut_mechanisms *m = of->
 /* ---- verdicts ---- */
 
 #define MAXWELL(X)                                                                                 \
-  X("members_minus_coordinates", "", COUNT(r->matrix.columns - r->matrix.rows), "of the matrix")   \
-  X("self_stress_minus_mechanisms", "", COUNT(r->states.count - r->mechanisms.count), "the same")
+  X("members_minus_coordinates", "", COUNT(r->matrix.columns - r->matrix.rows), "of the matrix",   \
+    .label = {"members - coordinates"})                                                            \
+  X("self_stress_minus_mechanisms", "", COUNT(r->states.count - r->mechanisms.count), "the same",  \
+    .label = {"s - f"})
 STRUT_VALUES_HERE(maxwell_values, MAXWELL, const strut_rigidity *r = of->at)
 
 #define STRESS(X)                                                                                  \
@@ -212,7 +216,7 @@ STRUT_VALUES_HERE(stress_values, STRESS, const strut_rigidity *r = strut_result_
                   const strut_stress_matrix *stress = of->at)
 
 #define TENSEGRITY(X)                                                                              \
-  X("label", "", TEXT(t->label), "in words")                                                       \
+  X("label", "", TEXT(t->label), "in words", .label = {"kind"})                                    \
   X("self_stress", "", FLAG(t->self_stress), "there is a state of self-stress")                    \
   X("cables", "", FLAG(t->cables), "what is pulled are cables")                                    \
   X("stiffened_mechanism", "", FLAG(t->mechanism),                                                 \
@@ -239,11 +243,12 @@ static const char *name_of_idle(const strut_result_object *of, size_t j) {
 /* ---- members and elements, each under its name ---- */
 
 #define MEMBER(X)                                                                                  \
-  X("kind", "", TEXT(strut_member_kind_name(of->scene->members[j].kind)), "spring, cable, bar")    \
-  X("length", "m", NUMBER(r->matrix.length[j]), "in the shape")                                    \
-  X("force", "N", NUMBER(r->force[j]), "its tension there")                                        \
+  X("kind", "", TEXT(strut_member_kind_name(of->scene->members[j].kind)), "spring, cable, bar",    \
+    .label = {""})                                                                                 \
+  X("length", "m", NUMBER(r->matrix.length[j]), "in the shape", .label = {""})                     \
+  X("force", "N", NUMBER(r->force[j]), "its tension there", .label = {""})                         \
   X("force_density", "N/m", NUMBER(r->matrix.length[j] > 0 ? r->density[j] : (double)NAN),         \
-    "force over length")
+    "force over length", .label = {""})
 STRUT_VALUES_HERE(member_values, MEMBER, const strut_rigidity *r = strut_result_whole(of);
                   size_t j = of->index)
 
@@ -254,8 +259,10 @@ STRUT_VALUES_HERE(member_values, MEMBER, const strut_rigidity *r = strut_result_
   STRUT_VALUES_HERE(NAME##_values, NAME##_TABLE, const strut_rigidity *r = strut_result_whole(of); \
                     size_t j = strut_column_of(of->scene, STRUT_OWNER_##OWNER, of->index))
 #define ELEMENT(X, OWNER, EXTENT, EXTENT_UNIT, FORCE, FORCE_UNIT)                                  \
-  X(EXTENT, EXTENT_UNIT, NUMBER(strut_column_extent(r, STRUT_OWNER_##OWNER, j)), "in the shape")   \
-  X(FORCE, FORCE_UNIT, NUMBER(strut_column_force(r, STRUT_OWNER_##OWNER, r->force[j])), "there")
+  X(EXTENT, EXTENT_UNIT, NUMBER(strut_column_extent(r, STRUT_OWNER_##OWNER, j)), "in the shape",   \
+    .label = {""})                                                                                 \
+  X(FORCE, FORCE_UNIT, NUMBER(strut_column_force(r, STRUT_OWNER_##OWNER, r->force[j])), "there",   \
+    .label = {""})
 #define hinge_TABLE(X) ELEMENT(X, HINGE, "angle", "rad", "moment", "N m")
 #define cell_TABLE(X) ELEMENT(X, CELL, "area", "m^2", "pressure", "N/m")
 #define distance_TABLE(X) ELEMENT(X, DISTANCE, "distance", "m", "force", "N")
@@ -268,45 +275,52 @@ static const char *member_name(const strut_result_object *of, size_t i) {
 }
 
 #define RIGIDITY(X)                                                                                \
-  X("at", "", TEXT(r->at), "name of the shape")                                                    \
+  X("at", "", TEXT(r->at), "name of the shape", .label = {"rigidity at"})                          \
   X("nodes", "", COUNT(scene->node_count), "number")                                               \
   X("members", "", COUNT(scene->member_count), "number")                                           \
   X("hinges", "", IF(scene->hinge_count, COUNT(scene->hinge_count)), "number")                     \
   X("cells", "", IF(scene->cell_count, COUNT(scene->cell_count)), "number")                        \
   X("distances", "", IF(scene->distance_count, COUNT(scene->distance_count)), "number")            \
-  X("free_coordinates", "", COUNT(r->matrix.rows), "rows of the equilibrium matrix")               \
+  X("free_coordinates", "", COUNT(r->matrix.rows), "rows of the equilibrium matrix",               \
+    .label = {""})                                                                                 \
   X("supports", "", COUNT(2 * scene->node_count - (size_t)r->matrix.rows), "held coordinates")     \
   X("method", "", TEXT(r->spaces.dense ? "svd" : "qr"), "singular values, or sparse QR")           \
   X("tolerance", "1", NUMBER(STRUT_RANK_TOLERANCE), "of the largest, below which one is zero")     \
-  X("rank", "", COUNT(r->spaces.rank), "of the equilibrium matrix")                                \
+  X("rank", "", COUNT(r->spaces.rank), "of the equilibrium matrix", .label = {""})                 \
   X("largest", "1", NUMBER(r->spaces.largest), "singular value, or diagonal entry of R")           \
-  X("kept", "1", NUMBER(r->spaces.kept), "smallest that counts")                                   \
-  X("dropped", "1", NUMBER(r->spaces.dropped), "largest that does not")                            \
-  X("weak", "", COUNT(r->spaces.weak), "that count, but are below a millionth of the largest")     \
-  X("without_length", "", COUNT(r->without_length), "members without a direction")                 \
-  X("self_stress", "", PART(r), "states of self-stress", .rows = &self_stress_values)              \
+  X("kept", "1", NUMBER(r->spaces.kept), "smallest that counts", .label = {""})                    \
+  X("dropped", "1", NUMBER(r->spaces.dropped), "largest that does not", .label = {""})             \
+  X("weak", "", COUNT(r->spaces.weak), "that count, but are below a millionth of the largest",     \
+    .label = {""})                                                                                 \
+  X("without_length", "", COUNT(r->without_length), "members without a direction", .label = {""})  \
+  X("self_stress", "", PART(r), "states of self-stress", .rows = &self_stress_values,              \
+    .label = {""})                                                                                 \
   X("mechanisms", "", PART(&r->mechanisms), "motions that stretch no member",                      \
-    .rows = &mechanism_values)                                                                     \
-  X("maxwell_calladine", "", PART(r), "the count", .rows = &maxwell_values)                        \
-  X("class", "", COUNT(r->bars_at_node > 1 ? r->bars_at_node : 1), "most bars that meet")          \
+    .rows = &mechanism_values, .label = {""})                                                      \
+  X("maxwell_calladine", "", PART(r), "the count", .rows = &maxwell_values,                        \
+    .label = {"Maxwell-Calladine"})                                                                \
+  X("class", "", COUNT(r->bars_at_node > 1 ? r->bars_at_node : 1), "most bars that meet",          \
+    .label = {""})                                                                                 \
   X("super_stable", "", KNOWN(is_judged(r), FLAG(r->stress.super_stable)), "null: not judged")     \
-  X("super_stability", "", WORDS(write_super_stability), "in words")                               \
+  X("super_stability", "", WORDS(write_super_stability), "in words", .label = {"super stable"})    \
   X("stress_matrix", "", KNOWN(r->stress.tested, PART(&r->stress)), "null: not tested",            \
     .rows = &stress_values)                                                                        \
   X("classification", "", PART(&r->tensegrity), "what kind of tensegrity",                         \
-    .rows = &tensegrity_values)                                                                    \
-  X("equilibrium", "", FLAG(r->equilibrium), "whether the shape is one")                           \
-  X("residual", "N", NUMBER(r->residual), "largest net force on a free coordinate")                \
+    .rows = &tensegrity_values, .label = {"tensegrity"})                                           \
+  X("equilibrium", "", FLAG(r->equilibrium), "whether the shape is one", .label = {""})            \
+  X("residual", "N", NUMBER(r->residual), "largest net force on a free coordinate",                \
+    .label = {"net force"})                                                                        \
   X("self_equilibrium", "", FLAG(r->self_equilibrium), "whether the members balance alone")        \
-  X("without_force", "", NAMES(name_of_idle, scene->member_count), "cables that do not pull")      \
+  X("without_force", "", NAMES(name_of_idle, scene->member_count), "cables that do not pull",      \
+    .label = {""})                                                                                 \
   X("members_at", "", NAMED(r->force, scene->member_count, member_name), "in the shape",           \
-    .rows = &member_values)                                                                        \
+    .rows = &member_values, .label = {"member"})                                                   \
   X("hinges_at", "", IF(scene->hinge_count, NAMED(r->force, scene->hinge_count, hinge_name)),      \
-    "in the shape", .rows = &hinge_values)                                                         \
+    "in the shape", .rows = &hinge_values, .label = {"hinge"})                                     \
   X("cells_at", "", IF(scene->cell_count, NAMED(r->force, scene->cell_count, cell_name)),          \
-    "in the shape", .rows = &cell_values)                                                          \
+    "in the shape", .rows = &cell_values, .label = {"cell"})                                       \
   X("distances_at", "",                                                                            \
     IF(scene->distance_count, NAMED(r->force, scene->distance_count, distance_name)),              \
-    "in the shape", .rows = &distance_values)
+    "in the shape", .rows = &distance_values, .label = {"distance"})
 STRUT_VALUES(strut_rigidity_values, RIGIDITY, const strut_rigidity *r = of->at;
              const strut_scene *scene = of->scene)

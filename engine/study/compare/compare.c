@@ -90,46 +90,8 @@ strut_status strut_compare_structure(strut_compare_work *work, const strut_model
 /* ---- columns ---- */
 
 static const strut_compare_row rows[STRUT_COMPARE_QUANTITIES] = {
-    [STRUT_COMPARE_NODES] = {"structure", "nodes", "nodes", ""},
-    [STRUT_COMPARE_MEMBERS] = {"structure", "members", "members", ""},
-    [STRUT_COMPARE_BARS] = {"structure", "bars", "bars", ""},
-    [STRUT_COMPARE_SPRINGS] = {"structure", "springs", "springs", ""},
-    [STRUT_COMPARE_CABLES] = {"structure", "cables", "cables", ""},
-    [STRUT_COMPARE_CONTACTS] = {"structure", "contacts", "contact nodes", ""},
-    [STRUT_COMPARE_ACTUATORS] = {"structure", "actuators", "actuators", ""},
-    [STRUT_COMPARE_MASS] = {"structure", "mass", "mass", "kg"},
-    [STRUT_COMPARE_FREEDOMS] = {"structure", "degrees_of_freedom", "degrees of freedom", ""},
-    [STRUT_COMPARE_SELF_STRESSES] = {"as drawn", "self_stress_states", "self-stress states", ""},
-    [STRUT_COMPARE_MECHANISMS] = {"as drawn", "mechanisms", "mechanisms", ""},
-    [STRUT_COMPARE_FINITE] = {"as drawn", "finite_mechanisms", "of which finite", ""},
-    [STRUT_COMPARE_RIGID_MOTIONS] = {"as drawn", "rigid_body_motions", "rigid-body motions", ""},
-    [STRUT_COMPARE_STATES] = {"states", "stable_states", "stable states", ""},
-    [STRUT_COMPARE_LOWEST_ENERGY] = {"states", "lowest_energy", "lowest energy", "J"},
-    [STRUT_COMPARE_ENERGY_SPAN] = {"states", "energy_span", "energy range", "J"},
-    [STRUT_COMPARE_LOWEST_BARRIER] = {"states", "lowest_barrier", "escape barrier", "J"},
-    [STRUT_COMPARE_PRESTRESS] = {"at rest", "prestress", "RMS member force", "N"},
-    [STRUT_COMPARE_TENSION] = {"at rest", "largest_tension", "largest tension", "N"},
-    [STRUT_COMPARE_COMPRESSION] = {"at rest", "largest_compression", "largest compression", "N"},
-    [STRUT_COMPARE_FREQUENCY_1] = {"at rest", "frequency_1", "lowest frequency", "Hz"},
-    [STRUT_COMPARE_FREQUENCY_2] = {"at rest", "frequency_2", "second", "Hz"},
-    [STRUT_COMPARE_FREQUENCY_3] = {"at rest", "frequency_3", "third", "Hz"},
-    [STRUT_COMPARE_STIFFNESS_X] = {"at rest", "stiffness_x", "softest node in x", "N/m"},
-    [STRUT_COMPARE_STIFFNESS_Y] = {"at rest", "stiffness_y", "softest node in y", "N/m"},
-    [STRUT_COMPARE_STEP_LIMIT] = {"at rest", "step_limit", "largest step, rk4", "s"},
-    [STRUT_COMPARE_FRICTION] = {"drive", "friction", "friction", "1"},
-    [STRUT_COMPARE_DRIVE_FREQUENCY] = {"drive", "drive_frequency", "drive frequency", "Hz"},
-    [STRUT_COMPARE_DRIVE_AMPLITUDE] = {"drive", "drive_amplitude", "drive amplitude", "m"},
-    [STRUT_COMPARE_VELOCITY] = {"motion", "velocity", "velocity", "m/s"},
-    [STRUT_COMPARE_VELOCITY_ERROR] = {"motion", "velocity_error", "relative error", "1"},
-    [STRUT_COMPARE_TRAVEL] = {"motion", "travel_per_period", "travel per period", "m"},
-    [STRUT_COMPARE_DRIVE_ENERGY] = {"motion", "drive_energy_per_period", "energy per period", "J"},
-    [STRUT_COMPARE_DRIVE_POWER] = {"motion", "drive_power", "drive power", "W"},
-    [STRUT_COMPARE_TRANSPORT] = {"motion", "cost_of_transport", "cost of transport", "1"},
-    [STRUT_COMPARE_DUTY] = {"motion", "contact_duty", "duty factor", "1"},
-    [STRUT_COMPARE_EVALUATIONS] = {"cost per second", "evaluations_per_second", "evaluations",
-                                   "1/s"},
-    [STRUT_COMPARE_CPU] = {"cost per second", "cpu_per_second", "CPU time", "s/s"},
-};
+#define ROW(name, key, unit) {key, unit},
+    STRUT_COMPARE_TABLE(ROW)};
 
 strut_compare_row strut_compare_row_of(strut_compare_quantity quantity) { return rows[quantity]; }
 

@@ -19,55 +19,58 @@
 
 enum { STRUT_COMPARE_MOST = 100, STRUT_COMPARE_FREQUENCIES = 3 };
 
-/** The rows in their order. */
+/** What is compared, in order: X(NAME, key, unit); unit "" of counts, "1" of ratios. */
+#define STRUT_COMPARE_TABLE(X)                                                                     \
+  X(NODES, "nodes", "")                                                                            \
+  X(MEMBERS, "members", "")                                                                        \
+  X(BARS, "bars", "")                                                                              \
+  X(SPRINGS, "springs", "")                                                                        \
+  X(CABLES, "cables", "")                                                                          \
+  X(CONTACTS, "contacts", "")                                                                      \
+  X(ACTUATORS, "actuators", "")                                                                    \
+  X(MASS, "mass", "kg")                                                                            \
+  X(FREEDOMS, "degrees_of_freedom", "")                                                            \
+  X(SELF_STRESSES, "self_stress_states", "") /* as drawn, like the next three */                   \
+  X(MECHANISMS, "mechanisms", "")    /* all that stretch no member but rigid-body motions */       \
+  X(FINITE, "finite_mechanisms", "") /* of them */                                                 \
+  X(RIGID_MOTIONS, "rigid_body_motions", "")                                                       \
+  X(STATES, "stable_states", "")           /* equilibria that stand */                             \
+  X(LOWEST_ENERGY, "lowest_energy", "J")   /* of those */                                          \
+  X(ENERGY_SPAN, "energy_span", "J")       /* from the lowest to the highest */                    \
+  X(LOWEST_BARRIER, "lowest_barrier", "J") /* out of the state that a run starts in */             \
+  X(PRESTRESS, "prestress", "N")           /* root of the mean square of member forces at rest */  \
+  X(TENSION, "largest_tension", "N")       /* largest, at rest */                                  \
+  X(COMPRESSION, "largest_compression", "N") /* largest, at rest; positive */                      \
+  X(FREQUENCY_1, "frequency_1", "Hz")        /* lowest elastic ones, contacts sliding */           \
+  X(FREQUENCY_2, "frequency_2", "Hz")                                                              \
+  X(FREQUENCY_3, "frequency_3", "Hz")                                                              \
+  X(STIFFNESS_X, "stiffness_x", "N/m") /* of the softest node under a unit load */                 \
+  X(STIFFNESS_Y, "stiffness_y", "N/m")                                                             \
+  X(STEP_LIMIT, "step_limit", "s") /* rk4's */                                                     \
+  X(FRICTION, "friction", "1")     /* sliding, where all contacts agree */                         \
+  X(DRIVE_FREQUENCY, "drive_frequency", "Hz")                                                      \
+  X(DRIVE_AMPLITUDE, "drive_amplitude", "m")                                                       \
+  X(VELOCITY, "velocity", "m/s")                                                                   \
+  X(VELOCITY_ERROR, "velocity_error", "1")        /* expected, as a part of it */                  \
+  X(TRAVEL, "travel_per_period", "m")             /* per period */                                 \
+  X(DRIVE_ENERGY, "drive_energy_per_period", "J") /* per period */                                 \
+  X(DRIVE_POWER, "drive_power", "W")                                                               \
+  X(TRANSPORT, "cost_of_transport", "1")          /* drive power over weight times speed */        \
+  X(DUTY, "contact_duty", "1")                    /* mean over the contacts that touch at all */   \
+  X(EVALUATIONS, "evaluations_per_second", "1/s") /* of the forces, per simulated second */        \
+  X(CPU, "cpu_per_second", "s/s")                 /* seconds per simulated second: a measurement */
+
 typedef enum strut_compare_quantity {
-  STRUT_COMPARE_NODES,
-  STRUT_COMPARE_MEMBERS,
-  STRUT_COMPARE_BARS,
-  STRUT_COMPARE_SPRINGS,
-  STRUT_COMPARE_CABLES,
-  STRUT_COMPARE_CONTACTS,
-  STRUT_COMPARE_ACTUATORS,
-  STRUT_COMPARE_MASS,
-  STRUT_COMPARE_FREEDOMS,
-  STRUT_COMPARE_SELF_STRESSES, /* as drawn, like the next three */
-  STRUT_COMPARE_MECHANISMS,    /* all that stretch no member but rigid-body motions */
-  STRUT_COMPARE_FINITE,        /* of them */
-  STRUT_COMPARE_RIGID_MOTIONS,
-  STRUT_COMPARE_STATES,         /* equilibria that stand */
-  STRUT_COMPARE_LOWEST_ENERGY,  /* of those */
-  STRUT_COMPARE_ENERGY_SPAN,    /* from the lowest to the highest */
-  STRUT_COMPARE_LOWEST_BARRIER, /* out of the state that a run starts in */
-  STRUT_COMPARE_PRESTRESS,      /* root of the mean square of member forces at rest */
-  STRUT_COMPARE_TENSION,        /* largest, at rest */
-  STRUT_COMPARE_COMPRESSION,    /* largest, at rest; positive */
-  STRUT_COMPARE_FREQUENCY_1,    /* lowest elastic ones, contacts sliding */
-  STRUT_COMPARE_FREQUENCY_2,
-  STRUT_COMPARE_FREQUENCY_3,
-  STRUT_COMPARE_STIFFNESS_X, /* of the softest node under a unit load */
-  STRUT_COMPARE_STIFFNESS_Y,
-  STRUT_COMPARE_STEP_LIMIT, /* rk4's */
-  STRUT_COMPARE_FRICTION,   /* sliding, where all contacts agree */
-  STRUT_COMPARE_DRIVE_FREQUENCY,
-  STRUT_COMPARE_DRIVE_AMPLITUDE,
-  STRUT_COMPARE_VELOCITY,
-  STRUT_COMPARE_VELOCITY_ERROR, /* expected, as a part of it */
-  STRUT_COMPARE_TRAVEL,         /* per period */
-  STRUT_COMPARE_DRIVE_ENERGY,   /* per period */
-  STRUT_COMPARE_DRIVE_POWER,
-  STRUT_COMPARE_TRANSPORT,   /* drive power over weight times speed */
-  STRUT_COMPARE_DUTY,        /* mean over the contacts that touch at all */
-  STRUT_COMPARE_EVALUATIONS, /* of the forces, per simulated second */
-  STRUT_COMPARE_CPU,         /* seconds per simulated second: a measurement */
-  STRUT_COMPARE_QUANTITIES
+#define STRUT_COMPARE_ENUM(name, key, unit) STRUT_COMPARE_##name,
+  STRUT_COMPARE_TABLE(STRUT_COMPARE_ENUM)
+#undef STRUT_COMPARE_ENUM
+      STRUT_COMPARE_QUANTITIES
 } strut_compare_quantity;
 
 /** Description of a row. */
 typedef struct strut_compare_row {
-  const char *group; /* such as "at rest" */
-  const char *key;   /* in JSON and CSV: "self_stress_states" */
-  const char *label; /* in the table */
-  const char *unit;  /* "kg", "Hz"; "" for counts and "1" for ratios */
+  const char *key;  /* "self_stress_states" */
+  const char *unit; /* "kg", "Hz"; "" for counts and "1" for ratios */
 } strut_compare_row;
 STRUT_API strut_compare_row strut_compare_row_of(strut_compare_quantity quantity);
 
@@ -155,7 +158,6 @@ STRUT_API void strut_compare_free(strut_compare *result);
  * Texts in blocks of strut_allocate; NULL: memory was out. The CPU time in them is a measurement and
  * differs from run to run; nothing else does.
  */
-STRUT_API char *strut_compare_table(const strut_compare *result, int columns);
 /** Units in the header; empty where there is no value. */
 STRUT_API char *strut_compare_csv(const strut_compare *result);
 /** Rows of a strut_compare. */

@@ -117,54 +117,29 @@ static strut_value cusp_of(const strut_result_object *of, size_t k) {
 }
 
 #define CURVE(X)                                                                                   \
-  X("kind", "", TEXT(strut_follow_kind_word(c->kind)), "of its special points")                    \
-  X("node", "", TEXT(c->node), "that they are about")                                              \
+  X("kind", "", TEXT(strut_follow_kind_word(c->kind)), "of its special points", .label = {""})     \
+  X("node", "", TEXT(c->node), "that they are about", .label = {""})                               \
   X("period_multiple", "", COUNT(c->repeats), "drive periods of one repetition")                   \
-  X("begins", "", TEXT(c->ends[0]), "why")                                                         \
-  X("ends", "", TEXT(c->ends[1]), "why")                                                           \
-  X("cusps", "", ARRAY(c->count, cusp_of), "values of both parameters where two folds meet")       \
+  X("begins", "", TEXT(c->ends[0]), "why", .label = {""})                                          \
+  X("ends", "", TEXT(c->ends[1]), "why", .label = {""})                                            \
+  X(NULL, "", COUNT(c->count), "", .label = {"points"})                                            \
+  X("cusps", "", ARRAY(c->count, cusp_of), "values of both parameters where two folds meet",       \
+    .label = {""})                                                                                 \
   X("points", "", LIST(c->points, c->count), "all", .rows = &point_values)
 STRUT_VALUES_HERE(curve_values, CURVE, const strut_follow_curve *c = of->at)
 
 #define CURVES(X)                                                                                  \
-  X("and", "", TEXT(r->second.name), "the second parameter")                                       \
+  X("and", "", TEXT(r->second.name), "the second parameter", .label = {""})                        \
   X("and_unit", "", TEXT(r->second.unit), "of it")                                                 \
   X("and_from", "", NUMBER(r->second.low), "its range")                                            \
   X("and_to", "", NUMBER(r->second.high), "its range")                                             \
   X("and_at", "", NUMBER(r->second.value), "where the branches are")                               \
-  X("curves", "", LIST(r->curves, r->curve_count), "of special points", .rows = &curve_values)
+  X("curves", "", LIST(r->curves, r->curve_count), "of special points", .rows = &curve_values,     \
+    .label = {"curve"})
 STRUT_VALUES(strut_follow_curves_values, CURVES, const strut_follow_result *r = of->at)
 
 char *strut_follow_curves_csv(const strut_follow_result *r) {
   return strut_values_csv(&strut_follow_curves_values, "curves.points", NULL, r, NULL);
-}
-
-static const char *unit_of(const char *unit) { return *unit ? unit : "1"; }
-
-void strut_follow_curves_table(const strut_follow_result *r, strut_buffer *t) {
-  if (!r->second.name) return;
-  strut_buffer_add(t, "\ncurves over %s and %s from %s to %s: %zu\n", r->name, r->second.name,
-                   strut_quantity_of_any(r->second.low, 6, unit_of(r->second.unit)).text,
-                   strut_quantity_of_any(r->second.high, 6, unit_of(r->second.unit)).text,
-                   r->curve_count);
-  for (size_t i = 0; i < r->curve_count; i++) {
-    const strut_follow_curve *c = &r->curves[i];
-    const strut_follow_curve_point *ends[2] = {&c->points[0], &c->points[c->count - 1]};
-    strut_buffer_add(t, "  %zu %-15s", i + 1, strut_follow_kind_word(c->kind));
-    if (c->node) strut_buffer_add(t, " of %s", c->node);
-    if (c->repeats > 1) strut_buffer_add(t, " (%d periods)", (int)c->repeats);
-    for (int e = 0; e < 2; e++)
-      strut_buffer_add(t, "%s%s, %s", e ? " to " : " from ",
-                       strut_quantity_of_any(ends[e]->value[0], 5, unit_of(r->unit)).text,
-                       strut_quantity_of_any(ends[e]->value[1], 5, unit_of(r->second.unit)).text);
-    strut_buffer_add(t, ": %zu points; begins: %s; ends: %s\n", c->count, c->ends[0], c->ends[1]);
-    for (size_t k = 0; k < c->count; k++)
-      if (c->points[k].cusp)
-        strut_buffer_add(
-            t, "    cusp at %s, %s: two folds meet\n",
-            strut_quantity_of_any(c->points[k].value[0], 5, unit_of(r->unit)).text,
-            strut_quantity_of_any(c->points[k].value[1], 5, unit_of(r->second.unit)).text);
-  }
 }
 
 /* ---- curves.svg ---- */

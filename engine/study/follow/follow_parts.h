@@ -23,9 +23,8 @@ strut_status strut_follow_push(strut_follow_system *s, const double *y, strut_fo
  */
 strut_status strut_follow_find_curves(const strut_follow_options *o, strut_follow_result *r,
                                       const strut_follow_system *like, strut_error *error);
-/** What results tell of curves, and tables of a multiplier; what the table tells of curves. */
+/** What results tell of curves, and tables of a multiplier. */
 extern const strut_value_rows strut_follow_curves_values, strut_follow_multiplier_values;
-void strut_follow_curves_table(const strut_follow_result *r, strut_buffer *t);
 /** Header and cell of a column of the axes, as CSV, in the arena. False: out of memory. */
 bool strut_follow_axis_cell(const strut_slot_column *column, strut_study_value value,
                             strut_arena *arena, char **name, char **cell);
@@ -114,8 +113,12 @@ STRUT_API strut_status strut_follow_points_combine(const strut_sweep_plan *plan,
 STRUT_API strut_status strut_follow_points_json(const strut_sweep_plan *plan, strut_slots *slots,
                                                 const char *directory, char **json,
                                                 strut_error *error);
-/** A line for each point, for people; a block of strut_allocate, or NULL. */
-STRUT_API char *strut_follow_points_table(const strut_sweep_plan *plan, strut_slots *slots);
+/** What people read of the rows of all points. */
+typedef struct strut_follow_points_rows {
+  const strut_sweep_plan *plan;
+  strut_slots *slots;
+} strut_follow_points_rows;
+STRUT_API extern const strut_value_rows strut_follow_points_values;
 
 /* follow_figure.c */
 

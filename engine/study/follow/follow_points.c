@@ -6,10 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include "engine/output/file.h"
 #include "engine/run/simulate.h"
 #include "engine/study/sweep/grid.h"
@@ -61,15 +57,12 @@ typedef struct point_work {
 } point_work;
 
 /* All points. */
-typedef struct conductor {
+typedef struct all_points {
   const strut_sweep_plan *plan;
   const strut_follow_points_options *options;
-  strut_slots *slots;
-  strut_sweep_state *state;
-  strut_error *error;
-  strut_status status; /* of what stopped it */
-  double began;
-} conductor;
+  strut_points points;
+  int inner; /* threads of a point */
+} all_points;
 
 strut_status strut_follow_points_columns(strut_sweep_plan *plan, strut_error *error) {
   const strut_study_follow *f = plan->study->follow;
@@ -238,47 +231,12 @@ static void fill_row(const point_work *w, strut_status status, strut_row_buffer 
 
 /* ---- all points ---- */
 
-static void stop(conductor *c, strut_status status, const strut_error *error) {
-#ifdef _OPENMP
-#pragma omp critical(strut_follow_points_state)
-#endif
-  if (!c->status) {
-    c->status = status;
-    strut_fail(c->error, status, "%s", error->message);
-  }
-}
-
-static bool is_stopped(conductor *c) {
-  bool stopped;
-#ifdef _OPENMP
-#pragma omp critical(strut_follow_points_state)
-#endif
-  stopped = c->status != STRUT_OK;
-  return stopped || (c->options->interrupt && *c->options->interrupt);
-}
-
-static void count_point(conductor *c, int64_t point, const strut_row_buffer *cells) {
-#ifdef _OPENMP
-#pragma omp critical(strut_follow_points_state)
-#endif
-  {
-    strut_sweep_state *state = c->state;
-    state->done++, state->computed++;
-    state->failed += cells->row.status != STRUT_OK;
-    state->last = point;
-    state->row = &cells->row;
-    state->seconds = strut_run_clock() - c->began;
-    if (c->options->progress) c->options->progress(c->options->progress_context, state);
-    state->row = NULL;
-  }
-}
-
 /* Does this end the study, instead of the point alone? */
 static bool stops(strut_status status) {
   return status == STRUT_NO_MEMORY || status == STRUT_FILE_TROUBLE || status == STRUT_INTERRUPTED;
 }
 
-static strut_status run_point(conductor *c, point_work *w, strut_row_buffer *cells, int threads) {
+static strut_status follow_into(point_work *w, strut_row_buffer *cells, int threads) {
   strut_status status = follow_point(w, threads);
   bool partial = status == STRUT_INTERRUPTED && w->result->count > 0;
   if (!status || partial) {
@@ -291,70 +249,60 @@ static strut_status run_point(conductor *c, point_work *w, strut_row_buffer *cel
   }
   if (stops(status)) return status;
   fill_row(w, status, cells);
-  return strut_slots_put(c->slots, w->point, &cells->row, &w->error);
+  return STRUT_OK;
 }
 
-static void do_point(conductor *c, int64_t point, int threads) {
+static void compute_point(void *context, strut_sweep_job *job, int64_t point) {
+  const all_points *all = context;
   strut_arena arena = {0};
-  size_t columns = c->plan->column_count + 1;
-  strut_row_buffer cells = {.numbers = strut_arena_allocate(&arena, columns, sizeof(double)),
-                            .words = strut_arena_allocate(&arena, columns, sizeof *cells.words)};
-  point_work w = {.plan = c->plan, .options = c->options, .point = point, .arena = &arena};
-  w.values = strut_arena_allocate(&arena, columns, sizeof *w.values);
+  point_work w = {.plan = all->plan, .options = all->options, .point = point, .arena = &arena};
+  job->point = point;
+  job->cells.number_count = job->cells.word_count = 0;
+  w.values = job->cells.values;
   w.result = strut_allocate(1, sizeof *w.result);
-  strut_status status = cells.numbers && cells.words && w.values && w.result
-                            ? STRUT_OK
-                            : strut_no_memory(&w.error, "");
-  if (!status) {
-    strut_grid_values(c->plan->study, point, w.values);
-    status = run_point(c, &w, &cells, threads);
+  job->status = w.result ? STRUT_OK : strut_no_memory(&w.error, "");
+  if (!job->status) {
+    strut_grid_values(all->plan->study, point, w.values);
+    job->status = follow_into(&w, &job->cells, all->inner);
   }
-  if (status)
-    stop(c, status, &w.error);
-  else
-    count_point(c, point, &cells);
+  job->error = w.error;
   if (w.result) strut_follow_free(w.result);
   strut_release(w.result);
   strut_arena_free(&arena);
 }
 
-static void run_points(conductor *c, int threads) {
-  int64_t count = strut_slots_description_of(c->slots)->count,
-          missing = strut_slots_missing(c->slots);
-  int side = missing < threads ? (int)missing : threads;
-  int inner = side > 1 ? 1 : threads; /* points go side by side, else the columns of derivatives */
-  if (side < 1) return;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic, 1) num_threads(side)
-#endif
-  for (int64_t i = 0; i < count; i++) {
-    int64_t point = strut_slots_point(c->slots, i);
-    if (strut_slots_done(c->slots, point) || is_stopped(c)) continue;
-#ifdef _OPENMP
-    if (side > 1) omp_set_num_threads(1); /* of searches for equilibria within a point */
-#endif
-    do_point(c, point, inner);
-  }
+static bool choose_point(void *context, int64_t i, int64_t *point) {
+  const all_points *all = context;
+  *point = strut_slots_point(all->points.slots, i);
+  return !strut_slots_done(all->points.slots, *point);
 }
 
 strut_status strut_follow_points_run(const strut_sweep_plan *plan, strut_slots *slots,
                                      const strut_follow_points_options *options,
                                      strut_sweep_state *state, strut_error *error) {
   strut_error own = {0};
-  int64_t count = strut_slots_description_of(slots)->count;
-  *state = (strut_sweep_state){.points = count,
-                               .done = count - strut_slots_missing(slots),
-                               .failed = strut_slots_failed(slots),
-                               .last = -1};
-  conductor c = {.plan = plan,
-                 .options = options,
-                 .slots = slots,
-                 .state = state,
-                 .error = error ? error : &own,
-                 .began = strut_run_clock()};
-  run_points(&c, options->threads > 0 ? options->threads : strut_sweep_threads());
-  if (!c.status && options->interrupt && *options->interrupt && state->done < count)
-    c.status = strut_fail(c.error, STRUT_INTERRUPTED, "interrupted");
-  state->seconds = strut_run_clock() - c.began;
-  return c.status;
+  strut_arena arena = {0};
+  int threads = options->threads > 0 ? options->threads : strut_sweep_threads();
+  int64_t missing = strut_slots_missing(slots);
+  all_points all = {.plan = plan,
+                    .options = options,
+                    .points = {.slots = slots,
+                               .state = state,
+                               .error = error ? error : &own,
+                               .context = &all,
+                               .choose = choose_point,
+                               .compute = compute_point,
+                               .threads = missing < threads ? (int)missing : threads,
+                               .interrupt = options->interrupt,
+                               .progress = options->progress,
+                               .progress_context = options->progress_context}};
+  bool side = all.points.threads > 1;
+  all.inner = side ? 1 : threads; /* points go side by side, else the columns of derivatives */
+  all.points.nested = !side;
+  all.points.jobs = strut_sweep_make_jobs(plan, &arena, (size_t)all.points.threads + 1);
+  strut_points_begin(&all.points);
+  if (!all.points.jobs) all.points.status = strut_no_memory(all.points.error, "");
+  if (!all.points.status) strut_points_run(&all.points, strut_slots_description_of(slots)->count);
+  strut_arena_free(&arena);
+  return strut_points_end(&all.points);
 }

@@ -4,15 +4,15 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
 #include "engine/output/json_value.h"
+#include "engine/output/result_values.h"
 #include "engine/study/follow/follow_parts.h"
 #include "engine/study/sweep/grid.h"
 
-enum { MOST_LINES = 60, MOST_BLOCK = 1 << 28 };
+enum { MOST_BLOCK = 1 << 28 };
 
 /* A text as a cell of a CSV file. */
 static char *quote_cell(const char *text, strut_arena *arena) {
@@ -126,19 +126,55 @@ strut_status strut_follow_points_combine(const strut_sweep_plan *plan, strut_slo
 
 /* ---- report.json ---- */
 
-/* Cells of the row that are no axes, by name. */
-static void add_row(strut_json *json, struct cJSON *to, const strut_sweep_plan *plan,
-                    const strut_result_slot *row) {
-  size_t numbers = 0, words = 0;
-  struct cJSON *axes = strut_json_object(json, to, "axes");
-  for (size_t i = 0; i < plan->column_count; i++) {
-    struct cJSON *where = i < plan->axis_columns ? axes : to;
-    if (plan->columns[i].word)
-      strut_json_text(json, where, plan->columns[i].name, row->words[words++]);
-    else
-      strut_json_number(json, where, plan->columns[i].name, row->numbers[numbers++]);
-  }
+typedef strut_follow_points_rows point_rows;
+
+static const char *cell_name(const strut_result_object *of, size_t i) {
+  return ((const point_rows *)of->outer->at)->plan->columns[i].name;
 }
+
+/* A cell of the point's row. */
+static strut_value cell_value(const strut_result_object *of, size_t i) {
+  const point_rows *rows = of->outer->at;
+  const strut_slot_column *columns = rows->plan->columns;
+  strut_result_slot row;
+  size_t place = 0;
+  for (size_t k = 0; k < i; k++) place += columns[k].word == columns[i].word;
+  if (!strut_slots_get(rows->slots, (int64_t)of->index, &row)) return STRUT_VALUE_AS_TEXT(NULL);
+  return columns[i].word ? STRUT_VALUE_AS_TEXT(row.words[place])
+                         : STRUT_VALUE_AS_CALLED(NULL, columns[i].unit, row.numbers[place]);
+}
+
+static const char *result_name(const strut_result_object *of, size_t i) {
+  return cell_name(of, i + ((const point_rows *)of->outer->at)->plan->axis_columns);
+}
+
+static strut_value result_value(const strut_result_object *of, size_t i) {
+  return cell_value(of, i + ((const point_rows *)of->outer->at)->plan->axis_columns);
+}
+
+#define ROW(X)                                                                                     \
+  X("point", "", COUNT(of->index), "its number", .label = {""})                                    \
+  X("status", "", TEXT(strut_status_text(row.status)), "completed, or why it failed")              \
+  X("message", "", TEXT(row.message &&*row.message ? row.message : NULL), "of a failed point")     \
+  X("axes", "", MAP(axes, cell_name, cell_value), "their values", .label = {""})                   \
+  X(NULL, "", MAP(rows->plan->column_count - axes, result_name, result_value), "", .label = {""})  \
+  X(NULL, "", TEXT(row.status ? row.message : NULL), "", .label = {"message"})
+STRUT_VALUES_HERE(row_values, ROW, const point_rows *rows = of->outer->at;
+                  size_t axes = rows->plan->axis_columns; strut_result_slot row = {.status = 0};
+                  strut_slots_get(rows->slots, (int64_t)of->index, &row))
+
+static bool has_row(const strut_result_object *of, size_t i) {
+  return strut_slots_done(((const point_rows *)of->at)->slots, (int64_t)i);
+}
+
+static strut_value rows_of(const point_rows *rows) {
+  strut_value list = STRUT_VALUE_AS_LIST_WHERE((const char *)rows, rows->plan->points, has_row);
+  list.size = 0;
+  return list;
+}
+
+#define POINTS(X) X(NULL, "", BY(rows_of(of->at)), "", .rows = &row_values, .label = {"points"})
+STRUT_VALUES(strut_follow_points_values, POINTS, )
 
 strut_status strut_follow_points_json(const strut_sweep_plan *plan, strut_slots *slots,
                                       const char *directory, char **text, strut_error *error) {
@@ -146,6 +182,8 @@ strut_status strut_follow_points_json(const strut_sweep_plan *plan, strut_slots 
   strut_arena arena = {0};
   strut_json json = strut_json_begin();
   strut_status status = STRUT_OK;
+  const point_rows rows = {plan, slots};
+  const strut_result_object whole = {&rows, NULL, NULL, 0};
   strut_json_text(&json, json.root, "study", plan->study->name);
   strut_json_text(&json, json.root, "over", f->over);
   strut_json_number(&json, json.root, "from", f->from);
@@ -155,10 +193,8 @@ strut_status strut_follow_points_json(const strut_sweep_plan *plan, strut_slots 
     strut_result_slot row;
     if (!strut_slots_get(slots, point, &row)) continue;
     struct cJSON *item = strut_json_object(&json, points, NULL);
-    strut_json_integer(&json, item, "point", point);
-    strut_json_text(&json, item, "status", strut_status_text(row.status));
-    strut_json_text(&json, item, "message", row.message && *row.message ? row.message : NULL);
-    add_row(&json, item, plan, &row);
+    strut_json_values(&json, item, &row_values,
+                      &(strut_result_object){&rows, &whole, NULL, (size_t)point});
     if (row.status) continue;
     strut_arena_free(&arena);
     char *own = read_branches(directory, point, ".json", &arena);
@@ -175,41 +211,4 @@ strut_status strut_follow_points_json(const strut_sweep_plan *plan, strut_slots 
     *text = NULL;
   }
   return status;
-}
-
-/* ---- for people ---- */
-
-/* Room for a column. */
-static int width_of(const strut_slot_column *c) {
-  int length = (int)strlen(c->name);
-  return length > 10 ? length : 10;
-}
-
-char *strut_follow_points_table(const strut_sweep_plan *plan, strut_slots *slots) {
-  strut_buffer b = {0};
-  strut_c_locale locale = strut_c_locale_enter();
-  int64_t lines = plan->points < MOST_LINES ? plan->points : MOST_LINES;
-  for (size_t i = 0; i < plan->column_count; i++)
-    strut_buffer_add(&b, "%s%*s", i ? "  " : "", width_of(&plan->columns[i]),
-                     plan->columns[i].name);
-  strut_buffer_add(&b, "\n");
-  for (int64_t point = 0; point < lines; point++) {
-    strut_result_slot row;
-    size_t numbers = 0, words = 0;
-    if (!strut_slots_get(slots, point, &row)) continue;
-    for (size_t i = 0; i < plan->column_count; i++) {
-      const strut_slot_column *c = &plan->columns[i];
-      double value = c->word ? 0.0 : row.numbers[numbers++];
-      const char *text = c->word           ? row.words[words++]
-                         : isfinite(value) ? strut_quantity_of_any(value, 4, c->unit).text
-                                           : "";
-      strut_buffer_add(&b, "%s%*.20s", i ? "  " : "", width_of(c), text);
-    }
-    strut_buffer_add(&b, "%s%s\n", row.status ? "  " : "", row.status ? row.message : "");
-  }
-  if (plan->points > lines)
-    strut_buffer_add(&b, "... and %lld more points in the table\n",
-                     (long long)(plan->points - lines));
-  strut_c_locale_leave(locale);
-  return strut_buffer_take(&b);
 }

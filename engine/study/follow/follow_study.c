@@ -3,6 +3,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -33,9 +34,12 @@ typedef struct follower {
   bool opened, stepped; /* stepped: fixed steps, whose number has been chosen */
 } follower;
 
-static void note(follower *f, const char *text) {
+__attribute__((format(printf, 2, 3))) static void note(follower *f, const char *format, ...) {
+  va_list arguments;
   if (f->r->note_count == sizeof f->r->notes / sizeof f->r->notes[0]) return;
-  snprintf(f->r->notes[f->r->note_count++], STRUT_FOLLOW_NOTE, "%s", text);
+  va_start(arguments, format);
+  vsnprintf(f->r->notes[f->r->note_count++], STRUT_FOLLOW_NOTE, format, arguments);
+  va_end(arguments);
 }
 
 static void name_start(const follower *f, const strut_follow_start *start, char *text,
@@ -131,11 +135,7 @@ static strut_status find_known(follower *f, const double *y, const char *label, 
     if (b->repeats != f->s.how.repeats) continue;
     strut_status status = strut_follow_is_on(&f->s, b, y, known, f->error);
     if (status) return status;
-    if (*known) {
-      char text[STRUT_FOLLOW_NOTE];
-      snprintf(text, sizeof text, "the motion from %s is on branch %zu", label, i + 1);
-      note(f, text);
-    }
+    if (*known) note(f, "the motion from %s is on branch %zu", label, i + 1);
   }
   return STRUT_OK;
 }
@@ -152,12 +152,10 @@ static strut_status add_branch(follower *f, const double *y, const double *direc
   strut_status status =
       strut_follow_branch_make(&f->s, y, direction, &f->limits, &b->branch, f->error);
   if ((status && status != STRUT_INTERRUPTED) || b->branch.count < 2) {
-    char text[STRUT_FOLLOW_NOTE];
     const char *why = b->branch.ends[1];
-    snprintf(text, sizeof text, "no branch leads away from %s%s%s", label, why && *why ? ": " : "",
-             why ? why : "");
+    if (!status)
+      note(f, "no branch leads away from %s%s%s", label, why && *why ? ": " : "", why ? why : "");
     strut_follow_branch_free(&b->branch);
-    if (!status) note(f, text);
     return status;
   }
   f->r->count++;
@@ -182,7 +180,7 @@ static strut_status make_exact(follower *f, double *y, bool *found, char reason[
 
 /* The motion at the start, which the run has found, and its branch. */
 static strut_status follow_motion(follower *f, const char *label, double *y, int32_t repeats) {
-  char reason[200] = "", text[STRUT_FOLLOW_NOTE];
+  char reason[200] = "";
   bool found = false, known = false;
   strut_status status = strut_follow_set_repeats(&f->s, repeats, f->error);
   if (status) return status;
@@ -193,8 +191,7 @@ static strut_status follow_motion(follower *f, const char *label, double *y, int
     status = strut_follow_check_steps(&f->s, y, accuracy_of(f), f->error);
   if (status) return status;
   if (!found) {
-    snprintf(text, sizeof text, "the motion from %s: %s", label, reason);
-    note(f, text);
+    note(f, "the motion from %s: %s", label, reason);
     return STRUT_OK;
   }
   strut_follow_centre(&f->s, y);
@@ -203,7 +200,7 @@ static strut_status follow_motion(follower *f, const char *label, double *y, int
 }
 
 static strut_status follow_start(follower *f, const strut_follow_start *start) {
-  char label[STRUT_FOLLOW_LABEL], text[STRUT_FOLLOW_NOTE];
+  char label[STRUT_FOLLOW_LABEL];
   strut_setup setup;
   strut_model *model = NULL;
   strut_summary summary = {0};
@@ -218,14 +215,11 @@ static strut_status follow_start(follower *f, const strut_follow_start *start) {
   if (!status && !y) status = strut_no_memory(f->error, "");
   if (!status) status = run_start(f, &setup, model, y, &summary);
   if (status == STRUT_DIVERGED || status == STRUT_WORK_LIMIT) {
-    snprintf(text, sizeof text, "the run from %.80s failed: %.200s", label, f->error->message);
-    note(f, text);
+    note(f, "the run from %.80s failed: %.200s", label, f->error->message);
     status = STRUT_OK;
   } else if (!status && summary.steady.kind != STRUT_MOTION_PERIODIC) {
-    snprintf(text, sizeof text,
-             "the motion from %s is %s after %" PRId64 " periods, which starts no branch", label,
-             strut_motion_name(summary.steady.kind), summary.steady.periods);
-    note(f, text);
+    note(f, "the motion from %s is %s after %" PRId64 " periods, which starts no branch", label,
+         strut_motion_name(summary.steady.kind), summary.steady.periods);
   } else if (!status) {
     status = follow_motion(f, label, y, summary.steady.repeats > 0 ? summary.steady.repeats : 1);
   }

@@ -103,7 +103,6 @@ STRUT_API char *strut_follow_csv_beside(const strut_follow_result *result, const
                                         const char *values);
 STRUT_API char *strut_follow_json(const strut_follow_result *result);
 STRUT_API extern const strut_value_rows strut_follow_values;
-STRUT_API char *strut_follow_table(const strut_follow_result *result);
 
 /* follow_curves.c, of a result with a second parameter */
 STRUT_API char *strut_follow_curves_csv(const strut_follow_result *result);

@@ -18,22 +18,55 @@
 #include "engine/study/sweep/sweep.h"
 #include "engine/study/sweep/sweep_parts.h"
 
-/** The number of points and the columns. */
-char *strut_sweep_count_report(const strut_sweep_plan *plan, bool json);
-/** What is done, missing and failed in a file of slots. */
-char *strut_sweep_status_report(strut_slots *slots, bool json);
-/** The end of a sweep; `table`: its path. */
-char *strut_sweep_end_report(const strut_sweep_state *state, const char *table, bool json);
-/** A line, or an object of a JSON list, for each started or missing shard: *text. */
-strut_status strut_shards_report(const char *directory, const strut_shards_found *found,
-                                 strut_arena *arena, bool json, char **text, strut_error *error);
-/** What a search has found; `table`: the path of its rows. */
-char *strut_search_report(const strut_sweep_plan *plan, const strut_search_result *result,
-                          const strut_sweep_state *state, const char *table, bool json);
+/** The number of points and the columns: rows of a strut_sweep_plan. */
+STRUT_API extern const strut_value_rows strut_sweep_count_values;
+
+enum { STRUT_STATUS_FAILURES = 20, STRUT_STATUS_GAPS = 20 };
+
+/** What is done, missing and failed in a file of slots: the first ranges that are missing, the first failures. */
+typedef struct strut_slots_progress {
+  int64_t shard, points, done, missing, failed;
+  int64_t most_points;    /* of the finest grid, of maps that are refined; 0: it is none */
+  bool started, finished; /* finished: of a search */
+  bool searches;          /* it is one; without gaps and failures, like a refined map */
+  size_t gap_count, failure_count;
+  double gaps[STRUT_STATUS_GAPS][2];
+  struct strut_failed_point {
+    int64_t point;
+    strut_status status;
+    char message[STRUT_SLOT_MESSAGE];
+  } failures[STRUT_STATUS_FAILURES];
+} strut_slots_progress;
+STRUT_API extern const strut_value_rows strut_slots_progress_values;
+STRUT_API void strut_slots_progress_find(strut_slots *slots, strut_slots_progress *progress);
+
+/** All shards in a directory; a shard has no gaps and failures. */
+typedef struct strut_shards_progress {
+  size_t count;
+  strut_slots_progress *shards; /* (count) of the arena */
+} strut_shards_progress;
+STRUT_API extern const strut_value_rows strut_shards_progress_values;
+STRUT_API strut_status strut_shards_progress_find(const char *directory,
+                                                  const strut_shards_found *found,
+                                                  strut_arena *arena,
+                                                  strut_shards_progress *progress,
+                                                  strut_error *error);
+
+/** The end of a sweep. */
+typedef struct strut_sweep_end {
+  const strut_sweep_state *state;
+  const char *table; /* its path */
+} strut_sweep_end;
+STRUT_API extern const strut_value_rows strut_sweep_end_values;
+
+/** What a search has found. */
+typedef struct strut_search_report {
+  const strut_sweep_plan *plan;
+  const strut_study_search *search;
+  const strut_search_result *result;
+  strut_sweep_end end;
+} strut_search_report;
 STRUT_API extern const strut_value_rows strut_search_report_values;
-/** What a sensitivity analysis has found; `directory` has its table. */
-char *strut_sensitivity_report(const strut_sweep_plan *plan, strut_slots *slots,
-                               const strut_sensitivity_result *result, const char *directory);
 
 /**
  * Draws a figure of the study as directory/NAME.svg, of its table or of the runs recorded beside it. Of a refined

@@ -1,288 +1,142 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is printed of a sweep: how far it is; and of sensitivities. */
-#include <math.h>
+/* What is told of a sweep: its points and columns, how far it is, its end. */
 #include <stdio.h>
-#include <string.h>
 
-#include "engine/base/memory.h"
 #include "engine/base/number_text.h"
-#include "engine/output/buffer.h"
+#include "engine/output/result_values.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/sweep/sweep_parts.h"
 
-enum { MOST_FAILURES = 20, MOST_GAPS = 20 };
-
-/* A text as a JSON string. */
-static void add_string(strut_buffer *b, const char *text) {
-  strut_buffer_add(b, "\"");
-  for (; *text; text++) {
-    unsigned char c = (unsigned char)*text;
-    if (c == '"' || c == '\\')
-      strut_buffer_add(b, "\\%c", c);
-    else if (c < 0x20)
-      strut_buffer_add(b, "\\u%04x", c);
-    else
-      strut_buffer_add(b, "%c", c);
-  }
-  strut_buffer_add(b, "\"");
+static strut_value column_of(const strut_result_object *of, size_t i) {
+  return STRUT_VALUE_AS_TEXT(((const strut_sweep_plan *)of->at)->columns[i].name);
 }
 
-char *strut_sweep_count_report(const strut_sweep_plan *plan, bool json) {
-  strut_buffer b = {0};
-  bool refined = plan->study->refine.depth > 0;
-  int64_t points = refined ? strut_refinement_coarse(plan) : plan->points;
-  if (plan->study->search && !json) strut_buffer_add(&b, "at most ");
-  strut_buffer_add(&b, json ? "{\"points\": %lld" : "%lld points", (long long)points);
-  if (refined)
-    strut_buffer_add(&b, json ? ", \"most_points\": %lld" : ", refined to at most %lld",
-                     (long long)plan->points);
-  strut_buffer_add(&b, json ? ", \"columns\": [" : "; the table has");
-  for (size_t i = 0; i < plan->column_count; i++) {
-    const strut_slot_column *c = &plan->columns[i];
-    bool unit = strcmp(c->unit, "1") != 0;
-    strut_buffer_add(&b, "%s", i == 0 ? json ? "" : " " : ", ");
-    if (json)
-      add_string(&b, c->name);
-    else
-      strut_buffer_add(&b, unit ? "%s [%s]" : "%s", c->name, c->unit);
-  }
-  strut_buffer_add(&b, json ? "]}\n" : "\n");
-  return strut_buffer_take(&b);
-}
+#define COUNTED(X)                                                                                 \
+  X("points", "", COUNT(refined ? strut_refinement_coarse(plan) : plan->points),                   \
+    "at most, of searches and of maps before they are refined", .label = {""})                     \
+  X("most_points", "", IF(refined, COUNT(plan->points)), "of the finest grid", .label = {""})      \
+  X("columns", "", ARRAY(plan->column_count, column_of), "of the table", .label = {""})
+STRUT_VALUES(strut_sweep_count_values, COUNTED, const strut_sweep_plan *plan = of->at;
+             bool refined = plan->study->refine.depth > 0)
 
-/* Ranges of missing points, the first few. */
-static void add_gaps(strut_buffer *b, strut_slots *slots, bool json) {
-  int64_t count = strut_slots_description_of(slots)->count;
-  int gaps = 0;
-  for (int64_t i = 0; i < count && gaps < MOST_GAPS;) {
+/* ---- how far it is ---- */
+
+/* Ranges of missing points, and the failed ones, the first few of both. */
+void strut_slots_progress_find(strut_slots *slots, strut_slots_progress *p) {
+  const int64_t count = strut_slots_description_of(slots)->count;
+  *p = (strut_slots_progress){.points = count,
+                              .missing = strut_slots_missing(slots),
+                              .failed = strut_slots_failed(slots),
+                              .started = true};
+  p->done = count - p->missing;
+  for (int64_t i = 0; i < count && p->gap_count < STRUT_STATUS_GAPS; i++) {
     int64_t first = i;
     while (i < count && !strut_slots_done(slots, strut_slots_point(slots, i))) i++;
-    if (i > first) {
-      long long from = strut_slots_point(slots, first), to = strut_slots_point(slots, i - 1);
-      if (json)
-        strut_buffer_add(b, "%s[%lld, %lld]", gaps ? ", " : "", from, to);
-      else if (from == to)
-        strut_buffer_add(b, "%s%lld", gaps ? ", " : "missing: ", from);
-      else
-        strut_buffer_add(b, "%s%lld to %lld", gaps ? ", " : "missing: ", from, to);
-      gaps++;
-    }
-    i++;
+    if (i == first) continue;
+    p->gaps[p->gap_count][0] = (double)strut_slots_point(slots, first);
+    p->gaps[p->gap_count++][1] = (double)strut_slots_point(slots, i - 1);
   }
-  if (!json && gaps) strut_buffer_add(b, gaps == MOST_GAPS ? ", ...\n" : "\n");
-}
-
-static void add_failures(strut_buffer *b, strut_slots *slots, bool json) {
-  int64_t count = strut_slots_description_of(slots)->count;
-  int reported = 0;
-  for (int64_t i = 0; i < count && reported < MOST_FAILURES && strut_slots_failed(slots); i++) {
+  for (int64_t i = 0; i < count && p->failed && p->failure_count < STRUT_STATUS_FAILURES; i++) {
     strut_result_slot row;
-    long long point = strut_slots_point(slots, i);
+    const int64_t point = strut_slots_point(slots, i);
     if (!strut_slots_get(slots, point, &row) || row.status == STRUT_OK) continue;
-    if (json) {
-      strut_buffer_add(b, "%s{\"point\": %lld, \"status\": ", reported ? ", " : "", point);
-      add_string(b, strut_status_text(row.status));
-      strut_buffer_add(b, ", \"message\": ");
-      add_string(b, row.message ? row.message : "");
-      strut_buffer_add(b, "}");
-    } else {
-      strut_buffer_add(b, "failed: point %lld: %s: %s\n", point, strut_status_text(row.status),
-                       row.message ? row.message : "");
-    }
-    reported++;
+    struct strut_failed_point *failure = &p->failures[p->failure_count++];
+    failure->point = point, failure->status = row.status;
+    snprintf(failure->message, sizeof failure->message, "%s", row.message ? row.message : "");
   }
-  if (!json && reported == MOST_FAILURES && strut_slots_failed(slots) > reported)
-    strut_buffer_add(b, "... and %lld more; the table has all\n",
-                     (long long)strut_slots_failed(slots) - reported);
 }
 
-char *strut_sweep_status_report(strut_slots *slots, bool json) {
-  strut_buffer b = {0};
-  const strut_slots_description *plan = strut_slots_description_of(slots);
-  long long missing = strut_slots_missing(slots), failed = strut_slots_failed(slots);
-  strut_buffer_add(&b,
-                   json ? "{\"points\": %lld, \"done\": %lld, \"missing\": %lld, \"failed\": %lld, "
-                          "\"gaps\": ["
-                        : "%lld points: %lld done, %lld missing, %lld of the done failed\n",
-                   (long long)plan->count, (long long)plan->count - missing, missing, failed);
-  add_gaps(&b, slots, json);
-  if (json) strut_buffer_add(&b, "], \"failures\": [");
-  add_failures(&b, slots, json);
-  if (json) strut_buffer_add(&b, "]}\n");
-  return strut_buffer_take(&b);
+#define FAILURE(X)                                                                                 \
+  X("point", "", COUNT(f->point), "of the study", .label = {""})                                   \
+  X("status", "", TEXT(strut_status_text(f->status)), "why", .label = {""})                        \
+  X("message", "", TEXT(f->message), "a sentence", .label = {""})
+STRUT_VALUES_HERE(failure_values, FAILURE, const struct strut_failed_point *f = of->at)
+
+#define PROGRESS(X)                                                                                \
+  X("done", "", COUNT(p->done), "of them, failed ones too", .label = {""})                         \
+  X("missing", "", IF(p->started && !open, COUNT(p->missing)), "of them", .label = {""})           \
+  X("failed", "", IF(p->started, COUNT(p->failed)), "of the done", .label = {""})
+STRUT_VALUES_HERE(counted_values, PROGRESS, const strut_slots_progress *p = of->at;
+                  bool open = p->searches || p->most_points)
+
+/* "3, 7 to 9": the first ranges of missing points. */
+static void write_gaps(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
+  const strut_slots_progress *p = of->at;
+  for (size_t i = 0, used = 0; i < p->gap_count && used < STRUT_VALUE_ROOM; i++)
+    used += (size_t)snprintf(text + used, STRUT_VALUE_ROOM - used,
+                             p->gaps[i][0] < p->gaps[i][1] ? "%s%.0f to %.0f" : "%s%.0f",
+                             i ? ", " : "", p->gaps[i][0], p->gaps[i][1]);
 }
 
-static void add_warnings(strut_buffer *b, const strut_sweep_state *state) {
-  strut_buffer_add(b, ", \"warnings\": [");
-  for (size_t i = 0; i < state->warning_count; i++) {
-    const strut_sweep_warning *w = &state->warnings[i];
-    strut_buffer_add(b, "%s{\"code\": \"%s\", \"runs\": %lld, \"point\": %lld, \"text\": ",
-                     i ? ", " : "", w->code, (long long)w->runs, (long long)w->point);
-    add_string(b, w->text);
-    strut_buffer_add(b, "}");
-  }
-  strut_buffer_add(b, "]");
-}
-
-char *strut_sweep_end_report(const strut_sweep_state *state, const char *table, bool json) {
-  strut_buffer b = {0};
-  char time[STRUT_DURATION_TEXT];
-  strut_duration_text(state->seconds, time);
-  if (json) {
-    strut_buffer_add(&b, "{\"points\": %lld, \"failed\": %lld, \"computed\": %lld, \"table\": ",
-                     (long long)state->points, (long long)state->failed,
-                     (long long)state->computed);
-    add_string(&b, table);
-    add_warnings(&b, state);
-    strut_buffer_add(&b, "}\n");
-  } else {
-    strut_buffer_add(&b, "%lld points, %lld failed; %lld computed in %s\n%s\n",
-                     (long long)state->points, (long long)state->failed, (long long)state->computed,
-                     time, table);
-  }
-  return strut_buffer_take(&b);
-}
+#define STATUS(X)                                                                                  \
+  X("points", "", COUNT(p->points), "of the file", .label = {""})                                  \
+  X(NULL, "", SAME, "", .rows = &counted_values)                                                   \
+  X("finished", "", IF(p->searches, FLAG(p->finished)), "whether the searches are", .label = {""}) \
+  X("most_points", "", IF(p->most_points, COUNT(p->most_points)), "of the finest grid",            \
+    .label = {""})                                                                                 \
+  X("gaps", "", IF(!open, TABLE(p->gaps, p->gap_count, 2)), "first and last of missing points")    \
+  X(NULL, "", IF(!open, WORDS(write_gaps)), "", .label = {"gaps"})                                 \
+  X("failures", "", IF(!open, LIST(p->failures, p->failure_count)), "the first",                   \
+    .rows = &failure_values, .label = {""})
+STRUT_VALUES(strut_slots_progress_values, STATUS, const strut_slots_progress *p = of->at;
+             bool open = p->searches || p->most_points)
 
 /* ---- shards ---- */
 
-static strut_status add_shard(strut_buffer *b, const char *directory, strut_shard shard,
-                              strut_arena *arena, bool json, strut_error *error) {
-  strut_slots *slots = NULL;
-  strut_slots_description plan;
-  char *path = strut_shard_path(directory, shard, arena);
-  if (!path) return strut_no_memory(error, "");
-  strut_status status = strut_slots_read(path, &slots, &plan, error);
-  if (status != STRUT_OK) return status;
-  long long missing = strut_slots_missing(slots), failed = strut_slots_failed(slots);
-  strut_buffer_add(b,
-                   json ? "{\"shard\": %lld, \"points\": %lld, \"done\": %lld, \"missing\": %lld, "
-                          "\"failed\": %lld}"
-                        : "shard %lld: %lld points: %lld done, %lld missing, %lld of the done "
-                          "failed\n",
-                   (long long)shard.index, (long long)plan.count, (long long)plan.count - missing,
-                   missing, failed);
-  strut_slots_close(slots);
+strut_status strut_shards_progress_find(const char *directory, const strut_shards_found *found,
+                                        strut_arena *arena, strut_shards_progress *progress,
+                                        strut_error *error) {
+  size_t count = (size_t)found->count;
+  *progress =
+      (strut_shards_progress){count, strut_arena_allocate(arena, count, sizeof *progress->shards)};
+  if (!progress->shards) return strut_no_memory(error, "");
+  for (size_t i = 0; i < count; i++) {
+    strut_slots *slots = NULL;
+    strut_slots_description plan;
+    if (found->there[i]) {
+      const char *path =
+          strut_shard_path(directory, (strut_shard){(int64_t)i, found->count}, arena);
+      strut_status status =
+          path ? strut_slots_read(path, &slots, &plan, error) : strut_no_memory(error, "");
+      if (status) return status;
+      strut_slots_progress_find(slots, &progress->shards[i]);
+      strut_slots_close(slots);
+    }
+    progress->shards[i].shard = (int64_t)i;
+  }
   return STRUT_OK;
 }
 
-strut_status strut_shards_report(const char *directory, const strut_shards_found *found,
-                                 strut_arena *arena, bool json, char **text, strut_error *error) {
-  strut_buffer b = {0};
-  strut_status status = STRUT_OK;
-  if (json) strut_buffer_add(&b, "{\"shard_count\": %lld, \"shards\": [", (long long)found->count);
-  for (int64_t i = 0; i < found->count && status == STRUT_OK; i++) {
-    if (json && i) strut_buffer_add(&b, ", ");
-    if (found->there[i])
-      status = add_shard(&b, directory, (strut_shard){i, found->count}, arena, json, error);
-    else
-      strut_buffer_add(&b, json ? "{\"shard\": %lld, \"done\": 0}" : "shard %lld: not started\n",
-                       (long long)i);
-  }
-  if (json) strut_buffer_add(&b, "]}\n");
-  *text = strut_buffer_take(&b);
-  return status == STRUT_OK && !*text ? strut_no_memory(error, "") : status;
+#define SHARD(X)                                                                                   \
+  X("shard", "", COUNT(p->shard), "its number, from 0", .label = {""})                             \
+  X("points", "", IF(p->started, COUNT(p->points)), "of it", .label = {""})                        \
+  X(NULL, "", SAME, "", .rows = &counted_values)
+STRUT_VALUES_HERE(shard_values, SHARD, const strut_slots_progress *p = of->at)
+
+#define SHARDS(X)                                                                                  \
+  X("shard_count", "", COUNT(s->count), "of the study")                                            \
+  X("shards", "", LIST(s->shards, s->count), "one by one", .rows = &shard_values, .label = {""})
+STRUT_VALUES(strut_shards_progress_values, SHARDS, const strut_shards_progress *s = of->at)
+
+/* ---- the end ---- */
+
+#define WARNING(X)                                                                                 \
+  X("code", "", TEXT(warning->code), "for programs")                                               \
+  X("runs", "", COUNT(warning->runs), "that it is about")                                          \
+  X("point", "", COUNT(warning->point), "the first of them")                                       \
+  X("text", "", TEXT(warning->text), "finding, likely cause and remedy")
+STRUT_VALUES_HERE(warning_values, WARNING, const strut_sweep_warning *warning = of->at)
+
+static void write_seconds(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
+  strut_duration_text(((const strut_sweep_end *)of->at)->state->seconds, text);
 }
 
-/* What a sensitivity analysis has found: each effect, or the shares of samples at each point of the axes. */
-
-enum { MOST_LINES = 60 };
-
-/* What is missing, and that a number never changes its sign, is in the file only. */
-static bool is_shown(const strut_sensitivity_row *r) {
-  double value = r->estimate.value;
-  bool sign = strstr(r->of, " > 0") != NULL;
-  return isfinite(value) && !(sign && (value == 0.0 || value == 1.0));
-}
-
-static void add_line(strut_buffer *b, const strut_sensitivity_row *r) {
-  const strut_estimate *e = &r->estimate;
-  strut_buffer_add(b, "  %-24.40s %-12s %-16.30s", r->of, strut_sensitivity_word(r->measure),
-                   r->parameter ? r->parameter : "");
-  strut_buffer_add(b, " %12s", strut_quantity_of_any(e->value, 4, r->unit).text);
-  if (isfinite(e->error))
-    strut_buffer_add(b, "  +- %s", strut_quantity_of_any(e->error, 2, r->unit).text);
-  if (r->measure >= STRUT_SENSITIVITY_FIRST_ORDER || r->measure == STRUT_SENSITIVITY_SHARE)
-    strut_buffer_add(b, "  (%.2f to %.2f)", e->low, e->high);
-  strut_buffer_add(b, "\n");
-}
-
-/* Columns of the table before those of the analysis: of the other axes. */
-static size_t other_columns(const strut_study *study) {
-  size_t count = 0;
-  for (size_t i = 0; i < study->sensitivity.axis; i++) count += study->axes[i].column_count;
-  return count;
-}
-
-/* Room for a column of the table of shares. */
-static int width_of(const char *name) {
-  int length = (int)strlen(name);
-  return length > 8 ? length : 8;
-}
-
-/* Headers of the table of shares: the axes, and the conditions. */
-static void add_header(strut_buffer *b, const strut_sweep_plan *plan,
-                       const strut_sensitivity_result *result) {
-  for (size_t i = 0; i < other_columns(plan->study); i++) {
-    const strut_slot_column *c = &plan->columns[i];
-    bool plain = strcmp(c->unit, "1") == 0;
-    strut_buffer_add(b, "  %12s%s%s", c->name, plain ? "" : ", ", plain ? "" : c->unit);
-  }
-  for (size_t i = 0; i < result->count && result->rows[i].point == result->rows[0].point; i++)
-    if (result->rows[i].measure == STRUT_SENSITIVITY_SHARE)
-      strut_buffer_add(b, "  %*s", width_of(result->rows[i].of), result->rows[i].of);
-  strut_buffer_add(b, "  %8s\n", "used");
-}
-
-/* The values of the axes at a point, each as wide as its header. */
-static void add_axes(strut_buffer *b, const strut_sweep_plan *plan, strut_slots *slots,
-                     int64_t point) {
-  strut_result_slot row;
-  size_t numbers = 0, words = 0;
-  if (!strut_slots_get(slots, point, &row)) return;
-  for (size_t i = 0; i < other_columns(plan->study); i++) {
-    const strut_slot_column *c = &plan->columns[i];
-    int more = strcmp(c->unit, "1") == 0 ? 0 : (int)strlen(c->unit) + 2;
-    int width = more + (strlen(c->name) > 12 ? (int)strlen(c->name) : 12);
-    if (c->word)
-      strut_buffer_add(b, "  %*s", width, row.words[words++]);
-    else
-      strut_buffer_add(b, "  %*.6g", width, row.numbers[numbers++]);
-  }
-}
-
-/* A line for each point of the axes: the shares of the samples that meet each condition. */
-static void add_shares(strut_buffer *b, const strut_sweep_plan *plan, strut_slots *slots,
-                       const strut_sensitivity_result *result) {
-  add_header(b, plan, result);
-  size_t lines = 0;
-  for (size_t i = 0, k = 0; i < result->count && lines < MOST_LINES; i = k, lines++) {
-    size_t used = 0;
-    add_axes(b, plan, slots, result->rows[i].point);
-    for (k = i; k < result->count && result->rows[k].point == result->rows[i].point; k++) {
-      const strut_sensitivity_row *r = &result->rows[k];
-      if (r->measure != STRUT_SENSITIVITY_SHARE) continue;
-      if (isfinite(r->estimate.value))
-        strut_buffer_add(b, "  %*.3f", width_of(r->of), r->estimate.value);
-      else
-        strut_buffer_add(b, "  %*s", width_of(r->of), "-");
-      if (r->used > used) used = r->used;
-    }
-    strut_buffer_add(b, "  %8zu\n", used);
-  }
-}
-
-char *strut_sensitivity_report(const strut_sweep_plan *plan, strut_slots *slots,
-                               const strut_sensitivity_result *result, const char *directory) {
-  strut_buffer b = {0};
-  size_t shown = 0;
-  bool one = result->count && result->rows[0].point == result->rows[result->count - 1].point;
-  for (size_t i = 0; i < result->count && one; i++) {
-    if (!is_shown(&result->rows[i])) continue;
-    if (shown++ < MOST_LINES) add_line(&b, &result->rows[i]);
-  }
-  if (!one && plan->study->sensitivity.samples > 0) add_shares(&b, plan, slots, result);
-  if (shown > MOST_LINES)
-    strut_buffer_add(&b, "  ... and %zu more in the file\n", shown - MOST_LINES);
-  strut_buffer_add(&b, "%s/sensitivity.csv\n", directory);
-  return strut_buffer_take(&b);
-}
+#define END(X)                                                                                     \
+  X("points", "", COUNT(state->points), "of the table", .label = {""})                             \
+  X("failed", "", COUNT(state->failed), "of them", .label = {""})                                  \
+  X("computed", "", COUNT(state->computed), "of them, by this call", .label = {""})                \
+  X(NULL, "", WORDS(write_seconds), "", .label = {"in"})                                           \
+  X("table", "", TEXT(((const strut_sweep_end *)of->at)->table), "its path", .label = {""})        \
+  X("warnings", "", LIST(state->warnings, state->warning_count), "of runs", .rows = &warning_values)
+STRUT_VALUES(strut_sweep_end_values, END,
+             const strut_sweep_state *state = ((const strut_sweep_end *)of->at)->state)

@@ -3,8 +3,6 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -15,154 +13,106 @@
 #include "engine/output/file.h"
 #include "engine/study/results/slots_parts.h"
 
-/* PART: bytes written at once. The buffer holds one more cell of any length. */
-enum { PART = 1 << 16, MOST_CELL = 2 * STRUT_SLOT_MESSAGE + 2 };
-
-/* Buffered text of the file. */
-typedef struct writer {
-  strut_file file;
-  size_t used;
-  bool failed;
-  char buffer[PART + MOST_CELL];
-} writer;
-
-_Static_assert((int)STRUT_SLOT_WORD <= (int)STRUT_SLOT_MESSAGE &&
-                   (int)STRUT_NUMBER_TEXT <= (int)MOST_CELL,
-               "room for any one cell");
-
-static void flush(writer *w) {
-  if (!w->failed) {
-    errno = 0;
-    w->failed = fwrite(w->buffer, 1, w->used, w->file.stream) != w->used;
-  }
-  w->used = 0;
+/* Writes a line, which is empty then. */
+static strut_status write_line(strut_file *file, strut_buffer *line, strut_error *error) {
+  if (line->failed) return strut_no_memory(error, "");
+  errno = 0;
+  bool written = fwrite(line->text, 1, line->length, file->stream) == line->length;
+  line->length = 0;
+  return written ? STRUT_OK : strut_file_trouble(file, error);
 }
 
-/* Ends a cell. */
-static void end_cell(writer *w, char mark) {
-  w->buffer[w->used++] = mark;
-  if (w->used >= PART) flush(w);
-}
-
-static void put(writer *w, const char *bytes, size_t length) {
-  while (length > 0) {
-    size_t part = length < PART ? length : PART;
-    if (w->used + part > PART) flush(w);
-    memcpy(w->buffer + w->used, bytes, part);
-    w->used += part;
-    bytes += part;
-    length -= part;
-  }
-}
-
-static strut_status finish(writer *w, strut_error *error) {
-  flush(w);
-  if (!w->failed) return strut_file_commit(&w->file, error);
-  strut_status status = strut_file_trouble(&w->file, error);
-  strut_file_abandon(&w->file);
-  return status;
-}
-
-static bool put_header(writer *w, const strut_slots_description *plan) {
-  strut_buffer header = {0};
-  strut_buffer_add(&header, "point,");
+static void add_header(strut_buffer *line, const strut_slots_description *plan) {
+  strut_buffer_add(line, "point,");
   for (size_t i = 0; i < plan->column_count; i++) {
     const strut_slot_column *column = &plan->columns[i];
     bool plain = strcmp(column->unit, "1") == 0 || !*column->unit;
-    strut_csv_add_text(&header, plain ? "%s%s" : "%s [%s]", column->name,
-                       plain ? "" : column->unit);
-    strut_buffer_add(&header, ",");
+    strut_csv_add_text(line, plain ? "%s%s" : "%s [%s]", column->name, plain ? "" : column->unit);
+    strut_buffer_add(line, ",");
   }
-  strut_buffer_add(&header, "status,message\n");
-  char *text = strut_buffer_take(&header);
-  if (text) put(w, text, strlen(text));
-  strut_release(text);
-  return text != NULL;
+  strut_buffer_add(line, "status,message\n");
 }
 
-static void put_number(writer *w, double value) {
-  if (!isnan(value)) w->used += strut_number_text(value, w->buffer + w->used);
-  end_cell(w, ',');
-}
-
-static void put_text(writer *w, const char *text, size_t room, char mark) {
-  w->used += strut_csv_quote(text, room - 1, w->buffer + w->used);
-  end_cell(w, mark);
-}
-
-static void put_row(writer *w, const strut_slots_description *plan, int64_t point,
+static void add_row(strut_buffer *line, const strut_slots_description *plan, int64_t point,
                     const strut_result_slot *row) {
   size_t numbers = 0, words = 0;
-  put_number(w, (double)point);
+  strut_csv_add_number(line, (double)point);
   for (size_t i = 0; i < plan->column_count; i++) {
+    strut_buffer_add(line, ",");
     if (plan->columns[i].word)
-      put_text(w, row->words[words++], STRUT_SLOT_WORD, ',');
+      strut_csv_add_text(line, "%s", row->words[words++]);
     else
-      put_number(w, row->numbers[numbers++]);
+      strut_csv_add_number(line, row->numbers[numbers++]);
   }
-  put_text(w, strut_status_text(row->status), STRUT_SLOT_MESSAGE, ',');
-  put_text(w, row->message, STRUT_SLOT_MESSAGE, '\n');
+  strut_buffer_add(line, ",");
+  strut_csv_add_text(line, "%s", strut_status_text(row->status));
+  strut_buffer_add(line, ",");
+  strut_csv_add_text(line, "%s", row->message);
+  strut_buffer_add(line, "\n");
 }
 
-/* The table of all rows, or of those that there are. */
-static strut_status write_table(const char *directory, const char *name,
-                                strut_slots *const *sources, size_t count, bool partial,
+/* Which points a table has: those listed, or all, or all that have a row. */
+typedef struct selection {
+  strut_slots *const *sources; /* (count) */
+  size_t count;
+  const int64_t *listed; /* (most); NULL: all */
+  int64_t most;
+  bool partial;
+} selection;
+
+static strut_status write_table(const char *directory, const char *name, const selection *of,
                                 int64_t *rows, strut_error *error) {
-  writer w = {.used = 0};
-  const strut_slots_description *plan = strut_slots_description_of(sources[0]);
-  strut_status status = strut_file_open(&w.file, directory, name, error);
-  if (status != STRUT_OK) return status;
-  if (!put_header(&w, plan)) {
-    strut_file_abandon(&w.file);
-    return strut_no_memory(error, "");
-  }
+  strut_file file = {0};
+  strut_buffer line = {0};
+  const strut_slots_description *plan = strut_slots_description_of(of->sources[0]);
+  strut_status status = strut_file_open(&file, directory, name, error);
+  if (status) return status;
+  add_header(&line, plan);
+  status = write_line(&file, &line, error);
   *rows = 0;
-  for (int64_t point = 0; point < plan->points && !w.failed; point++) {
+  for (int64_t i = 0; i < (of->listed ? of->most : plan->points) && !status; i++) {
     strut_result_slot row;
-    strut_slots *source = sources[(size_t)point % count];
-    if (partial && !strut_slots_done(source, point)) continue;
+    int64_t point = of->listed ? of->listed[i] : i;
+    strut_slots *source = of->sources[(size_t)point % of->count];
+    if (of->partial && !strut_slots_done(source, point)) continue;
     if (strut_slots_get(source, point, &row)) {
-      put_row(&w, plan, point, &row);
+      add_row(&line, plan, point, &row);
+      status = write_line(&file, &line, error);
       ++*rows;
-    } else if (!partial) {
-      strut_file_abandon(&w.file);
-      return strut_fail(error, STRUT_USAGE, "no table yet: point %lld is missing",
-                        (long long)point);
+    } else if (!of->partial) {
+      status =
+          strut_fail(error, STRUT_USAGE, "no table yet: point %lld is missing", (long long)point);
     }
   }
-  return finish(&w, error);
+  strut_release(line.text);
+  if (!status) return strut_file_commit(&file, error);
+  strut_file_abandon(&file);
+  return status;
 }
 
 strut_status strut_study_table_write(const char *directory, const char *name,
                                      strut_slots *const *sources, size_t count,
                                      strut_error *error) {
   int64_t rows;
-  return write_table(directory, name, sources, count, false, &rows, error);
+  return write_table(directory, name, &(selection){.sources = sources, .count = count}, &rows,
+                     error);
 }
 
 strut_status strut_study_table_write_partial(const char *directory, const char *name,
                                              strut_slots *const *sources, size_t count,
                                              int64_t *rows, strut_error *error) {
   int64_t unread;
-  return write_table(directory, name, sources, count, true, rows ? rows : &unread, error);
+  const selection of = {.sources = sources, .count = count, .partial = true};
+  return write_table(directory, name, &of, rows ? rows : &unread, error);
 }
 
 strut_status strut_study_table_write_points(const char *directory, const char *name,
                                             strut_slots *source, const int64_t *points,
                                             size_t count, strut_error *error) {
-  writer w = {.used = 0};
-  const strut_slots_description *plan = strut_slots_description_of(source);
-  strut_status status = strut_file_open(&w.file, directory, name, error);
-  if (status != STRUT_OK) return status;
-  if (!put_header(&w, plan)) {
-    strut_file_abandon(&w.file);
-    return strut_no_memory(error, "");
-  }
-  for (size_t i = 0; i < count && !w.failed; i++) {
-    strut_result_slot row;
-    if (strut_slots_get(source, points[i], &row)) put_row(&w, plan, points[i], &row);
-  }
-  return finish(&w, error);
+  int64_t rows;
+  const selection of = {
+      .sources = &source, .count = 1, .listed = points, .most = (int64_t)count, .partial = true};
+  return write_table(directory, name, &of, &rows, error);
 }
 
 static const char WHOLE[] = "points.slots", FOLDER[] = "shards";
@@ -409,23 +359,8 @@ typedef struct merge {
   strut_arena arena;
 } merge;
 
-/* A sentence being built, truncated at its capacity. */
-typedef struct sentence {
-  char text[400];
-  size_t used;
-} sentence;
-
-__attribute__((format(printf, 2, 3))) static void add(sentence *s, const char *format, ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  int length = vsnprintf(s->text + s->used, sizeof s->text - s->used, format, arguments);
-  va_end(arguments);
-  if (length > 0) s->used += (size_t)length;
-  if (s->used > sizeof s->text - 1) s->used = sizeof s->text - 1;
-}
-
 /* Appends the missing shards as "2, 5 to 7"; returns their number. */
-static int64_t name_absent(const strut_shards_found *found, sentence *s) {
+static int64_t name_absent(const strut_shards_found *found, strut_buffer *text) {
   int64_t absent = 0;
   int named = 0;
   for (int64_t i = 0; i < found->count; i++) {
@@ -433,9 +368,9 @@ static int64_t name_absent(const strut_shards_found *found, sentence *s) {
     int64_t last = i;
     while (last + 1 < found->count && !found->there[last + 1]) last++;
     absent += last - i + 1;
-    if (named < MOST_NAMED) add(s, named ? ", %lld" : "%lld", (long long)i);
-    if (named < MOST_NAMED && last > i) add(s, " to %lld", (long long)last);
-    if (named++ == MOST_NAMED) add(s, ", ...");
+    if (named < MOST_NAMED) strut_buffer_add(text, named ? ", %lld" : "%lld", (long long)i);
+    if (named < MOST_NAMED && last > i) strut_buffer_add(text, " to %lld", (long long)last);
+    if (named++ == MOST_NAMED) strut_buffer_add(text, ", ...");
     i = last;
   }
   return absent;
@@ -443,9 +378,10 @@ static int64_t name_absent(const strut_shards_found *found, sentence *s) {
 
 /* Reports missing shards and incomplete shards in one sentence. */
 static strut_status check_gaps(const merge *m, strut_error *error) {
-  sentence names = {.used = 0}, lacks = {.used = 0};
-  int64_t absent = name_absent(&m->found, &names);
+  strut_buffer text = {0};
   int unfinished = 0;
+  int64_t absent = name_absent(&m->found, &text);
+  if (absent) strut_buffer_add(&text, ")");
   for (size_t i = 0; i < m->count; i++) {
     int64_t missing = m->sources[i] ? strut_slots_missing(m->sources[i]) : 0;
     if (missing == 0) continue;
@@ -455,18 +391,22 @@ static strut_status check_gaps(const merge *m, strut_error *error) {
                         "'%s': %lld of %lld points are missing: run the study again to resume it",
                         m->directory, (long long)missing, of);
     if (unfinished < MOST_NAMED)
-      add(&lacks, "%s shard %zu lacks %lld of its %lld points", unfinished || absent ? "," : "", i,
-          (long long)missing, of);
-    if (unfinished++ == MOST_NAMED) add(&lacks, ", ...");
+      strut_buffer_add(&text, "%s shard %zu lacks %lld of its %lld points",
+                       unfinished || absent ? "," : "", i, (long long)missing, of);
+    if (unfinished++ == MOST_NAMED) strut_buffer_add(&text, ", ...");
   }
   if (!absent && !unfinished) return STRUT_OK;
-  sentence gone = {.used = 0};
+  char gone[80] = "";
   if (absent)
-    add(&gone, " %lld of %lld shards %s missing (%s)", (long long)absent, (long long)m->found.count,
-        absent == 1 ? "is" : "are", names.text);
-  return strut_fail(error, STRUT_FILE_TROUBLE,
-                    "'%s':%s%.300s; run these shards again to resume them", m->directory, gone.text,
-                    lacks.text);
+    snprintf(gone, sizeof gone, " %lld of %lld shards %s missing (", (long long)absent,
+             (long long)m->found.count, absent == 1 ? "is" : "are");
+  strut_status status = text.failed
+                            ? strut_no_memory(error, "for shards")
+                            : strut_fail(error, STRUT_FILE_TROUBLE,
+                                         "'%s':%s%.400s; run these shards again to resume them",
+                                         m->directory, gone, text.text);
+  strut_release(text.text);
+  return status;
 }
 
 /* Opens the existing shards; the others stay NULL. */

@@ -9,12 +9,6 @@
 #include "engine/study/search/search_parts.h"
 #include "engine/study/sweep/grid.h"
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
-/* Time between two reports [s]. */
-static const double OFTEN = 0.1;
 /* Times between two looks at what other workers have done, which grow [ns]. */
 enum { SHORTEST_PAUSE = 2000000, LONGEST_PAUSE = 500000000 };
 
@@ -63,30 +57,44 @@ strut_search_layout strut_search_layout_of(const strut_sweep_plan *plan) {
   return l;
 }
 
+static bool choose_point(void *context, int64_t i, int64_t *point) {
+  const strut_search_batch *b = context;
+  *point = b->wanted[(b->first + (size_t)i) % b->count].point;
+  return strut_slots_claim(b->points.slots, *point);
+}
+
+/* With the columns of the search. */
+static void compute_point(void *context, strut_sweep_job *job, int64_t point) {
+  const strut_search_batch *b = context;
+  const strut_study_search *search = b->plan->study->search;
+  double broken[STRUT_SEARCH_MOST_CONDITIONS], second;
+  strut_sweep_compute(&b->points.worker, point, job);
+  if (job->status || job->cells.row.status) return;
+  double goal =
+      strut_search_score(b->plan, job->cells.numbers, job->cells.row.words, &second, broken);
+  strut_sweep_number(&job->cells, goal);
+  if (search->second.text) strut_sweep_number(&job->cells, second);
+  strut_sweep_number(&job->cells, strut_search_violation(search, broken));
+}
+
 strut_status strut_search_batch_begin(strut_search_batch *b) {
   const strut_study_search *search = b->plan->study->search;
-  double seconds = b->plan->study->limit.time;
   b->options = *b->given;
   b->options.wants = NULL;
   b->options.directory = NULL;
   b->options.values = give_values;
   b->options.adjust = make_exact;
   b->options.point_context = b;
-  b->threads = b->given->threads > 0 ? b->given->threads : strut_sweep_threads();
   b->first_check = search->starts * search->evaluations;
-  b->jobs = strut_sweep_make_jobs(b->plan, &b->arena, (size_t)b->threads);
-  b->worker = (strut_sweep_worker){
-      .plan = b->plan, .options = &b->options, .standing = strut_equilibrium_cache_create()};
-  if (b->jobs && seconds > 0.0)
-    b->worker.watch =
-        strut_sweep_watch_create(seconds, b->jobs, (size_t)b->threads, b->options.interrupt);
-  if (b->jobs && b->worker.standing && (b->worker.watch || seconds <= 0.0)) return STRUT_OK;
-  return strut_no_memory(b->error, "");
+  b->points.context = b;
+  b->points.choose = choose_point, b->points.compute = compute_point;
+  b->points.shared = true;
+  strut_points_begin(&b->points);
+  return strut_points_open(&b->points, b->plan, &b->options, &b->arena);
 }
 
 void strut_search_batch_free(strut_search_batch *b) {
-  strut_sweep_watch_free(b->worker.watch);
-  strut_equilibrium_cache_free(b->worker.standing);
+  strut_points_close(&b->points);
   strut_release(b->wanted);
   strut_arena_free(&b->arena);
 }
@@ -109,129 +117,37 @@ bool strut_search_batch_add(strut_search_batch *b, int64_t outer, int64_t row,
   bool fine = true;
   for (int64_t i = 0; i < l.scenarios && fine; i++) {
     int64_t point = (outer * l.rows + row) * l.scenarios + i;
-    if (!strut_slots_done(b->slots, point)) fine = add_point(b, point, values);
+    if (!strut_slots_done(b->points.slots, point)) fine = add_point(b, point, values);
   }
   return fine;
-}
-
-static bool is_running(strut_search_batch *b) {
-  strut_status status;
-#ifdef _OPENMP
-#pragma omp atomic read
-#endif
-  status = b->status;
-  const strut_flag *interrupt = b->options.interrupt;
-  return !status && !(interrupt && *interrupt);
-}
-
-static bool next_point(void *context, int64_t *point) {
-  strut_search_batch *b = context;
-  size_t i = 0;
-  while (is_running(b)) {
-#ifdef _OPENMP
-#pragma omp atomic capture
-#endif
-    i = b->next++;
-    if (i >= b->count) return false;
-    *point = b->wanted[(b->first + i) % b->count].point;
-    if (strut_slots_claim(b->slots, *point)) return true;
-  }
-  return false;
-}
-
-/* The rows in the file, of which other workers may have written some. */
-static void count_rows(strut_search_batch *b) {
-  b->state->done = strut_slots_description_of(b->slots)->count - strut_slots_missing(b->slots);
-  b->state->failed = strut_slots_failed(b->slots);
-}
-
-static void report(strut_search_batch *b, const strut_sweep_job *job) {
-  strut_sweep_state *state = b->state;
-  double now = strut_run_clock();
-  count_rows(b);
-  state->computed++;
-  state->last = job->point;
-  state->row = &job->cells.row;
-  state->seconds = now - b->began;
-  strut_sweep_count_warnings(state, job);
-  if (!b->options.progress || now - b->reported <= OFTEN) return;
-  b->options.progress(b->options.progress_context, state);
-  b->reported = now;
-}
-
-/* Fills the columns of the search and stores the row. */
-static void store_point(void *context, const strut_sweep_job *job) {
-  strut_search_batch *b = context;
-  strut_error error = {0};
-  strut_row_buffer cells = job->cells;
-  const strut_study_search *search = b->plan->study->search;
-  strut_status status = job->status;
-  if (!status && !cells.row.status) {
-    double broken[STRUT_SEARCH_MOST_CONDITIONS], second;
-    double goal = strut_search_score(b->plan, cells.numbers, cells.row.words, &second, broken);
-    strut_sweep_number(&cells, goal);
-    if (search->second.text) strut_sweep_number(&cells, second);
-    strut_sweep_number(&cells, strut_search_violation(search, broken));
-  }
-  if (!status) status = strut_slots_put(b->slots, job->point, &cells.row, &error);
-#ifdef _OPENMP
-#pragma omp critical(strut_search_report_progress)
-#endif
-  {
-    if (status && !b->status) {
-      strut_fail(b->error, status, "%s", job->status ? job->error.message : error.message);
-#ifdef _OPENMP
-#pragma omp atomic write
-#endif
-      b->status = status;
-    }
-    if (!status) report(b, job);
-  }
-}
-
-/* Computes the wanted points that no other worker has claimed, this worker's share of them first. */
-static void compute_points(strut_search_batch *b) {
-  const strut_sweep_queue queue = {b, next_point, store_point};
-  size_t workers = b->options.workers > 0 ? (size_t)b->options.workers : 1;
-  size_t share = (b->count + workers - 1) / workers;
-  int threads = b->count < (size_t)b->threads ? (int)b->count : b->threads;
-  b->next = 0;
-  b->first = (size_t)b->options.worker * share;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static, 1) num_threads(threads)
-#endif
-  for (int i = 0; i < threads; i++) {
-#ifdef _OPENMP
-    omp_set_num_threads(1); /* of searches within a point */
-#endif
-    strut_sweep_work(&b->worker, &queue, &b->jobs[i]);
-  }
 }
 
 /* Leaves only the points that are still without a row. */
 static void forget_done(strut_search_batch *b) {
   size_t left = 0;
   for (size_t i = 0; i < b->count; i++)
-    if (!strut_slots_done(b->slots, b->wanted[i].point)) b->wanted[left++] = b->wanted[i];
+    if (!strut_slots_done(b->points.slots, b->wanted[i].point)) b->wanted[left++] = b->wanted[i];
   b->count = left;
-  count_rows(b);
+  strut_points_count(&b->points);
 }
 
 strut_status strut_search_batch_run(strut_search_batch *b) {
   const strut_flag *interrupt = b->options.interrupt;
   struct timespec pause = {.tv_nsec = SHORTEST_PAUSE};
+  size_t workers = b->options.workers > 0 ? (size_t)b->options.workers : 1;
   if (b->count > 1) qsort(b->wanted, b->count, sizeof *b->wanted, by_point);
-  while (b->count > 0 && is_running(b)) {
-    compute_points(b);
+  while (b->count > 0 && !b->points.status && !(interrupt && *interrupt)) {
+    b->first = (size_t)b->options.worker * ((b->count + workers - 1) / workers); /* its share */
+    strut_points_run(&b->points, (int64_t)b->count);
     forget_done(b);
     if (b->count == 0) break;
     nanosleep(&pause, NULL); /* others compute the rest; the claims of those that are killed end */
     if (pause.tv_nsec < LONGEST_PAUSE) pause.tv_nsec += pause.tv_nsec / 4;
   }
-  if (!b->status && interrupt && *interrupt)
-    b->status = strut_fail(b->error, STRUT_INTERRUPTED, "interrupted");
+  if (!b->points.status && interrupt && *interrupt)
+    b->points.status = strut_fail(b->points.error, STRUT_INTERRUPTED, "interrupted");
   b->count = 0;
-  return b->status;
+  return b->points.status;
 }
 
 typedef enum turn { TURN_OPTIMISER, TURN_CALLER, TURN_NONE } turn;

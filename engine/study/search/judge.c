@@ -255,7 +255,7 @@ static bool list_points(strut_search_batch *b, strut_search_result *r, strut_sea
 static strut_status judge(strut_search_batch *b, int64_t outer, int64_t row,
                           strut_search_point *point) {
   double broken[STRUT_SEARCH_MOST_CONDITIONS];
-  return strut_search_judge(b->plan, b->slots, outer, row, point, broken, b->error);
+  return strut_search_judge(b->plan, b->points.slots, outer, row, point, broken, b->points.error);
 }
 
 static strut_status judge_points(strut_search_batch *b, strut_search_result *r,
@@ -274,14 +274,14 @@ static strut_status judge_points(strut_search_batch *b, strut_search_result *r,
 strut_status strut_search_find_worth(strut_search_batch *b, strut_search_result *r) {
   const strut_search_layout l = strut_search_layout_of(b->plan);
   r->worths = strut_arena_allocate(&r->arena, (size_t)l.outers, sizeof *r->worths);
-  if (!r->worths) return strut_no_memory(b->error, "");
+  if (!r->worths) return strut_no_memory(b->points.error, "");
   if (r->front_count) return STRUT_OK; /* there is no one best */
   for (int64_t outer = 0; outer < l.outers; outer++) {
     size_t best = best_of(b, r, outer);
     if (best == SIZE_MAX) continue;
     strut_search_worth *w = &r->worths[r->worth_count++];
     w->best = best;
-    if (!list_points(b, r, w)) return strut_no_memory(b->error, "");
+    if (!list_points(b, r, w)) return strut_no_memory(b->points.error, "");
   }
   strut_status status = strut_search_batch_run(b);
   for (size_t i = 0; i < r->worth_count && !status; i++) status = judge_points(b, r, &r->worths[i]);

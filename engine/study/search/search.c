@@ -198,11 +198,11 @@ static void rank_objective(const conductor *c, strut_search_outcome *o, double o
 static strut_status judge_point(conductor *c, search *s, int32_t i) {
   strut_search_outcome *o = s->outcome;
   known *k = &s->list[i];
-  strut_sweep_state *state = c->batch.state;
+  strut_sweep_state *state = c->batch.points.state;
   int64_t row = o->start * c->what->evaluations + i;
   k->point.values = k->values;
-  strut_status status = strut_search_judge(c->plan, c->batch.slots, o->outer, row, &k->point,
-                                           k->broken, c->batch.error);
+  strut_status status = strut_search_judge(c->plan, c->batch.points.slots, o->outer, row, &k->point,
+                                           k->broken, c->batch.points.error);
   if (status) return status;
   o->evaluations++;
   o->failed += k->point.failed;
@@ -223,7 +223,7 @@ static strut_status judge_point(conductor *c, search *s, int32_t i) {
   if (feasible) rank_objective(c, o, k->point.objective);
   if (feasible && c->result->front_count &&
       !strut_search_front_take(c->what, &c->result->fronts[o->outer], &k->point, &c->result->arena))
-    return strut_no_memory(c->batch.error, "");
+    return strut_no_memory(c->batch.points.error, "");
   if (strut_search_better(c->what, &k->point, &o->best)) o->best = k->point;
   bool best =
       feasible && (!state->has_best || (c->what->maximise ? k->point.objective > state->best
@@ -332,7 +332,7 @@ static strut_status run_searches(conductor *c) {
   int64_t all = count_all(c);
   strut_status status = STRUT_OK;
   while (!status && (c->active_count > 0 || c->next < c->result->outcome_count)) {
-    if (!fill_active(c) || !collect_questions(c)) return strut_no_memory(c->batch.error, "");
+    if (!fill_active(c) || !collect_questions(c)) return strut_no_memory(c->batch.points.error, "");
     status = strut_search_batch_run(&c->batch);
     for (size_t i = 0; i < c->active_count && !status; i++)
       status = answer_question(c, c->active[i], all);
@@ -359,30 +359,23 @@ strut_status strut_search_run(const strut_sweep_plan *plan, strut_slots *slots,
                               const strut_sweep_options *options, strut_sweep_state *state,
                               strut_search_result *result, strut_error *error) {
   strut_error own = {0};
-  conductor c = {.plan = plan,
-                 .what = plan->study->search,
-                 .layout = strut_search_layout_of(plan),
-                 .result = result,
-                 .batch = {.plan = plan,
-                           .slots = slots,
-                           .given = options,
-                           .state = state,
-                           .error = error ? error : &own,
-                           .began = strut_run_clock()}};
+  conductor c = {
+      .plan = plan,
+      .what = plan->study->search,
+      .layout = strut_search_layout_of(plan),
+      .result = result,
+      .batch = {.plan = plan,
+                .given = options,
+                .points = {.slots = slots, .state = state, .error = error ? error : &own}}};
   c.penalise = !strut_search_knows_conditions((strut_search_method)c.what->method);
-  int64_t count = strut_slots_description_of(slots)->count;
   *result = (strut_search_result){0};
-  *state = (strut_sweep_state){.points = count,
-                               .done = count - strut_slots_missing(slots),
-                               .failed = strut_slots_failed(slots),
-                               .last = -1};
   strut_status status = strut_search_batch_begin(&c.batch);
-  if (!status && !make_outcomes(&c)) status = strut_no_memory(c.batch.error, "");
+  if (!status && !make_outcomes(&c)) status = strut_no_memory(c.batch.points.error, "");
   if (!status) status = run_searches(&c);
   for (size_t i = 0; i < c.active_count; i++) free_search(c.active[i]);
   if (!status) status = strut_search_find_worth(&c.batch, result);
   if (!status) state->points = state->done;
-  state->seconds = strut_run_clock() - c.batch.began;
+  state->seconds = strut_run_clock() - c.batch.points.began;
   state->row = NULL;
   strut_search_batch_free(&c.batch);
   return status;

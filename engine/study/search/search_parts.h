@@ -28,20 +28,13 @@ typedef struct strut_batch_point_wanted {
 
 typedef struct strut_search_batch {
   const strut_sweep_plan *plan;
-  strut_slots *slots;
   const strut_sweep_options *given; /* by the caller */
+  strut_points points;              /* slots, state and error are the caller's */
   strut_sweep_options options;      /* with the hooks of the search */
-  strut_sweep_state *state;
-  strut_error *error;
-  strut_sweep_worker worker;
-  strut_sweep_job *jobs;
-  int threads;
-  int64_t first_check; /* rows from here on are those of search 0 */
-  double began, reported;
-  size_t count, capacity, next,
-      first;                        /* first: of the wanted points in the order of this process */
+  int64_t first_check;              /* rows from here on are those of search 0 */
+  size_t count, capacity;
+  size_t first;                     /* of the wanted points in the order of this process */
   strut_batch_point_wanted *wanted; /* (count) */
-  strut_status status;              /* of what stopped it */
   strut_arena arena;
 } strut_search_batch;
 

@@ -7,11 +7,10 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
-#include "engine/output/buffer.h"
 #include "engine/output/file.h"
+#include "engine/output/result_values.h"
 #include "engine/scene/sample.h"
 
 enum { MOST_TEXTS = 12 };
@@ -271,7 +270,7 @@ strut_status strut_sensitivity_find(const strut_study *study, strut_slots *slots
                 .columns = plan->columns,
                 .column_count = plan->column_count,
                 .result = result};
-  *result = (strut_sensitivity_result){0};
+  *result = (strut_sensitivity_result){.study = study, .slots = slots};
   size_t count = a.axis->column_count;
   a.block = a.axis->count;
   a.values = strut_arena_allocate(&a.scratch, (size_t)a.block, sizeof *a.values);
@@ -289,16 +288,6 @@ strut_status strut_sensitivity_find(const strut_study *study, strut_slots *slots
 
 /* ---- the table ---- */
 
-static void put_text(strut_buffer *b, const char *text) {
-  strut_csv_add_text(b, "%s", text);
-  strut_buffer_add(b, ",");
-}
-
-static void put_number(strut_buffer *b, double value) {
-  strut_csv_add_number(b, isfinite(value) ? value : (double)NAN);
-  strut_buffer_add(b, ",");
-}
-
 /* Columns of the other axes: all before that of the analysis. */
 static size_t other_columns(const strut_study *study) {
   size_t count = 0;
@@ -306,44 +295,62 @@ static size_t other_columns(const strut_study *study) {
   return count;
 }
 
-static void put_axes(strut_buffer *b, const strut_study *study, strut_slots *slots, int64_t point) {
-  const strut_slots_description *plan = strut_slots_description_of(slots);
-  strut_result_slot row;
-  size_t numbers = 0, texts = 0, count = other_columns(study);
-  bool there = strut_slots_get(slots, point, &row);
-  for (size_t i = 0; i < count; i++) {
-    if (plan->columns[i].word)
-      put_text(b, there ? row.words[texts++] : "");
-    else
-      put_number(b, there ? row.numbers[numbers++] : (double)NAN);
-  }
+static const char *axis_name(const strut_result_object *of, size_t i) {
+  const strut_sensitivity_result *result = of->outer->at;
+  return strut_slots_description_of(result->slots)->columns[i].name;
 }
 
-strut_status strut_sensitivity_write(const strut_study *study, strut_slots *slots,
-                                     const strut_sensitivity_result *result, const char *directory,
+static strut_value axis_value(const strut_result_object *of, size_t i) {
+  const strut_sensitivity_result *result = of->outer->at;
+  const strut_slot_column *columns = strut_slots_description_of(result->slots)->columns;
+  strut_result_slot row;
+  strut_value value = STRUT_VALUE_AS_TEXT(NULL);
+  size_t place = 0;
+  for (size_t k = 0; k < i; k++) place += columns[k].word == columns[i].word;
+  if (strut_slots_get(result->slots, ((const strut_sensitivity_row *)of->at)->point, &row))
+    value = columns[i].word ? STRUT_VALUE_AS_TEXT(row.words[place])
+                            : STRUT_VALUE_AS_NUMBER(row.numbers[place]);
+  value.own_unit = strcmp(columns[i].unit, "1") == 0 ? "" : columns[i].unit;
+  return value;
+}
+
+static double finite(double value) { return isfinite(value) ? value : (double)NAN; }
+
+/* What is missing, and that a number never changes its sign, is in the file only. */
+static bool is_shown(const strut_result_object *of, size_t i) {
+  const strut_sensitivity_row *r = &((const strut_sensitivity_result *)of->at)->rows[i];
+  double value = r->estimate.value;
+  return isfinite(value) && !(strstr(r->of, " > 0") && (value == 0.0 || value == 1.0));
+}
+
+#define EFFECT(X)                                                                                  \
+  X(NULL, "", MAP(other_columns(study), axis_name, axis_value), "", .column = {""}, .label = {""}) \
+  X(NULL, "", TEXT(r->of), "", .column = {"of"}, .label = {"of"})                                  \
+  X(NULL, "", TEXT(strut_sensitivity_word(r->measure)), "", .column = {"measure"},                 \
+    .label = {"measure"})                                                                          \
+  X(NULL, "", TEXT(r->parameter), "", .column = {"parameter"}, .label = {"parameter"})             \
+  X(NULL, "", NUMBER(finite(e->value)), "", .column = {"value"})                                   \
+  X(NULL, "", CALLED("value", r->unit, e->value), "", .label = {"value"})                          \
+  X(NULL, "", NUMBER(finite(e->error)), "", .column = {"error"})                                   \
+  X(NULL, "", CALLED("error", r->unit, e->error), "", .label = {"error"})                          \
+  X(NULL, "", NUMBER(finite(e->low)), "", .column = {"low"}, .label = {"low"})                     \
+  X(NULL, "", NUMBER(finite(e->high)), "", .column = {"high"}, .label = {"high"})                  \
+  X(NULL, "", TEXT(r->unit &&strcmp(r->unit, "1") != 0 ? r->unit : ""), "", .column = {"unit"})    \
+  X(NULL, "", COUNT(r->used), "", .column = {"used"}, .label = {"used"})
+STRUT_VALUES_HERE(
+    effect_values, EFFECT,
+    const strut_study *study = ((const strut_sensitivity_result *)of->outer->at)->study;
+    const strut_sensitivity_row *r = of->at; const strut_estimate *e = &r->estimate)
+
+#define SENSITIVITY(X)                                                                             \
+  X("effects", "", LIST_WHERE(result->rows, result->count, is_shown), "", .rows = &effect_values,  \
+    .label = {""})
+STRUT_VALUES(strut_sensitivity_values, SENSITIVITY, const strut_sensitivity_result *result = of->at)
+
+strut_status strut_sensitivity_write(const strut_sensitivity_result *result, const char *directory,
                                      strut_error *error) {
-  const strut_slots_description *plan = strut_slots_description_of(slots);
-  strut_buffer b = {0};
-  for (size_t i = 0; i < other_columns(study); i++) {
-    const strut_slot_column *c = &plan->columns[i];
-    bool plain = strcmp(c->unit, "1") == 0;
-    strut_buffer_add(&b, plain ? "%s%s," : "%s [%s],", c->name, plain ? "" : c->unit);
-  }
-  strut_buffer_add(&b, "of,measure,parameter,value,error,low,high,unit,used\n");
-  for (size_t i = 0; i < result->count; i++) {
-    const strut_sensitivity_row *r = &result->rows[i];
-    put_axes(&b, study, slots, r->point);
-    put_text(&b, r->of);
-    put_text(&b, strut_sensitivity_word(r->measure));
-    put_text(&b, r->parameter ? r->parameter : "");
-    put_number(&b, r->estimate.value);
-    put_number(&b, r->estimate.error);
-    put_number(&b, r->estimate.low);
-    put_number(&b, r->estimate.high);
-    put_text(&b, strcmp(r->unit, "1") == 0 ? "" : r->unit);
-    strut_buffer_add(&b, "%zu\n", r->used);
-  }
-  return strut_file_write_block(directory, "sensitivity.csv", strut_buffer_take(&b), error);
+  char *csv = strut_values_csv(&strut_sensitivity_values, "effects", NULL, result, NULL);
+  return strut_file_write_block(directory, "sensitivity.csv", csv, error);
 }
 
 enum { BOOTSTRAPS = 500 };

@@ -15,6 +15,7 @@
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "engine/scene/study.h"
+#include "engine/scene/value_rows.h"
 #include "engine/study/results/slots.h"
 
 /** A number and how well it is known. */
@@ -83,10 +84,15 @@ typedef struct strut_sensitivity_row {
 } strut_sensitivity_row;
 
 typedef struct strut_sensitivity_result {
+  const strut_study *study;
+  strut_slots *slots;
   size_t count;
   strut_sensitivity_row *rows; /* (count) point after point */
   strut_arena arena;
 } strut_sensitivity_result;
+
+/** The list "effects" of a strut_sensitivity_result, while its study and slots are there. */
+STRUT_API extern const strut_value_rows strut_sensitivity_values;
 
 STRUT_API const char *strut_sensitivity_word(strut_sensitivity_measure measure);
 
@@ -103,8 +109,7 @@ STRUT_API strut_status strut_sensitivity_find(const strut_study *study, strut_sl
  * Writes directory/sensitivity.csv: the other axes, of, measure, parameter, value, error, low, high, unit,
  * used.
  */
-STRUT_API strut_status strut_sensitivity_write(const strut_study *study, strut_slots *slots,
-                                               const strut_sensitivity_result *result,
+STRUT_API strut_status strut_sensitivity_write(const strut_sensitivity_result *result,
                                                const char *directory, strut_error *error);
 /**
  * Draws the picture `path`: of one point, indices as bars with their 95 % intervals; of several along an

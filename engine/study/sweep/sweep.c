@@ -10,32 +10,12 @@
 #include "engine/run/simulate.h"
 #include "engine/study/sweep/sweep_parts.h"
 
-void strut_sweep_work(const strut_sweep_worker *worker, const strut_sweep_queue *queue,
-                      strut_sweep_job *job) {
-  for (int64_t point; queue->next(queue->context, &point);) {
-    strut_sweep_compute(worker, point, job);
-    queue->over(queue->context, job);
-  }
-}
-
 #ifdef _OPENMP
 #include <omp.h>
 #endif
 
 /* Time between two reports [s]. */
 static const double OFTEN = 0.1;
-
-/* State shared by the threads of a sweep. */
-typedef struct sweep {
-  strut_sweep_worker worker;
-  strut_slots *slots;
-  strut_sweep_state *state;
-  double began, reported; /* [s] */
-  int64_t next;           /* of the file's points; read and written atomically, as the next one */
-  bool stopped;
-  strut_status status; /* of what stopped it, and why */
-  strut_error *error;
-} sweep;
 
 int strut_sweep_threads(void) {
 #ifdef _OPENMP
@@ -57,32 +37,17 @@ static bool allocate_cells(const strut_sweep_plan *plan, strut_arena *arena,
   return cells->values && cells->numbers && cells->words;
 }
 
-static bool is_running(sweep *s) {
-  bool stopped;
+static bool is_running(strut_points *points) {
+  strut_status status;
 #ifdef _OPENMP
 #pragma omp atomic read
 #endif
-  stopped = s->stopped;
-  const strut_flag *interrupt = s->worker.options->interrupt;
-  return !stopped && !(interrupt && *interrupt);
+  status = points->status;
+  return !status && !(points->interrupt && *points->interrupt);
 }
 
-/* Records the first error only. */
-static void stop_sweep(sweep *s, strut_status status, const strut_error *error) {
-#ifdef _OPENMP
-#pragma omp critical(strut_sweep_report_progress)
-#endif
-  if (!s->stopped) {
-    strut_fail(s->error, status, "%s", error->message);
-    s->status = status;
-#ifdef _OPENMP
-#pragma omp atomic write
-#endif
-    s->stopped = true;
-  }
-}
-
-void strut_sweep_count_warnings(strut_sweep_state *state, const strut_sweep_job *job) {
+/* Counts the warnings of a run by their code, and keeps the text of the first point. */
+static void count_warnings(strut_sweep_state *state, const strut_sweep_job *job) {
   for (size_t i = 0; i < job->warning_count; i++) {
     const strut_warning *warning = &job->warnings[i];
     size_t at = 0;
@@ -101,70 +66,94 @@ void strut_sweep_count_warnings(strut_sweep_state *state, const strut_sweep_job 
   }
 }
 
-static void count_point(sweep *s, const strut_sweep_job *job) {
-  const strut_result_slot *row = &job->cells.row;
+static void count_point(strut_points *points, const strut_sweep_job *job) {
+  strut_sweep_state *state = points->state;
+  double now = strut_run_clock();
+  state->done++;
+  state->failed += job->cells.row.status != STRUT_OK;
+  if (points->shared) strut_points_count(points); /* others write rows, too */
+  state->computed++;
+  assert(state->done <= state->points);
+  state->last = job->point;
+  count_warnings(state, job);
+  state->row = &job->cells.row;
+  state->seconds = now - points->began;
+  if (!points->progress || now - points->reported <= OFTEN) return;
+  points->progress(points->progress_context, state);
+  points->reported = now;
+}
+
+void strut_points_count(strut_points *points) {
+  int64_t count = strut_slots_description_of(points->slots)->count;
+  points->state->done = count - strut_slots_missing(points->slots);
+  points->state->failed = strut_slots_failed(points->slots);
+}
+
+/* Computes a point and stores its row, or stops everything; the first error counts. */
+static void run_point(strut_points *points, strut_sweep_job *job, int64_t point) {
+  points->compute(points->context, job, point);
+  strut_error error = job->error;
+  strut_status status = job->status;
+  if (!status) status = strut_slots_put(points->slots, point, &job->cells.row, &error);
 #ifdef _OPENMP
-#pragma omp critical(strut_sweep_report_progress)
+#pragma omp critical(strut_points_report)
 #endif
   {
-    strut_sweep_state *state = s->state;
-    double now = strut_run_clock();
-    state->done++;
-    state->computed++;
-    assert(state->done <= state->points);
-    state->failed += row->status != STRUT_OK;
-    state->last = job->point;
-    strut_sweep_count_warnings(state, job);
-    state->row = row;
-    state->seconds = now - s->began;
-    if (s->worker.options->progress && now - s->reported > OFTEN) {
-      s->worker.options->progress(s->worker.options->progress_context, state);
-      s->reported = now;
+    if (status && !points->status) {
+      strut_fail(points->error, status, "%s", error.message);
+#ifdef _OPENMP
+#pragma omp atomic write
+#endif
+      points->status = status;
     }
+    if (!status) count_point(points, job);
   }
 }
 
-/* The next point without a result; false: none is left, or the sweep is being stopped. */
-static bool next_point(void *context, int64_t *point) {
-  sweep *s = context;
-  int64_t count = strut_slots_description_of(s->slots)->count, i = 0;
-  while (is_running(s)) {
+/* False: none is left, or all is being stopped. */
+static bool next_point(strut_points *points, int64_t *point) {
+  int64_t i = 0;
+  while (is_running(points)) {
 #ifdef _OPENMP
 #pragma omp atomic capture
 #endif
-    i = s->next++;
-    if (i >= count) return false;
-    *point = strut_slots_point(s->slots, i);
-    const strut_sweep_options *options = s->worker.options;
-    if (options->wants && !options->wants(options->wants_context, *point)) continue;
-    if (!strut_slots_done(s->slots, *point)) return true;
+    i = points->next++;
+    if (i >= points->count) return false;
+    if (points->choose(points->context, i, point)) return true;
   }
   return false;
 }
 
-static void store_point(void *context, const strut_sweep_job *job) {
-  sweep *s = context;
-  strut_error error = {0};
-  strut_status status = job->status;
-  if (!status) status = strut_slots_put(s->slots, job->point, &job->cells.row, &error);
-  if (status)
-    stop_sweep(s, status, job->status ? &job->error : &error);
-  else
-    count_point(s, job);
+strut_status strut_points_run(strut_points *points, int64_t count) {
+  int threads = count < points->threads ? (int)count : points->threads;
+  points->next = 0, points->count = count;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static, 1) num_threads(threads > 0 ? threads : 1)
+#endif
+  for (int t = 0; t < threads; t++) {
+#ifdef _OPENMP
+    if (!points->nested) omp_set_num_threads(1); /* the points are what goes side by side */
+#endif
+    for (int64_t point; next_point(points, &point);) run_point(points, &points->jobs[t], point);
+  }
+  return points->status;
 }
 
-static void run_threads(sweep *s, int threads, strut_sweep_job *jobs) {
-  const strut_sweep_queue queue = {s, next_point, store_point};
-  (void)threads;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static, 1) num_threads(threads)
-#endif
-  for (int i = 0; i < threads; i++) {
-#ifdef _OPENMP
-    omp_set_num_threads(1); /* of searches within a point: the points are what goes side by side */
-#endif
-    strut_sweep_work(&s->worker, &queue, &jobs[i]);
-  }
+void strut_points_begin(strut_points *points) {
+  points->began = strut_run_clock();
+  *points->state =
+      (strut_sweep_state){.points = strut_slots_description_of(points->slots)->count, .last = -1};
+  strut_points_count(points);
+}
+
+strut_status strut_points_end(strut_points *points) {
+  strut_sweep_state *state = points->state;
+  bool interrupted = points->interrupt && *points->interrupt;
+  if (!points->status && interrupted && state->done < state->points)
+    points->status = strut_fail(points->error, STRUT_INTERRUPTED, "interrupted");
+  state->seconds = strut_run_clock() - points->began;
+  state->row = NULL;
+  return points->status;
 }
 
 strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena *arena,
@@ -175,42 +164,57 @@ strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena
   return jobs;
 }
 
+/* A point without a result that is wanted. */
+static bool choose_point(void *context, int64_t i, int64_t *point) {
+  const strut_points *points = context;
+  const strut_sweep_options *options = points->worker.options;
+  *point = strut_slots_point(points->slots, i);
+  return !(options->wants && !options->wants(options->wants_context, *point)) &&
+         !strut_slots_done(points->slots, *point);
+}
+
+static void compute_point(void *context, strut_sweep_job *job, int64_t point) {
+  strut_sweep_compute(&((const strut_points *)context)->worker, point, job);
+}
+
+strut_status strut_points_open(strut_points *points, const strut_sweep_plan *plan,
+                               const strut_sweep_options *options, strut_arena *arena) {
+  double seconds = plan->study->limit.time;
+  points->threads = options->threads > 0 ? options->threads : strut_sweep_threads();
+  points->jobs = strut_sweep_make_jobs(plan, arena, (size_t)points->threads);
+  points->worker = (strut_sweep_worker){
+      .plan = plan, .options = options, .standing = strut_equilibrium_cache_create()};
+  if (points->jobs && seconds > 0.0)
+    points->worker.watch = strut_sweep_watch_create(seconds, points->jobs, (size_t)points->threads,
+                                                    options->interrupt);
+  points->interrupt = options->interrupt;
+  points->progress = options->progress, points->progress_context = options->progress_context;
+  bool ready = points->jobs && points->worker.standing && (points->worker.watch || seconds <= 0.0);
+  return ready ? STRUT_OK : strut_no_memory(points->error, "");
+}
+
+void strut_points_close(strut_points *points) {
+  strut_sweep_watch_free(points->worker.watch);
+  strut_equilibrium_cache_free(points->worker.standing);
+}
+
 strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
                              const strut_sweep_options *options, strut_sweep_state *state,
                              strut_error *error) {
-  int threads = options->threads > 0 ? options->threads : strut_sweep_threads();
   strut_arena arena = {0};
   strut_error own = {0};
-  sweep s = {
-      .worker = {.plan = plan, .options = options, .standing = strut_equilibrium_cache_create()},
-      .slots = slots,
-      .state = state,
-      .began = strut_run_clock(),
-      .error = error ? error : &own};
-  strut_sweep_job *jobs = strut_sweep_make_jobs(plan, &arena, (size_t)threads);
-  int64_t count = strut_slots_description_of(slots)->count;
-  *state = (strut_sweep_state){.points = count,
-                               .done = count - strut_slots_missing(slots),
-                               .failed = strut_slots_failed(slots),
-                               .last = -1};
-  if (options->wants) {
-    count = state->points = options->wanted;
-    state->done = options->wanted_done;
-  }
+  strut_points points = {.slots = slots,
+                         .state = state,
+                         .error = error ? error : &own,
+                         .context = &points,
+                         .choose = choose_point,
+                         .compute = compute_point};
+  strut_points_begin(&points);
+  if (options->wants) state->points = options->wanted, state->done = options->wanted_done;
   if (options->directory) strut_sweep_records_clear(options->directory);
-  double seconds = plan->study->limit.time;
-  if (jobs && seconds > 0.0)
-    s.worker.watch = strut_sweep_watch_create(seconds, jobs, (size_t)threads, options->interrupt);
-  if (jobs && s.worker.standing && (s.worker.watch || seconds <= 0.0))
-    run_threads(&s, threads, jobs);
-  else
-    s.status = strut_fail(s.error, STRUT_NO_MEMORY, "out of memory");
-  if (!s.status && options->interrupt && *options->interrupt && state->done < count)
-    s.status = strut_fail(s.error, STRUT_INTERRUPTED, "interrupted");
-  strut_sweep_watch_free(s.worker.watch);
-  state->seconds = strut_run_clock() - s.began;
-  state->row = NULL;
-  strut_equilibrium_cache_free(s.worker.standing);
+  points.status = strut_points_open(&points, plan, options, &arena);
+  if (!points.status) strut_points_run(&points, strut_slots_description_of(slots)->count);
+  strut_points_close(&points);
   strut_arena_free(&arena);
-  return s.status;
+  return strut_points_end(&points);
 }

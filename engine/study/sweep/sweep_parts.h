@@ -104,22 +104,44 @@ bool strut_sweep_watch_end(struct strut_sweep_watch *watch, strut_sweep_job *job
 
 /* sweep.c */
 
-/** Input and output of one thread's points. */
-typedef struct strut_sweep_queue {
-  void *context;
-  bool (*next)(void *context, int64_t *point);
-  void (*over)(void *context, const strut_sweep_job *job);
-} strut_sweep_queue;
+/** Points of a file that are computed side by side; zero-initialise but for what the user fills in. */
+typedef struct strut_points {
+  strut_slots *slots;
+  strut_sweep_state *state;
+  strut_error *error;
+  void *context; /* of both: */
+  /** The i-th point to be looked at; false: it is not computed. */
+  bool (*choose)(void *context, int64_t i, int64_t *point);
+  /** Computes it into the job's row, or leaves the status that stops everything and its error. */
+  void (*compute)(void *context, strut_sweep_job *job, int64_t point);
+  bool nested; /* points may use threads themselves */
+  bool shared; /* others write rows of the file, too */
+  int threads;
+  strut_sweep_job *jobs; /* (threads) */
+  strut_sweep_worker worker;
+  const strut_flag *interrupt; /* may be NULL, like progress */
+  void (*progress)(void *context, const strut_sweep_state *state);
+  void *progress_context;
+  int64_t next, count;    /* of the points that are looked at; read and written atomically */
+  double began, reported; /* [s] */
+  strut_status status;    /* of what stopped it */
+} strut_points;
 
-/** Works on the queue until it is empty. */
-void strut_sweep_work(const strut_sweep_worker *worker, const strut_sweep_queue *queue,
-                      strut_sweep_job *job);
+/** The state of what is in the file; the clock begins. */
+void strut_points_begin(strut_points *points);
+/** Threads, jobs in the arena, and what watches over them. STRUT_NO_MEMORY; close it in any case. */
+strut_status strut_points_open(strut_points *points, const strut_sweep_plan *plan,
+                               const strut_sweep_options *options, strut_arena *arena);
+void strut_points_close(strut_points *points);
+/** Looks at `count` points. */
+strut_status strut_points_run(strut_points *points, int64_t count);
+/** Done and failed points of the file, as it is now. */
+void strut_points_count(strut_points *points);
+/** The status, STRUT_INTERRUPTED where points are missing after an interrupt. */
+strut_status strut_points_end(strut_points *points);
 /** Jobs with room for their rows; NULL: no memory. */
 strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena *arena,
                                        size_t count);
-/** Counts the warnings of a run by their code, and keeps the text of the first point. */
-void strut_sweep_count_warnings(strut_sweep_state *state, const strut_sweep_job *job);
-
 /* sweep_point.c */
 
 /** A directory of results for a run of a sweep. Zero-initialise. */

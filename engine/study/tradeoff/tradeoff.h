@@ -170,7 +170,6 @@ STRUT_API strut_tradeoff_advice strut_tradeoff_advise(const strut_tradeoff *resu
  * Texts in blocks of strut_allocate; NULL: memory was out. CPU times in them are measurements: they
  * differ from run to run, everything else does not unless the study was cut.
  */
-STRUT_API char *strut_tradeoff_table(const strut_tradeoff *result);
 STRUT_API char *strut_tradeoff_json(const strut_tradeoff *result);
 STRUT_API extern const strut_value_rows strut_tradeoff_values;
 /** One row per setting, the spreads over the operating points; diverged: "inf". */

@@ -165,8 +165,6 @@ strut_status strut_tradeoff_run_base(tradeoff_study *s, step_series_list *own, d
 
 enum { STRUT_TRADEOFF_TEXT = 100 };
 
-/** "0.43 %", "diverged" where infinite, "-" where it is not a number. */
-const char *strut_tradeoff_percent_text(double error, char text[STRUT_TRADEOFF_TEXT]);
 /** "verlet-events, refined 8". */
 const char *strut_tradeoff_group_text(const strut_tradeoff_row *row,
                                       char text[STRUT_TRADEOFF_TEXT]);
@@ -177,7 +175,5 @@ const char *strut_tradeoff_base_text(const strut_tradeoff *result,
                                      char text[3 * STRUT_TRADEOFF_TEXT]);
 /** "velocity", "position", "energy". */
 const char *strut_tradeoff_measure_text(strut_tradeoff_measure measure);
-/** Adds a sentence per error level and per variant. Call in the C locale. */
-void strut_tradeoff_add_advice(strut_buffer *text, const strut_tradeoff *result);
 
 #endif

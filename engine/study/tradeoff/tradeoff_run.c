@@ -75,12 +75,6 @@ static strut_status begin_clock(void *context, const strut_record_layout *layout
   return STRUT_OK;
 }
 
-static strut_status ignore_rows(void *context, const double *rows, size_t count,
-                                strut_error *error) {
-  (void)context, (void)rows, (void)count, (void)error;
-  return STRUT_OK;
-}
-
 static strut_status end_clock(void *context, strut_status status, strut_error *error) {
   (void)status, (void)error;
   *(double *)context = strut_tradeoff_cpu_clock() - *(double *)context;
@@ -133,8 +127,7 @@ static strut_status simulate(tradeoff_study *s, size_t point, int variant,
                              tradeoff_outcome *outcome) {
   const strut_model *model = NULL;
   strut_summary summary = {0};
-  strut_sink clock = {&outcome->seconds, begin_clock, ignore_rows, end_clock,
-                      STRUT_CHANNEL_POSITION};
+  strut_sink clock = {&outcome->seconds, begin_clock, NULL, end_clock, STRUT_CHANNEL_POSITION};
   strut_sink *sinks[] = {&clock};
   const strut_run_options options = {.force = true,
                                      .interrupt = s->options->interrupt,

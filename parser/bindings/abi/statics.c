@@ -8,6 +8,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
+#include "engine/output/result_values.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/statics/rigidity/rigidity_parts.h"
 #include "parser/bindings/abi/handles.h"
@@ -61,7 +62,7 @@ static strut_status compute_and_report(abi_call *call, const strutlib_scene *sce
   if (status != STRUT_OK) return status;
   if (kind->warn) kind->warn(a, &call->listener);
   result->json = strut_analysis_json(a);
-  result->table = kind->table(a);
+  result->table = strut_analysis_text(a, STRUT_REPORT_WIDTH);
   bool complete = result->json && result->table && !result->messages.out_of_memory;
   return complete ? STRUT_OK : strut_no_memory(what, "");
 }
