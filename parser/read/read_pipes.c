@@ -32,7 +32,7 @@ static int32_t add_sensor(strut_reader *reader, const strut_tree *key, const cha
   const char *name = name_of(reader, key, end, &sensors->names);
   if (!name) return -1;
   size_t i = strut_next_entry(reader, &scene->sensor_count);
-  scene->sensors[i] = (strut_sensor){.name = name, .kind = STRUT_SENSOR_PRESSURE, .item = cell};
+  scene->sensors[i] = (strut_sensor){.name = name, .kind = STRUT_COLUMN_PRESSURE, .item = cell};
   strut_add_name(reader, &sensors->names, name, i);
   sensors->source[i] = (strut_source){key, key->next, false};
   return (int32_t)i;

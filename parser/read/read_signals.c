@@ -174,7 +174,7 @@ bool strut_read_trigger(strut_reader *reader, strut_fields *fields, strut_owner 
     return false;
   }
   if (!sensed || trigger->item < 0) return trigger->item >= 0;
-  strut_dimension dimension = strut_sensor_dimension(reader->scene->sensors[trigger->item].kind);
+  strut_dimension dimension = strut_sensor_dimension(&reader->scene->sensors[trigger->item]);
   return strut_store_number(reader, fields, key, owner, dimension, trigger);
 }
 

@@ -6,7 +6,7 @@
 #include "tests/support/check.h"
 #include "tests/unit/scratch.h"
 
-static const unsigned ALL = (1u << STRUT_CHANNEL_COUNT) - 1;
+#define ALL (((strut_channels)1 << STRUT_CHANNEL_COUNT) - 1)
 
 /* Runs a scene with all channels into memory and, where `directory` is one, into files. */
 static void record(const char *text, const char *const *settings, const char *directory,
