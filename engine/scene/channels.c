@@ -130,6 +130,7 @@ size_t strut_owner_count(strut_channel_owner owner, const strut_scene *scene) {
 }
 
 size_t strut_channel_items(const strut_channel_row *row, const strut_scene *scene) {
+  if (row->first == STRUT_COLUMN_LEAST_GAP && !scene->collision_count) return 0;
   return strut_owner_count(row->owner, scene) + (row->total ? 1 : 0);
 }
 

@@ -143,8 +143,9 @@ typedef enum strut_channel_owner {
   X(LOST_MEMBERS, LOSSES, "losses.members", "members", ENERGY, BALANCE, PART, SUMMED, "")          \
   X(LOST_CONTACT, LOSSES, "losses.contact", "contact", ENERGY, BALANCE, PART, SUMMED, "")          \
   X(LOST_FRICTION, LOSSES, "losses.friction", "friction", ENERGY, BALANCE, PART, SUMMED, "")       \
-  X(TOTAL, ENERGY, "energy.total", "total", ENERGY, ENERGIES, RECORDED, SENSED, "sum")             \
-  X(LOST, LOSSES, "losses.total", "total", ENERGY, BALANCE, RECORDED, SUMMED, "sum")               \
+  X(TOTAL, ENERGY, "energy.total", "total", ENERGY, ENERGIES, RECORDED, SENSED,                    \
+    "of all that is stored")                                                                       \
+  X(LOST, LOSSES, "losses.total", "total", ENERGY, BALANCE, RECORDED, SUMMED, "of all")            \
   X(CELL_AREA, CELL, "area", "area", AREA, MOTION, PART, RATED, "of cells")                        \
   X(CELL_RATE, CELL, "cell_rate", "rate", AREA_RATE, MOTION, RECORDED, SENSED, "of cells' areas")  \
   X(PRESSURE, CELL, "pressure", "pressure", PRESSURE, DRIVES, PART, SENSED, "of cells")            \

@@ -32,8 +32,8 @@ typedef struct strut_sensor {
 /** What a sensor sees. */
 static inline strut_column strut_sensor_column(const strut_sensor *sensor) {
   if (sensor->length) return sensor->of->column;
-  uint32_t kind =
-      sensor->energy == 2 ? STRUT_COLUMN_TOTAL : sensor->kind + sensor->along + sensor->energy;
+  uint32_t kind = sensor->kind + sensor->along + sensor->energy;
+  if (sensor->energy == 2) kind = STRUT_COLUMN_TOTAL;
   return (strut_column){(strut_column_kind)kind, sensor->item, -1};
 }
 

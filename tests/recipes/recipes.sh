@@ -26,7 +26,7 @@ patch -s -p1 <recipes.diff
 sources="tests/recipes/recipes.c tests/recipes/things.c tests/recipes/observable.c $(ls engine/base/*.c engine/scene/*.c \
   engine/model/*.c engine/forces/*.c engine/statics/search/*.c engine/statics/equilibria/*.c) \
   $(find engine/integrate parser/yaml parser/expression parser/language parser/read parser/write parser/study engine/run -name '*.c')
-  engine/output/csv.c engine/output/file.c engine/output/buffer.c engine/study/sweep/grid.c engine/statics/curvature.c engine/statics/dense_algebra.c
+  engine/output/csv.c engine/output/file.c engine/output/buffer.c engine/output/results.c engine/statics/curvature.c engine/statics/dense_algebra.c
   engine/statics/minimise.c engine/statics/potential.c engine/statics/spectrum.c"
 # shellcheck disable=SC2086
 printf '%s\n' $sources | xargs -P 2 -n 12 sh -c 'cc=$1 includes=$2; shift 2

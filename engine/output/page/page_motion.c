@@ -339,7 +339,8 @@ static void add_block(strut_buffer *buffer, const motion *m, int b) {
     const strut_channel_row *row = channel_of(b);
     const strut_scene *scene = m->page->model->scene;
     bool whole = strut_channel_is_whole(row);
-    strut_buffer_add(buffer, ",\"unit\":\"%s\",\"names\":[", row->unit);
+    strut_buffer_add(buffer, ",\"unit\":\"%s\",\"things\":\"%s\",\"names\":[", row->unit,
+                     strut_owner_row_of(row->owner)->things);
     for (size_t i = 0; i < strut_channel_items(row, scene); i++)
       strut_buffer_add(buffer, "%s\"%s\"", i ? "," : "",
                        whole ? row->name : strut_channel_item(row, scene, i));
