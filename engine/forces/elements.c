@@ -332,11 +332,6 @@ strut_element_motion strut_element_move(const strut_model *model, const strut_st
   return (strut_element_motion){strain - natural, rate, r.force + e->damping * rate};
 }
 
-double strut_element_measure(const strut_model *model, const strut_state *state, int32_t element,
-                             strut_element_pose *pose) {
-  return strut_element_measure_at(model, state, element, state->q, state->v, pose);
-}
-
 double strut_element_measure_at(const strut_model *model, const strut_state *state, int32_t element,
                                 const double *q, const double *v, strut_element_pose *pose) {
   assert(element >= 0 && element < model->elements.count);

@@ -83,10 +83,8 @@ typedef struct strut_element_motion {
 strut_element_motion strut_element_move(const strut_model *model, const strut_state *state,
                                         int32_t element, const double *q, const double *v);
 
-/** Force of an element at the state, with its damper; `pose` is filled as well. */
-double strut_element_measure(const strut_model *model, const strut_state *state, int32_t element,
-                             strut_element_pose *pose);
-/** The same at positions q and velocities v, with the state's natural strains. */
+/** Force of an element with its damper at positions q and velocities v, with the state's natural strains; `pose`
+    is filled as well. */
 double strut_element_measure_at(const strut_model *model, const strut_state *state, int32_t element,
                                 const double *q, const double *v, strut_element_pose *pose);
 

@@ -31,44 +31,15 @@ STRUT_API void strut_forces_observe(const strut_model *model, const strut_state 
 /** Shows the contact forces that a method with events holds in normal and friction; false: it holds none. */
 STRUT_API bool strut_forces_show_held(const strut_model *model, const strut_state *state);
 
-/** One member at the state: length [m], its rate [m/s], force [N] (tension positive). */
+/** One member: length [m], its rate [m/s], force [N] (tension positive). */
 typedef struct strut_member_values {
   double length, rate, force;
 } strut_member_values;
-STRUT_API strut_member_values strut_member_measure(const strut_model *model,
-                                                   const strut_state *state, int32_t member);
-/** The same at positions q and velocities v, with the state's rest lengths; without the forces that hold
-    rigid bars. */
+/** At positions q and velocities v, with the state's rest lengths; without the forces that hold rigid
+    bars and those of actuators. */
 STRUT_API strut_member_values strut_member_measure_at(const strut_model *model,
                                                       const strut_state *state, int32_t member,
                                                       const double *q, const double *v);
-/** A hinge at the state: angle [rad], its rate [rad/s], moment [N m] that closes it where positive. */
-typedef struct strut_hinge_values {
-  double angle, rate, moment;
-} strut_hinge_values;
-/** By its element, see strut_element_of_hinge. */
-STRUT_API strut_hinge_values strut_hinge_measure(const strut_model *model, const strut_state *state,
-                                                 int32_t element);
-/** A cell at the state: area [m^2], pressure inside [N/m]; by its element, see strut_element_of_cell. */
-typedef struct strut_cell_values {
-  double area, pressure;
-} strut_cell_values;
-STRUT_API strut_cell_values strut_cell_measure(const strut_model *model, const strut_state *state,
-                                               int32_t element);
-/** A collision at the state: least distance of the surfaces [m], sum of the forces that push [N]. */
-typedef struct strut_collision_values {
-  double gap, force;
-} strut_collision_values;
-/** By its first element, see strut_element_of_collision. */
-STRUT_API strut_collision_values strut_collision_measure(const strut_model *model,
-                                                         const strut_state *state, int32_t element);
-/** A distance spring at the state: the distance [m], its rate [m/s], its force [N], tension positive. */
-typedef struct strut_distance_values {
-  double distance, rate, force;
-} strut_distance_values;
-/** By its element, see strut_element_of_distance. */
-STRUT_API strut_distance_values strut_distance_measure(const strut_model *model,
-                                                       const strut_state *state, int32_t element);
 /** Lengths [m] and forces [N] (tension positive) of all members at the state, (count) each. */
 STRUT_API void strut_members_measure(const strut_model *model, const strut_state *state,
                                      double *length, double *force);

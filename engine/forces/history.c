@@ -354,7 +354,7 @@ double strut_element_last_force(const strut_model *model, const strut_state *sta
   if (strut_capstan_remembers(e, state->latest->rest) &&
       !strut_element_is_gone(state->latest->rest[e->slot]))
     return strut_capstan_tensions(model, state, i, state->q, state->v).last;
-  return strut_element_measure(model, state, i, &pose);
+  return strut_element_measure_at(model, state, i, state->q, state->v, &pose);
 }
 
 double strut_element_plastic(const strut_model *model, const strut_state *state, int32_t element) {

@@ -41,52 +41,6 @@ strut_member_values strut_member_measure_at(const strut_model *model, const stru
   return values;
 }
 
-strut_member_values strut_member_measure(const strut_model *model, const strut_state *state,
-                                         int32_t member) {
-  strut_member_values values = strut_member_measure_at(model, state, member, state->q, state->v);
-  if (state->rigid) values.force += strut_rigid_tension(state->rigid, member);
-  values.force += strut_actuator_force_on(model, state, member, -1);
-  return values;
-}
-
-strut_hinge_values strut_hinge_measure(const strut_model *model, const strut_state *state,
-                                       int32_t element) {
-  assert(element >= 0 && element < model->elements.count);
-  strut_element_pose pose;
-  double moment = strut_element_measure(model, state, element, &pose);
-  moment += strut_actuator_force_on(model, state, -1, model->elements.element[element].item);
-  return (strut_hinge_values){pose.strain, strut_element_rate(model, element, &pose, state->v),
-                              moment};
-}
-
-strut_cell_values strut_cell_measure(const strut_model *model, const strut_state *state,
-                                     int32_t element) {
-  assert(element >= 0 && element < model->elements.count);
-  strut_element_pose pose;
-  double force = strut_element_measure(model, state, element, &pose);
-  return (strut_cell_values){pose.strain, model->elements.element[element].numbers.outside - force};
-}
-
-strut_collision_values strut_collision_measure(const strut_model *model, const strut_state *state,
-                                               int32_t element) {
-  strut_collision_values values = {HUGE_VAL, 0.0};
-  int32_t end = strut_element_end(&model->elements, element);
-  strut_element_pose pose;
-  for (int32_t i = element; i < end; i++) {
-    values.force -= strut_element_measure(model, state, i, &pose);
-    values.gap = fmin(values.gap, pose.strain - pose.natural);
-  }
-  return values;
-}
-
-strut_distance_values strut_distance_measure(const strut_model *model, const strut_state *state,
-                                             int32_t element) {
-  strut_element_pose pose;
-  double force = strut_element_measure(model, state, element, &pose);
-  return (strut_distance_values){pose.strain, strut_element_rate(model, element, &pose, state->v),
-                                 force};
-}
-
 void strut_members_measure(const strut_model *model, const strut_state *state, double *length,
                            double *force) {
   for (int32_t j = 0; j < model->members.count; j++) {

@@ -135,12 +135,17 @@ static inline const strut_element *strut_element_of_member(const strut_element_t
   return t->of_member && t->of_member[j] >= 0 ? &t->element[t->of_member[j]] : NULL;
 }
 
-/** The first element of that role and item, or -1. Found by a search, so not for the step. */
+/** Index of the first element of an item in that role, looked for from element `near` on; -1: it has none. */
+static inline int32_t strut_element_find_near(const strut_element_table *t, strut_element_role role,
+                                              int32_t item, int32_t near) {
+  for (int32_t i = 0, k = near; i < t->count; i++, k = k + 1 < t->count ? k + 1 : 0)
+    if (t->element[k].role == role && t->element[k].item == item) return k;
+  return -1;
+}
+
 static inline int32_t strut_element_find(const strut_element_table *t, strut_element_role role,
                                          int32_t item) {
-  int32_t k = 0;
-  while (k < t->count && (t->element[k].role != role || t->element[k].item != item)) k++;
-  return k < t->count ? k : -1;
+  return strut_element_find_near(t, role, item, 0);
 }
 
 /** The element behind the last one of the same item; elements of a collision follow each other. */

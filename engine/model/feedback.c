@@ -1,38 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/compile_parts.h"
 
-static int32_t find_contact(const strut_model *model, int32_t node) {
-  for (int32_t i = 0; i < model->contacts.count; i++)
-    if (model->contacts.entry[i].node == node) return i;
-  return -1;
-}
-
-static strut_sensor_entry compile_sensor(const strut_model *model, const strut_sensor *s) {
-  strut_sensor_entry entry = {s->kind, s->item};
-  switch (s->kind) {
-    case STRUT_SENSOR_ANGLE:
-      entry.at = strut_element_find(&model->elements, STRUT_ELEMENT_HINGE, s->item);
-      break;
-    case STRUT_SENSOR_CONTACT_FORCE:
-    case STRUT_SENSOR_CONTACT: entry.at = find_contact(model, s->item); break;
-    case STRUT_SENSOR_AREA:
-    case STRUT_SENSOR_PRESSURE:
-      entry.at = strut_element_find(&model->elements, STRUT_ELEMENT_CELL, s->item);
-      break;
-    case STRUT_SENSOR_DISTANCE:
-      entry.at = strut_element_find(&model->elements, STRUT_ELEMENT_DISTANCE, s->item);
-      break;
-    case STRUT_SENSOR_COLLISION_FORCE:
-      entry.at = strut_element_find(&model->elements, STRUT_ELEMENT_COLLISION, s->item);
-      break;
-    case STRUT_SENSOR_POSITION:
-    case STRUT_SENSOR_VELOCITY: entry.at = 2 * s->item + (int32_t)s->along; break;
-    case STRUT_SENSOR_ENERGY: entry.at = (int32_t)s->energy; break;
-    case STRUT_SENSOR_LENGTH:
-    case STRUT_SENSOR_FORCE:
-    case STRUT_SENSOR_KINDS: break;
-  }
-  return entry;
+strut_column strut_column_find(const strut_model *model, strut_column column, int32_t near) {
+  static const strut_element_role roles[STRUT_OWNER_COUNT] = {
+      [STRUT_OWNER_HINGE] = STRUT_ELEMENT_HINGE,
+      [STRUT_OWNER_CELL] = STRUT_ELEMENT_CELL,
+      [STRUT_OWNER_COLLISION] = STRUT_ELEMENT_COLLISION,
+      [STRUT_OWNER_DISTANCE] = STRUT_ELEMENT_DISTANCE};
+  const strut_contact_table *c = &model->contacts;
+  strut_channel_owner owner = strut_observable_at(column.kind)->owner;
+  if (roles[owner])
+    column.item = strut_element_find_near(&model->elements, roles[owner], column.item, near);
+  if (owner != STRUT_OWNER_CONTACT) return column;
+  int32_t first = 0;
+  while (first < c->count && c->entry[first].node != column.item) first++;
+  int32_t end = first;
+  while (end < c->count && c->at[end] == c->at[first]) end++;
+  column.item = first, column.other = end;
+  return column;
 }
 
 size_t strut_feedback_states(const strut_scene *scene) {
@@ -66,12 +51,11 @@ static bool compile_maxwell(strut_model *model) {
 static bool compile_sensors(strut_model *model) {
   const strut_scene *scene = model->scene;
   strut_feedback_table *f = &model->feedback;
-  strut_sensor_entry *sensor =
-      strut_arena_allocate(&model->arena, scene->sensor_count, sizeof *sensor);
+  strut_column *sensor = strut_arena_allocate(&model->arena, scene->sensor_count, sizeof *sensor);
   if (!sensor) return false;
   for (size_t i = 0; i < scene->sensor_count; i++) {
-    sensor[i] = compile_sensor(model, &scene->sensors[i]);
-    if (strut_sensor_needs_drives(sensor[i].kind)) f->needs_drives = true;
+    sensor[i] = strut_column_find(model, strut_sensor_column(&scene->sensors[i]), 0);
+    if (strut_column_needs_drives(sensor[i])) f->needs_drives = true;
   }
   f->count = (int32_t)scene->sensor_count;
   f->sensor = sensor;

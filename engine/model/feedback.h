@@ -13,11 +13,10 @@
 
 #include "engine/scene/scene.h"
 
-typedef struct strut_sensor_entry {
-  strut_sensor_kind kind;
-  int32_t
-      at; /* member, element, first contact of a node (-1: none), coordinate, or strut_sensed_energy */
-} strut_sensor_entry;
+/** Does a column need the driven rest lengths, or where shaken grounds are? */
+static inline bool strut_column_needs_drives(strut_column column) {
+  return strut_observable_at(column.kind)->need != STRUT_OBSERVED_MOTION;
+}
 
 /** The Maxwell branch of a member, whose force is an internal state. */
 typedef struct strut_maxwell_entry {
@@ -27,9 +26,9 @@ typedef struct strut_maxwell_entry {
 
 typedef struct strut_feedback_table {
   int32_t count;
-  const strut_sensor_entry *sensor; /* (count) */
-  bool needs_drives;                /* some sensor's value follows from the driven rest lengths */
-  int32_t base, state_count; /* states stand at base .. base + state_count - 1 of velocities */
+  const strut_column *sensor; /* (count) as strut_column_find finds them */
+  bool needs_drives;          /* some sensor's value follows from the driven rest lengths */
+  int32_t base, state_count;  /* states stand at base .. base + state_count - 1 of velocities */
   int32_t lag_count;
   const int32_t
       *lagged; /* (lag_count) signals with a lag; their states follow those of the scene */
@@ -49,5 +48,13 @@ typedef struct strut_feedback_table {
 static inline bool strut_feedback_remembers(const strut_feedback_table *f) {
   return f->state_count || f->sampled_count || f->trigger_count || f->relay_count;
 }
+
+struct strut_model;
+/**
+ * The column of a scene with the item that its function knows: an element, which is looked for from `near` on, or
+ * contacts from `item` up to `other`.
+ */
+STRUT_API strut_column strut_column_find(const struct strut_model *model, strut_column column,
+                                         int32_t near);
 
 #endif

@@ -40,7 +40,7 @@ static strut_status flush(csv *self, table *t, strut_error *error) {
 static void add_name(strut_buffer *header, const strut_record_channel *channel, size_t item,
                      size_t component) {
   const strut_channel_row *row = strut_channel_row_of(channel->id);
-  bool whole = row->owner == STRUT_OWNER_SYSTEM;
+  bool whole = strut_channel_is_whole(row);
   strut_buffer_add(header, ",");
   strut_csv_add_text(header, "%s%s%s [%s]", whole ? "" : channel->item_names[item],
                      whole ? "" : ".", row->column_names[component], channel->unit);

@@ -42,7 +42,7 @@ STRUT_API bool strut_hdf5_has_memory(void);
 /* Of trajectory.c, for the reader. */
 
 /** The array of a channel. */
-STRUT_API double **strut_trajectory_array(strut_trajectory *trajectory, strut_channel id);
+STRUT_API double **strut_trajectory_array(strut_trajectory *trajectory, strut_channels id);
 /** STRUT_FILE_TROUBLE: the file cannot be read, for that reason. */
 STRUT_API strut_status strut_trajectory_trouble(const char *path, const char *reason,
                                                 strut_error *error);

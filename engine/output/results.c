@@ -13,10 +13,11 @@
 #include "engine/base/checksum.h"
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
+#include "engine/scene/observables.h"
 
-static const char *const run_names[] = {
-    "summary.json", "scene.yaml",   "nodes.csv",  "members.csv",   "hinges.csv",
-    "cells.csv",    "contacts.csv", "energy.csv", "trajectory.h5", NULL};
+#define TABLE_FILE(OWNER, THING, TABLE, group, phrase, things, axis, file) file,
+static const char *const run_names[] = {"summary.json", "scene.yaml",
+                                        STRUT_TABLES(TABLE_FILE) "trajectory.h5", NULL};
 
 static strut_status trouble(strut_error *error, const char *path, int code) {
   char reason[128];

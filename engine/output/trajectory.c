@@ -33,18 +33,18 @@ typedef struct keeper {
   bool waiting; /* the latest row is not yet a frame */
 } keeper;
 
-static size_t place_of(strut_channel id) {
+static size_t place_of(strut_channels id) {
   size_t place = 0;
-  while (1u << place != (unsigned)id) place++;
+  while ((strut_channels)1 << place != id) place++;
   assert(place < STRUT_CHANNEL_COUNT);
   return place;
 }
 
-double **strut_trajectory_array(strut_trajectory *t, strut_channel id) {
+double **strut_trajectory_array(strut_trajectory *t, strut_channels id) {
   return &t->channel[place_of(id)];
 }
 
-const double *strut_trajectory_channel(const strut_trajectory *t, strut_channel id) {
+const double *strut_trajectory_channel(const strut_trajectory *t, strut_channels id) {
   return t->channel[place_of(id)];
 }
 
@@ -156,7 +156,7 @@ static strut_status end(void *context, strut_status run_status, strut_error *err
 }
 
 strut_sink *strut_trajectory_sink(strut_trajectory *trajectory, const strut_scene *scene,
-                                  unsigned channels, size_t room) {
+                                  strut_channels channels, size_t room) {
   keeper *k = strut_allocate(1, sizeof *k);
   if (!k) return NULL;
   k->t = trajectory;

@@ -30,7 +30,7 @@ typedef struct strut_trajectory {
 } strut_trajectory;
 /** Its values of a channel, (frames, items, components); NULL where it was not recorded. */
 STRUT_API const double *strut_trajectory_channel(const strut_trajectory *trajectory,
-                                                 strut_channel id);
+                                                 strut_channels id);
 
 /** Default limit on the doubles of a trajectory: half a gigabyte. */
 #define STRUT_TRAJECTORY_ROOM ((size_t)1 << 26)
@@ -41,7 +41,7 @@ STRUT_API const double *strut_trajectory_channel(const strut_trajectory *traject
  * scene records into files. It is ready when the run has ended. NULL when memory is out.
  */
 STRUT_API strut_sink *strut_trajectory_sink(strut_trajectory *trajectory, const strut_scene *scene,
-                                            unsigned channels, size_t room);
+                                            strut_channels channels, size_t room);
 /** Frees the sink, not the trajectory. */
 STRUT_API void strut_trajectory_sink_free(strut_sink *sink);
 /**

@@ -144,7 +144,7 @@ static strut_status read_file(reader *r, size_t room) {
   strut_trajectory *t = r->t;
   const strut_channel_row *row;
   for (size_t i = 0; (row = strut_channel_at(i)) != NULL; i++)
-    if (row->owner != STRUT_OWNER_SYSTEM && !same_names(r, row))
+    if (!strut_channel_is_whole(row) && !same_names(r, row))
       return trouble(r, "it belongs to another structure than the scene beside it");
   t->status = run_status(r);
   strut_status status = read_time(r, room);

@@ -15,7 +15,7 @@
 
 /** One quantity of every item of a kind: (items, components) doubles of a row from `offset` on. */
 typedef struct strut_record_channel {
-  strut_channel id;
+  strut_channels id;
   const char *name; /* "position", "velocity", "length", "force", "contact", "angle", ... */
   const char *unit; /* "m", "m/s", "m", "N", "N", "rad", ... */
   size_t items, components, offset;
@@ -43,7 +43,7 @@ typedef struct strut_sink {
   strut_status (*begin)(void *context, const strut_record_layout *layout, strut_error *error);
   strut_status (*rows)(void *context, const double *rows, size_t count, strut_error *error);
   strut_status (*end)(void *context, strut_status run_status, strut_error *error);
-  unsigned channels; /* strut_channel bits of its rows; 0: those of the experiment */
+  strut_channels channels; /* of its rows; 0: those of the experiment */
 } strut_sink;
 
 #endif

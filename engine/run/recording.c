@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-static const unsigned ALL_CHANNELS = ~0u;
+static const strut_channels ALL_CHANNELS = ~(strut_channels)0;
 
 /* Names of the items of a channel, in the arena. */
 static const char *const *item_names(const strut_model *model, const strut_channel_row *row,
@@ -15,7 +15,8 @@ static const char *const *item_names(const strut_model *model, const strut_chann
   return names;
 }
 
-static bool create_layout(const strut_model *model, unsigned wanted, strut_recording *r) {
+static bool create_layout(const strut_model *model, strut_channels wanted, strut_recording *r) {
+  if (!strut_view_create(model, &r->arena, &r->view)) return false;
   const strut_channel_row *row;
   r->layout.width = 1;
   for (size_t k = 0; (row = strut_channel_at(k)) != NULL; k++) {
@@ -37,12 +38,38 @@ static bool create_layout(const strut_model *model, unsigned wanted, strut_recor
   return true;
 }
 
-static unsigned requested_channels(const strut_experiment *experiment, const strut_sink *sink) {
+/* Where each number of a row comes from. */
+static bool find_columns(strut_recording *r) {
+  const strut_model *model = r->view.model;
+  r->column = strut_arena_allocate(&r->arena, r->layout.width, sizeof *r->column);
+  r->observe = strut_arena_allocate(&r->arena, r->layout.width, sizeof *r->observe);
+  for (size_t k = 0; k < r->layout.channel_count && r->column && r->observe; k++) {
+    const strut_record_channel *c = &r->channel[k];
+    const strut_channel_row *row = strut_channel_row_of(c->id);
+    int32_t near = 0;
+    for (size_t i = 0; i < (c->items - row->total) * c->components; i++) {
+      size_t item = i / c->components, to = c->offset + i;
+      strut_column column = {(strut_column_kind)(row->first + i % c->components),
+                             (int32_t)strut_owner_index(row->owner, model->scene, item), -1};
+      r->observe[to] = strut_observe_at(column.kind);
+      if (row->owner == STRUT_OWNER_CONTACT)
+        column.other = column.item + 1; /* each by itself, also of a node on several grounds */
+      else
+        column = strut_column_find(model, column, near);
+      near = column.item >= 0 && column.item < model->elements.count ? column.item : 0;
+      r->column[to] = column;
+    }
+  }
+  return r->column && r->observe;
+}
+
+static strut_channels requested_channels(const strut_experiment *experiment,
+                                         const strut_sink *sink) {
   return sink->channels ? sink->channels : experiment->channels;
 }
 
 /* Selects the channels of one sink from the full layout. */
-static void create_part_layout(const strut_recording *r, unsigned wanted,
+static void create_part_layout(const strut_recording *r, strut_channels wanted,
                                strut_recording_part *part) {
   part->layout = (strut_record_layout){
       .width = 1, .channels = part->channel, .expected_rows = r->layout.expected_rows};
@@ -87,10 +114,9 @@ strut_status strut_recording_create(const strut_model *model, const strut_experi
   strut_span span = strut_experiment_span(experiment, model->scene);
   r->start = begin + span.record_start;
   r->every = span.record_every;
-  unsigned wanted = 0;
+  strut_channels wanted = 0;
   for (size_t s = 0; s < r->sink_count; s++) wanted |= requested_channels(experiment, r->sinks[s]);
-  bool ready =
-      strut_channel_view_create(model, &r->arena, &r->view) && create_layout(model, wanted, r);
+  bool ready = create_layout(model, wanted, r) && find_columns(r);
   double expected =
       (span.duration - span.record_start) / fmax(span.record_every, r->grid.step) + 1.0;
   r->layout.expected_rows = expected < 1e15 ? (size_t)expected : (size_t)1e15;
@@ -144,12 +170,26 @@ static strut_status flush_rows(strut_recording *r, strut_error *error) {
   return STRUT_OK;
 }
 
-static void fill_row(strut_state *state, strut_recording *r, unsigned wanted, double *row) {
-  strut_channel_view_show(&r->view, state, strut_time_grid_at(&r->grid, state->step));
-  row[0] = strut_time_grid_real(&r->grid, state->step);
+static unsigned needs_of(const strut_recording *r, strut_channels wanted) {
+  unsigned needs = 0;
   for (size_t k = 0; k < r->layout.channel_count; k++)
-    if (wanted & (unsigned)r->channel[k].id)
-      strut_channel_record(&r->view, r->channel[k].id, row + r->channel[k].offset);
+    for (size_t c = 0; c < r->channel[k].components && (wanted & r->channel[k].id); c++)
+      needs |= 1u << strut_observable_at(r->column[r->channel[k].offset + c].kind)->need;
+  return needs;
+}
+
+static void fill_row(strut_state *state, strut_recording *r, strut_channels wanted, double *row) {
+  strut_view_show(&r->view, state, needs_of(r, wanted), strut_time_grid_at(&r->grid, state->step));
+  row[0] = strut_time_grid_real(&r->grid, state->step);
+  for (size_t k = 0; k < r->layout.channel_count; k++) {
+    const strut_record_channel *c = &r->channel[k];
+    double sum = 0.0;
+    for (size_t i = c->offset; i < c->offset + c->items * c->components && (wanted & c->id); i++) {
+      const strut_column *from = &r->column[i];
+      row[i] = r->observe[i] ? r->observe[i](&r->view, from->item, from->other).value : sum;
+      sum += row[i];
+    }
+  }
 }
 
 strut_status strut_recording_sample(strut_state *state, strut_recording *r, strut_error *error) {
@@ -163,13 +203,12 @@ strut_status strut_recording_sample(strut_state *state, strut_recording *r, stru
 strut_status strut_recording_create_alone(const strut_model *model, const strut_time_grid *grid,
                                           strut_recording *r, strut_error *error) {
   *r = (strut_recording){.grid = *grid, .last = -1};
-  bool good = strut_channel_view_create(model, &r->arena, &r->view) &&
-              create_layout(model, ALL_CHANNELS, r);
-  if (good) r->rows = strut_arena_allocate(&r->arena, r->layout.width, sizeof *r->rows);
+  if (create_layout(model, ALL_CHANNELS, r) && find_columns(r))
+    r->rows = strut_arena_allocate(&r->arena, r->layout.width, sizeof *r->rows);
   return r->rows ? STRUT_OK : strut_no_memory(error, "");
 }
 
-void strut_recording_observe(strut_state *state, strut_recording *r, unsigned wanted) {
+void strut_recording_observe(strut_state *state, strut_recording *r, strut_channels wanted) {
   if (wanted) fill_row(state, r, wanted, r->rows);
 }
 

@@ -5,44 +5,10 @@
 #ifndef STRUT_ENGINE_RUN_RECORDING_H
 #define STRUT_ENGINE_RUN_RECORDING_H
 
-#include "engine/model/state.h"
+#include "engine/forces/observe.h"
 #include "engine/run/measure/meter.h"
 #include "engine/run/recorder.h"
 #include "engine/scene/channels.h"
-
-/*
- * Values of channels: each row of STRUT_CHANNEL_TABLE has a function record_NAME here that fills its numbers
- * from a model and its state.
- */
-
-/** Two numbers of each of some things, which are measured together, once for a state. */
-typedef struct strut_measured_pair {
-  double *first, *second; /* (things) */
-  bool fresh;             /* those of the present state */
-} strut_measured_pair;
-
-/** A state of a model, and what channels share that is measured of it. */
-typedef struct strut_channel_view {
-  const strut_model *model;
-  strut_state *state;
-  double time;                          /* [s] */
-  bool observed;                        /* forces are those of the state */
-  strut_measured_pair members;          /* lengths, forces */
-  strut_measured_pair hinges;           /* angles, moments */
-  strut_measured_pair cells;            /* areas, pressures */
-  const int32_t *hinge, *cell;          /* their elements */
-  double *momentum, *relative_velocity; /* (nodes, 2) scratch */
-} strut_channel_view;
-
-/** Allocates what channels share from the arena; false: memory is out. */
-bool strut_channel_view_create(const strut_model *model, strut_arena *arena,
-                               strut_channel_view *view);
-/** From now on the view shows this state at time t [s]; nothing is measured of it yet. */
-void strut_channel_view_show(strut_channel_view *view, strut_state *state, double t);
-/** Fills the (items, components) numbers of the channel. */
-void strut_channel_record(strut_channel_view *view, strut_channel id, double *out);
-
-/* ---- recording: lays out the rows of a run, samples the state and hands rows to the sinks ---- */
 
 /** Channels of one sink, as a layout of their own. */
 typedef struct strut_recording_part {
@@ -64,7 +30,9 @@ typedef struct strut_recording {
   strut_time_grid grid;
   double start, every;   /* first sample, interval [s] */
   int64_t sampled, last; /* samples so far; step of the latest, -1 before the first */
-  strut_channel_view view;
+  strut_view view;
+  strut_column *column; /* (width) what each number of a row is, as strut_column_find finds it; */
+  strut_observe **observe; /* its function; NULL: the sum of those before it, or the time */
   strut_arena arena;
 } strut_recording;
 
@@ -93,8 +61,8 @@ strut_status strut_recording_finish(strut_recording *recording, strut_status run
  */
 strut_status strut_recording_create_alone(const strut_model *model, const strut_time_grid *grid,
                                           strut_recording *recording, strut_error *error);
-/** Fills the channels of `wanted` (strut_channel bits) into its row. */
-void strut_recording_observe(strut_state *state, strut_recording *recording, unsigned wanted);
+/** Fills the channels of `wanted` (strut_channels bits) into its row. */
+void strut_recording_observe(strut_state *state, strut_recording *recording, strut_channels wanted);
 /** Frees the recording; ends sinks that are still open with STRUT_FILE_TROUBLE. */
 void strut_recording_free(strut_recording *recording);
 

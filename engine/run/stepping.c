@@ -260,8 +260,8 @@ struct strut_stepping {
   strut_error error;
   stepping_inputs inputs;
   strut_recording live;
-  unsigned shown;  /* channels that follow */
-  int64_t checked; /* step of the latest strut_run_sample; -1: none */
+  strut_channels shown; /* channels that follow */
+  int64_t checked;      /* step of the latest strut_run_sample; -1: none */
   strut_status status;
   uint64_t identity;
   bool begun;
@@ -390,12 +390,12 @@ strut_status strut_stepping_advance(strut_stepping *s, int64_t steps, strut_erro
 
 /* ---- what it shows ---- */
 
-const strut_record_channel *strut_stepping_channel(strut_stepping *s, strut_channel id,
+const strut_record_channel *strut_stepping_channel(strut_stepping *s, strut_channels id,
                                                    const double **data) {
   for (size_t k = 0; k < s->live.layout.channel_count; k++) {
     const strut_record_channel *c = &s->live.channel[k];
     if (c->id != id) continue;
-    s->shown |= (unsigned)id;
+    s->shown |= id;
     refresh(s);
     *data = s->live.rows + c->offset;
     return c;

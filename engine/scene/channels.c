@@ -4,46 +4,93 @@
 #include <assert.h>
 #include <string.h>
 
-#include "engine/scene/scene.h"
+#include "engine/scene/things.h"
+
+/* Unit and table of an observable, by its identifier. */
+#define TABLE_OF_OWNER(OWNER, THING, TABLE, ...) shown_in_##OWNER = STRUT_OWNER_##TABLE,
+enum { STRUT_OWNERS(TABLE_OF_OWNER) };
+#define FACTS(ID, OWNER, NAME, word, DIMENSION, ...)                                               \
+  static const char unit_of_##ID[] = STRUT_DIMENSION_##DIMENSION(STRUT_CHANNEL_UNIT);              \
+  enum { table_of_##ID = shown_in_##OWNER };
+STRUT_OBSERVABLES(FACTS)
+
+#define POWERS(unit, kg, m, s, angle) kg, m, s, angle
+#define OBSERVABLE(ID, OWNER, NAME, word, DIMENSION, NEED, RECORD, SENSE, text)                    \
+  {NAME,                                                                                           \
+   word,                                                                                           \
+   unit_of_##ID,                                                                                   \
+   text,                                                                                           \
+   STRUT_OWNER_##OWNER,                                                                            \
+   STRUT_DIMENSION_##DIMENSION(POWERS),                                                            \
+   STRUT_OBSERVED_##NEED,                                                                          \
+   STRUT_OBSERVED_##RECORD,                                                                        \
+   STRUT_OBSERVED_##SENSE},
+static const strut_observable observables[] = {STRUT_OBSERVABLES(OBSERVABLE)};
+
+const strut_observable *strut_observable_at(strut_column_kind kind) {
+  assert(kind < STRUT_COLUMN_COUNT);
+  return &observables[kind];
+}
+
+const char *strut_observable_unsensed(strut_column_kind kind) {
+#define REASON(HOW, reason) reason,
+  static const char *const reasons[] = {STRUT_OBSERVED_SENSES(REASON)};
+  return reasons[strut_observable_at(kind)->sense];
+}
 
 /* Names of components, as those of an axis and as those of the columns of a table. */
 #define ENERGY_NAME(name, kind, label) #name,
-static const char *const one[] = {""}, *const axes[] = {"x", "y"}, *const rates[] = {"vx", "vy"},
-                         *const reactions[] = {"normal", "friction"},
+static const char *const one[] = {""}, *const axes[] = {"x", "y"},
                          *const energies[] = {STRUT_ENERGY_TABLE(ENERGY_NAME)};
-
-#define CHANNEL_NAME(NAME, name, ...) #name,
-static const char *const names[] = {STRUT_CHANNEL_TABLE(CHANNEL_NAME)};
+/* That of a single one: of the structure its name, of a thing what stands behind the dot. */
+#define COLUMN_NAME(ID, OWNER, NAME, word, ...)                                                    \
+  STRUT_OWNER_##OWNER >= STRUT_OWNER_SYSTEM ? NAME : word,
+static const char *const columns[] = {STRUT_OBSERVABLES(COLUMN_NAME)};
 
 /* Four fields of a row: number, axis, names, names of columns. */
 #define COUNT(list) (sizeof(list) / sizeof(list)[0])
-#define SINGLE(NAME) 1, "axis", one, &names[STRUT_CHANNEL_PLACE_##NAME]
-#define POSITIONS(NAME) COUNT(axes), "axis", axes, axes
-#define VELOCITIES(NAME) COUNT(axes), "axis", axes, rates
-#define REACTIONS(NAME) COUNT(reactions), "contact_component", reactions, reactions
-#define ENERGIES(NAME) COUNT(energies), "energy_component", energies, energies
+#define SINGLE(FIRST) 1, "axis", one, &columns[STRUT_COLUMN_##FIRST]
+#define POSITIONS(FIRST) COUNT(axes), "axis", axes, &columns[STRUT_COLUMN_##FIRST]
+#define VELOCITIES POSITIONS
+#define REACTIONS(FIRST)                                                                           \
+  2, "contact_component", &columns[STRUT_COLUMN_##FIRST], &columns[STRUT_COLUMN_##FIRST]
+#define ENERGIES(FIRST) COUNT(energies), "energy_component", energies, energies
 
 #define WITHOUT_TOTAL false
 #define WITH_TOTAL true
-#define CHANNEL_ROW(NAME, name, unit, OWNER, COMPONENTS, TOTAL, text)                              \
-  {STRUT_CHANNEL_##NAME, #name, unit, STRUT_OWNER_##OWNER, COMPONENTS(NAME), TOTAL},
-static const strut_channel_row rows[] = {STRUT_CHANNEL_TABLE(CHANNEL_ROW)};
+#define ROW(PLACE, name, FIRST, COMPONENTS, TOTAL)                                                 \
+  {(strut_channels)1 << STRUT_CHANNEL_PLACE_##PLACE,                                               \
+   name,                                                                                           \
+   unit_of_##FIRST,                                                                                \
+   (strut_channel_owner)table_of_##FIRST,                                                          \
+   STRUT_COLUMN_##FIRST,                                                                           \
+   COMPONENTS(FIRST),                                                                              \
+   TOTAL},
+#define CHANNEL_ROW(NAME, name, FIRST, COMPONENTS, TOTAL, text)                                    \
+  ROW(NAME, #name, FIRST, COMPONENTS, TOTAL)
+#define OWN_ROW(ID, OWNER, NAME, word, DIMENSION, NEED, RECORD, ...)                               \
+  STRUT_OF_##RECORD(ROW(OF_##ID, NAME, ID, SINGLE, false))
+static const strut_channel_row rows[] = {STRUT_CHANNEL_TABLE(CHANNEL_ROW)
+                                             STRUT_OBSERVABLES(OWN_ROW)};
 
-#define OWNER_ROW(OWNER, things, axis, file) {things, axis, axis "_and_total", file},
-static const strut_owner_row owners[] = {STRUT_CHANNEL_OWNERS(OWNER_ROW)};
+#define OWNER_ROW(OWNER, THING, TABLE, group, phrase, things, axis, file)                          \
+  {STRUT_OWNER_##TABLE, group, phrase, things, axis, axis "_and_total", file},
+static const strut_owner_row owners[] = {STRUT_OWNERS(OWNER_ROW)};
 
-static_assert(STRUT_CHANNEL_COUNT < 32, "channels are bits of an unsigned");
+static_assert(STRUT_CHANNEL_COUNT <= 64, "channels are bits of strut_channels");
 
-static bool is_of_system(const strut_channel_row *row) { return row->owner == STRUT_OWNER_SYSTEM; }
+bool strut_channel_is_whole(const strut_channel_row *row) {
+  return row->owner >= STRUT_OWNER_SYSTEM;
+}
 
 const strut_channel_row *strut_channel_at(size_t i) {
   for (int of_system = 0; of_system < 2; of_system++)
     for (size_t k = 0; k < STRUT_CHANNEL_COUNT; k++)
-      if (is_of_system(&rows[k]) == (of_system == 1) && i-- == 0) return &rows[k];
+      if (strut_channel_is_whole(&rows[k]) == (of_system == 1) && i-- == 0) return &rows[k];
   return NULL;
 }
 
-const strut_channel_row *strut_channel_row_of(strut_channel id) {
+const strut_channel_row *strut_channel_row_of(strut_channels id) {
   size_t k = 0;
   while (rows[k].id != id) assert(k + 1 < STRUT_CHANNEL_COUNT), k++;
   return &rows[k];
@@ -51,7 +98,7 @@ const strut_channel_row *strut_channel_row_of(strut_channel id) {
 
 const strut_channel_row *strut_channel_named(const char *name) {
   for (size_t k = 0; k < STRUT_CHANNEL_COUNT; k++)
-    if (strcmp(names[k], name) == 0) return &rows[k];
+    if (strcmp(rows[k].name, name) == 0) return &rows[k];
   return NULL;
 }
 
@@ -60,36 +107,39 @@ const strut_owner_row *strut_owner_row_of(strut_channel_owner owner) {
   return &owners[owner];
 }
 
+static bool is_named(const strut_scene *scene, strut_thing thing, size_t i) {
+  const char *name = strut_thing_name(scene, thing, i);
+  return name && *name;
+}
+
+size_t strut_owner_index(strut_channel_owner owner, const strut_scene *scene, size_t i) {
+  if (owner != STRUT_OWNER_SIGNAL) return i;
+  size_t k = 0, count = scene->signal_count;
+  while (k < count && !(is_named(scene, STRUT_THING_SIGNAL, k) && i-- == 0)) k++;
+  return k;
+}
+
 size_t strut_owner_count(strut_channel_owner owner, const strut_scene *scene) {
-  switch (owner) {
-    case STRUT_OWNER_NODE: return scene->node_count;
-    case STRUT_OWNER_MEMBER: return scene->member_count;
-    case STRUT_OWNER_HINGE: return scene->hinge_count;
-    case STRUT_OWNER_CELL: return scene->cell_count;
-    case STRUT_OWNER_DISTANCE: return scene->distance_count;
-    case STRUT_OWNER_CONTACT: return scene->contact_count;
-    case STRUT_OWNER_SYSTEM:
-    case STRUT_OWNER_COUNT: break;
-  }
-  return 1;
+  strut_thing thing = strut_thing_of_owner(owner);
+  if (owner == STRUT_OWNER_CONTACT) return scene->contact_count;
+  if (thing == STRUT_THING_COUNT) return 1;
+  size_t count = 0, all = strut_thing_count(scene, thing);
+  if (owner != STRUT_OWNER_SIGNAL) return all;
+  for (size_t i = 0; i < all; i++) count += is_named(scene, thing, i);
+  return count;
 }
 
 size_t strut_channel_items(const strut_channel_row *row, const strut_scene *scene) {
+  if (row->first == STRUT_COLUMN_LEAST_GAP && !scene->collision_count) return 0;
   return strut_owner_count(row->owner, scene) + (row->total ? 1 : 0);
 }
 
 const char *strut_owner_name(strut_channel_owner owner, const strut_scene *scene, size_t i) {
-  switch (owner) {
-    case STRUT_OWNER_NODE: return scene->nodes[i].name;
-    case STRUT_OWNER_MEMBER: return scene->members[i].name;
-    case STRUT_OWNER_HINGE: return scene->hinges[i].name;
-    case STRUT_OWNER_CELL: return scene->cells[i].name;
-    case STRUT_OWNER_DISTANCE: return scene->distances[i].name;
-    case STRUT_OWNER_CONTACT: return strut_contact_name(scene, i);
-    case STRUT_OWNER_SYSTEM:
-    case STRUT_OWNER_COUNT: break;
-  }
-  return "total";
+  if (owner == STRUT_OWNER_CONTACT) return strut_contact_name(scene, i);
+  strut_thing thing = strut_thing_of_owner(owner);
+  return thing == STRUT_THING_COUNT
+             ? "total"
+             : strut_thing_name(scene, thing, strut_owner_index(owner, scene, i));
 }
 
 const char *strut_channel_item(const strut_channel_row *row, const strut_scene *scene, size_t i) {
@@ -99,9 +149,9 @@ const char *strut_channel_item(const strut_channel_row *row, const strut_scene *
 }
 
 size_t strut_channel_things(const strut_channel_row *row, const strut_scene *scene) {
-  return is_of_system(row) ? row->components : strut_channel_items(row, scene);
+  return strut_channel_is_whole(row) ? row->components : strut_channel_items(row, scene);
 }
 
 const char *strut_channel_thing(const strut_channel_row *row, const strut_scene *scene, size_t i) {
-  return is_of_system(row) ? row->component_names[i] : strut_channel_item(row, scene, i);
+  return strut_channel_is_whole(row) ? row->column_names[i] : strut_channel_item(row, scene, i);
 }

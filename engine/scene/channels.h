@@ -1,48 +1,35 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Channels: what a run can record over time.
+ * Channels: what a run can record over time. Each is one or more observables of all that their owner has.
  *
- * A row of STRUT_CHANNEL_TABLE and the function record_NAME of engine/run/channels.c are all that there is of a
- * channel. The language, recording, CSV, HDF5, pages, the library and Python loop over the table.
+ * An observable that is RECORDED is a channel by its name. Those that have other names in C, or several observables,
+ * are rows of STRUT_CHANNEL_TABLE.
  */
 #ifndef STRUT_ENGINE_SCENE_CHANNELS_H
 #define STRUT_ENGINE_SCENE_CHANNELS_H
 
-#include <stdbool.h>
-#include <stddef.h>
-
-#include "engine/base/status.h"
+#include "engine/scene/observables.h"
 
 struct strut_scene;
 
 /**
- * X(NAME, name, unit, OWNER, COMPONENTS, TOTAL, text): the channels in the order of their words in the key table.
- * OWNER is a row of STRUT_CHANNEL_OWNERS and COMPONENTS one of STRUT_CHANNEL_COMPONENTS. Of a channel WITH_TOTAL
- * the sum over all owners follows that of the last. The text says in the key's description of what it is.
+ * X(NAME, name, FIRST, COMPONENTS, TOTAL, text): the channels that C knows by name. FIRST is the first of their
+ * observables and COMPONENTS one of STRUT_CHANNEL_COMPONENTS. Of a channel WITH_TOTAL the sum over all owners follows
+ * that of the last.
  */
 #define STRUT_CHANNEL_TABLE(X)                                                                     \
-  X(POSITION, position, "m", NODE, POSITIONS, WITHOUT_TOTAL, "of nodes")                           \
-  X(VELOCITY, velocity, "m/s", NODE, VELOCITIES, WITHOUT_TOTAL, "of nodes")                        \
-  X(LENGTH, length, "m", MEMBER, SINGLE, WITHOUT_TOTAL, "of members")                              \
-  X(FORCE, force, "N", MEMBER, SINGLE, WITHOUT_TOTAL, "of members, tension positive")              \
-  X(CONTACT, contact, "N", CONTACT, REACTIONS, WITHOUT_TOTAL, "forces")                            \
-  X(ENERGY, energy, "J", SYSTEM, ENERGIES, WITHOUT_TOTAL, "with works and losses")                 \
-  X(ANGLE, angle, "rad", HINGE, SINGLE, WITHOUT_TOTAL, "of hinges")                                \
-  X(MOMENT, moment, "N m", HINGE, SINGLE, WITHOUT_TOTAL, "of hinges")                              \
-  X(AREA, area, "m^2", CELL, SINGLE, WITHOUT_TOTAL, "of cells")                                    \
-  X(PRESSURE, pressure, "N/m", CELL, SINGLE, WITHOUT_TOTAL, "of cells")                            \
-  X(ANGULAR_MOMENTUM, angular_momentum, "kg m^2/s", NODE, SINGLE, WITH_TOTAL,                      \
-    "about the centre of mass")
-
-/** X(OWNER, things, axis, file): their name in the plural, that of their axis in HDF5, and their CSV file. */
-#define STRUT_CHANNEL_OWNERS(X)                                                                    \
-  X(NODE, "nodes", "node", "nodes.csv")                                                            \
-  X(MEMBER, "members", "member", "members.csv")                                                    \
-  X(HINGE, "hinges", "hinge", "hinges.csv")                                                        \
-  X(CELL, "cells", "cell", "cells.csv")                                                            \
-  X(DISTANCE, "distances", "distance", "distances.csv")                                            \
-  X(CONTACT, "contacts", "contact_node", "contacts.csv")                                           \
-  X(SYSTEM, "energies", "system", "energy.csv")
+  X(POSITION, position, NODE_X, POSITIONS, WITHOUT_TOTAL, "of nodes [m]")                          \
+  X(VELOCITY, velocity, NODE_VX, VELOCITIES, WITHOUT_TOTAL, "of nodes [m/s]")                      \
+  X(LENGTH, length, LENGTH, SINGLE, WITHOUT_TOTAL, "of members [m]")                               \
+  X(FORCE, force, FORCE, SINGLE, WITHOUT_TOTAL, "of members, tension positive [N]")                \
+  X(CONTACT, contact, NORMAL, REACTIONS, WITHOUT_TOTAL, "forces [N]")                              \
+  X(ENERGY, energy, KINETIC, ENERGIES, WITHOUT_TOTAL, "with works and losses [J]")                 \
+  X(ANGLE, angle, HINGE_ANGLE, SINGLE, WITHOUT_TOTAL, "of hinges [rad]")                           \
+  X(MOMENT, moment, MOMENT, SINGLE, WITHOUT_TOTAL, "of hinges [N m]")                              \
+  X(AREA, area, CELL_AREA, SINGLE, WITHOUT_TOTAL, "of cells [m^2]")                                \
+  X(PRESSURE, pressure, PRESSURE, SINGLE, WITHOUT_TOTAL, "of cells [N/m]")                         \
+  X(ANGULAR_MOMENTUM, angular_momentum, NODE_SPIN, SINGLE, WITH_TOTAL,                             \
+    "about the centre of mass [kg m^2/s]")
 
 /**
  * X(kind, label): energies, works and losses [J] in the order of all outputs, with what people read. Energies
@@ -65,43 +52,49 @@ struct strut_scene;
 enum { STRUT_ENERGIES = STRUT_ENERGY_TABLE(STRUT_ENERGY_ONE) };
 #undef STRUT_ENERGY_ONE
 
+/* Something for each observable that is a channel of its own. */
+#define STRUT_OF_RECORDED(...) __VA_ARGS__
+#define STRUT_OF_PART(...)
+#define STRUT_OF_UNRECORDED(...)
+
 enum {
 #define STRUT_CHANNEL_PLACE(NAME, ...) STRUT_CHANNEL_PLACE_##NAME,
-  STRUT_CHANNEL_TABLE(STRUT_CHANNEL_PLACE)
+#define STRUT_CHANNEL_OWN_PLACE(ID, OWNER, NAME, word, DIMENSION, NEED, RECORD, ...)               \
+  STRUT_OF_##RECORD(STRUT_CHANNEL_PLACE_OF_##ID, )
+  STRUT_CHANNEL_TABLE(STRUT_CHANNEL_PLACE) STRUT_OBSERVABLES(STRUT_CHANNEL_OWN_PLACE)
+#undef STRUT_CHANNEL_OWN_PLACE
 #undef STRUT_CHANNEL_PLACE
       STRUT_CHANNEL_COUNT
 };
 
-/** Bits of a set of channels. */
-typedef enum strut_channel {
+/** A set of channels, and one of them: bit k is that of place k. */
+typedef uint64_t strut_channels;
+
+enum {
 #define STRUT_CHANNEL_BIT(NAME, ...) STRUT_CHANNEL_##NAME = 1 << STRUT_CHANNEL_PLACE_##NAME,
   STRUT_CHANNEL_TABLE(STRUT_CHANNEL_BIT)
 #undef STRUT_CHANNEL_BIT
-} strut_channel;
+};
 
 /** The key's words, "position|velocity|...", and its description. */
 #define STRUT_CHANNEL_WORD(NAME, name, ...) "|" #name
-#define STRUT_CHANNEL_WORDS (&("" STRUT_CHANNEL_TABLE(STRUT_CHANNEL_WORD))[1])
-#define STRUT_CHANNEL_SENTENCE(NAME, name, unit, OWNER, COMPONENTS, TOTAL, text)                   \
-  " `" #name "` " text " [" unit "];"
+#define STRUT_CHANNEL_OWN_WORD(ID, OWNER, NAME, word, DIMENSION, NEED, RECORD, ...)                \
+  STRUT_OF_##RECORD("|" NAME)
+#define STRUT_CHANNEL_WORDS                                                                        \
+  (&("" STRUT_CHANNEL_TABLE(STRUT_CHANNEL_WORD) STRUT_OBSERVABLES(STRUT_CHANNEL_OWN_WORD))[1])
+#define STRUT_CHANNEL_SENTENCE(NAME, name, FIRST, COMPONENTS, TOTAL, text) " `" #name "` " text ";"
+#define STRUT_CHANNEL_UNIT(unit, ...) unit
+#define STRUT_CHANNEL_OWN_SENTENCE(ID, OWNER, NAME, word, DIMENSION, NEED, RECORD, SENSE, text)    \
+  STRUT_OF_##RECORD(" `" NAME "` " text " [" STRUT_DIMENSION_##DIMENSION(STRUT_CHANNEL_UNIT) "];")
 #define STRUT_CHANNEL_DESCRIPTION                                                                  \
-  "Channels to record:" STRUT_CHANNEL_TABLE(STRUT_CHANNEL_SENTENCE) " absent things are left out."
-
-typedef enum strut_channel_owner {
-#define STRUT_CHANNEL_OWNER(OWNER, ...) STRUT_OWNER_##OWNER,
-  STRUT_CHANNEL_OWNERS(STRUT_CHANNEL_OWNER)
-#undef STRUT_CHANNEL_OWNER
-      STRUT_OWNER_COUNT
-} strut_channel_owner;
-
-typedef struct strut_owner_row {
-  const char *things, *axis, *axis_with_total, *file;
-} strut_owner_row;
+  "Channels to record:" STRUT_CHANNEL_TABLE(STRUT_CHANNEL_SENTENCE)                                \
+      STRUT_OBSERVABLES(STRUT_CHANNEL_OWN_SENTENCE) " absent things are left out."
 
 typedef struct strut_channel_row {
-  strut_channel id;
+  strut_channels id;
   const char *name, *unit;
-  strut_channel_owner owner;
+  strut_channel_owner owner; /* the table that it is in */
+  strut_column_kind first;   /* observable of the first component; those of others follow */
   size_t components;
   const char *component_axis;         /* name of the components' axis in HDF5 */
   const char *const *component_names; /* (components) "x", "normal", ...; "" of a single one */
@@ -113,14 +106,18 @@ typedef struct strut_channel_row {
 /** The i-th channel in the order in which they are recorded, those of the whole system last; NULL behind it. */
 STRUT_API const strut_channel_row *strut_channel_at(size_t i);
 /** The channel of that bit. */
-STRUT_API const strut_channel_row *strut_channel_row_of(strut_channel id);
+STRUT_API const strut_channel_row *strut_channel_row_of(strut_channels id);
 /** The channel of that name, or NULL. */
 STRUT_API const strut_channel_row *strut_channel_named(const char *name);
-STRUT_API const strut_owner_row *strut_owner_row_of(strut_channel_owner owner);
+/** Is it of the whole structure, so that people see its components as columns? */
+STRUT_API bool strut_channel_is_whole(const strut_channel_row *row);
 /** Number and names of what the scene has of a kind; 1 and "total" of the system. */
 STRUT_API size_t strut_owner_count(strut_channel_owner owner, const struct strut_scene *scene);
 STRUT_API const char *strut_owner_name(strut_channel_owner owner, const struct strut_scene *scene,
                                        size_t i);
+/** The index in the scene of the i-th of a kind: signals without names are not counted. */
+STRUT_API size_t strut_owner_index(strut_channel_owner owner, const struct strut_scene *scene,
+                                   size_t i);
 /** Number of a channel's items: things of the scene, and the total; 1 for the system. */
 STRUT_API size_t strut_channel_items(const strut_channel_row *row, const struct strut_scene *scene);
 /** Name of the i-th item; the scene's, or "total". */

@@ -227,42 +227,42 @@ static bool touches(const strut_scene *scene, int32_t node) {
   return false;
 }
 
+/* Is there what a column is of? */
+static bool column_exists(const strut_scene *scene, strut_column column) {
+  if ((unsigned)column.kind >= STRUT_COLUMN_COUNT) return false;
+  strut_channel_owner owner = strut_observable_at(column.kind)->owner;
+  strut_thing thing = strut_thing_of_owner(owner);
+  if (owner == STRUT_OWNER_PAIR)
+    return strut_exists(column.item, scene->node_count) &&
+           strut_exists(column.other, scene->node_count);
+  return thing == STRUT_THING_COUNT || strut_exists(column.item, strut_thing_count(scene, thing));
+}
+
 static void check_sensor(strut_checker *checker, size_t index) {
   const strut_scene *scene = checker->scene;
   const strut_sensor *s = &scene->sensors[index];
-  bool known = true;
-  bool contact = s->kind == STRUT_SENSOR_CONTACT || s->kind == STRUT_SENSOR_CONTACT_FORCE;
-  const char *key = s->kind == STRUT_SENSOR_CONTACT ? "contact" : "contact_force";
   strut_check_begin(checker, STRUT_THING_SENSOR, index);
-  switch (s->kind) {
-    case STRUT_SENSOR_LENGTH:
-    case STRUT_SENSOR_FORCE: known = strut_exists(s->item, scene->member_count); break;
-    case STRUT_SENSOR_ANGLE: known = strut_exists(s->item, scene->hinge_count); break;
-    case STRUT_SENSOR_AREA:
-    case STRUT_SENSOR_PRESSURE: known = strut_exists(s->item, scene->cell_count); break;
-    case STRUT_SENSOR_DISTANCE: known = strut_exists(s->item, scene->distance_count); break;
-    case STRUT_SENSOR_COLLISION_FORCE: known = strut_exists(s->item, scene->collision_count); break;
-    case STRUT_SENSOR_CONTACT_FORCE:
-    case STRUT_SENSOR_CONTACT:
-    case STRUT_SENSOR_POSITION:
-    case STRUT_SENSOR_VELOCITY:
-      known = strut_exists(s->item, scene->node_count) && s->along < 2;
-      break;
-    case STRUT_SENSOR_ENERGY: known = s->energy <= STRUT_SENSED_TOTAL; break;
-    case STRUT_SENSOR_KINDS: known = false;
-  }
-  if (!known)
+  bool known = s->along < 2 && s->energy < 3 && column_exists(scene, strut_sensor_column(s));
+  if (!known) {
     strut_fault(checker, NULL, "is of a thing that does not exist");
-  else if (contact && !strut_scene_has_ground(scene))
+    return;
+  }
+  strut_column seen = strut_sensor_column(s);
+  bool contact = strut_observable_at(seen.kind)->owner == STRUT_OWNER_CONTACT,
+       ground = contact || seen.kind == STRUT_COLUMN_HEIGHT;
+  const char *key = s->length                           ? "of"
+                    : seen.kind == STRUT_COLUMN_TOUCHES ? "contact"
+                                                        : "contact_force";
+  if (ground && !strut_scene_has_ground(scene))
     strut_fault(checker, key, "is of a contact, but there is no ground; add 'ground' to the scene");
-  else if (contact && !touches(scene, s->item))
+  else if (contact && !touches(scene, seen.item))
     strut_fault(checker, key,
                 "is of node '%s', which cannot touch the ground; list it in 'nodes' of "
                 "the ground",
-                scene->nodes[s->item].name);
-  else if (s->kind == STRUT_SENSOR_FORCE && scene->bar_model == STRUT_BARS_RIGID &&
-           scene->members[s->item].kind == STRUT_BAR)
-    strut_fault(checker, "force",
+                scene->nodes[seen.item].name);
+  else if (seen.kind == STRUT_COLUMN_FORCE && scene->bar_model == STRUT_BARS_RIGID &&
+           scene->members[seen.item].kind == STRUT_BAR)
+    strut_fault(checker, s->length ? "of" : "force",
                 "is of the force of a bar, but bars are rigid; make the member a "
                 "spring, or bars: elastic");
 }
@@ -279,8 +279,7 @@ static bool is_known(const strut_scene *scene, const strut_instruction *p, size_
   if (p->column.kind == STRUT_COLUMN_TIME) return true;
   if (p->column.kind == STRUT_COLUMN_SENSOR) return strut_exists(item, scene->sensor_count);
   if (p->column.kind == STRUT_COLUMN_SENSOR_RATE)
-    return strut_exists(item, scene->sensor_count) &&
-           strut_sensor_has_rate(scene->sensors[item].kind);
+    return strut_exists(item, scene->sensor_count) && strut_sensor_has_rate(&scene->sensors[item]);
   if (p->column.kind == STRUT_COLUMN_STATE) return strut_exists(item, scene->state_count);
   return p->column.kind == STRUT_COLUMN_SIGNAL && strut_exists(item, signals);
 }

@@ -126,9 +126,9 @@ typedef struct strut_experiment {
   int32_t measure_node; /* whose velocity (14) is measured; -1: the centre of mass */
   size_t quantity_count;
   strut_quantity_definition *quantities; /* (quantity_count) measured beside that velocity */
-  double output_every; /* sampling interval [s]; 0: a thousandth of the recorded time */
-  double output_last;  /* record only the last periods or seconds; 0: all */
-  unsigned channels;   /* strut_channel bits; default position, length, force */
+  double output_every;     /* sampling interval [s]; 0: a thousandth of the recorded time */
+  double output_last;      /* record only the last periods or seconds; 0: all */
+  strut_channels channels; /* default position, length, force */
   /* Ends statics on this experiment with STRUT_INTERRUPTED, soon after it is set; NULL: nothing does.
      Not part of what a file describes; runs and searches for all equilibria have options for it. */
   const strut_flag *interrupt;

@@ -175,10 +175,11 @@ static void describe_signal(const strut_scene *scene, int32_t index, passage thr
 static void describe_sensor(const strut_scene *scene, int32_t index, bool rate, passage through,
                             strut_signal_traits *traits) {
   const strut_sensor *s = &scene->sensors[index];
+  strut_column seen = strut_sensor_column(s);
   traits->follows = true;
   if (through == DIRECT) {
-    if (rate || !strut_sensor_has_rate(s->kind)) traits->sensor = index;
-  } else if (s->kind == STRUT_SENSOR_FORCE && scene->members[s->item].damping > 0.0) {
+    if (rate || !strut_sensor_has_rate(s)) traits->sensor = index;
+  } else if (seen.kind == STRUT_COLUMN_FORCE && scene->members[seen.item].damping > 0.0) {
     traits->damped = index;
   }
 }

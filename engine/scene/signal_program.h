@@ -18,36 +18,24 @@
 /** Most numbers on the stack of a program. */
 enum { STRUT_MOST_PROGRAM_DEPTH = 64 };
 
-typedef enum strut_sensor_kind {
-  STRUT_SENSOR_LENGTH,          /* of a member [m] */
-  STRUT_SENSOR_FORCE,           /* of a member, tension positive [N] */
-  STRUT_SENSOR_ANGLE,           /* of a hinge [rad] */
-  STRUT_SENSOR_CONTACT,         /* 1 while a node touches the ground, else 0 */
-  STRUT_SENSOR_POSITION,        /* of a node, along x or y [m] */
-  STRUT_SENSOR_VELOCITY,        /* likewise [m/s] */
-  STRUT_SENSOR_ENERGY,          /* of the structure [J] */
-  STRUT_SENSOR_AREA,            /* of a cell [m^2] */
-  STRUT_SENSOR_PRESSURE,        /* in a cell [N/m] */
-  STRUT_SENSOR_DISTANCE,        /* of a distance [m] */
-  STRUT_SENSOR_CONTACT_FORCE,   /* of all grounds on a node, normal to them [N] */
-  STRUT_SENSOR_COLLISION_FORCE, /* of a collision, pushing positive [N] */
-  STRUT_SENSOR_KINDS
-} strut_sensor_kind;
-
-typedef enum strut_sensed_energy {
-  STRUT_SENSED_KINETIC,
-  STRUT_SENSED_ELASTIC,
-  STRUT_SENSED_TOTAL
-} strut_sensed_energy;
-
-/** A number that signals may follow. */
+/** A number that signals may follow: an observable, or one that `of` names. */
 typedef struct strut_sensor {
   const char *name;
-  strut_sensor_kind kind;
+  uint32_t kind;   /* strut_column_kind; TIME: as `of` says */
   int32_t item;    /* of the scene: member, hinge, node, cell, distance or collision */
-  uint32_t along;  /* of POSITION and VELOCITY: 0 x, 1 y */
-  uint32_t energy; /* of ENERGY: strut_sensed_energy */
+  uint32_t along;  /* of a node's x and vx: 0 x, 1 y */
+  uint32_t energy; /* of the kinetic energy: 1 the elastic one, 2 the total */
+  size_t length;
+  strut_instruction *of; /* (length) one column */
 } strut_sensor;
+
+/** What a sensor sees. */
+static inline strut_column strut_sensor_column(const strut_sensor *sensor) {
+  if (sensor->length) return sensor->of->column;
+  uint32_t kind = sensor->kind + sensor->along + sensor->energy;
+  if (sensor->energy == 2) kind = STRUT_COLUMN_TOTAL;
+  return (strut_column){(strut_column_kind)kind, sensor->item, -1};
+}
 
 /** A number that the run integrates beside the motion: z(0) = start, dz/dt = rate. */
 typedef struct strut_internal_state {
@@ -87,17 +75,8 @@ static inline double strut_relay_value(const strut_signal *relay, int8_t side) {
 }
 
 /** True where the rate of a sensor follows from positions and velocities alone. */
-static inline bool strut_sensor_has_rate(strut_sensor_kind kind) {
-  return kind == STRUT_SENSOR_LENGTH || kind == STRUT_SENSOR_ANGLE ||
-         kind == STRUT_SENSOR_POSITION || kind == STRUT_SENSOR_AREA ||
-         kind == STRUT_SENSOR_DISTANCE;
-}
-
-/** True where a sensor needs the driven rest lengths, or where shaken grounds are. */
-static inline bool strut_sensor_needs_drives(strut_sensor_kind kind) {
-  return kind == STRUT_SENSOR_FORCE || kind == STRUT_SENSOR_ENERGY ||
-         kind == STRUT_SENSOR_CONTACT || kind == STRUT_SENSOR_PRESSURE ||
-         kind == STRUT_SENSOR_CONTACT_FORCE;
+static inline bool strut_sensor_has_rate(const strut_sensor *sensor) {
+  return strut_observable_at(strut_sensor_column(sensor).kind)->sense == STRUT_OBSERVED_RATED;
 }
 
 /** Value of an operation of one operand or two. */

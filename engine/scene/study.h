@@ -252,6 +252,10 @@ enum {
   X(SHAPE, "shape_distance", STRUT_OF_RUN | STRUT_OF_EQUILIBRIA | STRUT_OF_MODES)                  \
   X(CURVE, "curve_distance", STRUT_OF_PATH)
 
+/** The key's words, "velocity|velocity_spread|...". */
+#define STRUT_KEEP_WORD(NAME, word, of) "|" word
+#define STRUT_KEEP_WORD_LIST (&("" STRUT_KEEP_TABLE(STRUT_KEEP_WORD))[1])
+
 typedef enum strut_keep {
 #define STRUT_KEEP_ENUM(name, word, of) STRUT_KEEP_##name,
   STRUT_KEEP_TABLE(STRUT_KEEP_ENUM)

@@ -93,25 +93,13 @@ int32_t strut_coordinate_find(const strut_scene *scene, const char *name) {
   return i < 0 ? -1 : 2 * i + (dot[1] == 'y');
 }
 
-strut_thing strut_thing_of_column(strut_column_owner owner) {
-  switch (owner) {
-    case STRUT_COLUMN_OF_NODE:
-    case STRUT_COLUMN_OF_CONTACT: return STRUT_THING_NODE;
-    case STRUT_COLUMN_OF_MEMBER: return STRUT_THING_MEMBER;
-    case STRUT_COLUMN_OF_HINGE: return STRUT_THING_HINGE;
-    case STRUT_COLUMN_OF_CELL: return STRUT_THING_CELL;
-    case STRUT_COLUMN_OF_COLLISION: return STRUT_THING_COLLISION;
-    case STRUT_COLUMN_OF_DISTANCE: return STRUT_THING_DISTANCE;
-    case STRUT_COLUMN_OF_SLIDER: return STRUT_THING_SLIDER;
-    case STRUT_COLUMN_OF_RUN:
-    case STRUT_COLUMN_OF_PAIR:
-    case STRUT_COLUMN_OF_CENTRE:
-    case STRUT_COLUMN_OF_ENERGY:
-    case STRUT_COLUMN_OF_WORK:
-    case STRUT_COLUMN_OF_LOSSES:
-    case STRUT_COLUMN_OF_FEEDBACK: break;
-  }
-  return STRUT_THING_COUNT;
+strut_thing strut_thing_of_owner(strut_channel_owner owner) {
+  static const strut_thing things[] = {
+#define OWNER_THING(OWNER, THING, ...) STRUT_THING_##THING,
+      STRUT_OWNERS(OWNER_THING)
+#undef OWNER_THING
+  };
+  return things[owner];
 }
 
 const strut_configuration *strut_configuration_named(const strut_scene *scene, const char *name) {

@@ -41,8 +41,8 @@ STRUT_API int32_t strut_coordinate_find(const strut_scene *scene, const char *na
 STRUT_API const strut_configuration *strut_configuration_named(const strut_scene *scene,
                                                                const char *name);
 
-/** The kind of things that have columns of that owner; STRUT_THING_COUNT: they are of no kind of thing. */
-STRUT_API strut_thing strut_thing_of_column(strut_column_owner owner);
+/** The kind of things whose observables an owner has; STRUT_THING_COUNT: they are of no kind of thing. */
+STRUT_API strut_thing strut_thing_of_owner(strut_channel_owner owner);
 
 /** The object of the section `ground`: its line, and the contact that every node starts from. */
 typedef struct strut_ground_section {

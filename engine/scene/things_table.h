@@ -355,19 +355,20 @@
   X(RAMP, STOP, "stop", NUMBER, TIME, ANY, "", REQUIRED, 0, "", FIELD(strut_signal, stop), "Time at which it reaches the amplitude.")
 
 #define STRUT_SENSOR_FIELDS(X) \
-  X(SENSOR, LENGTH, "length", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_LENGTH, REFERENCE(strut_sensor, item, MEMBER)), "A member: its length [m].") \
-  X(SENSOR, FORCE, "force", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_FORCE, REFERENCE(strut_sensor, item, MEMBER)), "A member: its force [N], tension positive, including damper and stops, without the `force` of actuators.") \
-  X(SENSOR, ANGLE, "angle", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_ANGLE, REFERENCE(strut_sensor, item, HINGE)), "A hinge: its angle [rad].") \
-  X(SENSOR, CONTACT, "contact", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_CONTACT, REFERENCE(strut_sensor, item, NODE)), "A node: 1 while it touches the ground, otherwise 0.") \
-  X(SENSOR, POSITION, "position", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_POSITION, REFERENCE(strut_sensor, item, NODE)), "A node: its position [m] `along` x or y.") \
-  X(SENSOR, VELOCITY, "velocity", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_VELOCITY, REFERENCE(strut_sensor, item, NODE)), "A node: its velocity [m/s] `along` x or y.") \
-  X(SENSOR, ENERGY, "energy", WORD, NONE, ANY, "", OPTIONAL, 7, "kinetic|elastic|total", CHOICE(strut_sensor, kind, STRUT_SENSOR_ENERGY, FIELD(strut_sensor, energy)), "An energy of the structure [J].") \
-  X(SENSOR, AREA, "area", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_AREA, REFERENCE(strut_sensor, item, CELL)), "A cell: its area [m^2].") \
-  X(SENSOR, PRESSURE, "pressure", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_PRESSURE, REFERENCE(strut_sensor, item, CELL)), "A cell: its pressure [N/m], absolute for a gas.") \
-  X(SENSOR, DISTANCE, "distance", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_DISTANCE, REFERENCE(strut_sensor, item, DISTANCE)), "A distance spring: its distance [m].") \
-  X(SENSOR, CONTACT_FORCE, "contact_force", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_CONTACT_FORCE, REFERENCE(strut_sensor, item, NODE)), "A node: its normal force on the ground [N], summed over several grounds.") \
-  X(SENSOR, COLLISION_FORCE, "collision_force", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_SENSOR_COLLISION_FORCE, REFERENCE(strut_sensor, item, COLLISION)), "A collision: its force [N].") \
-  X(SENSOR, ALONG, "along", WORD, NONE, ANY, "", OPTIONAL, 0, "x|y", AMONG(strut_sensor, kind, STRUT_SENSOR_POSITION, STRUT_SENSOR_VELOCITY, FIELD(strut_sensor, along)), "Direction of a position or a velocity.")
+  X(SENSOR, LENGTH, "length", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_COLUMN_LENGTH, REFERENCE(strut_sensor, item, MEMBER)), "A member: its length [m].") \
+  X(SENSOR, FORCE, "force", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_COLUMN_FORCE, REFERENCE(strut_sensor, item, MEMBER)), "A member: its force [N], tension positive, including damper and stops, without the `force` of actuators.") \
+  X(SENSOR, ANGLE, "angle", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_COLUMN_HINGE_ANGLE, REFERENCE(strut_sensor, item, HINGE)), "A hinge: its angle [rad].") \
+  X(SENSOR, CONTACT, "contact", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_COLUMN_TOUCHES, REFERENCE(strut_sensor, item, NODE)), "A node: 1 while it touches the ground, otherwise 0.") \
+  X(SENSOR, POSITION, "position", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_COLUMN_NODE_X, REFERENCE(strut_sensor, item, NODE)), "A node: its position [m] `along` x or y.") \
+  X(SENSOR, VELOCITY, "velocity", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_COLUMN_NODE_VX, REFERENCE(strut_sensor, item, NODE)), "A node: its velocity [m/s] `along` x or y.") \
+  X(SENSOR, ENERGY, "energy", WORD, NONE, ANY, "", OPTIONAL, 7, "kinetic|elastic|total", CHOICE(strut_sensor, kind, STRUT_COLUMN_KINETIC, FIELD(strut_sensor, energy)), "An energy of the structure [J].") \
+  X(SENSOR, AREA, "area", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_COLUMN_CELL_AREA, REFERENCE(strut_sensor, item, CELL)), "A cell: its area [m^2].") \
+  X(SENSOR, PRESSURE, "pressure", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_COLUMN_PRESSURE, REFERENCE(strut_sensor, item, CELL)), "A cell: its pressure [N/m], absolute for a gas.") \
+  X(SENSOR, DISTANCE, "distance", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_COLUMN_DISTANCE_VALUE, REFERENCE(strut_sensor, item, DISTANCE)), "A distance spring: its distance [m].") \
+  X(SENSOR, CONTACT_FORCE, "contact_force", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_COLUMN_NORMAL, REFERENCE(strut_sensor, item, NODE)), "A node: its normal force on the ground [N], summed over several grounds.") \
+  X(SENSOR, COLLISION_FORCE, "collision_force", NAME, NONE, ANY, "", OPTIONAL, 7, "", CHOICE(strut_sensor, kind, STRUT_COLUMN_COLLISION_FORCE, REFERENCE(strut_sensor, item, COLLISION)), "A collision: its force [N].") \
+  X(SENSOR, OF, "of", EXPRESSION, NONE, ANY, "", OPTIONAL, 7, "", LATER(LIST(strut_sensor, of, length)), "Any other column of the motion that measured quantities know, such as `NODE.height`, `com.vy` or `energy.total`.") \
+  X(SENSOR, ALONG, "along", WORD, NONE, ANY, "", OPTIONAL, 0, "x|y", AMONG(strut_sensor, kind, STRUT_COLUMN_NODE_X, STRUT_COLUMN_NODE_VX, FIELD(strut_sensor, along)), "Direction of a position or a velocity.")
 
 #define STRUT_STATE_FIELDS(X) \
   X(STATE, RATE, "rate", EXPRESSION, CONTEXT, ANY, "", REQUIRED, 0, "", LIST(strut_internal_state, rate.instruction, rate.length), "Its rate: an expression as of a signal, which may also use states.") \

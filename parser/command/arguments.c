@@ -112,7 +112,7 @@ static strut_status read_whole(const strut_option *option, const strut_arguments
                            option->name, option->least, option->most, to->text);
 }
 
-enum { WORD = 40, MOST_WORDS = 32 };
+enum { WORD = 40, MOST_WORDS = 64 };
 
 static const char *word_at(const void *words, size_t i) {
   return i < MOST_WORDS ? ((const char *const *)words)[i] : NULL;
@@ -149,7 +149,7 @@ static strut_status read_words(const strut_option *option, const strut_arguments
     strut_given_word one = {.text = part};
     snprintf(part, sizeof part, "%.*s", (int)length, text);
     status = read_word(option, arguments, &one);
-    if (!status) to->set |= 1U << one.index;
+    if (!status) to->set |= (uint64_t)1 << one.index;
     text += length + (text[length] == ',');
   }
   return status;

@@ -36,7 +36,7 @@ typedef struct strut_given_range { /* NAME=LOW..HIGH, or NAME alone */
 } strut_given_range;
 typedef struct strut_given_words {
   const char *text; /* with commas between */
-  unsigned set;     /* a bit for each */
+  uint64_t set;     /* a bit for each */
 } strut_given_words;
 
 /**

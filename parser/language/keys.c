@@ -239,16 +239,15 @@ int strut_switch_find(const char *text) {
 }
 
 const char *strut_words_text(const char *words, char *buffer, size_t size) {
+  enum { MOST_LISTED = 20 };
   char word[40], following[40];
   size_t used = 0;
   buffer[0] = '\0';
   for (int i = 0; strut_word_at(words, i, word, sizeof word) && used < size; i++) {
     bool last = !strut_word_at(words, i + 1, following, sizeof following);
-    used += (size_t)snprintf(buffer + used, size - used, "%s%s",
-                             i == 0 ? ""
-                             : last ? " or "
-                                    : ", ",
-                             word);
+    const char *before = i == 0 ? "" : last ? " or " : ", ";
+    if (i == MOST_LISTED) return strncat(buffer, ", ...", size - used - 1);
+    used += (size_t)snprintf(buffer + used, size - used, "%s%s", before, word);
   }
   return buffer;
 }

@@ -267,10 +267,4 @@ STRUT_API const char *strut_word_at(const char *words, int i, char *buffer, size
 /** Size of the buffer of strut_dimension_suffix. */
 enum { STRUT_SUFFIX_TEXT = 120 };
 
-/** The word of a column: "force", "kinetic", "time". */
-const char *strut_column_word(strut_column_kind kind);
-strut_column_owner strut_column_owner_of(strut_column_kind kind);
-/** The word of a group of columns: "com", "energy", "work", "losses"; NULL for other owners. */
-const char *strut_column_group(strut_column_owner owner);
-
 #endif

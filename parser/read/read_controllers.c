@@ -242,10 +242,10 @@ static int32_t read_pid(strut_reader *reader, const strut_tree *key) {
   strut_store_fields(reader, &fields, owner, &reader->scratch, &c.keys, sizeof c.keys);
   if (c.keys.sensor < 0 || reader->things[STRUT_THING_SENSOR].source[c.keys.sensor].broken)
     return -1;
-  strut_sensor_kind kind = reader->scene->sensors[c.keys.sensor].kind;
-  c.sensed = strut_sensor_dimension(kind);
+  const strut_sensor *sensed = &reader->scene->sensors[c.keys.sensor];
+  c.sensed = strut_sensor_dimension(sensed);
   if (!read_numbers(reader, &fields, owner, &c)) return -1;
-  if (c.keys.derivative != 0.0 && !strut_sensor_has_rate(kind)) {
+  if (c.keys.derivative != 0.0 && !strut_sensor_has_rate(sensed)) {
     strut_report_error(
         reader, key->place,
         "controller '%s' takes the derivative of sensor '%s', whose rate is not known", key->text,

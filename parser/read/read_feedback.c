@@ -6,23 +6,8 @@
 
 #include "parser/read/reader.h"
 
-strut_dimension strut_sensor_dimension(strut_sensor_kind kind) {
-  switch (kind) {
-    case STRUT_SENSOR_LENGTH:
-    case STRUT_SENSOR_DISTANCE:
-    case STRUT_SENSOR_POSITION: return STRUT_DIM_LENGTH;
-    case STRUT_SENSOR_AREA: return STRUT_DIM_AREA;
-    case STRUT_SENSOR_PRESSURE: return STRUT_DIM_STIFFNESS;
-    case STRUT_SENSOR_CONTACT_FORCE:
-    case STRUT_SENSOR_COLLISION_FORCE:
-    case STRUT_SENSOR_FORCE: return STRUT_DIM_FORCE;
-    case STRUT_SENSOR_ANGLE: return STRUT_DIM_ANGLE;
-    case STRUT_SENSOR_VELOCITY: return STRUT_DIM_VELOCITY;
-    case STRUT_SENSOR_ENERGY: return STRUT_DIM_MOMENT; /* N m */
-    case STRUT_SENSOR_CONTACT:
-    case STRUT_SENSOR_KINDS: break;
-  }
-  return STRUT_DIM_NONE;
+strut_dimension strut_sensor_dimension(const strut_sensor *sensor) {
+  return strut_column_dimension(strut_sensor_column(sensor).kind);
 }
 
 bool strut_check_variable_name(strut_reader *reader, const strut_tree *key, const char *kind) {
@@ -58,41 +43,60 @@ bool strut_check_variable_name(strut_reader *reader, const strut_tree *key, cons
 }
 
 /* A direction turns with the copy; the scene's sensors know those of the axes only. */
-static bool turn_sensor(strut_reader *reader, const strut_slot *along, strut_sensor *sensor) {
+static bool turn_sensor(strut_reader *reader, const strut_tree *place, strut_sensor *sensor) {
   bool reversed;
-  int axis = strut_scope_axis(reader, (int)sensor->along, &reversed);
-  sensor->along = axis < 0 ? sensor->along : (uint32_t)axis;
+  strut_column seen = strut_sensor_column(sensor);
+  int from = (int)(seen.kind - STRUT_COLUMN_NODE_X) % 2;
+  int axis = strut_scope_axis(reader, from, &reversed);
+  int turn = axis < 0 ? 0 : axis - from;
+  if (sensor->length)
+    sensor->of->column.kind = (strut_column_kind)((int)seen.kind + turn);
+  else
+    sensor->along = (uint32_t)((int)sensor->along + turn);
   if (axis >= 0 && !reversed) return true;
   strut_report_error(
-      reader, along->value->place,
-      "sensor '%s' looks along %s, which in this copy points %s; sense a length or an "
+      reader, place->place,
+      "sensor '%s' looks along %c, which in this copy points %s; sense a length or an "
       "angle, or sense it outside of the part",
-      strut_local_name(reader, sensor->name), along->value->text,
+      strut_local_name(reader, sensor->name), "xy"[from],
       axis < 0 ? "along neither axis" : "the other way");
   return false;
+}
+
+/* What `of` names, if a sensor may see it. */
+static bool read_of(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                    strut_sensor *sensor) {
+  strut_column seen;
+  sensor->of = strut_read_column(reader, value, "of", owner, &seen);
+  sensor->length = sensor->of != NULL;
+  const char *why = sensor->of ? strut_observable_unsensed(seen.kind) : NULL;
+  if (why)
+    strut_report_error(reader, value->place, "%s cannot see '%s': %s",
+                       strut_owner_text(reader, owner), strut_sanitised_text(reader, value->text),
+                       why);
+  return sensor->of && !why;
 }
 
 bool strut_read_sensor(strut_reader *reader, strut_fields *fields, strut_owner owner,
                        void *object) {
   strut_sensor *sensor = object;
   const strut_slot *along = strut_slot_of(fields, STRUT_KEY_SENSOR_ALONG);
-  bool directed = sensor->kind == STRUT_SENSOR_POSITION || sensor->kind == STRUT_SENSOR_VELOCITY;
-  bool known = false;
-  for (int k = 0; k < STRUT_SENSOR_KINDS; k++)
-    known = known || strut_slot_of(fields, STRUT_KEY_SENSOR_LENGTH + k)->state == STRUT_GIVEN;
-  (void)owner;
+  const strut_slot *of = strut_slot_of(fields, STRUT_KEY_SENSOR_OF);
   if (fields->broken) return false;
-  if (!known)
+  if (of->state == STRUT_GIVEN && !read_of(reader, of->value, owner, sensor)) return false;
+  strut_column_kind kind = strut_sensor_column(sensor).kind;
+  bool directed = kind >= STRUT_COLUMN_NODE_X && kind <= STRUT_COLUMN_NODE_VY;
+  if (kind == STRUT_COLUMN_TIME)
     strut_report_error(reader, fields->key->place,
                        "sensor '%s' senses nothing; write one of length, force, angle, contact, "
                        "position, velocity, energy, area, pressure, distance, contact_force and "
-                       "collision_force, such as {length: MEMBER}",
+                       "collision_force, such as {length: MEMBER}, or any column: {of: com.vy}",
                        fields->key->text);
-  else if (directed && along->state == STRUT_ABSENT)
+  else if (directed && !sensor->length && along->state == STRUT_ABSENT)
     strut_report_error(reader, fields->key->place, "sensor '%s' needs 'along': x or y",
                        fields->key->text);
   else
-    return !directed || turn_sensor(reader, along, sensor);
+    return !directed || turn_sensor(reader, sensor->length ? of->value : along->value, sensor);
   return false;
 }
 
@@ -109,7 +113,7 @@ bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *col
   }
   if (sensor < 0) return false;
   column->kind = STRUT_COLUMN_SENSOR, column->item = sensor;
-  *dimension = strut_sensor_dimension(reader->scene->sensors[sensor].kind);
+  *dimension = strut_sensor_dimension(&reader->scene->sensors[sensor]);
   if (reader->things[STRUT_THING_SENSOR].source[sensor].broken)
     dimension->kg = (float)NAN; /* any */
   return true;
@@ -120,9 +124,9 @@ int strut_find_sensor_rate(strut_reader *reader, strut_piece piece, strut_column
   const char *name = strut_arena_text(&reader->scratch, piece.text, piece.length);
   int32_t i = name ? strut_find_thing(reader, STRUT_THING_SENSOR, NULL, name) : -1;
   bool broken = i >= 0 && reader->things[STRUT_THING_SENSOR].source[i].broken;
-  if (i >= 0 && (broken || strut_sensor_has_rate(reader->scene->sensors[i].kind))) {
+  if (i >= 0 && (broken || strut_sensor_has_rate(&reader->scene->sensors[i]))) {
     column->kind = STRUT_COLUMN_SENSOR_RATE, column->item = i;
-    *dimension = strut_sensor_dimension(reader->scene->sensors[i].kind);
+    *dimension = strut_sensor_dimension(&reader->scene->sensors[i]);
     dimension->s -= 1.0f;
     if (broken) dimension->kg = (float)NAN; /* any */
     return 1;

@@ -163,18 +163,18 @@ bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tre
 
 /* A list of words without repetition; bits gets one bit for each. */
 static bool read_words(strut_reader *reader, const strut_key *key, const strut_tree *value,
-                       strut_owner owner, int *bits) {
+                       strut_owner owner, uint64_t *bits) {
   bool fine = true;
   *bits = 0;
   for (const strut_tree *item = value->first; item; item = item->next) {
     int word;
     if (!strut_read_word(reader, key, item, owner, &word)) {
       fine = false;
-    } else if (*bits & 1 << word) {
+    } else if (*bits >> word & 1u) {
       fine = strut_report_error(reader, item->place, "'%s' appears twice in '%s' of %s", item->text,
                                 key->name, strut_owner_text(reader, owner));
     } else {
-      *bits |= 1 << word;
+      *bits |= (uint64_t)1 << word;
     }
   }
   return fine;
@@ -186,7 +186,10 @@ static bool read_fixed(strut_reader *reader, const strut_key *key, const strut_t
   if (value->kind != STRUT_TREE_LIST) return strut_read_word(reader, key, value, owner, bits);
   strut_key in_list = *key;
   in_list.words = "x|y";
-  return read_words(reader, &in_list, value, owner, bits);
+  uint64_t both;
+  bool fine = read_words(reader, &in_list, value, owner, &both);
+  *bits = (int)both;
+  return fine;
 }
 
 bool strut_refuse_form(strut_reader *reader, int key, const strut_tree *value, strut_owner owner) {
@@ -223,7 +226,7 @@ static bool read_typed(strut_reader *reader, const strut_key *key, const strut_t
   if (type == STRUT_TYPE_NUMBER && key->section == STRUT_SECTION_SCENE) return true; /* as pairs */
   if (type == STRUT_TYPE_NUMBER) return read_number(reader, key, value, owner, slot->number);
   if (type == STRUT_TYPE_WORD) return strut_read_word(reader, key, value, owner, &slot->word);
-  if (type == STRUT_TYPE_WORDS) return read_words(reader, key, value, owner, &slot->word);
+  if (type == STRUT_TYPE_WORDS) return read_words(reader, key, value, owner, &slot->words);
   if (type == STRUT_TYPE_FIXED) return read_fixed(reader, key, value, owner, &slot->word);
   if (type != STRUT_TYPE_PAIR || key->section == STRUT_SECTION_SCENE) /* no parameters yet */
     return true;

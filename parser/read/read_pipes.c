@@ -30,7 +30,7 @@ static int32_t add_sensor(strut_reader *reader, const strut_tree *key, const cha
   const char *name = name_of(reader, key, end, &reader->things[STRUT_THING_SENSOR].names);
   if (!name) return -1;
   strut_sensor *sensor = strut_add_thing(reader, STRUT_THING_SENSOR, key, name);
-  sensor->kind = STRUT_SENSOR_PRESSURE, sensor->item = cell;
+  sensor->kind = STRUT_COLUMN_PRESSURE, sensor->item = cell;
   return (int32_t)(sensor - reader->scene->sensors);
 }
 

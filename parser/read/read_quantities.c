@@ -9,33 +9,21 @@
 /* Most characters of a name that a message repeats. */
 enum { SHOWN_MOST = 40 };
 
-static const struct column_row {
-  strut_column_owner owner;
-  const char *word;
-  strut_dimension dimension;
-} columns[] = {
-#define STRUT_COLUMN_ROW(id, owner, word, kg, m, s, angle)                                         \
-  {STRUT_COLUMN_OF_##owner, word, {kg, m, s, angle}},
-    STRUT_COLUMN_TABLE(STRUT_COLUMN_ROW)
-#undef STRUT_COLUMN_ROW
-};
+static const strut_observable *row_at(size_t k) {
+  return strut_observable_at((strut_column_kind)k);
+}
 
-/* The owners that every scene has. */
-static const struct group_row {
-  const char *word, *name;
-  strut_column_owner owner;
-} groups[] = {{"com", "the centre of mass", STRUT_COLUMN_OF_CENTRE},
-              {"energy", "the energy", STRUT_COLUMN_OF_ENERGY},
-              {"work", "the work", STRUT_COLUMN_OF_WORK},
-              {"losses", "the losses", STRUT_COLUMN_OF_LOSSES}};
-enum { GROUP_COUNT = sizeof groups / sizeof groups[0] };
+strut_dimension strut_column_dimension(strut_column_kind kind) {
+  const strut_observable *o = strut_observable_at(kind);
+  return (strut_dimension){(float)o->kg, (float)o->m, (float)o->s, (float)o->angle};
+}
 
-const char *strut_column_word(strut_column_kind kind) { return columns[kind].word; }
-strut_column_owner strut_column_owner_of(strut_column_kind kind) { return columns[kind].owner; }
-
-const char *strut_column_group(strut_column_owner owner) {
-  for (size_t i = 0; i < GROUP_COUNT; i++)
-    if (groups[i].owner == owner) return groups[i].word;
+/* What every scene has stands before the dot: the i-th of them, or NULL. */
+static const strut_owner_row *group_at(size_t i) {
+  for (size_t owner = 0; owner < STRUT_OWNER_COUNT; owner++) {
+    const strut_owner_row *row = strut_owner_row_of((strut_channel_owner)owner);
+    if (row->group && i-- == 0) return row;
+  }
   return NULL;
 }
 
@@ -51,7 +39,7 @@ enum { KIND_COUNT = sizeof kinds / sizeof kinds[0] };
 
 /* The owners that a name may refer to, and their words in messages. */
 typedef struct found_owner {
-  unsigned owners;  /* bits 1 << strut_column_owner */
+  unsigned owners;  /* bits 1 << strut_channel_owner */
   bool thing;       /* some are things */
   const char *what; /* "node", "member", "hinge", "the energy" */
   int32_t
@@ -75,7 +63,8 @@ static const char *owner_name(const void *context, size_t i) {
     if (i < count) return strut_thing_name(reader->scene, kinds[k], i);
     i -= count;
   }
-  return i < GROUP_COUNT ? groups[i].word : NULL;
+  const strut_owner_row *group = group_at(i);
+  return group ? group->group : NULL;
 }
 
 static bool all_known(strut_reader *reader) {
@@ -96,17 +85,18 @@ static found_owner find_owner(strut_reader *reader, const char *kind, strut_piec
                        ? strut_name_map_find(&reader->things[STRUT_THING_SLIDER].names, text)
                        : strut_find_thing(reader, kinds[k], NULL, text);
     if (item < 0) continue;
-    for (int owner = 0; owner <= STRUT_COLUMN_OF_FEEDBACK; owner++)
-      if (strut_thing_of_column((strut_column_owner)owner) == kinds[k]) found.owners |= 1u << owner;
+    for (int owner = 0; owner < STRUT_OWNER_COUNT; owner++)
+      if (strut_thing_of_owner((strut_channel_owner)owner) == kinds[k]) found.owners |= 1u << owner;
     if (!found.what) found.what = word;
     found.item[kinds[k]] = item;
     found.thing = true;
   }
-  for (size_t i = 0; i < GROUP_COUNT && !kind; i++)
-    if (is(name, groups[i].word)) {
-      found.owners |= 1u << groups[i].owner;
-      if (!found.what) found.what = groups[i].name;
-    }
+  for (int owner = 0; owner < STRUT_OWNER_COUNT && !kind; owner++) {
+    const strut_owner_row *row = strut_owner_row_of((strut_channel_owner)owner);
+    if (!row->group || !is(name, row->group)) continue;
+    found.owners |= 1u << owner;
+    if (!found.what) found.what = row->phrase;
+  }
   return found;
 }
 
@@ -114,7 +104,7 @@ static found_owner find_owner(strut_reader *reader, const char *kind, strut_piec
 static const char *field_name(const void *context, size_t i) {
   const unsigned *owners = context;
   for (size_t k = 0; k < STRUT_COLUMN_COUNT; k++)
-    if (*owners >> columns[k].owner & 1u && i-- == 0) return columns[k].word;
+    if (*owners >> row_at(k)->owner & 1u && i-- == 0) return row_at(k)->word;
   return NULL;
 }
 
@@ -140,7 +130,8 @@ static const char *field_list(unsigned owners, char *text, size_t size) {
 static int refuse_owner(strut_reader *reader, const char *kind, strut_piece owner,
                         strut_refusal *refusal) {
   if (!all_known(reader)) return -1;
-  size_t count = GROUP_COUNT;
+  size_t count = 0;
+  while (group_at(count)) count++;
   for (size_t k = 0; k < KIND_COUNT; k++) count += strut_thing_count(reader->scene, kinds[k]);
   snprintf(refusal->text, sizeof refusal->text, "unknown %s '%.*s'%s",
            kind                         ? kind
@@ -174,7 +165,7 @@ static bool has_contact(const strut_scene *scene, int32_t node) {
 static bool touches(strut_reader *reader, strut_column_kind kind, int32_t node,
                     strut_refusal *refusal) {
   const strut_scene *scene = reader->scene;
-  bool of_contact = columns[kind].owner == STRUT_COLUMN_OF_CONTACT;
+  bool of_contact = strut_observable_at(kind)->owner == STRUT_OWNER_CONTACT;
   if (!of_contact && kind != STRUT_COLUMN_HEIGHT) return true;
   const strut_slot *ground = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND);
   const strut_slot *grounds = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUNDS);
@@ -183,12 +174,12 @@ static bool touches(strut_reader *reader, strut_column_kind kind, int32_t node,
   if (ground->state == STRUT_ABSENT && grounds->state == STRUT_ABSENT)
     snprintf(refusal->text, sizeof refusal->text,
              "there is no ground, so node '%s' has no '%s'; add 'ground' to the scene",
-             scene->nodes[node].name, columns[kind].word);
+             scene->nodes[node].name, strut_observable_at(kind)->word);
   else if (of_contact && !has_contact(scene, node))
     snprintf(refusal->text, sizeof refusal->text,
              "node '%s' does not touch the ground, so it has no '%s'; list it in 'nodes' "
              "of the ground",
-             scene->nodes[node].name, columns[kind].word);
+             scene->nodes[node].name, strut_observable_at(kind)->word);
   else
     return true;
   return false;
@@ -199,12 +190,12 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
                      strut_dimension *dimension, strut_refusal *refusal) {
   char list[200];
   for (size_t k = 0; k < STRUT_COLUMN_COUNT; k++)
-    if (columns[k].owner == STRUT_COLUMN_OF_RUN && is(word, columns[k].word)) {
+    if (row_at(k)->owner == STRUT_OWNER_RUN && is(word, row_at(k)->word)) {
       column->kind = (strut_column_kind)k;
-      *dimension = columns[k].dimension;
+      *dimension = strut_column_dimension((strut_column_kind)k);
       if (k != STRUT_COLUMN_LEAST_GAP || reader->setup->scene.collision_count) return 1;
       snprintf(refusal->text, sizeof refusal->text, "'%s' is of collisions, and the scene has none",
-               columns[k].word);
+               row_at(k)->word);
       return -1;
     }
   if (strut_find_variable(reader, word, column, dimension)) return column->item >= 0 ? 1 : -1;
@@ -216,8 +207,8 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
   return -1;
 }
 
-static int find_column(void *context, const char *kind, strut_piece owner, strut_piece field,
-                       strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
+static int find_anywhere(void *context, const char *kind, strut_piece owner, strut_piece field,
+                         strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
   strut_reader *reader = context;
   if (kind && strcmp(kind, "rate") == 0)
     return strut_find_sensor_rate(reader, owner, column, dimension, refusal);
@@ -229,10 +220,10 @@ static int find_column(void *context, const char *kind, strut_piece owner, strut
   if (!found.owners) return refuse_owner(reader, kind, owner, refusal);
   int count = 0;
   for (size_t k = 0; k < STRUT_COLUMN_COUNT; k++) {
-    if (!(found.owners >> columns[k].owner & 1u) || !is(field, columns[k].word)) continue;
+    if (!(found.owners >> row_at(k)->owner & 1u) || !is(field, row_at(k)->word)) continue;
     count++;
     column->kind = (strut_column_kind)k;
-    *dimension = columns[k].dimension;
+    *dimension = strut_column_dimension((strut_column_kind)k);
   }
   if (!count) return refuse_field(reader, &found, owner, field, refusal);
   if (count > 1) {
@@ -248,11 +239,20 @@ static int find_column(void *context, const char *kind, strut_piece owner, strut
              owner.text, hinges ? text : "");
     return -1;
   }
-  strut_column_owner of = columns[column->kind].owner;
-  strut_thing thing = strut_thing_of_column(of);
+  strut_channel_owner of = strut_observable_at(column->kind)->owner;
+  strut_thing thing = strut_thing_of_owner(of);
   if (thing < STRUT_THING_COUNT) column->item = found.item[thing];
-  if (of != STRUT_COLUMN_OF_NODE && of != STRUT_COLUMN_OF_CONTACT) return 1;
-  return touches(reader, column->kind, column->item, refusal) ? 1 : -1;
+  return 1;
+}
+
+/* Where contacts are known. */
+static int find_column(void *context, const char *kind, strut_piece owner, strut_piece field,
+                       strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
+  int found = find_anywhere(context, kind, owner, field, column, dimension, refusal);
+  if (found <= 0) return found;
+  strut_channel_owner of = strut_observable_at(column->kind)->owner;
+  if (of != STRUT_OWNER_NODE && of != STRUT_OWNER_CONTACT) return 1;
+  return touches(context, column->kind, column->item, refusal) ? 1 : -1;
 }
 
 static int find_pair(void *context, strut_piece word, strut_piece first, strut_piece second,
@@ -261,9 +261,9 @@ static int find_pair(void *context, strut_piece word, strut_piece first, strut_p
   const strut_piece names[2] = {first, second};
   int32_t node[2];
   for (size_t k = 0; k < STRUT_COLUMN_COUNT; k++)
-    if (columns[k].owner == STRUT_COLUMN_OF_PAIR && is(word, columns[k].word)) {
+    if (row_at(k)->owner == STRUT_OWNER_PAIR && is(word, row_at(k)->word)) {
       column->kind = (strut_column_kind)k;
-      *dimension = columns[k].dimension;
+      *dimension = strut_column_dimension((strut_column_kind)k);
     }
   for (int k = 0; k < 2; k++) {
     const char *name = text_of(reader, names[k]);
@@ -296,6 +296,26 @@ strut_instruction *strut_keep_program(strut_reader *reader, const strut_compiler
     if (*unit) program[i].unit = strut_keep_text(reader, unit);
   }
   return program;
+}
+
+strut_instruction *strut_read_column(strut_reader *reader, const strut_tree *value, const char *key,
+                                     strut_owner owner, strut_column *column) {
+  strut_compiler compiler = {.column = find_anywhere, .pair = find_pair, .context = reader};
+  strut_quantity q;
+  compiler.program = strut_reader_allocate(reader, &reader->scratch, strlen(value->text) + 1,
+                                           sizeof *compiler.program);
+  if (!compiler.program) return NULL;
+  if (!strut_read_program(reader, value, key, owner, &compiler, &q)) {
+    reader->failed = true;
+    return NULL;
+  }
+  *column = compiler.program->instruction.column;
+  if (compiler.length == 1 && q.varies) return strut_keep_program(reader, &compiler);
+  strut_report_error(reader, value->place,
+                     "expected one column of the motion for '%s' of %s, such as com.vy, NODE.y or "
+                     "MEMBER.force; what follows from several is an expression of a signal",
+                     key, strut_owner_text(reader, owner));
+  return NULL;
 }
 
 /* The expression; *dimension is that of its values. */

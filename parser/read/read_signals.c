@@ -157,7 +157,7 @@ bool strut_read_trigger(strut_reader *reader, strut_fields *fields, strut_owner 
                                      : "%s gives a level, which only a sensor passes",
                               owner.kind);
   if (!sensed || trigger->item < 0) return trigger->item >= 0;
-  strut_dimension dimension = strut_sensor_dimension(reader->scene->sensors[trigger->item].kind);
+  strut_dimension dimension = strut_sensor_dimension(&reader->scene->sensors[trigger->item]);
   return strut_store_number(reader, fields, key, owner, dimension, trigger);
 }
 

@@ -174,7 +174,7 @@ static const char *store_text(strut_reader *reader, strut_arena *arena, const st
 
 static void store_value(strut_reader *reader, strut_arena *arena, const strut_key *key,
                         const strut_slot *slot, void *field) {
-  bool word = key->type == STRUT_TYPE_WORD || key->type == STRUT_TYPE_WORDS;
+  bool word = key->type == STRUT_TYPE_WORD, words = key->type == STRUT_TYPE_WORDS;
   double number = word ? (double)key->field.first + slot->word : slot->number[0];
   if (key->field.turns) number /= STRUT_TAU;
   switch (key->field.type) {
@@ -182,7 +182,7 @@ static void store_value(strut_reader *reader, strut_arena *arena, const strut_ke
     case STRUT_FIELD_INT32: *(int32_t *)field = (int32_t)number; break;
     case STRUT_FIELD_UINT32: *(uint32_t *)field = (uint32_t)number; break;
     case STRUT_FIELD_INT64: *(int64_t *)field = (int64_t)number; break;
-    case STRUT_FIELD_UINT64: *(uint64_t *)field = (uint64_t)number; break;
+    case STRUT_FIELD_UINT64: *(uint64_t *)field = words ? slot->words : (uint64_t)number; break;
     case STRUT_FIELD_BOOL: *(bool *)field = slot->word == 1; break;
     case STRUT_FIELD_DOUBLE_PAIR: memcpy(field, slot->number, sizeof slot->number); break;
     case STRUT_FIELD_BOOL_PAIR:

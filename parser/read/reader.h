@@ -29,7 +29,8 @@ typedef enum strut_slot_state { STRUT_ABSENT, STRUT_GIVEN, STRUT_BROKEN } strut_
 /** The value of one key, as far as the table determines it. */
 typedef struct strut_slot {
   strut_slot_state state;
-  int word;                      /* WORD: its index; WORDS: bits; FIXED: 1 x, 2 y */
+  int word;                      /* WORD: its index; FIXED: 1 x, 2 y */
+  uint64_t words;                /* WORDS: a bit for each */
   double number[2];              /* NUMBER, PAIR; SI */
   const strut_tree *key, *value; /* its place in the tree */
   struct strut_group_item *from; /* the group's key that gave it; NULL: its own */
@@ -483,7 +484,13 @@ void strut_add_beam_members(strut_reader *reader);
 void strut_add_beam_hinges(strut_reader *reader);
 /* read_feedback.c */
 
-strut_dimension strut_sensor_dimension(strut_sensor_kind kind);
+/** Of what a sensor sees. */
+strut_dimension strut_sensor_dimension(const strut_sensor *sensor);
+/** One column of the motion as a program of one instruction; NULL: that is reported. */
+strut_instruction *strut_read_column(strut_reader *reader, const strut_tree *value, const char *key,
+                                     strut_owner owner, strut_column *column);
+/** Of the values of an observable. */
+strut_dimension strut_column_dimension(strut_column_kind kind);
 /** Finds a sensor as a column and its dimension. */
 bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,
                        strut_dimension *dimension);

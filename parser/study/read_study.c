@@ -148,7 +148,16 @@ static bool is_twice(const strut_tree *list, const strut_tree *item) {
   return false;
 }
 
-/* Words, and names of what the model measures. */
+/* Is it written like a column of the motion, which quantities know? */
+static bool is_column(const char *text) {
+  for (int k = 0; k < STRUT_COLUMN_COUNT; k++) {
+    const strut_observable *row = strut_observable_at((strut_column_kind)k);
+    if (row->owner == STRUT_OWNER_RUN && strcmp(row->word, text) == 0) return true;
+  }
+  return strpbrk(text, ".(") != NULL;
+}
+
+/* Words, names of what the model measures, and columns of the motion, which it then measures at its end. */
 static void read_keep(strut_study_reader *r, const strut_slot *slot) {
   strut_study *study = &r->file->study;
   if (slot->state != STRUT_GIVEN) return;
@@ -167,6 +176,8 @@ static void read_keep(strut_study_reader *r, const strut_slot *slot) {
     else if (word >= 0)
       strut_keep_add(&study->keep, (unsigned)word);
     else if (scalar && quantities && strut_tree_find(quantities, item->text, NULL))
+      study->quantities[study->quantity_count++] = item->text;
+    else if (scalar && run && is_column(item->text) && strut_study_measure(r->file, item))
       study->quantities[study->quantity_count++] = item->text;
     else
       refuse_kept(r, item, quantities);

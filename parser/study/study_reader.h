@@ -30,6 +30,8 @@ const strut_declared *strut_study_parameter(strut_study_reader *r, const strut_t
  */
 /** A model that cannot be read may be the study itself, or another: then that is all there is to say. */
 bool strut_study_is_its_model(const strut_study_file *file);
+/** Lets all variants measure a column of the motion, which `column` names, at the end of their runs. */
+bool strut_study_measure(strut_study_file *file, const strut_tree *column);
 strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top, strut_error *error);
 /** Reads the axes into the study, and their columns; list NULL: none. Then what is searched. */
 void strut_study_read_axes(strut_study_reader *r, const strut_tree *list, const strut_slot *search);

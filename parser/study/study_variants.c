@@ -38,6 +38,31 @@ static bool lay_map_over(strut_document *document, const char *section, const st
   return whole != NULL;
 }
 
+bool strut_study_measure(strut_study_file *file, const strut_tree *column) {
+  static const char *const path[] = {"measure", "quantities"};
+  strut_tree end = {.place = column->place, .text = "final"},
+             take = {.place = column->place, .text = "take", .next = &end},
+             value = {.place = column->place, .text = column->text, .next = &take},
+             of = {.place = column->place, .text = "of", .next = &value},
+             quantity = {.place = column->place, .kind = STRUT_TREE_MAP, .count = 2, .first = &of},
+             name = *column;
+  strut_tree keys[2], maps[3] = {quantity};
+  name.next = &maps[0];
+  strut_tree *first = &name;
+  for (int i = 1; i >= 0; i--) {
+    strut_tree *map = &maps[2 - i];
+    *map = (strut_tree){.place = column->place, .kind = STRUT_TREE_MAP, .count = 1, .first = first};
+    keys[i] = (strut_tree){.place = column->place, .text = path[i], .next = map};
+    first = &keys[i];
+  }
+  const strut_tree run = {
+      .place = column->place, .kind = STRUT_TREE_MAP, .count = 1, .first = first};
+  bool fine = true;
+  for (size_t i = 0; i < file->source_count && fine; i++)
+    fine = lay_map_over(strut_scene_source_document(file->sources[i]), "run", &run);
+  return fine;
+}
+
 static void split_notes(strut_diagnostics *from, strut_diagnostics *over) {
   size_t kept = 0;
   for (size_t i = 0; i < from->note_count; i++) {

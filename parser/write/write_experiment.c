@@ -258,8 +258,8 @@ static void put_owner(strut_writer *writer, const char *kind, const char *name) 
          (c > name && *c >= '0' && *c <= '9'))
     c++;
   bool plain = !*c;
-  for (int owner = 0; owner <= STRUT_COLUMN_OF_LOSSES && plain; owner++) {
-    const char *group = strut_column_group((strut_column_owner)owner);
+  for (int owner = 0; owner < STRUT_OWNER_COUNT && plain; owner++) {
+    const char *group = strut_owner_row_of((strut_channel_owner)owner)->group;
     plain = !group || strcmp(group, name) != 0;
   }
   if (!plain) strut_put(writer, kind), strut_put(writer, "(");
@@ -269,19 +269,17 @@ static void put_owner(strut_writer *writer, const char *kind, const char *name) 
 
 static void put_column(strut_writer *writer, strut_column column) {
   const strut_scene *scene = writer->scene;
-  const char *word = strut_column_word(column.kind);
-  strut_column_owner owner = strut_column_owner_of(column.kind);
-  if (owner == STRUT_COLUMN_OF_FEEDBACK) {
+  const char *word = strut_observable_at(column.kind)->word;
+  strut_channel_owner owner = strut_observable_at(column.kind)->owner;
+  strut_thing thing = strut_thing_of_owner(owner);
+  if (owner == STRUT_OWNER_SENSOR || owner == STRUT_OWNER_SIGNAL || owner == STRUT_OWNER_STATE) {
     bool rate = column.kind == STRUT_COLUMN_SENSOR_RATE;
-    bool sensor = rate || column.kind == STRUT_COLUMN_SENSOR;
     strut_put(writer, rate ? "rate(" : "");
-    strut_put(writer, sensor                              ? scene->sensors[column.item].name
-                      : column.kind == STRUT_COLUMN_STATE ? scene->states[column.item].name
-                                                          : scene->signals[column.item].name);
+    strut_put(writer, strut_thing_name(scene, thing, (size_t)column.item));
     strut_put(writer, rate ? ")" : "");
     return;
   }
-  if (owner == STRUT_COLUMN_OF_PAIR) {
+  if (owner == STRUT_OWNER_PAIR) {
     strut_put(writer, word);
     strut_put(writer, "(");
     strut_put(writer, scene->nodes[column.item].name);
@@ -290,13 +288,12 @@ static void put_column(strut_writer *writer, strut_column column) {
     strut_put(writer, ")");
     return;
   }
-  strut_thing thing = strut_thing_of_column(owner);
   if (thing < STRUT_THING_COUNT)
     put_owner(writer, strut_thing_at(thing)->word,
               strut_thing_name(scene, thing, (size_t)column.item));
-  else if (owner != STRUT_COLUMN_OF_RUN)
-    strut_put(writer, strut_column_group(owner));
-  if (owner != STRUT_COLUMN_OF_RUN) strut_put(writer, ".");
+  else if (owner != STRUT_OWNER_RUN)
+    strut_put(writer, strut_owner_row_of(owner)->group);
+  if (owner != STRUT_OWNER_RUN) strut_put(writer, ".");
   strut_put(writer, word);
 }
 

@@ -107,10 +107,10 @@ static void put_word(strut_writer *writer, const strut_key *key, int i) {
   if (found) strut_put(writer, found);
 }
 
-static void put_words(strut_writer *writer, const strut_key *key, uint32_t bits) {
+static void put_words(strut_writer *writer, const strut_key *key, uint64_t bits) {
   bool any = false;
   strut_put(writer, "[");
-  for (int i = 0; i < 32; i++) {
+  for (int i = 0; i < 64; i++) {
     if (!(bits >> i & 1u)) continue;
     if (any) strut_put(writer, ", ");
     any = true;
@@ -154,12 +154,14 @@ static void put_value(strut_writer *writer, const strut_key *key, const char *ob
     case STRUT_FIELD_DOUBLE: put_number(writer, &key->field, object); break;
     case STRUT_FIELD_INT32: strut_put_number(writer, *(const int32_t *)field); break;
     case STRUT_FIELD_INT64: strut_put_number(writer, (double)*(const int64_t *)field); break;
-    case STRUT_FIELD_UINT64: strut_put_number(writer, (double)*(const uint64_t *)field); break;
-    case STRUT_FIELD_UINT32:
+    case STRUT_FIELD_UINT64:
       if (key->type == STRUT_TYPE_WORDS)
-        put_words(writer, key, *(const uint32_t *)field);
+        put_words(writer, key, *(const uint64_t *)field);
       else
-        put_word(writer, key, (int)(*(const uint32_t *)field - key->field.first));
+        strut_put_number(writer, (double)*(const uint64_t *)field);
+      break;
+    case STRUT_FIELD_UINT32:
+      put_word(writer, key, (int)(*(const uint32_t *)field - key->field.first));
       break;
     case STRUT_FIELD_BOOL: put_word(writer, key, *(const bool *)field); break;
     case STRUT_FIELD_DOUBLE_PAIR: strut_put_pair(writer, field); break;

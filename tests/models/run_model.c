@@ -97,7 +97,7 @@ const double *model_position(const model_run *run, const char *node) {
 }
 
 /* Offset in a row. The item names were the recorder's; the scene's are the same ones in order. */
-static size_t place(const model_run *run, strut_channel id, const char *item, size_t component) {
+static size_t place(const model_run *run, strut_channels id, const char *item, size_t component) {
   const strut_scene *scene = &run->setup.scene;
   bool members = id == STRUT_CHANNEL_LENGTH || id == STRUT_CHANNEL_FORCE;
   size_t count = members ? scene->member_count : scene->node_count;
@@ -112,7 +112,7 @@ static size_t place(const model_run *run, strut_channel id, const char *item, si
   return 0;
 }
 
-double model_value(const model_run *run, size_t row, strut_channel channel, const char *item,
+double model_value(const model_run *run, size_t row, strut_channels channel, const char *item,
                    size_t component) {
   assert_true(row < run->row_count);
   return run->rows[row * run->layout.width + place(run, channel, item, component)];

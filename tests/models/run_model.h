@@ -38,7 +38,7 @@ void model_run_free(model_run *run);
 /** Position of a node at the end, [m]; fails the test if there is none of that name. */
 const double *model_position(const model_run *run, const char *node);
 /** Value in a row, e.g. (run, row, STRUT_CHANNEL_FORCE, "top", 0). */
-double model_value(const model_run *run, size_t row, strut_channel channel, const char *item,
+double model_value(const model_run *run, size_t row, strut_channels channel, const char *item,
                    size_t component);
 
 #endif

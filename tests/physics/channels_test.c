@@ -6,7 +6,7 @@
 #include "tests/support/check.h"
 #include "tests/unit/scratch.h"
 
-static const unsigned ALL = (1u << STRUT_CHANNEL_COUNT) - 1;
+#define ALL (((strut_channels)1 << STRUT_CHANNEL_COUNT) - 1)
 
 /* Runs a scene with all channels into memory and, where `directory` is one, into files. */
 static void record(const char *text, const char *const *settings, const char *directory,
@@ -132,6 +132,12 @@ static const char EVERYTHING[] =
     "  ce: {kind: bar, nodes: [c, e], stiffness: 1e4, damping: 10}\n"
     "hinges: {h: {nodes: [d, c, e], stiffness: 3}}\n"
     "cells: {q: {nodes: [a, b, c, d], pressure: 30}}\n"
+    "collisions: {hit: {nodes: [a, e], thickness: 0.1, stiffness: 100}}\n"
+    "distances: {wide: {nodes: [a, c], along: x, stiffness: 10}}\n"
+    "sliders: {bead: {member: ab, mass: 0.1, position: 0.5, moves: to_and_fro}}\n"
+    "sensors: {l: {length: bc}, up: {of: com.y}}\n"
+    "states: {z: {start: 0, rate: l / (1 m s)}}\n"
+    "signals: {to_and_fro: {sine: {amplitude: 0.4, frequency: 1 Hz}}}\n"
     "ground: {stiffness: 1e5, damping: 100, nodes: all}\n"
     "solver: {step: 50 us}\n"
     "run: {duration: 50 ms}\n"

@@ -169,7 +169,7 @@ TEST(every_channel_holds_what_it_says) {
 }
 
 /* Columns of a part that are those of the whole. */
-static void check_part(const memory *part, const memory *whole, unsigned channels) {
+static void check_part(const memory *part, const memory *whole, strut_channels channels) {
   size_t columns = 1;
   assert_int_equal(part->channels, channels);
   assert_int_equal(part->count, whole->count);

@@ -93,6 +93,15 @@ class Channels(unittest.TestCase):
         self.assertEqual(only.channels, (NAME,))
         self.assertEqual(np.asarray(only[NAME]).tolist(), self.array.tolist())
 
+    def test_every_observable_is_a_channel(self) -> None:
+        run = self.scene.run(channels="position,com.x,energy.total,stretch")
+        self.assertEqual(run.channels, ("position", "stretch", "com.x", "energy.total"))
+        self.assertEqual(run["com.x"].shape, (len(run.time), 1))
+        self.assertEqual(run["stretch.bc"].tolist(), run["stretch"]["bc"].tolist())
+        self.assertEqual(run.members["ab"].stretch.tolist(), run["stretch"]["ab"].tolist())
+        again = pickle.loads(pickle.dumps(run))
+        self.assertEqual(again["energy.total"].tolist(), run["energy.total"].tolist())
+
     def test_a_simulation_has_it(self) -> None:
         simulation = self.scene.simulation()
         live = simulation.angular_momentum

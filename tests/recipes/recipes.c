@@ -28,6 +28,7 @@ static const char OSCILLATOR[] =
     "initial: {positions: {block: [1.01, 0]}}\n"
     "solver: {integrator: euler-forward, step: 1e-4}\nrun: {duration: 1}\n";
 
+int test_an_observable(void); /* observable.c */
 /* things.c */
 int test_a_number_of_hinges(void);
 int test_a_kind_of_thing(void);
@@ -310,6 +311,7 @@ int main(void) {
   test_the_method();
   failures += test_a_number_of_hinges();
   failures += test_a_kind_of_thing();
+  failures += test_an_observable();
   if (!failures) printf("the recipes work\n");
   return failures > 0;
 }

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The recipes for a friction law, a law of members, a strain, a number, a kind of thing and a method do what they promise:
+# The recipes for a friction law, a law of members, a strain, a number, a kind of thing, an observable and a method do what they promise:
 # copies the sources, applies the ```diff blocks of docs/dev/recipes.md, compiles what recipes.c runs, and runs it.
 # Usage: recipes.sh ROOT SCRATCH CC INCLUDES LIBRARIES
 set -eu
@@ -14,19 +14,19 @@ awk '/^```diff/ { inside = 1; blocks++; next } /^```/ { inside = 0 } inside { pr
   END { exit blocks == 0 }' "$root/docs/dev/recipes.md" >"$scratch/recipes.diff"
 cd "$scratch"
 touched=$(sed -n 's/^+++ b\///p' recipes.diff | sort -u | tr '\n' ' ')
-expected="engine/forces/elements.c engine/forces/strains/span.h engine/integrate/euler_forward.c \
+expected="engine/forces/elements.c engine/forces/observe.c engine/forces/strains/span.h engine/integrate/euler_forward.c \
 engine/integrate/events/location/between.c \
 engine/model/elements.c engine/model/elements.h engine/scene/experiment.h engine/scene/law.h \
-engine/scene/laws/friction.h engine/scene/laws/stiffening.h engine/scene/scene.c \
+engine/scene/laws/friction.h engine/scene/laws/stiffening.h engine/scene/observables.h engine/scene/scene.c \
 engine/scene/scene.h engine/scene/things_table.h parser/language/keys_table.h parser/read/read_scene.c \
 parser/read/read_things.c parser/write/write_scene.c "
 [ "$touched" = "$expected" ] || { echo "the recipes touch other files: $touched"; exit 1; }
 patch -s -p1 <recipes.diff
 
-sources="tests/recipes/recipes.c tests/recipes/things.c $(ls engine/base/*.c engine/scene/*.c \
+sources="tests/recipes/recipes.c tests/recipes/things.c tests/recipes/observable.c $(ls engine/base/*.c engine/scene/*.c \
   engine/model/*.c engine/forces/*.c engine/statics/search/*.c engine/statics/equilibria/*.c) \
-  $(find engine/integrate parser/yaml parser/expression parser/language parser/read parser/write -name '*.c')
-  engine/run/settle.c engine/run/settle_check.c engine/statics/curvature.c engine/statics/dense_algebra.c
+  $(find engine/integrate parser/yaml parser/expression parser/language parser/read parser/write parser/study engine/run -name '*.c')
+  engine/output/csv.c engine/output/file.c engine/output/buffer.c engine/output/results.c engine/statics/curvature.c engine/statics/dense_algebra.c
   engine/statics/minimise.c engine/statics/potential.c engine/statics/spectrum.c"
 # shellcheck disable=SC2086
 printf '%s\n' $sources | xargs -P 2 -n 12 sh -c 'cc=$1 includes=$2; shift 2

@@ -6,136 +6,28 @@
 #include <math.h>
 
 #include "engine/forces/drives/drives.h"
-#include "engine/forces/elements.h"
-#include "engine/forces/energy.h"
-#include "engine/forces/forces.h"
-#include "engine/forces/surfaces.h"
-#include "engine/model/pose.h"
+#include "engine/forces/observe.h"
 #include "engine/scene/signal_program.h"
 
-/* Length of a member and its rate. */
-static void sense_length(const strut_model *model, const strut_state *state, int32_t member,
-                         const double *q, const double *v, double *value, double *rate) {
-  strut_member_values values = strut_member_measure_at(model, state, member, q, v);
-  *value = values.length, *rate = values.rate;
-}
-
-static void sense_strain(const strut_model *model, const strut_state *state, int32_t element,
-                         const double *q, const double *v, double *value, double *rate) {
-  assert(element >= 0 && element < model->elements.count);
-  strut_element_pose pose;
-  strut_element_evaluate(model, element, state->latest->rest, q, state->history.turn[element],
-                         &pose);
-  *value = pose.strain;
-  *rate = strut_element_rate(model, element, &pose, v);
-}
-
-/* Of the first element of a cell or a collision, and those that follow it. */
-static double sense_push(const strut_model *model, const strut_state *state, int32_t first,
-                         const double *q, const double *v) {
-  strut_element_pose pose;
-  double push = model->elements.element[first].numbers.outside;
-  for (int32_t i = first; i < strut_element_end(&model->elements, first); i++)
-    push -= strut_element_measure_at(model, state, i, q, v, &pose);
-  return push;
-}
-
-static double sense_energy(const strut_model *model, const strut_state *state, int32_t which,
-                           const double *q, const double *v) {
-  strut_energies e = strut_energy_evaluate_at(model, state, q, v);
-  return which == STRUT_SENSED_KINETIC   ? e.kinetic
-         : which == STRUT_SENSED_ELASTIC ? e.elastic
-                                         : e.kinetic + e.elastic + e.gravity + e.contact;
-}
-
-/* The element that contact i has become, or -1. */
-static int32_t element_of(const strut_model *model, int32_t i) {
-  int32_t item = model->rubbing.of_contact ? model->rubbing.of_contact[i] : -1;
-  return item < 0 ? -1 : model->rubbing.item[item].element;
-}
-
-/* Does the node of contact `first`, or -1, touch any of its grounds? A node's contacts are side by side. */
-static bool touches(const strut_model *model, const strut_state *state, int32_t first,
-                    const double *q) {
-  assert(first >= 0 && first < model->contacts.count);
-  const strut_contact_table *c = &model->contacts;
-  for (int32_t i = first; i >= 0 && i < c->count && c->at[i] == c->at[first]; i++) {
-    int32_t element = element_of(model, i);
-    double b[STRUT_MOST_GRADIENT];
-    if (element >= 0) {
-      double natural = model->elements.element[element].natural;
-      if (strut_element_strain(model, element, q, 0.0, b) < natural) return true;
-      continue;
-    }
-    if (strut_contact_gap_at(c, i, q, state->latest->ground_motion) < 0.0) return true;
-  }
-  return false;
-}
-
-/* Normal forces on the node of contact `first`, or -1, of all its grounds. */
-static double sense_contact_force(const strut_model *model, const strut_state *state, int32_t first,
-                                  const double *q, const double *v) {
-  const strut_contact_table *c = &model->contacts;
-  double sum = 0.0;
-  for (int32_t i = first; i >= 0 && i < c->count && c->at[i] == c->at[first]; i++) {
-    int32_t element = element_of(model, i);
-    strut_element_pose pressed;
-    if (element >= 0) {
-      sum -= strut_element_measure_at(model, state, element, q, v, &pressed);
-      continue;
-    }
-    const strut_contact_pose pose =
-        strut_contact_pose_at(c, i, q, state->latest->ground_motion, -1);
-    if (!(pose.gap < 0.0)) continue;
-    strut_vec2 u = strut_contact_velocity(c, i, v, state->latest->ground_motion);
-    const strut_law_ground_numbers numbers = strut_contact_numbers(&c->entry[i]);
-    double spring = strut_law_ground_spring(&numbers, pose.gap);
-    double into = strut_component(pose.axes.normal, u.x, u.y);
-    sum += spring + strut_law_ground_damper(&numbers, spring, into, true);
-  }
-  return sum;
-}
-
-static void sense(const strut_model *model, const strut_state *state, strut_sensor_entry sensor,
-                  const double *q, const double *v, double *value, double *rate) {
-  *rate = 0.0;
-  switch (sensor.kind) {
-    case STRUT_SENSOR_LENGTH: sense_length(model, state, sensor.at, q, v, value, rate); break;
-    case STRUT_SENSOR_AREA:
-    case STRUT_SENSOR_DISTANCE:
-    case STRUT_SENSOR_ANGLE: sense_strain(model, state, sensor.at, q, v, value, rate); break;
-    case STRUT_SENSOR_CONTACT: *value = touches(model, state, sensor.at, q); break;
-    case STRUT_SENSOR_POSITION: *value = q[sensor.at], *rate = v[sensor.at]; break;
-    case STRUT_SENSOR_VELOCITY: *value = v[sensor.at]; break;
-    case STRUT_SENSOR_FORCE:
-      *value = strut_member_measure_at(model, state, sensor.at, q, v).force;
-      break;
-    case STRUT_SENSOR_ENERGY: *value = sense_energy(model, state, sensor.at, q, v); break;
-    case STRUT_SENSOR_PRESSURE:
-    case STRUT_SENSOR_COLLISION_FORCE: *value = sense_push(model, state, sensor.at, q, v); break;
-    case STRUT_SENSOR_CONTACT_FORCE:
-      *value = sense_contact_force(model, state, sensor.at, q, v);
-      break;
-    case STRUT_SENSOR_KINDS: break;
-  }
-}
-
-static void sense_all(const strut_model *model, const strut_state *state, bool driven,
+static void sense_all(const strut_model *model, const strut_state *state, bool driven, double t,
                       const double *q, const double *v) {
   const strut_feedback_table *f = &model->feedback;
-  for (int32_t i = 0; i < f->count; i++)
-    if (strut_sensor_needs_drives(f->sensor[i].kind) == driven)
-      sense(model, state, f->sensor[i], q, v, &state->latest->sensor[i],
-            &state->latest->sensor_rate[i]);
+  strut_view view = {.model = model, .state = state, .q = q, .v = v, .time = t, .sensed = true};
+  for (int32_t i = 0; i < f->count; i++) {
+    strut_column column = f->sensor[i];
+    if (strut_column_needs_drives(column) != driven) continue;
+    strut_observed seen = strut_observe_at(column.kind)(&view, column.item, column.other);
+    state->latest->sensor[i] = seen.value, state->latest->sensor_rate[i] = seen.rate;
+  }
 }
 
 static void apply_drives(const strut_model *model, const strut_state *state, double t,
                          const double *q, const double *v) {
   const strut_feedback_table *f = &model->feedback;
-  sense_all(model, state, false, q, v);
+  sense_all(model, state, false, t, q, v);
   strut_drive_apply_sensed(model, state, t, v);
   if (!f->needs_drives) return;
-  sense_all(model, state, true, q, v);
+  sense_all(model, state, true, t, q, v);
   /* rates of states may follow these sensors, and rates of rest lengths those */
   if (f->state_count) strut_drive_apply_sensed(model, state, t, v);
 }
@@ -172,8 +64,8 @@ static void begin_history(const strut_model *model, const strut_state *state, do
   const strut_signal *signals = model->scene->signals;
   const strut_signal_inputs in = strut_drive_inputs(model, state, v);
   double rate;
-  sense_all(model, state, false, q, v);
-  sense_all(model, state, true, q, v);
+  sense_all(model, state, false, t, q, v);
+  sense_all(model, state, true, t, q, v);
   for (int32_t i = 0; i < (int32_t)model->scene->signal_count; i++) {
     if (signals[i].kind == STRUT_RELAY) strut_relay_start(model, state, i, t, v);
     if (signals[i].every > 0.0)
@@ -247,8 +139,10 @@ bool strut_feedback_touch(const strut_model *model, strut_state *state, int32_t 
 /* Does the condition of a trigger hold at the state? */
 static bool condition_holds(const strut_model *model, const strut_state *state,
                             const strut_trigger *trigger) {
-  for (int32_t i = 0; i < model->contacts.count && trigger->kind == STRUT_TRIGGER_CONTACT; i++)
-    if (model->contacts.entry[i].node == trigger->item) return touches(model, state, i, state->q);
+  if (trigger->kind == STRUT_TRIGGER_CONTACT) {
+    strut_view view = {.model = model, .state = state, .q = state->q, .v = state->v};
+    return strut_observe_item(&view, STRUT_COLUMN_TOUCHES, trigger->item) > 0.0;
+  }
   if (trigger->kind == STRUT_TRIGGER_ABOVE)
     return state->latest->sensor[trigger->item] > trigger->level;
   return trigger->kind == STRUT_TRIGGER_BELOW &&

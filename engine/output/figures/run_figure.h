@@ -32,7 +32,7 @@ typedef struct strut_run_figure {
   const char *other_name;
 } strut_run_figure;
 
-/** Channels that a view needs, strut_channel bits. */
+/** Channels that a view needs, strut_channels bits. */
 STRUT_API unsigned strut_run_figure_channels(strut_run_view view);
 /**
  * Checks before a run that its record will contain what the figure draws: STRUT_USAGE with the

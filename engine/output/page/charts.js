@@ -50,14 +50,12 @@
       .map((c) => c.curve);
   }
 
-  /* A channel as the table of channels describes it: columns of each thing, then of their total. */
-  function plainKind(data, name, block, values) {
-    const things = data[block.things] || [], components = block.components;
-    const nameOf = (k) => k >= things.length ? "total" : things[k].name ||
-      (data.contact_names ? data.contact_names[k] : data.nodes[things[k]].name);
+  /* A channel as the table of channels describes it: columns of each name, the last of which may be the total. */
+  function plainKind(name, block, values) {
+    const components = block.components;
     return { name: name.replaceAll("_", " "), unit: block.unit,
       curves: Array.from({ length: block.columns }, (_, i) => ({
-        name: (nameOf(Math.floor(i / components.length)) + " " + components[i % components.length]).trim(),
+        name: (block.names[Math.floor(i / components.length)] + " " + components[i % components.length]).trim(),
         at: column(values, block.columns, i) })) };
   }
 
@@ -97,7 +95,7 @@
       kinds.push({ name: "energy", unit: "J", curves: data.motion.energy_names.map((name, i) => ({
         name, at: column(motion.energy, data.motion.energy_names.length, i) })) });
     for (const [name, block] of Object.entries(data.motion))
-      if (block && block.unit) kinds.push(plainKind(data, name, block, motion[name]));
+      if (block && block.unit) kinds.push(plainKind(name, block, motion[name]));
     return kinds;
   }
 

@@ -187,7 +187,7 @@ static const unsigned LEFT_OUT = STRUT_CHANNEL_VELOCITY | STRUT_CHANNEL_LENGTH,
                                    STRUT_CHANNEL_PRESSURE;
 
 static const strut_channel_row *channel_of(int block) {
-  return strut_channel_row_of((strut_channel)(1u << (block - 1)));
+  return strut_channel_row_of((strut_channels)1 << (block - 1));
 }
 
 static bool has_common_chart(int block) {
@@ -337,8 +337,14 @@ static void add_block(strut_buffer *buffer, const motion *m, int b) {
   add_number(buffer, block->quantum);
   if (has_common_chart(b)) {
     const strut_channel_row *row = channel_of(b);
-    strut_buffer_add(buffer, ",\"unit\":\"%s\",\"things\":\"%s\",\"components\":[", row->unit,
+    const strut_scene *scene = m->page->model->scene;
+    bool whole = strut_channel_is_whole(row);
+    strut_buffer_add(buffer, ",\"unit\":\"%s\",\"things\":\"%s\",\"names\":[", row->unit,
                      strut_owner_row_of(row->owner)->things);
+    for (size_t i = 0; i < strut_channel_items(row, scene); i++)
+      strut_buffer_add(buffer, "%s\"%s\"", i ? "," : "",
+                       whole ? row->name : strut_channel_item(row, scene, i));
+    strut_buffer_add(buffer, "],\"components\":[");
     for (size_t i = 0; i < row->components; i++)
       strut_buffer_add(buffer, "%s\"%s\"", i ? "," : "", row->component_names[i]);
     strut_buffer_add(buffer, "]");

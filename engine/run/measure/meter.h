@@ -56,16 +56,6 @@ static inline double strut_hermite(double x0, double v0, double x1, double v1, d
 }
 
 /*
- * Reduces the values of one quantity over the window and over each of its periods, by its samples
- * between the steps.
- *
- * A part so short that the values change evenly needs no samples between its ends: its integral and
- * its extremes are those of the parabola through these and the value before. Any other one is halved
- * until a parabola through its samples meets those between. There integrals are by Simpson's rule,
- * extremes and arrivals are searched for where the samples show one.
- */
-
-/*
  * Dense output: the state at any instant within a piece of the motion.
  *
  * Positions are the polynomials of fifth order through positions, velocities and accelerations at both
@@ -102,16 +92,6 @@ double strut_dense_place(strut_dense *dense, strut_state *state, strut_motion_pi
                          double s);
 /** Moves the state back to the end of the piece, with all that follows from it as before. */
 void strut_dense_return(strut_dense *dense, strut_state *state, const strut_motion_piece *piece);
-
-/*
- * Reduces the values of one quantity over the window and over each of its periods, by its samples
- * between the steps.
- *
- * A part so short that the values change evenly needs no samples between its ends: its integral and
- * its extremes are those of the parabola through these and the value before. Any other one is halved
- * until a parabola through its samples meets those between. There integrals are by Simpson's rule,
- * extremes and arrivals are searched for where the samples show one.
- */
 
 /** Samples are at most so deep: 2^depth parts. */
 enum { STRUT_DEEPEST = 5, STRUT_MOST_SAMPLES = (1 << STRUT_DEEPEST) + 1 };

@@ -142,8 +142,8 @@ bool strut_quantities_need_balance(const strut_experiment *e) {
   for (size_t i = 0; i < e->quantity_count; i++)
     for (size_t k = 0; k < e->quantities[i].length; k++) {
       const strut_instruction *p = &e->quantities[i].program[k];
-      bool balance = p->column.kind >= STRUT_COLUMN_DRIVES && p->column.kind <= STRUT_COLUMN_LOST;
-      if (p->operation == STRUT_OPERATION_COLUMN && balance) return true;
+      if (p->operation != STRUT_OPERATION_COLUMN) continue;
+      if (strut_observable_at(p->column.kind)->need == STRUT_OBSERVED_BALANCE) return true;
     }
   return false;
 }
@@ -428,8 +428,8 @@ static const char *loaded_member(const strut_quantities *q, const strut_meter *m
   for (size_t i = 0; i < d->length; i++)
     asked = asked || (d->program[i].operation == STRUT_OPERATION_COLUMN &&
                       d->program[i].column.kind == STRUT_COLUMN_LARGEST_FORCE);
-  if (!asked || d->take != STRUT_TAKE_MAX || q->columns.loaded_most < 0) return NULL;
-  return q->columns.model->scene->members[q->columns.loaded_most].name;
+  if (!asked || d->take != STRUT_TAKE_MAX || q->columns.loaded < 0) return NULL;
+  return q->columns.view.model->scene->members[q->columns.loaded].name;
 }
 
 static void fill_measured(strut_quantities *q, strut_meter *m, strut_measured *to) {

@@ -6,7 +6,7 @@
 #define STRUT_ENGINE_RUN_MEASURE_QUANTITIES_H
 
 #include "engine/base/status.h"
-#include "engine/forces/energy.h"
+#include "engine/forces/observe.h"
 #include "engine/model/state.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
@@ -16,23 +16,18 @@
 
 /** Distinct columns with their values now and over the window. */
 typedef struct strut_columns {
-  const strut_model *model;
-  double time;      /* of the latest evaluation, without the state's time_offset [s] */
-  double normal[2]; /* of the ground */
+  strut_view view;
+  unsigned needs; /* bits of strut_observed_need */
   size_t count;
-  strut_column *column;  /* (count) `item` of CONTACT indexes the model's contacts, -1: no contact;
-                           those of HINGE, CELL, COLLISION index elements */
-  double *value;         /* (count) now, SI */
-  double *least, *most;  /* (count) over the window */
-  double *largest;       /* (count) largest absolute value of the terms that it sums */
-  int32_t *branch;       /* (count) which of several values one is, such as the largest force */
-  double fastest;        /* largest speed of a node in the window [m/s]; only with `speeds` */
-  bool forces;           /* some column needs the forces at the state */
-  bool energies;         /* some column needs the stored energies */
-  bool speeds;           /* some column is a velocity, whose rounding scales with the node speeds */
-  strut_energies stored; /* [J]; with `energies` */
-  int32_t loaded_now,
-      loaded_most; /* member of the largest force now, and in the window; -1: none */
+  strut_column *column;    /* (count) as their functions know them: strut_column_find */
+  strut_observe **observe; /* (count) */
+  double *value;           /* (count) now, SI */
+  double *least, *most;    /* (count) over the window */
+  double *largest;         /* (count) largest absolute value of the terms that it sums */
+  int32_t *branch;         /* (count) which of several values one is, such as the largest force */
+  double fastest;          /* largest speed of a node in the window [m/s]; only with `speeds` */
+  bool speeds;    /* some column is a velocity, whose rounding scales with the node speeds */
+  int32_t loaded; /* member of the largest force in the window; -1: none */
 } strut_columns;
 
 /** Allocates for `most` columns in the arena. False: out of memory. */

@@ -42,7 +42,7 @@ const strut_trajectory *abi_result_motion(const strutlib_result *result) {
 /* ---- what is recorded ---- */
 
 /* What the scene records and what the page and the figures show, unless the caller says. 0: nothing. */
-static unsigned choose_channels(const strut_arguments *arguments, const strut_setup *setup) {
+static strut_channels choose_channels(const strut_arguments *arguments, const strut_setup *setup) {
   if (arguments->record.index == 1) return 0;
   if (arguments->channels.text) return arguments->channels.set; /* bits in the table's order */
   return setup->experiment.channels | strut_run_figure_channels(STRUT_RUN_OVERVIEW);
@@ -94,7 +94,7 @@ static bool add_arrays(strutlib_result *result, const strut_trajectory *m) {
     const double *values = strut_trajectory_channel(m, row->id);
     const size_t shape[] = {m->frames, strut_channel_things(row, &result->setup.scene),
                             row->components};
-    int dimensions = row->owner != STRUT_OWNER_SYSTEM && row->components > 1 ? 3 : 2;
+    int dimensions = !strut_channel_is_whole(row) && row->components > 1 ? 3 : 2;
     if (values)
       good = abi_result_add_array(result, row->name, row->unit, values, dimensions, shape);
   }
@@ -133,7 +133,7 @@ static strut_status run_model(abi_call *call, strutlib_result *result) {
   run->base.release = release;
   result->detail = run;
   result->draw = draw;
-  const unsigned channels = choose_channels(&call->arguments, &result->setup);
+  const strut_channels channels = choose_channels(&call->arguments, &result->setup);
   strut_status status = STRUT_OK;
   if (channels) {
     sink = strut_trajectory_sink(&run->motion, &result->setup.scene, channels, ROOM);
@@ -268,7 +268,7 @@ int strutlib_simulation_array(strutlib_simulation *simulation, const char *name,
   if (!simulation || !name || !data || !dimensions || !shape || !stride) return 0;
   const strut_channel_row *row = strut_channel_named(name);
   if (!row || !strut_stepping_channel(simulation->stepping, row->id, data)) return 0;
-  bool of_system = row->owner == STRUT_OWNER_SYSTEM; /* its components are the things */
+  bool of_system = strut_channel_is_whole(row); /* its components are the things */
   return show(strut_channel_things(row, &simulation->setup.scene), of_system ? 1 : row->components,
               dimensions, shape, stride);
 }

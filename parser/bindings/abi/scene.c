@@ -15,10 +15,10 @@
 /* ---- names ---- */
 
 /* The i-th of the channels that are recorded, or NULL. */
-static const char *recorded_at(unsigned recorded, size_t i) {
+static const char *recorded_at(strut_channels recorded, size_t i) {
   const strut_channel_row *row;
   for (size_t k = 0; (row = strut_channel_at(k)) != NULL; k++)
-    if ((recorded & (unsigned)row->id) && i-- == 0) return row->name;
+    if ((recorded & row->id) && i-- == 0) return row->name;
   return NULL;
 }
 
@@ -89,7 +89,7 @@ const char *strutlib_channel_kind(const char *channel) {
 
 const char *strutlib_channel_component(const char *channel, size_t i) {
   const strut_channel_row *row = channel ? strut_channel_named(channel) : NULL;
-  bool several = row && row->owner != STRUT_OWNER_SYSTEM && row->components > 1;
+  bool several = row && !strut_channel_is_whole(row) && row->components > 1;
   return several && i < row->components ? row->component_names[i] : NULL;
 }
 

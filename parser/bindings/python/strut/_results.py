@@ -310,7 +310,8 @@ class Run(Result):
     @cached_property
     def channels(self) -> tuple[str, ...]:
         """The channels that were recorded: "position", "force", ..."""
-        return (*dict.fromkeys(name.split(".")[0] for name in self.array_names if name != "time"),)
+        names = (name if name in COMPONENTS else name.split(".")[0] for name in self.array_names)
+        return (*dict.fromkeys(name for name in names if name != "time"),)
 
     def __getitem__(self, name: str) -> Any:
         array = self._raw.array(name)

@@ -1,0 +1,486 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One function for each observable. Hot where a scene has sensors. See observe.h. */
+#include "engine/forces/observe.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "engine/base/vec.h"
+#include "engine/forces/drives/drives.h"
+#include "engine/forces/drives/moving_masses.h"
+#include "engine/forces/drives/support_motion.h"
+#include "engine/forces/elements.h"
+#include "engine/forces/forces.h"
+#include "engine/forces/history.h"
+#include "engine/forces/nearby.h"
+#include "engine/forces/rigid.h"
+#include "engine/forces/surfaces.h"
+#include "engine/model/pose.h"
+#include "engine/model/surface_search.h"
+#include "engine/scene/things.h"
+
+#define OBSERVE(ID)                                                                                \
+  static strut_observed observe_##ID(strut_view *view, int32_t item, int32_t other)
+#define VALUE(ID, expression)                                                                      \
+  OBSERVE(ID) {                                                                                    \
+    (void)view, (void)item, (void)other;                                                           \
+    return (strut_observed){(expression), 0.0};                                                    \
+  }
+/* One that is the rate of another. */
+#define RATE(ID, OF) VALUE(ID, observe_##OF(view, item, other).rate)
+
+/* ---- the run and its nodes ---- */
+
+static double time_of(const strut_view *view) { return view->time + view->state->time_offset; }
+
+VALUE(TIME, time_of(view))
+
+static strut_observed coordinate(const strut_view *view, int32_t at) {
+  return (strut_observed){view->q[at], view->v[at]};
+}
+
+OBSERVE(NODE_X) {
+  (void)other;
+  return coordinate(view, 2 * item);
+}
+OBSERVE(NODE_Y) {
+  (void)other;
+  return coordinate(view, 2 * item + 1);
+}
+VALUE(NODE_VX, view->v[2 * item])
+VALUE(NODE_VY, view->v[2 * item + 1])
+
+/* Distance from the nearest of several surfaces. */
+static double height_above_surfaces(const strut_contact_table *t, const double q[2],
+                                    const strut_ground_motion *motion) {
+  double least = HUGE_VAL;
+  for (int32_t k = 0; k < t->surfaces; k++) {
+    const strut_surface *s = &t->surface[k];
+    const double *place = s->moves && motion ? motion[s->ground].place : NULL;
+    double point[2] = {q[0] - (place ? place[0] : 0.0), q[1] - (place ? place[1] : 0.0)};
+    strut_contact_pose pose;
+    if (s->index) {
+      strut_surface_lowest(s, point, &pose.gap);
+      k += s->pieces - 1;
+    } else {
+      strut_surface_find(s, point, -1, &pose);
+    }
+    least = fmin(least, pose.gap);
+  }
+  return least;
+}
+
+static double height_above_ground(const strut_view *view, const double *q) {
+  const strut_contact_table *t = &view->model->contacts;
+  if (t->surface) return height_above_surfaces(t, q, view->state->latest->ground_motion);
+  return q[0] * t->normal[0] + (q[1] - view->model->scene->ground.height) * t->normal[1];
+}
+
+VALUE(HEIGHT, height_above_ground(view, view->q + 2 * item))
+
+VALUE(NODE_SPIN, view->spin[item])
+
+static double sum_of_spins(const strut_view *view) {
+  double sum = 0.0;
+  for (int32_t i = 0; i < view->model->node_count; i++) sum += view->spin[i];
+  return sum;
+}
+
+VALUE(SPIN, sum_of_spins(view))
+
+/* ---- contacts: from `item` on up to `other`, those of a node side by side ---- */
+
+/* The element that contact i has become, or -1. */
+static int32_t element_of(const strut_model *model, int32_t i) {
+  int32_t item = model->rubbing.of_contact ? model->rubbing.of_contact[i] : -1;
+  return item < 0 ? -1 : model->rubbing.item[item].element;
+}
+
+static bool touches(const strut_view *view, int32_t i) {
+  int32_t element = element_of(view->model, i);
+  double b[STRUT_MOST_GRADIENT];
+  if (element < 0)
+    return strut_contact_gap_at(&view->model->contacts, i, view->q,
+                                view->state->latest->ground_motion) < 0.0;
+  return strut_element_strain(view->model, element, view->q, 0.0, b) <
+         view->model->elements.element[element].natural;
+}
+
+OBSERVE(TOUCHES) {
+  bool any = false;
+  for (int32_t i = item; i < other && !any; i++) any = touches(view, i);
+  return (strut_observed){any, 0.0};
+}
+
+/* The normal force on contact i at the view's positions and velocities. */
+static double press(const strut_view *view, int32_t i) {
+  const strut_contact_table *c = &view->model->contacts;
+  const strut_ground_motion *motion = view->state->latest->ground_motion;
+  int32_t element = element_of(view->model, i);
+  strut_element_pose pressed;
+  if (element >= 0)
+    return -strut_element_measure_at(view->model, view->state, element, view->q, view->v, &pressed);
+  const strut_contact_pose pose = strut_contact_pose_at(c, i, view->q, motion, -1);
+  if (!(pose.gap < 0.0)) return 0.0;
+  strut_vec2 u = strut_contact_velocity(c, i, view->v, motion);
+  const strut_law_ground_numbers numbers = strut_contact_numbers(&c->entry[i]);
+  double spring = strut_law_ground_spring(&numbers, pose.gap);
+  double into = strut_component(pose.axes.normal, u.x, u.y);
+  return spring + strut_law_ground_damper(&numbers, spring, into, true);
+}
+
+static double sum_of(const double *force, int32_t first, int32_t end) {
+  double sum = first < end ? force[first] : 0.0;
+  for (int32_t i = first + 1; i < end; i++) sum += force[i];
+  return sum;
+}
+
+OBSERVE(NORMAL) {
+  double sum = 0.0;
+  if (!view->sensed) return (strut_observed){sum_of(view->state->latest->normal, item, other), 0.0};
+  for (int32_t i = item; i < other; i++) sum += press(view, i);
+  return (strut_observed){sum, 0.0};
+}
+
+VALUE(FRICTION, sum_of(view->state->latest->friction, item, other))
+
+/* ---- members ---- */
+
+static strut_member_values member_of(const strut_view *view, int32_t member) {
+  strut_member_values values =
+      strut_member_measure_at(view->model, view->state, member, view->q, view->v);
+  if (view->sensed) return values;
+  if (view->state->rigid) values.force += strut_rigid_tension(view->state->rigid, member);
+  values.force += strut_actuator_force_on(view->model, view->state, member, -1);
+  return values;
+}
+
+OBSERVE(LENGTH) {
+  strut_member_values values =
+      strut_member_measure_at(view->model, view->state, item, view->q, view->v);
+  (void)other;
+  return (strut_observed){values.length, values.rate};
+}
+OBSERVE(STRETCH) {
+  strut_observed length = observe_LENGTH(view, item, other);
+  return (strut_observed){length.value - view->state->latest->rest[item], 0.0};
+}
+RATE(RATE, LENGTH)
+VALUE(FORCE, member_of(view, item).force)
+
+static double plastic_of(const strut_view *view, int32_t member) {
+  const strut_element_table *t = &view->model->elements;
+  const strut_element *e = strut_element_of_member(t, member);
+  return e ? strut_element_plastic(view->model, view->state, (int32_t)(e - t->element)) : 0.0;
+}
+
+static double last_force_of(const strut_view *view, int32_t member) {
+  const strut_element_table *t = &view->model->elements;
+  const strut_element *e = strut_element_of_member(t, member);
+  if (!e || !(e->guide_friction > 0.0)) return member_of(view, member).force;
+  return strut_element_last_force(view->model, view->state, (int32_t)(e - t->element));
+}
+
+VALUE(PLASTIC, plastic_of(view, item))
+VALUE(LAST_FORCE, last_force_of(view, item))
+
+OBSERVE(LARGEST_FORCE) {
+  double most = 0.0;
+  (void)item, (void)other;
+  view->loaded = view->branch = -1;
+  for (int32_t j = 0; j < view->model->members.count; j++) {
+    double first = member_of(view, j).force, last = last_force_of(view, j);
+    bool at_last = fabs(last) > fabs(first);
+    double force = at_last ? last : first;
+    if (!(fabs(force) > most)) continue;
+    most = fabs(force);
+    view->loaded = j;
+    view->branch = 4 * j + 2 * at_last + (force < 0.0); /* which, at which end, its sign */
+  }
+  return (strut_observed){most, 0.0};
+}
+
+/* The line from one coordinate to another. */
+static strut_vec2 line(const strut_view *view, size_t from, size_t to) {
+  return (strut_vec2){view->q[to] - view->q[from], view->q[to + 1] - view->q[from + 1]};
+}
+
+static strut_vec2 line_of_pair(const strut_view *view, int32_t a, int32_t b) {
+  return line(view, 2 * (size_t)a, 2 * (size_t)b);
+}
+
+static double direction(strut_vec2 d) { return atan2(d.y, d.x); }
+
+VALUE(TILT, direction(line(view, view->model->members.from[item], view->model->members.to[item])))
+VALUE(ANGLE, direction(line_of_pair(view, item, other)))
+
+OBSERVE(DISTANCE) {
+  strut_vec2 d = line_of_pair(view, item, other);
+  return (strut_observed){hypot(d.x, d.y), 0.0};
+}
+
+/* ---- elements: hinges, cells, collisions, distances ---- */
+
+static strut_observed strain_of(const strut_view *view, int32_t element) {
+  const strut_state *state = view->state;
+  strut_element_pose pose;
+  assert(element >= 0 && element < view->model->elements.count);
+  strut_element_evaluate(view->model, element, state->latest->rest, view->q,
+                         state->history.turn[element], &pose);
+  return (strut_observed){pose.strain, strut_element_rate(view->model, element, &pose, view->v)};
+}
+
+static double force_of(const strut_view *view, int32_t element) {
+  strut_element_pose pose;
+  return strut_element_measure_at(view->model, view->state, element, view->q, view->v, &pose);
+}
+
+/* Pressure in a cell, or what all elements of a collision push with. */
+static double push_of(const strut_view *view, int32_t first) {
+  const strut_element_table *t = &view->model->elements;
+  double push = t->element[first].numbers.outside;
+  for (int32_t i = first; i < strut_element_end(t, first); i++) push -= force_of(view, i);
+  return push;
+}
+
+static double gap_of(const strut_view *view, int32_t first) {
+  const strut_element_table *t = &view->model->elements;
+  const strut_state *state = view->state;
+  double least = HUGE_VAL;
+  for (int32_t i = first; i < strut_element_end(t, first); i++) {
+    strut_element_pose pose;
+    strut_element_evaluate(view->model, i, state->latest->rest, view->q, state->history.turn[i],
+                           &pose);
+    least = fmin(least, pose.strain - pose.natural);
+  }
+  return least;
+}
+
+static double moment_of(const strut_view *view, int32_t element) {
+  double moment = force_of(view, element);
+  if (view->sensed) return moment;
+  int32_t hinge = view->model->elements.element[element].item;
+  return moment + strut_actuator_force_on(view->model, view->state, -1, hinge);
+}
+
+#define STRAIN(ID)                                                                                 \
+  OBSERVE(ID) {                                                                                    \
+    (void)other;                                                                                   \
+    return strain_of(view, item);                                                                  \
+  }
+STRAIN(HINGE_ANGLE)
+RATE(HINGE_RATE, HINGE_ANGLE)
+VALUE(MOMENT, moment_of(view, item))
+VALUE(HINGE_PLASTIC, strut_element_plastic(view->model, view->state, item))
+STRAIN(CELL_AREA)
+RATE(CELL_RATE, CELL_AREA)
+VALUE(PRESSURE, push_of(view, item))
+VALUE(COLLISION_GAP, gap_of(view, item))
+VALUE(COLLISION_FORCE, push_of(view, item))
+STRAIN(DISTANCE_VALUE)
+RATE(DISTANCE_RATE, DISTANCE_VALUE)
+VALUE(DISTANCE_FORCE, force_of(view, item))
+
+OBSERVE(LEAST_GAP) {
+  (void)item, (void)other;
+  double gap = strut_nearby_least_gap(view->model, view->state, view->q, &view->branch);
+  return (strut_observed){gap, 0.0};
+}
+
+/* ---- the structure as a whole ---- */
+
+/* Position or velocity of the centre of mass along an axis; and the same of absolute values as its size. */
+static double centre(strut_view *view, int axis, bool rate) {
+  const strut_model *model = view->model;
+  const double *from = (rate ? view->v : view->q) + axis;
+  double sum = 0.0, mass = 0.0, size = 0.0;
+  for (int32_t i = 0; i < model->node_count; i++) {
+    sum += model->weight[i] * from[2 * i];
+    size += model->weight[i] * fabs(from[2 * i]);
+    mass += model->weight[i];
+  }
+  view->size = size / mass;
+  if (!(model->terms & STRUT_TERM_SLIDING_MASS)) return sum / mass;
+  double more = rate ? strut_sliding_masses_momentum(model, view->state, axis, view->q, view->v)
+                     : strut_sliding_masses_moment(model, view->state, axis, view->q);
+  view->size += fabs(more) / mass;
+  return sum / mass + more / mass;
+}
+
+#define CENTRE(ID, RATE, axis)                                                                     \
+  OBSERVE(ID) {                                                                                    \
+    (void)item, (void)other;                                                                       \
+    double rate = view->sensed ? centre(view, axis, true) : 0.0;                                   \
+    return (strut_observed){centre(view, axis, false), rate};                                      \
+  }                                                                                                \
+  VALUE(RATE, centre(view, axis, true))
+CENTRE(CENTRE_X, CENTRE_VX, 0)
+CENTRE(CENTRE_Y, CENTRE_VY, 1)
+
+static strut_energies stored_in(const strut_view *view) {
+  return view->sensed ? strut_energy_evaluate_at(view->model, view->state, view->q, view->v)
+                      : view->stored;
+}
+
+VALUE(KINETIC, stored_in(view).kinetic)
+VALUE(ELASTIC, stored_in(view).elastic)
+VALUE(GRAVITY, stored_in(view).gravity)
+VALUE(GROUND, stored_in(view).contact)
+
+OBSERVE(TOTAL) {
+  strut_energies e = stored_in(view);
+  (void)item, (void)other;
+  view->size = fabs(e.kinetic) + fabs(e.elastic) + fabs(e.gravity) + fabs(e.contact);
+  return (strut_observed){e.kinetic + e.elastic + e.gravity + e.contact, 0.0};
+}
+
+VALUE(DRIVES, view->state->work[STRUT_POWER_DRIVE])
+VALUE(LOADS, view->state->work[STRUT_POWER_LOAD] + strut_energy_load_work(view->model, view->state))
+VALUE(BELT, view->state->work[STRUT_POWER_BELT])
+VALUE(SUPPORTS, strut_support_motion_work(view->model, view->state))
+VALUE(LOST_MEMBERS, view->state->work[STRUT_POWER_MEMBERS])
+VALUE(LOST_CONTACT, view->state->work[STRUT_POWER_CONTACT])
+VALUE(LOST_FRICTION, view->state->work[STRUT_POWER_FRICTION])
+VALUE(LOST, view->state->work[STRUT_POWER_MEMBERS] + view->state->work[STRUT_POWER_CONTACT] +
+                view->state->work[STRUT_POWER_FRICTION])
+
+/* ---- signals, and masses that they move ---- */
+
+VALUE(SENSOR, view->state->latest->sensor[item])
+VALUE(SENSOR_RATE, view->state->latest->sensor_rate[item])
+VALUE(STATE, view->v[view->model->feedback.base + item])
+VALUE(SIGNAL, strut_drive_signal(view->model, view->state, view->v, item, time_of(view)))
+
+static double share_of(const strut_view *view, int32_t slider) {
+  return strut_sliding_mass_share(view->model->scene, (size_t)slider, time_of(view));
+}
+
+/* Place or velocity of a mass on a member, along x or y. */
+static double slide(const strut_view *view, int32_t slider, uint32_t axis, bool rate) {
+  const strut_sliding_item *s = &view->model->sliding.item[slider];
+  double far = share_of(view, slider);
+  const double *z = rate ? view->v : view->q, *q = view->q;
+  uint32_t a = s->at[0] + axis, b = s->at[1] + axis;
+  double place = (1.0 - far) * z[a] + far * z[b];
+  return rate ? place + strut_sliding_mass_rate(view->model->scene, (size_t)slider, time_of(view)) *
+                            (q[b] - q[a])
+              : place;
+}
+
+VALUE(SLIDER_X, slide(view, item, 0, false))
+VALUE(SLIDER_Y, slide(view, item, 1, false))
+VALUE(SLIDER_VX, slide(view, item, 0, true))
+VALUE(SLIDER_VY, slide(view, item, 1, true))
+VALUE(SLIDER_SHARE, share_of(view, item))
+
+strut_observe *strut_observe_at(strut_column_kind kind) {
+  static strut_observe *const functions[] = {
+#define FUNCTION(ID, ...) observe_##ID,
+      STRUT_OBSERVABLES(FUNCTION)
+#undef FUNCTION
+  };
+  assert(kind < STRUT_COLUMN_COUNT);
+  return functions[kind];
+}
+
+double strut_observe_item(strut_view *view, strut_column_kind kind, int32_t item) {
+  strut_column column = strut_column_find(view->model, (strut_column){kind, item, -1}, 0);
+  return strut_observe_at(kind)(view, column.item, column.other).value;
+}
+
+/* ---- a view of a state ---- */
+
+/*
+ * momentum = M u of each node at velocities u (nodes, 2), with the model's mass matrix, lumped or consistent,
+ * of all nodes, supported ones too. Masses that slide add their speed along their lines at the positions q;
+ * without it where q is NULL. Forces must have been observed where some mass slides.
+ */
+static void multiply_by_mass(const strut_view *view, const double *u, const double *q,
+                             double *momentum) {
+  const strut_model *model = view->model;
+  const strut_member_table *t = &model->members;
+  bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
+  double own = consistent ? 1.0 / 3.0 : 0.5, other = consistent ? 1.0 / 6.0 : 0.0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) momentum[i] = model->point_mass[i / 2] * u[i];
+  for (int32_t j = 0; j < t->count; j++)
+    for (uint32_t c = 0; c < 2; c++) {
+      uint32_t a = t->from[j] + c, b = t->to[j] + c;
+      momentum[a] += t->mass[j] * (own * u[a] + other * u[b]);
+      momentum[b] += t->mass[j] * (own * u[b] + other * u[a]);
+    }
+  for (int32_t j = 0, k = 0; j < model->sliding.count; j++) {
+    const strut_sliding_item *s = &model->sliding.item[j];
+    strut_sliding_motion motion = {.share = s->start};
+    if (s->signal >= 0) motion = view->state->latest->sliding[k++];
+    for (uint32_t c = 0; c < 2; c++) {
+      uint32_t a = s->at[0] + c, b = s->at[1] + c;
+      double speed = (1.0 - motion.share) * u[a] + motion.share * u[b];
+      if (q) speed += motion.rate * (q[b] - q[a]);
+      momentum[a] += (1.0 - motion.share) * s->mass * speed;
+      momentum[b] += motion.share * s->mass * speed;
+    }
+  }
+}
+
+/* Sums of x and of y, of weights times values or of the values alone, over the total; all (nodes, 2). */
+static strut_vec2 mean(const strut_model *model, const double *weights, const double *values,
+                       double total) {
+  double sum[2] = {0.0, 0.0};
+  for (int32_t i = 0; i < 2 * model->node_count; i++)
+    sum[i % 2] += (weights ? weights[i] : 1.0) * values[i];
+  return total > 0.0 ? (strut_vec2){sum[0] / total, sum[1] / total} : (strut_vec2){0.0, 0.0};
+}
+
+/*
+ * (r - c) x p of each node: r its position, p its part of M (v - v_c), c and v_c the centre of
+ * mass and its velocity. Since M couples x to x and y to y alike, forces within the structure leave their
+ * sum as it is.
+ */
+static void find_spin(strut_view *view) {
+  const strut_model *model = view->model;
+  const double *q = view->state->q;
+  double *p = view->momentum, *u = view->relative_velocity, total = 0.0;
+  int32_t n = model->node_count;
+  for (int32_t i = 0; i < 2 * n; i++) u[i] = 1.0;
+  multiply_by_mass(view, u, NULL, p); /* masses, in x and in y */
+  for (int32_t i = 0; i < n; i++) total += p[2 * i];
+  strut_vec2 centre = mean(model, p, q, total);
+  multiply_by_mass(view, view->state->v, q, p);
+  strut_vec2 velocity = mean(model, NULL, p, total);
+  for (int32_t i = 0; i < n; i++) {
+    u[2 * i] = view->state->v[2 * i] - velocity.x;
+    u[2 * i + 1] = view->state->v[2 * i + 1] - velocity.y;
+  }
+  multiply_by_mass(view, u, q, p);
+  for (int32_t i = 0; i < n; i++)
+    view->spin[i] = (q[2 * i] - centre.x) * p[2 * i + 1] - (q[2 * i + 1] - centre.y) * p[2 * i];
+}
+
+bool strut_view_create(const strut_model *model, strut_arena *arena, strut_view *view) {
+  size_t nodes = (size_t)model->node_count;
+  *view = (strut_view){.model = model};
+  view->spin = strut_arena_allocate(arena, nodes, sizeof(double));
+  view->momentum = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
+  view->relative_velocity = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
+  return view->spin && view->momentum && view->relative_velocity;
+}
+
+/* Must all forces be evaluated, not only those of contacts, which a method with events may hold? */
+static bool needs_evaluation(const strut_model *model, unsigned needs) {
+  bool acted = model->terms & (STRUT_TERM_RIGID | STRUT_TERM_ACTUATOR_FORCES);
+  return (acted && (needs & 1u << STRUT_OBSERVED_TENSION)) ||
+         (model->sliding.moving_count && (needs & 1u << STRUT_OBSERVED_MOMENTUM));
+}
+
+void strut_view_show(strut_view *view, const strut_state *state, unsigned needs, double t) {
+  const strut_model *model = view->model;
+  view->state = state, view->q = state->q, view->v = state->v, view->time = t;
+  if (!(needs & ~(1u << STRUT_OBSERVED_MOTION))) return;
+  if (needs_evaluation(model, needs) ||
+      ((needs & 1u << STRUT_OBSERVED_FORCES) && !strut_forces_show_held(model, state)))
+    strut_forces_observe(model, state, t);
+  else
+    strut_drive_apply(model, state, t);
+  if (needs & 1u << STRUT_OBSERVED_ENERGIES) view->stored = strut_energy_evaluate(model, state, t);
+  if (needs & 1u << STRUT_OBSERVED_MOMENTUM) find_spin(view);
+}
