@@ -209,6 +209,20 @@ bool strut_spectrum_finish(strut_spectrum_workspace *room, const double *q, bool
 bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least,
                             bool careful, strut_spectrum *spectrum);
 
+/* Steps put together from modes. Arrays are (n). */
+
+/** part: shares of g in the modes; idle: 1 where a mode has neither stiffness nor a share beyond `still` [N]. */
+void strut_spectrum_split(const strut_spectrum *spectrum, const double *g, double still,
+                          double *part, uint8_t *idle);
+/** step = the sum of the modes times x; returns its length. */
+double strut_spectrum_combine(const strut_spectrum *spectrum, const double *x, double *step);
+/**
+ * Corrects a step by Newton's method, with the gradient g at its end, in modes whose eigenvalue and `value` exceed
+ * `stiff`. False: there are none.
+ */
+bool strut_spectrum_rebalance(const strut_spectrum *spectrum, const double *value, double stiff,
+                              const double *g, double *step);
+
 /** The stiffness that forces give to some modes, summed force by force: stiff ones that a mode does not strain do not
     blur it. Mode i's row r is vector[i mode_step + r row_step]. */
 typedef struct strut_mode_form {

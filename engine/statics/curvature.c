@@ -171,29 +171,11 @@ static bool step_in_basis(dense_curvature *r, const double *g, double radius, do
   return true;
 }
 
-/* Shares of the gradient; a mode without stiffness and without force beyond `still` is idle. */
-static void split_gradient(dense_curvature *r, const double *g, double still) {
-  size_t n = (size_t)r->now.n;
-  for (size_t i = 0; i < n; i++) {
-    const double *mode = r->now.vector + i * n;
-    r->part[i] = strut_dot(mode, g, r->now.n);
-    r->idle[i] = fabs(r->now.value[i]) <= 4.0 * r->now.noise[i] && fabs(r->part[i]) <= still;
-  }
-}
-
 /* s from its shares; its length and what the model gains by it. */
 static strut_model_step assemble_step(const dense_curvature *r, double *s) {
-  size_t n = (size_t)r->now.n;
-  strut_model_step step = {0};
-  memset(s, 0, n * sizeof *s);
-  for (size_t i = 0; i < n; i++) {
-    double x = r->x[i];
-    if (x == 0.0) continue;
-    step.length += x * x;
-    step.reduction -= x * (r->part[i] + 0.5 * r->now.value[i] * x);
-    for (size_t k = 0; k < n; k++) s[k] += x * r->now.vector[i * n + k];
-  }
-  step.length = sqrt(step.length);
+  strut_model_step step = {.length = strut_spectrum_combine(&r->now, r->x, s)};
+  for (int32_t i = 0; i < r->now.n; i++)
+    if (r->x[i] != 0.0) step.reduction -= r->x[i] * (r->part[i] + 0.5 * r->now.value[i] * r->x[i]);
   return step;
 }
 
@@ -203,7 +185,7 @@ static strut_model_step dense_trust_step(void *memory, const double *g, double r
   strut_model_step step = {0};
   if (!r->has_modes && step_in_basis(r, g, radius, s, &step)) return step;
   if (!find_modes(r, NULL)) return step;
-  split_gradient(r, g, still);
+  strut_spectrum_split(&r->now, g, still, r->part, r->idle);
   strut_quadratic model = {r->now.n, r->now.value, r->part, r->idle, r->scale, 0.0};
   if (r->now.n > 0) model.noise = 4.0 * r->now.noise[0];
   r->multiplier = strut_trust_step(&model, radius, r->x);
@@ -243,16 +225,7 @@ static bool dense_rebalance(void *memory, const double *g, double *s) {
   dense_curvature *r = memory;
   double stiff = r->multiplier > 0 ? 10.0 * r->multiplier : 1e-3 * r->scale;
   if (!r->has_modes) return rebalance_in_basis(r, g, stiff, s);
-  size_t n = (size_t)r->now.n;
-  bool any = false;
-  for (size_t i = 0; i < n; i++) {
-    const double *mode = r->now.vector + i * n;
-    if (!(r->now.value[i] > stiff)) continue;
-    double share = strut_dot(mode, g, r->now.n) / r->now.value[i];
-    for (size_t k = 0; k < n; k++) s[k] -= share * mode[k];
-    any = true;
-  }
-  return any;
+  return strut_spectrum_rebalance(&r->now, r->now.value, stiff, g, s);
 }
 
 static double dense_newton_step(void *memory, const double *g, double *s) {
@@ -260,7 +233,7 @@ static double dense_newton_step(void *memory, const double *g, double *s) {
   strut_model_step step;
   if (is_definite(r) && step_in_basis(r, g, HUGE_VAL, s, &step)) return step.length;
   if (!find_modes(r, NULL)) return HUGE_VAL;
-  split_gradient(r, g, HUGE_VAL);
+  strut_spectrum_split(&r->now, g, HUGE_VAL, r->part, r->idle);
   for (int32_t i = 0; i < r->now.n; i++) r->x[i] = r->idle[i] ? 0.0 : -r->part[i] / r->now.value[i];
   return assemble_step(r, s).length;
 }

@@ -183,11 +183,14 @@ double strut_potential_rounding(const strut_potential *p, const double *q) {
   return largest + forces * DBL_EPSILON;
 }
 
-double strut_element_stiffest(const strut_model *model, int32_t element) {
-  assert(element >= 0 && element < model->elements.count);
+double strut_force_stiffest(const strut_model *model, int32_t number) {
   static const double places[] = {-0.3, -0.1, -0.01, 0.0, 0.01, 0.1, 0.3};
-  const strut_element *e = &model->elements.element[element];
-  double natural = strut_element_start(model, element), stiffest = 0.0;
+  strut_force force;
+  strut_force_begin(model, number, &force);
+  if (force.kind == STRUT_FORCE_MEMBER) return model->members.stiffness[force.index];
+  if (force.kind == STRUT_FORCE_CONTACT) return model->contacts.entry[force.index].stiffness;
+  const strut_element *e = &model->elements.element[force.index];
+  double natural = strut_element_start(model, force.index), stiffest = 0.0;
   double size = model->size > 0.0 ? model->size : 1.0;
   bool angle = e->strain == STRUT_STRAIN_ANGLE;
   if (e->strain == STRUT_STRAIN_AREA) return e->numbers.stiffness * size * size;
@@ -201,10 +204,8 @@ double strut_element_stiffest(const strut_model *model, int32_t element) {
 
 double strut_stiffest(const strut_model *model) {
   double stiffest = 0.0;
-  for (int32_t j = 0; j < model->members.count; j++)
-    stiffest = fmax(stiffest, model->members.stiffness[j]);
-  for (int32_t i = 0; i < model->elements.count; i++)
-    stiffest = fmax(stiffest, strut_element_stiffest(model, i));
+  for (int32_t i = 0; i < strut_force_count(model, false); i++)
+    stiffest = fmax(stiffest, strut_force_stiffest(model, i));
   return stiffest;
 }
 

@@ -70,14 +70,14 @@ STRUT_API double strut_potential_rounding(const strut_potential *potential, cons
 strut_force_visit strut_potential_visit(const strut_potential *potential, const double *q,
                                         double least);
 
-/** The largest stiffness of a model's members and elements [N/m]; see strut_element_stiffest. */
+/** The largest stiffness of a model's members and elements [N/m]; see strut_force_stiffest. */
 STRUT_API double strut_stiffest(const strut_model *model);
 
 /**
- * The largest slope of an element's law near its natural strain, as a stiffness [N/m]: that of a hinge
- * over the square of the model's size.
+ * The stiffness [N/m] of a member or a contact, or the largest slope of an element's law near its natural strain, of a
+ * hinge over the square of the model's size; number: as in strut_force_begin.
  */
-double strut_element_stiffest(const strut_model *model, int32_t element);
+double strut_force_stiffest(const strut_model *model, int32_t number);
 
 /**
  * True of a straight member or element that pushes and has shrunk to less than `share` of its natural length at q, with

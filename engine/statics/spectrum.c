@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+
 struct strut_spectrum_workspace {
   const strut_potential *potential;
   strut_arena arena;
@@ -26,19 +28,9 @@ static double *numbers(strut_arena *arena, size_t count) {
 
 static bool is_uneven(const strut_model *model) {
   double low = HUGE_VAL, high = 0.0;
-  for (int32_t j = 0; j < model->members.count; j++) {
-    double c = model->members.stiffness[j];
-    if (!(c > 0)) continue;
-    low = fmin(low, c), high = fmax(high, c);
-  }
-  for (int32_t i = 0; i < model->elements.count; i++) {
-    double c = strut_element_stiffest(model, i);
-    if (!(c > 0)) continue;
-    low = fmin(low, c), high = fmax(high, c);
-  }
-  for (int32_t i = 0; i < model->contacts.count; i++) {
-    double c = model->contacts.entry[i].stiffness;
-    low = fmin(low, c), high = fmax(high, c);
+  for (int32_t i = 0; i < strut_force_count(model, true); i++) {
+    double c = strut_force_stiffest(model, i);
+    if (c > 0) low = fmin(low, c), high = fmax(high, c);
   }
   return high > 1e7 * low;
 }
@@ -270,4 +262,40 @@ bool strut_spectrum_reduce(strut_spectrum_workspace *room, const double *q, stru
 bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least,
                             bool careful, strut_spectrum *spectrum) {
   return reduce(room, q, least) && strut_spectrum_finish(room, q, careful, spectrum);
+}
+
+static const double *mode_of(const strut_spectrum *spectrum, int32_t i) {
+  return spectrum->vector + (size_t)i * (size_t)spectrum->n;
+}
+
+void strut_spectrum_split(const strut_spectrum *spectrum, const double *g, double still,
+                          double *part, uint8_t *idle) {
+  for (int32_t i = 0; i < spectrum->n; i++) {
+    part[i] = strut_dot(mode_of(spectrum, i), g, spectrum->n);
+    idle[i] = fabs(spectrum->value[i]) <= 4.0 * spectrum->noise[i] && fabs(part[i]) <= still;
+  }
+}
+
+double strut_spectrum_combine(const strut_spectrum *spectrum, const double *x, double *step) {
+  double square = 0.0;
+  memset(step, 0, (size_t)spectrum->n * sizeof *step);
+  for (int32_t i = 0; i < spectrum->n; i++) {
+    if (x[i] == 0.0) continue;
+    square += x[i] * x[i];
+    for (int32_t k = 0; k < spectrum->n; k++) step[k] += x[i] * mode_of(spectrum, i)[k];
+  }
+  return sqrt(square);
+}
+
+bool strut_spectrum_rebalance(const strut_spectrum *spectrum, const double *value, double stiff,
+                              const double *g, double *step) {
+  bool any = false;
+  for (int32_t i = 0; i < spectrum->n; i++) {
+    const double *mode = mode_of(spectrum, i);
+    if (!(value[i] > stiff && spectrum->value[i] > stiff)) continue;
+    double far = strut_dot(mode, g, spectrum->n) / spectrum->value[i];
+    for (int32_t k = 0; k < spectrum->n; k++) step[k] -= far * mode[k];
+    any = true;
+  }
+  return any;
 }

@@ -85,6 +85,15 @@ near .measured.vy.value 0 1e-13
 near .measured.turn.value 0 1e-11
 near .energy.residual 0 1e-9
 
+# Two springs pull against each other: both have their own force, and it balances.
+yaml pulled.yaml <<'YAML'
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [2, 0], mass: 1, fixed: y}, c: {position: [5, 0], fixed: both}}
+members: {m: {nodes: [a, b], kind: spring, stiffness: 100, rest_length: 1}}
+distances: {d: {nodes: [b, c], along: x, stiffness: 100, rest_distance: 2 m}}
+YAML
+gives .distances_at.d.force 100 1e-12 rigidity pulled.yaml
+near .residual 0 1e-12
+
 # Statics: a node on two crossed distances; it moves by F / k, has no mechanism, and one with a bar has self-stress.
 yaml held.yaml <<'YAML'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 1], mass: 1}}

@@ -311,14 +311,10 @@ struct strut_relaxer {
 };
 
 static bool loses_energy(const strut_model *model) {
-  if (model->mass_damping > 0) return true;
-  for (int32_t j = 0; j < model->members.count; j++)
-    if (model->members.damping[j] > 0) return true;
-  for (int32_t i = 0; i < model->elements.count; i++)
-    if (model->elements.element[i].damping > 0) return true;
-  for (int32_t i = 0; i < model->contacts.count; i++)
-    if (model->contacts.entry[i].damping > 0) return true;
-  return false;
+  strut_force force = {.damping = model->mass_damping};
+  for (int32_t i = 0; i < strut_force_count(model, true) && !(force.damping > 0); i++)
+    strut_force_begin(model, i, &force);
+  return force.damping > 0;
 }
 
 /* Creates state and integrator, unless the model cannot be simulated. */

@@ -159,17 +159,19 @@ static strut_status relax_from_shape(strut_equilibrium_search *h, const strut_co
   return status;
 }
 
+/* The equilibrium of that name in the list that a search makes, into q. Where only standing ones are wanted: at rest. */
 static strut_status find_named(const strut_model *model, const strut_experiment *experiment,
-                               const strut_node_set *set, const char *name, double *q, bool *found,
-                               strut_error *error) {
+                               const strut_node_set *set, bool standing, const char *name,
+                               double *q, bool *found, strut_error *error) {
   strut_equilibria_options options = {
-      .standing_only = true, .supports = set, .interrupt = experiment->interrupt};
+      .standing_only = standing, .supports = set, .interrupt = experiment->interrupt};
   strut_equilibria all;
   strut_status status = strut_equilibria_find(model, experiment, &options, &all, error);
   for (size_t i = 0; i < all.count && !status && !*found; i++) {
     const strut_equilibrium *e = &all.list[i];
-    if (e->outcome != STRUT_OUTCOME_STANDS || strcmp(e->name, name) != 0) continue;
-    memcpy(q, e->rest, (size_t)model->length * sizeof *q);
+    bool stands = e->outcome == STRUT_OUTCOME_STANDS && e->rest;
+    if ((standing && !stands) || strcmp(e->name, name) != 0) continue;
+    memcpy(q, stands ? e->rest : e->point.q, (size_t)model->length * sizeof *q);
     *found = true;
   }
   strut_equilibria_free(&all);
@@ -187,10 +189,10 @@ static strut_status search_configuration(const strut_model *model,
   bool found = false;
   strut_status status = STRUT_OK;
   for (size_t k = 0; k < c->set_count && !status && !found; k++)
-    status = find_named(model, experiment, c->sets[k].count == 2 ? &c->sets[k] : NULL, c->name, q,
-                        &found, error);
+    status = find_named(model, experiment, c->sets[k].count == 2 ? &c->sets[k] : NULL, true,
+                        c->name, q, &found, error);
   if (!status && !found && c->set_count == 0)
-    status = find_named(model, experiment, NULL, c->name, q, &found, error);
+    status = find_named(model, experiment, NULL, true, c->name, q, &found, error);
   if (status || found) return status;
   char instead[200] = "";
   size_t used = 0;
@@ -223,20 +225,10 @@ static strut_status report_unknown(const strut_scene *scene, const char *name, s
 static strut_status find_in_list(const strut_model *model, const strut_experiment *experiment,
                                  const char *name, strut_arena *arena, strut_rest_state *rest,
                                  strut_error *error) {
-  strut_equilibria_options options = {.interrupt = experiment->interrupt};
-  strut_equilibria all;
-  strut_status status = strut_equilibria_find(model, experiment, &options, &all, error);
   bool found = false;
-  for (size_t i = 0; i < all.count && !status && !found; i++) {
-    const strut_equilibrium *e = &all.list[i];
-    if (strcmp(e->name, name) != 0) continue;
-    found = true;
-    rest->name = strut_arena_text(arena, name, strlen(name));
-    if (!rest->name) status = strut_no_memory(error, "");
-    bool stands = e->outcome == STRUT_OUTCOME_STANDS && e->rest;
-    memcpy(rest->q, stands ? e->rest : e->point.q, (size_t)model->length * sizeof *rest->q);
-  }
-  strut_equilibria_free(&all);
+  strut_status status = find_named(model, experiment, NULL, false, name, rest->q, &found, error);
+  rest->name = strut_arena_text(arena, name, strlen(name));
+  if (!status && !rest->name) status = strut_no_memory(error, "");
   if (status || found) return status;
   return strut_fail(error, STRUT_USAGE,
                     "unknown equilibrium '%.100s'; 'strut equilibria' lists all", name);

@@ -43,12 +43,15 @@ static strut_status form_out_of_range(strut_error *error) {
                     "stiffnesses and loads");
 }
 
+double strut_form_length(const strut_scene *scene, size_t j) {
+  const strut_member *m = &scene->members[j];
+  return strut_distance(scene->nodes[m->node[0]].start, scene->nodes[m->node[1]].start);
+}
+
 strut_status strut_form_set_force(strut_former *f, size_t j, double force, strut_error *error) {
   assert(j < f->scene->member_count);
   strut_member *m = &f->scene->members[j];
-  const double *a = f->scene->nodes[m->node[0]].start;
-  const double *b = f->scene->nodes[m->node[1]].start;
-  double length = strut_distance(a, b);
+  double length = strut_form_length(f->scene, j);
   double rest = m->axial_stiffness > 0 ? m->axial_stiffness * length / (m->axial_stiffness + force)
                 : m->stiffness > 0     ? length - force / m->stiffness
                                        : length;
@@ -271,7 +274,7 @@ static strut_status check_lengths(const strut_former *f, strut_error *error) {
     const strut_member *m = &scene->members[j];
     const strut_node *a = &scene->nodes[m->node[0]], *b = &scene->nodes[m->node[1]];
     strut_rest rest;
-    bool apart = strut_distance(a->start, b->start) > MEET * f->size;
+    bool apart = strut_form_length(scene, j) > MEET * f->size;
     if (strut_member_rest(scene, j, &rest) && (apart || f->form->from != STRUT_FORM_DENSITIES))
       continue;
     return strut_fail(error, STRUT_NOT_SETTLED,
@@ -478,9 +481,8 @@ static strut_status refuse_elements(const strut_scene *scene, strut_form_source 
 static void measure_member(const strut_scene *scene, const strut_model *model, size_t j,
                            double pose[4]) {
   const strut_member *m = &scene->members[j];
-  const double *a = scene->nodes[m->node[0]].start, *b = scene->nodes[m->node[1]].start;
   strut_rest rest = {0};
-  double length = hypot(b[0] - a[0], b[1] - a[1]), force = 0;
+  double length = strut_form_length(scene, j), force = 0;
   if (!strut_member_rest(scene, j, &rest)) {
     force = 0;
   } else if (model && strut_element_of_member(&model->elements, (int32_t)j)) {

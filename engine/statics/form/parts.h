@@ -25,6 +25,8 @@ strut_contact_pose strut_form_contact_as_drawn(const strut_former *former, int32
 /** Is its node drawn in the ground or on it, within rounding? */
 bool strut_form_touches(const strut_former *former, int32_t contact);
 
+/** Length of member j at the start [m]. */
+double strut_form_length(const strut_scene *scene, size_t member);
 /** Gives member j the rest length with which it carries `force` at the length it starts with. */
 strut_status strut_form_set_force(strut_former *former, size_t member, double force,
                                   strut_error *error);

@@ -173,12 +173,6 @@ typedef struct prestress {
   double *x;
 } prestress;
 
-static double length_of(const strut_former *f, int32_t j) {
-  const strut_member *m = &f->scene->members[j];
-  const double *a = f->scene->nodes[m->node[0]].start, *b = f->scene->nodes[m->node[1]].start;
-  return strut_distance(a, b);
-}
-
 static bool can_carry(const strut_member *m) { return m->stiffness > 0 || m->axial_stiffness > 0; }
 
 static double least_tension(const strut_former *f) {
@@ -250,7 +244,8 @@ static void fill_bounds(prestress *p) {
   for (int32_t j = 0; j < at->members; j++) {
     const strut_member *m = &p->f->scene->members[j];
     bool cable = m->kind == STRUT_CABLE, carries = can_carry(m);
-    double least = fmax(p->least, p->f->options->least_density * length_of(p->f, j));
+    double least =
+        fmax(p->least, p->f->options->least_density * strut_form_length(p->f->scene, (size_t)j));
     p->program.low[at->pull + j] = cable && carries ? least / p->scale : 0;
     if (!carries) p->program.high[at->pull + j] = 0;
     if (cable || !carries) p->program.high[at->push + j] = 0;
@@ -349,7 +344,7 @@ static bool minimise_squares(prestress *p) {
   }
   for (int32_t j = 0; j < at->members && good; j++) {
     const strut_member *m = &f->scene->members[j];
-    double length = length_of(f, j);
+    double length = strut_form_length(f->scene, (size_t)j);
     bool cable = m->kind == STRUT_CABLE;
     weight[j] = (cable ? 1.0 : faint) * f->size / (length > 0 ? length : f->size);
     low[j] = cable ? p->program.low[at->pull + j] : -HUGE_VAL;

@@ -14,15 +14,19 @@
 static const double VALUE_STEP =
     1e-5; /* of the range: values whose difference gives a derivative */
 
+/* Numbers of some terms, one after the other from `stiffness` on. */
+static size_t count_terms(const strut_model *model) {
+  return 3 * ((size_t)model->members.slots + (size_t)model->length);
+}
+
 bool strut_path_terms_create(const strut_model *model, strut_arena *arena, strut_path_terms *t) {
   size_t length = (size_t)model->length, slots = (size_t)model->members.slots;
-  t->stiffness = strut_arena_allocate(arena, slots, sizeof(double));
-  t->rest = strut_arena_allocate(arena, slots, sizeof(double));
-  t->rest_low = strut_arena_allocate(arena, slots, sizeof(double));
-  t->position = strut_arena_allocate(arena, length, sizeof(double));
-  t->position_low = strut_arena_allocate(arena, length, sizeof(double));
-  t->force = strut_arena_allocate(arena, length, sizeof(double));
-  return t->stiffness && t->rest && t->rest_low && t->position && t->position_low && t->force;
+  t->stiffness = strut_arena_allocate(arena, count_terms(model), sizeof(double));
+  if (!t->stiffness) return false;
+  t->rest = t->stiffness + slots, t->rest_low = t->rest + slots;
+  t->position = t->rest_low + slots, t->position_low = t->position + length;
+  t->force = t->position_low + length;
+  return true;
 }
 
 /* A scene at a value with its model, kept as long as laws of its elements are used. */
@@ -51,29 +55,18 @@ void strut_path_parameter_free(strut_path_parameter *p) {
 
 static void copy_terms(const strut_model *model, const strut_path_terms *from,
                        strut_path_terms *to) {
-  size_t length = (size_t)model->length * sizeof(double);
-  size_t slots = (size_t)model->members.slots * sizeof(double);
-  memcpy(to->stiffness, from->stiffness, slots);
-  memcpy(to->rest, from->rest, slots);
-  memcpy(to->rest_low, from->rest_low, slots);
-  memcpy(to->position, from->position, length);
-  memcpy(to->position_low, from->position_low, length);
-  memcpy(to->force, from->force, length);
+  memcpy(to->stiffness, from->stiffness, count_terms(model) * sizeof *to->stiffness);
   to->laws = from->laws;
 }
 
 static void read_terms(const strut_model *model, strut_path_terms *t) {
   size_t length = (size_t)model->length * sizeof(double);
   size_t slots = (size_t)model->members.slots * sizeof(double);
+  memset(t->stiffness, 0, count_terms(model) * sizeof *t->stiffness);
   memcpy(t->stiffness, model->members.stiffness, slots);
   memcpy(t->rest, model->members.rest, slots);
-  memset(t->rest_low, 0, slots);
   memcpy(t->position, model->start, length);
-  memset(t->position_low, 0, length);
-  if (model->constant_force)
-    memcpy(t->force, model->constant_force, length);
-  else
-    memset(t->force, 0, length);
+  if (model->constant_force) memcpy(t->force, model->constant_force, length);
   t->laws = model;
 }
 
@@ -367,7 +360,7 @@ bool strut_path_elements_create(const strut_model *model, strut_arena *arena,
     const strut_element *e = &t->element[i];
     int kinks = strut_law_kinks(e->law, &e->numbers);
     p->element[i] = (strut_path_element){.turn = (double)NAN, .acts = true};
-    p->noise = fmax(p->noise, DBL_EPSILON * strut_element_stiffest(model, i));
+    p->noise = fmax(p->noise, DBL_EPSILON * strut_force_stiffest(model, model->members.count + i));
     if (e->carries) p->switches[p->switch_count++] = (strut_path_element_switch){i, -1};
     for (int k = 0; k < kinks; k++) {
       double kink = strut_law_kink(e->law, &e->numbers, k);

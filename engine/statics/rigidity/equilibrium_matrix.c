@@ -43,6 +43,7 @@ static void add_gradient(const strut_force *force, double scale, strut_equilibri
     while (k + 1 < count && entry[k + 1][0] == entry[k][0]) sum += entry[++k][1];
     add_entry(a, (int32_t)entry[k][0], sum);
   }
+  a->scale[j] = scale;
   a->length[j] = scale * force->pose.strain;
 }
 
@@ -111,6 +112,7 @@ strut_status strut_equilibrium_matrix_build(const strut_model *model, const doub
   a->coordinate = strut_arena_allocate(arena, length, sizeof *a->coordinate);
   a->row_of = strut_arena_allocate(arena, length, sizeof *a->row_of);
   a->length = strut_arena_allocate(arena, columns + 1, sizeof *a->length);
+  a->scale = strut_arena_allocate(arena, columns + 1, sizeof *a->scale);
   a->direction = strut_arena_allocate(arena, columns + 1, sizeof *a->direction);
   a->start = strut_arena_allocate(arena, columns + 1, sizeof *a->start);
   a->curved = strut_arena_allocate(arena, columns + 1, sizeof *a->curved);
@@ -121,8 +123,8 @@ strut_status strut_equilibrium_matrix_build(const strut_model *model, const doub
     most += 2 * (size_t)model->elements.element[i].nodes;
   a->row = strut_arena_allocate(arena, most, sizeof *a->row);
   a->value = strut_arena_allocate(arena, most, sizeof *a->value);
-  if (!a->coordinate || !a->row_of || !a->length || !a->direction || !a->start || !a->row ||
-      !a->value || !a->curved || !a->curvature || !a->bend)
+  if (!a->coordinate || !a->row_of || !a->length || !a->scale || !a->direction || !a->start ||
+      !a->row || !a->value || !a->curved || !a->curvature || !a->bend)
     return STRUT_NO_MEMORY;
   a->rows = strut_number_free(model, NULL, a->row_of, a->coordinate);
   for (int32_t j = 0; j < model->members.count; j++)

@@ -140,12 +140,10 @@ static void measure_elements(const strut_model *model, const double *q, strut_ri
   strut_element_pose pose;
   for (int32_t j = a->members; j < a->columns; j++) {
     strut_element_evaluate(model, a->curved[j], model->members.rest, q, (double)NAN, &pose);
-    bool cell = model->elements.element[a->curved[j]].role == STRUT_ELEMENT_CELL;
-    double scale = cell ? 1.0 / a->size : a->size;
-    double least = cell ? 0.0 : fabs(pose.strain);
-    pose.force =
-        resolved(pose.force, model->elements.element[a->curved[j]].numbers.stiffness, least);
-    double force = r->force[j] = pose.force / scale + 0.0; /* + 0.0: no -0 */
+    const strut_element *e = &model->elements.element[a->curved[j]];
+    double least = e->role == STRUT_ELEMENT_CELL ? 0.0 : fabs(pose.strain);
+    pose.force = resolved(pose.force, e->numbers.stiffness, least);
+    double force = r->force[j] = pose.force / a->scale[j] + 0.0; /* + 0.0: no -0 */
     for (int32_t k = a->start[j]; k < a->start[j + 1]; k++)
       r->largest_force = fmax(r->largest_force, fabs(force * a->value[k]));
   }

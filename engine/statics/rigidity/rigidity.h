@@ -22,13 +22,14 @@
 
 typedef struct strut_equilibrium_matrix {
   int32_t rows;    /* free coordinates */
-  int32_t columns; /* members, then hinges, then cells */
+  int32_t columns; /* members, then hinges, cells and distances */
   int32_t members;
   double size;         /* of the model, by which hinges' moments are divided [m] */
   int32_t *coordinate; /* (rows) index into coordinate arrays */
   int32_t *row_of;     /* (length) row of a coordinate, -1 where fixed */
   double *
       length; /* (columns) of the members in the shape; of hinges angle * size, of cells area / size [m] */
+  double *scale;          /* (columns) of gradients, strains and, divided by it, forces */
   double (*direction)[2]; /* (columns) unit vector from first node to second; 0, 0 without length */
   int32_t *curved; /* (columns) element of a running cable, hinge or cell; -1: a straight member */
   double *curvature; /* (columns) largest second derivative of such an element [1/m] */

@@ -59,12 +59,8 @@ int64_t strut_climber_hessian_count(const strut_climber *c) { return c->hessian_
 
 /* Shares of the gradient, and which modes have neither stiffness nor force. */
 static void split_gradient(strut_climber *c, double still) {
-  int32_t n = c->now.n;
-  for (int32_t i = 0; i < n; i++) {
-    c->part[i] = strut_dot(c->now.vector + (size_t)i * (size_t)n, c->g, n);
-    c->value[i] = c->now.value[i];
-    c->idle[i] = fabs(c->value[i]) <= 4.0 * c->now.noise[i] && fabs(c->part[i]) <= still;
-  }
+  strut_spectrum_split(&c->now, c->g, still, c->part, c->idle);
+  memcpy(c->value, c->now.value, (size_t)c->now.n * sizeof *c->value);
 }
 
 /* The mode that leans most on the direction followed so far becomes that direction. */
@@ -100,16 +96,13 @@ static bool build_image_function(strut_climber *c, int32_t index, bool following
 /* The step from its shares, and the energy that the true quadratic changes by. */
 static double assemble_step(strut_climber *c, double *length) {
   int32_t n = c->now.n;
-  double change = 0.0, square = 0.0;
-  memset(c->step, 0, (size_t)n * sizeof *c->step);
+  double change = 0.0;
+  *length = strut_spectrum_combine(&c->now, c->x, c->step);
   for (int32_t i = 0; i < n; i++) {
     const double *mode = c->now.vector + (size_t)i * (size_t)n;
     if (c->x[i] == 0.0) continue;
-    square += c->x[i] * c->x[i];
     change += c->x[i] * (strut_dot(mode, c->g, n) + 0.5 * c->now.value[i] * c->x[i]);
-    for (int32_t k = 0; k < n; k++) c->step[k] += c->x[i] * mode[k];
   }
-  *length = sqrt(square);
   return change;
 }
 
@@ -124,18 +117,9 @@ static void set_trial(strut_climber *c, const double *q) {
 
 /* Balances modes much stiffer than mu, except followed ones, at the step's end. */
 static bool rebalance_stiff_modes(strut_climber *c, double mu, double scale) {
-  int32_t n = c->now.n;
   double stiff = mu > 0 ? 10.0 * mu : 1e-3 * scale;
-  bool any = false;
   strut_potential_gradient(c->potential, c->trial, c->g_trial);
-  for (int32_t i = 0; i < n; i++) {
-    const double *mode = c->now.vector + (size_t)i * (size_t)n;
-    if (!(c->value[i] > stiff && c->now.value[i] > stiff)) continue;
-    double far = strut_dot(mode, c->g_trial, n) / c->now.value[i];
-    for (int32_t k = 0; k < n; k++) c->step[k] -= far * mode[k];
-    any = true;
-  }
-  return any;
+  return strut_spectrum_rebalance(&c->now, c->value, stiff, c->g_trial, c->step);
 }
 
 /*
