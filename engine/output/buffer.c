@@ -13,46 +13,6 @@
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
 
-static bool make_room(strut_buffer *buffer, size_t more) {
-  if (buffer->length + more < buffer->room) return true;
-  size_t room = 2 * (buffer->length + more) + 256;
-  char *text = strut_reallocate(buffer->text, room, 1);
-  if (!text) return false;
-  buffer->text = text;
-  buffer->room = room;
-  return true;
-}
-
-static void append(strut_buffer *buffer, const char *format, va_list arguments) {
-  va_list again;
-  va_copy(again, arguments);
-  int length = vsnprintf(NULL, 0, format, arguments);
-  if (length < 0 || !make_room(buffer, (size_t)length)) {
-    buffer->failed = true;
-  } else {
-    vsnprintf(buffer->text + buffer->length, buffer->room - buffer->length, format, again);
-    buffer->length += (size_t)length;
-  }
-  va_end(again);
-}
-
-void strut_buffer_add(strut_buffer *buffer, const char *format, ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  append(buffer, format, arguments);
-  va_end(arguments);
-}
-
-char *strut_buffer_take(strut_buffer *buffer) {
-  char *text = buffer->text;
-  if (buffer->failed) {
-    strut_release(text);
-    text = NULL;
-  }
-  *buffer = (strut_buffer){0};
-  return text;
-}
-
 /* ---- CSV ---- */
 
 static bool needs_quotes(const char *text, size_t length) {
@@ -86,9 +46,9 @@ void strut_csv_add_text(strut_buffer *csv, const char *format, ...) {
   strut_buffer text = {0};
   va_list arguments;
   va_start(arguments, format);
-  append(&text, format, arguments);
+  strut_buffer_add_list(&text, format, arguments);
   va_end(arguments);
-  if (text.failed || !make_room(csv, 2 * text.length + 2)) {
+  if (text.failed || !strut_buffer_reserve(csv, 2 * text.length + 2)) {
     csv->failed = true;
   } else {
     csv->length += strut_csv_quote(text.text, text.length, csv->text + csv->length);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Texts: one that grows by printf, cells of CSV, quantities with a unit, files put into the program.
+ * Texts that grow by cells of CSV and by base64, and files put into the program.
  */
 #ifndef STRUT_ENGINE_OUTPUT_BUFFER_H
 #define STRUT_ENGINE_OUTPUT_BUFFER_H
@@ -9,22 +9,7 @@
 #include <stddef.h>
 
 #include "engine/base/number_text.h"
-#include "engine/base/status.h"
-
-/* ---- a text that grows by printf ---- */
-
-/** Zero-initialise it. */
-typedef struct strut_buffer {
-  char *text; /* NUL-terminated once something was added; a block of strut_allocate */
-  size_t length, room;
-  bool failed; /* memory was out: the text is not complete */
-} strut_buffer;
-
-/** Appends. Call between strut_c_locale_enter and leave for numbers in the C locale. */
-STRUT_API void strut_buffer_add(strut_buffer *buffer, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-/** Returns the text, to be released by the caller, and zeroes the buffer; NULL if memory was out. */
-STRUT_API char *strut_buffer_take(strut_buffer *buffer);
+#include "engine/base/text_buffer.h"
 
 /**
  * The text, of which no more than `length` bytes count, as a cell of CSV: RFC 4180 requires quotes around one

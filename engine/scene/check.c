@@ -99,6 +99,13 @@ bool strut_check_fields(strut_checker *checker, strut_thing_section section, con
   return valid;
 }
 
+bool strut_check_thing(strut_checker *checker) {
+  strut_thing kind = (strut_thing)checker->subject;
+  return strut_check_fields(checker, (strut_thing_section)kind,
+                            strut_thing_object(checker->scene, kind, checker->index),
+                            strut_thing_at(kind)->usual);
+}
+
 bool strut_check_number(strut_checker *checker, strut_thing_section section, const char *key,
                         double value) {
   size_t count, i = 0;
@@ -163,13 +170,12 @@ static const double FARTHEST = 1e150;
 
 void strut_check_nodes(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const void *usual = strut_thing_at(STRUT_THING_NODE)->usual;
   if (!scene->node_count)
     strut_report_finding(checker, STRUT_ON_SCENE, 0, "nodes", "the scene has no nodes");
   for (size_t i = 0; i < scene->node_count; i++) {
     const strut_node *node = &scene->nodes[i];
     strut_check_begin(checker, STRUT_THING_NODE, i);
-    strut_check_fields(checker, STRUT_FIELDS_NODE, node, usual);
+    strut_check_thing(checker);
     const struct {
       const char *key, *what;
       const double *at;
@@ -224,8 +230,7 @@ static bool check_ends(strut_checker *checker) {
 /* Checks each number of a member by itself. */
 static bool check_numbers(strut_checker *checker) {
   const strut_member *m = &checker->scene->members[checker->index];
-  bool valid = strut_check_fields(checker, STRUT_FIELDS_MEMBER, m,
-                                  strut_thing_at(STRUT_THING_MEMBER)->usual);
+  bool valid = strut_check_thing(checker);
   if (rest_key(m->rest_kind) && (unsigned)m->kind <= STRUT_CABLE) return valid;
   return strut_fault(checker, "kind", "is of an unknown kind");
 }

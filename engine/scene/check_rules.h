@@ -58,6 +58,8 @@ const char *strut_format_name(char buffer[200], const char *kind, const char *na
  */
 bool strut_check_fields(strut_checker *checker, strut_thing_section section, const void *object,
                         const void *usual);
+/** The same of the thing that is being checked, beside the defaults of its kind. */
+bool strut_check_thing(strut_checker *checker);
 /** The same of one number, by the row of its key. */
 bool strut_check_number(strut_checker *checker, strut_thing_section section, const char *key,
                         double value);

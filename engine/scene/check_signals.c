@@ -367,11 +367,8 @@ static bool check_trigger(strut_checker *checker) {
 }
 
 bool strut_check_modifiers(strut_checker *checker) {
-  const strut_signal *s = &checker->scene->signals[checker->index];
   bool trigger = check_trigger(checker);
-  return strut_check_fields(checker, STRUT_FIELDS_SIGNAL, s,
-                            strut_thing_at(STRUT_THING_SIGNAL)->usual) &&
-         trigger;
+  return strut_check_thing(checker) && trigger;
 }
 
 /* Do all programs that a signal may follow make sense? Others have been reported. */

@@ -204,9 +204,7 @@ void strut_check_hinges(strut_checker *checker) {
   for (size_t i = 0; i < scene->hinge_count; i++) {
     const strut_hinge *h = &scene->hinges[i];
     strut_check_begin(checker, STRUT_THING_HINGE, i);
-    bool valid = strut_check_fields(checker, STRUT_FIELDS_HINGE, h,
-                                    strut_thing_at(STRUT_THING_HINGE)->usual) &&
-                 check_law(checker, &h->law, h->stiffness > 0.0) &&
+    bool valid = strut_check_thing(checker) && check_law(checker, &h->law, h->stiffness > 0.0) &&
                  check_hardening(checker, &h->law, h->stiffness);
     if (valid && h->law.kind == STRUT_LAW_LOGARITHMIC)
       strut_fault_of(checker, "law", "the law logarithmic is for members, not for %s",
@@ -302,19 +300,15 @@ static void check_area(strut_checker *checker) {
     strut_fault(checker, "nodes", "starts without an area, or turned over beside how it is drawn");
 }
 
-/* Is the law of an elastic cell one that works on an area, and does it do anything? */
-static void check_elastic(strut_checker *checker) {
-  const strut_cell *c = &checker->scene->cells[checker->index];
-  if (!check_law(checker, &c->elastic, c->stiffness > 0.0) ||
-      !check_hardening(checker, &c->elastic, c->stiffness))
+/* Is the law of what is no member valid, and does it do anything? */
+static void check_elastic(strut_checker *checker, const strut_law *law, double stiffness,
+                          double damping) {
+  if (!check_law(checker, law, stiffness > 0.0) || !check_hardening(checker, law, stiffness))
     return;
-  const char *fault =
-      c->elastic.kind == STRUT_LAW_LOGARITHMIC
-          ? "has the law logarithmic, which is for members only"
-      : c->stiffness == 0.0 && c->damping == 0.0 && !strut_law_at(c->elastic.kind)->own
-          ? "has neither stiffness nor damping, so it does nothing"
-          : NULL;
-  if (fault) strut_fault(checker, NULL, "%s", fault);
+  if (law->kind == STRUT_LAW_LOGARITHMIC)
+    strut_fault(checker, NULL, "has the law logarithmic, which is for members only");
+  else if (stiffness == 0.0 && damping == 0.0 && !strut_law_at(law->kind)->own)
+    strut_fault(checker, NULL, "has neither stiffness nor damping, so it does nothing");
 }
 
 void strut_check_cells(strut_checker *checker) {
@@ -330,7 +324,7 @@ void strut_check_cells(strut_checker *checker) {
     if (fine && c->law == STRUT_LAW_ISENTROPIC && !(c->exponent > 1.0))
       strut_fault_of(checker, "exponent", "the exponent of %s must be above 1, found %g",
                      checker->owner, c->exponent);
-    if (fine && elastic) check_elastic(checker);
+    if (fine && elastic) check_elastic(checker, &c->elastic, c->stiffness, c->damping);
     if (check_corners(checker)) check_area(checker);
   }
 }
@@ -430,18 +424,8 @@ void strut_check_distances(strut_checker *checker) {
   for (size_t i = 0; i < scene->distance_count; i++) {
     const strut_distance_spring *d = &scene->distances[i];
     strut_check_begin(checker, STRUT_THING_DISTANCE, i);
-    bool valid = strut_check_fields(checker, STRUT_FIELDS_DISTANCE, d,
-                                    strut_thing_at(STRUT_THING_DISTANCE)->usual) &&
-                 check_ends(checker) && check_law(checker, &d->law, d->stiffness > 0.0) &&
-                 check_hardening(checker, &d->law, d->stiffness);
-    const char *fault =
-        !isfinite(d->along) ? "has a direction that is not finite"
-        : d->law.kind == STRUT_LAW_LOGARITHMIC
-            ? "has the law logarithmic, which is for members only"
-        : d->stiffness == 0.0 && d->damping == 0.0 && !strut_law_at(d->law.kind)->own
-            ? "has neither stiffness nor damping, so it does nothing"
-            : NULL;
-    if (valid && fault) strut_fault(checker, NULL, "%s", fault);
+    if (strut_check_thing(checker) && check_ends(checker))
+      check_elastic(checker, &d->law, d->stiffness, d->damping);
   }
 }
 

@@ -415,7 +415,7 @@ static void put_default(schema *s, const strut_key *key) {
 
 /* What it means, what it is, and its default. */
 static void put_description(schema *s, const strut_key *key, bool ticks) {
-  strut_writer text = {.text = NULL}, all = {.text = NULL};
+  strut_writer text = {.scene = NULL}, all = {.scene = NULL};
   strut_put(&text, key->description);
   strut_put(&text, "\n\n");
   strut_put_key_type(&text, key);
@@ -426,13 +426,13 @@ static void put_description(schema *s, const strut_key *key, bool ticks) {
     strut_put(&text, key->fallback);
     strut_put(&text, described ? "." : "`.");
   }
-  if (!text.failed) strut_put_without_links(&all, text.text, ticks);
-  if (text.failed || all.failed)
+  if (!text.out.failed) strut_put_without_links(&all, text.out.text, ticks);
+  if (text.out.failed || all.out.failed)
     s->json.failed = true;
-  else if (!ticks || strchr(all.text, '`'))
-    put_text_member(s, ticks ? "markdownDescription" : "description", all.text);
-  strut_release(text.text);
-  strut_release(all.text);
+  else if (!ticks || strchr(all.out.text, '`'))
+    put_text_member(s, ticks ? "markdownDescription" : "description", all.out.text);
+  strut_release(text.out.text);
+  strut_release(all.out.text);
 }
 
 static void put_property(schema *s, const strut_key *key) {

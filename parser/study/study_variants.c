@@ -260,7 +260,7 @@ static void replace_node(const strut_study_file *file, const strut_tree *node, c
 
 char *strut_study_copy(const strut_study_file *file, const char *model, const char *const *words,
                        size_t word_count) {
-  strut_writer w = {.text = NULL};
+  strut_writer w = {.scene = NULL};
   const strut_tree *node = strut_tree_find(file->document.root, "model", NULL);
   replacement *list = strut_allocate(file->table_count + 1, sizeof *list);
   size_t count = 0, done = 0;
@@ -286,9 +286,7 @@ char *strut_study_copy(const strut_study_file *file, const char *model, const ch
     put_note(&w, set ? "It was run with --set " : "It was run with ", words[i + set],
              set ? NULL : words[i + 1]);
   }
-  if (!w.failed) return w.text;
-  strut_release(w.text);
-  return NULL;
+  return strut_buffer_take(&w.out);
 }
 
 static void put_number(strut_writer *w, double value) {
@@ -397,7 +395,7 @@ static void put_follow(strut_writer *w, const strut_study_follow *f) {
 }
 
 char *strut_study_identity(const strut_study_file *file) {
-  strut_writer w = {.text = NULL};
+  strut_writer w = {.scene = NULL};
   const strut_study *study = &file->study;
   for (size_t i = 0; i < file->source_count; i++)
     put_tree(&w, strut_scene_source_document(file->sources[i])->root);
@@ -423,7 +421,5 @@ char *strut_study_identity(const strut_study_file *file) {
   if (study->search) put_search(&w, study->search);
   if (study->follow) put_follow(&w, study->follow);
   if (study->limit.evaluations) put_number(&w, (double)study->limit.evaluations);
-  if (!w.failed) return w.text;
-  strut_release(w.text);
-  return NULL;
+  return strut_buffer_take(&w.out);
 }

@@ -353,11 +353,11 @@ static void put_operand(strut_writer *writer, const strut_instruction *program, 
 void strut_put_program(strut_writer *writer, const strut_instruction *program, size_t length) {
   strut_writer part = {.scene = writer->scene};
   put_operand(&part, program, length, OF_SUM);
-  if (part.failed || !part.text)
-    writer->failed = true;
+  if (part.out.failed || !part.out.text)
+    writer->out.failed = true;
   else
-    strut_put_quoted(writer, part.text);
-  strut_release(part.text);
+    strut_put_quoted(writer, part.out.text);
+  strut_release(part.out.text);
 }
 
 void strut_put_quantities(strut_writer *writer, strut_mapping *mapping) {

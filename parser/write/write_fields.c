@@ -14,20 +14,7 @@
 /* ---- growing text ---- */
 
 void strut_put_part(strut_writer *writer, const char *text, size_t length) {
-  if (writer->failed) return;
-  if (writer->length + length + 1 > writer->capacity) {
-    size_t capacity = 2 * (writer->capacity + length + 1);
-    char *bigger = strut_reallocate(writer->text, capacity, 1);
-    if (!bigger) {
-      writer->failed = true;
-      return;
-    }
-    writer->text = bigger;
-    writer->capacity = capacity;
-  }
-  memcpy(writer->text + writer->length, text, length);
-  writer->length += length;
-  writer->text[writer->length] = '\0';
+  strut_buffer_put(&writer->out, text, length);
 }
 
 void strut_put(strut_writer *writer, const char *text) {

@@ -365,7 +365,5 @@ char *strut_setup_write(const strut_setup *setup) {
   strut_put_shapes(&writer);
   strut_put_experiment(&writer);
   strut_c_locale_leave(locale);
-  if (!writer.failed) return writer.text;
-  strut_release(writer.text);
-  return NULL;
+  return strut_buffer_take(&writer.out);
 }

@@ -114,16 +114,14 @@ static void put_lines(strut_writer *w, const strut_tree *value, size_t indent, b
 }
 
 char *strut_tree_write(const strut_tree *root, const char *comment) {
-  strut_writer w = {.text = NULL};
+  strut_writer w = {.scene = NULL};
   strut_c_locale locale = strut_c_locale_enter();
   strut_put(&w, "# ");
   strut_put(&w, comment);
   put_lines(&w, root, 0, true);
   strut_put(&w, "\n");
   strut_c_locale_leave(locale);
-  if (!w.failed) return w.text;
-  strut_release(w.text);
-  return NULL;
+  return strut_buffer_take(&w.out);
 }
 
 /* ---- scenes with their parts ---- */

@@ -8,16 +8,14 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "engine/base/status.h"
+#include "engine/base/text_buffer.h"
 #include "engine/scene/experiment.h"
 #include "parser/language/keys.h"
 
 typedef struct strut_writer {
   const strut_scene *scene;
   const strut_experiment *experiment;
-  char *text; /* strut_allocate; NUL-terminated */
-  size_t length, capacity;
-  bool failed;           /* memory was out; all later writing is ignored */
+  strut_buffer out;
   int32_t period_signal; /* a signal that has no name but needs one; else -1 */
   strut_setup usual;     /* the defaults */
   int32_t ground;        /* the one that is being written */

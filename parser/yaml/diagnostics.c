@@ -9,6 +9,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
+#include "engine/base/text_buffer.h"
 #include "parser/yaml/text.h"
 
 enum { MESSAGE_MOST = 900 };
@@ -115,51 +116,8 @@ void strut_note(strut_diagnostics *diagnostics, strut_place place, const char *f
       (strut_diagnostic){.place = place, .message = copy};
 }
 
-/* A text that grows; `text` is NUL-terminated once anything was appended. */
-typedef struct text_builder {
-  char *text;
-  size_t length, capacity;
-  bool failed; /* memory was out: the text is not whole */
-} text_builder;
-
 /* Code points shown of a long line, and how many of them precede the place. */
 enum { SHOWN_MOST = 100, SHOWN_BEFORE = 40 };
-
-static bool make_text_room(text_builder *out, size_t more) {
-  if (out->failed) return false;
-  if (out->length + more < out->capacity) return true;
-  size_t capacity = 2 * (out->length + more) + 256;
-  char *text = strut_reallocate(out->text, capacity, 1);
-  if (!text) {
-    out->failed = true;
-    return false;
-  }
-  out->text = text;
-  out->capacity = capacity;
-  return true;
-}
-
-__attribute__((format(printf, 2, 3))) static void append_text(text_builder *out, const char *format,
-                                                              ...) {
-  va_list arguments, again;
-  va_start(arguments, format);
-  va_copy(again, arguments);
-  int length = vsnprintf(NULL, 0, format, arguments);
-  va_end(arguments);
-  if (length < 0) out->failed = true;
-  if (make_text_room(out, (size_t)length + 1)) {
-    vsnprintf(out->text + out->length, (size_t)length + 1, format, again);
-    out->length += (size_t)length;
-  }
-  va_end(again);
-}
-
-static void append_bytes(text_builder *out, const char *bytes, size_t size) {
-  if (!make_text_room(out, size + 1)) return;
-  memcpy(out->text + out->length, bytes, size);
-  out->length += size;
-  out->text[out->length] = '\0';
-}
 
 /* Width of a character in terminal cells. */
 static int cells(uint32_t code) {
@@ -205,7 +163,7 @@ static window choose_window(strut_cursor *line, strut_place place) {
 }
 
 /* Appends the shown stretch of the line. */
-static void append_source(text_builder *out, strut_cursor cursor, window shown) {
+static void append_source(strut_buffer *out, strut_cursor cursor, window shown) {
   for (uint32_t i = cursor.column - 1; i < shown.end; i++) {
     uint32_t code;
     const char *here = cursor.text + cursor.offset;
@@ -213,13 +171,13 @@ static void append_source(text_builder *out, strut_cursor cursor, window shown) 
     strut_cursor_step(&cursor);
     if (i < shown.first) continue;
     if (code == STRUT_BAD_CODE || strut_text_forbidden(code) || strut_text_hidden(code))
-      append_bytes(out, "\xEF\xBF\xBD", 3);
+      strut_buffer_put(out, "\xEF\xBF\xBD", 3);
     else
-      append_bytes(out, here, size);
+      strut_buffer_put(out, here, size);
   }
 }
 
-static void append_caret(text_builder *out, strut_cursor cursor, window shown, strut_place place) {
+static void append_caret(strut_buffer *out, strut_cursor cursor, window shown, strut_place place) {
   uint32_t from = place.column ? place.column - 1 : 0, length = place.length ? place.length : 1;
   uint32_t to = length > shown.end || from > shown.end - length ? shown.end : from + length;
   for (uint32_t i = cursor.column - 1; i < shown.end && i < to; i++) {
@@ -228,24 +186,24 @@ static void append_caret(text_builder *out, strut_cursor cursor, window shown, s
     strut_cursor_step(&cursor);
     if (i < shown.first) continue;
     const char *mark = i > from ? "~" : i == from ? "^" : code == '\t' ? "\t" : " ";
-    if (i == from) append_bytes(out, "^", 1);
+    if (i == from) strut_buffer_put(out, "^", 1);
     for (int cell = i == from ? 1 : 0; cell < cells(code); cell++)
-      append_bytes(out, i == from ? "~" : mark, 1);
+      strut_buffer_put(out, i == from ? "~" : mark, 1);
   }
-  if (from >= shown.end) append_bytes(out, "^", 1); /* after the last character of the line */
+  if (from >= shown.end) strut_buffer_put(out, "^", 1); /* after the last character of the line */
 }
 
 /* Appends the line in which the cursor stands and a caret line; the cursor moves to where the shown
    stretch begins, so that places in order cost one walk of a line. */
-static void append_source_line(text_builder *out, strut_cursor *cursor, strut_place place) {
+static void append_source_line(strut_buffer *out, strut_cursor *cursor, strut_place place) {
   window shown = choose_window(cursor, place);
   if (!shown.points) return;
   const char *before = shown.first ? "..." : "", *after = shown.end < shown.points ? "..." : "";
-  append_text(out, "%5u | %s", place.line, before);
+  strut_buffer_add(out, "%5u | %s", place.line, before);
   append_source(out, *cursor, shown);
-  append_text(out, "%s\n      | %s", after, shown.first ? "   " : "");
+  strut_buffer_add(out, "%s\n      | %s", after, shown.first ? "   " : "");
   append_caret(out, *cursor, shown, place);
-  append_text(out, "\n");
+  strut_buffer_add(out, "\n");
 }
 
 static int compare(const void *a, const void *b) {
@@ -269,18 +227,18 @@ static strut_cursor cursor_in(strut_used_file in) {
 }
 
 /* `cursor` is in the text of the place, and not behind its line. */
-static void render_line(text_builder *out, const char *file, const char *kind, strut_place place,
+static void render_line(strut_buffer *out, const char *file, const char *kind, strut_place place,
                         const char *message, strut_cursor *cursor) {
   if (place.line == 0) {
-    append_text(out, "%s: %s: %s\n", file, kind, message);
+    strut_buffer_add(out, "%s: %s: %s\n", file, kind, message);
     return;
   }
-  append_text(out, "%s:%u:%u: %s: %s\n", file, place.line, place.column, kind, message);
+  strut_buffer_add(out, "%s:%u:%u: %s: %s\n", file, place.line, place.column, kind, message);
   strut_cursor_to_line(cursor, place.line);
   if (cursor->line == place.line) append_source_line(out, cursor, place);
 }
 
-static void render_one(text_builder *out, const strut_diagnostics *diagnostics, const char *kind,
+static void render_one(strut_buffer *out, const strut_diagnostics *diagnostics, const char *kind,
                        const strut_diagnostic *item, strut_cursor *cursor) {
   render_line(out, text_of(diagnostics, item->place).file, kind, item->place, item->message,
               cursor);
@@ -301,7 +259,7 @@ const char *strut_diagnostics_file(const strut_diagnostics *diagnostics, strut_p
 }
 
 const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most) {
-  text_builder out = {0};
+  strut_buffer out = {0};
   strut_cursor cursor = {0};
   strut_diagnostics_sort(diagnostics);
   size_t shown = diagnostics->count < most ? diagnostics->count : most;
@@ -312,7 +270,7 @@ const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most
     render_one(&out, diagnostics, "error", item, &cursor);
   }
   size_t left = diagnostics->count - shown + diagnostics->unstored;
-  if (left) append_text(&out, "... and %zu more\n", left);
+  if (left) strut_buffer_add(&out, "... and %zu more\n", left);
   const char *text =
       out.failed ? NULL
                  : strut_arena_text(&diagnostics->arena, out.text ? out.text : "", out.length);
@@ -321,7 +279,7 @@ const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most
 }
 
 const char *strut_diagnostics_render_notes(strut_diagnostics *diagnostics) {
-  text_builder out = {0};
+  strut_buffer out = {0};
   for (size_t i = 0; i < diagnostics->note_count; i++) {
     strut_cursor cursor = cursor_in(text_of(diagnostics, diagnostics->notes[i].place));
     render_one(&out, diagnostics, "note", &diagnostics->notes[i], &cursor);
