@@ -488,6 +488,18 @@ const char *strutlib_option_help(const char *command, size_t i) {
   return option ? option->help : NULL;
 }
 
+const char *strutlib_option_kind(const char *command, size_t i) {
+  static const char *const names[] = {"selector", "flag", "setting", "text", "number",
+                                      "whole",    "word", "words",   "range"};
+  const strut_option *option = option_of(command, i);
+  return option ? names[option->kind] : NULL;
+}
+
+const char *strutlib_option_words(const char *command, size_t i) {
+  const strut_option *option = option_of(command, i);
+  return option ? strut_option_words(option) : NULL;
+}
+
 /* ---- calls ---- */
 
 void abi_call_fail(abi_call *call, strut_status status, const strut_error *what) {
@@ -563,9 +575,9 @@ STRUT_ANALYSES(ANALYSIS)
 
 const strut_command *abi_command_at(size_t i) {
 #define COMMAND(NAME) &abi_##NAME##_command,
-  static const strut_command *const all[] = {&abi_run_command, &abi_matrices_command,
+  static const strut_command *const all[] = {&abi_run_command,   &abi_matrices_command,
                                              &abi_sweep_command, &abi_simulation_command,
-                                             STRUT_ANALYSES(COMMAND)};
+                                             &abi_svg_command,   STRUT_ANALYSES(COMMAND)};
   return i < sizeof all / sizeof all[0] ? all[i] : NULL;
 }
 

@@ -492,6 +492,12 @@ def options(command: str) -> list[tuple[str, str]]:
     return [(name, _api.option_help(word, i)) for i, name in enumerate(_until_none(_api.option_name, word))]
 
 
+def option_types(command: str) -> list[tuple[str, str | None]]:
+    """Kind and words, such as "elastic|rigid", of each of them."""
+    word = _bytes(command)
+    return [(kind, _api.option_words(word, i)) for i, kind in enumerate(_until_none(_api.option_kind, word))]
+
+
 def channels() -> list[tuple[str, str, tuple[str, ...], tuple[str, ...]]]:
     """(name, kind, components, columns) of each."""
     return [
@@ -508,3 +514,7 @@ def channels() -> list[tuple[str, str, tuple[str, ...], tuple[str, ...]]]:
 def yaml_places(name: str, text: str) -> str:
     """A YAML text as JSON, with places."""
     return _api.ask("yaml_places", _bytes(name), _bytes(text))  # type: ignore[no-any-return]
+
+
+for _call in _api.calls:
+    _errors.switches.update(name for (name, _), (kind, _) in zip(options(_call), option_types(_call)) if kind == "flag")
