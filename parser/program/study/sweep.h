@@ -3,8 +3,8 @@
  * The parts of `strut sweep`: the study that is opened, copies of its texts, its figures, its reports,
  * and scripts for clusters.
  */
-#ifndef STRUT_PARSER_PROGRAM_SWEEP_H
-#define STRUT_PARSER_PROGRAM_SWEEP_H
+#ifndef STRUT_PARSER_PROGRAM_STUDY_SWEEP_H
+#define STRUT_PARSER_PROGRAM_STUDY_SWEEP_H
 
 #include "engine/output/record_files.h"
 #include "engine/study/results/study_table.h"

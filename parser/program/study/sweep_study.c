@@ -20,7 +20,7 @@
 #include "parser/program/commands.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
-#include "parser/program/sweep.h"
+#include "parser/program/study/sweep.h"
 #include "parser/study/read_study.h"
 #include "parser/write/write_scene.h"
 

@@ -11,7 +11,7 @@
 #include "engine/study/sensitivity/sensitivity.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
-#include "parser/program/sweep.h"
+#include "parser/program/study/sweep.h"
 #include "parser/yaml/diagnostics.h"
 
 static const char table_name[] = "table.csv";

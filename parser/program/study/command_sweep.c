@@ -14,7 +14,7 @@
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
-#include "parser/program/sweep.h"
+#include "parser/program/study/sweep.h"
 
 static const strut_option options[] = {
     STRUT_OUTPUT_OPTION(

@@ -10,7 +10,7 @@
 #include "engine/study/sweep/study_runs.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
-#include "parser/program/sweep.h"
+#include "parser/program/study/sweep.h"
 #include "parser/yaml/diagnostics.h"
 
 static bool of_runs(const strut_study_figure *f) {
