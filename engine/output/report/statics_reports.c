@@ -10,6 +10,7 @@
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
 #include "engine/output/report/reports.h"
+#include "engine/output/result_values.h"
 #include "engine/output/run_report.h"
 #include "engine/scene/signal_program.h"
 
@@ -62,24 +63,13 @@ static void add_head(strut_buffer *table, const strut_model *model, const strut_
                      "  damping ratios by modal quotient, coupling between modes neglected\n");
 }
 
-static void add_row(strut_buffer *table, size_t i, const strut_mode *mode) {
-  char frequency[STRUT_QUANTITY_TEXT] = "not known", ratio[STRUT_QUANTITY_TEXT] = "";
-  if (mode->kind != STRUT_MODE_UNKNOWN)
-    strut_quantity_text(mode->angular_frequency / STRUT_TAU, DIGITS, "Hz", frequency);
-  if (isfinite(mode->damping_ratio)) snprintf(ratio, sizeof ratio, "%.4g", mode->damping_ratio);
-  strut_buffer_add(table, "  %4zu %14s %10s %8.1e  %-10s %s\n", i + 1, frequency, ratio,
-                   mode->error, strut_mode_kind_name(mode->kind), mode->description);
-}
-
 char *strut_modes_table(const strut_model *model, const strut_modes *modes) {
   strut_c_locale locale = strut_c_locale_enter();
   strut_buffer table = {0};
   add_head(&table, model, modes);
-  strut_buffer_add(&table, "\n  %4s %14s %10s %8s  %-10s %s\n", "mode", "frequency", "damping",
-                   "error", "kind", "shape");
-  for (size_t i = 0; i < modes->count && i < MOST_ROWS; i++) add_row(&table, i, &modes->list[i]);
-  if (modes->count > MOST_ROWS)
-    strut_buffer_add(&table, "  ... and %zu more; --json lists all\n", modes->count - MOST_ROWS);
+  strut_values_add_tables(&table, &strut_modes_values,
+                          &(strut_result_object){modes, NULL, model->scene, 0},
+                          &(strut_table_limits){MOST_ROWS, DIGITS});
   strut_c_locale_leave(locale);
   return strut_buffer_take(&table);
 }

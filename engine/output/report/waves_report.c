@@ -5,13 +5,9 @@
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/report/reports.h"
+#include "engine/output/result_values.h"
 
 enum { MOST_ROWS = 40, DIGITS = 6 };
-
-static const char *hertz(double value, strut_rounded_quantity *text) {
-  *text = strut_quantity_of(value, DIGITS, "Hz");
-  return text->text;
-}
 
 static bool grows(const strut_waves *w) { return w->band[0].low.frequency < 0.0; }
 
@@ -45,22 +41,11 @@ static void add_head(strut_buffer *table, const strut_model *model, const strut_
 char *strut_waves_table(const strut_model *model, const strut_waves *w) {
   strut_c_locale locale = strut_c_locale_enter();
   strut_buffer table = {0};
-  strut_rounded_quantity low, high, wide;
   add_head(&table, model, w);
-  strut_buffer_add(&table, "\n  %4s %14s %14s\n", "band", "lowest", "highest");
-  for (int32_t b = 0; b < w->shown && b < MOST_ROWS; b++)
-    strut_buffer_add(&table, "  %4d %14s %14s\n", (int)b + 1, hertz(w->band[b].low.frequency, &low),
-                     hertz(w->band[b].high.frequency, &high));
-  if (w->shown > MOST_ROWS)
-    strut_buffer_add(&table, "  ... and %d more; --json lists all\n", (int)w->shown - MOST_ROWS);
-  strut_buffer_add(&table, w->gap_count ? "\n" : "\n  no gap: bands meet or overlap\n");
-  for (size_t g = 0; g < w->gap_count; g++) {
-    const strut_wave_gap *gap = &w->gaps[g];
-    strut_buffer_add(&table, "  gap %s band %d: %s to %s, %s wide\n",
-                     gap->below ? "above" : "under", gap->below ? (int)gap->below : 1,
-                     hertz(gap->low, &low), hertz(gap->high, &high),
-                     hertz(gap->high - gap->low, &wide));
-  }
+  strut_values_add_tables(&table, &strut_waves_values,
+                          &(strut_result_object){w, NULL, model->scene, 0},
+                          &(strut_table_limits){MOST_ROWS, DIGITS});
+  if (!w->gap_count) strut_buffer_add(&table, "\n  no gap: bands meet or overlap\n");
   strut_c_locale_leave(locale);
   return strut_buffer_take(&table);
 }

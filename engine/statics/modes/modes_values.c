@@ -7,20 +7,22 @@
 #define MODE(X)                                                                                    \
   X(NULL, "", COUNT(of->index + 1), "", .column = {"mode"})                                        \
   X("frequency", "Hz", NUMBER(mode->angular_frequency / STRUT_TAU), "without damping",             \
-    .column = {"frequency [Hz]"})                                                                  \
+    .column = {"frequency [Hz]"}, .label = {""})                                                   \
   X("angular_frequency", "1/s", NUMBER(mode->angular_frequency), "without damping")                \
   X("eigenvalue", "1/s^2", NUMBER(mode->eigenvalue), "its square; below zero: it grows")           \
   X("damping_ratio", "1", NUMBER(mode->damping_ratio), "null: nothing oscillates",                 \
-    .column = {"damping ratio"})                                                                   \
+    .column = {"damping ratio"}, .label = {"damping"})                                             \
   X("damped_frequency", "Hz", NUMBER(mode->damped_frequency / STRUT_TAU), "0 where it creeps",     \
     .column = {"damped frequency [Hz]"})                                                           \
   X("decay_rate", "1/s", NUMBER(mode->decay_rate),                                                 \
     "of the amplitude; the slower, where it creeps", .column = {"decay rate [1/s]"})               \
   X("residual", "1", NUMBER(mode->residual), "of the eigenproblem, relative")                      \
-  X("error", "1", NUMBER(mode->error), "bound of the eigenvalue's, relative", .column = {"error"}) \
+  X("error", "1", NUMBER(mode->error), "bound of the eigenvalue's, relative", .column = {"error"}, \
+    .label = {""})                                                                                 \
   X("kind", "", TEXT(strut_mode_kind_name(mode->kind)), "rigid-body, mechanism, elastic, ...",     \
-    .column = {"kind"})                                                                            \
-  X("description", "", TEXT(mode->description), "in words", .column = {"description"})             \
+    .column = {"kind"}, .label = {""})                                                             \
+  X("description", "", TEXT(mode->description), "in words", .column = {"description"},             \
+    .label = {"shape"})                                                                            \
   X("shape", "1", OF(NODE, mode->shape), "the largest entry is 1")
 STRUT_VALUES(strut_mode_values, MODE, const strut_mode *mode = of->at)
 
@@ -57,23 +59,24 @@ static const char *just_taut_name(const strut_result_object *of, size_t i) {
   X("damping", "", TEXT(modes->damped_exactly ? "quadratic eigenproblem" : "modal quotient"),      \
     "how it was computed")                                                                         \
   X("left_out", "", TEXT(modes->left_out), "what acts in a run, but not here")                     \
-  X("modes", "", LIST(modes->list, modes->count), "by eigenvalue", .rows = &strut_mode_values)
+  X("modes", "", LIST(modes->list, modes->count), "by eigenvalue", .rows = &strut_mode_values,     \
+    .label = {"mode"})
 STRUT_VALUES(strut_modes_values, MODES, const strut_modes *modes = of->at)
 
 /* ---- waves ---- */
 
 #define BAND(X)                                                                                    \
-  X("low", "Hz", NUMBER(band->low.frequency), "lowest frequency")                                  \
+  X("low", "Hz", NUMBER(band->low.frequency), "lowest frequency", .label = {"lowest"})             \
   X("low_at", "1", NUMBERS(band->low.phase, waves->steps), "its wave, in turns for each step")     \
-  X("high", "Hz", NUMBER(band->high.frequency), "highest frequency")                               \
+  X("high", "Hz", NUMBER(band->high.frequency), "highest frequency", .label = {"highest"})         \
   X("high_at", "1", NUMBERS(band->high.phase, waves->steps), "its wave, likewise")
 STRUT_VALUES_HERE(band_values, BAND, const strut_wave_band *band = of->at;
                   const strut_waves *waves = of->outer->at)
 
 #define GAP(X)                                                                                     \
-  X("below", "", COUNT(gap->below), "bands below it")                                              \
-  X("low", "Hz", NUMBER(gap->low), "where it begins")                                              \
-  X("high", "Hz", NUMBER(gap->high), "where it ends")
+  X("below", "", COUNT(gap->below), "bands below it", .label = {"bands below"})                    \
+  X("low", "Hz", NUMBER(gap->low), "where it begins", .label = {"from"})                           \
+  X("high", "Hz", NUMBER(gap->high), "where it ends", .label = {"to"})
 STRUT_VALUES_HERE(gap_values, GAP, const strut_wave_gap *gap = of->at)
 
 #define CORNER(X)                                                                                  \
@@ -102,9 +105,10 @@ STRUT_VALUES(strut_wave_values, SAMPLE, const strut_waves *waves = of->outer->at
   X("images", "", COUNT(waves->images), "nodes that are those of neighbouring cells")              \
   X("samples", "", COUNT(waves->count + waves->inside), "of the wave vector")                      \
   X("speeds", "m/s", TABLE(waves->speed, waves->steps, waves->acoustic), "of long waves")          \
-  X("bands", "", LIST(waves->band, waves->shown), "ascending", .rows = &band_values)               \
+  X("bands", "", LIST(waves->band, waves->shown), "ascending", .rows = &band_values,               \
+    .label = {"band"})                                                                             \
   X("gaps", "", LIST(waves->gaps, waves->gap_count), "frequencies that no wave has",               \
-    .rows = &gap_values)                                                                           \
+    .rows = &gap_values, .label = {"gap"})                                                         \
   X("corners", "", LIST(waves->corner, waves->corner_count), "of the line through the zone",       \
     .rows = &corner_values)                                                                        \
   X("waves", "", LIST(waves->along, waves->count), "samples along it", .rows = &strut_wave_values)
