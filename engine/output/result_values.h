@@ -40,7 +40,7 @@ typedef struct strut_table_limits {
 } strut_table_limits;
 /**
  * Appends a printed table for each list whose row has a label, that of its names: a column for each value of its structs
- * with a label, which is its title; "": its key. Values with STRUT_LABEL_BEHIND stand behind the columns, if there, after the second label.
+ * with a label, which is its title; "": its key; of several numbers without a second label theirs are numbered. Values with STRUT_LABEL_BEHIND stand behind the columns, if there, after the second label.
  */
 STRUT_API void strut_values_add_tables(strut_buffer *table, const strut_value_rows *rows,
                                        const strut_result_object *of,

@@ -8,22 +8,16 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/output/buffer.h"
+#include "engine/output/result_values.h"
 #include "engine/statics/rigidity/rigidity.h"
 
-/* ---- elements beside members: columns of the equilibrium matrix behind those of members ---- */
-
-/* Words and units of a table. */
+/* Elements beside members: columns of the equilibrium matrix behind those of members. */
 static const struct {
   strut_channel_owner owner;
-  const char *word, *extent, *force, *extent_unit, *force_unit;
-} elements[] = {{STRUT_OWNER_HINGE, "hinge", "angle", "moment", "rad", "N m"},
-                {STRUT_OWNER_CELL, "cell", "area", "pressure", "m^2", "N/m"},
-                {STRUT_OWNER_DISTANCE, "distance", "distance", "force", "m", "N"}};
-enum { ELEMENTS = sizeof elements / sizeof *elements };
-
-/* ---- the table ---- */
-
-enum { MOST_ROWS = 30, MOST_STATES = 6, DIGITS = 6 };
+  const char *word;
+} elements[] = {
+    {STRUT_OWNER_HINGE, "hinge"}, {STRUT_OWNER_CELL, "cell"}, {STRUT_OWNER_DISTANCE, "distance"}};
+enum { ELEMENTS = sizeof elements / sizeof *elements, MOST_ROWS = 30, MOST_STATES = 6, DIGITS = 6 };
 
 static strut_rounded_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, DIGITS, unit);
@@ -128,71 +122,6 @@ static void add_verdicts(strut_buffer *table, const strut_rigidity *r, const str
                      r->without_length);
 }
 
-/* Forces of the states are those of elements where members have forces [N]. */
-static void add_elements(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene,
-                         int kind, int32_t states) {
-  strut_channel_owner owner = elements[kind].owner;
-  size_t columns = (size_t)r->matrix.columns,
-         count = strut_owner_count(elements[kind].owner, scene);
-  if (count)
-    strut_buffer_add(table, "  %-12s %-6s %12s %12s\n", elements[kind].word, "",
-                     elements[kind].extent, elements[kind].force);
-  for (size_t i = 0; i < count && i < MOST_ROWS; i++) {
-    size_t j = strut_column_of(scene, elements[kind].owner, i);
-    double extent = strut_column_extent(r, owner, j),
-           force = strut_column_force(r, owner, r->force[j]);
-    strut_buffer_add(table, "  %-12s %-6s %12s %12s %13s", strut_owner_name(owner, scene, i), "",
-                     strut_quantity_of_any(extent, DIGITS, elements[kind].extent_unit).text,
-                     in(force, elements[kind].force_unit).text, "");
-    for (int32_t k = 0; k < states; k++)
-      strut_buffer_add(table, " %10.6g",
-                       strut_column_force(r, owner, r->states.force[(size_t)k * columns + j]));
-    strut_buffer_add(table, "\n");
-  }
-  if (count > MOST_ROWS)
-    strut_buffer_add(table, "  ... and %zu more; --json lists all\n", count - MOST_ROWS);
-}
-
-static void add_members(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
-  size_t members = scene->member_count, columns = (size_t)r->matrix.columns;
-  int32_t states = r->states.force ? r->states.count : 0;
-  if (states > MOST_STATES) states = MOST_STATES;
-  strut_buffer_add(table, "\n  %-12s %-6s %12s %12s %13s", "member", "kind", "length", "force",
-                   "force density");
-  for (int32_t i = 0; i < states; i++) strut_buffer_add(table, "   state %-2d", i + 1);
-  strut_buffer_add(table, "\n");
-  for (size_t j = 0; j < members && j < MOST_ROWS; j++) {
-    strut_buffer_add(table, "  %-12s %-6s %12s %12s %13s", scene->members[j].name,
-                     strut_member_kind_name(scene->members[j].kind),
-                     in(r->matrix.length[j], "m").text, in(r->force[j], "N").text,
-                     in(r->density[j], "N/m").text);
-    for (int32_t i = 0; i < states; i++)
-      strut_buffer_add(table, " %10.6g", r->states.force[(size_t)i * columns + j]);
-    strut_buffer_add(table, "\n");
-  }
-  if (members > MOST_ROWS)
-    strut_buffer_add(table, "  ... and %zu more; --json lists all\n", members - MOST_ROWS);
-  for (int kind = 0; kind < ELEMENTS; kind++) add_elements(table, r, scene, kind, states);
-  if (r->states.count > states)
-    strut_buffer_add(table, "  %d more self-stress states%s\n", r->states.count - states,
-                     r->states.force ? "; --json lists all" : ": too many to list");
-}
-
-static void add_modes(strut_buffer *table, const strut_mechanisms *m) {
-  char words[STRUT_RIGIDITY_WORDS];
-  if (m->count == 0) return;
-  if (!m->list) {
-    strut_buffer_add(table, "\n  too many mechanisms to list\n");
-    return;
-  }
-  strut_buffer_add(table, "\n  mechanism\n");
-  for (int32_t i = 0; i < m->count && i < MOST_ROWS; i++)
-    strut_buffer_add(table, "  %-3d %-14s %s\n", i + 1, strut_motion_kind_name(m->list[i].kind),
-                     strut_mechanism_words(m, &m->list[i], words));
-  if (m->count > MOST_ROWS)
-    strut_buffer_add(table, "  ... and %d more; --json lists all\n", m->count - MOST_ROWS);
-}
-
 char *strut_rigidity_table(const strut_rigidity *r, const strut_model *model, const char *at) {
   strut_c_locale locale = strut_c_locale_enter();
   strut_buffer table = {0};
@@ -201,8 +130,14 @@ char *strut_rigidity_table(const strut_rigidity *r, const strut_model *model, co
   add_rank(&table, r);
   add_counts(&table, r, model->scene);
   add_verdicts(&table, r, model->scene);
-  add_members(&table, r, model->scene);
-  add_modes(&table, &r->mechanisms);
+  strut_values_add_tables(&table, &strut_rigidity_values,
+                          &(strut_result_object){r, NULL, model->scene, 0},
+                          &(strut_table_limits){MOST_ROWS, DIGITS});
+  if (r->states.count > (r->states.force ? MOST_STATES : 0))
+    strut_buffer_add(&table, "  %d self-stress states%s\n", r->states.count,
+                     r->states.force ? "; --json lists all" : ": too many to list");
+  if (r->mechanisms.count && !r->mechanisms.list)
+    strut_buffer_add(&table, "\n  too many mechanisms to list\n");
   strut_c_locale_leave(locale);
   return strut_buffer_take(&table);
 }

@@ -176,12 +176,12 @@ static void write_test(const strut_result_object *of, char text[STRUT_VALUE_ROOM
 
 #define MODE(X)                                                                                    \
   X("kind", "", TEXT(strut_motion_kind_name(mode->kind)),                                          \
-    "rigid-body, infinitesimal, finite, ...")                                                      \
+    "rigid-body, infinitesimal, finite, ...", .label = {""})                                       \
   X("stiffness", "N/m", NUMBER(mode->stiffness), "by the forces in the shape")                     \
   X("stress_form", "1/m", NUMBER(mode->stress_form), "by the state that stiffens")                 \
   X("moved", "m", NUMBER(mode->moved), "followed: largest change of a distance between nodes")     \
   X("strain", "1", NUMBER(mode->strain), "and of a member's length, relative")                     \
-  X("test", "", WORDS(write_test), "in words")                                                     \
+  X("test", "", WORDS(write_test), "in words", .label = {""})                                      \
   X("nodes", "1", OF_EACH(NODE, motion_of), "motion: the node that moves most moves by 1")
 STRUT_VALUES_HERE(mode_values, MODE, const strut_mechanism *mode = of->at)
 
@@ -191,7 +191,8 @@ STRUT_VALUES_HERE(mode_values, MODE, const strut_mechanism *mode = of->at)
   X("infinitesimal", "", COUNT(m->infinitesimal), "some self-stress stiffens them")                \
   X("finite", "", COUNT(m->finite), "member lengths stay")                                         \
   X("undecided", "", COUNT(m->undecided), "neither is known")                                      \
-  X("modes", "", LIST(m->list, m->count), "null: too many to list", .rows = &mode_values)          \
+  X("modes", "", LIST(m->list, m->count), "null: too many to list", .rows = &mode_values,          \
+    .label = {"mechanism"})                                                                        \
   X(NULL, "", IF(listed && m->stiffener, PART(m->stiffener)), "", .rows = &stiffener_values)
 STRUT_VALUES_HERE(mechanism_values, MECHANISMS, const strut_mechanisms *m = of->at;
                   bool listed = m->list || !m->count)
@@ -238,12 +239,34 @@ static const char *name_of_idle(const strut_result_object *of, size_t j) {
 
 /* ---- members and elements, each under its name ---- */
 
+/* Forces in the first states of self-stress, for printed tables. */
+enum { MOST_STATES = 6 };
+#define STATES_OF(NAME, OWNER)                                                                     \
+  static double NAME##_state(const strut_result_object *of, size_t k) {                            \
+    const strut_rigidity *r = strut_result_whole(of);                                              \
+    size_t j = strut_column_of(of->scene, STRUT_OWNER_##OWNER, of->index);                         \
+    return strut_column_force(r, STRUT_OWNER_##OWNER,                                              \
+                              r->states.force[k * (size_t)r->matrix.columns + j]);                 \
+  }
+STATES_OF(member, MEMBER)
+
+static strut_value shown_states(const strut_rigidity *r,
+                                double (*each)(const strut_result_object *of, size_t k)) {
+  size_t count = r->states.force ? (size_t)r->states.count : 0;
+  return (strut_value){.kind = STRUT_VALUE_NUMBERS,
+                       .each = each,
+                       .count = count > MOST_STATES ? MOST_STATES : count};
+}
+
+#define COLUMN .label = {""}
 #define MEMBER(X)                                                                                  \
-  X("kind", "", TEXT(strut_member_kind_name(of->scene->members[j].kind)), "spring, cable, bar")    \
-  X("length", "m", NUMBER(r->matrix.length[j]), "in the shape")                                    \
-  X("force", "N", NUMBER(r->force[j]), "its tension there")                                        \
+  X("kind", "", TEXT(strut_member_kind_name(of->scene->members[j].kind)), "spring, cable, bar",    \
+    COLUMN)                                                                                        \
+  X("length", "m", NUMBER(r->matrix.length[j]), "in the shape", COLUMN)                            \
+  X("force", "N", NUMBER(r->force[j]), "its tension there", COLUMN)                                \
   X("force_density", "N/m", NUMBER(r->matrix.length[j] > 0 ? r->density[j] : (double)NAN),         \
-    "force over length")
+    "force over length", COLUMN)                                                                   \
+  X(NULL, "1", BY(shown_states(r, member_state)), "", .label = {"state"})
 STRUT_VALUES_HERE(member_values, MEMBER, const strut_rigidity *r = strut_result_whole(of);
                   size_t j = of->index)
 
@@ -251,14 +274,18 @@ STRUT_VALUES_HERE(member_values, MEMBER, const strut_rigidity *r = strut_result_
   static const char *NAME##_name(const strut_result_object *of, size_t i) {                        \
     return strut_owner_name(STRUT_OWNER_##OWNER, of->scene, i);                                    \
   }                                                                                                \
+  STATES_OF(NAME, OWNER)                                                                           \
   STRUT_VALUES_HERE(NAME##_values, NAME##_TABLE, const strut_rigidity *r = strut_result_whole(of); \
                     size_t j = strut_column_of(of->scene, STRUT_OWNER_##OWNER, of->index))
-#define ELEMENT(X, OWNER, EXTENT, EXTENT_UNIT, FORCE, FORCE_UNIT)                                  \
-  X(EXTENT, EXTENT_UNIT, NUMBER(strut_column_extent(r, STRUT_OWNER_##OWNER, j)), "in the shape")   \
-  X(FORCE, FORCE_UNIT, NUMBER(strut_column_force(r, STRUT_OWNER_##OWNER, r->force[j])), "there")
-#define hinge_TABLE(X) ELEMENT(X, HINGE, "angle", "rad", "moment", "N m")
-#define cell_TABLE(X) ELEMENT(X, CELL, "area", "m^2", "pressure", "N/m")
-#define distance_TABLE(X) ELEMENT(X, DISTANCE, "distance", "m", "force", "N")
+#define ELEMENT(X, NAME, OWNER, EXTENT, EXTENT_UNIT, FORCE, FORCE_UNIT)                            \
+  X(EXTENT, EXTENT_UNIT, NUMBER(strut_column_extent(r, STRUT_OWNER_##OWNER, j)), "in the shape",   \
+    COLUMN)                                                                                        \
+  X(FORCE, FORCE_UNIT, NUMBER(strut_column_force(r, STRUT_OWNER_##OWNER, r->force[j])), "there",   \
+    COLUMN)                                                                                        \
+  X(NULL, "1", BY(shown_states(r, NAME##_state)), "", .label = {"state"})
+#define hinge_TABLE(X) ELEMENT(X, hinge, HINGE, "angle", "rad", "moment", "N m")
+#define cell_TABLE(X) ELEMENT(X, cell, CELL, "area", "m^2", "pressure", "N/m")
+#define distance_TABLE(X) ELEMENT(X, distance, DISTANCE, "distance", "m", "force", "N")
 ELEMENT_ROWS(hinge, HINGE)
 ELEMENT_ROWS(cell, CELL)
 ELEMENT_ROWS(distance, DISTANCE)
@@ -300,13 +327,13 @@ static const char *member_name(const strut_result_object *of, size_t i) {
   X("self_equilibrium", "", FLAG(r->self_equilibrium), "whether the members balance alone")        \
   X("without_force", "", NAMES(name_of_idle, scene->member_count), "cables that do not pull")      \
   X("members_at", "", NAMED(r->force, scene->member_count, member_name), "in the shape",           \
-    .rows = &member_values)                                                                        \
+    .rows = &member_values, .label = {"member"})                                                   \
   X("hinges_at", "", IF(scene->hinge_count, NAMED(r->force, scene->hinge_count, hinge_name)),      \
-    "in the shape", .rows = &hinge_values)                                                         \
+    "in the shape", .rows = &hinge_values, .label = {"hinge"})                                     \
   X("cells_at", "", IF(scene->cell_count, NAMED(r->force, scene->cell_count, cell_name)),          \
-    "in the shape", .rows = &cell_values)                                                          \
+    "in the shape", .rows = &cell_values, .label = {"cell"})                                       \
   X("distances_at", "",                                                                            \
     IF(scene->distance_count, NAMED(r->force, scene->distance_count, distance_name)),              \
-    "in the shape", .rows = &distance_values)
+    "in the shape", .rows = &distance_values, .label = {"distance"})
 STRUT_VALUES(strut_rigidity_values, RIGIDITY, const strut_rigidity *r = of->at;
              const strut_scene *scene = of->scene)
