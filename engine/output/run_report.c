@@ -183,7 +183,7 @@ char *strut_summary_table(const strut_summary *summary, const strut_scene *scene
   add_measured(&table, summary);
   strut_values_add_tables(&table, &strut_summary_values,
                           &(strut_result_object){summary, NULL, scene, 0},
-                          &(strut_table_limits){MOST_ROWS, DIGITS});
+                          &(strut_table_page){STRUT_REPORT_WIDTH, MOST_ROWS, DIGITS});
   add_energy(&table, summary);
   add_balance(&table, summary);
   strut_c_locale_leave(locale);

@@ -27,8 +27,8 @@ for key in '"stable":	false' '"node":	"tip"' '"growth_rate":	3.13' '"perturbatio
 done
 shows 0 "unstable equilibrium" modes rod.yaml
 out_has "node 'tip'"
-out_has "       unstable  tip moves along x"
-shows 0 "the start settles in saddle-1" equilibria rod.yaml
+out_has "unstable  tip moves along x"
+shows 0 "the start settles in      saddle-1" equilibria rod.yaml
 out_has "unstable equilibrium"
 
 # Pushed off it hangs, for all of them.

@@ -17,9 +17,8 @@ enum { MOST_THINGS = 40, DIGITS = 5 };
 
 /* ---- things, as they are drawn ---- */
 
-/* Columns of a table, whose titles are the keys, and what stands behind them. */
+/* Columns of a table, whose titles are the keys. */
 #define COLUMN .label = {""}
-#define BEHIND .label = {STRUT_LABEL_BEHIND}
 
 static strut_element_pose pose_of(const strut_result_object *of, int32_t element) {
   const strut_check_result *c = strut_result_whole(of);
@@ -67,19 +66,19 @@ static strut_value way_of(const strut_result_object *of, size_t k) {
   X("pretension", "N", NUMBER(rest.pretension), "as drawn", COLUMN)                                \
   X("force_density", "N/m", NUMBER(rest.force_density), "as drawn", COLUMN)                        \
   X("stiffness", "N/m", NUMBER(rest.stiffness), "as drawn", COLUMN)                                \
-  X("law", "", IF(lawful, TEXT(strut_law_at(m->law.kind)->word)), "of its force", BEHIND)          \
-  X("carries", "", IF(lawful, TEXT(carries_name(m))), "tension, compression or both", BEHIND)      \
-  X("guide_friction", "1", POSITIVE(m->guide_friction), "coefficient", BEHIND)                     \
-  X("guide_radius", "m", POSITIVE(m->guide_radius), "of its guides", BEHIND)                       \
-  X("breaks_at", "N", POSITIVE(m->breaks_at), "force", BEHIND)                                     \
-  X("released_at", "s", POSITIVE(m->released_at), "time", BEHIND)                                  \
-  X("shortest", "m", POSITIVE(m->shortest), "length, by a stop", BEHIND)                           \
-  X("longest", "m", POSITIVE(m->longest), "length, by a stop", BEHIND)                             \
+  X("law", "", IF(lawful, TEXT(strut_law_at(m->law.kind)->word)), "of its force", COLUMN)          \
+  X("carries", "", IF(lawful, TEXT(carries_name(m))), "tension, compression or both", COLUMN)      \
+  X("guide_friction", "1", POSITIVE(m->guide_friction), "coefficient", COLUMN)                     \
+  X("guide_radius", "m", POSITIVE(m->guide_radius), "of its guides", COLUMN)                       \
+  X("breaks_at", "N", POSITIVE(m->breaks_at), "force", COLUMN)                                     \
+  X("released_at", "s", POSITIVE(m->released_at), "time", COLUMN)                                  \
+  X("shortest", "m", POSITIVE(m->shortest), "length, by a stop", COLUMN)                           \
+  X("longest", "m", POSITIVE(m->longest), "length, by a stop", COLUMN)                             \
   X("stop_stiffness", "N/m", POSITIVE(stops ? stop_stiffness(model, of->index) : 0.0), "of both",  \
-    BEHIND)                                                                                        \
-  X("stop_damping", "N s/m", POSITIVE(stops ? m->stop_damping : 0.0), "of both", BEHIND)           \
+    COLUMN)                                                                                        \
+  X("stop_damping", "N s/m", POSITIVE(stops ? m->stop_damping : 0.0), "of both", COLUMN)           \
   X("nodes", "", IF(m->guide_count, ARRAY(m->guide_count + 2, way_of)), "that it runs over",       \
-    .label = {STRUT_LABEL_BEHIND, "over"})
+    .label = {"over"})
 STRUT_VALUES_HERE(member_values, MEMBER, const strut_member *m = of->at;
                   strut_rest rest = rest_of(of);
                   const strut_model *model = ((const strut_check_result *)of->outer->at)->model;
@@ -92,8 +91,8 @@ STRUT_VALUES_HERE(member_values, MEMBER, const strut_member *m = of->at;
   X("rest_angle", "rad", NUMBER(pose.natural), "without moment", COLUMN)                           \
   X("moment", "N m", NUMBER(pose.force), "as drawn", COLUMN)                                       \
   X("stiffness", "N m/rad", NUMBER(elements->element[i].numbers.stiffness), "as drawn", COLUMN)    \
-  X("breaks_at", "N m", POSITIVE(h->breaks_at), "moment", BEHIND)                                  \
-  X("released_at", "s", POSITIVE(h->released_at), "time", BEHIND)
+  X("breaks_at", "N m", POSITIVE(h->breaks_at), "moment", COLUMN)                                  \
+  X("released_at", "s", POSITIVE(h->released_at), "time", COLUMN)
 #define ELEMENTS                                                                                   \
   const strut_element_table *elements =                                                            \
       &((const strut_check_result *)of->outer->at)->model->elements
@@ -240,6 +239,6 @@ void strut_check_print_things(const strut_check_result *checked) {
   strut_buffer table = {0};
   strut_values_add_tables(&table, &scene_values,
                           &(strut_result_object){checked, NULL, checked->model->scene, 0},
-                          &(strut_table_limits){MOST_THINGS, DIGITS});
-  strut_print_block(strut_buffer_take(&table));
+                          &(strut_table_page){STRUT_REPORT_WIDTH, MOST_THINGS, DIGITS});
+  if (table.length || table.failed) strut_print_block(strut_buffer_take(&table));
 }
