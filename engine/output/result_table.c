@@ -65,18 +65,18 @@ static void add_value(strut_buffer *text, const strut_value_row *row, const stru
   else if (!several && written)
     strut_buffer_add(text, "%s", written);
   for (size_t i = 0, shown = 0; several && i < value->count; i++) {
-    strut_value item = {.kind = STRUT_VALUE_NUMBER};
+    strut_value item = {
+        .kind = STRUT_VALUE_NUMBER, .own_unit = value->own_unit, .digits = value->digits};
     if (value->kind == STRUT_VALUE_NAMES) item = STRUT_VALUE_AS_TEXT(value->name(of, i));
     if (value->kind == STRUT_VALUE_MAP) item = value->value(of, i);
-    if (item.kind == STRUT_VALUE_TEXT && !item.text) continue;
+    if (value->kind == STRUT_VALUE_NUMBERS)
+      item.number = *(const double *)(const void *)((const char *)value->items + i * value->size);
+    if (item.kind == STRUT_VALUE_ABSENT || (item.kind == STRUT_VALUE_TEXT && !item.text) ||
+        (item.kind == STRUT_VALUE_NUMBER && isnan(item.number)))
+      continue;
     if (shown) strut_buffer_add(text, shown < MOST_INLINE ? ", " : ", ...");
     if (shown++ == MOST_INLINE) return;
-    if (value->kind == STRUT_VALUE_NUMBERS)
-      add_number(text, row, value,
-                 *(const double *)(const void *)((const char *)value->items + i * value->size),
-                 digits);
-    else
-      add_value(text, row, of, &item, digits);
+    add_value(text, row, of, &item, digits);
   }
 }
 

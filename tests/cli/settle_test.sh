@@ -116,7 +116,7 @@ err_has "9.81 m/s^2"
 err_has "node 'stone'"
 err_has "initial.settle.evaluations"
 tells 3 "4000 evaluations" run falls.yaml --accuracy 1%
-shows 3 "the start does not settle" equilibria falls.yaml
+shows 3 "the structure did not come to rest" equilibria falls.yaml
 out_has "4000 evaluations"
 sed -i 's/evaluations: 4000/speed: 1e-9/' falls.yaml
 tells 3 "did not come to rest" run falls.yaml
