@@ -60,6 +60,7 @@ breaches() {
       name = substr(text, RSTART + 1, RLENGTH - 2)
       quoted = substr(text, RSTART, 1) == "\""
       from = folder(file); to = folder(name)
+      sub("^parser/program/.*", "parser/program", from); sub("^parser/program/.*", "parser/program", to)
       ours = name ~ "^(engine|parser|tests)/"
       if (!ours) {
         base = name; sub("^suitesparse/", "", base)
@@ -127,6 +128,7 @@ expect 1 parser/yaml/b.c '#include "parser/read/a.h"'
 expect 0 parser/b.c '#include "engine/scene/a.h"'
 expect 0 parser/program/b.c '#include "engine/study/sweep/a.h"'
 expect 0 parser/program/b.c '#include "parser/command/a.h"'
+expect 0 parser/program/study/b.c '#include "parser/program/a.h"'
 expect 0 parser/bindings/abi/b.c '#include "parser/command/a.h"'
 expect 1 parser/command/b.c '#include "parser/program/a.h"'
 expect 1 parser/bindings/abi/b.c '#include "parser/program/a.h"'

@@ -11,7 +11,7 @@
 #include "engine/output/result_values.h"
 #include "engine/scene/scene.h"
 
-enum { DIGITS = 6, MOST_INLINE = 10, TITLE = 80, WIDEST = 40 };
+enum { MOST_INLINE = 10, TITLE = 80, WIDEST = 40 };
 
 /* Part of the largest of several forces below which one is rounding, and shown as 0. */
 static const double ROUNDING = 1e-12;
@@ -30,10 +30,10 @@ static const char *title_of(const strut_value_row *row, const char *part, const 
 }
 
 static void add_number(strut_buffer *text, const strut_value_row *row, const strut_value *value,
-                       double number) {
+                       double number, int digits) {
   const char *unit = value->own_unit ? value->own_unit : row->unit;
   bool angle = strcmp(unit, "rad") == 0, percent = row->label[1] && *row->label[1] == '%';
-  int digits = value->digits ? value->digits : DIGITS;
+  if (value->digits) digits = value->digits;
   if (isnan(number)) return;
   if (percent && isfinite(number))
     strut_buffer_add(text, "%.3g %%", 100.0 * number);
@@ -50,14 +50,14 @@ static void add_number(strut_buffer *text, const strut_value_row *row, const str
 
 /* Numbers, names and values of an array, one after the other. */
 static void add_value(strut_buffer *text, const strut_value_row *row, const strut_result_object *of,
-                      const strut_value *value) {
+                      const strut_value *value, int digits) {
   char room[STRUT_VALUE_ROOM] = "";
   const char *written = value->text;
   bool several = value->kind == STRUT_VALUE_NAMES || value->kind == STRUT_VALUE_MAP ||
                  (value->kind == STRUT_VALUE_NUMBERS && value->items);
   if (value->kind == STRUT_VALUE_WORDS) value->write(of, room), written = room;
   if (value->kind == STRUT_VALUE_NUMBER)
-    add_number(text, row, value, value->number);
+    add_number(text, row, value, value->number, digits);
   else if (value->kind == STRUT_VALUE_COUNT)
     strut_buffer_add(text, "%lld", (long long)value->integer);
   else if (value->kind == STRUT_VALUE_FLAG)
@@ -65,17 +65,18 @@ static void add_value(strut_buffer *text, const strut_value_row *row, const stru
   else if (!several && written)
     strut_buffer_add(text, "%s", written);
   for (size_t i = 0, shown = 0; several && i < value->count; i++) {
-    strut_value item = {.kind = STRUT_VALUE_NUMBER};
+    strut_value item = {
+        .kind = STRUT_VALUE_NUMBER, .own_unit = value->own_unit, .digits = value->digits};
     if (value->kind == STRUT_VALUE_NAMES) item = STRUT_VALUE_AS_TEXT(value->name(of, i));
     if (value->kind == STRUT_VALUE_MAP) item = value->value(of, i);
-    if (item.kind == STRUT_VALUE_TEXT && !item.text) continue;
+    if (value->kind == STRUT_VALUE_NUMBERS)
+      item.number = *(const double *)(const void *)((const char *)value->items + i * value->size);
+    if (item.kind == STRUT_VALUE_ABSENT || (item.kind == STRUT_VALUE_TEXT && !item.text) ||
+        (item.kind == STRUT_VALUE_NUMBER && isnan(item.number)))
+      continue;
     if (shown) strut_buffer_add(text, shown < MOST_INLINE ? ", " : ", ...");
     if (shown++ == MOST_INLINE) return;
-    if (value->kind == STRUT_VALUE_NUMBERS)
-      add_number(text, row, value,
-                 *(const double *)(const void *)((const char *)value->items + i * value->size));
-    else
-      add_value(text, row, of, &item);
+    add_value(text, row, of, &item, digits);
   }
 }
 
@@ -93,15 +94,10 @@ typedef struct cell_column {
 typedef struct cell_table {
   cell_column column[2 * STRUT_MOST_VALUES];
   size_t count, items, item, next; /* next: column of the item */
+  int digits;
   bool failed;
   strut_arena arena;
 } cell_table;
-
-/* What limits tables. */
-typedef struct table_page {
-  int width;
-  size_t most; /* structs of a list */
-} table_page;
 
 /* Letters of a UTF-8 text, as a terminal's columns. */
 static int letters(const char *text) {
@@ -121,7 +117,7 @@ static void put_cell(cell_table *table, const char *title, const strut_value_row
     column->cell = strut_arena_allocate(&table->arena, table->items + 1, sizeof *column->cell);
     table->failed = table->failed || !column->title || !column->cell;
   }
-  add_value(&buffer, row, of, value);
+  add_value(&buffer, row, of, value, table->digits);
   bool known = buffer.length > 0;
   char *text = strut_buffer_take(&buffer);
   if (known && !table->failed) {
@@ -177,6 +173,10 @@ static void put_cells(cell_table *table, const strut_value_rows *rows, const cha
       }
     } else if (value->kind == STRUT_VALUE_THINGS) {
       put_things(table, row, of, value);
+    } else if (value->kind == STRUT_VALUE_NUMBERS && row->label[1] && *row->label[1] != '%') {
+      for (size_t k = 0; k < value->count; k++)
+        put_cell(table, title_of(row, part, row->label[k], title), row, of,
+                 &STRUT_VALUE_AS_NUMBER(strut_value_item(value, of, k)));
     } else {
       put_cell(table, title_of(row, part, value->own_unit ? value->text : NULL, title), row, of,
                value);
@@ -257,11 +257,12 @@ static void add_columns(strut_buffer *text, const cell_table *table, int width) 
 }
 
 static void add_lists(strut_buffer *text, const strut_value_rows *rows,
-                      const strut_result_object *of, const char *before, const table_page *page);
+                      const strut_result_object *of, const char *before,
+                      const strut_table_page *page);
 
 /* A table of the structs of a list, then the lists within each. */
 static void add_list(strut_buffer *text, const strut_value_row *row, const strut_result_object *of,
-                     const strut_value *list, const char *before, const table_page *page) {
+                     const strut_value *list, const char *before, const strut_table_page *page) {
   static const strut_value_row name_row = {.unit = "", .label = {""}};
   cell_table *table = strut_allocate(1, sizeof *table);
   char title[TITLE], within[2 * TITLE];
@@ -270,6 +271,7 @@ static void add_list(strut_buffer *text, const strut_value_row *row, const strut
   text->failed = text->failed || !table;
   if (!table) return;
   table->items = list->count < page->most ? list->count : page->most;
+  table->digits = page->digits;
   strut_result_object *item = strut_arena_allocate(&table->arena, table->items + 1, sizeof *item);
   table->failed = !item;
   title_of(row, "", NULL, title);
@@ -308,7 +310,8 @@ static void add_list(strut_buffer *text, const strut_value_row *row, const strut
 }
 
 static void add_lists(strut_buffer *text, const strut_value_rows *rows,
-                      const strut_result_object *of, const char *before, const table_page *page) {
+                      const strut_result_object *of, const char *before,
+                      const strut_table_page *page) {
   strut_value value[STRUT_MOST_VALUES];
   rows->fill(of, value);
   for (size_t i = 0; i < rows->count; i++) {
@@ -326,9 +329,14 @@ static void add_lists(strut_buffer *text, const strut_value_rows *rows,
   }
 }
 
+void strut_values_add_tables(strut_buffer *text, const strut_value_rows *rows,
+                             const strut_result_object *of, const strut_table_page *page) {
+  add_lists(text, rows, of, "", page);
+}
+
 char *strut_values_text(const strut_value_rows *rows, const void *result, const strut_scene *scene,
                         int width, size_t most) {
-  const table_page page = {width, most};
+  const strut_table_page page = {width, most, 6};
   strut_buffer text = {0};
   const strut_result_object whole = {result, NULL, scene, 0};
   strut_c_locale locale = strut_c_locale_enter();
@@ -336,6 +344,7 @@ char *strut_values_text(const strut_value_rows *rows, const void *result, const 
   if (scene && *scene->name) strut_buffer_add(&text, "%s\n", scene->name);
   if (table) {
     table->items = 1;
+    table->digits = page.digits;
     put_cells(table, rows, "", &whole);
     if (!table->failed) add_columns(&text, table, width);
     text.failed = text.failed || table->failed;

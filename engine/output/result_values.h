@@ -42,6 +42,16 @@ enum { STRUT_REPORT_WIDTH = 100, STRUT_REPORT_ROWS = 60 };
 STRUT_API char *strut_values_text(const strut_value_rows *rows, const void *result,
                                   const struct strut_scene *scene, int width, size_t most);
 
+/** What limits tables: letters of a line, structs of a list, digits of numbers. */
+typedef struct strut_table_page {
+  int width;
+  size_t most;
+  int digits;
+} strut_table_page;
+/** Appends the tables alone. */
+STRUT_API void strut_values_add_tables(strut_buffer *text, const strut_value_rows *rows,
+                                       const strut_result_object *of, const strut_table_page *page);
+
 /** Appends rows of a Markdown table about the values, their keys after `before`. */
 STRUT_API void strut_values_describe(strut_buffer *page, const strut_value_rows *rows,
                                      const char *before);

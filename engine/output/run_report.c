@@ -28,13 +28,6 @@ static strut_rounded_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, DIGITS, unit);
 }
 
-/* In a unit that takes no prefix. */
-static strut_rounded_quantity plain(double value, int digits, const char *unit) {
-  strut_rounded_quantity q = {"none"};
-  if (isfinite(value)) snprintf(q.text, sizeof q.text, "%.*g %s", digits, value, unit);
-  return q;
-}
-
 /* What the numbers are worth, in one line; then why, where that is not what was asked for. */
 static void add_worth(strut_buffer *table, const strut_summary *s) {
   const strut_accuracy_summary *a = &s->accuracy;
@@ -142,78 +135,6 @@ static void add_measured(strut_buffer *table, const strut_summary *s) {
   }
 }
 
-static void add_more(strut_buffer *table, size_t count) {
-  if (count > MOST_ROWS) strut_buffer_add(table, "  ... and %zu more\n", count - MOST_ROWS);
-}
-
-static void add_positions(strut_buffer *table, const strut_summary *s) {
-  if (s->end.node_count)
-    strut_buffer_add(table, "\n  %-16s %14s %14s   after %s\n", "node", "x", "y",
-                     in(s->duration, "s").text);
-  for (size_t i = 0; i < s->end.node_count && i < MOST_ROWS; i++) {
-    strut_buffer_add(table, "  %-16s %14s %14s\n", s->end.node_names[i],
-                     in(s->end.positions[2 * i], "m").text,
-                     in(s->end.positions[2 * i + 1], "m").text);
-  }
-  add_more(table, s->end.node_count);
-}
-
-static void add_hinges(strut_buffer *table, const strut_summary *s) {
-  if (s->end.hinge_count)
-    strut_buffer_add(table, "\n  %-16s %14s %14s\n", "hinge", "angle", "moment");
-  for (size_t i = 0; i < s->end.hinge_count && i < MOST_ROWS; i++)
-    strut_buffer_add(table, "  %-16s %14s %14s\n", s->end.hinges[i].hinge,
-                     plain(s->end.hinges[i].angle * (180.0 / STRUT_PI), 5, "deg").text,
-                     in(s->end.hinges[i].moment, "N m").text);
-  add_more(table, s->end.hinge_count);
-}
-
-static void add_cells(strut_buffer *table, const strut_summary *s) {
-  if (s->end.cell_count)
-    strut_buffer_add(table, "\n  %-16s %14s %14s\n", "cell", "area", "pressure");
-  for (size_t i = 0; i < s->end.cell_count && i < MOST_ROWS; i++)
-    strut_buffer_add(table, "  %-16s %14s %14s\n", s->end.cells[i].cell,
-                     plain(s->end.cells[i].area, 4, "m^2").text,
-                     in(s->end.cells[i].pressure, "N/m").text);
-  add_more(table, s->end.cell_count);
-}
-
-static void add_breaks(strut_buffer *table, const strut_summary *s) {
-  if (s->end.break_count) strut_buffer_add(table, "\n  %-16s %14s\n", "carries nothing", "from");
-  for (size_t i = 0; i < s->end.break_count && i < MOST_ROWS; i++)
-    strut_buffer_add(table, "  %-16s %14s   %s\n", s->end.breaks[i].name,
-                     in(s->end.breaks[i].time, "s").text,
-                     s->end.breaks[i].released ? "released" : "broke");
-  add_more(table, s->end.break_count);
-}
-
-static void add_jumps(strut_buffer *table, const strut_summary *s) {
-  if (s->end.jump_count)
-    strut_buffer_add(table, "\n  %-16s %14s %14s %14s\n", "jumps at folds", "times", "last at",
-                     "set free");
-  for (size_t i = 0; i < s->end.jump_count && i < MOST_ROWS; i++)
-    strut_buffer_add(table, "  %-16s %14lld %14s %14s\n", s->end.jumps[i].name,
-                     (long long)s->end.jumps[i].count, in(s->end.jumps[i].last, "s").text,
-                     in(s->end.jumps[i].freed, "J").text);
-  add_more(table, s->end.jump_count);
-}
-
-static void add_contacts(strut_buffer *table, const strut_summary *s) {
-  if (s->end.contact_count) {
-    strut_buffer_add(table, "\n  %-16s %14s %14s\n", "contact", "contact time", "max. height");
-  }
-  for (size_t i = 0; i < s->end.contact_count && i < MOST_ROWS; i++) {
-    const strut_contact_summary *contact = &s->end.contacts[i];
-    if (isnan(contact->duty)) { /* the run ended before its window */
-      strut_buffer_add(table, "  %-16s %14s %14s\n", contact->node, "none", "none");
-      continue;
-    }
-    strut_buffer_add(table, "  %-16s %12.1f %% %14s\n", contact->node, 100.0 * contact->duty,
-                     in(contact->max_height, "m").text);
-  }
-  add_more(table, s->end.contact_count);
-}
-
 /* The residual of the balance and what it means, in one statement. */
 static void add_balance(strut_buffer *table, const strut_summary *s) {
   const strut_energy *e = &s->energy;
@@ -260,12 +181,9 @@ char *strut_summary_table(const strut_summary *summary, const strut_scene *scene
   strut_c_locale locale = strut_c_locale_enter();
   add_head(&table, summary, scene);
   add_measured(&table, summary);
-  add_positions(&table, summary);
-  add_hinges(&table, summary);
-  add_cells(&table, summary);
-  add_breaks(&table, summary);
-  add_jumps(&table, summary);
-  add_contacts(&table, summary);
+  strut_values_add_tables(&table, &strut_summary_values,
+                          &(strut_result_object){summary, NULL, scene, 0},
+                          &(strut_table_page){STRUT_REPORT_WIDTH, MOST_ROWS, DIGITS});
   add_energy(&table, summary);
   add_balance(&table, summary);
   strut_c_locale_leave(locale);

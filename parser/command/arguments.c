@@ -55,12 +55,12 @@ const char *strut_given_text(const strut_option *option, const strut_arguments *
   return *(const char *const *)((const char *)arguments + option->member);
 }
 
-static const char *words_of(const strut_option *option) {
+const char *strut_option_words(const strut_option *option) {
   return option->key ? strut_key_at(option->key)->words : option->words;
 }
 
 const char *strut_option_word(const strut_option *option, int i, char *buffer, size_t size) {
-  const char *words = words_of(option);
+  const char *words = strut_option_words(option);
   return words ? strut_word_at(words, i, buffer, size) : NULL;
 }
 
@@ -130,13 +130,14 @@ static strut_status read_word(const strut_option *option, const strut_arguments 
   if (accepted && other->kind == STRUT_SPELLING_FORMER)
     strut_tell(arguments->listener, STRUT_MESSAGE_NOTE, arguments->command->name,
                "'%s' is now called '%s'", other->other, other->current);
-  to->index = strut_word_find(words_of(option), accepted ? other->current : to->text);
+  to->index = strut_word_find(strut_option_words(option), accepted ? other->current : to->text);
   if (to->index >= 0) return STRUT_OK;
   for (int i = 0; i < MOST_WORDS; i++) words[i] = strut_option_word(option, i, copies[i], WORD);
   near = strut_did_you_mean(to->text, word_at, words);
   return strut_usage_error(arguments, "--%s expects %s, not '%s'%s%s%s", option->name,
-                           strut_words_text(words_of(option), text, sizeof text), to->text,
-                           near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+                           strut_words_text(strut_option_words(option), text, sizeof text),
+                           to->text, near ? "; did you mean '" : "", near ? near : "",
+                           near ? "'?" : "");
 }
 
 static strut_status read_words(const strut_option *option, const strut_arguments *arguments,

@@ -167,6 +167,8 @@ strut_status strut_argument_read(const strut_option *option, const char *text,
  * "no". STRUT_USAGE where there is no such option, or no such value; the listener hears why.
  */
 strut_status strut_argument_set(const char *name, const char *value, strut_arguments *arguments);
+/** The words that an option takes, "bar|cable"; NULL: any, or none. */
+const char *strut_option_words(const strut_option *option);
 /** The i-th word of an option, copied into buffer; NULL after the last. */
 const char *strut_option_word(const strut_option *option, int i, char *buffer, size_t size);
 

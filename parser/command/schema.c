@@ -7,6 +7,7 @@
 #include "parser/command/schema.h"
 
 #include <assert.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,61 +50,10 @@ static void open_list(schema *s, const char *key) {
 /* Object or list. */
 static void close_object(schema *s) { s->depth--; }
 
-/* A quantity is a number or an expression in a text; the schema does not say which texts are expressions. */
-#define NUMBER "[\"number\", \"string\"]"
-/* YAML makes numbers and switches of names and texts such as 1 and true; strut takes them as written. */
-#define SCALAR "[\"string\", \"number\", \"boolean\"]"
-
-static void put_number(schema *s) { put_member(s, "type", NUMBER); }
-static void put_scalar(schema *s) { put_member(s, "type", SCALAR); }
-
 static void refer_to(schema *s, const char *definition) {
   char text[80] = "#/definitions/";
   strncat(text, definition, sizeof text - strlen(text) - 1);
   put_text_member(s, "$ref", text);
-}
-
-static void put_section(schema *s, strut_section section) {
-  s->wanted[section] = true;
-  refer_to(s, strut_section_name(section));
-}
-
-static void put_group(schema *s) { refer_to(s, "group"); }
-
-typedef void fragment(schema *s);
-
-/* A list of `least` to `most` items; most 0: any number. */
-static void put_list(schema *s, int least, int most, fragment *item) {
-  char digits[2] = {(char)('0' + least), '\0'};
-  put_member(s, "type", "\"array\"");
-  open_object(s, "items");
-  item(s);
-  close_object(s);
-  if (least) put_member(s, "minItems", digits);
-  digits[0] = (char)('0' + most);
-  if (most) put_member(s, "maxItems", digits);
-}
-
-/* One form for values of a JSON type, another for all others. */
-static void put_either(schema *s, const char *type, fragment *then, fragment *otherwise) {
-  open_object(s, "if");
-  put_text_member(s, "type", type);
-  close_object(s);
-  open_object(s, "then");
-  then(s);
-  close_object(s);
-  open_object(s, "else");
-  otherwise(s);
-  close_object(s);
-}
-
-static void put_pair(schema *s) { put_list(s, 2, 2, put_number); }
-static void put_names(schema *s) { put_list(s, 0, 0, put_scalar); }
-static void put_names_of_things(schema *s) {
-  put_member(s, "type", "\"object\"");
-  open_object(s, "additionalProperties");
-  put_scalar(s);
-  close_object(s);
 }
 
 /* The words of a key with its synonyms and former words. */
@@ -124,11 +74,35 @@ static void put_words(schema *s, const strut_key *key) {
   close_object(s);
 }
 
-static void put_axes_of_support(schema *s) { put_member(s, "enum", "[\"x\", \"y\"]"); }
-static void put_list_of_supports(schema *s) { put_list(s, 0, 2, put_axes_of_support); }
-static void put_supports(schema *s) { put_member(s, "enum", "[\"none\", \"x\", \"y\", \"both\"]"); }
+/* With a base `remove` takes away a thing, or a whole mapping. */
+static void open_unless_removed(schema *s) {
+  put_member(s, "if", "{\"const\": \"remove\"}");
+  open_object(s, "else");
+}
 
-static void put_law(schema *s) { put_section(s, STRUT_SECTION_LAW); }
+/* ---- what a value may be, as a text ---- */
+
+/*
+ *   n  a number, or an expression in a text; the schema does not say which texts are expressions
+ *   s  a scalar: YAML makes numbers and switches of names and texts such as 1 and true, strut takes them as written
+ *   w  a word of the key
+ *   k  a word of the key, or another text
+ *   l  a word of a law;  x  an axis of a study;  t  a thing of the key
+ *   =[...]=     one of these values
+ *   <section>   an object with the keys of a section, or of a group
+ *   [LMx]       a list of L to M items x; M 0: any number
+ *   {x}         an object whose members are x
+ *   {!x}        likewise named things, which a scene with a base may remove
+ *   {1}         an object of one member
+ *   A(x|y)      x for a list, y for all others;  O(x|y): x for an object;  K(x|y): for one with the key `network`;
+ *   R(x|y)      for one of the kind `relay`
+ */
+#define SIGNAL "O(<signal>|s)"
+#define ALONG "A([00s]|<range>)"
+
+static const char *put_shape(schema *s, const strut_key *key, const char *shape);
+static void put_thing(schema *s, const strut_key *key);
+
 static void put_law_word(schema *s) {
   char word[40];
   const char *words = strut_key_at(STRUT_KEY_LAW_KIND)->words;
@@ -136,54 +110,6 @@ static void put_law_word(schema *s) {
   for (int i = 0; strut_word_at(words, i, word, sizeof word); i++) put_text_member(s, NULL, word);
   put_text_member(s, NULL, "tension_only");
   put_text_member(s, NULL, "compression_only");
-  close_object(s);
-}
-
-static void put_switch(schema *s) { put_member(s, "enum", "[true, false, \"yes\", \"no\"]"); }
-static void put_settle(schema *s) { put_section(s, STRUT_SECTION_SETTLE); }
-static void put_steady(schema *s) { put_section(s, STRUT_SECTION_STEADY); }
-static void put_all(schema *s) { put_member(s, "enum", "[\"all\"]"); }
-static void put_name_or_names(schema *s) { put_either(s, "array", put_names, put_scalar); }
-static void put_signal_keys(schema *s) { put_section(s, STRUT_SECTION_SIGNAL); }
-static void put_signal(schema *s) { put_either(s, "object", put_signal_keys, put_scalar); }
-static void put_node_keys(schema *s) { put_section(s, STRUT_SECTION_NODE); }
-static void put_node(schema *s) { put_either(s, "array", put_pair, put_node_keys); }
-static void put_quantity_keys(schema *s) { put_section(s, STRUT_SECTION_QUANTITY); }
-static void put_quantity(schema *s) { put_either(s, "object", put_quantity_keys, put_number); }
-static void put_repeat(schema *s) { put_section(s, STRUT_SECTION_REPEAT); }
-static void put_next(schema *s) { put_section(s, STRUT_SECTION_NEXT); }
-static void put_stage(schema *s) { put_section(s, STRUT_SECTION_STAGE); }
-static void put_two_next(schema *s) { put_list(s, 2, 2, put_next); }
-static void put_two_texts(schema *s) { put_list(s, 2, 2, put_scalar); }
-static void put_two_numbers(schema *s) { put_list(s, 2, 2, put_number); }
-static void put_touching(schema *s) { put_member(s, "enum", "[\"touching\"]"); }
-static void put_values(schema *s) { put_list(s, 0, 0, put_scalar); }
-static void put_range(schema *s) { put_section(s, STRUT_SECTION_RANGE); }
-static void put_variable(schema *s) { put_section(s, STRUT_SECTION_VARIABLE); }
-static void put_points(schema *s) { put_section(s, STRUT_SECTION_POINTS); }
-static void put_along(schema *s) { put_either(s, "array", put_values, put_range); }
-
-/* `kind: relay` has keys of its own. */
-static void put_controller(schema *s) {
-  open_object(s, "if");
-  put_member(s, "type", "\"object\"");
-  put_member(s, "required", "[\"kind\"]");
-  put_member(s, "properties", "{\"kind\": {\"const\": \"relay\"}}");
-  close_object(s);
-  open_object(s, "then");
-  put_section(s, STRUT_SECTION_RELAY);
-  close_object(s);
-  open_object(s, "else");
-  open_object(s, "if");
-  put_member(s, "type", "\"object\"");
-  put_member(s, "required", "[\"network\"]");
-  close_object(s);
-  open_object(s, "then");
-  put_section(s, STRUT_SECTION_NETWORK);
-  close_object(s);
-  open_object(s, "else");
-  put_section(s, STRUT_SECTION_CONTROLLER);
-  close_object(s);
   close_object(s);
 }
 
@@ -196,191 +122,222 @@ static void put_axis(schema *s) {
   put_text_member(s, "description", "Parameters that vary together.");
   put_member(s, "type", "[\"object\", \"array\"]");
   open_object(s, "additionalProperties");
-  put_along(s);
+  put_shape(s, NULL, ALONG);
   close_object(s);
   close_object(s);
   open_object(s, "points");
   put_text_member(s, "description", "A CSV file with a row for each value, or the keys of points.");
-  put_either(s, "object", put_points, put_name_or_names);
+  put_shape(s, NULL, "O(<points>|A([00s]|s))");
   close_object(s);
   open_object(s, "sample");
   put_text_member(s, "description", "Parameters from distributions.");
-  put_section(s, STRUT_SECTION_SAMPLE);
+  put_shape(s, NULL, "<sample>");
   close_object(s);
   close_object(s);
   open_object(s, "additionalProperties");
-  put_along(s);
+  put_shape(s, NULL, ALONG);
   close_object(s);
 }
 
-/* Known columns are offered, others are quantities that the model measures. */
-static void put_kept(schema *s) {
-  const strut_key *key = strut_key_at(STRUT_KEY_STUDY_KEEP);
-  open_list(s, "anyOf");
-  open_object(s, NULL);
-  put_words(s, key);
+/* [LMx] */
+static const char *put_list(schema *s, const strut_key *key, const char *shape) {
+  const char least[] = {shape[0], '\0'}, most[] = {shape[1], '\0'};
+  put_member(s, "type", "\"array\"");
+  open_object(s, "items");
+  shape = put_shape(s, key, shape + 2);
   close_object(s);
-  open_object(s, NULL);
-  put_scalar(s);
-  close_object(s);
-  close_object(s);
+  if (*least > '0') put_member(s, "minItems", least);
+  if (*most > '0') put_member(s, "maxItems", most);
+  return shape + 1;
 }
 
-/* Keys of several forms. */
-static void put_free(schema *s, const strut_key *key) {
-  if (key->section == STRUT_SECTION_SEARCH)
-    put_either(s, "array", put_two_texts, put_scalar);
-  else if (strcmp(key->name, "mu") == 0)
-    put_either(s, "object", put_signal_keys, put_scalar);
-  else if (strcmp(key->name, "merge") == 0)
-    put_either(s, "object", put_names_of_things, put_touching);
-  else if (strcmp(key->name, "repeat") == 0)
-    put_either(s, "object", put_repeat, put_number);
-  else if (strcmp(key->name, "count") == 0)
-    put_either(s, "array", put_two_numbers, put_number);
-  else if (strcmp(key->name, "next") == 0)
-    put_either(s, "array", put_two_next, put_next);
-  else if (strcmp(key->name, "closed") == 0)
-    put_either(s, "object", put_names_of_things, put_switch);
-  else if (strcmp(key->name, "between") == 0)
-    put_either(s, "array", put_two_texts, put_scalar);
-  else if (strcmp(key->name, "load") == 0)
-    put_name_or_names(s);
-  else if (strcmp(key->name, "inputs") == 0)
-    put_list(s, 1, 0, put_scalar);
-  else if (strcmp(key->name, "path") == 0)
-    put_section(s, STRUT_SECTION_SCENE_PATH);
-  else if (strcmp(key->name, "stages") == 0)
-    put_list(s, 1, 0, put_stage);
-  else if (strcmp(key->name, "stop") == 0) {
-    put_member(s, "type", "\"object\"");
-    put_member(s, "maxProperties", "1");
-  } else if (strcmp(key->name, "lattice") == 0) {
-    put_member(s, "type", "\"array\"");
-    open_object(s, "items");
-    put_pair(s);
-    close_object(s);
-    put_member(s, "minItems", "1");
-    put_member(s, "maxItems", "2");
-  } else if (strcmp(key->name, "step") == 0) { /* a displacement or two of them */
-    put_member(s, "type", "\"array\"");
-    open_object(s, "items");
-    put_either(s, "array", put_pair, put_number);
-    close_object(s);
-    put_member(s, "minItems", "2");
-    put_member(s, "maxItems", "2");
-  } else {
-    put_number(s);
-  }
-}
-
-/* ---- things ---- */
-
-static void put_any_section(schema *s, strut_section section) {
-  switch ((int)section) {
-    case STRUT_SECTION_NODE: put_node(s); break;
-    case STRUT_SECTION_SIGNAL: put_signal(s); break;
-    case STRUT_SECTION_QUANTITY: put_quantity(s); break;
-    case STRUT_SECTION_CONTROLLER: put_controller(s); break;
-    default: put_section(s, section); break;
-  }
-}
-
-/* What the things of a mapping are: its name decides, wherever it stands. */
-static void put_thing(schema *s, const strut_key *key) {
-  static const struct {
-    const char *name;
-    fragment *put;
-  } plain[] = {{"groups", put_group},   {"parameters", put_scalar}, {"set", put_scalar},
-               {"derive", put_scalar},  {"ports", put_scalar},      {"onto", put_scalar},
-               {"merge", put_scalar},   {"coupling", put_number},   {"shape", put_pair},
-               {"positions", put_pair}, {"velocities", put_pair}};
-  for (size_t i = 0; i < sizeof plain / sizeof plain[0]; i++)
-    if (strcmp(plain[i].name, key->name) == 0) {
-      plain[i].put(s);
-      return;
-    }
-  if (key == strut_key_at(STRUT_KEY_SEARCH_OVER)) {
-    put_either(s, "array", put_values, put_variable);
-    return;
-  }
-  if (key == strut_key_at(STRUT_KEY_SEARCH_WORST_OVER)) {
-    put_along(s);
-    return;
-  }
-  strut_section section = strut_section_below(key);
-  if (section != STRUT_SECTION_COUNT) put_any_section(s, section);
-}
-
-/* With a base `remove` takes away a thing, or a whole mapping. */
-static void open_unless_removed(schema *s) {
-  put_member(s, "if", "{\"const\": \"remove\"}");
-  open_object(s, "else");
-}
-
-static void put_things(schema *s, const strut_key *key) {
-  if (!s->study) open_unless_removed(s);
+/* {x}, {!x} or {1} */
+static const char *put_members(schema *s, const strut_key *key, const char *shape) {
+  bool one = *shape == '1', things = *shape == '!', removable = things && !s->study;
+  if (removable) open_unless_removed(s);
   put_member(s, "type", "\"object\"");
-  put_member(s, "propertyNames", "{\"pattern\": \"^[-A-Za-z0-9_.*\\\\u0080-\\\\uffff]{1,255}$\"}");
-  open_object(s, "additionalProperties");
-  put_thing(s, key);
-  close_object(s);
-  if (!s->study) close_object(s);
+  if (one) put_member(s, "maxProperties", "1");
+  if (things)
+    put_member(s, "propertyNames",
+               "{\"pattern\": \"^[-A-Za-z0-9_.*\\\\u0080-\\\\uffff]{1,255}$\"}");
+  if (!one) {
+    open_object(s, "additionalProperties");
+    shape = put_shape(s, key, shape + things) - 1;
+    close_object(s);
+  }
+  if (removable) close_object(s);
+  return shape + 2;
 }
+
+/* One form for values of one kind, another for all others: A(x|y) and its like. */
+static const char *put_either(schema *s, const strut_key *key, char kind, const char *shape) {
+  open_object(s, "if");
+  put_member(s, "type", kind == 'A' ? "\"array\"" : "\"object\"");
+  if (kind == 'K') put_member(s, "required", "[\"network\"]");
+  if (kind == 'R') put_member(s, "required", "[\"kind\"]");
+  if (kind == 'R') put_member(s, "properties", "{\"kind\": {\"const\": \"relay\"}}");
+  close_object(s);
+  open_object(s, "then");
+  shape = put_shape(s, key, shape + 1);
+  close_object(s);
+  open_object(s, "else");
+  shape = put_shape(s, key, shape + 1);
+  close_object(s);
+  return shape + 1;
+}
+
+static const char *put_section(schema *s, const char *shape) {
+  char name[40];
+  size_t length = strcspn(shape, ">");
+  snprintf(name, sizeof name, "%.*s", (int)length, shape);
+  for (int i = 0; i < STRUT_SECTION_COUNT; i++)
+    if (strcmp(strut_section_name((strut_section)i), name) == 0) s->wanted[i] = true;
+  refer_to(s, name);
+  return shape + length + 1;
+}
+
+/* Adds what the text says to the open object; returns what follows. */
+static const char *put_shape(schema *s, const strut_key *key, const char *shape) {
+  char values[120];
+  size_t length = strcspn(shape + 1, "=");
+  switch (*shape++) {
+    case 'n': put_member(s, "type", "[\"number\", \"string\"]"); return shape;
+    case 's': put_member(s, "type", "[\"string\", \"number\", \"boolean\"]"); return shape;
+    case 'w': put_words(s, key); return shape;
+    case 'l': put_law_word(s); return shape;
+    case 'x': put_axis(s); return shape;
+    case 't': put_thing(s, key); return shape;
+    case 'k':
+      open_list(s, "anyOf");
+      open_object(s, NULL);
+      put_words(s, key);
+      close_object(s);
+      open_object(s, NULL);
+      put_shape(s, key, "s");
+      close_object(s);
+      close_object(s);
+      return shape;
+    case '=':
+      snprintf(values, sizeof values, "%.*s", (int)length, shape);
+      put_member(s, "enum", values);
+      return shape + length + 1;
+    case '<': return put_section(s, shape);
+    case '[': return put_list(s, key, shape);
+    case '{': return put_members(s, key, shape);
+    default: return put_either(s, key, shape[-1], shape);
+  }
+}
+
+/* ---- what the value of a key may be ---- */
+
+typedef struct named_shape {
+  const char *name, *shape;
+} named_shape;
+
+static const char *find_shape(const named_shape *shapes, const char *name) {
+  while (shapes->name && strcmp(shapes->name, name) != 0) shapes++;
+  return shapes->shape;
+}
+
+/* Keys of several forms, and of others numbers. */
+static const named_shape free_shapes[] = {{"mu", SIGNAL},
+                                          {"merge", "O({s}|=[\"touching\"]=)"},
+                                          {"repeat", "O(<repeat>|n)"},
+                                          {"count", "A([22n]|n)"},
+                                          {"next", "A([22<next>]|<next>)"},
+                                          {"closed", "O({s}|=[true, false, \"yes\", \"no\"]=)"},
+                                          {"between", "A([22s]|s)"},
+                                          {"load", "A([00s]|s)"},
+                                          {"inputs", "[10s]"},
+                                          {"path", "<path in stages>"},
+                                          {"stages", "[10<stage>]"},
+                                          {"stop", "{1}"},
+                                          {"lattice", "[12[22n]]"},
+                                          {"step", "[22A([22n]|n)]"},
+                                          {NULL, "n"}};
+
+/* The things of a mapping: its name decides, wherever it stands. */
+static const named_shape thing_shapes[] = {
+    {"groups", "<group>"},  {"parameters", "s"},     {"set", "s"},
+    {"derive", "s"},        {"ports", "s"},          {"onto", "s"},
+    {"merge", "s"},         {"coupling", "n"},       {"shape", "[22n]"},
+    {"positions", "[22n]"}, {"velocities", "[22n]"}, {NULL, NULL}};
+
+static const named_shape section_shapes[] = {{"node", "A([22n]|<node>)"},
+                                             {"signal", SIGNAL},
+                                             {"quantity", "O(<quantity>|n)"},
+                                             {"controller", "R(<relay>|K(<network>|<controller>))"},
+                                             {NULL, NULL}};
+
+#define SWITCH "=[true, false, \"yes\", \"no\"]="
+#define AXES "=[\"x\", \"y\"]="
+static const char *const type_shapes[] = {
+    [STRUT_TYPE_VERSION] = "=[1]=",
+    [STRUT_TYPE_TEXT] = "s",
+    [STRUT_TYPE_NAME] = "s",
+    [STRUT_TYPE_NUMBER] = "n",
+    [STRUT_TYPE_EXPRESSION] = "n",
+    [STRUT_TYPE_PAIR] = "[22n]",
+    [STRUT_TYPE_WORD] = "w",
+    [STRUT_TYPE_FIXED] = "A([02" AXES "]|=[\"none\", \"x\", \"y\", \"both\"]=)",
+    [STRUT_TYPE_NODE_PATH] = "[20s]",
+    [STRUT_TYPE_NODE_TRIPLE] = "[33s]",
+    [STRUT_TYPE_NODE_RING] = "[30s]",
+    [STRUT_TYPE_NAME_PAIR] = "[22s]",
+    [STRUT_TYPE_NUMBERS] = "[00n]",
+    [STRUT_TYPE_TIMES] = "[00n]",
+    [STRUT_TYPE_NAMES] = "[00s]",
+    [STRUT_TYPE_POINTS] = "[00[22n]]",
+    [STRUT_TYPE_PROFILE] = "[00[22n]]",
+    [STRUT_TYPE_TABLE] = "[00[22n]]",
+    [STRUT_TYPE_CONTACT_NODES] = "A([00s]|=[\"all\"]=)",
+    [STRUT_TYPE_NODE_SETS] = "[00A([00s]|s)]",
+    [STRUT_TYPE_GROUPS] = "A([00s]|s)",
+    [STRUT_TYPE_SIGNAL] = SIGNAL,
+    [STRUT_TYPE_SIGNALS] = "[00" SIGNAL "]",
+    [STRUT_TYPE_SETTLE] = "O(<settle>|" SWITCH ")",
+    [STRUT_TYPE_STEADY] = "O(<steady>|" SWITCH ")",
+    [STRUT_TYPE_KEEP] = "[00k]",
+    [STRUT_TYPE_LAW] = "O(<law>|l)",
+    [STRUT_TYPE_AXES] = "[00x]",
+    [STRUT_TYPE_THINGS] = "{!t}",
+};
 
 /* ---- keys ---- */
 
-static void put_collisions(schema *s) { put_things(s, strut_key_at(STRUT_KEY_SCENE_COLLISIONS)); }
-static void put_shape(schema *s) { put_things(s, strut_key_at(STRUT_KEY_CONFIGURATION_SHAPE)); }
+/* Things of any section but these are objects with its keys. */
+static void put_thing(schema *s, const strut_key *key) {
+  const char *shape = find_shape(thing_shapes, key->name);
+  if (!shape && key == strut_key_at(STRUT_KEY_SEARCH_OVER)) shape = "A([00s]|<variable>)";
+  if (!shape && key == strut_key_at(STRUT_KEY_SEARCH_WORST_OVER)) shape = ALONG;
+  strut_section section = shape ? STRUT_SECTION_COUNT : strut_section_below(key);
+  if (section != STRUT_SECTION_COUNT)
+    shape = find_shape(section_shapes, strut_section_name(section));
+  if (shape)
+    put_shape(s, key, shape);
+  else if (section != STRUT_SECTION_COUNT)
+    put_section(s, strut_section_name(section));
+}
 
 static void put_value(schema *s, const strut_key *key) {
-  if (key == strut_key_at(STRUT_KEY_SCENE_COLLISIONS)) {
-    put_either(s, "object", put_collisions, put_all);
-    return;
-  }
-  if (key == strut_key_at(STRUT_KEY_CONFIGURATION_SHAPE)) { /* it may be a node of that name */
-    put_either(s, "array", put_pair, put_shape);
-    return;
-  }
-  switch (key->type) {
-    case STRUT_TYPE_VERSION: put_member(s, "enum", "[1]"); break;
-    case STRUT_TYPE_TEXT:
-    case STRUT_TYPE_NAME: put_scalar(s); break;
-    case STRUT_TYPE_NUMBER:
-    case STRUT_TYPE_EXPRESSION: put_number(s); break;
-    case STRUT_TYPE_PAIR: put_pair(s); break;
-    case STRUT_TYPE_WORD: put_words(s, key); break;
-    case STRUT_TYPE_WORDS:
-      put_member(s, "type", "\"array\"");
-      put_member(s, "uniqueItems", "true");
-      open_object(s, "items");
-      put_words(s, key);
-      close_object(s);
-      break;
-    case STRUT_TYPE_FIXED: put_either(s, "array", put_list_of_supports, put_supports); break;
-    case STRUT_TYPE_NODE_PATH: put_list(s, 2, 0, put_scalar); break;
-    case STRUT_TYPE_NODE_TRIPLE: put_list(s, 3, 3, put_scalar); break;
-    case STRUT_TYPE_NODE_RING: put_list(s, 3, 0, put_scalar); break;
-    case STRUT_TYPE_NAME_PAIR: put_list(s, 2, 2, put_scalar); break;
-    case STRUT_TYPE_NUMBERS:
-    case STRUT_TYPE_TIMES: put_list(s, 0, 0, put_number); break;
-    case STRUT_TYPE_NAMES: put_names(s); break;
-    case STRUT_TYPE_POINTS:
-    case STRUT_TYPE_PROFILE:
-    case STRUT_TYPE_TABLE: put_list(s, 0, 0, put_pair); break;
-    case STRUT_TYPE_LAW: put_either(s, "object", put_law, put_law_word); break;
-    case STRUT_TYPE_CONTACT_NODES: put_either(s, "array", put_names, put_all); break;
-    case STRUT_TYPE_NODE_SETS: put_list(s, 0, 0, put_name_or_names); break;
-    case STRUT_TYPE_GROUPS: put_name_or_names(s); break;
-    case STRUT_TYPE_SIGNAL: put_signal(s); break;
-    case STRUT_TYPE_SIGNALS: put_list(s, 0, 0, put_signal); break;
-    case STRUT_TYPE_SETTLE: put_either(s, "object", put_settle, put_switch); break;
-    case STRUT_TYPE_STEADY: put_either(s, "object", put_steady, put_switch); break;
-    case STRUT_TYPE_KEEP: put_list(s, 0, 0, put_kept); break;
-    case STRUT_TYPE_AXES: put_list(s, 0, 0, put_axis); break;
-    case STRUT_TYPE_MAP: put_section(s, strut_section_below(key)); break;
-    case STRUT_TYPE_THINGS: put_things(s, key); break;
-    case STRUT_TYPE_FREE: put_free(s, key); break;
+  if (key->type == STRUT_TYPE_MAP) {
+    put_section(s, strut_section_name(strut_section_below(key)));
+  } else if (key->type == STRUT_TYPE_WORDS) {
+    put_member(s, "type", "\"array\"");
+    put_member(s, "uniqueItems", "true");
+    open_object(s, "items");
+    put_words(s, key);
+    close_object(s);
+  } else if (key == strut_key_at(STRUT_KEY_SCENE_COLLISIONS)) {
+    put_shape(s, key, "O({!t}|=[\"all\"]=)");
+  } else if (key ==
+             strut_key_at(STRUT_KEY_CONFIGURATION_SHAPE)) { /* it may be a node of that name */
+    put_shape(s, key, "A([22n]|{!t})");
+  } else if (key->type != STRUT_TYPE_FREE) {
+    put_shape(s, key, type_shapes[key->type]);
+  } else {
+    bool search = key->section == STRUT_SECTION_SEARCH;
+    put_shape(s, key, search ? "A([22s]|s)" : find_shape(free_shapes, key->name));
   }
 }
 
@@ -471,7 +428,7 @@ static void put_keys(schema *s, strut_section section) {
   if (section == STRUT_SECTION_CONFIGURATION) { /* else a node and its position */
     open_object(s, "additionalProperties");
     open_unless_removed(s);
-    put_pair(s);
+    put_shape(s, NULL, "[22n]");
     close_object(s);
     close_object(s);
   } else {

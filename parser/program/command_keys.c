@@ -13,7 +13,7 @@
 #include "engine/study/report/study_report.h"
 #include "engine/study/tradeoff/tradeoff.h"
 #include "parser/command/schema.h"
-#include "parser/program/check_messages.h"
+#include "parser/program/check/check_messages.h"
 #include "parser/program/commands.h"
 #include "parser/program/streams.h"
 #include "parser/write/writer.h"

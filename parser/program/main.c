@@ -18,7 +18,7 @@
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
 #include "engine/output/record_files.h"
-#include "parser/program/check_messages.h"
+#include "parser/program/check/check_messages.h"
 #include "parser/program/commands.h"
 #include "parser/program/open_model.h"
 #include "parser/program/streams.h"

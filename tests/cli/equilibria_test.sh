@@ -111,7 +111,7 @@ nodes: {a: {position: [0.269, 1.695], fixed: both}, b: {position: [1.528, 0.51],
 members: {p: {kind: bar, nodes: [a, c], stiffness: 3 kN/m}, q: {kind: bar, nodes: [b, c], stiffness: 7 kN/m},
           r: {kind: bar, nodes: [b, d], stiffness: 7 kN/m}, s: {kind: bar, nodes: [c, d], stiffness: 7 kN/m}}
 END
-shows 0 "stable      0 J" equilibria four-bars.yaml --all
+shows 0 "stable         0 J" equilibria four-bars.yaml --all
 out_has_not "fJ"
 
 # Large ones end soon, and say so.

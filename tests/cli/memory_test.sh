@@ -26,7 +26,7 @@ for method in rk4 verlet euler; do # at the end of the step, at rest until then
   near .broken.latch.time 0.104 1e-15
   near .energy.dissipated_members 0.032 1e-12
 done
-shows 0 'latch                  103.7 ms   released' run latch.yaml
+shows 0 'latch            103.7 ms  yes' run latch.yaml
 expect 0 run latch.yaml --set at='10 s' --json # not within the run
 near '.broken | if . then 1 else 0 end' 0 0
 edit 's/rk4-events/midpoint/' latch.yaml expect 1 run
@@ -55,7 +55,8 @@ expect 0 export string.yaml
 cp out written.yaml
 out_has 'breaks_at: 5'
 gives .measured.v.value '-(0.75 | sqrt)' 1e-9 run written.yaml
-shows 0 'breaks at 5 N' check string.yaml
+shows 0 'breaks at' check string.yaml
+out_has '5 N'
 
 # The stop carries its share of what breaks a member: 5 N = k e + 100 k (e - 20 mm).
 edit 's/longest: 1.5/longest: 1.02/' string.yaml expect 0 run --json

@@ -240,7 +240,7 @@ check("are finished" in run("sweep", "--merge", "one").stdout, "a finished searc
 done = json.loads(run("sweep", "one.yaml", "-o", "one", "--status", "--json").stdout)
 check(done["finished"] and 0 < done["done"] <= done["points"] == 303, f"the status is {done}")
 text = run("sweep", "one.yaml", "-o", "one").stdout
-check("minimise  abs(frequency_1 - 2 Hz)\n" in text and re.search(r" \d+ [np]?Hz ", text)
+check("minimise  abs(frequency_1 - 2 Hz)\n" in text and re.search(r" [\d.]+ [nup]?Hz ", text)
       and "searches that agree" in text, f"the report is {text}")
 
 write("words.yaml", read("words.yaml").decode().replace("[low, middle, high]", "{from: 1, to: 2}"))

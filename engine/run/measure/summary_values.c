@@ -98,33 +98,35 @@ static bool is_judged(const strut_measured *m, const strut_summary *s) {
   X("kept", "", IF(is_judged(m, summary_of(of->outer)), FLAG(m->kept)), "within what was asked for")
 STRUT_VALUES_HERE(measured_values, MEASURED, const strut_measured *m = of->at)
 
-#define NODE(X) X("position", "m", NUMBERS(of->at, 2), "at the end")
+#define NODE(X) X("position", "m", NUMBERS(of->at, 2), "at the end", .label = {"x", "y"})
 STRUT_VALUES_HERE(node_values, NODE, )
 
 #define HINGE(X)                                                                                   \
-  X("angle", "rad", NUMBER(hinge->angle), "at the end")                                            \
-  X("moment", "N m", NUMBER(hinge->moment), "at the end")
+  X("angle", "rad", NUMBER(hinge->angle), "at the end", .label = {""})                             \
+  X("moment", "N m", NUMBER(hinge->moment), "at the end", .label = {""})
 STRUT_VALUES_HERE(hinge_values, HINGE, const strut_hinge_summary *hinge = of->at)
 
 #define CELL(X)                                                                                    \
-  X("area", "m^2", NUMBER(cell->area), "at the end")                                               \
-  X("pressure", "N/m", NUMBER(cell->pressure), "at the end")
+  X("area", "m^2", NUMBER(cell->area), "at the end", .label = {""})                                \
+  X("pressure", "N/m", NUMBER(cell->pressure), "at the end", .label = {""})
 STRUT_VALUES_HERE(cell_values, CELL, const strut_cell_summary *cell = of->at)
 
 #define BROKEN(X)                                                                                  \
-  X("time", "s", NUMBER(broken->time), "when it broke")                                            \
-  X("released", "", FLAG(broken->released), "on purpose")
+  X("time", "s", NUMBER(broken->time), "when it broke", .label = {"from"})                         \
+  X("released", "", FLAG(broken->released), "on purpose", .label = {""})
 STRUT_VALUES_HERE(broken_values, BROKEN, const strut_break_summary *broken = of->at)
 
 #define JUMP(X)                                                                                    \
-  X("count", "", COUNT(jump->count), "of jumps since the run began")                               \
-  X("last", "s", NUMBER(jump->last), "time of the last one")                                       \
-  X("energy", "J", NUMBER(jump->freed), "that they set free")
+  X("count", "", COUNT(jump->count), "of jumps since the run began", .label = {"times"})           \
+  X("last", "s", NUMBER(jump->last), "time of the last one", .label = {"last at"})                 \
+  X("energy", "J", NUMBER(jump->freed), "that they set free", .label = {"set free"})
 STRUT_VALUES_HERE(jump_values, JUMP, const strut_jump_summary *jump = of->at)
 
 #define CONTACT(X)                                                                                 \
-  X("duty", "1", NUMBER(contact->duty), "share of the window in contact")                          \
-  X("max_height", "m", NUMBER(contact->max_height), "above the ground in the window")              \
+  X("duty", "1", NUMBER(contact->duty), "share of the window in contact",                          \
+    .label = {"contact time"})                                                                     \
+  X("max_height", "m", NUMBER(contact->max_height), "above the ground in the window",              \
+    .label = {""})                                                                                 \
   X("stick_velocity_needed", "m/s", IF(contact->band_needed > 0.0, NUMBER(contact->band_needed)),  \
     "for sticking with this step")
 STRUT_VALUES_HERE(contact_values, CONTACT, const strut_contact_summary *contact = of->at)
@@ -173,19 +175,19 @@ static void write_worth(const strut_result_object *of, char text[STRUT_VALUE_ROO
     "quantities of `measure`", .rows = &measured_values)                                           \
   X("parameters", "", PARAMETERS, "of the scene")                                                  \
   X("nodes", "", NAMED((const double(*)[2])s->end.positions, s->end.node_count, name_of_nodes),    \
-    "at the end", .rows = &node_values)                                                            \
+    "at the end", .rows = &node_values, .label = {"node"})                                         \
   X("hinges", "",                                                                                  \
     IF(s->end.hinge_count, NAMED(s->end.hinges, s->end.hinge_count, name_of_hinges)),              \
-    "at the end", .rows = &hinge_values)                                                           \
+    "at the end", .rows = &hinge_values, .label = {"hinge"})                                       \
   X("cells", "", IF(s->end.cell_count, NAMED(s->end.cells, s->end.cell_count, name_of_cells)),     \
-    "at the end", .rows = &cell_values)                                                            \
+    "at the end", .rows = &cell_values, .label = {"cell"})                                         \
   X("broken", "",                                                                                  \
     IF(s->end.break_count, NAMED(s->end.breaks, s->end.break_count, name_of_breaks)),              \
-    "what broke or was released", .rows = &broken_values)                                          \
+    "what broke or was released", .rows = &broken_values, .label = {"carries nothing"})            \
   X("jumps", "", IF(s->end.jump_count, NAMED(s->end.jumps, s->end.jump_count, name_of_jumps)),     \
-    "elements whose law folds and that jumped", .rows = &jump_values)                              \
+    "elements whose law folds and that jumped", .rows = &jump_values, .label = {"jumps at folds"}) \
   X("contacts", "", NAMED(s->end.contacts, s->end.contact_count, name_of_contacts),                \
-    "over the window", .rows = &contact_values)                                                    \
+    "over the window", .rows = &contact_values, .label = {"contact"})                              \
   X("energy", "", PART(s), "at the end of the run, works and losses over all of it",               \
     .rows = &energy_values)
 

@@ -116,6 +116,14 @@ static strut_value cusp_of(const strut_result_object *of, size_t k) {
   return STRUT_VALUE_AS_IF(p->cusp, NUMBERS(p->value, 2));
 }
 
+/* A parameter's value at a cusp. */
+static strut_value cusp_value_of(const strut_result_object *of, size_t k) {
+  const strut_follow_result *r = strut_result_whole(of);
+  const strut_follow_curve_point *p = &((const strut_follow_curve *)of->at)->points[k / 2];
+  return STRUT_VALUE_AS_IF(p->cusp, CALLED(k % 2 ? r->second.name : r->name,
+                                           k % 2 ? r->second.unit : r->unit, p->value[k % 2]));
+}
+
 #define CURVE(X)                                                                                   \
   X("kind", "", TEXT(strut_follow_kind_word(c->kind)), "of its special points", .label = {""})     \
   X("node", "", TEXT(c->node), "that they are about", .label = {""})                               \
@@ -123,8 +131,8 @@ static strut_value cusp_of(const strut_result_object *of, size_t k) {
   X("begins", "", TEXT(c->ends[0]), "why", .label = {""})                                          \
   X("ends", "", TEXT(c->ends[1]), "why", .label = {""})                                            \
   X(NULL, "", COUNT(c->count), "", .label = {"points"})                                            \
-  X("cusps", "", ARRAY(c->count, cusp_of), "values of both parameters where two folds meet",       \
-    .label = {""})                                                                                 \
+  X("cusps", "", ARRAY(c->count, cusp_of), "values of both parameters where two folds meet")       \
+  X(NULL, "", ARRAY(2 * c->count, cusp_value_of), "", .label = {"cusps"})                          \
   X("points", "", LIST(c->points, c->count), "all", .rows = &point_values)
 STRUT_VALUES_HERE(curve_values, CURVE, const strut_follow_curve *c = of->at)
 

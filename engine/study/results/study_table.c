@@ -473,24 +473,31 @@ static strut_status find(merge *m, strut_error *error) {
   return STRUT_OK;
 }
 
-strut_status strut_merge(const char *directory, strut_merged *merged, strut_error *error) {
+strut_status strut_merge_if(const char *directory, strut_merge_check *enough, void *context,
+                            strut_merged *merged, strut_error *error) {
   merge m = {.directory = directory};
   *merged = (strut_merged){0};
   strut_status status = find(&m, error);
   if (status == STRUT_OK) status = open_sources(&m, error);
   if (status == STRUT_OK) status = check_study(&m, error);
-  if (status == STRUT_OK) status = check_gaps(&m, error);
   if (status == STRUT_OK)
+    status = enough ? enough(context, m.sources, m.count, error) : check_gaps(&m, error);
+  if (status == STRUT_OK) merged->points = strut_slots_description_of(m.sources[0])->points;
+  if (status == STRUT_OK && enough)
+    status = strut_study_table_write_partial(directory, "table.csv", m.sources, m.count,
+                                             &merged->points, error);
+  else if (status == STRUT_OK)
     status = strut_study_table_write(directory, "table.csv", m.sources, m.count, error);
-  if (status == STRUT_OK) {
-    merged->shards = m.found.count;
-    merged->points = strut_slots_description_of(m.sources[0])->points;
-    for (size_t i = 0; i < m.count; i++) {
-      merged->failed += strut_slots_failed(m.sources[i]);
-      merged->inaccurate += strut_slots_inaccurate(m.sources[i]);
-    }
+  merged->shards = m.found.count;
+  for (size_t i = 0; i < m.count && status == STRUT_OK; i++) {
+    merged->failed += strut_slots_failed(m.sources[i]);
+    merged->inaccurate += strut_slots_inaccurate(m.sources[i]);
   }
   for (size_t i = 0; m.sources && i < m.count; i++) strut_slots_close(m.sources[i]);
   strut_arena_free(&m.arena);
   return status;
+}
+
+strut_status strut_merge(const char *directory, strut_merged *merged, strut_error *error) {
+  return strut_merge_if(directory, NULL, NULL, merged, error);
 }

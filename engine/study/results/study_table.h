@@ -97,5 +97,11 @@ typedef struct strut_merged {
  * files are not of one study, or cover points twice. Nothing is written then.
  */
 STRUT_API strut_status strut_merge(const char *directory, strut_merged *merged, strut_error *error);
+/** Says whether the files, NULL where a shard is missing, have what a table needs. */
+typedef strut_status strut_merge_check(void *context, strut_slots *const *sources, size_t count,
+                                       strut_error *error);
+/** The same of the rows that there are, where `check` accepts them. */
+STRUT_API strut_status strut_merge_if(const char *directory, strut_merge_check *check,
+                                      void *context, strut_merged *merged, strut_error *error);
 
 #endif

@@ -292,6 +292,10 @@ STRUTLIB_API char *strutlib_scene_page_data(const strutlib_scene *scene, int equ
  */
 STRUTLIB_API const char *strutlib_option_name(const char *command, size_t i);
 STRUTLIB_API const char *strutlib_option_help(const char *command, size_t i);
+/** What it takes: "flag", "text", "number", "whole" (a number), "word", "words" or "range"; NULL beyond the last. */
+STRUTLIB_API const char *strutlib_option_kind(const char *command, size_t i);
+/** The words that it takes, as "elastic|rigid"; NULL: any, or none. */
+STRUTLIB_API const char *strutlib_option_words(const char *command, size_t i);
 
 /**
  * The functions below return a result, or NULL with the error. Where something is there in spite

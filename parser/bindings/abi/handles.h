@@ -181,7 +181,7 @@ void abi_call_fail(abi_call *call, strut_status status, const strut_error *what)
 const strut_command *abi_command_at(size_t i);
 extern const strut_command abi_run_command, abi_equilibria_command, abi_modes_command,
     abi_rigidity_command, abi_form_command, abi_path_command, abi_matrices_command,
-    abi_sweep_command, abi_simulation_command;
+    abi_sweep_command, abi_simulation_command, abi_svg_command;
 
 /* ---- results ---- */
 

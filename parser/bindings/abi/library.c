@@ -243,49 +243,19 @@ const char *strutlib_error_report(const strutlib_error *error) {
 
 size_t strutlib_error_count(const strutlib_error *error) { return error ? error->count : 0; }
 
-static const located *item_of(const strutlib_error *error, size_t i) {
-  return i < strutlib_error_count(error) ? &error->items[i] : NULL;
-}
-
-const char *strutlib_error_text(const strutlib_error *error, size_t i) {
-  const located *item = item_of(error, i);
-  return item ? item->text : NULL;
-}
-
-const char *strutlib_error_file(const strutlib_error *error, size_t i) {
-  const located *item = item_of(error, i);
-  return item ? item->file : NULL;
-}
-
-size_t strutlib_error_line(const strutlib_error *error, size_t i) {
-  const located *item = item_of(error, i);
-  return item ? item->line : 0;
-}
-
-size_t strutlib_error_column(const strutlib_error *error, size_t i) {
-  const located *item = item_of(error, i);
-  return item ? item->column : 0;
-}
-
-size_t strutlib_error_length(const strutlib_error *error, size_t i) {
-  const located *item = item_of(error, i);
-  return item ? item->length : 0;
-}
-
-const char *strutlib_error_source(const strutlib_error *error, size_t i) {
-  const located *item = item_of(error, i);
-  return item ? item->source : NULL;
-}
-
-const char *strutlib_error_hint(const strutlib_error *error, size_t i) {
-  const located *item = item_of(error, i);
-  return item ? item->hint : NULL;
-}
-
-const char *strutlib_error_key(const strutlib_error *error, size_t i) {
-  const located *item = item_of(error, i);
-  return item ? item->key : NULL;
-}
+/* What a located message has; `none` beyond the last. */
+#define LOCATED(TYPE, PART, NONE)                                                                  \
+  TYPE strutlib_error_##PART(const strutlib_error *error, size_t i) {                              \
+    return i < strutlib_error_count(error) ? error->items[i].PART : NONE;                          \
+  }
+LOCATED(const char *, text, NULL)
+LOCATED(const char *, file, NULL)
+LOCATED(const char *, source, NULL)
+LOCATED(const char *, hint, NULL)
+LOCATED(const char *, key, NULL)
+LOCATED(size_t, line, 0)
+LOCATED(size_t, column, 0)
+LOCATED(size_t, length, 0)
 
 /* ---- messages ---- */
 
@@ -478,15 +448,21 @@ static const strut_option *option_of(const char *command, size_t i) {
   return found ? strut_option_row(found->options, i) : NULL;
 }
 
-const char *strutlib_option_name(const char *command, size_t i) {
-  const strut_option *option = option_of(command, i);
-  return option ? option->name : NULL;
+static const char *kind_of(const strut_option *option) {
+  static const char *const names[] = {"selector", "flag", "setting", "text", "number",
+                                      "whole",    "word", "words",   "range"};
+  return names[option->kind];
 }
 
-const char *strutlib_option_help(const char *command, size_t i) {
-  const strut_option *option = option_of(command, i);
-  return option ? option->help : NULL;
-}
+#define OPTION(PART, VALUE)                                                                        \
+  const char *strutlib_option_##PART(const char *command, size_t i) {                              \
+    const strut_option *option = option_of(command, i);                                            \
+    return option ? VALUE : NULL;                                                                  \
+  }
+OPTION(name, option->name)
+OPTION(help, option->help)
+OPTION(kind, kind_of(option))
+OPTION(words, strut_option_words(option))
 
 /* ---- calls ---- */
 
@@ -563,9 +539,9 @@ STRUT_ANALYSES(ANALYSIS)
 
 const strut_command *abi_command_at(size_t i) {
 #define COMMAND(NAME) &abi_##NAME##_command,
-  static const strut_command *const all[] = {&abi_run_command, &abi_matrices_command,
+  static const strut_command *const all[] = {&abi_run_command,   &abi_matrices_command,
                                              &abi_sweep_command, &abi_simulation_command,
-                                             STRUT_ANALYSES(COMMAND)};
+                                             &abi_svg_command,   STRUT_ANALYSES(COMMAND)};
   return i < sizeof all / sizeof all[0] ? all[i] : NULL;
 }
 

@@ -12,7 +12,7 @@ static const strut_option svg_options[] = {{.table = strut_plot_setting_options}
                                            {.table = strut_run_figure_options},
                                            {.table = strut_axis_options},
                                            {.name = NULL}};
-static const strut_command svg_command = {.name = "svg", .options = svg_options};
+const strut_command abi_svg_command = {.name = "svg", .options = svg_options};
 
 strut_status abi_plot_read(const strut_arguments *arguments, const char *path, strut_plot *plot) {
   *plot = (strut_plot){.path = path};
@@ -65,7 +65,7 @@ char *strutlib_result_svg(const strutlib_result *result, size_t count, const cha
   abi_enter(error);
   strut_listener listener = abi_listen(&messages);
   /* There is a figure: options that belong to one are in their place. */
-  strut_arguments arguments = {.command = &svg_command, .listener = &listener};
+  strut_arguments arguments = {.command = &abi_svg_command, .listener = &listener};
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < count && status == STRUT_OK; i++)
     status = strut_argument_set(names[i], values[i], &arguments);

@@ -16,7 +16,8 @@ HEAD = """# Python reference
 
 <!-- Written by parser/bindings/python/reference.py; do not edit. -->
 [strut from Python](python.md) shows by example how these are used. Numbers are in SI units. `Value` is a number or a
-text with a unit, such as `"10 Hz"`. Arrays are numpy arrays; their shapes are in parentheses, as in (samples, nodes, 2).
+text with a unit, such as `"10 Hz"`, `Values` one or several of them. Arrays are
+numpy arrays; their shapes are in parentheses, as in (samples, nodes, 2).
 """
 
 

@@ -21,7 +21,7 @@ __all__ = [
 ]
 
 _OPTION = re.compile(r"""--([a-z][a-z-]*)(?:[ =](\d[\d.]*[ ]?%|[A-Z]+\b|'[^']*'|"[^"]*"))?""")
-_SWITCHES = {"all", "force", "stuck", "wave"}
+switches: set[str] = set()  #: options without value, of the library
 
 
 def in_python(text: str) -> str:
@@ -30,7 +30,7 @@ def in_python(text: str) -> str:
     def argument(found: re.Match[str]) -> str:
         name, value = found[1].replace("-", "_"), found[2]
         name = "from_" if name == "from" else name
-        if name in _SWITCHES:
+        if name in switches:
             return f"{name}=True" + (f" {value}" if value else "")
         if value is None or value == "VALUE":
             return name

@@ -12,6 +12,7 @@ import ctypes
 import operator
 import os
 import pathlib
+import re
 import threading
 import time
 from array import array as doubles
@@ -23,7 +24,6 @@ from . import _errors
 Progress = Callable[[float], object]
 
 _LIBRARY = ctypes.CDLL(os.fspath(pathlib.Path(__file__).with_name("libstrut.so.0")))
-_ABI_VERSION = 2
 _LOOK, _PIECE = 0.05, 5e-3  # s: how often signals are looked for in calls and while a simulation is advanced
 _BUSY = "another thread is advancing this simulation; one simulation per thread"
 _NOTE = ctypes.CFUNCTYPE(c_int, c_void_p, c_double)
@@ -60,36 +60,51 @@ def _decode(text: bytes | None) -> Any:
     return None if text is None else text.decode("utf-8", "surrogateescape")
 
 
-#: what the functions take: a handle or a pointer, bytes, a size, an int, a long
-_ARGUMENTS = {"p": c_void_p, "s": c_char_p, "n": c_size_t, "i": c_int, "l": c_long}
-#: what they return; "t" is a text of the library's, "o" one of the caller's
-_RETURNED = {"v": None, "p": c_void_p, "t": c_char_p, "o": c_void_p, "n": c_size_t, "i": c_int, "d": c_double}
+class _Api:
+    """The functions of the library without strutlib_, as abi.h declares them; texts of the library's as str."""
+
+    _DECLARED = re.compile(r"STRUTLIB_API ([^;(]*?)strutlib_(\w+)\(([^)]*)\);")
+    _TYPES = {"void": None, "int": c_int, "long": c_long, "size_t": c_size_t, "double": c_double, "const char *": c_char_p}
+
+    def __init__(self, header: str) -> None:
+        version = int(header.partition("#define STRUTLIB_ABI_VERSION ")[2].split()[0])
+        if (found := _LIBRARY.strutlib_abi_version()) < version:
+            raise ImportError(f"libstrut.so.0 is older than this package: interface {found}, not {version}")
+        self.calls = re.findall(r"\bX\((\w+)\)", header.partition("#define STRUTLIB_CALLS(X)")[2].partition("\n")[0])
+        for returned, name, arguments in self._DECLARED.findall(header):
+            function = getattr(_LIBRARY, "strutlib_" + name)
+            words = [re.sub(r"\w+$", "", word).strip() for word in arguments.split(",") if word != "void"]
+            function.argtypes = [self._TYPES.get(word, c_void_p) for word in words]
+            function.restype = self._TYPES.get(returned.strip(), c_void_p)
+            wrap = {"const char *": _shown, "char *": _given}.get(returned.strip())
+            setattr(self, name, wrap(function) if wrap else function)
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(name)  # all others: for mypy
+
+    def ask(self, name: str, *given: Any) -> Any:
+        """What a function returns that takes an error last, which is raised."""
+        error = c_void_p()
+        found = getattr(self, name)(*given, byref(error))
+        if error:
+            raise _exception(error.value)
+        return found
 
 
-def _function(name: str, returned: str, arguments: str = "") -> Any:
-    """strutlib_NAME. With "!" behind the arguments it takes an error, too, which it raises where it returns nothing."""
-    function = getattr(_LIBRARY, "strutlib_" + name)
-    function.argtypes = [_ARGUMENTS[kind] for kind in arguments.rstrip("!")]
-    function.restype = _RETURNED[returned]
-    if arguments.endswith("!"):
-        function.argtypes = [*function.argtypes, c_void_p]
-
-        def fallible(*given: Any) -> Any:
-            error = c_void_p()
-            found = function(*given, byref(error))
-            if not found:
-                raise _exception(error.value)
-            return _own(found) if returned == "o" else found
-
-        return fallible
-    return function if returned != "t" else lambda *given: _decode(function(*given))
+def _shown(function: Any) -> Any:
+    return lambda *given: _decode(function(*given))
 
 
-def _own(text: int) -> Any:
-    """A text that belongs to the caller."""
-    copy = _decode(ctypes.string_at(text))
-    _release(text)
-    return copy
+def _given(function: Any) -> Any:
+    """A function whose text belongs to the caller, who keeps a copy."""
+
+    def copied(*given: Any) -> Any:
+        text = function(*given)
+        copy = _decode(ctypes.string_at(text)) if text else None
+        _api.release(text)
+        return copy
+
+    return copied
 
 
 def _until_none(function: Callable[..., Any], *given: Any) -> Iterator[Any]:
@@ -100,27 +115,19 @@ def _until_none(function: Callable[..., Any], *given: Any) -> Iterator[Any]:
         i += 1
 
 
-_release = _function("release", "v", "p")
-_error_status = _function("error_status", "i", "p")
-_error_message = _function("error_message", "t", "p")
-_error_report = _function("error_report", "t", "p")
-_error_count = _function("error_count", "n", "p")
-_error_free = _function("error_free", "v", "p")
-_located = [
-    _function(f"error_{part}", "n" if part in ("line", "column", "length") else "t", "pn")
-    for part in ("file", "line", "column", "length", "text", "source", "hint", "key")
-]
-_status_name = _function("status_name", "t", "i")
+_api = _Api(pathlib.Path(__file__).with_name("abi.h").read_text("utf-8"))
+_LOCATED = ("file", "line", "column", "length", "text", "source", "hint", "key")
 
 
 def _exception(error: int | None) -> BaseException:
     """The exception for an error, which is freed."""
     if error is None:  # the library could not even say why
         return MemoryError()
-    messages = [tuple(part(error, i) for part in _located) for i in range(_error_count(error))]
-    name = _status_name(_error_status(error))
-    exception = _errors.make(name, _error_message(error), _error_report(error), messages)
-    _error_free(error)
+    located = [getattr(_api, f"error_{part}") for part in _LOCATED]
+    messages = [tuple(part(error, i) for part in located) for i in range(_api.error_count(error))]
+    name = _api.status_name(_api.error_status(error))
+    exception = _errors.make(name, _api.error_message(error), _api.error_report(error), messages)
+    _api.error_free(error)
     return exception
 
 
@@ -140,13 +147,10 @@ class _Handle:
 class _Control(_Handle):
     """Interrupts calls and tells their progress."""
 
-    _free = _function("control_free", "v", "p")
-    _create = _function("control_create", "p")
-    _interrupt = _function("interrupt", "v", "p")
-    _on_progress = _function("control_on_progress", "v", "ppp")
+    _free = _api.control_free
 
     def __init__(self) -> None:
-        super().__init__(_Control._create())
+        super().__init__(_api.control_create())
         if self._handle is None:
             raise MemoryError
 
@@ -170,7 +174,7 @@ class _Control(_Handle):
 
         callback = _NOTE(note)
         if progress is not None:
-            _Control._on_progress(self._handle, callback, None)
+            _api.control_on_progress(self._handle, callback, None)
         thread = threading.Thread(target=compute)
         thread.start()
         while not done.is_set():
@@ -179,9 +183,9 @@ class _Control(_Handle):
                     progress(fraction[0])
             except BaseException as error:
                 raised = raised or error
-                _Control._interrupt(self._handle)
+                _api.interrupt(self._handle)
         thread.join()
-        _Control._on_progress(self._handle, None, None)
+        _api.control_on_progress(self._handle, None, None)
         return raised
 
 
@@ -227,19 +231,7 @@ def _array(function: Any, owner: _Handle, name: str, read_only: bool = True) -> 
 class Result(_Handle):
     """A strutlib_result: made empty, filled by a scene's call."""
 
-    _free = _function("result_free", "v", "p")
-    _status = _function("result_status", "i", "p")
-    _array = _function("result_array", "i", "pspppp")
-    _unit = _function("result_array_unit", "t", "ps")
-    _cell = _function("result_cell", "t", "psn")
-    _yaml = _function("result_yaml", "o", "p!")
-    _svg = _function("result_svg", "o", "pnpp!")
-    _html = _function("result_html", "o", "p!")
-    _command, _json, _table = (_function(f"result_{part}", "t", "p") for part in ("command", "json", "table"))
-    _warning, _array_name, _column = (
-        _function(f"result_{part}", "t", "pn") for part in ("warning", "array_name", "column")
-    )
-
+    _free = _api.result_free
     def __init__(self) -> None:
         super().__init__(None)
 
@@ -252,51 +244,51 @@ class Result(_Handle):
         return self._handle
 
     def command(self) -> str:
-        return Result._command(self._filled())  # type: ignore[no-any-return]
+        return _api.result_command(self._filled())  # type: ignore[no-any-return]
 
     def status(self) -> str:
-        return _status_name(Result._status(self._filled()))  # type: ignore[no-any-return]
+        return _api.status_name(_api.result_status(self._filled()))  # type: ignore[no-any-return]
 
     def json(self) -> str:
-        return Result._json(self._filled())  # type: ignore[no-any-return]
+        return _api.result_json(self._filled())  # type: ignore[no-any-return]
 
     def table(self) -> str:
-        return Result._table(self._filled())  # type: ignore[no-any-return]
+        return _api.result_table(self._filled())  # type: ignore[no-any-return]
 
     def warnings(self) -> list[str]:
-        return list(_until_none(Result._warning, self._filled()))
+        return list(_until_none(_api.result_warning, self._filled()))
 
     def array(self, name: str) -> Any:
         self._filled()
-        return _array(Result._array, self, name)
+        return _array(_api.result_array, self, name)
 
     def array_names(self) -> list[str]:
-        return list(_until_none(Result._array_name, self._filled()))
+        return list(_until_none(_api.result_array_name, self._filled()))
 
     def columns(self) -> list[str]:
-        return list(_until_none(Result._column, self._filled()))
+        return list(_until_none(_api.result_column, self._filled()))
 
     def unit(self, name: str) -> str | None:
-        return Result._unit(self._filled(), _bytes(name))  # type: ignore[no-any-return]
+        return _api.result_array_unit(self._filled(), _bytes(name))  # type: ignore[no-any-return]
 
     def words(self, column: str, count: int) -> list[str | None]:
         """The texts of a sweep's column, one per point."""
-        return [Result._cell(self._filled(), _bytes(column), i) for i in range(count)]
+        return [_api.result_cell(self._filled(), _bytes(column), i) for i in range(count)]
 
     def yaml(self) -> str:
-        return Result._yaml(self._filled())  # type: ignore[no-any-return]
+        return _api.ask("result_yaml", self._filled())  # type: ignore[no-any-return]
 
     def svg(self, names: tuple[str, ...], values: tuple[str, ...]) -> str:
-        return Result._svg(self._filled(), *_pairs(names, values))  # type: ignore[no-any-return]
+        return _api.ask("result_svg", self._filled(), *_pairs(names, values))  # type: ignore[no-any-return]
 
     def html(self) -> str:
-        return Result._html(self._filled())  # type: ignore[no-any-return]
+        return _api.ask("result_html", self._filled())  # type: ignore[no-any-return]
 
 
 class Snapshot(_Handle):
     """A strutlib_snapshot."""
 
-    _free = _function("snapshot_free", "v", "p")
+    _free = _api.snapshot_free
 
     def __init__(self, handle: int, simulation: Simulation) -> None:
         super().__init__(handle)
@@ -307,14 +299,7 @@ class Simulation(_Handle):
     """A strutlib_simulation. Many steps are divided into pieces of some milliseconds, between which Python looks for
     signals; the bits do not depend on that."""
 
-    _free = _function("simulation_close", "v", "p")
-    _advance = _function("simulation_advance", "i", "plp")
-    _array = _function("simulation_array", "i", "pspppp")
-    _input = _function("simulation_input", "i", "pspppp")
-    _snapshot = _function("simulation_snapshot", "p", "p!")
-    _restore = _function("simulation_restore", "i", "ppp")
-    _time, _step, _work = (_function(f"simulation_{part}", "d", "p") for part in ("time", "step", "input_work"))
-
+    _free = _api.simulation_close
     def __init__(self, handle: int, control: _Control) -> None:
         super().__init__(handle)
         self._control = control
@@ -338,7 +323,7 @@ class Simulation(_Handle):
             while left > 0:
                 piece = max(1, min(left, int(_PIECE / self._step_time)))
                 begin = time.perf_counter()
-                failed = Simulation._advance(self._handle, piece, byref(error))
+                failed = _api.simulation_advance(self._handle, piece, byref(error))
                 # A step that met the scheduler shall not make all later pieces small: at most ten times as fast.
                 self._step_time = max((time.perf_counter() - begin) / piece, 0.1 * self._step_time)
                 if failed:
@@ -349,33 +334,31 @@ class Simulation(_Handle):
 
     @property
     def time(self) -> float:
-        return Simulation._time(self._idle())  # type: ignore[no-any-return]
+        return _api.simulation_time(self._idle())  # type: ignore[no-any-return]
 
     @property
     def step(self) -> float:
-        return Simulation._step(self._idle())  # type: ignore[no-any-return]
+        return _api.simulation_step(self._idle())  # type: ignore[no-any-return]
 
     @property
     def input_work(self) -> float:
-        return Simulation._work(self._idle())  # type: ignore[no-any-return]
+        return _api.simulation_input_work(self._idle())  # type: ignore[no-any-return]
 
     def array(self, name: str) -> Any:
         self._idle()
-        return _array(Simulation._array, self, name)
+        return _array(_api.simulation_array, self, name)
 
     def input(self, name: str) -> Any:
         self._idle()
-        return _array(Simulation._input, self, name, read_only=False)
+        return _array(_api.simulation_input, self, name, read_only=False)
 
     def snapshot(self) -> Snapshot:
-        return Snapshot(Simulation._snapshot(self._idle()), self)
+        return Snapshot(_api.ask("simulation_snapshot", self._idle()), self)
 
     def restore(self, snapshot: Snapshot, /) -> None:
-        error = c_void_p()
         if not isinstance(snapshot, Snapshot):
             raise TypeError("restore takes what snapshot() returned")
-        if Simulation._restore(self._idle(), snapshot._handle, byref(error)):
-            raise _exception(error.value)
+        _api.ask("simulation_restore", self._idle(), snapshot._handle)
 
 
 # ---- scenes ----
@@ -384,72 +367,50 @@ class Simulation(_Handle):
 class Scene(_Handle):
     """A strutlib_scene."""
 
-    _free = _function("close", "v", "p")
-    _name_count = _function("name_count", "n", "ps")
-    _name = _function("name", "t", "psn")
-    _number = _function("scene_number", "i", "psp")
-    _flag = _function("scene_flag", "i", "psp")
-    _text = _function("scene_text", "t", "ps")
-    _array = _function("scene_array", "i", "pspppp")
-    _warning = _function("scene_warning", "t", "pn")
-    _yaml = _function("scene_yaml", "o", "pi!")
-    _json = _function("scene_json", "o", "p!")
-    _svg = _function("scene_svg", "o", "p!")
-    _html = _function("scene_html", "o", "pip!")
-    _simulation = _function("simulation_open", "p", "pnppp!")
-    _sweep = _function("sweep", "p", "pnpnppnpnpppppp")
-    _calls = {
-        name: _function(name, "p", "pnpppp")
-        for name in ("run", "equilibria", "modes", "rigidity", "form", "path", "matrices")
-    }
-
+    _free = _api.close
     def names(self, kind: str) -> tuple[str, ...]:
-        count = Scene._name_count(self._handle, _bytes(kind))
-        return tuple(Scene._name(self._handle, _bytes(kind), i) for i in range(count))
+        count = _api.name_count(self._handle, _bytes(kind))
+        return tuple(_api.name(self._handle, _bytes(kind), i) for i in range(count))
 
     def value(self, name: str) -> float | bool | str | None:
         """A number, a flag or a text by its dotted name, or None."""
         key, number, flag = _bytes(name), c_double(), c_int()
-        if Scene._number(self._handle, key, byref(number)):
+        if _api.scene_number(self._handle, key, byref(number)):
             return number.value
-        if Scene._flag(self._handle, key, byref(flag)):
+        if _api.scene_flag(self._handle, key, byref(flag)):
             return bool(flag.value)
-        return Scene._text(self._handle, key)  # type: ignore[no-any-return]
+        return _api.scene_text(self._handle, key)  # type: ignore[no-any-return]
 
     def array(self, name: str) -> Any:
-        return _array(Scene._array, self, name)
+        return _array(_api.scene_array, self, name)
 
     def warnings(self) -> list[str]:
-        return list(_until_none(Scene._warning, self._handle))
+        return list(_until_none(_api.scene_warning, self._handle))
 
     def yaml(self, parts: bool) -> str:
-        return Scene._yaml(self._handle, parts)  # type: ignore[no-any-return]
+        return _api.ask("scene_yaml", self._handle, parts)  # type: ignore[no-any-return]
 
     def json(self) -> str:
-        return Scene._json(self._handle)  # type: ignore[no-any-return]
+        return _api.ask("scene_json", self._handle)  # type: ignore[no-any-return]
 
     def svg(self) -> str:
-        return Scene._svg(self._handle)  # type: ignore[no-any-return]
+        return _api.ask("scene_svg", self._handle)  # type: ignore[no-any-return]
 
     def html(self, equilibria: bool) -> str:
-        return self._wait(_Control(), Scene._html, equilibria)  # type: ignore[no-any-return]
+        return self._wait(_Control(), "scene_html", equilibria)  # type: ignore[no-any-return]
 
     def simulation(self, names: tuple[str, ...], values: tuple[str, ...]) -> Simulation:
         control = _Control()
+        return Simulation(self._wait(control, "simulation_open", *_pairs(names, values)), control)
 
-        def simulate(*given: Any) -> Simulation:
-            return Simulation(Scene._simulation(*given), control)
-
-        return self._wait(control, simulate, *_pairs(names, values))  # type: ignore[no-any-return]
-
-    def _wait(self, control: _Control, function: Any, *given: Any) -> Any:
+    def _wait(self, control: _Control, function: str, *given: Any) -> Any:
         """What a function of the library returns that takes a control last; raises what it or a signal does."""
         answer: list[Any] = []
         failed: list[BaseException] = []
 
         def call() -> None:
             try:
-                answer.append(function(self._handle, *given, control._handle))
+                answer.append(_api.ask(function, self._handle, *given, control._handle))
             except BaseException as error:
                 failed.append(error)
 
@@ -467,7 +428,7 @@ class Scene(_Handle):
 
         raised = control.wait(call, progress)
         if raised is not None:
-            _error_free(error)
+            _api.error_free(error)
             raise raised
         if error or not result:
             raise _exception(error.value)
@@ -480,9 +441,9 @@ class Scene(_Handle):
         values: tuple[str, ...],
         progress: Progress | None,
     ) -> None:
-        if command not in Scene._calls:
+        if command not in _api.calls:
             raise ValueError(f"no such command: {command}")
-        self._fill(result, Scene._calls[command], _pairs(names, values), progress)
+        self._fill(result, getattr(_api, command), _pairs(names, values), progress)
 
     def sweep(
         self,
@@ -503,41 +464,38 @@ class Scene(_Handle):
             raise ValueError("a word or None is needed for each point and axis")
         spelled = None if words is None else _texts(words)
         table = (len(axes), _texts(axes), count, numbers.tobytes(), spelled, len(keep), _texts(keep))
-        self._fill(result, Scene._sweep, (*table, *_pairs(names, values), None, None), progress)
-
-
-_open = _function("open", "p", "snpp!")
-_open_text = _function("open_text", "p", "ssnnpp!")
-_with = _function("scene_with", "p", "pnpp!")
+        self._fill(result, _api.sweep, (*table, *_pairs(names, values), None, None), progress)
 
 
 def open(path: str | os.PathLike[str], names: tuple[str, ...], values: tuple[str, ...]) -> Scene:
-    return Scene(_open(_whole(os.fsencode(path)), *_pairs(names, values)))
+    return Scene(_api.ask("open", _whole(os.fsencode(path)), *_pairs(names, values)))
 
 
 def open_text(name: str, text: str, names: tuple[str, ...], values: tuple[str, ...]) -> Scene:
     source = text.encode()
-    return Scene(_open_text(_bytes(name), source, len(source), *_pairs(names, values)))
+    return Scene(_api.ask("open_text", _bytes(name), source, len(source), *_pairs(names, values)))
 
 
 def with_(scene: Scene, names: tuple[str, ...], values: tuple[str, ...]) -> Scene:
-    return Scene(_with(scene._handle, *_pairs(names, values)))
+    return Scene(_api.ask("scene_with", scene._handle, *_pairs(names, values)))
 
 
 # ---- the library as a whole ----
 
-_option_name, _option_help = (_function(f"option_{part}", "t", "sn") for part in ("name", "help"))
-_channel = _function("channel", "t", "n")
-_channel_kind = _function("channel_kind", "t", "s")
-_channel_component, _channel_column = (_function(f"channel_{part}", "t", "sn") for part in ("component", "column"))
-_yaml_places = _function("yaml_places", "o", "ss!")
-status_text: Callable[[int], str] = _function("status_text", "t", "i")
+version: str = _api.version()
+status_text: Callable[[int], str] = _api.status_text
 
 
 def options(command: str) -> list[tuple[str, str]]:
     """Options of a command and what they mean."""
     word = _bytes(command)
-    return [(name, _option_help(word, i)) for i, name in enumerate(_until_none(_option_name, word))]
+    return [(name, _api.option_help(word, i)) for i, name in enumerate(_until_none(_api.option_name, word))]
+
+
+def option_types(command: str) -> list[tuple[str, str | None]]:
+    """Kind and words, such as "elastic|rigid", of each of them."""
+    word = _bytes(command)
+    return [(kind, _api.option_words(word, i)) for i, kind in enumerate(_until_none(_api.option_kind, word))]
 
 
 def channels() -> list[tuple[str, str, tuple[str, ...], tuple[str, ...]]]:
@@ -545,19 +503,18 @@ def channels() -> list[tuple[str, str, tuple[str, ...], tuple[str, ...]]]:
     return [
         (
             name,
-            _channel_kind(_bytes(name)),
-            tuple(_until_none(_channel_component, _bytes(name))),
-            tuple(_until_none(_channel_column, _bytes(name))),
+            _api.channel_kind(_bytes(name)),
+            tuple(_until_none(_api.channel_component, _bytes(name))),
+            tuple(_until_none(_api.channel_column, _bytes(name))),
         )
-        for name in _until_none(_channel)
+        for name in _until_none(_api.channel)
     ]
 
 
 def yaml_places(name: str, text: str) -> str:
     """A YAML text as JSON, with places."""
-    return _yaml_places(_bytes(name), _bytes(text))  # type: ignore[no-any-return]
+    return _api.ask("yaml_places", _bytes(name), _bytes(text))  # type: ignore[no-any-return]
 
 
-if (_found := _function("abi_version", "i")()) < _ABI_VERSION:
-    raise ImportError(f"libstrut.so.0 is older than this package: interface {_found}, not {_ABI_VERSION}")
-version: str = _function("version", "t")()
+for _call in _api.calls:
+    _errors.switches.update(name for (name, _), (kind, _) in zip(options(_call), option_types(_call)) if kind == "flag")

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 #: the components of each channel: ("x", "y") of "position"
 COMPONENTS = {name: components for name, _, components, _ in _strut.channels()}
 Value = float | str  #: a number [SI], or a text with a unit
+Values = Value | Sequence[Value]
 Pairs = tuple[tuple[str, ...], tuple[str, ...]]
 
 
@@ -53,6 +54,11 @@ def settings(mapping: Mapping[str, object] | None, more: Mapping[str, object]) -
 
 #: arguments whose names the library spells in another way
 _SPELLED = {"from_": "from"}
+
+
+def argument(option: str) -> str:
+    """The argument that an option of the library is."""
+    return next((own for own, name in _SPELLED.items() if name == option), option.replace("-", "_"))
 
 
 def options(given: Mapping[str, object], spelled: Container[str] = ()) -> Pairs:

@@ -9,15 +9,15 @@
 #include "engine/forces/elements.h"
 #include "engine/integrate/integrator.h"
 #include "engine/output/result_values.h"
-#include "parser/program/check_messages.h"
+#include "parser/program/check/check_messages.h"
 #include "parser/program/streams.h"
-#include "parser/program/sweep.h"
+#include "parser/program/study/sweep.h"
 
 enum { MOST_THINGS = 40, DIGITS = 5 };
 
 /* ---- things, as they are drawn ---- */
 
-/* Titles of columns are the keys; values without a label stand behind the columns. */
+/* Columns of a table, whose titles are the keys. */
 #define COLUMN .label = {""}
 
 static strut_element_pose pose_of(const strut_result_object *of, int32_t element) {
@@ -66,17 +66,19 @@ static strut_value way_of(const strut_result_object *of, size_t k) {
   X("pretension", "N", NUMBER(rest.pretension), "as drawn", COLUMN)                                \
   X("force_density", "N/m", NUMBER(rest.force_density), "as drawn", COLUMN)                        \
   X("stiffness", "N/m", NUMBER(rest.stiffness), "as drawn", COLUMN)                                \
-  X("law", "", IF(lawful, TEXT(strut_law_at(m->law.kind)->word)), "of its force")                  \
-  X("carries", "", IF(lawful, TEXT(carries_name(m))), "tension, compression or both")              \
-  X("guide_friction", "1", POSITIVE(m->guide_friction), "coefficient")                             \
-  X("guide_radius", "m", POSITIVE(m->guide_radius), "of its guides")                               \
-  X("breaks_at", "N", POSITIVE(m->breaks_at), "force")                                             \
-  X("released_at", "s", POSITIVE(m->released_at), "time")                                          \
-  X("shortest", "m", POSITIVE(m->shortest), "length, by a stop")                                   \
-  X("longest", "m", POSITIVE(m->longest), "length, by a stop")                                     \
-  X("stop_stiffness", "N/m", POSITIVE(stops ? stop_stiffness(model, of->index) : 0.0), "of both")  \
-  X("stop_damping", "N s/m", POSITIVE(stops ? m->stop_damping : 0.0), "of both")                   \
-  X("nodes", "", IF(m->guide_count, ARRAY(m->guide_count + 2, way_of)), "that it runs over")
+  X("law", "", IF(lawful, TEXT(strut_law_at(m->law.kind)->word)), "of its force", COLUMN)          \
+  X("carries", "", IF(lawful, TEXT(carries_name(m))), "tension, compression or both", COLUMN)      \
+  X("guide_friction", "1", POSITIVE(m->guide_friction), "coefficient", COLUMN)                     \
+  X("guide_radius", "m", POSITIVE(m->guide_radius), "of its guides", COLUMN)                       \
+  X("breaks_at", "N", POSITIVE(m->breaks_at), "force", COLUMN)                                     \
+  X("released_at", "s", POSITIVE(m->released_at), "time", COLUMN)                                  \
+  X("shortest", "m", POSITIVE(m->shortest), "length, by a stop", COLUMN)                           \
+  X("longest", "m", POSITIVE(m->longest), "length, by a stop", COLUMN)                             \
+  X("stop_stiffness", "N/m", POSITIVE(stops ? stop_stiffness(model, of->index) : 0.0), "of both",  \
+    COLUMN)                                                                                        \
+  X("stop_damping", "N s/m", POSITIVE(stops ? m->stop_damping : 0.0), "of both", COLUMN)           \
+  X("nodes", "", IF(m->guide_count, ARRAY(m->guide_count + 2, way_of)), "that it runs over",       \
+    .label = {"over"})
 STRUT_VALUES_HERE(member_values, MEMBER, const strut_member *m = of->at;
                   strut_rest rest = rest_of(of);
                   const strut_model *model = ((const strut_check_result *)of->outer->at)->model;
@@ -89,8 +91,8 @@ STRUT_VALUES_HERE(member_values, MEMBER, const strut_member *m = of->at;
   X("rest_angle", "rad", NUMBER(pose.natural), "without moment", COLUMN)                           \
   X("moment", "N m", NUMBER(pose.force), "as drawn", COLUMN)                                       \
   X("stiffness", "N m/rad", NUMBER(elements->element[i].numbers.stiffness), "as drawn", COLUMN)    \
-  X("breaks_at", "N m", POSITIVE(h->breaks_at), "moment")                                          \
-  X("released_at", "s", POSITIVE(h->released_at), "time")
+  X("breaks_at", "N m", POSITIVE(h->breaks_at), "moment", COLUMN)                                  \
+  X("released_at", "s", POSITIVE(h->released_at), "time", COLUMN)
 #define ELEMENTS                                                                                   \
   const strut_element_table *elements =                                                            \
       &((const strut_check_result *)of->outer->at)->model->elements
@@ -233,70 +235,10 @@ strut_status strut_check_print(strut_check_result *c) {
   return strut_print_block(text);
 }
 
-/* ---- tables: of things of one kind, those with a rest length ---- */
-
-static void print_value(const strut_value_row *row, const strut_value *value, int width) {
-  bool angle = strcmp(row->unit, "rad") == 0;
-  double number = angle ? value->number * 180.0 / STRUT_PI : value->number;
-  strut_rounded_quantity rounded = strut_quantity_of_any(number, DIGITS, angle ? "deg" : row->unit);
-  printf("%*s", width, value->kind == STRUT_VALUE_TEXT ? value->text : rounded.text);
-}
-
-/* "rest_length" as "rest length". */
-static const char *title_of(const strut_value_row *row, char title[40]) {
-  snprintf(title, 40, "%s", row->key);
-  for (char *c = title; *c; c++)
-    if (*c == '_') *c = ' ';
-  return title;
-}
-
-static void print_thing(const strut_value_rows *rows, const strut_result_object *of) {
-  strut_value value[STRUT_MOST_VALUES];
-  char title[40];
-  rows->fill(of, value);
-  for (size_t i = 0; i < rows->count; i++) {
-    const strut_value_row *row = &rows->row[i];
-    size_t length = strlen(row->key);
-    for (size_t k = 0; value[i].kind == STRUT_VALUE_MAP && k < value[i].count; k++)
-      printf("%s%s", k ? ", " : ", over ", value[i].value(of, k).text);
-    if (value[i].kind == STRUT_VALUE_ABSENT || value[i].kind == STRUT_VALUE_MAP) continue;
-    if (!row->label[0]) printf(", %s ", title_of(row, title));
-    print_value(row, &value[i], !row->label[0] ? 0 : length > 11 ? (int)length + 2 : 13);
-  }
-  printf("\n");
-}
-
-static void print_things(const strut_value_row *row, const strut_value *list, int names,
-                         const strut_result_object *of) {
-  bool titled = false;
-  char title[40];
-  for (size_t i = 0; i < list->count && i < MOST_THINGS; i++) {
-    const char *name = list->name(of, i);
-    if (!name) continue;
-    if (!titled) printf("\n  %-*s", names, row->label[0]);
-    for (size_t k = 0; !titled && k < row->rows->count; k++)
-      if (row->rows->row[k].label[0]) printf("  %11s", title_of(&row->rows->row[k], title));
-    printf("%s  %-*s", titled ? "" : "\n", names, name);
-    titled = true;
-    const char *thing = (const char *)list->items + i * list->size;
-    print_thing(row->rows, &(strut_result_object){thing, of, of->scene, i});
-  }
-  if (list->count > MOST_THINGS)
-    printf("  ... and %zu more; --json lists all\n", list->count - MOST_THINGS);
-}
-
 void strut_check_print_things(const strut_check_result *checked) {
-  strut_value value[STRUT_MOST_VALUES];
-  const strut_result_object of = {checked, NULL, checked->model->scene, 0};
-  size_t names = 12; /* the width of their column, up to 40 */
-  scene_values.fill(&of, value);
-  for (size_t k = 0; k < scene_values.count; k++)
-    for (size_t i = 0; value[k].name && value[k].items && i < value[k].count && i < MOST_THINGS;
-         i++) {
-      const char *name = value[k].name(&of, i);
-      if (name && strlen(name) > names) names = strlen(name);
-    }
-  for (size_t k = 0; k < scene_values.count; k++)
-    if (scene_values.row[k].label[0])
-      print_things(&scene_values.row[k], &value[k], names > 40 ? 40 : (int)names, &of);
+  strut_buffer table = {0};
+  strut_values_add_tables(&table, &scene_values,
+                          &(strut_result_object){checked, NULL, checked->model->scene, 0},
+                          &(strut_table_page){STRUT_REPORT_WIDTH, MOST_THINGS, DIGITS});
+  if (table.length || table.failed) strut_print_block(strut_buffer_take(&table));
 }

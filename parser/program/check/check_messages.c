@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/program/check_messages.h"
+#include "parser/program/check/check_messages.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@
 #include "engine/output/file.h"
 #include "engine/run/measure/monitors.h"
 #include "parser/program/streams.h"
-#include "parser/program/sweep.h"
+#include "parser/program/study/sweep.h"
 #include "parser/read/reader.h"
 #include "parser/yaml/document.h"
 

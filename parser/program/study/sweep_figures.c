@@ -11,7 +11,7 @@
 #include "parser/program/commands.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
-#include "parser/program/sweep.h"
+#include "parser/program/study/sweep.h"
 #include "parser/yaml/diagnostics.h"
 
 static bool of_runs(const strut_study_figure *f) {
@@ -178,43 +178,29 @@ strut_status strut_sweep_follow_check(strut_sweep_study *study, strut_error *err
 }
 
 /* What is there of an interrupted study. */
-static void write_partial(const strut_arguments *arguments, const strut_sweep_plan *plan,
-                          strut_slots *slots) {
-  int64_t rows = 0, points = 0;
+static void write_partial(const strut_study_job *job) {
+  int64_t rows = 0;
   strut_error error = {0};
-  strut_slots *const sources[] = {slots};
-  strut_status status = strut_study_table_write_partial(arguments->output, STRUT_PARTIAL_TABLE,
-                                                        sources, 1, &points, &error);
-  if (!status)
-    status = strut_follow_points_combine(plan, slots, arguments->output, partial_branches_name,
-                                         true, &rows, &error);
-  if (status)
+  if (strut_follow_points_combine(&job->study->plan, job->slots, job->arguments->output,
+                                  partial_branches_name, true, &rows, &error))
     strut_print_error(&error);
   else
     fprintf(stderr, "strut: %s/%s has what was followed so far, %lld points of branches\n",
-            arguments->output, partial_branches_name, (long long)rows);
+            job->arguments->output, partial_branches_name, (long long)rows);
 }
 
-static strut_status run_points(const strut_arguments *arguments, strut_sweep_study *study,
-                               strut_slots *slots, strut_sweep_state *state, strut_error *error) {
-  strut_sweep_progress shown = strut_sweep_progress_begin(&study->plan, arguments->quiet);
+static strut_status run_points(strut_study_job *job, const strut_sweep_options *options,
+                               void *context, strut_error *error) {
   const strut_follow_points_options how = {.setup = setup_at,
-                                           .context = &study->file,
-                                           .directory = arguments->output,
-                                           .interrupt = strut_interrupt_watch(),
-                                           .progress = strut_sweep_progress_show,
-                                           .progress_context = &shown};
-  strut_status status = strut_sweep_texts_write(arguments, study, error);
-  if (!status) status = strut_follow_points_run(&study->plan, slots, &how, state, error);
-  strut_sweep_progress_end(&shown);
-  strut_error late = {0};
-  strut_status synced = strut_slots_sync(slots, &late);
-  if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
-  if (status == STRUT_INTERRUPTED) {
-    write_partial(arguments, &study->plan, slots);
-    strut_fail(error, status, "interrupted after %lld of %lld points; the same command resumes",
-               (long long)state->done, (long long)state->points);
-  }
+                                           .context = &job->study->file,
+                                           .directory = options->directory,
+                                           .interrupt = options->interrupt,
+                                           .progress = options->progress,
+                                           .progress_context = options->progress_context};
+  (void)context;
+  strut_status status =
+      strut_follow_points_run(&job->study->plan, job->slots, &how, &job->state, error);
+  if (status == STRUT_INTERRUPTED) write_partial(job);
   return status;
 }
 
@@ -277,23 +263,9 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
                                     strut_slots_inaccurate(slots));
 }
 
-strut_status strut_sweep_follow(const strut_arguments *arguments, strut_sweep_study *study) {
-  strut_slots *slots = NULL;
-  strut_sweep_state state = {0};
+strut_status strut_sweep_follow(strut_study_job *job) {
   strut_error error = {0};
-  const char *path = strut_shard_path(arguments->output, (strut_shard){0}, &study->plan.arena);
-  if (!path) return strut_print_out_of_memory();
-  strut_status status = strut_sweep_texts_check(arguments, study, &error);
-  if (!status) status = strut_sweep_figures_check_files(&study->plan, arguments->output, &error);
-  if (!status) status = strut_directory_create(arguments->output, &error);
-  if (!status) status = strut_shard_begin(arguments->output, (strut_shard){0}, &error);
-  if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
-  if (!status && arguments->retry) status = strut_slots_retry(slots, &error);
-  if (!status && strut_slots_missing(slots) > 0)
-    strut_file_remove(arguments->output, table_name); /* outdated */
-  if (!status) status = run_points(arguments, study, slots, &state, &error);
+  strut_status status = strut_study_job_run(job, run_points, NULL, &error);
   strut_print_failure(status, &error);
-  if (!status) status = complete(arguments, study, slots);
-  strut_slots_close(slots);
-  return status;
+  return status ? status : complete(job->arguments, job->study, job->slots);
 }

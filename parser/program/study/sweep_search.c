@@ -12,33 +12,20 @@
 #include "parser/program/commands.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
-#include "parser/program/sweep.h"
+#include "parser/program/study/sweep.h"
 #include "parser/yaml/diagnostics.h"
 
 static const char table_name[] = "table.csv";
 static const double PAGE = 510.24; /* 180 mm [pt] */
 
-static strut_status run_search(const strut_arguments *arguments, strut_sweep_study *study,
-                               strut_sweep_options *how, strut_slots *slots,
-                               strut_sweep_state *state, strut_search_result *result,
-                               strut_error *error) {
-  strut_sweep_display shown = strut_sweep_display_begin(&study->plan, arguments->quiet, slots,
-                                                        how->workers ? NULL : arguments->output);
-  how->interrupt = strut_interrupt_watch();
-  how->progress = strut_sweep_display_show;
-  how->progress_context = &shown;
-  strut_status status = strut_sweep_texts_write(arguments, study, error);
-  if (!status) status = strut_search_run(&study->plan, slots, how, state, result, error);
-  strut_sweep_progress_end(&shown.progress);
-  strut_error late = {0};
-  strut_status synced = strut_slots_sync(slots, &late);
-  if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
-  if (status && shown.directory && state->done > 0)
-    strut_sweep_write_partial(arguments->output, slots);
-  if (status == STRUT_INTERRUPTED)
-    strut_fail(error, status, "interrupted after %lld points; the same command resumes",
-               (long long)state->done);
-  return status;
+/* `context`: the result. */
+static strut_status run_search(strut_study_job *job, const strut_sweep_options *options,
+                               void *context, strut_error *error) {
+  strut_sweep_options how = *options;
+  how.directory = NULL;
+  how.worker = job->shard.index;
+  how.workers = job->shard.count;
+  return strut_search_run(&job->study->plan, job->slots, &how, &job->state, context, error);
 }
 
 /*
@@ -153,26 +140,25 @@ static strut_status draw_winner(const strut_arguments *arguments, strut_sweep_pl
   return status;
 }
 
-static strut_status complete(const strut_arguments *arguments, strut_sweep_study *study,
-                             strut_slots *slots, const strut_sweep_state *state,
-                             const strut_search_result *result) {
+static strut_status complete(const strut_study_job *job, const strut_search_result *result) {
+  const strut_arguments *arguments = job->arguments;
+  strut_sweep_plan *plan = &job->study->plan;
+  strut_slots *slots = job->slots;
   strut_error error = {0};
   const strut_search_point *best = NULL;
   strut_slots *const sources[] = {slots};
-  const char *table =
-      strut_arena_format(&study->plan.arena, "%s/%s", arguments->output, table_name);
+  const char *table = strut_arena_format(&plan->arena, "%s/%s", arguments->output, table_name);
   if (!table) return strut_print_out_of_memory();
   strut_status status = write_best_rows(arguments, slots, result, &error);
-  if (!status) status = write_best_scenes(arguments, &study->plan, result, &best, &error);
+  if (!status) status = write_best_scenes(arguments, plan, result, &best, &error);
   if (!status) /* last, as a sign that the searches are finished */
     status =
         strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
   if (status) return strut_print_failure(status, &error);
   strut_file_remove(arguments->output, STRUT_PARTIAL_TABLE);
-  status = strut_sweep_figures_draw(&study->plan, arguments->output, table, NULL);
-  if (!status) status = draw_winner(arguments, &study->plan, best);
-  const strut_search_report report = {
-      &study->plan, study->plan.study->search, result, {state, table}};
+  status = strut_sweep_figures_draw(plan, arguments->output, table, NULL);
+  if (!status) status = draw_winner(arguments, plan, best);
+  const strut_search_report report = {plan, plan->study->search, result, {&job->state, table}};
   if (!status) status = strut_print_values(arguments, &strut_search_report_values, &report, NULL);
   if (status) return status;
   bool found = false;
@@ -214,30 +200,14 @@ strut_status strut_sweep_search_check_workers(strut_sweep_study *study) {
   return strut_sweep_study_report(study, STRUT_BAD_SCENE, &(strut_error){0});
 }
 
-strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
-                                strut_shard worker) {
-  strut_slots *slots = NULL;
-  strut_sweep_state state = {0};
+strut_status strut_sweep_search(strut_study_job *job) {
   strut_search_result result = {0};
   strut_error error = {0};
-  const char *path = strut_shard_path(arguments->output, (strut_shard){0}, &study->plan.arena);
-  if (!path) return strut_print_out_of_memory();
-  strut_sweep_options how = {.worker = worker.index, .workers = worker.count};
-  strut_status status = strut_sweep_texts_check(arguments, study, &error);
-  if (!status) status = strut_sweep_figures_check_files(&study->plan, arguments->output, &error);
-  if (!status) status = strut_directory_create(arguments->output, &error);
-  if (!status) status = strut_shard_begin(arguments->output, (strut_shard){0}, &error);
-  if (!status)
-    status = (worker.count ? strut_slots_open_shared : strut_slots_open)(path, &study->slots,
-                                                                         &slots, &error);
-  if (!status && strut_slots_missing(slots) == strut_slots_description_of(slots)->count)
-    strut_file_remove(arguments->output, table_name); /* of another search */
-  if (!status) status = run_search(arguments, study, &how, slots, &state, &result, &error);
-  strut_sweep_print_warnings(&state);
+  strut_status status = strut_study_job_run(job, run_search, &result, &error);
+  strut_sweep_print_warnings(&job->state);
   strut_print_failure(status, &error);
-  if (!status) status = complete(arguments, study, slots, &state, &result);
+  if (!status) status = complete(job, &result);
   strut_search_result_free(&result);
-  strut_slots_close(slots);
   return status;
 }
 
@@ -283,49 +253,25 @@ strut_status strut_sweep_refine_status(const strut_sweep_plan *plan, const char 
 
 /* ---- shards ---- */
 
-/* Opens the files of all shards; those that are missing stay NULL. */
-static strut_slots **open_shards(const char *directory, const strut_shards_found *found,
-                                 strut_arena *arena) {
-  size_t count = found->count ? (size_t)found->count : 1;
-  strut_slots **slots = strut_arena_allocate(arena, count, sizeof *slots);
-  for (size_t k = 0; slots && k < count; k++) {
-    strut_slots_description there;
-    const char *path = strut_shard_path(directory, (strut_shard){(int64_t)k, found->count}, arena);
-    if (path && (!found->count || found->there[k])) strut_slots_read(path, &slots[k], &there, NULL);
-  }
-  return slots;
-}
-
-/* bad: failed and inaccurate points. */
-static strut_status merge_shards(const strut_sweep_study *study, const char *directory,
-                                 strut_arena *arena, int64_t *rows, int64_t bad[2],
-                                 strut_error *error) {
-  strut_shards_found found = {0};
+/* `context`: the study. */
+static strut_status check_refined(void *context, strut_slots *const *sources, size_t count,
+                                  strut_error *error) {
+  const strut_sweep_study *study = context;
   strut_refinement *r = NULL;
-  strut_status status = strut_shards_find(directory, &found, arena, error);
-  strut_slots **slots = status ? NULL : open_shards(directory, &found, arena);
-  size_t count = found.count ? (size_t)found.count : 1;
-  if (!status && !slots) status = strut_no_memory(error, "");
-  if (!status) status = strut_refinement_create(&study->plan, &r, error);
+  strut_status status = strut_refinement_create(&study->plan, &r, error);
   for (size_t k = 0; k < count && !status; k++) {
-    if (!slots[k])
+    if (!sources[k])
       status = strut_fail(error, STRUT_FILE_TROUBLE, "shard %zu of %zu is missing", k, count);
-    else if (strut_slots_description_of(slots[k])->points != study->plan.points ||
-             memcmp(strut_slots_description_of(slots[k])->hash,
-                    strut_slots_description_of(slots[0])->hash, STRUT_STUDY_HASH) != 0)
+    else if (strut_slots_description_of(sources[k])->points != study->plan.points)
       status = strut_fail(error, STRUT_USAGE, "shard %zu of %zu is of another study", k, count);
-    if (!status) strut_refinement_learn(r, slots[k]);
-    if (!status) bad[0] += strut_slots_failed(slots[k]);
-    if (!status) bad[1] += strut_slots_inaccurate(slots[k]);
+    else
+      strut_refinement_learn(r, sources[k]);
   }
   int64_t unknown = status ? 0 : strut_refinement_choose(r);
   if (unknown)
     status = strut_fail(error, STRUT_FILE_TROUBLE,
                         "%lld points of the refinement are missing: run all shards again",
                         (long long)unknown);
-  if (!status)
-    status = strut_study_table_write_partial(directory, "table.csv", slots, count, rows, error);
-  for (size_t k = 0; slots && k < count; k++) strut_slots_close(slots[k]);
   strut_refinement_free(r);
   return status;
 }
@@ -348,33 +294,32 @@ strut_status strut_sweep_refine_merge(const strut_arguments *arguments, bool *me
   strut_arena arena = {0};
   strut_error error = {0};
   strut_arguments inner = *arguments;
-  int64_t rows = 0, bad[2] = {0};
+  strut_merged table;
   const char *directory = arguments->model;
   inner.model = strut_arena_format(&arena, "%s/study.yaml", directory);
-  *merged = false;
-  if (!inner.model || access(inner.model, R_OK) != 0) {
-    strut_arena_free(&arena);
-    return STRUT_OK;
-  }
-  strut_status status = strut_study_open(inner.model, NULL, 0, &study.file, &error);
-  *merged = !status && study.file.study.refine.depth > 0;
-  if (!status && study.file.study.search) {
-    *merged = true;
-    status = check_searches(directory, arguments->quiet);
+  strut_status status = STRUT_OK;
+  bool search = false, refined = false;
+  if (inner.model && access(inner.model, R_OK) == 0) {
+    status = strut_study_open(inner.model, NULL, 0, &study.file, &error);
+    search = !status && study.file.study.search;
+    refined = !status && !search && study.file.study.refine.depth > 0;
     strut_study_close(&study.file);
-    strut_arena_free(&arena);
-    return status;
+    error = (strut_error){0};
   }
-  strut_study_close(&study.file);
-  error = (strut_error){0};
-  if (*merged) status = strut_sweep_study_open(&inner, &study);
-  if (*merged && !status)
-    status =
-        strut_print_failure(merge_shards(&study, directory, &arena, &rows, bad, &error), &error);
-  if (*merged && !status && !arguments->quiet)
-    printf("%s/table.csv: %lld points\n", directory, (long long)rows);
-  if (*merged && !status) status = strut_sweep_judge(rows, bad[0], bad[1]);
-  if (*merged) strut_sweep_study_close(&study);
+  *merged = search || refined;
+  if (search) status = check_searches(directory, arguments->quiet);
+  if (refined) {
+    study = (strut_sweep_study){0};
+    status = strut_sweep_study_open(&inner, &study);
+    if (!status) {
+      status = strut_merge_if(directory, check_refined, &study, &table, &error);
+      strut_print_failure(status, &error);
+    }
+    if (!status && !arguments->quiet)
+      printf("%s/table.csv: %lld points\n", directory, (long long)table.points);
+    if (!status) status = strut_sweep_judge(table.points, table.failed, table.inaccurate);
+    strut_sweep_study_close(&study);
+  }
   strut_arena_free(&arena);
   return status;
 }

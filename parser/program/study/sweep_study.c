@@ -20,7 +20,7 @@
 #include "parser/program/commands.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
-#include "parser/program/sweep.h"
+#include "parser/program/study/sweep.h"
 #include "parser/study/read_study.h"
 #include "parser/write/write_scene.h"
 
@@ -334,9 +334,13 @@ enum { WIDTH = 20, BAR_ROOM = 3 * WIDTH + 1, TEXT = 300 };
 /* Between two lines without a terminal, and before the first bar [s]. */
 static const double REPORT_INTERVAL = 30.0, PATIENCE = 0.5;
 
-strut_sweep_progress strut_sweep_progress_begin(const strut_sweep_plan *plan, bool quiet) {
-  return (strut_sweep_progress){.bar = strut_progress_begin(quiet), .plan = plan, .quiet = quiet};
-}
+/* What a running sweep or search shows: progress, and now and then the table of the rows that there are. */
+typedef struct display {
+  const strut_study_job *job;
+  strut_progress bar;
+  double reported;       /* time of the latest line [s] */
+  double next, interval; /* of partial tables [s] since it began */
+} display;
 
 /* "frequency 3.2 Hz, velocity 0.0098 m/s": the first few cells of a row. */
 static void format_row(const strut_sweep_plan *plan, const strut_result_slot *row, char *text,
@@ -366,15 +370,14 @@ static void format_state(const strut_sweep_state *state, char *text, size_t size
            (long long)state->points, failed, rate, left);
 }
 
-void strut_sweep_progress_show(void *context, const strut_sweep_state *state) {
-  strut_sweep_progress *progress = context;
-  strut_progress *bar = &progress->bar;
+static void show_state(display *shown, const strut_sweep_state *state) {
+  strut_progress *bar = &shown->bar;
   char text[TEXT], row[TEXT], all[2 * TEXT + 40], blocks[BAR_ROOM];
-  if (progress->quiet || state->seconds < PATIENCE) return;
-  if (!bar->wanted && state->seconds - progress->reported < REPORT_INTERVAL) return;
-  progress->reported = state->seconds;
+  if (shown->job->arguments->quiet || state->seconds < PATIENCE) return;
+  if (!bar->wanted && state->seconds - shown->reported < REPORT_INTERVAL) return;
+  shown->reported = state->seconds;
   format_state(state, text, sizeof text);
-  format_row(progress->plan, state->row, row, sizeof row);
+  format_row(&shown->job->study->plan, state->row, row, sizeof row);
   if (state->has_best)
     snprintf(all, sizeof all, "%s; best %.5g; %s", text, state->best, row);
   else
@@ -391,33 +394,22 @@ void strut_sweep_progress_show(void *context, const strut_sweep_state *state) {
   bar->shown = true;
 }
 
-void strut_sweep_progress_end(strut_sweep_progress *progress) {
-  strut_progress_end(&progress->bar);
-}
-
 /* The partial table is written anew after these times, ever less often [s]. */
 static const double FIRST_PARTIAL = 2.0, RAREST_PARTIAL = 60.0;
 
-strut_sweep_display strut_sweep_display_begin(const strut_sweep_plan *plan, bool quiet,
-                                              strut_slots *slots, const char *directory) {
-  return (strut_sweep_display){.progress = strut_sweep_progress_begin(plan, quiet),
-                               .slots = slots,
-                               .directory = directory,
-                               .next = FIRST_PARTIAL,
-                               .interval = FIRST_PARTIAL};
+static void show(void *context, const strut_sweep_state *state) {
+  display *shown = context;
+  show_state(shown, state);
+  if (shown->job->shard.count || state->seconds < shown->next) return;
+  strut_slots *const sources[] = {shown->job->slots};
+  strut_study_table_write_partial(shown->job->arguments->output, STRUT_PARTIAL_TABLE, sources, 1,
+                                  NULL, NULL);
+  if (shown->interval < RAREST_PARTIAL) shown->interval *= 2.0;
+  shown->next = state->seconds + shown->interval;
 }
 
-void strut_sweep_display_show(void *context, const strut_sweep_state *state) {
-  strut_sweep_display *d = context;
-  strut_sweep_progress_show(&d->progress, state);
-  if (!d->directory || state->seconds < d->next) return;
-  strut_slots *const sources[] = {d->slots};
-  strut_study_table_write_partial(d->directory, STRUT_PARTIAL_TABLE, sources, 1, NULL, NULL);
-  if (d->interval < RAREST_PARTIAL) d->interval *= 2.0;
-  d->next = state->seconds + d->interval;
-}
-
-void strut_sweep_write_partial(const char *directory, strut_slots *slots) {
+/* Writes and reports the rows of a study that has ended before its last point. */
+static void write_partial(const char *directory, strut_slots *slots) {
   int64_t rows = 0;
   strut_error error = {0};
   strut_slots *const sources[] = {slots};
@@ -426,6 +418,54 @@ void strut_sweep_write_partial(const char *directory, strut_slots *slots) {
   else
     fprintf(stderr, "strut: %s/%s has the %lld rows that are done\n", directory,
             STRUT_PARTIAL_TABLE, (long long)rows);
+}
+
+strut_status strut_study_job_open(strut_study_job *job, const char *path, strut_error *error) {
+  const strut_arguments *arguments = job->arguments;
+  const bool search = job->study->plan.study->search;
+  const strut_shard part = search ? (strut_shard){0} : job->shard;
+  strut_status status = strut_sweep_texts_check(arguments, job->study, error);
+  if (!status && !part.count)
+    status = strut_sweep_figures_check_files(&job->study->plan, arguments->output, error);
+  if (!status) status = strut_directory_create(arguments->output, error);
+  if (!status) status = strut_shard_begin(arguments->output, part, error);
+  if (!status)
+    status = (search && job->shard.count ? strut_slots_open_shared : strut_slots_open)(
+        path, &job->study->slots, &job->slots, error);
+  if (!status && arguments->retry) status = strut_slots_retry(job->slots, error);
+  if (status || part.count) return status;
+  int64_t missing = strut_slots_missing(job->slots);
+  if (search ? missing == strut_slots_description_of(job->slots)->count : missing > 0)
+    strut_file_remove(arguments->output, "table.csv"); /* outdated, or of another search */
+  return STRUT_OK;
+}
+
+strut_status strut_study_job_run(strut_study_job *job, strut_study_compute *compute, void *context,
+                                 strut_error *error) {
+  const char *directory = job->arguments->output;
+  const strut_sweep_state *state = &job->state;
+  display shown = {.job = job,
+                   .bar = strut_progress_begin(job->arguments->quiet),
+                   .next = FIRST_PARTIAL,
+                   .interval = FIRST_PARTIAL};
+  const strut_sweep_options options = {.interrupt = strut_interrupt_watch(),
+                                       .directory = directory,
+                                       .progress = show,
+                                       .progress_context = &shown};
+  strut_status status = strut_sweep_texts_write(job->arguments, job->study, error);
+  if (!status) status = compute(job, &options, context, error);
+  strut_progress_end(&shown.bar);
+  strut_error late = {0};
+  strut_status synced = strut_slots_sync(job->slots, &late);
+  if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
+  if (status && !job->shard.count && state->done > 0) write_partial(directory, job->slots);
+  if (status == STRUT_INTERRUPTED && job->study->plan.study->search)
+    strut_fail(error, status, "interrupted after %lld points; the same command resumes",
+               (long long)state->done);
+  else if (status == STRUT_INTERRUPTED)
+    strut_fail(error, status, "interrupted after %lld of %lld points; the same command resumes",
+               (long long)state->done, (long long)state->points);
+  return status;
 }
 
 void strut_sweep_print_warnings(const strut_sweep_state *state) {

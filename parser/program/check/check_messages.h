@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** What `strut check` prints of a scene's messages, and of a study. */
-#ifndef STRUT_PARSER_PROGRAM_CHECK_MESSAGES_H
-#define STRUT_PARSER_PROGRAM_CHECK_MESSAGES_H
+#ifndef STRUT_PARSER_PROGRAM_CHECK_CHECK_MESSAGES_H
+#define STRUT_PARSER_PROGRAM_CHECK_CHECK_MESSAGES_H
 
 #include "engine/run/cost_estimate.h"
 #include "engine/scene/check.h"

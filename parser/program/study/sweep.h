@@ -3,8 +3,8 @@
  * The parts of `strut sweep`: the study that is opened, copies of its texts, its figures, its reports,
  * and scripts for clusters.
  */
-#ifndef STRUT_PARSER_PROGRAM_SWEEP_H
-#define STRUT_PARSER_PROGRAM_SWEEP_H
+#ifndef STRUT_PARSER_PROGRAM_STUDY_SWEEP_H
+#define STRUT_PARSER_PROGRAM_STUDY_SWEEP_H
 
 #include "engine/output/record_files.h"
 #include "engine/study/report/study_report.h"
@@ -82,35 +82,25 @@ strut_status strut_sweep_sensitivity_check(const strut_sweep_plan *plan, strut_e
 strut_status strut_sweep_sensitivity_complete(const strut_arguments *arguments,
                                               const strut_sweep_plan *plan, strut_slots *slots);
 
-/** A progress bar on a terminal, occasional lines elsewhere. */
-typedef struct strut_sweep_progress {
-  strut_progress bar;
-  const strut_sweep_plan *plan;
-  bool quiet;
-  double reported; /* time of the latest line [s] */
-} strut_sweep_progress;
-
-strut_sweep_progress strut_sweep_progress_begin(const strut_sweep_plan *plan, bool quiet);
-/** `context` is the strut_sweep_progress. */
-void strut_sweep_progress_show(void *context, const strut_sweep_state *state);
-void strut_sweep_progress_end(strut_sweep_progress *progress);
-
 #define STRUT_PARTIAL_TABLE "table-partial.csv"
 
-/** What a running sweep or search shows: progress, and now and then the table of the rows that there are. */
-typedef struct strut_sweep_display {
-  strut_sweep_progress progress;
-  strut_slots *slots;
-  const char *directory; /* NULL: no partial table, of a shard */
-  double next, interval; /* [s] since it began */
-} strut_sweep_display;
+/** A study that is computed, and where its results go. */
+typedef struct strut_study_job {
+  const strut_arguments *arguments;
+  strut_sweep_study *study;
+  strut_shard shard;  /* of a search: which of its workers; count 0: none */
+  strut_slots *slots; /* strut_slots_close closes them */
+  strut_sweep_state state;
+} strut_study_job;
 
-strut_sweep_display strut_sweep_display_begin(const strut_sweep_plan *plan, bool quiet,
-                                              strut_slots *slots, const char *directory);
-/** `context` is the strut_sweep_display. */
-void strut_sweep_display_show(void *context, const strut_sweep_state *state);
-/** Writes and reports the rows of a study that has ended before its last point. */
-void strut_sweep_write_partial(const char *directory, strut_slots *slots);
+/** Opens or creates the job's file of slots, in a directory that no one else's results are in. */
+strut_status strut_study_job_open(strut_study_job *job, const char *path, strut_error *error);
+/** Computes the job's points; `options` have progress and interrupt. */
+typedef strut_status strut_study_compute(strut_study_job *job, const strut_sweep_options *options,
+                                         void *context, strut_error *error);
+/** Does that with progress, and now and then the table of the rows that there are, also when it has failed. */
+strut_status strut_study_job_run(strut_study_job *job, strut_study_compute *compute, void *context,
+                                 strut_error *error);
 
 /** Prints each warning of the runs once, with its count, on stderr. */
 void strut_sweep_print_warnings(const strut_sweep_state *state);
@@ -119,18 +109,14 @@ strut_status strut_sweep_judge(int64_t points, int64_t failed, int64_t inaccurat
 
 /** STRUT_BAD_SCENE, with a message on stderr, where several workers could not share the search. */
 strut_status strut_sweep_search_check_workers(strut_sweep_study *study);
-/**
- * Does what the command does with a study that searches, once it is open. A shard is one of the workers that
- * share the points at the same time, each of which writes all files at the end, with the same bytes.
- */
-strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
-                                strut_shard worker);
+/** Computes a study that searches, once its slots are open, and writes its results. */
+strut_status strut_sweep_search(strut_study_job *job);
 /** Are all searches in a directory finished? */
 bool strut_sweep_search_is_finished(const char *directory);
 /** Adds the columns of a study that follows motions, and checks that its first point has some. */
 strut_status strut_sweep_follow_check(strut_sweep_study *study, strut_error *error);
-/** Does what the command does with a study that follows motions, once it is open. */
-strut_status strut_sweep_follow(const strut_arguments *arguments, strut_sweep_study *study);
+/** Does the same with a study that follows motions. */
+strut_status strut_sweep_follow(strut_study_job *job);
 
 /** Prints the script for the study of that name. */
 strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name);

@@ -14,7 +14,7 @@
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
-#include "parser/program/sweep.h"
+#include "parser/program/study/sweep.h"
 
 static const strut_option options[] = {
     STRUT_OUTPUT_OPTION(
@@ -101,42 +101,16 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
   return strut_print_values(arguments, &strut_slots_progress_values, &progress, NULL);
 }
 
-/* A study that is run, and where its results go. */
-typedef struct sweep_run {
-  const strut_arguments *arguments;
-  strut_sweep_study *study;
-  strut_shard shard; /* count 0: none */
-  strut_slots *slots;
-} sweep_run;
-
-static strut_status run_points(const sweep_run *r, const strut_refinement *refinement,
-                               strut_sweep_state *state, strut_error *error) {
-  const strut_arguments *arguments = r->arguments;
-  strut_sweep_study *study = r->study;
-  strut_slots *slots = r->slots;
-  const bool partial = !r->shard.count;
-  strut_sweep_display shown = strut_sweep_display_begin(&study->plan, arguments->quiet, slots,
-                                                        partial ? arguments->output : NULL);
-  strut_sweep_options how = {.interrupt = strut_interrupt_watch(),
-                             .directory = arguments->output,
-                             .progress = strut_sweep_display_show,
-                             .progress_context = &shown};
-  if (refinement) {
+/* `context`: the refinement, or NULL. */
+static strut_status run_points(strut_study_job *job, const strut_sweep_options *given,
+                               void *context, strut_error *error) {
+  strut_sweep_options how = *given;
+  if (context) {
     how.wants = strut_refinement_wants;
-    how.wants_context = refinement;
-    strut_refinement_count(refinement, slots, &how.wanted, &how.wanted_done);
+    how.wants_context = context;
+    strut_refinement_count(context, job->slots, &how.wanted, &how.wanted_done);
   }
-  strut_status status = strut_sweep_texts_write(arguments, study, error);
-  if (!status) status = strut_sweep_run(&study->plan, slots, &how, state, error);
-  strut_sweep_progress_end(&shown.progress);
-  strut_error late = {0};
-  strut_status synced = strut_slots_sync(slots, &late);
-  if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
-  if (status && partial && state->done > 0) strut_sweep_write_partial(arguments->output, slots);
-  if (status == STRUT_INTERRUPTED)
-    strut_fail(error, status, "interrupted after %lld of %lld points; the same command resumes",
-               (long long)state->done, (long long)state->points);
-  return status;
+  return strut_sweep_run(&job->study->plan, job->slots, &how, &job->state, error);
 }
 
 /* Adds the warnings of a round to those before. */
@@ -158,18 +132,17 @@ static void add_warnings(strut_sweep_state *all, const strut_sweep_state *round)
  * Computes what is wanted until that wants nothing further. *others: points of other shards that must be
  * known before more can be.
  */
-static strut_status run_refined(const sweep_run *r, strut_refinement *refinement, int64_t *others,
-                                strut_sweep_state *state, strut_error *error) {
+static strut_status run_refined(strut_study_job *job, strut_refinement *refinement, int64_t *others,
+                                strut_error *error) {
   int64_t wanted, done;
-  strut_sweep_state all = {0};
+  strut_sweep_state all = {0}, *state = &job->state;
   strut_status status = STRUT_OK;
-  *state = (strut_sweep_state){0};
   for (bool first = true; !status; first = false) {
-    strut_sweep_refine_learn(refinement, r->arguments->output, r->shard, r->slots);
+    strut_sweep_refine_learn(refinement, job->arguments->output, job->shard, job->slots);
     *others = strut_refinement_choose(refinement);
-    strut_refinement_count(refinement, r->slots, &wanted, &done);
+    strut_refinement_count(refinement, job->slots, &wanted, &done);
     if (wanted == done && !first) break;
-    status = run_points(r, refinement, state, error);
+    status = strut_study_job_run(job, run_points, refinement, error);
     all.computed += state->computed;
     all.seconds += state->seconds;
     add_warnings(&all, state);
@@ -182,70 +155,68 @@ static strut_status run_refined(const sweep_run *r, strut_refinement *refinement
 }
 
 /* Writes table and figures. Failed points do not stop a sweep, but change the exit code. */
-static strut_status complete_sweep(const strut_arguments *arguments, strut_sweep_study *study,
-                                   strut_shard shard, strut_slots *slots,
-                                   const strut_refinement *refinement,
-                                   const strut_sweep_state *state) {
+static strut_status complete_sweep(const strut_study_job *job, const strut_refinement *refinement) {
+  const strut_arguments *arguments = job->arguments;
+  const bool whole = !job->shard.count;
   strut_error error = {0};
-  strut_slots *const sources[] = {slots};
-  const char *table = shard.count ? "one shard: 'strut sweep --merge' writes the table of all"
-                                  : inside(study, arguments->output, table_name);
+  strut_slots *const sources[] = {job->slots};
+  const char *table = whole ? inside(job->study, arguments->output, table_name)
+                            : "one shard: 'strut sweep --merge' writes the table of all";
   if (!table) return strut_print_out_of_memory();
   strut_status status = STRUT_OK;
-  if (!shard.count && refinement)
+  if (whole && refinement)
     status =
         strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
-  else if (!shard.count)
+  else if (whole)
     status = strut_study_table_write(arguments->output, table_name, sources, 1, &error);
   if (status) return strut_print_failure(status, &error);
-  if (!shard.count) strut_file_remove(arguments->output, STRUT_PARTIAL_TABLE);
-  if (!shard.count)
-    status = strut_sweep_figures_draw(&study->plan, arguments->output, table, refinement);
+  if (whole) strut_file_remove(arguments->output, STRUT_PARTIAL_TABLE);
+  if (whole)
+    status = strut_sweep_figures_draw(&job->study->plan, arguments->output, table, refinement);
   if (status) return status;
-  status = strut_print_values(arguments, &strut_sweep_end_values, &(strut_sweep_end){state, table},
-                              NULL);
-  if (!status && !shard.count)
-    status = strut_sweep_sensitivity_complete(arguments, &study->plan, slots);
+  status = strut_print_values(arguments, &strut_sweep_end_values,
+                              &(strut_sweep_end){&job->state, table}, NULL);
+  if (!status && whole)
+    status = strut_sweep_sensitivity_complete(arguments, &job->study->plan, job->slots);
   return status ? status
-                : strut_sweep_judge(state->points, state->failed, strut_slots_inaccurate(slots));
+                : strut_sweep_judge(job->state.points, job->state.failed,
+                                    strut_slots_inaccurate(job->slots));
 }
 
-static strut_status compute_points(const strut_arguments *arguments, strut_sweep_study *study) {
-  strut_slots *slots = NULL;
-  strut_sweep_state state = {0};
+static strut_status sweep(strut_study_job *job) {
   strut_error error = {0};
-  strut_shard shard;
-  const char *path;
   strut_refinement *refinement = NULL;
   int64_t others = 0;
-  strut_status status = find_shard(arguments, study, &shard, &path);
-  if (status) return status;
-  status = strut_sweep_texts_check(arguments, study, &error);
-  if (!status && !shard.count)
-    status = strut_sweep_figures_check_files(&study->plan, arguments->output, &error);
-  if (!status) status = strut_directory_create(arguments->output, &error);
-  if (!status) status = strut_shard_begin(arguments->output, shard, &error);
-  if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
-  if (!status && arguments->retry) status = strut_slots_retry(slots, &error);
-  if (!status && !shard.count && strut_slots_missing(slots) > 0)
-    strut_file_remove(arguments->output, table_name); /* outdated */
-  if (!status && study->plan.study->refine.depth)
-    status = strut_refinement_create(&study->plan, &refinement, &error);
-  const sweep_run run = {arguments, study, shard, slots};
-  if (!status && refinement)
-    status = run_refined(&run, refinement, &others, &state, &error);
-  else if (!status)
-    status = run_points(&run, NULL, &state, &error);
-  strut_sweep_print_warnings(&state);
+  strut_status status = STRUT_OK;
+  if (job->study->plan.study->refine.depth)
+    status = strut_refinement_create(&job->study->plan, &refinement, &error);
+  if (!status)
+    status = refinement ? run_refined(job, refinement, &others, &error)
+                        : strut_study_job_run(job, run_points, NULL, &error);
+  strut_sweep_print_warnings(&job->state);
   strut_print_failure(status, &error);
-  if (!status) status = complete_sweep(arguments, study, shard, slots, refinement, &state);
+  if (!status) status = complete_sweep(job, refinement);
   if (others && (!status || status == STRUT_DIVERGED || status == STRUT_INACCURATE))
     fprintf(stderr,
             "strut: %lld points of other shards decide what is refined next: run this shard again "
             "when they are done\n",
             (long long)others);
   strut_refinement_free(refinement);
-  strut_slots_close(slots);
+  return status;
+}
+
+static strut_status compute_study(const strut_arguments *arguments, strut_sweep_study *study) {
+  strut_study_job job = {.arguments = arguments, .study = study};
+  strut_error error = {0};
+  const char *path;
+  strut_status status = find_shard(arguments, study, &job.shard, &path);
+  if (status) return status;
+  status = strut_print_failure(strut_study_job_open(&job, path, &error), &error);
+  if (!status)
+    status = study->plan.study->search   ? strut_sweep_search(&job)
+             : study->plan.study->follow ? strut_sweep_follow(&job)
+                                         : sweep(&job);
+  strut_slots_close(job.slots);
   return status;
 }
 
@@ -268,13 +239,6 @@ static strut_status check_search(const strut_arguments *arguments, strut_sweep_s
                              "points depends on those before it");
   bool several = arguments->shard || arguments->emit.text;
   return several ? strut_sweep_search_check_workers(study) : STRUT_OK;
-}
-
-static strut_status compute_search(const strut_arguments *arguments, strut_sweep_study *study) {
-  strut_shard worker;
-  const char *path;
-  strut_status status = find_shard(arguments, study, &worker, &path);
-  return status ? status : strut_sweep_search(arguments, study, worker);
 }
 
 /* The branches of all points go into one folder. */
@@ -353,12 +317,8 @@ static strut_status run_sweep(const strut_arguments *given) {
     status = emit_script(arguments, study.plan.study);
   else if (!status && arguments->status)
     status = show_status(arguments, &study);
-  else if (!status && study.plan.study->search)
-    status = compute_search(arguments, &study);
-  else if (!status && study.plan.study->follow)
-    status = strut_sweep_follow(arguments, &study);
   else if (!status)
-    status = compute_points(arguments, &study);
+    status = compute_study(arguments, &study);
   if (arguments->plot &&
       (status == STRUT_OK || status == STRUT_DIVERGED || status == STRUT_INACCURATE)) {
     strut_status plotted = plot_table(arguments, &study);
