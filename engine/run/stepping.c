@@ -261,7 +261,7 @@ struct strut_stepping {
   stepping_inputs inputs;
   strut_recording live;
   strut_channels shown; /* channels that follow */
-  int64_t checked; /* step of the latest strut_run_sample; -1: none */
+  int64_t checked;      /* step of the latest strut_run_sample; -1: none */
   strut_status status;
   uint64_t identity;
   bool begun;

@@ -50,7 +50,8 @@ STRUT_API double strut_stepping_step(const strut_stepping *stepping);
  * there is none.
  */
 STRUT_API const strut_record_channel *strut_stepping_channel(strut_stepping *stepping,
-                                                             strut_channels id, const double **data);
+                                                             strut_channels id,
+                                                             const double **data);
 /** An input; *count numbers. NULL: memory is out. */
 STRUT_API double *strut_stepping_input(strut_stepping *stepping, strut_input input, size_t *count);
 /** Work that changes of inputs have done [J]. */
