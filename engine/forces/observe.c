@@ -21,11 +21,12 @@
 
 #define OBSERVE(ID)                                                                                \
   static strut_observed observe_##ID(strut_view *view, int32_t item, int32_t other)
-#define VALUE(ID, expression)                                                                      \
+#define OBSERVED(ID, observed)                                                                     \
   OBSERVE(ID) {                                                                                    \
     (void)view, (void)item, (void)other;                                                           \
-    return (strut_observed){(expression), 0.0};                                                    \
+    return observed;                                                                               \
   }
+#define VALUE(ID, expression) OBSERVED(ID, ((strut_observed){(expression), 0.0}))
 /* One that is the rate of another. */
 #define RATE(ID, OF) VALUE(ID, observe_##OF(view, item, other).rate)
 
@@ -39,14 +40,8 @@ static strut_observed coordinate(const strut_view *view, int32_t at) {
   return (strut_observed){view->q[at], view->v[at]};
 }
 
-OBSERVE(NODE_X) {
-  (void)other;
-  return coordinate(view, 2 * item);
-}
-OBSERVE(NODE_Y) {
-  (void)other;
-  return coordinate(view, 2 * item + 1);
-}
+OBSERVED(NODE_X, coordinate(view, 2 * item))
+OBSERVED(NODE_Y, coordinate(view, 2 * item + 1))
 VALUE(NODE_VX, view->v[2 * item])
 VALUE(NODE_VY, view->v[2 * item + 1])
 
@@ -106,11 +101,13 @@ static bool touches(const strut_view *view, int32_t i) {
          view->model->elements.element[element].natural;
 }
 
-OBSERVE(TOUCHES) {
-  bool any = false;
-  for (int32_t i = item; i < other && !any; i++) any = touches(view, i);
-  return (strut_observed){any, 0.0};
+static bool any_touches(const strut_view *view, int32_t first, int32_t end) {
+  for (int32_t i = first; i < end; i++)
+    if (touches(view, i)) return true;
+  return false;
 }
+
+VALUE(TOUCHES, any_touches(view, item, other))
 
 /* The normal force on contact i at the view's positions and velocities. */
 static double press(const strut_view *view, int32_t i) {
@@ -155,16 +152,14 @@ static strut_member_values member_of(const strut_view *view, int32_t member) {
   return values;
 }
 
-OBSERVE(LENGTH) {
+static strut_observed length_of(const strut_view *view, int32_t member) {
   strut_member_values values =
-      strut_member_measure_at(view->model, view->state, item, view->q, view->v);
-  (void)other;
+      strut_member_measure_at(view->model, view->state, member, view->q, view->v);
   return (strut_observed){values.length, values.rate};
 }
-OBSERVE(STRETCH) {
-  strut_observed length = observe_LENGTH(view, item, other);
-  return (strut_observed){length.value - view->state->latest->rest[item], 0.0};
-}
+
+OBSERVED(LENGTH, length_of(view, item))
+VALUE(STRETCH, length_of(view, item).value - view->state->latest->rest[item])
 RATE(RATE, LENGTH)
 VALUE(FORCE, member_of(view, item).force)
 
@@ -214,10 +209,7 @@ static double direction(strut_vec2 d) { return atan2(d.y, d.x); }
 VALUE(TILT, direction(line(view, view->model->members.from[item], view->model->members.to[item])))
 VALUE(ANGLE, direction(line_of_pair(view, item, other)))
 
-OBSERVE(DISTANCE) {
-  strut_vec2 d = line_of_pair(view, item, other);
-  return (strut_observed){hypot(d.x, d.y), 0.0};
-}
+VALUE(DISTANCE, hypot(line_of_pair(view, item, other).x, line_of_pair(view, item, other).y))
 
 /* ---- elements: hinges, cells, collisions, distances ---- */
 
@@ -263,29 +255,20 @@ static double moment_of(const strut_view *view, int32_t element) {
   return moment + strut_actuator_force_on(view->model, view->state, -1, hinge);
 }
 
-#define STRAIN(ID)                                                                                 \
-  OBSERVE(ID) {                                                                                    \
-    (void)other;                                                                                   \
-    return strain_of(view, item);                                                                  \
-  }
-STRAIN(HINGE_ANGLE)
+OBSERVED(HINGE_ANGLE, strain_of(view, item))
 RATE(HINGE_RATE, HINGE_ANGLE)
 VALUE(MOMENT, moment_of(view, item))
 VALUE(HINGE_PLASTIC, strut_element_plastic(view->model, view->state, item))
-STRAIN(CELL_AREA)
+OBSERVED(CELL_AREA, strain_of(view, item))
 RATE(CELL_RATE, CELL_AREA)
 VALUE(PRESSURE, push_of(view, item))
 VALUE(COLLISION_GAP, gap_of(view, item))
 VALUE(COLLISION_FORCE, push_of(view, item))
-STRAIN(DISTANCE_VALUE)
+OBSERVED(DISTANCE_VALUE, strain_of(view, item))
 RATE(DISTANCE_RATE, DISTANCE_VALUE)
 VALUE(DISTANCE_FORCE, force_of(view, item))
 
-OBSERVE(LEAST_GAP) {
-  (void)item, (void)other;
-  double gap = strut_nearby_least_gap(view->model, view->state, view->q, &view->branch);
-  return (strut_observed){gap, 0.0};
-}
+VALUE(LEAST_GAP, strut_nearby_least_gap(view->model, view->state, view->q, &view->branch))
 
 /* ---- the structure as a whole ---- */
 

@@ -421,14 +421,17 @@ static void measure_columns(strut_quantities *q) {
                                     .noise = strut_columns_noise(c, i)};
 }
 
-/* The member of the largest force, where the largest one of all was asked for. */
-static const char *loaded_member(const strut_quantities *q, const strut_meter *m) {
-  const strut_quantity_definition *d = m->definition;
+bool strut_quantity_names_member(const strut_quantity_definition *d) {
   bool asked = false;
   for (size_t i = 0; i < d->length; i++)
     asked = asked || (d->program[i].operation == STRUT_OPERATION_COLUMN &&
                       d->program[i].column.kind == STRUT_COLUMN_LARGEST_FORCE);
-  if (!asked || d->take != STRUT_TAKE_MAX || q->columns.loaded < 0) return NULL;
+  return asked && d->take == STRUT_TAKE_MAX;
+}
+
+/* The member of the largest force, where the largest one of all was asked for. */
+static const char *loaded_member(const strut_quantities *q, const strut_meter *m) {
+  if (!strut_quantity_names_member(m->definition) || q->columns.loaded < 0) return NULL;
   return q->columns.view.model->scene->members[q->columns.loaded].name;
 }
 

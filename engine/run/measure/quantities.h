@@ -97,6 +97,8 @@ strut_quantities *strut_quantities_create(const strut_model *model,
                                           const strut_experiment *experiment, strut_arena *arena);
 /** Does a quantity of the scene need works or losses, which only the energy balance has? */
 bool strut_quantities_need_balance(const strut_experiment *experiment);
+/** Does the quantity tell the member of the largest force? */
+STRUT_API bool strut_quantity_names_member(const strut_quantity_definition *definition);
 /** Does a quantity depend on the motion between steps? */
 bool strut_quantities_need_pieces(const strut_quantities *quantities);
 /** The method shows its pieces: from the next window on they are measured instead of the steps of the grid. */

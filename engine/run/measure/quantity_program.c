@@ -24,12 +24,8 @@ static uint64_t branch_of(strut_operation operation, double a, double b, double 
   }
 }
 
-static const struct operation_row {
-  int operands;
-  strut_sensitivity sensitivity;
-} rows[] = {
-#define STRUT_OPERATION_ROW(id, operands, word, sensitivity)                                       \
-  {operands, STRUT_SENSITIVITY_##sensitivity},
+static const strut_sensitivity sensitivities[] = {
+#define STRUT_OPERATION_ROW(id, operands, word, sensitivity) STRUT_SENSITIVITY_##sensitivity,
     STRUT_OPERATION_TABLE(STRUT_OPERATION_ROW)
 #undef STRUT_OPERATION_ROW
 };
@@ -45,7 +41,7 @@ double strut_quantity_program_evaluate(const strut_quantity_definition *d, const
     } else if (p->operation == STRUT_OPERATION_COLUMN) {
       stack[top++] = value[index[i]];
     } else {
-      int count = rows[p->operation].operands;
+      int count = strut_operation_operands(p->operation);
       top -= (size_t)count;
       assert(top < d->depth);
       double a = stack[top], b = count > 1 ? stack[top + 1] : 0.0;
@@ -63,7 +59,7 @@ double strut_quantity_program_evaluate(const strut_quantity_definition *d, const
 /* Propagates the uncertainties da and db of the operands to the result. */
 static double propagate_uncertainty(strut_operation operation, double a, double b, double da,
                                     double db) {
-  switch (rows[operation].sensitivity) {
+  switch (sensitivities[operation]) {
     case STRUT_SENSITIVITY_PRODUCT: return a * db + b * da;
     case STRUT_SENSITIVITY_QUOTIENT: return da / b + a * db / (b * b);
     case STRUT_SENSITIVITY_POWER: return a > 0.0 ? fabs(b) * pow(a, b) * da / a : da;
@@ -79,7 +75,7 @@ static double propagate_uncertainty(strut_operation operation, double a, double 
 static strut_magnitude combine_magnitudes(strut_operation operation, strut_magnitude a,
                                           strut_magnitude b) {
   double size = 1.0;
-  switch (rows[operation].sensitivity) {
+  switch (sensitivities[operation]) {
     case STRUT_SENSITIVITY_PRODUCT:
     case STRUT_SENSITIVITY_QUOTIENT:
     case STRUT_SENSITIVITY_POWER:
@@ -106,7 +102,7 @@ strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition
     } else if (p->operation == STRUT_OPERATION_COLUMN) {
       stack[top++] = value[index[i]];
     } else {
-      int count = rows[p->operation].operands;
+      int count = strut_operation_operands(p->operation);
       strut_magnitude none = {0};
       top -= (size_t)count;
       assert(top < d->depth);

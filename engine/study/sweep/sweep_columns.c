@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/run/measure/quantities.h"
 #include "engine/study/sweep/evaluation.h"
 #include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep_parts.h"
@@ -155,15 +156,6 @@ static bool is_kept(const strut_study *study, const char *quantity) {
   return false;
 }
 
-/* Does the quantity name the member of the largest force? */
-static bool names_member(const strut_quantity_definition *d) {
-  for (size_t i = 0; i < d->length && d->take == STRUT_TAKE_MAX; i++)
-    if (d->program[i].operation == STRUT_OPERATION_COLUMN &&
-        d->program[i].column.kind == STRUT_COLUMN_LARGEST_FORCE)
-      return true;
-  return false;
-}
-
 /* Adds the measured quantities that are kept; one with the name of a column gets a prefix. */
 static bool add_quantities(strut_sweep_plan *plan, const strut_experiment *e) {
   for (size_t i = 0; i < e->quantity_count; i++) {
@@ -172,13 +164,14 @@ static bool add_quantities(strut_sweep_plan *plan, const strut_experiment *e) {
     const char *name = strut_arena_text(&plan->arena, d->name, strlen(d->name));
     const char *unit = strut_arena_text(&plan->arena, d->unit, strlen(d->unit));
     if (!name || !unit) return false;
-    plan->names_member[plan->quantity_count] = names_member(d);
+    plan->names_member[plan->quantity_count] = strut_quantity_names_member(d);
     plan->quantities[plan->quantity_count++] = name;
     bool taken =
         is_taken(plan, plan->column_count, name) && !is_taken(plan, plan->axis_columns, name);
     if (!strut_sweep_add_column(plan, taken ? "measured_" : "", name, unit, false)) return false;
     const char *member = strut_arena_format(&plan->arena, "%s_member", name);
-    if (!member || (names_member(d) && !strut_sweep_add_column(plan, "", member, "1", true)))
+    if (!member ||
+        (strut_quantity_names_member(d) && !strut_sweep_add_column(plan, "", member, "1", true)))
       return false;
   }
   return true;
