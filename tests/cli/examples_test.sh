@@ -35,8 +35,7 @@ err_empty
 (cd "$models" && find . -name '*.yaml') | sed 's|^\./||' | LC_ALL=C sort >wanted
 cut -d' ' -f1 out >got
 same wanted got
-out_has "Nine-member multistable crawler"
-out_has "study: Figure 5"
+out_has "Nine-member multistable crawler" "study: Figure 5"
 mkdir here
 cd here || exit 1
 expect 0 examples crawler

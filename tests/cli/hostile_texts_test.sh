@@ -54,8 +54,7 @@ PATH=$PWD/bin:$PATH sh out >/dev/null 2>&1
 absent PWNED
 
 # ---- a cell that a spreadsheet would compute ----
-expect 0 compare model.yaml model.yaml --csv
-out_has "'=HYPERLINK"
+shows 0 "'=HYPERLINK" compare model.yaml model.yaml --csv
 
 # ---- names without a look ----
 named() {

@@ -5,8 +5,7 @@
 
 expect 0 keys member
 err_empty
-out_has "stiffness: number [N/m], not negative; default 0"
-out_has "    Force per elongation."
+out_has "stiffness: number [N/m], not negative; default 0" "    Force per elongation."
 grep -q '`\|](' out && fail "Markdown on the terminal"
 [ "$(awk '{ if (length($0) > most) most = length($0) } END { print most }' out)" -le 79 ] ||
   fail "lines of more than 79 columns"

@@ -3,10 +3,9 @@
 turns by M = m g L sin(theta), over its limit points; a barrier has the moment's work in it; runs through several turns
 follow the linear equation of one angle, and their balance closes."""
 import cmath
-import json
 import math
 
-from testing import check, finish, run, write
+from testing import answer, check, finish, run, write
 
 CHAIN = """strut: 1
 groups: {rod: {kind: bar, stiffness: 1 MN/m}, spring: {stiffness: 1 N m/rad}}
@@ -27,7 +26,7 @@ run: {duration: 4 s, measure: {quantities: {angle: {of: h.angle, take: final}}}}
 
 def answer(text, command, *words):
     write("moment.yaml", text)
-    return json.loads(run(command, "moment.yaml", "--json", *words).stdout)
+    return answer(command, "moment.yaml", *words)
 
 
 def near(found, expected, part, what):
