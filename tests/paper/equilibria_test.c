@@ -33,12 +33,11 @@ static strut_equilibria all;
 
 BEFORE_ALL {
   strut_error error = {0};
-  strut_equilibria_options options = {0};
   crawler = model_read("crawler/crawler", set_none);
   strut_status status = strut_model_compile(&crawler.setup.scene, &crawler.model, &error);
   if (!status)
-    status =
-        strut_equilibria_find(crawler.model, &crawler.setup.experiment, &options, &all, &error);
+    status = strut_equilibria_find(crawler.model, &crawler.setup.experiment,
+                                   &(strut_equilibria_options){0}, &all, &error);
   if (status) fail_msg("%s", error.message);
 }
 
