@@ -5,9 +5,8 @@
 #
 #   python3 objectives_test.py STRUT
 import math
-import os
 
-from testing import answer, check, copy_models, finish, models, near, run, sweep, work, write
+from testing import answer, check, copy_models, finish, models, near, run, sweep, write
 
 copy_models()
 

@@ -11,7 +11,7 @@ import re
 import shutil
 import subprocess
 
-from testing import answer, check, finish, run, strut, work, write
+from testing import answer, check, finish, run, work, write
 
 models, tests = os.path.abspath("models"), os.path.dirname(os.path.abspath(__file__))
 

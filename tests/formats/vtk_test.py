@@ -144,7 +144,6 @@ def test_thinning():
 
 
 def test_trouble():
-    before = sorted(files_in("vtk"))
     for code, words, message in [
             (4, ["vtk", "vtk", "-o", "x"], "holds no run"),
             (4, ["vtk", "nowhere", "-o", "x"], "nowhere"),

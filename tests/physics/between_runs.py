@@ -3,7 +3,7 @@
 strike each other, by a spring that only pushes and as a collision, against steps of a tenth of the contact."""
 import random
 
-from testing import answer, check, finish, run, write
+from testing import answer, check, finish, write
 
 SCENE = """strut: 1
 parameters: {{d: 50 mm, v: {v}, k: 1e7, x: {x}, b: {b}}}
