@@ -387,7 +387,7 @@ shows 5 "contacts or laws switch too often to be followed in" run endless.yaml -
 
 # What makes no sense is refused.
 tells 1 "give either --accuracy, or --integrator and --step" run "$crawler" --accuracy 1% --integrator rk4
-tells 1 "greater than 0" run "$crawler" --accuracy 0
+tells 1 "must be above 0 and at most 1" run "$crawler" --accuracy 0
 tells 1 "at most 1" run "$crawler" --accuracy 150%
 tells 1 "leapfrog" run "$crawler" --integrator leapfrog
 tells 1 "periods" run "$here/hopper.yaml" --steady 1%

@@ -93,9 +93,7 @@ expect $code check f.yaml --json
 err_empty
 holds '.valid == false and (.messages | length == 1)'
 holds '.messages[0] | .file == "f.yaml" and .line == 1 and .column == 1 and .length == 0'
-expect 4 check missing.yaml --json
-out_empty
-err_has "No such file"
+refuses 4 "No such file" check missing.yaml --json
 
 # Studies.
 cp -R "$studies" studies

@@ -66,9 +66,7 @@ expect 0 check start.yaml
 expect 2 run start.yaml --set start=IV
 
 # Wrong input.
-expect 1 equilibria "$crawler" --supports n1,n6
-out_empty
-err_has "--supports: there is no node 'n6'; did you mean 'n"
+refuses 1 "--supports: there is no node 'n6'; did you mean 'n" equilibria "$crawler" --supports n1,n6
 tells 1 "named twice" equilibria "$crawler" --supports n1,n1
 tells 1 "--supports" equilibria "$crawler" --supports ""
 tells 1 "--starts" equilibria "$crawler" --starts -3

@@ -20,9 +20,7 @@ expect 0 examples robot # it is here already
 out_empty
 echo "# mine" >>robot.yaml
 cp robot.yaml mine
-expect 4 examples robot
-out_empty
-err_has "'robot.yaml' exists already, and is left as it is"
+refuses 4 "'robot.yaml' exists already, and is left as it is" examples robot
 same mine robot.yaml
 mkdir links
 ln -s nowhere links/robot.yaml

@@ -71,6 +71,8 @@ near_number() {
 # shows CODE TEXT WORD..., tells CODE TEXT WORD...: the same, and stdout (stderr) has the text.
 shows() { _code=$1 _text=$2 && shift 2 && expect "$_code" "$@"; out_has "$_text"; }
 tells() { _code=$1 _text=$2 && shift 2 && expect "$_code" "$@"; err_has "$_text"; }
+# refuses CODE TEXT WORD...: as tells, and stdout has nothing.
+refuses() { tells "$@"; out_empty; }
 # edit PROGRAM FILE CHECK...: what sed makes of the file, checked: the last word of the check is its name.
 edit() {
   sed "$1" "$2" >edited.yaml

@@ -34,8 +34,7 @@ cp x.yaml piped.yaml
 same printed out
 
 # Refused: an unknown shape, an unknown option, a scene that is none, a directory that cannot be.
-tells 1 "nowhere" rigidity x.yaml --at nowhere
-out_empty
+refuses 1 "nowhere" rigidity x.yaml --at nowhere
 tells 1 "--accuracy cannot be used here: equilibria are computed to rounding errors" rigidity x.yaml --accuracy 1%
 edit 's/kind: bar/kind: rod/' x.yaml tells 2 "rod" rigidity
 echo text >taken

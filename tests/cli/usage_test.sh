@@ -60,12 +60,8 @@ tells 1 "--set expects NAME=VALUE" run "$hopper" --set =3
 tells 1 "unknown option '--force'" check "$hopper" --force
 tells 1 "missing MODEL" run
 tells 1 "unexpected argument 'other.yaml'" run "$hopper" other.yaml
-expect 1 keys "$hopper"
-out_empty
-err_has "there is no section or key"
-expect 1 keys --schema "$hopper"
-out_empty
-err_has "'strut keys --schema --help' lists the options"
+refuses 1 "there is no section or key" keys "$hopper"
+refuses 1 "'strut keys --schema --help' lists the options" keys --schema "$hopper"
 expect 0 keys --results
 cmp out "$here/../../docs/results.md" || fail "docs/results.md is not what strut keys --results prints"
 tells 1 "missing MODEL" run --
