@@ -16,6 +16,7 @@
 
 FREED_BY(strutlib_result_free, strutlib_result)
 FREED_BY(strutlib_close, strutlib_scene)
+FREED_BY(strutlib_control_free, strutlib_control)
 FREED_BY(strutlib_simulation_close, strutlib_simulation)
 
 static const char crawler[] = "models/crawler/crawler.yaml";
@@ -560,7 +561,7 @@ static int interrupt_soon(void *context, double fraction) {
 TEST(an_interrupt_returns_what_there_is) {
   strutlib_error *error;
   strutlib_scene *scene = open_crawler();
-  strutlib_control *control = strutlib_control_create();
+  OWN_POINTER(strutlib_control) control = strutlib_control_create();
   const char *names[] = {"step"}, *values[] = {"0.001 ms"};
   double begin = processor_time();
   start_of_interrupt = 0.0;
@@ -589,7 +590,6 @@ TEST(an_interrupt_returns_what_there_is) {
   strutlib_control_reset(control);
   assert_int_equal(strutlib_simulation_advance(simulation, 5, &error), STRUTLIB_OK);
   strutlib_close(scene);
-  strutlib_control_free(control);
 }
 
 static void *interrupt_later(void *control) {
@@ -602,7 +602,7 @@ static void *interrupt_later(void *control) {
 TEST(another_thread_interrupts_searches_and_sweeps) {
   strutlib_error *error;
   OWN_POINTER(strutlib_scene) scene = open_crawler();
-  strutlib_control *control = strutlib_control_create();
+  OWN_POINTER(strutlib_control) control = strutlib_control_create();
   pthread_t thread;
   const char *names[] = {"starts"}, *values[] = {"10000000"};
   pthread_create(&thread, NULL, interrupt_later, control);
@@ -622,7 +622,6 @@ TEST(another_thread_interrupts_searches_and_sweeps) {
   assert_refused(error, STRUTLIB_INTERRUPTED, "of 400 points");
   array status = array_of(result, "status");
   assert_true(status.data[399] == (double)STRUTLIB_INTERRUPTED);
-  strutlib_control_free(control);
 }
 
 /* Statics look at the interrupt between factorisations, and within a linear programme of 40 s. */
@@ -631,7 +630,7 @@ TEST(statics_end_too) {
                                           const char *const *, strutlib_control *,
                                           strutlib_error **) = {strutlib_form, strutlib_modes};
   strutlib_error *error;
-  strutlib_control *control = strutlib_control_create();
+  OWN_POINTER(strutlib_control) control = strutlib_control_create();
   const char *names[] = {"cells"}, *values[] = {"4000"};
   OWN_POINTER(strutlib_scene) scene =
       strutlib_open("models/parts/x-chain.yaml", 1, names, values, &error);
@@ -646,5 +645,4 @@ TEST(statics_end_too) {
     assert_refused(error, STRUTLIB_INTERRUPTED, "interrupted");
     pthread_join(thread, NULL);
   }
-  strutlib_control_free(control);
 }

@@ -18,11 +18,8 @@
 #include <string.h>
 #include <sys/resource.h>
 
-#include "engine/integrate/integrator.h"
-#ifdef BENCH_PARSER
-#include "tests/bench/precision.h"
-#endif
 #include "tests/bench/methods.h"
+#include "tests/bench/precision.h"
 #include "tests/bench/rivals.h"
 #include "tests/bench/scenes.h"
 
@@ -95,53 +92,20 @@ static void compare_crawlers(int repeats) {
   }
 }
 
-/* One chain, ready to step. */
-typedef struct chain {
-  strut_setup setup;
-  strut_model *model;
-  strut_state *state;
-  void *workspace;
-} chain;
-
-static void chain_free(chain *it) {
-  strut_state_free(it->state);
-  strut_model_free(it->model);
-  strut_setup_free(&it->setup);
-}
-
-static bool chain_make(chain *it, size_t members, strut_mass_model mass) {
-  strut_error error = {0};
-  *it = (chain){0};
-  strut_status status = bench_chain_scene(&it->setup, members, mass);
-  if (status == STRUT_OK) status = strut_model_compile(&it->setup.scene, &it->model, &error);
-  const strut_integrator_settings settings = strut_integrator_settings_of(&it->setup.experiment);
-  if (status == STRUT_OK) status = strut_state_create(it->model, &it->state, &error);
-  if (status == STRUT_OK)
-    it->workspace = strut_integrator_find("rk4")->create(it->model, it->state, &settings);
-  if (it->workspace) {
-    strut_state_reset(it->model, it->state);
-    return true;
-  }
-  fprintf(stderr, "strut_bench: chain of %zu: %s: %s\n", members, strut_status_text(status),
-          error.message);
-  chain_free(it);
-  return false;
-}
-
-static double chain_run(chain *it, long long steps) {
+static double chain_run(bench_motion *it, long long steps) {
   double start = bench_seconds();
-  strut_integrator_find("rk4")->advance(it->model, it->state, it->workspace, 1e-4, steps);
+  it->method->advance(it->model, it->state, it->workspace, 1e-4, steps);
   return bench_seconds() - start;
 }
 
 static void time_chain(size_t members, int repeats) {
   static double times[2][MOST_REPEATS];
-  chain chains[2];
+  bench_motion chains[2];
   bool made[2];
   long long steps = members < 200000 ? (long long)(1000000 / members) : 5;
   double farthest = 0;
   for (int m = 0; m < 2; m++) {
-    made[m] = chain_make(&chains[m], members, m ? STRUT_MASS_CONSISTENT : STRUT_MASS_LUMPED);
+    made[m] = bench_chain(&chains[m], members, m ? STRUT_MASS_CONSISTENT : STRUT_MASS_LUMPED);
     if (made[m]) chain_run(&chains[m], steps);
   }
   for (int r = 0; r < repeats; r++)
@@ -157,7 +121,7 @@ static void time_chain(size_t members, int repeats) {
     printf(" %12.2f", 1e9 * median(times[m], repeats));
     for (int32_t i = 0; i < 2 * chains[m].model->node_count; i++)
       farthest = fmax(farthest, fabs(chains[m].state->v[i]));
-    chain_free(&chains[m]);
+    bench_free(&chains[m]);
   }
   printf("   %s\n", farthest > 0 && farthest < 100 ? "" : "(not a sound motion)");
 }
@@ -180,7 +144,6 @@ static int usage(void) {
   return 1;
 }
 
-#ifdef BENCH_PARSER
 static int compare_rivals(int argc, char **argv) {
   const char *folder = NULL;
   double limit = 1.0;
@@ -197,12 +160,9 @@ static int compare_rivals(int argc, char **argv) {
   if (!(limit > 0)) return usage();
   return bench_precision(folder, limit, argv + i, argc - i);
 }
-#endif
 
 int main(int argc, char **argv) {
-#ifdef BENCH_PARSER
   if (argc >= 2 && strcmp(argv[1], "rivals") == 0) return compare_rivals(argc, argv);
-#endif
   if (argc >= 2 && strcmp(argv[1], "methods") == 0) {
     bench_methods(31, argc > 2 ? argv[2] : NULL, argc > 3 ? atof(argv[3]) : 1.0);
     return 0;

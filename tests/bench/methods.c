@@ -5,9 +5,8 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
-#include "engine/integrate/integrator.h"
+#include "tests/bench/rivals.h"
 #include "tests/bench/scenes.h"
 
 enum { STEPS = 4000, BALANCES = 2 };
@@ -22,39 +21,17 @@ static const method_row rows[] = {
     {"adaptive", 1e-3}, {"euler", 5e-5},  {"euler-events", 5e-5}};
 enum { ROWS = sizeof rows / sizeof rows[0] };
 
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* ns of a force evaluation. */
 static double run(const method_row *row, double step, bool balance) {
-  strut_setup setup = {0};
-  strut_model *model = NULL;
-  strut_state *state = NULL;
-  double time = (double)NAN;
-  strut_experiment experiment = strut_experiment_default();
-  experiment.integrator = row->method;
-  experiment.step = step;
-  const strut_integrator_settings settings = strut_integrator_settings_of(&experiment);
-  const strut_integrator *method = strut_integrator_find(row->method);
-  void *work = NULL;
-  if (bench_crawler_scene(&setup, 10.0, 1e-4, 0.1) == STRUT_OK &&
-      strut_model_compile(&setup.scene, &model, NULL) == STRUT_OK &&
-      strut_state_create(model, &state, NULL) == STRUT_OK)
-    work = method->create(model, state, &settings);
-  if (work) {
-    state->balance = balance;
-    if (method->restart) method->restart(model, state, work, step);
-    int64_t steps = (int64_t)(STEPS * 5e-5 / step);
-    double begin = now();
-    method->advance(model, state, work, step, steps);
-    time = 1e9 * (now() - begin) / (double)state->latest->evaluations;
-  }
-  strut_state_free(state);
-  strut_model_free(model);
-  strut_setup_free(&setup);
+  bench_motion m;
+  if (!bench_crawler(&m, row->method, step)) return (double)NAN;
+  m.state->balance = balance;
+  if (m.method->restart) m.method->restart(m.model, m.state, m.workspace, step);
+  int64_t steps = (int64_t)(STEPS * 5e-5 / step);
+  double begin = bench_seconds();
+  m.method->advance(m.model, m.state, m.workspace, step, steps);
+  double time = 1e9 * (bench_seconds() - begin) / (double)m.state->latest->evaluations;
+  bench_free(&m);
   return time;
 }
 

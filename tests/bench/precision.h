@@ -15,7 +15,7 @@
 typedef struct precision_scene {
   const char *name, *title;
   const char *file;   /* below the project's folder */
-  const char *set[3]; /* "name=value" of parameters; NULL after the last */
+  const char *set[4]; /* "name=value" of parameters; NULL after the last */
   double periods;     /* instead of the file's; the last third is the window */
   double loose;       /* factor on the velocity tolerances of implicit methods; 0: 1 */
   bool rigid;         /* also with rigid bars, by strut */

@@ -2,7 +2,6 @@
 /* Scenes of the work-precision tables, as initial value problems. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 #include <sys/time.h>
 
 #include "engine/forces/drives/drives.h"
@@ -10,8 +9,8 @@
 #include "engine/forces/history.h"
 #include "engine/model/pose.h"
 #include "engine/statics/equilibria/equilibria.h"
-#include "parser/read/read_scene.h"
 #include "tests/bench/precision.h"
+#include "tests/bench/scenes.h"
 
 #define CRAWLER(start, hertz)                                                                      \
   {                                                                                                \
@@ -48,30 +47,6 @@ const precision_scene *precision_scene_at(size_t i) {
 }
 
 /* ---- reading ---- */
-
-static strut_status read_setup(precision_problem *p, strut_error *error) {
-  char path[1000], names[3][40];
-  strut_override set[3];
-  size_t count = 0, length = 0;
-  char *text = NULL;
-  strut_diagnostics diagnostics = {0};
-  for (; count < 3 && p->scene->set[count]; count++) {
-    const char *equals = strchr(p->scene->set[count], '=');
-    snprintf(names[count], sizeof names[count], "%.*s", (int)(equals - p->scene->set[count]),
-             p->scene->set[count]);
-    set[count] = (strut_override){names[count], equals + 1};
-  }
-  snprintf(path, sizeof path, "%s/../%s", STRUT_TESTS_DIR, p->scene->file);
-  strut_status status = strut_file_read(path, &text, &length, error);
-  if (status == STRUT_OK) {
-    status =
-        strut_setup_read(&p->setup, path, text, length, set, count, STRUT_FOR_RUN, &diagnostics);
-    if (status != STRUT_OK) strut_fail(error, status, "%s is not a valid scene", path);
-  }
-  strut_diagnostics_free(&diagnostics);
-  strut_release(text);
-  return status;
-}
 
 static void set_window(precision_problem *p) {
   strut_experiment *e = &p->setup.experiment;
@@ -119,7 +94,7 @@ static bool measure_scales(precision_problem *p) {
 bool precision_open(precision_problem *p, const precision_scene *scene, bool rigid) {
   strut_error error = {0};
   *p = (precision_problem){.scene = scene};
-  strut_status status = read_setup(p, &error);
+  strut_status status = bench_read(&p->setup, scene->file, scene->set, &error);
   if (status == STRUT_OK && rigid) p->setup.scene.bar_model = STRUT_BARS_RIGID;
   if (status == STRUT_OK) status = strut_resolve_start_equilibrium(&p->setup, &error);
   if (status == STRUT_OK) status = strut_model_compile(&p->setup.scene, &p->model, &error);

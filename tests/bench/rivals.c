@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/bench/rivals.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
-#include "engine/integrate/integrator.h"
 #include "tests/bench/hand_kernel.h"
 #include "tests/bench/scenes.h"
 
@@ -20,50 +17,33 @@ double bench_seconds(void) {
 
 /* strut */
 
-typedef struct engine_crawler {
-  strut_setup setup;
-  strut_model *model;
-  strut_state *state;
-  void *workspace;
-} engine_crawler;
-
 static void engine_free(void *crawler) {
-  engine_crawler *it = crawler;
-  strut_state_free(it->state);
-  strut_model_free(it->model);
-  strut_setup_free(&it->setup);
-  free(it);
+  bench_free(crawler);
+  free(crawler);
 }
 
 static void *engine_make(bool balance) {
-  engine_crawler *it = calloc(1, sizeof *it);
-  if (!it) return NULL;
-  const strut_integrator_settings settings = {.step = 1e-4};
-  if (bench_crawler_scene(&it->setup, frequency, amplitude, friction) == STRUT_OK &&
-      strut_model_compile(&it->setup.scene, &it->model, NULL) == STRUT_OK &&
-      strut_state_create(it->model, &it->state, NULL) == STRUT_OK)
-    it->workspace = strut_integrator_find("rk4")->create(it->model, it->state, &settings);
-  if (!it->workspace) {
-    engine_free(it);
-    return NULL;
+  bench_motion *it = malloc(sizeof *it);
+  if (it && bench_crawler(it, "rk4", step)) {
+    it->state->balance = balance;
+    return it;
   }
-  strut_state_reset(it->model, it->state);
-  it->state->balance = balance;
-  return it;
+  free(it);
+  return NULL;
 }
 
 static void *engine_create(void) { return engine_make(false); }
 static void *engine_create_balance(void) { return engine_make(true); }
 
 static double engine_run(void *crawler, long long steps) {
-  engine_crawler *it = crawler;
+  bench_motion *it = crawler;
   double start = bench_seconds();
-  strut_integrator_find("rk4")->advance(it->model, it->state, it->workspace, step, steps);
+  it->method->advance(it->model, it->state, it->workspace, step, steps);
   return bench_seconds() - start;
 }
 
 static double engine_position(void *crawler) {
-  const engine_crawler *it = crawler;
+  const bench_motion *it = crawler;
   return it->state->q[0];
 }
 

@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/bench/scenes.h"
 
+#include <stdio.h>
+#include <string.h>
+
+#include "parser/read/read_scene.h"
+
 /* Sizes of a chain's frame and its members; the names of a node tell column and row. */
 #define SIDE 0.1
 #define BAR_STIFFNESS 1e5
@@ -9,6 +14,61 @@
 #define CABLE_RATIO 0.98
 #define DAMPING 0.2
 enum { PER_FRAME = 5 };
+
+strut_status bench_read(strut_setup *setup, const char *file, const char *const *set,
+                        strut_error *error) {
+  char path[1000], names[3][40], *text = NULL;
+  strut_override overrides[3];
+  size_t count = 0, length = 0;
+  strut_diagnostics diagnostics = {0};
+  for (; count < 3 && set[count]; count++) {
+    const char *equals = strchr(set[count], '=');
+    snprintf(names[count], sizeof names[count], "%.*s", (int)(equals - set[count]), set[count]);
+    overrides[count] = (strut_override){names[count], equals + 1};
+  }
+  snprintf(path, sizeof path, "%s/../%s", STRUT_TESTS_DIR, file);
+  strut_status status = strut_file_read(path, &text, &length, error);
+  if (status == STRUT_OK) {
+    status =
+        strut_setup_read(setup, path, text, length, overrides, count, STRUT_FOR_RUN, &diagnostics);
+    if (status != STRUT_OK) strut_fail(error, status, "%s is not a valid scene", path);
+  }
+  strut_diagnostics_free(&diagnostics);
+  strut_release(text);
+  return status;
+}
+
+/* The scene that the motion has, compiled, if it could be made. */
+static bool begin(bench_motion *m, strut_status status, const char *method, double step,
+                  strut_error *error) {
+  strut_integrator_settings settings = strut_integrator_settings_of(&m->setup.experiment);
+  settings.step = step;
+  m->method = strut_integrator_find(method);
+  if (status == STRUT_OK) status = strut_model_compile(&m->setup.scene, &m->model, error);
+  if (status == STRUT_OK) status = strut_state_create(m->model, &m->state, error);
+  if (status == STRUT_OK) m->workspace = m->method->create(m->model, m->state, &settings);
+  if (m->workspace) {
+    strut_state_reset(m->model, m->state);
+    return true;
+  }
+  fprintf(stderr, "strut_bench: %s: %s\n", strut_status_text(status), error->message);
+  bench_free(m);
+  return false;
+}
+
+bool bench_crawler(bench_motion *m, const char *method, double step) {
+  strut_error error = {0};
+  *m = (bench_motion){0};
+  return begin(m,
+               bench_read(&m->setup, "tests/golden/crawler.yaml", (const char *[]){NULL}, &error),
+               method, step, &error);
+}
+
+void bench_free(bench_motion *m) {
+  strut_state_free(m->state);
+  strut_model_free(m->model);
+  strut_setup_free(&m->setup);
+}
 
 static strut_status allocate(strut_setup *setup, size_t nodes, size_t members) {
   strut_setup_init(setup);
@@ -29,61 +89,6 @@ static void place(strut_node *node, double x, double y) {
   node->position[1] = node->start[1] = y;
 }
 
-static void table1(strut_member *member, int i1, int i2, double rest, double stiffness,
-                   double mass) {
-  *member = strut_member_default();
-  member->kind = mass > 0 ? STRUT_BAR : STRUT_SPRING;
-  member->node[0] = i1 - 1, member->node[1] = i2 - 1;
-  member->rest_kind = STRUT_REST_LENGTH, member->rest_value = rest;
-  member->stiffness = stiffness, member->damping = 0.2, member->mass = mass;
-}
-
-static void fill_members(strut_member *m) {
-  table1(&m[0], 1, 2, 0.10, 1e6, 0.1);
-  table1(&m[1], 3, 5, 0.02, 1e6, 0.02);
-  table1(&m[2], 4, 5, 0.02, 1e6, 0.02);
-  table1(&m[3], 1, 3, 0.02, 3000, 0);
-  table1(&m[4], 2, 3, 0.02, 3000, 0);
-  table1(&m[5], 2, 4, 0.02, 3000, 0);
-  table1(&m[6], 1, 4, 0.02, 3000, 0);
-  table1(&m[7], 1, 5, 0.01, 1e4, 0);
-  table1(&m[8], 2, 5, 0.01, 1e4, 0);
-}
-
-strut_status bench_crawler_scene(strut_setup *setup, double f, double a, double mu) {
-  static const double drawn[5][2] = {{0, 0},
-                                     {0.0965109, 0.0238714},
-                                     {0.0526668, 0.0283691},
-                                     {0.0602933, 0},
-                                     {0.0434758, 0.0106875}};
-  strut_status status = allocate(setup, 5, 9);
-  if (status != STRUT_OK) return status;
-  for (int i = 0; i < 5; i++) place(&setup->scene.nodes[i], drawn[i][0], drawn[i][1]);
-  fill_members(setup->scene.members);
-  setup->scene.gravity[1] = -9.81;
-  setup->scene.ground.present = true;
-  setup->scene.contacts =
-      strut_arena_allocate(&setup->scene.arena, 5, sizeof *setup->scene.contacts);
-  setup->scene.signals = strut_arena_allocate(&setup->scene.arena, 1, sizeof *setup->scene.signals);
-  setup->scene.actuators =
-      strut_arena_allocate(&setup->scene.arena, 1, sizeof *setup->scene.actuators);
-  if (!setup->scene.contacts || !setup->scene.signals || !setup->scene.actuators) {
-    strut_setup_free(setup);
-    return STRUT_NO_MEMORY;
-  }
-  setup->scene.contact_count = 5, setup->scene.signal_count = setup->scene.actuator_count = 1;
-  for (int i = 0; i < 5; i++) {
-    setup->scene.contacts[i] = (strut_contact){.node = i, .stiffness = 1e5, .damping = 100};
-    setup->scene.contacts[i].friction = (strut_friction){
-        .law = STRUT_FRICTION_KARNOPP, .mu_static = mu, .mu_kinetic = mu, .stick_velocity = 1e-4};
-  }
-  setup->scene.signals[0] = strut_signal_default(STRUT_SINE);
-  setup->scene.signals[0].amplitude = a, setup->scene.signals[0].frequency = f;
-  setup->scene.actuators[0] = (strut_actuator){.name = "drive", .member = 7, .signal = 0};
-  setup->experiment.step = 1e-4, setup->experiment.duration = 1;
-  return STRUT_OK;
-}
-
 static strut_member link(strut_member_kind kind, size_t from, size_t to) {
   strut_member member = strut_member_default();
   member.kind = kind;
@@ -97,7 +102,7 @@ static strut_member link(strut_member_kind kind, size_t from, size_t to) {
 
 static size_t frames_of(size_t members) { return members < PER_FRAME ? 1 : members / PER_FRAME; }
 
-strut_status bench_chain_scene(strut_setup *setup, size_t members, strut_mass_model mass) {
+static strut_status make_chain(strut_setup *setup, size_t members, strut_mass_model mass) {
   size_t frames = frames_of(members);
   strut_status status = allocate(setup, 2 * (frames + 1), PER_FRAME * frames);
   if (status != STRUT_OK) return status;
@@ -116,6 +121,11 @@ strut_status bench_chain_scene(strut_setup *setup, size_t members, strut_mass_mo
     *next++ = link(STRUT_CABLE, low + 2, low + 3);
   }
   setup->scene.mass_model = mass;
-  setup->experiment.step = 1e-4, setup->experiment.duration = 1e-3;
   return STRUT_OK;
+}
+
+bool bench_chain(bench_motion *m, size_t members, strut_mass_model mass) {
+  strut_error error = {0};
+  *m = (bench_motion){0};
+  return begin(m, make_chain(&m->setup, members, mass), "rk4", 1e-4, &error);
 }

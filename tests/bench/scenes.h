@@ -1,21 +1,34 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** Scenes of the bench, made through the C API: the paper's crawler, and chains of X-frames. */
+/** Scenes of the bench, ready to step: the paper's crawler, and chains of X-frames. */
 #ifndef STRUT_TESTS_BENCH_SCENES_H
 #define STRUT_TESTS_BENCH_SCENES_H
 
-#include "engine/scene/experiment.h"
+#include "engine/integrate/integrator.h"
+
+typedef struct bench_motion {
+  strut_setup setup;
+  strut_model *model;
+  strut_state *state;
+  const strut_integrator *method;
+  void *workspace;
+} bench_motion;
+
+/** Reads a file below the project's folder; set: "name=value" of parameters, at most 3, NULL after the last. */
+strut_status bench_read(strut_setup *setup, const char *file, const char *const *set,
+                        strut_error *error);
 
 /**
- * The crawler of Table 1 at state I as drawn, drive f [Hz], a [m], friction mu, every node may touch
- * the ground, step 1e-4 s. STRUT_OK or STRUT_NO_MEMORY; free with strut_scene_free.
+ * The crawler of Table 1 at state I as drawn, 10 Hz, 0.1 mm, friction 0.1, every node may touch the ground.
+ * False, with a message on stderr, where it cannot be made.
  */
-strut_status bench_crawler_scene(strut_setup *setup, double f, double a, double mu);
+bool bench_crawler(bench_motion *m, const char *method, double step);
 
 /**
  * A chain of `members` / 5 X-frames (at least one), each two crossed bars and three cables and two
  * nodes more than the one before; the first two nodes are fixed. The cables are shorter than drawn,
- * so it vibrates. Free with strut_scene_free.
+ * so it vibrates. By rk4 with 0.1 ms; false as above.
  */
-strut_status bench_chain_scene(strut_setup *setup, size_t members, strut_mass_model mass);
+bool bench_chain(bench_motion *m, size_t members, strut_mass_model mass);
+void bench_free(bench_motion *m);
 
 #endif

@@ -92,8 +92,7 @@ END
 expect 0 run shaken.yaml -o shaken --quiet
 cp shaken/summary.json out
 near .measured.apart.value 0 1e-12
-near .measured.shaken.value 0.01 1e-6
-near '.energy.residual / .energy.exchanged' 0 1e-6
+near '[.measured.shaken.value, .energy.residual / .energy.exchanged]' '[0.01, 0]' 1e-6
 
 # The scene as written names the parts, and runs with the same bits.
 expect 0 export frame.yaml

@@ -70,10 +70,8 @@ gives .measured.x.value "$x" 1e-8 run written.yaml
 holds '.caveat == null or (.caveat | contains("sticking") | not)'
 
 # Steps that are too long for sliding bristles are told.
-expect 0 run belt.yaml --step 1.5ms --json
-holds '[.warnings[] | select(.code == "bristles")] | length == 1'
-expect 0 run belt.yaml --json
-holds '[.warnings[] | select(.code == "bristles")] | length == 0'
+finds '[.warnings[] | select(.code == "bristles")] | length == 1' run belt.yaml --step 1.5ms
+finds '[.warnings[] | select(.code == "bristles")] | length == 0' run belt.yaml
 
 # Steps far too long for them end the run, by whichever number grows first, and nothing is said of sensors.
 sed 's|10 mm/s|50 m/s|' belt.yaml >fast.yaml
@@ -126,8 +124,7 @@ solver: {integrator: rk4, step: 0.1 ms}
 run: {duration: 0.095 s, measure: {quantities: {lifted: {of: work.loads, take: final}}}}
 YAML
 for method in rk4 rk4-events adaptive; do
-  expect 0 run fall.yaml --integrator $method --json
-  holds '.measured.lifted.value < -1e-3'
+  finds '.measured.lifted.value < -1e-3' run fall.yaml --integrator $method
 done
 
 # Without friction bristles hold nothing.

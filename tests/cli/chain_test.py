@@ -101,11 +101,9 @@ def check(cells, coupling, seed):
         if not any(all(abs(e["nodes"][f"apex{i}"][1] - SPACING * i - x) < 1e-6
                        for i, x in enumerate(heights)) for e in stable):
             fail(f"{what}: lacks the state at " + " ".join(f"{x:.6f}" for x in heights))
-    if len(stable) != len(states):
-        fail(f"{what}: {len(stable)} stable states, not {len(states)}")
+    check(len(stable) == len(states), f"{what}: {len(stable)} stable states, not {len(states)}")
     missed = reported["missed"]
-    if not 0 < missed["probability"] <= missed["probability_bound"] <= 1:
-        fail(f"{what}: chance {missed}")
+    check(0 < missed["probability"] <= missed["probability_bound"] <= 1, f"{what}: chance {missed}")
     rare = sum(e["found"] <= 2 for e in stable)
     if rare > 2 and missed["unreached"] == 0 and missed["probability_bound"] < 4 / reported["starts"]:
         fail(f"{what}: {rare} states were hardly met, of which nothing is said: {missed}")
@@ -115,8 +113,7 @@ os.chdir(work)
 for number in (2, 3, 4):
     write_chain(f"chain-{number}.yaml", number)
 # the states of the shorter chains, as models/gallery/bistable-chain.yaml has them
-if len(enumerate_all(0.01, 2)) != 9 or len(enumerate_all(0.01, 4)) != 81:
-    fail("the enumeration itself is wrong")
+check(len(enumerate_all(0.01, 2)) == 9 and len(enumerate_all(0.01, 4)) == 81, "the enumeration itself is wrong")
 check(2, 0.02914, 1)
 check(3, 0.0285, 1)
 for value in (0.02, 0.0288, 0.02885, 0.0289, 0.029, 0.0291, 0.02913, 0.02914, 0.0292):

@@ -9,35 +9,18 @@ import json
 import math
 import os
 import re
-import subprocess
-import sys
-import tempfile
 import xml.etree.ElementTree as tree
 
-try:
-    import numpy
-    import yaml
-except ImportError as missing:
-    print(f"{missing}: stiffness cannot be computed here")
-    sys.exit(77)
+from testing import answer, check, fail, files_in, finish, models, needs, run, work
 
-from testing import check, fail, files_in, finish, models, strut
+needs("numpy", "yaml")
+import numpy  # noqa: E402
+import yaml  # noqa: E402
 
 CRAWLER, X = f"{models}/crawler/crawler.yaml", f"{models}/gallery/x-frame.yaml"
 TRUSS = f"{models}/basics/von-mises-truss.yaml"
 SQUARE, PENDULUM = f"{models}/basics/x-frame.yaml", f"{models}/basics/pendulum.yaml"
 TWO, SNAP = f"{models}/gallery/two-mass-crawler.yaml", f"{models}/gallery/von-mises.yaml"
-
-
-def run(*words, code=0, stdin=""):
-    done = subprocess.run([strut, *words], capture_output=True, text=True, input=stdin)
-    check(done.returncode == code, f"strut {' '.join(words)}: exit code {done.returncode}, not {code}: {done.stderr}")
-    return done
-
-
-def read(*words):
-    done = run(*words, "--json")
-    return json.loads(done.stdout) if done.returncode == 0 else {}
 
 
 def same(what, found, wanted, relative=1e-12):
@@ -48,20 +31,20 @@ def same(what, found, wanted, relative=1e-12):
 
 
 def check_counts(path, v):
-    reported = read("check", path)
+    reported = answer("check", path)
     for key in ("nodes", "bars", "springs", "cables", "contacts", "actuators", "degrees_of_freedom", "step_limit"):
         same(f"{path}: {key}", v[key], reported[key])
     same(f"{path}: members", v["members"], len(reported["members"]))
 
 
 def check_rigidity(path, v):
-    drawn = read("rigidity", path)
+    drawn = answer("rigidity", path)
     same(f"{path}: self-stress", v["self_stress_states"], drawn["self_stress"]["count"])
     moves = drawn["mechanisms"]
     same(f"{path}: rigid", v["rigid_body_motions"], moves["rigid_body"])
     same(f"{path}: mechanisms", v["mechanisms"], moves["count"] - moves["rigid_body"])
     same(f"{path}: finite", v["finite_mechanisms"], moves["finite"])
-    reported = read("rigidity", path, "--at", "start")["members_at"]
+    reported = answer("rigidity", path, "--at", "start")["members_at"]
     force = [m["force"] for m in reported.values()]
     same(f"{path}: tension", v["largest_tension"], max(0, *force), 1e-9)
     same(f"{path}: compression", v["largest_compression"], max(0, *[-f for f in force]), 1e-9)
@@ -69,7 +52,7 @@ def check_rigidity(path, v):
 
 
 def check_states(path, model):
-    reported, v = read("equilibria", path), model["values"]
+    reported, v = answer("equilibria", path), model["values"]
     stands = {e["name"]: e["energy"] for e in reported["equilibria"] if e["outcome"] == "stands"}
     if {s["name"]: s["energy"] for s in model["states"]} != stands:
         fail(f"{path}: states {model['states']}, not {stands}")
@@ -84,14 +67,14 @@ def check_states(path, model):
 
 
 def check_frequencies(path, v):
-    elastic = [m["frequency"] for m in read("modes", path)["modes"] if m["kind"] == "elastic"]
+    elastic = [m["frequency"] for m in answer("modes", path)["modes"] if m["kind"] == "elastic"]
     for i in range(3):
         same(f"{path}: frequency {i + 1}", v[f"frequency_{i + 1}"], elastic[i] if i < len(elastic) else None)
 
 
 def check_motion(path, model, *options):
     """The run and, from it alone, what is made of it."""
-    reported, v = read("run", path, "--accuracy", "0.5%", "--steady", "0.5%", *options), model["values"]
+    reported, v = answer("run", path, "--accuracy", "0.5%", "--steady", "0.5%", *options), model["values"]
     same(f"{path}: velocity", v["velocity"], reported["velocity"])
     same(f"{path}: error", v["velocity_error"], reported["accuracy"]["expected"])
     spent = reported["force_evaluations"] + reported["accuracy"]["check_evaluations"]
@@ -167,16 +150,16 @@ def check_stiffness(path, model):
 
 # ---- numbers ----
 for path in (X, SQUARE, SNAP):
-    model = read("compare", path, "--no-motion")["models"][0]
+    model = answer("compare", path, "--no-motion")["models"][0]
     check_counts(path, model["values"])
     check_rigidity(path, model["values"])
     check_states(path, model)
     check_frequencies(path, model["values"])
-check_states(TRUSS, read("compare", TRUSS, "--no-motion")["models"][0])  # two of different energies
+check_states(TRUSS, answer("compare", TRUSS, "--no-motion")["models"][0])  # two of different energies
 for path in (X, SQUARE, CRAWLER):
-    check_stiffness(path, read("compare", path, "--no-motion", "--no-states")["models"][0])
+    check_stiffness(path, answer("compare", path, "--no-motion", "--no-states")["models"][0])
 
-crawler = read("compare", CRAWLER, "--no-states")["models"][0]
+crawler = answer("compare", CRAWLER, "--no-states")["models"][0]
 check_counts(CRAWLER, crawler["values"])
 check_rigidity(CRAWLER, crawler["values"])
 check_frequencies(CRAWLER, crawler["values"])
@@ -186,7 +169,7 @@ check(crawler["values"]["lowest_energy"] is None and crawler["reasons"]["lowest_
       "states that were not asked for")
 
 # ---- unlike structures, settings, CSV ----
-both = read("compare", "--set", "frequency=10.5 Hz", "--set", "start=II", CRAWLER, X, TWO, PENDULUM, "--no-states")
+both = answer("compare", "--set", "frequency=10.5 Hz", "--set", "start=II", CRAWLER, X, TWO, PENDULUM, "--no-states")
 by = {m["model"]: m for m in both["models"]}
 check(list(by) == ["crawler", "x-frame", "two-mass-crawler", "pendulum"], f"labels {list(by)}")
 same("frequency set", by["crawler"]["values"]["drive_frequency"], 10.5)
@@ -203,7 +186,7 @@ for model in both["models"]:
             fail(f"{model['model']}: {key} is {value}, the reason {model['reasons'].get(key)}")
 reported = run("compare", CRAWLER, X, "--no-states", "--csv").stdout
 rows = list(csv.DictReader(io.StringIO(reported)))
-alone = read("compare", CRAWLER, X, "--no-states")["models"]
+alone = answer("compare", CRAWLER, X, "--no-states")["models"]
 for row, model in zip(rows, alone):
     check(row["model"] == model["model"] and row["name"] == model["name"], f"CSV: {row['model']}")
     for key, value in model["values"].items():
@@ -212,114 +195,113 @@ for row, model in zip(rows, alone):
             same(f"CSV: {key}", float(cell) if cell else None, value, 0)
 check("mass [kg]" in rows[0] and "contact_duty" in rows[0], f"CSV: header {list(rows[0])}")
 
-with tempfile.TemporaryDirectory() as folder:
-    os.chdir(folder)
-    # ---- differences ----
-    text = """strut: 1
+os.chdir(work)
+# ---- differences ----
+text = """strut: 1
 name: one
 parameters: {stiff: 100 N/m, unlike: 1}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1 kg}}
 members:
   ab: {kind: spring, nodes: [a, b], stiffness: stiff}
 """
-    open("one.yaml", "w").write(text)
-    open("two.yaml", "w").write(text.replace("name: one", "name: two").replace(
-        "stiffness: stiff}", "stiffness: 200 N/m}\n  ac: {kind: cable, nodes: [a, b], "
-        "stiffness: 1 N/m}").replace(", unlike: 1", ""))
-    found = read("compare", "one.yaml", "two.yaml", "one.yaml", "--no-states", "--no-motion")
-    reported = {d["where"]: (d["change"], d["was"], d["is"]) for d in found["models"][1]["differences"]}
-    if reported != {"parameters.unlike": ("removed", "1", None),
-                "members.ab.stiffness": ("changed", "100", "200"),
-                "members.ac": ("added", None, "{nodes: [a, b], kind: cable, stiffness: 1, " "rest_length_ratio: 1}")}:
-        fail(f"differences: {reported}")
-    if found["models"][2]["differences"] or found["models"][2]["model"] != "one.yaml":
-        fail("the same model twice has differences, or no label of its own")
-    check("differences" not in found["models"][0], "the first differs from itself")
-    # stiffer by a factor: a spring from a wall, whose stiffness along it is its own
-    same("stiffness of a spring", found["models"][0]["values"]["stiffness_x"], 100)
-    check(found["models"][0]["reasons"].get("stiffness_y") is not None, "a spring without tension resists across")
-    out = run("compare", "one.yaml", "two.yaml", "--no-states", "--no-motion").stdout
-    for line in ("two: against the first", "members.ac +added", "parameters.unlike +removed",
-                 "members.ab.stiffness +changed +100 +200"):
-        check(re.search(line, out), f"the table lacks '{line}'")
+open("one.yaml", "w").write(text)
+open("two.yaml", "w").write(text.replace("name: one", "name: two").replace(
+    "stiffness: stiff}", "stiffness: 200 N/m}\n  ac: {kind: cable, nodes: [a, b], "
+    "stiffness: 1 N/m}").replace(", unlike: 1", ""))
+found = answer("compare", "one.yaml", "two.yaml", "one.yaml", "--no-states", "--no-motion")
+reported = {d["where"]: (d["change"], d["was"], d["is"]) for d in found["models"][1]["differences"]}
+if reported != {"parameters.unlike": ("removed", "1", None),
+            "members.ab.stiffness": ("changed", "100", "200"),
+            "members.ac": ("added", None, "{nodes: [a, b], kind: cable, stiffness: 1, " "rest_length_ratio: 1}")}:
+    fail(f"differences: {reported}")
+if found["models"][2]["differences"] or found["models"][2]["model"] != "one.yaml":
+    fail("the same model twice has differences, or no label of its own")
+check("differences" not in found["models"][0], "the first differs from itself")
+# stiffer by a factor: a spring from a wall, whose stiffness along it is its own
+same("stiffness of a spring", found["models"][0]["values"]["stiffness_x"], 100)
+check(found["models"][0]["reasons"].get("stiffness_y") is not None, "a spring without tension resists across")
+out = run("compare", "one.yaml", "two.yaml", "--no-states", "--no-motion").stdout
+for line in ("two: against the first", "members.ac +added", "parameters.unlike +removed",
+             "members.ab.stiffness +changed +100 +200"):
+    check(re.search(line, out), f"the table lacks '{line}'")
 
-    # ---- files ----
-    run("compare", "one.yaml", "two.yaml", SQUARE, "--no-motion", "-q", "-o", "kept")
-    names = sorted(files_in("kept"))
-    if names != ["compare.csv", "compare.json", "compare.svg", "model-1.svg", "model-2.svg", "model-3.svg"]:
-        fail(f"files: {names}")
-    for name in names:
-        if name.endswith(".svg"):
-            tree.parse(f"kept/{name}")
-    first = {n: open(f"kept/{n}", "rb").read() for n in names}
-    run("compare", "one.yaml", "two.yaml", SQUARE, "--no-motion", "-q", "-o", "kept")
-    for name in names:
-        check(open(f"kept/{name}", "rb").read() == first[name], f"{name} is not the same a second time")
-    run("compare", "one.yaml", "-q", "-o", "kept", "--no-motion")
-    check(len(files_in("kept")) == 4, "a picture of an earlier comparison stays")
-    run("compare", "one.yaml", "--no-states", "--plot", "sheet.svg")
-    tree.parse("sheet.svg")
+# ---- files ----
+run("compare", "one.yaml", "two.yaml", SQUARE, "--no-motion", "-q", "-o", "kept")
+names = sorted(files_in("kept"))
+if names != ["compare.csv", "compare.json", "compare.svg", "model-1.svg", "model-2.svg", "model-3.svg"]:
+    fail(f"files: {names}")
+for name in names:
+    if name.endswith(".svg"):
+        tree.parse(f"kept/{name}")
+first = {n: open(f"kept/{n}", "rb").read() for n in names}
+run("compare", "one.yaml", "two.yaml", SQUARE, "--no-motion", "-q", "-o", "kept")
+for name in names:
+    check(open(f"kept/{name}", "rb").read() == first[name], f"{name} is not the same a second time")
+run("compare", "one.yaml", "-q", "-o", "kept", "--no-motion")
+check(len(files_in("kept")) == 4, "a picture of an earlier comparison stays")
+run("compare", "one.yaml", "--no-states", "--plot", "sheet.svg")
+tree.parse("sheet.svg")
 
-    # ---- one, twenty ----
-    for i in range(20):
-        open(f"m{i}.yaml", "w").write(text.replace("100 N/m", f"{100 + i} N/m"))
-    many = read("compare", *[f"m{i}.yaml" for i in range(20)], "--no-states", "--no-motion")
-    for i, model in enumerate(many["models"]):
-        same(f"model {i} of twenty", model["values"]["stiffness_x"], 100 + i)
-    run("compare", *[f"m{i}.yaml" for i in range(20)], "--no-states")
+# ---- one, twenty ----
+for i in range(20):
+    open(f"m{i}.yaml", "w").write(text.replace("100 N/m", f"{100 + i} N/m"))
+many = answer("compare", *[f"m{i}.yaml" for i in range(20)], "--no-states", "--no-motion")
+for i, model in enumerate(many["models"]):
+    same(f"model {i} of twenty", model["values"]["stiffness_x"], 100 + i)
+run("compare", *[f"m{i}.yaml" for i in range(20)], "--no-states")
 
-    # ---- bad use ----
-    def refused(code, needle, *words, stdin=""):
-        done = run("compare", *words, code=code, stdin=stdin)
-        check(needle in done.stderr, f"strut compare {' '.join(words)}: stderr lacks '{needle}': {done.stderr}")
-        check(not done.stdout, f"strut compare {' '.join(words)}: prints something")
+# ---- bad use ----
+def refused(code, needle, *words, stdin=""):
+    done = run("compare", *words, code=code, err=needle, stdin=stdin)
+    check(not done.stdout, f"strut compare {' '.join(words)}: prints something")
 
-    refused(1, "missing MODEL...")
-    refused(4, "nosuch.yaml", "one.yaml", "nosuch.yaml", "-o", "none")
-    open("bad.yaml", "w").write(text.replace("kind: spring", "kind: sprong"))
-    open("worse.yaml", "w").write("strut: 1\nnods: {}\n")
-    done = run("compare", "one.yaml", "bad.yaml", "worse.yaml", code=2)
-    for needle in ("bad.yaml:6", "spring", "worse.yaml:2", "nodes"):
-        check(needle in done.stderr, f"bad models among good ones: stderr lacks '{needle}': {done.stderr}")
-    check(not os.path.exists("none"), "a refused comparison leaves a directory")
-    refused(1, "did you mean 'stiff'", "--set", "stif=3", "one.yaml", "two.yaml")
-    refused(1, "no model has such a parameter", "--set", "stif=3", "one.yaml", "two.yaml")
-    refused(1, "'two.yaml' has no such parameter", "one.yaml", "two.yaml", "--set", "stif=3")
-    refused(2, "frog", "one.yaml", "two.yaml", "--set", "stiff=frog")
-    # ---- settings behind a model are its own; scenes' names; notes once ----
-    done = run("compare", "one.yaml", "one.yaml", "--set", "stiff=200 N/m", "one.yaml", "--set",
-               "stiff=300 N/m", "--no-states", "--no-motion", "--json")
-    own = {m["model"]: m for m in json.loads(done.stdout)["models"]}
-    check(list(own) == ["one", "one stiff=200 N/m", "one stiff=300 N/m"], f"labels of settings: {list(own)}")
-    first = own["one"]["values"]["stiffness_x"]
-    for label, stiffness in (("one stiff=200 N/m", 200), ("one stiff=300 N/m", 300)):
-        check(own[label]["parameters"]["stiff"] == stiffness and own[label]["values"]["stiffness_x"] != first,
-              f"{label} is not set: {own[label]['parameters']}")
-    done = run("compare", "--set", "stiff=1e6", "one.yaml", "one.yaml", "--no-states", "--no-motion")
-    check(done.stderr.count("note:") == 1, f"not one note on --set: {done.stderr}")
-    done = run("compare", CRAWLER, PENDULUM, "--no-states", "--no-motion")
-    check("Nine-member multistable crawler" in done.stdout, f"no name of the scene: {done.stdout[:300]}")
-    refused(1, "--accuracy", "one.yaml", "--accuracy", "0")
-    refused(1, "--accuracy", "one.yaml", "--accuracy", "200%")
-    refused(1, "--csv", "one.yaml", "--csv", "--json")
-    refused(1, "'-' once", "-", "-", stdin=text)
-    done = run("compare", "-", "one.yaml", "--no-states", "--csv", stdin=text)
-    check(done.stdout.split("\n")[1].startswith("stdin,one,2,1,"), f"the standard input: {done.stdout}")
-    run("check", "one.yaml", "two.yaml", code=1)
 
-    # ---- one that fails does not stop the others ----
-    falls = """strut: 1
+refused(1, "missing MODEL...")
+refused(4, "nosuch.yaml", "one.yaml", "nosuch.yaml", "-o", "none")
+open("bad.yaml", "w").write(text.replace("kind: spring", "kind: sprong"))
+open("worse.yaml", "w").write("strut: 1\nnods: {}\n")
+done = run("compare", "one.yaml", "bad.yaml", "worse.yaml", code=2)
+for needle in ("bad.yaml:6", "spring", "worse.yaml:2", "nodes"):
+    check(needle in done.stderr, f"bad models among good ones: stderr lacks '{needle}': {done.stderr}")
+check(not os.path.exists("none"), "a refused comparison leaves a directory")
+refused(1, "did you mean 'stiff'", "--set", "stif=3", "one.yaml", "two.yaml")
+refused(1, "no model has such a parameter", "--set", "stif=3", "one.yaml", "two.yaml")
+refused(1, "'two.yaml' has no such parameter", "one.yaml", "two.yaml", "--set", "stif=3")
+refused(2, "frog", "one.yaml", "two.yaml", "--set", "stiff=frog")
+# ---- settings behind a model are its own; scenes' names; notes once ----
+done = run("compare", "one.yaml", "one.yaml", "--set", "stiff=200 N/m", "one.yaml", "--set",
+           "stiff=300 N/m", "--no-states", "--no-motion", "--json")
+own = {m["model"]: m for m in json.loads(done.stdout)["models"]}
+check(list(own) == ["one", "one stiff=200 N/m", "one stiff=300 N/m"], f"labels of settings: {list(own)}")
+first = own["one"]["values"]["stiffness_x"]
+for label, stiffness in (("one stiff=200 N/m", 200), ("one stiff=300 N/m", 300)):
+    check(own[label]["parameters"]["stiff"] == stiffness and own[label]["values"]["stiffness_x"] != first,
+          f"{label} is not set: {own[label]['parameters']}")
+done = run("compare", "--set", "stiff=1e6", "one.yaml", "one.yaml", "--no-states", "--no-motion")
+check(done.stderr.count("note:") == 1, f"not one note on --set: {done.stderr}")
+done = run("compare", CRAWLER, PENDULUM, "--no-states", "--no-motion")
+check("Nine-member multistable crawler" in done.stdout, f"no name of the scene: {done.stdout[:300]}")
+refused(1, "--accuracy", "one.yaml", "--accuracy", "0")
+refused(1, "--accuracy", "one.yaml", "--accuracy", "200%")
+refused(1, "--csv", "one.yaml", "--csv", "--json")
+refused(1, "'-' once", "-", "-", stdin=text)
+done = run("compare", "-", "one.yaml", "--no-states", "--csv", stdin=text)
+check(done.stdout.split("\n")[1].startswith("stdin,one,2,1,"), f"the standard input: {done.stdout}")
+run("check", "one.yaml", "two.yaml", code=1)
+
+# ---- one that fails does not stop the others ----
+falls = """strut: 1
 nodes: {a: {position: [0, 0], mass: 1 kg}}
 gravity: [0, -1]
 initial: {settle: {limit: 0.1 s}}
 solver: {integrator: rk4, step: 1 ms}
 run: {duration: 1 s}
 """
-    open("falls.yaml", "w").write(falls)
-    done = run("compare", "falls.yaml", "one.yaml", "--no-states", "--json", code=3)
-    reported = json.loads(done.stdout)["models"]
-    if reported[0]["status"] == "completed" or reported[1]["status"] != "completed" or \
-            "falls" not in done.stderr or reported[0]["values"]["velocity"] is not None:
-        fail(f"a model that fails: {reported[0]['status']}, {done.stderr}")
+open("falls.yaml", "w").write(falls)
+done = run("compare", "falls.yaml", "one.yaml", "--no-states", "--json", code=3)
+reported = json.loads(done.stdout)["models"]
+if reported[0]["status"] == "completed" or reported[1]["status"] != "completed" or \
+        "falls" not in done.stderr or reported[0]["values"]["velocity"] is not None:
+    fail(f"a model that fails: {reported[0]['status']}, {done.stderr}")
 
 finish()

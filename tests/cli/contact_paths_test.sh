@@ -59,8 +59,7 @@ holds '
   (.events[2] | .factor as $f | .nodes.a | along([5, -1]; $f) < 1e-9)'
 out_has "passes a corner of the ground: the factor jumps from"
 # carried over the same corner by its displacement, the node stays at it
-expect 0 path hill.yaml --over a.x --until '1.5 m' --json
-holds '[.events[] | .kind] == ["corner", "touchdown", "lift-off"]'
+finds '[.events[] | .kind] == ["corner", "touchdown", "lift-off"]' path hill.yaml --over a.x --until '1.5 m'
 # a corner at the same place, whether the profile is drawn or moved there by a parameter
 sed -e 's/^nodes:/parameters: {at: 0 m}\nnodes:/' -e 's/\[-3, 0\].*/[at - 3, 0], [at - 1, 0.5], [at + 0.5, 1], [at + 1, 0.5], [at + 1.5, 0.4], [at + 3, 1]]/' \
   hill.yaml >moved.yaml
@@ -83,8 +82,7 @@ expect 0 form hung.yaml --given prestress --json
 holds '[.forces.ac + 5 * (0.6 * 0.6 + 0.4 * 0.4 | sqrt) / 0.4, .forces.ab + 15 / 0.8 * 0.6 - 7.5 | fabs] | max < 0.002'
 sed -e 's/^ground:.*/grounds:\n  floor: {height: -0.8, stiffness: 100 kN\/m, nodes: [a, b]}\n  wall: {through: [0.6, 0], normal: [-1, 0], stiffness: 100 kN\/m, nodes: [b]}\n  other: {through: [-0.6, 0], normal: [1, 0.2], stiffness: 100 kN\/m, nodes: [a]}/' \
   hung.yaml >between.yaml
-expect 0 form between.yaml --given prestress --json
-holds '.residual < 1e-6'
+finds '.residual < 1e-6' form between.yaml --given prestress
 
 # A path does not depend on how long its steps are: none of them ends at a switch of another branch.
 for until in 0.9 1 1.1 3; do

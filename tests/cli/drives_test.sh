@@ -103,8 +103,7 @@ expect 0 run ratio.yaml --json
 # decayed W ZETA: the stretch after 1 s of an oscillation that begins with 1 m/s
 decayed() { echo "(($1) as \$w | $2 as \$z | (\$w * (1 - \$z * \$z | sqrt)) as \$d |
   (-\$z * \$w | exp) * (\$d | sin) / \$d)"; }
-near "$(value one)" "$(decayed 10 0.05)" 1e-8
-near "$(value two)" "$(decayed '300 / 1.5 | sqrt' 0.1)" 1e-8
+near "[$(value one), $(value two)]" "[$(decayed 10 0.05), ($(decayed '300 / 1.5 | sqrt' 0.1))]" 1e-8
 closes 1e-9
 gives '[.modes[].damping_ratio | select(. > 0.01)] | min' 0.05 1e-9 modes ratio.yaml
 near '[.modes[].damping_ratio | select(. > 0.01)] | max' 0.1 1e-9

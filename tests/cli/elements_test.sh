@@ -12,8 +12,7 @@ members: {string: {kind: cable, nodes: [a, ring, b], stiffness: 1e8, rest_length
 loads: {weight: {node: ring, force: [0, -10 N]}}
 END
 gives '.equilibria | length' 1 0 equilibria ring.yaml
-near '.equilibria[0].nodes.ring[0]' 0.5 1e-6
-near '.equilibria[0].nodes.ring[1]' '-(0.49 - 0.25 | sqrt)' 1e-6
+near '[.equilibria[0].nodes.ring[0], .equilibria[0].nodes.ring[1]]' '[0.5, (-(0.49 - 0.25 | sqrt))]' 1e-6
 near '.equilibria[0].forces.string' '10 / (2 * (1 - 1 / (1.4 * 1.4) | sqrt))' 1e-6
 near '.equilibria[0].reactions.a[1]' 5 1e-6
 

@@ -14,8 +14,7 @@ done
 out_has_not "below ground ("
 [ "$(wc -l <out)" -lt 45 ] || fail "the short table is long"
 expect 0 equilibria "$crawler" --all --starts 60
-for text in "tips over n4 onto n2 and n4: II" "below ground (" "presses with" "held-n1-n2-1 " \
-  "III, III-2"; do out_has "$text"; done
+out_has "tips over n4 onto n2 and n4: II" "below ground (" "presses with" "held-n1-n2-1 " "III, III-2"
 
 # Numbers in names grow with the energy, and so does the list.
 expect 0 equilibria "$here/../../models/basics/von-mises-truss.yaml" --json
@@ -40,8 +39,7 @@ OMP_NUM_THREADS=3 "$strut" equilibria "$crawler" --json >three.json || fail "thr
 same one.json three.json
 same one.json all.json
 shows 0 '"seed":	7,' equilibria "$crawler" --json --seed 7 --supports n1,n4
-out_has '"energy":	22.70613'
-out_has '"energy":	22.71202'
+out_has '"energy":	22.70613' '"energy":	22.71202'
 grep -q '"supports":	\["n2", "n4"\]' out && fail "--supports holds others too"
 # Names of what stands do not depend on the seed.
 cp out seed-7
@@ -67,9 +65,7 @@ expect 0 check start.yaml
 expect 2 run start.yaml --set start=IV
 
 # Wrong input.
-expect 1 equilibria "$crawler" --supports n1,n6
-out_empty
-err_has "--supports: there is no node 'n6'; did you mean 'n"
+refuses 1 "--supports: there is no node 'n6'; did you mean 'n" equilibria "$crawler" --supports n1,n6
 tells 1 "named twice" equilibria "$crawler" --supports n1,n1
 tells 1 "--supports" equilibria "$crawler" --supports ""
 tells 1 "--starts" equilibria "$crawler" --starts -3

@@ -20,9 +20,7 @@ expect 0 examples robot # it is here already
 out_empty
 echo "# mine" >>robot.yaml
 cp robot.yaml mine
-expect 4 examples robot
-out_empty
-err_has "'robot.yaml' exists already, and is left as it is"
+refuses 4 "'robot.yaml' exists already, and is left as it is" examples robot
 same mine robot.yaml
 mkdir links
 ln -s nowhere links/robot.yaml
@@ -35,8 +33,7 @@ err_empty
 (cd "$models" && find . -name '*.yaml') | sed 's|^\./||' | LC_ALL=C sort >wanted
 cut -d' ' -f1 out >got
 same wanted got
-out_has "Nine-member multistable crawler"
-out_has "study: Figure 5"
+out_has "Nine-member multistable crawler" "study: Figure 5"
 mkdir here
 cd here || exit 1
 expect 0 examples crawler

@@ -44,5 +44,4 @@ done
 
 # No step is too large for it.
 shows 0 "none" check "$rod" --integrator midpoint
-expect 0 run "$rod" --set stiffness=1e12 --integrator midpoint --step "5 ms" --json
-holds '(.velocity + 2.069) | fabs < 0.01'
+finds '(.velocity + 2.069) | fabs < 0.01' run "$rod" --set stiffness=1e12 --integrator midpoint --step "5 ms"

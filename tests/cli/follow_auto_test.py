@@ -8,14 +8,12 @@ import math
 import re
 import shutil
 import subprocess
-import sys
 
-from testing import check, finish, strut, work, write
+from testing import check, finish, needs, strut, work, write
+
+needs("auto-07p", "gfortran")
 
 auto = shutil.which("auto-07p")
-if not auto or not shutil.which("gfortran"):
-    print("skipped: auto-07p or gfortran is not installed")
-    sys.exit(77)
 
 DAMPING, CUBIC, FORCE = 0.05, 0.05, 0.1
 FROM, TO = 0.14, 0.22  # [Hz]

@@ -7,7 +7,7 @@ import json
 import math
 import os
 
-from testing import check, finish, models, near, rows, run, strut, work, write
+from testing import check, finish, models, near, rows, run, work, write
 
 duffing = os.path.join(models, "basics", "duffing.yaml")
 

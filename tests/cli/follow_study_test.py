@@ -11,7 +11,7 @@ import signal
 import subprocess
 import time
 
-from testing import check, finish, path, rows, run, strut, work, write
+from testing import answer, check, finish, path, rows, run, strut, work, write
 
 
 write("duffing.yaml", """strut: 1
@@ -60,7 +60,7 @@ def balance(force):
 
 check("points             3" in run("check", "study.yaml").stdout, "check tells the points")
 check("points   3\n" in run("sweep", "study.yaml", "--count").stdout, "the count")
-report = json.loads(run("sweep", "study.yaml", "-o", "out", "--json").stdout)
+report = answer("sweep", "study.yaml", "-o", "out")
 run("sweep", "study.yaml", "-o", "one", "--threads", "1", "-q")
 for name in ("branches.csv", "branches.svg", "report.json", "table.csv", "widest.svg"):
     check(filecmp.cmp(path("out", name), path("one", name), shallow=False), f"threads change {name}")
@@ -122,7 +122,7 @@ for stop, wait in ((signal.SIGKILL, 0.7), (signal.SIGINT, 0.7)):
 
 write("single.yaml", STUDY.replace("axes: [{force: [0.06 N, 0.1 N, 0.15 N]}]\n", "").replace(
     "figures: {widest: {x: force, y: amplitude_max}}", "  at: [0.17 Hz]\n  start_from: [drawn]\n  basins: yes"))
-single = json.loads(run("sweep", "single.yaml", "-o", "single", "--json").stdout)
+single = answer("sweep", "single.yaml", "-o", "single")
 result = single["points"][0]["result"]
 check(len(result["branches"]) == 1 and len(result["basins"]) >= 1, f"a single point: {result['notes']}")
 check(len(rows("single", "branches.csv")) == len(result["branches"][0]["points"]), "rows of a single point")

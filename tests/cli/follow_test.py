@@ -11,11 +11,11 @@ import signal
 import subprocess
 import time
 
-from testing import check, finish, models, near, read, rows, run, strut, work, write
+from testing import answer, check, finish, models, near, read, rows, run, strut, work, write
 
 
 def follow(model, over, *words):
-    return json.loads(run("path", "--periodic", model, "--over", over, "--json", *words).stdout)
+    return answer("path", "--periodic", model, "--over", over, *words)
 
 
 def special(result, kind, branch=0):
@@ -219,12 +219,11 @@ check(len(rows("partial", "branches.csv")) == len(got["branches"][0]["points"]) 
 
 # ---- kicks: a linear motion always comes back, the larger of two stable ones does not
 
-kicked = json.loads(run("path", "--periodic", "linear.yaml", "--over", "frequency=1Hz..1.1Hz", "--values", "1.05Hz", "--basins",
-                        "--json").stdout)
+kicked = answer("path", "--periodic", "linear.yaml", "--over", "frequency=1Hz..1.1Hz", "--values", "1.05Hz", "--basins")
 check(kicked["basins"][0]["forwards"] is None, f"kicks {kicked['basins']}")
 between = round((low + high) / 2 / (2 * math.pi), 4)
-kicked = json.loads(run("path", "--periodic", "duffing.yaml", "--over", "frequency=0.14Hz..0.22Hz", "--values",
-                        f"{between}Hz,0.14Hz", "--basins", "--json").stdout)
+kicked = answer("path", "--periodic", "duffing.yaml", "--over", "frequency=0.14Hz..0.22Hz", "--values",
+                        f"{between}Hz,0.14Hz", "--basins")
 pushed = [b for b in kicked["basins"] if b["value"] == between]
 check(len(pushed) == 2, f"two stable motions at {between} Hz: {kicked['basins']}")
 check(all(b["backwards"] is not None and 0 < b["backwards"] < 20 for b in pushed), f"kicks {pushed}")

@@ -44,8 +44,7 @@ tells 2 "network 'net.csv', line 3: a NUL byte" check network.yaml
 
 # ---- a folder whose name ends a here-document, and other languages ----
 break=$(printf 'x\nEND\n)\ntouch PWNED\n: $(: ')
-tells 1 "control character" sweep study.yaml -o "$break" --emit slurm --shards 2
-out_empty
+refuses 1 "control character" sweep study.yaml -o "$break" --emit slurm --shards 2
 tells 1 "control character" sweep study.yaml -o "$(printf 'a\rb')" --emit slurm --shards 2
 expect 0 sweep study.yaml -o "it's \$(touch PWNED) \`touch PWNED\`" --emit slurm --shards 2
 mkdir bin
@@ -54,8 +53,7 @@ PATH=$PWD/bin:$PATH sh out >/dev/null 2>&1
 absent PWNED
 
 # ---- a cell that a spreadsheet would compute ----
-expect 0 compare model.yaml model.yaml --csv
-out_has "'=HYPERLINK"
+shows 0 "'=HYPERLINK" compare model.yaml model.yaml --csv
 
 # ---- names without a look ----
 named() {

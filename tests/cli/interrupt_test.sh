@@ -61,8 +61,7 @@ sed -e 's/^solver: .*/solver: {integrator: adaptive, step: step}/' -e '/^output:
   "$hopper" >grid.yaml
 hopper=grid.yaml
 interrupt INT --set step=1e5 --json
-out_has '"status":	"interrupted"'
-out_has '"steps":	0'
+out_has '"status":	"interrupted"' '"steps":	0'
 err_has "interrupted at t = 0 s"
 interrupt TERM --set step=1e5 --quiet
 never='limit: 1e9, evaluations: 1e15' # without a ground it falls for ever

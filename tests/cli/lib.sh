@@ -53,13 +53,16 @@ formats() {
   [ "$code" -eq "$expected_code" ] || fail "formats $*: exit code $code, expected $expected_code"
 }
 
-# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
+# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number, or an array of them, that jq computes.
 near() {
-  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
+  jq -e "($1) as \$got | ($2) as \$want | ($3) as \$near | [\$got, \$want] | map([.] | flatten) | transpose |
+    all((.[0] - .[1] | fabs) <= \$near)" out >jq.out 2>&1 ||
     fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
 }
 # gives FILTER EXPECTED TOLERANCE WORD...: runs strut WORD... --json, and the same.
 gives() { _got=$1 _want=$2 _near=$3 && shift 3 && expect 0 "$@" --json; near "$_got" "$_want" "$_near"; }
+# finds CONDITION WORD...: the same with a condition that holds.
+finds() { _condition=$1 && shift && expect 0 "$@" --json; holds "$_condition"; }
 # near_number ACTUAL EXPECTED TOLERANCE WHAT
 near_number() {
   awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { d = a - b; exit !(d <= t && -d <= t) }' ||
@@ -68,6 +71,8 @@ near_number() {
 # shows CODE TEXT WORD..., tells CODE TEXT WORD...: the same, and stdout (stderr) has the text.
 shows() { _code=$1 _text=$2 && shift 2 && expect "$_code" "$@"; out_has "$_text"; }
 tells() { _code=$1 _text=$2 && shift 2 && expect "$_code" "$@"; err_has "$_text"; }
+# refuses CODE TEXT WORD...: as tells, and stdout has nothing.
+refuses() { tells "$@"; out_empty; }
 # edit PROGRAM FILE CHECK...: what sed makes of the file, checked: the last word of the check is its name.
 edit() {
   sed "$1" "$2" >edited.yaml
@@ -81,11 +86,12 @@ writes_back() {
   expect 0 export written.yaml
   same "$work/out" written.yaml
 }
-# holds CONDITION: of the JSON in out, by jq.
-holds() { jq -e "$1" "$work/out" >"$work/jq.out" 2>&1 || fail "not so: $1"; }
-out_has() { grep -qF -- "$1" "$work/out" || fail "stdout lacks '$1'"; }
-out_has_not() { ! grep -qF -- "$1" "$work/out" || fail "stdout has '$1'"; }
-err_has() { grep -qF -- "$1" "$work/err" || fail "stderr lacks '$1'"; }
+# holds CONDITION...: of the JSON in out, by jq.
+holds() { for _it; do jq -e "$_it" "$work/out" >"$work/jq.out" 2>&1 || fail "not so: $_it"; done; }
+# out_has TEXT..., out_has_not TEXT..., err_has TEXT...: each of them.
+out_has() { for _it; do grep -qF -- "$_it" "$work/out" || fail "stdout lacks '$_it'"; done; }
+out_has_not() { for _it; do ! grep -qF -- "$_it" "$work/out" || fail "stdout has '$_it'"; done; }
+err_has() { for _it; do grep -qF -- "$_it" "$work/err" || fail "stderr lacks '$_it'"; done; }
 out_empty() { [ ! -s "$work/out" ] || fail "stdout is not empty"; }
 err_empty() { [ ! -s "$work/err" ] || fail "stderr is not empty"; }
 same() { cmp -s "$1" "$2" || fail "$1 and $2 differ"; }

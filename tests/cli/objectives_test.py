@@ -4,11 +4,9 @@
 # stiffness at a node, distances from a shape and from a curve of force over displacement.
 #
 #   python3 objectives_test.py STRUT
-import json
 import math
-import os
 
-from testing import check, copy_models, finish, models, near, run, sweep, work, write
+from testing import answer, check, copy_models, finish, models, near, run, sweep, write
 
 copy_models()
 
@@ -65,11 +63,11 @@ keep: [velocity, cost_of_transport]
     # the report and the summary
     said = run("run", "block.yaml").stdout
     check("in push" in said and "the target was not reached" in said, said)
-    reported = json.loads(run("run", "block.yaml", "--json").stdout)["measured"]
+    reported = answer("run", "block.yaml")["measured"]
     check(reported["peak"]["member"] == "push" and reported["never"]["value"] is None, str(reported))
     check("member" not in reported["there"], str(reported))
     # an arrival that never comes does not keep a wanted accuracy from being reached
-    reported = json.loads(run("run", "block.yaml", "--accuracy", "1%", "--json").stdout)
+    reported = answer("run", "block.yaml", "--accuracy", "1%")
     check(reported["accuracy"]["kept"] is True and reported["measured"]["never"]["value"] is None, str(reported))
 
 
@@ -80,8 +78,8 @@ solver: {{accuracy: 0.5 %}}
 run: {{measure: {{steady: true}}}}
 keep: [velocity, cost_of_transport]
 """)[0]
-    reported = json.loads(run("compare", f"{models}/crawler/crawler.yaml",
-                          f"{models}/basics/belt.yaml", "--no-states", "--json").stdout)
+    reported = answer("compare", f"{models}/crawler/crawler.yaml",
+                          f"{models}/basics/belt.yaml", "--no-states")
     near(row["cost_of_transport"], reported["models"][0]["values"]["cost_of_transport"],
          "cost of transport of strut compare", 0.01)
 

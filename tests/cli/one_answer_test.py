@@ -11,7 +11,7 @@ import re
 import shutil
 import subprocess
 
-from testing import check, finish, run, strut, work, write
+from testing import answer, check, finish, run, work, write
 
 models, tests = os.path.abspath("models"), os.path.dirname(os.path.abspath(__file__))
 
@@ -143,7 +143,7 @@ robot = check_span("robot.yaml") if run("run", "robot.yaml", "-q", "-o", "d") el
 write("again.yaml", ROBOT.replace("accuracy: 1 %", "integrator: rk4-events, step: 5 us")
       .replace("periods: 400, of: drive", f"duration: {robot['duration']!r}")
       .replace("measure: {last: 20, steady: true}", "measure: {last: 0.1}").replace("last: 5, ", ""))
-again = json.loads(run("run", "again.yaml", "--json").stdout)
+again = answer("run", "again.yaml")
 for key in ("drive_work", "dissipated_members", "dissipated_friction"):
     one, two = robot["energy"][key], again["energy"][key]
     check(abs(one - two) < 0.03 * abs(two), f"{key} over {robot['duration']} s is {one}, by fixed steps {two}")
@@ -172,21 +172,21 @@ for more in ("", "trajectories: yes\n"):
     with open("each/table.csv", encoding="utf-8") as file:
         tables.append(file.read())
 check(tables[0] == tables[1], "trajectories change the table")
-alone = json.loads(run("run", "fixed.yaml", "--json").stdout)
+alone = answer("run", "fixed.yaml")
 for key, value in (("velocity", alone["velocity"]), ("duration", alone["duration"]),
                    ("drive_work", alone["energy"]["drive_work"]), ("residual", alone["energy"]["residual"]),
                    ("y_d", alone["nodes"]["d"]["position"][1]), ("duty_a", alone["contacts"]["a"]["duty"])):
     check(float(column("each/table.csv", key)[1]) == value, f"each: {key} is not {value}")
 
 # One judgement of the balance: the caveat has none of its own.
-plain = json.loads(run("run", f"{models}/crawler/crawler.yaml", "--json").stdout)
+plain = answer("run", f"{models}/crawler/crawler.yaml")
 check(plain["energy"]["balance"] == "closed" and "residual" not in plain["caveat"], str(plain["caveat"]))
 
 # Table, figure, page, JSON and CSV list the same equilibria.
 for path, axis in (("crawler/crawler.yaml", "friction: [0.1]"), ("gallery/two-mass-crawler.yaml", "friction: [0.1]"),
                    ("gallery/d-bar.yaml", "end: [0.3 s]"), ("gallery/x-joint.yaml", "base: [50 mm]")):
     model = f"{models}/{path}"
-    reported = json.loads(run("equilibria", model, "--json").stdout)["equilibria"]
+    reported = answer("equilibria", model)["equilibria"]
     stands = sorted((e for e in reported if e["outcome"] == "stands"), key=lambda e: e["energy"])
     table = run("equilibria", model, "--plot", "e.pdf").stdout
     listed = re.search(r"\n  equilibrium .*\n((?:  \S.*\n)*)", table)
@@ -209,7 +209,7 @@ for path, axis in (("crawler/crawler.yaml", "friction: [0.1]"), ("gallery/two-ma
     for i, e in enumerate(stands[:3]):
         check(float(column("states/table.csv", f"energy_{i + 1}")[0]) == e["energy"], f"{path}: sweep")
         check(column("states/table.csv", f"state_{i + 1}")[0] == e["name"], f"{path}: sweep")
-    compared = json.loads(run("compare", model, "--no-motion", "--json").stdout)["models"][0]["states"]
+    compared = answer("compare", model, "--no-motion")["models"][0]["states"]
     check({s["name"]: s["energy"] for s in compared} == {e["name"]: e["energy"] for e in stands}, f"{path}: compare")
     run("view", model, "-o", "e.html")
 
@@ -221,7 +221,7 @@ done = run("run", chaos, *little, "--quiet", "-o", "chaos", code=5)
 check("strut: warning: the requested accuracy is NOT kept" in done.stderr and not done.stdout, done.stderr)
 done = run("run", chaos, *little, code=5)
 check("\n  accuracy    NOT kept: " in done.stdout, done.stdout)
-reported = json.loads(run("run", chaos, *little, "--json", code=5).stdout)
+reported = answer("run", chaos, *little, code=5)
 check(reported["status"] == "completed" and not reported["accuracy"]["kept"], str(reported["accuracy"]))
 check([w["code"] for w in reported["warnings"]] == ["accuracy"] and reported["worth"].startswith("NOT kept"), str(reported))
 run("view", "chaos", "-o", "chaos.html")

@@ -58,8 +58,7 @@ grep -q 'accuracy_kept' asked/table.csv || fail "no accuracy: $(head -n 1 asked/
 expect 0 sweep masses.yaml -o adapted --integrator adaptive --quiet
 grep -q ',adaptive,' adapted/table.csv || fail "another method: $(cat adapted/table.csv)"
 shows 0 "--accuracy" sweep masses.yaml -o scripts --emit slurm --shards 2 --accuracy 0.5%
-sed 's/^keep: .*/compute: modes/' masses.yaml >modes.yaml
-tells 1 "--accuracy is for studies of runs" sweep modes.yaml -o modes --accuracy 1%
+edit 's/^keep: .*/compute: modes/' masses.yaml tells 1 "--accuracy is for studies of runs" sweep -o modes --accuracy 1%
 expect 0 sweep masses.yaml -o drawn --plot drawn.svg --quiet
 grep -q '<svg' drawn.svg || fail "no figure of a study"
 yaml best.yaml <<'YAML'

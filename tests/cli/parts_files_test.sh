@@ -51,11 +51,9 @@ END
 
 # 1. A file as a part: its structure, with the part's keys over it, and nothing of its experiment.
 shows 0 'v.3.front: {position: [0.75, 0], mass: 0.005}' export spine.yaml
-out_has 'v.2.lower: [0.3, -0.1]'
-out_has 'v.3.b1: {nodes: [v.3.middle, v.3.lower], kind: bar, stiffness: 10000'
+out_has 'v.2.lower: [0.3, -0.1]' 'v.3.b1: {nodes: [v.3.middle, v.3.lower], kind: bar, stiffness: 10000'
 out_has 'gravity: [0, 0]'
-out_has_not 'ground'
-out_has_not 'duration'
+out_has_not 'ground' 'duration'
 expect 0 export spine.yaml --set vertebrae=2
 out_has_not 'v.2'
 # By hand the same: the part's text in place of the file's, but for the names around it.
@@ -96,8 +94,7 @@ nodes: {v.last.upper: {mass: 3 g}, v.0.lower: {fixed: both}, wall: {position: [2
 members: {v.1.b3: remove, tie: {group: cable, nodes: [v.last.front, wall], rest_length_ratio: 0.5}}
 END
 shows 0 'name: "longer"' export longer.yaml
-out_has 'v.4.upper: {position: [0.8, 0.1], mass: 0.003}'
-out_has 'v.0.lower: {position: [0, -0.1], fixed: both}'
+out_has 'v.4.upper: {position: [0.8, 0.1], mass: 0.003}' 'v.0.lower: {position: [0, -0.1], fixed: both}'
 out_has_not 'v.1.b3'
 out_has 'v.3.upper: {nodes: [v.3.upper, v.4.upper], kind: cable, stiffness: 500, rest_length: 0.1}'
 out_has 'tie: {nodes: [v.4.front, wall], kind: cable, stiffness: 500, rest_length_ratio: 0.5}'
@@ -277,8 +274,7 @@ expect 0 form chain.yaml --given prestress -o form.yaml
 err_empty
 grep -qF 'cell: {part: frame, repeat: {count: cells' form.yaml || fail "the form has lost its parts"
 grep -qF 'cell.3.right: {rest_length: 0.99}' form.yaml || fail "the form's rest lengths"
-expect 0 rigidity form.yaml --json
-holds '.self_stress.count == 4'
+finds '.self_stress.count == 4' rigidity form.yaml
 expect 0 check form.yaml --set cells=4
 sed 's/rising: {group: bar/rising: {group: bar, rest_length: 1.6 m/' chain.yaml >moved.yaml
 tells 0 "strut: the scene is written without parameters, groups and parts" form moved.yaml --given lengths -o form.yaml

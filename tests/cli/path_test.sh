@@ -127,8 +127,7 @@ members: {rope: {kind: cable, nodes: [a, b], axial_stiffness: 100 N, rest_length
 actuators: {reel: {member: rope, signal: {constant: 0}}}
 END
 for over in "--over reel --until -0.5" "--over L --until 0.5"; do
-  expect 0 path reel.yaml $over --json
-  holds '(.points[-1].nodes.b[0] - 2 / 3 | fabs) < 1e-12'
+  finds '(.points[-1].nodes.b[0] - 2 / 3 | fabs) < 1e-12' path reel.yaml $over
 done
 expect 0 path reel.yaml --over reel --until "-1.5 m" --json
 holds '.end == "invalid" and (.remark | contains("rest length of rope would reach zero"))'

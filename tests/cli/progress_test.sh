@@ -39,10 +39,7 @@ if script -qec true /dev/null >/dev/null 2>&1 </dev/null; then
   export TERM
   unset NO_COLOR
   on_terminal
-  out_has "left"
-  out_has " %, "
-  out_has " of 1e+06 s, "
-  out_has "....."
+  out_has "left" " %, " " of 1e+06 s, " "....."
   grep -q "^$(printf '\033')\\[K" out || fail "the bar is not erased"
   grep -q "$(printf '\033')\\[[0-9;]*m" out || fail "no colour on a terminal"
   columns=40

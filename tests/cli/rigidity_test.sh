@@ -18,10 +18,8 @@ members:
 END
 expect 0 rigidity x.yaml
 err_empty
-out_has "self stress s                            1"
-out_has "mechanisms rigid body                    3"
-out_has "Maxwell-Calladine members - coordinates  -2"
-out_has "yes, by the self-stress state"
+out_has "self stress s                            1" "mechanisms rigid body                    3" \
+  "Maxwell-Calladine members - coordinates  -2" "yes, by the self-stress state"
 out_has "structure with tensegrity features of class 2"
 expect 0 rigidity x.yaml --json
 for text in '"rank":	5' '"method":	"svd"' '"rigid_body":	3' '"super_stable":	true' '"equilibrium":	true' \
@@ -37,8 +35,7 @@ cp x.yaml piped.yaml
 same printed out
 
 # Refused: an unknown shape, an unknown option, a scene that is none, a directory that cannot be.
-tells 1 "nowhere" rigidity x.yaml --at nowhere
-out_empty
+refuses 1 "nowhere" rigidity x.yaml --at nowhere
 tells 1 "--accuracy cannot be used here: equilibria are computed to rounding errors" rigidity x.yaml --accuracy 1%
 edit 's/kind: bar/kind: rod/' x.yaml tells 2 "rod" rigidity
 echo text >taken
@@ -59,6 +56,5 @@ out_has "mechanisms f                             0"
 # At an equilibrium by its name: the crawler lies on the ground, its forces balance there.
 crawler=$here/../../models/crawler/crawler.yaml
 shows 0 '"at":	"I"' rigidity "$crawler" --at I --json
-out_has '"equilibrium":	true'
-out_has '"rank":	7'
+out_has '"equilibrium":	true' '"rank":	7'
 tells 1 "IV" rigidity "$crawler" --at IV

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import time
 
-from testing import check, copy_models, finish, path, read, rows, run, strut, work, write
+from testing import answer, check, copy_models, finish, path, read, rows, run, strut, work, write
 
 copy_models()
 
@@ -46,7 +46,7 @@ for method, evaluations, within in (("multistart", 120, 1e-6), ("crs2", 120, 1e-
     check(abs(value / wanted - 1) < within, f"{method} found {value}, expected {wanted}")
     check(found["objective"] == min(float(r["objective [Hz]"]) for r in rows(method, "table.csv")
                                     if r["search"] == "1"), f"{method}: not the best of its rows")
-mode = json.loads(run("modes", "crs2/best.yaml", "--json").stdout)
+mode = answer("modes", "crs2/best.yaml")
 check(abs(mode["modes"][0]["frequency"] - 2) < 1e-5, f"best.yaml has {mode['modes'][0]}")
 best = rows("crs2", "best.csv")
 check(len(best) == 1 and best[0] in rows("crs2", "table.csv"), "best.csv is no row of the table")
@@ -86,10 +86,10 @@ keep: [velocity, work]
 """
 for seed in range(1, 6 if "--long" in sys.argv else 2):
     write("gait.yaml", GAIT.replace("SEED", str(seed)))
-    found = json.loads(run("sweep", "gait.yaml", "-o", f"gait{seed}", "--json").stdout)["best"][0]
+    found = answer("sweep", "gait.yaml", "-o", f"gait{seed}")["best"][0]
     check(found["objective"] >= 0.0242, f"the gait of seed {seed} is {found}")
     check(abs(found["check"] / found["objective"] - 1) < 0.02, f"the gait does not stand: {found}")
-speed = json.loads(run("run", "gait1/best.yaml", "--json").stdout)["velocity"]
+speed = answer("run", "gait1/best.yaml")["velocity"]
 check(f"{speed}" in read("gait1", "best.csv").decode(), f"best.yaml runs at {speed}")
 write("gait.yaml", GAIT.replace("SEED", "1"))
 for how in (signal.SIGKILL, signal.SIGINT):
@@ -142,7 +142,7 @@ search: {maximise: pull, over: {start: [low, middle, high], phase: {from: 0 deg,
          subject_to: [gap < 2 m, motion != periodic], evaluations: 150}
 keep: [gap, pull, motion]
 """)
-found = json.loads(run("sweep", "words.yaml", "-o", "words", "--json").stdout)["best"][0]
+found = answer("sweep", "words.yaml", "-o", "words")["best"][0]
 check(found["values"]["start"] == "middle" and
       abs(found["values"]["phase"] / (1.5 * math.pi) - 1) < 1e-2, f"words and angles: {found}")
 found = search("outer", "axes: [{mass: [1 kg, 2 kg, 3 kg]}]\nsearch: {" + GOAL + ", " + OVER + "}\n")
@@ -164,7 +164,7 @@ for point in front:
 check(front[0]["objective"] < 0.05 and front[-1]["objective"] > 0.95, f"the front ends at {front[-1]}")
 check(len(rows("pareto", "best.csv")) == len(front), "best.csv is not the front")
 check(b"<svg" in read("pareto", "front.svg"), "no figure of the front")
-mode = json.loads(run("modes", "pareto/best.yaml", "--json").stdout)["modes"][0]["frequency"]
+mode = answer("modes", "pareto/best.yaml")["modes"][0]["frequency"]
 check(abs(mode - 1.5) < 0.1, f"the compromise of the front has {mode} Hz")
 search("pareto1", PARETO, "--threads", "1")
 check(read("pareto", "table.csv") == read("pareto1", "table.csv"), "threads change a front")
@@ -237,7 +237,7 @@ done = run("sweep", "fine.yaml", "-o", "fine", "--retry", code=1)
 check("depends on those before" in done.stderr, f"--retry: {done.stderr}")
 check(run("sweep", "fine.yaml", "--count").stdout.startswith("  points   203\n"), "--count")
 check("are finished" in run("sweep", "--merge", "one").stdout, "a finished search")
-done = json.loads(run("sweep", "one.yaml", "-o", "one", "--status", "--json").stdout)
+done = answer("sweep", "one.yaml", "-o", "one", "--status")
 check(done["finished"] and 0 < done["done"] <= done["points"] == 303, f"the status is {done}")
 text = run("sweep", "one.yaml", "-o", "one").stdout
 check("minimise  abs(frequency_1 - 2 Hz)\n" in text and re.search(r" [\d.]+ [nup]?Hz ", text)

@@ -17,17 +17,13 @@ END
 for command in "run" "run --accuracy 1%" "run --quiet"; do
   # shellcheck disable=SC2086
   tells 0 "unstable equilibrium" ${command%% *} rod.yaml ${command#run}
-  err_has "node 'tip'"
-  err_has "initial.settle.perturb"
+  err_has "node 'tip'" "initial.settle.perturb"
 done
 shows 0 "UNSTABLE" run rod.yaml
 expect 0 run rod.yaml --json
-for key in '"stable":	false' '"node":	"tip"' '"growth_rate":	3.13' '"perturbations":	0'; do
-  out_has "$key"
-done
+out_has '"stable":	false' '"node":	"tip"' '"growth_rate":	3.13' '"perturbations":	0'
 shows 0 "unstable equilibrium" modes rod.yaml
-out_has "node 'tip'"
-out_has "unstable  tip moves along x"
+out_has "node 'tip'" "unstable  tip moves along x"
 shows 0 "the start settles in      saddle-1" equilibria rod.yaml
 out_has "unstable equilibrium"
 
@@ -42,8 +38,7 @@ done
 shows 0 '"stable":	true' run hangs.yaml --json
 out_has '"perturbations":	1'
 holds '.nodes.tip.position[1] < -1'
-expect 0 modes hangs.yaml --json
-holds '.modes[0].kind == "elastic"'
+finds '.modes[0].kind == "elastic"' modes hangs.yaml
 
 # A jumper: any method, any step and any accuracy start it from the same bits.
 yaml jumper.yaml <<'END'
@@ -111,10 +106,7 @@ solver: {step: 1 ms}
 run: {duration: 1 s}
 END
 tells 3 "4000 evaluations" run falls.yaml
-err_has "9.81 m/s,"
-err_has "9.81 m/s^2"
-err_has "node 'stone'"
-err_has "initial.settle.evaluations"
+err_has "9.81 m/s," "9.81 m/s^2" "node 'stone'" "initial.settle.evaluations"
 tells 3 "4000 evaluations" run falls.yaml --accuracy 1%
 shows 3 "the structure did not come to rest" equilibria falls.yaml
 out_has "4000 evaluations"

@@ -53,8 +53,7 @@ out_has '"code":	"stick_band"'
 
 # A band that is met, but so wide that the feet creep apart until one lets go.
 wrong=$(place --set band=1e-3m/s)
-err_has "nodes 'front' and 'back' stick, but creep within their stick bands"
-err_has "strained member 'body'"
+err_has "nodes 'front' and 'back' stick, but creep within their stick bands" "strained member 'body'"
 differ "$right" "$wrong" 0.05 || fail "creeping in the band: $wrong, not $right"
 out_has '"code":	"stick_creep"'
 

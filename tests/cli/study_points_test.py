@@ -8,7 +8,7 @@ import math
 import os
 import shutil
 
-from testing import check, finish, path, read, rows, run, strut, write
+from testing import check, finish, path, read, rows, run, write
 
 
 write("block.yaml", """strut: 1

@@ -4,7 +4,6 @@
 # finest grid.
 #
 #   python3 study_refine_test.py STRUT
-import json
 import math
 import os
 import random
@@ -13,7 +12,7 @@ import signal
 import subprocess
 import time
 
-from testing import check, finish, path, read, rows, run, strut, work, write
+from testing import answer, check, finish, path, read, rows, run, strut, work, write
 
 
 write("truss.yaml", """strut: 1
@@ -52,7 +51,7 @@ REFINE = "refine: {where: stable_count, depth: 2}\n"
 def the_edge_is_found():
     study("full", *FULL)
     study("fine", *COARSE, REFINE)
-    count = json.loads(run("sweep", "fine.yaml", "--count", "--json").stdout)
+    count = answer("sweep", "fine.yaml", "--count")
     check(count["points"] == 2 * 5 * 7 and count["most_points"] == 2 * 17 * 25, f"{count}")
     run("sweep", "full.yaml", "-o", "full", "--quiet")
     run("sweep", "fine.yaml", "-o", "fine", "--quiet")
@@ -65,9 +64,9 @@ def the_edge_is_found():
         check(int(row["stable_count"]) == states, f"not as by the formula: {row}, limit {top}")
     check([full[int(row["point"])] for row in fine] == fine, "rows with the same bits and numbers")
     check(read("full/map.svg") == read("fine/map.svg"), "the map is that of all points")
-    status = json.loads(run("sweep", "fine.yaml", "-o", "fine", "--status", "--json").stdout)
+    status = answer("sweep", "fine.yaml", "-o", "fine", "--status")
     check(status["points"] == status["done"] == len(fine), f"{status}")
-    again = json.loads(run("sweep", "fine.yaml", "-o", "fine", "--json").stdout)
+    again = answer("sweep", "fine.yaml", "-o", "fine")
     check(again["computed"] == 0, f"{again}")
 
 

@@ -3,18 +3,13 @@
 # size differs from point to point, the same bytes whatever the threads and shards.
 #
 #   python3 study_statics_test.py STRUT
-import json
 import math
 import os
 import shutil
 
-from testing import check, copy_models, finish, near, read, run, sweep, work, write
+from testing import answer, check, copy_models, finish, near, read, run, sweep, work, write
 
 copy_models()
-
-
-def command(*words):
-    return json.loads(run(*words, "--json").stdout)
 
 
 def paths():
@@ -31,7 +26,7 @@ path: {{until: 3}}
         one = 0.2 * (rest / math.hypot(1, 0.2) - 1)
         near(row["limit_factor"], most / one, f"limit load at height {h}")
         check(row["critical_factor"] == row["limit_factor"] and row["end"] == "until", str(row))
-    alone = command("path", truss, "--until", "3", "--set", "height=0.4 m")
+    alone = answer("path", truss, "--until", "3", "--set", "height=0.4 m")
     first = [e for e in alone["events"] if e["kind"] == "limit point"][0]
     check(float(rows[1]["limit_factor"]) == first["factor"], "the command's factor, to the bit")
     rows = sweep("pushed", f"""model: {truss}
@@ -88,7 +83,7 @@ def rigidity():
     name = next(line.split(":")[0].strip() for line in open(f"{work}/{jib}", encoding="utf-8")
                 if line.startswith("  ") and "friction" in line)
     rows = sweep("rigid", f"model: {jib}\ncompute: rigidity\naxes: [{{{name}: [0.1, 0.2]}}]\n")
-    alone = command("rigidity", jib)
+    alone = answer("rigidity", jib)
     for row in rows:
         for column, wanted in (("rank", alone["rank"]),
                                ("self_stress_count", alone["self_stress"]["count"]),

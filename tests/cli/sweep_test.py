@@ -12,13 +12,10 @@ import subprocess
 import sys
 import time
 
-try:
-    import numpy as np
-except ImportError:
-    print("numpy is missing: nothing tested")
-    sys.exit(77)
+from testing import answer, check, copy_models, finish, models, needs, read, rows, run, strut, sweep, work, write
 
-from testing import check, copy_models, finish, models, read, rows, run, strut, sweep, work, write
+needs("numpy")
+import numpy as np  # noqa: E402
 
 kills = int(sys.argv[2]) if len(sys.argv) > 2 else 10
 copy_models()
@@ -51,7 +48,7 @@ axes:
   - seconds: {from: 5 ms, to: 16 ms, step: 2 ms}
 keep: [duration]
 """)
-    count = json.loads(run("sweep", "grid.yaml", "--count", "--json").stdout)
+    count = answer("sweep", "grid.yaml", "--count")
     stiffness = np.geomspace(1, 1000, 7)
     mass = np.linspace(1, 2, 11)
     step = np.linspace(1e-3, 2e-3, 11)
@@ -125,8 +122,8 @@ def rows_are_single_runs():
         "run: {periods: 12, of: drive, measure: {last: 4}}"))
     for n in (0, 4, 13):
         row = table[n]
-        single = json.loads(run("run", "single.yaml", "--json", "--set", f"start={row['start']}",
-                                "--set", f"frequency={row['frequency [Hz]']} Hz").stdout)
+        single = answer("run", "single.yaml", "--set", f"start={row['start']}",
+                                "--set", f"frequency={row['frequency [Hz]']} Hz")
         pairs = [(row["velocity [m/s]"], single["velocity"]),
                  (row["force_evaluations"], single["force_evaluations"]),
                  (row["drive_work [J]"], single["energy"]["drive_work"]),
@@ -217,11 +214,11 @@ def killed_and_resumed():
         done = json.loads(seen.stdout)["done"]
         check(done >= before, f"{before} points were done, now {done}")
         before = done
-    end = json.loads(run("sweep", "crawler.yaml", "-o", "killed", "--json").stdout)
+    end = answer("sweep", "crawler.yaml", "-o", "killed")
     check(end["computed"] == end["points"] - before,
           f"{end['computed']} computed at the end, {before} were done of {end['points']}")
     check(read("killed/table.csv") == read("one/table.csv"), "after kills: table")
-    again = json.loads(run("sweep", "crawler.yaml", "-o", "killed", "--json").stdout)
+    again = answer("sweep", "crawler.yaml", "-o", "killed")
     check(again["computed"] == 0, "a finished sweep computes again")
 
 
@@ -298,7 +295,7 @@ keep: [velocity]
     check([row["status"] for row in table].count("completed") == 4, "four complete")
     check(all("above the largest stable step" in row["message"] and not row["velocity [m/s]"]
               for row in table[2:4]), "why they failed")
-    status = json.loads(run("sweep", "fails.yaml", "-o", "fails", "--status", "--json").stdout)
+    status = answer("sweep", "fails.yaml", "-o", "fails", "--status")
     check([f["point"] for f in status["failures"]] == [2, 3] and status["missing"] == 0, "status")
 
 
@@ -341,7 +338,7 @@ def a_directory_stands_for_itself():
         run("sweep", f"{place}/study.yaml", "-o", f"again{n}", "--set", "seconds=0.1 s", "--quiet")
         check(read(f"again{n}/table.csv") == read(f"{place}/table.csv"), f"{way}: table")
         before = read(f"{place}/study.yaml"), read(f"{place}/model.yaml")
-        end = json.loads(run("sweep", f"{place}/study.yaml", "-o", place, "--set", "seconds=0.1 s", "--json").stdout)
+        end = answer("sweep", f"{place}/study.yaml", "-o", place, "--set", "seconds=0.1 s")
         check(end["computed"] == 0, f"{way}: not the same study")
         check((read(f"{place}/study.yaml"), read(f"{place}/model.yaml")) == before, "copies of copies")
     # A copy of a copy is the same text; a model that has changed is another study.
@@ -393,7 +390,7 @@ figures:
     check(b"<svg" in read("figures/map.svg"), "map.svg")
     os.remove(f"{work}/figures/map.svg")
     write("figures.yaml", study.replace("  lines:", "  curves:"))
-    end = json.loads(run("sweep", "figures.yaml", "-o", "figures", "--json").stdout)
+    end = answer("sweep", "figures.yaml", "-o", "figures")
     check(end["computed"] == 0, "another figure is no other study")
     check(b"<svg" in read("figures/map.svg") and b"<svg" in read("figures/curves.svg"), "anew")
     write("figures.yaml", study.replace("y: velocity", "y: velocitie"))
@@ -487,8 +484,8 @@ keep: [velocity]
         check("No space left on device" in said, said)
         check(not os.path.exists(f"{work}/disk/x/table.csv"), "a table on a full disk")
         mount("-o", "remount,rw,size=1000k")
-        done = json.loads(run("sweep", "room.yaml", "-o", "disk/x", "--status", "--json").stdout)
-        end = json.loads(run("sweep", "room.yaml", "-o", "disk/x", "--json").stdout)
+        done = answer("sweep", "room.yaml", "-o", "disk/x", "--status")
+        end = answer("sweep", "room.yaml", "-o", "disk/x")
         check(0 < end["computed"] == done["missing"] < 900, f"after a full disk: {end}, {done}")
         check(read("disk/x/table.csv") == read("room/table.csv"), "after a full disk: table")
         mount("-o", "remount,ro")

@@ -40,9 +40,7 @@ err_has "standard input"
 
 # Directories.
 touch file
-expect 4 run "$hopper" -o file
-out_empty
-err_has "file"
+refuses 4 "file" run "$hopper" -o file
 expect 4 run "$hopper" -o file/below
 expect 4 run "$hopper" -o ''
 expect 4 run "$hopper" -o /proc/strut

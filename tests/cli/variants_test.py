@@ -2,23 +2,17 @@
 """strut sweep with variants: their rows are those of studies with the same keys, each by itself.
 usage: variants_test.py STRUT
 """
-import csv
 import os
-import subprocess
 
-from testing import check, finish, strut, work, write
+from testing import check, finish, rows, run, work, write
 
 os.chdir(work)
 
 
 def sweep(name, text, *words, code=0):
     write(name + ".yaml", text)
-    done = subprocess.run([strut, "sweep", name + ".yaml", "-o", name, "--quiet", *words],
-                          capture_output=True, text=True)
-    check(done.returncode == code, f"{name}: exit code {done.returncode}: {done.stderr}")
-    if not os.path.exists(f"{name}/table.csv"):
-        return done.stderr, []
-    return done.stderr, list(csv.DictReader(open(f"{name}/table.csv", newline="")))
+    done = run("sweep", name + ".yaml", "-o", name, "--quiet", *words, code=code)
+    return done.stderr, rows(name, "table.csv") if os.path.exists(f"{name}/table.csv") else []
 
 
 write("block.yaml", """strut: 1
@@ -90,6 +84,6 @@ sweep("two", variants, "--threads", "1")
 check(open("two/table.csv").read() == open("all/table.csv").read(), "one thread: table")
 for shard in ("0/4", "1/4", "2/4", "3/4"):
     sweep("shards", variants, "--shard", shard)
-subprocess.run([strut, "sweep", "--merge", "shards"], check=True, capture_output=True)
+run("sweep", "--merge", "shards")
 check(open("shards/table.csv").read() == open("all/table.csv").read(), "shards: table")
 finish()

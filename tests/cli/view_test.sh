@@ -45,8 +45,7 @@ tells 4 "strut did not write it" view beside/swing
 tells 1 "missing -o FILE.html" view - </dev/null
 
 # Two runs on one page, named by their paths; the first is that of the page alone.
-sed 's/duration: 0.2/duration: 0.1/' swing.yaml >short.yaml
-expect 0 run short.yaml -q -o beside/short
+edit 's/duration: 0.2/duration: 0.1/' swing.yaml expect 0 run -q -o beside/short
 expect 0 view swing beside/short/ -o two.html
 [ "$(sed 's/, [0-9.]* MB$//' out)" = "two.html: 201 frames, beside 101 frames" ] || fail "says: $(cat out)"
 grep -q '"label":"swing"' two.html || fail "the first run has no label"
@@ -107,8 +106,7 @@ grep -q '"value":"summary.json cannot be read"' damaged.html || fail "nothing on
 rm damaged/summary.json
 expect 0 view damaged -o damaged.html -q
 grep -q '"summary":\[\]' damaged.html || fail "rows from no summary"
-sed 's/\[position, force\]/[force]/' swing.yaml >blind.yaml
-expect 0 run blind.yaml -q -o blind
+edit 's/\[position, force\]/[force]/' swing.yaml expect 0 run -q -o blind
 tells 4 "recorded no positions" view blind -o page.html
 expect 2 view /dev/null -o page.html
 absent page.html

@@ -105,8 +105,7 @@ members: {m: {kind: spring, nodes: [a, b], stiffness: 1e3, damping: 1}}
 actuators: {d: {member: m, signal: {sine: {amplitude: A, frequency: 3}}}}
 EOF
 tells 0 'scale.yaml:3:17: note: --set A=0.3 is taken as 0.3 in SI units, 150 times the 2 mm here' check scale.yaml --set A=0.3
-err_has 'write --set A="0.3 mm" if that is meant'
-err_has '3 | parameters: {A: 2 mm'
+err_has 'write --set A="0.3 mm" if that is meant' '3 | parameters: {A: 2 mm'
 [ "$(grep -c note err)" -eq 1 ] || fail "a note twice"
 tells 0 'write --set mass="2e-3 kg"' check scale.yaml --set mass=2e-3
 tells 0 'write --set product="6 UNIT"' check scale.yaml --set product=6

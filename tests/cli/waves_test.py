@@ -3,17 +3,16 @@
 
 usage: waves_test.py STRUT
 """
-import json
 import math
 
-from testing import check, fail, finish, run, write
+from testing import answer, check, fail, finish, run, write
 
 TAU = 2 * math.pi
 
 
 def waves(name, text, *options):
     write(name, text)
-    return json.loads(run("modes", name, "--wave", "--json", *options).stdout)
+    return answer("modes", name, "--wave", *options)
 
 
 def close(what, found, wanted, error=1e-9, scale=0.0):
@@ -82,7 +81,7 @@ nodes:
   n{cells + 1}: {{position: [{cells + 1}, 0], fixed: both}}
 {nodes}members:
 {members}""")
-    finite = sorted(m["frequency"] for m in json.loads(run("modes", "finite.yaml", "--json").stdout)["modes"])
+    finite = sorted(m["frequency"] for m in answer("modes", "finite.yaml")["modes"])
     endless = waves("endless.yaml", """
 strut: 1
 lattice: [[1, 0]]

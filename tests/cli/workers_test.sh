@@ -130,5 +130,4 @@ sed '/method/d' sbplx.yaml >usual.yaml
 tells 2 "usual.yaml:6:3: error: workers cannot share a search by 'multistart'" sweep usual.yaml -o no --emit slurm --shards 4
 out_empty
 absent no
-sed 's/evaluations: 10/starts: 2/' crs2.yaml >starts.yaml
-expect 0 sweep starts.yaml -o no --emit slurm --shards 2
+edit 's/evaluations: 10/starts: 2/' crs2.yaml expect 0 sweep -o no --emit slurm --shards 2

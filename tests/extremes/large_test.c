@@ -98,8 +98,7 @@ static void land(int32_t n, int64_t count, strut_mass_model mass, double mu) {
   double after = momentum(&m, &size), left = residual(&m, &stored), speed = fastest(&m);
   print_message("  residual %.1e of the energy moved, fastest %.2f m/s, momentum changed by %.1e\n",
                 left, speed, (after - before) / before);
-  assert_true(fabs(left) < (mu > 0 ? 5e-2 : 5e-3));
-  assert_true(speed < 20 * FALL);
+  assert_all(fabs(left) < (mu > 0 ? 5e-2 : 5e-3), speed < 20 * FALL);
   /* each step and node rounds by half a unit, at random */
   if (!(mu > 0))
     assert_true(fabs(after - before) < 1e-13 * before * sqrt((double)count));
@@ -167,7 +166,6 @@ static void refuse_above(strut_setup *setup, const strut_model *model, double li
 
 /* Compiled, its step bounded, and a few steps taken by the run itself. */
 static void take_largest(strut_mass_model mass) {
-  strut_run_options options = {0};
   strut_summary summary;
   strut_step_limit limit;
   OWN(strut_setup) setup = falling(largest_nodes, mass, 0.3);
@@ -175,9 +173,9 @@ static void take_largest(strut_mass_model mass) {
   double start = seconds();
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   double compiled = seconds() - start;
-  assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
+  assert_ok(strut_step_limit_estimate(model, &limit, NULL));
   double bounded = seconds() - start - compiled;
-  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &summary, NULL), STRUT_OK);
+  assert_ok(strut_simulate(model, &setup.experiment, &(strut_run_options){0}, &summary, NULL));
   print_message(
       "%s mass, %d nodes, %zu members: compiled in %.2f s, largest step in %.2f s (%s "
       "%.4g s), 10 steps in %.2f s, peak memory %.0f MB\n",

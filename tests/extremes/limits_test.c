@@ -102,8 +102,7 @@ static void check_growth(const explicit_method *method, double zeta, double part
   }
   print_message("%s, damping ratio %g, %.2f of the limit: growth %.6f, off by %.1e\n", method->name,
                 zeta, part, expected, worst);
-  assert_true(part < 1 ? expected < 1 + 1e-15 : expected > 1.001);
-  assert_true(worst <= 1e-6);
+  assert_all(part < 1 ? expected < 1 + 1e-15 : expected > 1.001, worst <= 1e-6);
 }
 
 TEST(growth_beside_the_limit) {
@@ -123,7 +122,7 @@ TEST(the_limit_is_predicted) {
       strut_step_limit limit;
       OWN(strut_setup) setup = oscillator(zeta[i]);
       OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-      assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
+      assert_ok(strut_step_limit_estimate(model, &limit, NULL));
       double predicted = strut_step_limit_of_method(&limit, strut_integrator_find(METHODS[k].name));
       assert_relative(predicted * sqrt(K / MASS), limit_of(&METHODS[k], zeta[i]), 1e-2);
     }

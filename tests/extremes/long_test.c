@@ -34,8 +34,7 @@ TEST(energy_of_rk4) {
     uint64_t calls = allocations_so_far();
     long memory = resident();
     motion_steps(&m, steps);
-    assert_true(allocations_so_far() == calls);
-    assert_true(resident() == memory);
+    assert_all(allocations_so_far() == calls, resident() == memory);
     double per_step = -pow(z, 6) / 72 + pow(z, 8) / 576, ratio = energy(&m) / before;
     double expected = exp((double)steps * log1p(per_step));
     print_message("rk4, z = %g, %lld steps: energy %.12f, theory %.12f\n", z, (long long)steps,

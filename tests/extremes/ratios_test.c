@@ -25,8 +25,8 @@ TEST(statics_of_a_stiffness_ratio) {
     }
     build_load(&scene, links, pull, 0, -1);
     OWN_POINTER(strut_model) model = motion_compile(&scene);
-    assert_int_equal(strut_potential_create(model, NULL, false, &potential, NULL), STRUT_OK);
-    assert_int_equal(strut_minimiser_create(potential, &minimiser, NULL), STRUT_OK);
+    assert_ok(strut_potential_create(model, NULL, false, &potential, NULL));
+    assert_ok(strut_minimiser_create(potential, &minimiser, NULL));
     FREED double *q = calloc((size_t)model->length, sizeof *q);
     assert_non_null(q);
     for (int32_t i = 0; i < model->length; i++) q[i] = model->start[i];

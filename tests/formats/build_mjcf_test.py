@@ -5,7 +5,6 @@
 #
 #   python3 build_mjcf_test.py STRUT        (with the Python package of the same build)
 import csv
-import json
 import math
 import os
 import re
@@ -13,7 +12,7 @@ import shutil
 import subprocess
 import xml.etree.ElementTree as xml
 
-from testing import check, finish, formats, models, path, run, write
+from testing import answer, check, finish, formats, models, path, run, write
 
 here = os.path.dirname(os.path.realpath(__file__))
 SVG = "{http://www.w3.org/2000/svg}"
@@ -209,7 +208,7 @@ def vibrates_alike(simulate, kind):
     at = names.index("mid.y")
     got = frequency([r[0] for r in rows], [r[at] for r in rows])
     exact = math.sqrt(2 * 20 / 1 / 1.0) / (2 * math.pi)  # 2 T / L over the mass and half of the members'
-    modes = json.loads(run("modes", "string.yaml", "--json").stdout)
+    modes = answer("modes", "string.yaml")
     ours = modes["modes"][0]["frequency"]
     check(abs(ours / exact - 1) < 1e-9, f"strut's frequency {ours}, exact {exact}")
     check(abs(got / exact - 1) < 1e-3, f"MuJoCo's frequency {got}, exact {exact}")

@@ -3,12 +3,11 @@
 # form; what a scene cannot say is listed by place, what cannot be read is an error by place and leaves no file.
 #
 #   python3 import_test.py STRUT        (with the Python package of the same build)
-import json
 import math
 import os
 import re
 
-from testing import check, finish, formats, models, read, run, work, write
+from testing import answer, check, finish, formats, models, read, run, work, write
 
 gallery = os.path.join(models, "gallery")
 
@@ -24,7 +23,7 @@ def imported(name, *words):
 
 
 def stable_energies(model):
-    found = json.loads(run("equilibria", model, "--json").stdout)
+    found = answer("equilibria", model)
     return sorted(e["energy"] for e in found["equilibria"] if e["label"] == "stable")
 
 
@@ -106,7 +105,7 @@ def springable():
   stages:
     - {load: load1, stop: {n3.y: -3}}
     - {load: load2}""" in scene, "stages of the loading")
-    stages = json.loads(run("path", "scene.yaml", "--json").stdout)
+    stages = answer("path", "scene.yaml")
     first = stages["earlier_stages"][0]
     check(first["end"] == "stop" and stages["points"][0]["nodes"] == first["points"][-1]["nodes"], "stages")
     write("blocked.csv", ARCH + "then\nblock\n1, Y\n3, Y, 5\n")
@@ -117,8 +116,8 @@ def springable():
     imported("arch.csv")
 
     def limits(model):
-        path = json.loads(run("path", model, "--load", "load1" if model == "scene.yaml" else "down",
-                              "--until", "3", "--json").stdout)
+        path = answer("path", model, "--load", "load1" if model == "scene.yaml" else "down",
+                              "--until", "3")
         return [e["factor"] for e in path["events"] if "limit" in e["kind"]][:2]
     same_numbers(limits("scene.yaml"), limits(f"{gallery}/arch-with-flexure.yaml"), 1e-6,
                  "limit loads of the arch with a flexure")
@@ -144,7 +143,7 @@ LOADING
     check("d1: {nodes: [n0, n1], along: x, stiffness: 20, rest_distance: 1.5}" in scene, scene)
     check("d3: {node: n1, line: [n0, n2], stiffness: 1e-9}" in scene, scene)
     check("d4: {nodes: [m1, n1], along: y, stiffness: 5}" in scene, scene)
-    end = json.loads(run("path", "scene.yaml", "--load", "load1", "--json").stdout)["points"][-1]
+    end = answer("path", "scene.yaml", "--load", "load1")["points"][-1]
     x, y = end["nodes"]["n1"]
     same_numbers([x, 3 * ((0.9 - y) / 0.05) ** 3 + 5 * (1 - y)], [1.5, 2], 1e-6, "a node on distances")
     # cables that are written as two pieces, a running one, an angle beyond half a turn
@@ -314,7 +313,7 @@ def tables():
         check("nodes.csv:1:34: note: not imported: the column 'colour'" in said, said)
         same_numbers(stable_energies("scene.yaml"), stable_energies(f"{gallery}/x-frame.yaml"), 1e-9,
                      "energies of Snelson's X as tables")
-        modes = [json.loads(run("modes", m, "--at", "equilibrium-1", "--json").stdout)["modes"]
+        modes = [answer("modes", m, "--at", "equilibrium-1")["modes"]
                  for m in ("scene.yaml", f"{gallery}/x-frame.yaml")]
         same_numbers([m["frequency"] for m in modes[0]], [m["frequency"] for m in modes[1]], 1e-9, "modes")
     # what strut itself lists can be read again, but for the stiffness

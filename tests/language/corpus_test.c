@@ -56,8 +56,8 @@ static strut_override split_setting(char *setting) {
 static size_t check_case(faulty_case *c) {
   strut_override set[CASE_MOST_SETS];
   for (size_t i = 0; i < c->set_count; i++) set[i] = split_setting(c->set[i]);
-  strut_setup setup;
-  strut_diagnostics diagnostics = {0};
+  OWN(strut_setup) setup;
+  OWN(strut_diagnostics) diagnostics = {0};
   strut_status status = strut_setup_read(&setup, c->name, c->text, c->length, set, c->set_count,
                                          purpose_of(c), &diagnostics);
   size_t wrong = compare(c, &diagnostics);
@@ -70,8 +70,6 @@ static size_t check_case(faulty_case *c) {
     wrong++;
   }
   strut_diagnostics_render(&diagnostics, 50);
-  strut_setup_free(&setup);
-  strut_diagnostics_free(&diagnostics);
   return wrong;
 }
 

@@ -137,10 +137,10 @@ TEST(no_value_is_lost) {
   size_t count = scene_files(&files), lost = 0, tried = 0;
   char *room = malloc(1 << 20);
   for (size_t i = 0; i < count; i++) {
-    strut_diagnostics diagnostics = {0};
-    strut_document document = {0};
+    OWN(strut_diagnostics) diagnostics = {0};
+    OWN(strut_document) document = {0};
     strut_diagnostics_source(&diagnostics, files[i].path, files[i].text, files[i].length);
-    assert_int_equal(strut_document_read(&document, &diagnostics), STRUT_OK);
+    assert_ok(strut_document_read(&document, &diagnostics));
     char *written = read_and_write(files[i].path, files[i].text, files[i].length);
     assert_non_null(written);
     mutation m = {.file = &files[i], .written = written, .mutant = room};
@@ -148,8 +148,6 @@ TEST(no_value_is_lost) {
     lost += m.lost;
     tried += m.tried;
     strut_release(written);
-    strut_document_free(&document);
-    strut_diagnostics_free(&diagnostics);
   }
   free(room);
   free_scene_files(files, count);
@@ -174,14 +172,12 @@ TEST(a_second_fault_is_survived) {
   size_t count = refused_files(&files), tried = 0;
   char *room = malloc(1 << 20);
   for (size_t i = 0; i < count; i++) {
-    strut_diagnostics diagnostics = {0};
-    strut_document document = {0};
+    OWN(strut_diagnostics) diagnostics = {0};
+    OWN(strut_document) document = {0};
     strut_diagnostics_source(&diagnostics, files[i].path, files[i].text, files[i].length);
     mutation m = {.file = &files[i], .written = "", .mutant = room};
     if (strut_document_read(&document, &diagnostics) == STRUT_OK) misspell(&m, document.root);
     tried += m.tried;
-    strut_document_free(&document);
-    strut_diagnostics_free(&diagnostics);
   }
   free(room);
   free_scene_files(files, count);

@@ -5,7 +5,7 @@
 #include "parser/language/keys.h"
 #include "parser/write/write_scene.h"
 #include "tests/language/scenes.h"
-#include "tests/support/test.h"
+#include "tests/support/check.h"
 
 static void same_bits(const char *what, const void *a, const void *b, size_t size) {
   if (memcmp(a, b, size) != 0) fail_msg("%s: not the same bits", what);
@@ -130,8 +130,7 @@ static void same_shapes(const strut_setup *a, const strut_setup *b) {
 }
 
 static void same_scene(const strut_setup *a, const strut_setup *b) {
-  assert_string_equal(a->scene.name, b->scene.name);
-  assert_string_equal(a->scene.description, b->scene.description);
+  assert_all_texts(a->scene.name, b->scene.name, a->scene.description, b->scene.description);
   assert_string_equal(a->scene.source, b->scene.source);
   SAME(scene.mass_model);
   SAME(scene.bar_model);
@@ -228,10 +227,9 @@ TEST(single_numbers_survive) {
     if (!(value - value == 0.0)) continue;
     setup.scene.gravity[0] = value;
     char *text = strut_setup_write(&setup);
-    strut_setup back;
-    assert_int_equal(read_quietly(text, strlen(text), &back), STRUT_OK);
+    OWN(strut_setup) back;
+    assert_ok(read_quietly(text, strlen(text), &back));
     same_bits(text, &back.scene.gravity[0], &value, sizeof value);
-    strut_setup_free(&back);
     strut_release(text);
   }
 }
@@ -254,7 +252,7 @@ TEST(a_nameless_period_gets_a_name) {
   setup.experiment.period_signal = 0;
   setup.scene.name = "quote \" slash \\ line\nbreak \xe2\x80\xa8 tab \t control \x01 bad \xff.";
   char *text = strut_setup_write(&setup);
-  assert_int_equal(read_quietly(text, strlen(text), &back), STRUT_OK);
+  assert_ok(read_quietly(text, strlen(text), &back));
   assert_string_equal(back.scene.name,
                       "quote \" slash \\ line\nbreak \xe2\x80\xa8 tab \t control \xef\xbf\xbd bad "
                       "\xef\xbf\xbd.");

@@ -94,10 +94,9 @@ void free_scene_files(scene_file *files, size_t count) {
 
 strut_status read_quietly_as(const char *path, const char *text, size_t length,
                              strut_setup *setup) {
-  strut_diagnostics diagnostics = {0};
+  OWN(strut_diagnostics) diagnostics = {0};
   strut_status status =
       strut_setup_read(setup, path, text, length, NULL, 0, STRUT_FOR_ANY, &diagnostics);
-  strut_diagnostics_free(&diagnostics);
   return status;
 }
 

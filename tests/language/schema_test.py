@@ -12,14 +12,11 @@ import re
 import subprocess
 import sys
 
-try:
-    import yaml
-    from jsonschema import Draft7Validator
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
+from testing import check, fail, finish, needs, strut, work
 
-from testing import check, fail, finish, strut, work  # noqa: E402
+needs("yaml", "jsonschema")
+import yaml  # noqa: E402
+from jsonschema import Draft7Validator  # noqa: E402
 
 here = os.path.dirname(os.path.abspath(__file__))
 top = os.path.dirname(os.path.dirname(here))

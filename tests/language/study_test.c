@@ -7,7 +7,7 @@
 #include "parser/language/keys.h"
 #include "parser/study/read_study.h"
 #include "tests/language/cases.h"
-#include "tests/support/test.h"
+#include "tests/support/check.h"
 
 #define FOLDER STRUT_TESTS_DIR "/language/studies/"
 
@@ -118,7 +118,7 @@ static void open_good(const char *name, strut_study_file *file) {
   if (status == STRUT_OK) status = try_ends(file);
   if (status != STRUT_OK)
     print_error("%s: %s\n%s", name, error.message, strut_study_messages(file, 50));
-  assert_int_equal(status, STRUT_OK);
+  assert_ok(status);
 }
 
 /* Does a good study have this text? */
@@ -130,9 +130,8 @@ static bool stands_in_a_good_study(const char *text) {
     char path[600];
     if (!strstr(entry->d_name, ".yaml")) continue;
     snprintf(path, sizeof path, FOLDER "good/%s", entry->d_name);
-    char *good = read_text(path);
+    FREED char *good = read_text(path);
     found = strstr(good, text) != NULL;
-    free(good);
   }
   closedir(folder);
   return found;
@@ -167,14 +166,12 @@ TEST(points_of_files_and_samples) {
   strut_study_file file;
   strut_study_value values[16];
   strut_setup setup;
-  strut_error error = {0};
   open_good("points.yaml", &file);
-  assert_int_equal(strut_grid_points(&file.study), 2 * 5);
-  assert_int_equal(file.table_count, 1);
+  assert_all_equal(strut_grid_points(&file.study), 2 * 5, file.table_count, 1);
   strut_grid_values(&file.study, 7, values);
   assert_true(values[0].number == 0.75 && values[1].number == 200);
   assert_string_equal(values[2].word, "far");
-  assert_int_equal(strut_study_setup(&file, values, &setup, &error), STRUT_OK);
+  assert_ok(strut_study_setup(&file, values, &setup, NULL));
   assert_true(setup.scene.nodes[1].mass == 0.75);
   strut_setup_free(&setup);
   char *copy = strut_study_copy(&file, "elsewhere.yaml", NULL, 0);
@@ -208,25 +205,21 @@ TEST(studies_of_what_is_at_rest) {
 TEST(a_study_is_what_it_says) {
   strut_study_file file;
   strut_setup setup;
-  strut_error error = {0};
   strut_study_value values[5];
   open_good("every-key.yaml", &file);
-  assert_int_equal(strut_grid_points(&file.study), 2 * 3 * 2 * 3);
-  assert_int_equal(file.study.figure_count, 6);
+  assert_all_equal(strut_grid_points(&file.study), 2 * 3 * 2 * 3, file.study.figure_count, 6);
   const strut_study_figure *figures = file.study.figures;
-  assert_true(figures[0].kind == STRUT_FIGURE_LINES && isinf(figures[0].to));
-  assert_true(figures[3].kind == STRUT_FIGURE_MOTION && figures[3].from == 0.1 &&
-              figures[3].to == 0.2);
+  assert_all(
+      figures[0].kind == STRUT_FIGURE_LINES && isinf(figures[0].to),
+      figures[3].kind == STRUT_FIGURE_MOTION && figures[3].from == 0.1 && figures[3].to == 0.2);
   assert_int_equal(figures[4].time_count, 2);
-  assert_true(figures[4].times[1] == 0.12 && figures[5].scale[0] == 10);
-  assert_true(file.study.half_step);
+  assert_all(figures[4].times[1] == 0.12 && figures[5].scale[0] == 10, file.study.half_step);
   assert_int_equal(file.study.keep.bits[0],
                    1 << STRUT_KEEP_VELOCITY | 1 << STRUT_KEEP_WORK | 1 << STRUT_KEEP_POSITIONS);
   strut_grid_values(&file.study, 18 + 2 * 6 + 1 * 3 + 1, values);
   assert_string_equal(values[0].word, "long");
-  assert_int_equal(strut_study_setup(&file, values, &setup, &error), STRUT_OK);
-  assert_true(setup.scene.loads[0].force[0] == 0.25);
-  assert_true(setup.scene.nodes[1].mass == 0.5);
+  assert_ok(strut_study_setup(&file, values, &setup, NULL));
+  assert_all(setup.scene.loads[0].force[0] == 0.25, setup.scene.nodes[1].mass == 0.5);
   assert_true(setup.scene.members[0].stiffness == 200);
   assert_true(setup.scene.signals[setup.scene.actuators[0].signal].amplitude == 2e-3);
   double f = setup.scene.signals[setup.scene.actuators[0].signal].frequency;
@@ -240,7 +233,7 @@ TEST(a_study_is_what_it_says) {
   strut_setup_free(&setup);
   strut_grid_values(&file.study, 2 * 6 + 1 * 3 + 1, values); /* the same of the other variant */
   assert_string_equal(values[0].word, "coarse");
-  assert_int_equal(strut_study_setup(&file, values, &setup, &error), STRUT_OK);
+  assert_ok(strut_study_setup(&file, values, &setup, NULL));
   assert_string_equal(setup.experiment.integrator, "euler");
   assert_true(setup.experiment.step == 1 / (500 * f) && setup.experiment.duration == 2);
   assert_true(setup.scene.nodes[1].start[0] == 1.02 && setup.experiment.output_last == 0.1);
@@ -253,16 +246,14 @@ TEST(a_study_is_what_it_says) {
 TEST(former_names_are_noted_once) {
   static const double expected[] = {1e-3, 1e-9};
   strut_study_file file;
-  strut_error error = {0};
   open_good("former-names.yaml", &file);
   for (int64_t variant = 0; variant < 2; variant++) {
     strut_study_value values[2];
-    strut_setup setup;
+    OWN(strut_setup) setup;
     strut_grid_values(&file.study, 2 * variant, values);
-    assert_int_equal(strut_study_setup(&file, values, &setup, &error), STRUT_OK);
+    assert_ok(strut_study_setup(&file, values, &setup, NULL));
     assert_true(setup.experiment.steady.floor == expected[variant]);
     assert_int_equal(setup.experiment.steady.successive, 4);
-    strut_setup_free(&setup);
   }
   const char *notes = strut_study_notes(&file);
   assert_non_null(strstr(notes,
@@ -271,8 +262,7 @@ TEST(former_names_are_noted_once) {
   assert_non_null(strstr(notes,
                          "former-names.yaml:8:35: note: 'floor' is now called "
                          "'absolute_tolerance'"));
-  assert_int_equal(file.diagnostics.note_count, 2);
-  assert_int_equal(file.model_diagnostics.note_count, 0);
+  assert_all_equal(file.diagnostics.note_count, 2, file.model_diagnostics.note_count, 0);
   strut_study_close(&file);
 }
 
@@ -280,10 +270,9 @@ TEST(former_names_are_noted_once) {
 TEST(identity) {
   static const strut_override stiff[] = {{"stiffness", "101 N/m"}};
   strut_study_file a, b, c;
-  strut_error error = {0};
   open_good("accuracy.yaml", &a);
   open_good("accuracy.yaml", &b);
-  assert_int_equal(strut_study_open(FOLDER "good/accuracy.yaml", stiff, 1, &c, &error), STRUT_OK);
+  assert_ok(strut_study_open(FOLDER "good/accuracy.yaml", stiff, 1, &c, NULL));
   char *one = strut_study_identity(&a), *two = strut_study_identity(&b),
        *other = strut_study_identity(&c);
   assert_string_equal(one, two);
@@ -298,25 +287,10 @@ TEST(identity) {
 
 /* Every allocation fails once: an answer, and nothing left behind. */
 TEST(no_memory) {
-  strut_status status = STRUT_NO_MEMORY;
-  for (int64_t n = 0; status == STRUT_NO_MEMORY; n++) {
-    strut_study_file file;
-    strut_error error = {0};
-    assert_true(n < 10000);
-    strut_fail_allocation_after(n);
-    status = strut_study_open(FOLDER "good/every-key.yaml", NULL, 0, &file, &error);
-    strut_fail_allocation_after(-1);
-    strut_study_close(&file);
-  }
-  assert_int_equal(status, STRUT_OK);
-  status = STRUT_NO_MEMORY;
-  for (int64_t n = 0; status == STRUT_NO_MEMORY; n++) {
-    strut_study_file file;
-    strut_error error = {0};
-    strut_fail_allocation_after(n);
-    status = strut_study_open(FOLDER "good/points.yaml", NULL, 0, &file, &error);
-    strut_fail_allocation_after(-1);
-    strut_study_close(&file);
-  }
-  assert_int_equal(status, STRUT_OK);
+  static const char *const files[] = {FOLDER "good/every-key.yaml", FOLDER "good/points.yaml"};
+  for (int i = 0; i < 2; i++) REFUSE_EACH(n, status, 1) {
+      strut_study_file file;
+      status = refused(n, strut_study_open(files[i], NULL, 0, &file, NULL));
+      strut_study_close(&file);
+    }
 }

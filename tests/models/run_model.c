@@ -44,13 +44,12 @@ model_run model_read_text(const char *name, const char *text, const char *const 
     overrides[count] = (strut_override){names[count], sign + 1};
   }
   model_run run = {.model = NULL};
-  strut_diagnostics diagnostics = {0};
+  OWN(strut_diagnostics) diagnostics = {0};
   strut_status status = strut_setup_read(&run.setup, name, text, strlen(text), overrides, count,
                                          STRUT_FOR_RUN, &diagnostics);
   for (size_t i = 0; i < diagnostics.count; i++)
     print_error("%s:%u: %s\n", name, diagnostics.items[i].place.line, diagnostics.items[i].message);
   if (status) fail_msg("%s is not valid: %s", name, strut_status_text(status));
-  strut_diagnostics_free(&diagnostics);
   return run;
 }
 
@@ -74,12 +73,6 @@ void model_simulate(model_run *run) {
     status = strut_simulate(run->model, &run->setup.experiment, &options, &run->summary, &error);
   if (status) fail_msg("%s: %s", run->setup.scene.name, error.message);
   run->layout.channels = run->channels;
-}
-
-model_run model_run_file(const char *name, const char *const *settings) {
-  model_run run = model_read(name, settings);
-  model_simulate(&run);
-  return run;
 }
 
 void model_run_free(model_run *run) {

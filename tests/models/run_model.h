@@ -31,8 +31,6 @@ model_run model_read(const char *name, const char *const *settings);
 model_run model_read_text(const char *name, const char *text, const char *const *settings);
 /** Compiles and runs what was read (and perhaps changed); fails the test unless it completes. */
 void model_simulate(model_run *run);
-/** Both. */
-model_run model_run_file(const char *name, const char *const *settings);
 void model_run_free(model_run *run);
 
 /** Position of a node at the end, [m]; fails the test if there is none of that name. */

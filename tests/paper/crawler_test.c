@@ -39,8 +39,7 @@ static void settle_both(const strut_setup *setup, motion *m, reference_crawler *
                         double *z) {
   double time;
   *m = motion_begin(&setup->scene, STEP);
-  assert_int_equal(strut_settle_state(m->model, &setup->experiment, m->state, NULL, &time, NULL),
-                   STRUT_OK);
+  assert_ok(strut_settle_state(m->model, &setup->experiment, m->state, NULL, &time, NULL));
   assert_true(time > 0);
   reference_prepare(it, state_two, z);
   assert_true(reference_settle(it, STEP, z));
@@ -120,8 +119,7 @@ TEST(the_papers_velocities) {
                   1e3 * s.velocity_spread);
     assert_near(1e3 * s.velocity, two ? -10.10 : 9.78, 0.05);
     assert_within(s.velocity_spread, 1e-6, 5e-4);
-    assert_int_equal(s.spent.steps, 1100000);
-    assert_int_equal(s.spent.evaluations, 4400000);
+    assert_all_equal(s.spent.steps, 1100000, s.spent.evaluations, 4400000);
     assert_near(s.duration, 110, 1e-9);
     assert_true(s.step_limit > STEP && s.step_limit < 1.5e-4);
     assert_true(fabs(s.energy.residual) < 1e-3 * s.energy.moved);

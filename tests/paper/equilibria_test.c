@@ -33,12 +33,11 @@ static strut_equilibria all;
 
 BEFORE_ALL {
   strut_error error = {0};
-  strut_equilibria_options options = {0};
   crawler = model_read("crawler/crawler", set_none);
   strut_status status = strut_model_compile(&crawler.setup.scene, &crawler.model, &error);
   if (!status)
-    status =
-        strut_equilibria_find(crawler.model, &crawler.setup.experiment, &options, &all, &error);
+    status = strut_equilibria_find(crawler.model, &crawler.setup.experiment,
+                                   &(strut_equilibria_options){0}, &all, &error);
   if (status) fail_msg("%s", error.message);
 }
 
@@ -78,15 +77,12 @@ TEST(the_two_solutions) {
     for (int i = 0; i < 5; i++)
       for (int c = 0; c < 2; c++)
         assert_near(e->point.q[2 * i + c], MILLI * published[s].node[i][c], 1e-7);
-    assert_near(e->energy, published[s].energy, 1e-6);
-    assert_near(e->reaction[0][1], published[s].a_y, 1e-6);
+    assert_all_near(1e-6, e->energy, published[s].energy, e->reaction[0][1], published[s].a_y);
     assert_near(e->reaction[3][1], published[s].b_y, 1e-6);
     assert_near(e->reaction[0][0], 0, 1e-9); /* A_x: nothing pushes along the ground */
     assert_int_equal(e->point.label, STRUT_STABLE);
-    assert_int_equal(e->point.negative, 0);
-    assert_int_equal(e->point.zero, 0);
-    assert_true(e->point.eigenvalues[0] > 50);
-    assert_true(e->point.found > 1);
+    assert_all_equal(e->point.negative, 0, e->point.zero, 0);
+    assert_all(e->point.eigenvalues[0] > 50, e->point.found > 1);
   }
   assert_string_equal(on_1_and_4(published[0].energy)->verdict, "stands");
   assert_string_equal(on_1_and_4(published[0].energy)->name, "I");
@@ -133,8 +129,7 @@ TEST(all_the_other_solutions) {
     }
     assert_int_equal(under, e->outcome == STRUT_OUTCOME_BELOW_GROUND);
   }
-  assert_int_equal(listed, 6);
-  assert_int_equal(below, 4);
+  assert_all_equal(listed, 6, below, 4);
 }
 
 /* Energy, gradient, eigenvalues and reactions of everything listed, computed once more. */
@@ -157,13 +152,12 @@ TEST(every_figure) {
     for (int k = 0; k < n; k++) negative += value[k] < -1e-2;
     assert_int_equal(n, e->point.eigenvalue_count);
 
-    assert_int_equal(negative, e->point.negative);
-    assert_int_equal(e->point.label, negative == 0   ? STRUT_STABLE
-                                     : negative == n ? STRUT_MAXIMUM
-                                                     : STRUT_SADDLE);
+    assert_all_equal(negative, e->point.negative, e->point.label,
+                     negative == 0   ? STRUT_STABLE
+                     : negative == n ? STRUT_MAXIMUM
+                                     : STRUT_SADDLE);
     for (int k = 0; k < STATICS; k++) {
-      assert_near(g[k], 0, 1e-8);
-      assert_near(e->reaction[k / 2][k % 2], s.held[k] ? r[k] : 0, 1e-8);
+      assert_all_near(1e-8, g[k], 0, e->reaction[k / 2][k % 2], s.held[k] ? r[k] : 0);
     }
     for (int k = 0; k < n; k++) /* differences over 2e-7 m of forces with errors of some 1e-9 N */
       assert_near(e->point.eigenvalues[k], value[k], 0.05 + 1e-6 * fabs(value[k]));
@@ -182,13 +176,11 @@ TEST(it_tips_onto_nodes_2_and_4) {
   assert_int_equal(two->outcome, STRUT_OUTCOME_STANDS);
   /* II is the mirror image of I, in which nodes 1 and 2 have changed places */
   static const int twin[5] = {1, 0, 2, 3, 4};
-  assert_near(two->energy, one->energy, 1e-10);
-  assert_near(two->rest_energy, one->rest_energy, 1e-10);
+  assert_all_near(1e-10, two->energy, one->energy, two->rest_energy, one->rest_energy);
   for (int i = 0; i < 5; i++) {
     double x = one->rest[2 * i] - one->rest[0], y = one->rest[2 * i + 1];
     const double *other = two->rest + 2 * twin[i];
-    assert_near(other[0] - two->rest[2], -x, 1e-9);
-    assert_near(other[1], y, 1e-9);
+    assert_all_near(1e-9, other[0] - two->rest[2], -x, other[1], y);
   }
 }
 

@@ -5,7 +5,7 @@
  * It shares no code with strut, so that strut can be compared with it. The mass matrix is the dense
  * one of all ten coordinates, inverted by Gauss elimination.
  *
- * See reference_crawler.h; reference_crawler_main.c makes a program of it.
+ * See reference_crawler.h.
  */
 #include "tests/paper/reference_crawler.h"
 

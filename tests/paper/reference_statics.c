@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/paper/reference_statics.h"
 
+#include <gsl/gsl_eigen.h>
 #include <math.h>
 #include <string.h>
 
@@ -45,32 +46,6 @@ void statics_gradient(const statics *s, const double q[STATICS], double g[STATIC
     if (s->held[k]) g[k] = 0;
 }
 
-/* Jacobi's rotations on a symmetric matrix: eigenvalues on its diagonal, eigenvectors in rows. */
-static void jacobi(int n, double a[STATICS][STATICS], double v[STATICS][STATICS]) {
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < n; j++) v[i][j] = i == j;
-  bool turned = true;
-  for (int sweep = 0; sweep < 30 && turned; sweep++) {
-    turned = false;
-    for (int p = 0; p < n; p++)
-      for (int q = p + 1; q < n; q++) {
-        if (fabs(a[p][q]) < 1e-17 * (fabs(a[p][p]) + fabs(a[q][q])) || a[p][q] == 0) continue;
-        turned = true;
-        double angle = 0.5 * atan2(2 * a[p][q], a[q][q] - a[p][p]);
-        double c = cos(angle), d = sin(angle);
-        for (int k = 0; k < n; k++) {
-          double x = a[k][p], y = a[k][q];
-          a[k][p] = c * x - d * y, a[k][q] = d * x + c * y;
-        }
-        for (int k = 0; k < n; k++) {
-          double x = a[p][k], y = a[q][k], vx = v[p][k], vy = v[q][k];
-          a[p][k] = c * x - d * y, a[q][k] = d * x + c * y;
-          v[p][k] = c * vx - d * vy, v[q][k] = d * vx + c * vy;
-        }
-      }
-  }
-}
-
 int statics_eigenvalues(const statics *s, const double q[STATICS], double value[STATICS],
                         double vector[STATICS][STATICS]) {
   double a[STATICS][STATICS], v[STATICS][STATICS], x[STATICS], up[STATICS], down[STATICS];
@@ -88,16 +63,16 @@ int statics_eigenvalues(const statics *s, const double q[STATICS], double value[
   }
   for (int i = 0; i < n; i++)
     for (int j = 0; j < i; j++) a[i][j] = a[j][i] = (a[i][j] + a[j][i]) / 2;
-  jacobi(n, a, v);
-  for (int i = 0; i < n; i++) { /* in ascending order */
-    int least = 0;
-    for (int j = 1; j < n; j++)
-      if (a[j][j] < a[least][least]) least = j;
-    value[i] = a[least][least];
-    a[least][least] = HUGE_VAL;
-    for (int k = 0; k < STATICS; k++) vector[i][k] = 0;
-    for (int k = 0; k < n; k++) vector[i][free[k]] = v[least][k];
-  }
+  gsl_matrix_view matrix = gsl_matrix_view_array_with_tda(a[0], (size_t)n, (size_t)n, STATICS);
+  gsl_matrix_view vectors = gsl_matrix_view_array_with_tda(v[0], (size_t)n, (size_t)n, STATICS);
+  gsl_vector_view values = gsl_vector_view_array(value, (size_t)n);
+  gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc((size_t)n);
+  gsl_eigen_symmv(&matrix.matrix, &values.vector, &vectors.matrix, work);
+  gsl_eigen_symmv_sort(&values.vector, &vectors.matrix, GSL_EIGEN_SORT_VAL_ASC);
+  gsl_eigen_symmv_free(work);
+  memset(vector, 0, STATICS * sizeof *vector);
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k < n; k++) vector[i][free[k]] = v[k][i];
   return n;
 }
 
@@ -107,9 +82,8 @@ static double norm(const double g[STATICS]) {
   return sqrt(sum);
 }
 
-/* Newton's step, every curvature counted as upward (or, level: towards |g| = 0), at most far. */
-static void newton(const statics *s, const double q[STATICS], bool level, double damping,
-                   double far, double step[STATICS]) {
+/* Newton's step, every curvature counted as upward, at most far. */
+static void newton(const statics *s, const double q[STATICS], double far, double step[STATICS]) {
   double value[STATICS], vector[STATICS][STATICS], g[STATICS];
   int n = statics_eigenvalues(s, q, value, vector);
   statics_gradient(s, q, g);
@@ -118,9 +92,7 @@ static void newton(const statics *s, const double q[STATICS], bool level, double
     double along = 0, flat = 1e-3;
     for (int k = 0; k < STATICS; k++) along += g[k] * vector[i][k];
     if (fabs(value[i]) < flat) continue; /* along level ground nothing changes */
-    double x =
-        level ? -along * value[i] / (value[i] * value[i] + damping) : -along / fabs(value[i]);
-    for (int k = 0; k < STATICS; k++) step[k] += x * vector[i][k];
+    for (int k = 0; k < STATICS; k++) step[k] -= along / fabs(value[i]) * vector[i][k];
   }
   double length = norm(step);
   for (int k = 0; k < STATICS && length > far; k++) step[k] *= far / length;
@@ -136,7 +108,7 @@ bool statics_descend(const statics *s, double q[STATICS]) {
   double far = 0.02, here = statics_energy(s, q), value[STATICS], vector[STATICS][STATICS];
   for (int round = 0; round < 400; round++) {
     double step[STATICS], x[STATICS];
-    newton(s, q, false, 0, far, step);
+    newton(s, q, far, step);
     for (int k = 0; k < STATICS; k++) x[k] = q[k] + step[k];
     double there = statics_energy(s, x);
     if (still(s, x) && fabs(there - here) < 1e-9) {
@@ -154,27 +126,6 @@ bool statics_descend(const statics *s, double q[STATICS]) {
     if (far < 1e-15) return false;
   }
   return false;
-}
-
-bool statics_level(const statics *s, double q[STATICS]) {
-  double damping = 1e4, g[STATICS];
-  statics_gradient(s, q, g);
-  double here = norm(g);
-  for (int round = 0; round < 300 && damping < 1e20; round++) {
-    double step[STATICS], x[STATICS];
-    newton(s, q, true, damping, 0.02, step);
-    for (int k = 0; k < STATICS; k++) x[k] = q[k] + step[k];
-    statics_gradient(s, x, g);
-    if (!(norm(g) < here)) {
-      damping *= 10;
-      continue;
-    }
-    memcpy(q, x, sizeof x);
-    here = norm(g);
-    damping *= 0.1;
-    if (here < 1e-9) return true;
-  }
-  return still(s, q);
 }
 
 bool statics_congruent(const double a[STATICS], const double b[STATICS], double within) {

@@ -23,8 +23,6 @@ void statics_gradient(const statics *s, const double q[STATICS], double g[STATIC
 void statics_reaction(const statics *s, const double q[STATICS], double r[STATICS]);
 /** Downhill to a minimum; false where that did not work out. */
 bool statics_descend(const statics *s, double q[STATICS]);
-/** To some stationary point near by, minimum or not. */
-bool statics_level(const statics *s, double q[STATICS]);
 /** Eigenvalues of the Hessian on the free coordinates, ascending; their count. */
 int statics_eigenvalues(const statics *s, const double q[STATICS], double value[STATICS],
                         double vector[STATICS][STATICS]);

@@ -23,10 +23,8 @@ static void check_steps(const strut_setup *setup, bool balance) {
   m.state->balance = balance;
   uint64_t before = allocations_so_far(), own = strut_allocation_count();
   motion_steps(&m, 1000);
-  assert_int_equal(allocations_so_far(), before);
-  assert_int_equal(strut_allocation_count(), own);
-  assert_int_equal(m.state->step, 1000);
-  assert_int_equal(m.state->latest->evaluations, 4000);
+  assert_all_equal(allocations_so_far(), before, strut_allocation_count(), own, m.state->step, 1000,
+                   m.state->latest->evaluations, 4000);
 }
 
 /* Everything at once on top of a chain: contacts, friction, drive, loads. */
@@ -109,10 +107,9 @@ static uint64_t whole_run(int64_t steps) {
   setup.experiment.channels = 63;
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   uint64_t before = allocations_so_far();
-  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &summary, NULL), STRUT_OK);
+  assert_ok(strut_simulate(model, &setup.experiment, &options, &summary, NULL));
   uint64_t count = allocations_so_far() - before;
-  assert_int_equal(summary.spent.steps, steps);
-  assert_int_equal(rows, steps / 10 + 1);
+  assert_all_equal(summary.spent.steps, steps, rows, steps / 10 + 1);
   return count;
 }
 

@@ -46,11 +46,9 @@ TEST(steps_over_touchdowns) {
 
 /* A cable that lets go at 0.2 s: within one step, or in 0.1 s. */
 static strut_summary let_go(double takes) {
-  OWN(strut_setup) setup = build_setup();
+  OWN(strut_setup) setup = build_tethered(0.2, 0, 0.1);
   double time[] = {0, 0.2, 0.2 + takes}, value[] = {0, 0, 0.3};
   strut_signal signal = strut_signal_default(STRUT_TABLE);
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 0.2, 0, 0.1);
   build_sized(&setup.scene, STRUT_SPRING, 0, 1, 200, 0.01, 0, 0.4);
   build_sized(&setup.scene, STRUT_CABLE, 0, 1, 1e4, 5, 0, 0.196);
   signal.point_count = 3;
@@ -80,10 +78,8 @@ TEST(a_run_that_ends_at_a_jump) {
   static const char *const methods[] = {"rk4-events", "adaptive"};
   for (size_t i = 0; i < 2; i++)
     for (int periods = 1; periods < 12; periods++) {
-      OWN(strut_setup) setup = build_setup();
+      OWN(strut_setup) setup = build_tethered(1, 0, 1);
       strut_signal signal = strut_signal_default(STRUT_SQUARE);
-      build_support(&setup.scene, 0, 0);
-      build_mass(&setup.scene, 1, 0, 1);
       build_member(&setup.scene, STRUT_SPRING, 0, 1, 1000, 3, 0);
       signal.amplitude = 0.01152;
       signal.frequency = 6.99;
@@ -130,7 +126,7 @@ TEST(without_a_balance_nothing_is_said) {
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   const strut_run_options options = {.without_balance = true};
   OWN(strut_summary) s;
-  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, NULL), STRUT_OK);
+  assert_ok(strut_simulate(model, &setup.experiment, &options, &s, NULL));
   assert_int_equal(s.balance, STRUT_BALANCE_NOT_KEPT);
   assert_int_equal(s.warning_count, 0);
 }
@@ -181,7 +177,7 @@ TEST(a_loss_that_gives_ends_the_run) {
       setup.experiment.integrator = methods[i];
       for (int forced = 0; forced < 2; forced++) {
         const strut_run_options options = {.force = forced};
-        assert_int_equal(strut_model_compile(&setup.scene, &model, NULL), STRUT_OK);
+        assert_ok(strut_model_compile(&setup.scene, &model, NULL));
         strut_status status = strut_simulate(model, &setup.experiment, &options, &s, &error);
         assert_int_equal(status, forced ? STRUT_OK : STRUT_DIVERGED);
         if (!forced && !strstr(error.message, words[k]))

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What happens for a moment between two steps, in runs with an accuracy and by every method with events: balls that
 strike each other, by a spring that only pushes and as a collision, against steps of a tenth of the contact."""
-import json
 import random
 
-from testing import check, finish, run, write
+from testing import answer, check, finish, write
 
 SCENE = """strut: 1
 parameters: {{d: 50 mm, v: {v}, k: 1e7, x: {x}, b: {b}}}
@@ -23,7 +22,7 @@ COLLISION = "collisions: {hit: {nodes: [a, b], thickness: d, stiffness: k}}"
 
 def velocities(values, solver):
     write("balls.yaml", SCENE.format(solver=solver, **values))
-    measured = json.loads(run("run", "balls.yaml", "--json").stdout)["measured"]
+    measured = answer("run", "balls.yaml")["measured"]
     return [measured[name]["value"] for name in ("va", "vb", "wb")]
 
 
@@ -51,6 +50,6 @@ for miss in (0.3, 0.01, 0.003, 1e-7):
     ends = []
     for solver in ("adaptive, step: 1 ms, tolerance: 1e-9", "rk4-events, step: 20 ms", "rk4-events, step: 5 ms"):
         write("miss.yaml", MISS.format(miss=miss, solver=solver))
-        ends.append(json.loads(run("run", "miss.yaml", "--json").stdout)["measured"]["x"]["value"])
+        ends.append(answer("run", "miss.yaml")["measured"]["x"]["value"])
     check(max(ends) - min(ends) < 1e-5, f"a miss of {miss} m: {ends}")
 finish()

@@ -18,7 +18,7 @@ static void record(const char *text, const char *const *settings, const char *di
                          directory ? strut_hdf5_create(directory, "strut: 1\n") : NULL,
                          directory ? strut_csv_create(directory) : NULL};
   strut_run_options options = {.sinks = sinks, .sink_count = directory ? 3 : 1};
-  assert_int_equal(strut_model_compile(&run->setup.scene, &run->model, &error), STRUT_OK);
+  assert_ok(strut_model_compile(&run->setup.scene, &run->model, &error));
   strut_status status =
       strut_simulate(run->model, &run->setup.experiment, &options, &run->summary, &error);
   if (status) fail_msg("%s", error.message);
@@ -153,8 +153,7 @@ TEST(every_channel_comes_back_out_of_its_file) {
   strut_status status = strut_trajectory_read(scratch_path(""), &run.setup.scene,
                                               STRUT_TRAJECTORY_ROOM, &read, &error);
   if (status) fail_msg("%s", error.message);
-  assert_int_equal(t.frames, 51);
-  assert_int_equal(read.frames, t.frames);
+  assert_all_equal(t.frames, 51, read.frames, t.frames);
   const strut_channel_row *row;
   size_t channels = 0;
   for (; (row = strut_channel_at(channels)) != NULL; channels++) {

@@ -22,7 +22,7 @@ static void begin(crawlers *c, double start, double stop) {
   c->alone = motion_begin_by(&c->setup, "rk4", STEP);
 }
 
-static void end(crawlers *c) {
+static void crawlers_free(crawlers *c) {
   motion_free(&c->together);
   motion_free(&c->alone);
   strut_scene_free(&c->setup.scene);
@@ -40,7 +40,7 @@ static void compare(crawlers *c, double t) {
 
 /* Halves of steps one after the other, begun anew now and then, as calls of a method begin. */
 static void run_steps(double start, double stop, double offset) {
-  crawlers c;
+  OWN(crawlers) c;
   begin(&c, start, stop);
   const strut_model *model = c.together.model;
   strut_drives_ahead drives;
@@ -52,7 +52,6 @@ static void run_steps(double start, double stop, double offset) {
     drives_ahead_apply(model, c.together.state, &drives, t, step, 0.5, STEP, 130 - half % 130);
     compare(&c, t);
   }
-  end(&c);
 }
 
 TEST(steps) {
@@ -64,7 +63,7 @@ TEST(steps) {
 
 TEST(stages_of_a_step) {
   static const double part[6] = {0.0, 0.2, 0.3, 0.8, 8.0 / 9, 1.0};
-  crawlers c;
+  OWN(crawlers) c;
   begin(&c, 0.0, 0.02);
   strut_drives_ahead drives;
   for (int n = 0; n < 300; n++) {
@@ -76,15 +75,13 @@ TEST(stages_of_a_step) {
       compare(&c, t + part[k] * h);
     }
   }
-  end(&c);
 }
 
 /* Scenes with rare terms have drives that may follow what is not known beforehand. */
 TEST(rare_terms_are_left_alone) {
-  crawlers c;
+  OWN(crawlers) c;
   begin(&c, 0.0, HUGE_VAL);
   strut_drives_ahead drives;
   drives_ahead_begin(c.together.model, STRUT_TERMS_ALL, &drives);
   assert_false(drives.used);
-  end(&c);
 }

@@ -68,11 +68,11 @@ TEST(columns_and_forms_are_derivatives) {
   uint64_t r = 4;
   const double h = 1e-3;
   for (int round = 0; round < 20; round++) {
-    strut_arena arena = {0};
+    OWN(strut_arena) arena = {0};
     strut_equilibrium_matrix a;
-    strut_setup setup = make(&r);
-    strut_model *model = motion_compile(&setup.scene);
-    assert_int_equal(strut_equilibrium_matrix_build(model, model->start, &arena, &a), STRUT_OK);
+    OWN(strut_setup) setup = make(&r);
+    OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
+    assert_ok(strut_equilibrium_matrix_build(model, model->start, &arena, &a));
     assert_int_equal(a.columns, 7);
     double x[2 * NODES], change[8], density[8] = {0};
     for (int32_t i = 0; i < a.rows; i++) x[i] = random_between(&r, -1, 1);
@@ -91,8 +91,5 @@ TEST(columns_and_forms_are_derivatives) {
       density[j] = strut_column_density(&a, j, 2.0);
       assert_near(strut_stress_form(model, &a, density, x, x), 2 * second, 1e-6 * arm * arm * arm);
     }
-    strut_arena_free(&arena);
-    strut_model_free(model);
-    strut_setup_free(&setup);
   }
 }

@@ -148,8 +148,7 @@ TEST(going_on_between_steps) {
     motion_experiment(&setup, STEP, 0.0247);
     strut_snapshot then = kept;
     OWN(strut_summary) second = record(&setup, (strut_run_options){.from = &then, .to = &kept}, &r);
-    assert_near(kept.time, 0.0503, 1e-15);
-    assert_near(r.time, 0.0503, 1e-15);
+    assert_all_near(1e-15, kept.time, 0.0503, r.time, 0.0503);
     places exact = places_after("adaptive", 0.0503 / 51, 0.0503);
     places whole = places_after(method->name, 0.0503 / 51, 0.0503);
     assert_near(second.end.positions[0], exact.forced,

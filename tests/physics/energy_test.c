@@ -22,8 +22,7 @@ static double relative_residual(void (*make)(strut_scene *), double step, double
   double done = e.drive_work + e.load_work + e.belt_work + e.support_work;
   /* the residual is what its own figures say */
   assert_near(e.residual, now - e.initial - done + lost, 1e-13 * (fabs(now) + e.moved));
-  assert_true(e.moved > 0 && e.moved >= 0.99 * (fabs(done) - 1e-9));
-  assert_true(lost >= 0);
+  assert_all(e.moved > 0 && e.moved >= 0.99 * (fabs(done) - 1e-9), lost >= 0);
   return fabs(e.residual) / e.moved;
 }
 
@@ -90,8 +89,7 @@ static void check_rough(const char *name, void (*make)(strut_scene *), double st
   for (int k = 0; k < 6; k++) error[k] = relative_residual(make, ldexp(step, -k), duration);
   double order = observed_order(error, 6);
   print_message("%s: order %.2f, residual %.2g to %.2g\n", name, order, error[0], error[5]);
-  assert_true(order > 0.7);
-  assert_true(error[5] < 0.25 * error[0]);
+  assert_all(order > 0.7, error[5] < 0.25 * error[0]);
 }
 
 TEST(scenes_with_jumps_close_as_the_step_falls) {
@@ -141,8 +139,7 @@ TEST(a_slack_cable_stores_nothing) {
     motion_experiment(&setup, 1e-3, 0.1);
     OWN(strut_summary) s = motion_simulate(&setup);
     double stored = slack ? 0 : 0.5 * 300 * 0.2 * 0.2;
-    assert_near(s.energy.elastic, stored, 1e-14);
-    assert_near(s.energy.initial, 9 + stored, 1e-14);
+    assert_all_near(1e-14, s.energy.elastic, stored, s.energy.initial, 9 + stored);
   }
 }
 

@@ -36,8 +36,7 @@ TEST(a_block_slides_to_rest) {
     assert_near(fabs(m.state->q[0]), way, band * 2 * time);
     assert_near(m.state->q[1], -MASS * G / K, 1e-15);
     motion_steps(&m, 100);
-    assert_true(m.state->v[0] == creep);
-    assert_true(band * 2 * time < 0.6 * last_bound);
+    assert_all(m.state->v[0] == creep, band * 2 * time < 0.6 * last_bound);
     last_bound = band * 2 * time;
   }
 }
@@ -128,8 +127,7 @@ TEST(a_mass_on_a_belt_sticks_and_slips) {
     belt_cycle cycle = ride(step, band, 2, k % 2 ? -v : v);
     error[k] = fabs(cycle.period - expected) / expected;
     assert_true(error[k] < 50 * step);
-    assert_near(cycle.high, 0.01 + sqrt(2e-4), 5 * step);
-    assert_near(cycle.low, 0.01 - sqrt(2e-4), 5 * step);
+    assert_all_near(5 * step, cycle.high, 0.01 + sqrt(2e-4), cycle.low, 0.01 - sqrt(2e-4));
   }
   assert_within(observed_order(error, 5), 0.7, 1.3);
 }

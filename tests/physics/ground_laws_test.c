@@ -50,21 +50,19 @@ TEST(hunt_crossley_never_pulls) {
   const double chi = 3, speed = 2, depth = 0.01, step = 1e-4;
   const strut_integrator *method;
   for (size_t i = 0; (method = strut_integrator_at(i)); i++) {
-    strut_setup setup = build_setup();
+    OWN(strut_setup) setup = build_setup();
     if (method->no_ground) continue;
     build_contact(&setup.scene, build_mass(&setup.scene, 0, -depth, MASS), K, 0);
     setup.scene.nodes[0].velocity[1] = speed;
     setup.scene.ground.damping_law = STRUT_DAMPING_HUNT_CROSSLEY;
     setup.scene.contacts[0].dissipation = chi;
     motion_experiment(&setup, step, 1);
-    motion m = motion_begin_by(&setup, method->name, step);
+    OWN(motion) m = motion_begin_by(&setup, method->name, step);
     for (int k = 0; k < 10; k++) {
       motion_steps(&m, 10); /* out after 50 */
       assert_near(m.state->v[1], speed, 1e-12);
     }
     assert_near(m.state->q[1], speed * 100 * step - depth, 1e-12);
-    motion_free(&m);
-    strut_setup_free(&setup);
   }
 }
 
@@ -156,6 +154,6 @@ TEST(exact_friction_needs_a_method_with_events) {
                error, "rk4-events");
   strut_summary_free(&summary);
   setup.experiment.integrator = "rk4-events";
-  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &summary, &error), STRUT_OK);
+  assert_ok(strut_simulate(model, &setup.experiment, &options, &summary, &error));
   strut_summary_free(&summary);
 }

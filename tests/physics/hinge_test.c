@@ -97,9 +97,8 @@ TEST(a_driven_hinge_between_held_arms) {
       double before = PI / 2 - rest0, after = PI / 2 - rest;
       double lost = c * 0.16 * w * w * t / 2; /* of whole quarters */
       assert_near(e->elastic, 1.5 * after * after, 1e-12);
-      assert_near(e->dissipated_members, lost, 1e-11);
-      assert_near(e->drive_work, 1.5 * (after * after - before * before) + lost, 1e-11);
-      assert_near(e->residual, 0, 1e-11);
+      assert_all_near(1e-11, e->dissipated_members, lost, e->drive_work,
+                      1.5 * (after * after - before * before) + lost, e->residual, 0);
     }
 }
 

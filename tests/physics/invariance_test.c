@@ -33,7 +33,7 @@ static void make(strut_setup *setup, uint64_t number) {
 static double stable_step(const strut_setup *setup) {
   strut_step_limit limit;
   OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
-  assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
+  assert_ok(strut_step_limit_estimate(model, &limit, NULL));
   return exp2(floor(log2(0.3 * limit.limit)));
 }
 
@@ -145,11 +145,9 @@ static void check_scene(void (*change)(strut_setup *), factors f, const char *me
   double step = number ? stable_step(&first) : 1e-4;
   if (strcmp(method, "rk4") != 0) step /= 16; /* the least stable of them is half as stable */
   first.experiment.step = step, second.experiment.step = step * f.time;
-  motion a = run(&first, method, step, steps);
-  motion b = run(&second, method, step * f.time, steps);
+  OWN(motion) a = run(&first, method, step, steps);
+  OWN(motion) b = run(&second, method, step * f.time, steps);
   compare_bits(&a, &b, first.scene.node_count, f);
-  motion_free(&a);
-  motion_free(&b);
   strut_setup_free(&first);
   strut_setup_free(&second);
 }
@@ -205,7 +203,7 @@ TEST(the_mirror_image_moves_as_the_mirror_image) { check_change(mirror, (factors
 /* The same scene with nodes and members in another order: new_of[i] is where node i has gone. */
 static void shuffle(const strut_setup *from, strut_setup *to, int32_t *new_of, uint64_t *r) {
   size_t n = from->scene.node_count, m = from->scene.member_count;
-  int32_t *place = calloc(m, sizeof *place);
+  FREED int32_t *place = calloc(m, sizeof *place);
   assert_non_null(place);
   for (size_t i = 0; i < n; i++) new_of[i] = (int32_t)i;
   for (size_t j = 0; j < m; j++) place[j] = (int32_t)j;
@@ -236,7 +234,6 @@ static void shuffle(const strut_setup *from, strut_setup *to, int32_t *new_of, u
       to->scene.contacts[count] = from->scene.contacts[i];
       to->scene.contacts[count++].node = node;
     }
-  free(place);
 }
 
 TEST(another_order_agrees_to_rounding) {

@@ -11,13 +11,10 @@
 
 /* Runs a text to the accuracy that it asks for. */
 static strut_summary run_text(const char *text, strut_setup *setup) {
-  strut_error error = {0};
   strut_summary s;
   *setup = model_read_text("test", text, (const char *const[]){NULL}).setup;
   OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
-  strut_run_options options = {0};
-  assert_int_equal(strut_simulate_as_asked(model, &setup->experiment, &options, &s, &error),
-                   STRUT_OK);
+  assert_ok(strut_simulate_as_asked(model, &setup->experiment, &(strut_run_options){0}, &s, NULL));
   return s;
 }
 
@@ -219,8 +216,7 @@ TEST(steps_of_an_expression) {
       " target: 1}, most: {of: ceil(b.vx / (0.04 m/s)), take: max}";
   OWN(strut_setup) setup;
   OWN(strut_summary) s = run_two(&o, "", 1, quantities, &setup);
-  assert_relative(s.measured[0].value, 4.5, 1e-7);
-  assert_relative(s.measured[1].value, 0.5, 1e-7);
+  assert_all_relative(1e-7, s.measured[0].value, 4.5, s.measured[1].value, 0.5);
   assert_near(s.measured[2].value, 3, 1e-12); /* 0.1 m/s */
 }
 

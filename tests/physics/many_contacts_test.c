@@ -13,7 +13,7 @@ static void begin(motion *m, const strut_scene *scene, const char *method, doubl
   experiment.tolerance = tolerance, experiment.step = step;
   strut_integrator_settings settings = strut_integrator_settings_of(&experiment);
   *m = (motion){.model = motion_compile(scene), .step = step};
-  assert_int_equal(strut_state_create(m->model, &m->state, NULL), STRUT_OK);
+  assert_ok(strut_state_create(m->model, &m->state, NULL));
   m->method = strut_integrator_find(method);
   m->workspace = m->method->create(m->model, m->state, &settings);
   assert_non_null(m->workspace);
@@ -161,7 +161,7 @@ static double total_energy(motion *m) {
 
 static void let_fall(const strut_scene *scene, const char *method, double step, double tolerance,
                      fall *f) {
-  motion m;
+  OWN(motion) m;
   begin(&m, scene, method, step, tolerance);
   double before = total_energy(&m);
   motion_steps(&m, llround(0.02 / step));
@@ -170,7 +170,6 @@ static void let_fall(const strut_scene *scene, const char *method, double step, 
   memcpy(f->v, m.state->v, sizeof f->v);
   f->residual = total_energy(&m) - before;
   f->events = m.state->events;
-  motion_free(&m);
 }
 
 static double distance(const double *a, const double *b) {

@@ -3,10 +3,9 @@
 turns by M = m g L sin(theta), over its limit points; a barrier has the moment's work in it; runs through several turns
 follow the linear equation of one angle, and their balance closes."""
 import cmath
-import json
 import math
 
-from testing import check, finish, run, write
+from testing import answer, check, finish, write
 
 CHAIN = """strut: 1
 groups: {rod: {kind: bar, stiffness: 1 MN/m}, spring: {stiffness: 1 N m/rad}}
@@ -25,9 +24,9 @@ run: {duration: 4 s, measure: {quantities: {angle: {of: h.angle, take: final}}}}
 """
 
 
-def answer(text, command, *words):
+def answer_of(text, command, *words):
     write("moment.yaml", text)
-    return json.loads(run(command, "moment.yaml", "--json", *words).stdout)
+    return answer(command, "moment.yaml", *words)
 
 
 def near(found, expected, part, what):
@@ -36,20 +35,20 @@ def near(found, expected, part, what):
 
 for load, turns, own in (("member: r, moment: 2.6", (2.6, 5.2, 7.8), 2.6 * (7.8 - math.tau)),
                          ("hinge: i, moment: -0.7", (0, -0.7, -0.7), 0.49)):  # fmt: skip
-    found = answer(CHAIN.replace("LOAD", load), "equilibria")["equilibria"]
+    found = answer_of(CHAIN.replace("LOAD", load), "equilibria")["equilibria"]
     check(len(found) == 1, f"{load}: {len(found)} equilibria")
     for a, b, turn in zip("abc", "bcd", turns):
         (x, y), (u, v) = (found[0]["nodes"][name] for name in (a, b))
         near(math.remainder(math.atan2(v - y, u - x) - turn, math.tau), 0, 1e-12, load)
     near(found[0]["energy"] - found[0]["potential"], own, 1e-12, f"potential of {load}")
 weight = "gravity: [0, -10]\nloads: {m: {member: rod, moment: 1}}\n"
-path = answer(BAR.replace("AT", "0, -0.5").replace("MORE", "") + weight, "path", "--until", "3", "--steps", "60")
+path = answer_of(BAR.replace("AT", "0, -0.5").replace("MORE", "") + weight, "path", "--until", "3", "--steps", "60")
 for factor, event in zip((2, -2), path["events"]):
     near(event["factor"], factor, 1e-6, "limit point")
 for point in path["points"]:
     near(point["factor"], 4 * point["nodes"]["p"][0], 1e-9, "M = m g x")
 snap = BAR.replace("AT", "0.6, 0.8").replace("MORE", ", s: {kind: spring, nodes: [p, w], stiffness: 1, rest_length: 1.2}")
-snap = answer(snap + "loads: {m: {member: rod, moment: 0.02}}\n", "equilibria")
+snap = answer_of(snap + "loads: {m: {member: rod, moment: 0.02}}\n", "equilibria")
 for barrier, height in zip(sorted(b["height"] for b in snap["barriers"]), (0.226833808, 0.263759290)):
     near(barrier, height, 1e-6, "barrier, and by bisection along the circle")
 
@@ -65,7 +64,7 @@ for load in ("member: rod, moment: 1", "hinge: h, moment: 1"):
                                      ("elastic", 1e-4, "verlet-events", "20 us"), ("elastic", 1e-4, "midpoint", "50 us"),
                                      ("elastic", 1e-4, "adaptive", "1 ms")):  # fmt: skip
         scene = BAR.replace("AT", "0.5, 0").replace("MORE", "") + RUN.replace("LOAD", load) + f"bars: {bars}\n"
-        found = answer(scene, "run", "--integrator", method, "--step", step)
+        found = answer_of(scene, "run", "--integrator", method, "--step", step)
         near(found["measured"]["angle"]["value"], angle, part, f"{load}, {bars} bar, {method}")
         near(found["energy"]["residual"] / found["energy"]["exchanged"], 0, 1e-5, f"balance of {load}, {method}")
 finish()

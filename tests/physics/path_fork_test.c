@@ -52,8 +52,7 @@ TEST(equal_columns) {
     bool seen[81] = {false};
     assert_int_equal(w.path.event_count, 1);
     assert_relative(w.path.events[0].at.factor, buckling_load(1), 1e-10);
-    assert_int_equal(w.path.events[0].before, 0);
-    assert_int_equal(w.path.events[0].after, n);
+    assert_all_equal(w.path.events[0].before, 0, w.path.events[0].after, n);
     assert_int_equal(w.path.branch_count, all - 1);
     for (size_t b = 0; b < w.path.branch_count; b++) {
       const strut_path *branch = &w.path.branches[b];
@@ -100,8 +99,7 @@ TEST(unloading) {
   for (int side = -1; side <= 1; side += 2) {
     OWN(strut_setup) setup = columns(1, &stiffness, 0.01 * side);
     OWN(walk) w = walk_by(&setup, (strut_path_options){.from = 3, .until = 0.5});
-    assert_int_equal(side_of(&w.path.points[0], 0, 1), side);
-    assert_int_equal(w.path.event_count, 1);
+    assert_all_equal(side_of(&w.path.points[0], 0, 1), side, w.path.event_count, 1);
     assert_int_equal(w.path.events[0].kind, STRUT_PATH_BIFURCATION);
     assert_relative(w.path.events[0].at.factor, buckling_load(1), 1e-9);
     assert_int_equal(w.path.end, STRUT_PATH_UNTIL);
@@ -142,8 +140,7 @@ TEST(nearly_equal_trusses) {
       OWN(strut_setup) setup = trusses(100, strong, back ? -0.3 : 0.2);
       strut_path_options options = {.from = back ? 2 : 0, .until = back ? -0.4 : 2};
       OWN(walk) w = walk_by(&setup, options);
-      assert_int_equal(walk_count(&w.path, STRUT_PATH_LIMIT), 8);
-      assert_int_equal(w.path.event_count, 8);
+      assert_all_equal(walk_count(&w.path, STRUT_PATH_LIMIT), 8, w.path.event_count, 8);
       for (int i = 0; i < 8; i++) {
         double load = weak[i] ? weak[i] * 100 : i == 2 ? strong : -strong;
         assert_relative(w.path.events[back ? 7 - i : i].at.factor, load * limit_load(), 1e-11);
@@ -158,8 +155,7 @@ TEST(equal_trusses) {
   OWN(walk) w = walk_by(&setup, (strut_path_options){.until = 2, .branches = 1});
   assert_int_equal(w.path.event_count, 2);
   assert_int_equal(w.path.events[0].kind, STRUT_PATH_LIMIT);
-  assert_int_equal(w.path.events[0].after, 2);
-  assert_int_equal(w.path.branch_count, 2);
+  assert_all_equal(w.path.events[0].after, 2, w.path.branch_count, 2);
   for (size_t b = 0; b < 2; b++) {
     const strut_path *branch = &w.path.branches[b];
     assert_relative(branch->from.factor, 100 * limit_load(), 1e-11);
@@ -188,8 +184,7 @@ static void press_to_nothing(strut_law_kind law) {
   const strut_path_event *e = &w.path.events[2], *turn = &w.path.events[1];
   assert_int_equal(turn->kind, STRUT_PATH_LIMIT);
   assert_int_equal(e->kind, STRUT_PATH_ZERO_LENGTH);
-  assert_near(e->at.q[2 * b + 1], -1, 1e-9);
-  assert_near(e->at.factor, -k * rest / load, 1e-9);
+  assert_all_near(1e-9, e->at.q[2 * b + 1], -1, e->at.factor, -k * rest / load);
   assert_true(w.path.end == STRUT_PATH_UNTIL && last_of(&w.path)->at.q[2 * b + 1] < -1);
   bool before = false;
   for (size_t i = 0; i < w.path.point_count; i++)

@@ -11,8 +11,7 @@ static void check_event(const strut_path_event *e, strut_path_event_kind kind, d
                         int32_t before, int32_t after) {
   assert_string_equal(strut_path_event_name(e->kind), strut_path_event_name(kind));
   assert_relative(e->at.factor, factor, 1e-12);
-  assert_int_equal(e->before, before);
-  assert_int_equal(e->after, after);
+  assert_all_equal(e->before, before, e->after, after);
 }
 
 enum { TIP = 3 };
@@ -56,8 +55,7 @@ TEST(limit_points_at_kinks) {
   check_event(&e[1], STRUT_PATH_KINK_LIMIT, turn, 0, 1);
   check_event(&e[2], STRUT_PATH_TAUT, -turn, 1, 0);
   check_event(&e[3], STRUT_PATH_KINK_LIMIT, -turn, 1, 0);
-  assert_int_equal(e[0].index, 2);
-  assert_int_equal(e[2].index, 1);
+  assert_all_equal(e[0].index, 2, e[2].index, 1);
   size_t unstable = 0;
   for (size_t i = 0; i < w.path.point_count; i++) {
     const strut_path_point *p = &w.path.points[i];
@@ -130,8 +128,7 @@ TEST(touchdown_restores_stability) {
   check_event(&w.path.events[2], STRUT_PATH_KINK_LIMIT, there, 1, 0);
   const strut_path_point *end = &w.path.points[w.path.point_count - 1];
   double y = end->at.q[2 * apex + 1], push = 2 * k * y * (hypot(a, h) / hypot(a, y) - 1);
-  assert_near(end->at.contact[0], 1e4 * (floor - y), 1e-9);
-  assert_near(end->at.contact[0] + push, 15, 1e-9);
+  assert_all_near(1e-9, end->at.contact[0], 1e4 * (floor - y), end->at.contact[0] + push, 15);
 }
 
 /*
@@ -169,8 +166,7 @@ static double found_buckling_load(double bar, double spring, double x, double y)
   for (size_t i = 0; i < w.path.event_count && load == 0; i++)
     if (w.path.events[i].kind == STRUT_PATH_BIFURCATION) {
       load = length * w.path.events[i].at.factor;
-      assert_int_equal(w.path.events[i].before, 0);
-      assert_int_equal(w.path.events[i].after, 1);
+      assert_all_equal(w.path.events[i].before, 0, w.path.events[i].after, 1);
     }
   return load;
 }
@@ -275,7 +271,7 @@ static void check_points(const strut_model *model, const strut_path *path, size_
   OWN(strut_arena) arena = {0};
   int32_t before = path->points[0].negative;
   size_t at = 0;
-  assert_int_equal(strut_potential_create(model, NULL, true, &potential, NULL), STRUT_OK);
+  assert_ok(strut_potential_create(model, NULL, true, &potential, NULL));
   assert_int_equal(potential->n, 6);
   for (size_t i = 0; i < path->point_count; i++) {
     const strut_path_point *p = &path->points[i];
@@ -305,7 +301,7 @@ TEST(random_nets) {
   for (uint64_t seed = 1; seed <= 200; seed++) {
     OWN(strut_setup) setup = random_net(seed * 0x9e3779b97f4a7c15u);
     OWN_POINTER(strut_model) model;
-    assert_int_equal(strut_model_compile(&setup.scene, &model, NULL), STRUT_OK);
+    assert_ok(strut_model_compile(&setup.scene, &model, NULL));
     OWN(strut_path) path;
     strut_path_options options = {.until = 60, .steps = 150};
     if (strut_path_follow(model, &setup.experiment, &options, &path, NULL) == STRUT_OK) {

@@ -38,7 +38,7 @@ static strut_path follow(strut_model *model, const strut_path_options *options) 
   strut_error error = {0};
   strut_status status = strut_path_follow(model, &experiment, options, &path, &error);
   if (status) print_error("%s\n", error.message);
-  assert_int_equal(status, STRUT_OK);
+  assert_ok(status);
   return path;
 }
 
@@ -70,8 +70,7 @@ static void check_displaced_apex(bool supported, double from) {
     least = fmin(least, p->at.reaction[2 * APEX + 1]);
   }
   double limit = arch_load(k, limit_height());
-  assert_near(most, limit, 0.01 * limit);
-  assert_near(least, -limit, 0.01 * limit);
+  assert_all_near(0.01 * limit, most, limit, least, -limit);
 }
 
 TEST(displacement_of_a_node) {
@@ -115,8 +114,7 @@ TEST(displacement_of_a_support) {
   assert_near(path.events[0].at.factor, slack, 1e-14);
   for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
     double pull = spring * cable / (spring + cable) * fmax(0, p->at.factor - slack);
-    assert_near(p->at.reaction[2 * hand], pull, 1e-11);
-    assert_near(p->at.reaction[2 * wall], -pull, 1e-11);
+    assert_all_near(1e-11, p->at.reaction[2 * hand], pull, p->at.reaction[2 * wall], -pull);
     assert_near(p->at.force[1], pull, 1e-11);
   }
 }
@@ -154,15 +152,13 @@ TEST(actuator_snaps) {
   OWN(strut_path) path = follow(
       model, &(strut_path_options){.over = STRUT_PATH_OVER_ACTUATOR, .index = 0, .until = 1.2});
   double turn = turning_height(k);
-  assert_int_equal(walk_count(&path, STRUT_PATH_LIMIT), 2);
-  assert_int_equal(path.event_count, 2);
+  assert_all_equal(walk_count(&path, STRUT_PATH_LIMIT), 2, path.event_count, 2);
   for (int i = 0; i < 2; i++) {
     const strut_path_event *e = &path.events[i];
     double y = i ? -turn : turn;
     assert_relative(e->at.factor, lever_length(k, y), 1e-11);
     assert_near(e->at.q[2 * APEX + 1], y, 1e-8);
-    assert_int_equal(e->before, i);
-    assert_int_equal(e->after, 1 - i);
+    assert_all_equal(e->before, i, e->after, 1 - i);
   }
   for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
     double y = p->at.q[2 * APEX + 1];
@@ -203,7 +199,7 @@ static strut_path_options over_stiffness(family *f, double from, double until) {
 TEST(stiffness_of_a_scene) {
   family f = {0};
   OWN(strut_setup) setup;
-  assert_int_equal(scene_of_stiffness(&f, 1000, &setup, NULL), STRUT_OK);
+  assert_ok(scene_of_stiffness(&f, 1000, &setup, NULL));
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   strut_path_options options = over_stiffness(&f, 1000, 60);
   options.steps = 60;
@@ -224,7 +220,7 @@ TEST(stiffness_of_a_scene) {
 TEST(end_of_validity) {
   family f = {.unloaded = true};
   OWN(strut_setup) setup;
-  assert_int_equal(scene_of_stiffness(&f, 1000, &setup, NULL), STRUT_OK);
+  assert_ok(scene_of_stiffness(&f, 1000, &setup, NULL));
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   strut_path_options options = over_stiffness(&f, 1000, -10);
   strut_path path = follow(model, &options);
@@ -257,7 +253,7 @@ static strut_status scene_of_ground(void *context, double value, strut_setup *se
 
 TEST(rising_ground) {
   OWN(strut_setup) setup;
-  assert_int_equal(scene_of_ground(NULL, -0.2, &setup, NULL), STRUT_OK);
+  assert_ok(scene_of_ground(NULL, -0.2, &setup, NULL));
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   OWN(strut_path) path = follow(model, &(strut_path_options){.over = STRUT_PATH_OVER_SCENE,
                                                              .name = "height",
@@ -271,8 +267,7 @@ TEST(rising_ground) {
   for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
     double y = 1000 * fmax(0, p->at.factor) / 1100;
     assert_near(p->at.q[3], y, 1e-13);
-    assert_near(p->at.contact[0], 100 * y, 1e-10);
-    assert_near(p->at.reaction[1], 100 * -y, 1e-10);
+    assert_all_near(1e-10, p->at.contact[0], 100 * y, p->at.reaction[1], 100 * -y);
     assert_near(p->at.force[0], -100 * y, 1e-10);
   }
 }
@@ -283,7 +278,7 @@ TEST(refusals) {
   OWN(strut_setup) setup;
   strut_error error = {0};
   strut_path path;
-  assert_int_equal(scene_of_stiffness(&idle, 1000, &setup, NULL), STRUT_OK);
+  assert_ok(scene_of_stiffness(&idle, 1000, &setup, NULL));
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   strut_path_options options = over_stiffness(&idle, 1000, 2000);
   assert_fails(strut_path_follow(model, &setup.experiment, &options, &path, &error), STRUT_USAGE,
@@ -291,7 +286,7 @@ TEST(refusals) {
   strut_path_free(&path);
   options = over_stiffness(&grows, 1000, 2000);
   strut_status status = strut_path_follow(model, &setup.experiment, &options, &path, &error);
-  assert_int_equal(status, STRUT_OK); /* it is found on the way */
+  assert_ok(status); /* it is found on the way */
   assert_int_equal(path.end, STRUT_PATH_INVALID);
   assert_near(path.points[path.point_count - 1].at.factor, 1500, 0.1);
   assert_non_null(strstr(path.remark, "changes what the structure is made of"));
@@ -305,19 +300,15 @@ TEST(refusals) {
 TEST(memory) {
   family f = {0};
   OWN(strut_setup) setup;
-  assert_int_equal(scene_of_stiffness(&f, 1000, &setup, NULL), STRUT_OK);
+  assert_ok(scene_of_stiffness(&f, 1000, &setup, NULL));
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   const strut_path_options all[] = {
       {.over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .until = -0.05, .at = "start"},
       {.over = STRUT_PATH_OVER_COORDINATE, .index = 0, .from = 0.001, .until = -0.05}};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-    strut_status status = STRUT_NO_MEMORY;
-    int64_t n = 0;
-    for (; status != STRUT_OK && n < 10000; n++) {
+    REFUSE_EACH(n, status, 10) {
       OWN(strut_path) path = {0};
       status = refused(n, strut_path_follow(model, &setup.experiment, &all[i], &path, NULL));
     }
-    assert_true(n > 10);
-    assert_int_equal(status, STRUT_OK);
   }
 }

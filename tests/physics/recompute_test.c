@@ -47,8 +47,8 @@ static void check_mass(const strut_scene *scene, const strut_model *model, const
 static void check_forces(const strut_scene *scene, const strut_model *model, strut_state *state,
                          const slow_model *slow, double t) {
   size_t n = slow->n;
-  double *length = calloc(scene->member_count, sizeof *length);
-  double *tension = calloc(scene->member_count, sizeof *tension);
+  FREED double *length = calloc(scene->member_count, sizeof *length);
+  FREED double *tension = calloc(scene->member_count, sizeof *tension);
   assert_true(length && tension);
   double scale =
       fmax(slow_largest(slow->force, n), slow_largest(slow->tension, scene->member_count));
@@ -63,8 +63,6 @@ static void check_forces(const strut_scene *scene, const strut_model *model, str
     assert_near(state->latest->normal[i], (double)slow->normal[i], TOLERANCE * scale);
     assert_near(state->latest->friction[i], (double)slow->friction[i], TOLERANCE * scale);
   }
-  free(length);
-  free(tension);
 }
 
 static void check_powers(const strut_state *state, const slow_model *slow) {
@@ -79,8 +77,8 @@ static void check_powers(const strut_state *state, const slow_model *slow) {
 
 static void check_acceleration(const strut_scene *scene, const strut_model *model,
                                strut_state *state, const slow_model *slow, double t) {
-  double *a = calloc((size_t)model->length, sizeof *a);
-  double *with_balance = calloc((size_t)model->length, sizeof *a);
+  FREED double *a = calloc((size_t)model->length, sizeof *a);
+  FREED double *with_balance = calloc((size_t)model->length, sizeof *a);
   assert_true(a && with_balance);
   double scale = slow_largest(slow->acceleration, slow->n);
   strut_forces_acceleration(model, state, t, state->q, state->v, a);
@@ -93,8 +91,6 @@ static void check_acceleration(const strut_scene *scene, const strut_model *mode
   assert_memory_equal(a, with_balance, slow->n * sizeof *a);
   check_powers(state, slow);
   state->balance = false;
-  free(a);
-  free(with_balance);
 }
 
 static void cover_mass(coverage *seen, const strut_scene *scene, const strut_mass *mass) {
@@ -148,7 +144,7 @@ static void recompute(uint64_t seed, coverage *seen) {
   random_scene(&scene, seed);
   OWN_POINTER(strut_model) model = motion_compile(&scene);
   assert_non_null(model->mass);
-  assert_int_equal(strut_state_create(model, &state, NULL), STRUT_OK);
+  assert_ok(strut_state_create(model, &state, NULL));
   random_motion(&scene, seed, &t, state->q, state->v);
   slow_evaluate(&slow, &scene, t, state->q, state->v);
   check_forces(&scene, model, state, &slow, t);
@@ -158,7 +154,6 @@ static void recompute(uint64_t seed, coverage *seen) {
   cover_forces(seen, &scene, &slow, state->v);
   for (unsigned term = 1; term <= STRUT_TERM_SOLVE; term <<= 1)
     seen->terms[term] += (model->terms & term) != 0;
-  slow_free(&slow);
 }
 
 TEST(random_scenes_agree_with_a_slow_recomputation) {
@@ -168,8 +163,7 @@ TEST(random_scenes_agree_with_a_slow_recomputation) {
   for (int shared = 0; shared < 2; shared++) {
     for (int size = 2; size <= STRUT_DENSE_BLOCK; size++)
       assert_true(seen.block[size][shared] >= 3);
-    assert_true(seen.factor[shared] >= 10);
-    assert_true(seen.alone[shared] >= 10);
+    assert_all(seen.factor[shared] >= 10, seen.alone[shared] >= 10);
   }
   assert_true(seen.diagonal >= 10 && seen.diagonal < SCENES / 2 && seen.lumped >= 10);
   for (unsigned term = 1; term <= STRUT_TERM_SOLVE; term <<= 1) assert_true(seen.terms[term] >= 20);

@@ -58,7 +58,7 @@ static strut_status run(const strut_setup *setup, strut_error *error) {
   strut_run_options options = {.sinks = all, .sink_count = 2, .force = true};
   OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   OWN(strut_summary) summary;
-  *error = (strut_error){0};
+  if (error) *error = (strut_error){0};
   strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, error);
   assert_int_equal(summary.status, status);
   return status;
@@ -83,14 +83,11 @@ static strut_setup gliding(double step, double duration, double every) {
 }
 
 static void check_rows(double step, double duration, double last, double every, size_t count) {
-  strut_error error;
   clean();
   OWN(strut_setup) setup = gliding(step, duration, every);
   setup.experiment.output_last = last;
-  assert_int_equal(run(&setup, &error), STRUT_OK);
-  assert_int_equal(first.count, count);
-  assert_int_equal(first.width, 1 + 4 + 1 + 1);
-  assert_int_equal(first.channels,
+  assert_ok(run(&setup, NULL));
+  assert_all_equal(first.count, count, first.width, 1 + 4 + 1 + 1, first.channels,
                    STRUT_CHANNEL_POSITION | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE);
   assert_true(first.begun == 1 && first.ended == 1 && first.ended_with == STRUT_OK);
   assert_memory_equal(first.row, second.row, sizeof first.row);
@@ -115,18 +112,16 @@ TEST(rows_come_at_their_times) {
 }
 
 TEST(rows_are_a_thousandth_apart_if_nothing_is_said) {
-  strut_error error;
   OWN(strut_setup) setup = gliding(1e-4, 2, 0);
-  assert_int_equal(run(&setup, &error), STRUT_OK);
+  assert_ok(run(&setup, NULL));
   assert_int_equal(first.count, 1001);
   assert_near(first.row[1][0], 0.002, 1e-15);
 }
 
 /* More often than there are steps: each step once. */
 TEST(no_step_is_recorded_twice) {
-  strut_error error;
   OWN(strut_setup) setup = gliding(0.01, 1, 0.001);
-  assert_int_equal(run(&setup, &error), STRUT_OK);
+  assert_ok(run(&setup, NULL));
   assert_int_equal(first.count, 101);
   for (size_t i = 0; i < 101; i++) assert_near(first.row[i][0], 0.01 * (double)i, 1e-14);
 }
@@ -134,14 +129,12 @@ TEST(no_step_is_recorded_twice) {
 /* Every channel of the crawler against the state that a motion by hand has at the same step. */
 TEST(every_channel_holds_what_it_says) {
   OWN(strut_setup) setup = build_setup();
-  strut_error error;
   structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
   motion_experiment(&setup, 1e-4, 0.1);
   setup.experiment.output_every = 0.01;
   setup.experiment.channels = 63;
-  assert_int_equal(run(&setup, &error), STRUT_OK);
-  assert_int_equal(first.channel_count, 6);
-  assert_int_equal(first.count, 11);
+  assert_ok(run(&setup, NULL));
+  assert_all_equal(first.channel_count, 6, first.count, 11);
   assert_int_equal(first.width, 1 + 10 + 10 + 9 + 9 + 10 + 11);
   OWN(motion) m = motion_begin(&setup.scene, 1e-4);
   m.state->balance = true;
@@ -171,13 +164,11 @@ TEST(every_channel_holds_what_it_says) {
 /* Columns of a part that are those of the whole. */
 static void check_part(const memory *part, const memory *whole, strut_channels channels) {
   size_t columns = 1;
-  assert_int_equal(part->channels, channels);
-  assert_int_equal(part->count, whole->count);
+  assert_all_equal(part->channels, channels, part->count, whole->count);
   for (size_t k = 0, w = 0; k < part->channel_count; k++, w++) {
     while (!(channels & 1u << w)) w++; /* the k-th of its bits is the w-th of all six */
     size_t size = part->items[k] * part->components[k];
-    assert_int_equal(size, whole->items[w] * whole->components[w]);
-    assert_int_equal(part->offset[k], columns);
+    assert_all_equal(size, whole->items[w] * whole->components[w], part->offset[k], columns);
     columns += size;
     for (size_t i = 0; i < part->count; i++) {
       assert_same_bits(part->row[i][0], whole->row[i][0]);
@@ -197,19 +188,18 @@ TEST(each_sink_gets_the_channels_it_wants) {
       {63, STRUT_CHANNEL_POSITION}};
   static memory whole;
   OWN(strut_setup) setup = build_setup();
-  strut_error error;
   structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
   motion_experiment(&setup, 1e-4, 0.1);
   setup.experiment.output_every = 5e-4;
   setup.experiment.channels = 63;
-  assert_int_equal(run(&setup, &error), STRUT_OK);
+  assert_ok(run(&setup, NULL));
   whole = first;
   assert_int_equal(whole.count, 201);
   setup.experiment.channels = STRUT_CHANNEL_FORCE | STRUT_CHANNEL_ENERGY;
   for (size_t p = 0; p < sizeof pairs / sizeof *pairs; p++) {
     clean();
     first_wants = pairs[p][0], second_wants = pairs[p][1];
-    assert_int_equal(run(&setup, &error), STRUT_OK);
+    assert_ok(run(&setup, NULL));
     check_part(&first, &whole, pairs[p][0] ? pairs[p][0] : setup.experiment.channels);
     check_part(&second, &whole, pairs[p][1] ? pairs[p][1] : setup.experiment.channels);
   }
@@ -218,16 +208,15 @@ TEST(each_sink_gets_the_channels_it_wants) {
 /* Recording looks on: a run with sinks ends with the bits of one without. */
 TEST(recording_changes_no_bit) {
   OWN(strut_setup) setup = build_setup();
-  strut_error error;
   structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
   motion_experiment(&setup, 1e-4, 0.5);
   setup.experiment.output_every = 0.5;
-  assert_int_equal(run(&setup, &error), STRUT_OK);
+  assert_ok(run(&setup, NULL));
   double coarse[10];
   memcpy(coarse, first.row[1] + 1, sizeof coarse);
   clean();
   setup.experiment.output_every = 0.0007, setup.experiment.channels = 63;
-  assert_int_equal(run(&setup, &error), STRUT_OK);
+  assert_ok(run(&setup, NULL));
   OWN(strut_summary) s = motion_simulate(&setup);
   assert_memory_equal(coarse, s.end.positions, sizeof coarse);
 }
@@ -294,30 +283,26 @@ static strut_setup demanding(void) {
   return setup;
 }
 
+static strut_status compile_and_run(const strut_setup *setup, strut_error *error) {
+  strut_sink sink = {&first, begin, rows, end, 0}, *all[] = {&sink};
+  strut_run_options options = {.sinks = all, .sink_count = 1};
+  OWN_POINTER(strut_model) model = NULL;
+  OWN(strut_summary) summary = {0};
+  strut_status status = strut_model_compile(&setup->scene, &model, error);
+  if (!status) status = strut_simulate(model, &setup->experiment, &options, &summary, error);
+  if (!status) assert_int_equal(summary.spent.steps, 100);
+  return status;
+}
+
 TEST(every_allocation_may_fail) {
   OWN(strut_setup) setup = demanding();
-  int64_t n = 0;
-  for (;; n++) {
-    strut_sink sink = {&first, begin, rows, end, 0}, *all[] = {&sink};
-    strut_run_options options = {.sinks = all, .sink_count = 1};
-    strut_model *model = NULL;
-    strut_summary summary = {0};
+  REFUSE_EACH(n, status, 31) {
     strut_error error = {0};
     clean();
-    strut_fail_allocation_after(n);
-    strut_status status = strut_model_compile(&setup.scene, &model, &error);
-    if (!status) status = strut_simulate(model, &setup.experiment, &options, &summary, &error);
-    strut_fail_allocation_after(-1);
+    status = refused(n, compile_and_run(&setup, &error));
     assert_int_equal(first.begun, first.ended);
-    if (!status) assert_int_equal(summary.spent.steps, 100);
-    strut_summary_free(&summary);
-    strut_model_free(model);
-    if (!status) break;
-    assert_int_equal(status, STRUT_NO_MEMORY);
-    assert_true(error.message[0]);
-    assert_true(n < 1000);
+    if (status) assert_true(error.message[0]);
   }
-  assert_true(n > 30);
 }
 
 /* A block that exact friction holds against a push: what is recorded is what holds it. */
@@ -326,7 +311,6 @@ TEST(contact_forces_of_methods_with_events) {
   const double mass = 2, g = 9.81, k = 1e4, push = 0.2 * mass * g;
   for (int i = 0; i < 4; i++) {
     OWN(strut_setup) setup = build_setup();
-    strut_error error;
     clean();
     build_contact(&setup.scene, build_mass(&setup.scene, 0, -mass * g / k, mass), k, 10);
     setup.scene.contacts[0].friction =
@@ -337,11 +321,10 @@ TEST(contact_forces_of_methods_with_events) {
     setup.experiment.integrator = methods[i];
     setup.experiment.output_every = 0.01;
     setup.experiment.channels = STRUT_CHANNEL_CONTACT;
-    assert_int_equal(run(&setup, &error), STRUT_OK);
+    assert_ok(run(&setup, NULL));
     assert_true(first.count == 11 && first.width == 3);
     for (size_t r = 0; r < first.count; r++) {
-      assert_near(first.row[r][1], mass * g, 1e-9);
-      assert_near(first.row[r][2], -push, 1e-9);
+      assert_all_near(1e-9, first.row[r][1], mass * g, first.row[r][2], -push);
     }
   }
 }

@@ -38,16 +38,14 @@ static void check_reel(const char *kind, const char *nodes, const char *more, do
   bool remembers = strstr(more, "breaks_at") || strstr(more, "guide_friction");
   for (int i = 0; i < METHODS; i++) {
     if (remembers && !strcmp(methods[i], "midpoint")) continue; /* which refuses that */
-    model_run run = read_reel(kind, nodes, more, "-0.5");
+    OWN(model_run) run = read_reel(kind, nodes, more, "-0.5");
     run.setup.experiment.integrator = methods[i];
     model_simulate(&run);
-    assert_relative(last_force(&run), force, 1e-12);
-    assert_relative(run.summary.energy.elastic, work, 1e-12);
+    assert_all_relative(1e-12, last_force(&run), force, run.summary.energy.elastic, work);
     /* others than these pass over the end of the ramp, or are of lower order */
     bool exact = !strcmp(methods[i], "rk4-events") || !strcmp(methods[i], "adaptive");
     assert_relative(run.summary.energy.drive_work, work, exact ? 1e-8 : 5e-3);
     assert_int_equal(run.summary.warning_count, 0);
-    model_run_free(&run);
   }
 }
 

@@ -34,7 +34,7 @@ static settled settle(const strut_setup *setup) {
 
 static settled settle_well(const strut_setup *setup) {
   settled s = settle(setup);
-  assert_int_equal(s.status, STRUT_OK);
+  assert_ok(s.status);
   return s;
 }
 
@@ -45,8 +45,7 @@ TEST(an_upright_rod_is_unstable) {
   assert_near(s.q[3], length, 1e-12);
   assert_true(s.how.unstable);
   assert_string_equal(s.how.node, setup.scene.nodes[1].name);
-  assert_relative(s.how.stiffness, -G / length, 1e-9);
-  assert_relative(s.how.growth_rate, sqrt(G / length), 1e-9);
+  assert_all_relative(1e-9, s.how.stiffness, -G / length, s.how.growth_rate, sqrt(G / length));
   char text[300];
   assert_true(strut_settle_warning(&s.how, text, sizeof text));
   assert_non_null(strstr(text, setup.scene.nodes[1].name));
@@ -99,7 +98,7 @@ TEST(free_motions_are_not_unstable) {
   for (int32_t i = 0; i < 2; i++) build_contact(&setup.scene, 2 * i, 1e4, 10);
   setup.scene.gravity[1] = -G;
   s = settle(&setup);
-  assert_int_equal(s.status, STRUT_OK);
+  assert_ok(s.status);
   assert_false(s.how.unstable);
 }
 
@@ -139,7 +138,7 @@ TEST(every_method_starts_from_the_same_bits) {
   OWN(strut_setup) setup = rod(1e5, 2.5);
   setup.experiment.settle.step = 1e-3; /* as the parser takes it from the file's solver.step */
   settled first = settle(&setup);
-  assert_int_equal(first.status, STRUT_OK);
+  assert_ok(first.status);
   for (size_t i = 0; i < sizeof method / sizeof method[0]; i++) {
     setup.experiment.integrator = method[i];
     setup.experiment.step = 1e-2 / (double)(1 << i);
@@ -180,11 +179,10 @@ TEST(an_accurate_run_starts_where_the_plain_one_does) {
   OWN(strut_summary) s, t;
   OWN(strut_setup) setup = rod(1e5, 0);
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, NULL), STRUT_OK);
+  assert_ok(strut_simulate(model, &setup.experiment, &options, &s, NULL));
   sink.context = &accurate;
   setup.experiment.accuracy = 0.01;
-  assert_int_equal(strut_simulate_accurately(model, &setup.experiment, &options, &t, NULL),
-                   STRUT_OK);
+  assert_ok(strut_simulate_accurately(model, &setup.experiment, &options, &t, NULL));
   assert_true(plain.taken && accurate.taken);
   assert_memory_equal(plain.position, accurate.position, sizeof plain.position);
   assert_true(s.settle.unstable && t.settle.unstable);
@@ -201,15 +199,13 @@ TEST(statics_start_from_the_same_bits) {
     OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
     OWN(strut_arena) arena = {0};
     strut_rest_state stand;
-    assert_int_equal(strut_rest_state_find(model, &setup.experiment, NULL, &arena, &stand, NULL),
-                     STRUT_OK);
+    assert_ok(strut_rest_state_find(model, &setup.experiment, NULL, &arena, &stand, NULL));
     assert_memory_equal(stand.q, s.q, (size_t)model->length * sizeof *s.q);
     assert_true(stand.at_rest);
     assert_int_equal(stand.settle.unstable, !perturb);
     strut_equilibria_options options = {0};
     OWN(strut_equilibria) all;
-    assert_int_equal(strut_equilibria_find(model, &setup.experiment, &options, &all, NULL),
-                     STRUT_OK);
+    assert_ok(strut_equilibria_find(model, &setup.experiment, &options, &all, NULL));
     assert_true(all.start >= 0);
     assert_int_equal(all.list[all.start].point.label, perturb ? STRUT_STABLE : STRUT_SADDLE);
   }

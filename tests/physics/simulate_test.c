@@ -106,12 +106,11 @@ static strut_setup stiff(double step, double duration) {
 
 static strut_status simulate(const strut_setup *setup, const strut_run_options *options,
                              strut_summary *summary, strut_error *error) {
-  strut_model *model = motion_compile(&setup->scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   *error = (strut_error){0};
   strut_status status = strut_simulate(model, &setup->experiment, options, summary, error);
   assert_int_equal(summary->status, status);
   assert_string_equal(summary->reason, status ? error->message : "");
-  strut_model_free(model);
   return status;
 }
 
@@ -120,13 +119,13 @@ TEST(a_step_above_the_limit_is_refused) {
   strut_error error;
   strut_run_options options = {0};
   OWN(strut_setup) setup = stiff(0.142, 1);
-  assert_fails(simulate(&setup, &options, &s, &error), STRUT_STEP_TOO_LARGE, error, "0.142 s");
-  assert_non_null(strstr(error.message, "0.1414 s"));
+  assert_fails(simulate(&setup, &options, &s, &error), STRUT_STEP_TOO_LARGE, error, "0.142 s",
+               "0.1414 s");
   assert_relative(s.step_limit, sqrt(8) / 20, 1e-6);
   assert_int_equal(s.spent.steps, 0);
   strut_summary_free(&s);
   setup.experiment.step = 0.141;
-  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_OK);
+  assert_ok(simulate(&setup, &options, &s, &error));
   strut_summary_free(&s);
 }
 
@@ -135,15 +134,12 @@ TEST(force_runs_above_the_limit_until_it_diverges) {
   strut_error error;
   strut_run_options options = {.force = true};
   OWN(strut_setup) setup = stiff(0.142, 0.142 * 20);
-  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_OK); /* a short run survives */
+  assert_ok(simulate(&setup, &options, &s, &error)); /* a short run survives */
   assert_int_equal(s.spent.steps, 20);
   strut_summary_free(&s);
   setup.experiment.step = 0.2, setup.experiment.duration = 1000;
-  assert_fails(simulate(&setup, &options, &s, &error), STRUT_DIVERGED, error, "node 'n2'");
-  assert_non_null(strstr(error.message, "t = "));
-  assert_non_null(strstr(error.message, "dt = 0.2 s"));
-  assert_non_null(strstr(error.message, "0.1414 s"));
-  assert_non_null(strstr(error.message, "smaller step"));
+  assert_fails(simulate(&setup, &options, &s, &error), STRUT_DIVERGED, error, "node 'n2'",
+               "t = ", "dt = 0.2 s", "0.1414 s", "smaller step");
   assert_true(s.spent.steps > 0 && s.spent.steps < 5000);
   assert_near(s.duration, 0.2 * (double)s.spent.steps, 1e-9);
   assert_int_equal(s.end.node_count, 2);
@@ -176,8 +172,8 @@ static void stop_at_once(void *context, double fraction) {
 }
 
 TEST(an_interrupt_stops_within_a_second) {
-  OWN(strut_summary) s;
   strut_error error;
+  OWN(strut_summary) s;
   strut_run_options options = {
       .interrupt = &stop, .progress = stop_at_once, .progress_context = &reported};
   stop = 0;
@@ -211,8 +207,7 @@ TEST(settling_finds_the_static_equilibrium) {
   OWN(strut_setup) setup = hanging();
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   OWN(strut_summary) s;
-  strut_run_options options = {0};
-  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, NULL), STRUT_OK);
+  assert_ok(strut_simulate(model, &setup.experiment, &(strut_run_options){0}, &s, NULL));
   assert_true(s.settle_time > 0);
   assert_int_equal(s.spent.steps, 1);
   assert_near(s.duration, 1e-3, 1e-18);
@@ -246,7 +241,7 @@ TEST(settling_on_a_slope_needs_friction) {
     strut_error error = {0};
     strut_run_options options = {0};
     OWN_POINTER(strut_model) model = NULL;
-    assert_int_equal(strut_model_compile(&setup.scene, &model, &error), STRUT_OK);
+    assert_ok(strut_model_compile(&setup.scene, &model, &error));
     strut_status status = strut_simulate(model, &setup.experiment, &options, &s, &error);
     assert_int_equal(status, kept ? STRUT_OK : STRUT_NOT_SETTLED);
     if (kept) /* the weight's share across the slope, over the ground's stiffness */
@@ -258,8 +253,8 @@ TEST(settling_on_a_slope_needs_friction) {
 }
 
 TEST(settling_can_be_interrupted) {
-  strut_summary s;
   strut_error error;
+  strut_summary s;
   strut_run_options options = {.interrupt = &stop};
   OWN(strut_setup) setup = hanging();
   setup.experiment.settle.limit = 1e9,

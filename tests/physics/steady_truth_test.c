@@ -151,10 +151,8 @@ TEST(a_swing_that_grows_from_almost_nothing) {
  * is beside the one before it.
  */
 TEST(a_drift_that_ends_in_a_jolt) {
-  OWN(strut_setup) setup = build_setup();
   const double stiffness = 0.04, damping = 500 * stiffness, drift = 0.3, push = 0.2;
-  build_support(&setup.scene, 0, 0);
-  build_mass(&setup.scene, 1 - drift, 0, 1);
+  OWN(strut_setup) setup = build_tethered(1 - drift, 0, 1);
   build_support(&setup.scene, -1, 0);
   build_sized(&setup.scene, STRUT_SPRING, 0, 1, stiffness, damping, 0, 1);
   build_sized(&setup.scene, STRUT_CABLE, 2, 1, 400, 1, 0, 2 - 0.05 * drift);

@@ -9,7 +9,7 @@ import json
 import math
 import time
 
-from testing import check, finish, near, path, run, write
+from testing import answer, check, finish, near, path, run, write
 
 LAWS = {"coulomb": "law: coulomb", "karnopp": "law: karnopp, stick_velocity: 0.1 mm/s",
         "stribeck": "law: stribeck, width: 0.1 mm/s, decay_velocity: 1 mm/s"}
@@ -90,7 +90,7 @@ for degrees, mu, way in ((20, 0.8, 1), (20, 0.8, -1), (5, 0.1, 1), (30, 0.5774, 
     a = math.radians(degrees)
     scene("path.yaml", "block", a, "coulomb", f"mu: {mu}",
           f"loads: {{p: {{node: b, force: [{way * math.cos(a)}, {way * math.sin(a)}]}}}}\npath: {{friction: kept}}\n")
-    found = json.loads(run("path", "path.yaml", "--until", "20", "--json").stdout)
+    found = answer("path", "path.yaml", "--until", "20")
     slips = [event["factor"] for event in found["events"] if event["kind"] == "slips"]
     near(slips[0] if slips else "", 9.81 * (mu * math.cos(a) + way * math.sin(a)), f"path {degrees}, {mu}, {way}", 1e-6)
 scene("path.yaml", "block", a, "coulomb", "mu: 0.5", "loads: {p: {node: b, force: [1, 0]}}\npath: {friction: kept}\n")
@@ -103,7 +103,7 @@ for tilted in (False, True):
     tan = math.tan(slope)
     scene("shapes.yaml", "x", slope, "coulomb", "mu: 0.3",
           NAMED + "initial: {settle: {friction: kept}}\n", tilted=tilted)
-    found = json.loads(run("equilibria", "shapes.yaml", "--json").stdout)
+    found = answer("equilibria", "shapes.yaml")
     stand = [e for e in found["equilibria"] if e["outcome"] == "stands"]
     check(found["start"] in ("S", "S-2"), f"the start settles in {found['start']}")
     check(len(stand) > 3, "few shapes stand on a slope")
@@ -163,13 +163,13 @@ for text, wanted, error in (
          math.pi / 2 * math.sqrt(0.01 / 9.81 / 0.3), 4e-3)):
     write("one.yaml", f"strut: 1\n{text}\n")
     for method in ("adaptive", "implicit"):
-        found = json.loads(run("run", "one.yaml", "--json", "--integrator", method).stdout)["measured"]["q"]["value"]
+        found = answer("run", "one.yaml", "--integrator", method)["measured"]["q"]["value"]
         near(found, wanted, f"{method}, {text[:9]}", error)
 # The last copy pulled by 1 m; statics need no masses.
 write("row.yaml", "strut: 1\nplace: {p: {part: k, repeat: {count: 12, step: [1, 0], next: {merge: {b: a}}}}}\n"
       "parts: {k: {nodes: {a: [0, 0], b: [1, 0]}, members: {m: {kind: spring, nodes: [a, b], stiffness: 12}}}}\n"
       "nodes: {p.0.a: {fixed: both}, p.*.b: {fixed: y}}\nrun: {duration: 1 s}\n")
-row = json.loads(run("path", "row.yaml", "--over", "p.last.b.x", "--until", "1", "--json").stdout)
+row = answer("path", "row.yaml", "--over", "p.last.b.x", "--until", "1")
 near(row["points"][-1]["forces"]["p.0.m"], 1.0, "row", 1e-6)
 
 finish()

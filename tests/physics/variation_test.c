@@ -47,7 +47,7 @@ static void advance(motion *m, int64_t count, double *z, double *jacobian) {
 static void difference(motion *m, int64_t count, const double *z, const double *unit,
                        double *jacobian) {
   const unknowns u = unknowns_of(m->model);
-  double *end = strut_allocate(2 * (size_t)u.length, sizeof *end);
+  RELEASED double *end = strut_allocate(2 * (size_t)u.length, sizeof *end);
   for (int32_t j = 0; j < 2 * u.n; j++) {
     double step = unit[j / u.n];
     for (int side = -1; side <= 1; side += 2) {
@@ -60,7 +60,6 @@ static void difference(motion *m, int64_t count, const double *z, const double *
       }
     }
   }
-  strut_release(end);
 }
 
 static double determinant(int32_t n, double *a) {

@@ -31,7 +31,7 @@ static void begin(fixture *f, uint64_t seed, unsigned parts) {
     scene->contacts[i].friction.law = STRUT_FRICTION_NONE;
   scene->actuator_count = 0;
   f->m = motion_begin(scene, 1e-3);
-  assert_int_equal(strut_potential_create(f->m.model, NULL, true, &f->potential, NULL), STRUT_OK);
+  assert_ok(strut_potential_create(f->m.model, NULL, true, &f->potential, NULL));
   assert_true(f->m.model->length <= 2 * MOST);
   memcpy(f->q, f->m.model->start, (size_t)f->m.model->length * sizeof *f->q);
   for (int32_t i = 0; i < f->potential->n; i++)

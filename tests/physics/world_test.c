@@ -216,8 +216,7 @@ TEST(a_node_rests_in_a_flat_corner) {
                      "-4.96 mm]}}\nloads: {push: {node: a, force: [1, 0]}}\n"
                      "ground: {profile: [[-1, 0.05], [0, 0], [1, 0.05]], stiffness: 1000,"
                      " friction: {mu: 0.5, stick_velocity: 0.1}");
-  assert_near(m.state->latest->force[0], 0, 1e-13);
-  assert_near(m.state->latest->force[1], 0, 1e-13);
+  assert_all_near(1e-13, m.state->latest->force[0], 0, m.state->latest->force[1], 0);
   assert_within(m.state->latest->friction[0], 0.3, 0.4);
   assert_within(m.state->latest->friction[1], -1.4, -1.3);
 }

@@ -38,46 +38,29 @@ class Errors(unittest.TestCase):
         self.assertIn("nodes.a.mas", [message.key for message in caught.exception.messages])
 
     def test_bad_settings_and_options(self):
-        with self.assertRaisesRegex(strut.SceneError, "did you mean 'frequency'"):
-            strut.load(CRAWLER, frequenz=10)
+        self.assertRaisesRegex(strut.SceneError, "did you mean 'frequency'", strut.load, CRAWLER, frequenz=10)
         scene = strut.load(CRAWLER)
-        with self.assertRaises(strut.SceneError):
-            scene.with_(frequency="10 kg")
-        with self.assertRaises(strut.SceneError):
-            scene.with_(frequency=float("nan"))
-        with self.assertRaisesRegex(TypeError, "unexpected keyword argument 'integratr'"):
-            scene.run(integratr="rk4")
-        with self.assertRaises(strut.UsageError):
-            scene.modes(at="IV")
-        with self.assertRaises(TypeError):
-            scene.with_(frequency=object())
-        with self.assertRaises(TypeError):
-            scene.with_(frequency=None)
+        self.assertRaises(strut.SceneError, scene.with_, frequency="10 kg")
+        self.assertRaises(strut.SceneError, scene.with_, frequency=float("nan"))
+        self.assertRaisesRegex(TypeError, "unexpected keyword argument 'integratr'", scene.run, integratr="rk4")
+        self.assertRaises(strut.UsageError, scene.modes, at="IV")
+        self.assertRaises(TypeError, scene.with_, frequency=object())
+        self.assertRaises(TypeError, scene.with_, frequency=None)
         for value in (b"1", bytearray(b"1"), [b"1"]):
-            with self.assertRaisesRegex(TypeError, "not byte"):
-                scene.with_(frequency=value)
-            with self.assertRaisesRegex(TypeError, "not byte"):
-                scene.sweep(frequency=value)
-        with self.assertRaisesRegex(TypeError, "not None"):
-            _strut.options(None)
-        with self.assertRaises(ValueError):
-            scene.with_(frequency="1\0")
-        with self.assertRaises(AttributeError):
-            scene.nodez
-        with self.assertRaises(KeyError):
-            scene.array("nodes.weight")
+            self.assertRaisesRegex(TypeError, "not byte", scene.with_, frequency=value)
+            self.assertRaisesRegex(TypeError, "not byte", scene.sweep, frequency=value)
+        self.assertRaisesRegex(TypeError, "not None", _strut.options, None)
+        self.assertRaises(ValueError, scene.with_, frequency="1\0")
+        self.assertRaises(AttributeError, lambda: scene.nodez)
+        self.assertRaises(KeyError, scene.array, "nodes.weight")
         self.assertIsNone(scene["nodes.n9.0"])
         self.assertEqual(scene.names("nothing"), ())
 
     def test_files(self):
-        with self.assertRaises(strut.Error):
-            strut.load("/nowhere/arm.yaml")
-        with self.assertRaises(strut.Error):
-            strut.load(os.fspath(MODELS))
-        with self.assertRaises(ValueError):
-            strut.load("a\0b")
-        with self.assertRaises(strut.SceneError):
-            strut.loads("")
+        self.assertRaises(strut.Error, strut.load, "/nowhere/arm.yaml")
+        self.assertRaises(strut.Error, strut.load, os.fspath(MODELS))
+        self.assertRaises(ValueError, strut.load, "a\0b")
+        self.assertRaises(strut.SceneError, strut.loads, "")
         with self.assertRaises(strut.Error):
             strut.loads("strut: 1\nname: \udcff\n".encode("utf-8", "surrogateescape").decode("latin1"))
 
@@ -106,8 +89,7 @@ class Errors(unittest.TestCase):
             lambda: raw.array(None),
             lambda: _strut.Result().json(),
         ):
-            with self.assertRaises((TypeError, ValueError)):
-                wrong()
+            self.assertRaises((TypeError, ValueError), wrong)
 
     def test_a_callback_that_raises_ends_the_run(self):
         def stop(fraction):

@@ -2,13 +2,8 @@
 """plot() draws the results' numbers by matplotlib, where it is installed; notebooks show tables and figures."""
 
 import html.parser
-import json
-import os
-import pathlib
 import pickle
-import re
 import sys
-import tempfile
 import unittest
 import unittest.mock
 
@@ -54,10 +49,8 @@ class Plots(unittest.TestCase):
         self.assertEqual(len(run.plot("position").get_lines()), 5)
         np.testing.assert_allclose(run.plot("position.n3").get_lines()[0].get_ydata(), run["position.n3.x"])
         self.assertIn(" in ", run.plot("energy").get_ylabel())
-        with self.assertRaisesRegex(KeyError, "no recorded channel 'velocity'"):
-            run.plot("velocity")
-        with self.assertRaisesRegex(ValueError, "recorded nothing"):
-            CRAWLER.run(record=False).plot()
+        self.assertRaisesRegex(KeyError, "no recorded channel 'velocity'", run.plot, "velocity")
+        self.assertRaisesRegex(ValueError, "recorded nothing", CRAWLER.run(record=False).plot)
 
     def test_equilibria_and_their_barriers(self):
         found = CRAWLER.equilibria()
@@ -88,8 +81,7 @@ class Plots(unittest.TestCase):
         self.assertEqual([line.get_color() for line in states.get_lines()[:6]], 4 * ["tab:red"] + 2 * ["tab:blue"])
         self.assertEqual(len(TRUSS.rigidity().plot().get_lines()), 3)  # no state: grey members, and nodes
         self.assertEqual(len(FRAME.form(given="prestress").plot().get_lines()), 7)
-        with self.assertRaises(IndexError):
-            FRAME.rigidity().plot(5)
+        self.assertRaises(IndexError, FRAME.rigidity().plot, 5)
 
     def test_sweeps(self):
         table = CRAWLER.sweep(frequency=[8, 9, 10], keep=["velocity", "outcome"])
@@ -114,8 +106,7 @@ class Plots(unittest.TestCase):
         hidden = {name: None for name in [*sys.modules, "matplotlib"] if name.split(".")[0] == "matplotlib"}
         with unittest.mock.patch.dict(sys.modules, hidden):
             for result in (FRAME.modes(), TRUSS.sweep(height=[0.4], compute="path", keep="limit_factor")):
-                with self.assertRaisesRegex(ImportError, "python3-matplotlib.*pip install matplotlib"):
-                    result.plot()
+                self.assertRaisesRegex(ImportError, "python3-matplotlib.*pip install matplotlib", result.plot)
 
 
 class Reader(html.parser.HTMLParser):

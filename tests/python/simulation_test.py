@@ -48,12 +48,9 @@ class Simulations(unittest.TestCase):
         self.assertAlmostEqual(self.sim.energy["elastic"], 22.69, places=1)
         with self.assertRaises(ValueError):
             x[0] = 0  # the state is the engine's
-        with self.assertRaisesRegex(KeyError, "there are n1, n2"):
-            self.sim.position["n9"]
-        with self.assertRaisesRegex(AttributeError, "no angle"):
-            self.sim.angle
-        with self.assertRaises(AttributeError):
-            self.sim.postion
+        self.assertRaisesRegex(KeyError, "there are n1, n2", lambda: self.sim.position["n9"])
+        self.assertRaisesRegex(AttributeError, "no angle", lambda: self.sim.angle)
+        self.assertRaises(AttributeError, lambda: self.sim.postion)
         np.testing.assert_array_equal(self.sim.position - self.sim.position, np.zeros((5, 2)))
         sim = self.sim
         del self.sim
@@ -79,23 +76,16 @@ class Simulations(unittest.TestCase):
         before = self.sim.position.copy()
         for wrong in (float("nan"), -1.0, float("inf")):
             self.sim.rest["m8"] = wrong
-            with self.assertRaises(strut.UsageError):
-                self.sim.advance(1)
+            self.assertRaises(strut.UsageError, self.sim.advance, 1)
         np.testing.assert_array_equal(self.sim.position, before)
         self.sim.rest["m8"] = self.sim.rest0["m8"]
         self.sim.advance(1)
-        with self.assertRaises(ValueError):
-            self.sim.advance(-1)
-        with self.assertRaises(TypeError):
-            self.sim.advance(1.5)
-        with self.assertRaises(OverflowError):
-            self.sim.advance(10**30)
-        with self.assertRaises(TypeError):
-            self.sim.restore(3)
-        with self.assertRaises(strut.UsageError):
-            self.sim.restore(self.scene.simulation().snapshot())
-        with self.assertRaisesRegex(TypeError, "unexpected keyword"):
-            self.scene.simulation(stepp="1 ms")
+        self.assertRaises(ValueError, self.sim.advance, -1)
+        self.assertRaises(TypeError, self.sim.advance, 1.5)
+        self.assertRaises(OverflowError, self.sim.advance, 10**30)
+        self.assertRaises(TypeError, self.sim.restore, 3)
+        self.assertRaises(strut.UsageError, self.sim.restore, self.scene.simulation().snapshot())
+        self.assertRaisesRegex(TypeError, "unexpected keyword", self.scene.simulation, stepp="1 ms")
 
     def test_a_snapshot_brings_everything_back(self):
         self.sim.advance(300)
@@ -132,8 +122,7 @@ class Simulations(unittest.TestCase):
             os.kill(os.getpid(), signal.SIGINT)
 
         threading.Timer(0.2, press).start()
-        with self.assertRaises(KeyboardInterrupt):
-            self.sim.advance(10**12)
+        self.assertRaises(KeyboardInterrupt, self.sim.advance, 10**12)
         took = time.monotonic() - sent[0]
         print(f"simulation: {took:.3f} s")
         self.assertLess(took, 1.0)

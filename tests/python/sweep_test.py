@@ -112,8 +112,7 @@ class Sweeps(unittest.TestCase):
             (ValueError, lambda: self.scene.sweep(points=[[1, 2]], names=["frequency"])),
             (ValueError, lambda: self.scene.sweep(points=np.zeros(3), names=["frequency"])),
         ):
-            with self.assertRaises(error):
-                call()
+            self.assertRaises(error, call)
 
     def test_ctrl_c_keeps_the_points_that_are_done(self):
         scene = strut.load(CRAWLER)

@@ -30,6 +30,46 @@ void check_same_bits(double actual, double expected, const char *what, const cha
   fail_at(file, line, what, actual, "(the same bits, difference)", expected, actual - expected);
 }
 
+void check_pairs(check_of_numbers *check, const double *pairs, size_t count, const char *what,
+                 double tolerance, const char *file, int line) {
+  for (size_t i = 0; i + 1 < count; i += 2)
+    check(pairs[i], pairs[i + 1], tolerance, what, file, line);
+}
+
+void check_equal_pairs(const long double *pairs, size_t count, const char *what, const char *file,
+                       int line) {
+  for (size_t i = 0; i + 1 < count; i += 2) {
+    if (pairs[i] == pairs[i + 1]) continue;
+    print_error("pair %zu of '%s': %Lg, expected %Lg\n", i / 2 + 1, what, pairs[i], pairs[i + 1]);
+    _fail(file, line);
+  }
+}
+
+void check_text_pairs(const char *const *pairs, size_t count, const char *what, const char *file,
+                      int line) {
+  for (size_t i = 0; i + 1 < count; i += 2) {
+    if (pairs[i] && pairs[i + 1] && !strcmp(pairs[i], pairs[i + 1])) continue;
+    print_error("pair %zu of '%s': '%s', expected '%s'\n", i / 2 + 1, what, pairs[i], pairs[i + 1]);
+    _fail(file, line);
+  }
+}
+
+void check_all(const bool *conditions, size_t count, const char *what, const char *file, int line) {
+  for (size_t i = 0; i < count; i++) {
+    if (conditions[i]) continue;
+    print_error("condition %zu of '%s' does not hold\n", i + 1, what);
+    _fail(file, line);
+  }
+}
+
+void check_words(const char *text, const char *const *words, const char *file, int line) {
+  for (; *words; words++) {
+    if (strstr(text, *words)) continue;
+    print_error("'%s' lacks '%s'\n", text, *words);
+    _fail(file, line);
+  }
+}
+
 double observed_order(const double *error, size_t count) {
   double mean_k = 0.5 * (double)(count - 1), mean = 0.0, up = 0.0, down = 0.0;
   for (size_t k = 0; k < count; k++) mean += log2(error[k]) / (double)count;

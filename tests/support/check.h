@@ -5,9 +5,15 @@
 #ifndef STRUT_TESTS_SUPPORT_CHECK_H
 #define STRUT_TESTS_SUPPORT_CHECK_H
 
+#include <stdbool.h>
+
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "tests/support/test.h"
+
+/** As FREED, by strut_release. */
+#define RELEASED __attribute__((cleanup(own_release)))
+static inline void own_release(void *pointer) { strut_release(*(void **)pointer); }
 
 /** |actual - expected| <= tolerance; a NAN fails. */
 #define assert_near(actual, expected, tolerance)                                                   \
@@ -22,9 +28,24 @@
 #define assert_same_bits(actual, expected)                                                         \
   check_same_bits((actual), (expected), #actual, __FILE__, __LINE__)
 
+/** The same of pairs: actual, expected, actual, expected, ... */
+#define assert_all_near(tolerance, ...)                                                            \
+  check_pairs(check_near, PAIRS(double, __VA_ARGS__), (tolerance), __FILE__, __LINE__)
+#define assert_all_relative(tolerance, ...)                                                        \
+  check_pairs(check_relative, PAIRS(double, __VA_ARGS__), (tolerance), __FILE__, __LINE__)
+/** Of whole numbers, all of which a long double holds exactly. */
+#define assert_all_equal(...) check_equal_pairs(PAIRS(long double, __VA_ARGS__), __FILE__, __LINE__)
+/** Of texts. */
+#define assert_all_texts(...) check_text_pairs(PAIRS(char const *, __VA_ARGS__), __FILE__, __LINE__)
+/** Each of these is true. */
+#define assert_all(...) check_all(PAIRS(bool, __VA_ARGS__), __FILE__, __LINE__)
+#define PAIRS(type, ...)                                                                           \
+  (type const[]){__VA_ARGS__}, sizeof((type const[]){__VA_ARGS__}) / sizeof(type), #__VA_ARGS__
+
 /** The call returns that status, and the strut_error that it fills has these words. */
-#define assert_fails(call, expected, error, words)                                                 \
-  (assert_int_equal((call), (expected)), check_words((error).message, (words), __FILE__, __LINE__))
+#define assert_fails(call, expected, error, ...)                                                   \
+  (assert_int_equal((call), (expected)),                                                           \
+   check_words((error).message, (const char *[]){__VA_ARGS__, NULL}, __FILE__, __LINE__))
 
 void check_near(double actual, double expected, double tolerance, const char *what,
                 const char *file, int line);
@@ -34,11 +55,18 @@ void check_within(double actual, double low, double high, const char *what, cons
                   int line);
 void check_same_bits(double actual, double expected, const char *what, const char *file, int line);
 
-static inline void check_words(const char *text, const char *words, const char *file, int line) {
-  if (strstr(text, words)) return;
-  print_error("'%s' lacks '%s'\n", text, words);
-  _fail(file, line);
-}
+typedef void check_of_numbers(double actual, double expected, double tolerance, const char *what,
+                              const char *file, int line);
+void check_pairs(check_of_numbers *check, const double *pairs, size_t count, const char *what,
+                 double tolerance, const char *file, int line);
+void check_equal_pairs(const long double *pairs, size_t count, const char *what, const char *file,
+                       int line);
+
+void check_text_pairs(const char *const *pairs, size_t count, const char *what, const char *file,
+                      int line);
+void check_all(const bool *conditions, size_t count, const char *what, const char *file, int line);
+
+void check_words(const char *text, const char *const *words, const char *file, int line);
 
 /** Least-squares slope of log2(error) over halvings of the step: the observed order. */
 double observed_order(const double *error, size_t count);
@@ -49,10 +77,27 @@ double observed_order(const double *error, size_t count);
  */
 #define refused(n, call) (strut_fail_allocation_after(n), granted_again(call))
 
+/**
+ * A block whose n-th allocation is refused, for n = 0, 1, ... until none is; in it `status` becomes what
+ * refused() gives. More than `least` of them must be refused.
+ *
+ *     REFUSE_EACH(n, status, 5) status = refused(n, strut_merge(path, &merged, NULL));
+ */
+#define REFUSE_EACH(n, status, least)                                                              \
+  for (int64_t n = 0, status = STRUT_NO_MEMORY; refuse_another(status, n, least); n++)
+
 static inline strut_status granted_again(strut_status status) {
   strut_fail_allocation_after(-1);
   if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
   return status;
+}
+
+static inline bool refuse_another(int64_t status, int64_t n, int64_t least) {
+  assert_true(n < 20000);
+  if (status == STRUT_NO_MEMORY) return true;
+  assert_ok(status);
+  assert_true(n > least);
+  return false;
 }
 
 #endif

@@ -4,12 +4,11 @@
 #include "engine/scene/check.h"
 
 static void check(const strut_scene *scene) {
-  strut_findings findings = {0};
+  OWN(strut_findings) findings = {0};
   const strut_setup setup = {.scene = *scene, .experiment = strut_experiment_default()};
   strut_status status = strut_setup_check(&setup, STRUT_FOR_STATICS, &findings);
   for (size_t i = 0; i < findings.count; i++) print_error("%s\n", findings.items[i].message);
-  strut_findings_free(&findings);
-  assert_int_equal(status, STRUT_OK);
+  assert_ok(status);
 }
 
 strut_model *motion_compile(const strut_scene *scene) {
@@ -18,7 +17,7 @@ strut_model *motion_compile(const strut_scene *scene) {
   check(scene);
   strut_status status = strut_model_compile(scene, &model, &error);
   if (status) print_error("%s\n", error.message);
-  assert_int_equal(status, STRUT_OK);
+  assert_ok(status);
   return model;
 }
 
@@ -28,7 +27,7 @@ static motion begin(const strut_scene *scene, const strut_experiment *experiment
   motion m = {
       .model = motion_compile(scene), .method = strut_integrator_find(method), .step = step};
   assert_non_null(m.model->mass);
-  assert_int_equal(strut_state_create(m.model, &m.state, NULL), STRUT_OK);
+  assert_ok(strut_state_create(m.model, &m.state, NULL));
   assert_non_null(m.method);
   m.workspace = m.method->create(m.model, m.state, &settings);
   assert_non_null(m.workspace);
@@ -59,13 +58,12 @@ void motion_experiment(strut_setup *setup, double step, double duration) {
 }
 
 strut_summary motion_simulate(const strut_setup *setup) {
-  strut_model *model = motion_compile(&setup->scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   strut_run_options options = {0};
   strut_summary summary;
   strut_error error = {0};
   strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, &error);
   if (status) print_error("%s\n", error.message);
-  assert_int_equal(status, STRUT_OK);
-  strut_model_free(model);
+  assert_ok(status);
   return summary;
 }

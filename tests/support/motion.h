@@ -16,9 +16,6 @@
 
 FREED_BY(strut_model_free, strut_model)
 FREED_BY(strut_state_free, strut_state)
-/** As FREED, by strut_release. */
-#define RELEASED __attribute__((cleanup(own_release)))
-static inline void own_release(void *pointer) { strut_release(*(void **)pointer); }
 
 typedef struct motion {
   strut_model *model;

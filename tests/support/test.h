@@ -44,6 +44,9 @@ void register_test(test_moment moment, const char *name, void (*function)(void),
 #define BEFORE_ALL REGISTERED_TEST(TEST_BEFORE_ALL, before_all)
 #define AFTER_ALL REGISTERED_TEST(TEST_AFTER_ALL, after_all)
 
+/** The call returns STRUT_OK. */
+#define assert_ok(call) assert_int_equal((call), STRUT_OK)
+
 /** The n-th word of the command line, from 1; NULL where there are fewer. */
 const char *test_word(int n);
 /** The same as a number; `otherwise` where there are fewer words. */

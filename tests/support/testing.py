@@ -3,6 +3,8 @@
 counted. Tests are called as TEST.py STRUT ... in the repository's root, with this folder in PYTHONPATH."""
 import atexit
 import csv
+import importlib.util
+import json
 import math
 import os
 import shutil
@@ -15,6 +17,14 @@ models = os.path.realpath("models")
 work = tempfile.mkdtemp()
 atexit.register(shutil.rmtree, work, ignore_errors=True)
 _found = 0
+
+
+def needs(*names):
+    """Skips the test where one of these is not installed, a program or a module of Python."""
+    missing = [name for name in names if not shutil.which(name) and not importlib.util.find_spec(name)]
+    if missing:
+        print("skipped: there is no", *missing)
+        sys.exit(77)
 
 
 def fail(text):
@@ -65,6 +75,11 @@ def run(*words, code=0, err="", timeout=120, stdin="", env=None):
     check(done.returncode == code and err in done.stderr,
           f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
     return done
+
+
+def answer(*words, **how):
+    """What strut prints as JSON."""
+    return json.loads(run(*words, "--json", **how).stdout)
 
 
 def formats(*words, code=0, timeout=60):

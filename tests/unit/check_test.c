@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The semantic rules on scenes made without a file: each spoilt in one way, each finding named. */
+/* The semantic rules on scenes made without a file: each spoilt in one way, each finding named. Rules that files break
+   as well are seen in tests/language/bad, with the places of their messages. */
 #include "engine/scene/check.h"
 #include "tests/support/test.h"
 
@@ -77,7 +78,7 @@ static void fill(sample *s) {
 /* Checks the spoilt sample: exactly one finding, about that key, whose text has the word. */
 static void expect(sample *s, strut_subject subject, size_t index, const char *key,
                    const char *word) {
-  strut_findings findings = {0};
+  OWN(strut_findings) findings = {0};
   strut_status status = strut_setup_check(&s->setup, STRUT_FOR_RUN, &findings);
   if (findings.count != 1) {
     for (size_t i = 0; i < findings.count; i++) print_error("%s\n", findings.items[i].message);
@@ -90,7 +91,6 @@ static void expect(sample *s, strut_subject subject, size_t index, const char *k
   assert_int_equal(f->index, index);
   if (key && (!f->key || strcmp(f->key, key) != 0)) fail_msg("key %s, not %s", f->key, key);
   if (!key) assert_null(f->key);
-  strut_findings_free(&findings);
   fill(s);
 }
 
@@ -107,8 +107,8 @@ BEFORE_EACH { fill(&s); }
 
 TEST(a_valid_scene_has_no_findings) {
   OWN(strut_findings) findings = {0};
-  assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings), STRUT_OK);
-  assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_STATICS, &findings), STRUT_OK);
+  assert_ok(strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings));
+  assert_ok(strut_setup_check(&s.setup, STRUT_FOR_STATICS, &findings));
   assert_int_equal(findings.count, 0);
 }
 
@@ -122,10 +122,6 @@ TEST(nodes) {
   EXPECT(s.nodes[2].start[0] = (double)NAN, NODE, 2, "start", "finite");
   EXPECT(s.nodes[2].velocity[0] = (double)NAN, NODE, 2, "velocity", "finite");
   EXPECT(s.nodes[0].velocity[1] = 1, NODE, 0, "velocity", "fixed in y");
-  EXPECT(s.nodes[2].mass = s.members[1].mass = 0, NODE, 2, "mass", "no mass");
-  EXPECT((s.setup.scene.member_count = 1, s.setup.scene.actuator_count = 0,
-          s.setup.scene.load_count = 0, s.nodes[2].mass = 0),
-         NODE, 2, NULL, "nothing uses node 'c'");
 }
 
 TEST(members) {
@@ -133,7 +129,6 @@ TEST(members) {
     s.members[0].node[1] = bad;
     expect(&s, STRUT_ON_MEMBER, 0, "nodes", "does not exist");
   }
-  EXPECT(s.members[0].node[1] = 0, MEMBER, 0, "nodes", "itself");
   EXPECT(s.members[0].kind = (strut_member_kind)7, MEMBER, 0, "kind", "unknown");
   EXPECT(s.members[0].rest_kind = (strut_rest_kind)-1, MEMBER, 0, "kind", "unknown");
   EXPECT(s.members[0].stiffness = -1, MEMBER, 0, "stiffness", "negative");
@@ -142,40 +137,25 @@ TEST(members) {
   EXPECT(s.members[0].axial_stiffness = 1, MEMBER, 0, "axial_stiffness", "both");
   EXPECT(s.members[0].damping = (double)NAN, MEMBER, 0, "damping", "finite");
   EXPECT(s.members[0].mass = -0.5, MEMBER, 0, "mass", "-0.5");
-  EXPECT(s.members[0].stiffness = 0, MEMBER, 0, NULL, "neither stiffness nor damping");
   EXPECT(s.members[0].rest_value = -1, MEMBER, 0, "rest_length_ratio", "negative");
-  EXPECT((s.members[0].rest_kind = STRUT_REST_PRETENSION, s.members[0].rest_value = 11), MEMBER, 0,
-         "pretension", "below zero");
   EXPECT((s.members[0].rest_kind = STRUT_REST_FORCE_DENSITY, s.members[0].rest_value = (double)NAN),
          MEMBER, 0, "force_density", "finite");
-  EXPECT((s.members[0].rest_kind = STRUT_REST_PRETENSION, s.members[0].rest_value = -1,
-          s.members[0].kind = STRUT_CABLE),
-         MEMBER, 0, "pretension", "cannot push");
-  EXPECT((s.members[0].rest_kind = STRUT_REST_PRETENSION, s.members[0].rest_value = 1,
-          s.members[0].stiffness = 0, s.members[0].damping = 1),
-         MEMBER, 0, "pretension", "needs a stiffness");
   EXPECT(
       (s.members[0].stiffness = 0, s.members[0].axial_stiffness = 5, s.members[0].rest_value = 0),
       MEMBER, 0, "rest_length_ratio", "above zero");
-  EXPECT(s.nodes[1].position[0] = s.nodes[1].start[0] = 0, MEMBER, 0, "nodes",
-         "drawn in one place");
-  EXPECT(s.nodes[1].start[0] = 0, MEMBER, 0, "nodes", "start in one place");
-  EXPECT(s.members[1].name = "ab", MEMBER, 1, NULL, "two members");
 }
 
 TEST(a_spring_of_no_length_may_begin_in_one_place) {
   strut_findings findings = {0};
   s.nodes[1].position[0] = s.nodes[1].start[0] = 0;
   s.members[0].rest_kind = STRUT_REST_LENGTH, s.members[0].rest_value = 0;
-  assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings), STRUT_OK);
+  assert_ok(strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings));
 }
 
 TEST(ground) {
   EXPECT(s.setup.scene.ground.height = (double)NAN, GROUND, 0, "height", "finite");
   EXPECT(s.setup.scene.ground.belt_speed = (double)INFINITY, GROUND, 0, "belt_speed", "finite");
-  EXPECT(s.setup.scene.ground.slope = 1.5707963267948966, GROUND, 0, "slope", "90 deg");
   EXPECT(s.setup.scene.ground.slope = (double)NAN, GROUND, 0, "slope", "between");
-  EXPECT(s.setup.scene.contact_count = 0, GROUND, 0, "nodes", "no node");
   EXPECT(s.setup.scene.ground.present = false, GROUND, 0, NULL, "no ground");
   EXPECT(s.contacts[1].node = 3, CONTACT, 1, NULL, "does not exist");
   EXPECT(s.contacts[1].node = 1, CONTACT, 1, NULL, "out of order");
@@ -200,8 +180,6 @@ TEST(signals) {
   EXPECT(s.signals[3].stop = (double)INFINITY, SIGNAL, 3, "stop", "load 'swell' needs a stop");
   EXPECT(s.time[1] = -1, SIGNAL, 1, "table", "actuator 'drive' must increase");
   EXPECT(s.value[1] = (double)NAN, SIGNAL, 1, "table", "point 2");
-  EXPECT(s.signals[1].point_count = 0, SIGNAL, 1, "table", "no points");
-  EXPECT(s.signals[2].term_count = 0, SIGNAL, 2, "sum", "no terms");
   EXPECT(s.terms[0] = 2, SIGNAL, 2, "sum", "term 1");
   EXPECT(s.terms[1] = -1, SIGNAL, 2, "sum", "term 2");
   EXPECT(s.signals[1].kind = (strut_signal_kind)12, SIGNAL, 1, NULL, "unknown kind");
@@ -253,10 +231,7 @@ TEST(shapes) {
     EXPECT(change, subject, index, key, word);                                                     \
   } while (0)
   SPOILT(s.setup.scene.configuration_count = 2, CONFIGURATION, 1, NULL, "two configurations 'I'");
-  SPOILT(nodes[1] = 0, CONFIGURATION, 0, "contacts", "'nodes' of the ground lacks it");
   SPOILT(nodes[1] = 3, CONFIGURATION, 0, "contacts", "does not exist");
-  SPOILT(nodes[1] = 1, CONFIGURATION, 0, "contacts", "twice");
-  SPOILT(set.count = 0, CONFIGURATION, 0, "contacts", "empty");
   SPOILT(position[2][1] = (double)NAN, CONFIGURATION, 0, NULL, "not finite");
   SPOILT((s.setup.experiment.search.supports = &set, s.setup.experiment.search.support_count = 1,
           s.setup.scene.configuration_count = 0, nodes[0] = -1),
@@ -265,8 +240,6 @@ TEST(shapes) {
   SPOILT(s.setup.experiment.search.seed = UINT64_MAX, EQUILIBRIA, 0, "seed", "at most");
   SPOILT(s.setup.scene.start_equilibrium = 1, INITIAL, 0, NULL, "does not exist");
   SPOILT(s.setup.scene.start_equilibrium = 0, INITIAL, 0, NULL, "nothing to settle");
-  SPOILT((s.setup.scene.ground.present = false, s.setup.scene.contact_count = 0), CONFIGURATION, 0,
-         "contacts", "need a ground");
 #undef SPOILT
 }
 
@@ -276,19 +249,14 @@ TEST(experiment) {
   EXPECT(s.setup.experiment.settle.limit = (double)NAN, INITIAL, 0, "limit", "finite");
   EXPECT(s.setup.scene.gravity[1] = (double)NAN, SCENE, 0, "gravity", "finite");
   EXPECT(s.setup.scene.mass_model = (strut_mass_model)5, SCENE, 0, "mass_model", "unknown");
-  EXPECT(e->step = 0, SOLVER, 0, "step", "no step");
   EXPECT(e->step = -1, SOLVER, 0, "step", "above zero");
   EXPECT(e->step = (double)NAN, SOLVER, 0, "step", "finite");
-  EXPECT(e->step = 6, SOLVER, 0, "step", "longer than the whole run");
-  EXPECT(e->step = 1e-16, SOLVER, 0, "step", "1e15");
   EXPECT(e->integrator = "", SOLVER, 0, "integrator", "no integrator");
   EXPECT(e->duration = 1, RUN, 0, "periods", "both");
   EXPECT(e->duration = -1, RUN, 0, "duration", "negative");
-  EXPECT(e->periods = 0, RUN, 0, NULL, "neither");
   EXPECT(e->period_signal = 3, RUN, 0, "of", "no period");
   EXPECT(e->period_signal = 4, RUN, 0, "of", "needs a signal");
   EXPECT((e->periods = 1e308, s.signals[0].frequency = 1e-10), RUN, 0, "periods", "overflows");
-  EXPECT(e->measure_last = 11, RUN, 0, "last", "last 11 periods of a run of 10 periods");
   EXPECT(e->measure_node = 3, RUN, 0, "node", "does not exist");
   EXPECT(e->output_last = 11, OUTPUT, 0, "last", "cannot record");
   EXPECT(e->output_every = -1, OUTPUT, 0, "every", "negative");
@@ -299,7 +267,7 @@ TEST(statics_need_neither_mass_nor_run) {
   s.nodes[2].mass = s.members[0].mass = s.members[1].mass = 0;
   s.setup.experiment.step = s.setup.experiment.periods = 0;
   s.setup.experiment.measure_last = s.setup.experiment.output_last = 0;
-  assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_STATICS, &findings), STRUT_OK);
+  assert_ok(strut_setup_check(&s.setup, STRUT_FOR_STATICS, &findings));
   assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings), STRUT_BAD_SCENE);
   assert_int_equal(findings.count, 4); /* nodes b and c, the step, the run */
 }
@@ -337,20 +305,16 @@ TEST(cells_and_collisions) {
   } while (0)
   SPOILT(cell.node_count = 2, STRUT_ON_CELL, "nodes", "3 to 32");
   SPOILT(node[1] = 7, STRUT_ON_CELL, "nodes", "does not exist");
-  SPOILT(node[1] = node[0], STRUT_ON_CELL, "nodes", "twice");
   SPOILT(cell.pressure = (double)NAN, STRUT_ON_CELL, "pressure", "finite");
   SPOILT(cell.law = STRUT_LAW_PLAY, STRUT_ON_CELL, "gas", "not for cells");
   SPOILT(cell.law = STRUT_LAW_LINEAR, STRUT_ON_CELL, NULL, "neither stiffness nor damping");
   SPOILT((cell.law = STRUT_LAW_ISOTHERMAL, cell.pressure = 0), STRUT_ON_CELL, "pressure", "above");
-  SPOILT((cell.law = STRUT_LAW_ISENTROPIC, cell.exponent = 1), STRUT_ON_CELL, "exponent",
-         "above 1");
   SPOILT((cell.law = STRUT_LAW_ISENTROPIC, cell.outside = -1), STRUT_ON_CELL, "outside",
          "negative");
   SPOILT(collision.thickness = 0, STRUT_ON_COLLISION, "thickness", "above zero");
   SPOILT(collision.damping = -1, STRUT_ON_COLLISION, "damping", "negative");
   SPOILT(collision.node[1] = 9, STRUT_ON_COLLISION, NULL, "does not exist");
   SPOILT(collision.node[1] = -1, STRUT_ON_COLLISION, NULL, "two nodes, of two members");
-  SPOILT(collision.node[1] = 0, STRUT_ON_COLLISION, "nodes", "twice");
   SPOILT(s.members[0].law.kind = STRUT_LAW_ISOTHERMAL, STRUT_ON_MEMBER, "law", "cells only");
 #undef SPOILT
 }

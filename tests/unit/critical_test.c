@@ -29,9 +29,9 @@ typedef struct member_row {
 /* Compiles and searches with seed 1; checks what every point must be. */
 static void critical_find(fixture *f, const uint8_t *held, bool ground, bool saddles) {
   strut_critical_effort effort = {.seed = 1, .saddles = saddles};
-  assert_int_equal(strut_model_compile(&f->scene, &f->model, NULL), STRUT_OK);
-  assert_int_equal(strut_potential_create(f->model, held, ground, &f->potential, NULL), STRUT_OK);
-  assert_int_equal(strut_critical_search(f->potential, &effort, &f->set, NULL), STRUT_OK);
+  assert_ok(strut_model_compile(&f->scene, &f->model, NULL));
+  assert_ok(strut_potential_create(f->model, held, ground, &f->potential, NULL));
+  assert_ok(strut_critical_search(f->potential, &effort, &f->set, NULL));
   for (size_t i = 0; i < f->set.count; i++) { /* what every point must be */
     const strut_critical_point *p = &f->set.points[i];
     assert_true(p->residual <= 16 * strut_potential_rounding(f->potential, p->q));
@@ -42,7 +42,7 @@ static void critical_find(fixture *f, const uint8_t *held, bool ground, bool sad
   }
 }
 
-static void critical_tear_down(fixture *f) {
+static void fixture_free(fixture *f) {
   strut_critical_free(&f->set);
   strut_potential_free(f->potential);
   strut_model_free(f->model);
@@ -93,15 +93,13 @@ TEST(the_crawler_on_nodes_1_and_4) {
                                   22.6690358567, 22.706131,     22.712029};
   uint8_t held[64] = {0};
   held[0] = held[1] = held[7] = 1;
-  fixture f = {.scene = build_scene()};
+  OWN(fixture) f = {.scene = build_scene()};
   structure_crawler(&f.scene, 10, 1e-4, 0.1, false);
   critical_find(&f, held, false, true);
-  assert_int_equal(count_of(&f, STRUT_STABLE), 6);
-  assert_int_equal(count_of(&f, STRUT_FLOPPY), 0);
+  assert_all_equal(count_of(&f, STRUT_STABLE), 6, count_of(&f, STRUT_FLOPPY), 0);
   for (size_t i = 0; i < 6; i++) assert_near(f.set.points[i].potential, minima[i], 1e-6);
   const strut_critical_point *two = nearest(&f, STRUT_STABLE, 22.712029);
-  assert_near(fabs(two->q[2]), 93.5388e-3, 1e-7);
-  assert_near(two->q[3], 33.6848e-3, 1e-7);
+  assert_all_near(1e-7, fabs(two->q[2]), 93.5388e-3, two->q[3], 33.6848e-3);
   assert_near(fabs(two->q[6]), 43.9094e-3, 1e-7);
   for (size_t i = 0; i < sizeof saddles / sizeof saddles[0]; i++) {
     const strut_critical_point *p = nearest(&f, STRUT_SADDLE, saddles[i]);
@@ -114,7 +112,6 @@ TEST(the_crawler_on_nodes_1_and_4) {
   assert_within(missed.probability, 1.0 / 4001.0, 1.0 / 257.0);
   assert_near(missed.below, -log(0.05) / (1.0 / missed.probability - 1.0), 1e-12);
   assert_int_equal(f.set.unseen, 0);
-  critical_tear_down(&f);
 }
 
 static double uniform(uint64_t *state) {
@@ -174,12 +171,11 @@ TEST(limits_on_what_was_missed_hold) {
 TEST(a_slack_arc_is_one_point) {
   static const node_row node[] = {{1, 2, 3}, {3, 4, 3}, {2, 3, 0}};
   static const member_row member[] = {{STRUT_BAR, 1, 3, 1000, 2}, {STRUT_CABLE, 2, 3, 1, 1}};
-  fixture f = {.scene = BUILD(node, member)};
+  OWN(fixture) f = {.scene = BUILD(node, member)};
   critical_find(&f, NULL, false, false);
   assert_int_equal(f.set.count, 1);
   assert_int_equal(f.set.points[0].label, STRUT_FLOPPY);
   assert_int_equal(f.set.points[0].zero, 1);
-  critical_tear_down(&f);
 }
 
 /*
@@ -193,7 +189,7 @@ TEST(floppy_shapes_of_almost_one_energy_are_two) {
                                       {STRUT_SPRING, 1, 2, 2, 1},
                                       {STRUT_BAR, 4, 5, 10, 1}};
   const double push = 2e-4;
-  fixture f = {.scene = BUILD(node, member)};
+  OWN(fixture) f = {.scene = BUILD(node, member)};
   build_load(&f.scene, 2, 0, push, -1);
   critical_find(&f, NULL, false, false);
   assert_int_equal(count_of(&f, STRUT_FLOPPY), 2);
@@ -202,17 +198,16 @@ TEST(floppy_shapes_of_almost_one_energy_are_two) {
     assert_near(nearest(&f, STRUT_FLOPPY, 1 - push * side)->potential, 1 - push * side, 1e-8);
     assert_near(nearest(&f, STRUT_FLOPPY, 1 - push * side)->q[5], side, 1e-4);
   }
-  critical_tear_down(&f);
 }
 
 /* Turned, shifted, mirrored: the same shape; a node moved by 0.1 is that far off at most. */
 TEST(the_distance_of_shapes) {
   static const double corner[4][2] = {{0, 0}, {2, 0}, {2, 1}, {0.3, 1.4}};
   bool mirrored;
-  fixture f = {.scene = build_scene()};
+  OWN(fixture) f = {.scene = build_scene()};
   for (int i = 0; i < 4; i++) build_node(&f.scene, corner[i][0], corner[i][1]);
   build_member(&f.scene, STRUT_BAR, 0, 1, 1, 0, 0);
-  assert_int_equal(strut_model_compile(&f.scene, &f.model, NULL), STRUT_OK);
+  assert_ok(strut_model_compile(&f.scene, &f.model, NULL));
   for (int side = 1; side >= -1; side -= 2) {
     double q[16] = {0}, c = cos(0.7), s = sin(0.7);
     for (int i = 0; i < 4; i++) {
@@ -227,40 +222,36 @@ TEST(the_distance_of_shapes) {
     q[5] += 0.1;
     assert_within(strut_shape_distance(f.model, f.model->start, q, true, NULL), 0.03, 0.1);
   }
-  critical_tear_down(&f);
 }
 
 /* A cable that pulls with next to nothing counts as slack where that is asked for, a contact too. */
 TEST(what_rounding_alone_closes) {
   OWN(strut_arena) arena = {0};
-  fixture f = {.scene = build_scene()};
+  OWN(fixture) f = {.scene = build_scene()};
   build_support(&f.scene, 0, 1);
   build_node(&f.scene, 0, -1e-9);
   build_sized(&f.scene, STRUT_CABLE, 0, 1, 100, 0, 0, 1);
   build_contact(&f.scene, 1, 1000, 0);
-  assert_int_equal(strut_model_compile(&f.scene, &f.model, NULL), STRUT_OK);
-  assert_int_equal(strut_potential_create(f.model, NULL, true, &f.potential, NULL), STRUT_OK);
+  assert_ok(strut_model_compile(&f.scene, &f.model, NULL));
+  assert_ok(strut_potential_create(f.model, NULL, true, &f.potential, NULL));
   strut_sparse *k = strut_potential_matrix(f.potential, &arena);
   const double least[] = {0, 5e-7, 5e-6}, stiffness[] = {1100, 1000, 0};
   for (int i = 0; i < 3; i++) { /* the cable pulls with 1e-7 N, the ground pushes with 1e-6 N */
     strut_potential_hessian_above(f.potential, f.model->start, least[i], k);
     assert_near(k->value[k->start[1]], stiffness[i], 1e-9);
   }
-  critical_tear_down(&f);
 }
 
 /* Nothing holds it: every start falls for ever. */
 TEST(what_falls_has_no_point) {
-  fixture f = {.scene = build_scene()};
+  OWN(fixture) f = {.scene = build_scene()};
   structure_crawler(&f.scene, 10, 1e-4, 0.1, false);
   critical_find(&f, NULL, false, false);
-  assert_int_equal(f.set.count, 0);
-  assert_int_equal(f.set.runaway + f.set.exhausted, f.set.starts);
-  critical_tear_down(&f);
+  assert_all_equal(f.set.count, 0, f.set.runaway + f.set.exhausted, f.set.starts);
 }
 
 TEST(the_threads_change_no_bit) {
-  fixture one = {.scene = build_scene()}, three = {.scene = build_scene()};
+  OWN(fixture) one = {.scene = build_scene()}, three = {.scene = build_scene()};
   uint8_t held[64] = {0};
   held[0] = held[1] = held[7] = 1;
 #ifdef _OPENMP
@@ -273,8 +264,7 @@ TEST(the_threads_change_no_bit) {
 #endif
   structure_crawler(&three.scene, 10, 1e-4, 0.1, false);
   critical_find(&three, held, false, true);
-  assert_int_equal(one.set.count, three.set.count);
-  assert_int_equal(one.set.starts, three.set.starts);
+  assert_all_equal(one.set.count, three.set.count, one.set.starts, three.set.starts);
   assert_int_equal(one.set.saddle_starts, three.set.saddle_starts);
   for (size_t i = 0; i < one.set.count; i++) {
     const strut_critical_point *a = &one.set.points[i], *b = &three.set.points[i];
@@ -282,13 +272,9 @@ TEST(the_threads_change_no_bit) {
     assert_memory_equal(a->eigenvalues, b->eigenvalues, 7 * sizeof *a->eigenvalues);
     assert_memory_equal(a->softest, b->softest, (size_t)one.model->length * sizeof *a->q);
     assert_same_bits(a->potential, b->potential);
-    assert_int_equal(a->found, b->found);
-    assert_int_equal(a->placements, b->placements);
-    assert_int_equal(a->down[0], b->down[0]);
+    assert_all_equal(a->found, b->found, a->placements, b->placements, a->down[0], b->down[0]);
     assert_int_equal(a->down[1], b->down[1]);
   }
-  critical_tear_down(&one);
-  critical_tear_down(&three);
 }
 
 TEST(refused_memory) {
@@ -300,15 +286,13 @@ TEST(refused_memory) {
   omp_set_num_threads(1); /* else which allocation is refused is up to chance */
 #endif
   f.scene = BUILD(node, member);
-  assert_int_equal(strut_model_compile(&f.scene, &f.model, NULL), STRUT_OK);
-  assert_int_equal(strut_potential_create(f.model, NULL, false, &f.potential, NULL), STRUT_OK);
-  for (int64_t n = 0;; n++) {
-    strut_status status = refused(n, strut_critical_search(f.potential, &effort, &f.set, NULL));
-    if (status == STRUT_OK) break;
-    assert_int_equal(f.set.count, 0);
-    assert_true(n < 1000);
+  assert_ok(strut_model_compile(&f.scene, &f.model, NULL));
+  assert_ok(strut_potential_create(f.model, NULL, false, &f.potential, NULL));
+  REFUSE_EACH(n, status, 1) {
+    status = refused(n, strut_critical_search(f.potential, &effort, &f.set, NULL));
+    if (status) assert_int_equal(f.set.count, 0);
   }
-  critical_tear_down(&f);
+  fixture_free(&f);
 }
 
 /* By eigenvectors and by factors the same judgement: a chain just below the limit and above. */
@@ -316,13 +300,13 @@ TEST(large_structures_are_judged_alike) {
   double before = 0;
   for (size_t frames = 28; frames <= 32; frames += 4) {
     strut_critical_effort effort = {.seed = 1};
-    fixture f = {.scene = build_scene()};
+    OWN(fixture) f = {.scene = build_scene()};
     structure_chain(&f.scene, frames, STRUT_MASS_LUMPED);
-    assert_int_equal(strut_model_compile(&f.scene, &f.model, NULL), STRUT_OK);
-    assert_int_equal(strut_potential_create(f.model, NULL, false, &f.potential, NULL), STRUT_OK);
+    assert_ok(strut_model_compile(&f.scene, &f.model, NULL));
+    assert_ok(strut_potential_create(f.model, NULL, false, &f.potential, NULL));
     assert_int_equal(f.potential->n <= STRUT_DENSE_STATICS, frames == 28);
     effort.starts = frames == 28;
-    assert_int_equal(strut_critical_search(f.potential, &effort, &f.set, NULL), STRUT_OK);
+    assert_ok(strut_critical_search(f.potential, &effort, &f.set, NULL));
     assert_true(f.set.count >= 1);
     const strut_critical_point *p = &f.set.points[0];
     for (size_t i = 0; i < f.set.count; i++)
@@ -334,6 +318,5 @@ TEST(large_structures_are_judged_alike) {
     double scaled = p->eigenvalues[0] * pow((double)frames, 4);
     if (before > 0) assert_within(scaled / before, 0.95, 1.05);
     before = scaled;
-    critical_tear_down(&f);
   }
 }

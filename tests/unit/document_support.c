@@ -44,8 +44,8 @@ static void list_messages(strut_diagnostics *diagnostics, char *out, size_t size
 void expect_of(const char *text, size_t length, bool places, const char *tree,
                const char *messages) {
   char got[4000] = "", said[4000];
-  strut_document document = {0};
-  strut_diagnostics diagnostics = {0};
+  OWN(strut_document) document = {0};
+  OWN(strut_diagnostics) diagnostics = {0};
   strut_diagnostics_source(&diagnostics, "t", text, length);
   strut_status status = strut_document_read(&document, &diagnostics);
   if (document.root) show(document.root, places, got);
@@ -53,8 +53,6 @@ void expect_of(const char *text, size_t length, bool places, const char *tree,
   if (strcmp(said, messages) != 0) fail_msg("'%s' says\n%s\nnot\n%s", text, said, messages);
   if (strcmp(got, tree) != 0) fail_msg("'%s' is\n%s\nnot\n%s", text, got, tree);
   assert_int_equal(status, messages[0] ? STRUT_BAD_SCENE : STRUT_OK);
-  strut_document_free(&document);
-  strut_diagnostics_free(&diagnostics);
 }
 
 void expect_tree(const char *text, const char *tree) {

@@ -250,7 +250,7 @@ TEST(finding_is_by_text) {
   OWN(strut_diagnostics) diagnostics = {0};
   strut_tree *key = NULL;
   strut_diagnostics_source(&diagnostics, "t", text, strlen(text));
-  assert_int_equal(strut_document_read(&document, &diagnostics), STRUT_OK);
+  assert_ok(strut_document_read(&document, &diagnostics));
   assert_string_equal(strut_tree_find(document.root, "d", &key)->text, "b");
   assert_int_equal(key->place.line, 3);
   assert_int_equal(strut_tree_find(document.root, "b", NULL)->count, 1);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Expressions that are refused: the place and the words; limits; random texts. */
 #include "engine/base/memory.h"
-#include "tests/support/test.h"
+#include "tests/support/check.h"
 #include "tests/unit/expression_support.h"
 
 TEST(malformed_numbers_are_named) {
@@ -58,8 +58,7 @@ TEST(names_are_looked_up) {
   strut_expression_error error;
   assert_false(strut_expression_evaluate("foo", NULL, &q, &error));
   assert_string_equal(error.message, "unknown name 'foo'");
-  assert_true(strut_expression_reserved("pi", 2));
-  assert_true(strut_expression_reserved("atan2", 5));
+  assert_all(strut_expression_reserved("pi", 2), strut_expression_reserved("atan2", 5));
   assert_false(strut_expression_reserved("atan", 3));
   assert_false(strut_expression_reserved("mm", 2));
 }
@@ -193,8 +192,7 @@ TEST(random_texts_are_survived) {
       assert_true(error.offset + error.length <= strlen(text));
     }
   }
-  assert_true(accepted > 500);
-  assert_true(strut_allocation_count() == allocations);
+  assert_all(accepted > 500, strut_allocation_count() == allocations);
 }
 
 TEST(lookups_are_few) {

@@ -55,14 +55,13 @@ BEFORE_EACH { scratch_make(); }
 
 TEST(a_file_appears_on_commit_only) {
   strut_file file = {0};
-  strut_error error = {0};
   const char *directory = scratch_make();
-  assert_int_equal(strut_file_open(&file, directory, "a.txt", &error), STRUT_OK);
+  assert_ok(strut_file_open(&file, directory, "a.txt", NULL));
   fputs("hello\n", file.stream);
   fflush(file.stream);
   assert_false(scratch_exists(scratch_path("a.txt")));
   assert_int_equal(scratch_count(directory), 1);
-  assert_int_equal(strut_file_commit(&file, &error), STRUT_OK);
+  assert_ok(strut_file_commit(&file, NULL));
   assert_content(scratch_path("a.txt"), "hello\n");
   assert_int_equal(scratch_count(directory), 1);
   assert_null(file.stream);
@@ -73,13 +72,13 @@ TEST(a_file_appears_on_commit_only) {
 TEST(abandon_keeps_the_old_file) {
   strut_file file = {0};
   const char *directory = scratch_make();
-  assert_int_equal(strut_file_write_text(directory, "a.txt", "old", NULL), STRUT_OK);
-  assert_int_equal(strut_file_open(&file, directory, "a.txt", NULL), STRUT_OK);
+  assert_ok(strut_file_write_text(directory, "a.txt", "old", NULL));
+  assert_ok(strut_file_open(&file, directory, "a.txt", NULL));
   fputs("new", file.stream);
   strut_file_abandon(&file);
   assert_content(scratch_path("a.txt"), "old");
   assert_int_equal(scratch_count(directory), 1);
-  assert_int_equal(strut_file_write_text(directory, "a.txt", "new", NULL), STRUT_OK);
+  assert_ok(strut_file_write_text(directory, "a.txt", "new", NULL));
   assert_content(scratch_path("a.txt"), "new");
 }
 
@@ -87,7 +86,7 @@ TEST(permissions_follow_the_umask) {
   struct stat found;
   const char *directory = scratch_make();
   mode_t before = umask(027);
-  assert_int_equal(strut_file_write_text(directory, "a.txt", "x", NULL), STRUT_OK);
+  assert_ok(strut_file_write_text(directory, "a.txt", "x", NULL));
   umask(before);
   assert_int_equal(stat(scratch_path("a.txt"), &found), 0);
   assert_int_equal(found.st_mode & 0777, 0640);
@@ -101,9 +100,8 @@ TEST(the_disk_has_a_file_before_its_name) {
   memset(text, 'x', 5000);
   text[5000] = '\0';
   asked_count = 0;
-  assert_int_equal(strut_file_write_text(directory, "a.txt", text, NULL), STRUT_OK);
-  assert_int_equal(stat(directory, &folder), 0);
-  assert_int_equal(stat(scratch_path("a.txt"), &file), 0);
+  assert_ok(strut_file_write_text(directory, "a.txt", text, NULL));
+  assert_all_equal(stat(directory, &folder), 0, stat(scratch_path("a.txt"), &file), 0);
   assert_int_equal(asked_count, 3);
   assert_true(!asked[0].renames && asked[0].file == file.st_ino && asked[0].size == 5000);
   assert_true(asked[1].renames && asked[1].file == file.st_ino);
@@ -123,12 +121,12 @@ TEST(a_disk_that_cannot_keep_it_is_reported) {
 TEST(two_writers_do_not_meet) {
   strut_file first = {0}, second = {0};
   const char *directory = scratch_make();
-  assert_int_equal(strut_file_open(&first, directory, "a.txt", NULL), STRUT_OK);
-  assert_int_equal(strut_file_open(&second, directory, "a.txt", NULL), STRUT_OK);
+  assert_ok(strut_file_open(&first, directory, "a.txt", NULL));
+  assert_ok(strut_file_open(&second, directory, "a.txt", NULL));
   fputs("first", first.stream);
   fputs("second", second.stream);
-  assert_int_equal(strut_file_commit(&first, NULL), STRUT_OK);
-  assert_int_equal(strut_file_commit(&second, NULL), STRUT_OK);
+  assert_ok(strut_file_commit(&first, NULL));
+  assert_ok(strut_file_commit(&second, NULL));
   assert_content(scratch_path("a.txt"), "second");
   assert_int_equal(scratch_count(directory), 1);
 }
@@ -149,12 +147,12 @@ TEST(left_files_go) {
   char byte;
   assert_int_equal(read(ready[0], &byte, 1), 1);
   assert_int_equal(scratch_count(directory), 1);
-  assert_int_equal(strut_file_write_text(directory, "a.txt", "new\n", NULL), STRUT_OK);
+  assert_ok(strut_file_write_text(directory, "a.txt", "new\n", NULL));
   assert_int_equal(scratch_count(directory), 2); /* its writer lives */
   kill(child, SIGKILL);
   assert_int_equal(waitpid(child, NULL, 0), child);
   assert_int_equal(scratch_count(directory), 2);
-  assert_int_equal(strut_file_write_text(directory, "a.txt", "newer\n", NULL), STRUT_OK);
+  assert_ok(strut_file_write_text(directory, "a.txt", "newer\n", NULL));
   assert_int_equal(scratch_count(directory), 1);
   assert_content(scratch_path("a.txt"), "newer\n");
   close(ready[0]);
@@ -174,10 +172,10 @@ TEST(messages_name_the_file_and_the_reason) {
 
 TEST(directories) {
   strut_error error = {0};
-  assert_int_equal(strut_directory_create(scratch_path("a/b//c/"), &error), STRUT_OK);
+  assert_ok(strut_directory_create(scratch_path("a/b//c/"), &error));
   assert_int_equal(scratch_count(scratch_path("a/b/c")), 0);
-  assert_int_equal(strut_directory_create(scratch_path("a/b"), &error), STRUT_OK);
-  assert_int_equal(strut_file_write_text(scratch_path("a"), "f", "x", NULL), STRUT_OK);
+  assert_ok(strut_directory_create(scratch_path("a/b"), &error));
+  assert_ok(strut_file_write_text(scratch_path("a"), "f", "x", NULL));
   assert_int_equal(strut_directory_create(scratch_path("a/f"), &error), STRUT_FILE_TROUBLE);
   assert_fails(strut_directory_create(scratch_path("a/f/g"), &error), STRUT_FILE_TROUBLE, error,
                "cannot create directory");
@@ -188,41 +186,35 @@ TEST(a_full_disk_leaves_nothing) {
   strut_error error = {0};
   const char *disk = scratch_make();
   if (!scratch_mount_small_disk(disk, 16)) skip();
-  char *text = calloc(100001, 1);
+  FREED char *text = calloc(100001, 1);
   memset(text, 'x', 100000);
   assert_fails(strut_file_write_text(disk, "big", text, &error), STRUT_FILE_TROUBLE, error,
                "No space left on device");
   assert_int_equal(scratch_count(disk), 0);
   strut_file file = {0};
-  assert_int_equal(strut_file_open(&file, disk, "small", &error), STRUT_OK);
+  assert_ok(strut_file_open(&file, disk, "small", &error));
   text[20000] = '\0';
   for (int i = 0; i < 5; i++) fputs(text, file.stream);
   error = (strut_error){0};
   assert_fails(strut_file_commit(&file, &error), STRUT_FILE_TROUBLE, error, "cannot write");
   assert_int_equal(scratch_count(disk), 0);
-  free(text);
   scratch_unmount(disk);
 }
 
 TEST(no_memory_leaves_nothing) {
   const char *directory = scratch_make();
-  strut_status status = STRUT_NO_MEMORY;
-  int64_t n = 0;
-  for (; status != STRUT_OK; n++) {
+  REFUSE_EACH(n, status, 3) {
     status = refused(n, strut_file_write_text(directory, "a", "text", NULL));
-    if (status != STRUT_OK) {
-      assert_int_equal(scratch_count(directory), 0);
-    }
+    if (status) assert_int_equal(scratch_count(directory), 0);
   }
-  assert_true(n > 3);
 }
 
 static void write_results(strut_results *results, const char *directory, const char *text,
                           bool energy) {
-  assert_int_equal(strut_results_begin(results, directory, NULL), STRUT_OK);
-  assert_int_equal(strut_file_write_text(results->stage, "summary.json", text, NULL), STRUT_OK);
+  assert_ok(strut_results_begin(results, directory, NULL));
+  assert_ok(strut_file_write_text(results->stage, "summary.json", text, NULL));
   if (energy) {
-    assert_int_equal(strut_file_write_text(results->stage, "energy.csv", text, NULL), STRUT_OK);
+    assert_ok(strut_file_write_text(results->stage, "energy.csv", text, NULL));
   }
 }
 
@@ -230,7 +222,7 @@ TEST(results_appear_together) {
   strut_results results = {0};
   write_results(&results, scratch_path("out/one"), "1", true);
   assert_false(scratch_exists(scratch_path("out/one/summary.json")));
-  assert_int_equal(strut_results_commit(&results, NULL), STRUT_OK);
+  assert_ok(strut_results_commit(&results, NULL));
   assert_int_equal(scratch_count(scratch_path("out/one")), 2);
   assert_content(scratch_path("out/one/energy.csv"), "1");
 
@@ -239,9 +231,9 @@ TEST(results_appear_together) {
   assert_int_equal(scratch_count(scratch_path("out/one")), 2);
   assert_content(scratch_path("out/one/summary.json"), "1");
 
-  assert_int_equal(strut_file_write_text(scratch_path("out/one"), "mine", "m", NULL), STRUT_OK);
+  assert_ok(strut_file_write_text(scratch_path("out/one"), "mine", "m", NULL));
   write_results(&results, scratch_path("out/one"), "3", false); /* no mix of two runs */
-  assert_int_equal(strut_results_commit(&results, NULL), STRUT_OK);
+  assert_ok(strut_results_commit(&results, NULL));
   assert_content(scratch_path("out/one/summary.json"), "3");
   assert_false(scratch_exists(scratch_path("out/one/energy.csv")));
   assert_content(scratch_path("out/one/mine"), "m");
@@ -259,7 +251,7 @@ TEST(abandoned_results_leave_no_directory) {
 TEST(results_know_early_what_will_fail) {
   strut_results results = {0};
   strut_error error = {0};
-  assert_int_equal(strut_directory_create(scratch_path("out/nodes.csv"), NULL), STRUT_OK);
+  assert_ok(strut_directory_create(scratch_path("out/nodes.csv"), NULL));
   assert_fails(strut_results_begin(&results, scratch_path("out"), &error), STRUT_FILE_TROUBLE,
                error, "out/nodes.csv': Is a directory");
   assert_int_equal(scratch_count(scratch_path("out")), 1);
@@ -277,7 +269,7 @@ TEST(results_without_memory) {
     status = strut_results_begin(&results, scratch_path("out"), NULL);
     if (status == STRUT_OK) status = strut_results_commit(&results, NULL);
     strut_fail_allocation_after(-1);
-    if (status != STRUT_OK) assert_false(scratch_exists(scratch_path("out")));
+    if (status) assert_false(scratch_exists(scratch_path("out")));
     assert_true(n < 200);
   }
 }
@@ -298,18 +290,18 @@ static void leave_a_stage(const char *directory) {
 TEST(stages_of_dead_processes_go) {
   strut_results alive = {0}, next = {0};
   FREED char *out = strdup(scratch_path("out"));
-  assert_int_equal(strut_results_begin(&alive, out, NULL), STRUT_OK);
-  assert_int_equal(strut_file_write_text(alive.stage, "nodes.csv", "mine", NULL), STRUT_OK);
+  assert_ok(strut_results_begin(&alive, out, NULL));
+  assert_ok(strut_file_write_text(alive.stage, "nodes.csv", "mine", NULL));
   leave_a_stage(out);
   assert_int_equal(scratch_count(out), 2);
   assert_int_equal(mkdir(scratch_path("out/.strut-stage-7-0"), 0777), 0); /* killed at once */
   assert_int_equal(mkdir(scratch_path("out/.strut-stage-8-0"), 0777), 0);
   assert_int_equal(strut_file_write_text(scratch_path("out/.strut-stage-8-0"), "x", "x", NULL), 0);
-  assert_int_equal(strut_results_begin(&next, out, NULL), STRUT_OK);
+  assert_ok(strut_results_begin(&next, out, NULL));
   assert_int_equal(scratch_count(out),
                    3); /* the living one, the next one, the one without a mark */
   assert_true(scratch_exists(scratch_path("out/.strut-stage-8-0/x")));
-  assert_int_equal(strut_results_commit(&alive, NULL), STRUT_OK);
+  assert_ok(strut_results_commit(&alive, NULL));
   assert_content(scratch_path("out/nodes.csv"), "mine");
   strut_results_abandon(&next);
   assert_int_equal(scratch_count(out), 2);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The values of ranges: round where they are round, their ends as written, near the exact ones. */
 #include "engine/study/sweep/grid.h"
-#include "tests/support/test.h"
+#include "tests/support/check.h"
 
 static double value_of(strut_range_kind kind, double from, double to, int64_t i, int64_t count) {
   const strut_study_column column = {
@@ -119,7 +119,6 @@ TEST(points_count_the_last_axis_first) {
       for (int c = 0; c < 2; c++, point++) {
         strut_study_value values[3];
         strut_grid_values(&study, point, values);
-        assert_true(values[0].number == a && values[1].number == 10 + b);
-        assert_true(values[2].number == 20 + c);
+        assert_all(values[0].number == a && values[1].number == 10 + b, values[2].number == 20 + c);
       }
 }

@@ -27,8 +27,7 @@ static void assert_text_attribute(hid_t object, const char *name, const char *ex
   hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
   assert_true(attribute >= 0);
   hid_t type = H5Aget_type(attribute);
-  assert_true(H5Tis_variable_str(type) > 0);
-  assert_true(H5Aread(attribute, type, &text) >= 0);
+  assert_all(H5Tis_variable_str(type) > 0, H5Aread(attribute, type, &text) >= 0);
   assert_string_equal(text, expected);
   H5free_memory(text);
   H5Tclose(type);
@@ -43,9 +42,7 @@ static void assert_unit_and_values(hid_t file, const strut_record_channel *chann
   hsize_t shape[3] = {0};
   assert_int_equal(H5Sget_simple_extent_ndims(space), 3);
   H5Sget_simple_extent_dims(space, shape, NULL);
-  assert_int_equal(shape[0], rows);
-  assert_int_equal(shape[1], channel->items);
-  assert_int_equal(shape[2], channel->components);
+  assert_all_equal(shape[0], rows, shape[1], channel->items, shape[2], channel->components);
   size_t size = channel->items * channel->components;
   FREED double *values = calloc(rows * size + 1, sizeof *values);
   assert_true(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
@@ -63,8 +60,7 @@ static void assert_scale(hid_t file, const char *dataset, unsigned dimension, co
   char name[64] = "";
   hid_t user = H5Dopen2(file, dataset, H5P_DEFAULT), used = H5Dopen2(file, scale, H5P_DEFAULT);
   assert_true(user >= 0 && used >= 0);
-  assert_int_equal(H5DSis_scale(used), 1);
-  assert_int_equal(H5DSis_attached(user, used, dimension), 1);
+  assert_all_equal(H5DSis_scale(used), 1, H5DSis_attached(user, used, dimension), 1);
   assert_int_equal(H5DSget_num_scales(user, dimension), 1);
   assert_true(H5DSget_scale_name(used, name, sizeof name) > 0);
   assert_string_equal(name, scale);
@@ -127,18 +123,18 @@ static void assert_file(size_t rows, const char *status, const char *scene) {
 
 TEST(every_value_comes_back) {
   const char *directory = scratch_make();
-  assert_int_equal(feed(directory, 1500, STRUT_OK, "strut: 1\n", NULL), STRUT_OK);
+  assert_ok(feed(directory, 1500, STRUT_OK, "strut: 1\n", NULL));
   assert_int_equal(scratch_count(directory), 1);
   assert_file(1500, "completed", "strut: 1\n");
 }
 
 TEST(a_run_that_stopped_is_marked) {
   const char *directory = scratch_make();
-  assert_int_equal(feed(directory, 7, STRUT_INTERRUPTED, "s", NULL), STRUT_OK);
+  assert_ok(feed(directory, 7, STRUT_INTERRUPTED, "s", NULL));
   assert_file(7, "interrupted", "s");
-  assert_int_equal(feed(directory, 41, STRUT_DIVERGED, "s", NULL), STRUT_OK);
+  assert_ok(feed(directory, 41, STRUT_DIVERGED, "s", NULL));
   assert_file(41, "diverged", "s");
-  assert_int_equal(feed(directory, 0, STRUT_INTERRUPTED, "s", NULL), STRUT_OK);
+  assert_ok(feed(directory, 0, STRUT_INTERRUPTED, "s", NULL));
   assert_file(0, "interrupted", "s");
 }
 
@@ -147,14 +143,14 @@ TEST(a_long_scene_fits) {
   const char *directory = scratch_make();
   FREED char *scene = calloc(LENGTH + 1, 1);
   for (size_t i = 0; i < LENGTH; i++) scene[i] = (char)('a' + i % 23);
-  assert_int_equal(feed(directory, 3, STRUT_OK, scene, NULL), STRUT_OK);
+  assert_ok(feed(directory, 3, STRUT_OK, scene, NULL));
   assert_file(3, "completed", scene);
 }
 
 TEST(equal_runs_give_equal_bytes) {
   size_t first_length, second_length;
   const char *directory = scratch_make();
-  assert_int_equal(feed(directory, 500, STRUT_OK, "scene", NULL), STRUT_OK);
+  assert_ok(feed(directory, 500, STRUT_OK, "scene", NULL));
   FREED char *first = scratch_read(scratch_path("trajectory.h5"), &first_length);
   for (int i = 0; i < 5; i++) {
     for (size_t size = 16; size < 20000; size += 24 + size / 4) { /* other garbage in the heap */
@@ -162,7 +158,7 @@ TEST(equal_runs_give_equal_bytes) {
       memset(block, 0x31 * (i + 1) + (int)size, size);
     }
     if (i == 2) sleep(1); /* another second, another time stamp if there were one */
-    assert_int_equal(feed(directory, 500, STRUT_OK, "scene", NULL), STRUT_OK);
+    assert_ok(feed(directory, 500, STRUT_OK, "scene", NULL));
     FREED char *second = scratch_read(scratch_path("trajectory.h5"), &second_length);
     assert_int_equal(second_length, first_length);
     assert_memory_equal(second, first, first_length);
@@ -180,9 +176,9 @@ TEST(rows_longer_than_a_chunk) {
   strut_record_layout layout = {1 + 2 * NODES, 1, &channel, ROWS};
   FREED double *rows = sample_rows(&layout, 0, ROWS);
   strut_sink *sink = strut_hdf5_create(directory, "");
-  assert_int_equal(sink->begin(sink->context, &layout, NULL), STRUT_OK);
-  assert_int_equal(sink->rows(sink->context, rows, ROWS, NULL), STRUT_OK);
-  assert_int_equal(sink->end(sink->context, STRUT_OK, NULL), STRUT_OK);
+  assert_ok(sink->begin(sink->context, &layout, NULL));
+  assert_ok(sink->rows(sink->context, rows, ROWS, NULL));
+  assert_ok(sink->end(sink->context, STRUT_OK, NULL));
   strut_hdf5_free(sink);
   hid_t file = H5Fopen(scratch_path("trajectory.h5"), H5F_ACC_RDONLY, H5P_DEFAULT);
   assert_unit_and_values(file, &channel, ROWS);
@@ -192,10 +188,10 @@ TEST(rows_longer_than_a_chunk) {
 
 TEST(trouble_elsewhere_removes_the_file) {
   const char *directory = scratch_make();
-  assert_int_equal(feed(directory, 7, STRUT_FILE_TROUBLE, "", NULL), STRUT_OK);
+  assert_ok(feed(directory, 7, STRUT_FILE_TROUBLE, "", NULL));
   assert_int_equal(scratch_count(directory), 0);
   strut_sink *sink = strut_hdf5_create(directory, ""); /* begun, never ended */
-  assert_int_equal(sink->begin(sink->context, sample_layout(), NULL), STRUT_OK);
+  assert_ok(sink->begin(sink->context, sample_layout(), NULL));
   strut_hdf5_free(sink);
   assert_int_equal(scratch_count(directory), 0);
 }
@@ -212,7 +208,7 @@ TEST(the_host_keeps_its_error_handler) {
   const char *directory = scratch_make();
   H5Eget_auto2(H5E_DEFAULT, &before, &before_data);
   H5Eset_auto2(H5E_DEFAULT, note_error, &mine);
-  assert_int_equal(feed(directory, 7, STRUT_OK, "", NULL), STRUT_OK);
+  assert_ok(feed(directory, 7, STRUT_OK, "", NULL));
   H5Eget_auto2(H5E_DEFAULT, &after, &after_data);
   H5Eset_auto2(H5E_DEFAULT, before, before_data);
   assert_true(after == note_error && after_data == &mine);
@@ -238,7 +234,7 @@ TEST(a_full_disk_is_an_error_and_silent) {
   int failures = 0, successes = 0, result = 0;
   scratch_make();
   const char *disk = scratch_path("disk"), *errors = scratch_path("errors");
-  assert_int_equal(strut_directory_create(disk, NULL), STRUT_OK);
+  assert_ok(strut_directory_create(disk, NULL));
   for (int kilobytes = 4; kilobytes <= 1024; kilobytes += kilobytes < 64 ? 4 : kilobytes / 4) {
     size_t length = 0;
     if (!scratch_mount_small_disk(disk, kilobytes)) skip();
@@ -257,22 +253,16 @@ TEST(a_full_disk_is_an_error_and_silent) {
       assert_int_equal(left, 1);
     } else {
       failures++;
-      assert_int_equal(WEXITSTATUS(result), 4);
-      assert_int_equal(left, 0);
+      assert_all_equal(WEXITSTATUS(result), 4, left, 0);
     }
   }
-  assert_true(failures > 5);
-  assert_true(successes > 0);
+  assert_all(failures > 5, successes > 0);
 }
 
 TEST(no_memory) {
   const char *directory = scratch_make();
-  strut_status status = STRUT_NO_MEMORY;
-  int64_t n = 0;
-  for (; status != STRUT_OK; n++) {
+  REFUSE_EACH(n, status, 16) {
     status = refused(n, feed(directory, 5, STRUT_OK, "scene", NULL));
-    if (status == STRUT_OK) break;
-    assert_int_equal(scratch_count(directory), 0);
+    if (status) assert_int_equal(scratch_count(directory), 0);
   }
-  assert_true(n > 15);
 }

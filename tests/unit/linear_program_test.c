@@ -26,15 +26,12 @@ TEST(optimum) {
   strut_linear_program_end end;
   double x[2], sum;
   make_known(&p, &arena);
-  assert_int_equal(strut_linear_program_solve(&p, x, &sum, &end), STRUT_OK);
+  assert_ok(strut_linear_program_solve(&p, x, &sum, &end));
   assert_int_equal(end, STRUT_PROGRAM_OPTIMAL);
-  assert_near(x[0], 3, 1e-12);
-  assert_near(x[1], 1, 1e-12);
-  assert_near(sum, -11, 1e-12);
+  assert_all_near(1e-12, x[0], 3, x[1], 1, sum, -11);
   p.low[1] = 1.5; /* then x = 1.5: x + 3 y <= 6 */
-  assert_int_equal(strut_linear_program_solve(&p, x, &sum, &end), STRUT_OK);
-  assert_near(x[0], 1.5, 1e-12);
-  assert_near(sum, -7.5, 1e-12);
+  assert_ok(strut_linear_program_solve(&p, x, &sum, &end));
+  assert_all_near(1e-12, x[0], 1.5, sum, -7.5);
 }
 
 TEST(no_optimum) {
@@ -44,10 +41,10 @@ TEST(no_optimum) {
   double x[2], sum;
   make_known(&p, &arena);
   p.low[1] = 5;
-  assert_int_equal(strut_linear_program_solve(&p, x, &sum, &end), STRUT_OK);
+  assert_ok(strut_linear_program_solve(&p, x, &sum, &end));
   assert_int_equal(end, STRUT_PROGRAM_INFEASIBLE);
   p.low[1] = 0, p.row_high[0] = p.row_high[1] = p.high[0] = HUGE_VAL;
-  assert_int_equal(strut_linear_program_solve(&p, x, &sum, &end), STRUT_OK);
+  assert_ok(strut_linear_program_solve(&p, x, &sum, &end));
   assert_int_equal(end, STRUT_PROGRAM_UNBOUNDED);
 }
 

@@ -13,15 +13,13 @@ static bool all_zero(const void *block, size_t size) {
 
 TEST(blocks_are_zeroed_and_counted) {
   uint64_t before = strut_allocation_count();
-  int *block = strut_allocate(1000, sizeof *block);
+  RELEASED int *block = strut_allocate(1000, sizeof *block);
   assert_non_null(block);
   assert_true(all_zero(block, 1000 * sizeof *block));
   block[999] = 7;
   block = strut_reallocate(block, 100000, sizeof *block);
   assert_non_null(block);
-  assert_int_equal(block[999], 7);
-  assert_int_equal(strut_allocation_count(), before + 2);
-  strut_release(block);
+  assert_all_equal(block[999], 7, strut_allocation_count(), before + 2);
   strut_release(NULL);
 }
 
@@ -35,18 +33,16 @@ TEST(nothing_is_a_block_too) {
 }
 
 TEST(sizes_that_overflow_are_refused) {
-  strut_arena arena = {0};
-  void *block = strut_allocate(1, 1);
+  OWN(strut_arena) arena = {0};
+  RELEASED void *block = strut_allocate(1, 1);
   assert_null(strut_allocate(SIZE_MAX / 2, 3));
   assert_null(strut_reallocate(block, SIZE_MAX / 2, 3));
   assert_null(strut_arena_allocate(&arena, SIZE_MAX / 2, 3));
   assert_null(strut_arena_allocate(&arena, SIZE_MAX - 10, 1));
-  strut_release(block);
-  strut_arena_free(&arena);
 }
 
 TEST(allocations_fail_on_demand) {
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   strut_fail_allocation_after(2);
   void *a = strut_allocate(1, 1), *b = strut_allocate(1, 1);
   void *c = strut_allocate(1, 1), *d = strut_allocate(1, 1);
@@ -55,12 +51,10 @@ TEST(allocations_fail_on_demand) {
   strut_fail_allocation_after(-1);
   assert_true(a && b);
   assert_true(!c && !d && !grown && !from_arena); /* every later one */
-  void *again = strut_allocate(1, 1);
+  RELEASED void *again = strut_allocate(1, 1);
   assert_non_null(again);
   strut_release(a);
   strut_release(b);
-  strut_release(again);
-  strut_arena_free(&arena);
 }
 
 TEST(arena_blocks_are_aligned_zeroed_and_apart) {
@@ -91,15 +85,14 @@ TEST(arena_blocks_are_aligned_zeroed_and_apart) {
 }
 
 TEST(small_blocks_share_an_allocation) {
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   uint64_t before = strut_allocation_count();
   for (int i = 0; i < 100; i++) assert_non_null(strut_arena_allocate(&arena, 1, 8));
   assert_int_equal(strut_allocation_count(), before + 1);
-  strut_arena_free(&arena);
 }
 
 TEST(arena_texts) {
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   char long_text[5000];
   memset(long_text, 'x', sizeof long_text - 1);
   long_text[sizeof long_text - 1] = '\0';
@@ -107,5 +100,4 @@ TEST(arena_texts) {
   assert_string_equal(strut_arena_format(&arena, "%s %d", "node", 5), "node 5");
   for (int i = 0; i < 10; i++)
     assert_string_equal(strut_arena_format(&arena, "%s", long_text), long_text);
-  strut_arena_free(&arena);
 }

@@ -32,8 +32,7 @@ static void read_crowd(uint64_t *r, double mu, model_run *run) {
   }
   sprintf(at, "solver: {step: 0.2 ms}\nrun: {duration: 1 s}\n");
   *run = model_read_text("crowd.yaml", text, set_none);
-  strut_error error = {0};
-  assert_int_equal(strut_model_compile(&run->setup.scene, &run->model, &error), STRUT_OK);
+  assert_ok(strut_model_compile(&run->setup.scene, &run->model, NULL));
   free(text);
 }
 
@@ -43,7 +42,7 @@ static void fly(const model_run *run, const char *method, double *end, int64_t *
   strut_integrator_settings settings = strut_integrator_settings_of(&run->setup.experiment);
   OWN_POINTER(strut_state) state = NULL;
   size_t length = (size_t)run->model->length;
-  assert_int_equal(strut_state_create(run->model, &state, NULL), STRUT_OK);
+  assert_ok(strut_state_create(run->model, &state, NULL));
   state->balance = true;
   void *workspace = by->create(run->model, state, &settings);
   assert_non_null(workspace);
@@ -82,8 +81,9 @@ TEST(lists_have_whoever_touches) {
   read_crowd(&r, 0.0, &run);
   const strut_model *model = run.model;
   OWN_POINTER(strut_state) state = NULL;
-  assert_int_equal(strut_state_create(model, &state, NULL), STRUT_OK);
-  double *q = calloc((size_t)model->length, sizeof *q), b[STRUT_MOST_GRADIENT];
+  assert_ok(strut_state_create(model, &state, NULL));
+  FREED double *q = calloc((size_t)model->length, sizeof *q);
+  double b[STRUT_MOST_GRADIENT];
   int64_t listed = 0, touching = 0, times = 300;
   memcpy(q, state->q, (size_t)model->length * sizeof *q);
   for (int64_t n = 0; n < times; n++) {
@@ -101,10 +101,8 @@ TEST(lists_have_whoever_touches) {
       k += has;
     }
   }
-  assert_true(touching > times);
-  assert_true(listed < times * model->elements.count / 10);
+  assert_all(touching > times, listed < times * model->elements.count / 10);
   assert_true(state->nearby[1].made < times / 3);
-  free(q);
 }
 
 /* The largest stable step takes as many bodies as may be packed together to touch, not all of them. */

@@ -6,7 +6,7 @@
 #include "engine/base/memory.h"
 #include "parser/expression/expression.h"
 #include "parser/yaml/diagnostics.h"
-#include "tests/support/test.h"
+#include "tests/support/check.h"
 
 static uint64_t random_state = 42;
 
@@ -90,10 +90,8 @@ TEST(length_bounds_the_literal) {
   assert_true(strut_number_read_scaled("1e55", 3, 0, &got));
   assert_true(got == 1e5);
   assert_false(strut_number_read_scaled("1.5", 2, 0, &got));
-  assert_int_equal(strut_number_scan("1.5e3kg", 7), 5);
-  assert_int_equal(strut_number_scan("1e+kg", 5), 1);
-  assert_int_equal(strut_number_scan("1.kg", 4), 1);
-  assert_int_equal(strut_number_scan("kg", 2), 0);
+  assert_all_equal(strut_number_scan("1.5e3kg", 7), 5, strut_number_scan("1e+kg", 5), 1,
+                   strut_number_scan("1.kg", 4), 1, strut_number_scan("kg", 2), 0);
   assert_int_equal(strut_number_scan(".", 1), 0);
 }
 
@@ -220,9 +218,7 @@ TEST(locale_does_not_matter) {
     print_message("no German locale here\n");
     skip();
   }
-  assert_true(brief);
-  assert_true(lengthy);
+  assert_all(brief, lengthy);
   assert_false(comma);
-  assert_true(quantity);
-  assert_true(shown);
+  assert_all(quantity, shown);
 }

@@ -65,8 +65,8 @@ static void compare_forces(double slope) {
     OWN_POINTER(strut_state) state = NULL;
     double force[2 * NODES + 2 * STRUT_LANES];
     build(&scene, &r, slope);
-    assert_int_equal(strut_model_compile(&scene, &model, NULL), STRUT_OK);
-    assert_int_equal(strut_state_create(model, &state, NULL), STRUT_OK);
+    assert_ok(strut_model_compile(&scene, &model, NULL));
+    assert_ok(strut_state_create(model, &state, NULL));
     assert_true((size_t)model->length <= sizeof force / sizeof *force);
     for (int pose = 0; pose < POSES / 20; pose++) {
       strut_state_reset(model, state);
@@ -91,10 +91,10 @@ TEST(the_kernels_on_a_slope) { compare_forces(0.3); }
 /* The stiffness across a member is what turning it by a small angle takes. */
 TEST(stiffness_along_and_across) {
   uint64_t r = 3;
-  strut_scene scene;
-  strut_model *model = NULL;
+  OWN(strut_scene) scene;
+  OWN_POINTER(strut_model) model = NULL;
   build(&scene, &r, 0.0);
-  assert_int_equal(strut_model_compile(&scene, &model, NULL), STRUT_OK);
+  assert_ok(strut_model_compile(&scene, &model, NULL));
   const strut_member_table *t = &model->members;
   for (int32_t j = 0; j < t->count; j++) {
     double q[2 * NODES + 2 * STRUT_LANES], step = 1e-6, push[2][2];
@@ -116,13 +116,10 @@ TEST(stiffness_along_and_across) {
     assert_near((push[1][1] - push[0][1]) / (2 * step),
                 strut_member_across_stiffness(t, t->rest, j, &pose), 1e-4 * scale);
   }
-  strut_model_free(model);
-  strut_scene_free(&scene);
 }
 
 TEST(largest_magnitude_keeps_what_is_no_number) {
   const double plain[] = {1, -3, 2}, poisoned[] = {1, (double)NAN, 2};
-  assert_true(strut_largest_magnitude(plain, 3) == 3);
-  assert_true(strut_largest_magnitude(plain, 0) == 0);
+  assert_all(strut_largest_magnitude(plain, 3) == 3, strut_largest_magnitude(plain, 0) == 0);
   assert_true(isnan(strut_largest_magnitude(poisoned, 3)));
 }

@@ -41,7 +41,7 @@ static bool set_up(fixture *f, uint64_t seed) {
   uint64_t r = seed ^ 0x5bd1e995u;
   double t, *v;
   random_scene(&f->scene, seed);
-  assert_int_equal(strut_model_compile(&f->scene, &f->model, NULL), STRUT_OK);
+  assert_ok(strut_model_compile(&f->scene, &f->model, NULL));
   size_t length = (size_t)f->model->length;
   uint8_t *held = strut_arena_allocate(&f->scene.arena, length, 1);
   f->q = strut_arena_allocate(&f->scene.arena, length, sizeof(double));
@@ -52,7 +52,7 @@ static bool set_up(fixture *f, uint64_t seed) {
   for (size_t i = 0; i < length; i++) held[i] = (uint8_t)random_once_in(&r, 10);
   bool contacts = !random_once_in(&r, 4);
   const uint8_t *mask = random_once_in(&r, 2) ? held : NULL;
-  assert_int_equal(strut_potential_create(f->model, mask, contacts, &f->potential, NULL), STRUT_OK);
+  assert_ok(strut_potential_create(f->model, mask, contacts, &f->potential, NULL));
   for (uint64_t again = 0; again < 20; again++) {
     random_motion(&f->scene, seed + 1000 * again, &t, f->q, v);
     if (clear_of_kinks(f->model, f->q, 3e-3)) return f->potential->n > 0;
@@ -77,12 +77,11 @@ TEST(it_agrees_with_the_engine) {
     OWN(strut_arena) arena = {0};
     strut_tangent tangent;
     OWN_POINTER(strut_potential) all;
-    assert_int_equal(strut_potential_create(f.model, NULL, true, &all, NULL), STRUT_OK);
+    assert_ok(strut_potential_create(f.model, NULL, true, &all, NULL));
     strut_sparse *k = strut_potential_matrix(all, &arena);
     strut_potential_hessian(all, f.q, k);
-    assert_int_equal(strut_tangent_assemble(f.model, f.q, f.model->members.rest,
-                                            STRUT_CLOSED_TOUCHING, &arena, &tangent),
-                     STRUT_OK);
+    assert_ok(strut_tangent_assemble(f.model, f.q, f.model->members.rest, STRUT_CLOSED_TOUCHING,
+                                     &arena, &tangent));
     assert_int_equal(tangent.n, all->n);
     double *x = strut_arena_allocate(&arena, (size_t)all->n, sizeof *x);
     double *y = strut_arena_allocate(&arena, (size_t)all->n, sizeof *y);
@@ -95,8 +94,8 @@ TEST(it_agrees_with_the_engine) {
     f.scene.actuator_count = 0;
     OWN_POINTER(strut_model) quiet;
     OWN_POINTER(strut_state) still;
-    assert_int_equal(strut_model_compile(&f.scene, &quiet, NULL), STRUT_OK);
-    assert_int_equal(strut_state_create(quiet, &still, NULL), STRUT_OK);
+    assert_ok(strut_model_compile(&f.scene, &quiet, NULL));
+    assert_ok(strut_state_create(quiet, &still, NULL));
     memcpy(still->q, f.q, (size_t)f.model->length * sizeof *f.q);
     memset(still->v, 0, (size_t)f.model->length * sizeof *f.q);
     strut_energies stored = strut_energy_evaluate(quiet, still, 0);
@@ -124,21 +123,18 @@ TEST(members_of_zero_length) {
   build_sized(&scene, STRUT_SPRING, 0, 1, 7, 0, 0, 0);
   build_sized(&scene, STRUT_SPRING, 0, 2, 5, 0, 0, 1);
   build_sized(&scene, STRUT_CABLE, 0, 1, 3, 0, 0, 0);
-  assert_int_equal(strut_model_compile(&scene, &model, NULL), STRUT_OK);
-  assert_int_equal(strut_potential_create(model, NULL, true, &p, NULL), STRUT_OK);
+  assert_ok(strut_model_compile(&scene, &model, NULL));
+  assert_ok(strut_potential_create(model, NULL, true, &p, NULL));
   strut_sparse *k = strut_potential_matrix(p, &arena);
   double g[4];
   strut_potential_hessian(p, model->start, k);
   strut_potential_gradient(p, model->start, g);
   for (int i = 0; i < 4; i++) assert_near(g[i], 0, 0);
-  assert_near(k->value[k->start[0]], 7, 0);
-  assert_near(k->value[k->start[1]], 7, 0);
-  assert_near(k->value[k->start[2]], 5, 0);
+  assert_all_near(0, k->value[k->start[0]], 7, k->value[k->start[1]], 7, k->value[k->start[2]], 5);
   assert_near(k->value[k->start[3]], 0, 0);
   double q[12] = {0};
   strut_potential_hessian(p, q, k);
-  assert_near(k->value[k->start[2]], 0, 0);
-  assert_near(k->value[k->start[3]], 0, 0);
+  assert_all_near(0, k->value[k->start[2]], 0, k->value[k->start[3]], 0);
 }
 
 /* A weight on a soft ground that slopes: the force is the load's plus the ground's push. */
@@ -151,8 +147,8 @@ TEST(a_slope_pushes_along_its_normal) {
   build_load(&scene, 0, 3, 4, -1);
   scene.ground.slope = 0.5;
   scene.gravity[1] = -10;
-  assert_int_equal(strut_model_compile(&scene, &model, NULL), STRUT_OK);
-  assert_int_equal(strut_potential_create(model, NULL, true, &p, NULL), STRUT_OK);
+  assert_ok(strut_model_compile(&scene, &model, NULL));
+  assert_ok(strut_potential_create(model, NULL, true, &p, NULL));
   double depth = sin(0.5) - 0.4 * cos(0.5), force[8];
   assert_true(depth > 0);
   strut_potential_force(p, model->start, force);
@@ -160,10 +156,9 @@ TEST(a_slope_pushes_along_its_normal) {
   assert_near(force[1], 4 - 20 + 1000 * depth * cos(0.5), 1e-11);
   assert_near(p->force_scale, 25, 1e-14);
   strut_potential_free(p);
-  assert_int_equal(strut_potential_create(model, NULL, false, &p, NULL), STRUT_OK);
+  assert_ok(strut_potential_create(model, NULL, false, &p, NULL));
   strut_potential_force(p, model->start, force);
-  assert_near(force[0], 3, 0);
-  assert_near(force[1], -16, 0);
+  assert_all_near(0, force[0], 3, force[1], -16);
   strut_potential_free(p);
 }
 
@@ -172,12 +167,9 @@ TEST(refused_memory) {
   OWN(strut_scene) scene;
   OWN_POINTER(strut_model) model;
   random_scene(&scene, 3);
-  assert_int_equal(strut_model_compile(&scene, &model, NULL), STRUT_OK);
-  for (int64_t n = 0;; n++) {
-    strut_potential *p;
-    strut_status status = refused(n, strut_potential_create(model, NULL, true, &p, NULL));
-    strut_potential_free(p);
-    if (status == STRUT_OK) break;
-    assert_true(n < 100);
+  assert_ok(strut_model_compile(&scene, &model, NULL));
+  REFUSE_EACH(n, status, 1) {
+    OWN_POINTER(strut_potential) p;
+    status = refused(n, strut_potential_create(model, NULL, true, &p, NULL));
   }
 }

@@ -92,8 +92,7 @@ static void read_terrain(uint64_t *r, size_t count, model_run *run) {
     at += sprintf(at, ", [%.17g, %.17g]", (double)k, random_between(r, 0, 0.3));
   sprintf(at, ", [%zu, 0]]}\n", count + 1);
   *run = model_read_text("terrain.yaml", text, set_none);
-  strut_error error = {0};
-  assert_int_equal(strut_model_compile(&run->setup.scene, &run->model, &error), STRUT_OK);
+  assert_ok(strut_model_compile(&run->setup.scene, &run->model, NULL));
   free(text);
 }
 

@@ -30,7 +30,7 @@ static void walk_rows(const strut_pull_rows *t, int32_t block, node_pulls *nodes
 
 static void check(int32_t count, const uint32_t *from, const uint32_t *to) {
   static node_pulls found[NODES], wanted[NODES];
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   strut_pull_rows *rows = strut_pull_rows_create(&arena, count, from, to);
   assert_non_null(rows);
   for (int32_t i = 0; i < NODES; i++) found[i].count = wanted[i].count = 0;
@@ -46,7 +46,6 @@ static void check(int32_t count, const uint32_t *from, const uint32_t *to) {
     for (int32_t k = 0; k < wanted[i].count; k++)
       assert_int_equal(found[i].pull[k], wanted[i].pull[k]);
   }
-  strut_arena_free(&arena);
 }
 
 /* From stars of a few nodes to members that hardly meet; some are padding. */
@@ -70,6 +69,5 @@ TEST(rows_are_as_long_as_nodes_want_them) {
   OWN(strut_arena) arena = {0};
   const strut_pull_rows *rows = strut_pull_rows_create(&arena, 9, from, to);
   assert_non_null(rows);
-  assert_int_equal(rows->rows, 5);
-  assert_int_equal(rows->width, 4);
+  assert_all_equal(rows->rows, 5, rows->width, 4);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Defaults; the four ways to give a rest length; what an experiment amounts to. */
 #include "engine/scene/experiment.h"
-#include "tests/support/test.h"
+#include "tests/support/check.h"
 
 static void near(double found, double expected, double tolerance) {
   if (!(fabs(found - expected) <= tolerance))
@@ -24,12 +24,10 @@ TEST(defaults) {
   strut_setup setup;
   memset(&setup, 0x55, sizeof setup);
   strut_setup_init(&setup);
-  assert_string_equal(setup.scene.name, "");
-  assert_string_equal(setup.experiment.integrator, "rk4");
+  assert_all_texts(setup.scene.name, "", setup.experiment.integrator, "rk4");
   assert_int_equal(setup.experiment.channels,
                    STRUT_CHANNEL_POSITION | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE);
-  assert_int_equal(setup.experiment.period_signal, -1);
-  assert_int_equal(setup.experiment.measure_node, -1);
+  assert_all_equal(setup.experiment.period_signal, -1, setup.experiment.measure_node, -1);
   assert_true(!setup.experiment.settle.wanted && setup.experiment.settle.speed == 1e-8 &&
               setup.experiment.settle.acceleration == 1e-8 && setup.experiment.settle.limit == 100);
   assert_int_equal(setup.scene.node_count + setup.scene.member_count + setup.scene.contact_count,

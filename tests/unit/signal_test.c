@@ -3,7 +3,7 @@
 #include "engine/scene/signal.h"
 #include "engine/forces/drives/signal_vector.h"
 #include "engine/scene/signal_motion.h"
-#include "tests/support/test.h"
+#include "tests/support/check.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -39,9 +39,7 @@ TEST(defaults) {
 TEST(constants_begin_at_zero) {
   strut_signal s = strut_signal_default(STRUT_CONSTANT);
   s.amplitude = 3;
-  assert_true(value_of(&s, 0, -1) == 0.0);
-  assert_true(value_of(&s, 0, 0) == 3.0);
-  assert_true(value_of(&s, 0, 1e9) == 3.0);
+  assert_all(value_of(&s, 0, -1) == 0.0, value_of(&s, 0, 0) == 3.0, value_of(&s, 0, 1e9) == 3.0);
   assert_true(rate_of(&s, 0, 5) == 0.0);
 }
 
@@ -53,8 +51,7 @@ TEST(sines) {
     near(value_of(&s, 0, t), t < 5 ? 2 * sin(angle) : 0, 1e-12);
     near(rate_of(&s, 0, t), t < 5 ? 2 * 2 * PI * 10 * cos(angle) : 0, 1e-10);
   }
-  assert_true(value_of(&s, 0, 0.2999) == 0.0);
-  assert_true(rate_of(&s, 0, 0.2999) == 0.0);
+  assert_all(value_of(&s, 0, 0.2999) == 0.0, rate_of(&s, 0, 0.2999) == 0.0);
   assert_true(value_of(&s, 0, 5.0001) == 0.0);
 }
 
@@ -65,8 +62,7 @@ TEST(sines_do_not_drift) {
     double t = 4e6 + 0.015625 * i;
     assert_true(value_of(&s, 0, t) == value_of(&s, 0, 0.015625 * i));
   }
-  assert_true(value_of(&s, 0, 4e6 + 1) == 1.0);
-  assert_true(value_of(&s, 0, 4e6 + 2) == 0.0);
+  assert_all(value_of(&s, 0, 4e6 + 1) == 1.0, value_of(&s, 0, 4e6 + 2) == 0.0);
 }
 
 TEST(half_sines_are_one_pulse) {
@@ -76,37 +72,27 @@ TEST(half_sines_are_one_pulse) {
   near(value_of(&s, 0, 1.025), 0.8, 1e-13);
   near(value_of(&s, 0, 1.01), 0.8 * sin(2 * PI * 0.1), 1e-13);
   near(rate_of(&s, 0, 1), 0.8 * 2 * PI * 10, 1e-11);
-  assert_true(value_of(&s, 0, 1.0501) == 0.0);
-  assert_true(value_of(&s, 0, 1.125) == 0.0);
-  assert_true(rate_of(&s, 0, 1.06) == 0.0);
-  assert_true(strut_signal_period(&s, 0) == 1.0 / 10);
+  assert_all(value_of(&s, 0, 1.0501) == 0.0, value_of(&s, 0, 1.125) == 0.0,
+             rate_of(&s, 0, 1.06) == 0.0, strut_signal_period(&s, 0) == 1.0 / 10);
 }
 
 TEST(squares) {
   strut_signal s = sine(3, 2, 0, 0);
   s.kind = STRUT_SQUARE;
-  assert_true(value_of(&s, 0, 0) == 3.0);
-  assert_true(value_of(&s, 0, 0.2499) == 3.0);
-  assert_true(value_of(&s, 0, 0.25) == -3.0);
-  assert_true(value_of(&s, 0, 0.4999) == -3.0);
-  assert_true(value_of(&s, 0, 100.5) == 3.0);
-  assert_true(rate_of(&s, 0, 0.25) == 0.0);
+  assert_all(value_of(&s, 0, 0) == 3.0, value_of(&s, 0, 0.2499) == 3.0,
+             value_of(&s, 0, 0.25) == -3.0, value_of(&s, 0, 0.4999) == -3.0);
+  assert_all(value_of(&s, 0, 100.5) == 3.0, rate_of(&s, 0, 0.25) == 0.0);
   s.phase = 0.25;
   assert_true(value_of(&s, 0, 0.1251) == -3.0);
   s.phase = -0.25;
-  assert_true(value_of(&s, 0, 0) == -3.0);
-  assert_true(strut_signal_period(&s, 0) == 0.5);
+  assert_all(value_of(&s, 0, 0) == -3.0, strut_signal_period(&s, 0) == 0.5);
 }
 
 TEST(ramps_hold_their_end) {
   strut_signal s = strut_signal_default(STRUT_RAMP);
   s.amplitude = -6, s.start = 1, s.stop = 3;
-  assert_true(value_of(&s, 0, 0.5) == 0.0);
-  assert_true(value_of(&s, 0, 1.5) == -1.5);
-  assert_true(rate_of(&s, 0, 1) == -3.0);
-  assert_true(rate_of(&s, 0, 0.999) == 0.0);
-  assert_true(value_of(&s, 0, 3) == -6.0);
-  assert_true(rate_of(&s, 0, 3) == 0.0);
+  assert_all(value_of(&s, 0, 0.5) == 0.0, value_of(&s, 0, 1.5) == -1.5, rate_of(&s, 0, 1) == -3.0,
+             rate_of(&s, 0, 0.999) == 0.0, value_of(&s, 0, 3) == -6.0, rate_of(&s, 0, 3) == 0.0);
   assert_true(value_of(&s, 0, 1e6) == -6.0);
 }
 
@@ -155,8 +141,7 @@ TEST(many_times_have_the_bits_of_each) {
       for (int h = 0; h < COUNT; h++) time[h] = 0.01 * begin + 0.0013 * h;
       signal_at_times(s, index, time, COUNT, value, rate);
       for (int h = 0; h < COUNT; h++) {
-        assert_true(value[h] == value_of(s, index, time[h]));
-        assert_true(rate[h] == rate_of(s, index, time[h]));
+        assert_all(value[h] == value_of(s, index, time[h]), rate[h] == rate_of(s, index, time[h]));
       }
     }
 }
@@ -199,14 +184,10 @@ TEST(periods) {
   s[5].terms = clashing, s[5].term_count = 2;
   s[6].terms = none, s[6].term_count = 1;
   s[7].terms = nested, s[7].term_count = 2;
-  assert_true(strut_signal_period(s, 0) == 1.0 / 10);
-  assert_true(strut_signal_period(s, 3) == 0.0);
-  assert_true(strut_signal_period(s, 4) == 1.0 / 10);
-  assert_true(strut_signal_period(s, 5) == 0.0);
-  assert_true(strut_signal_period(s, 6) == 0.0);
-  assert_true(strut_signal_period(s, 7) == 1.0 / 10);
-  assert_true(strut_signal_period(s, 9) == 1.0 / 10);
-  assert_true(strut_signal_period(s, 10) == 1.0 / 3);
+  assert_all(strut_signal_period(s, 0) == 1.0 / 10, strut_signal_period(s, 3) == 0.0,
+             strut_signal_period(s, 4) == 1.0 / 10, strut_signal_period(s, 5) == 0.0);
+  assert_all(strut_signal_period(s, 6) == 0.0, strut_signal_period(s, 7) == 1.0 / 10,
+             strut_signal_period(s, 9) == 1.0 / 10, strut_signal_period(s, 10) == 1.0 / 3);
 }
 
 /* When a signal or its rate jumps next: by hand, for each kind. */
@@ -240,8 +221,7 @@ TEST(breaks) {
     assert_true(fabs(next - (0.1625 + 0.125 * k)) <= 1e-9);
     t = next;
   }
-  assert_true(strut_signal_next_break(s, 2, 0) == 1.0);
-  assert_true(strut_signal_next_break(s, 2, 1) == 1.25);
+  assert_all(strut_signal_next_break(s, 2, 0) == 1.0, strut_signal_next_break(s, 2, 1) == 1.25);
   assert_true(isinf(strut_signal_next_break(s, 2, 1.25)));
   assert_true(strut_signal_next_break(s, 3, 0) == 1.0 && strut_signal_next_break(s, 3, 1) == 3.0);
   assert_true(isinf(strut_signal_next_break(s, 3, 3)));

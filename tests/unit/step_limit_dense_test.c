@@ -41,9 +41,7 @@ static void fill(const strut_model *model, const strut_tangent *t, const strut_s
 static dense dense_of(const strut_model *model, strut_closed closed) {
   OWN(strut_arena) arena = {0};
   strut_tangent t;
-  assert_int_equal(
-      strut_tangent_assemble(model, model->start, model->members.rest, closed, &arena, &t),
-      STRUT_OK);
+  assert_ok(strut_tangent_assemble(model, model->start, model->members.rest, closed, &arena, &t));
   dense s = {.n = (size_t)t.n};
   s.k = calloc(s.n * s.n, sizeof *s.k), s.d = calloc(s.n * s.n, sizeof *s.d);
   assert_true(s.k && s.d);
@@ -145,12 +143,11 @@ static const double STAYS = 1 + 1e-5, GROWS = 1 + 1e-3;
 /* The bounds: stable, and not by far too small. */
 static void check_bound(const strut_model *model, const dense *s, const gsl_vector_complex *z,
                         const strut_step_limit *limit) {
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   strut_tangent t;
   strut_tangent_bound bound;
-  assert_int_equal(strut_tangent_assemble(model, model->start, model->members.rest,
-                                          STRUT_CLOSED_ALL, &arena, &t),
-                   STRUT_OK);
+  assert_ok(strut_tangent_assemble(model, model->start, model->members.rest, STRUT_CLOSED_ALL,
+                                   &arena, &t));
   assert_true(strut_tangent_bound_find(model, &t, &arena, &bound));
   assert_true(bound.frequency > limit->largest_frequency * (1 - 1e-9));
   assert_true(rk4_growth(z, bound.of[STRUT_REGION_RK4]) < STAYS);
@@ -162,11 +159,10 @@ static void check_bound(const strut_model *model, const dense *s, const gsl_vect
                 bound.of[STRUT_REGION_EULER] / limit->of[STRUT_REGION_EULER]);
   for (int region = STRUT_REGION_RK4; region < STRUT_REGIONS; region++)
     assert_within(bound.of[region] / limit->of[region], 0.5, 1.01);
-  strut_arena_free(&arena);
 }
 
 static void check_plain(const strut_model *model, const strut_step_limit *limit) {
-  dense s = dense_of(model, STRUT_CLOSED_ALL);
+  OWN(dense) s = dense_of(model, STRUT_CLOSED_ALL);
   gsl_vector_complex *z = spectrum(&s);
   double rk4 = limit->of[STRUT_REGION_RK4], verlet = limit->of[STRUT_REGION_VERLET];
   double euler = limit->of[STRUT_REGION_EULER];
@@ -178,21 +174,19 @@ static void check_plain(const strut_model *model, const strut_step_limit *limit)
   for (int i = 0; i < 6; i++) assert_true(i % 2 ? g[i] > GROWS : g[i] < STAYS);
   check_bound(model, &s, z, limit);
   gsl_vector_complex_free(z);
-  dense_free(&s);
 }
 
 static void check_implicit(const strut_model *model, const strut_step_limit *limit) {
-  dense s = dense_of(model, STRUT_CLOSED_UNDAMPED);
+  OWN(dense) s = dense_of(model, STRUT_CLOSED_UNDAMPED);
   double h = strut_step_limit_of_method(limit, strut_integrator_find("verlet-events"));
   assert_true(verlet_growth(&s, 0.99 * h) < STAYS);
   assert_true(verlet_growth(&s, 1.01 * h) > GROWS);
-  dense_free(&s);
 }
 
 static void check(const char *name, strut_scene *scene) {
   strut_step_limit limit;
   OWN_POINTER(strut_model) model = motion_compile(scene);
-  assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
+  assert_ok(strut_step_limit_estimate(model, &limit, NULL));
   assert_false(limit.exact);
   print_message("%s: %.4g s, %.4g s, %.4g s\n", name, limit.of[STRUT_REGION_RK4],
                 limit.of[STRUT_REGION_VERLET], limit.of[STRUT_REGION_EULER]);
@@ -297,7 +291,7 @@ TEST(time_of_many_nodes) {
     }
     OWN_POINTER(strut_model) model = motion_compile(&scene);
     clock_t begin = clock();
-    assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
+    assert_ok(strut_step_limit_estimate(model, &limit, NULL));
     print_message("%d nodes, damping ratio %g: %.2f s\n", (int)nodes, zeta,
                   (double)(clock() - begin) / CLOCKS_PER_SEC);
     assert_relative(limit.of[STRUT_REGION_VERLET] * omega,

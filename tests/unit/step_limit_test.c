@@ -8,9 +8,8 @@
 static const double PI = 3.14159265358979323846, IMAGINARY = 2.8284271247461903;
 
 TEST(limits_on_the_axes) {
-  assert_relative(strut_rk4_limit(0, 1), IMAGINARY, 1e-9);
-  assert_relative(strut_rk4_limit(0, -250), IMAGINARY / 250, 1e-9);
-  assert_relative(strut_rk4_limit(-1, 0), 2.7852935634, 1e-9);
+  assert_all_relative(1e-9, strut_rk4_limit(0, 1), IMAGINARY, strut_rk4_limit(0, -250),
+                      IMAGINARY / 250, strut_rk4_limit(-1, 0), 2.7852935634);
   assert_relative(strut_rk4_limit(-4e5, 0), 2.7852935634 / 4e5, 1e-9);
   assert_true(isinf(strut_rk4_limit(0, 0)));
   assert_true(isinf(strut_rk4_limit(3, 0))); /* grows by itself, whatever the step */
@@ -29,7 +28,7 @@ TEST(limits_of_damped_modes) {
 static strut_step_limit limit_of(const strut_setup *setup) {
   strut_step_limit limit;
   OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
-  assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
+  assert_ok(strut_step_limit_estimate(model, &limit, NULL));
   return limit;
 }
 
@@ -67,7 +66,7 @@ TEST(limit_of_each_method_on_damped_ground) {
       build_mass(&setup.scene, 0, 0.5, mass);
       build_contact(&setup.scene, 0, k, zeta * 2 * sqrt(k * mass));
       OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-      assert_int_equal(strut_step_limit_for_method(model, method, &limit, NULL), STRUT_OK);
+      assert_ok(strut_step_limit_for_method(model, method, &limit, NULL));
       if (method->region == STRUT_REGION_RK4) expected = rk4[z] / omega;
       if (method->region == STRUT_REGION_EULER) expected = 2 / omega * (hypot(zeta, 1) - zeta);
       if (method->region == STRUT_REGION_VERLET)
@@ -139,7 +138,7 @@ TEST(limit_of_damped_rows) {
 /* Kinetic energy of small motions about the start after many steps, as a factor. */
 static double growth(const strut_setup *setup, const char *method, double step, int64_t steps) {
   double before = 0, after = 0;
-  motion m = motion_begin_by(setup, method, step);
+  OWN(motion) m = motion_begin_by(setup, method, step);
   for (size_t i = 0; i < 2 * setup->scene.node_count; i++) {
     if (setup->scene.nodes[i / 2].fixed[i % 2]) continue;
     m.state->v[i] = 1e-9 * sin(1.3 * (double)i + 1);
@@ -147,7 +146,6 @@ static double growth(const strut_setup *setup, const char *method, double step, 
   }
   motion_steps(&m, steps);
   for (size_t i = 0; i < 2 * setup->scene.node_count; i++) after += m.state->v[i] * m.state->v[i];
-  motion_free(&m);
   return after / before;
 }
 

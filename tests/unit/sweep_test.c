@@ -68,12 +68,10 @@ static strut_status sweep(const char *path, int64_t points, log_t *log, strut_sw
                                         .count = points,
                                         .columns = columns,
                                         .column_count = 2};
-  const strut_sweep_options options = {.threads = THREADS};
   strut_slots *slots;
-  strut_error error = {0};
-  strut_status status = strut_slots_open(path, &file, &slots, &error);
+  strut_status status = strut_slots_open(path, &file, &slots, NULL);
   if (status) return status;
-  status = strut_sweep_run(&plan, slots, &options, state, &error);
+  status = strut_sweep_run(&plan, slots, &(strut_sweep_options){.threads = THREADS}, state, NULL);
   strut_slots_close(slots);
   return status;
 }
@@ -136,11 +134,10 @@ static double cpu_time(void) {
 static double table_of(const char *folder, const char *path) {
   strut_slots *slots;
   strut_slots_description plan;
-  strut_error error = {0};
   char table[64];
   double began = cpu_time();
-  assert_int_equal(strut_slots_read(path, &slots, &plan, &error), STRUT_OK);
-  assert_int_equal(strut_study_table_write(folder, "table", &slots, 1, &error), STRUT_OK);
+  assert_ok(strut_slots_read(path, &slots, &plan, NULL));
+  assert_ok(strut_study_table_write(folder, "table", &slots, 1, NULL));
   strut_slots_close(slots);
   snprintf(table, sizeof table, "%s/table", folder);
   unlink(table);
@@ -157,7 +154,7 @@ TEST(a_million_points_cost_little) {
   snprintf(path, sizeof path, "%s/slots", folder);
   getrusage(RUSAGE_SELF, &before);
   double began = cpu_time();
-  assert_int_equal(sweep(path, MANY, &log, &end), STRUT_OK);
+  assert_ok(sweep(path, MANY, &log, &end));
   double cost = (cpu_time() - began) / MANY, table = table_of(folder, path);
   getrusage(RUSAGE_SELF, &after);
   assert_true(end.done == MANY && end.failed == MANY && end.computed == MANY);
@@ -167,7 +164,7 @@ TEST(a_million_points_cost_little) {
   assert_true(THREADS_WATCHED ||
               after.ru_maxrss - before.ru_maxrss < 4000); /* a bit each is 122 kB */
   began = cpu_time();
-  assert_int_equal(sweep(path, MANY, &log, &end), STRUT_OK);
+  assert_ok(sweep(path, MANY, &log, &end));
   assert_true(end.computed == 0 && end.failed == MANY);
   print_message("%.2f us of CPU a point that is done\n", 1e6 * (cpu_time() - began) / MANY);
   unlink(path);

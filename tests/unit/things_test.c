@@ -104,7 +104,7 @@ static strut_setup read_scene(void) {
   strut_status status = strut_setup_read(&setup, "things", text, sizeof text - 1, NULL, 0,
                                          STRUT_FOR_STATICS, &diagnostics);
   if (status) print_error("%s\n", diagnostics.items[0].message);
-  assert_int_equal(status, STRUT_OK);
+  assert_ok(status);
   return setup;
 }
 

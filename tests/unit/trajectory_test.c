@@ -24,8 +24,7 @@ static strut_status record(const strut_setup *setup, unsigned channels, size_t r
   strut_model *model = motion_compile(&setup->scene);
   strut_run_options options = {.sinks = sinks, .sink_count = file ? 2 : 1, .force = true};
   strut_summary summary = {0};
-  strut_error error = {0};
-  strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, &error);
+  strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, NULL);
   strut_summary_free(&summary);
   strut_model_free(model);
   strut_trajectory_sink_free(sinks[0]);
@@ -40,13 +39,9 @@ static void assert_same(const double *a, const double *b, size_t count) {
 
 static void assert_same_motion(const strut_trajectory *a, const strut_trajectory *b) {
   size_t n = a->frames;
-  assert_int_equal(b->frames, n);
-  assert_int_equal(b->every, a->every);
-  assert_int_equal(b->recorded, a->recorded);
-  assert_int_equal(b->node_count, a->node_count);
-  assert_int_equal(b->member_count, a->member_count);
-  assert_int_equal(b->contact_count, a->contact_count);
-  assert_int_equal(b->status, a->status);
+  assert_all_equal(b->frames, n, b->every, a->every, b->recorded, a->recorded, b->node_count,
+                   a->node_count, b->member_count, a->member_count);
+  assert_all_equal(b->contact_count, a->contact_count, b->status, a->status);
   assert_memory_equal(b->contact_node, a->contact_node, a->contact_count * sizeof(int32_t));
   assert_same(a->time, b->time, n);
   assert_same(a->position, b->position, 2 * n * a->node_count);
@@ -61,18 +56,13 @@ BEFORE_EACH { scratch_make(); }
 
 TEST(the_file_gives_back_what_the_run_had) {
   OWN(strut_trajectory) taken = {0}, read = {0};
-  strut_error error = {0};
   OWN(strut_setup) setup = crawler(1e-3);
-  assert_int_equal(record(&setup, ALL, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
-  assert_int_equal(taken.frames, 101);
-  assert_int_equal(taken.recorded, 101);
-  assert_int_equal(taken.every, 1);
-  assert_int_equal(taken.contact_count, 5);
+  assert_ok(record(&setup, ALL, STRUT_TRAJECTORY_ROOM, true, &taken));
+  assert_all_equal(taken.frames, 101, taken.recorded, 101, taken.every, 1, taken.contact_count, 5);
   assert_int_equal(taken.contact_node[3], 3);
   assert_near(taken.time[100], 0.1, 1e-12);
-  assert_int_equal(
-      strut_trajectory_read(scratch_path(""), &setup.scene, STRUT_TRAJECTORY_ROOM, &read, &error),
-      STRUT_OK);
+  assert_ok(
+      strut_trajectory_read(scratch_path(""), &setup.scene, STRUT_TRAJECTORY_ROOM, &read, NULL));
   assert_same_motion(&taken, &read);
 }
 
@@ -82,12 +72,11 @@ TEST(channels_of_its_own) {
   OWN(strut_setup) setup = crawler(1e-3);
   setup.experiment.channels = STRUT_CHANNEL_LENGTH;
   unsigned wanted = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_ENERGY;
-  assert_int_equal(record(&setup, wanted, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
+  assert_ok(record(&setup, wanted, STRUT_TRAJECTORY_ROOM, true, &taken));
   assert_true(taken.position && taken.energy && taken.time);
   assert_true(!taken.length && !taken.force && !taken.velocity && !taken.contact);
-  assert_int_equal(
-      strut_trajectory_read(scratch_path(""), &setup.scene, STRUT_TRAJECTORY_ROOM, &read, NULL),
-      STRUT_OK);
+  assert_ok(
+      strut_trajectory_read(scratch_path(""), &setup.scene, STRUT_TRAJECTORY_ROOM, &read, NULL));
   assert_true(read.length && !read.position && !read.energy);
 }
 
@@ -114,15 +103,14 @@ TEST(thinned_to_the_room) {
   OWN(strut_trajectory) all = {0};
   OWN(strut_setup) setup = crawler(1e-4);
   setup.experiment.channels = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_FORCE;
-  assert_int_equal(record(&setup, 0, STRUT_TRAJECTORY_ROOM, true, &all), STRUT_OK);
+  assert_ok(record(&setup, 0, STRUT_TRAJECTORY_ROOM, true, &all));
   assert_int_equal(all.frames, 1001);
   for (size_t i = 0; i < sizeof rooms / sizeof *rooms; i++) {
     strut_trajectory few = {0};
-    assert_int_equal(record(&setup, 0, rooms[i], false, &few), STRUT_OK);
+    assert_ok(record(&setup, 0, rooms[i], false, &few));
     check_thinned(&few, &all, rooms[i]);
     strut_trajectory_free(&few);
-    assert_int_equal(strut_trajectory_read(scratch_path(""), &setup.scene, rooms[i], &few, NULL),
-                     STRUT_OK);
+    assert_ok(strut_trajectory_read(scratch_path(""), &setup.scene, rooms[i], &few, NULL));
     check_thinned(&few, &all, rooms[i]);
     strut_trajectory_free(&few);
   }
@@ -137,9 +125,8 @@ TEST(a_run_that_diverged_is_marked) {
   assert_int_equal(record(&setup, 0, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_DIVERGED);
   assert_int_equal(taken.status, STRUT_DIVERGED);
   assert_true(taken.frames > 1);
-  assert_int_equal(
-      strut_trajectory_read(scratch_path(""), &setup.scene, STRUT_TRAJECTORY_ROOM, &read, NULL),
-      STRUT_OK);
+  assert_ok(
+      strut_trajectory_read(scratch_path(""), &setup.scene, STRUT_TRAJECTORY_ROOM, &read, NULL));
   assert_same_motion(&taken, &read);
 }
 
@@ -157,7 +144,7 @@ TEST(refusals) {
   OWN(strut_trajectory) taken = {0};
   OWN(strut_setup) setup = crawler(1e-3);
   not_read(&setup, scratch_path("nowhere"), "No such file");
-  assert_int_equal(record(&setup, ALL, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
+  assert_ok(record(&setup, ALL, STRUT_TRAJECTORY_ROOM, true, &taken));
   const char *name = setup.scene.nodes[2].name;
   setup.scene.nodes[2].name = "another";
   not_read(&setup, scratch_path(""), "another structure");
@@ -180,19 +167,14 @@ TEST(refusals) {
 TEST(every_allocation_may_fail) {
   OWN(strut_setup) setup = crawler(1e-4);
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  strut_status status = STRUT_NO_MEMORY;
-  for (int64_t n = 0; status != STRUT_OK; n++) {
+  REFUSE_EACH(n, status, 1) {
     OWN(strut_trajectory) t = {0};
     OWN(strut_summary) summary = {0};
-    strut_error error = {0};
     strut_fail_allocation_after(n);
     strut_sink *sink = strut_trajectory_sink(&t, &setup.scene, ALL, 20000);
     strut_run_options options = {.sinks = &sink, .sink_count = 1, .force = true};
-    status = sink ? strut_simulate(model, &setup.experiment, &options, &summary, &error)
-                  : STRUT_NO_MEMORY;
+    if (sink) status = strut_simulate(model, &setup.experiment, &options, &summary, NULL);
     strut_fail_allocation_after(-1);
-    if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
     strut_trajectory_sink_free(sink);
-    assert_true(n < 1000);
   }
 }

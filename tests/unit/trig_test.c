@@ -12,8 +12,7 @@ static void check(double turns) {
   double sine, cosine;
   long double rest = turns - floorl(turns + 0.5L), angle = 2 * acosl(-1) * rest;
   strut_sincos_turns(turns, &sine, &cosine);
-  assert_near(sine, (double)sinl(angle), BOUND);
-  assert_near(cosine, (double)cosl(angle), BOUND);
+  assert_all_near(BOUND, sine, (double)sinl(angle), cosine, (double)cosl(angle));
   assert_near(sine * sine + cosine * cosine, 1, 4 * BOUND);
 }
 
@@ -43,8 +42,7 @@ TEST(quarter_turns_are_exact) {
   for (int quarter = -4000; quarter < 4000; quarter++) {
     double sine, cosine;
     strut_sincos_turns(quarter / 4.0, &sine, &cosine);
-    assert_true(sine == sines[(quarter + 4000) % 4]);
-    assert_true(cosine == sines[(quarter + 4001) % 4]);
+    assert_all(sine == sines[(quarter + 4000) % 4], cosine == sines[(quarter + 4001) % 4]);
   }
 }
 
@@ -55,8 +53,7 @@ TEST(whole_turns_change_nothing) {
       double turns = k / 64.0, s1, c1, s2, c2;
       strut_sincos_turns(turns, &s1, &c1);
       strut_sincos_turns(turns + whole, &s2, &c2);
-      assert_near(s2, s1, 2 * BOUND);
-      assert_near(c2, c1, 2 * BOUND);
+      assert_all_near(2 * BOUND, s2, s1, c2, c1);
     }
 }
 

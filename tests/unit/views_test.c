@@ -3,10 +3,10 @@
 #include "engine/base/memory.h"
 #include "engine/output/figures/run_film.h"
 #include "parser/read/read_scene.h"
-#include "tests/support/test.h"
+#include "tests/support/check.h"
 #include "tests/unit/scratch.h"
 
-enum { FRAMES = 3, MOST = 1000 };
+enum { FRAMES = 3 };
 
 static const char text[] =
     "strut: 1\n"
@@ -31,11 +31,10 @@ typedef struct things {
 static void make(things *t) {
   strut_diagnostics diagnostics = {0};
   memset(t, 0, sizeof *t);
-  assert_int_equal(strut_setup_read(&t->setup, "views", text, sizeof text - 1, NULL, 0,
-                                    STRUT_FOR_ANY, &diagnostics),
-                   STRUT_OK);
+  assert_ok(strut_setup_read(&t->setup, "views", text, sizeof text - 1, NULL, 0, STRUT_FOR_ANY,
+                             &diagnostics));
   strut_diagnostics_free(&diagnostics);
-  assert_int_equal(strut_model_compile(&t->setup.scene, &t->model, NULL), STRUT_OK);
+  assert_ok(strut_model_compile(&t->setup.scene, &t->model, NULL));
   for (int i = 0; i < FRAMES; i++) {
     t->time[i] = 0.05 * i;
     for (int k = 0; k < 6; k++) t->position[i][k] = t->model->start[k] + 0.1 * i;
@@ -56,37 +55,29 @@ static void make(things *t) {
                                  .contact_node = t->contact_node};
 }
 
-static void drop(things *t) {
+static void things_free(things *t) {
   strut_model_free(t->model);
   strut_setup_free(&t->setup);
 }
 
 TEST(film_without_memory) {
-  things t;
+  OWN(things) t;
   const char *directory = scratch_make();
   strut_film film = {.path = scratch_path("a.gif"), .speed = 1};
   if (strut_film_check(&film, 0.1, NULL) != STRUT_OK) skip();
   make(&t);
   film.experiment = &t.setup.experiment;
-  strut_status status = STRUT_NO_MEMORY;
-  int failed = 0;
-  for (; failed < MOST && status != STRUT_OK; failed++) {
+  REFUSE_EACH(n, status, 5) {
     strut_error error = {0};
-    strut_fail_allocation_after(failed);
-    status = strut_film_make(&film, t.model, &t.motion, &error);
-    strut_fail_allocation_after(-1);
-    assert_int_equal(error.status, status);
-    assert_int_equal(scratch_count(directory), status == STRUT_OK ? 1 : 0);
+    status = refused(n, strut_film_make(&film, t.model, &t.motion, &error));
+    assert_all_equal(error.status, status, scratch_count(directory), status == STRUT_OK ? 1 : 0);
     if (status == STRUT_OK) assert_int_equal(film.frames, 3);
   }
-  assert_true(failed > 5 && failed < MOST);
-  drop(&t);
 }
 
 /* Frames that are no numbers end the film; one that begins so has none. */
 TEST(film_of_what_is_a_number) {
-  things t;
-  strut_error error = {0};
+  OWN(things) t;
   const char *directory = scratch_make();
   strut_film film = {.path = scratch_path("a.gif"), .speed = 0.5};
   if (strut_film_check(&film, 0.1, NULL) != STRUT_OK) skip();
@@ -94,10 +85,9 @@ TEST(film_of_what_is_a_number) {
   film.experiment = &t.setup.experiment;
   t.position[2][1] = (double)NAN;
   t.motion.status = STRUT_DIVERGED;
-  assert_int_equal(strut_film_make(&film, t.model, &t.motion, &error), STRUT_OK);
+  assert_ok(strut_film_make(&film, t.model, &t.motion, NULL));
   assert_int_equal(film.frames, 3); /* 0.05 s at half the speed and 25 frames per second */
   t.position[0][0] = (double)INFINITY;
-  assert_int_equal(strut_film_make(&film, t.model, &t.motion, &error), STRUT_DIVERGED);
+  assert_int_equal(strut_film_make(&film, t.model, &t.motion, NULL), STRUT_DIVERGED);
   assert_int_equal(scratch_count(directory), 1);
-  drop(&t);
 }
