@@ -23,7 +23,7 @@ typedef enum strut_markers {
   STRUT_MARKERS_NONE
 } strut_markers;
 
-/** Points joined by a line. One with `value` is a cloud of dots without a line. */
+/** Points joined by a line, or a cloud of dots. */
 typedef struct strut_series {
   const char *label; /* in the legend, where equal ones get one row; NULL: not there */
   size_t count;
@@ -32,6 +32,7 @@ typedef struct strut_series {
   const strut_pen *pen; /* replaces the look's line; NULL: the look */
   const bool *unstable; /* (count) the line from these points on is dashed and thinner; or NULL */
   const double *low, *high; /* (count) whiskers along y; or NULL */
+  bool cloud;
   const double *value;      /* (count) the dots' colours on the panel's scale, NAN: grey; or NULL */
   strut_markers markers;
 } strut_series;
@@ -105,6 +106,7 @@ typedef struct strut_mark {
   bool dot, ring;      /* a filled circle; an empty one around what is there */
   strut_colour colour; /* of the dot */
   strut_font font;     /* of the text; size 0: 7 pt */
+  double gap;          /* from the place to the text [pt]; 0: as a dot needs */
   double angle;        /* preferred direction of the text, counterclockwise from the right */
   double steady;       /* how much that matters, as in strut_label */
   int priority;
@@ -127,8 +129,8 @@ typedef struct strut_panel {
   /* Both. */
   size_t mark_count;
   const strut_mark *marks;
-  const char *beyond_text; /* a note inside the frame, where it is emptiest; or NULL */
-  /* Beside it; equal limits: from the values. Name NULL: none. */
+  const char *remark; /* inside the frame, where it is emptiest; or NULL */
+  /* Beside it, or all that the panel is. Limits that are equal come from the values. Name NULL: none. */
   strut_colour_scale scale;
   double height; /* [pt]; 0: by the figure's aspect */
   bool whole;    /* takes a row of its own */
