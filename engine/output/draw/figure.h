@@ -23,39 +23,6 @@ typedef enum strut_markers {
   STRUT_MARKERS_NONE
 } strut_markers;
 
-/** Points joined by a line. One with `value` is a cloud of dots without a line. */
-typedef struct strut_series {
-  const char *label; /* in the legend, where equal ones get one row; NULL: not there */
-  size_t count;
-  const double *x, *y;  /* (count) SI; what is not finite breaks the line */
-  int look;             /* index of colour, dashes and marker; -1: the series' own index */
-  const strut_pen *pen; /* replaces the look's line; NULL: the look */
-  const bool *unstable; /* (count) the line from these points on is dashed and thinner; or NULL */
-  const double *low, *high; /* (count) whiskers along y; or NULL */
-  const double *value;      /* (count) the dots' colours on the panel's scale, NAN: grey; or NULL */
-  strut_markers markers;
-} strut_series;
-
-/** A grey area from x = low to high, or y; its label goes into the legend, or is NULL. */
-typedef struct strut_band {
-  double low, high;
-  bool level; /* from y = low to high */
-  const char *label;
-} strut_band;
-
-/** Cells over two quantities: a category or a number at every grid point; doubtful ones are hatched. */
-typedef struct strut_map {
-  size_t columns, rows;
-  const double *xs, *ys; /* (columns), (rows) ascending; cell edges are midpoints */
-  const int *category;   /* (rows, columns) index into names, -1: no result; or NULL */
-  size_t category_count;
-  const char *const *names; /* (category_count) */
-  const double
-      *value; /* (rows, columns) on the panel's scale where category is NULL; NAN: no result */
-  const bool *doubtful; /* (rows, columns) drawn hatched; or NULL */
-  const char *doubt;    /* meaning of the hatching, for the legend */
-} strut_map;
-
 /* ---- views ---- */
 
 /** A structure to scale. Those of a view lie over each other, the first lowest. */
@@ -63,12 +30,17 @@ typedef struct strut_shape {
   const strut_model *model;
   const double *q; /* (model->length) [m] */
   strut_structure_style style;
-  bool ground; /* below it, at style.time */
-  bool names;  /* beside its nodes */
+  const double *from; /* (model->length) arrows lead from there to the nodes [m]; or NULL */
+  bool ground;        /* below it; moved as it is at style.time if `moving` */
+  bool moving;
+  bool names; /* beside its nodes, where they cover little */
   const double (
       *forces)[2]; /* (contacts) of the ground [N], as strut_draw_contact_forces; or NULL */
   double force_limit, arrow; /* their scale [N], [pt] */
 } strut_shape;
+
+/** The pen of arrows of displacement, for keys. */
+STRUT_API strut_pen strut_displacement_pen(void);
 
 typedef enum strut_trail_kind {
   STRUT_TRAIL_LINE,     /* by its pen */
@@ -82,7 +54,7 @@ typedef struct strut_trail {
   size_t count;
   const double (*at)[2]; /* (count) [m] */
   strut_pen pen;
-  double gap; /* left free at both ends [pt] */
+  double gap; /* left free at both ends of two points, of an arrow at its tip [pt] */
   bool below; /* below the shapes */
 } strut_trail;
 
@@ -132,6 +104,7 @@ typedef struct strut_panel {
   strut_colour_scale scale;
   double height; /* [pt]; 0: by the figure's aspect */
   bool whole;    /* takes a row of its own */
+  bool small;    /* a view beside many others */
 } strut_panel;
 
 typedef struct strut_figure {
@@ -145,8 +118,11 @@ typedef struct strut_figure {
   bool title_inside;  /* the title is above the first panel's frame, not a heading */
   bool shared_axes;   /* all charts get the ranges that hold all of them */
   bool one_legend;    /* of the first panel, above all */
+  /* The foot, below the first views: a scale bar of theirs, keys, a scale of colours of all. */
+  bool yardstick;
   size_t key_count;
-  const strut_key_item *keys; /* below */
+  const strut_key_item *keys;
+  strut_colour_scale scale; /* name NULL: none */
 } strut_figure;
 
 /** Draws it into the plot's file. Fails as strut_canvas_open and strut_canvas_commit, or STRUT_NO_MEMORY. */

@@ -70,6 +70,7 @@ static double lay_out_key(strut_canvas *canvas, strut_box box, const strut_key_i
                           size_t count, bool draw) {
   double x = 0.0, y = 0.0, row = LINE;
   for (size_t i = 0; i < count; i++) {
+    if (!items[i].text) continue;
     double sign = sign_width(canvas, &items[i]), width, height;
     strut_font font = letters();
     font.down = 0.0;
@@ -84,7 +85,7 @@ static double lay_out_key(strut_canvas *canvas, strut_box box, const strut_key_i
     row = fmax(row, height + LINE - text_height(canvas));
     x += sign + width + BETWEEN;
   }
-  return count ? y + row : 0.0;
+  return x > 0.0 ? y + row : 0.0;
 }
 
 double strut_key_height(strut_canvas *canvas, double width, const strut_key_item *items,

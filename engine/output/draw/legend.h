@@ -51,7 +51,7 @@ typedef struct strut_key_item {
   strut_fill fill;
   const char *before; /* for STRUT_KEY_SIGNED */
   const char *letter; /* for STRUT_KEY_DOT; or NULL */
-  const char *text;
+  const char *text;   /* NULL: the item is left out */
 } strut_key_item;
 
 /** Height [pt] of a key of this width [pt]. */
