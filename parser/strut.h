@@ -32,7 +32,7 @@ extern "C" {
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
 #include "engine/output/draw/structure.h"
-#include "engine/output/draw/work_precision.h"
+#include "engine/output/figures/work_precision.h"
 #include "engine/output/figures/run_figure.h"
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/figures/table_figure.h"

@@ -431,7 +431,8 @@ strut_status strut_sweep_sensitivity_complete(const strut_sweep_plan *plan, stru
   if (!status) status = strut_sensitivity_find(plan->study, slots, &result, &error);
   if (!status) status = strut_sensitivity_write(plan->study, slots, &result, directory, &error);
   if (!status)
-    status = strut_sensitivity_figure(plan->study, slots, &result, path, PAGE, &drawn, &error);
+    status = strut_sensitivity_figure(&(strut_plot){.path = path}, plan->study, slots, &result,
+                                      &drawn, &error);
   if (status) strut_print_failure(status, &error);
   if (!status && report)
     status = strut_print_block(strut_sensitivity_report(plan, slots, &result, directory));

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What diagrams are made of: round ticks, prefixes, thinned curves, the front of the best. */
-#include "engine/output/draw/chart.h"
-#include "engine/output/draw/legend.h"
-#include "engine/output/draw/work_precision.h"
+#include "engine/output/draw/painter.h"
+#include "engine/output/figures/work_precision.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 #include "tests/unit/scratch.h"
@@ -208,16 +207,16 @@ TEST(labels_of_the_front) {
                                         .count = 3,
                                         .groups = groups,
                                         .bargains = savings};
-  strut_canvas *canvas;
   strut_error error;
+  strut_arena arena = {0};
+  strut_panel panel;
   char label[40];
   scratch_make();
   const char *path = scratch_path("front.svg");
-  assert_int_equal(strut_canvas_open(path, 400, 300, "front", &canvas, &error), STRUT_OK);
-  assert_int_equal(strut_draw_work_precision(canvas, (strut_box){0, 0, 400, 300}, &diagram),
-                   STRUT_OK);
-  assert_int_equal(strut_canvas_commit(canvas, &error), STRUT_OK);
-  strut_canvas_free(canvas);
+  assert_true(strut_work_precision_fill(&diagram, &arena, &panel));
+  const strut_figure figure = {.panel_count = 1, .panels = &panel};
+  assert_int_equal(strut_figure_draw(&(strut_plot){.path = path}, &figure, &error), STRUT_OK);
+  strut_arena_free(&arena);
   size_t length;
   FREED char *text = scratch_read(path, &length);
   assert_non_null(text);
@@ -238,19 +237,23 @@ TEST(map) {
   static const double xs[] = {1, 2}, ys[] = {10, 20};
   static const int category[] = {0, 1, 1, 0};
   static const char *const names[] = {"I", "II"};
-  const strut_map map = {.x = {"a", "", false, (double)NAN, (double)NAN},
-                         .y = {"b", "", false, (double)NAN, (double)NAN},
-                         .columns = 2,
+  const strut_map map = {.columns = 2,
                          .rows = 2,
                          .xs = xs,
                          .ys = ys,
                          .category = category,
                          .category_count = 2,
                          .names = names};
+  strut_panel panel = {.x = {"a", "", false, (double)NAN, (double)NAN},
+                       .y = {"b", "", false, (double)NAN, (double)NAN},
+                       .map = &map};
+  strut_arena arena = {0};
   strut_canvas *canvas;
   strut_error error;
   assert_int_equal(strut_canvas_open_pixels(400, 300, 1, &canvas, &error), STRUT_OK);
-  assert_int_equal(strut_draw_map(canvas, (strut_box){0, 0, 400, 300}, &map), STRUT_OK);
+  assert_true(strut_panels_settle(&panel, 1, &arena));
+  assert_true(strut_draw_chart(canvas, (strut_box){0, 0, 400, 300}, &panel, true, &arena));
+  strut_arena_free(&arena);
   const unsigned char *low_left = pixel(canvas, 120, 220), *low_right = pixel(canvas, 320, 220);
   const unsigned char *high_left = pixel(canvas, 120, 80), *high_right = pixel(canvas, 320, 80);
   assert_memory_equal(low_left, high_right, 3);

@@ -7,9 +7,10 @@
 
 #include "engine/base/vec.h"
 #include "engine/output/draw/painter.h"
+#include "engine/output/draw/view.h"
 
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, CLOUD = 2.6; /* [pt] */
-static const double INSET = 4, PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP = 2.5, GAP = 6;
+static const double INSET = 4, PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP = 2.5, GAP = 6, SCALE = 52;
 enum { FEW_POINTS = 30, MARKERS = 8, MOST_LABELLED = 6 };
 
 static size_t look_of(const strut_panel *p, size_t i) {
@@ -297,7 +298,7 @@ static void draw_mark(const strut_chart *c, const strut_mark *mark) {
   strut_axes_point(axes, mark->at[0], fmin(fmax(mark->at[1], axes->y.low), axes->y.high), at);
   if (!is_inside(c, at)) return;
   if (!above && !below) {
-    strut_draw_mark(c->canvas, mark, at, axes->frame);
+    strut_draw_mark(c->canvas, axes->frame, at, mark);
     return;
   }
   strut_mark edge = *mark;
@@ -305,7 +306,7 @@ static void draw_mark(const strut_chart *c, const strut_mark *mark) {
   edge.angle = (above ? -0.5 : 0.5) * STRUT_PI;
   edge.gap = STRUT_BEYOND_SIZE + 1;
   strut_draw_beyond(c->canvas, at, above ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM);
-  strut_draw_mark(c->canvas, &edge, at, axes->frame);
+  strut_draw_mark(c->canvas, axes->frame, at, &edge);
 }
 
 /* Marks where curves leave the frame above or below, and says how many points are there. */
@@ -365,7 +366,7 @@ static double draw_title(const strut_chart *c, strut_box box, bool draw) {
   return strut_text_height(c->canvas, c->panel->title, font) + TITLE_GAP;
 }
 
-/* Draws the legend's items where they cover no curve, else above a smaller frame, as `place_chart` left room. */
+/* Inside the frame on a white ground. */
 static void draw_legend(const strut_chart *c, const strut_key_item *items, size_t count,
                         strut_box at, bool inside) {
   const strut_fill white = {.colour = strut_faded(strut_grey(1), 0.85)};
@@ -385,16 +386,16 @@ bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *pa
   if (!items || !make_room(&c)) return false;
   size_t count = legend ? strut_panel_legend(panel, items, 0) : 0;
   strut_box rest = box, at = {0, 0, 0, 0};
-  if (panel->scale.name) rest.width = fmax(box.width - STRUT_SCALE_WIDTH, 60);
+  if (panel->scale.name) rest.width = fmax(box.width - SCALE, 60);
   place_chart(&c, rest);
-  double title = draw_title(&c, box, false), size[2];
+  double title = draw_title(&c, box, false), size[2], corner[2];
   rest.y += title, rest.height -= title;
   if (title > 0) place_chart(&c, rest);
   strut_key_size(canvas, 0, items, count, size);
   size[0] += 2 * PADDING, size[1] += 2 * PADDING;
-  bool inside = count && find_corner(&c, size, &at.x);
+  bool inside = count && find_corner(&c, size, corner);
   if (inside) {
-    at.width = size[0], at.height = size[1];
+    at = (strut_box){corner[0], corner[1], size[0], size[1]};
   } else if (count) {
     at = (strut_box){c.axes.frame.x, rest.y, fmax(c.axes.frame.width, 60), 0};
     double height = strut_key_height(canvas, at.width - 2 * PADDING, items, count) + 2 * PADDING;
@@ -407,7 +408,7 @@ bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *pa
   if (panel->scale.name)
     strut_draw_colour_scale(canvas,
                             (strut_box){rest.x + rest.width + GAP, c.axes.frame.y - 8,
-                                        STRUT_SCALE_WIDTH - GAP, fmax(c.axes.frame.height, 60)},
+                                        SCALE - GAP, fmax(c.axes.frame.height, 60)},
                             &panel->scale);
   return true;
 }

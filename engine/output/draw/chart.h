@@ -129,8 +129,8 @@ STRUT_API void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
 /* Where a figure goes, its width, and what replaces its title and axes. */
 
 typedef struct strut_plot {
-  const char *path;       /* ends with .svg, .pdf or .png; NULL: no figure is wanted */
-  double width;           /* [pt] */
+  const char *path;       /* ends with .svg, .pdf, .png or .json; NULL: no figure is wanted */
+  double width;           /* [pt]; 0: 180 mm */
   const char *title;      /* replaces the figure's own; NULL: the model's name */
   strut_axis_choice x, y; /* of a figure with one pair of axes */
 } strut_plot;

@@ -32,7 +32,7 @@ typedef struct strut_series {
   const strut_pen *pen; /* replaces the look's line; NULL: the look */
   const bool *unstable; /* (count) the line from these points on is dashed and thinner; or NULL */
   const double *low, *high; /* (count) whiskers along y; or NULL */
-  bool cloud;
+  bool cloud;               /* dots instead of a line */
   const double *value;      /* (count) the dots' colours on the panel's scale, NAN: grey; or NULL */
   strut_markers markers;
 } strut_series;
@@ -51,8 +51,7 @@ typedef struct strut_map {
   const int *category;   /* (rows, columns) index into names, -1: no result; or NULL */
   size_t category_count;
   const char *const *names; /* (category_count) */
-  const double
-      *value; /* (rows, columns) on the panel's scale where category is NULL; NAN: no result */
+  const double *value;      /* (rows, columns) where category is NULL; NAN: no result */
   const bool *doubtful; /* (rows, columns) drawn hatched; or NULL */
   const char *doubt;    /* meaning of the hatching, for the legend */
 } strut_map;
@@ -64,12 +63,16 @@ typedef struct strut_shape {
   const strut_model *model;
   const double *q; /* (model->length) [m] */
   strut_structure_style style;
-  bool ground; /* below it, at style.time */
-  bool names;  /* beside its nodes */
-  const double (
-      *forces)[2]; /* (contacts) of the ground [N], as strut_draw_contact_forces; or NULL */
+  const double *from; /* (model->length) arrows lead from there to the nodes [m]; or NULL */
+  bool ground;        /* below it; moved as it is at style.time if `moving` */
+  bool moving;
+  bool names; /* beside its nodes, where they cover little */
+  const double (*forces)[2]; /* (contacts) of the ground [N]; or NULL */
   double force_limit, arrow; /* their scale [N], [pt] */
 } strut_shape;
+
+/** The pen of arrows of displacement, for keys. */
+STRUT_API strut_pen strut_displacement_pen(void);
 
 typedef enum strut_trail_kind {
   STRUT_TRAIL_LINE,     /* by its pen */
@@ -83,7 +86,7 @@ typedef struct strut_trail {
   size_t count;
   const double (*at)[2]; /* (count) [m] */
   strut_pen pen;
-  double gap; /* left free at both ends [pt] */
+  double gap; /* left free at both ends of two points, of an arrow at its tip [pt] */
   bool below; /* below the shapes */
 } strut_trail;
 
@@ -118,43 +121,51 @@ typedef struct strut_panel {
   const strut_view *view;
   /* Else a chart. A range of NAN is found from the data. */
   strut_axis x, y;
-  bool
-      outliers; /* few values far away lie beyond the range that is found; they are marked and counted */
+  bool outliers; /* few values far away lie beyond the range that is found, marked and counted */
   size_t series_count, band_count;
   const strut_series *series;
   const strut_band *bands;
   const strut_map *map;
-  const char
-      *lost; /* what points are called whose y is not finite: they lie in a strip above; or NULL */
+  const char *lost; /* name of points whose y is not finite, which lie in a strip above; or NULL */
+  double room;      /* of a range that is found, beside the data along x; along y it is 0.06 */
   /* Both. */
   size_t mark_count;
   const strut_mark *marks;
   const char *remark; /* inside the frame, where it is emptiest; or NULL */
-  /* Beside it, or all that the panel is. Limits that are equal come from the values. Name NULL: none. */
+  /* Beside it; limits that are equal come from the values. Name NULL: none. */
   strut_colour_scale scale;
   double height; /* [pt]; 0: by the figure's aspect */
   bool whole;    /* takes a row of its own */
+  bool beside;   /* stands right of the panel before it, where the page is wide */
+  bool small;    /* a view beside many others */
 } strut_panel;
 
 typedef struct strut_figure {
   const char *title, *note; /* the heading; a plot's title replaces the first */
   bool alarm;               /* the note tells of a failure */
   size_t panel_count;
-  const strut_panel *panels; /* in rows; of a row all are as high as the highest */
+  const strut_panel *panels; /* in rows; of a row all charts are as high as the highest */
   size_t columns;            /* at most; 0: 3 */
-  double least_width; /* of a panel, where there are several in a row [pt]; 0: one in a row */
-  double aspect;      /* height over width of a panel without a height; 0: 0.66 */
-  bool title_inside;  /* the title is above the first panel's frame, not a heading */
+  double least_width; /* of a panel in a row with others [pt]; 0: a chart by itself, a view 105 */
+  double aspect;      /* height over width: of a chart without a height, 0: 0.62; of all views */
   bool shared_axes;   /* all charts get the ranges that hold all of them */
-  bool one_legend;    /* of the first panel, above all */
+  bool one_legend;    /* of all charts, above them */
+  /* The foot, below the first views or all charts: a scale bar of views, keys, a scale of colours of all. */
+  bool yardstick;
   size_t key_count;
-  const strut_key_item *keys; /* below */
+  const strut_key_item *keys;
+  strut_colour_scale scale; /* name NULL: none */
 } strut_figure;
 
-/** Draws it into the plot's file. Fails as strut_canvas_open and strut_canvas_commit, or STRUT_NO_MEMORY. */
+/**
+ * Draws it into the plot's file; into one that ends with .json it writes its data. Fails as strut_canvas_open and
+ * strut_canvas_commit, or STRUT_NO_MEMORY.
+ */
 STRUT_API strut_status strut_figure_draw(const strut_plot *plot, const strut_figure *figure,
                                          strut_error *error);
-/** The same data as JSON text, released by the caller; NULL: no memory. */
+/** STRUT_OK if a figure can be written into a file of that name, else STRUT_USAGE with the endings there are. */
+STRUT_API strut_status strut_figure_check_name(const char *path, strut_error *error);
+/** The data as JSON text, released by the caller; NULL: no memory. */
 STRUT_API char *strut_figure_json(const strut_plot *plot, const strut_figure *figure);
 
 #endif

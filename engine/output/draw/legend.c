@@ -70,6 +70,7 @@ static void lay_out_key(strut_canvas *canvas, strut_box box, const strut_key_ite
   double x = 0.0, y = 0.0, row = LINE, line = strut_text_height(canvas, "0", letters());
   size[0] = 0.0;
   for (size_t i = 0; i < count; i++) {
+    if (!items[i].text) continue;
     double sign = sign_width(canvas, &items[i]), width, height;
     strut_font font = letters();
     font.down = 0.0;
@@ -86,7 +87,7 @@ static void lay_out_key(strut_canvas *canvas, strut_box box, const strut_key_ite
     size[0] = fmax(size[0], x + sign + width);
     x += sign + width + BETWEEN;
   }
-  size[1] = count ? y + row : 0.0;
+  size[1] = x > 0.0 ? y + row : 0.0;
 }
 
 void strut_key_size(strut_canvas *canvas, double width, const strut_key_item *items, size_t count,

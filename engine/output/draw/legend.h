@@ -38,7 +38,7 @@ typedef struct strut_key_item {
   size_t look;
   const char *before; /* for STRUT_KEY_SIGNED */
   const char *letter; /* for STRUT_KEY_DOT; or NULL */
-  const char *text;
+  const char *text;   /* NULL: the item is left out */
 } strut_key_item;
 
 /** Size of a key in lines that fill `width`, or as a column of items where that is 0 [pt]. */

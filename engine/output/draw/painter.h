@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** What the painter of figures is made of. See figure.h. */
+/** The painter of charts. For figure.c. */
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_PAINTER_H
 #define STRUT_ENGINE_OUTPUT_DRAW_PAINTER_H
 
@@ -17,14 +17,11 @@ typedef struct strut_chart {
   strut_arena *arena;
 } strut_chart;
 
-/** Width that a scale of colours takes beside a panel [pt]. */
-#define STRUT_SCALE_WIDTH 52.0
-
 /** Settles ranges and scales that are not given, the same for all the panels. False: out of memory. */
 bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena);
 /**
- * Appends what a panel's legend says, unless it is there already: `items` has room for one each of its series and
- * bands, of its map's categories, and two more. Returns how many there are then.
+ * Appends what a panel's legend says, unless it is there already. Returns how many items there are then; `items` has
+ * room for strut_panel_legend_room more.
  */
 size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_t count);
 size_t strut_panel_legend_room(const strut_panel *panel);
@@ -38,12 +35,5 @@ void strut_map_limits(const double *at, size_t count, double limits[2]);
 strut_fill strut_category_fill(size_t category);
 /** True if cell k has a value or a category. */
 bool strut_map_has(const strut_map *map, size_t k);
-
-/** Draws a mark where it is on the page; its text stays inside. */
-void strut_draw_mark(strut_canvas *canvas, const strut_mark *mark, const double at[2],
-                     strut_box inside);
-/** Draws the structures of a panel in a box. False: out of memory. */
-bool strut_draw_view(strut_canvas *canvas, strut_box box, const strut_panel *panel,
-                     strut_arena *arena);
 
 #endif

@@ -51,6 +51,10 @@ void strut_bounds_add(strut_bounds *b, const strut_model *model, const double *q
   }
 }
 
+double strut_bounds_extent(const strut_bounds *b) {
+  return fmax(b->high[0] - b->low[0], b->high[1] - b->low[1]);
+}
+
 strut_window strut_window_fit(strut_box box, strut_bounds b, double margin) {
   assert(box.width > 0 && box.height > 0);
   double width = b.high[0] - b.low[0], height = b.high[1] - b.low[1];
@@ -121,11 +125,7 @@ void strut_longest_segment(const strut_window *w, const strut_model *model, cons
   }
 }
 
-/* Around a structure: supports, ground, contact forces, node paths, the scale bar. */
-
-enum { TRAIL_SHADES = 64 };
-
-static const double GROUND_DEPTH = 7.0; /* of the hatching below the ground's line [pt] */
+/* Around a structure: supports, contact forces, the scale bar. */
 
 /* A support's triangle, its tip at the node, its base towards `out`; rolling: on two wheels. */
 static void draw_support(strut_canvas *canvas, const double tip[2], const double out[2],
@@ -176,50 +176,6 @@ static void draw_supports(strut_canvas *canvas, const strut_window *w, const str
   }
 }
 
-/* The ends of the ground's line in the window's neighbourhood [pt]. */
-static void find_ground_line(const strut_window *w, const strut_model *model, double ends[2][2]) {
-  const strut_ground *ground = &model->scene->ground;
-  for (int k = 0; k < 2; k++) {
-    double x = w->left + (1.2 * k - 0.1) * w->box.width / w->scale;
-    const double position[2] = {x, ground->height + tan(ground->slope) * x};
-    strut_window_point(w, position, ends[k]);
-  }
-}
-
-void strut_draw_ground(strut_canvas *canvas, const strut_window *w, const strut_model *model) {
-  strut_draw_ground_at(canvas, w, model, (double)NAN);
-}
-
-void strut_draw_ground_at(strut_canvas *canvas, const strut_window *w, const strut_model *model,
-                          double time) {
-  const strut_ground *ground = &model->scene->ground;
-  strut_draw_surfaces(canvas, w, model->scene, time);
-  if (!ground->present) return;
-  double ends[4][2];
-  find_ground_line(w, model, ends);
-  const double down[2] = {GROUND_DEPTH * sin(ground->slope), GROUND_DEPTH * cos(ground->slope)};
-  for (int d = 0; d < 2; d++) {
-    ends[2][d] = ends[1][d] + down[d];
-    ends[3][d] = ends[0][d] + down[d];
-  }
-  const strut_fill fill = {
-      .colour = strut_grey(0.95), .hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.72)};
-  strut_canvas_clip(canvas, w->box);
-  strut_draw_polygon(canvas, (const double(*)[2])ends, 4, &fill, NULL);
-  strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1],
-                     (strut_pen){.colour = strut_grey(0.3), .width = 0.8});
-  if (ground->belt_speed != 0) {
-    double sign = ground->belt_speed > 0 ? 1 : -1;
-    const double from[2] = {0.5 * (ends[0][0] + ends[1][0]) + 1.9 * down[0],
-                            0.5 * (ends[0][1] + ends[1][1]) + 1.9 * down[1]};
-    strut_draw_arrow(
-        canvas, from[0] - sign * 12 * cos(ground->slope), from[1] + sign * 12 * sin(ground->slope),
-        from[0] + sign * 12 * cos(ground->slope), from[1] - sign * 12 * sin(ground->slope), 5,
-        (strut_pen){.colour = strut_grey(0.3), .width = 0.9});
-  }
-  strut_canvas_unclip(canvas);
-}
-
 void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *w,
                                const strut_model *model, const double *q, const double (*force)[2],
                                double limit, double longest) {
@@ -234,27 +190,6 @@ void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *w,
       strut_draw_arrow(canvas, at[0] - normal * n[0], at[1] + normal * n[1], at[0], at[1], 5, pen);
     if (fabs(along) > 0.3)
       strut_draw_arrow(canvas, at[0], at[1], at[0] + along * t[0], at[1] - along * t[1], 5, pen);
-  }
-}
-
-void strut_draw_trail(strut_canvas *canvas, const strut_window *w, const double (*positions)[2],
-                      size_t count, double width) {
-  double points[66][2];
-  strut_pen pen = {.width = width};
-  if (count < 2) return;
-  for (size_t shade = 0; shade < TRAIL_SHADES; shade++) {
-    size_t first = shade * (count - 1) / TRAIL_SHADES;
-    size_t last = (shade + 1) * (count - 1) / TRAIL_SHADES, used = 0;
-    if (last == first) continue;
-    pen.colour = strut_palette_sequence((double)shade / (TRAIL_SHADES - 1));
-    for (size_t i = first; i <= last; i++) { /* in pieces of the array's size */
-      strut_window_point(w, positions[i], points[used++]);
-      if (used < 66 && i < last) continue;
-      strut_draw_line(canvas, (const double(*)[2])points, used, pen);
-      points[0][0] = points[used - 1][0];
-      points[0][1] = points[used - 1][1];
-      used = 1;
-    }
   }
 }
 

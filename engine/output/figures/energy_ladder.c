@@ -2,6 +2,7 @@
 #include "engine/output/figures/energy_ladder.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "engine/base/vec.h"
 

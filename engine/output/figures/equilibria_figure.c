@@ -8,6 +8,7 @@
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
 #include "engine/output/draw/legend.h"
+#include "engine/output/draw/painter.h"
 #include "engine/output/draw/structure.h"
 #include "engine/output/figures/energy_ladder.h"
 #include "engine/output/figures/statics_figures.h"
@@ -232,7 +233,7 @@ static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
   describe_card(p, i, text);
   strut_draw_text(canvas, cell.x + 4, cell.y + NAME_LINE - 1, text, card_font(p));
   strut_canvas_clip(canvas, cell);
-  strut_draw_ground(canvas, &window, p->model);
+  strut_draw_ground(canvas, &window, p->model, (double)NAN);
   strut_draw_structure(canvas, &window, p->model, drawn_shape(p->all, i), &style);
   strut_draw_contact_forces(canvas, &window, p->model, drawn_shape(p->all, i),
                             (const double(*)[2])force, p->contact_limit, ARROW);
@@ -248,7 +249,7 @@ static void draw_small_card(plan *p, strut_canvas *canvas, size_t i, strut_box c
   const strut_structure_style style = {
       .colouring = STRUT_COLOUR_ONE, .colour = strut_grey(0.45), .thinness = 0.4, .no_nodes = true};
   strut_canvas_clip(canvas, cell);
-  strut_draw_ground(canvas, &window, p->model);
+  strut_draw_ground(canvas, &window, p->model, (double)NAN);
   strut_draw_structure(canvas, &window, p->model, drawn_shape(p->all, i), &style);
   strut_canvas_unclip(canvas);
   describe_small_card(p, i, text);
@@ -302,9 +303,11 @@ static strut_status draw_figure(plan *p, strut_canvas *canvas) {
   if (!good) return STRUT_NO_MEMORY;
   if (p->ladder) {
     double wide = fmin(inner, 90.0 + 120.0 * (double)p->cards);
-    strut_status status = strut_ladder_draw(canvas, (strut_box){EDGE, y + 4, wide, LADDER - 8},
-                                            p->all, p->standing, p->cards);
-    if (status != STRUT_OK) return status;
+    strut_panel ladder;
+    if (!strut_ladder_fill(p->all, p->standing, p->cards, &p->arena, &ladder) ||
+        !strut_draw_chart(canvas, (strut_box){EDGE, y + 4, wide, LADDER - 8}, &ladder, false,
+                          &p->arena))
+      return STRUT_NO_MEMORY;
     y += LADDER;
   }
   if (!p->small) return STRUT_OK;

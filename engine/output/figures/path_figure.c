@@ -157,7 +157,7 @@ static strut_axes place_axes(path_picture *p, strut_box box, char labels[2][LABE
   strut_axis x = p->upright ? height : motion, y = p->upright ? motion : height;
   strut_axis_choose(&x, &p->plot->x);
   strut_axis_choose(&y, &p->plot->y);
-  return strut_axes_place(p->canvas, box, x, y, NULL);
+  return strut_axes_place(p->canvas, box, x, y);
 }
 
 /* Branches, faint where they are unstable. */
@@ -183,7 +183,7 @@ static void draw_curve(path_picture *p, strut_box box) {
   char labels[2][LABEL];
   double stops[MOST_STOPS][2];
   strut_axes axes = place_axes(p, box, labels);
-  strut_draw_axes(p->canvas, &axes, NULL);
+  strut_draw_axes(p->canvas, &axes);
   for (size_t k = 0; k < p->count; k++)
     strut_axes_point(&axes, p->upright ? p->vertices[k].height : p->vertices[k].motion,
                      p->upright ? p->vertices[k].motion : p->vertices[k].height, p->points[k]);

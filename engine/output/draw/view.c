@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/draw/view.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double GAP = 12, SCALE = 46, LEAST = 46, CAPTION = 26; /* [pt] */
+static const double NARROWEST = 105, SMALLEST = 82;                 /* panels [pt] */
+static const double MARK = 2.7, RING = 3.4;                         /* radii [pt] */
+static const double COVERED = 0.12;                                 /* of a view, by names */
+static const double DOT = 0.3, NODE = 2.3; /* a path seen as a dot; radius of a node as drawn [pt] */
+enum { LED = 200, COLUMNS = 3, SMALL_COLUMNS = 6, TRAIL_SHADES = 64 };
+
+/* ---- one view ---- */
+
+/* True if names cover little of the drawing. */
+static bool names_fit(strut_canvas *canvas, strut_box box, const strut_model *model) {
+  double covered = 0.0;
+  for (int32_t i = 0; i < model->node_count; i++) {
+    double width, height;
+    strut_text_size(canvas, model->scene->nodes[i].name, (strut_font){.size = 7.5}, &width,
+                    &height);
+    covered += width * height;
+  }
+  return covered <= COVERED * box.width * box.height;
+}
+
+strut_pen strut_displacement_pen(void) {
+  return (strut_pen){.colour = strut_palette_thing(2), .width = 0.8};
+}
+
+/* Moves both ends of a line on the page towards each other; of an arrow its tip. */
+static void shorten(double ends[2][2], double by, bool arrow) {
+  double x = ends[1][0] - ends[0][0], y = ends[1][1] - ends[0][1], length = hypot(x, y);
+  if (!(length > 3.0 * by) || !(by > 0.0)) return;
+  const double step[2] = {by / length * x, by / length * y};
+  for (int d = 0; d < 2; d++) {
+    if (!arrow) ends[0][d] += step[d];
+    ends[1][d] -= step[d];
+  }
+}
+
+/* From a trail's first point to its last. */
+static void draw_straight(strut_canvas *canvas, const strut_window *window, const strut_trail *t) {
+  bool arrow = t->kind == STRUT_TRAIL_ARROW;
+  double ends[2][2];
+  strut_window_point(window, t->at[0], ends[0]);
+  strut_window_point(window, t->at[t->count - 1], ends[1]);
+  if (arrow && hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]) < fmax(2 * t->gap, 2))
+    return;
+  shorten(ends, t->gap, arrow);
+  if (arrow)
+    strut_draw_arrow(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], 5, t->pen);
+  else
+    strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], t->pen);
+}
+
+/* Through points [first, last], in pieces of the array's size. */
+static void draw_part(strut_canvas *canvas, const strut_window *window, const strut_trail *t,
+                      size_t first, size_t last, strut_pen pen) {
+  enum { PIECE = 200 };
+  double points[PIECE][2];
+  size_t used = 0;
+  for (size_t i = first; i <= last; i++) {
+    strut_window_point(window, t->at[i], points[used++]);
+    if (used < PIECE && i < last) continue;
+    strut_draw_line(canvas, (const double(*)[2])points, used, pen);
+    memcpy(points[0], points[used - 1], sizeof points[0]);
+    used = 1;
+  }
+}
+
+/* A path that is no longer than a dot is not drawn. */
+static bool is_visible(const strut_window *window, const strut_trail *t) {
+  for (size_t i = 1; i < t->count; i++)
+    if (hypot(t->at[i][0] - t->at[0][0], t->at[i][1] - t->at[0][1]) * window->scale > DOT)
+      return true;
+  return false;
+}
+
+static void draw_trail(strut_canvas *canvas, const strut_window *window, const strut_trail *t) {
+  size_t shades = t->kind == STRUT_TRAIL_SEQUENCE ? TRAIL_SHADES : 1;
+  if (t->kind == STRUT_TRAIL_ARROW || t->count == 2) draw_straight(canvas, window, t);
+  if (t->kind == STRUT_TRAIL_ARROW || t->count <= 2 || !is_visible(window, t)) return;
+  for (size_t shade = 0; shade < shades; shade++) {
+    size_t first = shade * (t->count - 1) / shades, last = (shade + 1) * (t->count - 1) / shades;
+    strut_pen pen = t->pen;
+    if (shades > 1) pen.colour = strut_palette_sequence((double)shade / (TRAIL_SHADES - 1));
+    if (last > first) draw_part(canvas, window, t, first, last, pen);
+  }
+}
+
+static void draw_trails(strut_canvas *canvas, const strut_window *window, const strut_view *view,
+                        bool below) {
+  for (size_t i = 0; i < view->trail_count; i++)
+    if (view->trails[i].below == below) draw_trail(canvas, window, &view->trails[i]);
+}
+
+/* From where a shape was to its nodes, unless there are many. */
+static void draw_arrows(strut_canvas *canvas, const strut_window *window, const strut_shape *s) {
+  const strut_trail_kind kind = STRUT_TRAIL_ARROW;
+  for (int32_t i = 0; s->from && i < s->model->node_count && s->model->node_count <= LED; i++) {
+    const double at[2][2] = {{s->from[2 * i], s->from[2 * i + 1]}, {s->q[2 * i], s->q[2 * i + 1]}};
+    draw_trail(canvas, window, &(strut_trail){kind, 2, at, strut_displacement_pen(), NODE, false});
+  }
+}
+
+void strut_draw_mark(strut_canvas *canvas, strut_box inside, const double at[2],
+                     const strut_mark *mark) {
+  const strut_pen edge = {.colour = strut_grey(0.1), .width = mark->ring ? 0.9 : 0.6};
+  const strut_fill fill = {.colour = mark->colour};
+  if (mark->dot || mark->ring)
+    strut_draw_circle(canvas, at[0], at[1], mark->ring ? RING : MARK, mark->dot ? &fill : NULL,
+                      &edge);
+  if (!mark->text || !*mark->text) return;
+  strut_label label = {.text = mark->text,
+                       .font = mark->font,
+                       .at = {at[0], at[1]},
+                       .gap = mark->gap > 0 ? mark->gap : MARK + 1.5,
+                       .angle = mark->angle,
+                       .steady = mark->steady,
+                       .inside = inside,
+                       .priority = mark->priority};
+  if (!(label.font.size > 0)) label.font.size = 7;
+  label.font.halo = strut_faded(strut_grey(1), 0.85);
+  strut_draw_label(canvas, &label);
+}
+
+strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_panel *panel) {
+  const strut_view *view = panel->view;
+  strut_window window = strut_window_fit(box, view->bounds, view->margin);
+  strut_canvas_clip(canvas, box);
+  for (size_t i = 0; i < view->shape_count; i++) {
+    const strut_shape *shape = &view->shapes[i];
+    if (shape->ground)
+      strut_draw_ground(canvas, &window, shape->model,
+                        shape->moving ? shape->style.time : (double)NAN);
+  }
+  draw_trails(canvas, &window, view, true);
+  for (size_t i = 0; i < view->shape_count; i++) {
+    const strut_shape *s = &view->shapes[i];
+    strut_draw_structure(canvas, &window, s->model, s->q, &s->style);
+    draw_arrows(canvas, &window, s);
+    if (s->forces)
+      strut_draw_contact_forces(canvas, &window, s->model, s->q, s->forces, s->force_limit,
+                                s->arrow);
+  }
+  draw_trails(canvas, &window, view, false);
+  for (size_t i = 0; i < panel->mark_count; i++) {
+    double at[2];
+    strut_window_point(&window, panel->marks[i].at, at);
+    strut_draw_mark(canvas, box, at, &panel->marks[i]);
+  }
+  strut_canvas_unclip(canvas);
+  for (size_t i = 0; i < view->shape_count; i++) {
+    const strut_shape *s = &view->shapes[i];
+    if (s->names && names_fit(canvas, box, s->model))
+      strut_draw_names(canvas, &window, s->model, s->q, s->style.member_names);
+  }
+  if (view->yardstick) strut_draw_yardstick(canvas, &window);
+  return window;
+}
+
+/* ---- several, in rows ---- */
+
+/* How panels are laid out: so many in a row, of this size, the drawing at their foot. */
+typedef struct rows {
+  size_t columns;
+  double width, height, drawing, beside; /* [pt] */
+} rows;
+
+/* What is written above a view; draws it if `draw`. */
+static double write_caption(strut_canvas *canvas, strut_box box, const strut_panel *panel,
+                            bool draw) {
+  const strut_font bold = {.size = 8.5, .bold = true};
+  const strut_font plain = {.size = panel->small ? 6.5 : 7.5,
+                            .colour = strut_grey(0.3),
+                            .width = box.width - 4};
+  char fitted[STRUT_FITTED_TEXT];
+  double width, line = 0.0, y = 0.0;
+  if (panel->title) {
+    strut_text_size(canvas, "0", bold, &width, &line);
+    if (draw)
+      strut_draw_text(canvas, box.x, box.y,
+                      strut_text_fit(canvas, panel->title, bold, box.width, 0, fitted), bold);
+    y += line + 1;
+  }
+  if (panel->note && *panel->note) {
+    strut_text_size(canvas, panel->note, plain, &width, &line);
+    if (draw) strut_draw_text(canvas, box.x, box.y + y, panel->note, plain);
+    y += line + 1;
+  }
+  return y;
+}
+
+/* As many in a row as make the structures largest on a page that is not too tall. */
+static rows arrange(strut_canvas *canvas, double width, const strut_figure *figure,
+                    const strut_panel *panels, size_t count) {
+  rows best = {.beside = panels->scale.name ? SCALE : 0};
+  double size[2] = {0, 0}, margin = 0, scale = 0, caption = 0;
+  for (size_t i = 0; i < count; i++) {
+    const strut_bounds *b = &panels[i].view->bounds;
+    for (int d = 0; d < 2; d++) size[d] = fmax(size[d], b->high[d] - b->low[d]);
+    margin = fmax(margin, panels[i].view->margin);
+  }
+  bool small = panels->small;
+  size_t most = small ? SMALL_COLUMNS : figure->columns ? figure->columns : COLUMNS;
+  double least = small ? SMALLEST : figure->least_width > 0 ? figure->least_width : NARROWEST;
+  double tallest = (figure->aspect > 0 ? figure->aspect : 0.95) * width;
+  for (size_t columns = 1; columns <= most && columns <= count; columns++) {
+    double deep = (double)((count + columns - 1) / columns);
+    double cell = (width - (double)(columns - 1) * GAP) / (double)columns;
+    if (cell < least && columns > 1) break;
+    double high = fmax(tallest / deep - (count > 1 ? CAPTION : 0), LEAST);
+    double fits = fmin((cell - best.beside - 2 * margin) / size[0], (high - 2 * margin) / size[1]);
+    if (fits < scale * (1 - 1e-9) && !small) continue; /* of equal scales the fewest rows win */
+    scale = fits;
+    best.columns = columns;
+    best.width = cell;
+    best.drawing = panels->height > 0 ? panels->height
+                   : isfinite(fits)   ? fmax(fits * size[1] + 2 * margin, LEAST)
+                                      : high;
+  }
+  for (size_t i = 0; i < count; i++)
+    caption =
+        fmax(caption, write_caption(canvas, (strut_box){0, 0, best.width, 0}, &panels[i], false));
+  best.height = caption + best.drawing;
+  return best;
+}
+
+/* ---- below ---- */
+
+static const double STICK = 17, BAR = 34, BAR_WIDTH = 150, WORDS = 150, SIDE = 14; /* [pt] */
+
+double strut_draw_foot(strut_canvas *canvas, strut_box box, const strut_figure *figure,
+                       const strut_window *window, bool draw) {
+  bool bar = figure->scale.name && figure->scale.high > figure->scale.low;
+  double right = bar ? fmin(BAR_WIDTH, 0.45 * box.width) : 0.0;
+  double left = window && figure->yardstick ? 0.3 * window->box.width + SIDE : 0.0;
+  double row = bar ? BAR : left > 0 ? STICK : 0.0;
+  strut_box key = {box.x + left, box.y, box.width - left - right - (bar ? SIDE : 0), 0};
+  bool above = row > 0 && key.width < WORDS; /* the key stands above both bars */
+  if (above) key.x = box.x, key.width = box.width;
+  double high = strut_key_height(canvas, key.width, figure->keys, figure->key_count);
+  double height = above ? high + row : fmax(high, row);
+  if (!draw) return height;
+  if (!above) key.y += 0.5 * (height - high);
+  strut_draw_key(canvas, key, figure->keys, figure->key_count);
+  if (bar)
+    strut_draw_colour_scale(
+        canvas, (strut_box){box.x + box.width - right, box.y + height - BAR, right, BAR},
+        &figure->scale);
+  if (left > 0) {
+    strut_window stick = *window;
+    stick.box.x = box.x - 3;
+    stick.box.y = box.y + height - stick.box.height;
+    strut_draw_yardstick(canvas, &stick);
+  }
+  return height;
+}
+
+double strut_draw_views(strut_canvas *canvas, strut_box box, const strut_figure *figure,
+                        const strut_panel *panels, size_t count, bool foot, bool draw) {
+  rows r = arrange(canvas, box.width, figure, panels, count);
+  strut_window window = {.box.width = r.width};
+  double height = (double)((count + r.columns - 1) / r.columns) * (r.height + GAP) - GAP;
+  for (size_t i = 0; i < count && draw; i++) {
+    strut_box cell = {box.x + (double)(i % r.columns) * (r.width + GAP),
+                      box.y + (double)(i / r.columns) * (r.height + GAP), r.width, r.height};
+    write_caption(canvas, cell, &panels[i], true);
+    strut_box drawing = {cell.x, cell.y + r.height - r.drawing, r.width - r.beside, r.drawing};
+    window = strut_draw_view(canvas, drawing, &panels[i]);
+    if (r.beside > 0)
+      strut_draw_colour_scale(canvas,
+                              (strut_box){cell.x + r.width - SCALE + 6, drawing.y, SCALE - 6,
+                                          fmin(r.drawing, 130)},
+                              &panels[i].scale);
+  }
+  box.y += height + 0.5 * GAP;
+  return foot ? height + 0.5 * GAP + strut_draw_foot(canvas, box, figure, &window, draw) : height;
+}
