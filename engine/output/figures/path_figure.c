@@ -12,6 +12,7 @@
 enum { MOST_STOPS = 10, STOP_TEXT = 160, LABEL = 200, NOTE = 80, KEYS = MOST_STOPS + 5 };
 
 static const double MARGIN = 15.0, GAP = 4.0;  /* [pt]; between a node and the arrow of its load */
+static const double CURVE = 0.72; /* height over width of the curve's panel */
 static const double ARROW = 0.13;              /* a load's, of the structure's size */
 static const double SEEN = 0.05, LARGE = 0.12; /* motion over the structure's size */
 static const double NO_MOTION = 1e-10;         /* likewise: rounding, which is not enlarged */
@@ -440,12 +441,12 @@ static strut_status draw_picture(path_picture *p, const strut_plot *plot, strut_
                                   .marks = marks[0]},
                                  {.view = &p->view,
                                   .mark_count = p->stop_count,
-                                  .marks = marks[1]}};
+                                  .marks = marks[1],
+                                  .beside = true}};
   const strut_figure figure = {.title = p->model->scene->name,
                                .panel_count = 2,
                                .panels = panels,
-                               .columns = 2,
-                               .least_width = 155,
+                               .aspect = CURVE,
                                .key_count = key_count,
                                .keys = keys};
   return strut_figure_draw(plot, &figure, error);
