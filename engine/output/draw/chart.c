@@ -344,7 +344,7 @@ static void draw_data(const strut_chart *c) {
   strut_draw_axes(c->canvas, &c->axes);
   if (c->strip.height > 0) draw_strip(c);
   strut_canvas_clip(c->canvas, c->axes.frame);
-  if (p->map) strut_draw_cells(c);
+  if (p->map) strut_draw_map(c);
   for (size_t i = 0; i < p->series_count; i++)
     if (!p->series[i].cloud) draw_line(c, i);
   strut_canvas_unclip(c->canvas);

@@ -74,7 +74,7 @@ static void mark_cell(const strut_chart *c, size_t k) {
                       fmin(1.0, 0.25 * fmin(box.width, box.height)), &dot, NULL);
 }
 
-void strut_draw_cells(const strut_chart *c) {
+void strut_draw_map(const strut_chart *c) {
   const strut_map *map = c->panel->map;
   size_t cells = map->columns * map->rows, joined;
   for (size_t k = 0; k < cells; k += joined) {

@@ -29,7 +29,7 @@ size_t strut_panel_legend_room(const strut_panel *panel);
 bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
                       strut_arena *arena);
 /** Draws the cells of a chart's map, inside its frame. */
-void strut_draw_cells(const strut_chart *chart);
+void strut_draw_map(const strut_chart *chart);
 /** Limits of a map's cells along x or y. */
 void strut_map_limits(const double *at, size_t count, double limits[2]);
 strut_fill strut_category_fill(size_t category);
