@@ -214,7 +214,10 @@ static void stroke(const strut_chart *c, size_t i, size_t from, size_t to) {
   const double(*at)[2] = (const double(*)[2])c->points[i] + from;
   strut_pen pen = pen_of(c->panel, i);
   if (s->unstable && s->unstable[from])
-    pen = (strut_pen){.colour = pen.colour, .width = 0.65 * pen.width, .dash = {3, 2}};
+    pen = (strut_pen){.colour = pen.colour,
+                      .width = (s->pen ? 1.0 : 0.65) * pen.width,
+                      .dash = {3, 2},
+                      .butt = s->pen != NULL};
   if (to > from)
     strut_draw_line(c->canvas, at, to - from + 1, pen);
   else if (!s->pen) /* a line of one point would be invisible */

@@ -121,7 +121,7 @@ static double put_page(page *p, strut_canvas *canvas, double width, bool *fine) 
     }
     while (i + count < f->panel_count && first[count].view && first[count].small == first->small)
       count++;
-    box.y += strut_draw_views(canvas, box, f, first, count, foot, draw) + GAP;
+    box.y += (i > 0 ? GAP : 0) + strut_draw_views(canvas, box, f, first, count, foot, draw);
     foot = false;
   }
   return box.y + (foot ? strut_draw_foot(canvas, box, f, NULL, draw) : 0) + EDGE;

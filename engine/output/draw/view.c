@@ -5,7 +5,7 @@
 #include <string.h>
 
 static const double GAP = 12, SCALE = 46, LEAST = 46, CAPTION = 26; /* [pt] */
-static const double NARROWEST = 105, SMALLEST = 82;                 /* panels [pt] */
+static const double NARROWEST = 105, SMALLEST = 72;                 /* panels [pt] */
 static const double MARK = 2.7, RING = 3.4;                         /* radii [pt] */
 static const double COVERED = 0.12;                                 /* of a view, by names */
 static const double DOT = 0.3, NODE = 2.3; /* a path seen as a dot; radius of a node as drawn [pt] */
@@ -126,9 +126,20 @@ void strut_draw_mark(strut_canvas *canvas, strut_box inside, const double at[2],
   strut_draw_label(canvas, &label);
 }
 
+/* More than the margin takes below a view, for the forces of the ground [pt]. */
+static double room_for_arrows(const strut_view *view) {
+  double room = 0.0;
+  for (size_t i = 0; i < view->shape_count; i++)
+    if (view->shapes[i].forces) room = fmax(room, view->shapes[i].arrow - view->margin);
+  return room;
+}
+
 strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_panel *panel) {
   const strut_view *view = panel->view;
-  strut_window window = strut_window_fit(box, view->bounds, view->margin);
+  strut_box inside = box;
+  inside.height -= room_for_arrows(view);
+  strut_window window = strut_window_fit(inside, view->bounds, view->margin);
+  window.box = box;
   strut_canvas_clip(canvas, box);
   for (size_t i = 0; i < view->shape_count; i++) {
     const strut_shape *shape = &view->shapes[i];
@@ -166,7 +177,7 @@ strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_pa
 /* How panels are laid out: so many in a row, of this size, the drawing at their foot. */
 typedef struct rows {
   size_t columns;
-  double width, height, drawing, beside; /* [pt] */
+  double width, height, drawing, beside, gap; /* [pt] */
 } rows;
 
 /* What is written above a view; draws it if `draw`. */
@@ -197,28 +208,31 @@ static double write_caption(strut_canvas *canvas, strut_box box, const strut_pan
 static rows arrange(strut_canvas *canvas, double width, const strut_figure *figure,
                     const strut_panel *panels, size_t count) {
   rows best = {.beside = panels->scale.name ? SCALE : 0};
-  double size[2] = {0, 0}, margin = 0, scale = 0, caption = 0;
+  double size[2] = {0, 0}, margin = 0, scale = 0, caption = 0, below = 0;
   for (size_t i = 0; i < count; i++) {
     const strut_bounds *b = &panels[i].view->bounds;
     for (int d = 0; d < 2; d++) size[d] = fmax(size[d], b->high[d] - b->low[d]);
     margin = fmax(margin, panels[i].view->margin);
+    below = fmax(below, room_for_arrows(panels[i].view));
   }
   bool small = panels->small;
+  double gap = best.gap = small ? 0.5 * GAP : GAP;
   size_t most = small ? SMALL_COLUMNS : figure->columns ? figure->columns : COLUMNS;
   double least = small ? SMALLEST : figure->least_width > 0 ? figure->least_width : NARROWEST;
   double tallest = (figure->aspect > 0 ? figure->aspect : 0.95) * width;
   for (size_t columns = 1; columns <= most && columns <= count; columns++) {
     double deep = (double)((count + columns - 1) / columns);
-    double cell = (width - (double)(columns - 1) * GAP) / (double)columns;
+    double cell = (width - (double)(columns - 1) * gap) / (double)columns;
     if (cell < least && columns > 1) break;
     double high = fmax(tallest / deep - (count > 1 ? CAPTION : 0), LEAST);
-    double fits = fmin((cell - best.beside - 2 * margin) / size[0], (high - 2 * margin) / size[1]);
+    double fits = fmin((cell - best.beside - 2 * margin) / size[0],
+                       (high - below - 2 * margin) / size[1]);
     if (fits < scale * (1 - 1e-9) && !small) continue; /* of equal scales the fewest rows win */
     scale = fits;
     best.columns = columns;
     best.width = cell;
     best.drawing = panels->height > 0 ? panels->height
-                   : isfinite(fits)   ? fmax(fits * size[1] + 2 * margin, LEAST)
+                   : isfinite(fits)   ? fmax(fits * size[1] + 2 * margin + below, LEAST)
                                       : high;
   }
   for (size_t i = 0; i < count; i++)
@@ -263,10 +277,10 @@ double strut_draw_views(strut_canvas *canvas, strut_box box, const strut_figure 
                         const strut_panel *panels, size_t count, bool foot, bool draw) {
   rows r = arrange(canvas, box.width, figure, panels, count);
   strut_window window = {.box.width = r.width};
-  double height = (double)((count + r.columns - 1) / r.columns) * (r.height + GAP) - GAP;
+  double height = (double)((count + r.columns - 1) / r.columns) * (r.height + r.gap) - r.gap;
   for (size_t i = 0; i < count && draw; i++) {
-    strut_box cell = {box.x + (double)(i % r.columns) * (r.width + GAP),
-                      box.y + (double)(i / r.columns) * (r.height + GAP), r.width, r.height};
+    strut_box cell = {box.x + (double)(i % r.columns) * (r.width + r.gap),
+                      box.y + (double)(i / r.columns) * (r.height + r.gap), r.width, r.height};
     write_caption(canvas, cell, &panels[i], true);
     strut_box drawing = {cell.x, cell.y + r.height - r.drawing, r.width - r.beside, r.drawing};
     window = strut_draw_view(canvas, drawing, &panels[i]);

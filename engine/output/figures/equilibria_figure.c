@@ -7,7 +7,7 @@
 #include "engine/output/figures/statics_figures.h"
 
 static const double COLLAPSED = 1.0 / 3.0; /* most of the cards with forces beyond the scale */
-static const double ARROW = 20, MARGIN = 22, LEAST_MARGIN = 6, LADDER = 150; /* [pt] */
+static const double ARROW = 20, MARGIN = 17, LEAST_MARGIN = 6, LADDER = 150; /* [pt] */
 static const double ROUNDING = 1e-12; /* of the largest energy: written as zero */
 enum { MOST_CARDS = 12, MOST_SMALL = 6, PANELS = MOST_CARDS + MOST_SMALL + 1, NOTE = 300 };
 
@@ -183,7 +183,6 @@ strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *
                                .note = note,
                                .panel_count = p.panel_count,
                                .panels = p.panels,
-                               .aspect = 2,
                                .yardstick = p.cards > 0,
                                .scale = {p.force_limit > 0 ? "force" : NULL, "N", -p.force_limit,
                                          p.force_limit, STRUT_COLOURS_SIGNED, p.beyond}};

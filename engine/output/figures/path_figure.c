@@ -438,6 +438,7 @@ static strut_status draw_picture(path_picture *p, const strut_plot *plot, strut_
                                   .y = p->upright ? motion : height,
                                   .series_count = branches + 1,
                                   .series = series,
+                                  .room = 0.05,
                                   .mark_count = p->stop_count,
                                   .marks = marks[0]},
                                  {.view = &p->view,

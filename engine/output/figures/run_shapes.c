@@ -334,7 +334,7 @@ static bool fill_cell(strut_run_scene *run, const grid *g, size_t i, strut_panel
                             .trails = &cell->start,
                             .trail_count = g->common[0] && g->moves,
                             .bounds = bounds_of(run, g, i),
-                            .margin = run->model->contacts.count ? STRUT_RUN_ARROW + 3 : MARGIN};
+                            .margin = MARGIN};
   *panel = (strut_panel){.title = cell->title, .view = &cell->view};
   return true;
 }

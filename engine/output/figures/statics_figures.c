@@ -204,7 +204,6 @@ strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *mo
                         .panel_count = p.count,
                         .panels = p.panels,
                         .columns = COLUMNS,
-                        .aspect = 2,
                         .yardstick = true,
                         .scale = {forces ? "force, of the largest" : NULL, "", -1, 1,
                                   STRUT_COLOURS_SIGNED, {0}}},
