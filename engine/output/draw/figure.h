@@ -52,8 +52,8 @@ typedef struct strut_map {
   size_t category_count;
   const char *const *names; /* (category_count) */
   const double *value;      /* (rows, columns) where category is NULL; NAN: no result */
-  const bool *doubtful; /* (rows, columns) drawn hatched; or NULL */
-  const char *doubt;    /* meaning of the hatching, for the legend */
+  const bool *doubtful;     /* (rows, columns) drawn hatched; or NULL */
+  const char *doubt;        /* meaning of the hatching, for the legend */
 } strut_map;
 
 /* ---- views ---- */
@@ -66,7 +66,7 @@ typedef struct strut_shape {
   const double *from; /* (model->length) arrows lead from there to the nodes [m]; or NULL */
   bool ground;        /* below it; moved as it is at style.time if `moving` */
   bool moving;
-  bool names; /* beside its nodes, where they cover little */
+  bool names;                /* beside its nodes, where they cover little */
   const double (*forces)[2]; /* (contacts) of the ground [N]; or NULL */
   double force_limit, arrow; /* their scale [N], [pt] */
 } strut_shape;
@@ -147,9 +147,9 @@ typedef struct strut_figure {
   const strut_panel *panels; /* in rows; of a row all charts are as high as the highest */
   size_t columns;            /* at most; 0: 3 */
   double least_width; /* of a panel in a row with others [pt]; 0: a chart by itself, a view 105 */
-  double aspect;      /* height over width: of a chart without a height, 0: 0.62; of all views */
-  bool shared_axes;   /* all charts get the ranges that hold all of them */
-  bool one_legend;    /* of all charts, above them */
+  double aspect; /* height over width: of a chart without a height, 0: 0.62; of all views, 0: any */
+  bool shared_axes; /* all charts get the ranges that hold all of them */
+  bool one_legend;  /* of all charts, above them */
   /* The foot, below the first views or all charts: a scale bar of views, keys, a scale of colours of all. */
   bool yardstick;
   size_t key_count;

@@ -7,8 +7,9 @@
 static const double GAP = 12, SCALE = 46, LEAST = 46, CAPTION = 26; /* [pt] */
 static const double NARROWEST = 105, SMALLEST = 72;                 /* panels [pt] */
 static const double MARK = 2.7, RING = 3.4;                         /* radii [pt] */
-static const double COVERED = 0.12;                                 /* of a view, by names */
-static const double DOT = 0.3, NODE = 2.3; /* a path seen as a dot; radius of a node as drawn [pt] */
+static const double COVERED = 0.12, TALLEST = 1.2; /* of a view, by names; height over width */
+static const double DOT = 0.3,
+                    NODE = 2.3; /* a path seen as a dot; radius of a node as drawn [pt] */
 enum { LED = 200, COLUMNS = 3, SMALL_COLUMNS = 6, TRAIL_SHADES = 64 };
 
 /* ---- one view ---- */
@@ -183,17 +184,16 @@ typedef struct rows {
 /* What is written above a view; draws it if `draw`. */
 static double write_caption(strut_canvas *canvas, strut_box box, const strut_panel *panel,
                             bool draw) {
-  const strut_font bold = {.size = 8.5, .bold = true};
-  const strut_font plain = {.size = panel->small ? 6.5 : 7.5,
-                            .colour = strut_grey(0.3),
-                            .width = box.width - 4};
+  const strut_font bold = {.size = 8.5, .bold = true, .width = box.width};
+  const strut_font plain = {
+      .size = panel->small ? 6.5 : 7.5, .colour = strut_grey(0.3), .width = box.width - 4};
   char fitted[STRUT_FITTED_TEXT];
   double width, line = 0.0, y = 0.0;
   if (panel->title) {
     strut_text_size(canvas, "0", bold, &width, &line);
-    if (draw)
-      strut_draw_text(canvas, box.x, box.y,
-                      strut_text_fit(canvas, panel->title, bold, box.width, 0, fitted), bold);
+    strut_text_fit(canvas, panel->title, bold, box.width, 2 * line + 1, fitted);
+    strut_text_size(canvas, fitted, bold, &width, &line);
+    if (draw) strut_draw_text(canvas, box.x, box.y, fitted, bold);
     y += line + 1;
   }
   if (panel->note && *panel->note) {
@@ -204,7 +204,7 @@ static double write_caption(strut_canvas *canvas, strut_box box, const strut_pan
   return y;
 }
 
-/* As many in a row as make the structures largest on a page that is not too tall. */
+/* As many in a row as there is room for; or, on a page with a given aspect, as make the structures largest. */
 static rows arrange(strut_canvas *canvas, double width, const strut_figure *figure,
                     const strut_panel *panels, size_t count) {
   rows best = {.beside = panels->scale.name ? SCALE : 0};
@@ -219,15 +219,16 @@ static rows arrange(strut_canvas *canvas, double width, const strut_figure *figu
   double gap = best.gap = small ? 0.5 * GAP : GAP;
   size_t most = small ? SMALL_COLUMNS : figure->columns ? figure->columns : COLUMNS;
   double least = small ? SMALLEST : figure->least_width > 0 ? figure->least_width : NARROWEST;
-  double tallest = (figure->aspect > 0 ? figure->aspect : 0.95) * width;
+  bool all = small || !(figure->aspect > 0);
   for (size_t columns = 1; columns <= most && columns <= count; columns++) {
     double deep = (double)((count + columns - 1) / columns);
     double cell = (width - (double)(columns - 1) * gap) / (double)columns;
     if (cell < least && columns > 1) break;
-    double high = fmax(tallest / deep - (count > 1 ? CAPTION : 0), LEAST);
-    double fits = fmin((cell - best.beside - 2 * margin) / size[0],
-                       (high - below - 2 * margin) / size[1]);
-    if (fits < scale * (1 - 1e-9) && !small) continue; /* of equal scales the fewest rows win */
+    double high = all ? TALLEST * cell
+                      : fmax(figure->aspect * width / deep - (count > 1 ? CAPTION : 0), LEAST);
+    double fits =
+        fmin((cell - best.beside - 2 * margin) / size[0], (high - below - 2 * margin) / size[1]);
+    if (fits < scale * (1 - 1e-9) && !all) continue; /* of equal scales the fewest rows win */
     scale = fits;
     best.columns = columns;
     best.width = cell;
@@ -285,10 +286,10 @@ double strut_draw_views(strut_canvas *canvas, strut_box box, const strut_figure 
     strut_box drawing = {cell.x, cell.y + r.height - r.drawing, r.width - r.beside, r.drawing};
     window = strut_draw_view(canvas, drawing, &panels[i]);
     if (r.beside > 0)
-      strut_draw_colour_scale(canvas,
-                              (strut_box){cell.x + r.width - SCALE + 6, drawing.y, SCALE - 6,
-                                          fmin(r.drawing, 130)},
-                              &panels[i].scale);
+      strut_draw_colour_scale(
+          canvas,
+          (strut_box){cell.x + r.width - SCALE + 6, drawing.y, SCALE - 6, fmin(r.drawing, 130)},
+          &panels[i].scale);
   }
   box.y += height + 0.5 * GAP;
   return foot ? height + 0.5 * GAP + strut_draw_foot(canvas, box, figure, &window, draw) : height;

@@ -16,9 +16,9 @@ typedef struct ladder {
   const strut_equilibria *all;
   const size_t *chosen; /* (count) states, in the order of their places */
   size_t count;
-  double zero;                             /* the lowest energy [J] */
-  strut_series levels, arcs[2];            /* arcs between neighbours, and others */
-  double *level[2], *arc[2][2], *tops;     /* their x and y; heights of the barriers drawn */
+  double zero;                         /* the lowest energy [J] */
+  strut_series levels, arcs[2];        /* arcs between neighbours, and others */
+  double *level[2], *arc[2][2], *tops; /* their x and y; heights of the barriers drawn */
   size_t top_count, mark_count;
   strut_mark *marks;
   strut_arena *arena;
@@ -136,17 +136,18 @@ static double *allocate_columns(strut_series *s, double *columns[2], size_t coun
 static strut_axis find_axis(ladder *l, strut_beyond *beyond) {
   strut_axis y = {.name = "energy above the lowest", .unit = "J", .low = 0.0, .high = 0.0};
   for (size_t k = 0; k < l->count; k++) strut_axis_include(&y, level_energy(l, k));
-  strut_axis_include(
-      &y, strut_limit_without_outliers(l->tops, l->top_count, y.high, OUTLYING, beyond));
+  strut_axis_include(&y,
+                     strut_limit_without_outliers(l->tops, l->top_count, y.high, OUTLYING, beyond));
   strut_axis_settle(&y, 0.2);
   return y;
 }
 
 bool strut_ladder_fill(const strut_equilibria *all, const size_t *chosen, size_t count,
                        strut_arena *arena, strut_panel *panel) {
-  static const strut_pen pens[] = {{.colour = {0.35, 0.35, 0.35, 1}, .width = 0.9},
-                                   {.colour = {0.65, 0.65, 0.65, 1}, .width = 0.6, .dash = {2.5, 2}},
-                                   {.colour = {0, 96 / 255.0, 168 / 255.0, 1}, .width = 2, .butt = true}};
+  static const strut_pen pens[] = {
+      {.colour = {0.35, 0.35, 0.35, 1}, .width = 0.9},
+      {.colour = {0.65, 0.65, 0.65, 1}, .width = 0.6, .dash = {2.5, 2}},
+      {.colour = {0, 96 / 255.0, 168 / 255.0, 1}, .width = 2, .butt = true}};
   static const char *const no_names[] = {NULL};
   ladder l = {.all = all, .chosen = chosen, .count = count, .zero = HUGE_VAL, .arena = arena};
   strut_series *series = strut_arena_allocate(arena, 3, sizeof *series);
@@ -155,8 +156,7 @@ bool strut_ladder_fill(const strut_equilibria *all, const size_t *chosen, size_t
   for (size_t k = 0; k < count; k++) l.zero = fmin(l.zero, all->list[chosen[k]].energy);
   l.marks = strut_arena_allocate(arena, 2 * count, sizeof *l.marks);
   l.tops = strut_arena_allocate(arena, count * count + 1, sizeof *l.tops);
-  bool fine = series && l.marks && l.tops &&
-              allocate_columns(&l.levels, l.level, 3 * count, arena);
+  bool fine = series && l.marks && l.tops && allocate_columns(&l.levels, l.level, 3 * count, arena);
   for (int far = 0; far < 2 && fine; far++)
     fine = allocate_columns(&l.arcs[far], l.arc[far], (ARC + 1) * count * (far ? FEW : 1), arena);
   if (!fine || !add_passes(&l)) return false;

@@ -106,10 +106,8 @@ static strut_shape *add_panel(picture *p, size_t i, double margin) {
   size_t k = p->panel_count++;
   double energy = fabs(e->energy) > ROUNDING * p->largest_energy ? e->energy : 0;
   p->shapes[k] = (strut_shape){.model = p->model, .q = drawn_shape(p, i), .ground = true};
-  p->views[k] = (strut_view){.shape_count = 1,
-                             .shapes = &p->shapes[k],
-                             .bounds = shared_bounds(p, i),
-                             .margin = margin};
+  p->views[k] = (strut_view){
+      .shape_count = 1, .shapes = &p->shapes[k], .bounds = shared_bounds(p, i), .margin = margin};
   p->panels[k] = (strut_panel){.note = p->texts[k], .view = &p->views[k]};
   snprintf(p->texts[k], NOTE, "%s, %s", strut_drawn_quantity(energy, 6, "J").text, e->verdict);
   return &p->shapes[k];

@@ -99,8 +99,7 @@ static bool add_mode(picture *p, size_t k) {
   const strut_model *model = p->model;
   mode_panel *to = &p->of[k];
   double most = 0.0;
-  to->moved =
-      strut_arena_copy(&p->arena, p->modes->q, (size_t)model->length, sizeof *to->moved);
+  to->moved = strut_arena_copy(&p->arena, p->modes->q, (size_t)model->length, sizeof *to->moved);
   to->strain = strut_arena_allocate(&p->arena, model->scene->member_count + 1, sizeof(double));
   if (!to->moved || !to->strain) return false;
   for (int32_t i = 0; i < model->node_count; i++)
@@ -139,14 +138,13 @@ static bool add_modes(picture *p) {
   const double *q = p->modes->q;
   p->of = strut_arena_allocate(&p->arena, p->count + 1, sizeof *p->of);
   p->panels = strut_arena_allocate(&p->arena, p->count + 1, sizeof *p->panels);
-  p->rings =
-      strut_arena_allocate(&p->arena, (size_t)p->modes->closed_count + 1, sizeof *p->rings);
+  p->rings = strut_arena_allocate(&p->arena, (size_t)p->modes->closed_count + 1, sizeof *p->rings);
   p->taut = strut_arena_allocate(&p->arena, p->model->scene->member_count + 1, sizeof(double));
   if (!p->of || !p->panels || !p->rings || !p->taut) return false;
   for (size_t j = 0; j < p->model->scene->member_count; j++)
-    p->taut[j] = p->model->scene->members[j].kind != STRUT_CABLE ||
-                 strut_member_path_length(p->model, (int32_t)j, q) >
-                     p->model->members.rest[j] * (1 - 1e-12);
+    p->taut[j] =
+        p->model->scene->members[j].kind != STRUT_CABLE ||
+        strut_member_path_length(p->model, (int32_t)j, q) > p->model->members.rest[j] * (1 - 1e-12);
   for (int32_t k = 0; k < p->modes->closed_count; k++) {
     const double *at = q + 2 * p->modes->closed[k];
     p->rings[k] = (strut_mark){.at = {at[0], at[1]}, .ring = true};
@@ -200,6 +198,7 @@ strut_status strut_modes_figure(const strut_plot *plot, const strut_model *model
                                                .panels = p.panels,
                                                .columns = MOST,
                                                .least_width = NARROWEST,
+                                               .aspect = 0.95,
                                                .key_count = sizeof keys / sizeof *keys,
                                                .keys = keys},
                                error);

@@ -13,7 +13,7 @@
 enum { MOST_STOPS = 10, STOP_TEXT = 160, LABEL = 200, NOTE = 80, KEYS = MOST_STOPS + 5 };
 
 static const double MARGIN = 15.0, GAP = 4.0;  /* [pt]; between a node and the arrow of its load */
-static const double CURVE = 0.72; /* height over width of the curve's panel */
+static const double CURVE = 0.72;              /* height over width of the curve's panel */
 static const double ARROW = 0.13;              /* a load's, of the structure's size */
 static const double SEEN = 0.05, LARGE = 0.12; /* motion over the structure's size */
 static const double NO_MOTION = 1e-10;         /* likewise: rounding, which is not enlarged */
@@ -100,7 +100,7 @@ static void add_point(const path_picture *p, path_curve *curve, const strut_path
   double start = p->path->points[0].at.q[p->coordinate];
   curve->at[k] = at;
   curve->motion[k] = p->sign * (at->q[p->coordinate] - start);
-  curve->height[k] = p->path->coordinate >= 0    ? at->reaction[p->path->coordinate]
+  curve->height[k] = p->path->coordinate >= 0   ? at->reaction[p->path->coordinate]
                      : p->path->reference > 0.0 ? at->factor * p->path->reference
                                                 : at->factor;
   curve->unstable[k] = unstable;
@@ -430,21 +430,17 @@ static strut_status draw_picture(path_picture *p, const strut_plot *plot, strut_
   bool force = path->reference > 0 || path->coordinate >= 0;
   const strut_axis motion = {
       .name = labels[0], .unit = "m", .low = (double)NAN, .high = (double)NAN};
-  const strut_axis height = {.name = labels[1],
-                             .unit = force ? "N" : path->unit,
-                             .low = (double)NAN,
-                             .high = (double)NAN};
-  const strut_panel panels[2] = {{.x = p->upright ? height : motion,
-                                  .y = p->upright ? motion : height,
-                                  .series_count = branches + 1,
-                                  .series = series,
-                                  .room = 0.05,
-                                  .mark_count = p->stop_count,
-                                  .marks = marks[0]},
-                                 {.view = &p->view,
-                                  .mark_count = p->stop_count,
-                                  .marks = marks[1],
-                                  .beside = true}};
+  const strut_axis height = {
+      .name = labels[1], .unit = force ? "N" : path->unit, .low = (double)NAN, .high = (double)NAN};
+  const strut_panel panels[2] = {
+      {.x = p->upright ? height : motion,
+       .y = p->upright ? motion : height,
+       .series_count = branches + 1,
+       .series = series,
+       .room = 0.05,
+       .mark_count = p->stop_count,
+       .marks = marks[0]},
+      {.view = &p->view, .mark_count = p->stop_count, .marks = marks[1], .beside = true}};
   const strut_figure figure = {.title = p->model->scene->name,
                                .panel_count = 2,
                                .panels = panels,

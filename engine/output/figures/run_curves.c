@@ -250,12 +250,12 @@ bool strut_run_panel(strut_run_scene *run, int kind, size_t first, strut_panel *
   for (size_t i = 0; i < p.count; i++)
     series[i] = (strut_series){
         .label = p.labels[i], .count = frames, .x = time, .y = p.values[i], .look = -1};
-  *to = (strut_panel){
-      .x = {.name = "time", .unit = "s", .low = time[0], .high = time[frames - 1]},
-      .y = {.name = p.name, .unit = p.unit, .low = (double)NAN, .high = (double)NAN},
-      .series_count = p.count,
-      .series = series,
-      .height = CURVES_HEIGHT};
+  *to =
+      (strut_panel){.x = {.name = "time", .unit = "s", .low = time[0], .high = time[frames - 1]},
+                    .y = {.name = p.name, .unit = p.unit, .low = (double)NAN, .high = (double)NAN},
+                    .series_count = p.count,
+                    .series = series,
+                    .height = CURVES_HEIGHT};
   find_range(&p, frames, kind, &to->y);
   return true;
 }
@@ -318,8 +318,8 @@ static bool add_paths(strut_run_scene *run, strut_view *view) {
   for (size_t i = 0; i < nodes; i++) {
     const double *end = strut_run_positions(run, run->frames - 1) + 2 * i;
     for (size_t f = 0; f < count; f++) {
-      double *at = memcpy(path[i * count + f], strut_run_positions(run, first + f) + 2 * i,
-                          sizeof *path);
+      double *at =
+          memcpy(path[i * count + f], strut_run_positions(run, first + f) + 2 * i, sizeof *path);
       if (fabs(at[0] - end[0]) > least || fabs(at[1] - end[1]) > least) view->trail_count = nodes;
     }
     trails[i] = (strut_trail){.kind = STRUT_TRAIL_SEQUENCE,

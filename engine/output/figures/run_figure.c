@@ -226,8 +226,8 @@ static const double FRINGE =
 static const strut_colour DASHES = {0.25, 0.25, 0.25, 1};
 
 bool strut_run_find_other(const strut_run_scene *run, strut_run_scene *other) {
-  *other = (strut_run_scene){
-      .figure = run->figure, .model = run->model, .motion = run->figure->other};
+  *other =
+      (strut_run_scene){.figure = run->figure, .model = run->model, .motion = run->figure->other};
   if (!other->motion || !other->motion->position) return false;
   strut_run_count_frames(other);
   return other->frames > 0;

@@ -206,8 +206,7 @@ static strut_status encode(making *m, strut_error *error) {
 strut_status strut_film_make(strut_film *film, const strut_model *model,
                              const strut_trajectory *motion, strut_error *error) {
   const strut_run_figure figure = {.experiment = film->experiment};
-  making m = {.film = film,
-              .run = {.figure = &figure, .model = model, .motion = motion}};
+  making m = {.film = film, .run = {.figure = &figure, .model = model, .motion = motion}};
   if (motion->position) strut_run_count_frames(&m.run);
   if (!m.run.frames)
     return strut_fail(error, STRUT_DIVERGED, "the recording holds no motion to film");

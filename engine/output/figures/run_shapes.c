@@ -125,13 +125,12 @@ bool strut_run_period(strut_run_scene *run, strut_figure *figure, char *note) {
   strut_trail *trails = strut_arena_allocate(&run->arena, 2 * nodes, sizeof *trails);
   if (!to || !trails || !find_paths(run, &paths[0])) return false;
   if (!find_other_paths(run, &paths[0], &paths[1])) return false;
-  to->shape = (strut_shape){.model = run->model,
-                            .q = paths[0].shape,
-                            .style = {.colouring = STRUT_COLOUR_ONE,
-                                      .colour = strut_grey(0.72),
-                                      .thinness = 0.5},
-                            .ground = true,
-                            .names = true};
+  to->shape = (strut_shape){
+      .model = run->model,
+      .q = paths[0].shape,
+      .style = {.colouring = STRUT_COLOUR_ONE, .colour = strut_grey(0.72), .thinness = 0.5},
+      .ground = true,
+      .names = true};
   to->view = (strut_view){.shape_count = 1,
                           .shapes = &to->shape,
                           .trails = trails,
@@ -319,8 +318,8 @@ static bool fill_cell(strut_run_scene *run, const grid *g, size_t i, strut_panel
       strut_drawn_quantity(run->motion->time[cell->frame], count_digits(run, g), "s").text;
   int used = snprintf(cell->title, sizeof cell->title, "%s", time);
   if (i > 0 && fabs(path) > 1e-6 * run->model->size)
-    snprintf(cell->title + used, sizeof cell->title - (size_t)used, ", x %s%s",
-             path > 0 ? "+" : "", strut_drawn_quantity(path, 3, "m").text);
+    snprintf(cell->title + used, sizeof cell->title - (size_t)used, ", x %s%s", path > 0 ? "+" : "",
+             strut_drawn_quantity(path, 3, "m").text);
   if (!strut_run_shape(run, cell->frame, &cell->shapes[1])) return false;
   cell->shapes[1].names = true;
   cell->line[0][0] = cell->line[1][0] = start;
@@ -357,6 +356,7 @@ bool strut_run_snapshots(strut_run_scene *run, strut_figure *figure, char *note)
   strut_run_describe_other(run, note, STRUT_RUN_NOTE);
   figure->panels = panels;
   figure->panel_count = figure->columns = g.count;
+  figure->aspect = 0.95;
   figure->yardstick = true;
   figure->scale = strut_run_scale(run);
   figure->keys = strut_run_arrow_item(run);

@@ -77,6 +77,7 @@ strut_status strut_form_figure(const strut_plot *plot, const strut_model *model,
                         .note = note,
                         .panel_count = 1,
                         .panels = &panel,
+                        .aspect = 0.9,
                         .yardstick = true,
                         .scale = {"force", "N", -limit, limit, STRUT_COLOURS_SIGNED, {0}}},
         error);
@@ -116,8 +117,8 @@ static bool forces_told(const picture *p) {
 /* The next panel, with so many shapes. Its title is written to what is returned. */
 static char *add_panel(picture *p, size_t shapes) {
   size_t k = p->count++;
-  p->views[k] =
-      (strut_view){.shape_count = shapes, .shapes = p->shapes[k], .bounds = p->bounds, .margin = MARGIN};
+  p->views[k] = (strut_view){
+      .shape_count = shapes, .shapes = p->shapes[k], .bounds = p->bounds, .margin = MARGIN};
   p->panels[k] = (strut_panel){.title = p->titles[k], .view = &p->views[k]};
   return p->titles[k];
 }
@@ -126,8 +127,7 @@ static char *add_panel(picture *p, size_t shapes) {
 static bool add_mechanism(picture *p, int32_t number) {
   const strut_mechanism *mechanism = &p->rigidity->mechanisms.list[number];
   const strut_equilibrium_matrix *a = &p->rigidity->matrix;
-  double *moved =
-      strut_arena_copy(&p->arena, p->q, (size_t)p->model->length, sizeof *moved);
+  double *moved = strut_arena_copy(&p->arena, p->q, (size_t)p->model->length, sizeof *moved);
   double most = largest(mechanism->motion, (size_t)a->rows);
   if (!moved) return false;
   for (int32_t r = 0; r < a->rows && most > 0; r++)
@@ -169,15 +169,16 @@ static bool add_panels(picture *p, int32_t columns) {
   if (states > room - kept) states = room - kept;
   if (motions > room - states) motions = room - states;
   for (int32_t i = 0; i < states; i++) {
-    p->shapes[p->count][0] = force_shape(
-        p->model, p->q, r->states.force + (size_t)i * (size_t)r->matrix.columns);
+    p->shapes[p->count][0] =
+        force_shape(p->model, p->q, r->states.force + (size_t)i * (size_t)r->matrix.columns);
     snprintf(add_panel(p, 1), TITLE, "self-stress %d%s", (int)i + 1,
              r->has_cables && !r->states.cables_pull[i] ? ", presses cables" : "");
   }
   for (int32_t i = 0; i < motions; i++)
     if (!add_mechanism(p, i)) return false;
   if (p->count) return true;
-  p->shapes[0][0] = (strut_shape){.model = p->model, .q = p->q, .names = true}; /* the shape itself */
+  p->shapes[0][0] =
+      (strut_shape){.model = p->model, .q = p->q, .names = true}; /* the shape itself */
   add_panel(p, 1)[0] = '\0';
   return true;
 }
@@ -199,14 +200,15 @@ strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *mo
   if (status == STRUT_OK)
     status = strut_figure_draw(
         plot,
-        &(strut_figure){.title = model->scene->name,
-                        .note = note,
-                        .panel_count = p.count,
-                        .panels = p.panels,
-                        .columns = COLUMNS,
-                        .yardstick = true,
-                        .scale = {forces ? "force, of the largest" : NULL, "", -1, 1,
-                                  STRUT_COLOURS_SIGNED, {0}}},
+        &(strut_figure){
+            .title = model->scene->name,
+            .note = note,
+            .panel_count = p.count,
+            .panels = p.panels,
+            .columns = COLUMNS,
+            .yardstick = true,
+            .scale =
+                {forces ? "force, of the largest" : NULL, "", -1, 1, STRUT_COLOURS_SIGNED, {0}}},
         error);
   strut_arena_free(&p.arena);
   return status;

@@ -117,8 +117,8 @@ static bool add_curve(maker *m, const size_t *rows, size_t count, size_t curve, 
     x[i] = column_of(m, m->figure->x)->value[rows[i]];
     y[i] = column_of(m, m->figure->y[k])->value[rows[i]];
   }
-  ((strut_series *)panel->series)[panel->series_count++] = (strut_series){
-      .label = curve_name(m, curve, k), .count = count, .x = x, .y = y, .look = -1};
+  ((strut_series *)panel->series)[panel->series_count++] =
+      (strut_series){.label = curve_name(m, curve, k), .count = count, .x = x, .y = y, .look = -1};
   return x && y;
 }
 
@@ -296,8 +296,7 @@ static const char *name_y_axis(maker *m) {
 static strut_status check_column(const maker *m, int column) {
   const strut_table_column *c = column_of(m, column), *first = column_of(m, m->figure->y[0]);
   if (!c || !c->value)
-    return strut_fail(m->error, STRUT_USAGE, "column '%s' does not hold numbers",
-                      c ? c->name : "");
+    return strut_fail(m->error, STRUT_USAGE, "column '%s' does not hold numbers", c ? c->name : "");
   if (column == m->figure->x || strcmp(c->unit, first->unit) == 0) return STRUT_OK;
   return strut_fail(m->error, STRUT_USAGE,
                     "columns '%.60s' and '%.60s' have different units (%s, %s): draw them in "
@@ -320,8 +319,7 @@ static strut_status prepare(maker *m) {
     status = strut_table_groups_find(m->table, f->by, STRUT_MOST_TABLE_GROUPS, "curves", &m->curves,
                                      m->error);
   if (!status && f->kind == STRUT_TABLE_MAP) status = prepare_grid(m);
-  if (!status && !(m->y_name = name_y_axis(m)))
-    status = strut_no_memory(m->error, "while drawing");
+  if (!status && !(m->y_name = name_y_axis(m))) status = strut_no_memory(m->error, "while drawing");
   return status;
 }
 
@@ -332,8 +330,8 @@ static bool fill_panel(maker *m, size_t i, strut_panel *panel) {
   *panel = (strut_panel){.x = {x->name, x->unit, f->log_x, (double)NAN, (double)NAN},
                          .y = {m->y_name, y->unit, f->log_y, (double)NAN, (double)NAN}};
   if (value && value->value)
-    panel->scale = (strut_colour_scale){
-        .name = value->name, .unit = value->unit, .colours = f->colours};
+    panel->scale =
+        (strut_colour_scale){.name = value->name, .unit = value->unit, .colours = f->colours};
   if (f->panels != STRUT_NO_COLUMN && !(panel->title = panel_title(m, i))) return false;
   return f->kind == STRUT_TABLE_CURVES ? fill_curves(m, i, panel)
          : f->kind == STRUT_TABLE_MAP  ? fill_map(m, i, panel)
@@ -357,12 +355,11 @@ static strut_status draw(maker *m, const strut_plot *plot) {
 /* The rows that are compared are equal in these columns. */
 static strut_table_pairing pair_rows(const strut_table_figure *f) {
   bool map = f->kind == STRUT_TABLE_MAP;
-  return (strut_table_pairing){
-      .keys = {map ? f->y[0] : f->by, f->panels, f->x},
-      .key_count = 3,
-      .between = f->between,
-      .values = map ? &f->value : f->y,
-      .value_count = map ? 1 : (size_t)f->y_count};
+  return (strut_table_pairing){.keys = {map ? f->y[0] : f->by, f->panels, f->x},
+                               .key_count = 3,
+                               .between = f->between,
+                               .values = map ? &f->value : f->y,
+                               .value_count = map ? 1 : (size_t)f->y_count};
 }
 
 strut_status strut_table_draw(const strut_plot *plot, const strut_table_figure *figure,

@@ -37,7 +37,8 @@ typedef struct strut_table_figure {
   int by;   /* a curve for each of its texts */
   int band; /* grey where it has the text `band_value`, midway to the next points */
   const char *band_value;
-  bool log_x, log_y, between; /* between: of a difference, the first side is interpolated linearly */
+  bool log_x, log_y,
+      between; /* between: of a difference, the first side is interpolated linearly */
   /* Of maps and points. */
   int value, doubt; /* doubt: hatched where it is not empty, 0, false or no */
   strut_colours colours;
@@ -48,8 +49,10 @@ typedef struct strut_table_figure {
 #define STRUT_TABLE_FIGURE                                                                         \
   (strut_table_figure) {                                                                           \
     .y_count = 1, .panels = STRUT_NO_COLUMN, .by = STRUT_NO_COLUMN, .band = STRUT_NO_COLUMN,       \
-    .value = STRUT_NO_COLUMN, .doubt = STRUT_NO_COLUMN,                                            \
-    .choice = {.only = STRUT_NO_COLUMN, .difference = STRUT_NO_COLUMN}                             \
+    .value = STRUT_NO_COLUMN, .doubt = STRUT_NO_COLUMN, .choice = {                                \
+      .only = STRUT_NO_COLUMN,                                                                     \
+      .difference = STRUT_NO_COLUMN                                                                \
+    }                                                                                              \
   }
 
 /**

@@ -10,8 +10,8 @@ enum { NAME = 200 };
 
 /* Over one step the phase itself; over two the place on the line, with its corners by name. */
 static void name_axis(const strut_waves *w, char text[NAME]) {
-  size_t used = (size_t)snprintf(text, NAME, "%s",
-                                 w->steps == 1 ? "phase from cell to cell in turns" : "wave vector:");
+  size_t used = (size_t)snprintf(
+      text, NAME, "%s", w->steps == 1 ? "phase from cell to cell in turns" : "wave vector:");
   for (int32_t i = 0; i < w->corner_count && w->steps == 2; i++) {
     const char *name = w->corner[i].name[0] == 'G' ? "\u0393" : w->corner[i].name;
     used += (size_t)snprintf(text + used, NAME - used, "%s %s at %d", i ? "," : "", name, (int)i);
