@@ -146,7 +146,7 @@ typedef struct strut_figure {
   size_t panel_count;
   const strut_panel *panels; /* in rows; of a row all charts are as high as the highest */
   size_t columns;            /* at most; 0: 3 */
-  double least_width; /* of a panel in a row with others [pt]; 0: a chart by itself, a view 105 */
+  double least_width; /* of a panel in a row with others [pt]; 0: a chart by itself, a view 98 */
   double aspect; /* height over width: of a chart without a height, 0: 0.62; of all views, 0: any */
   bool shared_axes; /* all charts get the ranges that hold all of them */
   bool one_legend;  /* of all charts, above them */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 static const double GAP = 12, SCALE = 46, LEAST = 46, CAPTION = 26; /* [pt] */
-static const double NARROWEST = 105, SMALLEST = 72;                 /* panels [pt] */
+static const double NARROWEST = 98, SMALLEST = 72;                 /* panels [pt] */
 static const double MARK = 2.7, RING = 3.4;                         /* radii [pt] */
 static const double COVERED = 0.12, TALLEST = 1.2; /* of a view, by names; height over width */
 static const double DOT = 0.3,
@@ -267,7 +267,7 @@ double strut_draw_foot(strut_canvas *canvas, strut_box box, const strut_figure *
         &figure->scale);
   if (left > 0) {
     strut_window stick = *window;
-    stick.box.x = box.x - 3;
+    stick.box.x = box.x;
     stick.box.y = box.y + height - stick.box.height;
     strut_draw_yardstick(canvas, &stick);
   }

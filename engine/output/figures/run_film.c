@@ -71,7 +71,7 @@ static FILE *start_ffmpeg(const strut_film *film, const char *path) {
   return setenv("STRUT_FILM", path, 1) ? NULL : popen(command, "w");
 }
 
-static const double PAGE = 512, HEAD = 30, FOOT = 40, EDGE = 14, MARGIN = 24; /* [pt] */
+static const double PAGE = 512, HEAD = 30, FOOT = 40, EDGE = 14, MARGIN = 18; /* [pt] */
 static const double FAR = 1; /* sizes of the structure over which the window moves along */
 
 typedef struct making {
