@@ -38,8 +38,8 @@ static void fill(diagram *d, const precision_row *rows, size_t count, bool time)
 
 static bool fill_panel(const diagram *d, bool time, strut_arena *arena, strut_panel *panel) {
   const strut_work_precision wanted = {
-      .cost = {time ? "CPU time [s]" : "force evaluations", "", true, (double)NAN, (double)NAN},
-      .error = {"relative error of the velocity", "", true, LEAST, 1.0},
+      .cost = strut_axis_of(time ? "CPU time [s]" : "force evaluations", ""),
+      .error = {.name = "relative error of the velocity", .unit = "", .low = LEAST, .high = 1.0},
       .group_count = d->groups,
       .count = d->count,
       .groups = d->names,

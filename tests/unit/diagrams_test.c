@@ -63,7 +63,8 @@ TEST(prefixes) {
 
 static strut_tick_set ticks_of(const char *unit, bool logarithmic, double low, double high) {
   strut_tick_set set;
-  const strut_axis axis = {"error", unit, logarithmic, low, high};
+  const strut_axis axis = {
+      .name = "error", .unit = unit, .logarithmic = logarithmic, .low = low, .high = high};
   strut_axis_ticks(&axis, 5, &set);
   return set;
 }
@@ -126,7 +127,8 @@ TEST(settle) {
   for (size_t i = 0; i < COUNT; i++)
     for (size_t k = 0; k < COUNT; k++)
       for (int logarithmic = 0; logarithmic < 2; logarithmic++) {
-        strut_axis axis = {"a", "m", logarithmic, (double)NAN, (double)NAN};
+        strut_axis axis = strut_axis_of("a", "m");
+        axis.logarithmic = logarithmic;
         strut_tick_set set;
         strut_axis_include(&axis, values[i]);
         strut_axis_include(&axis, values[k]);
@@ -201,8 +203,8 @@ TEST(labels_of_the_front) {
                                          {1, "50 us", 2, 1e-4, (double)NAN, (double)NAN},
                                          {1, "25 us", 3, 1e-5, (double)NAN, (double)NAN}};
   static const char *const labels[] = {"50 \u00b5s, rk4", "50 \u00b5s, verlet", "25 \u00b5s"};
-  const strut_work_precision diagram = {.cost = {"cost", "", true, (double)NAN, (double)NAN},
-                                        .error = {"error", "m", true, (double)NAN, (double)NAN},
+  const strut_work_precision diagram = {.cost = strut_axis_of("cost", ""),
+                                        .error = strut_axis_of("error", "m"),
                                         .group_count = 2,
                                         .count = 3,
                                         .groups = groups,
@@ -244,8 +246,8 @@ TEST(map) {
                          .category = category,
                          .category_count = 2,
                          .names = names};
-  strut_panel panel = {.x = {"a", "", false, (double)NAN, (double)NAN},
-                       .y = {"b", "", false, (double)NAN, (double)NAN},
+  strut_panel panel = {.x = strut_axis_of("a", ""),
+                       .y = strut_axis_of("b", ""),
                        .map = &map};
   strut_arena arena = {0};
   strut_canvas *canvas;

@@ -3,6 +3,8 @@
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_CHART_H
 #define STRUT_ENGINE_OUTPUT_DRAW_CHART_H
 
+#include <math.h>
+
 #include "engine/output/buffer.h"
 #include "engine/output/draw/canvas.h"
 
@@ -16,6 +18,11 @@ typedef struct strut_axis {
   const char *const *names; /* (name_count) of categories at 0, 1, ..., instead of numbers; or NULL */
   size_t name_count;
 } strut_axis;
+
+/** A linear axis whose range comes from the data. */
+static inline strut_axis strut_axis_of(const char *name, const char *unit) {
+  return (strut_axis){.name = name, .unit = unit, .low = (double)NAN, .high = (double)NAN};
+}
 
 /** A label and a range that replace those of an axis. Zero-initialised: none. */
 typedef struct strut_axis_choice {

@@ -327,8 +327,8 @@ static bool fill_panel(maker *m, size_t i, strut_panel *panel) {
   const strut_table_figure *f = m->figure;
   const strut_table_column *x = column_of(m, f->x), *y = column_of(m, f->y[0]);
   const strut_table_column *value = column_of(m, f->value);
-  *panel = (strut_panel){.x = {x->name, x->unit, f->log_x, (double)NAN, (double)NAN},
-                         .y = {m->y_name, y->unit, f->log_y, (double)NAN, (double)NAN}};
+  *panel = (strut_panel){.x = strut_axis_of(x->name, x->unit), .y = strut_axis_of(m->y_name, y->unit)};
+  panel->x.logarithmic = f->log_x, panel->y.logarithmic = f->log_y;
   if (value && value->value)
     panel->scale =
         (strut_colour_scale){.name = value->name, .unit = value->unit, .colours = f->colours};

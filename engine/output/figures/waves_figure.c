@@ -40,8 +40,8 @@ strut_status strut_waves_figure(const strut_plot *plot, const strut_model *model
     if (w->gaps[g].below < w->shown)
       bands[gaps++] = (strut_band){w->gaps[g].low, w->gaps[g].high, true, "no waves"};
   name_axis(w, name);
-  const strut_panel panel = {.x = {name, "", false, 0, w->steps == 1 ? 0.5 : w->corner_count - 1.0},
-                             .y = {"frequency", "Hz", false, (double)NAN, (double)NAN},
+  const strut_panel panel = {.x = {.name = name, .high = w->steps == 1 ? 0.5 : w->corner_count - 1.0},
+                             .y = strut_axis_of("frequency", "Hz"),
                              .series_count = lines,
                              .series = series,
                              .band_count = gaps,

@@ -106,8 +106,7 @@ strut_status strut_branch_draw(const strut_plot *plot, const strut_branch_pictur
 /* ---- velocity over the parameter ---- */
 
 static strut_axis height_axis(bool travels) {
-  return (strut_axis){travels ? "velocity" : "amplitude", travels ? "m/s" : "m", false, (double)NAN,
-                      (double)NAN};
+  return strut_axis_of(travels ? "velocity" : "amplitude", travels ? "m/s" : "m");
 }
 
 static bool is_special(strut_follow_kind kind) {
@@ -134,7 +133,7 @@ strut_status strut_follow_figure(const strut_plot *plot, const strut_follow_resu
   for (size_t i = 0; i < r->count; i++) points += r->branches[i].branch.count;
   strut_branch_picture p = {
       .title = r->title,
-      .along = {r->name, r->unit, false, (double)NAN, (double)NAN},
+      .along = strut_axis_of(r->name, r->unit),
       .upwards = height_axis(r->count && r->branches[0].branch.travels)};
   bool fine = strut_branch_begin(&p, r->count, points);
   add_keys(&p);
@@ -237,7 +236,7 @@ strut_status strut_follow_points_figure(const strut_plot *plot, const strut_swee
       return strut_fail(error, STRUT_FILE_TROUBLE, "branches.csv lacks a column");
   strut_branch_picture p = {
       .title = plan->study->name,
-      .along = {f->over, f->unit, false, (double)NAN, (double)NAN},
+      .along = strut_axis_of(f->over, f->unit),
       .upwards =
           height_axis(!table->row_count || !isfinite(number_of(s.column[AMPLITUDE], 0)))};
   strut_c_locale locale = strut_c_locale_enter();

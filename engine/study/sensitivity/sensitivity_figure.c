@@ -76,7 +76,7 @@ static bool fill_bars(const strut_sensitivity_result *result, size_t first, size
     add_bars(series, row, (double)(count - 1 - k));
   }
   *panel = (strut_panel){.title = result->rows[first].of,
-                         .x = {"", "", false, 0, MOST},
+                         .x = {.high = MOST},
                          .y = {"", "", false, -0.6, (double)count - 0.4, names, count},
                          .series_count = 3,
                          .series = series,

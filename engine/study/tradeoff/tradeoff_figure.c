@@ -121,8 +121,8 @@ strut_status strut_tradeoff_figure(const strut_plot *plot, const strut_tradeoff 
     p->savings = strut_arena_allocate(&arena, 2 * r->row_count + 1, sizeof *p->savings);
     fine = measure && p->savings && (i ? fill_models(p, r) : fill_methods(p, r));
     const strut_work_precision diagram = {.title = titles[i],
-                                          .cost = {cost, "", true, (double)NAN, (double)NAN},
-                                          .error = {measure, "", true, (double)NAN, (double)NAN},
+                                          .cost = strut_axis_of(cost, ""),
+                                          .error = strut_axis_of(measure, ""),
                                           .group_count = p->group_count,
                                           .count = p->count,
                                           .groups = p->groups,

@@ -94,7 +94,7 @@ static strut_status draw_structure(const strut_model *model, const double *q, co
   if (status != STRUT_OK) return status;
   strut_window window = strut_window_fit((strut_box){0, 0, WIDTH, height}, bounds, MARGIN);
   strut_structure_style style = {.node_names = true, .member_names = true};
-  strut_draw_ground(canvas, &window, model);
+  strut_draw_ground(canvas, &window, model, (double)NAN);
   strut_draw_structure(canvas, &window, model, q, &style);
   status = strut_canvas_commit(canvas, what);
   strut_canvas_free(canvas);
