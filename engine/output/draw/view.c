@@ -5,7 +5,7 @@
 #include <string.h>
 
 static const double GAP = 12, SCALE = 46, LEAST = 46, CAPTION = 26; /* [pt] */
-static const double NARROWEST = 98, SMALLEST = 72;                 /* panels [pt] */
+static const double NARROWEST = 98, SMALLEST = 72;                  /* panels [pt] */
 static const double MARK = 2.7, RING = 3.4;                         /* radii [pt] */
 static const double COVERED = 0.12, TALLEST = 1.2; /* of a view, by names; height over width */
 static const double DOT = 0.3,
