@@ -4,26 +4,31 @@
 #include <math.h>
 #include <string.h>
 
-static const double GAP = 12, SCALE = 46, LEAST = 46, CAPTION = 26; /* [pt] */
-static const double NARROWEST = 98, SMALLEST = 72;                  /* panels [pt] */
-static const double MARK = 2.7, RING = 3.4;                         /* radii [pt] */
-static const double COVERED = 0.12, TALLEST = 1.2; /* of a view, by names; height over width */
+static const double GAP = 12, LEAST = 46, CAPTION = 26; /* [pt] */
+static const double NARROWEST = 98, SMALLEST = 72;      /* panels [pt] */
+static const double MARK = 2.7, RING = 3.4;             /* radii [pt] */
+static const double COVERED = 0.25;                     /* of a view, by names */
+static const double TALLEST = 1.2,
+                    LOWEST = 0.6; /* of drawings: height over width at most, at least */
 static const double DOT = 0.3,
                     NODE = 2.3; /* a path seen as a dot; radius of a node as drawn [pt] */
 enum { LED = 200, COLUMNS = 3, SMALL_COLUMNS = 6, TRAIL_SHADES = 64 };
 
 /* ---- one view ---- */
 
-/* True if names cover little of the drawing. */
-static bool names_fit(strut_canvas *canvas, strut_box box, const strut_model *model) {
-  double covered = 0.0;
+/* True if names cover little of what is seen. */
+static bool names_fit(strut_canvas *canvas, const strut_window *window, const strut_view *view,
+                      const strut_model *model) {
+  double covered = 0.0, seen = COVERED;
+  for (int d = 0; d < 2; d++)
+    seen *= (view->bounds.high[d] - view->bounds.low[d]) * window->scale + 2 * view->margin;
   for (int32_t i = 0; i < model->node_count; i++) {
     double width, height;
     strut_text_size(canvas, model->scene->nodes[i].name, (strut_font){.size = 7.5}, &width,
                     &height);
     covered += width * height;
   }
-  return covered <= COVERED * box.width * box.height;
+  return covered <= seen;
 }
 
 strut_pen strut_displacement_pen(void) {
@@ -166,7 +171,7 @@ strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_pa
   strut_canvas_unclip(canvas);
   for (size_t i = 0; i < view->shape_count; i++) {
     const strut_shape *s = &view->shapes[i];
-    if (s->names && names_fit(canvas, box, s->model))
+    if (s->names && names_fit(canvas, &window, view, s->model))
       strut_draw_names(canvas, &window, s->model, s->q, s->style.member_names);
   }
   if (view->yardstick) strut_draw_yardstick(canvas, &window);
@@ -178,7 +183,7 @@ strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_pa
 /* How panels are laid out: so many in a row, of this size, the drawing at their foot. */
 typedef struct rows {
   size_t columns;
-  double width, height, drawing, beside, gap; /* [pt] */
+  double width, height, drawing, gap; /* [pt] */
 } rows;
 
 /* What is written above a view; draws it if `draw`. */
@@ -186,7 +191,7 @@ static double write_caption(strut_canvas *canvas, strut_box box, const strut_pan
                             bool draw) {
   const strut_font bold = {.size = 8.5, .bold = true, .width = box.width};
   const strut_font plain = {
-      .size = panel->small ? 6.5 : 7.5, .colour = strut_grey(0.3), .width = box.width - 4};
+      .size = panel->small ? 6.5 : 7, .colour = strut_grey(0.3), .width = box.width - 4};
   char fitted[STRUT_FITTED_TEXT];
   double width, line = 0.0, y = 0.0;
   if (panel->title) {
@@ -204,38 +209,54 @@ static double write_caption(strut_canvas *canvas, strut_box box, const strut_pan
   return y;
 }
 
+/* What the views of several panels have to show. */
+typedef struct extent {
+  double size[2];       /* [m] */
+  double margin, below; /* around it, and more for arrows [pt] */
+} extent;
+
+static extent extent_of(const strut_panel *panels, size_t count) {
+  extent e = {0};
+  for (size_t i = 0; i < count; i++) {
+    const strut_view *view = panels[i].view;
+    for (int d = 0; d < 2; d++)
+      e.size[d] = fmax(e.size[d], view->bounds.high[d] - view->bounds.low[d]);
+    e.margin = fmax(e.margin, view->margin);
+    e.below = fmax(e.below, room_for_arrows(view));
+  }
+  return e;
+}
+
+/* The scale in a drawing of that size [pt/m]. */
+static double scale_in(const extent *e, double width, double height) {
+  return fmin((width - 2 * e->margin) / e->size[0],
+              (height - e->below - 2 * e->margin) / e->size[1]);
+}
+
 /* As many in a row as there is room for; or, on a page with a given aspect, as make the structures largest. */
 static rows arrange(strut_canvas *canvas, double width, const strut_figure *figure,
                     const strut_panel *panels, size_t count) {
-  rows best = {.beside = panels->scale.name ? SCALE : 0};
-  double size[2] = {0, 0}, margin = 0, scale = 0, caption = 0, below = 0;
-  for (size_t i = 0; i < count; i++) {
-    const strut_bounds *b = &panels[i].view->bounds;
-    for (int d = 0; d < 2; d++) size[d] = fmax(size[d], b->high[d] - b->low[d]);
-    margin = fmax(margin, panels[i].view->margin);
-    below = fmax(below, room_for_arrows(panels[i].view));
-  }
-  bool small = panels->small;
-  double gap = best.gap = small ? 0.5 * GAP : GAP;
+  const extent e = extent_of(panels, count);
+  bool small = panels->small, all = small || !(figure->aspect > 0);
   size_t most = small ? SMALL_COLUMNS : figure->columns ? figure->columns : COLUMNS;
   double least = small ? SMALLEST : figure->least_width > 0 ? figure->least_width : NARROWEST;
-  bool all = small || !(figure->aspect > 0);
+  double largest = 0, tallest = 0, caption = 0;
+  rows best = {.gap = small ? 0.5 * GAP : GAP};
   for (size_t columns = 1; columns <= most && columns <= count; columns++) {
     double deep = (double)((count + columns - 1) / columns);
-    double cell = (width - (double)(columns - 1) * gap) / (double)columns;
+    double cell = (width - (double)(columns - 1) * best.gap) / (double)columns;
+    double high = TALLEST * cell;
     if (cell < least && columns > 1) break;
-    double high = all ? TALLEST * cell
-                      : fmax(figure->aspect * width / deep - (count > 1 ? CAPTION : 0), LEAST);
-    double fits =
-        fmin((cell - best.beside - 2 * margin) / size[0], (high - below - 2 * margin) / size[1]);
-    if (fits < scale * (1 - 1e-9) && !all) continue; /* of equal scales the fewest rows win */
-    scale = fits;
-    best.columns = columns;
-    best.width = cell;
-    best.drawing = panels->height > 0 ? panels->height
-                   : isfinite(fits)   ? fmax(fits * size[1] + 2 * margin + below, LEAST)
-                                      : high;
+    if (!all) high = fmax(figure->aspect * width / deep - (count > 1 ? CAPTION : 0), LEAST);
+    double scale = scale_in(&e, cell, high);
+    if (scale < largest * (1 - 1e-9) && !all) continue; /* of equal scales the fewest rows win */
+    largest = scale, tallest = high;
+    best.columns = columns, best.width = cell;
   }
+  tallest = fmax(tallest, LOWEST * best.width);
+  double scale = scale_in(&e, best.width, tallest);
+  best.drawing = isfinite(scale) ? scale * e.size[1] + 2 * e.margin + e.below : tallest;
+  best.drawing = panels->height > 0 ? panels->height : fmax(best.drawing, LEAST);
   for (size_t i = 0; i < count; i++)
     caption =
         fmax(caption, write_caption(canvas, (strut_box){0, 0, best.width, 0}, &panels[i], false));
@@ -245,14 +266,16 @@ static rows arrange(strut_canvas *canvas, double width, const strut_figure *figu
 
 /* ---- below ---- */
 
-static const double STICK = 17, BAR = 34, BAR_WIDTH = 150, WORDS = 150, SIDE = 14; /* [pt] */
+static const double STICK = 17, BAR = 34, BAR_WIDTH = 150, WORDS = 150, SIDE = 14,
+                    NARROW = 170; /* [pt] */
 
 double strut_draw_foot(strut_canvas *canvas, strut_box box, const strut_figure *figure,
                        const strut_window *window, bool draw) {
   bool bar = figure->scale.name && figure->scale.high > figure->scale.low;
-  double right = bar ? fmin(BAR_WIDTH, 0.45 * box.width) : 0.0;
+  bool narrow = bar && box.width < NARROW; /* the scale of colours lies below the scale bar */
+  double right = narrow ? box.width : bar ? fmin(BAR_WIDTH, 0.45 * box.width) : 0.0;
   double left = window && figure->yardstick ? 0.3 * window->box.width + SIDE : 0.0;
-  double row = bar ? BAR : left > 0 ? STICK : 0.0;
+  double row = (bar ? BAR : 0) + (left > 0 && (narrow || !bar) ? STICK : 0);
   strut_box key = {box.x + left, box.y, box.width - left - right - (bar ? SIDE : 0), 0};
   bool above = row > 0 && key.width < WORDS; /* the key stands above both bars */
   if (above) key.x = box.x, key.width = box.width;
@@ -268,7 +291,7 @@ double strut_draw_foot(strut_canvas *canvas, strut_box box, const strut_figure *
   if (left > 0) {
     strut_window stick = *window;
     stick.box.x = box.x;
-    stick.box.y = box.y + height - stick.box.height;
+    stick.box.y = box.y + height - stick.box.height - (narrow ? BAR : 0);
     strut_draw_yardstick(canvas, &stick);
   }
   return height;
@@ -283,13 +306,8 @@ double strut_draw_views(strut_canvas *canvas, strut_box box, const strut_figure 
     strut_box cell = {box.x + (double)(i % r.columns) * (r.width + r.gap),
                       box.y + (double)(i / r.columns) * (r.height + r.gap), r.width, r.height};
     write_caption(canvas, cell, &panels[i], true);
-    strut_box drawing = {cell.x, cell.y + r.height - r.drawing, r.width - r.beside, r.drawing};
+    strut_box drawing = {cell.x, cell.y + r.height - r.drawing, r.width, r.drawing};
     window = strut_draw_view(canvas, drawing, &panels[i]);
-    if (r.beside > 0)
-      strut_draw_colour_scale(
-          canvas,
-          (strut_box){cell.x + r.width - SCALE + 6, drawing.y, SCALE - 6, fmin(r.drawing, 130)},
-          &panels[i].scale);
   }
   box.y += height + 0.5 * GAP;
   return foot ? height + 0.5 * GAP + strut_draw_foot(canvas, box, figure, &window, draw) : height;
