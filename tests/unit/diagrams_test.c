@@ -246,9 +246,7 @@ TEST(map) {
                          .category = category,
                          .category_count = 2,
                          .names = names};
-  strut_panel panel = {.x = strut_axis_of("a", ""),
-                       .y = strut_axis_of("b", ""),
-                       .map = &map};
+  strut_panel panel = {.x = strut_axis_of("a", ""), .y = strut_axis_of("b", ""), .map = &map};
   strut_arena arena = {0};
   strut_canvas *canvas;
   strut_error error;

@@ -116,7 +116,8 @@ static strut_page_format read_ending(const char *path) {
 strut_status strut_canvas_check_name(const char *path, strut_error *error) {
   if (read_ending(path) != STRUT_PAGE_PIXELS) return STRUT_OK;
   return strut_fail(error, STRUT_USAGE,
-                    "unknown picture format '%s': the name must end with .svg, .pdf or .png, or .json for its data",
+                    "unknown picture format '%s': the name must end with .svg, .pdf or .png, or "
+                    ".json for its data",
                     path);
 }
 

@@ -10,8 +10,11 @@
 #include "engine/output/draw/view.h"
 
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, CLOUD = 2.6; /* [pt] */
-static const double INSET = 4, PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP = 2.5, GAP = 6, SCALE = 52;
+static const double INSET = 4, PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP = 2.5, GAP = 6,
+                    SCALE = 52;
 enum { FEW_POINTS = 30, MARKERS = 8, MOST_LABELLED = 6 };
+
+static strut_fill band_fill(void) { return (strut_fill){.colour = strut_grey(0.86)}; }
 
 static size_t look_of(const strut_panel *p, size_t i) {
   return p->series[i].look >= 0 ? (size_t)p->series[i].look : i;
@@ -41,9 +44,8 @@ static size_t add_item(strut_key_item *items, size_t count, strut_key_item item)
 }
 
 static size_t name_cells(const strut_map *map, strut_key_item *items, size_t count) {
-  const strut_fill hatched = {.colour = strut_grey(1),
-                              .hatch = STRUT_HATCH_RISING,
-                              .hatch_colour = strut_grey(0.05)};
+  const strut_fill hatched = {
+      .colour = strut_grey(1), .hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.05)};
   const strut_fill blank = {.colour = strut_grey(1)};
   bool doubt = false, missing = false;
   for (size_t k = 0; k < map->columns * map->rows; k++) {
@@ -51,19 +53,18 @@ static size_t name_cells(const strut_map *map, strut_key_item *items, size_t cou
     missing = missing || !strut_map_has(map, k);
   }
   for (size_t i = 0; map->category && i < map->category_count; i++)
-    count = add_item(items, count,
-                     (strut_key_item){.sign = STRUT_KEY_AREA,
-                                      .fill = strut_category_fill(i),
-                                      .text = map->names[i]});
-  if (doubt)
-    count = add_item(items, count,
-                     (strut_key_item){.sign = STRUT_KEY_AREA,
-                                      .fill = hatched,
-                                      .text = map->doubt ? map->doubt : "doubtful"});
-  if (missing)
     count = add_item(
         items, count,
-        (strut_key_item){.sign = STRUT_KEY_AREA, .fill = blank, .text = "no result"});
+        (strut_key_item){
+            .sign = STRUT_KEY_AREA, .fill = strut_category_fill(i), .text = map->names[i]});
+  if (doubt)
+    count = add_item(
+        items, count,
+        (strut_key_item){
+            .sign = STRUT_KEY_AREA, .fill = hatched, .text = map->doubt ? map->doubt : "doubtful"});
+  if (missing)
+    count = add_item(items, count,
+                     (strut_key_item){.sign = STRUT_KEY_AREA, .fill = blank, .text = "no result"});
   return count;
 }
 
@@ -80,10 +81,9 @@ size_t strut_panel_legend(const strut_panel *p, strut_key_item *items, size_t co
                                       .text = p->series[i].label});
   }
   for (size_t i = 0; i < p->band_count; i++)
-    count = add_item(items, count,
-                     (strut_key_item){.sign = STRUT_KEY_AREA,
-                                      .fill = strut_band_fill(),
-                                      .text = p->bands[i].label});
+    count = add_item(
+        items, count,
+        (strut_key_item){.sign = STRUT_KEY_AREA, .fill = band_fill(), .text = p->bands[i].label});
   return p->map ? name_cells(p->map, items, count) : count;
 }
 
@@ -120,6 +120,30 @@ static bool find_corner(const strut_chart *c, const double size[2], double corne
 }
 
 /* ---- points on the page ---- */
+
+size_t strut_thin(double (*points)[2], size_t count, double grain) {
+  size_t kept = 0;
+  for (size_t i = 1; i < count; i++)
+    if (!(points[i][0] >= points[i - 1][0])) return count;
+  for (size_t first = 0; first < count;) {
+    double cell = floor(points[first][0] / grain);
+    size_t last = first, low = first, high = first;
+    while (last + 1 < count && floor(points[last + 1][0] / grain) == cell) {
+      last++;
+      if (points[last][1] < points[low][1]) low = last;
+      if (points[last][1] > points[high][1]) high = last;
+    }
+    size_t pick[4] = {first, low < high ? low : high, low < high ? high : low, last};
+    for (int k = 0; k < 4; k++) {
+      if (k > 0 && pick[k] == pick[k - 1]) continue;
+      points[kept][0] =
+          points[pick[k]][0]; /* kept <= pick[k]: nothing is overwritten that is read later */
+      points[kept++][1] = points[pick[k]][1];
+    }
+    first = last + 1;
+  }
+  return kept;
+}
 
 /* Where point k of a series is: lost ones in the strip, each series at its own height. */
 static void place(const strut_chart *c, size_t i, size_t k, double at[2]) {
@@ -184,7 +208,7 @@ static bool make_room(strut_chart *c) {
 /* ---- drawing ---- */
 
 static void draw_bands(const strut_chart *c) {
-  const strut_fill fill = strut_band_fill();
+  const strut_fill fill = band_fill();
   for (size_t i = 0; i < c->panel->band_count; i++) {
     const strut_band *b = &c->panel->bands[i];
     const strut_axis *x = &c->axes.x, *y = &c->axes.y, *axis = b->level ? y : x;
@@ -375,10 +399,10 @@ static void draw_legend(const strut_chart *c, const strut_key_item *items, size_
   const strut_fill white = {.colour = strut_faded(strut_grey(1), 0.85)};
   const strut_pen edge = {.colour = strut_grey(0.8), .width = 0.4};
   if (inside) strut_draw_box(c->canvas, at, &white, &edge);
-  strut_draw_key(c->canvas,
-                 (strut_box){at.x + PADDING, at.y + PADDING,
-                             inside ? 0 : at.width - 2 * PADDING, 0},
-                 items, count);
+  strut_draw_key(
+      c->canvas,
+      (strut_box){at.x + PADDING, at.y + PADDING, inside ? 0 : at.width - 2 * PADDING, 0}, items,
+      count);
 }
 
 bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
@@ -410,8 +434,8 @@ bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *pa
   if (count) draw_legend(&c, items, count, at, inside);
   if (panel->scale.name)
     strut_draw_colour_scale(canvas,
-                            (strut_box){rest.x + rest.width + GAP, c.axes.frame.y - 8,
-                                        SCALE - GAP, fmax(c.axes.frame.height, 60)},
+                            (strut_box){rest.x + rest.width + GAP, c.axes.frame.y - 8, SCALE - GAP,
+                                        fmax(c.axes.frame.height, 60)},
                             &panel->scale);
   return true;
 }

@@ -15,7 +15,8 @@ typedef struct strut_axis {
   const char *name, *unit; /* the values' SI unit; "" for none. A prefix is chosen for the ticks */
   bool logarithmic;
   double low, high; /* the range; both NAN: from the data, with a little room */
-  const char *const *names; /* (name_count) of categories at 0, 1, ..., instead of numbers; or NULL */
+  const char *const
+      *names; /* (name_count) of categories at 0, 1, ..., instead of numbers; or NULL */
   size_t name_count;
 } strut_axis;
 

@@ -50,8 +50,8 @@ static strut_value doubt(const strut_result_object *of, size_t k) {
 #define MAP(X)                                                                                     \
   X("x", "", NUMBERS(m->xs, m->columns), "middles of the columns")                                 \
   X("y", "", NUMBERS(m->ys, m->rows), "middles of the rows")                                       \
-  X("cells", "", ARRAY(m->columns *m->rows, cell), "row by row")                                   \
-  X("doubtful", "", IF(m->doubtful, ARRAY(m->columns *m->rows, doubt)), "likewise: hatched")
+  X("cells", "", ARRAY(m->columns * m->rows, cell), "row by row")                                  \
+  X("doubtful", "", IF(m->doubtful, ARRAY(m->columns * m->rows, doubt)), "likewise: hatched")
 STRUT_VALUES_HERE(map_values, MAP, const strut_map *m = of->at)
 
 #define MARK(X)                                                                                    \
@@ -72,7 +72,8 @@ static strut_value member_ends(const strut_result_object *of, size_t k) {
   X("names", "", ARRAY(s->model->node_count, node_name), "of the nodes")                           \
   X("nodes", "m", TABLE((const double(*)[2])s->q, s->model->node_count, 2), "where they are")      \
   X("members", "", ARRAY(s->model->scene->member_count, member_ends), "indices of their ends")     \
-  X("values", "", IF(s->style.values, NUMBERS(s->style.values, s->model->scene->member_count)), "that they are coloured by")
+  X("values", "", IF(s->style.values, NUMBERS(s->style.values, s->model->scene->member_count)),    \
+    "that they are coloured by")
 STRUT_VALUES_HERE(shape_values, SHAPE, const strut_shape *s = of->at)
 
 #define TRAIL(X) X("points", "m", TABLE(t->at, t->count, 2), "a line in the plane")

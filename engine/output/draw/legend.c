@@ -180,32 +180,6 @@ void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, do
                      open ? &hollow : &full, open ? &edge : &rim);
 }
 
-strut_fill strut_band_fill(void) { return (strut_fill){.colour = strut_grey(0.86)}; }
-
-size_t strut_thin(double (*points)[2], size_t count, double grain) {
-  size_t kept = 0;
-  for (size_t i = 1; i < count; i++)
-    if (!(points[i][0] >= points[i - 1][0])) return count;
-  for (size_t first = 0; first < count;) {
-    double cell = floor(points[first][0] / grain);
-    size_t last = first, low = first, high = first;
-    while (last + 1 < count && floor(points[last + 1][0] / grain) == cell) {
-      last++;
-      if (points[last][1] < points[low][1]) low = last;
-      if (points[last][1] > points[high][1]) high = last;
-    }
-    size_t pick[4] = {first, low < high ? low : high, low < high ? high : low, last};
-    for (int k = 0; k < 4; k++) {
-      if (k > 0 && pick[k] == pick[k - 1]) continue;
-      points[kept][0] =
-          points[pick[k]][0]; /* kept <= pick[k]: nothing is overwritten that is read later */
-      points[kept++][1] = points[pick[k]][1];
-    }
-    first = last + 1;
-  }
-  return kept;
-}
-
 static const double HEADING_GAP = 1.5, HEADING_SPACE = 6.0; /* between its texts, and below [pt] */
 
 /* Draws a heading's text of that font where `canvas` is to be drawn on; moves *y below it. */

@@ -10,16 +10,8 @@
 /** The pen of the i-th style: its colour and dashes. */
 STRUT_API strut_pen strut_series_pen(size_t look);
 /** Draws the marker of a series at x, y. */
-void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, double size);
-/** The fill of grey areas. */
-strut_fill strut_band_fill(void);
-
-/**
- * Thins (count) points of ascending x in place to at most four in each `grain` of x, which leaves
- * the drawn line unchanged. Returns the number kept; points in another order are all kept.
- */
-size_t strut_thin(double (*points)[2], size_t count, double grain);
-
+STRUT_API void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y,
+                                 double size);
 typedef enum strut_key_sign {
   STRUT_KEY_LINE,   /* a short line by `pen`, with the marker of a look if `marked` */
   STRUT_KEY_ARROW,  /* an arrow by `pen` */

@@ -38,8 +38,8 @@ static strut_fill cell_fill(const strut_panel *panel, size_t k) {
   const strut_colour_scale *scale = &panel->scale;
   if (!strut_map_has(map, k)) return (strut_fill){.colour = strut_grey(1)};
   if (map->category) return strut_category_fill((size_t)map->category[k]);
-  return (strut_fill){
-      .colour = strut_palette_at(scale->colours, map->value[k], scale->low, scale->high)};
+  return (strut_fill){.colour =
+                          strut_palette_at(scale->colours, map->value[k], scale->low, scale->high)};
 }
 
 /* The box of (count) cells of a row from `column` on. */

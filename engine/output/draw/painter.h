@@ -36,4 +36,10 @@ strut_fill strut_category_fill(size_t category);
 /** True if cell k has a value or a category. */
 bool strut_map_has(const strut_map *map, size_t k);
 
+/**
+ * Thins (count) points of ascending x in place to at most four in each `grain` of x, which leaves
+ * the drawn line unchanged. Returns the number kept; points in another order are all kept.
+ */
+size_t strut_thin(double (*points)[2], size_t count, double grain);
+
 #endif

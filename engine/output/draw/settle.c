@@ -20,8 +20,7 @@ static void include_series(const strut_series *s, bool lost, strut_axis *x, stru
 
 static void include_panel(const strut_panel *p, strut_axis *x, strut_axis *y) {
   double limits[2];
-  for (size_t i = 0; i < p->series_count; i++)
-    include_series(&p->series[i], p->lost != NULL, x, y);
+  for (size_t i = 0; i < p->series_count; i++) include_series(&p->series[i], p->lost != NULL, x, y);
   for (int d = 0; d < 2 && p->map; d++) {
     strut_axis *axis = d ? y : x;
     strut_map_limits(d ? p->map->ys : p->map->xs, d ? p->map->rows : p->map->columns, limits);

@@ -63,9 +63,10 @@ static void add_point(strut_series *s, double *const columns[2], double x, doubl
   columns[0][s->count] = x, columns[1][s->count++] = y;
 }
 
-/* A smooth curve from one level over the barrier to the other. */
-static void add_arc(ladder *l, size_t left, size_t right, double top) {
+/* A smooth curve from one level over the barrier to the other, which leaves the frame where it is higher. */
+static void add_arc(ladder *l, size_t left, size_t right, double top, double most) {
   bool far = right > left + 1;
+  top = top <= most ? top : 1.3 * most;
   for (int i = 0; i < ARC; i++) {
     double t = (double)i / (ARC - 1), low = level_energy(l, t < 0.5 ? left : right);
     double rise = 0.5 - 0.5 * cos(STRUT_TAU * t); /* 0, 1, 0 */
@@ -94,17 +95,20 @@ static bool name_pass(ladder *l, size_t left, const pass *p) {
   return mark->text != NULL;
 }
 
-/* Among many states, only barriers between neighbours remain readable. */
-static bool add_passes(ladder *l) {
+/*
+ * Gathers the tops of the barriers, or adds these below an axis that ends at `most`. Among many states, only those
+ * between neighbours remain readable.
+ */
+static bool add_passes(ladder *l, const double *most) {
   bool fine = true;
   for (size_t left = 0; left < l->count; left++)
     for (size_t right = left + 1; right < l->count && fine; right++) {
       if (right > left + 1 && l->count > FEW) continue;
       const pass p = find_pass(l, left, right);
       if (!p.known) continue;
-      add_arc(l, left, right, p.top);
-      l->tops[l->top_count++] = p.top;
-      if (right == left + 1) fine = name_pass(l, left, &p);
+      if (most) add_arc(l, left, right, p.top, *most);
+      if (most && right == left + 1) fine = name_pass(l, left, &p);
+      if (!most) l->tops[l->top_count++] = p.top;
     }
   return fine;
 }
@@ -159,7 +163,10 @@ bool strut_ladder_fill(const strut_equilibria *all, const size_t *chosen, size_t
   bool fine = series && l.marks && l.tops && allocate_columns(&l.levels, l.level, 3 * count, arena);
   for (int far = 0; far < 2 && fine; far++)
     fine = allocate_columns(&l.arcs[far], l.arc[far], (ARC + 1) * count * (far ? FEW : 1), arena);
-  if (!fine || !add_passes(&l)) return false;
+  if (!fine) return false;
+  add_passes(&l, NULL);
+  strut_axis y = find_axis(&l, &beyond);
+  if (!add_passes(&l, &y.high)) return false;
   for (size_t k = 0; k < count; k++) add_level(&l, k);
   for (int i = 0; i < 3; i++) {
     series[i] = i < 2 ? l.arcs[i] : l.levels;
@@ -167,7 +174,7 @@ bool strut_ladder_fill(const strut_equilibria *all, const size_t *chosen, size_t
   }
   double wider = count > FEW ? 0.8 : 0.5; /* names are wider than their levels */
   *panel = (strut_panel){.x = {"", "", false, -wider, (double)count - 1 + wider, no_names, 0},
-                         .y = find_axis(&l, &beyond),
+                         .y = y,
                          .series_count = 3,
                          .series = series,
                          .mark_count = l.mark_count,

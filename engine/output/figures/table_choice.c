@@ -1,11 +1,34 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables made of tables: some rows, or the difference of two sides. */
+#include "engine/output/figures/table_choice.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/output/figures/table_figure.h"
+strut_status strut_table_groups_find(const strut_table *table, int column, size_t most,
+                                     const char *what, strut_table_groups *g, strut_error *error) {
+  g->count = 1;
+  g->name[0] = NULL;
+  if (column == STRUT_NO_COLUMN) return STRUT_OK;
+  g->count = 0;
+  for (size_t i = 0; i < table->row_count; i++) {
+    const char *text = table->columns[column].text[i];
+    size_t k = 0;
+    while (k < g->count && strcmp(g->name[k], text) != 0) k++;
+    if (k < g->count) continue;
+    if (g->count == most)
+      return strut_fail(error, STRUT_USAGE, "column '%s' makes more than %zu %s",
+                        table->columns[column].name, most, what);
+    g->name[g->count++] = text;
+  }
+  return STRUT_OK;
+}
+
+bool strut_table_belongs(const strut_table *table, int column, const char *name, size_t row) {
+  return column == STRUT_NO_COLUMN || strcmp(table->columns[column].text[row], name) == 0;
+}
 
 strut_status strut_table_rows(const strut_table *table, const size_t *rows, size_t count,
                               strut_table *some, strut_error *error) {

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/output/figures/table_choice.h"
+
 static const double CURVES_WIDTH = 165, MAP_WIDTH = 200; /* panels at least [pt] */
 enum { NAME = 48, MOST_NAMES = 3 }; /* bytes and columns of an axis label; more are in the legend */
 enum { MOST_CELLS = 4000000 };
@@ -26,31 +28,6 @@ typedef struct maker {
 
 static const strut_table_column *column_of(const maker *m, int column) {
   return column == STRUT_NO_COLUMN ? NULL : &m->table->columns[column];
-}
-
-/* ---- groups of rows ---- */
-
-strut_status strut_table_groups_find(const strut_table *table, int column, size_t most,
-                                     const char *what, strut_table_groups *g, strut_error *error) {
-  g->count = 1;
-  g->name[0] = NULL;
-  if (column == STRUT_NO_COLUMN) return STRUT_OK;
-  g->count = 0;
-  for (size_t i = 0; i < table->row_count; i++) {
-    const char *text = table->columns[column].text[i];
-    size_t k = 0;
-    while (k < g->count && strcmp(g->name[k], text) != 0) k++;
-    if (k < g->count) continue;
-    if (g->count == most)
-      return strut_fail(error, STRUT_USAGE, "column '%s' makes more than %zu %s",
-                        table->columns[column].name, most, what);
-    g->name[g->count++] = text;
-  }
-  return STRUT_OK;
-}
-
-bool strut_table_belongs(const strut_table *table, int column, const char *name, size_t row) {
-  return column == STRUT_NO_COLUMN || strcmp(table->columns[column].text[row], name) == 0;
 }
 
 /* "a) friction = 0.1" */
@@ -327,7 +304,8 @@ static bool fill_panel(maker *m, size_t i, strut_panel *panel) {
   const strut_table_figure *f = m->figure;
   const strut_table_column *x = column_of(m, f->x), *y = column_of(m, f->y[0]);
   const strut_table_column *value = column_of(m, f->value);
-  *panel = (strut_panel){.x = strut_axis_of(x->name, x->unit), .y = strut_axis_of(m->y_name, y->unit)};
+  *panel =
+      (strut_panel){.x = strut_axis_of(x->name, x->unit), .y = strut_axis_of(m->y_name, y->unit)};
   panel->x.logarithmic = f->log_x, panel->y.logarithmic = f->log_y;
   if (value && value->value)
     panel->scale =

@@ -40,12 +40,13 @@ strut_status strut_waves_figure(const strut_plot *plot, const strut_model *model
     if (w->gaps[g].below < w->shown)
       bands[gaps++] = (strut_band){w->gaps[g].low, w->gaps[g].high, true, "no waves"};
   name_axis(w, name);
-  const strut_panel panel = {.x = {.name = name, .high = w->steps == 1 ? 0.5 : w->corner_count - 1.0},
-                             .y = strut_axis_of("frequency", "Hz"),
-                             .series_count = lines,
-                             .series = series,
-                             .band_count = gaps,
-                             .bands = bands};
+  const strut_panel panel = {
+      .x = {.name = name, .high = w->steps == 1 ? 0.5 : w->corner_count - 1.0},
+      .y = strut_axis_of("frequency", "Hz"),
+      .series_count = lines,
+      .series = series,
+      .band_count = gaps,
+      .bands = bands};
   const strut_figure figure = {.title = model->scene->name, .panel_count = 1, .panels = &panel};
   strut_status status =
       fine ? strut_figure_draw(plot, &figure, error) : strut_no_memory(error, "while drawing");

@@ -7,9 +7,9 @@
 #include "engine/base/c_locale.h"
 #include "engine/output/draw/figure.h"
 
-static const double MARGIN = 16, NARROWEST = 150; /* [pt] */
-static const double FOOT = 0.08;                  /* space for a scale bar, relative to the extent */
-static const double DOT = 4.0;                    /* radius around a node [pt] */
+static const double MARGIN = 16, NARROWEST = 150, ASPECT = 0.6; /* [pt], [1] */
+static const double FOOT = 0.08; /* space for a scale bar, relative to the extent */
+static const double DOT = 4.0;   /* radius around a node [pt] */
 static const double UNLIKE = 4.0;
 enum { NAMED = 40, WORDS = 400, KEYS = 5, DRIVEN = 2 };
 
@@ -69,12 +69,12 @@ static bool mark_driven(sheet *s, const strut_compare_column *c, strut_view *vie
         for (int d = 0; d < 2; d++)
           ends[view->trail_count + e][d] = c->q[2 * strut_member_node(m, k + e) + d];
       for (int over = 0; over < 2; over++)
-        trails[view->trail_count + (size_t)over] = (strut_trail){
-            .count = 2,
-            .at = (const double(*)[2])ends + view->trail_count,
-            .pen = {.colour = over ? strut_palette_thing(DRIVEN) : strut_grey(1.0),
-                    .width = over ? 2.6 : 4.2},
-            .gap = DOT};
+        trails[view->trail_count + (size_t)over] =
+            (strut_trail){.count = 2,
+                          .at = (const double(*)[2])ends + view->trail_count,
+                          .pen = {.colour = over ? strut_palette_thing(DRIVEN) : strut_grey(1.0),
+                                  .width = over ? 2.6 : 4.2},
+                          .gap = DOT};
       view->trail_count += 2;
     }
   }
@@ -110,9 +110,8 @@ static bool fill_panel(sheet *s, const strut_compare_column *c, strut_panel *pan
   strut_view *view = strut_arena_allocate(&s->arena, 1, sizeof *view);
   strut_shape *shape = strut_arena_allocate(&s->arena, 1, sizeof *shape);
   words_of(c, words);
-  *panel = (strut_panel){.title = c->input->label,
-                         .note = strut_arena_format(&s->arena, "%s", words),
-                         .view = view};
+  *panel = (strut_panel){
+      .title = c->input->label, .note = strut_arena_format(&s->arena, "%s", words), .view = view};
   if (!view || !shape || !panel->note) return false;
   *shape = (strut_shape){.model = c->model,
                          .q = c->q,
@@ -164,6 +163,7 @@ strut_status strut_compare_figure(const strut_plot *plot, const strut_compare *r
   const strut_figure figure = {.panel_count = count,
                                .panels = panels,
                                .least_width = NARROWEST,
+                               .aspect = ASPECT,
                                .yardstick = s.alike,
                                .keys = items,
                                .key_count = make_key(&s, items)};

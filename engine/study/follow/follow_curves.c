@@ -198,10 +198,9 @@ strut_status strut_follow_curves_figure(const strut_plot *plot, const strut_foll
                                         strut_error *error) {
   size_t points = 0;
   for (size_t i = 0; i < r->curve_count; i++) points += r->curves[i].count;
-  strut_branch_picture p = {
-      .title = r->title,
-      .along = strut_axis_of(r->name, r->unit),
-      .upwards = strut_axis_of(r->second.name, r->second.unit)};
+  strut_branch_picture p = {.title = r->title,
+                            .along = strut_axis_of(r->name, r->unit),
+                            .upwards = strut_axis_of(r->second.name, r->second.unit)};
   bool fine = strut_branch_begin(&p, r->curve_count, points);
   for (size_t i = 0; i < CURVE_KEYS; i++)
     p.keys[p.key_count++] = strut_branch_key(strut_palette_thing(i), false, kinds[i].text);

@@ -38,11 +38,10 @@ static void add_keys(strut_branch_picture *p) {
   p->keys[p->key_count++] = strut_branch_key(strut_grey(0.2), false, "stable");
   p->keys[p->key_count++] = strut_branch_key(strut_grey(0.2), true, "unstable");
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-    p->keys[p->key_count++] =
-        (strut_key_item){.sign = STRUT_KEY_DOT,
-                         .pen = {.colour = strut_grey(0.1), .width = 0.6},
-                         .fill = {.colour = colour_of(kinds[i])},
-                         .text = texts[i]};
+    p->keys[p->key_count++] = (strut_key_item){.sign = STRUT_KEY_DOT,
+                                               .pen = {.colour = strut_grey(0.1), .width = 0.6},
+                                               .fill = {.colour = colour_of(kinds[i])},
+                                               .text = texts[i]};
 }
 
 bool strut_branch_begin(strut_branch_picture *p, size_t lines, size_t points) {
@@ -58,10 +57,8 @@ bool strut_branch_begin(strut_branch_picture *p, size_t lines, size_t points) {
 void strut_branch_line(strut_branch_picture *p, size_t look) {
   strut_pen *pen = &p->pens[p->line_count];
   *pen = (strut_pen){.colour = strut_palette_thing(look), .width = 1.4};
-  p->lines[p->line_count++] = (strut_series){.x = p->x + p->count,
-                                             .y = p->y + p->count,
-                                             .unstable = p->unstable + p->count,
-                                             .pen = pen};
+  p->lines[p->line_count++] = (strut_series){
+      .x = p->x + p->count, .y = p->y + p->count, .unstable = p->unstable + p->count, .pen = pen};
 }
 
 void strut_branch_point(strut_branch_picture *p, double x, double y, bool stable) {
@@ -131,10 +128,9 @@ strut_status strut_follow_figure(const strut_plot *plot, const strut_follow_resu
                                  strut_error *error) {
   size_t points = 0;
   for (size_t i = 0; i < r->count; i++) points += r->branches[i].branch.count;
-  strut_branch_picture p = {
-      .title = r->title,
-      .along = strut_axis_of(r->name, r->unit),
-      .upwards = height_axis(r->count && r->branches[0].branch.travels)};
+  strut_branch_picture p = {.title = r->title,
+                            .along = strut_axis_of(r->name, r->unit),
+                            .upwards = height_axis(r->count && r->branches[0].branch.travels)};
   bool fine = strut_branch_begin(&p, r->count, points);
   add_keys(&p);
   for (size_t i = 0; i < r->count && fine; i++) fine = add_branch(&p, &r->branches[i].branch, i);
@@ -237,8 +233,7 @@ strut_status strut_follow_points_figure(const strut_plot *plot, const strut_swee
   strut_branch_picture p = {
       .title = plan->study->name,
       .along = strut_axis_of(f->over, f->unit),
-      .upwards =
-          height_axis(!table->row_count || !isfinite(number_of(s.column[AMPLITUDE], 0)))};
+      .upwards = height_axis(!table->row_count || !isfinite(number_of(s.column[AMPLITUDE], 0)))};
   strut_c_locale locale = strut_c_locale_enter();
   bool fine = gather(&s, &p);
   strut_c_locale_leave(locale);

@@ -39,9 +39,9 @@ typedef struct strut_branch_picture {
   strut_axis along, upwards;
   size_t line_count, count, mark_count, key_count;
   strut_series *lines;
-  strut_pen *pens;     /* (line_count) */
-  double *x, *y;       /* (count) of all lines */
-  bool *unstable;      /* (count) */
+  strut_pen *pens; /* (line_count) */
+  double *x, *y;   /* (count) of all lines */
+  bool *unstable;  /* (count) */
   strut_mark *marks;
   strut_key_item keys[STRUT_BRANCH_KEYS];
   strut_arena arena;

@@ -6,7 +6,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
-#include "engine/output/figures/table_figure.h"
+#include "engine/output/figures/table_choice.h"
 #include "engine/study/compare/compare.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/sweep/grid.h"

@@ -111,8 +111,8 @@ STRUT_API strut_status strut_sensitivity_write(const strut_study *study, strut_s
  * Draws the picture: of one point, indices as bars with their 95 % intervals; of several along an axis of numbers,
  * indices over it. *drawn: false where there is nothing to draw.
  */
-STRUT_API strut_status strut_sensitivity_figure(const strut_plot *plot,
-                                                const strut_study *study, strut_slots *slots,
+STRUT_API strut_status strut_sensitivity_figure(const strut_plot *plot, const strut_study *study,
+                                                strut_slots *slots,
                                                 const strut_sensitivity_result *result, bool *drawn,
                                                 strut_error *error);
 

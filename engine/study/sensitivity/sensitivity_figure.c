@@ -53,21 +53,19 @@ static void add_bars(strut_series *series, const strut_sensitivity_row *row, dou
 /* A panel of (count) parameters, from row `first` on. False: out of memory. */
 static bool fill_bars(const strut_sensitivity_result *result, size_t first, size_t count,
                       strut_arena *arena, strut_panel *panel) {
-  static const strut_pen pens[] = {
-      {.colour = {0.16, 0.38, 0.62, 1.0}, .width = 8, .butt = true},
-      {.colour = {0.65, 0.76, 0.87, 1.0}, .width = 8, .butt = true},
-      {.colour = {0.15, 0.15, 0.15, 1.0}, .width = 0.7, .butt = true}};
+  static const strut_pen pens[] = {{.colour = {0.16, 0.38, 0.62, 1.0}, .width = 8, .butt = true},
+                                   {.colour = {0.65, 0.76, 0.87, 1.0}, .width = 8, .butt = true},
+                                   {.colour = {0.15, 0.15, 0.15, 1.0}, .width = 0.7, .butt = true}};
   static const char *const labels[] = {"first order",
                                        "total, parts of the variance; whiskers: 95 %", NULL};
   strut_series *series = strut_arena_allocate(arena, 3, sizeof *series);
   const char **names = strut_arena_allocate(arena, count, sizeof *names);
   if (!series || !names) return false;
   for (int i = 0; i < 3; i++) {
-    series[i] = (strut_series){
-        .label = labels[i],
-        .x = strut_arena_allocate(arena, 18 * count, sizeof(double)),
-        .y = strut_arena_allocate(arena, 18 * count, sizeof(double)),
-        .pen = &pens[i]};
+    series[i] = (strut_series){.label = labels[i],
+                               .x = strut_arena_allocate(arena, 18 * count, sizeof(double)),
+                               .y = strut_arena_allocate(arena, 18 * count, sizeof(double)),
+                               .pen = &pens[i]};
     if (!series[i].x || !series[i].y) return false;
   }
   for (size_t k = 0; k < count; k++) {

@@ -178,7 +178,7 @@ STRUT_API extern const strut_value_rows strut_tradeoff_values;
 STRUT_API char *strut_tradeoff_csv(const strut_tradeoff *result);
 
 /** Draws it. Over several operating points a marker is the median and a bar leads to the worst. */
-STRUT_API strut_status strut_tradeoff_figure(const strut_plot *plot,
-                                             const strut_tradeoff *result, strut_error *error);
+STRUT_API strut_status strut_tradeoff_figure(const strut_plot *plot, const strut_tradeoff *result,
+                                             strut_error *error);
 
 #endif

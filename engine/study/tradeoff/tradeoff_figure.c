@@ -37,8 +37,7 @@ static bool add_saving(panel *p, const strut_tradeoff *r, const strut_tradeoff_r
   strut_saving saving = lost;
   bool gone = !(spread->median <= BEYOND);
   const double *errors = spread == &row->total_spread ? row->total : row->error;
-  if (label)
-    saving.label = strut_arena_format(p->arena, "%s", strut_tradeoff_step_text(row, text));
+  if (label) saving.label = strut_arena_format(p->arena, "%s", strut_tradeoff_step_text(row, text));
   if (!gone) saving.error = spread->median;
   if (!gone && r->point_count > 1) {
     saving.low = saving.high = spread->median;
@@ -114,10 +113,9 @@ strut_status strut_tradeoff_figure(const strut_plot *plot, const strut_tradeoff 
   bool fine = cost != NULL;
   for (int i = 0; i < 2 && fine; i++) {
     panel *p = &gathered[i];
-    const char *measure =
-        strut_arena_format(&arena, "%s error of the %s%s", i ? "total" : "step",
-                           strut_tradeoff_measure_text(r->measure),
-                           r->point_count > 1 ? ", median to worst" : "");
+    const char *measure = strut_arena_format(&arena, "%s error of the %s%s", i ? "total" : "step",
+                                             strut_tradeoff_measure_text(r->measure),
+                                             r->point_count > 1 ? ", median to worst" : "");
     p->savings = strut_arena_allocate(&arena, 2 * r->row_count + 1, sizeof *p->savings);
     fine = measure && p->savings && (i ? fill_models(p, r) : fill_methods(p, r));
     const strut_work_precision diagram = {.title = titles[i],
