@@ -341,9 +341,7 @@ static void draw_members(strut_canvas *canvas, const strut_drawing *d) {
 static void draw_sliding_masses(strut_canvas *canvas, const strut_drawing *d) {
   const strut_scene *scene = d->model->scene;
   double thin = d->thin / (1.0 + d->style->thinness), point[2], at[2];
-  bool one = d->style->colouring == STRUT_COLOUR_ONE;
-  strut_colour colour = one ? d->style->colour : strut_palette_thing(2);
-  const strut_fill fill = {.colour = strut_faded(colour, d->opacity)};
+  const strut_fill fill = {.colour = strut_thing_colour(d, 1)};
   const strut_pen pen = {.colour = strut_faded(strut_grey(1), d->opacity), .width = 0.5 * thin};
   if (d->thin < 0.3) return; /* too small to be drawn */
   for (size_t i = 0; i < scene->sliding_count; i++) {
