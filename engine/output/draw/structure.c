@@ -17,8 +17,6 @@
 
 /* The window, members and nodes. */
 
-enum { SHADES = 33, BATCH = 256 };
-
 static const double BAR = 2.4, SPRING = 1.3, CABLE = 0.8, CASING = 0.7; /* [pt] */
 static const double FULL_LENGTH = 28.0; /* members this long on the page have full width [pt] */
 static const double THINNEST = 0.06, FRINGE_DASH = 2.2; /* [1], [pt] */
@@ -270,25 +268,6 @@ static double thinning(const strut_window *w, const strut_model *model, const do
   return finite ? fmax(THINNEST, fmin(1.0, sum / (double)finite / FULL_LENGTH)) : 1.0;
 }
 
-/* Members drawn together, with one pen. */
-typedef struct batch {
-  strut_canvas *canvas;
-  strut_pen pen;
-  size_t count;
-  double ends[2 * BATCH][2];
-} batch;
-
-static void draw_batch(batch *b) {
-  strut_draw_segments(b->canvas, (const double(*)[2])b->ends, b->count, b->pen);
-  b->count = 0;
-}
-
-static void add_segment(batch *b, double ends[2][2]) {
-  for (int k = 0; k < 2; k++)
-    for (int d = 0; d < 2; d++) b->ends[2 * b->count + (size_t)k][d] = ends[k][d];
-  if (++b->count == BATCH) draw_batch(b);
-}
-
 static bool is_slack(const strut_drawing *d, size_t j) {
   if (d->model->scene->members[j].kind != STRUT_CABLE) return false;
   if (d->style->slack_forces) return !(fabs(d->style->slack_forces[j]) > 0);
@@ -296,93 +275,73 @@ static bool is_slack(const strut_drawing *d, size_t j) {
          d->model->members.rest[j] * (1 - 1e-12);
 }
 
-static double width_of(const strut_drawing *d, size_t j) {
-  strut_member_kind kind = d->model->scene->members[j].kind;
+static double width_of(const strut_drawing *d, strut_member_kind kind) {
   double width = kind == STRUT_BAR ? BAR : kind == STRUT_SPRING ? SPRING : CABLE;
   return width * d->thin / (1.0 + d->style->thinness) + d->style->fringe;
 }
 
-/* Index of a member's force colour; -1 where members are not coloured by force. */
-static int shade_of(const strut_drawing *d, size_t j) {
-  if (d->style->colouring != STRUT_COLOUR_FORCE || !d->style->values) return -1;
-  double limit = d->style->limit, value = d->style->values[j];
-  double part = limit > 0 && isfinite(value) ? fmax(-1.0, fmin(1.0, value / limit)) : 0;
-  return (int)lround(0.5 * (part + 1.0) * (SHADES - 1));
+static bool is_shaded(const strut_structure_style *style) {
+  return style->colouring == STRUT_COLOUR_FORCE && style->values;
 }
 
-static strut_colour colour_of(const strut_drawing *d, strut_member_kind kind, bool slack,
-                              int shade) {
-  if (d->style->colouring == STRUT_COLOUR_ONE) return d->style->colour;
+static strut_colour colour_of(const strut_drawing *d, size_t j, bool slack) {
+  const strut_structure_style *style = d->style;
+  strut_member_kind kind = d->model->scene->members[j].kind;
+  if (style->colouring == STRUT_COLOUR_ONE) return style->colour;
   if (slack) return strut_grey(0.55);
-  if (shade >= 0) return strut_palette_signed(2.0 * shade / (SHADES - 1) - 1.0);
+  if (is_shaded(style)) {
+    double part = style->limit > 0 ? style->values[j] / style->limit : 0;
+    return strut_palette_signed(isfinite(part) ? part : 0);
+  }
   return kind == STRUT_BAR      ? strut_grey(0.15)
          : kind == STRUT_SPRING ? strut_palette_thing(0)
                                 : strut_palette_thing(1);
 }
 
-/* Adds all segments of a member. */
-static void add_member(batch *b, const strut_drawing *d, size_t j) {
+static strut_pen pen_of(const strut_drawing *d, size_t j, bool slack) {
+  strut_pen pen = {.colour = strut_faded(colour_of(d, j, slack), d->opacity),
+                   .width = width_of(d, d->model->scene->members[j].kind),
+                   .butt = slack || d->style->fringe > 0.0};
+  if (d->style->fringe > 0.0)
+    pen.dash[0] = pen.dash[1] = FRINGE_DASH;
+  else if (slack)
+    pen.dash[0] = 2.5 * d->thin, pen.dash[1] = 2.0 * d->thin;
+  return pen;
+}
+
+static void draw_member(strut_canvas *canvas, const strut_drawing *d, size_t j, strut_pen pen) {
   double ends[2][2];
   for (size_t k = 0; k < strut_member_segments(d->model, j); k++) {
     strut_window_segment(d->window, d->model, d->q, j, k, ends);
-    add_segment(b, ends);
+    strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], pen);
   }
 }
 
-/* A dark edge separates light colours from the paper. */
-static void draw_casings(strut_canvas *canvas, const strut_drawing *d, strut_member_kind kind) {
-  batch b = {.canvas = canvas};
-  b.pen.colour = strut_faded(strut_grey(0.1), d->opacity);
-  for (size_t j = 0; j < d->model->scene->member_count; j++) {
-    if (d->model->scene->members[j].kind != kind) continue;
-    b.pen.width = width_of(d, j) + CASING * d->thin;
-    add_member(&b, d, j);
-  }
-  draw_batch(&b);
-}
-
-/* Draws all members of one kind, slackness and shade. */
-static void draw_alike(strut_canvas *canvas, const strut_drawing *d, strut_member_kind kind,
-                       bool slack, int shade) {
-  batch b = {.canvas = canvas};
-  b.pen.colour = strut_faded(colour_of(d, kind, slack, shade), d->opacity);
-  if (d->style->fringe > 0.0) {
-    b.pen.dash[0] = b.pen.dash[1] = FRINGE_DASH;
-    b.pen.butt = true;
-  } else if (slack) {
-    b.pen.dash[0] = 2.5 * d->thin;
-    b.pen.dash[1] = 2.0 * d->thin;
-    b.pen.butt = true;
-  }
-  for (size_t j = 0; j < d->model->scene->member_count; j++) {
-    if (d->model->scene->members[j].kind != kind || is_slack(d, j) != slack) continue;
-    if (!slack && shade_of(d, j) != shade) continue;
-    b.pen.width = width_of(d, j);
-    add_member(&b, d, j);
-  }
-  draw_batch(&b);
+/* Members of a kind; of shaded ones a dark edge first, which separates light colours from the paper. */
+static void draw_kind(strut_canvas *canvas, const strut_drawing *d, strut_member_kind kind,
+                      bool slack) {
+  const strut_pen casing = {.colour = strut_faded(strut_grey(0.1), d->opacity),
+                            .width = width_of(d, kind) + CASING * d->thin};
+  bool cased = is_shaded(d->style) && kind != STRUT_CABLE;
+  for (int pass = cased ? 0 : 1; pass < 2; pass++)
+    for (size_t j = 0; j < d->model->scene->member_count; j++)
+      if (d->model->scene->members[j].kind == kind && is_slack(d, j) == slack)
+        draw_member(canvas, d, j, pass ? pen_of(d, j, slack) : casing);
 }
 
 /* Thin members are drawn above thick ones, so that a cable along a bar is visible. */
 static void draw_members(strut_canvas *canvas, const strut_drawing *d) {
-  static const strut_member_kind order[] = {STRUT_BAR, STRUT_SPRING, STRUT_CABLE};
-  bool shaded = d->style->colouring == STRUT_COLOUR_FORCE && d->style->values;
-  for (int k = 0; k < 3; k++) {
-    if (shaded && order[k] != STRUT_CABLE) draw_casings(canvas, d, order[k]);
-    if (order[k] == STRUT_CABLE) draw_alike(canvas, d, order[k], true, -1);
-    if (!shaded) draw_alike(canvas, d, order[k], false, -1);
-    for (int shade = 0; shaded && shade < SHADES; shade++)
-      draw_alike(canvas, d, order[k], false, shade);
-  }
+  draw_kind(canvas, d, STRUT_BAR, false);
+  draw_kind(canvas, d, STRUT_SPRING, false);
+  draw_kind(canvas, d, STRUT_CABLE, true);
+  draw_kind(canvas, d, STRUT_CABLE, false);
 }
 
 /* Masses that slide along members: filled circles on them. */
 static void draw_sliding_masses(strut_canvas *canvas, const strut_drawing *d) {
   const strut_scene *scene = d->model->scene;
   double thin = d->thin / (1.0 + d->style->thinness), point[2], at[2];
-  bool one = d->style->colouring == STRUT_COLOUR_ONE;
-  strut_colour colour = one ? d->style->colour : strut_palette_thing(2);
-  const strut_fill fill = {.colour = strut_faded(colour, d->opacity)};
+  const strut_fill fill = {.colour = strut_thing_colour(d, 1)};
   const strut_pen pen = {.colour = strut_faded(strut_grey(1), d->opacity), .width = 0.5 * thin};
   if (d->thin < 0.3) return; /* too small to be drawn */
   for (size_t i = 0; i < scene->sliding_count; i++) {

@@ -47,7 +47,6 @@ typedef struct path_picture {
   path_curve curve, *branches;
   size_t stop_count, events_left; /* without a stop */
   path_stop stops[MOST_STOPS];
-  size_t load_count;
   strut_view view;
   strut_arena arena;
 } path_picture;
@@ -71,26 +70,28 @@ static double largest_motion(const strut_path *path, int32_t coordinate) {
   return most;
 }
 
-/* The coordinate of a loaded node that moves farthest; of a free one where loads act on none. */
-static void choose_coordinate(path_picture *p) {
+/* True if the path's loads act on the node of a coordinate. */
+static bool is_loaded(const path_picture *p, int32_t coordinate) {
   const strut_scene *scene = p->model->scene;
-  double most = -1.0;
-  if (p->path->coordinate >= 0) { /* the displaced coordinate */
-    p->coordinate = p->path->coordinate;
-    p->sign = largest_motion(p->path, p->coordinate) < 0 ? -1.0 : 1.0;
-    return;
+  for (size_t l = 0; l < scene->load_count; l++)
+    if (scene->loads[l].node == coordinate / 2 && load_grows(p->path, &scene->loads[l]))
+      return true;
+  return false;
+}
+
+/* The displaced coordinate; else that of a loaded node that moves farthest; of a free one where loads act on none. */
+static void choose_coordinate(path_picture *p) {
+  double most = 0.0;
+  int best = -1;
+  p->coordinate = p->path->coordinate;
+  for (int32_t i = 0; i < 2 * p->model->node_count && p->path->coordinate < 0; i++) {
+    int rank = is_loaded(p, i) ? 2 : p->model->fixed[i] ? 0 : 1;
+    double here = fabs(largest_motion(p->path, i));
+    if (rank < best || (rank == best && here <= most * (1 + 1e-9))) continue;
+    most = here, best = rank;
+    p->coordinate = i;
   }
-  for (int pass = 0; pass < 3 && most < 0; pass++)
-    for (int32_t i = 0; i < 2 * p->model->node_count; i++) {
-      bool loaded = pass == 2 || (pass == 1 && !p->model->fixed[i]);
-      for (size_t l = 0; l < scene->load_count; l++)
-        loaded = loaded || (scene->loads[l].node == i / 2 && load_grows(p->path, &scene->loads[l]));
-      double here = largest_motion(p->path, i);
-      if (!loaded || fabs(here) <= most * (1 + 1e-9)) continue;
-      most = fabs(here);
-      p->coordinate = i;
-      p->sign = here < 0 ? -1.0 : 1.0;
-    }
+  p->sign = largest_motion(p->path, p->coordinate) < 0 ? -1.0 : 1.0;
 }
 
 /* Sets the next point of a curve. */
@@ -115,25 +116,20 @@ static path_stop *add_stop(path_picture *p) {
 
 /* The name of what an event happens to; "" where that is the whole structure. */
 static const char *subject_of(const strut_model *model, const strut_path_event *event) {
+  enum { WHOLE, MEMBER, NODE, ELEMENT };
+  static const char things[] = {[STRUT_PATH_SLACK] = MEMBER,       [STRUT_PATH_TAUT] = MEMBER,
+                                [STRUT_PATH_ZERO_LENGTH] = MEMBER, [STRUT_PATH_TOUCHDOWN] = NODE,
+                                [STRUT_PATH_LIFT_OFF] = NODE,      [STRUT_PATH_CORNER] = NODE,
+                                [STRUT_PATH_SLIP] = NODE,          [STRUT_PATH_STICK] = NODE,
+                                [STRUT_PATH_ENGAGE] = ELEMENT,     [STRUT_PATH_RELEASE] = ELEMENT,
+                                [STRUT_PATH_LAW] = ELEMENT};
   const strut_scene *scene = model->scene;
-  switch (event->kind) {
-    case STRUT_PATH_SLACK:
-    case STRUT_PATH_TAUT:
-    case STRUT_PATH_ZERO_LENGTH: return scene->members[event->index].name;
-    case STRUT_PATH_TOUCHDOWN:
-    case STRUT_PATH_LIFT_OFF:
-    case STRUT_PATH_CORNER:
-    case STRUT_PATH_SLIP:
-    case STRUT_PATH_STICK: return scene->nodes[event->index].name;
-    case STRUT_PATH_ENGAGE:
-    case STRUT_PATH_RELEASE:
-    case STRUT_PATH_LAW: return strut_element_name(scene, &model->elements.element[event->index]);
-    case STRUT_PATH_LIMIT:
-    case STRUT_PATH_BIFURCATION:
-    case STRUT_PATH_KINK_LIMIT:
-    case STRUT_PATH_KINK_BIFURCATION: break;
+  switch ((size_t)event->kind < sizeof things ? things[event->kind] : WHOLE) {
+    case MEMBER: return scene->members[event->index].name;
+    case NODE: return scene->nodes[event->index].name;
+    case ELEMENT: return strut_element_name(scene, &model->elements.element[event->index]);
+    default: return "";
   }
-  return "";
 }
 
 /* "slack: left" or, for events at the same place, "slack: left, right". */
@@ -202,11 +198,11 @@ static void describe_stops(path_picture *p) {
 
 /* False: out of memory. */
 static bool make_curve(path_picture *p, size_t most, path_curve *curve) {
-  curve->motion = strut_arena_allocate(&p->arena, most, sizeof *curve->motion);
-  curve->height = strut_arena_allocate(&p->arena, most, sizeof *curve->height);
+  curve->motion = strut_arena_allocate(&p->arena, 2 * most, sizeof *curve->motion);
   curve->unstable = strut_arena_allocate(&p->arena, most, sizeof *curve->unstable);
   curve->at = strut_arena_allocate(&p->arena, most, sizeof *curve->at);
-  return curve->motion && curve->height && curve->unstable && curve->at;
+  if (curve->motion) curve->height = curve->motion + most;
+  return curve->motion && curve->unstable && curve->at;
 }
 
 static bool make_curves(path_picture *p) {
@@ -298,24 +294,18 @@ static const double *flag_taut_cables(path_picture *p, const strut_path_state *a
 }
 
 /* The arrow of a load at the beginning [m]: outwards from its node, or from outside onto it. */
-static bool load_arrow(const path_picture *p, const strut_load *load, double ends[2][2]) {
+static void load_arrow(const path_picture *p, const strut_load *load, double largest,
+                       double ends[2][2]) {
   const double *q = p->path->points[0].at.q, *at = q + 2 * load->node;
-  double largest = 0.0, size = hypot(load->force[0], load->force[1]), outwards = 0.0;
-  if (!load_grows(p->path, load) || !(size > 0)) return false;
-  for (size_t l = 0; l < p->model->scene->load_count; l++) {
-    const strut_load *other = &p->model->scene->loads[l];
-    if (load_grows(p->path, other))
-      largest = fmax(largest, hypot(other->force[0], other->force[1]));
-  }
+  double size = hypot(load->force[0], load->force[1]), outwards = 0.0;
+  double length = ARROW * p->model->size * fmax(0.3, size / largest);
   for (int32_t i = 0; i < 2 * p->model->node_count; i++)
     outwards += (at[i % 2] - q[i]) * load->force[i % 2];
-  double length = ARROW * p->model->size * fmax(0.3, size / largest);
   for (int d = 0; d < 2; d++) {
     double step = length * load->force[d] / size;
     ends[0][d] = at[d] - (outwards > 0 ? 0.0 : step);
     ends[1][d] = at[d] + (outwards > 0 ? step : 0.0);
   }
-  return true;
 }
 
 /* The way of the node whose motion is drawn, and the arrows of loads. False: out of memory. */
@@ -328,9 +318,15 @@ static bool add_trails(path_picture *p, double (*way)[2]) {
                             .at = (const double(*)[2])way,
                             .pen = {.colour = strut_grey(0.45), .width = 0.7}};
   size_t count = 1;
-  for (size_t l = 0; l < scene->load_count; l++) {
+  double largest = 0.0;
+  for (size_t l = 0; l < scene->load_count; l++)
+    if (load_grows(p->path, &scene->loads[l]))
+      largest = fmax(largest, hypot(scene->loads[l].force[0], scene->loads[l].force[1]));
+  for (size_t l = 0; l < scene->load_count && largest > 0; l++) {
     double(*ends)[2] = arrows + 2 * l;
-    if (!load_arrow(p, &scene->loads[l], ends)) continue;
+    const double *force = scene->loads[l].force;
+    if (!load_grows(p->path, &scene->loads[l]) || !(hypot(force[0], force[1]) > 0)) continue;
+    load_arrow(p, &scene->loads[l], largest, ends);
     for (int end = 0; end < 2; end++) strut_bounds_widen(&p->view.bounds, ends[end], ends[end]);
     trails[count++] = (strut_trail){.kind = STRUT_TRAIL_ARROW,
                                     .count = 2,
@@ -381,7 +377,7 @@ static bool make_view(path_picture *p, strut_mark *marks) {
 /* ---- the figure ---- */
 
 static size_t make_key(const path_picture *p, char notes[2][NOTE], strut_key_item items[KEYS]) {
-  size_t count = 0;
+  size_t count = 0, more = p->events_left;
   bool unstable = false;
   for (size_t k = 0; k + 1 < p->curve.count; k++) unstable = unstable || p->curve.unstable[k];
   for (size_t i = 0; i < p->stop_count; i++)
@@ -390,24 +386,19 @@ static size_t make_key(const path_picture *p, char notes[2][NOTE], strut_key_ite
                                       .fill = {.colour = p->stops[i].colour},
                                       .letter = p->stops[i].letter[0] ? p->stops[i].letter : NULL,
                                       .text = p->stops[i].text};
-  if (p->events_left) {
-    snprintf(notes[0], NOTE, "and %zu more event%s", p->events_left, p->events_left > 1 ? "s" : "");
-    items[count++] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = notes[0]};
-  }
-  if (unstable)
-    items[count++] = (strut_key_item){
-        .sign = STRUT_KEY_LINE,
-        .pen = {.colour = strut_grey(0.15), .width = 1.2, .dash = {3, 2}, .butt = true},
-        .text = "unstable"};
-  if (p->path->branch_count)
-    items[count++] = (strut_key_item){.sign = STRUT_KEY_LINE,
-                                      .pen = {.colour = strut_palette_thing(0), .width = 1.2},
-                                      .text = "branches"};
-  if (p->larger > 1) {
-    snprintf(notes[1], NOTE, "shapes: displacements enlarged %.0f times", p->larger);
-    items[count++] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = notes[1]};
-  }
-  return count;
+  snprintf(notes[0], NOTE, "and %zu more event%s", more, more > 1 ? "s" : "");
+  snprintf(notes[1], NOTE, "shapes: displacements enlarged %.0f times", p->larger);
+  const strut_key_item others[] = {
+      {.sign = STRUT_KEY_WORDS, .text = more ? notes[0] : NULL},
+      {.sign = STRUT_KEY_LINE,
+       .pen = {.colour = strut_grey(0.15), .width = 1.2, .dash = {3, 2}, .butt = true},
+       .text = unstable ? "unstable" : NULL},
+      {.sign = STRUT_KEY_LINE,
+       .pen = {.colour = strut_palette_thing(0), .width = 1.2},
+       .text = p->path->branch_count ? "branches" : NULL},
+      {.sign = STRUT_KEY_WORDS, .text = p->larger > 1 ? notes[1] : NULL}};
+  memcpy(items + count, others, sizeof others);
+  return count + sizeof others / sizeof *others;
 }
 
 /* Draws a picture whose curves are made. */

@@ -43,38 +43,46 @@ static size_t count_driven(const strut_run_scene *run) {
   return count;
 }
 
+/* What each panel shows: a channel, or what is derived from the motion. */
+static const struct {
+  strut_channel channel; /* 0: none */
+  const char *name, *unit;
+  double factor;
+} kinds[] = {[STRUT_RUN_DISPLACEMENT] = {0, "displacement", "m", 1},
+             [STRUT_RUN_NORMALS] = {STRUT_CHANNEL_CONTACT, "contact force", "N", 1},
+             [STRUT_RUN_DRIVE] = {0, "change", "m", 1},
+             [STRUT_RUN_HEIGHTS] = {0, "height", "m", 1},
+             [STRUT_RUN_FORCES] = {STRUT_CHANNEL_FORCE, "member force", "N", 1},
+             [STRUT_RUN_ANGLES] = {STRUT_CHANNEL_ANGLE, "angle", "deg", 180.0 / STRUT_PI},
+             [STRUT_RUN_MOMENTS] = {STRUT_CHANNEL_MOMENT, "moment", "N m", 1},
+             [STRUT_RUN_PRESSURES] = {STRUT_CHANNEL_PRESSURE, "pressure", "N/m", 1},
+             [STRUT_RUN_AREAS] = {STRUT_CHANNEL_AREA, "area", "m^2", 1},
+             [STRUT_RUN_ENERGIES] = {STRUT_CHANNEL_ENERGY, "energy change", "J", 1}};
+enum { ENERGIES = 4 }; /* that are stored */
+
 static size_t count_items(const strut_run_scene *run, int kind) {
-  const strut_trajectory *m = run->motion;
-  switch (kind) {
-    case STRUT_RUN_DISPLACEMENT: return run->model->scene->ground.present ? 1 : 2;
-    case STRUT_RUN_NORMALS: return m->contact ? m->contact_count : 0;
-    case STRUT_RUN_DRIVE: return count_driven(run);
-    case STRUT_RUN_ANGLES: return m->angle ? m->hinge_count : 0;
-    case STRUT_RUN_MOMENTS: return m->moment ? m->hinge_count : 0;
-    case STRUT_RUN_HEIGHTS: return run->model->scene->ground.present ? m->contact_count : 0;
-    case STRUT_RUN_FORCES: return m->force ? m->member_count : 0;
-    default: return m->energy ? 4 : 0;
-  }
+  const strut_scene *scene = run->model->scene;
+  if (kind == STRUT_RUN_DISPLACEMENT) return scene->ground.present ? 1 : 2;
+  if (kind == STRUT_RUN_DRIVE) return count_driven(run);
+  if (kind == STRUT_RUN_HEIGHTS) return scene->ground.present ? run->motion->contact_count : 0;
+  if (!strut_trajectory_channel(run->motion, kinds[kind].channel)) return 0;
+  if (kind == STRUT_RUN_ENERGIES) return ENERGIES;
+  return strut_channel_items(strut_channel_row_of(kinds[kind].channel), scene);
 }
 
-/* One value of a kind at a frame. */
+/* One value of a kind at a frame: of a channel the first component. */
 static double value_at(const strut_run_scene *run, int kind, size_t item, size_t f) {
   const strut_trajectory *m = run->motion;
-  const double *q = strut_run_positions(run, f);
   assert(item < count_items(run, kind));
-  switch (kind) {
-    case STRUT_RUN_DISPLACEMENT: return strut_run_measured(run, f, (int)item);
-    case STRUT_RUN_NORMALS: return m->contact[2 * (f * m->contact_count + item)];
-    case STRUT_RUN_HEIGHTS: {
-      size_t node = (size_t)m->contact_node[item];
-      return (q[2 * node + 1] - strut_run_ground_at(run, q[2 * node])) *
-             cos(run->model->scene->ground.slope);
-    }
-    case STRUT_RUN_FORCES: return m->force[f * m->member_count + item];
-    case STRUT_RUN_ANGLES: return m->angle[f * m->hinge_count + item] * (180.0 / STRUT_PI);
-    case STRUT_RUN_MOMENTS: return m->moment[f * m->hinge_count + item];
-    default: return m->energy[f * STRUT_ENERGIES + item];
+  if (kind == STRUT_RUN_DISPLACEMENT) return strut_run_measured(run, f, (int)item);
+  if (kind == STRUT_RUN_HEIGHTS) {
+    const double *at = strut_run_positions(run, f) + 2 * m->contact_node[item];
+    return (at[1] - strut_run_ground_at(run, at[0])) * cos(run->model->scene->ground.slope);
   }
+  const strut_channel_row *row = strut_channel_row_of(kinds[kind].channel);
+  size_t step = kind == STRUT_RUN_ENERGIES ? 1 : row->components;
+  size_t columns = row->components * strut_channel_items(row, run->model->scene);
+  return kinds[kind].factor * strut_trajectory_channel(m, row->id)[f * columns + step * item];
 }
 
 /* True if a contact ever touches the ground; heights of others are omitted. */
@@ -87,15 +95,10 @@ static bool comes_down(const strut_run_scene *run, size_t contact) {
 static const char *label_of(const strut_run_scene *run, int kind, size_t item) {
   static const char *const energies[] = {"kinetic", "elastic", "gravity", "contact"};
   static const char *const axes[] = {"along x", "along y"};
-  const strut_scene *scene = run->model->scene;
-  switch (kind) {
-    case STRUT_RUN_DISPLACEMENT: return axes[item];
-    case STRUT_RUN_FORCES: return scene->members[item].name;
-    case STRUT_RUN_ANGLES:
-    case STRUT_RUN_MOMENTS: return scene->hinges[item].name;
-    case STRUT_RUN_ENERGIES: return energies[item];
-    default: return strut_contact_name(scene, (size_t)item);
-  }
+  strut_channel channel = kind == STRUT_RUN_HEIGHTS ? STRUT_CHANNEL_CONTACT : kinds[kind].channel;
+  if (kind == STRUT_RUN_DISPLACEMENT) return axes[item];
+  if (kind == STRUT_RUN_ENERGIES) return energies[item];
+  return strut_channel_item(strut_channel_row_of(channel), run->model->scene, item);
 }
 
 /* Kinds drawn as changes from the first frame. */
@@ -231,15 +234,7 @@ static void find_range(const panel *p, size_t frames, int kind, strut_axis *axis
 }
 
 bool strut_run_panel(strut_run_scene *run, int kind, size_t first, strut_panel *to) {
-  static const char *const names[][2] = {[STRUT_RUN_DISPLACEMENT] = {"displacement", "m"},
-                                         [STRUT_RUN_NORMALS] = {"contact force", "N"},
-                                         [STRUT_RUN_DRIVE] = {"change", "m"},
-                                         [STRUT_RUN_HEIGHTS] = {"height", "m"},
-                                         [STRUT_RUN_FORCES] = {"member force", "N"},
-                                         [STRUT_RUN_ANGLES] = {"angle", "deg"},
-                                         [STRUT_RUN_MOMENTS] = {"moment", "N m"},
-                                         [STRUT_RUN_ENERGIES] = {"energy change", "J"}};
-  panel p = {.name = names[kind][0], .unit = names[kind][1]};
+  panel p = {.name = kinds[kind].name, .unit = kinds[kind].unit};
   const double *time = run->motion->time + first;
   size_t frames = run->frames - first;
   strut_series *series = strut_arena_allocate(&run->arena, MOST_CURVES, sizeof *series);

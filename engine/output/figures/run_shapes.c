@@ -162,10 +162,8 @@ bool strut_run_period(strut_run_scene *run, strut_figure *figure, char *note) {
 enum { USUAL = 6 };
 
 static const double COMMON = 2.2; /* shapes closer than this, in their sizes, share a window */
-static const double RAISED =
-    1.5; /* most growth of a cell to show the ground, of the largest shape */
-static const double SEEN = 2e-3; /* of the drawing: least visible motion of the measured point */
-static const double MARGIN = 15; /* [pt] */
+static const double SEEN = 2e-3;  /* of the drawing: least visible motion of the measured point */
+static const double MARGIN = 15;  /* [pt] */
 
 /* What a cell shows. */
 typedef struct snapshot {
@@ -185,7 +183,7 @@ typedef struct grid {
   bool moves;      /* the measured point moves visibly */
   bool common[2];  /* all cells show the same range along that axis */
   strut_bounds all;
-  double base;    /* lowest point of all shapes above the ground below their middle [m] */
+  double base;    /* of the deepest point in the ground, 0 at most [m] */
   double size[2]; /* of that range, or of the largest shape [m] */
 } grid;
 
@@ -251,19 +249,9 @@ static double way_to(const strut_run_scene *run, const grid *g, size_t i) {
          strut_run_measured(run, g->cells[0].frame, 0);
 }
 
-/* Where cells do not show the same height range: room for shapes on the ground drawn at one height. */
-static void stand_on_ground(const strut_run_scene *run, grid *g) {
-  double shape = g->size[1];
-  g->base = HUGE_VAL;
-  for (size_t i = 0; i < g->count; i++) {
-    const strut_bounds *b = &g->cells[i].bounds;
-    g->base = fmin(g->base, b->low[1] - ground_below(run, b));
-  }
-  for (size_t i = 0; i < g->count; i++) {
-    const strut_bounds *b = &g->cells[i].bounds;
-    double reach = b->high[1] - ground_below(run, b) - g->base;
-    if (reach < RAISED * shape) g->size[1] = fmax(g->size[1], reach);
-  }
+/* A shape near the ground, whose bounds reach it. */
+static bool is_grounded(const strut_run_scene *run, const strut_bounds *b) {
+  return run->model->scene->ground.present && b->low[1] <= ground_below(run, b);
 }
 
 /* The range of all cells along each axis: one for all where the shapes are close together. */
@@ -278,21 +266,26 @@ static void find_sizes(const strut_run_scene *run, grid *g) {
     if (d == 1 && ground->present && ground->slope != 0 && !g->common[0]) g->common[1] = false;
     if (g->common[d]) g->size[d] = together;
   }
-  if (ground->present && !g->common[1]) stand_on_ground(run, g);
+  for (int pass = 0; pass < 2 && !g->common[1]; pass++)
+    for (size_t i = 0; i < g->count; i++) {
+      const strut_bounds *b = &g->cells[i].bounds;
+      if (!is_grounded(run, b)) continue;
+      if (pass == 0) g->base = fmin(g->base, b->low[1] - ground_below(run, b));
+      if (pass == 1) g->size[1] = fmax(g->size[1], b->high[1] - ground_below(run, b) - g->base);
+    }
 }
 
-/* What cell i shows, as large as all others. */
+/* What cell i shows, as large as all others: shapes on the ground are drawn at one height. */
 static strut_bounds bounds_of(const strut_run_scene *run, const grid *g, size_t i) {
-  strut_bounds b = g->cells[i].bounds;
-  bool ground = run->model->scene->ground.present && !g->common[1];
-  double low = ground ? ground_below(run, &b) + g->base : b.low[1];
-  bool grounded = ground && b.high[1] <= low + g->size[1] * (1 + 1e-9);
+  const strut_bounds *own = &g->cells[i].bounds;
+  strut_bounds b = g->all;
   for (int d = 0; d < 2; d++) {
-    double middle = 0.5 * (b.low[d] + b.high[d]);
-    b.low[d] = g->common[d] ? g->all.low[d] : middle - 0.5 * g->size[d];
-    b.high[d] = g->common[d] ? g->all.high[d] : middle + 0.5 * g->size[d];
+    double middle = 0.5 * (own->low[d] + own->high[d]);
+    if (g->common[d]) continue;
+    b.low[d] = middle - 0.5 * g->size[d];
+    if (d == 1 && is_grounded(run, own)) b.low[1] = ground_below(run, own) + g->base;
+    b.high[d] = b.low[d] + g->size[d];
   }
-  if (grounded) b.low[1] = low, b.high[1] = low + g->size[1];
   return b;
 }
 

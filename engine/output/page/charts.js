@@ -54,15 +54,13 @@
   const CHANNELS = { contact: { name: "contact force", first: true }, force: { name: "member force" },
     angle: { unit: "deg", factor: 180 / Math.PI }, moment: {}, pressure: {}, area: {}, energy: {} };
 
-  /* A channel as the table of channels describes it: columns of each thing, then of their total. */
-  function kindOf(data, name, block, values) {
+  /* A channel as the table of channels describes it: columns of each name, the last of which may be the total. */
+  function kindOf(name, block, values) {
     const { unit, factor = 1, first, name: said = name.replaceAll("_", " ") } = CHANNELS[name] || {};
-    const things = data[block.things], parts = block.components;
-    const nameOf = (k) => !things ? "" : k >= things.length ? "total" : things[k].name ||
-      (data.contact_names ? data.contact_names[k] : data.nodes[things[k]].name);
+    const names = block.names || [""], parts = block.components;
     const curves = Array.from({ length: block.columns }, (_, i) => {
       const at = column(values, block.columns, i), part = first ? "" : parts[i % parts.length];
-      return { name: (nameOf(Math.floor(i / parts.length)) + " " + part).trim(),
+      return { name: (names[Math.floor(i / parts.length)] + " " + part).trim(),
         at: factor === 1 ? at : (frame) => factor * at(frame) };
     });
     return { name: said, unit: unit || block.unit,
@@ -84,8 +82,8 @@
     for (const name of names) {
       const block = data.motion[name];
       if (name === "energy" && data.ground && data.contacts.length) kinds.push(heights(run));
-      if (name !== "position" && motion[name] && block.things)
-        kinds.push(kindOf(data, name, block, motion[name]));
+      if (name !== "position" && motion[name] && block.components)
+        kinds.push(kindOf(name, block, motion[name]));
     }
     return kinds;
   }

@@ -18,8 +18,8 @@
  * result are those of its structure, on which a page may draw them: as a motion with `made`:
  * {note: text, clock: [text of each frame]}, which has no charts and a camera that rests.
  *
- * A block is {columns, quantum, unit, things, components, bytes}, the last but two of channels: what has them (nodes,
- * members, ...), and the names of what each thing has. Bytes are integers n of `frames` rows, (frames, columns); a
+ * A block is {columns, quantum, unit, names, components, bytes}: of a channel of things their names, the last of which
+ * may be the total, and those of what each has. Bytes are integers n of `frames` rows, (frames, columns); a
  * value is n * quantum. Column after column, the first number as it is, the second as its difference to the
  * first, from then on the second difference; each as zigzag (2 n, or -2 n - 1 where n < 0) in
  * little-endian groups of 7 bits, all of it deflated (raw, RFC 1951) and in base64. Numbers stay

@@ -296,16 +296,24 @@ static strut_value component_of(const strut_result_object *of, size_t i) {
   return STRUT_VALUE_AS_TEXT(channel_of(block_of(of))->component_names[i]);
 }
 
+static strut_value name_of(const strut_result_object *of, size_t i) {
+  const motion *m = strut_result_whole(of);
+  return STRUT_VALUE_AS_TEXT(
+      strut_channel_item(channel_of(block_of(of)), m->page->model->scene, i));
+}
+
 #define BLOCK(X)                                                                                   \
   X("columns", "", COUNT(m->block[b].columns), "numbers of a frame")                               \
   X("quantum", "", NUMBER(m->block[b].quantum), "what a whole number stands for")                  \
   X("unit", "", TEXT(row ? row->unit : "s"), "of it")                                              \
-  X("things", "", IF(row, TEXT(strut_owner_row_of(row->owner)->things)), "whose it is")            \
+  X("names", "", IF(named, ARRAY(strut_channel_items(row, scene), name_of)), "whose it is")        \
   X("components", "", IF(row, ARRAY(row->components, component_of)), "of each thing")              \
   X("bytes", "", TEXT(m->text[b]), "see page.h")
 STRUT_VALUES_HERE(block_values, BLOCK, const motion *m = strut_result_whole(of);
                   size_t b = block_of(of);
-                  const strut_channel_row *row = b == TIME ? NULL : channel_of(b))
+                  const strut_scene *scene = m->page->model->scene;
+                  const strut_channel_row *row = b == TIME ? NULL : channel_of(b);
+                  bool named = row && row->owner != STRUT_OWNER_SYSTEM)
 
 static const char *channel_name(const strut_result_object *of, size_t i) {
   (void)of;
