@@ -14,7 +14,8 @@
 static const char kinds[] = "curves|map";
 
 static const strut_option options[] = {
-    {STRUT_FILLS(plot), "plot", "FILE", "write the figure into FILE (.svg, .pdf or .png)"},
+    {STRUT_FILLS(plot), "plot", "FILE",
+     "write the figure into FILE (.svg, .pdf, .png, or its data as .json)"},
     {.table = strut_width_options},
     {STRUT_FILLS(kind), "kind", "KIND", "curves (default) or map", .words = kinds},
     {STRUT_FILLS(x), "x", "COLUMN", "column of the x axis (default: the first)"},
@@ -96,59 +97,30 @@ static strut_status read_y(const strut_arguments *arguments, const strut_table *
   }
 }
 
-static strut_status draw_map(const strut_arguments *arguments, const strut_plot *plot,
-                             const strut_table *table, strut_error *error) {
-  int third = table->column_count > 2 ? 2 : STRUT_NO_COLUMN;
-  strut_table_map_figure figure = {.title = arguments->title,
-                                   .width = plot->width,
-                                   .y = table->column_count > 1 ? 1 : 0,
-                                   .value = third,
-                                   .panels = STRUT_NO_COLUMN,
-                                   .doubt = STRUT_NO_COLUMN,
-                                   .colours = (strut_colours)arguments->colors.index,
-                                   .choice = STRUT_TABLE_ALL};
+/* What the options choose of the table. */
+static strut_status read_figure(const strut_arguments *arguments, const strut_table *table,
+                                strut_table_figure *figure) {
+  bool map = arguments->kind.index == 1;
   const column_choice choices[] = {
-      {"x", arguments->x, &figure.x, NULL},
-      {"y", arguments->y, &figure.y, NULL},
-      {"label", arguments->label, &figure.value, NULL},
-      {"panels", arguments->panels, &figure.panels, NULL},
-      {"doubt", arguments->doubt, &figure.doubt, NULL},
-      {"only", arguments->only, &figure.choice.only, &figure.choice.only_value},
-      {"difference", arguments->difference, &figure.choice.difference, NULL}};
+      {"x", arguments->x, &figure->x, NULL},
+      {"by", arguments->by, &figure->by, NULL},
+      {"label", arguments->label, &figure->value, NULL},
+      {"panels", arguments->panels, &figure->panels, NULL},
+      {"doubt", arguments->doubt, &figure->doubt, NULL},
+      {"band", arguments->band, &figure->band, &figure->band_value},
+      {"only", arguments->only, &figure->choice.only, &figure->choice.only_value},
+      {"difference", arguments->difference, &figure->choice.difference, NULL}};
+  figure->kind = map ? STRUT_TABLE_MAP : STRUT_TABLE_CURVES;
+  figure->log_x = arguments->log.text && arguments->log.index != 1;
+  figure->log_y = arguments->log.text && arguments->log.index != 0;
+  figure->colours = (strut_colours)arguments->colors.index;
+  if (map && table->column_count > 2) figure->value = 2;
   strut_status status = read_columns(arguments, table, choices, sizeof choices / sizeof *choices);
-  if (!status) status = strut_axes_read(arguments, false, false, &figure.x_axis, &figure.y_axis);
-  if (!status && figure.value == STRUT_NO_COLUMN)
+  if (!status) status = read_y(arguments, table, figure);
+  if (!status && map && figure->value == STRUT_NO_COLUMN)
     status = strut_usage_error(arguments, "a map needs a third column");
-  return status ? status : strut_table_map(plot->path, &figure, table, error);
+  return status;
 }
-
-static strut_status draw_curves(const strut_arguments *arguments, const strut_plot *plot,
-                                const strut_table *table, strut_error *error) {
-  strut_table_figure figure = {.title = arguments->title,
-                               .width = plot->width,
-                               .by = STRUT_NO_COLUMN,
-                               .panels = STRUT_NO_COLUMN,
-                               .band = STRUT_NO_COLUMN,
-                               .log_x = arguments->log.text && arguments->log.index != 1,
-                               .log_y = arguments->log.text && arguments->log.index != 0,
-                               .choice = STRUT_TABLE_ALL};
-  const column_choice choices[] = {
-      {"x", arguments->x, &figure.x, NULL},
-      {"by", arguments->by, &figure.by, NULL},
-      {"panels", arguments->panels, &figure.panels, NULL},
-      {"band", arguments->band, &figure.band, &figure.band_value},
-      {"only", arguments->only, &figure.choice.only, &figure.choice.only_value},
-      {"difference", arguments->difference, &figure.choice.difference, NULL}};
-  strut_status status = read_columns(arguments, table, choices, sizeof choices / sizeof *choices);
-  if (!status) status = read_y(arguments, table, &figure);
-  if (!status)
-    status = strut_axes_read(arguments, figure.log_x, figure.log_y, &figure.x_axis, &figure.y_axis);
-  return status ? status : strut_table_curves(plot->path, &figure, table, error);
-}
-
-static strut_status (*const draws[])(const strut_arguments *arguments, const strut_plot *plot,
-                                     const strut_table *table,
-                                     strut_error *error) = {draw_curves, draw_map};
 
 /* Refuses options that belong to the other kind of diagram. */
 static strut_status check_kind(const strut_arguments *a) {
@@ -168,6 +140,7 @@ static strut_status check_kind(const strut_arguments *a) {
 static strut_status run_plot(const strut_arguments *arguments) {
   strut_plot plot;
   strut_table table;
+  strut_table_figure figure = STRUT_TABLE_FIGURE;
   strut_error error = {0};
   strut_status status = check_kind(arguments);
   if (status == STRUT_OK) status = strut_plot_read(arguments, 0, &plot);
@@ -175,7 +148,9 @@ static strut_status run_plot(const strut_arguments *arguments) {
   if (!plot.path) return strut_usage_error(arguments, "missing --plot FILE");
   status = strut_table_read(arguments->model, &table);
   if (status != STRUT_OK) return status;
-  status = draws[arguments->kind.index](arguments, &plot, &table, &error);
+  status = read_figure(arguments, &table, &figure);
+  if (!status) status = strut_axes_read(arguments, figure.log_x, figure.log_y, &plot.x, &plot.y);
+  if (!status) status = strut_table_draw(&plot, &figure, &table, &error);
   if (error.message[0]) strut_print_error(&error);
   strut_arena_free(&table.arena);
   return status;

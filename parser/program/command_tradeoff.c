@@ -226,7 +226,8 @@ static strut_status write_files(const char *stage, const strut_tradeoff *result,
   if (status == STRUT_OK && used >= (int)sizeof path)
     status =
         strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long", stage);
-  return status == STRUT_OK ? strut_tradeoff_figure(path, PAGE, result, error) : status;
+  if (status != STRUT_OK) return status;
+  return strut_tradeoff_figure(&(strut_plot){.path = path, .width = PAGE}, result, error);
 }
 
 static strut_status print_study(const strut_arguments *arguments, const strut_tradeoff *result,
@@ -248,7 +249,7 @@ static strut_status report_study(const strut_arguments *arguments, strut_results
     if (status != STRUT_OK) strut_print_error(&error);
   }
   if (status == STRUT_OK && plot->path) {
-    status = strut_tradeoff_figure(plot->path, plot->width, result, &error);
+    status = strut_tradeoff_figure(plot, result, &error);
     if (status != STRUT_OK) strut_print_error(&error);
   }
   if (status == STRUT_OK) status = print_study(arguments, result, json);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/canvas.h"
+#include "engine/output/draw/figure.h"
 #include "parser/program/open_model.h"
 #include "parser/program/streams.h"
 #include "parser/yaml/diagnostics.h"
@@ -192,7 +192,7 @@ const strut_command *strut_command_variant_of(const strut_command *command, int 
 /* Checks that the file can be created. */
 static strut_status try_path(const char *path) {
   strut_error error = {0};
-  strut_status status = strut_canvas_check_name(path, &error);
+  strut_status status = strut_figure_check_name(path, &error);
   return status ? strut_print_failure(status, &error) : strut_try_file(path);
 }
 

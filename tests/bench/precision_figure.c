@@ -3,13 +3,12 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "engine/output/draw/canvas.h"
-#include "engine/output/draw/work_precision.h"
+#include "engine/output/figures/work_precision.h"
 #include "tests/bench/precision.h"
 
 enum { MOST_GROUPS = 40, MOST_POINTS = 600 };
-static const double LEAST = 1e-12;                       /* error at the lower edge */
-static const double WIDTH = 640, HEIGHT = 340, EDGE = 8; /* [pt] */
+static const double LEAST = 1e-12;             /* error at the lower edge */
+static const double WIDTH = 640, HEIGHT = 330; /* [pt] */
 
 typedef struct diagram {
   size_t groups, count;
@@ -37,32 +36,37 @@ static void fill(diagram *d, const precision_row *rows, size_t count, bool time)
   }
 }
 
-static strut_status draw_panel(strut_canvas *canvas, strut_box box, const diagram *d,
-                               const char *title, bool time) {
+static bool fill_panel(const diagram *d, bool time, strut_arena *arena, strut_panel *panel) {
   const strut_work_precision wanted = {
-      .title = title,
-      .cost = {time ? "CPU time [s]" : "force evaluations", "", true, (double)NAN, (double)NAN},
-      .error = {"relative error of the velocity", "", true, LEAST, 1.0},
+      .cost = strut_axis_of(time ? "CPU time [s]" : "force evaluations", ""),
+      .error = {.name = "relative error of the velocity", .unit = "", .low = LEAST, .high = 1.0},
       .group_count = d->groups,
       .count = d->count,
       .groups = d->names,
       .bargains = d->points};
-  return strut_draw_work_precision(canvas, box, &wanted);
+  bool fine = strut_work_precision_fill(&wanted, arena, panel);
+  panel->height = HEIGHT;
+  return fine;
 }
 
 strut_status precision_draw(const char *path, const precision_scene *scene,
                             const precision_row *rows, size_t count, strut_error *error) {
-  static diagram d;
-  strut_canvas *canvas = NULL;
-  strut_box box = {EDGE, EDGE, 0.5 * WIDTH - 1.5 * EDGE, HEIGHT - 2 * EDGE};
-  strut_status status = strut_canvas_open(path, WIDTH, HEIGHT, scene->title, &canvas, error);
-  for (int time = 0; time < 2 && status == STRUT_OK; time++) {
-    fill(&d, rows, count, time == 1);
-    status = draw_panel(canvas, box, &d, time ? "" : scene->title, time == 1);
-    box.x += 0.5 * WIDTH - 0.5 * EDGE;
-    if (status != STRUT_OK) strut_fail(error, status, "out of memory while drawing");
+  static diagram d[2];
+  const strut_plot plot = {.path = path, .width = WIDTH};
+  strut_arena arena = {0};
+  strut_panel panels[2];
+  bool fine = true;
+  for (int time = 0; time < 2 && fine; time++) {
+    fill(&d[time], rows, count, time == 1);
+    fine = fill_panel(&d[time], time == 1, &arena, &panels[time]);
   }
-  if (status == STRUT_OK) status = strut_canvas_commit(canvas, error);
-  strut_canvas_free(canvas);
+  const strut_figure figure = {.title = scene->title,
+                               .panel_count = 2,
+                               .panels = panels,
+                               .columns = 2,
+                               .least_width = 0.4 * WIDTH};
+  strut_status status =
+      fine ? strut_figure_draw(&plot, &figure, error) : strut_no_memory(error, "while drawing");
+  strut_arena_free(&arena);
   return status;
 }

@@ -171,6 +171,7 @@ def make_hostile_names(path):
         node["name"] = HOSTILE[i]
     for i, member in enumerate(data["members"]):
         member["name"] = HOSTILE[3 + i]
+    data["motion"]["force"]["names"] = HOSTILE[3:3 + len(data["members"])]
     text = json.dumps(data).replace("<", "\\u003c")
     path.write_text(page[:begin] + text + page[end:], encoding="utf-8")
 

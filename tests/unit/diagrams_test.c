@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What diagrams are made of: round ticks, prefixes, thinned curves, the front of the best. */
-#include "engine/output/draw/chart.h"
-#include "engine/output/draw/legend.h"
-#include "engine/output/draw/work_precision.h"
+#include "engine/output/draw/painter.h"
+#include "engine/output/figures/work_precision.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 #include "tests/unit/scratch.h"
@@ -64,7 +63,8 @@ TEST(prefixes) {
 
 static strut_tick_set ticks_of(const char *unit, bool logarithmic, double low, double high) {
   strut_tick_set set;
-  const strut_axis axis = {"error", unit, logarithmic, low, high};
+  const strut_axis axis = {
+      .name = "error", .unit = unit, .logarithmic = logarithmic, .low = low, .high = high};
   strut_axis_ticks(&axis, 5, &set);
   return set;
 }
@@ -127,7 +127,8 @@ TEST(settle) {
   for (size_t i = 0; i < COUNT; i++)
     for (size_t k = 0; k < COUNT; k++)
       for (int logarithmic = 0; logarithmic < 2; logarithmic++) {
-        strut_axis axis = {"a", "m", logarithmic, (double)NAN, (double)NAN};
+        strut_axis axis = strut_axis_of("a", "m");
+        axis.logarithmic = logarithmic;
         strut_tick_set set;
         strut_axis_include(&axis, values[i]);
         strut_axis_include(&axis, values[k]);
@@ -202,22 +203,22 @@ TEST(labels_of_the_front) {
                                          {1, "50 us", 2, 1e-4, (double)NAN, (double)NAN},
                                          {1, "25 us", 3, 1e-5, (double)NAN, (double)NAN}};
   static const char *const labels[] = {"50 \u00b5s, rk4", "50 \u00b5s, verlet", "25 \u00b5s"};
-  const strut_work_precision diagram = {.cost = {"cost", "", true, (double)NAN, (double)NAN},
-                                        .error = {"error", "m", true, (double)NAN, (double)NAN},
+  const strut_work_precision diagram = {.cost = strut_axis_of("cost", ""),
+                                        .error = strut_axis_of("error", "m"),
                                         .group_count = 2,
                                         .count = 3,
                                         .groups = groups,
                                         .bargains = savings};
-  strut_canvas *canvas;
   strut_error error;
+  strut_arena arena = {0};
+  strut_panel panel;
   char label[40];
   scratch_make();
   const char *path = scratch_path("front.svg");
-  assert_int_equal(strut_canvas_open(path, 400, 300, "front", &canvas, &error), STRUT_OK);
-  assert_int_equal(strut_draw_work_precision(canvas, (strut_box){0, 0, 400, 300}, &diagram),
-                   STRUT_OK);
-  assert_int_equal(strut_canvas_commit(canvas, &error), STRUT_OK);
-  strut_canvas_free(canvas);
+  assert_true(strut_work_precision_fill(&diagram, &arena, &panel));
+  const strut_figure figure = {.panel_count = 1, .panels = &panel};
+  assert_int_equal(strut_figure_draw(&(strut_plot){.path = path}, &figure, &error), STRUT_OK);
+  strut_arena_free(&arena);
   size_t length;
   FREED char *text = scratch_read(path, &length);
   assert_non_null(text);
@@ -238,19 +239,21 @@ TEST(map) {
   static const double xs[] = {1, 2}, ys[] = {10, 20};
   static const int category[] = {0, 1, 1, 0};
   static const char *const names[] = {"I", "II"};
-  const strut_map map = {.x = {"a", "", false, (double)NAN, (double)NAN},
-                         .y = {"b", "", false, (double)NAN, (double)NAN},
-                         .columns = 2,
+  const strut_map map = {.columns = 2,
                          .rows = 2,
                          .xs = xs,
                          .ys = ys,
                          .category = category,
                          .category_count = 2,
                          .names = names};
+  strut_panel panel = {.x = strut_axis_of("a", ""), .y = strut_axis_of("b", ""), .map = &map};
+  strut_arena arena = {0};
   strut_canvas *canvas;
   strut_error error;
   assert_int_equal(strut_canvas_open_pixels(400, 300, 1, &canvas, &error), STRUT_OK);
-  assert_int_equal(strut_draw_map(canvas, (strut_box){0, 0, 400, 300}, &map), STRUT_OK);
+  assert_true(strut_panels_settle(&panel, 1, &arena));
+  assert_true(strut_draw_chart(canvas, (strut_box){0, 0, 400, 300}, &panel, true, &arena));
+  strut_arena_free(&arena);
   const unsigned char *low_left = pixel(canvas, 120, 220), *low_right = pixel(canvas, 320, 220);
   const unsigned char *high_left = pixel(canvas, 120, 80), *high_right = pixel(canvas, 320, 80);
   assert_memory_equal(low_left, high_right, 3);

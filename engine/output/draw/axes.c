@@ -152,19 +152,29 @@ static void logarithmic_ticks(const strut_axis *axis, int wanted, strut_tick_set
   }
 }
 
+static void name_ticks(const strut_axis *axis, strut_tick_set *set) {
+  for (size_t i = 0; i < axis->name_count && i < STRUT_MOST_TICKS; i++) {
+    set->at[set->count] = (double)i;
+    snprintf(set->text[set->count++], STRUT_TICK_TEXT, "%.*s",
+             strut_text_bytes(axis->names[i], STRUT_TICK_TEXT - 1), axis->names[i]);
+  }
+  write_label(axis, "", "", set);
+}
+
 void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set) {
   strut_c_locale locale = strut_c_locale_enter();
   assert(!(axis->low > axis->high));
   *set = (strut_tick_set){0};
-  if (axis->logarithmic) {
+  if (axis->names)
+    name_ticks(axis, set);
+  else if (axis->logarithmic)
     logarithmic_ticks(axis, wanted, set);
-  } else {
+  else
     linear_ticks(axis, wanted, set);
-  }
   strut_c_locale_leave(locale);
 }
 
-static const double TICK_SIZE = 7.5, LABEL_SIZE = 8, TITLE_SIZE = 8.5, TICK = 2.5, GAP = 2.5;
+static const double TICK_SIZE = 7.5, LABEL_SIZE = 8, TICK = 2.5, GAP = 2.5;
 static const double RIGHT = 10;      /* half of the last tick's text */
 static const double LEAST_LEFT = 26; /* so that frames one above the other line up more often */
 
@@ -210,35 +220,27 @@ void strut_axis_settle(strut_axis *axis, double room) {
   axis->high += room * span;
 }
 
-/* The number of ticks whose texts fit into the width. */
-static int ticks_along_x(strut_canvas *canvas, const strut_axis *axis, double width) {
-  for (int wanted = 10; wanted > 1; wanted--) {
-    strut_tick_set set;
-    double widest = 0, total = 0, height;
-    strut_axis_ticks(axis, wanted, &set);
-    for (size_t i = 0; i < set.count; i++) {
-      double one;
-      strut_text_size(canvas, set.text[i], (strut_font){.size = TICK_SIZE}, &one, &height);
-      widest = fmax(widest, one);
-    }
-    total = (double)set.count * (widest + 8);
-    if (total <= width) return wanted;
-  }
-  return 1;
+static double widest_text(strut_canvas *canvas, const strut_tick_set *set) {
+  double widest = 0;
+  for (size_t i = 0; i < set->count; i++)
+    widest = fmax(widest, strut_text_width(canvas, set->text[i], (strut_font){.size = TICK_SIZE}));
+  return widest;
 }
 
-static int ticks_along_y(double height) { return (int)fmax(1, fmin(10, height / 22)); }
-
-static double widest_tick(strut_canvas *canvas, const strut_axis *axis, double height) {
+/* As many ticks as have room for their texts. */
+static strut_tick_set ticks_along_x(strut_canvas *canvas, const strut_axis *axis, double width) {
   strut_tick_set set;
-  double widest = 0;
-  strut_axis_ticks(axis, ticks_along_y(height), &set);
-  for (size_t i = 0; i < set.count; i++) {
-    double width, line;
-    strut_text_size(canvas, set.text[i], (strut_font){.size = TICK_SIZE}, &width, &line);
-    widest = fmax(widest, width);
+  for (int wanted = 10; wanted > 0; wanted--) {
+    strut_axis_ticks(axis, wanted, &set);
+    if ((double)set.count * (widest_text(canvas, &set) + 8) <= width) break;
   }
-  return widest;
+  return set;
+}
+
+static strut_tick_set ticks_along_y(const strut_axis *axis, double height) {
+  strut_tick_set set;
+  strut_axis_ticks(axis, (int)fmax(1, fmin(10, height / 22)), &set);
+  return set;
 }
 
 void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice) {
@@ -248,20 +250,14 @@ void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice) {
   axis->high = choice->high;
 }
 
-strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, strut_axis y,
-                            const char *title) {
-  double width, line, label, above = 0.5 * TICK_SIZE;
-  strut_text_size(canvas, "0", (strut_font){.size = TICK_SIZE}, &width, &line);
-  strut_text_size(canvas, "0", (strut_font){.size = LABEL_SIZE}, &width, &label);
-  if (title && *title) {
-    strut_text_size(canvas, title,
-                    (strut_font){.size = TITLE_SIZE, .bold = true, .width = box.width}, &width,
-                    &above);
-    above += GAP;
-  }
-  double below = TICK + GAP + line + label;
+strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, strut_axis y) {
+  double line = strut_text_height(canvas, "0", (strut_font){.size = TICK_SIZE});
+  double label = strut_text_height(canvas, "0", (strut_font){.size = LABEL_SIZE});
+  double above = 0.5 * TICK_SIZE;
+  double below = x.names && !x.name_count ? GAP : TICK + GAP + line + label;
   double height = fmax(box.height - above - below, 10);
-  double left = fmax(widest_tick(canvas, &y, height) + TICK + GAP, LEAST_LEFT) + label + GAP;
+  strut_tick_set set = ticks_along_y(&y, height);
+  double left = fmax(widest_text(canvas, &set) + TICK + GAP, LEAST_LEFT) + label + GAP;
   return (strut_axes){
       .x = x,
       .y = y,
@@ -282,80 +278,45 @@ void strut_axes_point(const strut_axes *axes, double x, double y, double point[2
 static void label_x(strut_canvas *canvas, const strut_box *f, double y, const char *label) {
   const strut_font font = {.size = LABEL_SIZE, .across = 0.5};
   double right = f->x + f->width + RIGHT, left = fmax(f->x - LEAST_LEFT - LABEL_SIZE, 0.0);
-  double width, height;
   char fitted[STRUT_FITTED_TEXT];
   label = strut_text_fit(canvas, label, font, right - left, 0.0, fitted);
-  strut_text_size(canvas, label, font, &width, &height);
+  double width = strut_text_width(canvas, label, font);
   strut_draw_text(canvas, fmin(f->x + 0.5 * f->width, right - 0.5 * width), y, label, font);
 }
 
-static void draw_x(strut_canvas *canvas, const strut_axes *axes, const strut_tick_set *set) {
+/* A tick at a value of the axis d, `length` outwards; a faint line across the frame where it has a text. */
+static void draw_tick(strut_canvas *canvas, const strut_axes *axes, int d, double value,
+                      const char *text) {
   const strut_box *f = &axes->frame;
   const strut_pen grid = {.colour = strut_grey(0.9), .width = 0.4, .butt = true};
   const strut_pen tick = {.colour = strut_grey(0.25), .width = 0.6, .butt = true};
-  double bottom = f->y + f->height, point[2];
-  for (size_t i = 0; i < set->count; i++) {
-    strut_axes_point(axes, set->at[i], axes->y.low, point);
-    strut_draw_segment(canvas, point[0], f->y, point[0], bottom, grid);
-    strut_draw_segment(canvas, point[0], bottom, point[0], bottom + TICK, tick);
-    strut_draw_text(canvas, point[0], bottom + TICK + 1, set->text[i],
-                    (strut_font){.size = TICK_SIZE, .across = 0.5});
-  }
-  for (size_t i = 0; i < set->minor_count; i++) {
-    strut_axes_point(axes, set->minor[i], axes->y.low, point);
-    strut_draw_segment(canvas, point[0], bottom, point[0], bottom + 0.6 * TICK, tick);
-  }
-  double width, line;
-  strut_text_size(canvas, "0", (strut_font){.size = TICK_SIZE}, &width, &line);
-  label_x(canvas, f, bottom + TICK + 1 + line, set->label);
+  double at[2], bottom = f->y + f->height, length = text ? TICK : 0.6 * TICK;
+  strut_axes_point(axes, d ? axes->x.low : value, d ? value : axes->y.low, at);
+  if (text && d) strut_draw_segment(canvas, f->x, at[1], f->x + f->width, at[1], grid);
+  if (text && !d) strut_draw_segment(canvas, at[0], f->y, at[0], bottom, grid);
+  strut_draw_segment(canvas, at[0], at[1], at[0] - d * length, at[1] + (1 - d) * length, tick);
+  strut_draw_text(canvas, d ? f->x - TICK - GAP : at[0], d ? at[1] : bottom + TICK + 1, text,
+                  (strut_font){.size = TICK_SIZE, .across = d ? 1 : 0.5, .down = d ? 0.5 : 0});
 }
 
-static void draw_y(strut_canvas *canvas, const strut_axes *axes, const strut_tick_set *set) {
+static void draw_ticks(strut_canvas *canvas, const strut_axes *axes, int d,
+                       const strut_tick_set *set) {
+  for (size_t i = 0; i < set->count; i++) draw_tick(canvas, axes, d, set->at[i], set->text[i]);
+  for (size_t i = 0; i < set->minor_count; i++) draw_tick(canvas, axes, d, set->minor[i], NULL);
+}
+
+void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes) {
   const strut_box *f = &axes->frame;
-  const strut_pen grid = {.colour = strut_grey(0.9), .width = 0.4, .butt = true};
-  const strut_pen tick = {.colour = strut_grey(0.25), .width = 0.6, .butt = true};
-  double widest = LEAST_LEFT - TICK - GAP, point[2];
-  for (size_t i = 0; i < set->count; i++) {
-    double width, line;
-    strut_axes_point(axes, axes->x.low, set->at[i], point);
-    strut_draw_segment(canvas, f->x, point[1], f->x + f->width, point[1], grid);
-    strut_draw_segment(canvas, f->x - TICK, point[1], f->x, point[1], tick);
-    strut_draw_text(canvas, f->x - TICK - GAP, point[1], set->text[i],
-                    (strut_font){.size = TICK_SIZE, .across = 1, .down = 0.5});
-    strut_text_size(canvas, set->text[i], (strut_font){.size = TICK_SIZE}, &width, &line);
-    widest = fmax(widest, width);
-  }
-  for (size_t i = 0; i < set->minor_count; i++) {
-    strut_axes_point(axes, axes->x.low, set->minor[i], point);
-    strut_draw_segment(canvas, f->x - 0.6 * TICK, point[1], f->x, point[1], tick);
-  }
-  strut_draw_text(canvas, f->x - TICK - 2 * GAP - widest, f->y + 0.5 * f->height, set->label,
+  const strut_tick_set x = ticks_along_x(canvas, &axes->x, f->width);
+  const strut_tick_set y = ticks_along_y(&axes->y, f->height);
+  double line = strut_text_height(canvas, "0", (strut_font){.size = TICK_SIZE});
+  double left = fmax(widest_text(canvas, &y), LEAST_LEFT - TICK - GAP);
+  draw_ticks(canvas, axes, 0, &x);
+  draw_ticks(canvas, axes, 1, &y);
+  label_x(canvas, f, f->y + f->height + TICK + 1 + line, x.label);
+  strut_draw_text(canvas, f->x - TICK - 2 * GAP - left, f->y + 0.5 * f->height, y.label,
                   (strut_font){.size = LABEL_SIZE, .across = 0.5, .down = 1, .upwards = true});
-}
-
-void strut_draw_vertical_axis(strut_canvas *canvas, const strut_axes *axes) {
-  const strut_box *f = &axes->frame;
-  strut_tick_set set;
-  strut_axis_ticks(&axes->y, ticks_along_y(f->height), &set);
-  draw_y(canvas, axes, &set);
-  strut_draw_segment(canvas, f->x, f->y, f->x, f->y + f->height,
-                     (strut_pen){.colour = strut_grey(0.25), .width = 0.6});
-}
-
-void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *title) {
-  const strut_box *f = &axes->frame;
-  const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
-  strut_tick_set set;
-  strut_axis_ticks(&axes->x, ticks_along_x(canvas, &axes->x, f->width), &set);
-  draw_x(canvas, axes, &set);
-  strut_axis_ticks(&axes->y, ticks_along_y(f->height), &set);
-  draw_y(canvas, axes, &set);
-  strut_draw_box(canvas, *f, NULL, &frame);
-  if (title && *title)
-    strut_draw_text(
-        canvas, f->x + 0.5 * f->width, f->y - GAP, title,
-        (strut_font){
-            .size = TITLE_SIZE, .bold = true, .across = 0.5, .down = 1, .width = f->width});
+  strut_draw_box(canvas, *f, NULL, &(strut_pen){.colour = strut_grey(0.25), .width = 0.6});
 }
 
 /* The scale of colours beside a drawing. */

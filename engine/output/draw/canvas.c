@@ -103,21 +103,22 @@ static bool renumber_surfaces(char *svg) {
 /* Pixels of a PNG for each point: 300 to the inch, as printers ask for. */
 static const double PNG_SCALE = 300.0 / 72.0;
 
-/* False: a name with another ending. */
-static bool read_ending(const char *path, strut_page_format *format) {
+/* STRUT_PAGE_PIXELS: a name with another ending. */
+static strut_page_format read_ending(const char *path) {
+  static const char *const endings[] = {".svg", ".pdf", ".png"};
   const char *dot = strrchr(path, '.');
-  if (!dot || strchr(dot, '/') || dot == path || dot[-1] == '/') return false;
-  *format = strcmp(dot, ".svg") == 0   ? STRUT_PAGE_SVG
-            : strcmp(dot, ".pdf") == 0 ? STRUT_PAGE_PDF
-                                       : STRUT_PAGE_PNG;
-  return *format != STRUT_PAGE_PNG || strcmp(dot, ".png") == 0;
+  bool name = dot && !strchr(dot, '/') && dot != path && dot[-1] != '/';
+  for (int i = 0; i < 3 && name; i++)
+    if (strcmp(dot, endings[i]) == 0) return (strut_page_format)i;
+  return STRUT_PAGE_PIXELS;
 }
 
 strut_status strut_canvas_check_name(const char *path, strut_error *error) {
-  strut_page_format format;
-  if (read_ending(path, &format)) return STRUT_OK;
+  if (read_ending(path) != STRUT_PAGE_PIXELS) return STRUT_OK;
   return strut_fail(error, STRUT_USAGE,
-                    "unknown picture format '%s': the name must end with .svg, .pdf or .png", path);
+                    "unknown picture format '%s': the name must end with .svg, .pdf or .png, or "
+                    ".json for its data",
+                    path);
 }
 
 static strut_status gather_bytes(void *context, const void *bytes, size_t count) {
@@ -166,7 +167,7 @@ strut_status strut_canvas_open(const char *path, double width, double height, co
   *canvas = NULL;
   strut_status status = strut_canvas_check_name(path, error);
   if (status != STRUT_OK) return status;
-  read_ending(path, &request.format);
+  request.format = read_ending(path);
   request.scale = request.format == STRUT_PAGE_PNG ? PNG_SCALE : 1.0;
   request.write = request.format == STRUT_PAGE_SVG ? gather_bytes : write_bytes;
   return open_canvas(&request, path, canvas, error);
@@ -288,11 +289,6 @@ void strut_draw_line(strut_canvas *c, const double (*points)[2], size_t count, s
   c->cairo->line(c->page, points, count, pen);
 }
 
-void strut_draw_segments(strut_canvas *c, const double (*ends)[2], size_t count, strut_pen pen) {
-  for (size_t i = 0; i < count; i++) blacken_line(c, ends + 2 * i, 2, pen);
-  c->cairo->segments(c->page, ends, count, pen);
-}
-
 void strut_draw_segment(strut_canvas *c, double x1, double y1, double x2, double y2,
                         strut_pen pen) {
   const double ends[2][2] = {{x1, y1}, {x2, y2}};
@@ -337,6 +333,18 @@ void strut_draw_circle(strut_canvas *c, double x, double y, double radius, const
 void strut_text_size(strut_canvas *c, const char *text, strut_font font, double *width,
                      double *height) {
   c->cairo->text_size(c->page, text, font, width, height);
+}
+
+double strut_text_width(strut_canvas *c, const char *text, strut_font font) {
+  double width, height;
+  strut_text_size(c, text, font, &width, &height);
+  return width;
+}
+
+double strut_text_height(strut_canvas *c, const char *text, strut_font font) {
+  double width, height;
+  strut_text_size(c, text, font, &width, &height);
+  return height;
 }
 
 void strut_draw_text(strut_canvas *c, double x, double y, const char *text, strut_font font) {

@@ -91,11 +91,6 @@ STRUT_API void strut_draw_line(strut_canvas *canvas, const double (*points)[2], 
                                strut_pen pen);
 STRUT_API void strut_draw_segment(strut_canvas *canvas, double x1, double y1, double x2, double y2,
                                   strut_pen pen);
-/**
- * (count) separate lines in one piece: ends 2 i and 2 i + 1 of (2 count) points belong together.
- */
-STRUT_API void strut_draw_segments(strut_canvas *canvas, const double (*ends)[2], size_t count,
-                                   strut_pen pen);
 /** A closed outline through (count) points; a fill or a pen may be NULL. */
 STRUT_API void strut_draw_polygon(strut_canvas *canvas, const double (*points)[2], size_t count,
                                   const strut_fill *fill, const strut_pen *pen);
@@ -115,6 +110,9 @@ STRUT_API void strut_draw_text(strut_canvas *canvas, double x, double y, const c
 /** Width and height of a text [pt], unrotated. */
 STRUT_API void strut_text_size(strut_canvas *canvas, const char *text, strut_font font,
                                double *width, double *height);
+/** One of them. */
+STRUT_API double strut_text_width(strut_canvas *canvas, const char *text, strut_font font);
+STRUT_API double strut_text_height(strut_canvas *canvas, const char *text, strut_font font);
 
 /** A text beside what it names. */
 typedef struct strut_label {

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** Charts: axes with ticks, frames, curves and maps of colours on a page. */
+/** What charts are made of: axes with ticks, frames, scales of colours. figure.h describes whole ones. */
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_CHART_H
 #define STRUT_ENGINE_OUTPUT_DRAW_CHART_H
+
+#include <math.h>
 
 #include "engine/output/buffer.h"
 #include "engine/output/draw/canvas.h"
@@ -13,7 +15,16 @@ typedef struct strut_axis {
   const char *name, *unit; /* the values' SI unit; "" for none. A prefix is chosen for the ticks */
   bool logarithmic;
   double low, high; /* the range; both NAN: from the data, with a little room */
+  const char *const
+      *names; /* (name_count) of categories at 0, 1, ..., instead of numbers; or NULL */
+  size_t name_count;
 } strut_axis;
+
+/** A linear axis whose range comes from the data. */
+static inline strut_axis strut_axis_of(const char *name, const char *unit) {
+  strut_axis axis = {name, unit, false, (double)NAN, (double)NAN, NULL, 0};
+  return axis;
+}
 
 /** A label and a range that replace those of an axis. Zero-initialised: none. */
 typedef struct strut_axis_choice {
@@ -44,18 +55,11 @@ STRUT_API void strut_axis_include(strut_axis *axis, double value);
 STRUT_API void strut_axis_settle(strut_axis *axis, double room);
 /** Replaces the name and, after strut_axis_settle, the range of an axis where `choice` has one. */
 STRUT_API void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice);
-/**
- * Lays out a frame for settled axes in `box`, leaving room for ticks, labels and a title (NULL: none);
- * panels side by side line up when their boxes do.
- */
+/** Lays out a frame for settled axes in `box`; panels side by side line up when their boxes do. */
 STRUT_API strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x,
-                                      strut_axis y, const char *title);
-/**
- * Frame, ticks, faint grid, labels and title: before the data, so that these lie above the grid.
- */
-STRUT_API void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *title);
-/** The y axis with its grid only, for diagrams whose x axis has no numbers. */
-STRUT_API void strut_draw_vertical_axis(strut_canvas *canvas, const strut_axes *axes);
+                                      strut_axis y);
+/** Frame, ticks, faint grid and labels: before the data, so that these lie above the grid. */
+STRUT_API void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes);
 /** Maps a pair of values to the page. */
 STRUT_API void strut_axes_point(const strut_axes *axes, double x, double y, double point[2]);
 
@@ -109,7 +113,7 @@ STRUT_API void strut_draw_beyond(strut_canvas *canvas, const double at[2], strut
 /** A note inside the frame, where it is emptiest near the top. "": none. */
 STRUT_API void strut_draw_axis_note(strut_canvas *canvas, const strut_axes *axes, const char *text);
 
-enum { STRUT_TICK_TEXT = 32, STRUT_MOST_MINOR = 120 };
+enum { STRUT_TICK_TEXT = 64, STRUT_MOST_MINOR = 120 };
 /** The ticks of a settled axis and their texts. */
 typedef struct strut_tick_set {
   size_t count, minor_count;
@@ -134,8 +138,8 @@ STRUT_API void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
 /* Where a figure goes, its width, and what replaces its title and axes. */
 
 typedef struct strut_plot {
-  const char *path;       /* ends with .svg, .pdf or .png; NULL: no figure is wanted */
-  double width;           /* [pt] */
+  const char *path;       /* ends with .svg, .pdf, .png or .json; NULL: no figure is wanted */
+  double width;           /* [pt]; 0: 180 mm */
   const char *title;      /* replaces the figure's own; NULL: the model's name */
   strut_axis_choice x, y; /* of a figure with one pair of axes */
 } strut_plot;
@@ -144,59 +148,5 @@ typedef struct strut_plot {
 static inline const char *strut_plot_title(const strut_plot *plot, const char *name) {
   return plot->title ? plot->title : name;
 }
-
-/* Curves over one quantity: lines with markers, grey bands, and a legend placed clear of them. */
-
-typedef struct strut_series {
-  const char *label; /* in the legend; NULL: not there */
-  size_t count;
-  const double *x, *y; /* (count) SI; a y that is not finite breaks the line */
-  int look;            /* index of colour, dashes and marker; -1: the series' own index */
-} strut_series;
-
-/** A grey area from x = low to high, or y; its label goes into the legend, or is NULL. */
-typedef struct strut_band {
-  double low, high;
-  bool level; /* from y = low to high */
-  const char *label;
-} strut_band;
-
-typedef struct strut_curves {
-  const char *title; /* may be NULL */
-  strut_axis x, y;
-  size_t series_count, band_count;
-  const strut_series *series;
-  const strut_band *bands;
-  bool mark_beyond; /* points above or below the y axis are marked at the edge and counted */
-} strut_curves;
-
-/**
- * Draws curves in a box. Points are thinned to the visible ones: first, least, largest and last in
- * each quarter of a point. Fails with STRUT_NO_MEMORY only.
- */
-STRUT_API strut_status strut_draw_curves(strut_canvas *canvas, strut_box box,
-                                         const strut_curves *curves);
-
-/* Maps over two quantities: a category or a number at every grid point; doubtful ones are hatched. */
-
-typedef struct strut_map {
-  const char *title; /* may be NULL */
-  strut_axis x, y;   /* linear; an empty range: all cells */
-  size_t columns, rows;
-  const double *xs, *ys; /* (columns), (rows) ascending; cell edges are midpoints */
-  const int *category;   /* (rows, columns) index into names, -1: no result; or NULL */
-  size_t category_count;
-  const char *const *names;     /* (category_count) */
-  const double *value;          /* (rows, columns) where category is NULL; NAN: no result */
-  double value_low, value_high; /* of the scale of colours; equal: from the values */
-  strut_beyond beyond;          /* values beyond these */
-  const char *value_name, *value_unit;
-  strut_colours colours;
-  const bool *doubtful; /* (rows, columns) drawn hatched; or NULL */
-  const char *doubt;    /* meaning of the hatching, for the legend */
-} strut_map;
-
-/** Draws a map with its legend or colour bar in a box. STRUT_NO_MEMORY. */
-STRUT_API strut_status strut_draw_map(strut_canvas *canvas, strut_box box, const strut_map *map);
 
 #endif

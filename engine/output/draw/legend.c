@@ -7,31 +7,23 @@
 
 #include "engine/output/draw/canvas.h"
 
-static const double LINE = 11.0, SIGN = 16.0, SCALE = 34.0, SIGN_GAP = 4.0,
+static const double LINE = 11.0, SIGN = 20.0, SCALE = 34.0, SIGN_GAP = 4.0,
                     BETWEEN = 13.0; /* [pt] */
-static const double DOT = 2.6, BAND = 5.0;
+static const double DOT = 2.6, MARKER = 2.0, BAND = 5.0, AREA = 7.0;
 enum { SHADES = 34 };
 
 static strut_font letters(void) { return (strut_font){.size = 7.5, .down = 0.5}; }
 
 static double text_width(strut_canvas *canvas, const char *text) {
-  double width = 0, height;
-  if (text && *text) strut_text_size(canvas, text, letters(), &width, &height);
-  return width;
-}
-
-/* Height of a line. */
-static double text_height(strut_canvas *canvas) {
-  double width, height;
-  strut_text_size(canvas, "0", letters(), &width, &height);
-  return height;
+  return text && *text ? strut_text_width(canvas, text, letters()) : 0;
 }
 
 /* Width of the sign left of the text. */
 static double sign_width(strut_canvas *canvas, const strut_key_item *item) {
   switch (item->sign) {
     case STRUT_KEY_LINE:
-    case STRUT_KEY_ARROW: return SIGN + SIGN_GAP;
+    case STRUT_KEY_ARROW:
+    case STRUT_KEY_AREA: return SIGN + SIGN_GAP;
     case STRUT_KEY_DOT:
       return 2 * DOT + SIGN_GAP +
              (item->letter ? text_width(canvas, item->letter) + SIGN_GAP : 0.0);
@@ -44,8 +36,15 @@ static double sign_width(strut_canvas *canvas, const strut_key_item *item) {
 static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x, double y) {
   strut_font font = letters();
   switch (item->sign) {
-    case STRUT_KEY_LINE: strut_draw_segment(canvas, x, y, x + SIGN, y, item->pen); break;
+    case STRUT_KEY_LINE:
+      strut_draw_segment(canvas, x, y, x + SIGN, y, item->pen);
+      if (item->marked) strut_draw_marker(canvas, item->look, x + 0.5 * SIGN, y, MARKER);
+      break;
     case STRUT_KEY_ARROW: strut_draw_arrow(canvas, x, y, x + SIGN, y, 4.0, item->pen); break;
+    case STRUT_KEY_AREA:
+      strut_draw_box(canvas, (strut_box){x, y - 0.5 * AREA, SIGN, AREA}, &item->fill,
+                     &(strut_pen){.colour = strut_grey(0.4), .width = 0.4});
+      break;
     case STRUT_KEY_DOT:
       strut_draw_circle(canvas, x + DOT, y, DOT, &item->fill, &item->pen);
       font.bold = true;
@@ -65,36 +64,48 @@ static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x
   }
 }
 
-/* Lays the items out, draws them if `draw`, and returns the height. Texts wider than the key wrap. */
-static double lay_out_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
-                          size_t count, bool draw) {
-  double x = 0.0, y = 0.0, row = LINE;
+/* Lays the items out, draws them if `draw`, and measures the whole. Texts wider than the key wrap. */
+static void lay_out_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
+                        size_t count, bool draw, double size[2]) {
+  double x = 0.0, y = 0.0, row = LINE, line = strut_text_height(canvas, "0", letters());
+  size[0] = 0.0;
   for (size_t i = 0; i < count; i++) {
+    if (!items[i].text) continue;
     double sign = sign_width(canvas, &items[i]), width, height;
     strut_font font = letters();
     font.down = 0.0;
-    if (sign + text_width(canvas, items[i].text) > box.width) font.width = box.width - sign;
+    if (box.width > 0 && sign + text_width(canvas, items[i].text) > box.width)
+      font.width = box.width - sign;
     strut_text_size(canvas, items[i].text, font, &width, &height);
     if (x > 0 && x + sign + width > box.width) x = 0.0, y += row, row = LINE;
-    double top = y + 0.5 * (LINE - text_height(canvas));
+    double top = y + 0.5 * (LINE - line);
     if (draw) {
       draw_sign(canvas, &items[i], box.x + x, box.y + y + 0.5 * LINE);
       strut_draw_text(canvas, box.x + x + sign, box.y + top, items[i].text, font);
     }
-    row = fmax(row, height + LINE - text_height(canvas));
+    row = fmax(row, height + LINE - line);
+    size[0] = fmax(size[0], x + sign + width);
     x += sign + width + BETWEEN;
   }
-  return count ? y + row : 0.0;
+  size[1] = x > 0.0 ? y + row : 0.0;
+}
+
+void strut_key_size(strut_canvas *canvas, double width, const strut_key_item *items, size_t count,
+                    double size[2]) {
+  lay_out_key(canvas, (strut_box){0, 0, width, 0}, items, count, false, size);
 }
 
 double strut_key_height(strut_canvas *canvas, double width, const strut_key_item *items,
                         size_t count) {
-  return lay_out_key(canvas, (strut_box){0, 0, width, 0}, items, count, false);
+  double size[2];
+  strut_key_size(canvas, width, items, count, size);
+  return size[1];
 }
 
 void strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
                     size_t count) {
-  lay_out_key(canvas, box, items, count, true);
+  double size[2];
+  lay_out_key(canvas, box, items, count, true, size);
 }
 
 static bool fits(strut_canvas *canvas, const char *text, strut_font font, double width,
@@ -128,9 +139,7 @@ const char *strut_text_fit(strut_canvas *canvas, const char *text, strut_font fo
   }
 }
 
-/* Styles of series, and the legend that names them. */
-
-static const double TEXT = 7.5, SAMPLE = 20, GAP = 4, ROW_GAP = 1.5, PADDING = 3;
+/* ---- styles of series ---- */
 
 strut_pen strut_series_pen(size_t look) {
   enum { DASHES = 7 };
@@ -169,87 +178,6 @@ void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, do
   }
   strut_draw_polygon(canvas, (const double(*)[2])corners, shapes[shape].count,
                      open ? &hollow : &full, open ? &edge : &rim);
-}
-
-strut_fill strut_band_fill(void) { return (strut_fill){.colour = strut_grey(0.86)}; }
-
-size_t strut_thin(double (*points)[2], size_t count, double grain) {
-  size_t kept = 0;
-  for (size_t i = 1; i < count; i++)
-    if (!(points[i][0] >= points[i - 1][0])) return count;
-  for (size_t first = 0; first < count;) {
-    double cell = floor(points[first][0] / grain);
-    size_t last = first, low = first, high = first;
-    while (last + 1 < count && floor(points[last + 1][0] / grain) == cell) {
-      last++;
-      if (points[last][1] < points[low][1]) low = last;
-      if (points[last][1] > points[high][1]) high = last;
-    }
-    size_t pick[4] = {first, low < high ? low : high, low < high ? high : low, last};
-    for (int k = 0; k < 4; k++) {
-      if (k > 0 && pick[k] == pick[k - 1]) continue;
-      points[kept][0] =
-          points[pick[k]][0]; /* kept <= pick[k]: nothing is overwritten that is read later */
-      points[kept++][1] = points[pick[k]][1];
-    }
-    first = last + 1;
-  }
-  return kept;
-}
-
-/* Lays the entries out, draws them if `draw`, and measures the whole. */
-static void lay_out_legend(strut_canvas *canvas, const strut_legend_entry *entries, size_t count,
-                           double width, const double corner[2], bool draw, double size[2]) {
-  double x = 0, y = 0, row = 0;
-  size[0] = size[1] = 0;
-  for (size_t i = 0; i < count; i++) {
-    const strut_legend_entry *e = &entries[i];
-    double text, line;
-    strut_font font = {.size = TEXT, .down = 0.5};
-    strut_text_size(canvas, e->label, font, &text, &line);
-    double wide = SAMPLE + GAP + text;
-    if (i > 0 && (!(width > 0) || x + wide > width)) {
-      x = 0;
-      y += row + ROW_GAP;
-      row = 0;
-    }
-    if (draw) {
-      double left = corner[0] + x, middle = corner[1] + y + 0.5 * line;
-      if (e->area)
-        strut_draw_box(canvas, (strut_box){left, middle - 0.35 * line, SAMPLE, 0.7 * line},
-                       &e->fill, &(strut_pen){.colour = strut_grey(0.4), .width = 0.4});
-      if (e->line)
-        strut_draw_segment(canvas, left, middle, left + SAMPLE, middle, strut_series_pen(e->look));
-      if (e->marker) strut_draw_marker(canvas, e->look, left + 0.5 * SAMPLE, middle, 2);
-      strut_draw_text(canvas, left + SAMPLE + GAP, middle, e->label, font);
-    }
-    x += wide;
-    size[0] = fmax(size[0], x);
-    x += 3 * GAP;
-    row = fmax(row, line);
-  }
-  size[1] = y + row;
-}
-
-void strut_legend_size(strut_canvas *canvas, const strut_legend_entry *entries, size_t count,
-                       double width, double size[2]) {
-  const double corner[2] = {0, 0};
-  lay_out_legend(canvas, entries, count, width, corner, false, size);
-  size[0] += 2 * PADDING;
-  size[1] += 2 * PADDING;
-}
-
-void strut_draw_legend(strut_canvas *canvas, const strut_legend_entry *entries, size_t count,
-                       double width, double x, double y, bool background) {
-  const double corner[2] = {x + PADDING, y + PADDING};
-  double size[2];
-  strut_legend_size(canvas, entries, count, width, size);
-  if (background) {
-    const strut_fill white = {.colour = strut_faded(strut_grey(1), 0.85)};
-    const strut_pen edge = {.colour = strut_grey(0.8), .width = 0.4};
-    strut_draw_box(canvas, (strut_box){x, y, size[0], size[1]}, &white, &edge);
-  }
-  lay_out_legend(canvas, entries, count, width, corner, true, size);
 }
 
 static const double HEADING_GAP = 1.5, HEADING_SPACE = 6.0; /* between its texts, and below [pt] */

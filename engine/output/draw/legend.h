@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Styles that distinguish series (colour, dashes, markers), the legends of diagrams, keys below
- * drawings, and texts cut to fit.
+ * Styles that distinguish series (colour, dashes, markers), keys and legends, and texts cut to fit.
  */
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_LEGEND_H
 #define STRUT_ENGINE_OUTPUT_DRAW_LEGEND_H
@@ -9,55 +8,38 @@
 #include "engine/output/draw/canvas.h"
 
 /** The pen of the i-th style: its colour and dashes. */
-strut_pen strut_series_pen(size_t look);
+STRUT_API strut_pen strut_series_pen(size_t look);
 /** Draws the marker of a series at x, y. */
-void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, double size);
-/** The fill of grey areas. */
-strut_fill strut_band_fill(void);
-
-/**
- * Thins (count) points of ascending x in place to at most four in each `grain` of x, which leaves
- * the drawn line unchanged. Returns the number kept; points in another order are all kept.
- */
-size_t strut_thin(double (*points)[2], size_t count, double grain);
-
-/** One row of a legend: a line with a marker, or an area. */
-typedef struct strut_legend_entry {
-  const char *label;
-  bool area;
-  size_t look;       /* of a line */
-  bool line, marker; /* the parts that are drawn */
-  strut_fill fill;   /* of an area */
-} strut_legend_entry;
-
-/** Size of the legend as a column of rows, or in lines that fill `width` (0: a column). */
-void strut_legend_size(strut_canvas *canvas, const strut_legend_entry *entries, size_t count,
-                       double width, double size[2]);
-/** Draws it with its upper left corner at x, y; `background` makes it readable over data. */
-void strut_draw_legend(strut_canvas *canvas, const strut_legend_entry *entries, size_t count,
-                       double width, double x, double y, bool background);
-
+STRUT_API void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y,
+                                 double size);
 typedef enum strut_key_sign {
-  STRUT_KEY_LINE,   /* a short line by `pen` */
+  STRUT_KEY_LINE,   /* a short line by `pen`, with the marker of a look if `marked` */
   STRUT_KEY_ARROW,  /* an arrow by `pen` */
   STRUT_KEY_DOT,    /* a circle by `fill` and `pen`, with `letter` beside it where there is one */
+  STRUT_KEY_AREA,   /* a box by `fill` */
   STRUT_KEY_SIGNED, /* the colours of strut_palette_signed between the words `before` and `text` */
   STRUT_KEY_WORDS   /* no sign */
 } strut_key_sign;
 
+/** What something in a figure means: in a legend beside data, or in the key below a figure. */
 typedef struct strut_key_item {
   strut_key_sign sign;
   strut_pen pen;
   strut_fill fill;
+  bool marked;
+  size_t look;
   const char *before; /* for STRUT_KEY_SIGNED */
   const char *letter; /* for STRUT_KEY_DOT; or NULL */
-  const char *text;
+  const char *text;   /* NULL: the item is left out */
 } strut_key_item;
 
-/** Height [pt] of a key of this width [pt]. */
+/** Size of a key in lines that fill `width`, or as a column of items where that is 0 [pt]. */
+STRUT_API void strut_key_size(strut_canvas *canvas, double width, const strut_key_item *items,
+                              size_t count, double size[2]);
+/** Its height. */
 STRUT_API double strut_key_height(strut_canvas *canvas, double width, const strut_key_item *items,
                                   size_t count);
-/** Draws it from the upper left corner of `box` on; texts longer than a line wrap. */
+/** Draws it from the upper left corner of `box` on, as wide as that; longer texts wrap. */
 STRUT_API void strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
                               size_t count);
 

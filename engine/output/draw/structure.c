@@ -17,8 +17,6 @@
 
 /* The window, members and nodes. */
 
-enum { SHADES = 33, BATCH = 256 };
-
 static const double BAR = 2.4, SPRING = 1.3, CABLE = 0.8, CASING = 0.7; /* [pt] */
 static const double FULL_LENGTH = 28.0; /* members this long on the page have full width [pt] */
 static const double THINNEST = 0.06, FRINGE_DASH = 2.2; /* [1], [pt] */
@@ -49,6 +47,10 @@ void strut_bounds_add(strut_bounds *b, const strut_model *model, const double *q
         b->high[c] = fmax(b->high[c], at + member->guide_radius);
       }
   }
+}
+
+double strut_bounds_extent(const strut_bounds *b) {
+  return fmax(b->high[0] - b->low[0], b->high[1] - b->low[1]);
 }
 
 strut_window strut_window_fit(strut_box box, strut_bounds b, double margin) {
@@ -121,11 +123,7 @@ void strut_longest_segment(const strut_window *w, const strut_model *model, cons
   }
 }
 
-/* Around a structure: supports, ground, contact forces, node paths, the scale bar. */
-
-enum { TRAIL_SHADES = 64 };
-
-static const double GROUND_DEPTH = 7.0; /* of the hatching below the ground's line [pt] */
+/* Around a structure: supports, contact forces, the scale bar. */
 
 /* A support's triangle, its tip at the node, its base towards `out`; rolling: on two wheels. */
 static void draw_support(strut_canvas *canvas, const double tip[2], const double out[2],
@@ -176,50 +174,6 @@ static void draw_supports(strut_canvas *canvas, const strut_window *w, const str
   }
 }
 
-/* The ends of the ground's line in the window's neighbourhood [pt]. */
-static void find_ground_line(const strut_window *w, const strut_model *model, double ends[2][2]) {
-  const strut_ground *ground = &model->scene->ground;
-  for (int k = 0; k < 2; k++) {
-    double x = w->left + (1.2 * k - 0.1) * w->box.width / w->scale;
-    const double position[2] = {x, ground->height + tan(ground->slope) * x};
-    strut_window_point(w, position, ends[k]);
-  }
-}
-
-void strut_draw_ground(strut_canvas *canvas, const strut_window *w, const strut_model *model) {
-  strut_draw_ground_at(canvas, w, model, (double)NAN);
-}
-
-void strut_draw_ground_at(strut_canvas *canvas, const strut_window *w, const strut_model *model,
-                          double time) {
-  const strut_ground *ground = &model->scene->ground;
-  strut_draw_surfaces(canvas, w, model->scene, time);
-  if (!ground->present) return;
-  double ends[4][2];
-  find_ground_line(w, model, ends);
-  const double down[2] = {GROUND_DEPTH * sin(ground->slope), GROUND_DEPTH * cos(ground->slope)};
-  for (int d = 0; d < 2; d++) {
-    ends[2][d] = ends[1][d] + down[d];
-    ends[3][d] = ends[0][d] + down[d];
-  }
-  const strut_fill fill = {
-      .colour = strut_grey(0.95), .hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.72)};
-  strut_canvas_clip(canvas, w->box);
-  strut_draw_polygon(canvas, (const double(*)[2])ends, 4, &fill, NULL);
-  strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1],
-                     (strut_pen){.colour = strut_grey(0.3), .width = 0.8});
-  if (ground->belt_speed != 0) {
-    double sign = ground->belt_speed > 0 ? 1 : -1;
-    const double from[2] = {0.5 * (ends[0][0] + ends[1][0]) + 1.9 * down[0],
-                            0.5 * (ends[0][1] + ends[1][1]) + 1.9 * down[1]};
-    strut_draw_arrow(
-        canvas, from[0] - sign * 12 * cos(ground->slope), from[1] + sign * 12 * sin(ground->slope),
-        from[0] + sign * 12 * cos(ground->slope), from[1] - sign * 12 * sin(ground->slope), 5,
-        (strut_pen){.colour = strut_grey(0.3), .width = 0.9});
-  }
-  strut_canvas_unclip(canvas);
-}
-
 void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *w,
                                const strut_model *model, const double *q, const double (*force)[2],
                                double limit, double longest) {
@@ -234,27 +188,6 @@ void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *w,
       strut_draw_arrow(canvas, at[0] - normal * n[0], at[1] + normal * n[1], at[0], at[1], 5, pen);
     if (fabs(along) > 0.3)
       strut_draw_arrow(canvas, at[0], at[1], at[0] + along * t[0], at[1] - along * t[1], 5, pen);
-  }
-}
-
-void strut_draw_trail(strut_canvas *canvas, const strut_window *w, const double (*positions)[2],
-                      size_t count, double width) {
-  double points[66][2];
-  strut_pen pen = {.width = width};
-  if (count < 2) return;
-  for (size_t shade = 0; shade < TRAIL_SHADES; shade++) {
-    size_t first = shade * (count - 1) / TRAIL_SHADES;
-    size_t last = (shade + 1) * (count - 1) / TRAIL_SHADES, used = 0;
-    if (last == first) continue;
-    pen.colour = strut_palette_sequence((double)shade / (TRAIL_SHADES - 1));
-    for (size_t i = first; i <= last; i++) { /* in pieces of the array's size */
-      strut_window_point(w, positions[i], points[used++]);
-      if (used < 66 && i < last) continue;
-      strut_draw_line(canvas, (const double(*)[2])points, used, pen);
-      points[0][0] = points[used - 1][0];
-      points[0][1] = points[used - 1][1];
-      used = 1;
-    }
   }
 }
 
@@ -335,25 +268,6 @@ static double thinning(const strut_window *w, const strut_model *model, const do
   return finite ? fmax(THINNEST, fmin(1.0, sum / (double)finite / FULL_LENGTH)) : 1.0;
 }
 
-/* Members drawn together, with one pen. */
-typedef struct batch {
-  strut_canvas *canvas;
-  strut_pen pen;
-  size_t count;
-  double ends[2 * BATCH][2];
-} batch;
-
-static void draw_batch(batch *b) {
-  strut_draw_segments(b->canvas, (const double(*)[2])b->ends, b->count, b->pen);
-  b->count = 0;
-}
-
-static void add_segment(batch *b, double ends[2][2]) {
-  for (int k = 0; k < 2; k++)
-    for (int d = 0; d < 2; d++) b->ends[2 * b->count + (size_t)k][d] = ends[k][d];
-  if (++b->count == BATCH) draw_batch(b);
-}
-
 static bool is_slack(const strut_drawing *d, size_t j) {
   if (d->model->scene->members[j].kind != STRUT_CABLE) return false;
   if (d->style->slack_forces) return !(fabs(d->style->slack_forces[j]) > 0);
@@ -361,93 +275,73 @@ static bool is_slack(const strut_drawing *d, size_t j) {
          d->model->members.rest[j] * (1 - 1e-12);
 }
 
-static double width_of(const strut_drawing *d, size_t j) {
-  strut_member_kind kind = d->model->scene->members[j].kind;
+static double width_of(const strut_drawing *d, strut_member_kind kind) {
   double width = kind == STRUT_BAR ? BAR : kind == STRUT_SPRING ? SPRING : CABLE;
   return width * d->thin / (1.0 + d->style->thinness) + d->style->fringe;
 }
 
-/* Index of a member's force colour; -1 where members are not coloured by force. */
-static int shade_of(const strut_drawing *d, size_t j) {
-  if (d->style->colouring != STRUT_COLOUR_FORCE || !d->style->values) return -1;
-  double limit = d->style->limit, value = d->style->values[j];
-  double part = limit > 0 && isfinite(value) ? fmax(-1.0, fmin(1.0, value / limit)) : 0;
-  return (int)lround(0.5 * (part + 1.0) * (SHADES - 1));
+static bool is_shaded(const strut_structure_style *style) {
+  return style->colouring == STRUT_COLOUR_FORCE && style->values;
 }
 
-static strut_colour colour_of(const strut_drawing *d, strut_member_kind kind, bool slack,
-                              int shade) {
-  if (d->style->colouring == STRUT_COLOUR_ONE) return d->style->colour;
+static strut_colour colour_of(const strut_drawing *d, size_t j, bool slack) {
+  const strut_structure_style *style = d->style;
+  strut_member_kind kind = d->model->scene->members[j].kind;
+  if (style->colouring == STRUT_COLOUR_ONE) return style->colour;
   if (slack) return strut_grey(0.55);
-  if (shade >= 0) return strut_palette_signed(2.0 * shade / (SHADES - 1) - 1.0);
+  if (is_shaded(style)) {
+    double part = style->limit > 0 ? style->values[j] / style->limit : 0;
+    return strut_palette_signed(isfinite(part) ? part : 0);
+  }
   return kind == STRUT_BAR      ? strut_grey(0.15)
          : kind == STRUT_SPRING ? strut_palette_thing(0)
                                 : strut_palette_thing(1);
 }
 
-/* Adds all segments of a member. */
-static void add_member(batch *b, const strut_drawing *d, size_t j) {
+static strut_pen pen_of(const strut_drawing *d, size_t j, bool slack) {
+  strut_pen pen = {.colour = strut_faded(colour_of(d, j, slack), d->opacity),
+                   .width = width_of(d, d->model->scene->members[j].kind),
+                   .butt = slack || d->style->fringe > 0.0};
+  if (d->style->fringe > 0.0)
+    pen.dash[0] = pen.dash[1] = FRINGE_DASH;
+  else if (slack)
+    pen.dash[0] = 2.5 * d->thin, pen.dash[1] = 2.0 * d->thin;
+  return pen;
+}
+
+static void draw_member(strut_canvas *canvas, const strut_drawing *d, size_t j, strut_pen pen) {
   double ends[2][2];
   for (size_t k = 0; k < strut_member_segments(d->model, j); k++) {
     strut_window_segment(d->window, d->model, d->q, j, k, ends);
-    add_segment(b, ends);
+    strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], pen);
   }
 }
 
-/* A dark edge separates light colours from the paper. */
-static void draw_casings(strut_canvas *canvas, const strut_drawing *d, strut_member_kind kind) {
-  batch b = {.canvas = canvas};
-  b.pen.colour = strut_faded(strut_grey(0.1), d->opacity);
-  for (size_t j = 0; j < d->model->scene->member_count; j++) {
-    if (d->model->scene->members[j].kind != kind) continue;
-    b.pen.width = width_of(d, j) + CASING * d->thin;
-    add_member(&b, d, j);
-  }
-  draw_batch(&b);
-}
-
-/* Draws all members of one kind, slackness and shade. */
-static void draw_alike(strut_canvas *canvas, const strut_drawing *d, strut_member_kind kind,
-                       bool slack, int shade) {
-  batch b = {.canvas = canvas};
-  b.pen.colour = strut_faded(colour_of(d, kind, slack, shade), d->opacity);
-  if (d->style->fringe > 0.0) {
-    b.pen.dash[0] = b.pen.dash[1] = FRINGE_DASH;
-    b.pen.butt = true;
-  } else if (slack) {
-    b.pen.dash[0] = 2.5 * d->thin;
-    b.pen.dash[1] = 2.0 * d->thin;
-    b.pen.butt = true;
-  }
-  for (size_t j = 0; j < d->model->scene->member_count; j++) {
-    if (d->model->scene->members[j].kind != kind || is_slack(d, j) != slack) continue;
-    if (!slack && shade_of(d, j) != shade) continue;
-    b.pen.width = width_of(d, j);
-    add_member(&b, d, j);
-  }
-  draw_batch(&b);
+/* Members of a kind; of shaded ones a dark edge first, which separates light colours from the paper. */
+static void draw_kind(strut_canvas *canvas, const strut_drawing *d, strut_member_kind kind,
+                      bool slack) {
+  const strut_pen casing = {.colour = strut_faded(strut_grey(0.1), d->opacity),
+                            .width = width_of(d, kind) + CASING * d->thin};
+  bool cased = is_shaded(d->style) && kind != STRUT_CABLE;
+  for (int pass = cased ? 0 : 1; pass < 2; pass++)
+    for (size_t j = 0; j < d->model->scene->member_count; j++)
+      if (d->model->scene->members[j].kind == kind && is_slack(d, j) == slack)
+        draw_member(canvas, d, j, pass ? pen_of(d, j, slack) : casing);
 }
 
 /* Thin members are drawn above thick ones, so that a cable along a bar is visible. */
 static void draw_members(strut_canvas *canvas, const strut_drawing *d) {
-  static const strut_member_kind order[] = {STRUT_BAR, STRUT_SPRING, STRUT_CABLE};
-  bool shaded = d->style->colouring == STRUT_COLOUR_FORCE && d->style->values;
-  for (int k = 0; k < 3; k++) {
-    if (shaded && order[k] != STRUT_CABLE) draw_casings(canvas, d, order[k]);
-    if (order[k] == STRUT_CABLE) draw_alike(canvas, d, order[k], true, -1);
-    if (!shaded) draw_alike(canvas, d, order[k], false, -1);
-    for (int shade = 0; shaded && shade < SHADES; shade++)
-      draw_alike(canvas, d, order[k], false, shade);
-  }
+  draw_kind(canvas, d, STRUT_BAR, false);
+  draw_kind(canvas, d, STRUT_SPRING, false);
+  draw_kind(canvas, d, STRUT_CABLE, true);
+  draw_kind(canvas, d, STRUT_CABLE, false);
 }
 
 /* Masses that slide along members: filled circles on them. */
 static void draw_sliding_masses(strut_canvas *canvas, const strut_drawing *d) {
   const strut_scene *scene = d->model->scene;
   double thin = d->thin / (1.0 + d->style->thinness), point[2], at[2];
-  bool one = d->style->colouring == STRUT_COLOUR_ONE;
-  strut_colour colour = one ? d->style->colour : strut_palette_thing(2);
-  const strut_fill fill = {.colour = strut_faded(colour, d->opacity)};
+  const strut_fill fill = {.colour = strut_thing_colour(d, 1)};
   const strut_pen pen = {.colour = strut_faded(strut_grey(1), d->opacity), .width = 0.5 * thin};
   if (d->thin < 0.3) return; /* too small to be drawn */
   for (size_t i = 0; i < scene->sliding_count; i++) {

@@ -25,6 +25,8 @@ STRUT_API strut_bounds strut_bounds_none(void);
 STRUT_API void strut_bounds_widen(strut_bounds *bounds, const double low[2], const double high[2]);
 /** Widens the bounds by all nodes of a shape q (model->length). */
 STRUT_API void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const double *q);
+/** The larger extent [m]. */
+STRUT_API double strut_bounds_extent(const strut_bounds *bounds);
 /**
  * The window in `box` that shows the bounds with `margin` [pt] around them for names and arrows.
  */
@@ -75,15 +77,9 @@ STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *wi
  */
 STRUT_API void strut_draw_names(strut_canvas *canvas, const strut_window *window,
                                 const strut_model *model, const double *q, bool members);
-/** The ground's line and body across the window; nothing where the scene has none. */
+/** The lines and bodies of all grounds across the window, where those that are shaken are at `time` [s]; NAN: as drawn. */
 STRUT_API void strut_draw_ground(strut_canvas *canvas, const strut_window *window,
-                                 const strut_model *model);
-/** The same at a time [s], to which grounds that are shaken have moved. */
-STRUT_API void strut_draw_ground_at(strut_canvas *canvas, const strut_window *window,
-                                    const strut_model *model, double time);
-/** Of strut_draw_ground: the surfaces of a scene with `grounds`; time NAN: as drawn. */
-STRUT_API void strut_draw_surfaces(strut_canvas *canvas, const strut_window *window,
-                                   const strut_scene *scene, double time);
+                                 const strut_model *model, double time);
 /**
  * Forces of the ground on its contacts as arrows: (contacts, 2) normal and friction [N];
  * `longest` is the length [pt] of an arrow of `limit` [N].
@@ -91,9 +87,6 @@ STRUT_API void strut_draw_surfaces(strut_canvas *canvas, const strut_window *win
 STRUT_API void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *window,
                                          const strut_model *model, const double *q,
                                          const double (*force)[2], double limit, double longest);
-/** The path of a point through (count) positions [m], dark to bright. */
-STRUT_API void strut_draw_trail(strut_canvas *canvas, const strut_window *window,
-                                const double (*positions)[2], size_t count, double width);
 /** A scale bar with its length, such as "20 mm", in the lower left corner of the window's box. */
 STRUT_API void strut_draw_yardstick(strut_canvas *canvas, const strut_window *window);
 

@@ -11,6 +11,11 @@
 enum { ARC = 24 };                           /* pieces of a hinge's arc */
 static const double HINGE = 7.0, STOP = 4.0; /* radius of the arc, half a stop's bar [pt] */
 
+strut_colour strut_thing_colour(const strut_drawing *d, double alpha) {
+  bool one = d->style->colouring == STRUT_COLOUR_ONE;
+  return strut_faded(one ? d->style->colour : strut_palette_thing(2), alpha * d->opacity);
+}
+
 /* A hinge: an arc around its node, from the first arm to the second by its angle. */
 static void draw_hinge(strut_canvas *canvas, const strut_drawing *d, const strut_hinge *h,
                        double angle, strut_pen pen) {
@@ -43,10 +48,8 @@ static void draw_stop(strut_canvas *canvas, const strut_drawing *d, size_t membe
 /* Cells: filled polygons below all else. */
 void strut_draw_cells(strut_canvas *canvas, const strut_drawing *d) {
   const strut_scene *scene = d->model->scene;
-  bool one = d->style->colouring == STRUT_COLOUR_ONE;
-  strut_colour colour = one ? d->style->colour : strut_palette_thing(2);
-  const strut_fill fill = {.colour = strut_faded(colour, 0.15 * d->opacity)};
-  const strut_pen pen = {.colour = strut_faded(colour, 0.5 * d->opacity), .width = 0.5 * d->thin};
+  const strut_fill fill = {.colour = strut_thing_colour(d, 0.15)};
+  const strut_pen pen = {.colour = strut_thing_colour(d, 0.5), .width = 0.5 * d->thin};
   double corner[STRUT_MOST_ELEMENT_NODES][2];
   for (size_t i = 0; i < scene->cell_count; i++) {
     const strut_cell *cell = &scene->cells[i];
@@ -77,9 +80,7 @@ static void draw_body(strut_canvas *canvas, const strut_drawing *d, int32_t node
 
 void strut_draw_collisions(strut_canvas *canvas, const strut_drawing *d) {
   const strut_scene *scene = d->model->scene;
-  bool one = d->style->colouring == STRUT_COLOUR_ONE;
-  strut_colour colour =
-      strut_faded(one ? d->style->colour : strut_palette_thing(2), 0.15 * d->opacity);
+  strut_colour colour = strut_thing_colour(d, 0.15);
   for (size_t i = 0; i < scene->collision_count; i++) {
     const strut_collision *c = &scene->collisions[i];
     double width = c->thickness * d->window->scale;
@@ -143,9 +144,7 @@ static void draw_guides(strut_canvas *canvas, const strut_drawing *d, int32_t el
 }
 
 void strut_draw_elements(strut_canvas *canvas, const strut_drawing *d) {
-  bool one = d->style->colouring == STRUT_COLOUR_ONE;
-  strut_pen pen = {.colour =
-                       strut_faded(one ? d->style->colour : strut_palette_thing(2), d->opacity)};
+  strut_pen pen = {.colour = strut_thing_colour(d, 1)};
   strut_element_pose pose;
   if (d->thin < 0.3) return; /* too small to be drawn */
   for (int32_t i = 0; i < d->model->elements.count; i++) {

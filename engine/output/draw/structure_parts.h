@@ -18,6 +18,8 @@ typedef struct strut_drawing {
 void strut_longest_segment(const strut_window *window, const strut_model *model, const double *q,
                            size_t member, double longest[2][2]);
 
+/** The colour of all but members and nodes, so opaque. */
+strut_colour strut_thing_colour(const strut_drawing *drawing, double alpha);
 /** Filled polygons. */
 void strut_draw_cells(strut_canvas *canvas, const strut_drawing *drawing);
 /** Bodies that may collide, as thick as they are. */

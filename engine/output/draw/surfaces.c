@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The surfaces of a scene with `grounds`. See structure.h. */
+/* The grounds of a scene. See structure.h. */
 #include <math.h>
 
 #include "engine/base/memory.h"
@@ -39,30 +39,33 @@ static void draw_belt(strut_canvas *canvas, const double (*points)[2], double sp
                    (strut_pen){.colour = strut_grey(0.3), .width = 0.9});
 }
 
-static void draw_one(strut_canvas *canvas, const strut_window *w, const strut_scene *scene,
-                     size_t ground, double time) {
-  const strut_ground *g = &scene->grounds[ground];
-  double width = w->box.width / w->scale, height = w->box.height / w->scale, place[2];
+static void draw_one(strut_canvas *canvas, const strut_window *w, const strut_ground *ground,
+                     const double *place) {
+  double width = w->box.width / w->scale, height = w->box.height / w->scale;
   const double middle[2] = {w->left + 0.5 * width, w->top - 0.5 * height};
   strut_arena arena = {0};
-  double(*points)[2] = strut_arena_allocate(&arena, strut_outline_most(g), sizeof *points);
+  double(*points)[2] = strut_arena_allocate(&arena, strut_outline_most(ground), sizeof *points);
   if (points) {
-    if (!isnan(time)) strut_ground_place(scene, ground, time, place);
-    size_t count =
-        strut_outline_of(g, isnan(time) ? NULL : place, middle, 0.7 * (width + height), points);
+    size_t count = strut_outline_of(ground, place, middle, 0.7 * (width + height), points);
     for (size_t k = 0; k < count; k++) strut_window_point(w, points[k], points[k]);
     hatch(canvas, (const double(*)[2])points, count);
     strut_draw_line(canvas, (const double(*)[2])points, count,
                     (strut_pen){.colour = strut_grey(0.3), .width = 0.8});
-    if (g->shape == STRUT_GROUND_LINE) draw_belt(canvas, (const double(*)[2])points, g->belt_speed);
+    if (ground->shape == STRUT_GROUND_LINE)
+      draw_belt(canvas, (const double(*)[2])points, ground->belt_speed);
   }
   strut_arena_free(&arena);
 }
 
-void strut_draw_surfaces(strut_canvas *canvas, const strut_window *w, const strut_scene *scene,
-                         double time) {
-  if (!scene->ground_count) return;
+void strut_draw_ground(strut_canvas *canvas, const strut_window *w, const strut_model *model,
+                       double time) {
+  const strut_scene *scene = model->scene;
   strut_canvas_clip(canvas, w->box);
-  for (size_t g = 0; g < scene->ground_count; g++) draw_one(canvas, w, scene, g, time);
+  if (scene->ground.present) draw_one(canvas, w, &scene->ground, NULL);
+  for (size_t g = 0; g < scene->ground_count; g++) {
+    double place[2];
+    if (!isnan(time)) strut_ground_place(scene, g, time, place);
+    draw_one(canvas, w, &scene->grounds[g], isnan(time) ? NULL : place);
+  }
   strut_canvas_unclip(canvas);
 }

@@ -6,7 +6,6 @@
 
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
-#include "engine/output/draw/chart.h"
 #include "engine/output/figures/run_parts.h"
 
 /* Curves over time, one kind of quantity in each panel, and the overview that shows some below
@@ -44,38 +43,46 @@ static size_t count_driven(const strut_run_scene *run) {
   return count;
 }
 
+/* What each panel shows: a channel, or what is derived from the motion. */
+static const struct {
+  strut_channel channel; /* 0: none */
+  const char *name, *unit;
+  double factor;
+} kinds[] = {[STRUT_RUN_DISPLACEMENT] = {0, "displacement", "m", 1},
+             [STRUT_RUN_NORMALS] = {STRUT_CHANNEL_CONTACT, "contact force", "N", 1},
+             [STRUT_RUN_DRIVE] = {0, "change", "m", 1},
+             [STRUT_RUN_HEIGHTS] = {0, "height", "m", 1},
+             [STRUT_RUN_FORCES] = {STRUT_CHANNEL_FORCE, "member force", "N", 1},
+             [STRUT_RUN_ANGLES] = {STRUT_CHANNEL_ANGLE, "angle", "deg", 180.0 / STRUT_PI},
+             [STRUT_RUN_MOMENTS] = {STRUT_CHANNEL_MOMENT, "moment", "N m", 1},
+             [STRUT_RUN_PRESSURES] = {STRUT_CHANNEL_PRESSURE, "pressure", "N/m", 1},
+             [STRUT_RUN_AREAS] = {STRUT_CHANNEL_AREA, "area", "m^2", 1},
+             [STRUT_RUN_ENERGIES] = {STRUT_CHANNEL_ENERGY, "energy change", "J", 1}};
+enum { ENERGIES = 4 }; /* that are stored */
+
 static size_t count_items(const strut_run_scene *run, int kind) {
-  const strut_trajectory *m = run->motion;
-  switch (kind) {
-    case STRUT_RUN_DISPLACEMENT: return run->model->scene->ground.present ? 1 : 2;
-    case STRUT_RUN_NORMALS: return m->contact ? m->contact_count : 0;
-    case STRUT_RUN_DRIVE: return count_driven(run);
-    case STRUT_RUN_ANGLES: return m->angle ? m->hinge_count : 0;
-    case STRUT_RUN_MOMENTS: return m->moment ? m->hinge_count : 0;
-    case STRUT_RUN_HEIGHTS: return run->model->scene->ground.present ? m->contact_count : 0;
-    case STRUT_RUN_FORCES: return m->force ? m->member_count : 0;
-    default: return m->energy ? 4 : 0;
-  }
+  const strut_scene *scene = run->model->scene;
+  if (kind == STRUT_RUN_DISPLACEMENT) return scene->ground.present ? 1 : 2;
+  if (kind == STRUT_RUN_DRIVE) return count_driven(run);
+  if (kind == STRUT_RUN_HEIGHTS) return scene->ground.present ? run->motion->contact_count : 0;
+  if (!strut_trajectory_channel(run->motion, kinds[kind].channel)) return 0;
+  if (kind == STRUT_RUN_ENERGIES) return ENERGIES;
+  return strut_channel_items(strut_channel_row_of(kinds[kind].channel), scene);
 }
 
-/* One value of a kind at a frame. */
+/* One value of a kind at a frame: of a channel the first component. */
 static double value_at(const strut_run_scene *run, int kind, size_t item, size_t f) {
   const strut_trajectory *m = run->motion;
-  const double *q = strut_run_positions(run, f);
   assert(item < count_items(run, kind));
-  switch (kind) {
-    case STRUT_RUN_DISPLACEMENT: return strut_run_measured(run, f, (int)item);
-    case STRUT_RUN_NORMALS: return m->contact[2 * (f * m->contact_count + item)];
-    case STRUT_RUN_HEIGHTS: {
-      size_t node = (size_t)m->contact_node[item];
-      return (q[2 * node + 1] - strut_run_ground_at(run, q[2 * node])) *
-             cos(run->model->scene->ground.slope);
-    }
-    case STRUT_RUN_FORCES: return m->force[f * m->member_count + item];
-    case STRUT_RUN_ANGLES: return m->angle[f * m->hinge_count + item] * (180.0 / STRUT_PI);
-    case STRUT_RUN_MOMENTS: return m->moment[f * m->hinge_count + item];
-    default: return m->energy[f * STRUT_ENERGIES + item];
+  if (kind == STRUT_RUN_DISPLACEMENT) return strut_run_measured(run, f, (int)item);
+  if (kind == STRUT_RUN_HEIGHTS) {
+    const double *at = strut_run_positions(run, f) + 2 * m->contact_node[item];
+    return (at[1] - strut_run_ground_at(run, at[0])) * cos(run->model->scene->ground.slope);
   }
+  const strut_channel_row *row = strut_channel_row_of(kinds[kind].channel);
+  size_t step = kind == STRUT_RUN_ENERGIES ? 1 : row->components;
+  size_t columns = row->components * strut_channel_items(row, run->model->scene);
+  return kinds[kind].factor * strut_trajectory_channel(m, row->id)[f * columns + step * item];
 }
 
 /* True if a contact ever touches the ground; heights of others are omitted. */
@@ -88,15 +95,10 @@ static bool comes_down(const strut_run_scene *run, size_t contact) {
 static const char *label_of(const strut_run_scene *run, int kind, size_t item) {
   static const char *const energies[] = {"kinetic", "elastic", "gravity", "contact"};
   static const char *const axes[] = {"along x", "along y"};
-  const strut_scene *scene = run->model->scene;
-  switch (kind) {
-    case STRUT_RUN_DISPLACEMENT: return axes[item];
-    case STRUT_RUN_FORCES: return scene->members[item].name;
-    case STRUT_RUN_ANGLES:
-    case STRUT_RUN_MOMENTS: return scene->hinges[item].name;
-    case STRUT_RUN_ENERGIES: return energies[item];
-    default: return strut_contact_name(scene, (size_t)item);
-  }
+  strut_channel channel = kind == STRUT_RUN_HEIGHTS ? STRUT_CHANNEL_CONTACT : kinds[kind].channel;
+  if (kind == STRUT_RUN_DISPLACEMENT) return axes[item];
+  if (kind == STRUT_RUN_ENERGIES) return energies[item];
+  return strut_channel_item(strut_channel_row_of(channel), run->model->scene, item);
 }
 
 /* Kinds drawn as changes from the first frame. */
@@ -231,82 +233,46 @@ static void find_range(const panel *p, size_t frames, int kind, strut_axis *axis
   strut_axis_settle(axis, ROOM);
 }
 
-/* Long names are cut, so that the legend fits. */
-static bool fit_labels(strut_run_scene *run, double width, panel *p) {
-  char fitted[STRUT_FITTED_TEXT];
-  for (size_t i = 0; i < p->count; i++) {
-    if (!p->labels[i]) continue;
-    strut_text_fit(run->ruler, p->labels[i], (strut_font){.size = 7.5}, width, 0, fitted);
-    p->labels[i] = strut_arena_text(&run->arena, fitted, strlen(fitted));
-    if (!p->labels[i]) return false;
-  }
+bool strut_run_panel(strut_run_scene *run, int kind, size_t first, strut_panel *to) {
+  panel p = {.name = kinds[kind].name, .unit = kinds[kind].unit};
+  const double *time = run->motion->time + first;
+  size_t frames = run->frames - first;
+  strut_series *series = strut_arena_allocate(&run->arena, MOST_CURVES, sizeof *series);
+  if (!series) return false;
+  if (!(kind == STRUT_RUN_DRIVE ? fill_drive(run, first, &p) : fill_panel(run, kind, first, &p)))
+    return false;
+  if (kind == STRUT_RUN_DISPLACEMENT && p.count == 1) p.name = "x displacement";
+  for (size_t i = 0; i < p.count; i++)
+    series[i] = (strut_series){
+        .label = p.labels[i], .count = frames, .x = time, .y = p.values[i], .look = -1};
+  *to =
+      (strut_panel){.x = {.name = "time", .unit = "s", .low = time[0], .high = time[frames - 1]},
+                    .y = {.name = p.name, .unit = p.unit, .low = (double)NAN, .high = (double)NAN},
+                    .series_count = p.count,
+                    .series = series,
+                    .height = CURVES_HEIGHT};
+  find_range(&p, frames, kind, &to->y);
   return true;
 }
 
-strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, strut_box box,
-                                  int kind, size_t first) {
-  static const char *const names[][2] = {[STRUT_RUN_DISPLACEMENT] = {"displacement", "m"},
-                                         [STRUT_RUN_NORMALS] = {"contact force", "N"},
-                                         [STRUT_RUN_DRIVE] = {"change", "m"},
-                                         [STRUT_RUN_HEIGHTS] = {"height", "m"},
-                                         [STRUT_RUN_FORCES] = {"member force", "N"},
-                                         [STRUT_RUN_ANGLES] = {"angle", "deg"},
-                                         [STRUT_RUN_MOMENTS] = {"moment", "N m"},
-                                         [STRUT_RUN_ENERGIES] = {"energy change", "J"}};
-  panel p = {.name = names[kind][0], .unit = names[kind][1]};
-  size_t frames = run->frames - first;
-  if (!(kind == STRUT_RUN_DRIVE ? fill_drive(run, first, &p) : fill_panel(run, kind, first, &p)))
-    return STRUT_NO_MEMORY;
-  if (kind == STRUT_RUN_DISPLACEMENT && p.count == 1) p.name = "x displacement";
-  if (!fit_labels(run, 0.8 * box.width, &p)) return STRUT_NO_MEMORY;
-  strut_series series[MOST_CURVES];
-  for (size_t i = 0; i < p.count; i++)
-    series[i] = (strut_series){.label = p.labels[i],
-                               .count = frames,
-                               .x = run->motion->time + first,
-                               .y = p.values[i],
-                               .look = -1};
-  const double *time = run->motion->time;
-  strut_curves curves = {.x = {"time", "s", false, time[first], time[run->frames - 1]},
-                         .y = {p.name, p.unit, false, (double)NAN, (double)NAN},
-                         .series_count = p.count,
-                         .series = series};
-  find_range(&p, frames, kind, &curves.y);
-  return strut_draw_curves(canvas, box, &curves);
-}
-
-void strut_run_curves_describe(strut_run_scene *run, char *text) {
-  bool some = false;
-  for (int kind = 0; kind < STRUT_RUN_PANELS; kind++)
-    some = some || strut_run_panel_wanted(run, kind);
-  snprintf(text, STRUT_RUN_NOTE, "%s", some ? "everything recorded" : "nothing changed");
-}
-
-double strut_run_curves_height(strut_run_scene *run) {
-  double height = 2 * STRUT_RUN_EDGE + run->head;
-  for (int kind = 0; kind < STRUT_RUN_PANELS; kind++)
-    if (strut_run_panel_wanted(run, kind)) height += CURVES_HEIGHT;
-  return height;
-}
-
-strut_status strut_run_curves(strut_run_scene *run, strut_canvas *canvas) {
-  strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + run->head,
-                   run->figure->width - 2 * STRUT_RUN_EDGE, CURVES_HEIGHT};
+bool strut_run_curves(strut_run_scene *run, strut_figure *figure, char *note) {
+  strut_panel *panels = strut_arena_allocate(&run->arena, STRUT_RUN_PANELS, sizeof *panels);
+  if (!panels) return false;
   for (int kind = 0; kind < STRUT_RUN_PANELS; kind++) {
     if (!strut_run_panel_wanted(run, kind)) continue;
-    strut_status status = strut_run_draw_panel(run, canvas, box, kind, 0);
-    if (status != STRUT_OK) return status;
-    box.y += CURVES_HEIGHT;
+    if (!strut_run_panel(run, kind, 0, &panels[figure->panel_count++])) return false;
   }
-  return STRUT_OK;
+  figure->panels = panels;
+  snprintf(note, STRUT_RUN_NOTE, "%s",
+           figure->panel_count ? "everything recorded" : "nothing changed");
+  return true;
 }
 
 /* The overview of a run: where it ended, how it got there, and curves of the last periods. */
 
-enum { MOST_PANELS = 4, MOST_STACKED = 3, ITEMS = 2, MOST_PATHS = 300 };
+enum { MOST_PANELS = 4, MOST_STACKED = 3, MOST_PATHS = 300 };
 
-static const double YARDSTICK = 14, KEY_LINE = 11; /* [pt] */
-static const double SCALE = 46, CHART = 118, MARGIN = 27, GAP = 6, WIDE = 380;
+static const double CHART = 118, MARGIN = 27, COLUMN = 190, WIDE = 380; /* [pt] */
 static const double PERIODS = 5, PART = 0.1; /* of the record, where nothing is periodic */
 static const double SEEN = 2e-3;             /* of the drawing: shorter paths are not drawn */
 static const double REACH =
@@ -325,7 +291,7 @@ static size_t first_of_curves(const strut_run_scene *run) {
 /* Bounds of the last shape and of the paths near it. */
 static strut_bounds bounds_of(const strut_run_scene *run) {
   strut_bounds shape = strut_run_frame_bounds(run, run->frames - 1), all = shape;
-  double reach = REACH * strut_run_extent(&shape);
+  double reach = REACH * strut_bounds_extent(&shape);
   for (size_t f = first_of_paths(run); f < run->frames; f++)
     strut_bounds_add(&all, run->model, strut_run_positions(run, f));
   for (int d = 0; d < 2; d++) {
@@ -336,125 +302,78 @@ static strut_bounds bounds_of(const strut_run_scene *run) {
   return all;
 }
 
-static double drawing_height(const strut_run_scene *run) {
-  strut_bounds b = bounds_of(run);
-  double width = run->figure->width - 2 * STRUT_RUN_EDGE - SCALE;
-  return strut_run_drawing_height(&b, width, MARGIN, 0.16, 0.62);
-}
-
-static bool has_two_columns(const strut_run_scene *run) { return run->figure->width >= WIDE; }
-
-static int panels_of(const strut_run_scene *run, int panels[MOST_PANELS]) {
-  static const int order[] = {STRUT_RUN_DISPLACEMENT, STRUT_RUN_NORMALS, STRUT_RUN_DRIVE,
-                              STRUT_RUN_HEIGHTS,      STRUT_RUN_ANGLES,  STRUT_RUN_FORCES};
-  int count = 0, most = has_two_columns(run) ? MOST_PANELS : MOST_STACKED;
-  for (size_t i = 0; run->frames > 1 && i < sizeof order / sizeof *order && count < most; i++)
-    if (strut_run_panel_wanted(run, order[i])) panels[count++] = order[i];
-  return count;
-}
-
-/* True if any path is long enough to be visible. */
-static bool has_visible_paths(const strut_run_scene *run) {
-  size_t last = run->frames - 1, nodes = run->motion->node_count;
-  strut_bounds b = bounds_of(run);
-  if (nodes > MOST_PATHS) return false;
-  double least = SEEN * strut_run_extent(&b);
-  for (size_t f = first_of_paths(run); f < last; f++)
-    for (size_t i = 0; i < 2 * nodes; i++)
-      if (fabs(strut_run_positions(run, f)[i] - strut_run_positions(run, last)[i]) > least)
-        return true;
-  return false;
-}
-
-static size_t make_key(strut_run_scene *run, char texts[ITEMS][120], strut_key_item items[ITEMS]) {
-  size_t count = 0;
-  strut_run_expect_frame(run, run->frames - 1);
-  if (strut_run_arrow_item(run, texts[0], &items[0])) count++;
-  if (has_visible_paths(run)) {
-    double span = strut_run_time_from(run, first_of_paths(run));
-    snprintf(texts[count], 120, "trajectories, last %s, dark to bright",
-             strut_drawn_quantity(span, 3, "s").text);
-    items[count] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = texts[count]};
-    count++;
+/* The nodes' ways to where they are; none where all are too short to be seen. False: out of memory. */
+static bool add_paths(strut_run_scene *run, strut_view *view) {
+  size_t first = first_of_paths(run), count = run->frames - first, nodes = run->motion->node_count;
+  double least = SEEN * strut_bounds_extent(&view->bounds);
+  if (nodes > MOST_PATHS) return true;
+  double(*path)[2] = strut_arena_allocate(&run->arena, nodes * count, sizeof *path);
+  strut_trail *trails = strut_arena_allocate(&run->arena, nodes, sizeof *trails);
+  if (!path || !trails) return false;
+  for (size_t i = 0; i < nodes; i++) {
+    const double *end = strut_run_positions(run, run->frames - 1) + 2 * i;
+    for (size_t f = 0; f < count; f++) {
+      double *at =
+          memcpy(path[i * count + f], strut_run_positions(run, first + f) + 2 * i, sizeof *path);
+      if (fabs(at[0] - end[0]) > least || fabs(at[1] - end[1]) > least) view->trail_count = nodes;
+    }
+    trails[i] = (strut_trail){.kind = STRUT_TRAIL_SEQUENCE,
+                              .count = count,
+                              .at = (const double(*)[2])(path + i * count),
+                              .pen.width = 0.9};
   }
-  return count;
-}
-
-/* The scale bar is below the drawing, the key beside it. */
-static double key_indent(const strut_run_scene *run) {
-  return 0.3 * (run->figure->width - 2 * STRUT_RUN_EDGE - SCALE) + 14;
-}
-
-static double foot_height(const strut_run_scene *run, strut_canvas *canvas,
-                          const strut_key_item *items, size_t count) {
-  double width = run->figure->width - 2 * STRUT_RUN_EDGE - key_indent(run);
-  return YARDSTICK - KEY_LINE + fmax(KEY_LINE, strut_key_height(canvas, width, items, count));
-}
-
-void strut_run_overview_describe(strut_run_scene *run, char *text) {
-  snprintf(text, STRUT_RUN_NOTE, "shape at %s",
-           strut_drawn_quantity(run->motion->time[run->frames - 1], 5, "s").text);
-}
-
-double strut_run_overview_height(strut_run_scene *run) {
-  int panels[MOST_PANELS], count = panels_of(run, panels);
-  char texts[ITEMS][120];
-  strut_key_item items[ITEMS];
-  size_t keys = make_key(run, texts, items);
-  double key = foot_height(run, run->ruler, items, keys);
-  return 2 * STRUT_RUN_EDGE + run->head + drawing_height(run) + key + GAP +
-         CHART * (has_two_columns(run) ? (count + 1) / 2 : count);
-}
-
-static bool draw_structure(strut_run_scene *run, strut_canvas *canvas, strut_box box) {
-  size_t last = run->frames - 1, first = first_of_paths(run), nodes = run->motion->node_count;
-  strut_window window = strut_window_fit(box, bounds_of(run), MARGIN);
-  double(*path)[2] = strut_arena_allocate(&run->arena, run->frames - first, sizeof *path);
-  double *q = strut_run_shape(run, last);
-  if (!path || !q || !strut_run_draw_frame(run, canvas, &window, last)) return false;
-  for (size_t i = 0; i < nodes && nodes <= MOST_PATHS; i++) {
-    for (size_t f = first; f < run->frames; f++)
-      for (size_t d = 0; d < 2; d++) path[f - first][d] = strut_run_positions(run, f)[2 * i + d];
-    strut_run_draw_path(canvas, &window, (const double(*)[2])path, run->frames - first, 0.9);
-  }
-  strut_run_draw_reactions(run, canvas, &window, last);
-  strut_run_draw_names(run, canvas, &window, q);
-  window.box.y += YARDSTICK;
-  strut_draw_yardstick(canvas, &window);
+  view->trails = trails;
   return true;
 }
 
-/* Two charts in a row where there is room; an odd one takes a whole row. */
-static strut_status draw_charts(strut_run_scene *run, strut_canvas *canvas, strut_box box) {
-  int panels[MOST_PANELS], count = panels_of(run, panels), columns = has_two_columns(run) ? 2 : 1;
-  for (int i = 0, row = 0; i < count; row++) {
-    int in_row = columns == 2 && (count - i) % 2 == 0 ? 2 : 1;
-    for (int k = 0; k < in_row; k++, i++) {
-      strut_box chart = {box.x + k * box.width / in_row, box.y + row * CHART, box.width / in_row,
-                         CHART};
-      strut_status status =
-          strut_run_draw_panel(run, canvas, chart, panels[i], first_of_curves(run));
-      if (status != STRUT_OK) return status;
-    }
+/* Two charts in a row where there is room; an odd one takes a whole row. False: out of memory. */
+static bool add_charts(strut_run_scene *run, strut_figure *figure, strut_panel *panels) {
+  static const int order[] = {STRUT_RUN_DISPLACEMENT, STRUT_RUN_NORMALS, STRUT_RUN_DRIVE,
+                              STRUT_RUN_HEIGHTS,      STRUT_RUN_ANGLES,  STRUT_RUN_FORCES};
+  size_t count = 1, most = run->figure->width >= WIDE ? MOST_PANELS : MOST_STACKED;
+  for (size_t i = 0; run->frames > 1 && i < sizeof order / sizeof *order && count <= most; i++) {
+    if (!strut_run_panel_wanted(run, order[i])) continue;
+    if (!strut_run_panel(run, order[i], first_of_curves(run), &panels[count])) return false;
+    panels[count++].height = CHART;
   }
-  return STRUT_OK;
+  panels[1].whole = count % 2 == 0;
+  figure->panel_count = count;
+  return true;
 }
 
-strut_status strut_run_overview(strut_run_scene *run, strut_canvas *canvas) {
-  double width = run->figure->width - 2 * STRUT_RUN_EDGE, height = drawing_height(run);
-  char texts[ITEMS][120];
-  strut_key_item items[ITEMS];
-  size_t keys = make_key(run, texts, items);
-  strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + run->head, width - SCALE, height};
-  if (!draw_structure(run, canvas, box)) return STRUT_NO_MEMORY;
-  strut_run_draw_scale(
-      run, canvas,
-      (strut_box){STRUT_RUN_EDGE + width - SCALE + 6, box.y, SCALE - 6, fmin(height, 130)});
-  strut_box below = {STRUT_RUN_EDGE, box.y + height, width, 0};
-  strut_draw_key(canvas,
-                 (strut_box){below.x + key_indent(run), below.y + (YARDSTICK - KEY_LINE),
-                             width - key_indent(run), 0},
-                 items, keys);
-  below.y += foot_height(run, canvas, items, keys) + GAP;
-  return draw_charts(run, canvas, below);
+bool strut_run_overview(strut_run_scene *run, strut_figure *figure, char *note) {
+  struct {
+    strut_panel panels[1 + MOST_PANELS];
+    strut_view view;
+    strut_shape shape;
+    strut_key_item keys[2];
+  } *to = strut_arena_allocate(&run->arena, 1, sizeof *to);
+  size_t last = run->frames - 1;
+  strut_run_expect_frame(run, last);
+  if (!to || !strut_run_shape(run, last, &to->shape)) return false;
+  to->shape.names = true;
+  to->view = (strut_view){
+      .shape_count = 1, .shapes = &to->shape, .bounds = bounds_of(run), .margin = MARGIN};
+  to->panels[0] = (strut_panel){.view = &to->view, .whole = true};
+  const strut_key_item *arrow = strut_run_arrow_item(run);
+  if (!arrow || !add_paths(run, &to->view) || !add_charts(run, figure, to->panels)) return false;
+  to->keys[0] = *arrow;
+  to->keys[1] = (strut_key_item){.sign = STRUT_KEY_WORDS};
+  double span = strut_run_time_from(run, first_of_paths(run));
+  if (to->view.trail_count) {
+    to->keys[1].text = strut_arena_format(&run->arena, "trajectories, last %s, dark to bright",
+                                          strut_drawn_quantity(span, 3, "s").text);
+    if (!to->keys[1].text) return false;
+  }
+  figure->panels = to->panels;
+  figure->columns = 2;
+  figure->least_width = COLUMN;
+  figure->aspect = 0.62;
+  figure->yardstick = true;
+  figure->keys = to->keys;
+  figure->key_count = 2;
+  figure->scale = strut_run_scale(run);
+  snprintf(note, STRUT_RUN_NOTE, "shape at %s",
+           strut_drawn_quantity(run->motion->time[last], 5, "s").text);
+  return true;
 }

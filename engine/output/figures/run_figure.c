@@ -16,19 +16,13 @@ static const double FEW_FRAMES = 0.05;
 static const double SMALLEST = 0.2; /* of the model's size, for a drawing */
 
 static const struct {
-  void (*describe)(strut_run_scene *run, char *text);
-  double (*height)(strut_run_scene *run);
-  strut_status (*draw)(strut_run_scene *run, strut_canvas *canvas);
+  bool (*fill)(strut_run_scene *run, strut_figure *figure, char *note);
   bool velocity; /* its heading tells the velocity */
 } views[] = {
-    [STRUT_RUN_OVERVIEW] = {strut_run_overview_describe, strut_run_overview_height,
-                            strut_run_overview, true},
-    [STRUT_RUN_PERIOD] = {strut_run_period_describe, strut_run_period_height, strut_run_period,
-                          true},
-    [STRUT_RUN_SNAPSHOTS] = {strut_run_snapshots_describe, strut_run_snapshots_height,
-                             strut_run_snapshots, false},
-    [STRUT_RUN_CURVES] = {strut_run_curves_describe, strut_run_curves_height, strut_run_curves,
-                          true},
+    [STRUT_RUN_OVERVIEW] = {strut_run_overview, true},
+    [STRUT_RUN_PERIOD] = {strut_run_period, true},
+    [STRUT_RUN_SNAPSHOTS] = {strut_run_snapshots, false},
+    [STRUT_RUN_CURVES] = {strut_run_curves, true},
 };
 
 strut_status strut_run_figure_check(const strut_run_figure *figure, const strut_model *model,
@@ -68,7 +62,7 @@ static bool is_shape(const strut_run_scene *run, size_t frame) {
   if (!burst && run->motion->status != STRUT_DIVERGED) return true;
   strut_bounds b = strut_bounds_none();
   strut_bounds_add(&b, run->model, q);
-  return strut_run_extent(&b) <= BURST * run->model->size;
+  return strut_bounds_extent(&b) <= BURST * run->model->size;
 }
 
 static double largest(const double *values, size_t count) {
@@ -98,11 +92,7 @@ void strut_run_count_frames(strut_run_scene *run) {
   if (run->frames > 1 && fine && period > 0) run->period = period;
 }
 
-static const char *title_of(const strut_run_scene *run) {
-  return run->figure->title ? run->figure->title : run->model->scene->name;
-}
-
-double *strut_run_shape(strut_run_scene *run, size_t frame) {
+double *strut_run_coordinates(strut_run_scene *run, size_t frame) {
   double *q = strut_arena_allocate(&run->arena, (size_t)run->model->length, sizeof *q);
   if (q) memcpy(q, strut_run_positions(run, frame), 2 * run->motion->node_count * sizeof *q);
   return q;
@@ -151,14 +141,10 @@ double strut_run_ground_at(const strut_run_scene *run, double x) {
   return ground->height + tan(ground->slope) * x;
 }
 
-double strut_run_extent(const strut_bounds *b) {
-  return fmax(b->high[0] - b->low[0], b->high[1] - b->low[1]);
-}
-
 strut_bounds strut_run_frame_bounds(const strut_run_scene *run, size_t frame) {
   strut_bounds b = strut_bounds_none();
   strut_bounds_add(&b, run->model, strut_run_positions(run, frame));
-  double missing = SMALLEST * run->model->size - strut_run_extent(&b);
+  double missing = SMALLEST * run->model->size - strut_bounds_extent(&b);
   const double share[2] = {0.5,
                            0.15}; /* the missing extent goes to the width rather than the height */
   for (int d = 0; d < 2 && missing > 0; d++) {
@@ -171,21 +157,11 @@ strut_bounds strut_run_frame_bounds(const strut_run_scene *run, size_t frame) {
 void strut_run_add_ground(const strut_run_scene *run, strut_bounds *b) {
   if (!run->model->scene->ground.present) return;
   double ground = strut_run_ground_at(run, 0.5 * (b->low[0] + b->high[0]));
-  if (b->low[1] > ground && b->low[1] - ground < strut_run_extent(b)) b->low[1] = ground;
+  if (b->low[1] > ground && b->low[1] - ground < strut_bounds_extent(b)) b->low[1] = ground;
 }
 
-double strut_run_drawing_height(const strut_bounds *b, double width, double margin, double least,
-                                double most) {
-  double wide = b->high[0] - b->low[0], high = b->high[1] - b->low[1];
-  double wanted = wide > 0 ? (width - 2 * margin) * high / wide + 2 * margin : most * width;
-  return fmax(fmax(least * width, 2 * margin + 8), fmin(wanted, most * width));
-}
+/* Parts of several views: shapes, contact forces, scales. */
 
-/* Parts of several views: titles, shapes, contact forces, paths, names. */
-
-enum { MOST_NAMES = 30 };
-
-static const double DOT = 0.3;       /* [pt] */
 static const double STANDING = 1e-6; /* of the model's size over the whole run: it stands still */
 
 void strut_run_expect_frame(strut_run_scene *run, size_t frame) {
@@ -196,74 +172,44 @@ void strut_run_expect_frame(strut_run_scene *run, size_t frame) {
   }
 }
 
-bool strut_run_draw_frame(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
-                          size_t frame) {
+bool strut_run_shape(strut_run_scene *run, size_t frame, strut_shape *shape) {
   const strut_trajectory *m = run->motion;
-  double *q = strut_run_shape(run, frame);
-  if (!q) return false;
-  strut_structure_style style = {.colouring = STRUT_COLOUR_KIND,
-                                 .time = m->time ? m->time[frame] : 0.0};
+  *shape = (strut_shape){.model = run->model,
+                         .q = strut_run_coordinates(run, frame),
+                         .style.time = m->time ? m->time[frame] : 0.0,
+                         .ground = true,
+                         .moving = m->time != NULL,
+                         .force_limit = run->contact_limit,
+                         .arrow = STRUT_RUN_ARROW};
   if (m->force) {
-    style.colouring = STRUT_COLOUR_FORCE;
-    style.values = style.slack_forces = m->force + frame * m->member_count;
-    style.limit = run->force_limit;
+    shape->style.colouring = STRUT_COLOUR_FORCE;
+    shape->style.values = shape->style.slack_forces = m->force + frame * m->member_count;
+    shape->style.limit = run->force_limit;
   }
-  strut_draw_ground_at(canvas, window, run->model, m->time ? m->time[frame] : (double)NAN);
-  strut_draw_structure(canvas, window, run->model, q, &style);
-  return true;
+  if (m->contact && run->contact_limit > 0)
+    shape->forces = (const double(*)[2])(m->contact + 2 * frame * m->contact_count);
+  return shape->q != NULL;
 }
 
-void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
-                              const strut_window *window, size_t frame) {
-  const strut_trajectory *m = run->motion;
-  const double *q = strut_run_positions(run, frame);
-  if (!m->contact || !(run->contact_limit > 0)) return;
-  const double *force = m->contact + 2 * frame * m->contact_count;
-  strut_draw_contact_forces(canvas, window, run->model, q, (const double(*)[2])force,
-                            run->contact_limit, run->arrow);
+strut_colour_scale strut_run_scale(const strut_run_scene *run) {
+  bool known = run->motion->force && run->force_limit > 0;
+  return (strut_colour_scale){.name = known ? "force" : NULL,
+                              .unit = "N",
+                              .low = -run->force_limit,
+                              .high = run->force_limit,
+                              .colours = STRUT_COLOURS_SIGNED,
+                              .beyond = run->beyond};
 }
 
-/* True if a path is longer than a dot on the page. */
-static bool is_visible(const strut_window *window, const double (*path)[2], size_t count) {
-  double first[2], at[2];
-  for (size_t i = 0; i < count; i++) {
-    strut_window_point(window, path[i], i ? at : first);
-    if (i && hypot(at[0] - first[0], at[1] - first[1]) > DOT) return true;
-  }
-  return false;
-}
-
-void strut_run_draw_path(strut_canvas *canvas, const strut_window *window, const double (*path)[2],
-                         size_t count, double width) {
-  if (!is_visible(window, path, count)) return;
-  strut_canvas_clip(canvas, window->box);
-  strut_draw_trail(canvas, window, path, count, width);
-  strut_canvas_unclip(canvas);
-}
-
-void strut_run_draw_names(const strut_run_scene *run, strut_canvas *canvas,
-                          const strut_window *window, const double *q) {
-  if (run->model->node_count <= MOST_NAMES) strut_draw_names(canvas, window, run->model, q, false);
-}
-
-void strut_run_draw_scale(const strut_run_scene *run, strut_canvas *canvas, strut_box box) {
-  const strut_colour_scale scale = {.name = "force",
-                                    .unit = "N",
-                                    .low = -run->force_limit,
-                                    .high = run->force_limit,
-                                    .colours = STRUT_COLOURS_SIGNED,
-                                    .beyond = run->beyond};
-  if (run->motion->force && run->force_limit > 0) strut_draw_colour_scale(canvas, box, &scale);
-}
-
-bool strut_run_arrow_item(const strut_run_scene *run, char text[120], strut_key_item *item) {
-  if (!(run->contact_limit > 0)) return false;
-  snprintf(text, 120, "contact force, up to %s",
-           strut_drawn_quantity(run->contact_limit, 3, "N").text);
-  *item = (strut_key_item){.sign = STRUT_KEY_ARROW,
-                           .pen = {.colour = strut_palette_thing(1), .width = 1.1},
-                           .text = text};
-  return true;
+const strut_key_item *strut_run_arrow_item(strut_run_scene *run) {
+  strut_key_item *item = strut_arena_allocate(&run->arena, 1, sizeof *item);
+  if (!item) return NULL;
+  item->sign = STRUT_KEY_ARROW;
+  item->pen = (strut_pen){.colour = strut_palette_thing(1), .width = 1.1};
+  if (!(run->contact_limit > 0)) return item;
+  item->text = strut_arena_format(&run->arena, "contact force, up to %s",
+                                  strut_drawn_quantity(run->contact_limit, 3, "N").text);
+  return item->text ? item : NULL;
 }
 
 /* The measured velocity; 0 for a structure that stands still. */
@@ -280,33 +226,27 @@ static const double FRINGE =
 static const strut_colour DASHES = {0.25, 0.25, 0.25, 1};
 
 bool strut_run_find_other(const strut_run_scene *run, strut_run_scene *other) {
-  *other = (strut_run_scene){.figure = run->figure,
-                             .model = run->model,
-                             .motion = run->figure->other,
-                             .arrow = run->arrow};
+  *other =
+      (strut_run_scene){.figure = run->figure, .model = run->model, .motion = run->figure->other};
   if (!other->motion || !other->motion->position) return false;
   strut_run_count_frames(other);
   return other->frames > 0;
 }
 
-void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
-                          const strut_window *window, const double *q) {
-  const strut_structure_style style = {.colouring = STRUT_COLOUR_ONE,
-                                       .colour = DASHES,
-                                       .fringe = FRINGE,
-                                       .no_nodes = true,
-                                       .no_supports = true};
-  strut_draw_structure(canvas, window, other->model, q, &style);
+bool strut_run_other_shape(strut_run_scene *other, size_t frame, strut_shape *shape) {
+  *shape = (strut_shape){.model = other->model,
+                         .q = strut_run_coordinates(other, frame),
+                         .style = {.colouring = STRUT_COLOUR_ONE,
+                                   .colour = DASHES,
+                                   .fringe = FRINGE,
+                                   .no_nodes = true,
+                                   .no_supports = true}};
+  return shape->q != NULL;
 }
 
-bool strut_run_draw_other_path(strut_run_scene *other, strut_canvas *canvas,
-                               const strut_window *window, const double (*path)[2], size_t count) {
-  const strut_pen pen = {
+strut_pen strut_run_other_pen(void) {
+  return (strut_pen){
       .colour = DASHES, .width = STRUT_RUN_TRAIL + FRINGE, .dash = {2.2, 2.2}, .butt = true};
-  double(*points)[2] = strut_arena_allocate(&other->arena, count, sizeof *points);
-  for (size_t i = 0; points && i < count; i++) strut_window_point(window, path[i], points[i]);
-  if (points) strut_draw_line(canvas, (const double(*)[2])points, count, pen);
-  return points != NULL;
 }
 
 void strut_run_describe_other(const strut_run_scene *run, char *text, size_t size) {
@@ -318,60 +258,40 @@ void strut_run_describe_other(const strut_run_scene *run, char *text, size_t siz
 
 /* ---- the whole figure ---- */
 
-/* The heading: the model's name and `what`, with the velocity where wanted, or the failure; in `note`. */
-static strut_status describe_run(strut_run_scene *run, char note[STRUT_RUN_NOTE],
-                                 strut_error *error) {
+/* What the figure shows, in `note`: the failure, `what`, the velocity. */
+static void describe_run(const strut_run_scene *run, const char *what, char note[STRUT_RUN_NOTE]) {
   const strut_summary *s = run->summary;
-  char what[STRUT_RUN_NOTE];
   bool failed = s && s->status != STRUT_OK;
-  views[run->figure->view].describe(run, what);
   int used = 0;
   if (failed)
     used = snprintf(note, STRUT_RUN_NOTE, "%s at %s; ",
                     s->status == STRUT_DIVERGED ? "diverged" : "stopped",
                     strut_drawn_quantity(s->duration, 4, "s").text);
   used += snprintf(note + used, STRUT_RUN_NOTE - (size_t)used, "%.400s", what);
-  if (views[run->figure->view].velocity && s && !failed && isfinite(s->velocity)) {
-    double v = shown_velocity(run);
-    snprintf(note + used, STRUT_RUN_NOTE - (size_t)used, "; velocity of %.60s %s%s",
-             strut_run_measured_name(run), strut_drawn_quantity(v, 4, "m/s").text,
-             v > 0   ? " \xe2\x86\x92"
-             : v < 0 ? " \xe2\x86\x90"
-                     : "");
-  }
-  run->heading = (strut_heading){.width = run->figure->width,
-                                 .edge = STRUT_RUN_EDGE,
-                                 .title = title_of(run),
-                                 .note = note,
-                                 .alarm = failed};
-  return strut_heading_measure(&run->heading, &run->head, error);
+  if (!views[run->figure->view].velocity || !s || failed || !isfinite(s->velocity)) return;
+  double v = shown_velocity(run);
+  snprintf(note + used, STRUT_RUN_NOTE - (size_t)used, "; velocity of %.60s %s%s",
+           strut_run_measured_name(run), strut_drawn_quantity(v, 4, "m/s").text,
+           v > 0   ? " \xe2\x86\x92"
+           : v < 0 ? " \xe2\x86\x90"
+                   : "");
 }
 
 strut_status strut_run_figure_draw(const char *path, const strut_run_figure *figure,
                                    const strut_model *model, const strut_trajectory *motion,
                                    const strut_summary *summary, strut_error *error) {
-  strut_run_scene run = {
-      .figure = figure, .model = model, .motion = motion, .summary = summary, .arrow = 24};
+  strut_run_scene run = {.figure = figure, .model = model, .motion = motion, .summary = summary};
+  char what[STRUT_RUN_NOTE] = "", note[STRUT_RUN_NOTE];
   if (motion->position) strut_run_count_frames(&run);
   if (!run.frames)
     return strut_fail(error, STRUT_USAGE, "there is nothing to draw: no positions were recorded");
-  strut_canvas *canvas = NULL;
-  char note[STRUT_RUN_NOTE];
-  strut_status status = strut_canvas_open_pixels(1, 1, 1, &run.ruler, error);
-  if (status == STRUT_OK && !strut_run_find_limits(&run))
-    status = strut_no_memory(error, "while drawing");
-  if (status == STRUT_OK) status = describe_run(&run, note, error);
-  if (status == STRUT_OK)
-    status = strut_canvas_open(path, figure->width, views[figure->view].height(&run),
-                               title_of(&run), &canvas, error);
-  if (status == STRUT_OK) {
-    strut_heading_draw(canvas, &run.heading);
-    status = views[figure->view].draw(&run, canvas);
-    if (status != STRUT_OK) strut_fail(error, status, "out of memory while drawing");
-  }
-  if (status == STRUT_OK) status = strut_canvas_commit(canvas, error);
-  strut_canvas_free(canvas);
-  strut_canvas_free(run.ruler);
+  const strut_plot plot = {.path = path, .width = figure->width, .title = figure->title};
+  strut_figure page = {
+      .title = model->scene->name, .note = note, .alarm = summary && summary->status != STRUT_OK};
+  bool good = strut_run_find_limits(&run) && views[figure->view].fill(&run, &page, what);
+  describe_run(&run, what, note);
+  strut_status status =
+      good ? strut_figure_draw(&plot, &page, error) : strut_no_memory(error, "while drawing");
   strut_arena_free(&run.arena);
   return status;
 }

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "engine/output/draw/canvas.h"
+#include "engine/output/draw/view.h"
 #include "engine/output/figures/run_parts.h"
 #include "engine/output/file.h"
 
@@ -70,7 +71,7 @@ static FILE *start_ffmpeg(const strut_film *film, const char *path) {
   return setenv("STRUT_FILM", path, 1) ? NULL : popen(command, "w");
 }
 
-static const double PAGE = 512, HEAD = 30, FOOT = 40, EDGE = 14, MARGIN = 18, ARROW = 26; /* [pt] */
+static const double PAGE = 512, HEAD = 30, FOOT = 40, EDGE = 14, MARGIN = 18; /* [pt] */
 static const double FAR = 1; /* sizes of the structure over which the window moves along */
 
 typedef struct making {
@@ -100,7 +101,7 @@ static strut_bounds move(const making *m, size_t i, int sign, strut_bounds b) {
 
 static void find_view(making *m) {
   const strut_bounds first = bounds_of(m, 0), last = bounds_of(m, m->film->frames - 1);
-  double size = strut_run_extent(&first);
+  double size = strut_bounds_extent(&first);
   for (int d = 0; d < 2; d++) {
     double way = 0.5 * (last.low[d] + last.high[d] - first.low[d] - first.high[d]);
     if (size > 0 && fabs(way) > FAR * size) m->travel[d] = way;
@@ -113,33 +114,46 @@ static void find_view(making *m) {
   strut_run_add_ground(&m->run, &m->view);
 }
 
-/* Along the ground, which they show passing. */
-static void draw_marks(const making *m, strut_canvas *canvas, const strut_window *w) {
+enum { MARKS = 40 };
+
+/* Marks along the ground, which they show passing. Returns their number. */
+static size_t add_marks(const making *m, const strut_window *w, double at[MARKS][2][2],
+                        strut_trail trails[MARKS]) {
   const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.9, .butt = true};
   double step = pow(10.0, ceil(log10(20.0 / w->scale))), right = w->left + w->box.width / w->scale;
   const strut_ground *ground = &m->run.model->scene->ground;
-  if (!ground->present || ground->belt_speed != 0) return;
-  for (double x = step * ceil(w->left / step); x < right; x += step) {
-    double at[2] = {x, strut_run_ground_at(&m->run, x)}, point[2];
-    strut_window_point(w, at, point);
-    strut_draw_segment(canvas, point[0], point[1], point[0], point[1] + 9, pen);
+  size_t count = 0;
+  if (!ground->present || ground->belt_speed != 0) return 0;
+  for (double x = step * ceil(w->left / step); x < right && count < MARKS; x += step) {
+    double y = strut_run_ground_at(&m->run, x);
+    for (int end = 0; end < 2; end++) at[count][end][0] = x, at[count][end][1] = y;
+    at[count][1][1] -= 9 / w->scale;
+    trails[count] = (strut_trail){.count = 2, .at = (const double(*)[2])at[count], .pen = pen};
+    count++;
   }
+  return count;
 }
 
 static bool draw(making *m, strut_canvas *canvas, size_t i) {
   strut_box page = strut_canvas_box(canvas), box = {0, HEAD, PAGE, page.height - HEAD - FOOT};
-  strut_window window = strut_window_fit(box, move(m, i, 1, m->view), MARGIN);
   strut_run_scene run = m->run; /* with an arena for this frame alone */
   size_t frame = frame_at(m, i);
   char text[160], fitted[STRUT_FITTED_TEXT];
   const strut_font bold = {.size = 11, .bold = true};
+  double at[MARKS][2][2];
+  strut_trail marks[MARKS];
+  strut_shape shape;
+  strut_view view = {.shape_count = 1,
+                     .shapes = &shape,
+                     .trails = marks,
+                     .bounds = move(m, i, 1, m->view),
+                     .margin = MARGIN};
+  const strut_window window = strut_window_fit(box, view.bounds, MARGIN);
   run.arena = (strut_arena){0};
   strut_canvas_clear(canvas, strut_grey(1));
-  strut_canvas_clip(canvas, window.box);
-  bool good = strut_run_draw_frame(&run, canvas, &window, frame);
-  draw_marks(m, canvas, &window);
-  strut_run_draw_reactions(&run, canvas, &window, frame);
-  strut_canvas_unclip(canvas);
+  view.trail_count = add_marks(m, &window, at, marks);
+  bool good = strut_run_shape(&run, frame, &shape);
+  if (good) strut_draw_view(canvas, box, &(strut_panel){.view = &view});
   strut_arena_free(&run.arena);
   strut_text_fit(canvas, run.model->scene->name, bold, 0.7 * PAGE, 0, fitted);
   strut_draw_text(canvas, EDGE, EDGE - 4, fitted, bold);
@@ -150,7 +164,9 @@ static bool draw(making *m, strut_canvas *canvas, size_t i) {
            strut_run_measured_name(&run), moved < 0 ? "" : "+",
            strut_drawn_quantity(moved, 3, "m").text);
   strut_draw_text(canvas, EDGE, page.height - 25, text, (strut_font){.size = 11});
-  strut_run_draw_scale(&run, canvas, (strut_box){PAGE - 190, page.height - 36, 180, 30});
+  const strut_colour_scale scale = strut_run_scale(&run);
+  if (scale.name)
+    strut_draw_colour_scale(canvas, (strut_box){PAGE - 190, page.height - 36, 180, 30}, &scale);
   return good;
 }
 
@@ -190,8 +206,7 @@ static strut_status encode(making *m, strut_error *error) {
 strut_status strut_film_make(strut_film *film, const strut_model *model,
                              const strut_trajectory *motion, strut_error *error) {
   const strut_run_figure figure = {.experiment = film->experiment};
-  making m = {.film = film,
-              .run = {.figure = &figure, .model = model, .motion = motion, .arrow = ARROW}};
+  making m = {.film = film, .run = {.figure = &figure, .model = model, .motion = motion}};
   if (motion->position) strut_run_count_frames(&m.run);
   if (!m.run.frames)
     return strut_fail(error, STRUT_DIVERGED, "the recording holds no motion to film");

@@ -2,108 +2,42 @@
 #include "engine/output/figures/table_figure.h"
 
 #include <assert.h>
+#include <gsl/gsl_sort_double.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "engine/output/draw/canvas.h"
-#include "engine/output/draw/chart.h"
-#include "engine/output/draw/legend.h"
-#include "engine/output/figures/table_parts.h"
+#include "engine/output/figures/table_choice.h"
 
-static const double EDGE = 5, LOWEST = 165, HIGHEST = 260;
-
-strut_status strut_table_groups_find(const strut_table *table, int column, size_t most,
-                                     const char *what, strut_table_groups *g, strut_error *error) {
-  g->count = 1;
-  g->name[0] = NULL;
-  if (column == STRUT_NO_COLUMN) return STRUT_OK;
-  g->count = 0;
-  for (size_t i = 0; i < table->row_count; i++) {
-    const char *text = table->columns[column].text[i];
-    size_t k = 0;
-    while (k < g->count && strcmp(g->name[k], text) != 0) k++;
-    if (k < g->count) continue;
-    if (g->count == most)
-      return strut_fail(error, STRUT_USAGE, "column '%s' makes more than %zu %s",
-                        table->columns[column].name, most, what);
-    g->name[g->count++] = text;
-  }
-  return STRUT_OK;
-}
-
-bool strut_table_belongs(const strut_table *table, int column, const char *name, size_t row) {
-  return column == STRUT_NO_COLUMN || strcmp(table->columns[column].text[row], name) == 0;
-}
-
-strut_status strut_table_numbers(const strut_table *table, int column, strut_error *error) {
-  if (table->columns[column].value) return STRUT_OK;
-  return strut_fail(error, STRUT_USAGE, "column '%s' does not hold numbers",
-                    table->columns[column].name);
-}
-
-void strut_table_panel_title(const strut_table *table, int column, const char *name, size_t panel,
-                             char title[300]) {
-  title[0] = '\0';
-  if (column == STRUT_NO_COLUMN) return;
-  const strut_table_column *c = &table->columns[column];
-  snprintf(title, 300, "%c) %s = %s%s%s", (char)('a' + (int)(panel % 26)), c->name, name,
-           *c->unit ? " " : "", c->unit);
-}
-
-strut_status strut_panel_page_draw(const char *path, const char *title,
-                                   const strut_panel_page *page,
-                                   void (*head)(void *context, strut_canvas *canvas, strut_box box),
-                                   strut_panel_draw panel, void *context, strut_error *error) {
-  double inner = page->width - 2 * EDGE, top = 0.0;
-  const strut_heading heading = {.width = page->width, .edge = EDGE, .title = title};
-  size_t columns = (size_t)fmax(1, fmin(3, floor(inner / page->least_width)));
-  if (columns > page->panels) columns = page->panels;
-  size_t rows = (page->panels + columns - 1) / columns;
-  double wide = inner / (double)columns;
-  double high = fmax(LOWEST, fmin(page->aspect * wide, HIGHEST));
-  strut_canvas *canvas = NULL;
-  strut_status status = strut_heading_measure(&heading, &top, error);
-  top += EDGE;
-  if (status == STRUT_OK)
-    status = strut_canvas_open(path, page->width, top + page->head + (double)rows * high + EDGE,
-                               title ? title : "", &canvas, error);
-  if (status != STRUT_OK) return status;
-  strut_heading_draw(canvas, &heading);
-  if (head) head(context, canvas, (strut_box){EDGE, top, inner, page->head});
-  for (size_t k = 0; k < page->panels && status == STRUT_OK; k++)
-    status = panel(context, canvas,
-                   (strut_box){EDGE + (double)(k % columns) * wide,
-                               top + page->head + (double)(k / columns) * high, wide, high},
-                   k);
-  if (status != STRUT_OK) strut_fail(error, status, "out of memory while drawing");
-  if (status == STRUT_OK) status = strut_canvas_commit(canvas, error);
-  strut_canvas_free(canvas);
-  return status;
-}
-
-static const double PANEL_WIDTH = 165, ASPECT = 0.62, INDENT = 30;
+static const double CURVES_WIDTH = 165, MAP_WIDTH = 200; /* panels at least [pt] */
 enum { NAME = 48, MOST_NAMES = 3 }; /* bytes and columns of an axis label; more are in the legend */
-enum { MOST_ENTRIES = STRUT_MOST_TABLE_GROUPS * STRUT_MOST_Y + 1 };
+enum { MOST_CELLS = 4000000 };
 
+/* A figure being filled in. */
 typedef struct maker {
   const strut_table_figure *figure;
   const strut_table *table;
-  strut_table_groups panels, curves;
-  strut_axis x, y;
-  char y_name[NAME];
-  strut_legend_entry *entries;
-  size_t entry_count;
+  strut_table_groups panels, curves; /* curves, or categories of a map */
+  const char *y_name;
+  double *at[2]; /* of a map: the grid's positions */
+  size_t count[2];
   strut_arena arena;
+  strut_error *error;
 } maker;
 
-strut_axis strut_table_axis_of(const strut_axis_choice *wanted, const char *name, const char *unit,
-                               bool logarithmic) {
-  strut_axis axis = {wanted->label ? wanted->label : name, unit, logarithmic, (double)NAN,
-                     (double)NAN};
-  if (wanted->limited) axis.low = wanted->low, axis.high = wanted->high;
-  return axis;
+static const strut_table_column *column_of(const maker *m, int column) {
+  return column == STRUT_NO_COLUMN ? NULL : &m->table->columns[column];
 }
+
+/* "a) friction = 0.1" */
+static const char *panel_title(maker *m, size_t panel) {
+  const strut_table_column *c = column_of(m, m->figure->panels);
+  return strut_arena_format(&m->arena, "%c) %s = %s%s%s", (char)('a' + (int)(panel % 26)), c->name,
+                            m->panels.name[panel], *c->unit ? " " : "", c->unit);
+}
+
+/* ---- curves ---- */
 
 /* Rows of one curve in one panel. Returns how many. */
 static size_t rows_of(const maker *m, size_t panel, size_t curve, size_t *rows) {
@@ -116,326 +50,312 @@ static size_t rows_of(const maker *m, size_t panel, size_t curve, size_t *rows) 
   return count;
 }
 
-/* Finds the runs of rows with the band's text; bands end midway to the neighbouring rows. */
-static size_t find_bands(const maker *m, const size_t *rows, size_t count, strut_band *bands) {
-  const strut_table_column *band = &m->table->columns[m->figure->band];
-  const double *x = m->table->columns[m->figure->x].value;
-  size_t found = 0;
-  for (size_t i = 0; i < count; i++) {
-    if (strcmp(band->text[rows[i]], m->figure->band_value) != 0) continue;
+/* Grey areas over stretches of matching rows. */
+static bool add_bands(maker *m, const size_t *rows, size_t count, strut_panel *panel) {
+  const strut_table_column *band = column_of(m, m->figure->band);
+  const double *x = column_of(m, m->figure->x)->value;
+  strut_band *bands = (strut_band *)panel->bands;
+  const char *wanted = m->figure->band_value;
+  for (size_t i = 0; band && i < count; i++) {
+    if (strcmp(band->text[rows[i]], wanted) != 0) continue;
     size_t last = i;
-    while (last + 1 < count && strcmp(band->text[rows[last + 1]], m->figure->band_value) == 0)
-      last++;
+    while (last + 1 < count && strcmp(band->text[rows[last + 1]], wanted) == 0) last++;
     double low = x[rows[i]], high = x[rows[last]];
     if (i > 0) low = 0.5 * (low + x[rows[i - 1]]);
     if (last + 1 < count) high = 0.5 * (high + x[rows[last + 1]]);
-    bands[found++] = (strut_band){.low = fmin(low, high), .high = fmax(low, high)};
+    bands[panel->band_count++] =
+        (strut_band){.low = fmin(low, high),
+                     .high = fmax(low, high),
+                     .label = strut_arena_format(&m->arena, "%s %s", band->name, wanted)};
+    if (!bands[panel->band_count - 1].label) return false;
     i = last;
   }
-  return found;
-}
-
-static bool make_series(maker *m, const size_t *rows, size_t count, int k, size_t look,
-                        strut_series *series) {
-  int column = m->figure->y[k];
-  double *x = strut_arena_allocate(&m->arena, count, sizeof *x);
-  double *y = strut_arena_allocate(&m->arena, count, sizeof *y);
-  if (!x || !y) return false;
-  for (size_t i = 0; i < count; i++) {
-    x[i] = m->table->columns[m->figure->x].value[rows[i]];
-    y[i] = m->table->columns[column].value[rows[i]];
-  }
-  *series = (strut_series){.count = count, .x = x, .y = y, .look = (int)look};
   return true;
 }
 
-static const char *axis_name(const strut_table *table, int column) {
-  return column == STRUT_NO_COLUMN ? "" : table->columns[column].name;
+/* What the legend says of y column k of a curve; NULL: there is one curve only, or no memory. */
+static const char *curve_name(maker *m, size_t curve, int k) {
+  const strut_table_figure *f = m->figure;
+  const char *column = column_of(m, f->y[k])->name, *group = m->curves.name[curve];
+  const strut_table_column *by = column_of(m, f->by);
+  bool several = f->y_count > 1;
+  if (m->curves.count * (size_t)f->y_count < 2) return NULL;
+  if (!group) return column;
+  return strut_arena_format(&m->arena, "%s%s%s %s%s%s", several ? column : "", several ? ", " : "",
+                            by->name, group, by->value && *by->unit ? " " : "",
+                            by->value ? by->unit : "");
 }
 
-static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box box, size_t panel) {
-  maker *m = context;
-  const strut_table_figure *f = m->figure;
-  size_t most = m->curves.count * (size_t)f->y_count, used = 0, bands = 0;
-  size_t *rows = strut_arena_allocate(&m->arena, m->table->row_count, sizeof *rows);
-  strut_series *series = strut_arena_allocate(&m->arena, most, sizeof *series);
-  strut_band *band =
-      strut_arena_allocate(&m->arena, m->table->row_count * m->curves.count, sizeof *band);
-  char title[300];
-  if (!rows || !series || !band) return STRUT_NO_MEMORY;
-  for (size_t c = 0; c < m->curves.count; c++) {
-    size_t count = rows_of(m, panel, c, rows);
-    if (f->band != STRUT_NO_COLUMN) bands += find_bands(m, rows, count, band + bands);
-    for (int k = 0; k < f->y_count; k++, used++)
-      if (!make_series(m, rows, count, k, used, &series[used])) return STRUT_NO_MEMORY;
+static bool add_curve(maker *m, const size_t *rows, size_t count, size_t curve, int k,
+                      strut_panel *panel) {
+  double *x = strut_arena_allocate(&m->arena, count, sizeof *x);
+  double *y = strut_arena_allocate(&m->arena, count, sizeof *y);
+  for (size_t i = 0; x && y && i < count; i++) {
+    x[i] = column_of(m, m->figure->x)->value[rows[i]];
+    y[i] = column_of(m, m->figure->y[k])->value[rows[i]];
   }
-  strut_table_panel_title(m->table, f->panels, m->panels.name[panel], panel, title);
-  const strut_curves curves = {.title = title[0] ? title : NULL,
-                               .x = m->x,
-                               .y = m->y,
-                               .series_count = used,
-                               .series = series,
-                               .band_count = bands,
-                               .bands = band,
-                               .mark_beyond = !f->y_axis.limited};
-  return strut_draw_curves(canvas, box, &curves);
+  ((strut_series *)panel->series)[panel->series_count++] =
+      (strut_series){.label = curve_name(m, curve, k), .count = count, .x = x, .y = y, .look = -1};
+  return x && y;
 }
+
+static bool fill_curves(maker *m, size_t number, strut_panel *panel) {
+  const strut_table_figure *f = m->figure;
+  size_t most = m->curves.count * (size_t)f->y_count, rows = m->table->row_count;
+  size_t *row = strut_arena_allocate(&m->arena, rows, sizeof *row);
+  panel->series = strut_arena_allocate(&m->arena, most, sizeof *panel->series);
+  panel->bands = strut_arena_allocate(&m->arena, rows * m->curves.count, sizeof *panel->bands);
+  panel->outliers = true;
+  bool fine = row && panel->series && panel->bands;
+  for (size_t c = 0; c < m->curves.count && fine; c++) {
+    size_t count = rows_of(m, number, c, row);
+    fine = add_bands(m, row, count, panel);
+    for (int k = 0; k < f->y_count && fine; k++) fine = add_curve(m, row, count, c, k, panel);
+  }
+  return fine;
+}
+
+/* ---- points ---- */
+
+/* A cloud of the points that are marked, or of the others. */
+static bool fill_cloud(maker *m, bool marked, strut_series *cloud) {
+  const strut_table_figure *f = m->figure;
+  const int columns[] = {f->x, f->y[0], f->value};
+  double *to[3];
+  for (int d = 0; d < 3; d++) {
+    to[d] = strut_arena_allocate(&m->arena, m->table->row_count + 1, sizeof *to[d]);
+    if (!to[d]) return false;
+  }
+  for (size_t i = 0; i < m->table->row_count; i++) {
+    if (!f->shown[i] || f->marked[i] != marked) continue;
+    for (int d = 0; d < 3; d++)
+      to[d][cloud->count] = columns[d] >= 0 ? column_of(m, columns[d])->value[i] : (double)NAN;
+    cloud->count++;
+  }
+  cloud->cloud = true;
+  cloud->x = to[0], cloud->y = to[1], cloud->value = f->value >= 0 ? to[2] : NULL;
+  return true;
+}
+
+static bool fill_points(maker *m, strut_panel *panel) {
+  strut_series *clouds = strut_arena_allocate(&m->arena, 2, sizeof *clouds);
+  if (!clouds || !fill_cloud(m, false, &clouds[0]) || !fill_cloud(m, true, &clouds[1]))
+    return false;
+  strut_mark *marks = strut_arena_allocate(&m->arena, clouds[1].count + 1, sizeof *marks);
+  for (size_t i = 0; marks && i < clouds[1].count; i++)
+    marks[i] = (strut_mark){.at = {clouds[1].x[i], clouds[1].y[i]}, .ring = true};
+  panel->series = clouds, panel->series_count = 2;
+  panel->marks = marks, panel->mark_count = clouds[1].count;
+  panel->room = 0.04;
+  return marks != NULL;
+}
+
+/* ---- maps ---- */
+
+/* The different finite values of a column, ascending. False: out of memory. */
+static bool find_positions(maker *m, int column, int d) {
+  const double *value = column_of(m, column)->value;
+  double *all = strut_arena_allocate(&m->arena, m->table->row_count, sizeof *all);
+  size_t used = 0, *kept = &m->count[d];
+  for (size_t i = 0; all && i < m->table->row_count; i++)
+    if (isfinite(value[i])) all[used++] = value[i];
+  if (all && used) gsl_sort(all, 1, used);
+  double grain = used ? 1e-9 * (all[used - 1] - all[0]) : 0; /* 0.1 + 0.2 equals 0.3 */
+  for (size_t i = 0; i < used; i++)
+    if (!*kept || all[i] - all[*kept - 1] > grain) all[(*kept)++] = all[i];
+  m->at[d] = all;
+  return all != NULL;
+}
+
+/* Index of the nearest of (count) ascending positions. */
+static size_t nearest_index(const double *at, size_t count, double value) {
+  assert(count > 0);
+  size_t low = 0, high = count - 1;
+  while (low < high) {
+    size_t middle = (low + high) / 2;
+    bool right = 0.5 * (at[middle] + at[middle + 1]) < value;
+    *(right ? &low : &high) = middle + right;
+  }
+  return low;
+}
+
+static bool is_doubtful(const char *text) {
+  static const char *const none[] = {"", "0", "false", "no", "nan", "null"};
+  for (size_t i = 0; i < sizeof none / sizeof *none; i++)
+    if (strcmp(text, none[i]) == 0) return false;
+  return true;
+}
+
+static int by_text(const void *a, const void *b) {
+  return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* Finds the grid's positions and the categories. */
+static strut_status prepare_grid(maker *m) {
+  const strut_table_figure *f = m->figure;
+  strut_table_groups *names = &m->curves;
+  strut_status status = STRUT_OK;
+  names->count = 0;
+  if (!column_of(m, f->value)->value)
+    status = strut_table_groups_find(m->table, f->value, STRUT_MOST_TABLE_GROUPS, "categories",
+                                     names, m->error);
+  if (status) return status;
+  qsort(names->name, names->count, sizeof *names->name, by_text);
+  if (names->count && !*names->name[0]) { /* an empty text is no category */
+    names->count--;
+    memmove(names->name, names->name + 1, names->count * sizeof *names->name);
+  }
+  if (!find_positions(m, f->x, 0) || !find_positions(m, f->y[0], 1))
+    return strut_no_memory(m->error, "while drawing");
+  if (!m->count[0] || !m->count[1] || m->count[1] > MOST_CELLS / m->count[0])
+    return strut_fail(m->error, STRUT_USAGE,
+                      "the map would have %zu by %zu cells: its x and y have to form a grid",
+                      m->count[0], m->count[1]);
+  return STRUT_OK;
+}
+
+/* Puts row i of the table into its cell. */
+static void fill_cell(const maker *m, size_t i, int *category, double *value, bool *doubtful) {
+  const strut_table_figure *f = m->figure;
+  const strut_table_column *of = column_of(m, f->value), *doubt = column_of(m, f->doubt);
+  double x = column_of(m, f->x)->value[i], y = column_of(m, f->y[0])->value[i];
+  if (!isfinite(x) || !isfinite(y)) return;
+  size_t k = nearest_index(m->at[1], m->count[1], y) * m->count[0] +
+             nearest_index(m->at[0], m->count[0], x);
+  if (of->value) value[k] = of->value[i];
+  for (size_t g = 0; g < m->curves.count; g++)
+    if (strcmp(m->curves.name[g], of->text[i]) == 0) category[k] = (int)g;
+  if (doubt) doubtful[k] = is_doubtful(doubt->text[i]);
+}
+
+static bool fill_map(maker *m, size_t number, strut_panel *panel) {
+  const strut_table_figure *f = m->figure;
+  const strut_table_column *of = column_of(m, f->value), *doubt = column_of(m, f->doubt);
+  size_t count = m->count[0] * m->count[1];
+  strut_map *map = strut_arena_allocate(&m->arena, 1, sizeof *map);
+  int *category = strut_arena_allocate(&m->arena, count, sizeof *category);
+  double *value = strut_arena_allocate(&m->arena, count, sizeof *value);
+  bool *doubtful = strut_arena_allocate(&m->arena, count, sizeof *doubtful);
+  if (!map || !category || !value || !doubtful) return false;
+  for (size_t k = 0; k < count; k++) value[k] = (double)NAN, category[k] = -1;
+  for (size_t i = 0; i < m->table->row_count; i++)
+    if (strut_table_belongs(m->table, f->panels, m->panels.name[number], i))
+      fill_cell(m, i, category, value, doubtful);
+  *map = (strut_map){.columns = m->count[0],
+                     .rows = m->count[1],
+                     .xs = m->at[0],
+                     .ys = m->at[1],
+                     .category = of->value ? NULL : category,
+                     .category_count = m->curves.count,
+                     .names = m->curves.name,
+                     .value = value,
+                     .doubtful = doubt ? doubtful : NULL,
+                     .doubt = doubt ? doubt->name : NULL};
+  panel->map = map;
+  return true;
+}
+
+/* ---- the whole ---- */
 
 /* The label of the y axis: the names of its columns, or "" where they are too long or too many. */
 static const char *name_y_axis(maker *m) {
   const strut_table_figure *f = m->figure;
+  char text[NAME] = "";
   size_t used = 0;
-  if (f->y_count == 1) return m->table->columns[f->y[0]].name;
-  for (int k = 0; k < f->y_count; k++) {
-    const char *column = m->table->columns[f->y[k]].name;
+  for (int k = 0; k < f->y_count && f->y_count > 1; k++) {
+    const char *column = column_of(m, f->y[k])->name;
     if (k == MOST_NAMES || used + strlen(column) + 3 > NAME) return "";
-    used += (size_t)snprintf(m->y_name + used, NAME - used, "%s%s", k ? ", " : "", column);
+    used += (size_t)snprintf(text + used, NAME - used, "%s%s", k ? ", " : "", column);
   }
-  return m->y_name;
+  return f->y_count > 1 ? strut_arena_format(&m->arena, "%s", text) : column_of(m, f->y[0])->name;
 }
 
-/* Narrows the y axis to its values but for a few far away. False: out of memory. */
-static bool omit_outliers(maker *m) {
+static strut_status check_column(const maker *m, int column) {
+  const strut_table_column *c = column_of(m, column), *first = column_of(m, m->figure->y[0]);
+  if (!c || !c->value)
+    return strut_fail(m->error, STRUT_USAGE, "column '%s' does not hold numbers", c ? c->name : "");
+  if (column == m->figure->x || strcmp(c->unit, first->unit) == 0) return STRUT_OK;
+  return strut_fail(m->error, STRUT_USAGE,
+                    "columns '%.60s' and '%.60s' have different units (%s, %s): draw them in "
+                    "separate figures",
+                    first->name, c->name, *first->unit ? first->unit : "none",
+                    *c->unit ? c->unit : "none");
+}
+
+/* Checks the columns and finds the groups of rows. */
+static strut_status prepare(maker *m) {
   const strut_table_figure *f = m->figure;
-  size_t rows = m->table->row_count, known = 0;
-  strut_beyond beyond;
-  double *values = strut_arena_allocate(&m->arena, rows * (size_t)f->y_count + 1, sizeof *values);
-  for (int k = 0; k < f->y_count && values; k++)
-    for (size_t i = 0; i < rows; i++) values[known++] = m->table->columns[f->y[k]].value[i];
-  if (values) strut_range_without_outliers(values, known, &m->y.low, &m->y.high, &beyond);
-  return values != NULL;
-}
-
-/* Finds the axes, which all panels share. False: out of memory. */
-static bool find_axes(maker *m) {
-  const strut_table_figure *f = m->figure;
-  const strut_table_column *columns = m->table->columns, *x = &columns[f->x];
-  m->x = strut_table_axis_of(&f->x_axis, x->name, x->unit, f->log_x);
-  m->y = strut_table_axis_of(&f->y_axis, name_y_axis(m), columns[f->y[0]].unit, f->log_y);
-  for (size_t i = 0; i < m->table->row_count; i++)
-    for (int k = 0; k < f->y_count; k++) {
-      double value = columns[f->y[k]].value[i];
-      if (!isfinite(value) || !isfinite(x->value[i])) continue;
-      if (!f->x_axis.limited) strut_axis_include(&m->x, x->value[i]);
-      if (!f->y_axis.limited) strut_axis_include(&m->y, value);
-    }
-  bool fine = f->log_y || f->y_axis.limited || omit_outliers(m);
-  strut_axis_settle(&m->x, 0);
-  strut_axis_settle(&m->y, f->y_axis.limited ? 0 : 0.06);
-  return fine;
-}
-
-/* All y have the unit of the axis. */
-static strut_status check_units(const strut_table *table, const strut_table_figure *f,
-                                strut_error *error) {
-  const strut_table_column *first = &table->columns[f->y[0]];
-  for (int k = 1; k < f->y_count; k++) {
-    const strut_table_column *y = &table->columns[f->y[k]];
-    if (strcmp(y->unit, first->unit) == 0) continue;
-    return strut_fail(error, STRUT_USAGE,
-                      "columns '%.60s' and '%.60s' have different units (%s, %s): draw them in "
-                      "separate figures",
-                      first->name, y->name, *first->unit ? first->unit : "none",
-                      *y->unit ? y->unit : "none");
-  }
-  return STRUT_OK;
-}
-
-/* The legend of all panels. Returns how many rows it has. */
-static size_t name_entries(maker *m, char (*text)[200]) {
-  strut_legend_entry *entries = m->entries;
-  const strut_table_figure *f = m->figure;
-  size_t used = 0;
-  for (size_t c = 0; c < m->curves.count; c++)
-    for (int k = 0; k < f->y_count; k++) {
-      const char *column = m->table->columns[f->y[k]].name, *group = m->curves.name[c];
-      if (m->curves.count * (size_t)f->y_count < 2) continue;
-      if (!group) {
-        snprintf(text[used], sizeof *text, "%s", column);
-      } else {
-        const strut_table_column *by = &m->table->columns[f->by];
-        snprintf(text[used], sizeof *text, "%s%s%s %s%s%s", f->y_count > 1 ? column : "",
-                 f->y_count > 1 ? ", " : "", by->name, group, by->value && *by->unit ? " " : "",
-                 by->value ? by->unit : "");
-      }
-      entries[used] = (strut_legend_entry){.label = text[used],
-                                           .look = c * (size_t)f->y_count + (size_t)k,
-                                           .line = true,
-                                           .marker = true};
-      used++;
-    }
-  if (f->band != STRUT_NO_COLUMN) {
-    snprintf(text[used], sizeof *text, "%s %s", axis_name(m->table, f->band), f->band_value);
-    entries[used] =
-        (strut_legend_entry){.label = text[used], .area = true, .fill = strut_band_fill()};
-    used++;
-  }
-  return used;
-}
-
-static void draw_legend(void *context, strut_canvas *canvas, strut_box box) {
-  maker *m = context;
-  strut_draw_legend(canvas, m->entries, m->entry_count, box.width - INDENT, box.x + INDENT, box.y,
-                    false);
-}
-
-static strut_status draw_page(maker *m, const char *path, strut_error *error) {
-  strut_canvas *ruler = NULL;
-  double size[2] = {0, 0};
-  m->entries = strut_arena_allocate(&m->arena, MOST_ENTRIES, sizeof *m->entries);
-  char(*text)[200] = strut_arena_allocate(&m->arena, MOST_ENTRIES, sizeof *text);
-  if (!m->entries || !text) return strut_no_memory(error, "while drawing");
-  m->entry_count = name_entries(m, text);
-  strut_status status = strut_canvas_open_pixels(1, 1, 1, &ruler, error);
-  if (status != STRUT_OK) return status;
-  if (m->entry_count)
-    strut_legend_size(ruler, m->entries, m->entry_count, m->figure->width - 10 - INDENT, size);
-  strut_canvas_free(ruler);
-  const strut_panel_page page = {.width = m->figure->width,
-                                 .head = size[1],
-                                 .least_width = PANEL_WIDTH,
-                                 .aspect = ASPECT,
-                                 .panels = m->panels.count};
-  return strut_panel_page_draw(path, m->figure->title, &page, m->entry_count ? draw_legend : NULL,
-                               draw_panel, m, error);
-}
-
-static strut_status draw_table(const char *path, const strut_table_figure *figure,
-                               const strut_table *table, strut_error *error) {
-  assert(figure->y_count > 0 && figure->y_count <= STRUT_MOST_Y);
-  assert(figure->x >= 0 && (size_t)figure->x < table->column_count);
-  maker m = {.figure = figure, .table = table};
-  strut_status status = strut_table_numbers(table, figure->x, error);
-  for (int k = 0; k < figure->y_count && status == STRUT_OK; k++)
-    status = strut_table_numbers(table, figure->y[k], error);
-  if (status == STRUT_OK) status = check_units(table, figure, error);
-  if (status == STRUT_OK)
-    status = strut_table_groups_find(table, figure->panels, STRUT_MOST_PANELS, "panels", &m.panels,
-                                     error);
-  if (status == STRUT_OK)
-    status = strut_table_groups_find(table, figure->by, STRUT_MOST_TABLE_GROUPS, "curves",
-                                     &m.curves, error);
-  if (status == STRUT_OK) {
-    status = find_axes(&m) ? draw_page(&m, path, error) : strut_no_memory(error, "while drawing");
-  }
-  strut_arena_free(&m.arena);
+  strut_status status = check_column(m, f->x);
+  for (int k = 0; k < f->y_count && !status; k++) status = check_column(m, f->y[k]);
+  if (!status && f->kind == STRUT_TABLE_POINTS && f->value >= 0 && !column_of(m, f->value)->value)
+    status = strut_fail(m->error, STRUT_USAGE, "points are drawn over columns of numbers");
+  if (!status)
+    status = strut_table_groups_find(m->table, f->panels, STRUT_MOST_PANELS, "panels", &m->panels,
+                                     m->error);
+  if (!status && f->kind == STRUT_TABLE_CURVES)
+    status = strut_table_groups_find(m->table, f->by, STRUT_MOST_TABLE_GROUPS, "curves", &m->curves,
+                                     m->error);
+  if (!status && f->kind == STRUT_TABLE_MAP) status = prepare_grid(m);
+  if (!status && !(m->y_name = name_y_axis(m))) status = strut_no_memory(m->error, "while drawing");
   return status;
 }
 
-strut_status strut_table_curves(const char *path, const strut_table_figure *figure,
-                                const strut_table *table, strut_error *error) {
+static bool fill_panel(maker *m, size_t i, strut_panel *panel) {
+  const strut_table_figure *f = m->figure;
+  const strut_table_column *x = column_of(m, f->x), *y = column_of(m, f->y[0]);
+  const strut_table_column *value = column_of(m, f->value);
+  *panel =
+      (strut_panel){.x = strut_axis_of(x->name, x->unit), .y = strut_axis_of(m->y_name, y->unit)};
+  panel->x.logarithmic = f->log_x, panel->y.logarithmic = f->log_y;
+  if (value && value->value)
+    panel->scale =
+        (strut_colour_scale){.name = value->name, .unit = value->unit, .colours = f->colours};
+  if (f->panels != STRUT_NO_COLUMN && !(panel->title = panel_title(m, i))) return false;
+  return f->kind == STRUT_TABLE_CURVES ? fill_curves(m, i, panel)
+         : f->kind == STRUT_TABLE_MAP  ? fill_map(m, i, panel)
+                                       : fill_points(m, panel);
+}
+
+static strut_status draw(maker *m, const strut_plot *plot) {
+  strut_panel *panels = strut_arena_allocate(&m->arena, m->panels.count, sizeof *panels);
+  bool fine = panels != NULL, map = m->figure->kind == STRUT_TABLE_MAP;
+  for (size_t i = 0; i < m->panels.count && fine; i++) fine = fill_panel(m, i, &panels[i]);
+  const strut_figure figure = {.panel_count = m->panels.count,
+                               .panels = panels,
+                               .least_width = map ? MAP_WIDTH : CURVES_WIDTH,
+                               .aspect = map ? 0.8 : 0.62,
+                               .shared_axes = true,
+                               .one_legend = true};
+  return fine ? strut_figure_draw(plot, &figure, m->error)
+              : strut_no_memory(m->error, "while drawing");
+}
+
+/* The rows that are compared are equal in these columns. */
+static strut_table_pairing pair_rows(const strut_table_figure *f) {
+  bool map = f->kind == STRUT_TABLE_MAP;
+  return (strut_table_pairing){.keys = {map ? f->y[0] : f->by, f->panels, f->x},
+                               .key_count = 3,
+                               .between = f->between,
+                               .values = map ? &f->value : f->y,
+                               .value_count = map ? 1 : (size_t)f->y_count};
+}
+
+strut_status strut_table_draw(const strut_plot *plot, const strut_table_figure *figure,
+                              const strut_table *table, strut_error *error) {
   strut_table_chosen chosen = {0};
-  const strut_table_pairing pairing = {.keys = {figure->by, figure->panels, figure->x},
-                                       .key_count = 3,
-                                       .between = figure->between,
-                                       .values = figure->y,
-                                       .value_count = (size_t)figure->y_count};
-  strut_status status = strut_table_choose(table, &figure->choice, pairing, &chosen, error);
-  if (status == STRUT_OK) status = draw_table(path, figure, chosen.table, error);
+  strut_table_figure drawn = *figure;
+  maker m = {.figure = &drawn, .error = error};
+  assert(figure->y_count > 0 && figure->y_count <= STRUT_MOST_Y);
+  strut_status status =
+      strut_table_choose(table, &figure->choice, pair_rows(figure), &chosen, error);
+  m.table = chosen.table;
+  if (figure->kind == STRUT_TABLE_MAP && figure->choice.difference != STRUT_NO_COLUMN && !status) {
+    if (!table->columns[figure->value].value) drawn.doubt = (int)chosen.table->column_count - 1;
+    if (drawn.colours == STRUT_COLOURS_AUTO) drawn.colours = STRUT_COLOURS_DIVERGING;
+  }
+  if (!status) status = prepare(&m);
+  if (!status) status = draw(&m, plot);
+  strut_arena_free(&m.arena);
   strut_table_chosen_free(&chosen);
-  return status;
-}
-
-static const double SCATTER_ASPECT = 0.62, SCALE_WIDTH = 60, RADIUS = 2.6, RING = 5.0;
-
-typedef struct scatter {
-  const strut_scatter_figure *figure;
-  const strut_table *table;
-  strut_canvas *canvas;
-  strut_axes axes;
-  double low, high; /* of the colours */
-  strut_beyond beyond;
-} scatter;
-
-static const double *values_of(const strut_table *table, int column) {
-  return column >= 0 ? table->columns[column].value : NULL;
-}
-
-static strut_axis axis_of(const scatter *s, int column, const strut_axis_choice *choice) {
-  const strut_table_column *c = &s->table->columns[column];
-  strut_axis axis = {.name = c->name, .unit = c->unit, .low = (double)NAN, .high = (double)NAN};
-  for (size_t i = 0; i < s->table->row_count; i++)
-    if (s->figure->shown[i]) strut_axis_include(&axis, c->value[i]);
-  strut_axis_settle(&axis, 0.04);
-  strut_axis_choose(&axis, choice);
-  return axis;
-}
-
-/* False: out of memory. */
-static bool find_colours(scatter *s) {
-  const double *value = values_of(s->table, s->figure->value);
-  size_t known = 0;
-  double *sorted = strut_allocate(s->table->row_count + 1, sizeof *sorted);
-  if (!sorted) return false;
-  s->low = HUGE_VAL, s->high = -HUGE_VAL;
-  for (size_t i = 0; value && i < s->table->row_count; i++) {
-    if (!s->figure->shown[i] || !isfinite(value[i])) continue;
-    s->low = fmin(s->low, value[i]);
-    s->high = fmax(s->high, value[i]);
-    sorted[known++] = value[i];
-  }
-  strut_range_without_outliers(sorted, known, &s->low, &s->high, &s->beyond);
-  strut_release(sorted);
-  if (!(s->low < s->high)) s->high = s->low = 0.0;
-  return true;
-}
-
-static strut_colours colours_of(const scatter *s) {
-  return s->figure->colours == STRUT_COLOURS_AUTO ? STRUT_COLOURS_SEQUENTIAL : s->figure->colours;
-}
-
-static void draw_point(const scatter *s, size_t row, bool ring) {
-  const double *x = values_of(s->table, s->figure->x), *y = values_of(s->table, s->figure->y);
-  const double *value = values_of(s->table, s->figure->value);
-  double at[2];
-  if (!s->figure->shown[row] || !isfinite(x[row]) || !isfinite(y[row])) return;
-  strut_axes_point(&s->axes, x[row], y[row], at);
-  strut_fill fill = {.colour = strut_grey(0.75)}; /* without a value */
-  if (!value)
-    fill.colour = strut_palette_thing(0);
-  else if (isfinite(value[row]))
-    fill.colour = s->high > s->low ? strut_palette_at(colours_of(s), value[row], s->low, s->high)
-                                   : strut_palette_thing(0);
-  if (ring) {
-    const strut_pen pen = {.colour = strut_grey(0), .width = 1.2};
-    strut_draw_circle(s->canvas, at[0], at[1], RING, NULL, &pen);
-  }
-  strut_draw_circle(s->canvas, at[0], at[1], RADIUS, &fill, NULL);
-}
-
-static void draw(scatter *s) {
-  const strut_scatter_figure *f = s->figure;
-  strut_box box = strut_canvas_box(s->canvas);
-  bool scale = s->high > s->low;
-  strut_box left = {box.x, box.y, box.width - (scale ? SCALE_WIDTH : 0), box.height};
-  s->axes = strut_axes_place(s->canvas, left, axis_of(s, f->x, &f->x_axis),
-                             axis_of(s, f->y, &f->y_axis), f->title);
-  strut_draw_axes(s->canvas, &s->axes, f->title);
-  for (size_t i = 0; i < s->table->row_count; i++)
-    if (!f->marked[i]) draw_point(s, i, false);
-  for (size_t i = 0; i < s->table->row_count; i++)
-    if (f->marked[i]) draw_point(s, i, true);
-  if (!scale) return;
-  const strut_table_column *c = &s->table->columns[f->value];
-  const strut_box frame = s->axes.frame;
-  strut_box right = {left.x + left.width + 8, frame.y, SCALE_WIDTH - 8, frame.height};
-  strut_draw_colour_scale(
-      s->canvas, right,
-      &(strut_colour_scale){c->name, c->unit, s->low, s->high, colours_of(s), s->beyond});
-}
-
-strut_status strut_table_scatter(const char *path, const strut_scatter_figure *f,
-                                 const strut_table *table, strut_error *error) {
-  scatter s = {.figure = f, .table = table};
-  if (f->x < 0 || f->y < 0 || !values_of(table, f->x) || !values_of(table, f->y) ||
-      (f->value >= 0 && !values_of(table, f->value)))
-    return strut_fail(error, STRUT_USAGE, "points are drawn over columns of numbers");
-  strut_status status = strut_canvas_open(path, f->width, f->width * SCATTER_ASPECT,
-                                          f->title ? f->title : "points", &s.canvas, error);
-  if (status) return status;
-  if (!find_colours(&s)) status = strut_no_memory(error, "while drawing");
-  if (!status) draw(&s);
-  if (!status) status = strut_canvas_commit(s.canvas, error);
-  strut_canvas_free(s.canvas);
   return status;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Figures of tables: curves in panels with grey bands.
+ * Figures of tables: curves in panels with grey bands, maps, clouds of points.
  */
 #ifndef STRUT_ENGINE_OUTPUT_FIGURES_TABLE_FIGURE_H
 #define STRUT_ENGINE_OUTPUT_FIGURES_TABLE_FIGURE_H
@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 #include "engine/base/status.h"
-#include "engine/output/draw/chart.h"
+#include "engine/output/draw/figure.h"
 #include "engine/output/record_files.h"
 
 enum { STRUT_NO_COLUMN = -1, STRUT_MOST_Y = 20, STRUT_MOST_PANELS = 24 };
@@ -20,48 +20,47 @@ typedef struct strut_table_choice {
   int difference; /* its two texts are two sides: the second minus the first; of categories, the
                      second with doubt where the first differs */
 } strut_table_choice;
-#define STRUT_TABLE_ALL                                                                            \
-  { .only = STRUT_NO_COLUMN, .difference = STRUT_NO_COLUMN }
 
-/** Curves from the columns of a table. Columns by number, STRUT_NO_COLUMN for none. */
+typedef enum strut_table_kind {
+  STRUT_TABLE_CURVES, /* y over x, all y of one unit */
+  STRUT_TABLE_MAP,    /* value over x and y: texts are categories, numbers get a colour scale */
+  STRUT_TABLE_POINTS  /* y over x, coloured by value; the marked ones on top, in a ring */
+} strut_table_kind;
+
+/** What is drawn of a table. Columns by number, STRUT_NO_COLUMN for none. */
 typedef struct strut_table_figure {
-  const char *title;               /* may be NULL */
-  double width;                    /* [pt] */
-  int x, y[STRUT_MOST_Y], y_count; /* all y of one unit */
-  strut_axis_choice x_axis, y_axis;
-  int by;     /* a curve for each of its texts */
+  strut_table_kind kind;
+  int x, y[STRUT_MOST_Y], y_count;
   int panels; /* a panel for each of its texts */
-  int band;   /* grey where it has the text `band_value`, midway to the next points */
-  const char *band_value;
-  bool log_x, log_y;
   strut_table_choice choice;
-  bool between; /* of a difference: the first side is interpolated linearly */
+  /* Of curves. */
+  int by;   /* a curve for each of its texts */
+  int band; /* grey where it has the text `band_value`, midway to the next points */
+  const char *band_value;
+  bool log_x, log_y,
+      between; /* between: of a difference, the first side is interpolated linearly */
+  /* Of maps and points. */
+  int value, doubt; /* doubt: hatched where it is not empty, 0, false or no */
+  strut_colours colours;
+  const bool *shown, *marked; /* (rows) of points; NULL: all, none */
 } strut_table_figure;
 
-/**
- * Draws curves into the file `path`. STRUT_USAGE for a column without numbers where numbers are
- * needed, y of different units, or too many panels; otherwise as strut_canvas_open and
- * strut_canvas_commit.
- */
-STRUT_API strut_status strut_table_curves(const char *path, const strut_table_figure *figure,
-                                          const strut_table *table, strut_error *error);
-
-/** Columns by number; STRUT_NO_COLUMN for none. */
-typedef struct strut_table_map_figure {
-  const char *title;
-  double width;    /* [pt] */
-  int x, y, value; /* value: texts are categories, numbers get a colour scale */
-  strut_axis_choice x_axis, y_axis;
-  strut_colours colours;
-  int panels, doubt; /* doubt: hatched where it is not empty, 0, false or no */
-  strut_table_choice choice;
-} strut_table_map_figure;
+/** One without any column but the first as x and y. */
+#define STRUT_TABLE_FIGURE                                                                         \
+  (strut_table_figure) {                                                                           \
+    .y_count = 1, .panels = STRUT_NO_COLUMN, .by = STRUT_NO_COLUMN, .band = STRUT_NO_COLUMN,       \
+    .value = STRUT_NO_COLUMN, .doubt = STRUT_NO_COLUMN, .choice = {                                \
+      .only = STRUT_NO_COLUMN,                                                                     \
+      .difference = STRUT_NO_COLUMN                                                                \
+    }                                                                                              \
+  }
 
 /**
- * Draws a map, or one in each panel, of rows in any order; points of the grid without a row have no
- * answer. STRUT_USAGE where x or y are no numbers or the grid would be too large.
+ * Draws into the plot's file. Rows of a map are in any order; points of its grid without a row have no answer.
+ * STRUT_USAGE for a column without numbers where numbers are needed, y of different units, too many panels or
+ * curves, or too large a grid; otherwise as strut_figure_draw.
  */
-STRUT_API strut_status strut_table_map(const char *path, const strut_table_map_figure *figure,
-                                       const strut_table *table, strut_error *error);
+STRUT_API strut_status strut_table_draw(const strut_plot *plot, const strut_table_figure *figure,
+                                        const strut_table *table, strut_error *error);
 
 #endif

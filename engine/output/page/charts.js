@@ -50,52 +50,41 @@
       .map((c) => c.curve);
   }
 
+  /* Channels with a chart in this order, then all others: another name or unit, only the first component. */
+  const CHANNELS = { contact: { name: "contact force", first: true }, force: { name: "member force" },
+    angle: { unit: "deg", factor: 180 / Math.PI }, moment: {}, pressure: {}, area: {}, energy: {} };
+
   /* A channel as the table of channels describes it: columns of each name, the last of which may be the total. */
-  function plainKind(name, block, values) {
-    const components = block.components;
-    return { name: name.replaceAll("_", " "), unit: block.unit,
-      curves: Array.from({ length: block.columns }, (_, i) => ({
-        name: (block.names[Math.floor(i / components.length)] + " " + components[i % components.length]).trim(),
-        at: column(values, block.columns, i) })) };
+  function kindOf(name, block, values) {
+    const { unit, factor = 1, first, name: said = name.replaceAll("_", " ") } = CHANNELS[name] || {};
+    const names = block.names || [""], parts = block.components;
+    const curves = Array.from({ length: block.columns }, (_, i) => {
+      const at = column(values, block.columns, i), part = first ? "" : parts[i % parts.length];
+      return { name: (names[Math.floor(i / parts.length)] + " " + part).trim(),
+        at: factor === 1 ? at : (frame) => factor * at(frame) };
+    });
+    return { name: said, unit: unit || block.unit,
+      curves: first ? curves.filter((_, i) => i % parts.length === 0) : curves };
+  }
+
+  function heights({ data, motion }) {
+    const slope = Math.tan(data.ground.slope), cosine = Math.cos(data.ground.slope);
+    const count = data.nodes.length, p = motion.position;
+    return { name: "height above the ground", unit: "m", curves: data.contacts.map((n) => ({
+      name: data.nodes[n].name, at: (frame) => cosine *
+        (p[2 * (frame * count + n) + 1] - data.ground.height - slope * p[2 * (frame * count + n)]) })) };
   }
 
   /* The possible charts of a run: {name, unit, curves: [{name, at(frame)}]}, all curves of each. */
   function kindsOf(run) {
-    const { data, motion } = run, count = data.nodes.length, kinds = [];
-    kinds.push({ name: "displacement", unit: "m", curves: displacements(run) });
-    if (motion.contact)
-      kinds.push({ name: "contact force", unit: "N", curves: data.contacts.map((n, i) => ({
-        name: data.contact_names ? data.contact_names[i] : data.nodes[n].name,
-        at: column(motion.contact, 2 * data.contacts.length, 2 * i) })) });
-    if (motion.force)
-      kinds.push({ name: "member force", unit: "N", curves: data.members.map((m, j) => ({
-        name: m.name, at: column(motion.force, data.members.length, j) })) });
-    if (motion.angle)
-      kinds.push({ name: "angle", unit: "deg", curves: data.hinges.map((h, i) => {
-        const radians = column(motion.angle, data.hinges.length, i);
-        return { name: h.name, at: (frame) => radians(frame) * (180 / Math.PI) };
-      }) });
-    if (motion.moment)
-      kinds.push({ name: "moment", unit: "N m", curves: data.hinges.map((h, i) => ({
-        name: h.name, at: column(motion.moment, data.hinges.length, i) })) });
-    if (motion.pressure)
-      kinds.push({ name: "pressure", unit: "N/m", curves: data.cells.map((c, i) => ({
-        name: c.name, at: column(motion.pressure, data.cells.length, i) })) });
-    if (motion.area)
-      kinds.push({ name: "area", unit: "m^2", curves: data.cells.map((c, i) => ({
-        name: c.name, at: column(motion.area, data.cells.length, i) })) });
-    if (data.ground && data.contacts.length) {
-      const slope = Math.tan(data.ground.slope), cosine = Math.cos(data.ground.slope);
-      kinds.push({ name: "height above the ground", unit: "m", curves: data.contacts.map((n) => ({
-        name: data.nodes[n].name,
-        at: (frame) => (motion.position[2 * (frame * count + n) + 1] - data.ground.height -
-          slope * motion.position[2 * (frame * count + n)]) * cosine })) });
+    const { data, motion } = run, kinds = [{ name: "displacement", unit: "m", curves: displacements(run) }];
+    const names = new Set([...Object.keys(CHANNELS), ...Object.keys(data.motion)]);
+    for (const name of names) {
+      const block = data.motion[name];
+      if (name === "energy" && data.ground && data.contacts.length) kinds.push(heights(run));
+      if (name !== "position" && motion[name] && block.components)
+        kinds.push(kindOf(name, block, motion[name]));
     }
-    if (motion.energy)
-      kinds.push({ name: "energy", unit: "J", curves: data.motion.energy_names.map((name, i) => ({
-        name, at: column(motion.energy, data.motion.energy_names.length, i) })) });
-    for (const [name, block] of Object.entries(data.motion))
-      if (block && block.unit) kinds.push(plainKind(name, block, motion[name]));
     return kinds;
   }
 

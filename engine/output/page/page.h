@@ -11,17 +11,16 @@
  *   motion: null or {
  *     frames, recorded, every: as in strut_trajectory, status: completed|diverged|interrupted,
  *     track: node index or null for the centre of mass (as the scene measures)
- *     time, position, force, contact, energy, angle, moment, area, pressure: null or a block (time and
- *       position are always there); other channels, where recorded, are blocks with their unit, things (nodes,
- *       members, ...) and components, for a common kind of chart;
+ *     time, and each channel but velocities and lengths: null or a block (time and position are always there);
  *     energy_names: [text, ...]; weights: [kg, ...] of the nodes, for the centre of mass }
  *
  * Modes and paths are no part of it: JSON of their results has all their numbers. Data of such a
  * result are those of its structure, on which a page may draw them: as a motion with `made`:
  * {note: text, clock: [text of each frame]}, which has no charts and a camera that rests.
  *
- * A block is {columns, quantum, bytes}: integers n of `frames` rows, (frames, columns); a value is
- * n * quantum. Column after column, the first number as it is, the second as its difference to the
+ * A block is {columns, quantum, unit, names, components, bytes}: of a channel of things their names, the last of which
+ * may be the total, and those of what each has. Bytes are integers n of `frames` rows, (frames, columns); a
+ * value is n * quantum. Column after column, the first number as it is, the second as its difference to the
  * first, from then on the second difference; each as zigzag (2 n, or -2 n - 1 where n < 0) in
  * little-endian groups of 7 bits, all of it deflated (raw, RFC 1951) and in base64. Numbers stay
  * below 2^53. Scripts may give {values: [number, ...]} instead.
@@ -107,10 +106,9 @@ STRUT_API bool strut_block_encode(const strut_rows *rows, double quantum, strut_
 STRUT_API void strut_block_free(strut_block *block);
 
 /**
- * Appends the value of the key motion, about `room` bytes of it, or null. Frames from the first
- * that is not finite, or far out of all bounds, are left out; then as many evenly as it takes.
+ * The value of the key motion, about `room` bytes of it, or null, in a block of strut_allocate; NULL: no memory. Frames
+ * from the first that is not finite, or far out of all bounds, are left out; then as many evenly as it takes.
  */
-STRUT_API void strut_page_add_motion(strut_buffer *buffer, const strut_page *page, size_t room,
-                                     strut_page_frames *frames);
+STRUT_API char *strut_page_motion(const strut_page *page, size_t room, strut_page_frames *frames);
 
 #endif

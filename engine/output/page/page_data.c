@@ -351,20 +351,20 @@ static void add_safe(strut_buffer *buffer, const char *json) {
 /* The object, or NULL when memory is out. */
 static char *write_data(const strut_page *page, strut_page_frames *frames) {
   size_t most = page->most_bytes ? page->most_bytes : MOST_BYTES;
-  char *still = still_data(page);
+  char *still = still_data(page), *motion = NULL;
   strut_buffer buffer = {0};
-  if (!still) return NULL;
-  add_safe(&buffer, still);
-  strut_release(still);
-  if (buffer.failed) {
-    strut_release(strut_buffer_take(&buffer));
-    return NULL;
+  if (still) add_safe(&buffer, still);
+  if (still && !buffer.failed) {
+    size_t room = most > 2 * buffer.length ? most - buffer.length : most / 2;
+    buffer.text[--buffer.length] = '\0'; /* its last brace; the motion comes before it */
+    strut_buffer_add(&buffer, ",\"motion\":");
+    motion = strut_page_motion(page, room, frames);
+    if (motion) add_safe(&buffer, motion);
+    strut_buffer_add(&buffer, "}\n");
   }
-  size_t room = most > 2 * buffer.length ? most - buffer.length : most / 2;
-  buffer.text[--buffer.length] = '\0'; /* its last brace; the motion comes before it */
-  strut_buffer_add(&buffer, ",\"motion\":");
-  strut_page_add_motion(&buffer, page, room, frames);
-  strut_buffer_add(&buffer, "}\n");
+  buffer.failed = buffer.failed || !motion;
+  strut_release(still);
+  strut_release(motion);
   return strut_buffer_take(&buffer);
 }
 

@@ -11,10 +11,12 @@
 #include <zlib.h>
 
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
+#include "engine/output/result_values.h"
 
-enum { PIECE = 1 << 16, LONGEST_NUMBER = 10, LEVEL = 9, RAW = -15, MEMORY = 9 };
+enum { LEVEL = 9, RAW = -15, MEMORY = 9 };
+/* Values of a block at most: zlib counts its bytes in 32 bits. */
+static const size_t MOST_VALUES = (size_t)1 << 28;
 
 size_t strut_rows_taken(const strut_rows *rows) {
   if (rows->frames == 0) return 0;
@@ -66,13 +68,30 @@ bool strut_rows_multiples(const strut_rows *rows, double quantum) {
   return true;
 }
 
-/* Deflates piece by piece into a block that grows. */
-typedef struct packer {
-  z_stream zip;
-  strut_block *block;
-  size_t room, waiting;
-  unsigned char piece[PIECE];
-} packer;
+/* Writes a number in groups of 7 bits, or only counts the bytes where `to` is NULL. */
+static size_t put_number(int64_t n, unsigned char *to) {
+  uint64_t left = n < 0 ? (uint64_t)(-n) * 2 - 1 : (uint64_t)n * 2;
+  size_t size = 0;
+  assert(left < UINT64_C(1) << 53);
+  for (; left >= 128; left >>= 7, size++)
+    if (to) to[size] = (unsigned char)(left | 128);
+  if (to) to[size] = (unsigned char)left;
+  return size + 1;
+}
+
+/* Column after column: first the number, then its difference, then second differences. */
+static size_t put_numbers(const strut_rows *rows, double quantum, unsigned char *to) {
+  size_t count = strut_rows_taken(rows), size = 0;
+  for (size_t column = 0; column < rows->columns; column++) {
+    int64_t previous = 0, slope = 0;
+    for (size_t i = 0; i < count; i++) {
+      int64_t n = llround(strut_rows_at(rows, i)[column] / quantum), step = n - previous;
+      size += put_number(i == 0 ? n : i == 1 ? step : step - slope, to ? to + size : NULL);
+      previous = n, slope = step;
+    }
+  }
+  return size;
+}
 
 static voidpf zip_allocate(voidpf opaque, uInt count, uInt size) {
   (void)opaque;
@@ -84,73 +103,26 @@ static void zip_release(voidpf opaque, voidpf memory) {
   strut_release(memory);
 }
 
-static bool make_room(packer *p) {
-  strut_block *block = p->block;
-  if (block->size < p->room) return true;
-  size_t room = 2 * p->room + 1024;
-  unsigned char *more = strut_reallocate(block->bytes, room, 1);
-  if (!more) return false;
-  block->bytes = more;
-  p->room = room;
-  return true;
-}
-
-/* Passes the waiting bytes to zlib; `flush` as in deflate. */
-static bool deflate_waiting(packer *p, int flush) {
-  int state;
-  p->zip.next_in = p->piece;
-  p->zip.avail_in = (uInt)p->waiting;
-  p->waiting = 0;
-  do {
-    if (!make_room(p)) return false;
-    size_t left = p->room - p->block->size;
-    uInt offered = left < PIECE ? (uInt)left : PIECE;
-    p->zip.next_out = p->block->bytes + p->block->size;
-    p->zip.avail_out = offered;
-    state = deflate(&p->zip, flush);
-    p->block->size += offered - p->zip.avail_out;
-    if (state == Z_STREAM_ERROR) return false;
-  } while (p->zip.avail_in > 0 || (flush == Z_FINISH && state != Z_STREAM_END));
-  return true;
-}
-
-static bool put_number(packer *p, int64_t n) {
-  uint64_t left = n < 0 ? (uint64_t)(-n) * 2 - 1 : (uint64_t)n * 2;
-  assert(left < UINT64_C(1) << 53);
-  if (p->waiting + LONGEST_NUMBER > PIECE && !deflate_waiting(p, Z_NO_FLUSH)) return false;
-  for (; left >= 128; left >>= 7) p->piece[p->waiting++] = (unsigned char)(left | 128);
-  p->piece[p->waiting++] = (unsigned char)left;
-  return true;
-}
-
-/* First the number, then its difference, then second differences. */
-static bool put_column(packer *p, const strut_rows *rows, size_t column, double quantum) {
-  size_t count = strut_rows_taken(rows);
-  int64_t previous = 0, slope = 0;
-  for (size_t i = 0; i < count; i++) {
-    int64_t n = llround(strut_rows_at(rows, i)[column] / quantum);
-    int64_t step = n - previous;
-    if (!put_number(p, i == 0 ? n : i == 1 ? step : step - slope)) return false;
-    previous = n;
-    slope = step;
-  }
-  return true;
+static bool deflate_all(unsigned char *numbers, size_t size, strut_block *block) {
+  z_stream zip = {.zalloc = zip_allocate, .zfree = zip_release};
+  if (deflateInit2(&zip, LEVEL, Z_DEFLATED, RAW, MEMORY, Z_DEFAULT_STRATEGY) != Z_OK) return false;
+  size_t room = deflateBound(&zip, size);
+  block->bytes = strut_allocate(room, 1);
+  zip.next_in = numbers, zip.avail_in = (uInt)size;
+  zip.next_out = block->bytes, zip.avail_out = (uInt)room;
+  bool good = block->bytes && deflate(&zip, Z_FINISH) == Z_STREAM_END;
+  block->size = zip.total_out;
+  deflateEnd(&zip);
+  return good;
 }
 
 bool strut_block_encode(const strut_rows *rows, double quantum, strut_block *block) {
   *block = (strut_block){.quantum = quantum, .columns = rows->columns};
-  packer *p = strut_allocate(1, sizeof *p);
-  if (!p) return false;
-  p->block = block;
-  p->zip.zalloc = zip_allocate;
-  p->zip.zfree = zip_release;
-  bool good = deflateInit2(&p->zip, LEVEL, Z_DEFLATED, RAW, MEMORY, Z_DEFAULT_STRATEGY) == Z_OK;
-  if (good) {
-    for (size_t c = 0; c < rows->columns && good; c++) good = put_column(p, rows, c, quantum);
-    good = good && deflate_waiting(p, Z_FINISH);
-    deflateEnd(&p->zip);
-  }
-  strut_release(p);
+  size_t size = put_numbers(rows, quantum, NULL);
+  unsigned char *numbers = strut_allocate(size + 1, 1);
+  if (numbers) put_numbers(rows, quantum, numbers);
+  bool good = numbers && deflate_all(numbers, size, block);
+  strut_release(numbers);
   if (!good) strut_block_free(block);
   return good;
 }
@@ -169,29 +141,17 @@ static const double POSITION_QUANTUM = 1e-6, VALUE_QUANTUM = 1e-5, COLUMN_QUANTU
 /* A diverged run is shown up to this distance from its start, in sizes. */
 static const double DIVERGED_REACH = 1e3;
 
-/*
- * Blocks: the time, then the channels in the order of their table. The page draws the motion, not velocities
- * and lengths; it has charts of its own for some channels, whose keys are always there, and a common one for
- * others.
- */
+/* Blocks: the time, then the channels in the order of their table. The page draws the motion, not velocities and lengths. */
 enum {
   TIME,
   POSITION = 1 + STRUT_CHANNEL_PLACE_POSITION,
   ENERGY = 1 + STRUT_CHANNEL_PLACE_ENERGY,
   BLOCKS = 1 + STRUT_CHANNEL_COUNT
 };
-static const unsigned LEFT_OUT = STRUT_CHANNEL_VELOCITY | STRUT_CHANNEL_LENGTH,
-                      OWN_CHARTS = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_FORCE |
-                                   STRUT_CHANNEL_CONTACT | STRUT_CHANNEL_ENERGY |
-                                   STRUT_CHANNEL_ANGLE | STRUT_CHANNEL_MOMENT | STRUT_CHANNEL_AREA |
-                                   STRUT_CHANNEL_PRESSURE;
+static const unsigned LEFT_OUT = STRUT_CHANNEL_VELOCITY | STRUT_CHANNEL_LENGTH;
 
-static const strut_channel_row *channel_of(int block) {
+static const strut_channel_row *channel_of(size_t block) {
   return strut_channel_row_of((strut_channels)1 << (block - 1));
-}
-
-static bool has_common_chart(int block) {
-  return block != TIME && !(OWN_CHARTS & channel_of(block)->id);
 }
 
 typedef struct motion {
@@ -200,6 +160,7 @@ typedef struct motion {
   strut_rows rows[BLOCKS];
   double quantum[BLOCKS];
   strut_block block[BLOCKS];
+  char *text[BLOCKS]; /* those in base64 */
 } motion;
 
 static bool all_finite(const double *values, size_t count) {
@@ -233,7 +194,7 @@ static size_t count_frames(const motion *m) {
 static void find_rows(motion *m) {
   const strut_trajectory *t = m->page->motion;
   m->rows[TIME] = (strut_rows){t->time, t->frames, 1, 1};
-  for (int b = 1; b < BLOCKS; b++) {
+  for (size_t b = 1; b < BLOCKS; b++) {
     const strut_channel_row *row = channel_of(b);
     size_t columns = strut_channel_items(row, m->page->model->scene) * row->components;
     if (!(LEFT_OUT & row->id))
@@ -311,7 +272,10 @@ static size_t encode(motion *m, size_t every) {
 /* Leaves out half of the frames as often as needed. Half the frames never take less than half the
    bytes, so that two halvings at once are right where four times the room is filled. */
 static bool choose_frames(motion *m, size_t room) {
-  size_t every = 1, bytes;
+  size_t every = 1, bytes, most = 1;
+  for (int b = 0; b < BLOCKS; b++)
+    if (m->rows[b].values && m->rows[b].columns > most) most = m->rows[b].columns;
+  while (m->frames / every > MOST_VALUES / most) every *= 2;
   while ((bytes = encode(m, every)) > room && strut_rows_taken(&m->rows[TIME]) > 2) {
     size_t more = 2;
     while (bytes / room >= 2 * more) more *= 2;
@@ -320,86 +284,93 @@ static bool choose_frames(motion *m, size_t room) {
   return bytes > 0;
 }
 
-static void add_number(strut_buffer *buffer, double value) {
-  char text[STRUT_NUMBER_TEXT];
-  strut_number_text(value, text);
-  strut_buffer_add(buffer, "%s", text);
+/* ---- as rows ---- */
+
+/* The block that is shown, counted from the time on. */
+static size_t block_of(const strut_result_object *of) {
+  const motion *m = strut_result_whole(of);
+  return (size_t)((const strut_block *)of->at - m->block);
 }
 
-/* A channel without a chart of its own says what the common one needs to know. */
-static void add_block(strut_buffer *buffer, const motion *m, int b) {
-  const strut_block *block = &m->block[b];
-  if (!block->bytes) {
-    strut_buffer_add(buffer, "null");
-    return;
-  }
-  strut_buffer_add(buffer, "{\"columns\":%zu,\"quantum\":", block->columns);
-  add_number(buffer, block->quantum);
-  if (has_common_chart(b)) {
-    const strut_channel_row *row = channel_of(b);
-    const strut_scene *scene = m->page->model->scene;
-    bool whole = strut_channel_is_whole(row);
-    strut_buffer_add(buffer, ",\"unit\":\"%s\",\"things\":\"%s\",\"names\":[", row->unit,
-                     strut_owner_row_of(row->owner)->things);
-    for (size_t i = 0; i < strut_channel_items(row, scene); i++)
-      strut_buffer_add(buffer, "%s\"%s\"", i ? "," : "",
-                       whole ? row->name : strut_channel_item(row, scene, i));
-    strut_buffer_add(buffer, "],\"components\":[");
-    for (size_t i = 0; i < row->components; i++)
-      strut_buffer_add(buffer, "%s\"%s\"", i ? "," : "", row->component_names[i]);
-    strut_buffer_add(buffer, "]");
-  }
-  strut_buffer_add(buffer, ",\"bytes\":\"");
-  strut_base64_add(buffer, block->bytes, block->size);
-  strut_buffer_add(buffer, "\"}");
+static strut_value component_of(const strut_result_object *of, size_t i) {
+  return STRUT_VALUE_AS_TEXT(channel_of(block_of(of))->component_names[i]);
 }
 
-static void add_head(strut_buffer *buffer, const motion *m) {
-  const strut_trajectory *t = m->page->motion;
-  bool cut = m->frames < t->frames;
-  strut_status status = cut ? STRUT_DIVERGED : t->status;
-  strut_buffer_add(buffer, "{\"frames\":%zu,\"recorded\":%zu,\"every\":%zu",
-                   strut_rows_taken(&m->rows[TIME]), t->recorded, t->every * m->rows[TIME].every);
-  strut_buffer_add(buffer, ",\"status\":\"%s\",\"track\":", strut_status_text(status));
-  int32_t track = m->page->experiment->measure_node;
-  if (track >= 0)
-    strut_buffer_add(buffer, "%d", (int)track);
-  else
-    strut_buffer_add(buffer, "null");
+static strut_value name_of(const strut_result_object *of, size_t i) {
+  const motion *m = strut_result_whole(of);
+  return STRUT_VALUE_AS_TEXT(
+      strut_channel_item(channel_of(block_of(of)), m->page->model->scene, i));
 }
 
-static void add_motion(strut_buffer *buffer, const motion *m) {
-  const strut_model *model = m->page->model;
-  add_head(buffer, m);
-  for (int b = 0; b < BLOCKS; b++) {
-    if (has_common_chart(b) && !m->block[b].bytes) continue;
-    strut_buffer_add(buffer, ",\"%s\":", b == TIME ? "time" : channel_of(b)->name);
-    add_block(buffer, m, b);
-  }
-  strut_buffer_add(buffer, ",\"energy_names\":[");
-  for (size_t i = 0; i < STRUT_ENERGIES; i++)
-    strut_buffer_add(buffer, "%s\"%s\"", i ? "," : "", channel_of(ENERGY)->component_names[i]);
-  strut_buffer_add(buffer, "],\"weights\":[");
-  for (int32_t i = 0; i < model->node_count; i++) {
-    if (i) strut_buffer_add(buffer, ",");
-    add_number(buffer, model->weight[i]);
-  }
-  strut_buffer_add(buffer, "]}");
+#define BLOCK(X)                                                                                   \
+  X("columns", "", COUNT(m->block[b].columns), "numbers of a frame")                               \
+  X("quantum", "", NUMBER(m->block[b].quantum), "what a whole number stands for")                  \
+  X("unit", "", TEXT(row ? row->unit : "s"), "of it")                                              \
+  X("names", "", IF(named, ARRAY(strut_channel_items(row, scene), name_of)), "whose it is")        \
+  X("components", "", IF(row, ARRAY(row->components, component_of)), "of each thing")              \
+  X("bytes", "", TEXT(m->text[b]), "see page.h")
+STRUT_VALUES_HERE(block_values, BLOCK, const motion *m = strut_result_whole(of);
+                  size_t b = block_of(of);
+                  const strut_scene *scene = m->page->model->scene;
+                  const strut_channel_row *row = b == TIME ? NULL : channel_of(b);
+                  bool named = row && !strut_channel_is_whole(row))
+
+static const char *channel_name(const strut_result_object *of, size_t i) {
+  (void)of;
+  return channel_of(i + 1)->name;
 }
 
-void strut_page_add_motion(strut_buffer *buffer, const strut_page *page, size_t room,
-                           strut_page_frames *frames) {
+static strut_value channel_block(const strut_result_object *of, size_t i) {
+  const motion *m = of->at;
+  if (LEFT_OUT & channel_of(i + 1)->id) return (strut_value){0};
+  return STRUT_VALUE_AS_KNOWN(m->text[i + 1], PART(&m->block[i + 1]));
+}
+
+static strut_value energy_name(const strut_result_object *of, size_t i) {
+  (void)of;
+  return STRUT_VALUE_AS_TEXT(channel_of(ENERGY)->component_names[i]);
+}
+
+#define MOTION(X)                                                                                  \
+  X("frames", "", COUNT(strut_rows_taken(&m->rows[TIME])), "on the page")                          \
+  X("recorded", "", COUNT(t->recorded), "frames")                                                  \
+  X("every", "", COUNT(t->every * m->rows[TIME].every), "recorded frame is on the page")           \
+  X("status", "", TEXT(strut_status_text(m->frames < t->frames ? STRUT_DIVERGED : t->status)), "") \
+  X("track", "", INDEX(m->page->experiment->measure_node), "node index, or null")                  \
+  X("time", "", PART(&m->block[TIME]), "block", .rows = &block_values)                             \
+  X(NULL, "", MAP(STRUT_CHANNEL_COUNT, channel_name, channel_block), "", .rows = &block_values)    \
+  X("energy_names", "", ARRAY(STRUT_ENERGIES, energy_name), "components of the energy")            \
+  X("weights", "kg", NUMBERS(m->page->model->weight, m->page->model->node_count), "of the nodes")
+STRUT_VALUES_HERE(motion_values, MOTION, const motion *m = of->at;
+                  const strut_trajectory *t = m->page->motion)
+
+/* The motion as JSON; NULL: out of memory. */
+static char *write_motion(motion *m) {
+  char *json = NULL;
+  bool good = true;
+  for (int b = 0; b < BLOCKS && good; b++) {
+    strut_buffer text = {0};
+    if (!m->block[b].bytes) continue;
+    strut_base64_add(&text, m->block[b].bytes, m->block[b].size);
+    m->text[b] = strut_buffer_take(&text);
+    good = m->text[b] != NULL;
+  }
+  if (good) json = strut_values_json(&motion_values, m, NULL);
+  for (int b = 0; b < BLOCKS; b++) strut_release(m->text[b]);
+  return json;
+}
+
+char *strut_page_motion(const strut_page *page, size_t room, strut_page_frames *frames) {
+  static const char none[] = "null";
   motion m = {.page = page};
   if (page->motion && page->motion->position && page->motion->frames > 0) find_rows(&m);
   if (m.frames == 0) {
-    strut_buffer_add(buffer, "null");
-    return;
+    char *text = strut_allocate(sizeof none, 1);
+    return text ? memcpy(text, none, sizeof none) : NULL;
   }
   choose_quanta(&m);
-  if (choose_frames(&m, room))
-    add_motion(buffer, &m);
-  else
-    buffer->failed = true;
+  char *json = choose_frames(&m, room) ? write_motion(&m) : NULL;
   *frames = (strut_page_frames){strut_rows_taken(&m.rows[TIME]), page->motion->recorded};
   free_blocks(&m);
+  return json;
 }

@@ -166,55 +166,32 @@ static size_t look_of(strut_follow_kind kind) {
   return look;
 }
 
-static bool add_curve(strut_branch_picture *p, const strut_follow_curve *c, strut_arena *arena) {
-  strut_branch_line *line = &p->lines[p->line_count];
-  line->data = strut_arena_allocate(arena, c->count, sizeof *line->data);
-  line->stable = strut_arena_allocate(arena, c->count, sizeof *line->stable);
-  if (!line->data || !line->stable) return false;
-  p->line_count++;
-  line->look = look_of(c->kind);
-  line->count = c->count;
-  for (size_t k = 0; k < c->count; k++) {
+static bool add_curve(strut_branch_picture *p, const strut_follow_curve *c) {
+  bool fine = true;
+  strut_branch_line(p, look_of(c->kind));
+  for (size_t k = 0; k < c->count && fine; k++) {
     const strut_follow_curve_point *point = &c->points[k];
-    memcpy(line->data[k], point->value, sizeof line->data[k]);
-    line->stable[k] = point->stable;
-    if (point->cusp)
-      p->marks[p->mark_count++] = (strut_branch_mark){
-          .data = {point->value[0], point->value[1]}, .kind = c->kind, .text = "cusp"};
+    strut_branch_point(p, point->value[0], point->value[1], point->stable);
+    if (point->cusp) fine = strut_branch_mark(p, c->kind, "cusp", NULL);
   }
-  return true;
+  return fine;
 }
 
 strut_status strut_follow_curves_figure(const strut_plot *plot, const strut_follow_result *r,
                                         strut_error *error) {
-  strut_arena arena = {0};
-  strut_key_item keys[CURVE_KEYS + 2];
   size_t points = 0;
   for (size_t i = 0; i < r->curve_count; i++) points += r->curves[i].count;
-  strut_branch_picture p = {
-      .title = r->title,
-      .x = {.name = r->name, .unit = r->unit},
-      .y = {.name = r->second.name, .unit = r->second.unit},
-      .lines = strut_arena_allocate(&arena, r->curve_count + 1, sizeof *p.lines),
-      .marks = strut_arena_allocate(&arena, points + 1, sizeof *p.marks),
-      .keys = keys,
-      .key_count = CURVE_KEYS + 2};
+  strut_branch_picture p = {.title = r->title,
+                            .along = strut_axis_of(r->name, r->unit),
+                            .upwards = strut_axis_of(r->second.name, r->second.unit)};
+  bool fine = strut_branch_begin(&p, r->curve_count, points);
   for (size_t i = 0; i < CURVE_KEYS; i++)
-    keys[i] = (strut_key_item){.sign = STRUT_KEY_LINE,
-                               .pen = {.colour = strut_palette_thing(i), .width = 1.4},
-                               .text = kinds[i].text};
-  for (int i = 0; i < 2; i++)
-    keys[CURVE_KEYS + i] = (strut_key_item){
-        .sign = STRUT_KEY_LINE,
-        .pen = {.colour = strut_grey(0.2), .width = i ? 0.9 : 1.4},
-        .text = i ? "of an unstable motion" : "of a motion that is stable beside it"};
-  keys[CURVE_KEYS + 1].pen.dash[0] = 3.0, keys[CURVE_KEYS + 1].pen.dash[1] = 2.0;
-  bool fine = p.lines && p.marks;
-  for (size_t i = 0; i < r->curve_count && fine; i++) fine = add_curve(&p, &r->curves[i], &arena);
-  strut_status status =
-      fine ? strut_branch_draw(plot, &p, error) : strut_no_memory(error, "while drawing");
-  strut_arena_free(&arena);
-  return status;
+    p.keys[p.key_count++] = strut_branch_key(strut_palette_thing(i), false, kinds[i].text);
+  p.keys[p.key_count++] =
+      strut_branch_key(strut_grey(0.2), false, "of a motion that is stable beside it");
+  p.keys[p.key_count++] = strut_branch_key(strut_grey(0.2), true, "of an unstable motion");
+  for (size_t i = 0; i < r->curve_count && fine; i++) fine = add_curve(&p, &r->curves[i]);
+  return strut_branch_draw(plot, &p, fine, error);
 }
 
 /*

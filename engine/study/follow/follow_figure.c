@@ -1,238 +1,153 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/study/follow/follow_parts.h"
-
+/* Lines over a parameter: stable motions solid, unstable ones dashed, special points marked. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/c_locale.h"
 #include "engine/base/vec.h"
+#include "engine/study/follow/follow_parts.h"
 #include "engine/study/follow/follow_study.h"
 
-static const double EDGE = 4.0, PAGE = 510.24, ASPECT = 0.6, ROOM = 0.04; /* [pt], [1] */
-static const double MARKER = 2.6, NAME = 7.0, GAP = 2.0;                  /* [pt] */
-enum { MOST_NAMES = 40 };
+static const double ASPECT = 0.6;
+enum { MOST_NAMES = 40, STYLES = 2 };
 
-typedef struct drawing {
-  strut_canvas *canvas;
-  const strut_branch_picture *p;
-  strut_axes axes;
-  double (*points)[2]; /* of the longest line [pt] */
-} drawing;
+/* ---- pictures of branches ---- */
 
-strut_colour strut_branch_colour(strut_follow_kind kind) {
-  switch (kind) {
-    case STRUT_FOLLOW_FOLD: return strut_palette_thing(5);
-    case STRUT_FOLLOW_DOUBLING: return strut_palette_thing(2);
-    case STRUT_FOLLOW_TORUS:
-    case STRUT_FOLLOW_BRANCHING: return strut_palette_thing(3);
-    case STRUT_FOLLOW_REGULAR:
-    case STRUT_FOLLOW_START:
-    case STRUT_FOLLOW_END:
-    case STRUT_FOLLOW_TOUCH:
-    case STRUT_FOLLOW_LIFT:
-    case STRUT_FOLLOW_STICK:
-    case STRUT_FOLLOW_SLIP:
-    case STRUT_FOLLOW_SWITCH:
-    case STRUT_FOLLOW_MEETING:
-    case STRUT_FOLLOW_KINDS: break;
-  }
-  return strut_grey(1.0);
+static strut_colour colour_of(strut_follow_kind kind) {
+  static const unsigned char thing[STRUT_FOLLOW_KINDS] = {[STRUT_FOLLOW_FOLD] = 6,
+                                                          [STRUT_FOLLOW_DOUBLING] = 3,
+                                                          [STRUT_FOLLOW_TORUS] = 4,
+                                                          [STRUT_FOLLOW_BRANCHING] = 4};
+  return thing[kind] ? strut_palette_thing(thing[kind] - 1U) : strut_grey(1.0);
 }
 
-void strut_branch_keys(strut_key_item keys[STRUT_BRANCH_KEYS]) {
-  const strut_pen solid = {.colour = strut_grey(0.2), .width = 1.4};
-  const strut_pen dashed = {.colour = strut_grey(0.2), .width = 0.9, .dash = {3.0, 2.0}};
-  const strut_pen edge = {.colour = strut_grey(0.1), .width = 0.6};
-  const struct {
-    strut_follow_kind kind;
-    const char *text;
-  } dots[] = {{STRUT_FOLLOW_FOLD, "fold"},
-              {STRUT_FOLLOW_DOUBLING, "period doubling"},
-              {STRUT_FOLLOW_TORUS, "torus, branching"},
-              {STRUT_FOLLOW_TOUCH, "an event that changes the stability"}};
-  keys[0] = (strut_key_item){.sign = STRUT_KEY_LINE, .pen = solid, .text = "stable"};
-  keys[1] = (strut_key_item){.sign = STRUT_KEY_LINE, .pen = dashed, .text = "unstable"};
-  for (size_t i = 0; i < sizeof dots / sizeof dots[0]; i++)
-    keys[i + 2] = (strut_key_item){.sign = STRUT_KEY_DOT,
-                                   .pen = edge,
-                                   .fill = {.colour = strut_branch_colour(dots[i].kind)},
-                                   .text = dots[i].text};
+strut_key_item strut_branch_key(strut_colour colour, bool unstable, const char *text) {
+  strut_key_item item = {
+      .sign = STRUT_KEY_LINE, .pen = {.colour = colour, .width = 1.4}, .text = text};
+  if (unstable) item.pen.width = 0.9, item.pen.dash[0] = 3.0, item.pen.dash[1] = 2.0;
+  return item;
 }
 
-/* Stretches of equal stability, which share their ends. */
-static void draw_line(drawing *d, const strut_branch_line *line) {
-  strut_pen pen = {.colour = strut_palette_thing(line->look), .width = 1.2};
-  size_t from = 0;
-  for (size_t k = 0; k < line->count; k++)
-    strut_axes_point(&d->axes, line->data[k][0], line->data[k][1], d->points[k]);
-  for (size_t k = 1; k <= line->count; k++) {
-    if (k < line->count && line->stable[k] == line->stable[from]) continue;
-    bool stable = line->stable[from];
-    pen.dash[0] = stable ? 0.0 : 3.0, pen.dash[1] = stable ? 0.0 : 2.0;
-    pen.width = stable ? 1.4 : 0.9;
-    strut_draw_line(d->canvas, (const double(*)[2])d->points + from,
-                    (k < line->count ? k + 1 : k) - from, pen);
-    from = k;
-  }
+/* What every figure of branches explains. */
+static void add_keys(strut_branch_picture *p) {
+  static const strut_follow_kind kinds[] = {STRUT_FOLLOW_FOLD, STRUT_FOLLOW_DOUBLING,
+                                            STRUT_FOLLOW_TORUS, STRUT_FOLLOW_TOUCH};
+  static const char *const texts[] = {"fold", "period doubling", "torus, branching",
+                                      "an event that changes the stability"};
+  p->keys[p->key_count++] = strut_branch_key(strut_grey(0.2), false, "stable");
+  p->keys[p->key_count++] = strut_branch_key(strut_grey(0.2), true, "unstable");
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+    p->keys[p->key_count++] = (strut_key_item){.sign = STRUT_KEY_DOT,
+                                               .pen = {.colour = strut_grey(0.1), .width = 0.6},
+                                               .fill = {.colour = colour_of(kinds[i])},
+                                               .text = texts[i]};
 }
 
-static void draw_name(const drawing *d, const strut_branch_mark *m, const double at[2]) {
-  char text[120];
-  snprintf(text, sizeof text, "%s%s%.60s", m->text ? m->text : strut_follow_kind_word(m->kind),
-           m->node && *m->node ? " " : "", m->node ? m->node : "");
-  strut_draw_label(d->canvas,
-                   &(strut_label){.text = text,
-                                  .font = {.size = NAME, .halo = strut_faded(strut_grey(1), 0.85)},
-                                  .at = {at[0], at[1]},
-                                  .gap = MARKER + 1.5,
-                                  .angle = 0.25 * STRUT_PI,
-                                  .inside = d->axes.frame});
+bool strut_branch_begin(strut_branch_picture *p, size_t lines, size_t points) {
+  p->lines = strut_arena_allocate(&p->arena, lines + 1, sizeof *p->lines);
+  p->pens = strut_arena_allocate(&p->arena, lines + 1, sizeof *p->pens);
+  p->marks = strut_arena_allocate(&p->arena, points + 1, sizeof *p->marks);
+  p->x = strut_arena_allocate(&p->arena, points + 1, sizeof *p->x);
+  p->y = strut_arena_allocate(&p->arena, points + 1, sizeof *p->y);
+  p->unstable = strut_arena_allocate(&p->arena, points + 1, sizeof *p->unstable);
+  return p->lines && p->pens && p->marks && p->x && p->y && p->unstable;
 }
 
-static void draw_marks(const drawing *d) {
-  const strut_pen edge = {.colour = strut_grey(0.1), .width = 0.6};
-  for (size_t i = 0; i < d->p->mark_count; i++) {
-    const strut_branch_mark *m = &d->p->marks[i];
-    const strut_fill fill = {.colour = strut_branch_colour(m->kind)};
-    double at[2];
-    strut_axes_point(&d->axes, m->data[0], m->data[1], at);
-    strut_draw_circle(d->canvas, at[0], at[1], MARKER, &fill, &edge);
-    if (d->p->mark_count <= MOST_NAMES) draw_name(d, m, at);
-  }
+void strut_branch_line(strut_branch_picture *p, size_t look) {
+  strut_pen *pen = &p->pens[p->line_count];
+  *pen = (strut_pen){.colour = strut_palette_thing(look), .width = 1.4};
+  p->lines[p->line_count++] = (strut_series){
+      .x = p->x + p->count, .y = p->y + p->count, .unstable = p->unstable + p->count, .pen = pen};
 }
 
-/* Height of the key, which a canvas must be there to measure. */
-static strut_status measure_key(const strut_branch_picture *p, double width, double *height,
-                                strut_error *error) {
-  strut_canvas *ruler;
-  strut_status status = strut_canvas_open_pixels(1, 1, 1.0, &ruler, error);
-  if (status) return status;
-  *height = strut_key_height(ruler, width, p->keys, p->key_count);
-  strut_canvas_free(ruler);
-  return STRUT_OK;
+void strut_branch_point(strut_branch_picture *p, double x, double y, bool stable) {
+  p->x[p->count] = x, p->y[p->count] = y;
+  p->unstable[p->count++] = !stable;
+  p->lines[p->line_count - 1].count++;
 }
 
-static strut_status draw_on_canvas(drawing *d, const strut_plot *plot, strut_axis x, strut_axis y,
-                                   strut_error *error) {
-  const strut_branch_picture *p = d->p;
-  const char *title = strut_plot_title(plot, p->title);
-  double width = plot->width > 0.0 ? plot->width : PAGE, key = 0.0;
-  strut_box box = {EDGE, EDGE, width - 2 * EDGE, ASPECT * width};
-  strut_status status = measure_key(p, box.width, &key, error);
-  if (!status)
-    status = strut_canvas_open(plot->path, width, box.height + GAP + key + 2 * EDGE, title,
-                               &d->canvas, error);
-  if (status) return status;
-  d->axes = strut_axes_place(d->canvas, box, x, y, title);
-  strut_draw_axes(d->canvas, &d->axes, title);
-  strut_canvas_clip(d->canvas, d->axes.frame);
-  for (size_t i = 0; i < p->line_count; i++) draw_line(d, &p->lines[i]);
-  strut_canvas_unclip(d->canvas);
-  draw_marks(d);
-  box.y += box.height + GAP;
-  box.height = key;
-  strut_draw_key(d->canvas, box, p->keys, p->key_count);
-  return strut_canvas_commit(d->canvas, error);
+bool strut_branch_mark(strut_branch_picture *p, strut_follow_kind kind, const char *word,
+                       const char *node) {
+  strut_mark *mark = &p->marks[p->mark_count++];
+  *mark = (strut_mark){.at = {p->x[p->count - 1], p->y[p->count - 1]},
+                       .text = strut_arena_format(&p->arena, "%s%s%.60s", word,
+                                                  node && *node ? " " : "", node ? node : ""),
+                       .dot = true,
+                       .colour = colour_of(kind),
+                       .angle = 0.25 * STRUT_PI};
+  return mark->text != NULL;
 }
 
-strut_status strut_branch_draw(const strut_plot *plot, const strut_branch_picture *picture,
+strut_status strut_branch_draw(const strut_plot *plot, const strut_branch_picture *p, bool fine,
                                strut_error *error) {
-  drawing d = {.p = picture};
-  strut_arena arena = {0};
-  strut_axis x = picture->x, y = picture->y;
-  size_t longest = 1;
-  strut_c_locale locale = strut_c_locale_enter();
-  x.low = x.high = y.low = y.high = (double)NAN;
-  for (size_t i = 0; i < picture->line_count; i++) {
-    const strut_branch_line *line = &picture->lines[i];
-    if (line->count > longest) longest = line->count;
-    for (size_t k = 0; k < line->count; k++) {
-      strut_axis_include(&x, line->data[k][0]);
-      strut_axis_include(&y, line->data[k][1]);
-    }
-  }
-  strut_axis_settle(&x, 0.0);
-  strut_axis_settle(&y, ROOM);
-  strut_axis_choose(&x, &plot->x);
-  strut_axis_choose(&y, &plot->y);
-  d.points = strut_arena_allocate(&arena, longest, sizeof *d.points);
+  const strut_panel panel = {.x = p->along,
+                             .y = p->upwards,
+                             .series_count = p->line_count,
+                             .series = p->lines,
+                             .mark_count = p->mark_count,
+                             .marks = p->marks};
+  const strut_figure figure = {.title = p->title,
+                               .panel_count = 1,
+                               .panels = &panel,
+                               .aspect = ASPECT,
+                               .keys = p->keys,
+                               .key_count = p->key_count};
+  for (size_t i = 0; i < p->mark_count && p->mark_count > MOST_NAMES; i++) p->marks[i].text = NULL;
   strut_status status =
-      d.points ? draw_on_canvas(&d, plot, x, y, error) : strut_no_memory(error, "while drawing");
-  strut_canvas_free(d.canvas);
-  strut_arena_free(&arena);
-  strut_c_locale_leave(locale);
+      fine ? strut_figure_draw(plot, &figure, error) : strut_no_memory(error, "while drawing");
+  strut_arena_free((strut_arena *)&p->arena);
   return status;
 }
 
-/* Velocity over the parameter: stable motions solid, unstable ones dashed, special points marked. */
+/* ---- velocity over the parameter ---- */
 
-/* Is the point marked in the figure? Events that change nothing are in the table alone. */
-static bool point_is_marked(const strut_follow_point *p) {
-  if (p->kind >= STRUT_FOLLOW_FOLD && p->kind <= STRUT_FOLLOW_TORUS) return true;
-  return p->detail && p->changes;
+static strut_axis height_axis(bool travels) {
+  return strut_axis_of(travels ? "velocity" : "amplitude", travels ? "m/s" : "m");
 }
 
-/* What is drawn: velocity, or amplitude of what does not travel. */
-static double point_height(const strut_follow_branch *b, const strut_follow_point *p) {
-  return b->travels ? p->velocity : p->amplitude;
+static bool is_special(strut_follow_kind kind) {
+  return kind >= STRUT_FOLLOW_FOLD && kind <= STRUT_FOLLOW_TORUS;
 }
 
-/* Appends the line of a branch and its marks. False: no memory. */
-static bool add_branch(strut_branch_picture *p, const strut_follow_branch *b, strut_arena *arena) {
-  strut_branch_line *line = &p->lines[p->line_count];
-  line->data = strut_arena_allocate(arena, b->count, sizeof *line->data);
-  line->stable = strut_arena_allocate(arena, b->count, sizeof *line->stable);
-  if (!line->data || !line->stable) return false;
-  line->look = p->line_count++;
-  line->count = b->count;
-  for (size_t k = 0; k < b->count; k++) {
+/* Appends the line of a branch and its marks. Events that change nothing are in the table alone. */
+static bool add_branch(strut_branch_picture *p, const strut_follow_branch *b, size_t look) {
+  bool fine = true;
+  strut_branch_line(p, look);
+  for (size_t k = 0; k < b->count && fine; k++) {
     const strut_follow_point *point = &b->points[k];
-    line->data[k][0] = point->value;
-    line->data[k][1] = point_height(b, point);
-    line->stable[k] = point->stable;
-    if (!point_is_marked(point)) continue;
-    p->marks[p->mark_count++] = (strut_branch_mark){
-        .data = {point->value, point_height(b, point)}, .kind = point->kind, .node = point->node};
+    strut_branch_point(p, point->value, b->travels ? point->velocity : point->amplitude,
+                       point->stable);
+    if (is_special(point->kind) || (point->detail && point->changes))
+      fine = strut_branch_mark(p, point->kind, strut_follow_kind_word(point->kind), point->node);
   }
-  return true;
+  return fine;
 }
 
 strut_status strut_follow_figure(const strut_plot *plot, const strut_follow_result *r,
                                  strut_error *error) {
-  strut_arena arena = {0};
-  strut_key_item keys[STRUT_BRANCH_KEYS];
-  bool travels = r->count && r->branches[0].branch.travels;
   size_t points = 0;
   for (size_t i = 0; i < r->count; i++) points += r->branches[i].branch.count;
-  strut_branch_picture p = {
-      .title = r->title,
-      .x = {.name = r->name, .unit = r->unit},
-      .y = {.name = travels ? "velocity" : "amplitude", .unit = travels ? "m/s" : "m"},
-      .lines = strut_arena_allocate(&arena, r->count + 1, sizeof *p.lines),
-      .marks = strut_arena_allocate(&arena, points + 1, sizeof *p.marks),
-      .keys = keys,
-      .key_count = STRUT_BRANCH_KEYS};
-  strut_branch_keys(keys);
-  bool fine = p.lines && p.marks;
-  for (size_t i = 0; i < r->count && fine; i++)
-    fine = add_branch(&p, &r->branches[i].branch, &arena);
-  strut_status status =
-      fine ? strut_branch_draw(plot, &p, error) : strut_no_memory(error, "while drawing");
-  strut_arena_free(&arena);
-  return status;
+  strut_branch_picture p = {.title = r->title,
+                            .along = strut_axis_of(r->name, r->unit),
+                            .upwards = height_axis(r->count && r->branches[0].branch.travels)};
+  bool fine = strut_branch_begin(&p, r->count, points);
+  add_keys(&p);
+  for (size_t i = 0; i < r->count && fine; i++) fine = add_branch(&p, &r->branches[i].branch, i);
+  return strut_branch_draw(plot, &p, fine, error);
 }
 
-/* The branches of a study in one figure: a colour for each point of the axes. */
+/* ---- the branches of a study: a colour for each point of the axes ---- */
 
-/* Points of the axes that the key explains, at most. */
-enum { MOST_KEYS = 12, LABEL = 120 };
+enum { LABEL = 120 };
 
-/* The table, and the columns of it that are drawn. */
+/* Columns of the table that are drawn. */
+enum { BRANCH, VELOCITY, AMPLITUDE, STABLE, POINT, NODE, CHANGES, VALUE, DRAWN };
+
 typedef struct source {
   const strut_table *table;
   size_t axes;
-  const strut_table_column *branch, *value, *velocity, *amplitude, *stable, *point, *node, *changes;
+  const strut_table_column *column[DRAWN];
 } source;
 
 static const strut_table_column *find_column(const strut_table *table, const char *name) {
@@ -256,25 +171,6 @@ static bool same_axes(const source *s, size_t a, size_t b) {
   return same;
 }
 
-/* Of structures that travel the velocity, else the amplitude. */
-static double row_height(const source *s, size_t row) {
-  double amplitude = number_of(s->amplitude, row);
-  return isfinite(amplitude) ? amplitude : number_of(s->velocity, row);
-}
-
-static strut_follow_kind row_kind(const source *s, size_t row) {
-  for (int k = 0; k < STRUT_FOLLOW_KINDS; k++)
-    if (strcmp(strut_follow_kind_word((strut_follow_kind)k), text_of(s->point, row)) == 0)
-      return (strut_follow_kind)k;
-  return STRUT_FOLLOW_REGULAR;
-}
-
-static bool row_is_marked(const source *s, size_t row) {
-  strut_follow_kind kind = row_kind(s, row);
-  return (kind >= STRUT_FOLLOW_FOLD && kind <= STRUT_FOLLOW_TORUS) ||
-         strcmp(text_of(s->changes, row), "yes") == 0;
-}
-
 /* "friction 0.2, start I" */
 static const char *row_label(const source *s, size_t row, strut_arena *arena) {
   char text[LABEL] = "";
@@ -291,67 +187,56 @@ static const char *row_label(const source *s, size_t row, strut_arena *arena) {
   return strut_arena_format(arena, "%s", text);
 }
 
+/* Appends the point of a row, and a mark where it is special. */
+static bool add_row(const source *s, strut_branch_picture *p, size_t row) {
+  double amplitude = number_of(s->column[AMPLITUDE], row); /* of structures that do not travel */
+  const char *word = text_of(s->column[POINT], row);
+  strut_follow_kind kind = STRUT_FOLLOW_REGULAR;
+  for (int k = 0; k < STRUT_FOLLOW_KINDS; k++)
+    if (strcmp(strut_follow_kind_word((strut_follow_kind)k), word) == 0)
+      kind = (strut_follow_kind)k;
+  strut_branch_point(p, number_of(s->column[VALUE], row),
+                     isfinite(amplitude) ? amplitude : number_of(s->column[VELOCITY], row),
+                     strcmp(text_of(s->column[STABLE], row), "yes") == 0);
+  if (!is_special(kind) && strcmp(text_of(s->column[CHANGES], row), "yes") != 0) return true;
+  return strut_branch_mark(p, kind, strut_follow_kind_word(kind), text_of(s->column[NODE], row));
+}
+
 /* Lines, marks and keys of all rows. False: no memory. */
-static bool gather(const source *s, strut_branch_picture *p, strut_key_item *keys,
-                   strut_arena *arena) {
+static bool gather(const source *s, strut_branch_picture *p) {
   size_t rows = s->table->row_count, look = 0;
-  double(*data)[2] = strut_arena_allocate(arena, rows + 1, sizeof *data);
-  bool *stable = strut_arena_allocate(arena, rows + 1, sizeof *stable);
-  p->lines = strut_arena_allocate(arena, rows + 1, sizeof *p->lines);
-  p->marks = strut_arena_allocate(arena, rows + 1, sizeof *p->marks);
-  if (!data || !stable || !p->lines || !p->marks) return false;
-  for (size_t i = 0; i < rows; i++) {
+  bool fine = strut_branch_begin(p, rows, rows);
+  const strut_table_column *branch = s->column[BRANCH];
+  for (size_t i = 0; i < rows && fine; i++) {
     bool other = i == 0 || !same_axes(s, i - 1, i);
     if (other && i > 0) look++;
-    if (other && s->axes && look < MOST_KEYS) {
-      const strut_pen pen = {.colour = strut_palette_thing(look), .width = 1.4};
-      const char *label = row_label(s, i, arena);
-      if (!label) return false;
-      keys[p->key_count++] = (strut_key_item){.sign = STRUT_KEY_LINE, .pen = pen, .text = label};
+    if (other && s->axes && look < STRUT_BRANCH_LINES) {
+      const char *label = row_label(s, i, &p->arena);
+      p->keys[p->key_count++] = strut_branch_key(strut_palette_thing(look), false, label);
+      fine = label != NULL;
     }
-    if (other || number_of(s->branch, i) != number_of(s->branch, i - 1))
-      p->lines[p->line_count++] =
-          (strut_branch_line){.look = look, .data = data + i, .stable = stable + i};
-    p->lines[p->line_count - 1].count++;
-    data[i][0] = number_of(s->value, i);
-    data[i][1] = row_height(s, i);
-    stable[i] = strcmp(text_of(s->stable, i), "yes") == 0;
-    if (row_is_marked(s, i))
-      p->marks[p->mark_count++] = (strut_branch_mark){
-          .data = {data[i][0], data[i][1]}, .kind = row_kind(s, i), .node = text_of(s->node, i)};
+    if (other || number_of(branch, i) != number_of(branch, i - 1)) strut_branch_line(p, look);
+    fine = fine && add_row(s, p, i);
   }
-  return true;
+  return fine;
 }
 
 strut_status strut_follow_points_figure(const strut_plot *plot, const strut_sweep_plan *plan,
                                         const strut_table *table, strut_error *error) {
+  static const char *const names[DRAWN] = {"branch", "velocity", "amplitude",        "stable",
+                                           "point",  "node",     "changes_stability"};
   const strut_study_follow *f = plan->study->follow;
-  strut_key_item keys[MOST_KEYS + STRUT_BRANCH_KEYS];
-  strut_arena arena = {0};
-  source s = {.table = table,
-              .axes = plan->axis_columns,
-              .branch = find_column(table, "branch"),
-              .value = find_column(table, f->over),
-              .velocity = find_column(table, "velocity"),
-              .amplitude = find_column(table, "amplitude"),
-              .stable = find_column(table, "stable"),
-              .point = find_column(table, "point"),
-              .node = find_column(table, "node"),
-              .changes = find_column(table, "changes_stability")};
-  if (!s.branch || !s.value || !s.velocity || !s.amplitude || !s.stable || !s.point || !s.node ||
-      !s.changes)
-    return strut_fail(error, STRUT_FILE_TROUBLE, "branches.csv lacks a column");
-  bool travels = !table->row_count || !isfinite(number_of(s.amplitude, 0));
+  source s = {.table = table, .axes = plan->axis_columns};
+  for (int i = 0; i < DRAWN; i++)
+    if (!(s.column[i] = find_column(table, i == VALUE ? f->over : names[i])))
+      return strut_fail(error, STRUT_FILE_TROUBLE, "branches.csv lacks a column");
   strut_branch_picture p = {
       .title = plan->study->name,
-      .x = {.name = f->over, .unit = f->unit},
-      .y = {.name = travels ? "velocity" : "amplitude", .unit = travels ? "m/s" : "m"},
-      .keys = keys};
-  bool fine = gather(&s, &p, keys, &arena);
-  strut_branch_keys(keys + p.key_count);
-  p.key_count += STRUT_BRANCH_KEYS;
-  strut_status status =
-      fine ? strut_branch_draw(plot, &p, error) : strut_no_memory(error, "while drawing");
-  strut_arena_free(&arena);
-  return status;
+      .along = strut_axis_of(f->over, f->unit),
+      .upwards = height_axis(!table->row_count || !isfinite(number_of(s.column[AMPLITUDE], 0)))};
+  strut_c_locale locale = strut_c_locale_enter();
+  bool fine = gather(&s, &p);
+  strut_c_locale_leave(locale);
+  add_keys(&p);
+  return strut_branch_draw(plot, &p, fine, error);
 }

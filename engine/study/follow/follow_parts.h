@@ -5,8 +5,7 @@
 
 #include "engine/base/flag.h"
 #include "engine/output/buffer.h"
-#include "engine/output/draw/chart.h"
-#include "engine/output/draw/legend.h"
+#include "engine/output/draw/figure.h"
 #include "engine/output/json_value.h"
 #include "engine/output/record_files.h"
 #include "engine/run/follow/follow.h"
@@ -31,37 +30,33 @@ bool strut_follow_axis_cell(const strut_slot_column *column, strut_study_value v
 
 /* Lines over a parameter whose unstable stretches are dashed, with marked points: see follow_figure.c. */
 
-typedef struct strut_branch_line {
-  size_t count, look; /* look: number of its colour */
-  double (*data)[2];  /* (count) */
-  bool *stable;       /* (count) */
-} strut_branch_line;
+enum { STRUT_BRANCH_LINES = 12, STRUT_BRANCH_KEYS = STRUT_BRANCH_LINES + 6 };
 
-typedef struct strut_branch_mark {
-  double data[2];
-  strut_follow_kind kind;
-  const char *node; /* or NULL */
-  const char *text; /* in place of the kind's word; or NULL */
-} strut_branch_mark;
-
-/** Texts and arrays belong to whoever made them. */
+/** A picture that is filled line by line, point by point. Zero-initialise. */
 typedef struct strut_branch_picture {
-  const char *title; /* unless the plot has one */
-  strut_axis x, y;   /* without ranges */
-  size_t line_count, mark_count, key_count;
-  strut_branch_line *lines;
-  strut_branch_mark *marks;
-  const strut_key_item *keys; /* (key_count) below the axes */
+  const char *title;
+  strut_axis along, upwards;
+  size_t line_count, count, mark_count, key_count;
+  strut_series *lines;
+  strut_pen *pens; /* (line_count) */
+  double *x, *y;   /* (count) of all lines */
+  bool *unstable;  /* (count) */
+  strut_mark *marks;
+  strut_key_item keys[STRUT_BRANCH_KEYS];
+  strut_arena arena;
 } strut_branch_picture;
 
-enum { STRUT_BRANCH_KEYS = 6 };
-/** What a figure of branches explains: dashes, and the colours of marks. */
-void strut_branch_keys(strut_key_item keys[STRUT_BRANCH_KEYS]);
-/** The colour of the marks of a kind. */
-strut_colour strut_branch_colour(strut_follow_kind kind);
-
+/** Makes room for as many lines and points. False: out of memory. */
+bool strut_branch_begin(strut_branch_picture *picture, size_t lines, size_t points);
+void strut_branch_line(strut_branch_picture *picture, size_t look);
+void strut_branch_point(strut_branch_picture *picture, double x, double y, bool stable);
+/** Marks the point added last, with a word and the node that it is about. False: out of memory. */
+bool strut_branch_mark(strut_branch_picture *picture, strut_follow_kind kind, const char *word,
+                       const char *node);
+strut_key_item strut_branch_key(strut_colour colour, bool unstable, const char *text);
+/** Draws it unless memory was out (`fine`), and frees what it holds. */
 strut_status strut_branch_draw(const strut_plot *plot, const strut_branch_picture *picture,
-                               strut_error *error);
+                               bool fine, strut_error *error);
 
 /* A study that follows motions: all branches over a parameter at every point of its axes.
  *

@@ -6,8 +6,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
-#include "engine/output/figures/table_figure.h"
-#include "engine/output/figures/table_parts.h"
+#include "engine/output/figures/table_choice.h"
 #include "engine/study/compare/compare.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/sweep/grid.h"
@@ -141,37 +140,34 @@ static strut_axis_choice axis_of(const char *label, const double limits[2]) {
   return (strut_axis_choice){label, limits[0] < limits[1], limits[0], limits[1]};
 }
 
+static strut_plot plot_of(const strut_study_figure *f, const char *path) {
+  return (strut_plot){.path = path,
+                      .title = f->title,
+                      .x = axis_of(f->x_label, f->x_limits),
+                      .y = axis_of(f->y_label, f->y_limits)};
+}
+
 static strut_status draw_table(const strut_study_figure *f, const char *path,
                                const strut_table *table, strut_error *error) {
-  strut_table_choice choice = {.difference = column_of(table, f->difference)};
-  choice.only = column_of_match(table, f->only, &choice.only_value);
-  if (f->kind == STRUT_FIGURE_MAP) {
-    const strut_table_map_figure map = {.title = f->title,
-                                        .width = PAGE,
-                                        .x = column_of(table, f->x),
-                                        .y = column_of(table, f->y),
-                                        .value = column_of(table, f->color),
-                                        .x_axis = axis_of(f->x_label, f->x_limits),
-                                        .y_axis = axis_of(f->y_label, f->y_limits),
-                                        .colours = (strut_colours)f->colours,
-                                        .panels = column_of(table, f->panels),
-                                        .doubt = column_of(table, "flips"),
-                                        .choice = choice};
-    return strut_table_map(path, &map, table, error);
+  const strut_plot plot = plot_of(f, path);
+  strut_table_figure figure = STRUT_TABLE_FIGURE;
+  bool map = f->kind == STRUT_FIGURE_MAP;
+  figure.kind = map ? STRUT_TABLE_MAP : STRUT_TABLE_CURVES;
+  figure.x = column_of(table, f->x);
+  figure.y[0] = column_of(table, f->y);
+  figure.panels = column_of(table, f->panels);
+  figure.choice.difference = column_of(table, f->difference);
+  figure.choice.only = column_of_match(table, f->only, &figure.choice.only_value);
+  if (map) {
+    figure.value = column_of(table, f->color);
+    figure.colours = (strut_colours)f->colours;
+    figure.doubt = column_of(table, "flips");
+  } else {
+    figure.by = column_of(table, f->series);
+    figure.between = f->kind == STRUT_FIGURE_MOTION;
+    figure.band = column_of_match(table, f->band, &figure.band_value);
   }
-  strut_table_figure lines = {.title = f->title,
-                              .width = PAGE,
-                              .x = column_of(table, f->x),
-                              .y = {column_of(table, f->y)},
-                              .y_count = 1,
-                              .x_axis = axis_of(f->x_label, f->x_limits),
-                              .y_axis = axis_of(f->y_label, f->y_limits),
-                              .by = column_of(table, f->series),
-                              .panels = column_of(table, f->panels),
-                              .choice = choice,
-                              .between = f->kind == STRUT_FIGURE_MOTION};
-  lines.band = column_of_match(table, f->band, &lines.band_value);
-  return strut_table_curves(path, &lines, table, error);
+  return strut_table_draw(&plot, &figure, table, error);
 }
 
 static strut_status draw_motion(const strut_sweep_plan *plan, const char *directory,
@@ -205,7 +201,7 @@ strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *direct
   else if (f->kind == STRUT_FIGURE_MOTION)
     status = draw_motion(plan, directory, f, file, error);
   else if (of_search(f))
-    status = strut_search_figure(plan, f, file, table, PAGE, error);
+    status = strut_search_figure(plan, f, file, table, error);
   else if (of_runs(f))
     status = strut_study_pictures(plan, directory, f, PAGE, error);
   else if (refinement && f->kind == STRUT_FIGURE_MAP && shows_refined_axes(plan, f))
@@ -347,58 +343,54 @@ static int choose(const strut_table *table, const char *only, const char **text,
   return column;
 }
 
+/* The best objective over the evaluations of each search. */
+static strut_status draw_best(const tracker *t, const strut_study_figure *f, strut_plot *plot,
+                              const strut_table *table, strut_table_figure *figure,
+                              strut_error *error) {
+  const char *series = f->series ? f->series : t->search->starts > 1 ? "search" : NULL;
+  figure->x = t->evaluation;
+  figure->y[0] = (int)t->table->column_count;
+  figure->by = column_of(t->table, series);
+  figure->panels = column_of(t->table, f->panels);
+  if (!plot->y.label) plot->y.label = t->search->goal.text;
+  return strut_table_draw(plot, figure, table, error);
+}
+
+/* Its points over two variables, the best ringed. */
+static strut_status draw_points(const strut_study_figure *f, const strut_plot *plot,
+                                const strut_table *table, strut_table_figure *figure,
+                                strut_error *error) {
+  figure->kind = STRUT_TABLE_POINTS;
+  figure->x = column_of(table, f->x);
+  figure->y[0] = column_of(table, f->y);
+  figure->value = column_of(table, f->color ? f->color : "objective");
+  figure->colours = (strut_colours)f->colours;
+  figure->choice.only = STRUT_NO_COLUMN; /* `shown` has chosen */
+  return strut_table_draw(plot, figure, table, error);
+}
+
 strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study_figure *f,
-                                 const char *path, const strut_table *table, double width,
-                                 strut_error *error) {
+                                 const char *path, const strut_table *table, strut_error *error) {
   const tracker t = track(plan, table);
   strut_table own = {0};
+  strut_plot plot = plot_of(f, path);
+  strut_table_figure figure = STRUT_TABLE_FIGURE;
   size_t rows = table->row_count;
   double *best = strut_arena_allocate(&own.arena, rows, sizeof *best);
   bool *shown = strut_arena_allocate(&own.arena, rows, sizeof *shown);
   bool *marked = strut_arena_allocate(&own.arena, rows, sizeof *marked);
   const char *unit = t.search->goal.program.unit;
-  strut_status status = STRUT_OK;
-  if (!best || !shown || !marked) {
-    strut_arena_free(&own.arena);
-    return strut_no_memory(error, "while drawing");
-  }
-  follow(&t, best, shown, marked);
-  if (t.second >= 0 && !mark_front(&t, shown, marked, &own.arena)) {
-    strut_arena_free(&own.arena);
-    return strut_no_memory(error, "while drawing");
-  }
-  strut_table_choice choice = STRUT_TABLE_ALL;
-  choice.only = choose(table, f->only, &choice.only_value, shown);
-  if (f->kind == STRUT_FIGURE_BEST) {
+  bool fine = best && shown && marked;
+  if (fine) follow(&t, best, shown, marked);
+  if (fine && t.second >= 0) fine = mark_front(&t, shown, marked, &own.arena);
+  strut_status status = fine ? STRUT_OK : strut_no_memory(error, "while drawing");
+  if (fine) figure.choice.only = choose(table, f->only, &figure.choice.only_value, shown);
+  figure.shown = shown, figure.marked = marked;
+  if (!status && f->kind == STRUT_FIGURE_BEST)
     status = extend(table, best, shown, strcmp(unit, "1") == 0 ? "" : unit, &own, error);
-    const char *series = f->series ? f->series : t.search->starts > 1 ? "search" : NULL;
-    const strut_table_figure lines = {
-        .title = f->title,
-        .width = width,
-        .x = t.evaluation,
-        .y = {(int)table->column_count},
-        .y_count = 1,
-        .x_axis = axis_of(f->x_label, f->x_limits),
-        .y_axis = axis_of(f->y_label ? f->y_label : t.search->goal.text, f->y_limits),
-        .by = column_of(table, series),
-        .panels = column_of(table, f->panels),
-        .band = STRUT_NO_COLUMN,
-        .choice = choice};
-    if (!status) status = strut_table_curves(path, &lines, &own, error);
-  } else {
-    const strut_scatter_figure points = {
-        .title = f->title,
-        .width = width,
-        .x = column_of(table, f->x),
-        .y = column_of(table, f->y),
-        .value = column_of(table, f->color ? f->color : "objective"),
-        .x_axis = axis_of(f->x_label, f->x_limits),
-        .y_axis = axis_of(f->y_label, f->y_limits),
-        .colours = (strut_colours)f->colours,
-        .shown = shown,
-        .marked = marked};
-    status = strut_table_scatter(path, &points, table, error);
-  }
+  if (!status)
+    status = f->kind == STRUT_FIGURE_BEST ? draw_best(&t, f, &plot, &own, &figure, error)
+                                          : draw_points(f, &plot, table, &figure, error);
   strut_arena_free(&own.arena);
   return status;
 }

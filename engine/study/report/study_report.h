@@ -77,8 +77,7 @@ strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *direct
                                 const strut_refinement *refinement, strut_error *error);
 /** Draws a figure of a search, of its table, into the file `path`. */
 strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study_figure *figure,
-                                 const char *path, const strut_table *table, double width,
-                                 strut_error *error);
+                                 const char *path, const strut_table *table, strut_error *error);
 /** Draws `best` beside the start of its search into the file `path`. */
 strut_status strut_search_winner_figure(const strut_sweep_plan *plan,
                                         const strut_study_figure *figure, const char *path,

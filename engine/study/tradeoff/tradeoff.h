@@ -20,6 +20,7 @@
 
 #include "engine/base/flag.h"
 #include "engine/integrate/integrator.h"
+#include "engine/output/draw/chart.h"
 #include "engine/scene/experiment.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/value_rows.h"
@@ -175,11 +176,8 @@ STRUT_API extern const strut_value_rows strut_tradeoff_values;
 /** One row per setting, the spreads over the operating points; diverged: "inf". */
 STRUT_API char *strut_tradeoff_csv(const strut_tradeoff *result);
 
-/**
- * Draws it into the file `path`, `width` [pt] wide. Over several operating points a marker is the
- * median and a bar leads to the worst. As strut_canvas_open and strut_canvas_commit.
- */
-STRUT_API strut_status strut_tradeoff_figure(const char *path, double width,
-                                             const strut_tradeoff *result, strut_error *error);
+/** Draws it. Over several operating points a marker is the median and a bar leads to the worst. */
+STRUT_API strut_status strut_tradeoff_figure(const strut_plot *plot, const strut_tradeoff *result,
+                                             strut_error *error);
 
 #endif

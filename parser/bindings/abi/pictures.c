@@ -3,7 +3,7 @@
 #include "parser/bindings/abi/handles.h"
 
 #include "engine/model/state.h"
-#include "engine/output/draw/structure.h"
+#include "engine/output/draw/figure.h"
 #include "engine/output/page/page.h"
 #include "parser/command/plot_options.h"
 #include "parser/write/write_scene.h"
@@ -84,21 +84,15 @@ enum { WIDTH = 510, MARGIN = 24 }; /* [pt] of a drawing */
 
 static strut_status draw_structure(const strut_model *model, const double *q, const char *path,
                                    strut_error *what) {
-  strut_bounds bounds = strut_bounds_none();
-  strut_bounds_add(&bounds, model, q);
-  double wide = bounds.high[0] - bounds.low[0], high = bounds.high[1] - bounds.low[1];
-  double inner = WIDTH - 2 * MARGIN, tall = wide > 0 ? inner * high / wide : inner;
-  double height = 2 * MARGIN + (tall > 1.2 * inner ? 1.2 * inner : tall < 40 ? 40 : tall);
-  strut_canvas *canvas;
-  strut_status status = strut_canvas_open(path, WIDTH, height, model->scene->name, &canvas, what);
-  if (status != STRUT_OK) return status;
-  strut_window window = strut_window_fit((strut_box){0, 0, WIDTH, height}, bounds, MARGIN);
-  strut_structure_style style = {.node_names = true, .member_names = true};
-  strut_draw_ground(canvas, &window, model);
-  strut_draw_structure(canvas, &window, model, q, &style);
-  status = strut_canvas_commit(canvas, what);
-  strut_canvas_free(canvas);
-  return status;
+  const strut_shape shape = {
+      .model = model, .q = q, .style.member_names = true, .ground = true, .names = true};
+  strut_view view = {
+      .shape_count = 1, .shapes = &shape, .bounds = strut_bounds_none(), .margin = MARGIN};
+  strut_bounds_add(&view.bounds, model, q);
+  const strut_panel panel = {.view = &view};
+  return strut_figure_draw(&(strut_plot){.path = path, .width = WIDTH},
+                           &(strut_figure){.panel_count = 1, .panels = &panel, .aspect = 1.2},
+                           what);
 }
 
 /* The positions at the start, of all coordinates of the model. */

@@ -2,7 +2,7 @@
 /* What strut does not have in a browser, refused by name: it stands for the files that use these libraries. */
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 
-#include "engine/output/draw/structure.h"
+#include "engine/output/draw/figure.h"
 #include "engine/output/figures/run_figure.h"
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/page/page.h"
@@ -47,26 +47,12 @@ strut_status strut_run_figure_draw(const char *path, const strut_run_figure *fig
   return no_figures(error);
 }
 
-/* Of a scene's picture the first call fails, so that there is no canvas for the others. */
-strut_status strut_canvas_open(const char *path, double width, double height, const char *title,
-                               strut_canvas **canvas, strut_error *error) {
-  *canvas = NULL;
+strut_status strut_figure_draw(const strut_plot *plot, const strut_figure *figure,
+                               strut_error *error) {
   return no_figures(error);
 }
-strut_status strut_canvas_commit(strut_canvas *canvas, strut_error *error) {
-  return no_figures(error);
-}
-void strut_canvas_free(strut_canvas *canvas) {}
 strut_bounds strut_bounds_none(void) { return (strut_bounds){{0.0}, {0.0}}; }
 void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const double *q) {}
-strut_window strut_window_fit(strut_box box, strut_bounds bounds, double margin) {
-  return (strut_window){0};
-}
-void strut_draw_ground(strut_canvas *canvas, const strut_window *window, const strut_model *model) {
-}
-void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
-                          const strut_model *model, const double *q,
-                          const strut_structure_style *style) {}
 
 /* ---- pages, sparse algebra, optimisers ---- */
 

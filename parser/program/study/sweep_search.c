@@ -356,7 +356,8 @@ strut_status strut_sweep_sensitivity_complete(const strut_arguments *arguments,
   if (!status) status = strut_sensitivity_find(plan->study, slots, &result, &error);
   if (!status) status = strut_sensitivity_write(&result, directory, &error);
   if (!status)
-    status = strut_sensitivity_figure(plan->study, slots, &result, path, PAGE, &drawn, &error);
+    status = strut_sensitivity_figure(&(strut_plot){.path = path}, plan->study, slots, &result,
+                                      &drawn, &error);
   if (status) strut_print_failure(status, &error);
   if (!status && !arguments->json)
     status = strut_print_values(arguments, &strut_sensitivity_values, &result, NULL);

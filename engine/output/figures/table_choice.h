@@ -1,29 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Points of a table over two of its columns, coloured by a third, some of them marked.
- */
-#ifndef STRUT_ENGINE_OUTPUT_FIGURES_TABLE_PARTS_H
-#define STRUT_ENGINE_OUTPUT_FIGURES_TABLE_PARTS_H
+/** Tables made of tables: groups of rows, some rows, the difference of two sides. */
+#ifndef STRUT_ENGINE_OUTPUT_FIGURES_TABLE_CHOICE_H
+#define STRUT_ENGINE_OUTPUT_FIGURES_TABLE_CHOICE_H
 
-#include "engine/output/draw/canvas.h"
 #include "engine/output/figures/table_figure.h"
 
-typedef struct strut_scatter_figure {
-  const char *title; /* may be NULL */
-  double width;      /* [pt] */
-  int x, y, value;   /* columns of numbers; value: STRUT_NO_COLUMN for one colour */
-  strut_axis_choice x_axis, y_axis;
-  strut_colours colours;      /* AUTO: sequential */
-  const bool *shown, *marked; /* (rows) marked ones lie on top, in a ring */
-} strut_scatter_figure;
-
-/** As strut_table_curves. */
-STRUT_API strut_status strut_table_scatter(const char *path, const strut_scatter_figure *figure,
-                                           const strut_table *table, strut_error *error);
-
-/* Shared by figures of tables: groups of rows, a page of panels, and tables derived from tables. */
-
-enum { STRUT_MOST_TABLE_GROUPS = 40 };
+enum { STRUT_MOST_TABLE_GROUPS = 40, STRUT_MOST_KEYS_OF_ROWS = 4 };
 
 /** The different texts of a column, in their order; of no column, one group without a name. */
 typedef struct strut_table_groups {
@@ -37,33 +19,6 @@ strut_status strut_table_groups_find(const strut_table *table, int column, size_
                                      strut_error *error);
 /** True if a row belongs to a group of that column. */
 bool strut_table_belongs(const strut_table *table, int column, const char *name, size_t row);
-/** STRUT_USAGE where the column does not hold numbers. */
-strut_status strut_table_numbers(const strut_table *table, int column, strut_error *error);
-/** "a) friction = 0.1", or "" where there are no panels. */
-void strut_table_panel_title(const strut_table *table, int column, const char *name, size_t panel,
-                             char title[300]);
-
-/** The axis for a column named `name` with that unit; its range is NAN where it is not limited. */
-strut_axis strut_table_axis_of(const strut_axis_choice *wanted, const char *name, const char *unit,
-                               bool logarithmic);
-
-/** A page of panels of one size, below a title and `head` [pt] for a legend. */
-typedef struct strut_panel_page {
-  double width, head;         /* [pt] */
-  double least_width, aspect; /* of a panel: least width [pt], height over width */
-  size_t panels;
-} strut_panel_page;
-
-/** Draws the panel-th panel into its box. */
-typedef strut_status (*strut_panel_draw)(void *context, strut_canvas *canvas, strut_box box,
-                                         size_t panel);
-/** Opens the page, draws title, head (may be NULL) and panels, and completes the file. */
-strut_status strut_panel_page_draw(const char *path, const char *title,
-                                   const strut_panel_page *page,
-                                   void (*head)(void *context, strut_canvas *canvas, strut_box box),
-                                   strut_panel_draw panel, void *context, strut_error *error);
-
-enum { STRUT_MOST_KEYS_OF_ROWS = 4 };
 
 /** The rows and columns under comparison. Columns by number. */
 typedef struct strut_table_pairing {

@@ -2,10 +2,11 @@
 /**
  * Work-precision diagrams: error over cost, both logarithmic, with the Pareto front.
  */
-#ifndef STRUT_ENGINE_OUTPUT_DRAW_WORK_PRECISION_H
-#define STRUT_ENGINE_OUTPUT_DRAW_WORK_PRECISION_H
+#ifndef STRUT_ENGINE_OUTPUT_FIGURES_WORK_PRECISION_H
+#define STRUT_ENGINE_OUTPUT_FIGURES_WORK_PRECISION_H
 
-#include "engine/output/draw/chart.h"
+#include "engine/base/memory.h"
+#include "engine/output/draw/figure.h"
 
 typedef struct strut_saving {
   int group;         /* index into groups: one method, joined by a line in the order given */
@@ -17,7 +18,7 @@ typedef struct strut_saving {
 
 typedef struct strut_work_precision {
   const char *title;
-  strut_axis cost, error; /* made logarithmic; an empty range: from the data */
+  strut_axis cost, error; /* made logarithmic */
   size_t group_count, count;
   const char *const *groups;    /* (group_count) */
   const strut_saving *bargains; /* (count) */
@@ -25,8 +26,8 @@ typedef struct strut_work_precision {
 
 /** Flags (count) the Pareto-optimal points: no other is better in both. Diverged ones never are. */
 STRUT_API void strut_pareto_front(const strut_saving *bargains, size_t count, bool *front);
-/** Draws the diagram in a box. STRUT_NO_MEMORY. */
-STRUT_API strut_status strut_draw_work_precision(strut_canvas *canvas, strut_box box,
-                                                 const strut_work_precision *diagram);
+/** Fills a panel, whose data are in the arena. False: out of memory. */
+STRUT_API bool strut_work_precision_fill(const strut_work_precision *diagram, strut_arena *arena,
+                                         strut_panel *panel);
 
 #endif

@@ -1,208 +1,33 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include <assert.h>
-#include <gsl/gsl_sort_double.h>
+/* Tables made of tables: some rows, or the difference of two sides. */
+#include "engine/output/figures/table_choice.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/output/draw/chart.h"
-#include "engine/output/figures/table_figure.h"
-#include "engine/output/figures/table_parts.h"
-
-static const double PANEL_WIDTH = 200, ASPECT = 0.8;
-enum { MOST_CELLS = 4000000 };
-
-typedef struct mapper {
-  const strut_table_map_figure *figure;
-  const strut_table *table;
-  strut_table_groups panels, names;
-  double *xs, *ys;
-  size_t columns, rows;
-  double low, high;    /* of the values; equal if there is no or one value */
-  strut_beyond beyond; /* this range */
-  strut_arena arena;
-} mapper;
-
-/* The different finite values of a column, ascending; NULL: no memory. */
-static double *distinct_values(mapper *m, int column, size_t *count) {
-  const double *value = m->table->columns[column].value;
-  double *all = strut_arena_allocate(&m->arena, m->table->row_count, sizeof *all);
-  size_t used = 0, kept = 0;
-  for (size_t i = 0; all && i < m->table->row_count; i++)
-    if (isfinite(value[i])) all[used++] = value[i];
-  if (all && used) gsl_sort(all, 1, used);
-  double grain = used ? 1e-9 * (all[used - 1] - all[0]) : 0; /* 0.1 + 0.2 equals 0.3 */
-  for (size_t i = 0; i < used; i++)
-    if (!kept || all[i] - all[kept - 1] > grain) all[kept++] = all[i];
-  *count = kept;
-  return all;
-}
-
-/* Index of the nearest of (count) ascending positions. */
-static size_t nearest_index(const double *at, size_t count, double value) {
-  assert(count > 0);
-  size_t low = 0, high = count - 1;
-  while (low < high) {
-    size_t middle = (low + high) / 2;
-    if (0.5 * (at[middle] + at[middle + 1]) < value) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
+strut_status strut_table_groups_find(const strut_table *table, int column, size_t most,
+                                     const char *what, strut_table_groups *g, strut_error *error) {
+  g->count = 1;
+  g->name[0] = NULL;
+  if (column == STRUT_NO_COLUMN) return STRUT_OK;
+  g->count = 0;
+  for (size_t i = 0; i < table->row_count; i++) {
+    const char *text = table->columns[column].text[i];
+    size_t k = 0;
+    while (k < g->count && strcmp(g->name[k], text) != 0) k++;
+    if (k < g->count) continue;
+    if (g->count == most)
+      return strut_fail(error, STRUT_USAGE, "column '%s' makes more than %zu %s",
+                        table->columns[column].name, most, what);
+    g->name[g->count++] = text;
   }
-  return low;
-}
-
-static bool is_doubtful(const char *text) {
-  static const char *const none[] = {"", "0", "false", "no", "nan", "null"};
-  for (size_t i = 0; i < sizeof none / sizeof *none; i++)
-    if (strcmp(text, none[i]) == 0) return false;
-  return true;
-}
-
-/* Values of the cells; arrays (rows, columns). */
-typedef struct cells {
-  int *category;
-  double *value;
-  bool *doubtful;
-} cells;
-
-static void fill_cells(const mapper *m, size_t panel, cells *c) {
-  const strut_table_map_figure *f = m->figure;
-  const strut_table_column *columns = m->table->columns;
-  for (size_t k = 0; k < m->rows * m->columns; k++) {
-    c->value[k] = (double)NAN;
-    c->category[k] = -1;
-  }
-  for (size_t i = 0; i < m->table->row_count; i++) {
-    double x = columns[f->x].value[i], y = columns[f->y].value[i];
-    if (!isfinite(x) || !isfinite(y)) continue;
-    if (!strut_table_belongs(m->table, f->panels, m->panels.name[panel], i)) continue;
-    size_t k = nearest_index(m->ys, m->rows, y) * m->columns + nearest_index(m->xs, m->columns, x);
-    if (columns[f->value].value) c->value[k] = columns[f->value].value[i];
-    for (size_t g = 0; !columns[f->value].value && g < m->names.count; g++)
-      if (strcmp(m->names.name[g], columns[f->value].text[i]) == 0) c->category[k] = (int)g;
-    if (f->doubt != STRUT_NO_COLUMN) c->doubtful[k] = is_doubtful(columns[f->doubt].text[i]);
-  }
-}
-
-static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box box, size_t panel) {
-  mapper *m = context;
-  const strut_table_map_figure *f = m->figure;
-  const strut_table_column *x = &m->table->columns[f->x], *y = &m->table->columns[f->y];
-  const strut_table_column *value = &m->table->columns[f->value];
-  size_t count = m->rows * m->columns;
-  cells c = {.category = strut_arena_allocate(&m->arena, count, sizeof(int)),
-             .value = strut_arena_allocate(&m->arena, count, sizeof(double)),
-             .doubtful = strut_arena_allocate(&m->arena, count, sizeof(bool))};
-  char title[300];
-  if (!c.category || !c.value || !c.doubtful) return STRUT_NO_MEMORY;
-  fill_cells(m, panel, &c);
-  strut_table_panel_title(m->table, f->panels, m->panels.name[panel], panel, title);
-  const strut_map map = {
-      .title = title[0] ? title : NULL,
-      .x = strut_table_axis_of(&f->x_axis, x->name, x->unit, false),
-      .y = strut_table_axis_of(&f->y_axis, y->name, y->unit, false),
-      .columns = m->columns,
-      .rows = m->rows,
-      .xs = m->xs,
-      .ys = m->ys,
-      .category = value->value ? NULL : c.category,
-      .category_count = value->value ? 0 : m->names.count,
-      .names = m->names.name,
-      .value = value->value ? c.value : NULL,
-      .value_low = m->low,
-      .value_high = m->high,
-      .beyond = m->beyond,
-      .value_name = value->name,
-      .value_unit = value->unit,
-      .colours = f->colours,
-      .doubtful = f->doubt == STRUT_NO_COLUMN ? NULL : c.doubtful,
-      .doubt = f->doubt == STRUT_NO_COLUMN ? NULL : m->table->columns[f->doubt].name};
-  return strut_draw_map(canvas, box, &map);
-}
-
-/* Finds the colour range, which all panels share. False: out of memory. */
-static bool find_range(mapper *m) {
-  const double *value = m->table->columns[m->figure->value].value;
-  size_t count = m->table->row_count, known = 0;
-  double *sorted = value ? strut_arena_copy(&m->arena, value, count, sizeof *value) : NULL;
-  if (value && !sorted) return false;
-  for (size_t i = 0; value && i < count; i++) {
-    if (!isfinite(value[i])) continue;
-    m->low = known ? fmin(m->low, value[i]) : value[i];
-    m->high = known ? fmax(m->high, value[i]) : value[i];
-    known++;
-  }
-  if (known) strut_range_without_outliers(sorted, count, &m->low, &m->high, &m->beyond);
-  return true;
-}
-
-static int by_text(const void *a, const void *b) {
-  return strcmp(*(const char *const *)a, *(const char *const *)b);
-}
-
-/* Finds the grid's positions and the categories. */
-static strut_status prepare_grid(mapper *m, strut_error *error) {
-  const strut_table_map_figure *f = m->figure;
-  strut_status status = strut_table_numbers(m->table, f->x, error);
-  if (status == STRUT_OK) status = strut_table_numbers(m->table, f->y, error);
-  if (status == STRUT_OK)
-    status = strut_table_groups_find(m->table, f->panels, STRUT_MOST_PANELS, "panels", &m->panels,
-                                     error);
-  if (status == STRUT_OK && !m->table->columns[f->value].value)
-    status = strut_table_groups_find(m->table, f->value, STRUT_MOST_TABLE_GROUPS, "categories",
-                                     &m->names, error);
-  if (status != STRUT_OK) return status;
-  qsort(m->names.name, m->names.count, sizeof *m->names.name, by_text);
-  if (m->names.count && !*m->names.name[0]) { /* an empty text is no category */
-    m->names.count--;
-    memmove(m->names.name, m->names.name + 1, m->names.count * sizeof *m->names.name);
-  }
-  if (!find_range(m)) return strut_no_memory(error, "while drawing");
-  m->xs = distinct_values(m, f->x, &m->columns);
-  m->ys = distinct_values(m, f->y, &m->rows);
-  if (!m->xs || !m->ys) return strut_no_memory(error, "while drawing");
-  if (!m->columns || !m->rows || m->rows > MOST_CELLS / m->columns)
-    return strut_fail(error, STRUT_USAGE,
-                      "the map would have %zu by %zu cells: its x and y have to form a grid",
-                      m->columns, m->rows);
   return STRUT_OK;
 }
 
-static strut_status draw_table(const char *path, const strut_table_map_figure *figure,
-                               const strut_table *table, strut_error *error) {
-  mapper m = {.figure = figure, .table = table};
-  strut_status status = prepare_grid(&m, error);
-  const strut_panel_page page = {.width = figure->width,
-                                 .least_width = PANEL_WIDTH,
-                                 .aspect = ASPECT,
-                                 .panels = m.panels.count};
-  if (status == STRUT_OK)
-    status = strut_panel_page_draw(path, figure->title, &page, NULL, draw_panel, &m, error);
-  strut_arena_free(&m.arena);
-  return status;
-}
-
-strut_status strut_table_map(const char *path, const strut_table_map_figure *figure,
-                             const strut_table *table, strut_error *error) {
-  strut_table_chosen chosen = {0};
-  strut_table_map_figure drawn = *figure;
-  const strut_table_pairing pairing = {.keys = {figure->x, figure->y, figure->panels},
-                                       .key_count = 3,
-                                       .values = &figure->value,
-                                       .value_count = 1};
-  strut_status status = strut_table_choose(table, &figure->choice, pairing, &chosen, error);
-  if (status == STRUT_OK && figure->choice.difference != STRUT_NO_COLUMN &&
-      !table->columns[figure->value].value)
-    drawn.doubt = (int)chosen.table->column_count - 1;
-  if (status == STRUT_OK && figure->choice.difference != STRUT_NO_COLUMN &&
-      drawn.colours == STRUT_COLOURS_AUTO)
-    drawn.colours = STRUT_COLOURS_DIVERGING;
-  if (status == STRUT_OK) status = draw_table(path, &drawn, chosen.table, error);
-  strut_table_chosen_free(&chosen);
-  return status;
+bool strut_table_belongs(const strut_table *table, int column, const char *name, size_t row) {
+  return column == STRUT_NO_COLUMN || strcmp(table->columns[column].text[row], name) == 0;
 }
 
 strut_status strut_table_rows(const strut_table *table, const size_t *rows, size_t count,

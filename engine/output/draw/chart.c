@@ -1,0 +1,441 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The chart of a panel: bands, axes, cells, lines, points, marks, and a legend clear of them. */
+#include <assert.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "engine/base/vec.h"
+#include "engine/output/draw/painter.h"
+#include "engine/output/draw/view.h"
+
+static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, CLOUD = 2.6; /* [pt] */
+static const double INSET = 4, PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP = 2.5, GAP = 6,
+                    SCALE = 52;
+enum { FEW_POINTS = 30, MARKERS = 8, MOST_LABELLED = 6 };
+
+static strut_fill band_fill(void) { return (strut_fill){.colour = strut_grey(0.86)}; }
+
+static size_t look_of(const strut_panel *p, size_t i) {
+  return p->series[i].look >= 0 ? (size_t)p->series[i].look : i;
+}
+
+static strut_pen pen_of(const strut_panel *p, size_t i) {
+  return p->series[i].pen ? *p->series[i].pen : strut_series_pen(look_of(p, i));
+}
+
+static bool has_markers(const strut_panel *p, const strut_series *s) {
+  if (s->markers != STRUT_MARKERS_AUTO) return s->markers == STRUT_MARKERS_ALL;
+  return p->series_count > 1 && !s->pen && !s->cloud;
+}
+
+/* ---- the legend ---- */
+
+size_t strut_panel_legend_room(const strut_panel *p) {
+  return p->series_count + p->band_count + (p->map ? p->map->category_count : 0) + 2;
+}
+
+static size_t add_item(strut_key_item *items, size_t count, strut_key_item item) {
+  if (!item.text || !*item.text) return count;
+  for (size_t k = 0; k < count; k++)
+    if (strcmp(items[k].text, item.text) == 0) return count;
+  items[count] = item;
+  return count + 1;
+}
+
+static size_t name_cells(const strut_map *map, strut_key_item *items, size_t count) {
+  const strut_fill hatched = {
+      .colour = strut_grey(1), .hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.05)};
+  const strut_fill blank = {.colour = strut_grey(1)};
+  bool doubt = false, missing = false;
+  for (size_t k = 0; k < map->columns * map->rows; k++) {
+    doubt = doubt || (map->doubtful && map->doubtful[k]);
+    missing = missing || !strut_map_has(map, k);
+  }
+  for (size_t i = 0; map->category && i < map->category_count; i++)
+    count = add_item(
+        items, count,
+        (strut_key_item){
+            .sign = STRUT_KEY_AREA, .fill = strut_category_fill(i), .text = map->names[i]});
+  if (doubt)
+    count = add_item(
+        items, count,
+        (strut_key_item){
+            .sign = STRUT_KEY_AREA, .fill = hatched, .text = map->doubt ? map->doubt : "doubtful"});
+  if (missing)
+    count = add_item(items, count,
+                     (strut_key_item){.sign = STRUT_KEY_AREA, .fill = blank, .text = "no result"});
+  return count;
+}
+
+size_t strut_panel_legend(const strut_panel *p, strut_key_item *items, size_t count) {
+  for (size_t i = 0; i < p->series_count; i++) {
+    strut_pen pen = pen_of(p, i);
+    bool broad = pen.width > 4; /* bars */
+    count = add_item(items, count,
+                     (strut_key_item){.sign = broad ? STRUT_KEY_AREA : STRUT_KEY_LINE,
+                                      .pen = pen,
+                                      .fill = {.colour = pen.colour},
+                                      .marked = has_markers(p, &p->series[i]),
+                                      .look = look_of(p, i),
+                                      .text = p->series[i].label});
+  }
+  for (size_t i = 0; i < p->band_count; i++)
+    count = add_item(
+        items, count,
+        (strut_key_item){.sign = STRUT_KEY_AREA, .fill = band_fill(), .text = p->bands[i].label});
+  return p->map ? name_cells(p->map, items, count) : count;
+}
+
+/* Counts samples of the lines that lie in a box. */
+static size_t covered(const strut_chart *c, strut_box box) {
+  size_t count = 0;
+  for (size_t i = 0; i < c->panel->series_count; i++)
+    for (size_t k = 0; k + 1 < c->counts[i]; k++) {
+      const double *a = c->points[i][k], *b = c->points[i][k + 1];
+      if (isnan(a[0])) continue;
+      int pieces = isnan(b[0]) ? 0 : (int)fmin(fmax(fabs(b[0] - a[0]), fabs(b[1] - a[1])) / 3, 100);
+      for (int m = 0; m <= pieces; m++) {
+        double t = pieces ? (double)m / pieces : 0;
+        double x = t > 0 ? a[0] + t * (b[0] - a[0]) : a[0];
+        double y = t > 0 ? a[1] + t * (b[1] - a[1]) : a[1];
+        count += x > box.x && x < box.x + box.width && y > box.y && y < box.y + box.height;
+      }
+    }
+  return count;
+}
+
+/* Finds a place for a legend of this size that covers no curve; false if every place covers one. */
+static bool find_corner(const strut_chart *c, const double size[2], double corner[2]) {
+  const strut_box *f = &c->axes.frame;
+  if (c->panel->map || size[0] > 0.6 * f->width || size[1] > 0.6 * f->height) return false;
+  for (int k = 0; k < 6; k++) {
+    double across = k < 4 ? (k % 2 ? 0 : 1) : 0.5, down = k < 4 ? k / 2 : k - 4;
+    corner[0] = f->x + INSET + across * (f->width - size[0] - 2 * INSET);
+    corner[1] = f->y + INSET + down * (f->height - size[1] - 2 * INSET);
+    const strut_box around = {corner[0] - 2, corner[1] - 2, size[0] + 4, size[1] + 4};
+    if (!covered(c, around)) return true;
+  }
+  return false;
+}
+
+/* ---- points on the page ---- */
+
+size_t strut_thin(double (*points)[2], size_t count, double grain) {
+  size_t kept = 0;
+  for (size_t i = 1; i < count; i++)
+    if (!(points[i][0] >= points[i - 1][0])) return count;
+  for (size_t first = 0; first < count;) {
+    double cell = floor(points[first][0] / grain);
+    size_t last = first, low = first, high = first;
+    while (last + 1 < count && floor(points[last + 1][0] / grain) == cell) {
+      last++;
+      if (points[last][1] < points[low][1]) low = last;
+      if (points[last][1] > points[high][1]) high = last;
+    }
+    size_t pick[4] = {first, low < high ? low : high, low < high ? high : low, last};
+    for (int k = 0; k < 4; k++) {
+      if (k > 0 && pick[k] == pick[k - 1]) continue;
+      points[kept][0] =
+          points[pick[k]][0]; /* kept <= pick[k]: nothing is overwritten that is read later */
+      points[kept++][1] = points[pick[k]][1];
+    }
+    first = last + 1;
+  }
+  return kept;
+}
+
+/* Where point k of a series is: lost ones in the strip, each series at its own height. */
+static void place(const strut_chart *c, size_t i, size_t k, double at[2]) {
+  const strut_series *s = &c->panel->series[i];
+  const strut_box *frame = &c->axes.frame;
+  bool lost = c->panel->lost && !isfinite(s->y[k]);
+  bool zero = c->axes.y.logarithmic && s->y[k] == 0;
+  at[0] = at[1] = (double)NAN;
+  if (!isfinite(s->x[k]) || (!isfinite(s->y[k]) && !lost)) return;
+  if (c->axes.x.logarithmic && !(s->x[k] > 0)) return;
+  strut_axes_point(&c->axes, s->x[k], lost || zero ? c->axes.y.high : s->y[k], at);
+  if (zero) at[1] = frame->y + frame->height; /* is off a logarithmic scale */
+  double part = ((double)look_of(c->panel, i) + 0.5) / (double)c->panel->series_count;
+  if (lost) at[1] = c->strip.y + c->strip.height * (0.2 + 0.6 * fmin(part, 1));
+}
+
+/* Fills the points of a series' line. Lines that change along them keep all points. */
+static void place_line(strut_chart *c, size_t i) {
+  const strut_series *s = &c->panel->series[i];
+  double(*points)[2] = c->points[i];
+  size_t used = 0, start = 0;
+  assert(!s->count || (s->x && s->y));
+  for (size_t k = 0; k <= s->count; k++) {
+    double at[2] = {(double)NAN, (double)NAN};
+    if (k < s->count && isfinite(s->y[k])) place(c, i, k, at);
+    bool known = isfinite(at[0]) && isfinite(at[1]);
+    if (!known && !s->unstable && used == start) continue;
+    if (!known && !s->unstable) used = start + strut_thin(points + start, used - start, GRAIN);
+    points[used][0] = known ? at[0] : (double)NAN;
+    points[used++][1] = at[1];
+    if (!known) start = used;
+  }
+  c->counts[i] = used;
+}
+
+/* Places frame, strip and lines in a box. */
+static void place_chart(strut_chart *c, strut_box box) {
+  const strut_panel *p = c->panel;
+  bool lost = false;
+  for (size_t i = 0; i < p->series_count && p->lost; i++)
+    for (size_t k = 0; k < p->series[i].count; k++) lost = lost || !isfinite(p->series[i].y[k]);
+  double strip = lost ? STRIP : 0;
+  const strut_box rest = {box.x, box.y + strip, box.width, box.height - strip};
+  c->axes = strut_axes_place(c->canvas, rest, p->x, p->y);
+  c->strip = c->axes.frame;
+  c->strip.height = strip, c->strip.y -= strip;
+  for (size_t i = 0; i < p->series_count; i++) place_line(c, i);
+}
+
+static bool make_room(strut_chart *c) {
+  size_t count = c->panel->series_count;
+  c->points = strut_arena_allocate(c->arena, count + 1, sizeof *c->points);
+  c->counts = strut_arena_allocate(c->arena, count + 1, sizeof *c->counts);
+  for (size_t i = 0; c->points && c->counts && i < count; i++) {
+    c->points[i] =
+        strut_arena_allocate(c->arena, c->panel->series[i].count + 1, sizeof **c->points);
+    if (!c->points[i]) return false;
+  }
+  return c->points && c->counts;
+}
+
+/* ---- drawing ---- */
+
+static void draw_bands(const strut_chart *c) {
+  const strut_fill fill = band_fill();
+  for (size_t i = 0; i < c->panel->band_count; i++) {
+    const strut_band *b = &c->panel->bands[i];
+    const strut_axis *x = &c->axes.x, *y = &c->axes.y, *axis = b->level ? y : x;
+    double from = fmax(b->low, axis->low), to = fmin(b->high, axis->high), low[2], high[2];
+    if (!(to > from)) continue;
+    strut_axes_point(&c->axes, b->level ? x->low : from, b->level ? to : y->high, low);
+    strut_axes_point(&c->axes, b->level ? x->high : to, b->level ? from : y->low, high);
+    strut_draw_box(c->canvas, (strut_box){low[0], low[1], high[0] - low[0], high[1] - low[1]},
+                   &fill, NULL);
+  }
+}
+
+static void draw_strip(const strut_chart *c) {
+  const strut_fill grey = {.colour = strut_grey(0.94)};
+  const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
+  const strut_box *s = &c->strip;
+  strut_draw_box(c->canvas, *s, &grey, &frame);
+  strut_draw_label(c->canvas, &(strut_label){.text = c->panel->lost,
+                                             .font = {.size = 7, .colour = strut_grey(0.35)},
+                                             .at = {s->x + s->width, s->y + 0.5 * STRIP},
+                                             .inside = {s->x + 3, s->y + 5, s->width - 6, 9},
+                                             .loose = true});
+}
+
+static void stroke(const strut_chart *c, size_t i, size_t from, size_t to) {
+  const strut_series *s = &c->panel->series[i];
+  const double(*at)[2] = (const double(*)[2])c->points[i] + from;
+  strut_pen pen = pen_of(c->panel, i);
+  if (s->unstable && s->unstable[from])
+    pen = (strut_pen){.colour = pen.colour,
+                      .width = (s->pen ? 1.0 : 0.65) * pen.width,
+                      .dash = {3, 2},
+                      .butt = s->pen != NULL};
+  if (to > from)
+    strut_draw_line(c->canvas, at, to - from + 1, pen);
+  else if (!s->pen) /* a line of one point would be invisible */
+    strut_draw_marker(c->canvas, look_of(c->panel, i), at[0][0], at[0][1], LONE_MARKER);
+}
+
+/* Stretches without a gap and of one stability, which share their ends. */
+static void draw_line(const strut_chart *c, size_t i) {
+  const double(*at)[2] = (const double(*)[2])c->points[i];
+  const bool *unstable = c->panel->series[i].unstable;
+  for (size_t k = 0, from = 0; k < c->counts[i]; k++) {
+    if (isnan(at[k][0])) {
+      from = k + 1;
+      continue;
+    }
+    bool last = k + 1 == c->counts[i] || isnan(at[k + 1][0]);
+    bool turns = unstable && unstable[k] != unstable[from];
+    if (!last && !turns) continue;
+    stroke(c, i, from, k);
+    from = k;
+  }
+}
+
+/* True on the frame's edge, too, and in the strip above it. */
+static bool is_inside(const strut_chart *c, const double at[2]) {
+  const double hair = 0.01; /* [pt] */
+  const strut_box *f = &c->axes.frame;
+  return at[0] >= f->x - hair && at[0] <= f->x + f->width + hair && at[1] >= c->strip.y - hair &&
+         at[1] <= f->y + f->height + hair;
+}
+
+static void draw_whisker(const strut_chart *c, size_t i, size_t k) {
+  const strut_series *s = &c->panel->series[i];
+  const strut_pen bar = {.colour = pen_of(c->panel, i).colour, .width = 0.7, .butt = true};
+  double ends[2][2];
+  if (!s->low || !s->high || !isfinite(s->low[k]) || !isfinite(s->high[k])) return;
+  if (c->axes.y.logarithmic && !(s->low[k] > 0)) return;
+  strut_axes_point(&c->axes, s->x[k], s->low[k], ends[0]);
+  strut_axes_point(&c->axes, s->x[k], s->high[k], ends[1]);
+  strut_draw_line(c->canvas, (const double(*)[2])ends, 2, bar);
+  for (int e = 0; e < 2; e++)
+    strut_draw_segment(c->canvas, ends[e][0] - 2, ends[e][1], ends[e][0] + 2, ends[e][1], bar);
+}
+
+static void draw_point(const strut_chart *c, size_t i, size_t k) {
+  const strut_series *s = &c->panel->series[i];
+  const strut_colour_scale *scale = &c->panel->scale;
+  double at[2];
+  place(c, i, k, at);
+  if (!isfinite(at[0]) || !is_inside(c, at)) return;
+  draw_whisker(c, i, k);
+  if (!s->cloud) {
+    strut_draw_marker(c->canvas, look_of(c->panel, i), at[0], at[1], MARKER);
+    return;
+  }
+  strut_fill fill = {.colour = s->value ? strut_grey(0.75) : pen_of(c->panel, i).colour};
+  if (s->value && isfinite(s->value[k]))
+    fill.colour = strut_palette_at(scale->colours, s->value[k], scale->low, scale->high);
+  strut_draw_circle(c->canvas, at[0], at[1], CLOUD, &fill, NULL);
+}
+
+/* Whole points, on the frame too. */
+static void draw_points(const strut_chart *c, size_t i) {
+  const strut_series *s = &c->panel->series[i];
+  size_t look = look_of(c->panel, i);
+  bool all = s->cloud || s->markers == STRUT_MARKERS_ALL || s->count <= FEW_POINTS;
+  if (!s->cloud && (!has_markers(c->panel, s) || (!all && !s->label))) return;
+  /* A few markers, at other points than those of the other curves. */
+  size_t every = all ? 1 : s->count / MARKERS;
+  size_t first = all ? 0 : (look * every / 3 + every / 2) % every;
+  for (size_t k = first; k < s->count; k += every) draw_point(c, i, k);
+}
+
+/* ---- marks ---- */
+
+/* A mark of the chart, or what stands for it at the frame's upper or lower edge. */
+static void draw_mark(const strut_chart *c, const strut_mark *mark) {
+  const strut_axes *axes = &c->axes;
+  bool above = mark->at[1] > axes->y.high, below = mark->at[1] < axes->y.low;
+  double at[2];
+  strut_axes_point(axes, mark->at[0], fmin(fmax(mark->at[1], axes->y.low), axes->y.high), at);
+  if (!is_inside(c, at)) return;
+  if (!above && !below) {
+    strut_draw_mark(c->canvas, axes->frame, at, mark);
+    return;
+  }
+  strut_mark edge = *mark;
+  edge.dot = edge.ring = false;
+  edge.angle = (above ? -0.5 : 0.5) * STRUT_PI;
+  edge.gap = STRUT_BEYOND_SIZE + 1;
+  strut_draw_beyond(c->canvas, at, above ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM);
+  strut_draw_mark(c->canvas, axes->frame, at, &edge);
+}
+
+/* Marks where curves leave the frame above or below, and says how many points are there. */
+static void mark_beyond(const strut_chart *c) {
+  strut_beyond beyond = {0};
+  const strut_axis *y = &c->axes.y;
+  char text[STRUT_BEYOND_TEXT];
+  size_t labelled = 0;
+  for (size_t i = 0; i < c->panel->series_count; i++) {
+    const strut_series *s = &c->panel->series[i];
+    size_t farthest = SIZE_MAX; /* of the excursion that k is in */
+    for (size_t k = 0; k <= s->count; k++) {
+      bool out = k < s->count && (s->y[k] > y->high || s->y[k] < y->low);
+      if (out && (farthest == SIZE_MAX || fabs(s->y[k]) > fabs(s->y[farthest]))) farthest = k;
+      if (!out && farthest != SIZE_MAX) {
+        const strut_rounded_quantity value = strut_drawn_quantity(s->y[farthest], 3, y->unit);
+        draw_mark(c, &(strut_mark){.at = {s->x[farthest], s->y[farthest]},
+                                   .text = labelled++ < MOST_LABELLED ? value.text : NULL,
+                                   .steady = 0.2});
+      }
+      if (!out) farthest = SIZE_MAX;
+      if (!out) continue;
+      beyond.above++;
+      if (fabs(s->y[k]) > fabs(beyond.farthest)) beyond.farthest = s->y[k];
+    }
+  }
+  strut_draw_axis_note(c->canvas, &c->axes, strut_beyond_text(&beyond, "point", y->unit, text));
+}
+
+static void draw_data(const strut_chart *c) {
+  const strut_panel *p = c->panel;
+  strut_canvas_clip(c->canvas, c->axes.frame);
+  draw_bands(c);
+  strut_canvas_unclip(c->canvas);
+  strut_draw_axes(c->canvas, &c->axes);
+  if (c->strip.height > 0) draw_strip(c);
+  strut_canvas_clip(c->canvas, c->axes.frame);
+  if (p->map) strut_draw_map(c);
+  for (size_t i = 0; i < p->series_count; i++)
+    if (!p->series[i].cloud) draw_line(c, i);
+  strut_canvas_unclip(c->canvas);
+  if (p->map)
+    strut_draw_box(c->canvas, c->axes.frame, NULL,
+                   &(strut_pen){.colour = strut_grey(0.25), .width = 0.6});
+  for (size_t i = 0; i < p->series_count; i++) draw_points(c, i);
+  if (p->outliers) mark_beyond(c);
+  for (size_t i = 0; i < p->mark_count; i++) draw_mark(c, &p->marks[i]);
+  if (p->remark) strut_draw_axis_note(c->canvas, &c->axes, p->remark);
+}
+
+/* A title, centred above the frame; returns its height. */
+static double draw_title(const strut_chart *c, strut_box box, bool draw) {
+  const strut_box *f = &c->axes.frame;
+  const strut_font font = {.size = TITLE, .bold = true, .across = 0.5, .width = f->width};
+  if (!c->panel->title || !*c->panel->title) return 0;
+  if (draw) strut_draw_text(c->canvas, f->x + 0.5 * f->width, box.y, c->panel->title, font);
+  return strut_text_height(c->canvas, c->panel->title, font) + TITLE_GAP;
+}
+
+/* Inside the frame on a white ground. */
+static void draw_legend(const strut_chart *c, const strut_key_item *items, size_t count,
+                        strut_box at, bool inside) {
+  const strut_fill white = {.colour = strut_faded(strut_grey(1), 0.85)};
+  const strut_pen edge = {.colour = strut_grey(0.8), .width = 0.4};
+  if (inside) strut_draw_box(c->canvas, at, &white, &edge);
+  strut_draw_key(
+      c->canvas,
+      (strut_box){at.x + PADDING, at.y + PADDING, inside ? 0 : at.width - 2 * PADDING, 0}, items,
+      count);
+}
+
+bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
+                      strut_arena *arena) {
+  strut_chart c = {.canvas = canvas, .panel = panel, .arena = arena};
+  strut_key_item *items =
+      strut_arena_allocate(arena, strut_panel_legend_room(panel), sizeof *items);
+  if (!items || !make_room(&c)) return false;
+  size_t count = legend ? strut_panel_legend(panel, items, 0) : 0;
+  strut_box rest = box, at = {0, 0, 0, 0};
+  if (panel->scale.name) rest.width = fmax(box.width - SCALE, 60);
+  place_chart(&c, rest);
+  double title = draw_title(&c, box, false), size[2], corner[2];
+  rest.y += title, rest.height -= title;
+  if (title > 0) place_chart(&c, rest);
+  strut_key_size(canvas, 0, items, count, size);
+  size[0] += 2 * PADDING, size[1] += 2 * PADDING;
+  bool inside = count && find_corner(&c, size, corner);
+  if (inside) {
+    at = (strut_box){corner[0], corner[1], size[0], size[1]};
+  } else if (count) {
+    at = (strut_box){c.axes.frame.x, rest.y, fmax(c.axes.frame.width, 60), 0};
+    double height = strut_key_height(canvas, at.width - 2 * PADDING, items, count) + 2 * PADDING;
+    rest.y += height, rest.height -= height;
+    place_chart(&c, rest);
+  }
+  draw_title(&c, box, true);
+  draw_data(&c);
+  if (count) draw_legend(&c, items, count, at, inside);
+  if (panel->scale.name)
+    strut_draw_colour_scale(canvas,
+                            (strut_box){rest.x + rest.width + GAP, c.axes.frame.y - 8, SCALE - GAP,
+                                        fmax(c.axes.frame.height, 60)},
+                            &panel->scale);
+  return true;
+}

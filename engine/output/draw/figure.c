@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The painter of figures: heading, legend, panels in rows, foot, file. */
+#include "engine/output/draw/figure.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/output/draw/painter.h"
+#include "engine/output/draw/view.h"
+#include "engine/output/file.h"
+
+static const double EDGE = 5, PAGE = 510.24, GAP = 12, INDENT = 30, WIDE = 330; /* [pt] */
+static const double ASPECT = 0.62, LOWEST = 165, HIGHEST = 260; /* of charts [1], [pt] */
+enum { COLUMNS = 3 };
+
+/* A page that is measured, then drawn. */
+typedef struct page {
+  const strut_figure *figure;
+  strut_heading heading;
+  double head;           /* its height [pt] */
+  strut_panel *panels;   /* (panel_count) settled */
+  strut_key_item *items; /* of the legend of all panels */
+  size_t item_count;
+  strut_arena arena;
+} page;
+
+/* ---- what the figure leaves open ---- */
+
+/* Settles the charts, together or each by itself. */
+static bool settle(page *p, const strut_plot *plot) {
+  size_t count = p->figure->panel_count, charts = 0;
+  strut_panel *shared = strut_arena_allocate(&p->arena, count + 1, sizeof *shared);
+  p->panels = strut_arena_copy(&p->arena, p->figure->panels, count, sizeof *p->panels);
+  if (!shared || !p->panels) return false;
+  for (size_t i = 0; i < count; i++) {
+    strut_panel *panel = &p->panels[i];
+    if (panel->view) continue;
+    strut_axis_choose(&panel->x, &plot->x);
+    strut_axis_choose(&panel->y, &plot->y);
+    if (p->figure->shared_axes)
+      shared[charts++] = *panel;
+    else if (!strut_panels_settle(panel, 1, &p->arena))
+      return false;
+  }
+  if (charts && !strut_panels_settle(shared, charts, &p->arena)) return false;
+  for (size_t i = count; charts && i-- > 0;)
+    if (!p->panels[i].view) p->panels[i] = shared[--charts];
+  return true;
+}
+
+static bool gather_legend(page *p) {
+  size_t room = 1;
+  for (size_t i = 0; i < p->figure->panel_count; i++)
+    room += strut_panel_legend_room(&p->panels[i]);
+  p->items = strut_arena_allocate(&p->arena, room, sizeof *p->items);
+  for (size_t i = 0; p->items && p->figure->one_legend && i < p->figure->panel_count; i++)
+    p->item_count = strut_panel_legend(&p->panels[i], p->items, p->item_count);
+  return p->items != NULL;
+}
+
+/* ---- the page ---- */
+
+/* Panels in a row with the first, and the width of each. */
+static size_t find_row(const page *p, size_t first, double inner, double *width) {
+  const strut_figure *f = p->figure;
+  const strut_panel *panel = &p->panels[first];
+  size_t left = f->panel_count - first, count = 1;
+  double columns = 1;
+  if (left > 1 && panel[1].beside) { /* two by themselves */
+    columns = inner >= WIDE ? 2 : 1;
+    count = (size_t)columns;
+  } else if (f->least_width > 0 && !panel->whole && !panel->beside) {
+    double most = f->columns ? (double)f->columns : COLUMNS;
+    columns = fmax(1, fmin(fmin(most, floor(inner / f->least_width)), (double)f->panel_count));
+    while (count < (size_t)columns && count < left && !panel[count].view && !panel[count].whole)
+      count++;
+  }
+  *width = (inner - (panel[count - 1].beside ? (columns - 1) * GAP : 0)) / columns;
+  return count;
+}
+
+static double chart_height(const page *p, const strut_panel *panel, double width) {
+  double aspect = p->figure->aspect > 0 ? p->figure->aspect : ASPECT;
+  if (panel->height > 0) return panel->height;
+  if (!(p->figure->least_width > 0)) return aspect * width;
+  return fmax(LOWEST, fmin(aspect * width, HIGHEST));
+}
+
+/* The row of a chart; draws it if `fine`, which becomes false where memory is out. Returns its height. */
+static double put_row(page *p, strut_canvas *canvas, strut_box box, size_t first, size_t count,
+                      bool *fine) {
+  double gap = p->panels[first + count - 1].beside ? GAP : 0, height = 0;
+  for (size_t i = first; i < first + count; i++)
+    height = fmax(height, chart_height(p, &p->panels[i], box.width));
+  box.height = height;
+  for (size_t i = first; i < first + count && fine && *fine; i++, box.x += box.width + gap)
+    if (p->panels[i].view)
+      strut_draw_view(canvas, box, &p->panels[i]);
+    else
+      *fine = strut_draw_chart(canvas, box, &p->panels[i], !p->figure->one_legend, &p->arena);
+  return height;
+}
+
+/* Lays all out and draws it if `fine`. Returns the height of the page. */
+static double put_page(page *p, strut_canvas *canvas, double width, bool *fine) {
+  const strut_figure *f = p->figure;
+  strut_box box = {EDGE, EDGE + p->head, width - 2 * EDGE, 0};
+  const strut_box legend = {EDGE + INDENT, box.y, box.width - INDENT, 0};
+  bool draw = fine != NULL, foot = true;
+  if (draw) strut_heading_draw(canvas, &p->heading);
+  if (draw) strut_draw_key(canvas, legend, p->items, p->item_count);
+  box.y += strut_key_height(canvas, legend.width, p->items, p->item_count);
+  for (size_t i = 0, count; i < f->panel_count; i += count) {
+    const strut_panel *first = &p->panels[i];
+    strut_box row = box;
+    count = find_row(p, i, box.width, &row.width);
+    if (count > 1 || !first->view) {
+      box.y += put_row(p, canvas, row, i, count, fine);
+      continue;
+    }
+    while (i + count < f->panel_count && first[count].view && first[count].small == first->small)
+      count++;
+    box.y += (i > 0 ? GAP : 0) + strut_draw_views(canvas, box, f, first, count, foot, draw);
+    foot = false;
+  }
+  return box.y + (foot ? strut_draw_foot(canvas, box, f, NULL, draw) : 0) + EDGE;
+}
+
+static strut_status write_page(page *p, const strut_plot *plot, strut_error *error) {
+  strut_canvas *canvas = NULL;
+  double width = plot->width > 0 ? plot->width : PAGE;
+  bool fine = true;
+  p->heading = (strut_heading){.width = width,
+                               .edge = EDGE,
+                               .title = strut_plot_title(plot, p->figure->title),
+                               .note = p->figure->note,
+                               .alarm = p->figure->alarm};
+  strut_status status = strut_heading_measure(&p->heading, &p->head, error);
+  if (!status) status = strut_canvas_open_pixels(1, 1, 1.0, &canvas, error);
+  if (status) return status;
+  double height = put_page(p, canvas, width, NULL);
+  strut_canvas_free(canvas);
+  const char *title = p->heading.title ? p->heading.title : "";
+  status = strut_canvas_open(plot->path, width, height, title, &canvas, error);
+  if (status) return status;
+  put_page(p, canvas, width, &fine);
+  status = fine ? strut_canvas_commit(canvas, error) : strut_no_memory(error, "while drawing");
+  strut_canvas_free(canvas);
+  return status;
+}
+
+static strut_status write_json(const strut_plot *plot, const strut_figure *figure,
+                               strut_error *error) {
+  char *text = strut_figure_json(plot, figure);
+  strut_status status = text ? strut_file_write_path(plot->path, text, error)
+                             : strut_no_memory(error, "while drawing");
+  strut_release(text);
+  return status;
+}
+
+/* True if a file of that name gets the figure's data. */
+static bool is_data(const char *path) {
+  const char *dot = strrchr(path, '.');
+  return dot && dot > path && dot[-1] != '/' && strcmp(dot, ".json") == 0;
+}
+
+strut_status strut_figure_check_name(const char *path, strut_error *error) {
+  return is_data(path) ? STRUT_OK : strut_canvas_check_name(path, error);
+}
+
+strut_status strut_figure_draw(const strut_plot *plot, const strut_figure *figure,
+                               strut_error *error) {
+  page p = {.figure = figure};
+  if (is_data(plot->path)) return write_json(plot, figure, error);
+  strut_c_locale locale = strut_c_locale_enter();
+  strut_status status = settle(&p, plot) && gather_legend(&p)
+                            ? write_page(&p, plot, error)
+                            : strut_no_memory(error, "while drawing");
+  strut_arena_free(&p.arena);
+  strut_c_locale_leave(locale);
+  return status;
+}

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * A figure as data, and the one painter that draws it.
+ *
+ * A figure is a page of panels below a heading. A panel is a chart (axes, series, bands, a map) or a view
+ * (structures to scale), with marks on it. Whoever has a result fills the description in; the painter measures
+ * texts, lays panels out, settles axes, leaves outliers out, places legends and labels clear of all else, and
+ * writes the file: a picture, or the same data as JSON. Everything pointed to lives until the figure is drawn.
+ */
+#ifndef STRUT_ENGINE_OUTPUT_DRAW_FIGURE_H
+#define STRUT_ENGINE_OUTPUT_DRAW_FIGURE_H
+
+#include "engine/output/draw/chart.h"
+#include "engine/output/draw/legend.h"
+#include "engine/output/draw/structure.h"
+
+/* ---- charts ---- */
+
+/** Markers along a line. */
+typedef enum strut_markers {
+  STRUT_MARKERS_AUTO, /* beside other series: at every point of few, at some of many */
+  STRUT_MARKERS_ALL,
+  STRUT_MARKERS_NONE
+} strut_markers;
+
+/** Points joined by a line, or a cloud of dots. */
+typedef struct strut_series {
+  const char *label; /* in the legend, where equal ones get one row; NULL: not there */
+  size_t count;
+  const double *x, *y;  /* (count) SI; what is not finite breaks the line */
+  int look;             /* index of colour, dashes and marker; -1: the series' own index */
+  const strut_pen *pen; /* replaces the look's line; NULL: the look */
+  const bool *unstable; /* (count) the line from these points on is dashed and thinner; or NULL */
+  const double *low, *high; /* (count) whiskers along y; or NULL */
+  bool cloud;               /* dots instead of a line */
+  const double *value;      /* (count) the dots' colours on the panel's scale, NAN: grey; or NULL */
+  strut_markers markers;
+} strut_series;
+
+/** A grey area from x = low to high, or y; its label goes into the legend, or is NULL. */
+typedef struct strut_band {
+  double low, high;
+  bool level; /* from y = low to high */
+  const char *label;
+} strut_band;
+
+/** Cells over two quantities: a category or a number at every grid point; doubtful ones are hatched. */
+typedef struct strut_map {
+  size_t columns, rows;
+  const double *xs, *ys; /* (columns), (rows) ascending; cell edges are midpoints */
+  const int *category;   /* (rows, columns) index into names, -1: no result; or NULL */
+  size_t category_count;
+  const char *const *names; /* (category_count) */
+  const double *value;      /* (rows, columns) where category is NULL; NAN: no result */
+  const bool *doubtful;     /* (rows, columns) drawn hatched; or NULL */
+  const char *doubt;        /* meaning of the hatching, for the legend */
+} strut_map;
+
+/* ---- views ---- */
+
+/** A structure to scale. Those of a view lie over each other, the first lowest. */
+typedef struct strut_shape {
+  const strut_model *model;
+  const double *q; /* (model->length) [m] */
+  strut_structure_style style;
+  const double *from; /* (model->length) arrows lead from there to the nodes [m]; or NULL */
+  bool ground;        /* below it; moved as it is at style.time if `moving` */
+  bool moving;
+  bool names;                /* beside its nodes, where they cover little */
+  const double (*forces)[2]; /* (contacts) of the ground [N]; or NULL */
+  double force_limit, arrow; /* their scale [N], [pt] */
+} strut_shape;
+
+/** The pen of arrows of displacement, for keys. */
+STRUT_API strut_pen strut_displacement_pen(void);
+
+typedef enum strut_trail_kind {
+  STRUT_TRAIL_LINE,     /* by its pen */
+  STRUT_TRAIL_SEQUENCE, /* dark to bright, as wide as its pen */
+  STRUT_TRAIL_ARROW     /* from the first to the last point */
+} strut_trail_kind;
+
+/** A line through points of the plane, above the shapes. */
+typedef struct strut_trail {
+  strut_trail_kind kind;
+  size_t count;
+  const double (*at)[2]; /* (count) [m] */
+  strut_pen pen;
+  double gap; /* left free at both ends of two points, of an arrow at its tip [pt] */
+  bool below; /* below the shapes */
+} strut_trail;
+
+/** Structures in a window with one scale for x and y. */
+typedef struct strut_view {
+  size_t shape_count, trail_count;
+  const strut_shape *shapes;
+  const strut_trail *trails;
+  strut_bounds bounds; /* what has to be seen [m] */
+  double margin;       /* around it, for names and arrows [pt] */
+  bool yardstick;      /* a scale bar at its foot */
+} strut_view;
+
+/* ---- both ---- */
+
+/** A point that is named, at a place of the axes or of the plane. */
+typedef struct strut_mark {
+  double at[2];
+  const char *text;    /* beside it; NULL: none */
+  bool dot, ring;      /* a filled circle; an empty one around what is there */
+  strut_colour colour; /* of the dot */
+  strut_font font;     /* of the text; size 0: 7 pt */
+  double gap;          /* from the place to the text [pt]; 0: as a dot needs */
+  double angle;        /* preferred direction of the text, counterclockwise from the right */
+  double steady;       /* how much that matters, as in strut_label */
+  int priority;
+} strut_mark; /* Beyond the y axis it is a triangle at its end. */
+
+typedef struct strut_panel {
+  const char *title; /* may be NULL; of a view at its upper left corner */
+  const char *note;  /* of a view, in grey below the title; may be NULL */
+  const strut_view *view;
+  /* Else a chart. A range of NAN is found from the data. */
+  strut_axis x, y;
+  bool outliers; /* few values far away lie beyond the range that is found, marked and counted */
+  size_t series_count, band_count;
+  const strut_series *series;
+  const strut_band *bands;
+  const strut_map *map;
+  const char *lost; /* name of points whose y is not finite, which lie in a strip above; or NULL */
+  double room;      /* of a range that is found, beside the data along x; along y it is 0.06 */
+  /* Both. */
+  size_t mark_count;
+  const strut_mark *marks;
+  const char *remark; /* inside the frame, where it is emptiest; or NULL */
+  /* Beside it; limits that are equal come from the values. Name NULL: none. */
+  strut_colour_scale scale;
+  double height; /* [pt]; 0: by the figure's aspect */
+  bool whole;    /* takes a row of its own */
+  bool beside;   /* stands right of the panel before it, where the page is wide */
+  bool small;    /* a view beside many others */
+} strut_panel;
+
+typedef struct strut_figure {
+  const char *title, *note; /* the heading; a plot's title replaces the first */
+  bool alarm;               /* the note tells of a failure */
+  size_t panel_count;
+  const strut_panel *panels; /* in rows; of a row all charts are as high as the highest */
+  size_t columns;            /* at most; 0: 3 */
+  double least_width; /* of a panel in a row with others [pt]; 0: a chart by itself, a view 98 */
+  double aspect; /* height over width: of a chart without a height, 0: 0.62; of all views, 0: any */
+  bool shared_axes; /* all charts get the ranges that hold all of them */
+  bool one_legend;  /* of all charts, above them */
+  /* The foot, below the first views or all charts: a scale bar of views, keys, a scale of colours of all. */
+  bool yardstick;
+  size_t key_count;
+  const strut_key_item *keys;
+  strut_colour_scale scale; /* name NULL: none */
+} strut_figure;
+
+/**
+ * Draws it into the plot's file; into one that ends with .json it writes its data. Fails as strut_canvas_open and
+ * strut_canvas_commit, or STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_figure_draw(const strut_plot *plot, const strut_figure *figure,
+                                         strut_error *error);
+/** STRUT_OK if a figure can be written into a file of that name, else STRUT_USAGE with the endings there are. */
+STRUT_API strut_status strut_figure_check_name(const char *path, strut_error *error);
+/** The data as JSON text, released by the caller; NULL: no memory. */
+STRUT_API char *strut_figure_json(const strut_plot *plot, const strut_figure *figure);
+
+#endif

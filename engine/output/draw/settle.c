@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Ranges of axes and of colours that a figure leaves to its data. */
+#include <math.h>
+
+#include "engine/output/draw/painter.h"
+
+static const double ROOM = 0.06;     /* above and below the data */
+static const double ONE_SIGN = 1e-9; /* noise of the other sign makes no signed quantity */
+
+static void include_series(const strut_series *s, bool lost, strut_axis *x, strut_axis *y) {
+  for (size_t k = 0; k < s->count; k++) {
+    if (!isfinite(s->x[k]) || (!isfinite(s->y[k]) && !lost)) continue;
+    if (x) strut_axis_include(x, s->x[k]);
+    if (!y) continue;
+    strut_axis_include(y, s->y[k]);
+    if (s->low) strut_axis_include(y, s->low[k]);
+    if (s->high) strut_axis_include(y, s->high[k]);
+  }
+}
+
+static void include_panel(const strut_panel *p, strut_axis *x, strut_axis *y) {
+  double limits[2];
+  for (size_t i = 0; i < p->series_count; i++) include_series(&p->series[i], p->lost != NULL, x, y);
+  for (int d = 0; d < 2 && p->map; d++) {
+    strut_axis *axis = d ? y : x;
+    strut_map_limits(d ? p->map->ys : p->map->xs, d ? p->map->rows : p->map->columns, limits);
+    for (int k = 0; k < 2 && axis; k++) strut_axis_include(axis, limits[k]);
+  }
+}
+
+/* Numbers of the panels: of the y axis, or of the scale. Returns how many. */
+static size_t gather(const strut_panel *panels, size_t count, bool scale, double *values) {
+  size_t known = 0;
+  for (size_t i = 0; i < count; i++) {
+    const strut_map *map = panels[i].map;
+    for (size_t s = 0; s < panels[i].series_count; s++) {
+      const strut_series *series = &panels[i].series[s];
+      const double *from = scale ? series->value : series->y;
+      for (size_t k = 0; from && k < series->count; k++, known++)
+        if (values) values[known] = from[k];
+    }
+    for (size_t k = 0; scale && map && map->value && k < map->columns * map->rows; k++, known++)
+      if (values) values[known] = map->value[k];
+  }
+  return known;
+}
+
+static double *gather_values(const strut_panel *panels, size_t count, bool scale, size_t *known,
+                             strut_arena *arena) {
+  *known = gather(panels, count, scale, NULL);
+  double *values = strut_arena_allocate(arena, *known + 1, sizeof *values);
+  if (values) gather(panels, count, scale, values);
+  return values;
+}
+
+/* The range of the colours; of a signed quantity with zero in the middle. */
+static bool settle_scale(const strut_panel *panels, size_t count, strut_colour_scale *scale,
+                         strut_arena *arena) {
+  size_t known;
+  if (scale->high > scale->low) return true;
+  double *values = gather_values(panels, count, true, &known, arena);
+  if (!values) return false;
+  strut_axis range = {.low = (double)NAN, .high = (double)NAN};
+  for (size_t i = 0; i < known; i++) strut_axis_include(&range, values[i]);
+  strut_range_without_outliers(values, known, &range.low, &range.high, &scale->beyond);
+  scale->low = range.low, scale->high = range.high;
+  if (!(scale->high > scale->low) || strut_is_noise(&scale->low, &scale->high, scale->unit)) {
+    double middle = isfinite(scale->low) ? scale->low : 0; /* one value, or none */
+    scale->low = middle - (middle != 0 ? 0.5 * fabs(middle) : 0.5);
+    scale->high = 2 * middle - scale->low;
+  }
+  bool signs = scale->low < -ONE_SIGN * scale->high && scale->high > -ONE_SIGN * scale->low;
+  if (scale->colours == STRUT_COLOURS_AUTO)
+    scale->colours = signs ? STRUT_COLOURS_DIVERGING : STRUT_COLOURS_SEQUENTIAL;
+  if (scale->colours != STRUT_COLOURS_DIVERGING) return true;
+  scale->high = fmax(fabs(scale->low), fabs(scale->high));
+  scale->low = -scale->high;
+  return true;
+}
+
+bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena) {
+  strut_axis x = panels[0].x, y = panels[0].y;
+  strut_colour_scale scale = panels[0].scale;
+  bool fit_x = isnan(x.low) || isnan(x.high), fit_y = isnan(y.low) || isnan(y.high);
+  bool cells = panels[0].map != NULL, trim = panels[0].outliers && fit_y && !y.logarithmic;
+  size_t known;
+  for (size_t i = 0; i < count; i++)
+    include_panel(&panels[i], fit_x ? &x : NULL, fit_y ? &y : NULL);
+  if (trim) {
+    strut_beyond beyond;
+    double *values = gather_values(panels, count, false, &known, arena);
+    if (!values) return false;
+    strut_range_without_outliers(values, known, &y.low, &y.high, &beyond);
+  }
+  strut_axis_settle(&x, fit_x && !cells ? panels[0].room : 0);
+  strut_axis_settle(&y, fit_y && !cells ? ROOM : 0);
+  if (scale.name && !settle_scale(panels, count, &scale, arena)) return false;
+  for (size_t i = 0; i < count; i++) {
+    panels[i].x.low = x.low, panels[i].x.high = x.high;
+    panels[i].y.low = y.low, panels[i].y.high = y.high;
+    panels[i].outliers = trim;
+    if (scale.name) panels[i].scale = scale;
+  }
+  return true;
+}

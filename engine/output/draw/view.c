@@ -1,0 +1,314 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/draw/view.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double GAP = 12, LEAST = 46, CAPTION = 26; /* [pt] */
+static const double NARROWEST = 98, SMALLEST = 72;      /* panels [pt] */
+static const double MARK = 2.7, RING = 3.4;             /* radii [pt] */
+static const double COVERED = 0.25;                     /* of a view, by names */
+static const double TALLEST = 1.2,
+                    LOWEST = 0.6; /* of drawings: height over width at most, at least */
+static const double DOT = 0.3,
+                    NODE = 2.3; /* a path seen as a dot; radius of a node as drawn [pt] */
+enum { LED = 200, COLUMNS = 3, SMALL_COLUMNS = 6, TRAIL_SHADES = 64 };
+
+/* ---- one view ---- */
+
+/* True if names cover little of what is seen. */
+static bool names_fit(strut_canvas *canvas, const strut_window *window, const strut_view *view,
+                      const strut_model *model) {
+  double covered = 0.0, seen = COVERED;
+  for (int d = 0; d < 2; d++)
+    seen *= (view->bounds.high[d] - view->bounds.low[d]) * window->scale + 2 * view->margin;
+  for (int32_t i = 0; i < model->node_count; i++) {
+    double width, height;
+    strut_text_size(canvas, model->scene->nodes[i].name, (strut_font){.size = 7.5}, &width,
+                    &height);
+    covered += width * height;
+  }
+  return covered <= seen;
+}
+
+strut_pen strut_displacement_pen(void) {
+  return (strut_pen){.colour = strut_palette_thing(2), .width = 0.8};
+}
+
+/* Moves both ends of a line on the page towards each other; of an arrow its tip. */
+static void shorten(double ends[2][2], double by, bool arrow) {
+  double x = ends[1][0] - ends[0][0], y = ends[1][1] - ends[0][1], length = hypot(x, y);
+  if (!(length > 3.0 * by) || !(by > 0.0)) return;
+  const double step[2] = {by / length * x, by / length * y};
+  for (int d = 0; d < 2; d++) {
+    if (!arrow) ends[0][d] += step[d];
+    ends[1][d] -= step[d];
+  }
+}
+
+/* From a trail's first point to its last. */
+static void draw_straight(strut_canvas *canvas, const strut_window *window, const strut_trail *t) {
+  bool arrow = t->kind == STRUT_TRAIL_ARROW;
+  double ends[2][2];
+  strut_window_point(window, t->at[0], ends[0]);
+  strut_window_point(window, t->at[t->count - 1], ends[1]);
+  if (arrow && hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]) < fmax(2 * t->gap, 2))
+    return;
+  shorten(ends, t->gap, arrow);
+  if (arrow)
+    strut_draw_arrow(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], 5, t->pen);
+  else
+    strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], t->pen);
+}
+
+/* Through points [first, last], in pieces of the array's size. */
+static void draw_part(strut_canvas *canvas, const strut_window *window, const strut_trail *t,
+                      size_t first, size_t last, strut_pen pen) {
+  enum { PIECE = 200 };
+  double points[PIECE][2];
+  size_t used = 0;
+  for (size_t i = first; i <= last; i++) {
+    strut_window_point(window, t->at[i], points[used++]);
+    if (used < PIECE && i < last) continue;
+    strut_draw_line(canvas, (const double(*)[2])points, used, pen);
+    memcpy(points[0], points[used - 1], sizeof points[0]);
+    used = 1;
+  }
+}
+
+/* A path that is no longer than a dot is not drawn. */
+static bool is_visible(const strut_window *window, const strut_trail *t) {
+  for (size_t i = 1; i < t->count; i++)
+    if (hypot(t->at[i][0] - t->at[0][0], t->at[i][1] - t->at[0][1]) * window->scale > DOT)
+      return true;
+  return false;
+}
+
+static void draw_trail(strut_canvas *canvas, const strut_window *window, const strut_trail *t) {
+  size_t shades = t->kind == STRUT_TRAIL_SEQUENCE ? TRAIL_SHADES : 1;
+  if (t->kind == STRUT_TRAIL_ARROW || t->count == 2) draw_straight(canvas, window, t);
+  if (t->kind == STRUT_TRAIL_ARROW || t->count <= 2 || !is_visible(window, t)) return;
+  for (size_t shade = 0; shade < shades; shade++) {
+    size_t first = shade * (t->count - 1) / shades, last = (shade + 1) * (t->count - 1) / shades;
+    strut_pen pen = t->pen;
+    if (shades > 1) pen.colour = strut_palette_sequence((double)shade / (TRAIL_SHADES - 1));
+    if (last > first) draw_part(canvas, window, t, first, last, pen);
+  }
+}
+
+static void draw_trails(strut_canvas *canvas, const strut_window *window, const strut_view *view,
+                        bool below) {
+  for (size_t i = 0; i < view->trail_count; i++)
+    if (view->trails[i].below == below) draw_trail(canvas, window, &view->trails[i]);
+}
+
+/* From where a shape was to its nodes, unless there are many. */
+static void draw_arrows(strut_canvas *canvas, const strut_window *window, const strut_shape *s) {
+  const strut_trail_kind kind = STRUT_TRAIL_ARROW;
+  for (int32_t i = 0; s->from && i < s->model->node_count && s->model->node_count <= LED; i++) {
+    const double at[2][2] = {{s->from[2 * i], s->from[2 * i + 1]}, {s->q[2 * i], s->q[2 * i + 1]}};
+    draw_trail(canvas, window, &(strut_trail){kind, 2, at, strut_displacement_pen(), NODE, false});
+  }
+}
+
+void strut_draw_mark(strut_canvas *canvas, strut_box inside, const double at[2],
+                     const strut_mark *mark) {
+  const strut_pen edge = {.colour = strut_grey(0.1), .width = mark->ring ? 0.9 : 0.6};
+  const strut_fill fill = {.colour = mark->colour};
+  if (mark->dot || mark->ring)
+    strut_draw_circle(canvas, at[0], at[1], mark->ring ? RING : MARK, mark->dot ? &fill : NULL,
+                      &edge);
+  if (!mark->text || !*mark->text) return;
+  strut_label label = {.text = mark->text,
+                       .font = mark->font,
+                       .at = {at[0], at[1]},
+                       .gap = mark->gap > 0 ? mark->gap : MARK + 1.5,
+                       .angle = mark->angle,
+                       .steady = mark->steady,
+                       .inside = inside,
+                       .priority = mark->priority};
+  if (!(label.font.size > 0)) label.font.size = 7;
+  label.font.halo = strut_faded(strut_grey(1), 0.85);
+  strut_draw_label(canvas, &label);
+}
+
+/* More than the margin takes below a view, for the forces of the ground [pt]. */
+static double room_for_arrows(const strut_view *view) {
+  double room = 0.0;
+  for (size_t i = 0; i < view->shape_count; i++)
+    if (view->shapes[i].forces) room = fmax(room, view->shapes[i].arrow - view->margin);
+  return room;
+}
+
+strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_panel *panel) {
+  const strut_view *view = panel->view;
+  strut_box inside = box;
+  inside.height -= room_for_arrows(view);
+  strut_window window = strut_window_fit(inside, view->bounds, view->margin);
+  window.box = box;
+  strut_canvas_clip(canvas, box);
+  for (size_t i = 0; i < view->shape_count; i++) {
+    const strut_shape *shape = &view->shapes[i];
+    if (shape->ground)
+      strut_draw_ground(canvas, &window, shape->model,
+                        shape->moving ? shape->style.time : (double)NAN);
+  }
+  draw_trails(canvas, &window, view, true);
+  for (size_t i = 0; i < view->shape_count; i++) {
+    const strut_shape *s = &view->shapes[i];
+    strut_draw_structure(canvas, &window, s->model, s->q, &s->style);
+    draw_arrows(canvas, &window, s);
+    if (s->forces)
+      strut_draw_contact_forces(canvas, &window, s->model, s->q, s->forces, s->force_limit,
+                                s->arrow);
+  }
+  draw_trails(canvas, &window, view, false);
+  for (size_t i = 0; i < panel->mark_count; i++) {
+    double at[2];
+    strut_window_point(&window, panel->marks[i].at, at);
+    strut_draw_mark(canvas, box, at, &panel->marks[i]);
+  }
+  strut_canvas_unclip(canvas);
+  for (size_t i = 0; i < view->shape_count; i++) {
+    const strut_shape *s = &view->shapes[i];
+    if (s->names && names_fit(canvas, &window, view, s->model))
+      strut_draw_names(canvas, &window, s->model, s->q, s->style.member_names);
+  }
+  if (view->yardstick) strut_draw_yardstick(canvas, &window);
+  return window;
+}
+
+/* ---- several, in rows ---- */
+
+/* How panels are laid out: so many in a row, of this size, the drawing at their foot. */
+typedef struct rows {
+  size_t columns;
+  double width, height, drawing, gap; /* [pt] */
+} rows;
+
+/* What is written above a view; draws it if `draw`. */
+static double write_caption(strut_canvas *canvas, strut_box box, const strut_panel *panel,
+                            bool draw) {
+  const strut_font bold = {.size = 8.5, .bold = true, .width = box.width};
+  const strut_font plain = {
+      .size = panel->small ? 6.5 : 7, .colour = strut_grey(0.3), .width = box.width - 4};
+  char fitted[STRUT_FITTED_TEXT];
+  double width, line = 0.0, y = 0.0;
+  if (panel->title) {
+    strut_text_size(canvas, "0", bold, &width, &line);
+    strut_text_fit(canvas, panel->title, bold, box.width, 2 * line + 1, fitted);
+    strut_text_size(canvas, fitted, bold, &width, &line);
+    if (draw) strut_draw_text(canvas, box.x, box.y, fitted, bold);
+    y += line + 1;
+  }
+  if (panel->note && *panel->note) {
+    strut_text_size(canvas, panel->note, plain, &width, &line);
+    if (draw) strut_draw_text(canvas, box.x, box.y + y, panel->note, plain);
+    y += line + 1;
+  }
+  return y;
+}
+
+/* What the views of several panels have to show. */
+typedef struct extent {
+  double size[2];       /* [m] */
+  double margin, below; /* around it, and more for arrows [pt] */
+} extent;
+
+static extent extent_of(const strut_panel *panels, size_t count) {
+  extent e = {0};
+  for (size_t i = 0; i < count; i++) {
+    const strut_view *view = panels[i].view;
+    for (int d = 0; d < 2; d++)
+      e.size[d] = fmax(e.size[d], view->bounds.high[d] - view->bounds.low[d]);
+    e.margin = fmax(e.margin, view->margin);
+    e.below = fmax(e.below, room_for_arrows(view));
+  }
+  return e;
+}
+
+/* The scale in a drawing of that size [pt/m]. */
+static double scale_in(const extent *e, double width, double height) {
+  return fmin((width - 2 * e->margin) / e->size[0],
+              (height - e->below - 2 * e->margin) / e->size[1]);
+}
+
+/* As many in a row as there is room for; or, on a page with a given aspect, as make the structures largest. */
+static rows arrange(strut_canvas *canvas, double width, const strut_figure *figure,
+                    const strut_panel *panels, size_t count) {
+  const extent e = extent_of(panels, count);
+  bool small = panels->small, all = small || !(figure->aspect > 0);
+  size_t most = small ? SMALL_COLUMNS : figure->columns ? figure->columns : COLUMNS;
+  double least = small ? SMALLEST : figure->least_width > 0 ? figure->least_width : NARROWEST;
+  double largest = 0, tallest = 0, caption = 0;
+  rows best = {.gap = small ? 0.5 * GAP : GAP};
+  for (size_t columns = 1; columns <= most && columns <= count; columns++) {
+    double deep = (double)((count + columns - 1) / columns);
+    double cell = (width - (double)(columns - 1) * best.gap) / (double)columns;
+    double high = TALLEST * cell;
+    if (cell < least && columns > 1) break;
+    if (!all) high = fmax(figure->aspect * width / deep - (count > 1 ? CAPTION : 0), LEAST);
+    double scale = scale_in(&e, cell, high);
+    if (scale < largest * (1 - 1e-9) && !all) continue; /* of equal scales the fewest rows win */
+    largest = scale, tallest = high;
+    best.columns = columns, best.width = cell;
+  }
+  tallest = fmax(tallest, LOWEST * best.width);
+  double scale = scale_in(&e, best.width, tallest);
+  best.drawing = isfinite(scale) ? scale * e.size[1] + 2 * e.margin + e.below : tallest;
+  best.drawing = panels->height > 0 ? panels->height : fmax(best.drawing, LEAST);
+  for (size_t i = 0; i < count; i++)
+    caption =
+        fmax(caption, write_caption(canvas, (strut_box){0, 0, best.width, 0}, &panels[i], false));
+  best.height = caption + best.drawing;
+  return best;
+}
+
+/* ---- below ---- */
+
+static const double STICK = 17, BAR = 34, BAR_WIDTH = 150, WORDS = 150, SIDE = 14,
+                    NARROW = 170; /* [pt] */
+
+double strut_draw_foot(strut_canvas *canvas, strut_box box, const strut_figure *figure,
+                       const strut_window *window, bool draw) {
+  bool bar = figure->scale.name && figure->scale.high > figure->scale.low;
+  bool narrow = bar && box.width < NARROW; /* the scale of colours lies below the scale bar */
+  double right = narrow ? box.width : bar ? fmin(BAR_WIDTH, 0.45 * box.width) : 0.0;
+  double left = window && figure->yardstick ? 0.3 * window->box.width + SIDE : 0.0;
+  double row = (bar ? BAR : 0) + (left > 0 && (narrow || !bar) ? STICK : 0);
+  strut_box key = {box.x + left, box.y, box.width - left - right - (bar ? SIDE : 0), 0};
+  bool above = row > 0 && key.width < WORDS; /* the key stands above both bars */
+  if (above) key.x = box.x, key.width = box.width;
+  double high = strut_key_height(canvas, key.width, figure->keys, figure->key_count);
+  double height = above ? high + row : fmax(high, row);
+  if (!draw) return height;
+  if (!above) key.y += 0.5 * (height - high);
+  strut_draw_key(canvas, key, figure->keys, figure->key_count);
+  if (bar)
+    strut_draw_colour_scale(
+        canvas, (strut_box){box.x + box.width - right, box.y + height - BAR, right, BAR},
+        &figure->scale);
+  if (left > 0) {
+    strut_window stick = *window;
+    stick.box.x = box.x;
+    stick.box.y = box.y + height - stick.box.height - (narrow ? BAR : 0);
+    strut_draw_yardstick(canvas, &stick);
+  }
+  return height;
+}
+
+double strut_draw_views(strut_canvas *canvas, strut_box box, const strut_figure *figure,
+                        const strut_panel *panels, size_t count, bool foot, bool draw) {
+  rows r = arrange(canvas, box.width, figure, panels, count);
+  strut_window window = {.box.width = r.width};
+  double height = (double)((count + r.columns - 1) / r.columns) * (r.height + r.gap) - r.gap;
+  for (size_t i = 0; i < count && draw; i++) {
+    strut_box cell = {box.x + (double)(i % r.columns) * (r.width + r.gap),
+                      box.y + (double)(i / r.columns) * (r.height + r.gap), r.width, r.height};
+    write_caption(canvas, cell, &panels[i], true);
+    strut_box drawing = {cell.x, cell.y + r.height - r.drawing, r.width, r.drawing};
+    window = strut_draw_view(canvas, drawing, &panels[i]);
+  }
+  box.y += height + 0.5 * GAP;
+  return foot ? height + 0.5 * GAP + strut_draw_foot(canvas, box, figure, &window, draw) : height;
+}
