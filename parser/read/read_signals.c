@@ -236,11 +236,7 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
   reader->signal_depth--;
   named->state = STRUT_SIGNAL_READ;
   named->index = fine ? index : -1;
-  if (named->index >= 0) {
-    char *copy = strut_arena_text(&reader->scene->arena, named->name, strlen(named->name));
-    if (!copy) reader->out_of_memory = true;
-    reader->signals[index].name = copy;
-  }
+  if (named->index >= 0) reader->signals[index].name = strut_keep_text(reader, named->name);
   return named->index;
 }
 

@@ -161,19 +161,14 @@ static strut_section_reader *const by_hand[STRUT_SECTION_COUNT] = {
 
 /* ---- single values ---- */
 
-static const char *store_text(strut_reader *reader, strut_arena *arena, const strut_key *key,
-                              const strut_slot *slot) {
+static const char *store_text(strut_reader *reader, const strut_key *key, const strut_slot *slot) {
   char word[40] = "";
   if (key->type == STRUT_TYPE_WORD) strut_word_at(key->words, slot->word, word, sizeof word);
-  const char *text = key->type == STRUT_TYPE_WORD ? word : slot->value->text;
-  const char *copy = strut_arena_text(arena, text, strlen(text));
-  if (copy) return copy;
-  reader->out_of_memory = true;
-  return "";
+  return strut_keep_text(reader, key->type == STRUT_TYPE_WORD ? word : slot->value->text);
 }
 
-static void store_value(strut_reader *reader, strut_arena *arena, const strut_key *key,
-                        const strut_slot *slot, void *field) {
+static void store_value(strut_reader *reader, const strut_key *key, const strut_slot *slot,
+                        void *field) {
   bool word = key->type == STRUT_TYPE_WORD, words = key->type == STRUT_TYPE_WORDS;
   double number = word ? (double)key->field.first + slot->word : slot->number[0];
   if (key->field.turns) number /= STRUT_TAU;
@@ -188,7 +183,7 @@ static void store_value(strut_reader *reader, strut_arena *arena, const strut_ke
     case STRUT_FIELD_BOOL_PAIR:
       for (int c = 0; c < 2; c++) ((bool *)field)[c] = (slot->word >> c & 1) != 0;
       break;
-    case STRUT_FIELD_TEXT: *(const char **)field = store_text(reader, arena, key, slot); break;
+    case STRUT_FIELD_TEXT: *(const char **)field = store_text(reader, key, slot); break;
     case STRUT_FIELD_INSTRUCTION:
     case STRUT_FIELD_NODE_SET:
     case STRUT_FIELD_TREE:
@@ -379,7 +374,7 @@ static bool store_key(strut_reader *reader, const strut_key *key, strut_slot *sl
       else if (key->field.direction)
         fine = store_direction(reader, key, slot->value, owner, field);
       else if (!strut_diagnostics_full(reader->diagnostics)) /* else the object will not be used */
-        store_value(reader, arena, key, slot, field);
+        store_value(reader, key, slot, field);
       break;
     case STRUT_FIELD_REFERENCE:
       fine = read_references(reader, key, slot->value, owner, field);

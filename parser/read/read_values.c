@@ -47,7 +47,7 @@ size_t strut_next_entry(const strut_reader *reader, size_t *count) {
 
 const char *strut_keep_text(strut_reader *reader, const char *text) {
   if (strut_diagnostics_full(reader->diagnostics)) return "";
-  char *copy = strut_arena_text(&reader->scene->arena, text, strlen(text));
+  char *copy = strut_arena_text(reader->keep, text, strlen(text));
   if (copy) return copy;
   reader->out_of_memory = true;
   return "";

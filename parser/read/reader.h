@@ -271,7 +271,7 @@ size_t strut_next_entry(const strut_reader *reader, size_t *count);
 
 /** Sets what the reader fills. */
 void strut_reader_target(strut_reader *reader, strut_setup *setup);
-/** A copy in the scene's arena; "" if memory is out. */
+/** A copy that outlives the reader; "" if memory is out. */
 const char *strut_keep_text(strut_reader *reader, const char *text);
 
 /* copies.c: the scope in which a thing is read; without parts all of this does nothing */

@@ -57,7 +57,7 @@ STRUT_API strut_tree *strut_tree_find(const strut_tree *map, const char *key,
                                       strut_tree **key_node);
 
 /** True for a plain empty scalar, ~ and null. */
-bool strut_is_null(const strut_tree *value);
+STRUT_API bool strut_is_null(const strut_tree *value);
 
 /* ---- trees made of others, in an arena; NULL or false: memory is out ---- */
 
@@ -68,9 +68,10 @@ typedef struct strut_placed_tree {
 } strut_placed_tree;
 
 /** A copy of one node, by itself, that shares its children. */
-strut_tree *strut_tree_copy(strut_arena *arena, const strut_tree *node);
+STRUT_API strut_tree *strut_tree_copy(strut_arena *arena, const strut_tree *node);
 /** A plain text that stands where `like` does; NULL where the text is NULL, too. */
-strut_tree *strut_tree_scalar(strut_arena *arena, const strut_tree *like, const char *text);
+STRUT_API strut_tree *strut_tree_scalar(strut_arena *arena, const strut_tree *like,
+                                        const char *text);
 
 /** A mapping that grows. */
 typedef struct strut_tree_builder {
@@ -78,15 +79,15 @@ typedef struct strut_tree_builder {
 } strut_tree_builder;
 
 /** A mapping without entries, where `like` stands. Appending to one that could not be made fails. */
-strut_tree_builder strut_tree_begin(strut_arena *arena, const strut_tree *like);
+STRUT_API strut_tree_builder strut_tree_begin(strut_arena *arena, const strut_tree *like);
 /** Appends an entry, whose nodes are not shared; fails where one of them is NULL. */
-bool strut_tree_append(strut_tree_builder *builder, strut_tree *key, strut_tree *value);
+STRUT_API bool strut_tree_append(strut_tree_builder *builder, strut_tree *key, strut_tree *value);
 /** Appends copies of a key and of a value. */
-bool strut_tree_share(strut_tree_builder *builder, strut_arena *arena, const strut_tree *key,
-                      const strut_tree *value);
+STRUT_API bool strut_tree_share(strut_tree_builder *builder, strut_arena *arena,
+                                const strut_tree *key, const strut_tree *value);
 /** Takes a key out of a mapping whose entries are not shared. */
-void strut_tree_drop(strut_tree *map, const char *key);
+STRUT_API void strut_tree_drop(strut_tree *map, const char *key);
 /** Do two values say the same, wherever they stand? */
-bool strut_tree_equal(const strut_tree *a, const strut_tree *b);
+STRUT_API bool strut_tree_equal(const strut_tree *a, const strut_tree *b);
 
 #endif
