@@ -63,13 +63,15 @@ static strut_status read_ends(const strut_arguments *arguments, const followed *
 static strut_status setup_first(void *context, double value, strut_setup *setup,
                                 strut_error *error) {
   strut_follow_source *source = context;
-  const double values[STRUT_MOST_VARIED] = {value, source->second_value};
+  const strut_study_value values[] = {{.number = value}, {.number = source->second_value}};
   return strut_varied_scenes_read(&source->scenes, values, setup, error);
 }
 
 static strut_status setup_both(void *context, const double values[2], strut_setup *setup,
                                strut_error *error) {
-  return strut_varied_scenes_read(&((strut_follow_source *)context)->scenes, values, setup, error);
+  const strut_follow_source *source = context;
+  const strut_study_value both[] = {{.number = values[0]}, {.number = values[1]}};
+  return strut_varied_scenes_read(&source->scenes, both, setup, error);
 }
 
 /* The scene's own value where it is within the range, or the middle. */
@@ -87,8 +89,8 @@ static strut_status read_ranges(const strut_arguments *arguments, const strut_sc
   const followed first = {"--over", over, over->high ? over->low : arguments->from,
                           over->high ? over->high : arguments->until};
   const followed other = {"--and", and_over, and_over->low, and_over->high};
-  const char *const names[STRUT_MOST_VARIED] = {over->name, and_over->name};
-  strut_dimension dimensions[STRUT_MOST_VARIED] = {STRUT_DIM_NONE};
+  const char *const names[2] = {over->name, and_over->name};
+  strut_dimension dimensions[2] = {STRUT_DIM_NONE};
   strut_follow_second *second = &wanted->second;
   strut_status status = check_range(arguments, scene, &first);
   if (!status && both) status = check_range(arguments, scene, &other);

@@ -31,11 +31,11 @@ static bool add_varied(strut_varied_scenes *scenes, const char *name, strut_dime
   if (!declared) return false;
   scenes->settings[scenes->setting_count++] = (strut_setting){.name = name,
                                                               .text = "",
-                                                              .known = true,
+                                                              .known = !declared->text,
                                                               .bare = declared->bare,
                                                               .dimension = declared->dimension};
   scenes->varied++;
-  *dimension = declared->bare ? STRUT_DIM_NONE : declared->dimension;
+  if (dimension) *dimension = declared->bare ? STRUT_DIM_NONE : declared->dimension;
   return true;
 }
 
@@ -54,14 +54,15 @@ strut_status strut_varied_scenes_open(const strut_arguments *arguments, const ch
     if (!is_varied(names, count, arguments->overrides[i].name))
       scenes->settings[scenes->setting_count++] = (strut_setting){
           .name = arguments->overrides[i].name, .text = arguments->overrides[i].value};
-  for (size_t i = 0; i < count && fine; i++) fine = add_varied(scenes, names[i], &dimensions[i]);
+  for (size_t i = 0; i < count && fine; i++)
+    fine = add_varied(scenes, names[i], dimensions ? &dimensions[i] : NULL);
   if (fine) return STRUT_OK;
   strut_tell(arguments->listener, STRUT_MESSAGE_ERROR, NULL, "out of memory");
   return STRUT_NO_MEMORY;
 }
 
 /* The first finding by its place, without the "--set NAME=VALUE: " of a varied parameter. */
-static strut_status report_first(const strut_varied_scenes *scenes,
+static strut_status report_first(const strut_varied_scenes *scenes, const strut_setting *settings,
                                  const strut_diagnostics *diagnostics, strut_error *error) {
   char set[300], at[300];
   if (diagnostics->count == 0) return strut_fail(error, STRUT_BAD_SCENE, "the scene is not valid");
@@ -71,43 +72,52 @@ static strut_status report_first(const strut_varied_scenes *scenes,
   const char *message = first->message;
   size_t used = 0;
   for (size_t i = scenes->setting_count - scenes->varied; i < scenes->setting_count; i++) {
-    const strut_setting *s = &scenes->settings[i];
+    const strut_setting *s = &settings[i];
     snprintf(set, sizeof set, "--set %.100s=%.100s: ", s->name, s->text);
     if (strncmp(message, set, strlen(set)) == 0) message += strlen(set);
     int n = snprintf(at + used, sizeof at - used, "%s%.80s = %.40s", used ? ", " : "", s->name,
                      s->text);
     used += n > 0 ? (size_t)n : 0;
+    if (used > sizeof at - 1) used = sizeof at - 1;
   }
-  if (first->place.line == 0) return strut_fail(error, STRUT_BAD_SCENE, "at %s: %s", at, message);
-  return strut_fail(error, STRUT_BAD_SCENE, "%s:%u:%u: at %s: %s", scenes->file, first->place.line,
-                    first->place.column, at, message);
+  const char *between = used ? ": " : "", *where = used ? "at " : "";
+  if (!used) *at = '\0';
+  if (first->place.line == 0)
+    return strut_fail(error, STRUT_BAD_SCENE, "%s%s%s%s", where, at, between, message);
+  return strut_fail(error, STRUT_BAD_SCENE, "%s:%u:%u: %s%s%s%s",
+                    strut_diagnostics_file(diagnostics, first->place), first->place.line,
+                    first->place.column, where, at, between, message);
 }
 
-strut_status strut_varied_scenes_read(strut_varied_scenes *scenes, const double *values,
-                                      strut_setup *setup, strut_error *error) {
+strut_status strut_varied_scenes_read(const strut_varied_scenes *scenes,
+                                      const strut_study_value *values, strut_setup *setup,
+                                      strut_error *error) {
   strut_diagnostics diagnostics = {0};
-  char texts[STRUT_MOST_VARIED][STRUT_NUMBER_TEXT];
-  strut_setting *varied = scenes->settings + scenes->setting_count - scenes->varied;
-  for (size_t i = 0; i < scenes->varied; i++) {
-    strut_number_text(values[i], texts[i]);
-    varied[i].text = texts[i];
-    varied[i].value = values[i];
+  const size_t count = scenes->setting_count, fixed = count - scenes->varied;
+  strut_setting *settings = strut_allocate(count, sizeof *settings + STRUT_NUMBER_TEXT);
+  if (!settings) return strut_no_memory(error, "");
+  char(*texts)[STRUT_NUMBER_TEXT] = (char(*)[STRUT_NUMBER_TEXT])(settings + count);
+  if (count) memcpy(settings, scenes->settings, count * sizeof *settings);
+  for (size_t i = fixed; i < count; i++) {
+    const strut_study_value *value = &values[i - fixed];
+    strut_number_text(value->number, texts[i]);
+    settings[i].text = settings[i].known ? texts[i] : value->word;
+    settings[i].value = value->number;
   }
-  strut_status status =
-      strut_scene_source_read(scenes->source, scenes->settings, scenes->setting_count,
-                              scenes->purpose, &diagnostics, setup);
+  strut_status status = strut_scene_source_read(scenes->source, settings, count, scenes->purpose,
+                                                &diagnostics, setup);
   if (status == STRUT_BAD_SCENE)
-    status = report_first(scenes, &diagnostics, error);
+    status = report_first(scenes, settings, &diagnostics, error);
   else if (status != STRUT_OK)
-    strut_fail(error, status, "out of memory");
+    strut_no_memory(error, "");
   strut_diagnostics_free(&diagnostics);
-  for (size_t i = 0; i < scenes->varied; i++) varied[i].text = "";
+  strut_release(settings);
   return status;
 }
 
 strut_status strut_varied_scenes_at(void *context, double value, strut_setup *setup,
                                     strut_error *error) {
-  return strut_varied_scenes_read(context, &value, setup, error);
+  return strut_varied_scenes_read(context, &(strut_study_value){.number = value}, setup, error);
 }
 
 void strut_varied_scenes_free(strut_varied_scenes *scenes) {

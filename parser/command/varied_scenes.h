@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Scenes of one model over values of one or two of its parameters, as paths and branches need them.
+ * Scenes of one model over values of some of its parameters, as paths, branches and sweeps need them.
  */
 #ifndef STRUT_PARSER_COMMAND_VARIED_SCENES_H
 #define STRUT_PARSER_COMMAND_VARIED_SCENES_H
 
+#include "engine/scene/study.h"
 #include "parser/command/arguments.h"
 
-enum { STRUT_MOST_VARIED = 2 };
-
-/** Zero-initialise but for what stands before `own`. Must not move while scenes are made. */
+/** Zero-initialise but for what stands before `own`. */
 typedef struct strut_varied_scenes {
   const char *file, *text; /* of the model; not owned */
   size_t length;
@@ -23,18 +22,19 @@ typedef struct strut_varied_scenes {
 /** The parameter of the scene with that name, or NULL. */
 const strut_parameter *strut_find_parameter(const strut_scene *scene, const char *name);
 /**
- * Varies the parameters `names`, which the scene has and which are numbers; the names are kept. Their
- * dimensions go to `dimensions`. STRUT_NO_MEMORY; the listener hears it. Free `scenes` in any case.
+ * Varies the parameters `names`, which the scene has; the names are kept. Their dimensions go to
+ * `dimensions`, unless it is NULL. STRUT_NO_MEMORY; the listener hears it. Free `scenes` in any case.
  */
 strut_status strut_varied_scenes_open(const strut_arguments *arguments, const char *const *names,
                                       size_t count, strut_varied_scenes *scenes,
                                       strut_dimension *dimensions);
 /**
- * The scene where the parameters have these values [SI]. STRUT_BAD_SCENE with the first finding and its
- * place.
+ * The scene where the parameters have these values. STRUT_BAD_SCENE with the first finding and its place. From any
+ * thread.
  */
-strut_status strut_varied_scenes_read(strut_varied_scenes *scenes, const double *values,
-                                      strut_setup *setup, strut_error *error);
+strut_status strut_varied_scenes_read(const strut_varied_scenes *scenes,
+                                      const strut_study_value *values, strut_setup *setup,
+                                      strut_error *error);
 /** The same of a single parameter; `context` is the strut_varied_scenes. */
 strut_status strut_varied_scenes_at(void *context, double value, strut_setup *setup,
                                     strut_error *error);

@@ -91,15 +91,18 @@ static const strut_refused_option refused[] = {
     {"step", "nothing is integrated over time"},
     {NULL, NULL}};
 
-static const strut_option equilibria_options[] = {
-    STRUT_SET_OPTION,
-    STRUT_THREADS_OPTION,
-    {.table = strut_equilibria_analysis_options},
-    STRUT_OUTPUT_OPTION("DIR", "write equilibria.json into DIR"),
-    STRUT_JSON_OPTION,
-    {.table = strut_plot_options},
-    {.name = NULL},
-};
+/* Options of a command by its analysis; LAST: a further row, or the end. */
+#define STATICS_OPTIONS(NAME, FILES, LAST)                                                         \
+  static const strut_option NAME##_options[] = {{.table = strut_##NAME##_analysis_options},        \
+                                                STRUT_SET_OPTION,                                  \
+                                                STRUT_THREADS_OPTION,                              \
+                                                STRUT_OUTPUT_OPTION("DIR", FILES),                 \
+                                                STRUT_JSON_OPTION,                                 \
+                                                {.table = strut_plot_options},                     \
+                                                LAST,                                              \
+                                                {.name = NULL}};
+
+STATICS_OPTIONS(equilibria, "write equilibria.json into DIR", {.name = NULL})
 
 const strut_command strut_command_equilibria = {
     .name = "equilibria",
@@ -119,15 +122,7 @@ const strut_command strut_command_equilibria = {
     .timed = true,
 };
 
-static const strut_option modes_options[] = {
-    STRUT_SET_OPTION,
-    STRUT_THREADS_OPTION,
-    {.table = strut_modes_analysis_options},
-    STRUT_OUTPUT_OPTION("DIR", "write modes.json and modes.csv into DIR"),
-    STRUT_JSON_OPTION,
-    {.table = strut_plot_options},
-    {.name = NULL},
-};
+STATICS_OPTIONS(modes, "write modes.json and modes.csv into DIR", {.name = NULL})
 
 const strut_command strut_command_modes = {
     .name = "modes",
@@ -143,15 +138,7 @@ const strut_command strut_command_modes = {
     .timed = true,
 };
 
-static const strut_option rigidity_options[] = {
-    {.table = strut_rigidity_analysis_options},
-    STRUT_SET_OPTION,
-    STRUT_THREADS_OPTION,
-    STRUT_OUTPUT_OPTION("DIR", "write rigidity.json into DIR"),
-    STRUT_JSON_OPTION,
-    {.table = strut_plot_options},
-    {.name = NULL},
-};
+STATICS_OPTIONS(rigidity, "write rigidity.json into DIR", {.name = NULL})
 
 const strut_command strut_command_rigidity = {
     .name = "rigidity",
@@ -168,16 +155,7 @@ const strut_command strut_command_rigidity = {
     .timed = true,
 };
 
-static const strut_option path_options[] = {
-    {.table = strut_path_analysis_options},
-    STRUT_SET_OPTION,
-    STRUT_THREADS_OPTION,
-    STRUT_OUTPUT_OPTION("DIR", "write path.json and path.csv into DIR"),
-    STRUT_JSON_OPTION,
-    {.table = strut_plot_options},
-    {.table = strut_axis_options},
-    {.name = NULL},
-};
+STATICS_OPTIONS(path, "write path.json and path.csv into DIR", {.table = strut_axis_options})
 
 static const strut_command_variant path_forms[] = {{"periodic", &strut_command_periodic},
                                                    {NULL, NULL}};

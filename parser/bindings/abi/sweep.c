@@ -10,6 +10,7 @@
 #include "parser/bindings/abi/handles.h"
 #include "parser/command/arguments.h"
 #include "parser/command/run_settings.h"
+#include "parser/command/varied_scenes.h"
 #include "parser/write/write_scene.h"
 
 static const char slots_name[] = "points.slots", table_name[] = "table.csv";
@@ -19,11 +20,11 @@ static const char *const files[] = {slots_name, table_name, NULL};
 typedef struct sweep {
   const strutlib_scene *scene;
   strut_arguments options; /* of method and model, for each point; without messages */
-  strut_purpose purpose;
+  strut_varied_scenes scenes;
   bool located; /* the error is there, with its places */
   strut_study study;
   strut_study_axis axis;
-  const strut_declared **declared; /* (axis.column_count) */
+  const char **names; /* (axis.column_count) of the parameters, as declared */
   strut_sweep_plan plan;
   strut_slots *slots;
   int64_t threads;
@@ -66,7 +67,7 @@ static strut_status add_axis(sweep *s, size_t k, const char *name, const double 
                             .unit = d->bare || d->text ? "1" : strut_dimension_unit(d->dimension),
                             .word = d->text,
                             .kind = STRUT_RANGE_LIST};
-  s->declared[k] = d;
+  s->names[k] = d->name;
   double *numbers = strut_arena_allocate(&s->arena, count, sizeof *numbers);
   const char **texts = strut_arena_allocate(&s->arena, count, sizeof *texts);
   if (!numbers || !texts) return strut_no_memory(what, "");
@@ -97,8 +98,8 @@ static strut_status add_axes(sweep *s, size_t axes, const char *const *names, si
                       (long long)STRUT_STUDY_MOST_POINTS, count);
   s->axis = (strut_study_axis){.count = (int64_t)count, .column_count = axes};
   s->axis.columns = strut_arena_allocate(&s->arena, axes, sizeof *s->axis.columns);
-  s->declared = strut_arena_allocate(&s->arena, axes, sizeof *s->declared);
-  if (!s->axis.columns || !s->declared) return strut_no_memory(what, "");
+  s->names = strut_arena_allocate(&s->arena, axes, sizeof *s->names);
+  if (!s->axis.columns || !s->names) return strut_no_memory(what, "");
   for (size_t k = 0; k < axes && status == STRUT_OK; k++) {
     for (size_t before = 0; before < k; before++)
       if (strcmp(names[before], names[k]) == 0)
@@ -149,11 +150,14 @@ static strut_status check_options(abi_call *call, sweep *s) {
   const strut_arguments *a = &call->arguments;
   bool run = s->study.compute == STRUT_COMPUTE_RUN;
   strut_setup setup;
-  s->purpose = run ? strut_run_options_purpose(a) : STRUT_FOR_ANY_STATICS;
+  s->scenes =
+      (strut_varied_scenes){.file = s->scene->source->name,
+                            .source = s->scene->source->tree,
+                            .purpose = run ? strut_run_options_purpose(a) : STRUT_FOR_ANY_STATICS};
   s->options = *a;
   s->options.listener = NULL;
   if (!strut_run_option_given(a, 0)) return STRUT_OK;
-  strut_status status = abi_setup(s->scene, s->purpose, &setup, call->error);
+  strut_status status = abi_setup(s->scene, s->scenes.purpose, &setup, call->error);
   s->located = status != STRUT_OK;
   if (status != STRUT_OK) return status;
   status = strut_run_options_apply(a, &setup);
@@ -163,52 +167,10 @@ static strut_status check_options(abi_call *call, sweep *s) {
 
 /* ---- scenes of points; called from several threads ---- */
 
-static bool is_axis(const sweep *s, const char *name) {
-  for (size_t k = 0; k < s->axis.column_count; k++)
-    if (strcmp(s->axis.columns[k].name, name) == 0) return true;
-  return false;
-}
-
-static size_t fill_settings(const sweep *s, const strut_study_value *values,
-                            strut_setting *settings, char (*texts)[STRUT_NUMBER_TEXT]) {
-  size_t count = 0;
-  for (size_t i = 0; i < s->scene->setting_count; i++)
-    if (!is_axis(s, s->scene->settings[i].name)) settings[count++] = s->scene->settings[i];
-  for (size_t k = 0; k < s->axis.column_count; k++) {
-    const strut_declared *d = s->declared[k];
-    strut_number_text(values[k].number, texts[k]);
-    settings[count++] = (strut_setting){.name = d->name,
-                                        .text = d->text ? values[k].word : texts[k],
-                                        .known = !d->text,
-                                        .bare = d->bare,
-                                        .value = values[k].number,
-                                        .dimension = d->dimension};
-  }
-  return count;
-}
-
 static strut_status setup_of(void *context, const strut_study_value *values, strut_setup *setup,
                              strut_error *error) {
   const sweep *s = context;
-  size_t most = s->scene->setting_count + s->axis.column_count;
-  strut_setting *settings = strut_allocate(most, sizeof *settings + STRUT_NUMBER_TEXT);
-  if (!settings) return strut_no_memory(error, "");
-  size_t count = fill_settings(s, values, settings, (char(*)[STRUT_NUMBER_TEXT])(settings + most));
-  strut_diagnostics found = {0};
-  strut_status status =
-      strut_scene_source_read(s->scene->source->tree, settings, count, s->purpose, &found, setup);
-  if (status == STRUT_BAD_SCENE) {
-    const strut_diagnostic *first = &found.items[0];
-    for (size_t i = 1; i < found.count; i++)
-      if (found.items[i].place.line < first->place.line) first = &found.items[i];
-    strut_fail(error, status, "%s:%u: %s",
-               first->place.file ? found.used[first->place.file - 1].file : s->scene->source->name,
-               first->place.line, first->message);
-  } else if (status != STRUT_OK) {
-    strut_no_memory(error, "");
-  }
-  strut_diagnostics_free(&found);
-  strut_release(settings);
+  strut_status status = strut_varied_scenes_read(&s->scenes, values, setup, error);
   if (status == STRUT_OK && (status = strut_run_options_apply(&s->options, setup)) != STRUT_OK) {
     strut_fail(error, status, "the options do not fit the scene of this point");
     strut_setup_free(setup);
@@ -401,12 +363,16 @@ strutlib_result *strutlib_sweep(const strutlib_scene *scene, size_t axis_count,
     if (status == STRUT_OK) status = check_options(&call, &s);
     if (status == STRUT_OK)
       status = add_axes(&s, axis_count, axes, point_count, points, words, &what);
+    if (status == STRUT_OK)
+      status =
+          strut_varied_scenes_open(&call.arguments, s.names, s.axis.column_count, &s.scenes, NULL);
     for (size_t i = 0; i < keep_count && status == STRUT_OK; i++)
       status = add_kept(&s, keep[i], &what);
     if (status == STRUT_OK) status = run_sweep(&s, result, &what);
     if (status != STRUT_OK && !s.located) abi_call_fail(&call, status, &what);
   }
   strut_sweep_plan_free(&s.plan);
+  strut_varied_scenes_free(&s.scenes);
   strut_arena_free(&s.arena);
   if (result) result->status = (int)status;
   if (status != STRUT_OK && !(status == STRUT_INTERRUPTED && result->table)) {

@@ -123,6 +123,22 @@ class Owner {
 }
 if (Symbol.dispose) Owner.prototype[Symbol.dispose] = Owner.prototype.close;
 
+/* Values and arrays by dotted name of what the module's functions strutlib_OF_... know. */
+class Values extends Owner {
+  #of;
+  constructor(handle, free, of) {
+    super(handle, free);
+    this.#of = of;
+  }
+  #find(what, place, name, ...to) {
+    return module()["_strutlib_" + this.#of + "_" + what](this.handle, place.text(name), ...to);
+  }
+  number(name) { return numberOf((place, at) => this.#find("number", place, name, at)); }
+  flag(name) { return flagOf((place, at) => this.#find("flag", place, name, at)); }
+  text(name) { return withMemory((place) => textAt(this.#find("text", place, name))); }
+  array(name) { return arrayOf((place, ...to) => this.#find("array", place, name, ...to)); }
+}
+
 /* ---- scenes ---- */
 
 /* The folder in which a scene's files are, below /scenes; gone with the last scene that has it. */
@@ -184,13 +200,13 @@ function openScene(text, { name = "scene.yaml", settings = {}, files = {} } = {}
 }
 
 /** A scene as it was opened, with its settings: constant. */
-export class Scene extends Owner {
+export class Scene extends Values {
   #folder;
   constructor(handle, folder) {
     super(handle, (engine, scene) => {
       engine._strutlib_close(scene);
       folder.leave();
-    });
+    }, "scene");
     folder.join();
     this.#folder = folder;
   }
@@ -216,19 +232,6 @@ export class Scene extends Owner {
   }
   index(kind, name) {
     return withMemory((place) => module()._strutlib_index(this.handle, place.text(kind), place.text(name)));
-  }
-  number(name) {
-    return numberOf((place, at) => module()._strutlib_scene_number(this.handle, place.text(name), at));
-  }
-  flag(name) {
-    return flagOf((place, at) => module()._strutlib_scene_flag(this.handle, place.text(name), at));
-  }
-  text(name) {
-    return withMemory((place) => textAt(module()._strutlib_scene_text(this.handle, place.text(name))));
-  }
-  array(name) {
-    return arrayOf((place, ...to) =>
-      module()._strutlib_scene_array(this.handle, place.text(name), ...to));
   }
   yaml({ parts = false } = {}) {
     return taken(must((_, error) => module()._strutlib_scene_yaml(this.ready, parts ? 1 : 0, error)));
@@ -329,10 +332,10 @@ function compute({ progress, row, limit } = {}, call) {
 }
 
 /** What a call computed: constant. */
-export class Result extends Owner {
+export class Result extends Values {
   #json;
   constructor(handle, error) {
-    super(handle, (engine, result) => engine._strutlib_result_free(result));
+    super(handle, (engine, result) => engine._strutlib_result_free(result), "result");
     this.error = error; /* why it is not whole, or null */
   }
   get status() { return module()._strutlib_result_status(this.handle); }
@@ -342,19 +345,6 @@ export class Result extends Owner {
   get json() { return (this.#json ||= JSON.parse(this.jsonText)); }
   get table() { return textAt(module()._strutlib_result_table(this.handle)); }
   get warnings() { return list((i) => module()._strutlib_result_warning(this.handle, i)); }
-  number(name) {
-    return numberOf((place, at) => module()._strutlib_result_number(this.handle, place.text(name), at));
-  }
-  flag(name) {
-    return flagOf((place, at) => module()._strutlib_result_flag(this.handle, place.text(name), at));
-  }
-  text(name) {
-    return withMemory((place) => textAt(module()._strutlib_result_text(this.handle, place.text(name))));
-  }
-  array(name) {
-    return arrayOf((place, ...to) =>
-      module()._strutlib_result_array(this.handle, place.text(name), ...to));
-  }
   get arrays() { return list((i) => module()._strutlib_result_array_name(this.handle, i)); }
   unit(name) {
     return withMemory((place) =>

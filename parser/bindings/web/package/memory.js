@@ -131,17 +131,12 @@ export function withMemory(work) {
 function errorAt(error) {
   if (!error) return null;
   const messages = [], count = engine._strutlib_error_count(error);
-  for (let i = 0; i < count; i++)
-    messages.push({
-      text: textAt(engine._strutlib_error_text(error, i)),
-      file: textAt(engine._strutlib_error_file(error, i)),
-      line: engine._strutlib_error_line(error, i),
-      column: engine._strutlib_error_column(error, i),
-      length: engine._strutlib_error_length(error, i),
-      source: textAt(engine._strutlib_error_source(error, i)),
-      hint: textAt(engine._strutlib_error_hint(error, i)),
-      key: textAt(engine._strutlib_error_key(error, i))
-    });
+  const part = (name, i) => engine["_strutlib_error_" + name](error, i);
+  for (let i = 0; i < count; i++) {
+    const texts = ["text", "file", "source", "hint", "key"].map((name) => [name, textAt(part(name, i))]);
+    const numbers = ["line", "column", "length"].map((name) => [name, part(name, i)]);
+    messages.push(Object.fromEntries([...texts, ...numbers]));
+  }
   const found = new StrutError({
     status: engine._strutlib_error_status(error),
     message: textAt(engine._strutlib_error_message(error)),
