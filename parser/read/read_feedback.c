@@ -210,17 +210,9 @@ static int claims_word(void *context, strut_piece word) {
 
 bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
                                strut_owner owner, strut_program *program, strut_quantity *q) {
-  strut_compiler compiler = {
-      .column = find_column, .pair = find_pair, .context = reader, .claims = claims_word};
+  strut_compiler compiler = {.column = find_column, .pair = find_pair, .claims = claims_word};
   if (strut_ends_at_comma(reader, value, key, owner)) return false;
-  compiler.program = strut_reader_allocate(reader, &reader->scratch, strlen(value->text) + 1,
-                                           sizeof *compiler.program);
-  if (!compiler.program) return false;
-  if (!strut_read_program(reader, value, key, owner, &compiler, q)) {
-    reader->failed = true;
-    return false;
-  }
-  program->instruction = strut_keep_program(reader, &compiler);
+  program->instruction = strut_compile(reader, value, key, owner, &compiler, q);
   program->length = compiler.length;
   program->depth = compiler.depth;
   return program->instruction != NULL;

@@ -283,7 +283,7 @@ static int find_pair(void *context, strut_piece word, strut_piece first, strut_p
   return 1;
 }
 
-strut_instruction *strut_keep_program(strut_reader *reader, const strut_compiler *c) {
+static strut_instruction *keep_program(strut_reader *reader, const strut_compiler *c) {
   strut_scene *scene = reader->scene;
   char unit[STRUT_SUFFIX_TEXT];
   strut_instruction *program =
@@ -298,19 +298,26 @@ strut_instruction *strut_keep_program(strut_reader *reader, const strut_compiler
   return program;
 }
 
+strut_instruction *strut_compile(strut_reader *reader, const strut_tree *value, const char *key,
+                                 strut_owner owner, strut_compiler *compiler, strut_quantity *q) {
+  compiler->context = reader;
+  compiler->program = strut_reader_allocate(reader, &reader->scratch, strlen(value->text) + 1,
+                                            sizeof *compiler->program);
+  if (!compiler->program) return NULL;
+  if (strut_read_program(reader, value, key, owner, compiler, q))
+    return keep_program(reader, compiler);
+  reader->failed = true;
+  return NULL;
+}
+
 strut_instruction *strut_read_column(strut_reader *reader, const strut_tree *value, const char *key,
                                      strut_owner owner, strut_column *column) {
-  strut_compiler compiler = {.column = find_anywhere, .pair = find_pair, .context = reader};
+  strut_compiler compiler = {.column = find_anywhere, .pair = find_pair};
   strut_quantity q;
-  compiler.program = strut_reader_allocate(reader, &reader->scratch, strlen(value->text) + 1,
-                                           sizeof *compiler.program);
-  if (!compiler.program) return NULL;
-  if (!strut_read_program(reader, value, key, owner, &compiler, &q)) {
-    reader->failed = true;
-    return NULL;
-  }
-  *column = compiler.program->instruction.column;
-  if (compiler.length == 1 && q.varies) return strut_keep_program(reader, &compiler);
+  strut_instruction *program = strut_compile(reader, value, key, owner, &compiler, &q);
+  if (!program) return NULL;
+  *column = program->column;
+  if (compiler.length == 1 && q.varies) return program;
   strut_report_error(reader, value->place,
                      "expected one column of the motion for '%s' of %s, such as com.vy, NODE.y or "
                      "MEMBER.force; what follows from several is an expression of a signal",
@@ -321,16 +328,10 @@ strut_instruction *strut_read_column(strut_reader *reader, const strut_tree *val
 /* The expression; *dimension is that of its values. */
 static bool read_expression(strut_reader *reader, const strut_tree *value, strut_owner owner,
                             strut_quantity_definition *d, strut_dimension *dimension) {
-  size_t most = strlen(value->text) + 1;
-  strut_compiler compiler = {.column = find_column, .pair = find_pair, .context = reader};
+  strut_compiler compiler = {.column = find_column, .pair = find_pair};
   strut_quantity q;
-  compiler.program =
-      strut_reader_allocate(reader, &reader->scratch, most, sizeof *compiler.program);
-  if (!compiler.program) return false;
-  if (!strut_read_program(reader, value, "of", owner, &compiler, &q)) {
-    reader->failed = true;
-    return false;
-  }
+  d->program = strut_compile(reader, value, "of", owner, &compiler, &q);
+  if (!d->program) return false;
   if (!q.varies) {
     strut_report_error(
         reader, value->place,
@@ -339,8 +340,6 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
         strut_owner_text(reader, owner));
     return false;
   }
-  d->program = strut_keep_program(reader, &compiler);
-  if (!d->program) return false;
   d->length = compiler.length;
   d->depth = compiler.depth;
   *dimension = q.bare ? STRUT_DIM_NONE : q.dimension;

@@ -539,8 +539,9 @@ bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, co
  * -1: it was reported.
  */
 int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension *dimension);
-/** The instructions in the scene's own memory; NULL: out of memory. */
-strut_instruction *strut_keep_program(strut_reader *reader, const strut_compiler *compiler);
+/** The expression as a program that the scene keeps, by the compiler's names; NULL: that is reported. */
+strut_instruction *strut_compile(strut_reader *reader, const strut_tree *value, const char *key,
+                                 strut_owner owner, strut_compiler *compiler, strut_quantity *q);
 /**
  * Within {...} a comma ends an unquoted text: angle(a, b) becomes "angle(a". True where that has
  * happened, which is reported.

@@ -481,10 +481,6 @@ static void fill_columns(const strut_sweep_plan *plan, const rest_result *r,
   }
 }
 
-static const char *member_name(const strut_scene *scene, size_t i) {
-  return scene->members[i].name;
-}
-
 /* Positions and lengths of a form: its start, which a new model has. */
 static strut_status fill_form(const strut_sweep_plan *plan, strut_sweep_job *job) {
   strut_model *model = NULL;
@@ -494,7 +490,7 @@ static strut_status fill_form(const strut_sweep_plan *plan, strut_sweep_job *job
   if (status) return status;
   strut_sweep_fill_positions(plan, scene, model->start, &job->cells);
   for (size_t i = 0; i < plan->member_count; i++) {
-    int64_t at = strut_sweep_named(plan->members[i], i, scene->member_count, member_name, scene);
+    int64_t at = strut_sweep_named(plan->members[i], i, scene, STRUT_OWNER_MEMBER);
     strut_sweep_number(&job->cells, at >= 0
                                         ? strut_member_path_length(model, (int32_t)at, model->start)
                                         : (double)NAN);

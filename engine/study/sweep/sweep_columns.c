@@ -100,40 +100,25 @@ bool strut_sweep_add_column(strut_sweep_plan *plan, const char *prefix, const ch
   return text != NULL;
 }
 
-static const char *contact_name(const strut_scene *scene, size_t i) {
-  return i < scene->contact_count ? strut_contact_name(scene, i) : NULL;
-}
-
-static const char *node_name(const strut_scene *scene, size_t i) {
-  return i < scene->node_count ? scene->nodes[i].name : NULL;
-}
-
-static const char *member_name(const strut_scene *scene, size_t i) {
-  return i < scene->member_count ? scene->members[i].name : NULL;
-}
-
-/* Copies the names of a scene that outlive it. */
-static bool copy_names(strut_sweep_plan *plan, const strut_scene *scene, size_t count,
-                       const char *(*name_at)(const strut_scene *, size_t), size_t *to_count,
-                       const char ***to) {
-  *to = strut_arena_allocate(&plan->arena, count, sizeof **to);
-  for (size_t i = 0; i < count && *to; i++) {
-    const char *name = name_at(scene, i);
+/* Copies the names of a scene that outlive it, if they are wanted. */
+static bool copy_names(strut_sweep_plan *plan, const strut_scene *scene, bool wanted,
+                       strut_channel_owner owner, size_t *count, const char ***to) {
+  *count = wanted ? strut_owner_count(owner, scene) : 0;
+  *to = strut_arena_allocate(&plan->arena, *count, sizeof **to);
+  for (size_t i = 0; i < *count && *to; i++) {
+    const char *name = strut_owner_name(owner, scene, i);
     (*to)[i] = strut_arena_text(&plan->arena, name, strlen(name));
     if (!(*to)[i]) return false;
   }
-  *to_count = count;
   return *to != NULL;
 }
 
 static bool keep_names(strut_sweep_plan *plan, const strut_scene *scene) {
-  bool contacts = keeps(plan, STRUT_KEEP_CONTACTS), nodes = keeps(plan, STRUT_KEEP_POSITIONS);
-  bool members = keeps(plan, STRUT_KEEP_LENGTHS);
-  return copy_names(plan, scene, contacts ? scene->contact_count : 0, contact_name,
+  return copy_names(plan, scene, keeps(plan, STRUT_KEEP_CONTACTS), STRUT_OWNER_CONTACT,
                     &plan->contact_count, &plan->contacts) &&
-         copy_names(plan, scene, nodes ? scene->node_count : 0, node_name, &plan->node_count,
-                    &plan->nodes) &&
-         copy_names(plan, scene, members ? scene->member_count : 0, member_name,
+         copy_names(plan, scene, keeps(plan, STRUT_KEEP_POSITIONS), STRUT_OWNER_NODE,
+                    &plan->node_count, &plan->nodes) &&
+         copy_names(plan, scene, keeps(plan, STRUT_KEEP_LENGTHS), STRUT_OWNER_MEMBER,
                     &plan->member_count, &plan->members);
 }
 
@@ -348,19 +333,20 @@ void strut_sweep_fill_counts(const strut_sweep_plan *plan, const strut_model *mo
     if (keeps(plan, counts[i].keep)) strut_sweep_number(cells, values[i]);
 }
 
-int64_t strut_sweep_named(const char *name, size_t i, size_t count,
-                          const char *(*name_at)(const strut_scene *scene, size_t i),
-                          const strut_scene *scene) {
-  if (i < count && strcmp(name_at(scene, i), name) == 0) return (int64_t)i; /* almost always */
+int64_t strut_sweep_named(const char *name, size_t i, const strut_scene *scene,
+                          strut_channel_owner owner) {
+  size_t count = strut_owner_count(owner, scene);
+  if (i < count && strcmp(strut_owner_name(owner, scene, i), name) == 0)
+    return (int64_t)i; /* almost always */
   for (size_t k = 0; k < count; k++)
-    if (strcmp(name_at(scene, k), name) == 0) return (int64_t)k;
+    if (strcmp(strut_owner_name(owner, scene, k), name) == 0) return (int64_t)k;
   return -1;
 }
 
 void strut_sweep_fill_positions(const strut_sweep_plan *plan, const strut_scene *scene,
                                 const double *positions, strut_row_buffer *cells) {
   for (size_t i = 0; i < plan->node_count; i++) {
-    int64_t at = strut_sweep_named(plan->nodes[i], i, scene->node_count, node_name, scene);
+    int64_t at = strut_sweep_named(plan->nodes[i], i, scene, STRUT_OWNER_NODE);
     for (int c = 0; c < 2; c++)
       strut_sweep_number(cells, positions && at >= 0 ? positions[2 * at + c] : (double)NAN);
   }
@@ -369,9 +355,8 @@ void strut_sweep_fill_positions(const strut_sweep_plan *plan, const strut_scene 
 static void fill_contacts(const strut_sweep_plan *plan, const strut_scene *scene,
                           const strut_summary *s, strut_row_buffer *cells) {
   for (size_t i = 0; i < plan->contact_count; i++) {
-    size_t count =
-        s->end.contact_count < scene->contact_count ? s->end.contact_count : scene->contact_count;
-    int64_t at = strut_sweep_named(plan->contacts[i], i, count, contact_name, scene);
+    int64_t at = strut_sweep_named(plan->contacts[i], i, scene, STRUT_OWNER_CONTACT);
+    if (at >= (int64_t)s->end.contact_count) at = -1;
     strut_sweep_number(cells, at >= 0 ? s->end.contacts[at].duty : (double)NAN);
     strut_sweep_number(cells, at >= 0 ? s->end.contacts[at].max_height : (double)NAN);
   }

@@ -37,10 +37,9 @@ bool strut_sweep_add_column(strut_sweep_plan *plan, const char *prefix, const ch
 /** Appends the positions (2 node_count) of the nodes that the columns name; NULL: missing. */
 void strut_sweep_fill_positions(const strut_sweep_plan *plan, const strut_scene *scene,
                                 const double *positions, strut_row_buffer *cells);
-/** Index in the scene of what was the i-th of `count` names; -1: there is none of that name. */
-int64_t strut_sweep_named(const char *name, size_t i, size_t count,
-                          const char *(*name_at)(const strut_scene *scene, size_t i),
-                          const strut_scene *scene);
+/** Index in the scene of what was the i-th of its kind by name; -1: there is none of that name. */
+int64_t strut_sweep_named(const char *name, size_t i, const strut_scene *scene,
+                          strut_channel_owner owner);
 
 /* sweep_point.c */
 
