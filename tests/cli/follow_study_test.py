@@ -148,8 +148,7 @@ def refused(text, *words, study="study.yaml", change=None, code=1):
         name = "changed.yaml"
         with open(path(study), encoding="utf-8") as file:
             write(name, file.read().replace(*change))
-    done = run(*(words or ("check",)), name, code=code)
-    check(text in done.stderr, f"stderr lacks '{text}': {done.stderr}")
+    run(*(words or ("check",)), name, code=code, err=text)
 
 
 refused("--shard cannot be used", "sweep", "-o", "none", "--shard", "0/2")

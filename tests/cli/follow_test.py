@@ -232,8 +232,7 @@ check(all(b["backwards"] is not None and 0 < b["backwards"] < 20 for b in pushed
 
 
 def refused(model, over, text, *words, code=1):
-    done = run("path", "--periodic", model, *(("--over", over) if over else ()), *words, code=code)
-    check(text in done.stderr, f"stderr lacks '{text}': {done.stderr}")
+    run("path", "--periodic", model, *(("--over", over) if over else ()), *words, code=code, err=text)
 
 
 refused("linear.yaml", None, "missing --over NAME=LOW..HIGH")

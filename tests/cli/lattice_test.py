@@ -4,19 +4,14 @@ up or down, as long as their coupling is weak: all where they are few; else what
 
 usage: lattice_test.py STRUT LATTICE
 """
-import json
 import re
-import subprocess
 import sys
 
-from testing import check, fail, finish, strut
+from testing import answer, check, finish, run
 
 
-def find(columns, rows, *options):
-    done = subprocess.run([strut, "equilibria", sys.argv[2], "--set", f"columns={columns}", "--set", f"rows={rows}",
-                           *options], capture_output=True, text=True)
-    check(not done.returncode, f"{columns} x {rows} cells: {done.stderr}")
-    return done.stdout
+def cells(columns, rows):
+    return "equilibria", sys.argv[2], "--set", f"columns={columns}", "--set", f"rows={rows}"
 
 
 def choice(equilibrium, columns, rows):
@@ -25,18 +20,17 @@ def choice(equilibrium, columns, rows):
 
 
 for columns, rows in ((2, 2), (2, 3)):
-    reported = json.loads(find(columns, rows, "--json"))
+    reported = answer(*cells(columns, rows))
     stable = {choice(e, columns, rows) for e in reported["equilibria"] if e["label"] == "stable"}
     labels = [e["label"] for e in reported["equilibria"]]
-    if not len(stable) == labels.count("stable") == 2 ** (columns * rows):
-        fail(f"{columns} x {rows} cells: {labels.count('stable')} stable states, {len(stable)} different ones")
+    check(len(stable) == labels.count("stable") == 2 ** (columns * rows),
+          f"{columns} x {rows} cells: {labels.count('stable')} stable states, {len(stable)} different ones")
     check(reported["missed"]["at_least"] == 0, f"{columns} x {rows} cells: {reported['missed']}")
 
-printed = find(6, 4)
+printed = run(*cells(6, 4)).stdout
 listed = int(re.search(r"(\d+) equilibria from", printed)[1])
 more = int(re.search(r"at least (\d+) more stable ones exist", printed)[1])
 chance = float(re.search(r"finds a new stable one: about ([0-9.]+)", printed)[1])
-if "cut short" not in printed or not more > 1000 or listed + more > 2 ** 24 or not chance > 0.5:
-    fail(f"6 x 4 cells: {printed[:800]}")
+check("cut short" in printed and 1000 < more <= 2 ** 24 - listed and chance > 0.5, f"6 x 4 cells: {printed[:800]}")
 
 finish()

@@ -6,20 +6,11 @@ the motions left are those that rigidity finds without them.
 
 usage: modes_rigidity_test.py STRUT
 """
-import json
-import os
 import random
-import subprocess
 
-from testing import check, finish, strut, work
+from testing import answer, check, finish, write
 
 STRUCTURES = 60
-
-
-def ask(command, scene):
-    done = subprocess.run([strut, command, scene, "--json"], capture_output=True, text=True)
-    check(done.returncode == 0, f"strut {command}: {done.stderr}")
-    return json.loads(done.stdout or "{}")
 
 
 def draw(seed):
@@ -35,7 +26,7 @@ def draw(seed):
     return places, draws.sample(range(len(places)), draws.randint(0, min(3, len(places) - 1))), members
 
 
-def write(path, structure, kinds):
+def write_scene(structure, kinds):
     """With members of these kinds only; `kinds` says as what each is written."""
     places, fixed, members = structure
     lines = ["strut: 1", "nodes:"]
@@ -45,22 +36,20 @@ def write(path, structure, kinds):
     for k, (kind, (i, j), stiffness) in enumerate(members):
         if kind in kinds:
             lines.append(f"  m{k}: {{kind: {kinds[kind]}, nodes: [n{i}, n{j}], stiffness: {stiffness!r}}}")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("\n".join(lines) + "\n")
+    write("scene.yaml", "\n".join(lines) + "\n")
 
 
-scene = os.path.join(work, "scene.yaml")
 for seed in range(STRUCTURES):
     structure = draw(seed)
     if not any(kind == "bar" for kind, _, _ in structure[2]):
         continue
     for modes_of, rigidity_of in (({"bar": "bar", "cable": "bar"}, {"bar": "bar", "cable": "bar"}),
                                   ({"bar": "bar", "cable": "cable"}, {"bar": "bar"})):
-        write(scene, structure, modes_of)
-        modes = ask("modes", scene).get("modes", [])
+        write_scene(structure, modes_of)
+        modes = answer("modes", "scene.yaml").get("modes", [])
         free = sum(mode["eigenvalue"] == 0 for mode in modes)
-        write(scene, structure, rigidity_of)
-        expected = ask("rigidity", scene).get("mechanisms", {}).get("count")
+        write_scene(structure, rigidity_of)
+        expected = answer("rigidity", "scene.yaml").get("mechanisms", {}).get("count")
         check(free == expected, f"structure {seed}, {modes_of}: {free} modes, {expected} mechanisms")
         least = min((mode["frequency"] for mode in modes if mode["eigenvalue"] > 0), default=1)
         check(least > 1e-4, f"structure {seed}, {modes_of}: a mode at {least} Hz")

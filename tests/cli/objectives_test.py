@@ -189,8 +189,7 @@ like: "II"
             ("compute: path\npath: {over: apex.y, until: -1 mm}\nkeep: [curve_distance]\n"
              "curve: [3]\n", "expected a displacement and a force")):
         write("wrong.yaml", base + more)
-        said = run("sweep", "wrong.yaml", "-o", "wrong", code=2).stderr
-        check(words in said, f"{more}: {said}")
+        run("sweep", "wrong.yaml", "-o", "wrong", code=2, err=words)
 
 
 moves()

@@ -44,8 +44,7 @@ def own_tables_are_points():
     # A changed cell is another study.
     text = read("moved/points-1.csv").decode()
     write("moved/points-1.csv", text.replace("near", "far", 1))
-    done = run("sweep", "moved/study.yaml", "-o", "once-more", code=1)
-    check("another study" in done.stderr, done.stderr)
+    run("sweep", "moved/study.yaml", "-o", "once-more", code=1, err="another study")
 
 
 def units_and_quotes():

@@ -3,45 +3,29 @@
 
 usage: topologies_beat_test.py STRUT
 """
-import csv
-import os
-import shutil
-import subprocess
-import tempfile
+from testing import check, copy_models, finish, sweep
 
-from testing import check, finish, strut
-
-STUDY = """
-strut: 1
-study: Three grounds
-model: {model}
+STUDY = """model: copied/topologies/{model}
 set: {{frequency: {frequency} Hz}}
 axes: [{{friction: [0.1, 0.2, 0.5]}}]
 solver: {{accuracy: 1 %}}
 keep: [velocity, expected_error, cost_of_transport, total_mass]
 """
+copy_models()
 
 
-def rows(model, frequency):
-    """The table of a model on three grounds."""
-    with tempfile.TemporaryDirectory() as folder:
-        study = os.path.join(folder, "study.yaml")
-        shutil.copytree("models/topologies", os.path.join(folder, "topologies"))
-        with open(study, "w", encoding="utf-8") as file:
-            file.write(STUDY.format(model=f"topologies/{model}", frequency=frequency))
-        out = os.path.join(folder, "out")
-        subprocess.run([strut, "sweep", study, "-o", out, "--quiet"], check=True)
-        with open(os.path.join(out, "table.csv"), encoding="utf-8") as file:
-            table = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    return [{key.split(" [")[0]: value for key, value in row.items()} for row in table]
+def table(model, frequency):
+    """Of a model on three grounds."""
+    found = sweep(f"{model}-{frequency}", STUDY.format(model=model, frequency=frequency))
+    return [{key.split(" [")[0]: value for key, value in row.items()} for row in found]
 
 
-ours = rows("clipper.yaml", 10)
+ours = table("clipper.yaml", 10)
 speeds = [float(row["velocity"]) for row in ours]
 check(len(ours) == 3 and (min(speeds) > 0 or max(speeds) < 0), f"one direction: {speeds}")
 # The folder's frequency, and those at which the paper's is fastest or cheapest on these grounds.
 for frequency in (10, 8.7, 8.9, 11.2):
-    for row, rival in zip(ours, rows("nine-member.yaml", frequency)):
+    for row, rival in zip(ours, table("nine-member.yaml", frequency)):
         friction = row["friction"]
         check(abs(float(row["total_mass"]) - float(rival["total_mass"])) < 1e-9, "masses differ")
         check(float(row["expected_error"]) <= 0.01, f"{friction}: {row['expected_error']}")

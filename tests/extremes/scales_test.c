@@ -113,9 +113,8 @@ static void run_wild(uint64_t seed, tally *t) {
       status = strut_simulate(model, &setup.experiment, &options, &s, &error);
       if (status) assert_true(strlen(error.message) > 10);
       *(!status ? &t->answered : s.spent.steps ? &t->stopped : &t->refused) += 1;
-      for (size_t i = 0; !status && i < 2 * s.end.node_count; i++) {
+      for (size_t i = 0; !status && i < 2 * s.end.node_count; i++)
         assert_true(isfinite(s.end.positions[i]));
-      }
     }
   }
 }

@@ -16,8 +16,10 @@ def exists(name):
     return os.path.exists(os.path.join(work, name))
 
 
-def imported(name, *words):
-    """The scene of what was written as that file, and what was said."""
+def imported(name, *words, text=None):
+    """The scene of what was written as that file, or of the text, and what was said."""
+    if text:
+        write(name, text)
     said = formats("import", name, *words, "-o", "scene.yaml").stderr
     return read("scene.yaml").decode(), said
 
@@ -50,8 +52,7 @@ control: [bottom]
 
 
 def tensegritysim():
-    write("box.yaml", BOX)
-    scene, said = imported("box.yaml")
+    scene, said = imported("box.yaml", text=BOX)
     check(scene.startswith("# Imported by strut from 'box.yaml', YAML of TensegritySim."), scene[:80])
     check("box.yaml:14:1: note: not imported: which strings are controlled" in said, said)
     check("node far_away, which nothing uses" in said and "bottom: {group: rope" in scene, said)
@@ -92,8 +93,7 @@ then
 
 
 def springable():
-    write("arch.csv", ARCH)
-    scene, said = imported("arch.csv")
+    scene, said = imported("arch.csv", text=ARCH)
     for place in ("6:13: note: not imported: a range", "7:8: note: not imported: a parameter that is a text",
                   "19:6: note: not imported: an element with the behaviour 'BEZIER",
                   "13:1: note: not imported: node n4"):
@@ -110,10 +110,8 @@ def springable():
     check(first["end"] == "stop" and stages["points"][0]["nodes"] == first["points"][-1]["nodes"], "stages")
     write("blocked.csv", ARCH + "then\nblock\n1, Y\n3, Y, 5\n")
     check("    - {load: load3, hold: [n1.y]}" in imported("blocked.csv")[0], "a node that is held")
-    write("together.csv", ARCH + "3, Y, 5\n")
-    check("    - {load: [load2, load3]}" in imported("together.csv")[0], "loads of one step")
-    write("arch.csv", ARCH.split("then")[0].replace(", -3.0", ""))
-    imported("arch.csv")
+    check("    - {load: [load2, load3]}" in imported("together.csv", text=ARCH + "3, Y, 5\n")[0], "loads of one step")
+    imported("arch.csv", text=ARCH.split("then")[0].replace(", -3.0", ""))
 
     def limits(model):
         path = answer("path", model, "--load", "load1" if model == "scene.yaml" else "down",
@@ -122,7 +120,7 @@ def springable():
     same_numbers(limits("scene.yaml"), limits(f"{gallery}/arch-with-flexure.yaml"), 1e-6,
                  "limit loads of the arch with a flexure")
     # distances: their signs and nodes, and a contact by its formula
-    write("distances.csv", """PARAMETERS
+    scene, said = imported("distances.csv", text="""PARAMETERS
 f, 3
 NODES
 0,0,0,1,1
@@ -139,7 +137,6 @@ POINT2MID Y DISTANCE SPRINGS
 LOADING
 1, Y, -2
 """)
-    scene, said = imported("distances.csv")
     check("d1: {nodes: [n0, n1], along: x, stiffness: 20, rest_distance: 1.5}" in scene, scene)
     check("d3: {node: n1, line: [n0, n2], stiffness: 1e-9}" in scene, scene)
     check("d4: {nodes: [m1, n1], along: y, stiffness: 5}" in scene, scene)
@@ -147,7 +144,7 @@ LOADING
     x, y = end["nodes"]["n1"]
     same_numbers([x, 3 * ((0.9 - y) / 0.05) ** 3 + 5 * (1 - y)], [1.5, 2], 1e-6, "a node on distances")
     # cables that are written as two pieces, a running one, an angle beyond half a turn
-    write("cables.csv", """PARAMETERS
+    scene, said = imported("cables.csv", text="""PARAMETERS
 k, 100
 NODES
 0,0,0,1,1
@@ -163,7 +160,6 @@ SPRINGS
 2-3, PIECEWISE(k_i=[1e-5;k];u_i=[0.01];us=0.005), 0.94
 3-0, PIECEWISE(k_i=[1e-5;k];u_i=[0.01];us=0.005), 0.94
 """)
-    scene, said = imported("cables.csv")
     check("nearly slack up to a knee becomes a cable" in said and scene.count("kind: cable") == 4, said)
     same_numbers(stable_energies("scene.yaml"), stable_energies(f"{gallery}/x-frame.yaml"), 1e-9,
                  "energies of Snelson's X of two pieces")
@@ -183,7 +179,7 @@ SPRINGS
     check("d2: {nodes: [n3, m2], along: x, stiffness: 4, rest_distance: -0.25}" in scene, scene)
     check("a distance from the middle of nodes that move" in said and "d3" not in scene, said)
     # curves that do not fold back are tables, or curves by their control points, as those that do; gases are gases
-    write("curves.csv", """NODES
+    scene, said = imported("curves.csv", text="""NODES
 0,0,0,1,1
 1,1,0,0,1
 2,0,1,1,0
@@ -203,7 +199,6 @@ LOADING
 1, X, 1
 2, Y, 1
 """)
-    scene, said = imported("curves.csv")
     numbers = [float(x) for x in re.findall(r"-?[\d.]+", re.search(r"s1: .*points: (.*)", scene).group(1))]
     same_numbers(numbers, [-0.4, -0.9, -0.2, -0.1, -0.1, -0.2, 0, 0, 0.1, 0.2, 0.2, 0.1, 0.4, 0.9], 1e-12, "pieces")
     check("points: [[-0.3, -0.5], [-0.1, -1], [0, 0], [0.1, 1]]" in scene, scene)
@@ -234,8 +229,7 @@ builders:
 
 
 def ntrt():
-    write("rods.yaml", RODS)
-    scene, said = imported("rods.yaml")
+    scene, said = imported("rods.yaml", text=RODS)
     for text in ("not imported: 'friction'", "not imported: 'history'", "pairs of the class 'tgBoxInfo'"):
         check(text in said, f"not listed: {text}: {said}")
     check("rods.yaml:12:" in said, said)
@@ -253,7 +247,7 @@ def ntrt():
     # structures in others: turned about their middle, scaled, moved on from each other, bonds between neighbours
     os.makedirs(os.path.join(work, "base"), exist_ok=True)
     write("base/rods.yaml", RODS.replace("  box: [[a, b]]\n", "").replace("  box: {class: tgBoxInfo}\n", ""))
-    write("row.yaml", """substructures:
+    scene, said = imported("row.yaml", "base/rods.yaml", text="""substructures:
   t1/t2/t3: {path: ../base/rods.yaml, offset: [20, 0, 0]}
   top:
     path: ./base/rods.yaml
@@ -269,7 +263,6 @@ builders:
   stiff: {class: tgBasicActuatorInfo, parameters: {stiffness: 7}}
   rod: {class: tgRodInfo, parameters: {density: 2, radius: 0.5}}
 """)
-    scene, said = imported("row.yaml", "base/rods.yaml")
     places = {"t1.a": [-0.5, 0], "t2.a": [1.5, 0], "t3.c": [4.5, 1]}
     # turned by 90 degrees about (0, 5), a comes to (5, 0), halved to (2.5, 2.5), and moved to (22.5, 17.5)
     places["top.a"] = [2.25, 1.75]
@@ -319,9 +312,8 @@ def tables():
     # what strut itself lists can be read again, but for the stiffness
     formats("build", f"{gallery}/x-frame.yaml", "-o", "build")
     rows = read("build/members.csv").decode().splitlines()
-    write("listed.csv", "\n".join([rows[0] + ",stiffness [N/m]"] + [
+    imported("listed.csv", "build/nodes.csv", text="\n".join([rows[0] + ",stiffness [N/m]"] + [
         row + (",1000" if ",bar," in row else ",100") for row in rows[1:]]) + "\n")
-    imported("listed.csv", "build/nodes.csv")
     same_numbers(stable_energies("scene.yaml"), stable_energies(f"{gallery}/x-frame.yaml"), 1e-9,
                  "energies of a build list")
 

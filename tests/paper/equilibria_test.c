@@ -156,9 +156,8 @@ TEST(every_figure) {
                      negative == 0   ? STRUT_STABLE
                      : negative == n ? STRUT_MAXIMUM
                                      : STRUT_SADDLE);
-    for (int k = 0; k < STATICS; k++) {
+    for (int k = 0; k < STATICS; k++)
       assert_all_near(1e-8, g[k], 0, e->reaction[k / 2][k % 2], s.held[k] ? r[k] : 0);
-    }
     for (int k = 0; k < n; k++) /* differences over 2e-7 m of forces with errors of some 1e-9 N */
       assert_near(e->point.eigenvalues[k], value[k], 0.05 + 1e-6 * fabs(value[k]));
   }

@@ -91,9 +91,8 @@ TEST(displacement_under_load) {
                         .over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .until = -0.5});
   double start = path.points[0].at.q[2 * APEX + 1];
   assert_relative(arch_load(k, start), load, 1e-11);
-  for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
+  for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++)
     assert_near(p->at.reaction[2 * APEX + 1], load - arch_load(k, start + p->at.factor), 1e-10);
-  }
 }
 
 /* A support pulls a slack cable taut, and then a spring behind it. */

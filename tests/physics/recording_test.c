@@ -323,8 +323,7 @@ TEST(contact_forces_of_methods_with_events) {
     setup.experiment.channels = STRUT_CHANNEL_CONTACT;
     assert_ok(run(&setup, NULL));
     assert_true(first.count == 11 && first.width == 3);
-    for (size_t r = 0; r < first.count; r++) {
+    for (size_t r = 0; r < first.count; r++)
       assert_all_near(1e-9, first.row[r][1], mass * g, first.row[r][2], -push);
-    }
   }
 }

@@ -39,40 +39,31 @@ Found by random scenes of tests/physics/random_world.c:
 """
 import json
 import math
-import pathlib
-import subprocess
-import sys
-import tempfile
+import os
 
-strut = sys.argv[1]
-scenes = pathlib.Path(__file__).parent / "switches"
-failures = []
+from testing import answer, check, finish, read, write
+
+scenes = os.path.abspath("tests/physics/switches")
 
 
 def run(name, *options):
-    words = [strut, "run", str(scenes / f"{name}.yaml"), "--json", *options]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
-    if done.returncode:
-        failures.append(f"{name}: {' '.join(options)}: {done.stderr.strip()}")
-        return None
-    return json.loads(done.stdout)
+    return answer("run", os.path.join(scenes, f"{name}.yaml"), *options)
 
 
 def unit_of(name):
     """The drive's period, or a two-hundredth of the run: a fiftieth of it is the file's step."""
-    return 50 * json.loads((scenes / f"{name}.yaml").read_text(encoding="utf-8"))["solver"]["step"]
+    return 50 * json.loads(read(scenes, f"{name}.yaml"))["solver"]["step"]
 
 
 def compare(name, part, most_events, *ways):
     """The ways agree in the velocity to `part`, and no one makes more than so many switches."""
     unit = unit_of(name)
     found = [(way(unit), run(name, *way(unit))) for way in ways]
-    found = [(way, one) for way, one in found if one]
+    first = found[0][1]["velocity"]
     for way, one in found:
-        if abs(one["velocity"] - found[0][1]["velocity"]) > part * abs(found[0][1]["velocity"]):
-            failures.append(f"{name}: {one['velocity']} by {way}, {found[0][1]['velocity']} by {found[0][0]}")
-        if one["events"] > most_events:
-            failures.append(f"{name}: {one['events']} switches by {way}")
+        check(abs(one["velocity"] - first) <= part * abs(first),
+              f"{name}: {one['velocity']} by {way}, {first} by {found[0][0]}")
+        check(one["events"] <= most_events, f"{name}: {one['events']} switches by {way}")
 
 
 def adaptive(steps, tolerance, method="adaptive"):
@@ -115,9 +106,9 @@ compare("guides-at-a-jump", 1e-9, 180, precise(50, "1e-11"), adaptive(100, "1e-1
 # A rest length that jumps: the work of the drive is what it adds to the elastic energy, and the balance
 # closes.
 for name in ("square-drive", "guides-at-a-jump"):
-    one = run(name, *fixed(4000)(unit_of(name)))
-    if one and abs(one["energy"]["residual"]) > 1e-7 * one["energy"]["exchanged"]:
-        failures.append(f"{name}: {one['energy']['residual']} J of {one['energy']['exchanged']} J missing")
+    energy = run(name, *fixed(4000)(unit_of(name)))["energy"]
+    check(abs(energy["residual"]) <= 1e-7 * energy["exchanged"],
+          f"{name}: {energy['residual']} J of {energy['exchanged']} J missing")
 
 # Closed forms of what follows sensors, and rest: what must hold of x, and the most switches.
 HEAD = "strut: 1\nnodes: {m: {position: [0, 0], mass: 1}}\nsolver: {step: 1}\n"
@@ -130,14 +121,9 @@ for text, axis, right, off, most_events, ways in (
         (DRIVEN % 40.5 + PUSH % "-(x/(1 m) + 1e-15)/abs(x/(1 m) + 1e-15)", 0, 0.375, 1e-11, 25,
          (fixed(10), adaptive(1, "1e-6"), precise(1, "1e-6"))),
         (REST, 1, -1e-4, 1e-8, 40, (fixed(200), adaptive(1, "1e-5"), adaptive(1, "1e-7"), precise(1, "1e-9")))):
-    with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
-        file.write(text)
-        file.flush()
-        for one, way in ((run(file.name[:-5], *way(1.0)), way(1.0)) for way in ways):
-            if one and not (abs(one["nodes"]["m"]["position"][axis] - right) < off and one["events"] <= most_events):
-                failures.append(f"{text}{way}: {one['nodes']}, {one['events']} switches")
-
-for line in failures:
-    print(line)
-print(f"{len(failures)} failed" if failures else "all agree")
-sys.exit(bool(failures))
+    write("written.yaml", text)
+    for way in ways:
+        one = answer("run", "written.yaml", *way(1.0))
+        check(abs(one["nodes"]["m"]["position"][axis] - right) < off and one["events"] <= most_events,
+              f"{text}{way(1.0)}: {one['nodes']}, {one['events']} switches")
+finish()

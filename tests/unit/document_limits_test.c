@@ -118,9 +118,7 @@ static void expect_bomb_defused(const char *name, char *text, const char *messag
   print_message("%-12s %.4f s %.1f MiB\n", name, got.seconds, got.memory);
   assert_int_equal(got.status, STRUT_BAD_SCENE);
   assert_string_equal(got.message, message);
-  if (!ADDRESS_SANITIZED) {
-    assert_all(got.seconds <= 0.1, got.memory <= 64);
-  }
+  if (!ADDRESS_SANITIZED) assert_all(got.seconds <= 0.1, got.memory <= 64);
   free(text);
 }
 

@@ -213,9 +213,7 @@ static void write_results(strut_results *results, const char *directory, const c
                           bool energy) {
   assert_ok(strut_results_begin(results, directory, NULL));
   assert_ok(strut_file_write_text(results->stage, "summary.json", text, NULL));
-  if (energy) {
-    assert_ok(strut_file_write_text(results->stage, "energy.csv", text, NULL));
-  }
+  if (energy) assert_ok(strut_file_write_text(results->stage, "energy.csv", text, NULL));
 }
 
 TEST(results_appear_together) {

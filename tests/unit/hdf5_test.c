@@ -105,9 +105,8 @@ static void assert_file(size_t rows, const char *status, const char *scene) {
   assert_text_attribute(file, "status", status);
   assert_text_attribute(file, "strut_version", STRUT_VERSION);
   assert_text_attribute(file, "scene", scene);
-  for (size_t i = 0; i < layout->channel_count; i++) {
+  for (size_t i = 0; i < layout->channel_count; i++)
     assert_unit_and_values(file, &layout->channels[i], rows);
-  }
   double *time = calloc(rows + 1, sizeof *time);
   assert_true(H5LTread_dataset_double(file, "time", time) >= 0);
   for (size_t row = 0; row < rows; row++) {

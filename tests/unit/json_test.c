@@ -81,9 +81,8 @@ static void assert_energy(const cJSON *energy, const strut_energy *e) {
       {"residual", e->residual},
       {"exchanged", e->moved},
   };
-  for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
+  for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
     assert_number(energy, fields[i].key, fields[i].value);
-  }
   assert_text(energy, "balance", "open");
   assert_int_equal(cJSON_GetArraySize(energy), sizeof fields / sizeof fields[0] + 1);
 }
@@ -199,9 +198,8 @@ TEST(the_table) {
       "  kinetic                142.9 mJ\n",
       "  lost to friction           10 J\n",
   };
-  for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
+  for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++)
     if (!strstr(text, expected[i])) fail_msg("'%s' is not in:\n%s", expected[i], text);
-  }
 }
 
 TEST(a_long_table_is_cut) {

@@ -51,16 +51,14 @@ static void assert_shortest(double value) {
   int digits = significant_digits(text);
   if (digits > 1) { /* fewer digits, correctly rounded, are not enough */
     snprintf(shorter, sizeof shorter, "%.*e", digits - 2, value);
-    if (to_bits(strtod(shorter, NULL)) == to_bits(value)) {
+    if (to_bits(strtod(shorter, NULL)) == to_bits(value))
       fail_msg("%.17g: '%s' is longer than '%s'", value, text, shorter);
-    }
   }
   snprintf(shorter, sizeof shorter, "%.*e", digits ? digits - 1 : 0, value);
   double nearest = strtod(shorter, NULL);
   if (to_bits(nearest) == to_bits(value)) { /* then it is the nearest of that length, as ours is */
-    if (strtold(shorter, NULL) != strtold(text, NULL)) {
+    if (strtold(shorter, NULL) != strtold(text, NULL))
       fail_msg("%.17g: '%s' is not the nearest, '%s' is", value, text, shorter);
-    }
   }
 }
 

@@ -35,9 +35,8 @@ double sample_value(size_t row, size_t column) {
 
 double *sample_rows(const strut_record_layout *of, size_t first, size_t count) {
   double *rows = calloc(count * of->width, sizeof *rows);
-  for (size_t i = 0; i < count * of->width; i++) {
+  for (size_t i = 0; i < count * of->width; i++)
     rows[i] = sample_value(first + i / of->width, i % of->width);
-  }
   return rows;
 }
 

@@ -140,9 +140,8 @@ TEST(many_times_have_the_bits_of_each) {
       double time[ROOM] = {0}, value[ROOM], rate[ROOM];
       for (int h = 0; h < COUNT; h++) time[h] = 0.01 * begin + 0.0013 * h;
       signal_at_times(s, index, time, COUNT, value, rate);
-      for (int h = 0; h < COUNT; h++) {
+      for (int h = 0; h < COUNT; h++)
         assert_all(value[h] == value_of(s, index, time[h]), rate[h] == rate_of(s, index, time[h]));
-      }
     }
 }
 
