@@ -22,7 +22,8 @@ typedef struct strut_axis {
 
 /** A linear axis whose range comes from the data. */
 static inline strut_axis strut_axis_of(const char *name, const char *unit) {
-  return (strut_axis){.name = name, .unit = unit, .low = (double)NAN, .high = (double)NAN};
+  strut_axis axis = {name, unit, false, (double)NAN, (double)NAN, NULL, 0};
+  return axis;
 }
 
 /** A label and a range that replace those of an axis. Zero-initialised: none. */
