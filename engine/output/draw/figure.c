@@ -113,6 +113,7 @@ static double put_page(page *p, strut_canvas *canvas, double width, bool *fine) 
   box.y += strut_key_height(canvas, legend.width, p->items, p->item_count);
   for (size_t i = 0, count; i < f->panel_count; i += count) {
     const strut_panel *first = &p->panels[i];
+    if (i > 0 && (first->view || first[-1].view)) box.y += GAP;
     strut_box row = box;
     count = find_row(p, i, box.width, &row.width);
     if (count > 1 || !first->view) {
@@ -121,9 +122,10 @@ static double put_page(page *p, strut_canvas *canvas, double width, bool *fine) 
     }
     while (i + count < f->panel_count && first[count].view && first[count].small == first->small)
       count++;
-    box.y += (i > 0 ? GAP : 0) + strut_draw_views(canvas, box, f, first, count, foot, draw);
+    box.y += strut_draw_views(canvas, box, f, first, count, foot, draw);
     foot = false;
   }
+  if (foot && f->key_count) box.y += 0.5 * GAP;
   return box.y + (foot ? strut_draw_foot(canvas, box, f, NULL, draw) : 0) + EDGE;
 }
 
