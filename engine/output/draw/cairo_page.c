@@ -286,6 +286,19 @@ static void draw_line(strut_cairo_page *c, const double (*points)[2], size_t cou
   cairo_stroke(c->cairo);
 }
 
+static void draw_segments(strut_cairo_page *c, const double (*ends)[2], size_t count,
+                          strut_pen pen) {
+  if (!count || !(pen.colour.alpha > 0)) return;
+  cairo_new_path(c->cairo);
+  for (size_t i = 0; i < count; i++) {
+    cairo_move_to(c->cairo, clamp_coordinate(ends[2 * i][0]), clamp_coordinate(ends[2 * i][1]));
+    cairo_line_to(c->cairo, clamp_coordinate(ends[2 * i + 1][0]),
+                  clamp_coordinate(ends[2 * i + 1][1]));
+  }
+  set_pen(c, &pen);
+  cairo_stroke(c->cairo);
+}
+
 /* One line at every HATCH_DISTANCE across the clip, anchored to the page so that areas side by side
    join; `slant` is the line's rise for each point it runs to the right. */
 static void hatch_lines(strut_cairo_page *c, double slant) {
@@ -356,6 +369,7 @@ const strut_cairo_library strut_cairo_table = {
     .clip = clip_to,
     .unclip = unclip,
     .line = draw_line,
+    .segments = draw_segments,
     .polygon = draw_polygon,
     .circle = draw_circle,
     .text = draw_text,
