@@ -38,9 +38,7 @@ typedef enum strut_hatch {
   STRUT_HATCH_NONE,
   STRUT_HATCH_RISING, /* from lower left to upper right */
   STRUT_HATCH_FALLING,
-  STRUT_HATCH_CROSSED,
-  STRUT_HATCH_LEVEL,
-  STRUT_HATCH_DOTS
+  STRUT_HATCH_LEVEL
 } strut_hatch;
 
 /** Fill of an area: a colour, with hatching in another colour over it. */
