@@ -310,8 +310,7 @@ static strut_value name_of(const strut_result_object *of, size_t i) {
   X("components", "", IF(row, ARRAY(row->components, component_of)), "of each thing")              \
   X("bytes", "", TEXT(m->text[b]), "see page.h")
 STRUT_VALUES_HERE(block_values, BLOCK, const motion *m = strut_result_whole(of);
-                  size_t b = block_of(of);
-                  const strut_scene *scene = m->page->model->scene;
+                  size_t b = block_of(of); const strut_scene *scene = m->page->model->scene;
                   const strut_channel_row *row = b == TIME ? NULL : channel_of(b);
                   bool named = row && row->owner != STRUT_OWNER_SYSTEM)
 
