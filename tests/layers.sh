@@ -34,7 +34,8 @@ breaches() {
         "engine/output/figures engine/output/page|engine/study/results|" \
         "engine/study/sensitivity|" \
         "engine/study/cluster engine/study/tradeoff engine/study/sweep|" \
-        "engine/study/compare engine/study/search engine/study/follow|engine/study/report", line, "|")
+        "engine/study/compare engine/study/search engine/study/follow|engine/study/report|" \
+        "engine/study/figures", line, "|")
       for (i = 1; i <= count; i++) {
         n = split(line[i], side, " ")
         for (k = 1; k <= n; k++) floor[side[k]] = i

@@ -14,8 +14,7 @@
 static const char kinds[] = "curves|map";
 
 static const strut_option options[] = {
-    {STRUT_FILLS(plot), "plot", "FILE",
-     "write the figure into FILE (.svg, .pdf, .png, or its data as .json)"},
+    {STRUT_FILLS(plot), "plot", "FILE", "write the figure into FILE (.svg, .pdf, .png or .json)"},
     {.table = strut_width_options},
     {STRUT_FILLS(kind), "kind", "KIND", "curves (default) or map", .words = kinds},
     {STRUT_FILLS(x), "x", "COLUMN", "column of the x axis (default: the first)"},

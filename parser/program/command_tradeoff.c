@@ -164,7 +164,8 @@ static const strut_option options[] = {
     STRUT_OUTPUT_OPTION("DIR", "write tradeoff.csv, .json and .svg into DIR"),
     STRUT_JSON_OPTION,
     STRUT_THREADS_OPTION,
-    {STRUT_FILLS(plot), "plot", "FILE", "draw error against cost into FILE (.svg, .pdf or .png)"},
+    {STRUT_FILLS(plot), "plot", "FILE",
+     "draw error against cost into FILE (.svg, .pdf, .png or .json)"},
     {.table = strut_width_options},
     {.name = NULL},
 };

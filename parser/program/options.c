@@ -11,7 +11,7 @@
 #include "parser/yaml/diagnostics.h"
 
 const strut_option strut_plot_options[] = {
-    {STRUT_FILLS(plot), "plot", "FILE", "draw a figure into FILE (.svg, .pdf or .png)"},
+    {STRUT_FILLS(plot), "plot", "FILE", "draw a figure into FILE (.svg, .pdf, .png or .json)"},
     {.table = strut_plot_setting_options},
     {.name = NULL}};
 

@@ -28,7 +28,7 @@ AFTER_ALL {
 
 static void draw_something(strut_canvas *c) {
   const double corners[3][2] = {{10, 10}, {60, 20}, {30, 70}};
-  for (int i = STRUT_HATCH_NONE; i <= STRUT_HATCH_DOTS; i++) {
+  for (int i = STRUT_HATCH_NONE; i <= STRUT_HATCH_LEVEL; i++) {
     const strut_fill fill = {strut_palette_thing((size_t)i), (strut_hatch)i, strut_grey(1)};
     strut_draw_polygon(c, corners, 3, &fill, NULL);
   }

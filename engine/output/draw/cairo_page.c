@@ -286,6 +286,19 @@ static void draw_line(strut_cairo_page *c, const double (*points)[2], size_t cou
   cairo_stroke(c->cairo);
 }
 
+static void draw_segments(strut_cairo_page *c, const double (*ends)[2], size_t count,
+                          strut_pen pen) {
+  if (!count || !(pen.colour.alpha > 0)) return;
+  cairo_new_path(c->cairo);
+  for (size_t i = 0; i < count; i++) {
+    cairo_move_to(c->cairo, clamp_coordinate(ends[2 * i][0]), clamp_coordinate(ends[2 * i][1]));
+    cairo_line_to(c->cairo, clamp_coordinate(ends[2 * i + 1][0]),
+                  clamp_coordinate(ends[2 * i + 1][1]));
+  }
+  set_pen(c, &pen);
+  cairo_stroke(c->cairo);
+}
+
 /* One line at every HATCH_DISTANCE across the clip, anchored to the page so that areas side by side
    join; `slant` is the line's rise for each point it runs to the right. */
 static void hatch_lines(strut_cairo_page *c, double slant) {
@@ -300,16 +313,6 @@ static void hatch_lines(strut_cairo_page *c, double slant) {
   cairo_stroke(c->cairo);
 }
 
-static void hatch_dots(strut_cairo_page *c) {
-  double x1, y1, x2, y2;
-  cairo_clip_extents(c->cairo, &x1, &y1, &x2, &y2);
-  for (double j = floor(y1 / HATCH_DISTANCE); j * HATCH_DISTANCE <= y2; j++)
-    for (double i = floor(x1 / HATCH_DISTANCE); i * HATCH_DISTANCE <= x2; i++) {
-      cairo_arc(c->cairo, i * HATCH_DISTANCE, j * HATCH_DISTANCE, HATCH_WIDTH, 0, 2 * STRUT_PI);
-      cairo_fill(c->cairo);
-    }
-}
-
 static void hatch(strut_cairo_page *c, const strut_fill *fill) {
   cairo_save(c->cairo);
   cairo_clip_preserve(c->cairo);
@@ -317,10 +320,9 @@ static void hatch(strut_cairo_page *c, const strut_fill *fill) {
   cairo_new_path(c->cairo);
   const strut_pen pen = {.colour = fill->hatch_colour, .width = HATCH_WIDTH, .butt = true};
   set_pen(c, &pen);
-  if (fill->hatch == STRUT_HATCH_RISING || fill->hatch == STRUT_HATCH_CROSSED) hatch_lines(c, 1);
-  if (fill->hatch == STRUT_HATCH_FALLING || fill->hatch == STRUT_HATCH_CROSSED) hatch_lines(c, -1);
+  if (fill->hatch == STRUT_HATCH_RISING) hatch_lines(c, 1);
+  if (fill->hatch == STRUT_HATCH_FALLING) hatch_lines(c, -1);
   if (fill->hatch == STRUT_HATCH_LEVEL) hatch_lines(c, 0);
-  if (fill->hatch == STRUT_HATCH_DOTS) hatch_dots(c);
   cairo_restore(c->cairo);
   cairo_append_path(c->cairo, outline);
   cairo_path_destroy(outline);
@@ -367,6 +369,7 @@ const strut_cairo_library strut_cairo_table = {
     .clip = clip_to,
     .unclip = unclip,
     .line = draw_line,
+    .segments = draw_segments,
     .polygon = draw_polygon,
     .circle = draw_circle,
     .text = draw_text,

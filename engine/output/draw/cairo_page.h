@@ -54,6 +54,7 @@ typedef struct strut_cairo_library {
   void (*unclip)(strut_cairo_page *page);
   /** The following as the functions of canvas.h that are named like them. */
   void (*line)(strut_cairo_page *page, const double (*points)[2], size_t count, strut_pen pen);
+  void (*segments)(strut_cairo_page *page, const double (*ends)[2], size_t count, strut_pen pen);
   void (*polygon)(strut_cairo_page *page, const double (*points)[2], size_t count,
                   const strut_fill *fill, const strut_pen *pen);
   void (*circle)(strut_cairo_page *page, const double centre[2], double radius,

@@ -289,6 +289,11 @@ void strut_draw_line(strut_canvas *c, const double (*points)[2], size_t count, s
   c->cairo->line(c->page, points, count, pen);
 }
 
+void strut_draw_segments(strut_canvas *c, const double (*ends)[2], size_t count, strut_pen pen) {
+  for (size_t i = 0; i < count; i++) blacken_line(c, ends + 2 * i, 2, pen);
+  c->cairo->segments(c->page, ends, count, pen);
+}
+
 void strut_draw_segment(strut_canvas *c, double x1, double y1, double x2, double y2,
                         strut_pen pen) {
   const double ends[2][2] = {{x1, y1}, {x2, y2}};

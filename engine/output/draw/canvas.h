@@ -38,9 +38,7 @@ typedef enum strut_hatch {
   STRUT_HATCH_NONE,
   STRUT_HATCH_RISING, /* from lower left to upper right */
   STRUT_HATCH_FALLING,
-  STRUT_HATCH_CROSSED,
-  STRUT_HATCH_LEVEL,
-  STRUT_HATCH_DOTS
+  STRUT_HATCH_LEVEL
 } strut_hatch;
 
 /** Fill of an area: a colour, with hatching in another colour over it. */
@@ -91,6 +89,11 @@ STRUT_API void strut_draw_line(strut_canvas *canvas, const double (*points)[2], 
                                strut_pen pen);
 STRUT_API void strut_draw_segment(strut_canvas *canvas, double x1, double y1, double x2, double y2,
                                   strut_pen pen);
+/**
+ * (count) separate lines in one piece: ends 2 i and 2 i + 1 of (2 count) points belong together.
+ */
+STRUT_API void strut_draw_segments(strut_canvas *canvas, const double (*ends)[2], size_t count,
+                                   strut_pen pen);
 /** A closed outline through (count) points; a fill or a pen may be NULL. */
 STRUT_API void strut_draw_polygon(strut_canvas *canvas, const double (*points)[2], size_t count,
                                   const strut_fill *fill, const strut_pen *pen);

@@ -12,13 +12,13 @@
 
 static const double EDGE = 5, PAGE = 510.24, GAP = 12, INDENT = 30, WIDE = 330; /* [pt] */
 static const double ASPECT = 0.62, LOWEST = 165, HIGHEST = 260; /* of charts [1], [pt] */
+static const double LINE_GAP = 1.5, HEADING_GAP = 6; /* below texts of the heading [pt] */
 enum { COLUMNS = 3 };
 
 /* A page that is measured, then drawn. */
 typedef struct page {
   const strut_figure *figure;
-  strut_heading heading;
-  double head;           /* its height [pt] */
+  const char *title;     /* NULL: none */
   strut_panel *panels;   /* (panel_count) settled */
   strut_key_item *items; /* of the legend of all panels */
   size_t item_count;
@@ -102,17 +102,32 @@ static double put_row(page *p, strut_canvas *canvas, strut_box box, size_t first
   return height;
 }
 
+/* A text of the heading, which wraps; draws it if `draw`. Returns its height and the space below. */
+static double put_heading(strut_canvas *canvas, strut_box box, const char *text, strut_font font,
+                          bool draw) {
+  font.width = box.width;
+  if (!text || !*text) return 0;
+  if (draw) strut_draw_text(canvas, box.x, box.y, text, font);
+  return strut_text_height(canvas, text, font) + LINE_GAP;
+}
+
 /* Lays all out and draws it if `fine`. Returns the height of the page. */
 static double put_page(page *p, strut_canvas *canvas, double width, bool *fine) {
   const strut_figure *f = p->figure;
-  strut_box box = {EDGE, EDGE + p->head, width - 2 * EDGE, 0};
-  const strut_box legend = {EDGE + INDENT, box.y, box.width - INDENT, 0};
+  strut_box box = {EDGE, EDGE, width - 2 * EDGE, 0};
   bool draw = fine != NULL, foot = true;
-  if (draw) strut_heading_draw(canvas, &p->heading);
+  const strut_font bold = {.size = 9, .bold = true};
+  const strut_font plain = {.size = 8,
+                            .colour = f->alarm ? strut_palette_thing(1) : strut_grey(0.3)};
+  box.y += put_heading(canvas, box, p->title, bold, draw);
+  box.y += put_heading(canvas, box, f->note, plain, draw);
+  if (box.y > EDGE) box.y += HEADING_GAP - LINE_GAP;
+  const strut_box legend = {EDGE + INDENT, box.y, box.width - INDENT, 0};
   if (draw) strut_draw_key(canvas, legend, p->items, p->item_count);
   box.y += strut_key_height(canvas, legend.width, p->items, p->item_count);
   for (size_t i = 0, count; i < f->panel_count; i += count) {
     const strut_panel *first = &p->panels[i];
+    if (i > 0 && (first->view || first[-1].view)) box.y += GAP;
     strut_box row = box;
     count = find_row(p, i, box.width, &row.width);
     if (count > 1 || !first->view) {
@@ -121,9 +136,10 @@ static double put_page(page *p, strut_canvas *canvas, double width, bool *fine) 
     }
     while (i + count < f->panel_count && first[count].view && first[count].small == first->small)
       count++;
-    box.y += (i > 0 ? GAP : 0) + strut_draw_views(canvas, box, f, first, count, foot, draw);
+    box.y += strut_draw_views(canvas, box, f, first, count, foot, draw);
     foot = false;
   }
+  if (foot && f->key_count) box.y += 0.5 * GAP;
   return box.y + (foot ? strut_draw_foot(canvas, box, f, NULL, draw) : 0) + EDGE;
 }
 
@@ -131,18 +147,12 @@ static strut_status write_page(page *p, const strut_plot *plot, strut_error *err
   strut_canvas *canvas = NULL;
   double width = plot->width > 0 ? plot->width : PAGE;
   bool fine = true;
-  p->heading = (strut_heading){.width = width,
-                               .edge = EDGE,
-                               .title = strut_plot_title(plot, p->figure->title),
-                               .note = p->figure->note,
-                               .alarm = p->figure->alarm};
-  strut_status status = strut_heading_measure(&p->heading, &p->head, error);
-  if (!status) status = strut_canvas_open_pixels(1, 1, 1.0, &canvas, error);
+  p->title = strut_plot_title(plot, p->figure->title);
+  strut_status status = strut_canvas_open_pixels(1, 1, 1.0, &canvas, error);
   if (status) return status;
   double height = put_page(p, canvas, width, NULL);
   strut_canvas_free(canvas);
-  const char *title = p->heading.title ? p->heading.title : "";
-  status = strut_canvas_open(plot->path, width, height, title, &canvas, error);
+  status = strut_canvas_open(plot->path, width, height, p->title ? p->title : "", &canvas, error);
   if (status) return status;
   put_page(p, canvas, width, &fine);
   status = fine ? strut_canvas_commit(canvas, error) : strut_no_memory(error, "while drawing");

@@ -180,41 +180,7 @@ void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, do
                      open ? &hollow : &full, open ? &edge : &rim);
 }
 
-static const double HEADING_GAP = 1.5, HEADING_SPACE = 6.0; /* between its texts, and below [pt] */
-
-/* Draws a heading's text of that font where `canvas` is to be drawn on; moves *y below it. */
-static void put_heading(strut_canvas *canvas, const strut_heading *h, const char *text,
-                        strut_font font, bool draw, double *y) {
-  double width, height;
-  font.width = h->width - 2 * h->edge;
-  if (!text || !*text) return;
-  strut_text_size(canvas, text, font, &width, &height);
-  if (draw) strut_draw_text(canvas, h->edge, *y, text, font);
-  *y += height + HEADING_GAP;
-}
-
-static double lay_out_heading(strut_canvas *canvas, const strut_heading *h, bool draw) {
-  const strut_font bold = {.size = 9, .bold = true};
-  const strut_colour ink = h->alarm ? strut_palette_thing(1) : strut_grey(0.3);
-  double y = h->edge;
-  put_heading(canvas, h, h->title, bold, draw, &y);
-  put_heading(canvas, h, h->note, (strut_font){.size = 8, .colour = ink}, draw, &y);
-  return y > h->edge ? y - h->edge - HEADING_GAP + HEADING_SPACE : 0.0;
-}
-
-strut_status strut_heading_measure(const strut_heading *heading, double *height,
-                                   strut_error *error) {
-  strut_canvas *ruler;
-  strut_status status = strut_canvas_open_pixels(1, 1, 1.0, &ruler, error);
-  if (status != STRUT_OK) return status;
-  *height = lay_out_heading(ruler, heading, false);
-  strut_canvas_free(ruler);
-  return STRUT_OK;
-}
-
-void strut_heading_draw(strut_canvas *canvas, const strut_heading *heading) {
-  lay_out_heading(canvas, heading, true);
-}
+/* ---- colours ---- */
 
 /* Anchors at equal distances; the lightness of each row grows from left to right. */
 static const unsigned SIGNED[] = {0x0A1F66, 0x2F4A9E, 0x7D8390, 0xC98B45, 0xF5A31A};

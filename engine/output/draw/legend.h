@@ -56,15 +56,4 @@ enum { STRUT_FITTED_TEXT = 320 };
 STRUT_API const char *strut_text_fit(strut_canvas *canvas, const char *text, strut_font font,
                                      double width, double height, char fitted[STRUT_FITTED_TEXT]);
 
-/** A figure's heading in the upper left corner: the title in bold, a note in grey below; both wrap. */
-typedef struct strut_heading {
-  double width, edge;       /* of the page; around all that is drawn [pt] */
-  const char *title, *note; /* "": none */
-  bool alarm;               /* the note tells of a failure */
-} strut_heading;
-/** Height from the edge to what follows [pt]. */
-STRUT_API strut_status strut_heading_measure(const strut_heading *heading, double *height,
-                                             strut_error *error);
-STRUT_API void strut_heading_draw(strut_canvas *canvas, const strut_heading *heading);
-
 #endif

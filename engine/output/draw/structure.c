@@ -17,6 +17,8 @@
 
 /* The window, members and nodes. */
 
+enum { SHADES = 16, BATCH = 256 }; /* of either sign; segments */
+
 static const double BAR = 2.4, SPRING = 1.3, CABLE = 0.8, CASING = 0.7; /* [pt] */
 static const double FULL_LENGTH = 28.0; /* members this long on the page have full width [pt] */
 static const double THINNEST = 0.06, FRINGE_DASH = 2.2; /* [1], [pt] */
@@ -291,7 +293,7 @@ static strut_colour colour_of(const strut_drawing *d, size_t j, bool slack) {
   if (slack) return strut_grey(0.55);
   if (is_shaded(style)) {
     double part = style->limit > 0 ? style->values[j] / style->limit : 0;
-    return strut_palette_signed(isfinite(part) ? part : 0);
+    return strut_palette_signed(isfinite(part) ? round(SHADES * part) / SHADES : 0);
   }
   return kind == STRUT_BAR      ? strut_grey(0.15)
          : kind == STRUT_SPRING ? strut_palette_thing(0)
@@ -309,32 +311,48 @@ static strut_pen pen_of(const strut_drawing *d, size_t j, bool slack) {
   return pen;
 }
 
-static void draw_member(strut_canvas *canvas, const strut_drawing *d, size_t j, strut_pen pen) {
-  double ends[2][2];
+/* Segments that wait for the next one with another pen, since one piece makes a small file. */
+typedef struct batch {
+  strut_canvas *canvas;
+  strut_pen pen;
+  size_t count;
+  double ends[2 * BATCH][2];
+} batch;
+
+static void flush(batch *b) {
+  strut_draw_segments(b->canvas, (const double(*)[2])b->ends, b->count, b->pen);
+  b->count = 0;
+}
+
+static void add_member(batch *b, const strut_drawing *d, size_t j, strut_pen pen) {
+  bool alike = memcmp(&pen.colour, &b->pen.colour, sizeof pen.colour) == 0;
+  if (!alike || pen.width != b->pen.width || pen.dash[0] != b->pen.dash[0]) flush(b);
+  b->pen = pen;
   for (size_t k = 0; k < strut_member_segments(d->model, j); k++) {
-    strut_window_segment(d->window, d->model, d->q, j, k, ends);
-    strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], pen);
+    if (b->count == BATCH) flush(b);
+    strut_window_segment(d->window, d->model, d->q, j, k, b->ends + 2 * b->count++);
   }
 }
 
 /* Members of a kind; of shaded ones a dark edge first, which separates light colours from the paper. */
-static void draw_kind(strut_canvas *canvas, const strut_drawing *d, strut_member_kind kind,
-                      bool slack) {
+static void draw_kind(batch *b, const strut_drawing *d, strut_member_kind kind, bool slack) {
   const strut_pen casing = {.colour = strut_faded(strut_grey(0.1), d->opacity),
                             .width = width_of(d, kind) + CASING * d->thin};
   bool cased = is_shaded(d->style) && kind != STRUT_CABLE;
   for (int pass = cased ? 0 : 1; pass < 2; pass++)
     for (size_t j = 0; j < d->model->scene->member_count; j++)
       if (d->model->scene->members[j].kind == kind && is_slack(d, j) == slack)
-        draw_member(canvas, d, j, pass ? pen_of(d, j, slack) : casing);
+        add_member(b, d, j, pass ? pen_of(d, j, slack) : casing);
 }
 
 /* Thin members are drawn above thick ones, so that a cable along a bar is visible. */
 static void draw_members(strut_canvas *canvas, const strut_drawing *d) {
-  draw_kind(canvas, d, STRUT_BAR, false);
-  draw_kind(canvas, d, STRUT_SPRING, false);
-  draw_kind(canvas, d, STRUT_CABLE, true);
-  draw_kind(canvas, d, STRUT_CABLE, false);
+  batch b = {.canvas = canvas};
+  draw_kind(&b, d, STRUT_BAR, false);
+  draw_kind(&b, d, STRUT_SPRING, false);
+  draw_kind(&b, d, STRUT_CABLE, true);
+  draw_kind(&b, d, STRUT_CABLE, false);
+  flush(&b);
 }
 
 /* Masses that slide along members: filled circles on them. */

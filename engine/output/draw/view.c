@@ -7,7 +7,7 @@
 static const double GAP = 12, LEAST = 46, CAPTION = 26; /* [pt] */
 static const double NARROWEST = 98, SMALLEST = 72;      /* panels [pt] */
 static const double MARK = 2.7, RING = 3.4;             /* radii [pt] */
-static const double COVERED = 0.25;                     /* of a view, by names */
+static const double COVERED = 0.22;                     /* of a view, by names */
 static const double TALLEST = 1.2,
                     LOWEST = 0.6; /* of drawings: height over width at most, at least */
 static const double DOT = 0.3,

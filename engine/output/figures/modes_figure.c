@@ -10,7 +10,7 @@
 #include "engine/forces/elements.h"
 #include "engine/output/draw/figure.h"
 
-enum { TITLE = 200, MOST = STRUT_MODES_FIGURE_MOST };
+enum { NAMED = 12, TITLE = 200, MOST = STRUT_MODES_FIGURE_MOST };
 
 static const double MARGIN = 13.0, NARROWEST = 112.0; /* [pt]; panels, for their titles */
 static const double UNSTRAINED = 1e-9; /* strain by rounding, relative to displacement over size */
@@ -123,7 +123,7 @@ static bool add_mode(picture *p, size_t k) {
                                           .slack_forces = p->taut,
                                           .no_supports = true},
                                 .from = p->modes->q,
-                                .names = true};
+                                .names = model->node_count <= NAMED};
   to->view = (strut_view){.shape_count = 2, .shapes = to->shapes, .margin = MARGIN};
   p->panels[k] = (strut_panel){.title = to->title,
                                .note = to->words,

@@ -12,7 +12,7 @@
 
 /* Longest step of a parameter in its range; steps each way; drive steps that show a gap's extrema. */
 static const double LONGEST = 0.03;
-enum { STEPS_PER_PERIOD = 200, CURVE_KEYS = 4 };
+enum { STEPS_PER_PERIOD = 200 };
 
 /* ---- following ---- */
 
@@ -148,50 +148,6 @@ STRUT_VALUES(strut_follow_curves_values, CURVES, const strut_follow_result *r = 
 
 char *strut_follow_curves_csv(const strut_follow_result *r) {
   return strut_values_csv(&strut_follow_curves_values, "curves.points", NULL, r, NULL);
-}
-
-/* ---- curves.svg ---- */
-
-static const struct {
-  strut_follow_kind kind;
-  const char *text;
-} kinds[CURVE_KEYS] = {{STRUT_FOLLOW_FOLD, "fold"},
-                       {STRUT_FOLLOW_DOUBLING, "period doubling"},
-                       {STRUT_FOLLOW_TOUCH, "grazing"},
-                       {STRUT_FOLLOW_LIFT, "lift-off"}};
-
-static size_t look_of(strut_follow_kind kind) {
-  size_t look = 0;
-  while (look + 1 < CURVE_KEYS && kinds[look].kind != kind) look++;
-  return look;
-}
-
-static bool add_curve(strut_branch_picture *p, const strut_follow_curve *c) {
-  bool fine = true;
-  strut_branch_line(p, look_of(c->kind));
-  for (size_t k = 0; k < c->count && fine; k++) {
-    const strut_follow_curve_point *point = &c->points[k];
-    strut_branch_point(p, point->value[0], point->value[1], point->stable);
-    if (point->cusp) fine = strut_branch_mark(p, c->kind, "cusp", NULL);
-  }
-  return fine;
-}
-
-strut_status strut_follow_curves_figure(const strut_plot *plot, const strut_follow_result *r,
-                                        strut_error *error) {
-  size_t points = 0;
-  for (size_t i = 0; i < r->curve_count; i++) points += r->curves[i].count;
-  strut_branch_picture p = {.title = r->title,
-                            .along = strut_axis_of(r->name, r->unit),
-                            .upwards = strut_axis_of(r->second.name, r->second.unit)};
-  bool fine = strut_branch_begin(&p, r->curve_count, points);
-  for (size_t i = 0; i < CURVE_KEYS; i++)
-    p.keys[p.key_count++] = strut_branch_key(strut_palette_thing(i), false, kinds[i].text);
-  p.keys[p.key_count++] =
-      strut_branch_key(strut_grey(0.2), false, "of a motion that is stable beside it");
-  p.keys[p.key_count++] = strut_branch_key(strut_grey(0.2), true, "of an unstable motion");
-  for (size_t i = 0; i < r->curve_count && fine; i++) fine = add_curve(&p, &r->curves[i]);
-  return strut_branch_draw(plot, &p, fine, error);
 }
 
 /*

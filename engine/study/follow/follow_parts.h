@@ -28,36 +28,6 @@ extern const strut_value_rows strut_follow_curves_values, strut_follow_multiplie
 bool strut_follow_axis_cell(const strut_slot_column *column, strut_study_value value,
                             strut_arena *arena, char **name, char **cell);
 
-/* Lines over a parameter whose unstable stretches are dashed, with marked points: see follow_figure.c. */
-
-enum { STRUT_BRANCH_LINES = 12, STRUT_BRANCH_KEYS = STRUT_BRANCH_LINES + 6 };
-
-/** A picture that is filled line by line, point by point. Zero-initialise. */
-typedef struct strut_branch_picture {
-  const char *title;
-  strut_axis along, upwards;
-  size_t line_count, count, mark_count, key_count;
-  strut_series *lines;
-  strut_pen *pens; /* (line_count) */
-  double *x, *y;   /* (count) of all lines */
-  bool *unstable;  /* (count) */
-  strut_mark *marks;
-  strut_key_item keys[STRUT_BRANCH_KEYS];
-  strut_arena arena;
-} strut_branch_picture;
-
-/** Makes room for as many lines and points. False: out of memory. */
-bool strut_branch_begin(strut_branch_picture *picture, size_t lines, size_t points);
-void strut_branch_line(strut_branch_picture *picture, size_t look);
-void strut_branch_point(strut_branch_picture *picture, double x, double y, bool stable);
-/** Marks the point added last, with a word and the node that it is about. False: out of memory. */
-bool strut_branch_mark(strut_branch_picture *picture, strut_follow_kind kind, const char *word,
-                       const char *node);
-strut_key_item strut_branch_key(strut_colour colour, bool unstable, const char *text);
-/** Draws it unless memory was out (`fine`), and frees what it holds. */
-strut_status strut_branch_draw(const strut_plot *plot, const strut_branch_picture *picture,
-                               bool fine, strut_error *error);
-
 /* A study that follows motions: all branches over a parameter at every point of its axes.
  *
  * A point's branches are the files branches/POINT.csv and branches/POINT.json of the results, its row says

@@ -34,7 +34,7 @@ static const strut_option options[] = {
     {STRUT_FILLS(memory), "memory", "SIZE", "with --emit: memory per task, such as 2G"},
     STRUT_SET_OPTION,
     {STRUT_FILLS(plot), "plot", "FILE",
-     "draw the first result over the first axis, or as a map of two (.svg, .pdf or .png)"},
+     "draw the first result over the first axis, or as a map of two (.svg, .pdf, .png or .json)"},
     {STRUT_FILLS(count_points), "count", NULL, "only print the number of points and the columns"},
     {STRUT_FILLS(status), "status", NULL, "only print what is done, missing and failed in DIR"},
     {STRUT_FILLS(json), "json", NULL, "print one JSON object"},

@@ -10,9 +10,23 @@
 #include "engine/study/follow/follow_study.h"
 
 static const double ASPECT = 0.6;
-enum { MOST_NAMES = 40, STYLES = 2 };
+enum { MOST_NAMES = 40, MOST_KEYS = 18, MOST_LINES = 12, CURVE_KEYS = 4 };
 
 /* ---- pictures of branches ---- */
+
+/* A picture that is filled line by line, point by point. */
+typedef struct picture {
+  const char *title;
+  strut_axis along, upwards;
+  size_t line_count, count, mark_count, key_count;
+  strut_series *lines;
+  strut_pen *pens; /* (line_count) */
+  double *x, *y;   /* (count) of all lines */
+  bool *unstable;  /* (count) */
+  strut_mark *marks;
+  strut_key_item keys[MOST_KEYS];
+  strut_arena arena;
+} picture;
 
 static strut_colour colour_of(strut_follow_kind kind) {
   static const unsigned char thing[STRUT_FOLLOW_KINDS] = {[STRUT_FOLLOW_FOLD] = 6,
@@ -22,7 +36,7 @@ static strut_colour colour_of(strut_follow_kind kind) {
   return thing[kind] ? strut_palette_thing(thing[kind] - 1U) : strut_grey(1.0);
 }
 
-strut_key_item strut_branch_key(strut_colour colour, bool unstable, const char *text) {
+static strut_key_item line_key(strut_colour colour, bool unstable, const char *text) {
   strut_key_item item = {
       .sign = STRUT_KEY_LINE, .pen = {.colour = colour, .width = 1.4}, .text = text};
   if (unstable) item.pen.width = 0.9, item.pen.dash[0] = 3.0, item.pen.dash[1] = 2.0;
@@ -30,13 +44,13 @@ strut_key_item strut_branch_key(strut_colour colour, bool unstable, const char *
 }
 
 /* What every figure of branches explains. */
-static void add_keys(strut_branch_picture *p) {
+static void add_keys(picture *p) {
   static const strut_follow_kind kinds[] = {STRUT_FOLLOW_FOLD, STRUT_FOLLOW_DOUBLING,
                                             STRUT_FOLLOW_TORUS, STRUT_FOLLOW_TOUCH};
   static const char *const texts[] = {"fold", "period doubling", "torus, branching",
                                       "an event that changes the stability"};
-  p->keys[p->key_count++] = strut_branch_key(strut_grey(0.2), false, "stable");
-  p->keys[p->key_count++] = strut_branch_key(strut_grey(0.2), true, "unstable");
+  p->keys[p->key_count++] = line_key(strut_grey(0.2), false, "stable");
+  p->keys[p->key_count++] = line_key(strut_grey(0.2), true, "unstable");
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
     p->keys[p->key_count++] = (strut_key_item){.sign = STRUT_KEY_DOT,
                                                .pen = {.colour = strut_grey(0.1), .width = 0.6},
@@ -44,7 +58,7 @@ static void add_keys(strut_branch_picture *p) {
                                                .text = texts[i]};
 }
 
-bool strut_branch_begin(strut_branch_picture *p, size_t lines, size_t points) {
+static bool begin_picture(picture *p, size_t lines, size_t points) {
   p->lines = strut_arena_allocate(&p->arena, lines + 1, sizeof *p->lines);
   p->pens = strut_arena_allocate(&p->arena, lines + 1, sizeof *p->pens);
   p->marks = strut_arena_allocate(&p->arena, points + 1, sizeof *p->marks);
@@ -54,21 +68,20 @@ bool strut_branch_begin(strut_branch_picture *p, size_t lines, size_t points) {
   return p->lines && p->pens && p->marks && p->x && p->y && p->unstable;
 }
 
-void strut_branch_line(strut_branch_picture *p, size_t look) {
+static void begin_line(picture *p, size_t look) {
   strut_pen *pen = &p->pens[p->line_count];
   *pen = (strut_pen){.colour = strut_palette_thing(look), .width = 1.4};
   p->lines[p->line_count++] = (strut_series){
       .x = p->x + p->count, .y = p->y + p->count, .unstable = p->unstable + p->count, .pen = pen};
 }
 
-void strut_branch_point(strut_branch_picture *p, double x, double y, bool stable) {
+static void add_point(picture *p, double x, double y, bool stable) {
   p->x[p->count] = x, p->y[p->count] = y;
   p->unstable[p->count++] = !stable;
   p->lines[p->line_count - 1].count++;
 }
 
-bool strut_branch_mark(strut_branch_picture *p, strut_follow_kind kind, const char *word,
-                       const char *node) {
+static bool mark_point(picture *p, strut_follow_kind kind, const char *word, const char *node) {
   strut_mark *mark = &p->marks[p->mark_count++];
   *mark = (strut_mark){.at = {p->x[p->count - 1], p->y[p->count - 1]},
                        .text = strut_arena_format(&p->arena, "%s%s%.60s", word,
@@ -79,8 +92,8 @@ bool strut_branch_mark(strut_branch_picture *p, strut_follow_kind kind, const ch
   return mark->text != NULL;
 }
 
-strut_status strut_branch_draw(const strut_plot *plot, const strut_branch_picture *p, bool fine,
-                               strut_error *error) {
+static strut_status draw_picture(const strut_plot *plot, const picture *p, bool fine,
+                                 strut_error *error) {
   const strut_panel panel = {.x = p->along,
                              .y = p->upwards,
                              .series_count = p->line_count,
@@ -111,15 +124,14 @@ static bool is_special(strut_follow_kind kind) {
 }
 
 /* Appends the line of a branch and its marks. Events that change nothing are in the table alone. */
-static bool add_branch(strut_branch_picture *p, const strut_follow_branch *b, size_t look) {
+static bool add_branch(picture *p, const strut_follow_branch *b, size_t look) {
   bool fine = true;
-  strut_branch_line(p, look);
+  begin_line(p, look);
   for (size_t k = 0; k < b->count && fine; k++) {
     const strut_follow_point *point = &b->points[k];
-    strut_branch_point(p, point->value, b->travels ? point->velocity : point->amplitude,
-                       point->stable);
+    add_point(p, point->value, b->travels ? point->velocity : point->amplitude, point->stable);
     if (is_special(point->kind) || (point->detail && point->changes))
-      fine = strut_branch_mark(p, point->kind, strut_follow_kind_word(point->kind), point->node);
+      fine = mark_point(p, point->kind, strut_follow_kind_word(point->kind), point->node);
   }
   return fine;
 }
@@ -128,13 +140,56 @@ strut_status strut_follow_figure(const strut_plot *plot, const strut_follow_resu
                                  strut_error *error) {
   size_t points = 0;
   for (size_t i = 0; i < r->count; i++) points += r->branches[i].branch.count;
-  strut_branch_picture p = {.title = r->title,
-                            .along = strut_axis_of(r->name, r->unit),
-                            .upwards = height_axis(r->count && r->branches[0].branch.travels)};
-  bool fine = strut_branch_begin(&p, r->count, points);
+  picture p = {.title = r->title,
+               .along = strut_axis_of(r->name, r->unit),
+               .upwards = height_axis(r->count && r->branches[0].branch.travels)};
+  bool fine = begin_picture(&p, r->count, points);
   add_keys(&p);
   for (size_t i = 0; i < r->count && fine; i++) fine = add_branch(&p, &r->branches[i].branch, i);
-  return strut_branch_draw(plot, &p, fine, error);
+  return draw_picture(plot, &p, fine, error);
+}
+
+/* ---- curves over two parameters ---- */
+
+static const struct {
+  strut_follow_kind kind;
+  const char *text;
+} kinds[CURVE_KEYS] = {{STRUT_FOLLOW_FOLD, "fold"},
+                       {STRUT_FOLLOW_DOUBLING, "period doubling"},
+                       {STRUT_FOLLOW_TOUCH, "grazing"},
+                       {STRUT_FOLLOW_LIFT, "lift-off"}};
+
+static size_t look_of(strut_follow_kind kind) {
+  size_t look = 0;
+  while (look + 1 < CURVE_KEYS && kinds[look].kind != kind) look++;
+  return look;
+}
+
+static bool add_curve(picture *p, const strut_follow_curve *c) {
+  bool fine = true;
+  begin_line(p, look_of(c->kind));
+  for (size_t k = 0; k < c->count && fine; k++) {
+    const strut_follow_curve_point *point = &c->points[k];
+    add_point(p, point->value[0], point->value[1], point->stable);
+    if (point->cusp) fine = mark_point(p, c->kind, "cusp", NULL);
+  }
+  return fine;
+}
+
+strut_status strut_follow_curves_figure(const strut_plot *plot, const strut_follow_result *r,
+                                        strut_error *error) {
+  size_t points = 0;
+  for (size_t i = 0; i < r->curve_count; i++) points += r->curves[i].count;
+  picture p = {.title = r->title,
+               .along = strut_axis_of(r->name, r->unit),
+               .upwards = strut_axis_of(r->second.name, r->second.unit)};
+  bool fine = begin_picture(&p, r->curve_count, points);
+  for (size_t i = 0; i < CURVE_KEYS; i++)
+    p.keys[p.key_count++] = line_key(strut_palette_thing(i), false, kinds[i].text);
+  p.keys[p.key_count++] = line_key(strut_grey(0.2), false, "of a motion that is stable beside it");
+  p.keys[p.key_count++] = line_key(strut_grey(0.2), true, "of an unstable motion");
+  for (size_t i = 0; i < r->curve_count && fine; i++) fine = add_curve(&p, &r->curves[i]);
+  return draw_picture(plot, &p, fine, error);
 }
 
 /* ---- the branches of a study: a colour for each point of the axes ---- */
@@ -188,34 +243,34 @@ static const char *row_label(const source *s, size_t row, strut_arena *arena) {
 }
 
 /* Appends the point of a row, and a mark where it is special. */
-static bool add_row(const source *s, strut_branch_picture *p, size_t row) {
+static bool add_row(const source *s, picture *p, size_t row) {
   double amplitude = number_of(s->column[AMPLITUDE], row); /* of structures that do not travel */
   const char *word = text_of(s->column[POINT], row);
   strut_follow_kind kind = STRUT_FOLLOW_REGULAR;
   for (int k = 0; k < STRUT_FOLLOW_KINDS; k++)
     if (strcmp(strut_follow_kind_word((strut_follow_kind)k), word) == 0)
       kind = (strut_follow_kind)k;
-  strut_branch_point(p, number_of(s->column[VALUE], row),
-                     isfinite(amplitude) ? amplitude : number_of(s->column[VELOCITY], row),
-                     strcmp(text_of(s->column[STABLE], row), "yes") == 0);
+  add_point(p, number_of(s->column[VALUE], row),
+            isfinite(amplitude) ? amplitude : number_of(s->column[VELOCITY], row),
+            strcmp(text_of(s->column[STABLE], row), "yes") == 0);
   if (!is_special(kind) && strcmp(text_of(s->column[CHANGES], row), "yes") != 0) return true;
-  return strut_branch_mark(p, kind, strut_follow_kind_word(kind), text_of(s->column[NODE], row));
+  return mark_point(p, kind, strut_follow_kind_word(kind), text_of(s->column[NODE], row));
 }
 
 /* Lines, marks and keys of all rows. False: no memory. */
-static bool gather(const source *s, strut_branch_picture *p) {
+static bool gather(const source *s, picture *p) {
   size_t rows = s->table->row_count, look = 0;
-  bool fine = strut_branch_begin(p, rows, rows);
+  bool fine = begin_picture(p, rows, rows);
   const strut_table_column *branch = s->column[BRANCH];
   for (size_t i = 0; i < rows && fine; i++) {
     bool other = i == 0 || !same_axes(s, i - 1, i);
     if (other && i > 0) look++;
-    if (other && s->axes && look < STRUT_BRANCH_LINES) {
+    if (other && s->axes && look < MOST_LINES) {
       const char *label = row_label(s, i, &p->arena);
-      p->keys[p->key_count++] = strut_branch_key(strut_palette_thing(look), false, label);
+      p->keys[p->key_count++] = line_key(strut_palette_thing(look), false, label);
       fine = label != NULL;
     }
-    if (other || number_of(branch, i) != number_of(branch, i - 1)) strut_branch_line(p, look);
+    if (other || number_of(branch, i) != number_of(branch, i - 1)) begin_line(p, look);
     fine = fine && add_row(s, p, i);
   }
   return fine;
@@ -230,7 +285,7 @@ strut_status strut_follow_points_figure(const strut_plot *plot, const strut_swee
   for (int i = 0; i < DRAWN; i++)
     if (!(s.column[i] = find_column(table, i == VALUE ? f->over : names[i])))
       return strut_fail(error, STRUT_FILE_TROUBLE, "branches.csv lacks a column");
-  strut_branch_picture p = {
+  picture p = {
       .title = plan->study->name,
       .along = strut_axis_of(f->over, f->unit),
       .upwards = height_axis(!table->row_count || !isfinite(number_of(s.column[AMPLITUDE], 0)))};
@@ -238,5 +293,5 @@ strut_status strut_follow_points_figure(const strut_plot *plot, const strut_swee
   bool fine = gather(&s, &p);
   strut_c_locale_leave(locale);
   add_keys(&p);
-  return strut_branch_draw(plot, &p, fine, error);
+  return draw_picture(plot, &p, fine, error);
 }
