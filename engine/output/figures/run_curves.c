@@ -45,7 +45,7 @@ static size_t count_driven(const strut_run_scene *run) {
 
 /* What each panel shows: a channel, or what is derived from the motion. */
 static const struct {
-  strut_channel channel; /* 0: none */
+  strut_channels channel; /* 0: none */
   const char *name, *unit;
   double factor;
 } kinds[] = {[STRUT_RUN_DISPLACEMENT] = {0, "displacement", "m", 1},
@@ -95,7 +95,7 @@ static bool comes_down(const strut_run_scene *run, size_t contact) {
 static const char *label_of(const strut_run_scene *run, int kind, size_t item) {
   static const char *const energies[] = {"kinetic", "elastic", "gravity", "contact"};
   static const char *const axes[] = {"along x", "along y"};
-  strut_channel channel = kind == STRUT_RUN_HEIGHTS ? STRUT_CHANNEL_CONTACT : kinds[kind].channel;
+  strut_channels channel = kind == STRUT_RUN_HEIGHTS ? STRUT_CHANNEL_CONTACT : kinds[kind].channel;
   if (kind == STRUT_RUN_DISPLACEMENT) return axes[item];
   if (kind == STRUT_RUN_ENERGIES) return energies[item];
   return strut_channel_item(strut_channel_row_of(channel), run->model->scene, item);
