@@ -20,7 +20,7 @@
 #include "engine/scene/things.h"
 
 #define OBSERVE(ID)                                                                                \
-  static strut_observed observe_##ID(strut_view *view, int32_t item, int32_t other)
+  static strut_observed observe_##ID(strut_instant *view, int32_t item, int32_t other)
 #define OBSERVED(ID, observed)                                                                     \
   OBSERVE(ID) {                                                                                    \
     (void)view, (void)item, (void)other;                                                           \
@@ -32,11 +32,11 @@
 
 /* ---- the run and its nodes ---- */
 
-static double time_of(const strut_view *view) { return view->time + view->state->time_offset; }
+static double time_of(const strut_instant *view) { return view->time + view->state->time_offset; }
 
 VALUE(TIME, time_of(view))
 
-static strut_observed coordinate(const strut_view *view, int32_t at) {
+static strut_observed coordinate(const strut_instant *view, int32_t at) {
   return (strut_observed){view->q[at], view->v[at]};
 }
 
@@ -65,7 +65,7 @@ static double height_above_surfaces(const strut_contact_table *t, const double q
   return least;
 }
 
-static double height_above_ground(const strut_view *view, const double *q) {
+static double height_above_ground(const strut_instant *view, const double *q) {
   const strut_contact_table *t = &view->model->contacts;
   if (t->surface) return height_above_surfaces(t, q, view->state->latest->ground_motion);
   return q[0] * t->normal[0] + (q[1] - view->model->scene->ground.height) * t->normal[1];
@@ -75,7 +75,7 @@ VALUE(HEIGHT, height_above_ground(view, view->q + 2 * item))
 
 VALUE(NODE_SPIN, view->spin[item])
 
-static double sum_of_spins(const strut_view *view) {
+static double sum_of_spins(const strut_instant *view) {
   double sum = 0.0;
   for (int32_t i = 0; i < view->model->node_count; i++) sum += view->spin[i];
   return sum;
@@ -91,7 +91,7 @@ static int32_t element_of(const strut_model *model, int32_t i) {
   return item < 0 ? -1 : model->rubbing.item[item].element;
 }
 
-static bool touches(const strut_view *view, int32_t i) {
+static bool touches(const strut_instant *view, int32_t i) {
   int32_t element = element_of(view->model, i);
   double b[STRUT_MOST_GRADIENT];
   if (element < 0)
@@ -101,7 +101,7 @@ static bool touches(const strut_view *view, int32_t i) {
          view->model->elements.element[element].natural;
 }
 
-static bool any_touches(const strut_view *view, int32_t first, int32_t end) {
+static bool any_touches(const strut_instant *view, int32_t first, int32_t end) {
   for (int32_t i = first; i < end; i++)
     if (touches(view, i)) return true;
   return false;
@@ -110,7 +110,7 @@ static bool any_touches(const strut_view *view, int32_t first, int32_t end) {
 VALUE(TOUCHES, any_touches(view, item, other))
 
 /* The normal force on contact i at the view's positions and velocities. */
-static double press(const strut_view *view, int32_t i) {
+static double press(const strut_instant *view, int32_t i) {
   const strut_contact_table *c = &view->model->contacts;
   const strut_ground_motion *motion = view->state->latest->ground_motion;
   int32_t element = element_of(view->model, i);
@@ -143,7 +143,7 @@ VALUE(FRICTION, sum_of(view->state->latest->friction, item, other))
 
 /* ---- members ---- */
 
-static strut_member_values member_of(const strut_view *view, int32_t member) {
+static strut_member_values member_of(const strut_instant *view, int32_t member) {
   strut_member_values values =
       strut_member_measure_at(view->model, view->state, member, view->q, view->v);
   if (view->sensed) return values;
@@ -152,7 +152,7 @@ static strut_member_values member_of(const strut_view *view, int32_t member) {
   return values;
 }
 
-static strut_observed length_of(const strut_view *view, int32_t member) {
+static strut_observed length_of(const strut_instant *view, int32_t member) {
   strut_member_values values =
       strut_member_measure_at(view->model, view->state, member, view->q, view->v);
   return (strut_observed){values.length, values.rate};
@@ -163,13 +163,13 @@ VALUE(STRETCH, length_of(view, item).value - view->state->latest->rest[item])
 RATE(RATE, LENGTH)
 VALUE(FORCE, member_of(view, item).force)
 
-static double plastic_of(const strut_view *view, int32_t member) {
+static double plastic_of(const strut_instant *view, int32_t member) {
   const strut_element_table *t = &view->model->elements;
   const strut_element *e = strut_element_of_member(t, member);
   return e ? strut_element_plastic(view->model, view->state, (int32_t)(e - t->element)) : 0.0;
 }
 
-static double last_force_of(const strut_view *view, int32_t member) {
+static double last_force_of(const strut_instant *view, int32_t member) {
   const strut_element_table *t = &view->model->elements;
   const strut_element *e = strut_element_of_member(t, member);
   if (!e || !(e->guide_friction > 0.0)) return member_of(view, member).force;
@@ -196,11 +196,11 @@ OBSERVE(LARGEST_FORCE) {
 }
 
 /* The line from one coordinate to another. */
-static strut_vec2 line(const strut_view *view, size_t from, size_t to) {
+static strut_vec2 line(const strut_instant *view, size_t from, size_t to) {
   return (strut_vec2){view->q[to] - view->q[from], view->q[to + 1] - view->q[from + 1]};
 }
 
-static strut_vec2 line_of_pair(const strut_view *view, int32_t a, int32_t b) {
+static strut_vec2 line_of_pair(const strut_instant *view, int32_t a, int32_t b) {
   return line(view, 2 * (size_t)a, 2 * (size_t)b);
 }
 
@@ -213,7 +213,7 @@ VALUE(DISTANCE, hypot(line_of_pair(view, item, other).x, line_of_pair(view, item
 
 /* ---- elements: hinges, cells, collisions, distances ---- */
 
-static strut_observed strain_of(const strut_view *view, int32_t element) {
+static strut_observed strain_of(const strut_instant *view, int32_t element) {
   const strut_state *state = view->state;
   strut_element_pose pose;
   assert(element >= 0 && element < view->model->elements.count);
@@ -222,20 +222,20 @@ static strut_observed strain_of(const strut_view *view, int32_t element) {
   return (strut_observed){pose.strain, strut_element_rate(view->model, element, &pose, view->v)};
 }
 
-static double force_of(const strut_view *view, int32_t element) {
+static double force_of(const strut_instant *view, int32_t element) {
   strut_element_pose pose;
   return strut_element_measure_at(view->model, view->state, element, view->q, view->v, &pose);
 }
 
 /* Pressure in a cell, or what all elements of a collision push with. */
-static double push_of(const strut_view *view, int32_t first) {
+static double push_of(const strut_instant *view, int32_t first) {
   const strut_element_table *t = &view->model->elements;
   double push = t->element[first].numbers.outside;
   for (int32_t i = first; i < strut_element_end(t, first); i++) push -= force_of(view, i);
   return push;
 }
 
-static double gap_of(const strut_view *view, int32_t first) {
+static double gap_of(const strut_instant *view, int32_t first) {
   const strut_element_table *t = &view->model->elements;
   const strut_state *state = view->state;
   double least = HUGE_VAL;
@@ -248,7 +248,7 @@ static double gap_of(const strut_view *view, int32_t first) {
   return least;
 }
 
-static double moment_of(const strut_view *view, int32_t element) {
+static double moment_of(const strut_instant *view, int32_t element) {
   double moment = force_of(view, element);
   if (view->sensed) return moment;
   int32_t hinge = view->model->elements.element[element].item;
@@ -273,7 +273,7 @@ VALUE(LEAST_GAP, strut_nearby_least_gap(view->model, view->state, view->q, &view
 /* ---- the structure as a whole ---- */
 
 /* Position or velocity of the centre of mass along an axis; and the same of absolute values as its size. */
-static double centre(strut_view *view, int axis, bool rate) {
+static double centre(strut_instant *view, int axis, bool rate) {
   const strut_model *model = view->model;
   const double *from = (rate ? view->v : view->q) + axis;
   double sum = 0.0, mass = 0.0, size = 0.0;
@@ -300,7 +300,7 @@ static double centre(strut_view *view, int axis, bool rate) {
 CENTRE(CENTRE_X, CENTRE_VX, 0)
 CENTRE(CENTRE_Y, CENTRE_VY, 1)
 
-static strut_energies stored_in(const strut_view *view) {
+static strut_energies stored_in(const strut_instant *view) {
   return view->sensed ? strut_energy_evaluate_at(view->model, view->state, view->q, view->v)
                       : view->stored;
 }
@@ -334,12 +334,12 @@ VALUE(SENSOR_RATE, view->state->latest->sensor_rate[item])
 VALUE(STATE, view->v[view->model->feedback.base + item])
 VALUE(SIGNAL, strut_drive_signal(view->model, view->state, view->v, item, time_of(view)))
 
-static double share_of(const strut_view *view, int32_t slider) {
+static double share_of(const strut_instant *view, int32_t slider) {
   return strut_sliding_mass_share(view->model->scene, (size_t)slider, time_of(view));
 }
 
 /* Place or velocity of a mass on a member, along x or y. */
-static double slide(const strut_view *view, int32_t slider, uint32_t axis, bool rate) {
+static double slide(const strut_instant *view, int32_t slider, uint32_t axis, bool rate) {
   const strut_sliding_item *s = &view->model->sliding.item[slider];
   double far = share_of(view, slider);
   const double *z = rate ? view->v : view->q, *q = view->q;
@@ -366,7 +366,7 @@ strut_observe *strut_observe_at(strut_column_kind kind) {
   return functions[kind];
 }
 
-double strut_observe_item(strut_view *view, strut_column_kind kind, int32_t item) {
+double strut_observe_item(strut_instant *view, strut_column_kind kind, int32_t item) {
   strut_column column = strut_column_find(view->model, (strut_column){kind, item, -1}, 0);
   return strut_observe_at(kind)(view, column.item, column.other).value;
 }
@@ -378,7 +378,7 @@ double strut_observe_item(strut_view *view, strut_column_kind kind, int32_t item
  * of all nodes, supported ones too. Masses that slide add their speed along their lines at the positions q;
  * without it where q is NULL. Forces must have been observed where some mass slides.
  */
-static void multiply_by_mass(const strut_view *view, const double *u, const double *q,
+static void multiply_by_mass(const strut_instant *view, const double *u, const double *q,
                              double *momentum) {
   const strut_model *model = view->model;
   const strut_member_table *t = &model->members;
@@ -419,7 +419,7 @@ static strut_vec2 mean(const strut_model *model, const double *weights, const do
  * mass and its velocity. Since M couples x to x and y to y alike, forces within the structure leave their
  * sum as it is.
  */
-static void find_spin(strut_view *view) {
+static void find_spin(strut_instant *view) {
   const strut_model *model = view->model;
   const double *q = view->state->q;
   double *p = view->momentum, *u = view->relative_velocity, total = 0.0;
@@ -439,9 +439,9 @@ static void find_spin(strut_view *view) {
     view->spin[i] = (q[2 * i] - centre.x) * p[2 * i + 1] - (q[2 * i + 1] - centre.y) * p[2 * i];
 }
 
-bool strut_view_create(const strut_model *model, strut_arena *arena, strut_view *view) {
+bool strut_view_create(const strut_model *model, strut_arena *arena, strut_instant *view) {
   size_t nodes = (size_t)model->node_count;
-  *view = (strut_view){.model = model};
+  *view = (strut_instant){.model = model};
   view->spin = strut_arena_allocate(arena, nodes, sizeof(double));
   view->momentum = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
   view->relative_velocity = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
@@ -455,7 +455,7 @@ static bool needs_evaluation(const strut_model *model, unsigned needs) {
          (model->sliding.moving_count && (needs & 1u << STRUT_OBSERVED_MOMENTUM));
 }
 
-void strut_view_show(strut_view *view, const strut_state *state, unsigned needs, double t) {
+void strut_view_show(strut_instant *view, const strut_state *state, unsigned needs, double t) {
   const strut_model *model = view->model;
   view->state = state, view->q = state->q, view->v = state->v, view->time = t;
   if (!(needs & ~(1u << STRUT_OBSERVED_MOTION))) return;

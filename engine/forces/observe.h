@@ -12,7 +12,7 @@
 #include "engine/model/state.h"
 
 /** What observables are taken of. */
-typedef struct strut_view {
+typedef struct strut_instant {
   const strut_model *model;
   const strut_state *state;
   const double *q, *v;
@@ -27,7 +27,7 @@ typedef struct strut_view {
   double size;    /* magnitude of the terms that it sums; below 0: that of its value */
   int32_t branch; /* which of several it is, such as the largest force */
   int32_t loaded; /* the member of the largest force, or -1 */
-} strut_view;
+} strut_instant;
 
 /** A value, and its rate where that follows from positions and velocities alone, else 0. */
 typedef struct strut_observed {
@@ -35,18 +35,18 @@ typedef struct strut_observed {
 } strut_observed;
 
 /** Takes the observable of an item, by strut_column_find. */
-typedef strut_observed strut_observe(strut_view *view, int32_t item, int32_t other);
+typedef strut_observed strut_observe(strut_instant *view, int32_t item, int32_t other);
 STRUT_API strut_observe *strut_observe_at(strut_column_kind kind);
 
 /** The value of an item of the scene. */
-STRUT_API double strut_observe_item(strut_view *view, strut_column_kind kind, int32_t item);
+STRUT_API double strut_observe_item(strut_instant *view, strut_column_kind kind, int32_t item);
 
 /** Allocates in the arena; false: memory is out. */
-bool strut_view_create(const strut_model *model, strut_arena *arena, strut_view *view);
+bool strut_view_create(const strut_model *model, strut_arena *arena, strut_instant *view);
 /**
  * From now on the view shows this state at time t [s] without its time_offset; `needs` has a bit for each
  * strut_observed_need. Updates forces and rest lengths of the state, which follow from q, v and t.
  */
-void strut_view_show(strut_view *view, const strut_state *state, unsigned needs, double t);
+void strut_view_show(strut_instant *view, const strut_state *state, unsigned needs, double t);
 
 #endif

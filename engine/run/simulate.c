@@ -482,7 +482,7 @@ static void fill_contacts(strut_run *r) {
 /* Angles and moments of the hinges at the end, areas and pressures of the cells. */
 static void measure_elements(strut_run *r) {
   const strut_scene *scene = r->model->scene;
-  strut_view view = {.model = r->model};
+  strut_instant view = {.model = r->model};
   if (!scene->hinge_count && !scene->cell_count) return;
   strut_view_show(&view, r->state, 1u << STRUT_OBSERVED_DRIVES,
                   strut_time_grid_at(&r->grid, r->state->step));

@@ -12,7 +12,7 @@
 static void sense_all(const strut_model *model, const strut_state *state, bool driven, double t,
                       const double *q, const double *v) {
   const strut_feedback_table *f = &model->feedback;
-  strut_view view = {.model = model, .state = state, .q = q, .v = v, .time = t, .sensed = true};
+  strut_instant view = {.model = model, .state = state, .q = q, .v = v, .time = t, .sensed = true};
   for (int32_t i = 0; i < f->count; i++) {
     strut_column column = f->sensor[i];
     if (strut_column_needs_drives(column) != driven) continue;
@@ -140,7 +140,7 @@ bool strut_feedback_touch(const strut_model *model, strut_state *state, int32_t 
 static bool condition_holds(const strut_model *model, const strut_state *state,
                             const strut_trigger *trigger) {
   if (trigger->kind == STRUT_TRIGGER_CONTACT) {
-    strut_view view = {.model = model, .state = state, .q = state->q, .v = state->v};
+    strut_instant view = {.model = model, .state = state, .q = state->q, .v = state->v};
     return strut_observe_item(&view, STRUT_COLUMN_TOUCHES, trigger->item) > 0.0;
   }
   if (trigger->kind == STRUT_TRIGGER_ABOVE)
