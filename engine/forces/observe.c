@@ -20,30 +20,32 @@
 #include "engine/scene/things.h"
 
 #define OBSERVE(ID)                                                                                \
-  static strut_observed observe_##ID(strut_instant *view, int32_t item, int32_t other)
+  static strut_observed observe_##ID(strut_instant *instant, int32_t item, int32_t other)
 #define OBSERVED(ID, observed)                                                                     \
   OBSERVE(ID) {                                                                                    \
-    (void)view, (void)item, (void)other;                                                           \
+    (void)instant, (void)item, (void)other;                                                        \
     return observed;                                                                               \
   }
 #define VALUE(ID, expression) OBSERVED(ID, ((strut_observed){(expression), 0.0}))
 /* One that is the rate of another. */
-#define RATE(ID, OF) VALUE(ID, observe_##OF(view, item, other).rate)
+#define RATE(ID, OF) VALUE(ID, observe_##OF(instant, item, other).rate)
 
 /* ---- the run and its nodes ---- */
 
-static double time_of(const strut_instant *view) { return view->time + view->state->time_offset; }
-
-VALUE(TIME, time_of(view))
-
-static strut_observed coordinate(const strut_instant *view, int32_t at) {
-  return (strut_observed){view->q[at], view->v[at]};
+static double time_of(const strut_instant *instant) {
+  return instant->time + instant->state->time_offset;
 }
 
-OBSERVED(NODE_X, coordinate(view, 2 * item))
-OBSERVED(NODE_Y, coordinate(view, 2 * item + 1))
-VALUE(NODE_VX, view->v[2 * item])
-VALUE(NODE_VY, view->v[2 * item + 1])
+VALUE(TIME, time_of(instant))
+
+static strut_observed coordinate(const strut_instant *instant, int32_t at) {
+  return (strut_observed){instant->q[at], instant->v[at]};
+}
+
+OBSERVED(NODE_X, coordinate(instant, 2 * item))
+OBSERVED(NODE_Y, coordinate(instant, 2 * item + 1))
+VALUE(NODE_VX, instant->v[2 * item])
+VALUE(NODE_VY, instant->v[2 * item + 1])
 
 /* Distance from the nearest of several surfaces. */
 static double height_above_surfaces(const strut_contact_table *t, const double q[2],
@@ -65,23 +67,23 @@ static double height_above_surfaces(const strut_contact_table *t, const double q
   return least;
 }
 
-static double height_above_ground(const strut_instant *view, const double *q) {
-  const strut_contact_table *t = &view->model->contacts;
-  if (t->surface) return height_above_surfaces(t, q, view->state->latest->ground_motion);
-  return q[0] * t->normal[0] + (q[1] - view->model->scene->ground.height) * t->normal[1];
+static double height_above_ground(const strut_instant *instant, const double *q) {
+  const strut_contact_table *t = &instant->model->contacts;
+  if (t->surface) return height_above_surfaces(t, q, instant->state->latest->ground_motion);
+  return q[0] * t->normal[0] + (q[1] - instant->model->scene->ground.height) * t->normal[1];
 }
 
-VALUE(HEIGHT, height_above_ground(view, view->q + 2 * item))
+VALUE(HEIGHT, height_above_ground(instant, instant->q + 2 * item))
 
-VALUE(NODE_SPIN, view->spin[item])
+VALUE(NODE_SPIN, instant->spin[item])
 
-static double sum_of_spins(const strut_instant *view) {
+static double sum_of_spins(const strut_instant *instant) {
   double sum = 0.0;
-  for (int32_t i = 0; i < view->model->node_count; i++) sum += view->spin[i];
+  for (int32_t i = 0; i < instant->model->node_count; i++) sum += instant->spin[i];
   return sum;
 }
 
-VALUE(SPIN, sum_of_spins(view))
+VALUE(SPIN, sum_of_spins(instant))
 
 /* ---- contacts: from `item` on up to `other`, those of a node side by side ---- */
 
@@ -91,35 +93,36 @@ static int32_t element_of(const strut_model *model, int32_t i) {
   return item < 0 ? -1 : model->rubbing.item[item].element;
 }
 
-static bool touches(const strut_instant *view, int32_t i) {
-  int32_t element = element_of(view->model, i);
+static bool touches(const strut_instant *instant, int32_t i) {
+  int32_t element = element_of(instant->model, i);
   double b[STRUT_MOST_GRADIENT];
   if (element < 0)
-    return strut_contact_gap_at(&view->model->contacts, i, view->q,
-                                view->state->latest->ground_motion) < 0.0;
-  return strut_element_strain(view->model, element, view->q, 0.0, b) <
-         view->model->elements.element[element].natural;
+    return strut_contact_gap_at(&instant->model->contacts, i, instant->q,
+                                instant->state->latest->ground_motion) < 0.0;
+  return strut_element_strain(instant->model, element, instant->q, 0.0, b) <
+         instant->model->elements.element[element].natural;
 }
 
-static bool any_touches(const strut_instant *view, int32_t first, int32_t end) {
+static bool any_touches(const strut_instant *instant, int32_t first, int32_t end) {
   for (int32_t i = first; i < end; i++)
-    if (touches(view, i)) return true;
+    if (touches(instant, i)) return true;
   return false;
 }
 
-VALUE(TOUCHES, any_touches(view, item, other))
+VALUE(TOUCHES, any_touches(instant, item, other))
 
-/* The normal force on contact i at the view's positions and velocities. */
-static double press(const strut_instant *view, int32_t i) {
-  const strut_contact_table *c = &view->model->contacts;
-  const strut_ground_motion *motion = view->state->latest->ground_motion;
-  int32_t element = element_of(view->model, i);
+/* The normal force on contact i at the instant's positions and velocities. */
+static double press(const strut_instant *instant, int32_t i) {
+  const strut_contact_table *c = &instant->model->contacts;
+  const strut_ground_motion *motion = instant->state->latest->ground_motion;
+  int32_t element = element_of(instant->model, i);
   strut_element_pose pressed;
   if (element >= 0)
-    return -strut_element_measure_at(view->model, view->state, element, view->q, view->v, &pressed);
-  const strut_contact_pose pose = strut_contact_pose_at(c, i, view->q, motion, -1);
+    return -strut_element_measure_at(instant->model, instant->state, element, instant->q,
+                                     instant->v, &pressed);
+  const strut_contact_pose pose = strut_contact_pose_at(c, i, instant->q, motion, -1);
   if (!(pose.gap < 0.0)) return 0.0;
-  strut_vec2 u = strut_contact_velocity(c, i, view->v, motion);
+  strut_vec2 u = strut_contact_velocity(c, i, instant->v, motion);
   const strut_law_ground_numbers numbers = strut_contact_numbers(&c->entry[i]);
   double spring = strut_law_ground_spring(&numbers, pose.gap);
   double into = strut_component(pose.axes.normal, u.x, u.y);
@@ -134,227 +137,237 @@ static double sum_of(const double *force, int32_t first, int32_t end) {
 
 OBSERVE(NORMAL) {
   double sum = 0.0;
-  if (!view->sensed) return (strut_observed){sum_of(view->state->latest->normal, item, other), 0.0};
-  for (int32_t i = item; i < other; i++) sum += press(view, i);
+  if (!instant->sensed)
+    return (strut_observed){sum_of(instant->state->latest->normal, item, other), 0.0};
+  for (int32_t i = item; i < other; i++) sum += press(instant, i);
   return (strut_observed){sum, 0.0};
 }
 
-VALUE(FRICTION, sum_of(view->state->latest->friction, item, other))
+VALUE(FRICTION, sum_of(instant->state->latest->friction, item, other))
 
 /* ---- members ---- */
 
-static strut_member_values member_of(const strut_instant *view, int32_t member) {
+static strut_member_values member_of(const strut_instant *instant, int32_t member) {
   strut_member_values values =
-      strut_member_measure_at(view->model, view->state, member, view->q, view->v);
-  if (view->sensed) return values;
-  if (view->state->rigid) values.force += strut_rigid_tension(view->state->rigid, member);
-  values.force += strut_actuator_force_on(view->model, view->state, member, -1);
+      strut_member_measure_at(instant->model, instant->state, member, instant->q, instant->v);
+  if (instant->sensed) return values;
+  if (instant->state->rigid) values.force += strut_rigid_tension(instant->state->rigid, member);
+  values.force += strut_actuator_force_on(instant->model, instant->state, member, -1);
   return values;
 }
 
-static strut_observed length_of(const strut_instant *view, int32_t member) {
+static strut_observed length_of(const strut_instant *instant, int32_t member) {
   strut_member_values values =
-      strut_member_measure_at(view->model, view->state, member, view->q, view->v);
+      strut_member_measure_at(instant->model, instant->state, member, instant->q, instant->v);
   return (strut_observed){values.length, values.rate};
 }
 
-OBSERVED(LENGTH, length_of(view, item))
-VALUE(STRETCH, length_of(view, item).value - view->state->latest->rest[item])
+OBSERVED(LENGTH, length_of(instant, item))
+VALUE(STRETCH, length_of(instant, item).value - instant->state->latest->rest[item])
 RATE(RATE, LENGTH)
-VALUE(FORCE, member_of(view, item).force)
+VALUE(FORCE, member_of(instant, item).force)
 
-static double plastic_of(const strut_instant *view, int32_t member) {
-  const strut_element_table *t = &view->model->elements;
+static double plastic_of(const strut_instant *instant, int32_t member) {
+  const strut_element_table *t = &instant->model->elements;
   const strut_element *e = strut_element_of_member(t, member);
-  return e ? strut_element_plastic(view->model, view->state, (int32_t)(e - t->element)) : 0.0;
+  return e ? strut_element_plastic(instant->model, instant->state, (int32_t)(e - t->element)) : 0.0;
 }
 
-static double last_force_of(const strut_instant *view, int32_t member) {
-  const strut_element_table *t = &view->model->elements;
+static double last_force_of(const strut_instant *instant, int32_t member) {
+  const strut_element_table *t = &instant->model->elements;
   const strut_element *e = strut_element_of_member(t, member);
-  if (!e || !(e->guide_friction > 0.0)) return member_of(view, member).force;
-  return strut_element_last_force(view->model, view->state, (int32_t)(e - t->element));
+  if (!e || !(e->guide_friction > 0.0)) return member_of(instant, member).force;
+  return strut_element_last_force(instant->model, instant->state, (int32_t)(e - t->element));
 }
 
-VALUE(PLASTIC, plastic_of(view, item))
-VALUE(LAST_FORCE, last_force_of(view, item))
+VALUE(PLASTIC, plastic_of(instant, item))
+VALUE(LAST_FORCE, last_force_of(instant, item))
 
 OBSERVE(LARGEST_FORCE) {
   double most = 0.0;
   (void)item, (void)other;
-  view->loaded = view->branch = -1;
-  for (int32_t j = 0; j < view->model->members.count; j++) {
-    double first = member_of(view, j).force, last = last_force_of(view, j);
+  instant->loaded = instant->branch = -1;
+  for (int32_t j = 0; j < instant->model->members.count; j++) {
+    double first = member_of(instant, j).force, last = last_force_of(instant, j);
     bool at_last = fabs(last) > fabs(first);
     double force = at_last ? last : first;
     if (!(fabs(force) > most)) continue;
     most = fabs(force);
-    view->loaded = j;
-    view->branch = 4 * j + 2 * at_last + (force < 0.0); /* which, at which end, its sign */
+    instant->loaded = j;
+    instant->branch = 4 * j + 2 * at_last + (force < 0.0); /* which, at which end, its sign */
   }
   return (strut_observed){most, 0.0};
 }
 
 /* The line from one coordinate to another. */
-static strut_vec2 line(const strut_instant *view, size_t from, size_t to) {
-  return (strut_vec2){view->q[to] - view->q[from], view->q[to + 1] - view->q[from + 1]};
+static strut_vec2 line(const strut_instant *instant, size_t from, size_t to) {
+  return (strut_vec2){instant->q[to] - instant->q[from], instant->q[to + 1] - instant->q[from + 1]};
 }
 
-static strut_vec2 line_of_pair(const strut_instant *view, int32_t a, int32_t b) {
-  return line(view, 2 * (size_t)a, 2 * (size_t)b);
+static strut_vec2 line_of_pair(const strut_instant *instant, int32_t a, int32_t b) {
+  return line(instant, 2 * (size_t)a, 2 * (size_t)b);
 }
 
 static double direction(strut_vec2 d) { return atan2(d.y, d.x); }
 
-VALUE(TILT, direction(line(view, view->model->members.from[item], view->model->members.to[item])))
-VALUE(ANGLE, direction(line_of_pair(view, item, other)))
+VALUE(TILT, direction(line(instant, instant->model->members.from[item],
+                           instant->model->members.to[item])))
+VALUE(ANGLE, direction(line_of_pair(instant, item, other)))
 
-VALUE(DISTANCE, hypot(line_of_pair(view, item, other).x, line_of_pair(view, item, other).y))
+VALUE(DISTANCE, hypot(line_of_pair(instant, item, other).x, line_of_pair(instant, item, other).y))
 
 /* ---- elements: hinges, cells, collisions, distances ---- */
 
-static strut_observed strain_of(const strut_instant *view, int32_t element) {
-  const strut_state *state = view->state;
+static strut_observed strain_of(const strut_instant *instant, int32_t element) {
+  const strut_state *state = instant->state;
   strut_element_pose pose;
-  assert(element >= 0 && element < view->model->elements.count);
-  strut_element_evaluate(view->model, element, state->latest->rest, view->q,
+  assert(element >= 0 && element < instant->model->elements.count);
+  strut_element_evaluate(instant->model, element, state->latest->rest, instant->q,
                          state->history.turn[element], &pose);
-  return (strut_observed){pose.strain, strut_element_rate(view->model, element, &pose, view->v)};
+  return (strut_observed){pose.strain,
+                          strut_element_rate(instant->model, element, &pose, instant->v)};
 }
 
-static double force_of(const strut_instant *view, int32_t element) {
+static double force_of(const strut_instant *instant, int32_t element) {
   strut_element_pose pose;
-  return strut_element_measure_at(view->model, view->state, element, view->q, view->v, &pose);
+  return strut_element_measure_at(instant->model, instant->state, element, instant->q, instant->v,
+                                  &pose);
 }
 
 /* Pressure in a cell, or what all elements of a collision push with. */
-static double push_of(const strut_instant *view, int32_t first) {
-  const strut_element_table *t = &view->model->elements;
+static double push_of(const strut_instant *instant, int32_t first) {
+  const strut_element_table *t = &instant->model->elements;
   double push = t->element[first].numbers.outside;
-  for (int32_t i = first; i < strut_element_end(t, first); i++) push -= force_of(view, i);
+  for (int32_t i = first; i < strut_element_end(t, first); i++) push -= force_of(instant, i);
   return push;
 }
 
-static double gap_of(const strut_instant *view, int32_t first) {
-  const strut_element_table *t = &view->model->elements;
-  const strut_state *state = view->state;
+static double gap_of(const strut_instant *instant, int32_t first) {
+  const strut_element_table *t = &instant->model->elements;
+  const strut_state *state = instant->state;
   double least = HUGE_VAL;
   for (int32_t i = first; i < strut_element_end(t, first); i++) {
     strut_element_pose pose;
-    strut_element_evaluate(view->model, i, state->latest->rest, view->q, state->history.turn[i],
-                           &pose);
+    strut_element_evaluate(instant->model, i, state->latest->rest, instant->q,
+                           state->history.turn[i], &pose);
     least = fmin(least, pose.strain - pose.natural);
   }
   return least;
 }
 
-static double moment_of(const strut_instant *view, int32_t element) {
-  double moment = force_of(view, element);
-  if (view->sensed) return moment;
-  int32_t hinge = view->model->elements.element[element].item;
-  return moment + strut_actuator_force_on(view->model, view->state, -1, hinge);
+static double moment_of(const strut_instant *instant, int32_t element) {
+  double moment = force_of(instant, element);
+  if (instant->sensed) return moment;
+  int32_t hinge = instant->model->elements.element[element].item;
+  return moment + strut_actuator_force_on(instant->model, instant->state, -1, hinge);
 }
 
-OBSERVED(HINGE_ANGLE, strain_of(view, item))
+OBSERVED(HINGE_ANGLE, strain_of(instant, item))
 RATE(HINGE_RATE, HINGE_ANGLE)
-VALUE(MOMENT, moment_of(view, item))
-VALUE(HINGE_PLASTIC, strut_element_plastic(view->model, view->state, item))
-OBSERVED(CELL_AREA, strain_of(view, item))
+VALUE(MOMENT, moment_of(instant, item))
+VALUE(HINGE_PLASTIC, strut_element_plastic(instant->model, instant->state, item))
+OBSERVED(CELL_AREA, strain_of(instant, item))
 RATE(CELL_RATE, CELL_AREA)
-VALUE(PRESSURE, push_of(view, item))
-VALUE(COLLISION_GAP, gap_of(view, item))
-VALUE(COLLISION_FORCE, push_of(view, item))
-OBSERVED(DISTANCE_VALUE, strain_of(view, item))
+VALUE(PRESSURE, push_of(instant, item))
+VALUE(COLLISION_GAP, gap_of(instant, item))
+VALUE(COLLISION_FORCE, push_of(instant, item))
+OBSERVED(DISTANCE_VALUE, strain_of(instant, item))
 RATE(DISTANCE_RATE, DISTANCE_VALUE)
-VALUE(DISTANCE_FORCE, force_of(view, item))
+VALUE(DISTANCE_FORCE, force_of(instant, item))
 
-VALUE(LEAST_GAP, strut_nearby_least_gap(view->model, view->state, view->q, &view->branch))
+VALUE(LEAST_GAP,
+      strut_nearby_least_gap(instant->model, instant->state, instant->q, &instant->branch))
 
 /* ---- the structure as a whole ---- */
 
 /* Position or velocity of the centre of mass along an axis; and the same of absolute values as its size. */
-static double centre(strut_instant *view, int axis, bool rate) {
-  const strut_model *model = view->model;
-  const double *from = (rate ? view->v : view->q) + axis;
+static double centre(strut_instant *instant, int axis, bool rate) {
+  const strut_model *model = instant->model;
+  const double *from = (rate ? instant->v : instant->q) + axis;
   double sum = 0.0, mass = 0.0, size = 0.0;
   for (int32_t i = 0; i < model->node_count; i++) {
     sum += model->weight[i] * from[2 * i];
     size += model->weight[i] * fabs(from[2 * i]);
     mass += model->weight[i];
   }
-  view->size = size / mass;
+  instant->size = size / mass;
   if (!(model->terms & STRUT_TERM_SLIDING_MASS)) return sum / mass;
-  double more = rate ? strut_sliding_masses_momentum(model, view->state, axis, view->q, view->v)
-                     : strut_sliding_masses_moment(model, view->state, axis, view->q);
-  view->size += fabs(more) / mass;
+  double more =
+      rate ? strut_sliding_masses_momentum(model, instant->state, axis, instant->q, instant->v)
+           : strut_sliding_masses_moment(model, instant->state, axis, instant->q);
+  instant->size += fabs(more) / mass;
   return sum / mass + more / mass;
 }
 
 #define CENTRE(ID, RATE, axis)                                                                     \
   OBSERVE(ID) {                                                                                    \
     (void)item, (void)other;                                                                       \
-    double rate = view->sensed ? centre(view, axis, true) : 0.0;                                   \
-    return (strut_observed){centre(view, axis, false), rate};                                      \
+    double rate = instant->sensed ? centre(instant, axis, true) : 0.0;                             \
+    return (strut_observed){centre(instant, axis, false), rate};                                   \
   }                                                                                                \
-  VALUE(RATE, centre(view, axis, true))
+  VALUE(RATE, centre(instant, axis, true))
 CENTRE(CENTRE_X, CENTRE_VX, 0)
 CENTRE(CENTRE_Y, CENTRE_VY, 1)
 
-static strut_energies stored_in(const strut_instant *view) {
-  return view->sensed ? strut_energy_evaluate_at(view->model, view->state, view->q, view->v)
-                      : view->stored;
+static strut_energies stored_in(const strut_instant *instant) {
+  return instant->sensed
+             ? strut_energy_evaluate_at(instant->model, instant->state, instant->q, instant->v)
+             : instant->stored;
 }
 
-VALUE(KINETIC, stored_in(view).kinetic)
-VALUE(ELASTIC, stored_in(view).elastic)
-VALUE(GRAVITY, stored_in(view).gravity)
-VALUE(GROUND, stored_in(view).contact)
+VALUE(KINETIC, stored_in(instant).kinetic)
+VALUE(ELASTIC, stored_in(instant).elastic)
+VALUE(GRAVITY, stored_in(instant).gravity)
+VALUE(GROUND, stored_in(instant).contact)
 
 OBSERVE(TOTAL) {
-  strut_energies e = stored_in(view);
+  strut_energies e = stored_in(instant);
   (void)item, (void)other;
-  view->size = fabs(e.kinetic) + fabs(e.elastic) + fabs(e.gravity) + fabs(e.contact);
+  instant->size = fabs(e.kinetic) + fabs(e.elastic) + fabs(e.gravity) + fabs(e.contact);
   return (strut_observed){e.kinetic + e.elastic + e.gravity + e.contact, 0.0};
 }
 
-VALUE(DRIVES, view->state->work[STRUT_POWER_DRIVE])
-VALUE(LOADS, view->state->work[STRUT_POWER_LOAD] + strut_energy_load_work(view->model, view->state))
-VALUE(BELT, view->state->work[STRUT_POWER_BELT])
-VALUE(SUPPORTS, strut_support_motion_work(view->model, view->state))
-VALUE(LOST_MEMBERS, view->state->work[STRUT_POWER_MEMBERS])
-VALUE(LOST_CONTACT, view->state->work[STRUT_POWER_CONTACT])
-VALUE(LOST_FRICTION, view->state->work[STRUT_POWER_FRICTION])
-VALUE(LOST, view->state->work[STRUT_POWER_MEMBERS] + view->state->work[STRUT_POWER_CONTACT] +
-                view->state->work[STRUT_POWER_FRICTION])
+VALUE(DRIVES, instant->state->work[STRUT_POWER_DRIVE])
+VALUE(LOADS, instant->state->work[STRUT_POWER_LOAD] +
+                 strut_energy_load_work(instant->model, instant->state))
+VALUE(BELT, instant->state->work[STRUT_POWER_BELT])
+VALUE(SUPPORTS, strut_support_motion_work(instant->model, instant->state))
+VALUE(LOST_MEMBERS, instant->state->work[STRUT_POWER_MEMBERS])
+VALUE(LOST_CONTACT, instant->state->work[STRUT_POWER_CONTACT])
+VALUE(LOST_FRICTION, instant->state->work[STRUT_POWER_FRICTION])
+VALUE(LOST, instant->state->work[STRUT_POWER_MEMBERS] + instant->state->work[STRUT_POWER_CONTACT] +
+                instant->state->work[STRUT_POWER_FRICTION])
 
 /* ---- signals, and masses that they move ---- */
 
-VALUE(SENSOR, view->state->latest->sensor[item])
-VALUE(SENSOR_RATE, view->state->latest->sensor_rate[item])
-VALUE(STATE, view->v[view->model->feedback.base + item])
-VALUE(SIGNAL, strut_drive_signal(view->model, view->state, view->v, item, time_of(view)))
+VALUE(SENSOR, instant->state->latest->sensor[item])
+VALUE(SENSOR_RATE, instant->state->latest->sensor_rate[item])
+VALUE(STATE, instant->v[instant->model->feedback.base + item])
+VALUE(SIGNAL,
+      strut_drive_signal(instant->model, instant->state, instant->v, item, time_of(instant)))
 
-static double share_of(const strut_instant *view, int32_t slider) {
-  return strut_sliding_mass_share(view->model->scene, (size_t)slider, time_of(view));
+static double share_of(const strut_instant *instant, int32_t slider) {
+  return strut_sliding_mass_share(instant->model->scene, (size_t)slider, time_of(instant));
 }
 
 /* Place or velocity of a mass on a member, along x or y. */
-static double slide(const strut_instant *view, int32_t slider, uint32_t axis, bool rate) {
-  const strut_sliding_item *s = &view->model->sliding.item[slider];
-  double far = share_of(view, slider);
-  const double *z = rate ? view->v : view->q, *q = view->q;
+static double slide(const strut_instant *instant, int32_t slider, uint32_t axis, bool rate) {
+  const strut_sliding_item *s = &instant->model->sliding.item[slider];
+  double far = share_of(instant, slider);
+  const double *z = rate ? instant->v : instant->q, *q = instant->q;
   uint32_t a = s->at[0] + axis, b = s->at[1] + axis;
   double place = (1.0 - far) * z[a] + far * z[b];
-  return rate ? place + strut_sliding_mass_rate(view->model->scene, (size_t)slider, time_of(view)) *
+  return rate ? place + strut_sliding_mass_rate(instant->model->scene, (size_t)slider,
+                                                time_of(instant)) *
                             (q[b] - q[a])
               : place;
 }
 
-VALUE(SLIDER_X, slide(view, item, 0, false))
-VALUE(SLIDER_Y, slide(view, item, 1, false))
-VALUE(SLIDER_VX, slide(view, item, 0, true))
-VALUE(SLIDER_VY, slide(view, item, 1, true))
-VALUE(SLIDER_SHARE, share_of(view, item))
+VALUE(SLIDER_X, slide(instant, item, 0, false))
+VALUE(SLIDER_Y, slide(instant, item, 1, false))
+VALUE(SLIDER_VX, slide(instant, item, 0, true))
+VALUE(SLIDER_VY, slide(instant, item, 1, true))
+VALUE(SLIDER_SHARE, share_of(instant, item))
 
 strut_observe *strut_observe_at(strut_column_kind kind) {
   static strut_observe *const functions[] = {
@@ -366,21 +379,21 @@ strut_observe *strut_observe_at(strut_column_kind kind) {
   return functions[kind];
 }
 
-double strut_observe_item(strut_instant *view, strut_column_kind kind, int32_t item) {
-  strut_column column = strut_column_find(view->model, (strut_column){kind, item, -1}, 0);
-  return strut_observe_at(kind)(view, column.item, column.other).value;
+double strut_observe_item(strut_instant *instant, strut_column_kind kind, int32_t item) {
+  strut_column column = strut_column_find(instant->model, (strut_column){kind, item, -1}, 0);
+  return strut_observe_at(kind)(instant, column.item, column.other).value;
 }
 
-/* ---- a view of a state ---- */
+/* ---- a instant of a state ---- */
 
 /*
  * momentum = M u of each node at velocities u (nodes, 2), with the model's mass matrix, lumped or consistent,
  * of all nodes, supported ones too. Masses that slide add their speed along their lines at the positions q;
  * without it where q is NULL. Forces must have been observed where some mass slides.
  */
-static void multiply_by_mass(const strut_instant *view, const double *u, const double *q,
+static void multiply_by_mass(const strut_instant *instant, const double *u, const double *q,
                              double *momentum) {
-  const strut_model *model = view->model;
+  const strut_model *model = instant->model;
   const strut_member_table *t = &model->members;
   bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
   double own = consistent ? 1.0 / 3.0 : 0.5, other = consistent ? 1.0 / 6.0 : 0.0;
@@ -394,7 +407,7 @@ static void multiply_by_mass(const strut_instant *view, const double *u, const d
   for (int32_t j = 0, k = 0; j < model->sliding.count; j++) {
     const strut_sliding_item *s = &model->sliding.item[j];
     strut_sliding_motion motion = {.share = s->start};
-    if (s->signal >= 0) motion = view->state->latest->sliding[k++];
+    if (s->signal >= 0) motion = instant->state->latest->sliding[k++];
     for (uint32_t c = 0; c < 2; c++) {
       uint32_t a = s->at[0] + c, b = s->at[1] + c;
       double speed = (1.0 - motion.share) * u[a] + motion.share * u[b];
@@ -419,33 +432,33 @@ static strut_vec2 mean(const strut_model *model, const double *weights, const do
  * mass and its velocity. Since M couples x to x and y to y alike, forces within the structure leave their
  * sum as it is.
  */
-static void find_spin(strut_instant *view) {
-  const strut_model *model = view->model;
-  const double *q = view->state->q;
-  double *p = view->momentum, *u = view->relative_velocity, total = 0.0;
+static void find_spin(strut_instant *instant) {
+  const strut_model *model = instant->model;
+  const double *q = instant->state->q;
+  double *p = instant->momentum, *u = instant->relative_velocity, total = 0.0;
   int32_t n = model->node_count;
   for (int32_t i = 0; i < 2 * n; i++) u[i] = 1.0;
-  multiply_by_mass(view, u, NULL, p); /* masses, in x and in y */
+  multiply_by_mass(instant, u, NULL, p); /* masses, in x and in y */
   for (int32_t i = 0; i < n; i++) total += p[2 * i];
   strut_vec2 centre = mean(model, p, q, total);
-  multiply_by_mass(view, view->state->v, q, p);
+  multiply_by_mass(instant, instant->state->v, q, p);
   strut_vec2 velocity = mean(model, NULL, p, total);
   for (int32_t i = 0; i < n; i++) {
-    u[2 * i] = view->state->v[2 * i] - velocity.x;
-    u[2 * i + 1] = view->state->v[2 * i + 1] - velocity.y;
+    u[2 * i] = instant->state->v[2 * i] - velocity.x;
+    u[2 * i + 1] = instant->state->v[2 * i + 1] - velocity.y;
   }
-  multiply_by_mass(view, u, q, p);
+  multiply_by_mass(instant, u, q, p);
   for (int32_t i = 0; i < n; i++)
-    view->spin[i] = (q[2 * i] - centre.x) * p[2 * i + 1] - (q[2 * i + 1] - centre.y) * p[2 * i];
+    instant->spin[i] = (q[2 * i] - centre.x) * p[2 * i + 1] - (q[2 * i + 1] - centre.y) * p[2 * i];
 }
 
-bool strut_view_create(const strut_model *model, strut_arena *arena, strut_instant *view) {
+bool strut_instant_create(const strut_model *model, strut_arena *arena, strut_instant *instant) {
   size_t nodes = (size_t)model->node_count;
-  *view = (strut_instant){.model = model};
-  view->spin = strut_arena_allocate(arena, nodes, sizeof(double));
-  view->momentum = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
-  view->relative_velocity = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
-  return view->spin && view->momentum && view->relative_velocity;
+  *instant = (strut_instant){.model = model};
+  instant->spin = strut_arena_allocate(arena, nodes, sizeof(double));
+  instant->momentum = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
+  instant->relative_velocity = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
+  return instant->spin && instant->momentum && instant->relative_velocity;
 }
 
 /* Must all forces be evaluated, not only those of contacts, which a method with events may hold? */
@@ -455,15 +468,17 @@ static bool needs_evaluation(const strut_model *model, unsigned needs) {
          (model->sliding.moving_count && (needs & 1u << STRUT_OBSERVED_MOMENTUM));
 }
 
-void strut_view_show(strut_instant *view, const strut_state *state, unsigned needs, double t) {
-  const strut_model *model = view->model;
-  view->state = state, view->q = state->q, view->v = state->v, view->time = t;
+void strut_instant_show(strut_instant *instant, const strut_state *state, unsigned needs,
+                        double t) {
+  const strut_model *model = instant->model;
+  instant->state = state, instant->q = state->q, instant->v = state->v, instant->time = t;
   if (!(needs & ~(1u << STRUT_OBSERVED_MOTION))) return;
   if (needs_evaluation(model, needs) ||
       ((needs & 1u << STRUT_OBSERVED_FORCES) && !strut_forces_show_held(model, state)))
     strut_forces_observe(model, state, t);
   else
     strut_drive_apply(model, state, t);
-  if (needs & 1u << STRUT_OBSERVED_ENERGIES) view->stored = strut_energy_evaluate(model, state, t);
-  if (needs & 1u << STRUT_OBSERVED_MOMENTUM) find_spin(view);
+  if (needs & 1u << STRUT_OBSERVED_ENERGIES)
+    instant->stored = strut_energy_evaluate(model, state, t);
+  if (needs & 1u << STRUT_OBSERVED_MOMENTUM) find_spin(instant);
 }

@@ -19,7 +19,7 @@ typedef struct strut_instant {
   double time; /* without the state's time_offset [s] */
   bool
       sensed; /* within a step: forces without those that hold rigid bars, and without those of actuators */
-  /* what strut_view_show has computed */
+  /* what strut_instant_show has computed */
   strut_energies stored;                /* [J] */
   double *spin;                         /* (nodes) parts of the angular momentum [kg m^2/s] */
   double *momentum, *relative_velocity; /* (nodes, 2) scratch */
@@ -35,18 +35,18 @@ typedef struct strut_observed {
 } strut_observed;
 
 /** Takes the observable of an item, by strut_column_find. */
-typedef strut_observed strut_observe(strut_instant *view, int32_t item, int32_t other);
+typedef strut_observed strut_observe(strut_instant *instant, int32_t item, int32_t other);
 STRUT_API strut_observe *strut_observe_at(strut_column_kind kind);
 
 /** The value of an item of the scene. */
-STRUT_API double strut_observe_item(strut_instant *view, strut_column_kind kind, int32_t item);
+STRUT_API double strut_observe_item(strut_instant *instant, strut_column_kind kind, int32_t item);
 
 /** Allocates in the arena; false: memory is out. */
-bool strut_view_create(const strut_model *model, strut_arena *arena, strut_instant *view);
+bool strut_instant_create(const strut_model *model, strut_arena *arena, strut_instant *instant);
 /**
- * From now on the view shows this state at time t [s] without its time_offset; `needs` has a bit for each
+ * From now on the instant shows this state at time t [s] without its time_offset; `needs` has a bit for each
  * strut_observed_need. Updates forces and rest lengths of the state, which follow from q, v and t.
  */
-void strut_view_show(strut_instant *view, const strut_state *state, unsigned needs, double t);
+void strut_instant_show(strut_instant *instant, const strut_state *state, unsigned needs, double t);
 
 #endif

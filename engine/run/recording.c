@@ -16,7 +16,7 @@ static const char *const *item_names(const strut_model *model, const strut_chann
 }
 
 static bool create_layout(const strut_model *model, strut_channels wanted, strut_recording *r) {
-  if (!strut_view_create(model, &r->arena, &r->view)) return false;
+  if (!strut_instant_create(model, &r->arena, &r->instant)) return false;
   const strut_channel_row *row;
   r->layout.width = 1;
   for (size_t k = 0; (row = strut_channel_at(k)) != NULL; k++) {
@@ -40,7 +40,7 @@ static bool create_layout(const strut_model *model, strut_channels wanted, strut
 
 /* Where each number of a row comes from. */
 static bool find_columns(strut_recording *r) {
-  const strut_model *model = r->view.model;
+  const strut_model *model = r->instant.model;
   r->column = strut_arena_allocate(&r->arena, r->layout.width, sizeof *r->column);
   r->observe = strut_arena_allocate(&r->arena, r->layout.width, sizeof *r->observe);
   for (size_t k = 0; k < r->layout.channel_count && r->column && r->observe; k++) {
@@ -179,14 +179,15 @@ static unsigned needs_of(const strut_recording *r, strut_channels wanted) {
 }
 
 static void fill_row(strut_state *state, strut_recording *r, strut_channels wanted, double *row) {
-  strut_view_show(&r->view, state, needs_of(r, wanted), strut_time_grid_at(&r->grid, state->step));
+  strut_instant_show(&r->instant, state, needs_of(r, wanted),
+                     strut_time_grid_at(&r->grid, state->step));
   row[0] = strut_time_grid_real(&r->grid, state->step);
   for (size_t k = 0; k < r->layout.channel_count; k++) {
     const strut_record_channel *c = &r->channel[k];
     double sum = 0.0;
     for (size_t i = c->offset; i < c->offset + c->items * c->components && (wanted & c->id); i++) {
       const strut_column *from = &r->column[i];
-      row[i] = r->observe[i] ? r->observe[i](&r->view, from->item, from->other).value : sum;
+      row[i] = r->observe[i] ? r->observe[i](&r->instant, from->item, from->other).value : sum;
       sum += row[i];
     }
   }

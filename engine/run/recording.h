@@ -30,7 +30,7 @@ typedef struct strut_recording {
   strut_time_grid grid;
   double start, every;   /* first sample, interval [s] */
   int64_t sampled, last; /* samples so far; step of the latest, -1 before the first */
-  strut_instant view;
+  strut_instant instant;
   strut_column *column; /* (width) what each number of a row is, as strut_column_find finds it; */
   strut_observe **observe; /* its function; NULL: the sum of those before it, or the time */
   strut_arena arena;

@@ -482,19 +482,19 @@ static void fill_contacts(strut_run *r) {
 /* Angles and moments of the hinges at the end, areas and pressures of the cells. */
 static void measure_elements(strut_run *r) {
   const strut_scene *scene = r->model->scene;
-  strut_instant view = {.model = r->model};
+  strut_instant instant = {.model = r->model};
   if (!scene->hinge_count && !scene->cell_count) return;
-  strut_view_show(&view, r->state, 1u << STRUT_OBSERVED_DRIVES,
-                  strut_time_grid_at(&r->grid, r->state->step));
+  strut_instant_show(&instant, r->state, 1u << STRUT_OBSERVED_DRIVES,
+                     strut_time_grid_at(&r->grid, r->state->step));
   for (size_t i = 0; i < scene->hinge_count; i++) {
     strut_hinge_summary *hinge = &r->summary->end.hinges[i];
-    hinge->angle = strut_observe_item(&view, STRUT_COLUMN_HINGE_ANGLE, (int32_t)i);
-    hinge->moment = strut_observe_item(&view, STRUT_COLUMN_MOMENT, (int32_t)i);
+    hinge->angle = strut_observe_item(&instant, STRUT_COLUMN_HINGE_ANGLE, (int32_t)i);
+    hinge->moment = strut_observe_item(&instant, STRUT_COLUMN_MOMENT, (int32_t)i);
   }
   for (size_t i = 0; i < scene->cell_count; i++) {
     strut_cell_summary *cell = &r->summary->end.cells[i];
-    cell->area = strut_observe_item(&view, STRUT_COLUMN_CELL_AREA, (int32_t)i);
-    cell->pressure = strut_observe_item(&view, STRUT_COLUMN_PRESSURE, (int32_t)i);
+    cell->area = strut_observe_item(&instant, STRUT_COLUMN_CELL_AREA, (int32_t)i);
+    cell->pressure = strut_observe_item(&instant, STRUT_COLUMN_PRESSURE, (int32_t)i);
   }
 }
 

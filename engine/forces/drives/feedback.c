@@ -12,11 +12,12 @@
 static void sense_all(const strut_model *model, const strut_state *state, bool driven, double t,
                       const double *q, const double *v) {
   const strut_feedback_table *f = &model->feedback;
-  strut_instant view = {.model = model, .state = state, .q = q, .v = v, .time = t, .sensed = true};
+  strut_instant instant = {
+      .model = model, .state = state, .q = q, .v = v, .time = t, .sensed = true};
   for (int32_t i = 0; i < f->count; i++) {
     strut_column column = f->sensor[i];
     if (strut_column_needs_drives(column) != driven) continue;
-    strut_observed seen = strut_observe_at(column.kind)(&view, column.item, column.other);
+    strut_observed seen = strut_observe_at(column.kind)(&instant, column.item, column.other);
     state->latest->sensor[i] = seen.value, state->latest->sensor_rate[i] = seen.rate;
   }
 }
@@ -140,8 +141,8 @@ bool strut_feedback_touch(const strut_model *model, strut_state *state, int32_t 
 static bool condition_holds(const strut_model *model, const strut_state *state,
                             const strut_trigger *trigger) {
   if (trigger->kind == STRUT_TRIGGER_CONTACT) {
-    strut_instant view = {.model = model, .state = state, .q = state->q, .v = state->v};
-    return strut_observe_item(&view, STRUT_COLUMN_TOUCHES, trigger->item) > 0.0;
+    strut_instant instant = {.model = model, .state = state, .q = state->q, .v = state->v};
+    return strut_observe_item(&instant, STRUT_COLUMN_TOUCHES, trigger->item) > 0.0;
   }
   if (trigger->kind == STRUT_TRIGGER_ABOVE)
     return state->latest->sensor[trigger->item] > trigger->level;

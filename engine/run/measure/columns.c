@@ -32,12 +32,12 @@ bool strut_columns_create(const strut_model *model, size_t most, strut_arena *ar
   c->largest = strut_arena_allocate(arena, most, sizeof *c->largest);
   c->branch = strut_arena_allocate(arena, most, sizeof *c->branch);
   return c->column && c->observe && c->value && c->least && c->most && c->largest && c->branch &&
-         strut_view_create(model, arena, &c->view);
+         strut_instant_create(model, arena, &c->instant);
 }
 
 size_t strut_columns_add(strut_columns *c, strut_column column) {
   const strut_observable *observable = strut_observable_at(column.kind);
-  column = strut_column_find(c->view.model, column, 0);
+  column = strut_column_find(c->instant.model, column, 0);
   for (size_t i = 0; i < c->count; i++) {
     const strut_column *other = &c->column[i];
     if (other->kind == column.kind && other->item == column.item && other->other == column.other)
@@ -52,15 +52,15 @@ size_t strut_columns_add(strut_columns *c, strut_column column) {
 
 /* Computes what columns need at the state. */
 static void show_state(strut_columns *c, const strut_state *state, double t) {
-  strut_view_show(&c->view, state, c->needs, t);
-  for (int32_t i = 0; c->speeds && i < c->view.model->node_count; i++)
+  strut_instant_show(&c->instant, state, c->needs, t);
+  for (int32_t i = 0; c->speeds && i < c->instant.model->node_count; i++)
     c->fastest = fmax(c->fastest, hypot(state->v[2 * i], state->v[2 * i + 1]));
 }
 
 static void note_extremes(strut_columns *c, size_t i) {
-  double size = c->view.size < 0.0 ? fabs(c->value[i]) : c->view.size;
+  double size = c->instant.size < 0.0 ? fabs(c->value[i]) : c->instant.size;
   if (c->column[i].kind == STRUT_COLUMN_LARGEST_FORCE && c->value[i] > c->most[i])
-    c->loaded = c->view.loaded;
+    c->loaded = c->instant.loaded;
   c->least[i] = fmin(c->least[i], c->value[i]);
   c->most[i] = fmax(c->most[i], c->value[i]);
   c->largest[i] = fmax(c->largest[i], size);
@@ -69,9 +69,9 @@ static void note_extremes(strut_columns *c, size_t i) {
 /* Takes a column of the state that is shown. */
 static double take(strut_columns *c, size_t i) {
   const strut_column *column = &c->column[i];
-  c->view.size = -1.0, c->view.branch = 0;
-  double value = c->observe[i](&c->view, column->item, column->other).value;
-  c->branch[i] = c->view.branch;
+  c->instant.size = -1.0, c->instant.branch = 0;
+  double value = c->observe[i](&c->instant, column->item, column->other).value;
+  c->branch[i] = c->instant.branch;
   return value;
 }
 
@@ -115,7 +115,7 @@ static double member_stiffness(const strut_model *model, int32_t member) {
 
 /* The stiffness that a force, moment or pressure follows positions with. */
 static double stiffness_behind(const strut_columns *c, const strut_column *column) {
-  const strut_model *model = c->view.model;
+  const strut_model *model = c->instant.model;
   if (column->kind == STRUT_COLUMN_LARGEST_FORCE) return member_stiffness(model, c->loaded);
   switch ((int)strut_observable_at(column->kind)->owner) {
     case STRUT_OWNER_MEMBER: return member_stiffness(model, column->item);
@@ -133,7 +133,7 @@ static double stiffness_behind(const strut_columns *c, const strut_column *colum
 }
 
 double strut_columns_noise(const strut_columns *c, size_t index) {
-  const strut_model *model = c->view.model;
+  const strut_model *model = c->instant.model;
   const strut_column *column = &c->column[index];
   const strut_observable *o = strut_observable_at(column->kind);
   bool joined = model->members.count > 0 || model->elements.count > 0;

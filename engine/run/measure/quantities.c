@@ -432,7 +432,7 @@ bool strut_quantity_names_member(const strut_quantity_definition *d) {
 /* The member of the largest force, where the largest one of all was asked for. */
 static const char *loaded_member(const strut_quantities *q, const strut_meter *m) {
   if (!strut_quantity_names_member(m->definition) || q->columns.loaded < 0) return NULL;
-  return q->columns.view.model->scene->members[q->columns.loaded].name;
+  return q->columns.instant.model->scene->members[q->columns.loaded].name;
 }
 
 static void fill_measured(strut_quantities *q, strut_meter *m, strut_measured *to) {

@@ -16,7 +16,7 @@
 
 /** Distinct columns with their values now and over the window. */
 typedef struct strut_columns {
-  strut_instant view;
+  strut_instant instant;
   unsigned needs; /* bits of strut_observed_need */
   size_t count;
   strut_column *column;    /* (count) as their functions know them: strut_column_find */
