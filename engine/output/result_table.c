@@ -161,7 +161,8 @@ static void put_cells(cell_table *table, const strut_value_rows *rows, const cha
     const strut_value *value = &values[i];
     const strut_result_object within = {value->items, of, of->scene, 0};
     if (value->kind == STRUT_VALUE_PART && (row->label[0] || !row->key)) {
-      put_cells(table, row->rows, row->label[0] ? title_of(row, part, NULL, title) : part,
+      bool titled = row->label[0] && *row->label[0] != ' ';
+      put_cells(table, row->rows, titled ? title_of(row, part, NULL, title) : part,
                 value->items == of->at ? of : &within);
     } else if (!row->label[0] || value->kind == STRUT_VALUE_PART || row->rows) {
       continue;

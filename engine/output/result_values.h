@@ -37,7 +37,8 @@ enum { STRUT_REPORT_WIDTH = 100, STRUT_REPORT_ROWS = 60 };
 /**
  * What people read of a result, in a block of strut_allocate or NULL: values with a label, those of the struct
  * each in a line, those of a list in a table with a line for each struct or, of few that are wider than `width`, a
- * column for each. An empty label is the key; behind it "%" says how a ratio is shown.
+ * column for each. An empty label is the key, and " " of a part leaves
+ * its own title out; behind it "%" says how a ratio is shown.
  */
 STRUT_API char *strut_values_text(const strut_value_rows *rows, const void *result,
                                   const struct strut_scene *scene, int width, size_t most);

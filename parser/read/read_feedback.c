@@ -213,9 +213,10 @@ bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, co
   strut_compiler compiler = {.column = find_column, .pair = find_pair, .claims = claims_word};
   if (strut_ends_at_comma(reader, value, key, owner)) return false;
   program->instruction = strut_compile(reader, value, key, owner, &compiler, q);
+  if (!program->instruction) return false;
   program->length = compiler.length;
   program->depth = compiler.depth;
-  return program->instruction != NULL;
+  return true;
 }
 
 /* ---- internal states ---- */

@@ -58,7 +58,7 @@ static const char *punctuation_advice(const strut_tree *key) {
 /* "; the keys here are 'a', 'b'" where there are few; "" where there are many, or enough has been said. */
 static const char *known_keys(strut_reader *reader, const sections_context *context, char *text,
                               size_t size) {
-  enum { MOST = 13 };
+  enum { MOST = 14 };
   size_t used = 0;
   text[0] = '\0';
   if (key_of_sections(context, MOST) >= 0 || !strut_hints_left(reader)) return text;

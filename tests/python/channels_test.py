@@ -73,7 +73,7 @@ class Channels(unittest.TestCase):
         motion = data["motion"]
         block = motion[NAME]
         self.assertEqual(block["unit"], "kg m^2/s")
-        self.assertEqual((block["things"], block["columns"]), ("nodes", 4))
+        self.assertEqual((block["names"], block["columns"]), (["a", "b", "c", "total"], 4))
         there = decoded(block, motion["frames"])
         self.assertEqual(motion["frames"], len(self.array))
         self.assertLessEqual(np.abs(there - self.array).max(), 0.51 * block["quantum"])

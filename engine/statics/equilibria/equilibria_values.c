@@ -164,12 +164,16 @@ STRUT_VALUES_HERE(barrier_values, BARRIER, const strut_barrier *b = of->at;
 
 #define MISSED(X)                                                                                  \
   X("probability", "1", NUMBER(all->missed.probability), "that a stable one was not found",        \
-    .label = {""})                                                                                 \
-  X("probability_bound", "1", NUMBER(all->missed.below), "of it, at 95 %", .label = {"at most"})   \
-  X("unreached", "", COUNT(all->unmet), "stable ones that no random start met", .label = {""})     \
+    .label = {"the next start finds a new stable one"})                                            \
+  X("probability_bound", "1", NUMBER(all->missed.below), "of it, at 95 %",                         \
+    .label = {"at most (95 %)"})                                                                   \
+  X("unreached", "", COUNT(all->unmet), "stable ones that no random start met",                    \
+    .label = {"stable ones met by no random start"})                                               \
   X("smallest_basin", "1", NUMBER(all->missed.one), "share of starts that one as rare would meet", \
-    .label = {""})                                                                                 \
-  X("at_least", "", COUNT(all->unseen), "stable ones that exist besides, at 95 %", .label = {""})  \
+    .label = {"a missed one attracts less than (95 %)"})                                           \
+  X("at_least", "", COUNT(all->unseen), "stable ones that exist besides, at 95 %")                 \
+  X(NULL, "", IF(all->unseen, COUNT(all->unseen)), "",                                             \
+    .label = {"more stable ones exist, at least (95 %)"})                                          \
   X("cut_short", "", FLAG(all->cut_short), "whether some search ended early")
 STRUT_VALUES_HERE(missed_values, MISSED, const strut_equilibria *all = of->at)
 
@@ -211,9 +215,10 @@ static size_t standing_of(const strut_equilibria *all) {
 }
 
 #define EQUILIBRIA(X)                                                                              \
+  X(NULL, "", COUNT(all->count), "", .label = {"equilibria"})                                      \
   X("seed", "", COUNT(all->seed), "of the random starts", .label = {""})                           \
   X("starts", "", COUNT(all->starts), "random starts of a search", .label = {""})                  \
-  X("missed", "", PART(all), "what may be missing", .rows = &missed_values, .label = {""})         \
+  X("missed", "", PART(all), "what may be missing", .rows = &missed_values, .label = {" "})        \
   X("settle", "", IF(all->settle.evaluations, PART(&all->settle)),                                 \
     "how the scene's start settled", .rows = &strut_settle_values, .label = {""})                  \
   X("start", "", IF(all->settle.evaluations > 0, TEXT(listed(all, all->start))), "where it did",   \

@@ -288,11 +288,14 @@ static const char *member_name(const strut_result_object *of, size_t i) {
   X("tolerance", "1", NUMBER(STRUT_RANK_TOLERANCE), "of the largest, below which one is zero")     \
   X("rank", "", COUNT(r->spaces.rank), "of the equilibrium matrix", .label = {""})                 \
   X("largest", "1", NUMBER(r->spaces.largest), "singular value, or diagonal entry of R")           \
-  X("kept", "1", NUMBER(r->spaces.kept), "smallest that counts", .label = {""})                    \
-  X("dropped", "1", NUMBER(r->spaces.dropped), "largest that does not", .label = {""})             \
+  X("kept", "1", NUMBER(r->spaces.kept), "smallest that counts",                                   \
+    .label = {"smallest singular value kept"})                                                     \
+  X("dropped", "1", NUMBER(r->spaces.dropped), "largest that does not",                            \
+    .label = {"largest dropped"})                                                                  \
   X("weak", "", COUNT(r->spaces.weak), "that count, but are below a millionth of the largest",     \
     .label = {""})                                                                                 \
-  X("without_length", "", COUNT(r->without_length), "members without a direction", .label = {""})  \
+  X("without_length", "", COUNT(r->without_length), "members without a direction",                 \
+    .label = {"members without length"})                                                           \
   X("self_stress", "", PART(r), "states of self-stress", .rows = &self_stress_values,              \
     .label = {""})                                                                                 \
   X("mechanisms", "", PART(&r->mechanisms), "motions that stretch no member",                      \

@@ -157,8 +157,10 @@ static strut_status judge_sparse(const judgement *j, strut_arena *arena,
   int32_t above = good ? count_negative(j, ldl, -noise) : -1;
   /* where none is below the upper bound, none is below the lower one */
   int32_t below = above > 0 ? count_negative(j, ldl, noise) : above;
-  strut_status status = strut_no_memory(error, "");
-  if (below >= 0) {
+  strut_status status = STRUT_NO_MEMORY;
+  if (below < 0) {
+    strut_no_memory(error, "");
+  } else {
     point->negative = below;
     point->zero = above > below ? above - below : 0;
     status = find_lowest(j, ldl, noise, point->eigenvalues, vector, error);
@@ -257,10 +259,12 @@ static strut_status critical_judge(const strut_potential *potential, const doubl
   j.motion = strut_arena_allocate(&scratch, 3 * n, sizeof *j.motion);
   j.work = strut_arena_allocate(&scratch, 3 * n, sizeof *j.work);
   j.hessian = strut_potential_matrix(potential, &scratch);
-  strut_status status = strut_no_memory(error, "");
+  strut_status status = STRUT_NO_MEMORY;
   if (point->q && point->softest && j.motion && j.work && j.hessian) {
     memcpy(point->q, q, length * sizeof *q);
     status = judge_point(&j, q, arena, point, error);
+  } else {
+    strut_no_memory(error, "");
   }
   bool finite = !status || !j.hessian || is_finite(j.hessian);
   strut_arena_free(&scratch);
