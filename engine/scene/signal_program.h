@@ -76,7 +76,9 @@ static inline double strut_relay_value(const strut_signal *relay, int8_t side) {
 
 /** True where the rate of a sensor follows from positions and velocities alone. */
 static inline bool strut_sensor_has_rate(const strut_sensor *sensor) {
-  return strut_observable_at(strut_sensor_column(sensor).kind)->sense == STRUT_OBSERVED_RATED;
+  strut_column_kind kind = strut_sensor_column(sensor).kind;
+  return kind == STRUT_COLUMN_TIME || /* it senses nothing, and has been refused for that */
+         strut_observable_at(kind)->sense == STRUT_OBSERVED_RATED;
 }
 
 /** Value of an operation of one operand or two. */

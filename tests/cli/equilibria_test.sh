@@ -8,7 +8,7 @@ crawler=$here/../../models/crawler/crawler.yaml
 expect 0 equilibria "$crawler"
 err_empty
 for text in "I                 stable  22.7061 J" "equilibrium  " "III" "collapsed" "1 crossing" \
-  "barrier  over" "others, that --all lists  203"; do
+  "barrier  over" "others, that --all lists                203"; do
   out_has "$text"
 done
 out_has_not "below ground ("
