@@ -242,7 +242,7 @@ static void check_sensor(strut_checker *checker, size_t index) {
   const strut_scene *scene = checker->scene;
   const strut_sensor *s = &scene->sensors[index];
   strut_check_begin(checker, STRUT_THING_SENSOR, index);
-  bool known = s->along < 2 && s->energy < 3 && s->kind != STRUT_COLUMN_TIME &&
+  bool known = s->along < 2 && s->energy < 3 && strut_sensor_column(s).kind != STRUT_COLUMN_TIME &&
                column_exists(scene, strut_sensor_column(s));
   if (!known) {
     strut_fault(checker, NULL, "is of a thing that does not exist");
