@@ -44,7 +44,7 @@ extern "C" {
 #include "engine/run/measure/summary.h"
 #include "engine/run/recorder.h"
 #include "engine/run/simulate.h"
-#include "engine/scene/check.h"
+#include "engine/scene/checks/check.h"
 #include "engine/scene/experiment.h"
 #include "engine/scene/quantity.h"
 #include "engine/scene/signal.h"
@@ -60,9 +60,9 @@ extern "C" {
 #include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep.h"
 #include "engine/study/tradeoff/tradeoff.h"
-#include "parser/read/read_scene.h"
-#include "parser/study/read_study.h"
-#include "parser/write/write_scene.h"
+#include "parser/language/read/read_scene.h"
+#include "parser/language/study/read_study.h"
+#include "parser/language/write/write_scene.h"
 
 #ifdef __cplusplus
 }

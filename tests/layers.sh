@@ -18,13 +18,13 @@ breaches() {
     # Rooms that are one folder here: a stepper with events and what it calls know each other, as do forces and drives.
     function folder(path) {
       sub("/[^/]*$", "", path); sub("^engine/integrate/events/.*$", "engine/integrate/events", path)
-      sub("^engine/forces/drives$", "engine/forces", path); return path
+      sub("^engine/forces/drives$", "engine/forces", path); sub("^parser/language/read/.*$", "parser/language/read", path); return path
     }
     function stem(path) { sub("[.][ch]$", "", path); return path }
     function breach(why) { print place ": " why ": " text }
     BEGIN {
       # Folders in the order in which they may include each other; those of a line stand side by side.
-      count = split("engine/base|engine/scene/laws|engine/scene|engine/model|engine/forces/strains|" \
+      count = split("engine/base|engine/scene/laws|engine/scene|engine/scene/checks|engine/model/algebra|engine/model|engine/forces/strains|" \
         "engine/forces|engine/integrate|" \
         "engine/integrate/events engine/integrate/limit|engine/run/measure|" \
         "engine/run/orbit|engine/run|engine/run/accuracy|engine/run/follow|engine/statics|engine/statics/search|" \
@@ -40,15 +40,15 @@ breaches() {
         n = split(line[i], side, " ")
         for (k = 1; k <= n; k++) floor[side[k]] = i
       }
-      count = split("parser/yaml|parser/expression|parser/language|parser/read|parser/write|" \
-        "parser/study|parser", line, "|")
+      count = split("parser/language/yaml|parser/language/expression|parser/language/keys|parser/language/read|parser/language/write|" \
+        "parser/language/study|parser", line, "|")
       for (i = 1; i <= count; i++) parser_floor[line[i]] = i
       # Foreign libraries live in one folder each; those of linear algebra even in one room.
-      home["yaml.h"] = "parser/yaml"; home["hdf5.h"] = "engine/output"; home["hdf5_hl.h"] = "engine/output"
+      home["yaml.h"] = "parser/language/yaml"; home["hdf5.h"] = "engine/output"; home["hdf5_hl.h"] = "engine/output"
       home["cJSON.h"] = home["cjson/cJSON.h"] = "engine/output"
       home["zlib.h"] = "engine/output/page"; home["cairo.h"] = home["cairo-pdf.h"] = "engine/output/draw"
       home["cairo-svg.h"] = home["pango/pangocairo.h"] = "engine/output/draw"
-      room_of["cholmod.h"] = "engine/model/cholmod_factor engine/statics/sparse_algebra"
+      room_of["cholmod.h"] = "engine/model/algebra/cholmod_factor engine/statics/sparse_algebra"
       room_of["SuiteSparseQR_C.h"] = "engine/statics/sparse_algebra"
       room_of["arpack.h"] = room_of["arpack/arpack.h"] = "engine/statics/sparse_algebra"
       room_of["glpk.h"] = "engine/statics/linear_program"
@@ -61,12 +61,12 @@ breaches() {
       name = substr(text, RSTART + 1, RLENGTH - 2)
       quoted = substr(text, RSTART, 1) == "\""
       from = folder(file); to = folder(name)
-      sub("^parser/program/.*", "parser/program", from); sub("^parser/program/.*", "parser/program", to)
+      sub("^parser/program/(check|study)$", "parser/program", from); sub("^parser/program/(check|study)$", "parser/program", to)
       ours = name ~ "^(engine|parser|tests)/"
       if (!ours) {
         base = name; sub("^suitesparse/", "", base)
         if (quoted) breach("not spelled from the repository root")
-        else if (base in home && from != home[base] && from !~ "^parser/(program|command|bindings/abi|bindings/web)$") breach("belongs to " home[base])
+        else if (base in home && from != home[base] && from !~ "^parser/(program|program/command|bindings/abi|bindings/web)$") breach("belongs to " home[base])
         else if (base in room_of && index(" " room_of[base] " ", " " stem(file) " ") == 0)
           breach("belongs to " room_of[base])
         next
@@ -80,11 +80,11 @@ breaches() {
         if (to == "parser/program" || to == "parser/bindings/abi") breach("runs up")
         next
       }
-      if (from == "parser/command") { if (to == "parser/program" || to == "parser/bindings/abi") breach("runs up"); next }
+      if (from == "parser/program/command") { if (to == "parser/program" || to == "parser/bindings/abi") breach("runs up"); next }
       # The front door of the libraries names them all, but never the program.
-      if (file == "parser/strut.h") { if (to ~ "^parser/(program|command|bindings/abi|bindings/web)$") breach("runs up"); next }
+      if (file == "parser/strut.h") { if (to ~ "^parser/(program|program/command|bindings/abi|bindings/web)$") breach("runs up"); next }
       if (from ~ "^parser") {
-        if (to == "engine/base" || to == "engine/scene") next
+        if (to == "engine/base" || to ~ "^engine/scene") next
         if (!(from in parser_floor)) breach("a folder without a floor")
         else if (!(to in parser_floor) || parser_floor[to] >= parser_floor[from]) breach("runs up")
         next
@@ -106,7 +106,7 @@ expect() {
   for header in engine/base/a.h engine/scene/a.h engine/model/a.h engine/forces/a.h \
     engine/integrate/a.h engine/run/a.h engine/statics/a.h engine/statics/search/a.h \
     engine/statics/modes/a.h engine/output/a.h engine/study/sweep/a.h engine/run/orbit/a.h \
-    engine/odd/a.h parser/a.h parser/yaml/a.h parser/read/a.h parser/program/a.h parser/command/a.h \
+    engine/odd/a.h parser/a.h parser/language/yaml/a.h parser/language/read/a.h parser/program/a.h parser/program/command/a.h \
     parser/bindings/abi/a.h tests/a.h "$2"; do
     mkdir -p "$scratch/tree/${header%/*}"
     : >"$scratch/tree/$header"
@@ -124,21 +124,21 @@ expect 0 engine/model/b.c '#include "engine/model/a.h"'
 expect 0 engine/study/sweep/b.c '#include "engine/statics/a.h"'
 expect 0 engine/run/b.c '#include "engine/run/orbit/a.h"'
 expect 1 engine/run/orbit/b.c '#include "engine/run/a.h"'
-expect 0 parser/read/b.c '#include "parser/yaml/a.h"'
-expect 1 parser/yaml/b.c '#include "parser/read/a.h"'
+expect 0 parser/language/read/b.c '#include "parser/language/yaml/a.h"'
+expect 1 parser/language/yaml/b.c '#include "parser/language/read/a.h"'
 expect 0 parser/b.c '#include "engine/scene/a.h"'
 expect 0 parser/program/b.c '#include "engine/study/sweep/a.h"'
-expect 0 parser/program/b.c '#include "parser/command/a.h"'
+expect 0 parser/program/b.c '#include "parser/program/command/a.h"'
 expect 0 parser/program/study/b.c '#include "parser/program/a.h"'
-expect 0 parser/bindings/abi/b.c '#include "parser/command/a.h"'
-expect 1 parser/command/b.c '#include "parser/program/a.h"'
+expect 0 parser/bindings/abi/b.c '#include "parser/program/command/a.h"'
+expect 1 parser/program/command/b.c '#include "parser/program/a.h"'
 expect 1 parser/bindings/abi/b.c '#include "parser/program/a.h"'
-expect 1 parser/read/b.c '#include "parser/command/a.h"'
+expect 1 parser/language/read/b.c '#include "parser/program/command/a.h"'
 expect 0 parser/strut.h '#include "engine/output/a.h"'
-expect 0 parser/yaml/b.c '#include <yaml.h>'
-expect 1 parser/read/b.c '#include <yaml.h>'
-expect 0 engine/model/cholmod_factor.c '#include <suitesparse/cholmod.h>'
-expect 1 engine/model/linear_solver.c '#include <cholmod.h>'
+expect 0 parser/language/yaml/b.c '#include <yaml.h>'
+expect 1 parser/language/read/b.c '#include <yaml.h>'
+expect 0 engine/model/algebra/cholmod_factor.c '#include <suitesparse/cholmod.h>'
+expect 1 engine/model/algebra/linear_solver.c '#include <cholmod.h>'
 expect 0 engine/base/b.c '#include <stdio.h>'
 expect 1 engine/base/b.h '#include "engine/scene/a.h"'
 expect 1 engine/scene/b.c '  #  include "engine/model/a.h"'
@@ -181,7 +181,7 @@ printf 'STRUT_CLONES\nstatic void same(int a) {\n' | tee "$scratch/twins/engine/
 # What docs/dev/architecture.md says of the tree: who uses CHOLMOD, GLPK and NLopt, and the files that it and
 # docs/dev/recipes.md name by the end of their paths. Those in strut/ are installed.
 strangers() {
-  for pair in 'cholmod_:(model/cholmod_factor|statics/sparse_algebra)' \
+  for pair in 'cholmod_:(model/algebra/cholmod_factor|statics/sparse_algebra)' \
     'ds[ae]upd_:statics/sparse_algebra' 'glp_:statics/linear_program' 'nlopt_:study/search/nlopt_optimiser' \
     '(cairo|pango)_:output/draw/cairo_page' 'H5[A-Z]:output/(hdf5_(disk|parts|writer)|trajectory_file)'; do
     (cd "$1" && grep -rlE "\b${pair%%:*}[a-z0-9_]+ *\(" engine parser --include='*.[ch]' || true) |

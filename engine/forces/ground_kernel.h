@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-#include "engine/model/hot.h"
+#include "engine/model/algebra/hot.h"
 #include "engine/model/pose.h"
 #include "engine/model/state.h"
 

@@ -3,7 +3,7 @@
 #ifndef STRUT_ENGINE_FORCES_MASS_DAMPING_H
 #define STRUT_ENGINE_FORCES_MASS_DAMPING_H
 
-#include "engine/model/sparse.h"
+#include "engine/model/algebra/sparse.h"
 #include "engine/model/state.h"
 
 /** Subtracts alpha M v from state->latest->force and accumulates what that takes as lost in members. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** Texts of laws for four things side by side, the vectors of model/hot.h: members, angles of hinges, and
+/** Texts of laws for four things side by side, the vectors of model/algebra/hot.h: members, angles of hinges, and
     coordinates in a step. */
 #ifndef STRUT_ENGINE_FORCES_MEMBERS_KERNEL_H
 #define STRUT_ENGINE_FORCES_MEMBERS_KERNEL_H
@@ -7,7 +7,7 @@
 #include <math.h>
 
 #include "engine/base/vec.h"
-#include "engine/model/hot.h"
+#include "engine/model/algebra/hot.h"
 #include "engine/model/state.h"
 
 #define LAW(name) four_##name

@@ -13,9 +13,9 @@
 #define STRUT_ENGINE_FORCES_TANGENT_H
 
 #include "engine/forces/elements.h"
-#include "engine/model/hot.h"
+#include "engine/model/algebra/hot.h"
+#include "engine/model/algebra/sparse.h"
 #include "engine/model/pose.h"
-#include "engine/model/sparse.h"
 
 typedef enum strut_force_kind {
   STRUT_FORCE_MEMBER,

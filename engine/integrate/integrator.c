@@ -8,7 +8,7 @@
 #include "engine/forces/drives/feedback.h"
 #include "engine/forces/energy.h"
 #include "engine/forces/rigid.h"
-#include "engine/model/linear_solver.h"
+#include "engine/model/algebra/linear_solver.h"
 
 /* The rows, each defined in its method's own file. */
 #define STRUT_INTEGRATOR_ROW(row, word, steps) extern const strut_integrator strut_integrator_##row;

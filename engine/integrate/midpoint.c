@@ -9,9 +9,9 @@
 #include "engine/forces/tangent.h"
 #include "engine/integrate/discrete_gradient.h"
 #include "engine/integrate/integrator.h"
-#include "engine/model/linear_solver.h"
+#include "engine/model/algebra/linear_solver.h"
+#include "engine/model/algebra/sparse.h"
 #include "engine/model/mass.h"
-#include "engine/model/sparse.h"
 
 typedef struct strut_midpoint_matrix {
   int32_t n;           /* free coordinates */

@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "engine/forces/members_kernel.h"
-#include "engine/model/pull_rows.h"
+#include "engine/model/algebra/pull_rows.h"
 
 #define STRUT_RK4_TIME(time, weight) time,
 #define STRUT_RK4_WEIGHT(time, weight) weight,

@@ -3,10 +3,10 @@
 
 #include <assert.h>
 
-#include "engine/model/hot.h"
+#include "engine/model/algebra/hot.h"
+#include "engine/model/algebra/sparse.h"
 #include "engine/model/mass_kernel.h"
 #include "engine/model/model.h"
-#include "engine/model/sparse.h"
 
 /* Disjoint sets of rows that masses couple: parent[i] leads to the smallest row of the set. */
 static int32_t find_root(int32_t *parent, int32_t i) {

@@ -14,7 +14,7 @@
 #include <stdint.h>
 
 #include "engine/base/status.h"
-#include "engine/model/linear_solver.h"
+#include "engine/model/algebra/linear_solver.h"
 #include "engine/model/model.h"
 
 struct strut_model;

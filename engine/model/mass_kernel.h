@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_MODEL_MASS_KERNEL_H
 #define STRUT_ENGINE_MODEL_MASS_KERNEL_H
 
-#include "engine/model/hot.h"
+#include "engine/model/algebra/hot.h"
 #include "engine/model/mass.h"
 #include "engine/model/model.h"
 

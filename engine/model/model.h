@@ -16,9 +16,9 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
+#include "engine/model/algebra/pull_rows.h"
 #include "engine/model/elements.h"
 #include "engine/model/feedback.h"
-#include "engine/model/pull_rows.h"
 #include "engine/model/rubbing.h"
 #include "engine/model/sliding_masses.h"
 #include "engine/model/support_motion.h"

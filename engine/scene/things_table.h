@@ -2,12 +2,12 @@
 /**
  * The things of a scene as tables: their kinds, and the fields of each, with name, type, range, default,
  * meaning, and where the value is kept. What follows from them: the keys of the language with their
- * reader, writer, reference page and schema (parser/language/keys.h), the checks of ranges, and the
+ * reader, writer, reference page and schema (parser/language/keys/keys.h), the checks of ranges, and the
  * numbers by which an answer is known (things.h). Nothing else repeats what a row says.
  *
  * A row is X(section, id, name, type, measure, range, default, need, set, words, field, description).
  * A section is a mapping of the language; the columns up to `words` are explained in
- * parser/language/keys_table.h. field says where the value is kept:
+ * parser/language/keys/keys_table.h. field says where the value is kept:
  *
  *   FIELD(object, member)                    a number, pair, word, text or signal
  *   REFERENCE(object, member, KIND)          the index of a thing, or an array of them; -1: none

@@ -9,7 +9,7 @@
 #include <stddef.h>
 
 #include "engine/base/vec.h"
-#include "engine/model/hot.h"
+#include "engine/model/algebra/hot.h"
 
 enum { MOST_STEPS = 80 };
 

@@ -8,7 +8,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
-#include "engine/model/linear_solver.h"
+#include "engine/model/algebra/linear_solver.h"
 #include "engine/statics/curvature.h"
 
 enum { MOST_STEPS = 400, MOST_POLISH = 30, MOST_EXTRA = 25, MOST_BENDS = 4 };

@@ -10,13 +10,13 @@
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/study/compare/compare.h"
-#include "parser/command/varied_scenes.h"
+#include "parser/language/read/read_scene.h"
+#include "parser/language/read/reuse/overlay.h"
+#include "parser/language/write/write_scene.h"
+#include "parser/program/command/varied_scenes.h"
 #include "parser/program/options.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"
-#include "parser/read/overlay.h"
-#include "parser/read/read_scene.h"
-#include "parser/write/write_scene.h"
 
 /* ---- reading the models ---- */
 

@@ -4,11 +4,11 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
+#include "parser/language/write/write_scene.h"
 #include "parser/program/commands.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
-#include "parser/write/write_scene.h"
 
 static strut_status put_scene(const strut_arguments *arguments, const char *text) {
   strut_error error = {0};

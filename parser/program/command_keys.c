@@ -12,12 +12,12 @@
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/tradeoff/tradeoff.h"
-#include "parser/command/schema.h"
+#include "parser/language/write/writer.h"
+#include "parser/language/yaml/diagnostics.h"
 #include "parser/program/check/check_messages.h"
+#include "parser/program/command/schema.h"
 #include "parser/program/commands.h"
 #include "parser/program/streams.h"
-#include "parser/write/writer.h"
-#include "parser/yaml/diagnostics.h"
 
 enum { LINE = 79 };
 

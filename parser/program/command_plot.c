@@ -6,9 +6,9 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/figures/table_figure.h"
+#include "parser/language/yaml/diagnostics.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
-#include "parser/yaml/diagnostics.h"
 
 /* In the order of `draws`. */
 static const char kinds[] = "curves|map";

@@ -10,12 +10,12 @@
 #include "engine/output/run_report.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/simulate.h"
-#include "parser/command/run_settings.h"
+#include "parser/language/write/write_scene.h"
+#include "parser/program/command/run_settings.h"
 #include "parser/program/open_model.h"
 #include "parser/program/progress.h"
 #include "parser/program/run_pictures.h"
 #include "parser/program/streams.h"
-#include "parser/write/write_scene.h"
 
 static const strut_option options[] = {
     STRUT_SET_OPTION,

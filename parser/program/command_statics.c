@@ -4,12 +4,12 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
-#include "parser/command/analyses.h"
+#include "parser/language/write/write_scene.h"
+#include "parser/program/command/analyses.h"
 #include "parser/program/commands.h"
 #include "parser/program/options.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"
-#include "parser/write/write_scene.h"
 
 static strut_status write_files(const char *directory, const char *const *names, const char *json,
                                 const char *csv, strut_error *error) {

@@ -9,11 +9,11 @@
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
 #include "engine/output/page/page.h"
+#include "parser/language/write/write_scene.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"
-#include "parser/write/write_scene.h"
 
 /* A page holds a few million numbers: reading more than 128 MB of motion would be wasted. */
 static const size_t ROOM = (size_t)1 << 24;

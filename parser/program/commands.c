@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 #include "engine/output/result_values.h"
+#include "parser/language/yaml/diagnostics.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"
-#include "parser/yaml/diagnostics.h"
 
 static strut_status print_help(const strut_arguments *arguments);
 

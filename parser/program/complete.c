@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/language/keys.h"
+#include "parser/language/keys/keys.h"
 #include "parser/program/commands.h"
 
 typedef struct completion {

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/model/cholmod_factor.h"
+#include "engine/model/algebra/cholmod_factor.h"
 #include "engine/output/draw/cairo_page.h"
 #include "engine/output/hdf5_library.h"
 #include "engine/statics/algebra.h"

@@ -18,11 +18,11 @@
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
 #include "engine/output/record_files.h"
+#include "parser/language/yaml/document.h"
 #include "parser/program/check/check_messages.h"
 #include "parser/program/commands.h"
 #include "parser/program/open_model.h"
 #include "parser/program/streams.h"
-#include "parser/yaml/document.h"
 
 static double now(void) {
   struct timespec t;

@@ -9,11 +9,11 @@
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/statics/equilibria/equilibria.h"
-#include "parser/command/run_settings.h"
+#include "parser/language/read/read_scene.h"
+#include "parser/language/write/write_scene.h"
+#include "parser/program/command/run_settings.h"
 #include "parser/program/commands.h"
 #include "parser/program/streams.h"
-#include "parser/read/read_scene.h"
-#include "parser/write/write_scene.h"
 
 enum { MOST_MESSAGES = 50 };
 

@@ -7,10 +7,10 @@
 
 #include "engine/model/model.h"
 #include "engine/output/trajectory.h"
-#include "engine/scene/check.h"
+#include "engine/scene/checks/check.h"
 #include "engine/scene/experiment.h"
+#include "parser/language/yaml/diagnostics.h"
 #include "parser/program/options.h"
-#include "parser/yaml/diagnostics.h"
 
 /** Purpose of opening a scene. */
 typedef enum strut_open_purpose {

@@ -6,9 +6,9 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/draw/figure.h"
+#include "parser/language/yaml/diagnostics.h"
 #include "parser/program/open_model.h"
 #include "parser/program/streams.h"
-#include "parser/yaml/diagnostics.h"
 
 const strut_option strut_plot_options[] = {
     {STRUT_FILLS(plot), "plot", "FILE", "draw a figure into FILE (.svg, .pdf, .png or .json)"},

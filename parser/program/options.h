@@ -8,8 +8,8 @@
 #define STRUT_PARSER_PROGRAM_OPTIONS_H
 
 #include "engine/output/draw/chart.h"
-#include "parser/command/arguments.h"
-#include "parser/command/plot_options.h"
+#include "parser/program/command/arguments.h"
+#include "parser/program/command/plot_options.h"
 
 /** Parses argv[1..] of a command. STRUT_USAGE with the reason on stderr. */
 strut_status strut_arguments_read(const strut_command *command, int argc, char **argv,

@@ -9,7 +9,7 @@
 #include "engine/output/results.h"
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/sweep/sweep.h"
-#include "parser/command/follow_options.h"
+#include "parser/program/command/follow_options.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
 #include "parser/program/progress.h"

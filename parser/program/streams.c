@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include "engine/base/memory.h"
-#include "parser/yaml/text.h"
+#include "parser/language/yaml/text.h"
 
 /* ---- hidden characters ---- */
 

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "parser/read/csv.h"
-#include "parser/read/read_scene.h"
+#include "parser/language/read/csv.h"
+#include "parser/language/read/read_scene.h"
 
 enum { MOST_MESSAGES = 20 };
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "engine/model/hot.h"
+#include "engine/model/algebra/hot.h"
 
 /* Table 1, and the inverse of the consistent mass: blocks of nodes (1, 2) and (3, 4, 5). */
 #define C_BAR 1e6

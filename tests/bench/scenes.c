@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/read/read_scene.h"
+#include "parser/language/read/read_scene.h"
 
 /* Sizes of a chain's frame and its members; the names of a node tell column and row. */
 #define SIDE 0.1

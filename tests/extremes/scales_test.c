@@ -3,7 +3,7 @@
 #include <gsl/gsl_errno.h>
 #include <time.h>
 
-#include "engine/scene/check.h"
+#include "engine/scene/checks/check.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 

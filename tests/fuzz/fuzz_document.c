@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "parser/expression/expression.h"
-#include "parser/yaml/document.h"
+#include "parser/language/expression/expression.h"
+#include "parser/language/yaml/document.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

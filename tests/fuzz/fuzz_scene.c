@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "parser/read/read_scene.h"
-#include "parser/write/write_scene.h"
+#include "parser/language/read/read_scene.h"
+#include "parser/language/write/write_scene.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 
 #include "engine/study/sweep/grid.h"
-#include "parser/study/read_study.h"
+#include "parser/language/study/read_study.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -14,7 +14,7 @@
 #include "engine/forces/forces.h"
 #include "engine/integrate/integrator.h"
 #include "engine/run/settle.h"
-#include "parser/read/read_scene.h"
+#include "parser/language/read/read_scene.h"
 
 /* FNV-1a over bytes. */
 static uint64_t add(uint64_t hash, const void *data, size_t size) {

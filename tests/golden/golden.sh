@@ -27,7 +27,7 @@ engine="tests/golden/golden.c engine/run/settle.c engine/integrate/rk4.c
   engine/integrate/events/contacts/surface_contacts.c engine/integrate/events/location/variation.c
   engine/integrate/events/location/mode_tangent.c $(ls engine/integrate/limit/*.c)
   $(ls engine/base/*.c engine/model/*.c engine/forces/*.c)"
-reader=$(find engine/scene parser/yaml parser/expression parser/language parser/read -name '*.c' | sort)
+reader=$(find engine/scene parser/language/yaml parser/language/expression parser/language/keys parser/language/read -name '*.c' | sort)
 
 options='-std=c17 -D_POSIX_C_SOURCE=200809L -DSTRUT_VERSION="golden"
   -ffp-contract=off -fno-math-errno -Wno-psabi'

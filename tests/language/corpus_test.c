@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every case of tests/language/bad is refused with exactly the messages that it announces; bases are valid. */
-#include "parser/read/read_scene.h"
+#include "parser/language/read/read_scene.h"
 #include "tests/language/cases.h"
 #include "tests/support/test.h"
 

@@ -3,7 +3,7 @@
  * No value is lost silently: drop, rename or double any key of a valid scene, or change any number,
  * and either an error is reported or what is written back differs.
  */
-#include "parser/yaml/document.h"
+#include "parser/language/yaml/document.h"
 #include "tests/language/scenes.h"
 #include "tests/support/test.h"
 

@@ -2,8 +2,8 @@
 /* What is written reads back to the same bits, for every valid scene of the repository. */
 #include <locale.h>
 
-#include "parser/language/keys.h"
-#include "parser/write/write_scene.h"
+#include "parser/language/keys/keys.h"
+#include "parser/language/write/write_scene.h"
 #include "tests/language/scenes.h"
 #include "tests/support/check.h"
 

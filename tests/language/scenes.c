@@ -3,7 +3,7 @@
 
 #include <dirent.h>
 
-#include "parser/write/write_scene.h"
+#include "parser/language/write/write_scene.h"
 #include "tests/language/cases.h"
 #include "tests/support/test.h"
 

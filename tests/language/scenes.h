@@ -7,7 +7,7 @@
 
 #include <stddef.h>
 
-#include "parser/read/read_scene.h"
+#include "parser/language/read/read_scene.h"
 
 typedef struct scene_file {
   char path[600];

@@ -4,8 +4,8 @@
 
 #include "engine/base/memory.h"
 #include "engine/study/sweep/grid.h"
-#include "parser/language/keys.h"
-#include "parser/study/read_study.h"
+#include "parser/language/keys/keys.h"
+#include "parser/language/study/read_study.h"
 #include "tests/language/cases.h"
 #include "tests/support/check.h"
 

@@ -7,7 +7,7 @@
 
 #include "engine/run/recorder.h"
 #include "engine/run/simulate.h"
-#include "parser/read/read_scene.h"
+#include "parser/language/read/read_scene.h"
 #include "tests/support/test.h"
 
 typedef struct model_run {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Measured quantities against closed forms: each column, each reduction, and what they cost. */
-#include "parser/read/read_scene.h"
+#include "parser/language/read/read_scene.h"
 #include "tests/support/motion.h"
 
 static const double PI = 3.14159265358979323846, GRAVITY = 9.81;

@@ -11,9 +11,9 @@
 #include "engine/model/model.h"
 #include "engine/output/record_files.h"
 #include "engine/run/simulate.h"
-#include "parser/read/read_scene.h"
-#include "parser/study/read_study.h"
-#include "parser/write/write_scene.h"
+#include "parser/language/read/read_scene.h"
+#include "parser/language/study/read_study.h"
+#include "parser/language/write/write_scene.h"
 
 int test_an_observable(void);
 

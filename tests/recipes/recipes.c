@@ -13,8 +13,8 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibria.h"
-#include "parser/read/read_scene.h"
-#include "parser/write/write_scene.h"
+#include "parser/language/read/read_scene.h"
+#include "parser/language/write/write_scene.h"
 
 static const char LACKS_WIDTH[] =
     "strut: 1\nname: block\nnodes: {block: {position: [0, 0], mass: 1}}\n"

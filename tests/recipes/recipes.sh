@@ -21,15 +21,15 @@ expected="engine/forces/elements.c engine/forces/observe.c engine/forces/strains
 engine/integrate/events/location/between.c \
 engine/model/elements.c engine/model/elements.h engine/scene/experiment.h engine/scene/law.h \
 engine/scene/laws/friction.h engine/scene/laws/stiffening.h engine/scene/observables.h engine/scene/scene.c \
-engine/scene/scene.h engine/scene/things_table.h parser/language/keys_table.h parser/read/read_scene.c \
-parser/read/read_things.c parser/write/write_scene.c "
+engine/scene/scene.h engine/scene/things_table.h parser/language/keys/keys_table.h parser/language/read/read_scene.c \
+parser/language/read/read_things.c parser/language/write/write_scene.c "
 [ "$touched" = "$expected" ] || { echo "the recipes touch other files: $touched"; exit 1; }
 patch -s -p1 <recipes.diff
 
-sources="tests/recipes/recipes.c tests/recipes/things.c tests/recipes/observable.c $(ls engine/base/*.c engine/scene/*.c \
-  engine/model/*.c engine/statics/search/*.c engine/statics/equilibria/*.c |
+sources="tests/recipes/recipes.c tests/recipes/things.c tests/recipes/observable.c $(ls engine/base/*.c \
+  engine/statics/search/*.c engine/statics/equilibria/*.c |
     grep -v _values.c) \
-  $(find engine/forces engine/integrate parser/yaml parser/expression parser/language parser/read parser/write parser/study engine/run -name '*.c')
+  $(find engine/scene engine/model engine/forces engine/integrate parser/language/yaml parser/language/expression parser/language/keys parser/language/read parser/language/write parser/language/study engine/run -name '*.c')
   engine/output/csv.c engine/output/file.c engine/output/buffer.c engine/output/results.c engine/statics/curvature.c engine/statics/dense_algebra.c
   engine/statics/minimise.c engine/statics/potential.c engine/statics/spectrum.c"
 # shellcheck disable=SC2086

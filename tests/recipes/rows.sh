@@ -14,13 +14,13 @@ cp -R "$root/engine" "$root/parser" "$scratch/"
 awk '/^```patch/ { inside = 1; next } /^```/ { inside = 0 } inside' "$root/docs/dev/recipes.md" >"$scratch/rows.diff"
 cd "$scratch"
 touched=$(sed -n 's/^+++ b\///p' rows.diff | tr '\n' ' ')
-expected="engine/statics/modes/modes_values.c parser/command/arguments.h parser/command/analyses.c "
+expected="engine/statics/modes/modes_values.c parser/program/command/arguments.h parser/program/command/analyses.c "
 [ "$touched" = "$expected" ] || { echo "the patches touch other files: $touched"; exit 1; }
 patch -s -p1 <rows.diff
 
 rules=$build/parser/CMakeFiles/strut.dir
 flags=$(sed -n 's/^C_[A-Z]* = //p' "$rules/flags.make" | tr '\n' ' ' | sed "s#-I$root #-I$PWD #g")
-printf '%s\n' parser/command/*.c parser/program/*.c parser/program/*/*.c engine/statics/modes/modes_values.c |
+printf '%s\n' parser/program/*.c parser/program/*/*.c engine/statics/modes/modes_values.c |
   xargs -P 2 -n 12 sh -c 'cc=$1 flags=$2; shift 2
     for file; do eval "$cc $flags -O0 -w -c $file -o $(echo "$file" | tr / _).o" || exit 255; done' sh "$cc" "$flags"
 libraries=$(tr ' ' '\n' <"$rules/link.txt" | grep -E '[.](a|so)$|^-l' | tr '\n' ' ')

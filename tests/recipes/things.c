@@ -9,9 +9,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/scene/check.h"
-#include "parser/read/read_scene.h"
-#include "parser/write/write_scene.h"
+#include "engine/scene/checks/check.h"
+#include "parser/language/read/read_scene.h"
+#include "parser/language/write/write_scene.h"
 
 int test_a_number_of_hinges(void);
 int test_a_kind_of_thing(void);

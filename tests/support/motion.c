@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/support/motion.h"
 
-#include "engine/scene/check.h"
+#include "engine/scene/checks/check.h"
 
 static void check(const strut_scene *scene) {
   OWN(strut_findings) findings = {0};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The semantic rules on scenes made without a file: each spoilt in one way, each finding named. Rules that files break
    as well are seen in tests/language/bad, with the places of their messages. */
-#include "engine/scene/check.h"
+#include "engine/scene/checks/check.h"
 #include "tests/support/test.h"
 
 /* A valid scene that uses everything, in arrays that a test may spoil. */

@@ -2,8 +2,8 @@
 /* Comparing: differences of texts, every allocation failing once, an interrupt, what is reported. */
 #include "engine/study/compare/compare.h"
 #include "engine/output/result_values.h"
-#include "parser/read/overlay.h"
-#include "parser/read/read_scene.h"
+#include "parser/language/read/read_scene.h"
+#include "parser/language/read/reuse/overlay.h"
 #include "tests/support/check.h"
 
 static const char hopper[] =

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Located messages: their text, order and limits, the caret, and suggestions. */
-#include "parser/yaml/diagnostics.h"
+#include "parser/language/yaml/diagnostics.h"
 #include "engine/base/memory.h"
 #include "tests/support/test.h"
 

@@ -5,8 +5,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "parser/read/read_scene.h"
-#include "parser/yaml/document.h"
+#include "parser/language/read/read_scene.h"
+#include "parser/language/yaml/document.h"
 #include "tests/support/motion.h"
 #include "tests/support/sanitized.h"
 #include "tests/unit/document_support.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/unit/document_support.h"
 
-#include "parser/yaml/document.h"
+#include "parser/language/yaml/document.h"
 #include "tests/support/test.h"
 
 char *shown_end(char *out) { return out + strlen(out); }

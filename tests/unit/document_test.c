@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The YAML reader: trees and places, and every refusal with its words. */
-#include "parser/yaml/document.h"
+#include "parser/language/yaml/document.h"
 #include "tests/support/test.h"
 #include "tests/unit/document_support.h"
 

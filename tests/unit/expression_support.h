@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-#include "parser/expression/expression.h"
+#include "parser/language/expression/expression.h"
 
 /** f = 10 Hz, a = 2 mm, amplitude = 1 mm, t = 3 (named like a unit), two = 2; lost has no value. */
 extern const strut_scope test_scope;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The table of keys is consistent, and the page made from it is the one in docs/. */
-#include "parser/language/keys.h"
+#include "parser/language/keys/keys.h"
 #include "engine/base/memory.h"
-#include "parser/write/writer.h"
+#include "parser/language/write/writer.h"
 #include "tests/support/test.h"
 
 TEST(sections_divide_the_table) {

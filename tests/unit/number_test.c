@@ -4,8 +4,8 @@
 #include <regex.h>
 
 #include "engine/base/memory.h"
-#include "parser/expression/expression.h"
-#include "parser/yaml/diagnostics.h"
+#include "parser/language/expression/expression.h"
+#include "parser/language/yaml/diagnostics.h"
 #include "tests/support/check.h"
 
 static uint64_t random_state = 42;

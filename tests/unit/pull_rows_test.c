@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every node finds the pulls of its members in their order, and nothing else. */
-#include "engine/model/pull_rows.h"
+#include "engine/model/algebra/pull_rows.h"
 
 #include "tests/support/check.h"
 #include "tests/support/random.h"

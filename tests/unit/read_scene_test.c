@@ -2,8 +2,8 @@
 /* What the reader makes of a text: values, groups, parameters, --set, layers; memory; locale. */
 #include <time.h>
 
-#include "parser/read/read_scene.h"
-#include "parser/write/write_scene.h"
+#include "parser/language/read/read_scene.h"
+#include "parser/language/write/write_scene.h"
 #include "tests/language/cases.h"
 #include "tests/support/motion.h"
 

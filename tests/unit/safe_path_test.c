@@ -3,7 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "parser/read/used_files.h"
+#include "parser/language/read/reuse/used_files.h"
 #include "tests/support/check.h"
 
 static char folder[] = "/tmp/strut-safe-XXXXXX";

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sparse symmetric matrices, their products and their factors, against dense ones. */
-#include "engine/model/sparse.h"
-#include "engine/model/linear_solver.h"
+#include "engine/model/algebra/sparse.h"
+#include "engine/model/algebra/linear_solver.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
 

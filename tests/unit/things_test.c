@@ -2,8 +2,8 @@
 /* The tables of things: names by kind, and the numbers by which an equilibrium is known. */
 #include "engine/scene/things.h"
 #include "engine/base/memory.h"
-#include "parser/language/keys.h"
-#include "parser/read/read_scene.h"
+#include "parser/language/keys/keys.h"
+#include "parser/language/read/read_scene.h"
 #include "tests/support/test.h"
 
 static const char text[] =

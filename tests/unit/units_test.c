@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Units: the table's order and factors, and the words for dimensions. */
-#include "parser/expression/units.h"
-#include "parser/expression/expression.h"
+#include "parser/language/expression/units.h"
+#include "parser/language/expression/expression.h"
 #include "tests/support/test.h"
 
 static const strut_unit *unit(const char *name) { return strut_unit_find(name, strlen(name)); }

@@ -2,7 +2,7 @@
 /* Films where memory is out. */
 #include "engine/base/memory.h"
 #include "engine/output/figures/run_film.h"
-#include "parser/read/read_scene.h"
+#include "parser/language/read/read_scene.h"
 #include "tests/support/check.h"
 #include "tests/unit/scratch.h"
 

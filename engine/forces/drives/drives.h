@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_FORCES_DRIVES_DRIVES_H
 #define STRUT_ENGINE_FORCES_DRIVES_DRIVES_H
 
-#include "engine/model/hot.h"
+#include "engine/model/algebra/hot.h"
 #include "engine/model/state.h"
 
 /* Forces' terms that change with time alone; those of members and ground are in *_kernel.h. */

@@ -8,7 +8,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/forces/energy.h"
-#include "engine/model/dense_cholesky.h"
+#include "engine/model/algebra/dense_cholesky.h"
 #include "engine/model/mass.h"
 #include "engine/scene/signal_motion.h"
 

@@ -7,7 +7,7 @@
 #define STRUT_ENGINE_FORCES_DRIVES_SIGNAL_VECTOR_H
 
 #include "engine/base/vec.h"
-#include "engine/model/hot.h"
+#include "engine/model/algebra/hot.h"
 #include "engine/model/model.h"
 
 STRUT_DEFINE_TRIG(STRUT_INLINE, strut_lanes, signal_vector_sine, signal_vector_cosine)

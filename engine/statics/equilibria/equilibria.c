@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/model/linear_solver.h"
+#include "engine/model/algebra/linear_solver.h"
 #include "engine/model/pose.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibria_parts.h"

@@ -8,7 +8,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/integrate/limit/step_limit.h"
-#include "engine/model/linear_solver.h"
+#include "engine/model/algebra/linear_solver.h"
 #include "engine/model/pose.h"
 #include "engine/scene/things.h"
 #include "engine/statics/form/form.h"

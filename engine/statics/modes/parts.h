@@ -4,7 +4,7 @@
 #define STRUT_ENGINE_STATICS_MODES_PARTS_H
 
 #include "engine/base/flag.h"
-#include "engine/model/linear_solver.h"
+#include "engine/model/algebra/linear_solver.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/modes/waves.h"

@@ -5,8 +5,8 @@
 #ifndef STRUT_ENGINE_STATICS_RIGIDITY_RIGIDITY_PARTS_H
 #define STRUT_ENGINE_STATICS_RIGIDITY_RIGIDITY_PARTS_H
 
+#include "engine/model/algebra/sparse.h"
 #include "engine/model/model.h"
-#include "engine/model/sparse.h"
 #include "engine/statics/rigidity/rigidity.h"
 
 /* Both decompositions that strut_null_spaces_find chooses from. */

@@ -19,8 +19,8 @@
 #include "engine/output/trajectory.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "parser/bindings/abi/abi.h"
-#include "parser/command/arguments.h"
-#include "parser/yaml/document.h"
+#include "parser/language/yaml/document.h"
+#include "parser/program/command/arguments.h"
 
 /*
  * A tree of named values, by dotted names: what JSON texts and scenes hold.

@@ -12,10 +12,10 @@
 #include "engine/output/results.h"
 #include "engine/scene/study.h"
 #include "parser/bindings/abi/handles.h"
-#include "parser/command/analyses.h"
-#include "parser/command/run_settings.h"
-#include "parser/command/schema.h"
-#include "parser/read/read_scene.h"
+#include "parser/language/read/read_scene.h"
+#include "parser/program/command/analyses.h"
+#include "parser/program/command/run_settings.h"
+#include "parser/program/command/schema.h"
 
 /* No call of the library reads or writes trajectory.h5. With this definition neither HDF5 nor the libraries for
    network files that it needs are linked. */

@@ -5,8 +5,8 @@
 #include "engine/model/state.h"
 #include "engine/output/draw/figure.h"
 #include "engine/output/page/page.h"
-#include "parser/command/plot_options.h"
-#include "parser/write/write_scene.h"
+#include "parser/language/write/write_scene.h"
+#include "parser/program/command/plot_options.h"
 
 static const strut_option svg_options[] = {{.table = strut_plot_setting_options},
                                            {.table = strut_run_figure_options},

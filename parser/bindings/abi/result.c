@@ -9,7 +9,7 @@
 #include "engine/base/c_locale.h"
 #include "engine/output/json_value.h"
 #include "parser/bindings/abi/handles.h"
-#include "parser/write/write_scene.h"
+#include "parser/language/write/write_scene.h"
 
 abi_tree *abi_tree_read(const char *json) {
   strut_c_locale locale = strut_c_locale_enter();

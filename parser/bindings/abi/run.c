@@ -14,8 +14,8 @@
 #include "engine/scene/things.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "parser/bindings/abi/handles.h"
-#include "parser/command/arguments.h"
-#include "parser/command/run_settings.h"
+#include "parser/program/command/arguments.h"
+#include "parser/program/command/run_settings.h"
 
 /* No frame is left out: the caller decides how much is recorded. */
 static const size_t ROOM = SIZE_MAX / 64;

@@ -10,7 +10,7 @@
 #include "engine/scene/things.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "parser/bindings/abi/handles.h"
-#include "parser/write/write_scene.h"
+#include "parser/language/write/write_scene.h"
 
 /* ---- names ---- */
 

@@ -12,8 +12,8 @@
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/statics/rigidity/rigidity_parts.h"
 #include "parser/bindings/abi/handles.h"
-#include "parser/command/analyses.h"
-#include "parser/write/write_scene.h"
+#include "parser/language/write/write_scene.h"
+#include "parser/program/command/analyses.h"
 
 typedef struct analysis_detail {
   abi_detail base;

@@ -8,10 +8,10 @@
 #include "engine/study/results/study_table.h"
 #include "engine/study/sweep/sweep.h"
 #include "parser/bindings/abi/handles.h"
-#include "parser/command/arguments.h"
-#include "parser/command/run_settings.h"
-#include "parser/command/varied_scenes.h"
-#include "parser/write/write_scene.h"
+#include "parser/language/write/write_scene.h"
+#include "parser/program/command/arguments.h"
+#include "parser/program/command/run_settings.h"
+#include "parser/program/command/varied_scenes.h"
 
 static const char slots_name[] = "points.slots", table_name[] = "table.csv";
 static const char *const files[] = {slots_name, table_name, NULL};

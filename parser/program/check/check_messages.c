@@ -10,10 +10,10 @@
 #include "engine/integrate/integrator.h"
 #include "engine/output/file.h"
 #include "engine/run/measure/monitors.h"
+#include "parser/language/read/reader.h"
+#include "parser/language/yaml/document.h"
 #include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
-#include "parser/read/reader.h"
-#include "parser/yaml/document.h"
 
 #define LOCATED(X)                                                                                 \
   X("file", "", TEXT(at->file), "that it is about")                                                \

@@ -4,10 +4,10 @@
 #define STRUT_PARSER_PROGRAM_CHECK_CHECK_MESSAGES_H
 
 #include "engine/run/cost_estimate.h"
-#include "engine/scene/check.h"
+#include "engine/scene/checks/check.h"
 #include "engine/scene/value_rows.h"
+#include "parser/language/yaml/diagnostics.h"
 #include "parser/program/options.h"
-#include "parser/yaml/diagnostics.h"
 
 /* Messages with their places, for editors: `strut check --json`. */
 

@@ -7,8 +7,8 @@
 #include "engine/base/memory.h"
 #include "engine/base/vec.h"
 #include "engine/integrate/integrator.h"
-#include "parser/command/run_settings.h"
 #include "parser/program/check/check_messages.h"
+#include "parser/program/command/run_settings.h"
 #include "parser/program/open_model.h"
 #include "parser/program/streams.h"
 

@@ -9,7 +9,7 @@
 #include "engine/output/file.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
-#include "parser/command/run_settings.h"
+#include "parser/program/command/run_settings.h"
 #include "parser/program/commands.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"

@@ -12,9 +12,9 @@
 #include "engine/study/search/search.h"
 #include "engine/study/sweep/sweep.h"
 #include "engine/study/sweep/sweep_parts.h"
+#include "parser/language/study/read_study.h"
 #include "parser/program/options.h"
 #include "parser/program/progress.h"
-#include "parser/study/read_study.h"
 
 /** Stays where it is while in use. Zero-initialise; strut_sweep_study_close releases it. */
 typedef struct strut_sweep_study {

@@ -8,11 +8,11 @@
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/sweep/study_runs.h"
+#include "parser/language/yaml/diagnostics.h"
 #include "parser/program/commands.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
-#include "parser/yaml/diagnostics.h"
 
 static bool of_runs(const strut_study_figure *f) {
   return f->kind >= STRUT_FIGURE_MOTION && f->kind <= STRUT_FIGURE_SNAPSHOTS;

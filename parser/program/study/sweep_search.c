@@ -9,11 +9,11 @@
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/sensitivity/sensitivity.h"
+#include "parser/language/yaml/diagnostics.h"
 #include "parser/program/commands.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
-#include "parser/yaml/diagnostics.h"
 
 static const char table_name[] = "table.csv";
 static const double PAGE = 510.24; /* 180 mm [pt] */

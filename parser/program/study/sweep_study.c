@@ -16,13 +16,13 @@
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
 #include "engine/study/sweep/grid.h"
-#include "parser/command/run_settings.h"
+#include "parser/language/study/read_study.h"
+#include "parser/language/write/write_scene.h"
+#include "parser/program/command/run_settings.h"
 #include "parser/program/commands.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
-#include "parser/study/read_study.h"
-#include "parser/write/write_scene.h"
 
 enum { MOST_MESSAGES = 50 };
 

@@ -6,7 +6,7 @@
 
 #include "engine/integrate/events/contacts/contact_coupling.h"
 #include "engine/integrate/events/event_kernel.h"
-#include "engine/model/dense_cholesky.h"
+#include "engine/model/algebra/dense_cholesky.h"
 
 /* Entries below this part of a column's largest one change no bit that matters. */
 static const double NEGLIGIBLE = 1e-18;

@@ -7,7 +7,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/integrate/events/contacts/implicit_ground.h"
-#include "engine/model/dense_cholesky.h"
+#include "engine/model/algebra/dense_cholesky.h"
 
 /* 1 + the contact of each node, or 0, into `owner`; false where a node has two. */
 static bool find_owners(const strut_model *model, int32_t *owner) {

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/model/algebra/sparse.h"
+
+#include <assert.h>
+#include <string.h>
+
+#include "engine/model/algebra/pull_rows.h"
+
+bool strut_triplets_reserve(strut_triplets *triplets, size_t capacity, strut_arena *arena) {
+  triplets->row = strut_arena_allocate(arena, capacity, sizeof *triplets->row);
+  triplets->column = strut_arena_allocate(arena, capacity, sizeof *triplets->column);
+  triplets->value = strut_arena_allocate(arena, capacity, sizeof *triplets->value);
+  triplets->capacity = capacity;
+  return triplets->row && triplets->column && triplets->value;
+}
+
+void strut_triplets_add(strut_triplets *triplets, int32_t row, int32_t column, double value) {
+  int32_t low = row > column ? column : row;
+  if (triplets->end && (low < triplets->first || low >= triplets->end)) return;
+  if (triplets->counting) {
+    triplets->count++;
+    return;
+  }
+  assert(triplets->count < triplets->capacity);
+  triplets->row[triplets->count] = row > column ? row : column;
+  triplets->column[triplets->count] = low;
+  triplets->value[triplets->count++] = value;
+}
+
+/* A column of more entries, as of a hub, is merged. */
+enum { FEW = 32 };
+
+typedef struct entry {
+  int32_t row;
+  double value;
+} entry;
+
+/* Sorts by merging, keeping the order of equals; false: out of memory. */
+static bool merge_rows(int32_t *row, double *value, size_t length) {
+  entry *from = strut_allocate(2 * length, sizeof *from), *all = from, *to = from + length;
+  if (!all) return false;
+  for (size_t i = 0; i < length; i++) from[i] = (entry){row[i], value[i]};
+  for (size_t width = 1; width < length; width *= 2) {
+    for (size_t begin = 0; begin < length; begin += 2 * width) {
+      size_t middle = begin + width < length ? begin + width : length;
+      size_t end = middle + width < length ? middle + width : length;
+      for (size_t k = begin, a = begin, b = middle; k < end; k++)
+        to[k] = a < middle && (b >= end || from[a].row <= from[b].row) ? from[a++] : from[b++];
+    }
+    entry *other = from;
+    from = to, to = other;
+  }
+  for (size_t i = 0; i < length; i++) row[i] = from[i].row, value[i] = from[i].value;
+  strut_release(all);
+  return true;
+}
+
+/* Sorts a column's rows, keeping the order of equals, and sums those; the new length. */
+static int32_t tidy_column(int32_t *row, double *value, int32_t length) {
+  bool merged = length > FEW && merge_rows(row, value, (size_t)length);
+  for (int32_t i = 1; i < length && !merged; i++)
+    for (int32_t k = i; k > 0 && row[k - 1] > row[k]; k--) {
+      int32_t r = row[k];
+      double v = value[k];
+      row[k] = row[k - 1], value[k] = value[k - 1];
+      row[k - 1] = r, value[k - 1] = v;
+    }
+  int32_t last = 0;
+  for (int32_t i = 1; i < length; i++)
+    if (row[i] == row[last])
+      value[last] += value[i];
+    else
+      last++, row[last] = row[i], value[last] = value[i];
+  return last + 1;
+}
+
+/* Tidies the columns [first, last), whose entries follow those before. */
+static void tidy(strut_sparse *m, int32_t first, int32_t last) {
+  int32_t at = m->start[first];
+  for (int32_t j = first, begin = at; j < last; j++) {
+    int32_t end = m->start[j + 1];
+    int32_t length = tidy_column(m->row + begin, m->value + begin, end - begin);
+    memmove(m->row + at, m->row + begin, (size_t)length * sizeof *m->row);
+    memmove(m->value + at, m->value + begin, (size_t)length * sizeof *m->value);
+    at += length;
+    begin = end;
+    m->start[j + 1] = at;
+  }
+}
+
+/* Fills the columns [first, end); `start` is set up to `first`, and zero behind. */
+static void fill_columns(strut_sparse *m, int32_t first, int32_t end,
+                         const strut_triplets *triplets) {
+  int32_t *next = m->start + 1; /* shifted by one while filling: becomes start at the end */
+  next[first] = m->start[first];
+  for (size_t k = 0; k < triplets->count; k++) next[triplets->column[k] + 1]++;
+  for (int32_t j = first; j < end; j++) next[j + 1] += next[j] + 1;
+  for (int32_t j = first; j < end; j++) {
+    m->value[next[j]] = 0.0;
+    m->row[next[j]++] = j;
+  }
+  for (size_t k = 0; k < triplets->count; k++) {
+    int32_t at = next[triplets->column[k]]++;
+    m->row[at] = triplets->row[k];
+    m->value[at] = triplets->value[k];
+  }
+  tidy(m, first, end);
+}
+
+strut_sparse *strut_sparse_begin(int32_t n, size_t capacity, strut_arena *arena) {
+  size_t count = capacity + (size_t)n;
+  strut_sparse *m = strut_arena_allocate(arena, 1, sizeof *m);
+  if (!m) return NULL;
+  m->n = n;
+  m->start = strut_arena_allocate(arena, (size_t)n + 2, sizeof *m->start);
+  m->row = strut_arena_allocate(arena, count, sizeof *m->row);
+  m->value = strut_arena_allocate(arena, count, sizeof *m->value);
+  return m->start && m->row && m->value ? m : NULL;
+}
+
+void strut_sparse_append(strut_sparse *matrix, const strut_triplets *triplets) {
+  fill_columns(matrix, triplets->first, triplets->end, triplets);
+}
+
+strut_sparse *strut_sparse_build(int32_t n, const strut_triplets *triplets, strut_arena *arena) {
+  strut_sparse *m = strut_sparse_begin(n, triplets->count, arena);
+  if (m) fill_columns(m, 0, n, triplets);
+  return m;
+}
+
+strut_sparse *strut_sparse_copy(const strut_sparse *matrix, strut_arena *arena) {
+  size_t n = (size_t)matrix->n, entries = (size_t)matrix->start[n];
+  strut_sparse *m = strut_arena_allocate(arena, 1, sizeof *m);
+  if (!m) return NULL;
+  m->n = matrix->n;
+  m->start = strut_arena_allocate(arena, n + 1, sizeof *m->start);
+  m->row = strut_arena_allocate(arena, entries, sizeof *m->row);
+  m->value = strut_arena_allocate(arena, entries, sizeof *m->value);
+  if (!m->start || !m->row || !m->value) return NULL;
+  memcpy(m->start, matrix->start, (n + 1) * sizeof *m->start);
+  memcpy(m->row, matrix->row, entries * sizeof *m->row);
+  memcpy(m->value, matrix->value, entries * sizeof *m->value);
+  return m;
+}
+
+void strut_sparse_multiply(const strut_sparse *matrix, const double *restrict x,
+                           double *restrict y) {
+  memset(y, 0, (size_t)matrix->n * sizeof *y);
+  for (int32_t j = 0; j < matrix->n; j++) {
+    y[j] += matrix->value[matrix->start[j]] * x[j];
+    for (int32_t k = matrix->start[j] + 1; k < matrix->start[j + 1]; k++) {
+      y[matrix->row[k]] += matrix->value[k] * x[j];
+      y[j] += matrix->value[k] * x[matrix->row[k]];
+    }
+  }
+}
+
+/* The pulls on the nodes of a block, node by node, as these are met. */
+typedef struct block_nodes {
+  int32_t count;
+  uint32_t at[STRUT_BLOCK_ENDS];
+  int32_t pulls[STRUT_BLOCK_ENDS], begin[STRUT_BLOCK_ENDS]; /* of each, in: */
+  uint16_t pull[STRUT_BLOCK_ENDS];
+} block_nodes;
+
+/* Members of a block, and for each node 1 + its number in the block; 0: none yet. */
+typedef struct block_members {
+  int32_t count;
+  const uint32_t *from, *to;
+  uint8_t *number;
+} block_members;
+
+static void meet(const block_members *m, block_nodes *nodes, uint32_t at) {
+  if (!m->number[at / 2]) {
+    nodes->at[nodes->count++] = at;
+    m->number[at / 2] = (uint8_t)nodes->count;
+  }
+  nodes->pulls[m->number[at / 2] - 1]++;
+}
+
+static void note(const block_members *m, block_nodes *nodes, uint32_t at, uint16_t pull) {
+  int32_t i = m->number[at / 2] - 1;
+  nodes->pull[nodes->begin[i] + nodes->pulls[i]++] = pull;
+}
+
+static void list_pulls(const block_members *m, block_nodes *nodes) {
+  for (int32_t k = 0; k < m->count; k++)
+    if (m->from[k] != m->to[k]) meet(m, nodes, m->from[k]), meet(m, nodes, m->to[k]);
+  for (int32_t i = 0, begin = 0; i < nodes->count; i++) {
+    nodes->begin[i] = begin;
+    begin += nodes->pulls[i];
+    nodes->pulls[i] = 0;
+  }
+  for (int32_t k = 0; k < m->count; k++) {
+    if (m->from[k] == m->to[k]) continue;
+    note(m, nodes, m->from[k], strut_pull_at(k, false));
+    note(m, nodes, m->to[k], strut_pull_at(k, true));
+  }
+  for (int32_t i = 0; i < nodes->count; i++) m->number[nodes->at[i] / 2] = 0;
+}
+
+static int32_t rows_of(const block_nodes *nodes, int32_t width) {
+  int32_t rows = 0;
+  for (int32_t i = 0; i < nodes->count; i++) rows += (nodes->pulls[i] + width - 1) / width;
+  return rows;
+}
+
+/* The width that takes fewest instructions: 2 for each pull, and 5 for each row. */
+static int32_t best_width(const block_nodes *nodes) {
+  int32_t best = 1, least = INT32_MAX;
+  for (int32_t width = 1; width <= STRUT_WIDEST_ROW; width++) {
+    int32_t rows = rows_of(nodes, width), cost = rows * (2 * width + 5);
+    if (cost >= least || rows * width > STRUT_ROW_PULLS) continue;
+    least = cost, best = width;
+  }
+  return best;
+}
+
+/* The first row of all nodes, then the second of those that have one: none waits for the one before. */
+static void list_rows(const block_nodes *nodes, strut_pull_rows *rows) {
+  int32_t width = best_width(nodes), row = 0, before = -1;
+  for (int32_t begin = 0; row > before; begin += width) {
+    before = row;
+    for (int32_t i = 0; i < nodes->count; i++) {
+      if (nodes->pulls[i] <= begin) continue;
+      rows->at[row] = nodes->at[i];
+      for (int32_t k = 0; k < width; k++)
+        rows->pull[row * width + k] = begin + k < nodes->pulls[i]
+                                          ? nodes->pull[nodes->begin[i] + begin + k]
+                                          : (uint16_t)STRUT_NO_PULL;
+      row++;
+    }
+  }
+  rows->rows = (uint16_t)row, rows->width = (uint16_t)width;
+}
+
+/* Scratch: 0 for each node up to the last one with a member. NULL: out of memory. */
+static uint8_t *make_numbers(int32_t count, const uint32_t *from, const uint32_t *to) {
+  uint32_t last = 0;
+  for (int32_t k = 0; k < count; k++) {
+    if (from[k] > last) last = from[k];
+    if (to[k] > last) last = to[k];
+  }
+  return strut_allocate((size_t)last / 2 + 1, 1);
+}
+
+strut_pull_rows *strut_pull_rows_create(strut_arena *arena, int32_t count, const uint32_t *from,
+                                        const uint32_t *to) {
+  int32_t blocks = (count + STRUT_BLOCK - 1) / STRUT_BLOCK;
+  strut_pull_rows *rows = strut_arena_allocate(arena, (size_t)blocks, sizeof *rows);
+  uint8_t *number = make_numbers(count, from, to);
+  bool good = rows && number;
+  for (int32_t b = 0; b < blocks && good; b++) {
+    int32_t begin = b * STRUT_BLOCK, left = count - begin;
+    const block_members members = {.count = left < STRUT_BLOCK ? left : STRUT_BLOCK,
+                                   .from = from + begin,
+                                   .to = to + begin,
+                                   .number = number};
+    block_nodes nodes = {0};
+    list_pulls(&members, &nodes);
+    list_rows(&nodes, &rows[b]);
+  }
+  strut_release(number);
+  return good ? rows : NULL;
+}

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Symmetric sparse matrices put together from contributions that may fall on the same place.
+ */
+#ifndef STRUT_ENGINE_MODEL_SPARSE_H
+#define STRUT_ENGINE_MODEL_SPARSE_H
+
+#include <stdbool.h>
+
+#include "engine/base/memory.h"
+#include "engine/model/algebra/linear_solver.h"
+
+/**
+ * Collects contributions; zero-initialise, then strut_triplets_reserve. Those outside of the columns
+ * [first, end) are left out; end 0: none are. `counting`: they are counted, and not kept.
+ */
+typedef struct strut_triplets {
+  size_t count, capacity;
+  int32_t first, end;
+  bool counting;
+  int32_t *row, *column;
+  double *value;
+} strut_triplets;
+
+/** Room for `capacity` contributions in the arena; false: out of memory. */
+bool strut_triplets_reserve(strut_triplets *triplets, size_t capacity, strut_arena *arena);
+
+/** Adds value at (row, column) and, being symmetric, at (column, row). Give each pair once. */
+void strut_triplets_add(strut_triplets *triplets, int32_t row, int32_t column, double value);
+
+/**
+ * The n x n matrix, in the arena: lower triangle, columns sorted, contributions summed in the order
+ * they were added. Every diagonal entry exists, if only as zero. NULL: out of memory.
+ */
+strut_sparse *strut_sparse_build(int32_t n, const strut_triplets *triplets, strut_arena *arena);
+
+/**
+ * The same some columns at a time, in their order, so that the contributions need not all be in memory: an
+ * n x n matrix without columns, for `capacity` contributions in all; then for each stretch of columns
+ * [triplets->first, triplets->end) their contributions, which may be forgotten afterwards.
+ */
+strut_sparse *strut_sparse_begin(int32_t n, size_t capacity, strut_arena *arena);
+void strut_sparse_append(strut_sparse *matrix, const strut_triplets *triplets);
+
+/** A copy in another arena, which takes no more than its entries: a built one takes all contributions. */
+strut_sparse *strut_sparse_copy(const strut_sparse *matrix, strut_arena *arena);
+
+/** y = A x with the whole symmetric matrix. */
+STRUT_API void strut_sparse_multiply(const strut_sparse *matrix, const double *restrict x,
+                                     double *restrict y);
+
+#endif

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Expressions with units: "2*amplitude + 0.1 mm", "1 / (1000 * frequency)".
+ *
+ * A value carries its dimension. A *bare* value is made of plain numbers only and fits any
+ * dimension: plain numbers are SI.
+ */
+#ifndef STRUT_PARSER_EXPRESSION_EXPRESSION_H
+#define STRUT_PARSER_EXPRESSION_EXPRESSION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "engine/base/status.h"
+#include "engine/scene/quantity.h"
+#include "parser/language/expression/units.h"
+
+typedef struct strut_quantity {
+  double value; /* SI */
+  strut_dimension dimension;
+  bool bare;
+  bool varies; /* computed from columns of the motion, and thus without a value yet */
+} strut_quantity;
+
+/** A part of the text that is being read. */
+typedef struct strut_piece {
+  const char *text;
+  size_t length;
+} strut_piece;
+
+/** An error in an expression: its offset and length in code points, and the message. */
+typedef struct strut_expression_error {
+  size_t offset, length;
+  char message[300];
+  strut_piece parameter; /* the parameter that is called like a unit, if that is why */
+} strut_expression_error;
+
+/**
+ * Looks a parameter up by its name (not NUL-terminated). Returns 1 and fills the quantity; 0 when
+ * there is none of that name; -1 when it exists but has no value (the lookup has reported why).
+ */
+typedef int strut_lookup(void *context, const char *name, size_t length, strut_quantity *quantity);
+/** The i-th name for "did you mean", or NULL after the last. */
+typedef const char *strut_names(const void *context, size_t i);
+
+typedef struct strut_scope {
+  strut_lookup *lookup; /* may be NULL: no parameters */
+  strut_names *names;
+  void *context;
+  bool no_hints; /* errors suggest no name: that would take too long */
+  bool unread;   /* messages will not be read: they only need not be empty */
+} strut_scope;
+
+/**
+ * Evaluates text. Returns false with `error` filled; error->message is empty where the lookup has
+ * already reported the cause. The result is finite.
+ */
+STRUT_API bool strut_expression_evaluate(const char *text, const strut_scope *scope,
+                                         strut_quantity *quantity, strut_expression_error *error);
+
+/** Why a column is refused; empty where that has been reported. */
+typedef struct strut_refusal {
+  char text[300];
+} strut_refusal;
+
+/**
+ * Finds the column OWNER.FIELD; with an empty owner FIELD is a word alone. `kind`: "node", "member" or "hinge"
+ * where the text says which, else NULL. Returns 1 and fills column and dimension; 0: nothing has that
+ * name; -1: refused. A dimension of NAN: a bare column, which fits any.
+ */
+typedef int strut_find_column(void *context, const char *kind, strut_piece owner, strut_piece field,
+                              strut_column *column, strut_dimension *dimension,
+                              strut_refusal *refusal);
+/** The same for the pairs WORD(FIRST, SECOND): angle and distance. */
+typedef int strut_find_pair(void *context, strut_piece word, strut_piece first, strut_piece second,
+                            strut_column *column, strut_dimension *dimension,
+                            strut_refusal *refusal);
+
+/** One instruction of a program under construction. */
+typedef struct strut_compiled {
+  strut_instruction instruction;
+  strut_dimension dimension; /* of a NUMBER */
+} strut_compiled;
+
+/** Compiles an expression of columns to a program. */
+typedef struct strut_compiler {
+  strut_find_column *column;
+  strut_find_pair *pair;
+  void *context;
+  strut_compiled *program; /* at least one for each byte of the text */
+  size_t length, depth;    /* instructions so far; numbers on the stack at most */
+  /** Is a unit's word behind * or / a name here? 1: it is; -1: it may be both; 0: no. NULL: never. */
+  int (*claims)(void *context, strut_piece word);
+} strut_compiler;
+
+/** As strut_expression_evaluate; an expression with columns is compiled instead of evaluated. */
+STRUT_API bool strut_expression_compile(const char *text, const strut_scope *scope,
+                                        strut_compiler *compiler, strut_quantity *quantity,
+                                        strut_expression_error *error);
+
+/** True for the names that no parameter may have: pi and the functions. */
+STRUT_API bool strut_expression_reserved(const char *name, size_t length);
+
+/** Longest literal that is read, in bytes. */
+enum { STRUT_NUMBER_MOST = 1000 };
+
+/** Bytes of the literal at the beginning of the text, or 0. */
+size_t strut_number_scan(const char *text, size_t left);
+/**
+ * The literal that fills text[0..length), times 10^decimal, rounded once: "96.51" with -3 has the
+ * bits of 0.09651. False: not a literal, or neither zero nor representable.
+ */
+STRUT_API bool strut_number_read_scaled(const char *text, size_t length, int decimal,
+                                        double *value);
+
+#endif

@@ -1,0 +1,343 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Parameters: evaluated on demand, in any order; values from --set; cycles. See reader.h. */
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "parser/language/expression/expression_parts.h"
+#include "parser/language/read/reader.h"
+#include "parser/language/read/reuse/copies.h"
+
+const char *strut_parameter_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  return i < reader->parameter_count ? reader->parameters[i].name : NULL;
+}
+
+strut_parameter_state *strut_parameter_find(strut_reader *reader, const char *name) {
+  int32_t index = strut_name_map_find(&reader->parameter_names, name);
+  return index < 0 ? NULL : &reader->parameters[index];
+}
+
+/* The place of the expression that is being evaluated, for errors that its text does not show. */
+static strut_place asking_place(strut_reader *reader) {
+  if (reader->asking_set) {
+    const strut_parameter_state *p = strut_parameter_find(reader, reader->asking_set);
+    return p->set->place.line ? p->set->place : p->key->place;
+  }
+  return reader->asking->place;
+}
+
+/* The place for messages about the parameters as a whole. */
+static strut_place section_place(strut_reader *reader) {
+  const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS);
+  return slot->key ? slot->key->place : strut_root_place(reader);
+}
+
+static const char *stacked_name(strut_reader *reader, size_t i) {
+  return reader->parameter_stack[i]->name;
+}
+
+/* Reports the cycle that leads back to p, at the place of p's expression. */
+static void report_cycle(strut_reader *reader, const strut_parameter_state *p) {
+  size_t first = 0;
+  bool given = p->set && !p->set->known && p->set->place.line;
+  while (reader->parameter_stack[first] != p) first++;
+  strut_report_error(reader, given ? p->set->place : p->key->place,
+                     "parameter '%s' depends on itself: %s", p->name,
+                     strut_format_cycle(reader, stacked_name, first, reader->parameter_depth));
+}
+
+/* Reports a wrong setting: where the study gives it, or, for --set, where the parameter is declared. */
+static void report_setting(strut_reader *reader, const strut_setting *set, strut_place declared,
+                           const char *message) {
+  if (set->place.line)
+    strut_report_error(reader, set->place, "in '%s' of the study: %s",
+                       strut_sanitised_text(reader, set->name), message);
+  else
+    strut_report_error(reader, declared, "--set %s=%s: %s", strut_sanitised_text(reader, set->name),
+                       strut_sanitised_text(reader, set->text), message);
+}
+
+/* The expression of a parameter in the file. */
+static bool evaluate(strut_reader *reader, strut_parameter_state *p, strut_quantity *quantity) {
+  return strut_read_quantity(reader, p->value, p->name, (strut_owner){"the parameters", NULL},
+                             quantity);
+}
+
+/* The value that is given from outside. */
+static bool evaluate_set(strut_reader *reader, strut_parameter_state *p) {
+  if (p->set->known) {
+    p->quantity = (strut_quantity){
+        .value = p->set->value, .dimension = p->set->dimension, .bare = p->set->bare};
+    return true;
+  }
+  strut_expression_error error = {0};
+  strut_scope scope = strut_parameter_scope(reader);
+  const char *before = reader->asking_set;
+  reader->asking_set = p->name;
+  bool fine = strut_expression_evaluate(p->set->text, &scope, &p->quantity, &error);
+  reader->asking_set = before;
+  if (!fine && error.message[0]) report_setting(reader, p->set, p->key->place, error.message);
+  return fine;
+}
+
+/* The unit that a declared number is written with, such as "mm" of "2 mm"; "" without a unit. */
+static const char *unit_of(const char *text) {
+  const char *rest = text + strspn(text, "+-.0123456789eE");
+  if (rest == text) return "";
+  rest += strspn(rest, " ");
+  bool letters = (*rest >= 'a' && *rest <= 'z') || (*rest >= 'A' && *rest <= 'Z');
+  return letters && !strpbrk(rest, "+-() ,#") ? rest : "";
+}
+
+/* Notes that a number without unit is in SI units, where it differs from the declared value by more
+   than a factor of 100: then a unit was probably forgotten. */
+static void note_scale(strut_reader *reader, const strut_parameter_state *p,
+                       const strut_quantity *declared) {
+  double times = fabs(p->quantity.value / declared->value);
+  const char *unit = unit_of(p->value->text), *given = p->set->text;
+  if (p->set->place.line || !(times > 100.0 * (1.0 + 1e-9) || times < 0.01 * (1.0 - 1e-9))) return;
+  if (declared->value == 0.0 || p->quantity.value == 0.0) return;
+  strut_note(reader->diagnostics, p->value->place,
+             "--set %s=%s is taken as %s in SI units, %.6g times the %s here, since a plain number "
+             "is in SI units; write --set %s=\"%s %s\" if that is meant",
+             p->name, strut_sanitised_text(reader, given), given, times, p->value->text, p->name,
+             strut_sanitised_text(reader, given), *unit ? unit : "UNIT");
+}
+
+/* Does what is given fit what the file declares? A bare value takes the declared dimension. */
+static bool adopt_dimension(strut_reader *reader, strut_parameter_state *p,
+                            const strut_quantity *declared) {
+  char expected[200], found[80], message[320];
+  if (declared->bare) return true;
+  if (p->quantity.bare) {
+    p->quantity.bare = false;
+    p->quantity.dimension = declared->dimension;
+    note_scale(reader, p, declared);
+  }
+  if (strut_dimension_equal(p->quantity.dimension, declared->dimension)) return true;
+  snprintf(message, sizeof message, "expected %s, found %s",
+           strut_expected_number(declared->dimension, expected, sizeof expected),
+           strut_dimension_name(p->quantity.dimension, found, sizeof found));
+  report_setting(reader, p->set, p->key->place, message);
+  return false;
+}
+
+strut_parameter_state *strut_parameter_in_scope(strut_reader *reader, const char *name) {
+  for (const strut_copy *scope = reader->scope; scope; scope = scope->home) {
+    for (size_t i = 0; i < scope->parameter_count; i++)
+      if (strcmp(scope->parameters[i].name, name) == 0) return &scope->parameters[i];
+    if (scope->closed) return NULL;
+  }
+  return strut_parameter_find(reader, name);
+}
+
+/* The number i or j of a copy, within the keys of its placement. */
+static bool copy_number(const strut_reader *reader, const char *name, strut_quantity *quantity) {
+  int which = strcmp(name, "i") == 0 ? 0 : strcmp(name, "j") == 0 ? 1 : 2;
+  for (const strut_copy *scope = reader->scope; scope && which < 2; scope = scope->home) {
+    if (which < scope->numbers) {
+      *quantity = (strut_quantity){.value = (double)scope->number[which], .bare = true};
+      return true;
+    }
+    if (scope->closed) break;
+  }
+  return false;
+}
+
+/* Is the name kept for the number of a copy? It is in a scene that places parts. */
+static bool is_copy_number(const strut_reader *reader, const char *name) {
+  const strut_slot *place = strut_slot_of((strut_fields *)&reader->top, STRUT_KEY_SCENE_PLACE);
+  return place->key && (strcmp(name, "i") == 0 || strcmp(name, "j") == 0);
+}
+
+/* A value in `set` of a placement has the dimension that the part declares. */
+static bool read_given(strut_reader *reader, strut_parameter_state *p,
+                       const strut_quantity *declared) {
+  char expected[200], found[80];
+  strut_copy *before = reader->scope;
+  reader->scope = p->of_part->given_scope;
+  bool fine = strut_read_quantity(reader, p->of_part->given, p->name, (strut_owner){"'set'", NULL},
+                                  &p->quantity);
+  if (fine && !declared->bare && p->quantity.bare) {
+    p->quantity.bare = false;
+    p->quantity.dimension = declared->dimension;
+  }
+  if (fine && !declared->bare && !strut_dimension_equal(p->quantity.dimension, declared->dimension))
+    fine = strut_report_error(
+        reader, p->of_part->given->place, "expected %s for '%s' in 'set', found %s",
+        strut_expected_number(declared->dimension, expected, sizeof expected), p->name,
+        strut_dimension_name(p->quantity.dimension, found, sizeof found));
+  reader->scope = before;
+  return fine;
+}
+
+static void resolve_parameter(strut_reader *reader, strut_parameter_state *p) {
+  if (p->state != STRUT_UNREAD) return;
+  if (reader->parameter_depth >= STRUT_DEEPEST_PARAMETER) {
+    strut_report_error(reader, p->key->place, "parameters depend on each other more than %d deep",
+                       STRUT_DEEPEST_PARAMETER);
+    p->state = STRUT_FAILED;
+    return;
+  }
+  reader->parameter_stack[reader->parameter_depth++] = p;
+  assert(reader->parameter_depth <= STRUT_DEEPEST_PARAMETER);
+  p->state = STRUT_READING;
+  strut_quantity declared;
+  strut_copy *before = reader->scope;
+  reader->scope = p->of_part ? p->of_part->scope : NULL;
+  bool fine = evaluate(reader, p, &declared);
+  reader->scope = before;
+  if (p->of_part && p->of_part->given) {
+    fine = fine && read_given(reader, p, &declared);
+  } else if (p->set) {
+    fine = evaluate_set(reader, p) && fine;
+    fine = fine && adopt_dimension(reader, p, &declared);
+  } else if (fine) {
+    p->quantity = declared;
+  }
+  if (p->state == STRUT_READING) p->state = fine ? STRUT_READ : STRUT_FAILED;
+  reader->parameter_depth--;
+}
+
+void strut_resolve_parameter(strut_reader *reader, strut_parameter_state *p) {
+  resolve_parameter(reader, p);
+}
+
+static int look_up_parameter(void *context, const char *name, size_t length,
+                             strut_quantity *quantity) {
+  strut_reader *reader = context;
+  char text[STRUT_LONGEST_NAME + 1];
+  if (length >= sizeof text) return 0;
+  memcpy(text, name, length);
+  text[length] = '\0';
+  strut_parameter_state *p = strut_parameter_in_scope(reader, text);
+  if (!p && copy_number(reader, text, quantity)) return 1;
+  if (!p && is_copy_number(reader, text)) {
+    strut_report_error(reader, asking_place(reader),
+                       "'%s', the number of a copy, is known in the keys of a repeated placement "
+                       "and in its 'next', but neither in its 'count' nor within the part; 'set' "
+                       "of the placement gives it to a parameter of the part",
+                       text);
+    return -1;
+  }
+  if (!p) return 0;
+  p->used = true;
+  if (p->text) {
+    strut_report_error(reader, asking_place(reader),
+                       "parameter '%s' is a text, expected a number here", p->name);
+    return -1;
+  }
+  resolve_parameter(reader, p);
+  if (p->state == STRUT_READING) {
+    report_cycle(reader, p);
+    p->state = STRUT_FAILED;
+  }
+  if (p->state == STRUT_FAILED) return -1;
+  *quantity = p->quantity;
+  return 1;
+}
+
+strut_scope strut_parameter_scope(strut_reader *reader) {
+  return (strut_scope){look_up_parameter, strut_parameter_name, reader, !strut_hints_left(reader),
+                       strut_diagnostics_full(reader->diagnostics)};
+}
+
+/* A parameter's name must be an identifier, and no function: expressions refer to it. */
+static bool check_parameter_name(strut_reader *reader, const strut_tree *key) {
+  const char *c = key->text;
+  size_t length = strlen(c);
+  if (!strut_read_name(reader, key, "parameter")) return false;
+  if (strcmp(c, "pi") == 0 || strut_function_find(c, length))
+    return strut_report_error(reader, key->place,
+                              "'%s' cannot be the name of a parameter: expressions use it", c);
+  if (is_copy_number(reader, c))
+    return strut_report_error(
+        reader, key->place,
+        "'%s' cannot be the name of a parameter in a scene that places parts: it is "
+        "the number of a copy",
+        c);
+  for (size_t i = 0; i < length; i++) {
+    bool letter = (c[i] >= 'a' && c[i] <= 'z') || (c[i] >= 'A' && c[i] <= 'Z') || c[i] == '_';
+    if (letter || (i && c[i] >= '0' && c[i] <= '9')) continue;
+    return strut_report_error(
+        reader, key->place,
+        "'%s' cannot be the name of a parameter, expected a letter, then letters, digits "
+        "and '_', so that it can stand in expressions",
+        c);
+  }
+  return true;
+}
+
+void strut_declare_parameter(strut_reader *reader, const strut_tree *key,
+                             strut_parameter_state *p) {
+  const strut_tree *value = key->next;
+  *p = (strut_parameter_state){.name = key->text, .key = key, .value = value};
+  bool fine = check_parameter_name(reader, key);
+  fine = strut_read_scalar(reader, value, key->text, (strut_owner){"the parameters", NULL},
+                           "an expression or a quoted text") &&
+         fine;
+  p->text = value->kind == STRUT_TREE_SCALAR && value->quoted;
+  p->state = fine ? (p->text ? STRUT_READ : STRUT_UNREAD) : STRUT_FAILED;
+}
+
+static void apply_setting(strut_reader *reader, const strut_setting *setting) {
+  strut_parameter_state *p = strut_parameter_find(reader, setting->name);
+  char message[300];
+  if (!p) {
+    snprintf(
+        message, sizeof message, "the scene has no parameter '%s'%s",
+        strut_sanitised_text(reader, setting->name),
+        strut_hint(reader, setting->name, strut_parameter_name, reader, reader->parameter_count));
+    report_setting(reader, setting, section_place(reader), message);
+  } else if (p->set) {
+    strut_report_error(reader, setting->place.line ? setting->place : p->key->place,
+                       "%s%s is given twice", setting->place.line ? "" : "--set ", p->name);
+  } else {
+    p->set = setting;
+  }
+}
+
+void strut_read_parameters(strut_reader *reader, const strut_setting *settings, size_t count) {
+  const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS);
+  bool known = slot->state != STRUT_BROKEN;
+  const strut_tree *map = slot->state == STRUT_GIVEN ? slot->value : NULL;
+  reader->parameters = strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0,
+                                             sizeof *reader->parameters);
+  if (!reader->parameters) return;
+  for (const strut_tree *key = map ? map->first : NULL; key; key = key->next->next) {
+    strut_declare_parameter(reader, key, &reader->parameters[reader->parameter_count]);
+    strut_add_name(reader, &reader->parameter_names, key->text, reader->parameter_count++);
+  }
+  for (size_t i = 0; known && i < count; i++) apply_setting(reader, &settings[i]);
+  for (size_t i = 0; i < reader->parameter_count; i++)
+    resolve_parameter(reader, &reader->parameters[i]);
+}
+
+void strut_keep_parameters(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  if (reader->failed) return; /* the scene will be discarded */
+  scene->parameters = strut_reader_allocate(reader, &scene->arena, reader->parameter_count,
+                                            sizeof *scene->parameters);
+  for (size_t i = 0; scene->parameters && i < reader->parameter_count; i++) {
+    const strut_parameter_state *p = &reader->parameters[i];
+    if (p->value->kind != STRUT_TREE_SCALAR) return; /* reported */
+    const char *text = p->set ? p->set->text : p->value->text;
+    strut_parameter *kept = &scene->parameters[scene->parameter_count++];
+    kept->name = strut_arena_text(&scene->arena, p->name, strlen(p->name));
+    kept->text = strut_arena_text(&scene->arena, text, strlen(text));
+    kept->value = p->text ? (double)NAN : p->quantity.value;
+    if (!kept->name || !kept->text) reader->out_of_memory = true;
+  }
+}
+
+void strut_report_idle_settings(strut_reader *reader) {
+  for (size_t i = 0; i < reader->parameter_count; i++) {
+    const strut_parameter_state *p = &reader->parameters[i];
+    if (!p->set || p->used) continue;
+    char message[120];
+    snprintf(message, sizeof message, "nothing in the scene uses parameter '%s'", p->name);
+    report_setting(reader, p->set, p->key->place, message);
+  }
+}

@@ -1,0 +1,345 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where copies of parts lie: `repeat`, flip, scale, turn, move, or `onto` nodes outside. See copies.h. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/vec.h"
+#include "parser/language/read/reuse/copies.h"
+
+/* ---- how often, and where copy k lies ---- */
+
+static bool read_count(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                       int64_t *count) {
+  double number;
+  if (!strut_read_number(reader, value, "count", owner, STRUT_DIM_NONE, STRUT_RANGE_ANY, &number))
+    return false;
+  if (number >= 1.0 && number <= STRUT_MOST_COPIES && number == floor(number)) {
+    *count = (int64_t)number;
+    return true;
+  }
+  return strut_report_error(
+      reader, value->place,
+      "the number of copies of %s must be a whole number from 1 to %.0f, found %.15g",
+      strut_owner_text(reader, owner), STRUT_MOST_COPIES, number);
+}
+
+/* A number, or [n, m]. */
+static bool read_counts(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                        strut_repetition *r) {
+  r->numbers = 1;
+  r->count[1] = 1;
+  if (value->kind == STRUT_TREE_SCALAR) return read_count(reader, value, owner, &r->count[0]);
+  if (value->kind != STRUT_TREE_LIST || value->count != 2)
+    return strut_refuse_form(reader, STRUT_KEY_REPEAT_COUNT, value, owner);
+  r->numbers = 2;
+  bool fine = read_count(reader, value->first, owner, &r->count[0]);
+  return read_count(reader, value->first->next, owner, &r->count[1]) && fine;
+}
+
+static bool read_steps(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                       strut_repetition *r) {
+  if (!value) return true;
+  bool lists =
+      value->kind == STRUT_TREE_LIST && value->count == 2 && value->first->kind == STRUT_TREE_LIST;
+  if (lists != (r->numbers == 2))
+    return strut_report_error(reader, value->place,
+                              r->numbers == 2
+                                  ? "a lattice has two steps, as in [[1 m, 0], [0, 1 m]], found %s"
+                                  : "one count has one step, as in [1 m, 0], found %s",
+                              strut_found(reader, value));
+  const strut_tree *item = lists ? value->first : value;
+  bool fine = true;
+  for (int k = 0; k < r->numbers; k++, item = item->next)
+    fine = strut_read_pair(reader, item, "step", owner, STRUT_DIM_LENGTH, r->step[k]) && fine;
+  return fine;
+}
+
+static bool read_next(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                      strut_repetition *r) {
+  if (!value) return true;
+  bool list = value->kind == STRUT_TREE_LIST && value->count == 2;
+  if (list != (r->numbers == 2) || (!list && value->kind != STRUT_TREE_MAP))
+    return strut_refuse_form(reader, STRUT_KEY_REPEAT_NEXT, value, owner);
+  r->next[0] = list ? value->first : value;
+  r->next[1] = list ? value->first->next : NULL;
+  return true;
+}
+
+static bool read_closed(strut_reader *reader, const strut_tree *value, const strut_tree *key,
+                        strut_owner owner, strut_repetition *r) {
+  if (!value) return true;
+  int word = value->kind == STRUT_TREE_SCALAR ? strut_switch_find(value->text) : 1;
+  r->closed = word == 1;
+  r->twist = value->kind == STRUT_TREE_MAP ? value : NULL;
+  if (word < 0 || value->kind == STRUT_TREE_LIST)
+    return strut_refuse_form(reader, STRUT_KEY_REPEAT_CLOSED, value, owner);
+  if (!r->closed || (r->numbers == 1 && r->next[0])) return true;
+  return strut_report_error(reader, key->place,
+                            r->numbers > 1
+                                ? "a lattice cannot be closed; close a ring and repeat the ring"
+                                : "'closed' needs 'next', which says what ties a copy to the "
+                                  "next one");
+}
+
+bool strut_read_repeat(strut_reader *reader, const strut_slot *slot, const char *name,
+                       strut_repetition *r) {
+  char text[STRUT_LONGEST_NAME + 40];
+  *r = (strut_repetition){.scale = 1.0, .count = {1, 1}};
+  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
+  snprintf(text, sizeof text, "'repeat' of '%s'", name);
+  strut_owner owner = {text, NULL};
+  const strut_tree *value = slot->value;
+  if (value->kind != STRUT_TREE_MAP) return read_counts(reader, value, owner, r);
+  strut_fields fields;
+  strut_read_fields(reader, STRUT_SECTION_REPEAT, value, owner, &fields);
+  strut_require(reader, &fields, owner, slot->key->place);
+  const strut_slot *turn = strut_slot_of(&fields, STRUT_KEY_REPEAT_TURN);
+  const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_REPEAT_SCALE);
+  const strut_slot *about = strut_slot_of(&fields, STRUT_KEY_REPEAT_ABOUT);
+  strut_repeat_keys keys = {.scale = 1.0};
+  if (fields.broken || !strut_store(reader, &fields, owner, &keys) ||
+      !read_counts(reader, keys.count, owner, r))
+    return false;
+  bool fine = read_steps(reader, keys.step, owner, r);
+  fine = read_next(reader, keys.next, owner, r) && fine;
+  fine = read_closed(reader, keys.closed, strut_slot_of(&fields, STRUT_KEY_REPEAT_CLOSED)->key,
+                     owner, r) &&
+         fine;
+  r->turn = keys.turn, r->scale = keys.scale;
+  memcpy(r->about, keys.about, sizeof r->about);
+  const strut_slot *odd = turn->key ? turn : scale->key ? scale : about;
+  if (r->numbers < 2 || !odd->key) return fine;
+  return strut_report_error(
+      reader, odd->key->place,
+      "a lattice has steps only, no '%s'; place a row that turns, and repeat the row",
+      odd->key->text);
+}
+
+void strut_frame_turn(strut_frame *f, double angle) {
+  double s, c;
+  strut_sincos_turns(angle / STRUT_TAU, &s, &c);
+  f->axes[0][0] = c, f->axes[0][1] = -s;
+  f->axes[1][0] = s, f->axes[1][1] = c;
+}
+
+static double power(double base, int64_t exponent) {
+  double result = 1.0;
+  for (; exponent; exponent >>= 1, base *= base)
+    if (exponent & 1) result *= base;
+  return result;
+}
+
+static void move_point(const strut_frame *f, double point[2]) {
+  point[0] *= f->scale, point[1] *= f->scale;
+  strut_frame_point(f, point);
+}
+
+/* S^k, or i times one step and j times the other. */
+strut_frame strut_repeated_frame(const strut_repetition *r, const int64_t number[2]) {
+  strut_frame f = strut_frame_of_scene, once = strut_frame_of_scene;
+  double k = (double)number[0];
+  if (r->numbers == 2 || (r->turn == 0.0 && r->scale == 1.0)) {
+    for (int c = 0; c < 2; c++)
+      f.at[c] = k * r->step[0][c] + (r->numbers == 2 ? (double)number[1] * r->step[1][c] : 0.0);
+    return f;
+  }
+  double s = power(r->scale, number[0]), origin[2] = {0.0, 0.0};
+  strut_frame_turn(&f, k * r->turn);
+  f.scale = s;
+  if (r->step[0][0] == 0.0 && r->step[0][1] == 0.0) { /* `about` stays where it is */
+    double away[2] = {s * r->about[0], s * r->about[1]};
+    strut_frame_vector(&f, away);
+    for (int c = 0; c < 2; c++) f.at[c] = r->about[c] - away[c];
+    return f;
+  }
+  /* The images of the origin under S, S^2, S^4, ..., those of the bits of k. */
+  double once_away[2] = {r->scale * r->about[0], r->scale * r->about[1]};
+  strut_frame_turn(&once, r->turn);
+  once.scale = r->scale;
+  strut_frame_vector(&once, once_away);
+  for (int c = 0; c < 2; c++) once.at[c] = r->about[c] + r->step[0][c] - once_away[c];
+  for (int64_t bits = number[0], n = 1; bits; bits >>= 1, n *= 2) {
+    if (bits & 1) move_point(&once, origin);
+    double squared[2] = {once.at[0], once.at[1]};
+    move_point(&once, squared);
+    strut_frame_turn(&once, (double)(2 * n) * r->turn);
+    once.scale *= once.scale;
+    memcpy(once.at, squared, sizeof squared);
+  }
+  memcpy(f.at, origin, sizeof origin);
+  return f;
+}
+
+/* ---- where the first copy lies ---- */
+
+/* The position of an entry of nodes, in the coordinates of its scope. */
+static bool read_position(strut_reader *reader, const strut_tree *value, double position[2]) {
+  const strut_tree *at =
+      value->kind == STRUT_TREE_MAP ? strut_tree_find(value, "position", NULL) : value;
+  return at && strut_read_pair(reader, at, "position", (strut_owner){"a node", NULL},
+                               STRUT_DIM_LENGTH, position);
+}
+
+/* Where a node of the placement's scope lies, in the coordinates of that scope. */
+static bool find_outside(strut_expansion *e, strut_copy *outer, const strut_tree *name,
+                         double position[2]) {
+  strut_reader *reader = e->reader;
+  strut_full_name full, resolved;
+  snprintf(full.text, sizeof full.text, "%s%s", outer ? outer->prefix : "", name->text);
+  int32_t i = strut_name_resolve_last(reader, full.text, &resolved)
+                  ? strut_name_map_find(&e->copies->node_entries, resolved.text)
+                  : -1;
+  if (i < 0 || strut_name_is_hidden(reader, outer, resolved.text))
+    return strut_report_error(
+        reader, name->place,
+        "unknown node '%s' in 'onto'; it names a node of what is placed before",
+        strut_sanitised_text(reader, name->text));
+  const strut_tree *key = e->copies->nodes[i];
+  strut_copy *before = strut_enter_scope(reader, key);
+  bool fine = read_position(reader, key->next, position);
+  strut_place_point(reader, key->next, position);
+  reader->scope = before;
+  if (!fine || !outer) return fine;
+  /* back into the frame of the scope */
+  const strut_frame *f = &outer->frame;
+  double d[2] = {position[0] - f->at[0], position[1] - f->at[1]};
+  for (int c = 0; c < 2; c++)
+    position[c] = (f->axes[0][c] * d[0] + f->axes[1][c] * d[1]) / f->scale;
+  return true;
+}
+
+/* The position of an entry of nodes in the part of a copy, moved by its frame. */
+static bool node_position(strut_expansion *e, strut_copy *copy, const strut_tree *value,
+                          double position[2]) {
+  strut_copy *before = e->reader->scope;
+  e->reader->scope = copy;
+  bool fine = read_position(e->reader, value, position);
+  e->reader->scope = before;
+  strut_frame_point(&copy->frame, position);
+  return fine;
+}
+
+/* The numbers behind a placement's name in "r.3.a" or "r.last.a", and what follows; NULL: none such. */
+static const char *read_copy_numbers(const strut_repetition *r, const char *text,
+                                     int64_t number[2]) {
+  for (int n = 0; n < r->numbers; n++) {
+    size_t length = strspn(text, "0123456789");
+    bool last = !length && strncmp(text, "last.", 5) == 0;
+    if (last) length = 4;
+    if (length < 1 || length > 9 || text[length] != '.') return NULL;
+    number[n] = last ? r->count[n] - 1 : 0;
+    for (size_t c = 0; !last && c < length; c++) number[n] = 10 * number[n] + (text[c] - '0');
+    if (number[n] >= r->count[n]) return NULL;
+    text += length + 1;
+  }
+  return text;
+}
+
+bool strut_find_in_copy(strut_expansion *e, strut_copy *copy, const char *name,
+                        double position[2]) {
+  strut_part *part = copy->placement->part;
+  const strut_slot *nodes = strut_slot_of(&part->fields, STRUT_KEY_PART_NODES);
+  const strut_slot *place = strut_slot_of(&part->fields, STRUT_KEY_PART_PLACE);
+  const strut_tree *ports = part->keys.ports;
+  const strut_tree *port = ports ? strut_tree_find(ports, name, NULL) : NULL;
+  if (port && port->kind == STRUT_TREE_SCALAR) name = port->text;
+  const strut_tree *value =
+      nodes->state == STRUT_GIVEN ? strut_tree_find(nodes->value, name, NULL) : NULL;
+  if (value) return node_position(e, copy, value, position);
+  const strut_tree *k = place->state == STRUT_GIVEN ? place->value->first : NULL;
+  for (; k; k = k->next->next) {
+    size_t length = strlen(k->text);
+    int64_t number[2] = {0, 0}, first[2] = {0, 0};
+    strut_placing p;
+    strut_frame base = strut_frame_of_scene;
+    if (strncmp(k->text, name, length) != 0 || name[length] != '.') continue;
+    if (e->copies->depth >= STRUT_DEEPEST_PARTS || !strut_read_placement(e, k, copy, &p))
+      return false;
+    const char *rest = read_copy_numbers(&p.repeat, name + length + 1, number);
+    if (!rest || p.keys.onto) return false;
+    strut_copy *scope, *inner = strut_make_copy(e, &p, first, &base, &scope);
+    if (inner && (number[0] || number[1])) inner = strut_make_copy(e, &p, number, &base, &scope);
+    if (!inner) return false;
+    e->copies->depth++;
+    bool found = strut_find_in_copy(e, inner, rest, position);
+    e->copies->depth--;
+    return found;
+  }
+  return false;
+}
+
+/* The position of a node of the copy itself; its frame is that of the scene as yet. */
+static bool find_inside(strut_expansion *e, strut_copy *copy, const strut_tree *name,
+                        double position[2]) {
+  strut_copy *before = e->reader->scope;
+  bool failed = e->reader->failed, found = strut_find_in_copy(e, copy, name->text, position);
+  e->reader->scope = before;
+  if (!found && e->reader->failed == failed)
+    strut_report_error(e->reader, name->place,
+                       "part '%s' has no node '%s' that can be laid onto others",
+                       copy->placement->part->name, strut_sanitised_text(e->reader, name->text));
+  return found;
+}
+
+/* Shifts, and with two pairs turns, the frame so that nodes of the copy lie on others. */
+static bool lay_onto(strut_expansion *e, strut_copy *copy, const strut_tree *map, bool fit,
+                     strut_frame *frame) {
+  strut_reader *reader = e->reader;
+  double own[2][2], there[2][2];
+  const strut_tree *k = map->first;
+  if (map->count < 1 || map->count > 2)
+    return strut_report_error(reader, map->place,
+                              "expected one or two pairs {own: there} for 'onto', found %u",
+                              (unsigned)map->count);
+  for (unsigned n = 0; n < map->count; n++, k = k->next->next) {
+    if (!strut_read_scalar(reader, k->next, "onto", (strut_owner){"a placement", NULL},
+                           "the name of a node") ||
+        !find_inside(e, copy, k, own[n]) || !find_outside(e, copy->outer, k->next, there[n]))
+      return false;
+    own[n][0] *= frame->scale, own[n][1] *= frame->scale;
+    strut_frame_vector(frame, own[n]);
+  }
+  if (map->count == 2) {
+    double a[2] = {own[1][0] - own[0][0], own[1][1] - own[0][1]};
+    double b[2] = {there[1][0] - there[0][0], there[1][1] - there[0][1]};
+    double la = hypot(a[0], a[1]), lb = hypot(b[0], b[1]);
+    if (la == 0.0 || lb == 0.0 || (!fit && fabs(la / lb - 1.0) > 1e-9))
+      return strut_report_error(
+          reader, map->place, "the two nodes of the copy are %.6g m apart, those outside %.6g m%s",
+          la, lb, la > 0.0 && lb > 0.0 ? "; say 'scale: fit', or change one" : "");
+    strut_frame turn = strut_frame_of_scene;
+    double c = (a[0] * b[0] + a[1] * b[1]) / (la * lb), s = (a[0] * b[1] - a[1] * b[0]) / (la * lb);
+    turn.axes[0][0] = turn.axes[1][1] = c, turn.axes[0][1] = -s, turn.axes[1][0] = s;
+    turn.scale = fit ? lb / la : 1.0;
+    *frame = strut_frame_within(&turn, frame);
+    strut_frame_vector(&turn, own[0]);
+    own[0][0] *= turn.scale, own[0][1] *= turn.scale;
+  }
+  for (int c = 0; c < 2; c++) frame->at[c] = there[0][c] - own[0][c];
+  return true;
+}
+
+/* The frame of the first copy by the placement's own keys. */
+bool strut_read_frame(strut_expansion *e, strut_placing *p, strut_copy *copy, strut_frame *frame) {
+  strut_reader *reader = e->reader;
+  strut_owner owner = {"place", p->placement->key->text};
+  const strut_slot *turn = strut_slot_of(&p->fields, STRUT_KEY_PLACE_TURN);
+  const strut_tree *scale = p->keys.scale, *onto = p->keys.onto;
+  bool fit = scale && scale->kind == STRUT_TREE_SCALAR && strcmp(scale->text, "fit") == 0;
+  *frame = strut_frame_of_scene;
+  if (turn->state == STRUT_GIVEN) strut_frame_turn(frame, p->keys.turn);
+  memcpy(frame->at, p->keys.at, sizeof frame->at);
+  for (int c = 0; c < 2; c++)
+    for (int row = 0; row < 2 && p->keys.flip >> c & 1; row++) frame->axes[row][c] *= -1.0;
+  if (scale && !fit &&
+      !strut_read_number(reader, scale, "scale", owner, STRUT_DIM_NONE, STRUT_RANGE_ABOVE_ZERO,
+                         &frame->scale))
+    return false;
+  bool two = onto && onto->count == 2;
+  if ((fit && !two) || (two && turn->key))
+    return strut_report_error(reader, fit && !two ? scale->place : turn->key->place,
+                              fit && !two ? "'scale: fit' needs two pairs in 'onto'"
+                                          : "two pairs in 'onto' turn the copy; leave 'turn' out");
+  return e->weighing || !onto || lay_onto(e, copy, onto, fit, frame);
+}

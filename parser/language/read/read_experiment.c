@@ -1,0 +1,423 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Named shapes, the start of a run, and the experiment. See reader.h. */
+#include <math.h>
+#include <string.h>
+
+#include "parser/language/read/reader.h"
+#include "parser/language/read/reuse/copies.h"
+
+/* ---- named shapes, and the search for equilibria ---- */
+
+/* Most positions that all configurations may have together, to bound the memory. */
+enum { MOST_POSITIONS = 20000000 };
+
+static const strut_owner search_owner = {"the search for equilibria", NULL};
+
+static bool nodes_known(strut_reader *reader) {
+  return strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
+}
+
+/* The configuration that is being read, which is the last one. */
+static void take_position(strut_reader *reader, int32_t node, const double pair[2],
+                          const strut_tree *value) {
+  strut_scene *scene = reader->scene;
+  (void)value;
+  memcpy(scene->configurations[scene->configuration_count - 1].position[node], pair,
+         2 * sizeof *pair);
+}
+
+/* One list of nodes; unknown ones are reported and left out. */
+static bool read_set(strut_reader *reader, const strut_tree *list, const char *key,
+                     strut_owner owner, strut_node_set *set) {
+  bool fine = true;
+  size_t most = list->count;
+  for (const strut_tree *item = list->first; item; item = item->next)
+    for (int32_t n = -1; strut_is_pattern(item) && (n = strut_next_match(reader, item, n)) >= 0;)
+      most++;
+  set->node = strut_reader_allocate(reader, &reader->scene->arena, most, sizeof *set->node);
+  if (!set->node) return false;
+  for (const strut_tree *item = list->first; item; item = item->next) {
+    if (strut_is_pattern(item) && strut_next_match(reader, item, -1) >= 0) {
+      for (int32_t n = -1; (n = strut_next_match(reader, item, n)) >= 0;)
+        set->node[set->count++] = n;
+      continue;
+    }
+    int32_t node = strut_read_reference(reader, item, key, owner, STRUT_THING_NODE);
+    if (node >= 0)
+      set->node[set->count++] = node;
+    else
+      fine = false;
+  }
+  return fine;
+}
+
+bool strut_read_node_sets(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                          strut_node_set **sets, size_t *count) {
+  const strut_tree *list = slot->value;
+  const char *key = slot->key->text;
+  size_t lists = 0, alternatives;
+  bool fine = true;
+  for (const strut_tree *item = list->first; item; item = item->next)
+    if (item->kind == STRUT_TREE_LIST) lists++;
+  if (!list->count || (lists && lists != list->count))
+    return strut_report_error(
+        reader, list->place,
+        "expected nodes such as [n1, n2], or a list of such lists, for '%s' of %s, found %s", key,
+        strut_owner_text(reader, owner), lists ? "a list of both" : strut_found(reader, list));
+  if (!nodes_known(reader)) return false;
+  alternatives = lists ? lists : 1;
+  *sets = strut_reader_allocate(reader, &reader->scene->arena, alternatives, sizeof **sets);
+  if (!*sets) return false;
+  *count = alternatives;
+  if (!lists) return read_set(reader, list, key, owner, *sets);
+  const strut_tree *item = list->first;
+  for (size_t i = 0; i < alternatives; i++, item = item->next)
+    fine = read_set(reader, item, key, owner, &(*sets)[i]) && fine;
+  return fine;
+}
+
+/*
+ * Is this a key of a configuration rather than a node of that name? If there is such a node, a list of
+ * two scalars for `contacts` is its position, and so is anything but a mapping for `shape`.
+ */
+static bool is_key(strut_reader *reader, const strut_tree *key) {
+  const strut_tree *value = key->next;
+  if (strut_key_find(STRUT_SECTION_CONFIGURATION, key->text) < 0) return false;
+  if (strut_find_thing(reader, STRUT_THING_NODE, NULL, key->text) < 0) return true;
+  if (strcmp(key->text, strut_key_at(STRUT_KEY_CONFIGURATION_SHAPE)->name) == 0)
+    return value->kind == STRUT_TREE_MAP;
+  return value->kind == STRUT_TREE_LIST && value->count &&
+         !(value->count == 2 && value->first->kind == STRUT_TREE_SCALAR &&
+           value->first->next->kind == STRUT_TREE_SCALAR);
+}
+
+/* Reports nodes beside `contacts` or `shape`; true if there are none. */
+static bool keys_only(strut_reader *reader, const strut_tree *map, strut_owner owner) {
+  bool fine = true;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    if (is_key(reader, key) || strut_find_thing(reader, STRUT_THING_NODE, NULL, key->text) < 0)
+      continue;
+    fine = strut_report_error(
+        reader, key->place,
+        "node '%s' of %s belongs in its 'shape', as in {contacts: [...], shape: {%s: ...}}",
+        strut_sanitised_text(reader, key->text), strut_owner_text(reader, owner),
+        strut_sanitised_text(reader, key->text));
+  }
+  return fine;
+}
+
+/* `{contacts: ..., shape: ...}` */
+static bool read_keys(strut_reader *reader, const strut_tree *map, strut_owner owner,
+                      strut_configuration *configuration) {
+  strut_fields fields;
+  if (!keys_only(reader, map, owner)) return false;
+  strut_read_fields(reader, STRUT_SECTION_CONFIGURATION, map, owner, &fields);
+  const strut_slot *shape = strut_slot_of(&fields, STRUT_KEY_CONFIGURATION_SHAPE);
+  bool fine = strut_store(reader, &fields, owner, configuration) && !fields.broken;
+  configuration->shaped = shape->state == STRUT_GIVEN;
+  if (configuration->shaped)
+    fine =
+        strut_read_node_pairs(reader, shape->value, owner, STRUT_DIM_LENGTH, take_position) && fine;
+  return fine;
+}
+
+bool strut_read_configuration(strut_reader *reader, const strut_tree *key, void *object) {
+  strut_configuration *configuration = object;
+  const strut_scene *scene = reader->scene;
+  strut_owner owner = {"configuration", key->text};
+  const strut_tree *value = key->next;
+  bool keys = false;
+  configuration->position = strut_reader_allocate(reader, &reader->scene->arena, scene->node_count,
+                                                  sizeof *configuration->position);
+  if (!configuration->position) return false;
+  for (size_t i = 0; i < scene->node_count; i++)
+    memcpy(configuration->position[i], scene->nodes[i].position, sizeof *configuration->position);
+  if (value->kind != STRUT_TREE_MAP)
+    return strut_report_error(reader, value->place,
+                              "expected positions such as {n1: [10 mm, 0]} for %s, found %s",
+                              strut_owner_text(reader, owner), strut_found(reader, value));
+  for (const strut_tree *k = value->first; k; k = k->next->next) keys |= is_key(reader, k);
+  if (keys) return read_keys(reader, value, owner, configuration);
+  configuration->shaped = true; /* `{}` is the drawn shape */
+  return strut_read_node_pairs(reader, value, owner, STRUT_DIM_LENGTH, take_position);
+}
+
+void strut_read_configurations(strut_reader *reader) {
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_CONFIGURATIONS);
+  size_t nodes = reader->scene->node_count;
+  if (!map) return;
+  if (map->count <= MOST_POSITIONS / (nodes + 1)) {
+    strut_read_things(reader, STRUT_THING_CONFIGURATION);
+    return;
+  }
+  strut_report_error(reader, map->place,
+                     "%u configurations of %zu nodes are more than %d positions",
+                     (unsigned)map->count, nodes, (int)MOST_POSITIONS);
+}
+
+int32_t strut_find_configuration(strut_reader *reader, int key) {
+  const strut_slot *slot = strut_slot_of(&reader->initial, key);
+  strut_owner owner = {"the initial state", NULL};
+  if (slot->state != STRUT_GIVEN) return -1;
+  if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_CONFIGURATIONS)->state == STRUT_BROKEN) return -1;
+  strut_parameter_state *p = strut_parameter_find(reader, slot->value->text);
+  int32_t direct = strut_find_thing(reader, STRUT_THING_CONFIGURATION, NULL, slot->value->text);
+  if (!p || !p->text)
+    return strut_read_reference(reader, slot->value, slot->key->text, owner,
+                                STRUT_THING_CONFIGURATION);
+  if (direct >= 0) {
+    strut_report_error(reader, slot->value->place,
+                       "'%s' is both a configuration and a text parameter; rename one of them",
+                       p->name);
+    return -1;
+  }
+  p->used = true;
+  const char *text = p->set ? p->set->text : p->value->text;
+  int32_t index = strut_find_thing(reader, STRUT_THING_CONFIGURATION, NULL, text);
+  strut_place place = !p->set              ? p->value->place
+                      : p->set->place.line ? p->set->place
+                                           : p->key->place;
+  if (index < 0)
+    strut_report_error(reader, place, "unknown configuration '%s' in parameter '%s'%s",
+                       strut_sanitised_text(reader, text), p->name,
+                       strut_hint_of_things(reader, text, STRUT_THING_CONFIGURATION));
+  return index;
+}
+
+void strut_read_search(strut_reader *reader) {
+  strut_search *search = &reader->experiment->search;
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_EQUILIBRIA, STRUT_SECTION_EQUILIBRIA,
+                          search_owner.kind, &reader->search))
+    return;
+  if (!strut_store(reader, &reader->search, search_owner, search)) reader->search.broken = true;
+}
+
+/* ---- the initial state; solver, run and output ---- */
+
+static void store_start(strut_reader *reader, int32_t node, const double pair[2],
+                        const strut_tree *value) {
+  (void)value;
+  memcpy(reader->scene->nodes[node].start, pair, 2 * sizeof *pair);
+}
+
+static void store_velocity(strut_reader *reader, int32_t node, const double pair[2],
+                           const strut_tree *value) {
+  memcpy(reader->scene->nodes[node].velocity, pair, 2 * sizeof *pair);
+  if (reader->velocity_source) reader->velocity_source[node] = value;
+}
+
+/* `settle` and `steady` are true, false or a mapping of their own, whose values are of `within`. */
+static void read_switch(strut_reader *reader, const strut_slot *slot, int key, const char *owner,
+                        strut_owner within, strut_fields *fields) {
+  char expected[100], *e = (char *)reader->experiment;
+  const strut_key *k = strut_key_at(key);
+  const strut_tree *value = slot->value;
+  if (slot->state != STRUT_GIVEN) return;
+  bool map = value->kind == STRUT_TREE_MAP;
+  int found = map ? 1 : value->quoted ? -1 : strut_switch_find(value->text);
+  if (found == 1) strut_store_choice(k, e);
+  if (found < 0)
+    strut_report_error(reader, value->place, "expected %s, for '%s' of %s, found %s",
+                       strut_key_expected(key, expected, sizeof expected), k->name, owner,
+                       strut_found(reader, value));
+  if (!map) return;
+  strut_read_fields(reader, strut_section_below(k), value, within, fields);
+  strut_store_fields(reader, fields, within, &reader->scene->arena, e + k->field.offset,
+                     k->field.size);
+}
+
+/* Positions and velocities: of all nodes first, then of single ones. */
+static void read_state(strut_reader *reader, int32_t configuration) {
+  strut_scene *scene = reader->scene;
+  const strut_slot *positions = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_POSITIONS);
+  const strut_slot *velocities = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_VELOCITIES);
+  const strut_slot *velocity = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_VELOCITY);
+  for (size_t i = 0; configuration >= 0 && i < scene->node_count; i++)
+    memcpy(scene->nodes[i].start, scene->configurations[configuration].position[i],
+           sizeof scene->nodes[i].start);
+  if (positions->state == STRUT_GIVEN)
+    strut_read_node_pairs(reader, positions->value,
+                          (strut_owner){"'positions' of the initial state", NULL}, STRUT_DIM_LENGTH,
+                          store_start);
+  if (velocity->state == STRUT_GIVEN)
+    for (size_t i = 0; i < scene->node_count; i++)
+      for (int c = 0; c < 2; c++)
+        scene->nodes[i].velocity[c] = scene->nodes[i].fixed[c] ? 0.0 : velocity->number[c];
+  if (velocities->state != STRUT_GIVEN) return;
+  reader->velocity_source = strut_reader_allocate(reader, &reader->scratch, scene->node_count,
+                                                  sizeof *reader->velocity_source);
+  strut_read_node_pairs(reader, velocities->value,
+                        (strut_owner){"'velocities' of the initial state", NULL},
+                        STRUT_DIM_VELOCITY, store_velocity);
+}
+
+/* An equilibrium determines all positions, and that the structure is at rest. */
+static void read_equilibrium(strut_reader *reader) {
+  static const int rivals[] = {STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_INITIAL_POSITIONS,
+                               STRUT_KEY_INITIAL_SETTLE};
+  const strut_slot *equilibrium = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_EQUILIBRIUM);
+  int32_t index = strut_find_configuration(reader, STRUT_KEY_INITIAL_EQUILIBRIUM);
+  for (size_t i = 0; equilibrium->key && i < sizeof rivals / sizeof rivals[0]; i++) {
+    const strut_slot *rival = strut_slot_of(&reader->initial, rivals[i]);
+    if (!rival->key) continue;
+    strut_report_error(reader, rival->key->place,
+                       "the initial state gives both 'equilibrium' and '%s', expected one of them",
+                       rival->key->text);
+    return;
+  }
+  reader->scene->start_equilibrium = index;
+}
+
+void strut_read_initial(strut_reader *reader) {
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_INITIAL, STRUT_SECTION_INITIAL,
+                          "the initial state", &reader->initial))
+    return;
+  read_state(reader, strut_find_configuration(reader, STRUT_KEY_INITIAL_CONFIGURATION));
+  read_equilibrium(reader);
+  read_switch(reader, strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_SETTLE),
+              STRUT_KEY_INITIAL_SETTLE, "the initial state", (strut_owner){"the settling", NULL},
+              &reader->settle);
+}
+
+/* Actuators, loads and signals, one after the other, for suggestions. */
+static const char *driver_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  const strut_scene *scene = reader->scene;
+  if (i < scene->actuator_count) return scene->actuators[i].name;
+  i -= scene->actuator_count;
+  if (i < scene->load_count) return scene->loads[i].name;
+  i -= scene->load_count;
+  return i < reader->named_count ? reader->named[i].name : NULL;
+}
+
+/* The signal of the actuator or load that `of` names, or the signal of that name. */
+static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, bool *broken) {
+  const strut_scene *scene = reader->scene;
+  int32_t a = strut_find_thing(reader, STRUT_THING_ACTUATOR, NULL, value->text);
+  int32_t l = strut_find_thing(reader, STRUT_THING_LOAD, NULL, value->text);
+  int32_t s = strut_find_named(reader, &reader->signal_names, NULL, value->text);
+  int32_t found[3], count = 0;
+  if (a >= 0) found[count++] = scene->actuators[a].signal;
+  if (l >= 0 &&
+      (scene->loads[l].signal >= 0 || reader->things[STRUT_THING_LOAD].source[l].broken || a < 0))
+    found[count++] = scene->loads[l].signal;
+  if (s >= 0) found[count++] = reader->named[s].index;
+  *broken = true;
+  if (!count) {
+    const int sections[] = {STRUT_KEY_SCENE_ACTUATORS, STRUT_KEY_SCENE_LOADS,
+                            STRUT_KEY_SCENE_SIGNALS};
+    for (int i = 0; i < 3; i++)
+      if (strut_slot_of(&reader->top, sections[i])->state == STRUT_BROKEN) return -1;
+    size_t names = scene->actuator_count + scene->load_count + reader->named_count;
+    strut_report_error(reader, value->place,
+                       "unknown actuator, load or signal '%s' in 'of' of the run%s",
+                       strut_sanitised_text(reader, value->text),
+                       strut_hint(reader, value->text, driver_name, reader, names));
+    return -1;
+  }
+  for (int32_t i = 1; i < count; i++)
+    if (found[i] != found[0] && found[i] >= 0 && found[0] >= 0) {
+      strut_report_error(reader, value->place,
+                         "'%s' names several things with different signals; rename one of them",
+                         strut_sanitised_text(reader, value->text));
+      return -1;
+    }
+  if (found[0] < 0 && l >= 0 && a < 0 && !reader->things[STRUT_THING_LOAD].source[l].broken) {
+    strut_report_error(reader, value->place,
+                       "load '%s' has no signal whose periods could be counted",
+                       strut_sanitised_text(reader, value->text));
+    return -1;
+  }
+  *broken = found[0] < 0;
+  return found[0];
+}
+
+static void read_of(strut_reader *reader) {
+  strut_experiment *e = reader->experiment;
+  const strut_slot *of = strut_slot_of(&reader->run, STRUT_KEY_RUN_OF);
+  const strut_slot *periods = strut_slot_of(&reader->run, STRUT_KEY_RUN_PERIODS);
+  strut_slot *top = strut_slot_of(&reader->top, STRUT_KEY_SCENE_RUN);
+  bool broken = false;
+  if (of->state == STRUT_ABSENT && periods->state == STRUT_GIVEN) {
+    strut_report_error(
+        reader, top->key->place,
+        "the run lacks 'of', expected the actuator, load or signal whose periods count");
+    reader->run.broken = true;
+  } else if (of->state == STRUT_GIVEN && periods->state != STRUT_ABSENT) {
+    e->period_signal = find_signal_of(reader, of->value, &broken);
+    e->period_of = strut_keep_text(reader, of->value->text);
+    if (broken) reader->run.broken = true;
+  }
+}
+
+/* The length of a window: in periods if the run is in periods, otherwise in seconds. */
+static void read_last(strut_reader *reader, strut_fields *fields, int key, strut_owner owner,
+                      double *last) {
+  const strut_slot *slot = strut_slot_of(fields, key);
+  const strut_slot *periods = strut_slot_of(&reader->run, STRUT_KEY_RUN_PERIODS);
+  const strut_slot *duration = strut_slot_of(&reader->run, STRUT_KEY_RUN_DURATION);
+  if (slot->state != STRUT_GIVEN) return;
+  if (!periods->key && !duration->key) {
+    fields->broken = true;
+    if (reader->purpose ==
+        STRUT_FOR_STATICS) /* otherwise the missing length of the run is reported */
+      strut_report_error(reader, slot->key->place,
+                         "'last' of %s needs a run with a duration or periods", owner.kind);
+    return;
+  }
+  strut_dimension dimension = periods->key ? STRUT_DIM_NONE : STRUT_DIM_TIME;
+  if (!strut_read_number(reader, slot->value, "last", owner, dimension, STRUT_RANGE_ABOVE_ZERO,
+                         last))
+    fields->broken = true;
+}
+
+static void read_run(strut_reader *reader) {
+  strut_experiment *e = reader->experiment;
+  strut_owner owner = {"the measurement", NULL}, run = {"the run", NULL};
+  reader->measure = (strut_fields){.section = STRUT_SECTION_MEASURE};
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_SECTION_RUN, run.kind, &reader->run))
+    return;
+  read_of(reader);
+  strut_store(reader, &reader->run, run, e);
+  const strut_slot *measure = strut_slot_of(&reader->run, STRUT_KEY_RUN_MEASURE);
+  if (measure->state == STRUT_GIVEN) {
+    strut_read_fields(reader, STRUT_SECTION_MEASURE, measure->value,
+                      (strut_owner){"the measurement", NULL}, &reader->measure);
+    read_switch(reader, strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_STEADY),
+                STRUT_KEY_MEASURE_STEADY, owner.kind, (strut_owner){"the steady state", NULL},
+                &reader->steady);
+    read_last(reader, &reader->measure, STRUT_KEY_MEASURE_LAST, owner, &e->measure_last);
+    strut_store(reader, &reader->measure, owner, e);
+    strut_read_quantities(reader, strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_QUANTITIES));
+  }
+  if (reader->measure.broken) reader->run.broken = true;
+  if (reader->run.broken) e->duration = e->periods = 0.0;
+}
+
+/*
+ * Settling uses the file's step even if the run is later given another step, method or accuracy, so that
+ * it always ends in the same bits. A step below zero is chosen by the stability limit.
+ */
+static void choose_settling_step(strut_reader *reader) {
+  strut_settle *settle = &reader->experiment->settle;
+  if (!settle->wanted) return;
+  const strut_slot *step = strut_slot_of(&reader->settle, STRUT_KEY_SETTLE_STEP);
+  double given = reader->experiment->step;
+  if (step->state == STRUT_GIVEN) given = step->number[0];
+  settle->step = given > 0.0 ? given : -1.0;
+}
+
+void strut_read_experiment(strut_reader *reader) {
+  strut_experiment *e = reader->experiment;
+  strut_owner solver = {"the solver", NULL}, output = {"the output", NULL};
+  read_run(reader);
+  if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_SECTION_SOLVER, solver.kind,
+                         &reader->solver))
+    strut_store(reader, &reader->solver, solver, e);
+  choose_settling_step(reader);
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, output.kind,
+                          &reader->output))
+    return;
+  strut_store(reader, &reader->output, output, e);
+  read_last(reader, &reader->output, STRUT_KEY_OUTPUT_LAST, output, &e->output_last);
+}

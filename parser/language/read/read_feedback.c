@@ -1,0 +1,339 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sensors, and signals as expressions of the time, sensors and other signals. See reader.h. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "parser/language/read/reader.h"
+
+strut_dimension strut_sensor_dimension(const strut_sensor *sensor) {
+  return strut_column_dimension(strut_sensor_column(sensor).kind);
+}
+
+bool strut_check_variable_name(strut_reader *reader, const strut_tree *key, const char *kind) {
+  const char *name = strut_local_name(reader, key->text);
+  size_t length = strlen(name), word = 0;
+  if (!strut_read_name(reader, key, kind)) return false;
+  while (name[word] == '_' || (name[word] >= 'a' && name[word] <= 'z') ||
+         (name[word] >= 'A' && name[word] <= 'Z') ||
+         (word && ((name[word] >= '0' && name[word] <= '9') || name[word] == '.')))
+    word++;
+  if (word && name[word - 1] == '.') word = 0;
+  bool sensor = strcmp(kind, "sensor") == 0, signal = strcmp(kind, "controller") == 0;
+  const char *other =
+      strcmp(name, "t") == 0 || strcmp(name, "time") == 0 ? "the time"
+      : strut_expression_reserved(name, length)           ? "a function or a constant"
+      : strut_parameter_find(reader, name)                ? "a parameter"
+      : !signal && strut_name_map_find(&reader->signal_names, name) >= 0 ? "a signal"
+      : sensor && strut_name_map_find(&reader->things[STRUT_THING_STATE].names, name) >= 0
+          ? "a state"
+          : NULL;
+  if (word != length)
+    strut_report_error(reader, key->place,
+                       "'%s' cannot be the name of a %s, since expressions could not read it; "
+                       "use letters, digits and '_', and begin with a letter",
+                       strut_sanitised_text(reader, name), kind);
+  else if (other)
+    strut_report_error(reader, key->place,
+                       "%s %s cannot be called '%s', which means %s in expressions",
+                       strcmp(kind, "oscillator") == 0 ? "an" : "a", kind, name, other);
+  else
+    return true;
+  return false;
+}
+
+/* A direction turns with the copy; the scene's sensors know those of the axes only. */
+static bool turn_sensor(strut_reader *reader, const strut_tree *place, strut_sensor *sensor) {
+  bool reversed;
+  strut_column seen = strut_sensor_column(sensor);
+  int from = (int)(seen.kind - STRUT_COLUMN_NODE_X) % 2;
+  int axis = strut_scope_axis(reader, from, &reversed);
+  int turn = axis < 0 ? 0 : axis - from;
+  if (sensor->length)
+    sensor->of->column.kind = (strut_column_kind)((int)seen.kind + turn);
+  else
+    sensor->along = (uint32_t)((int)sensor->along + turn);
+  if (axis >= 0 && !reversed) return true;
+  strut_report_error(
+      reader, place->place,
+      "sensor '%s' looks along %c, which in this copy points %s; sense a length or an "
+      "angle, or sense it outside of the part",
+      strut_local_name(reader, sensor->name), "xy"[from],
+      axis < 0 ? "along neither axis" : "the other way");
+  return false;
+}
+
+/* What `of` names, if a sensor may see it. */
+static bool read_of(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                    strut_sensor *sensor) {
+  strut_column seen;
+  sensor->of = strut_read_column(reader, value, "of", owner, &seen);
+  sensor->length = sensor->of != NULL;
+  const char *why = sensor->of ? strut_observable_unsensed(seen.kind) : NULL;
+  if (why)
+    strut_report_error(reader, value->place, "%s cannot see '%s': %s",
+                       strut_owner_text(reader, owner), strut_sanitised_text(reader, value->text),
+                       why);
+  return sensor->of && !why;
+}
+
+bool strut_read_sensor(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                       void *object) {
+  strut_sensor *sensor = object;
+  const strut_slot *along = strut_slot_of(fields, STRUT_KEY_SENSOR_ALONG);
+  const strut_slot *of = strut_slot_of(fields, STRUT_KEY_SENSOR_OF);
+  if (fields->broken) return false;
+  if (of->state == STRUT_GIVEN && !read_of(reader, of->value, owner, sensor)) return false;
+  strut_column_kind kind = strut_sensor_column(sensor).kind;
+  bool directed = kind >= STRUT_COLUMN_NODE_X && kind <= STRUT_COLUMN_NODE_VY;
+  if (kind == STRUT_COLUMN_TIME)
+    strut_report_error(reader, fields->key->place,
+                       "sensor '%s' senses nothing; write one of length, force, angle, contact, "
+                       "position, velocity, energy, area, pressure, distance, contact_force and "
+                       "collision_force, such as {length: MEMBER}, or any column: {of: com.vy}",
+                       fields->key->text);
+  else if (directed && !sensor->length && along->state == STRUT_ABSENT)
+    strut_report_error(reader, fields->key->place, "sensor '%s' needs 'along': x or y",
+                       fields->key->text);
+  else
+    return !directed || turn_sensor(reader, sensor->length ? of->value : along->value, sensor);
+  return false;
+}
+
+/* ---- expressions ---- */
+
+bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,
+                       strut_dimension *dimension) {
+  int32_t sensor = strut_find_thing(reader, STRUT_THING_SENSOR, NULL, name);
+  int32_t state = strut_find_thing(reader, STRUT_THING_STATE, NULL, name);
+  if (state >= 0) {
+    column->kind = STRUT_COLUMN_STATE, column->item = state;
+    *dimension = reader->state_dimension[state];
+    return true;
+  }
+  if (sensor < 0) return false;
+  column->kind = STRUT_COLUMN_SENSOR, column->item = sensor;
+  *dimension = strut_sensor_dimension(&reader->scene->sensors[sensor]);
+  if (reader->things[STRUT_THING_SENSOR].source[sensor].broken)
+    dimension->kg = (float)NAN; /* any */
+  return true;
+}
+
+int strut_find_sensor_rate(strut_reader *reader, strut_piece piece, strut_column *column,
+                           strut_dimension *dimension, strut_refusal *refusal) {
+  const char *name = strut_arena_text(&reader->scratch, piece.text, piece.length);
+  int32_t i = name ? strut_find_thing(reader, STRUT_THING_SENSOR, NULL, name) : -1;
+  bool broken = i >= 0 && reader->things[STRUT_THING_SENSOR].source[i].broken;
+  if (i >= 0 && (broken || strut_sensor_has_rate(&reader->scene->sensors[i]))) {
+    column->kind = STRUT_COLUMN_SENSOR_RATE, column->item = i;
+    *dimension = strut_sensor_dimension(&reader->scene->sensors[i]);
+    dimension->s -= 1.0f;
+    if (broken) dimension->kg = (float)NAN; /* any */
+    return 1;
+  }
+  if (i >= 0)
+    snprintf(refusal->text, sizeof refusal->text,
+             "the rate of sensor '%s' is not known, only those of lengths, angles, positions, "
+             "areas and distances",
+             name);
+  else
+    snprintf(refusal->text, sizeof refusal->text, "unknown sensor '%.*s'%s",
+             piece.length > 40 ? 40 : (int)piece.length, piece.text,
+             name ? strut_hint_of_things(reader, name, STRUT_THING_SENSOR) : "");
+  return -1;
+}
+
+bool strut_find_variable(strut_reader *reader, strut_piece piece, strut_column *column,
+                         strut_dimension *dimension) {
+  const char *name = strut_arena_text(&reader->scratch, piece.text, piece.length);
+  if (!name) reader->out_of_memory = true;
+  if (!name) return false;
+  if (strut_find_sensed(reader, name, column, dimension)) return true;
+  if (strut_find_named(reader, &reader->signal_names, NULL, name) < 0) return false;
+  column->kind = STRUT_COLUMN_SIGNAL;
+  column->item = strut_use_signal(reader, name, dimension);
+  return true;
+}
+
+strut_piece strut_whole_name(strut_piece owner, strut_piece field) {
+  return (strut_piece){owner.text, (size_t)(field.text - owner.text) + field.length};
+}
+
+/* A word of an expression that is no parameter. */
+static int find_word(strut_reader *reader, strut_piece word, strut_column *column,
+                     strut_dimension *dimension, strut_refusal *refusal) {
+  const char *name = strut_arena_text(&reader->scratch, word.text, word.length);
+  if (!name) reader->out_of_memory = true;
+  if (!name) return -1;
+  if (strcmp(name, "t") == 0 || strcmp(name, "time") == 0) {
+    column->kind = STRUT_COLUMN_TIME;
+    *dimension = STRUT_DIM_TIME;
+    return 1;
+  }
+  if (strut_find_variable(reader, word, column, dimension)) return column->item >= 0 ? 1 : -1;
+  const char *hint = strut_hint_of_things(reader, name, STRUT_THING_SENSOR);
+  if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_SENSORS)->state == STRUT_BROKEN) return -1;
+  if (!*hint) return 0;
+  snprintf(refusal->text, sizeof refusal->text, "unknown sensor '%.*s'%s", (int)word.length,
+           word.text, hint);
+  return -1;
+}
+
+static int find_column(void *context, const char *kind, strut_piece owner, strut_piece field,
+                       strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
+  if (!owner.length && !kind) return find_word(context, field, column, dimension, refusal);
+  if (kind && strcmp(kind, "rate") == 0)
+    return strut_find_sensor_rate(context, owner, column, dimension, refusal);
+  if (!kind && strut_find_variable(context, strut_whole_name(owner, field), column, dimension))
+    return column->item >= 0 ? 1 : -1;
+  snprintf(
+      refusal->text, sizeof refusal->text,
+      "a signal reads the motion by sensors: write sensors: {NAME: {length: MEMBER}}, and NAME "
+      "here");
+  return -1;
+}
+
+static int find_pair(void *context, strut_piece word, strut_piece first, strut_piece second,
+                     strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
+  (void)word, (void)first, (void)second;
+  return find_column(context, "node", word, first, column, dimension, refusal);
+}
+
+/* Behind a number, t is the time rather than a tonne: 10 Hz*t. */
+static int claims_word(void *context, strut_piece word) {
+  strut_reader *reader = context;
+  if (word.length == 1 && *word.text == 't') return 1;
+  const char *name = strut_arena_text(&reader->scratch, word.text, word.length);
+  if (!name) reader->out_of_memory = true;
+  return name && strut_find_thing(reader, STRUT_THING_SENSOR, NULL, name) >= 0 ? -1 : 0;
+}
+
+bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
+                               strut_owner owner, strut_program *program, strut_quantity *q) {
+  strut_compiler compiler = {.column = find_column, .pair = find_pair, .claims = claims_word};
+  if (strut_ends_at_comma(reader, value, key, owner)) return false;
+  program->instruction = strut_compile(reader, value, key, owner, &compiler, q);
+  if (!program->instruction) return false;
+  program->length = compiler.length;
+  program->depth = compiler.depth;
+  return true;
+}
+
+/* ---- internal states ---- */
+
+int32_t strut_add_state(strut_reader *reader, const strut_tree *key, const char *name,
+                        strut_dimension dimension, double start) {
+  strut_scene *scene = reader->scene;
+  char unit[STRUT_SUFFIX_TEXT];
+  size_t i = strut_next_entry(reader, &scene->state_count);
+  strut_dimension_suffix(dimension, unit, sizeof unit);
+  scene->states[i] = (strut_internal_state){.name = strut_keep_text(reader, name),
+                                            .start = start,
+                                            .unit = *unit ? strut_keep_text(reader, unit) : NULL};
+  strut_add_name(reader, &reader->things[STRUT_THING_STATE].names, scene->states[i].name, i);
+  reader->state_dimension[i] = dimension;
+  reader->things[STRUT_THING_STATE].source[i] = (strut_source){key, key->next, false};
+  return (int32_t)i;
+}
+
+static size_t entries_of(strut_reader *reader, int key) {
+  const strut_slot *slot = strut_slot_of(&reader->top, key);
+  return slot->state == STRUT_GIVEN ? slot->value->count : 0;
+}
+
+/* The value at t = 0, whose unit is that of the state. */
+static void list_state(strut_reader *reader, const strut_tree *key) {
+  strut_owner owner = {"state", key->text};
+  strut_fields fields;
+  strut_quantity q = {.bare = true};
+  bool fine = strut_check_variable_name(reader, key, "state");
+  strut_read_fields(reader, STRUT_SECTION_STATE, key->next, owner, &fields);
+  strut_require(reader, &fields, owner, key->place);
+  const strut_slot *start = strut_slot_of(&fields, STRUT_KEY_STATE_START);
+  if (fields.broken || start->state != STRUT_GIVEN)
+    fine = false;
+  else if (!strut_read_scalar(reader, start->value, "start", owner, "a number such as '0 rad'") ||
+           !strut_read_quantity(reader, start->value, "start", owner, &q))
+    fine = false;
+  int32_t i =
+      strut_add_state(reader, key, key->text, q.bare ? STRUT_DIM_NONE : q.dimension, q.value);
+  reader->things[STRUT_THING_STATE].source[i].broken = !fine;
+}
+
+/* An oscillator's phase at t = 0. */
+static void list_oscillator(strut_reader *reader, const strut_tree *key) {
+  strut_owner owner = {"oscillator", key->text};
+  strut_fields fields;
+  strut_oscillator o = {.phase = 0.0};
+  bool fine = strut_check_variable_name(reader, key, "oscillator");
+  strut_read_fields_of(reader, STRUT_SECTION_OSCILLATOR, key, owner, &fields);
+  strut_require(reader, &fields, owner, key->place);
+  if (fields.broken) fine = false;
+  fine = fine && strut_store_fields(reader, &fields, owner, &reader->scratch, &o, sizeof o);
+  int32_t i = strut_add_state(reader, key, key->text, STRUT_DIM_ANGLE, o.phase);
+  reader->things[STRUT_THING_STATE].source[i].broken = !fine;
+}
+
+void strut_list_states(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  const strut_tree *states = strut_entries(reader, STRUT_KEY_SCENE_STATES);
+  const strut_tree *oscillators = strut_entries(reader, STRUT_KEY_SCENE_OSCILLATORS);
+  size_t most = entries_of(reader, STRUT_KEY_SCENE_STATES) +
+                entries_of(reader, STRUT_KEY_SCENE_OSCILLATORS) +
+                entries_of(reader, STRUT_KEY_SCENE_CONTROLLERS) +
+                entries_of(reader, STRUT_KEY_SCENE_PIPES) + 1;
+  strut_arena *scratch = &reader->scratch;
+  scene->states = strut_reader_allocate(reader, &scene->arena, most, sizeof *scene->states);
+  reader->things[STRUT_THING_STATE].source = strut_reader_allocate(
+      reader, scratch, most, sizeof *reader->things[STRUT_THING_STATE].source);
+  reader->state_dimension =
+      strut_reader_allocate(reader, scratch, most, sizeof *reader->state_dimension);
+  if (!scene->states || !reader->things[STRUT_THING_STATE].source || !reader->state_dimension)
+    return;
+  for (const strut_tree *key = strut_first_entry(reader, states); key;
+       key = strut_following_entry(reader, key))
+    list_state(reader, key);
+  for (const strut_tree *key = strut_first_entry(reader, oscillators); key;
+       key = strut_following_entry(reader, key))
+    list_oscillator(reader, key);
+}
+
+/* The rate of a state must have its unit per second; of an angle, an angle may be left out. */
+static bool check_rate(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                       const char *key, strut_dimension wanted, const strut_quantity *q) {
+  char expected[80], found[80];
+  wanted.s -= 1.0f;
+  strut_dimension plain = wanted;
+  plain.angle -= 1.0f;
+  bool angle = wanted.angle != 0.0f && strut_dimension_equal(q->dimension, plain);
+  if (q->bare || angle || strut_dimension_equal(q->dimension, wanted)) return true;
+  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
+                     strut_dimension_name(wanted, expected, sizeof expected), key,
+                     strut_owner_text(reader, owner),
+                     strut_dimension_name(q->dimension, found, sizeof found));
+  return false;
+}
+
+void strut_read_states(strut_reader *reader) {
+  const strut_tree *states = strut_entries(reader, STRUT_KEY_SCENE_STATES);
+  const strut_tree *oscillators = strut_entries(reader, STRUT_KEY_SCENE_OSCILLATORS);
+  strut_quantity q;
+  for (const strut_tree *key = strut_first_entry(reader, states); key;
+       key = strut_following_entry(reader, key)) {
+    strut_owner owner = {"state", key->text};
+    int32_t i = strut_name_map_find(&reader->things[STRUT_THING_STATE].names, key->text);
+    const strut_tree *rate =
+        key->next->kind == STRUT_TREE_MAP ? strut_tree_find(key->next, "rate", NULL) : NULL;
+    if (i < 0 || reader->things[STRUT_THING_STATE].source[i].broken || !rate) continue;
+    bool fine = strut_read_signal_program(reader, rate, "rate", owner,
+                                          &reader->scene->states[i].rate, &q) &&
+                check_rate(reader, rate, owner, "rate", reader->state_dimension[i], &q);
+    reader->things[STRUT_THING_STATE].source[i].broken = !fine;
+  }
+  for (const strut_tree *key = strut_first_entry(reader, oscillators); key;
+       key = strut_following_entry(reader, key)) {
+    int32_t i = strut_name_map_find(&reader->things[STRUT_THING_STATE].names, key->text);
+    if (i < 0 || reader->things[STRUT_THING_STATE].source[i].broken) continue;
+    reader->things[STRUT_THING_STATE].source[i].broken = !strut_read_oscillator(reader, key, i);
+  }
+}

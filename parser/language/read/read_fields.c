@@ -1,0 +1,351 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Mappings by the table of keys: unknown keys, missing keys, typed values. See reader.h. */
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "parser/language/read/reader.h"
+
+strut_slot *strut_slot_of(strut_fields *fields, int key) {
+  assert(strut_key_at(key)->section == fields->section);
+  return &fields->slot[key - strut_section_first(fields->section)];
+}
+
+void strut_suppress_missing(strut_fields *fields) {
+  for (int i = 0; i < strut_section_size(fields->section); i++)
+    if (fields->slot[i].state == STRUT_ABSENT) fields->slot[i].state = STRUT_BROKEN;
+}
+
+/* The keys of some sections, one after the other, for suggestions. */
+typedef struct sections_context {
+  const strut_section *sections;
+  size_t count;
+} sections_context;
+
+static int key_of_sections(const sections_context *sections, size_t i) {
+  for (size_t r = 0; r < sections->count; r++) {
+    size_t size = (size_t)strut_section_size(sections->sections[r]);
+    if (i < size) return strut_section_first(sections->sections[r]) + (int)i;
+    i -= size;
+  }
+  return -1;
+}
+
+static const char *name_of_sections(const void *context, size_t i) {
+  int key = key_of_sections(context, i);
+  return key < 0 ? NULL : strut_key_at(key)->name;
+}
+
+/* Suggests a known key for an unknown one; NULL if none is near. */
+static const char *nearest_key(strut_reader *reader, const char *text,
+                               const sections_context *context) {
+  for (size_t i = 0; i < context->count; i++) {
+    const strut_spelling *spelling = strut_spelling_find(context->sections[i], NULL, text);
+    if (spelling) return spelling->current;
+  }
+  if (strlen(text) > 64 || !strut_hints_left(reader)) return NULL;
+  return strut_did_you_mean(text, name_of_sections, context);
+}
+
+/* Advice for keys that YAML made of something else: `mass:1 kg`, and `1,5 kg` within braces. */
+static const char *punctuation_advice(const strut_tree *key) {
+  bool number = key->text[0] >= '0' && key->text[0] <= '9';
+  if (key->quoted || !strut_is_null(key->next)) return NULL;
+  if (strut_lacks_space(key)) return "; write a space after the colon";
+  return number ? "; within {...} a comma separates keys, and the decimal mark is a point" : NULL;
+}
+
+/* "; the keys here are 'a', 'b'" where there are few; "" where there are many, or enough has been said. */
+static const char *known_keys(strut_reader *reader, const sections_context *context, char *text,
+                              size_t size) {
+  enum { MOST = 14 };
+  size_t used = 0;
+  text[0] = '\0';
+  if (key_of_sections(context, MOST) >= 0 || !strut_hints_left(reader)) return text;
+  for (size_t i = 0; key_of_sections(context, i) >= 0 && used < size; i++)
+    used += (size_t)snprintf(text + used, size - used, "%s'%s'", i ? ", " : "; the keys here are ",
+                             name_of_sections(context, i));
+  return text;
+}
+
+/* Where a key belongs that is of another mapping of the scene; "" if there is none. */
+static const char *other_home(const char *text) {
+  static const struct {
+    strut_section section;
+    const char *advice;
+  } homes[] = {{STRUT_SECTION_SCENE, "; it belongs beside 'nodes', to the whole scene"},
+               {STRUT_SECTION_SOLVER, "; it belongs under 'solver'"},
+               {STRUT_SECTION_RUN, "; it belongs under 'run'"},
+               {STRUT_SECTION_INITIAL, "; it belongs under 'initial'"},
+               {STRUT_SECTION_OUTPUT, "; it belongs under 'output'"}};
+  for (size_t i = 0; i < sizeof homes / sizeof homes[0]; i++)
+    if (strut_key_find(homes[i].section, text) >= 0) return homes[i].advice;
+  return "";
+}
+
+int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *sections,
+                      size_t count, strut_owner owner) {
+  sections_context context = {sections, count};
+  const char *advice = punctuation_advice(key);
+  const char *near = advice ? NULL : nearest_key(reader, key->text, &context);
+  char others[400];
+  if (!advice) advice = near ? "" : other_home(key->text);
+  if (!*advice && !near) advice = known_keys(reader, &context, others, sizeof others);
+  strut_report_error(reader, key->place, "unknown key '%s' in %s%s%s%s%s",
+                     strut_sanitised_text(reader, key->text), strut_owner_text(reader, owner),
+                     advice, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+  for (int i = 0; key_of_sections(&context, (size_t)i) >= 0; i++) {
+    int meant = key_of_sections(&context, (size_t)i);
+    const char *name = strut_key_at(meant)->name;
+    if (near ? strcmp(name, near) == 0 : strut_lacks_space_after(key, name)) return meant;
+  }
+  return -1;
+}
+
+/* A former name is noted where it is met first. */
+static void note_spelling(strut_reader *reader, const strut_spelling *spelling, strut_place place) {
+  if (spelling->kind != STRUT_SPELLING_FORMER) return;
+  unsigned bit = 1u << strut_spelling_index(spelling);
+  if (reader->spellings & bit) return;
+  reader->spellings |= bit;
+  strut_note(reader->diagnostics, place, "'%s' is now called '%s'", spelling->other,
+             spelling->current);
+}
+
+int strut_key_named(strut_reader *reader, strut_section section, const strut_tree *key) {
+  int found = strut_key_find(section, key->text);
+  if (found >= 0) return found;
+  const strut_spelling *spelling = strut_spelling_find(section, NULL, key->text);
+  if (!spelling || spelling->kind == STRUT_SPELLING_MISTAKE) return -1;
+  note_spelling(reader, spelling, key->place);
+  return strut_key_find(section, spelling->current);
+}
+
+/* The words of a key, for suggestions. */
+typedef struct words_context {
+  char word[32][24];
+  int count;
+} words_context;
+
+static const char *name_of_words(const void *context, size_t i) {
+  const words_context *words = context;
+  return i < (size_t)words->count ? words->word[i] : NULL;
+}
+
+bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                     strut_owner owner, int *word) {
+  char expected[400];
+  if (value->kind == STRUT_TREE_SCALAR && (*word = strut_word_find(key->words, value->text)) >= 0)
+    return true; /* scenes of a study are read by the million */
+  const strut_spelling *other = value->kind == STRUT_TREE_SCALAR
+                                    ? strut_spelling_find(key->section, key->name, value->text)
+                                    : NULL;
+  if (other && other->kind != STRUT_SPELLING_MISTAKE) {
+    note_spelling(reader, other, value->place);
+    *word = strut_word_find(key->words, other->current);
+    return true;
+  }
+  bool may_switch = value->kind == STRUT_TREE_SCALAR && !value->quoted;
+  if (may_switch && strcmp(key->words, "no|yes") == 0 &&
+      (*word = strut_switch_find(value->text)) >= 0)
+    return true;
+  strut_words_text(key->words, expected, sizeof expected);
+  if (!strut_read_scalar(reader, value, key->name, owner, expected)) return false;
+  words_context words = {.count = 0};
+  while (words.count < 32 &&
+         strut_word_at(key->words, words.count, words.word[words.count], sizeof words.word[0]))
+    words.count++;
+  return strut_report_error(
+      reader, value->place, "expected %s for '%s' of %s, found '%s'%s", expected, key->name,
+      strut_owner_text(reader, owner), strut_sanitised_text(reader, value->text),
+      strut_hint(reader, value->text, name_of_words, &words, (size_t)words.count));
+}
+
+/* A list of words without repetition; bits gets one bit for each. */
+static bool read_words(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                       strut_owner owner, uint64_t *bits) {
+  bool fine = true;
+  *bits = 0;
+  for (const strut_tree *item = value->first; item; item = item->next) {
+    int word;
+    if (!strut_read_word(reader, key, item, owner, &word)) {
+      fine = false;
+    } else if (*bits >> word & 1u) {
+      fine = strut_report_error(reader, item->place, "'%s' appears twice in '%s' of %s", item->text,
+                                key->name, strut_owner_text(reader, owner));
+    } else {
+      *bits |= (uint64_t)1 << word;
+    }
+  }
+  return fine;
+}
+
+/* Supports: none, x, y, both, or a list of x and y. Bit 1: x, bit 2: y. */
+static bool read_fixed(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                       strut_owner owner, int *bits) {
+  if (value->kind != STRUT_TREE_LIST) return strut_read_word(reader, key, value, owner, bits);
+  strut_key in_list = *key;
+  in_list.words = "x|y";
+  uint64_t both;
+  bool fine = read_words(reader, &in_list, value, owner, &both);
+  *bits = (int)both;
+  return fine;
+}
+
+bool strut_refuse_form(strut_reader *reader, int key, const strut_tree *value, strut_owner owner) {
+  char expected[300];
+  return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s",
+                            strut_key_expected(key, expected, sizeof expected),
+                            strut_key_at(key)->name, strut_owner_text(reader, owner),
+                            strut_found(reader, value),
+                            strut_lacks_space(value) ? "; write a space after the colon" : "");
+}
+
+static bool read_version(strut_reader *reader, const strut_tree *value) {
+  if (strcmp(value->text, "1") == 0) return true;
+  return strut_report_error(reader, value->place,
+                            "expected the language version 1 for 'strut', found '%s'; "
+                            "this program knows version 1 only",
+                            strut_sanitised_text(reader, value->text));
+}
+
+static bool read_number(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                        strut_owner owner, double *number) {
+  if (key->measure == STRUT_MEASURE_CONTEXT) return true;
+  bool whole = key->limits.range == STRUT_RANGE_WHOLE;
+  return strut_read_number(reader, value, key->name, owner, strut_measure_dimension(key->measure),
+                           whole ? STRUT_RANGE_ANY : key->limits.range, number) &&
+         (!whole || strut_check_whole(reader, value, key, owner, *number));
+}
+
+/* Reads a value whose type needs no code of the section's own; false if it was reported. */
+static bool read_typed(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                       strut_owner owner, strut_slot *slot) {
+  strut_key_type type = key->type;
+  if (type == STRUT_TYPE_VERSION) return read_version(reader, value);
+  if (type == STRUT_TYPE_NUMBER && key->section == STRUT_SECTION_SCENE) return true; /* as pairs */
+  if (type == STRUT_TYPE_NUMBER) return read_number(reader, key, value, owner, slot->number);
+  if (type == STRUT_TYPE_WORD) return strut_read_word(reader, key, value, owner, &slot->word);
+  if (type == STRUT_TYPE_WORDS) return read_words(reader, key, value, owner, &slot->words);
+  if (type == STRUT_TYPE_FIXED) return read_fixed(reader, key, value, owner, &slot->word);
+  if (type != STRUT_TYPE_PAIR || key->section == STRUT_SECTION_SCENE) /* no parameters yet */
+    return true;
+  return strut_read_pair(reader, value, key->name, owner, strut_measure_dimension(key->measure),
+                         slot->number);
+}
+
+void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
+                     const strut_tree *value, strut_owner owner, strut_slot *slot) {
+  const strut_key *k = strut_key_at(key);
+  *slot = (strut_slot){.key = key_tree, .value = value};
+  bool bodies = key == STRUT_KEY_SCENE_COLLISIONS && value->kind == STRUT_TREE_SCALAR;
+  if (bodies && strcmp(value->text, "all") == 0) return; /* strut_read_bodies takes it */
+  bool fine = strut_shape_fits(k->type, value) ? read_typed(reader, k, value, owner, slot)
+                                               : strut_refuse_form(reader, key, value, owner);
+  slot->state = fine ? STRUT_GIVEN : STRUT_BROKEN;
+}
+
+/* Another key of the same set that the mapping itself gives, or NULL. */
+static const strut_tree *rival(const strut_fields *fields, int key) {
+  int set = strut_key_at(key)->set;
+  if (!set) return NULL;
+  int first = strut_section_first(fields->section), size = strut_section_size(fields->section);
+  const strut_key *keys = strut_key_at(first);
+  for (int i = 0; i < size; i++)
+    if (first + i != key && keys[i].set == set && fields->slot[i].key) return fields->slot[i].key;
+  return NULL;
+}
+
+static void read_pair_of_map(strut_reader *reader, strut_fields *fields, const strut_tree *key_tree,
+                             strut_owner owner) {
+  int key = strut_key_named(reader, fields->section, key_tree);
+  if (key < 0) {
+    int meant = strut_unknown_key(reader, key_tree, &fields->section, 1, owner);
+    fields->broken = true;
+    if (meant >= 0 && strut_slot_of(fields, meant)->state == STRUT_ABSENT)
+      strut_slot_of(fields, meant)->state = STRUT_BROKEN;
+    return;
+  }
+  strut_slot *slot = strut_slot_of(fields, key);
+  const strut_tree *other = slot->key ? slot->key : rival(fields, key); /* or by its former name */
+  strut_read_slot(reader, key, key_tree, key_tree->next, owner, slot);
+  if (other) {
+    strut_report_error(reader, key_tree->place, "%s gives both '%s' and '%s', expected one of them",
+                       strut_owner_text(reader, owner), other->text, key_tree->text);
+    slot->state = STRUT_BROKEN;
+  }
+  if (slot->state == STRUT_BROKEN) fields->broken = true;
+}
+
+/* `mu` sets both coefficients, so that neither may be given beside it. */
+static void check_coefficients(strut_reader *reader, strut_fields *fields, strut_owner owner) {
+  const strut_slot *mu = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
+  const strut_slot *statics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_STATIC);
+  const strut_slot *kinetics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_KINETIC);
+  const strut_slot *forward = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_FORWARD);
+  const strut_slot *rival = statics->key ? statics : kinetics->key ? kinetics : forward;
+  bool directions = forward->key != NULL;
+  if (!mu->key) mu = forward;
+  if (!mu->key || !rival->key || rival == mu) return;
+  strut_report_error(reader, mu->key->place, "%s gives both '%s' and '%s', expected %s",
+                     strut_owner_text(reader, owner), mu->key->text, rival->key->text,
+                     directions ? "'mu', or 'mu_forward' and 'mu_backward'"
+                                : "'mu', or 'mu_static' and 'mu_kinetic'");
+  fields->broken = true;
+}
+
+void strut_read_fields(strut_reader *reader, strut_section section, const strut_tree *map,
+                       strut_owner owner, strut_fields *fields) {
+  *fields = (strut_fields){.section = section, .map = map};
+  if (map->kind != STRUT_TREE_MAP) {
+    strut_report_error(reader, map->place,
+                       "expected a mapping {key: value, ...} for %s, found %s%s",
+                       strut_owner_text(reader, owner), strut_found(reader, map),
+                       strut_lacks_space(map) ? "; write a space after the colon" : "");
+    fields->broken = true;
+    strut_suppress_missing(fields);
+    return;
+  }
+  for (const strut_tree *k = map->first; k; k = k->next->next)
+    read_pair_of_map(reader, fields, k, owner);
+  if (section == STRUT_SECTION_FRICTION) check_coefficients(reader, fields, owner);
+}
+
+void strut_read_fields_of(strut_reader *reader, strut_section section, const strut_tree *key,
+                          strut_owner owner, strut_fields *fields) {
+  strut_read_fields(reader, section, key->next, owner, fields);
+  fields->key = key;
+}
+
+void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                   strut_place place) {
+  int first = strut_section_first(fields->section), size = strut_section_size(fields->section);
+  const strut_key *keys = strut_key_at(first);
+  for (int i = 0; i < size; i++) {
+    char expected[300];
+    strut_slot *slot = &fields->slot[i];
+    if (slot->state != STRUT_ABSENT || keys[i].need != STRUT_REQUIRED) continue;
+    if (!reader->holes)
+      strut_report_error(reader, place, "%s lacks '%s', expected %s",
+                         strut_owner_text(reader, owner), strut_key_at(first + i)->name,
+                         strut_key_expected(first + i, expected, sizeof expected));
+    slot->state = STRUT_BROKEN;
+    fields->broken = true;
+  }
+}
+
+bool strut_read_section(strut_reader *reader, int key, strut_section section, const char *owner,
+                        strut_fields *fields) {
+  const strut_slot *slot = strut_slot_of(&reader->top, key);
+  *fields = (strut_fields){.section = section, .broken = slot->state == STRUT_BROKEN};
+  if (fields->broken) strut_suppress_missing(fields);
+  if (slot->state != STRUT_GIVEN) return false;
+  strut_read_fields(reader, section, slot->value, (strut_owner){owner, NULL}, fields);
+  fields->key = slot->key;
+  return true;
+}
+
+const strut_tree *strut_entries(strut_reader *reader, int key) {
+  const strut_slot *slot = strut_slot_of(&reader->top, key);
+  return slot->state == STRUT_GIVEN ? slot->value : NULL;
+}

@@ -1,0 +1,601 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The ground, its contacts and their friction. See reader.h. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/vec.h"
+#include "engine/scene/profile.h"
+#include "parser/language/read/reader.h"
+#include "parser/language/read/reuse/copies.h"
+
+/* The friction of one contact while the layers (ground, groups, contact) are laid over each other. */
+typedef struct friction_layers {
+  strut_friction friction;
+  unsigned given;         /* one bit for each key that some layer gave */
+  bool any, broken;       /* there is a layer; one could not be read */
+  const strut_tree *last; /* the mapping of the top layer, */
+  strut_owner owner;      /* and what messages call it */
+} friction_layers;
+
+static unsigned key_bit(int key) {
+  return 1u << (key - strut_section_first(STRUT_SECTION_FRICTION));
+}
+
+static bool is_given(strut_fields *fields, int key, double *number) {
+  const strut_slot *slot = strut_slot_of(fields, key);
+  if (slot->state == STRUT_GIVEN) *number = slot->number[0];
+  return slot->state == STRUT_GIVEN;
+}
+
+/* What the slot of mu holds in number[1]: a number that was read, or from DRIVEN on a signal. */
+enum { UNREAD, PLAIN, DRIVEN };
+
+/* `mu` of a layer, a number or a signal, read once although a group's holds for many contacts. */
+static bool read_mu(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                    strut_friction *f, double *mu) {
+  strut_slot *slot = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
+  if (slot->state != STRUT_GIVEN) return false;
+  bool signal = slot->value->kind == STRUT_TREE_MAP ||
+                (slot->value->kind == STRUT_TREE_SCALAR &&
+                 strut_name_map_find(&reader->signal_names, slot->value->text) >= 0);
+  if (slot->number[1] == UNREAD && signal) {
+    const strut_dimension plain = STRUT_DIM_NONE;
+    int32_t index = strut_read_signal(reader, slot->value, "mu", owner, &plain);
+    slot->number[1] = index < 0 ? UNREAD : DRIVEN + index;
+  } else if (slot->number[1] == UNREAD) {
+    bool fine = strut_read_number(reader, slot->value, "mu", owner, STRUT_DIM_NONE,
+                                  STRUT_RANGE_NOT_NEGATIVE, &slot->number[0]);
+    slot->number[1] = fine ? PLAIN : UNREAD;
+  }
+  if (slot->number[1] == UNREAD) {
+    slot->state = STRUT_BROKEN;
+    fields->broken = true;
+    return false;
+  }
+  f->driven = slot->number[1] >= DRIVEN;
+  f->signal = f->driven ? (int32_t)slot->number[1] - DRIVEN : 0;
+  *mu = f->driven ? 1.0 : slot->number[0];
+  return true;
+}
+
+/* A layer gives a coefficient over a signal of those below, which leaves none of its own for the other. */
+static void stop_driving(friction_layers *f, strut_fields *fields) {
+  static const int keys[] = {STRUT_KEY_FRICTION_MU_STATIC, STRUT_KEY_FRICTION_MU_KINETIC};
+  for (size_t k = 0; k < sizeof keys / sizeof keys[0] && f->friction.driven; k++)
+    if (strut_slot_of(fields, keys[k])->state != STRUT_GIVEN) f->given &= ~key_bit(keys[k]);
+  f->friction.driven = false;
+  f->friction.signal = 0;
+}
+
+/*
+ * Coefficients of a layer beside mu_static and mu_kinetic. Those without a direction replace both
+ * directions of the layers below.
+ */
+static void set_coefficients(strut_reader *reader, friction_layers *f, strut_fields *fields,
+                             strut_owner owner) {
+  strut_friction *all = &f->friction;
+  const unsigned directions =
+      key_bit(STRUT_KEY_FRICTION_MU_FORWARD) | key_bit(STRUT_KEY_FRICTION_MU_FORWARD_STATIC) |
+      key_bit(STRUT_KEY_FRICTION_MU_BACKWARD) | key_bit(STRUT_KEY_FRICTION_MU_BACKWARD_STATIC);
+  double mu;
+  bool both = read_mu(reader, fields, owner, all, &mu);
+  if (both || is_given(fields, STRUT_KEY_FRICTION_MU_STATIC, &all->mu_static) ||
+      is_given(fields, STRUT_KEY_FRICTION_MU_KINETIC, &all->mu_kinetic)) {
+    all->directional = false, f->given &= ~directions;
+    if (!both) stop_driving(f, fields);
+    all->mu_static_backward = all->mu_kinetic_backward = 0.0;
+  }
+  if (!both && is_given(fields, STRUT_KEY_FRICTION_MU_FORWARD, &mu)) {
+    stop_driving(f, fields);
+    both = true;
+  }
+  if (both) {
+    all->mu_static = all->mu_kinetic = mu;
+    f->given |= key_bit(STRUT_KEY_FRICTION_MU_STATIC) | key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
+  }
+  is_given(fields, STRUT_KEY_FRICTION_MU_FORWARD_STATIC, &all->mu_static);
+  if (is_given(fields, STRUT_KEY_FRICTION_MU_BACKWARD, &mu)) {
+    all->directional = true;
+    all->mu_static_backward = all->mu_kinetic_backward = mu;
+  }
+  is_given(fields, STRUT_KEY_FRICTION_MU_BACKWARD_STATIC, &all->mu_static_backward);
+}
+
+static void add_layer(strut_reader *reader, friction_layers *f, strut_fields *fields,
+                      strut_owner owner) {
+  f->any = true;
+  f->last = fields->map;
+  f->owner = owner;
+  if (fields->broken) f->broken = true;
+  strut_store(reader, fields, owner, &f->friction);
+  for (int i = 0; i < strut_section_size(STRUT_SECTION_FRICTION); i++)
+    if (fields->slot[i].state == STRUT_GIVEN) f->given |= 1u << i;
+  set_coefficients(reader, f, fields, owner);
+  f->broken = f->broken || fields->broken;
+}
+
+/* Reports a key that the law needs and no layer gives, at the top layer. */
+static void report_lack(strut_reader *reader, const friction_layers *f, int key) {
+  char expected[200];
+  bool speed = strut_key_at(key)->measure == STRUT_MEASURE_VELOCITY;
+  strut_report_error(reader, f->last->place, "%s lacks '%s', expected %s",
+                     strut_owner_text(reader, f->owner), strut_key_at(key)->name,
+                     speed ? strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected)
+                           : "a number such as 0.5");
+}
+
+/* Reports static friction below kinetic friction, once for each top layer. False: there is some. */
+static bool check_static_friction(strut_reader *reader, const friction_layers *f,
+                                  const strut_tree **reported) {
+  int way = strut_friction_holds_too_little(&f->friction);
+  if (way == 0) return true;
+  if (*reported != f->last)
+    strut_report_error(
+        reader, f->last->place,
+        "%s has static friction %g below kinetic friction %g, expected at least as much: a "
+        "contact that gives way would be held again at once",
+        strut_owner_text(reader, f->owner), strut_friction_static(&f->friction, way),
+        strut_friction_kinetic(&f->friction, way));
+  *reported = f->last;
+  return false;
+}
+
+/*
+ * Are all numbers given that the friction law needs? What is missing is reported once for each top layer;
+ * where no coefficient is given, as one lacking key, mu.
+ */
+static bool complete_friction(strut_reader *reader, friction_layers *f,
+                              const strut_tree **reported) {
+  if (!f->any || f->broken) return !f->broken;
+  if (!(f->given & key_bit(STRUT_KEY_FRICTION_LAW))) f->friction.law = STRUT_FRICTION_KARNOPP;
+  bool statics = f->given & key_bit(STRUT_KEY_FRICTION_MU_STATIC);
+  bool kinetics = f->given & key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
+  bool complete = true, reported_mu = false;
+  for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
+    int key = strut_key_find(STRUT_SECTION_FRICTION, strut_friction_key(p));
+    if (!strut_friction_needs(f->friction.law, p) || (f->given & key_bit(key))) continue;
+    complete = false;
+    bool both = !statics && !kinetics &&
+                (key == STRUT_KEY_FRICTION_MU_STATIC || key == STRUT_KEY_FRICTION_MU_KINETIC);
+    if (*reported != f->last && !(both && reported_mu))
+      report_lack(reader, f, both ? STRUT_KEY_FRICTION_MU : key);
+    reported_mu = reported_mu || both;
+  }
+  bool forward = f->given & (key_bit(STRUT_KEY_FRICTION_MU_FORWARD) |
+                             key_bit(STRUT_KEY_FRICTION_MU_FORWARD_STATIC) |
+                             key_bit(STRUT_KEY_FRICTION_MU_BACKWARD_STATIC));
+  if (forward && !f->friction.directional) {
+    if (*reported != f->last) report_lack(reader, f, STRUT_KEY_FRICTION_MU_BACKWARD);
+    complete = false;
+  }
+  if (!complete) *reported = f->last;
+  return complete && check_static_friction(reader, f, reported);
+}
+
+/* The defaults of all contacts: those of the ground. */
+typedef struct ground_defaults {
+  strut_contact contact;
+  friction_layers friction;
+  bool broken;
+  const strut_tree *reported; /* the layer of friction whose lacks were reported last */
+  double along[2];            /* the direction of a line, along which forward is; else that of x */
+} ground_defaults;
+
+/* Lays the friction of the contact's groups, then its own, over the ground's. */
+static void own_friction(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                         friction_layers *layers) {
+  const strut_slot *group = strut_slot_of(fields, STRUT_KEY_CONTACT_GROUP);
+  const strut_slot *own = strut_slot_of(fields, STRUT_KEY_CONTACT_FRICTION);
+  strut_group *groups[STRUT_MOST_GROUPS];
+  size_t count = group->state == STRUT_GIVEN ? strut_groups_named(reader, group->value, groups) : 0;
+  for (size_t g = 0; g < count; g++)
+    for (size_t i = 0; i < groups[g]->count; i++)
+      if (groups[g]->items[i].nested)
+        add_layer(reader, layers, groups[g]->items[i].nested,
+                  (strut_owner){"the friction of group", groups[g]->name});
+  if (own->state != STRUT_GIVEN || own->from) return;
+  strut_fields nested;
+  strut_owner mine = {"the friction of contact", owner.name};
+  strut_read_fields(reader, STRUT_SECTION_FRICTION, own->value, mine, &nested);
+  add_layer(reader, layers, &nested, mine);
+}
+
+/* Forward is where the part's own x points, along the ground. */
+static bool turn_friction(strut_reader *reader, const strut_tree *key, const double along[2],
+                          strut_friction *f) {
+  double ahead[2] = {1.0, 0.0};
+  if (!reader->scope || !f->directional) return true;
+  strut_place_vector(reader, NULL, ahead);
+  double forward = strut_dot(ahead, along, 2);
+  if (fabs(forward) < 1e-9)
+    return strut_report_error(
+        reader, key->place,
+        "contact '%s' has a friction with a direction, but its copy stands upright "
+        "on the ground; give its contact where it is placed",
+        strut_local_name(reader, key->text));
+  if (forward > 0.0) return true;
+  double statics = f->mu_static, kinetics = f->mu_kinetic;
+  f->mu_static = f->mu_static_backward, f->mu_kinetic = f->mu_kinetic_backward;
+  f->mu_static_backward = statics, f->mu_kinetic_backward = kinetics;
+  return true;
+}
+
+static void read_contact(strut_reader *reader, const strut_tree *key, ground_defaults *defaults,
+                         strut_contact *contact, strut_source *source) {
+  friction_layers layers = defaults->friction;
+  strut_owner owner = {"contact", reader->scene->nodes[contact->node].name};
+  bool fine = !defaults->broken;
+  if (key) {
+    strut_fields fields;
+    strut_enter_scope(reader, key);
+    strut_read_fields(reader, STRUT_SECTION_CONTACT, key->next, owner, &fields);
+    strut_apply_groups(reader, &fields, STRUT_KEY_CONTACT_GROUP, owner);
+    strut_store(reader, &fields, owner, contact);
+    own_friction(reader, &fields, owner, &layers);
+    fine = turn_friction(reader, key, defaults->along, &layers.friction) && fine && !fields.broken;
+  }
+  if (!complete_friction(reader, &layers, &defaults->reported)) fine = false;
+  reader->scope = NULL;
+  contact->friction = layers.friction;
+  *source = (strut_source){key, key ? key->next : NULL, !fine};
+}
+
+/* A node that is moved cannot touch; `all` leaves it out. */
+static bool moves(const strut_reader *reader, int32_t node) {
+  return reader->node_moves && reader->node_moves[node];
+}
+
+/* Marks the nodes whose names fit a pattern. */
+static bool mark_matches(strut_reader *reader, const strut_tree *item, strut_owner owner,
+                         unsigned char *touches) {
+  bool any = false;
+  for (int32_t node = -1; (node = strut_next_match(reader, item, node)) >= 0; any = true)
+    touches[node] = 1;
+  if (!any)
+    strut_report_error(reader, item->place, "no node fits '%s' in 'nodes' of %s",
+                       strut_sanitised_text(reader, item->text), strut_owner_text(reader, owner));
+  return any;
+}
+
+/* Marks the nodes that may touch a ground. */
+static bool mark_nodes(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                       unsigned char *touches) {
+  const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_GROUND_NODES);
+  size_t count = reader->scene->node_count;
+  if (slot->state != STRUT_GIVEN || slot->value->kind == STRUT_TREE_SCALAR) {
+    for (size_t i = 0; i < count; i++) touches[i] = !moves(reader, (int32_t)i);
+    return slot->state != STRUT_BROKEN;
+  }
+  bool fine = true;
+  for (const strut_tree *item = slot->value->first; item; item = item->next) {
+    if (strut_is_pattern(item)) {
+      fine = mark_matches(reader, item, owner, touches) && fine;
+      continue;
+    }
+    int32_t node = strut_read_reference(reader, item, "nodes", owner, STRUT_THING_NODE);
+    if (node < 0) {
+      fine = false;
+    } else if (touches[node]) {
+      fine = strut_report_error(reader, item->place, "node '%s' appears twice in 'nodes' of %s",
+                                item->text, strut_owner_text(reader, owner));
+    } else {
+      touches[node] = 1;
+    }
+  }
+  return fine;
+}
+
+/* The entry in `contacts` of each node that has one. */
+static bool find_entries(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                         const unsigned char *touches, bool complete, const strut_tree **entry) {
+  const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_GROUND_CONTACTS);
+  bool fine = slot->state != STRUT_BROKEN;
+  if (slot->state != STRUT_GIVEN) return fine;
+  for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
+    if (strut_is_pattern(key)) {
+      for (int32_t node = -1; (node = strut_next_match(reader, key, node)) >= 0;)
+        if (touches[node]) entry[node] = key;
+      continue;
+    }
+    int32_t node = strut_read_reference(reader, key, "contacts", owner, STRUT_THING_NODE);
+    if (node >= 0 && touches[node]) {
+      entry[node] = key;
+      continue;
+    }
+    fine = false;
+    if (node >= 0 && moves(reader, node))
+      strut_report_error(reader, key->place,
+                         "node '%s' has a contact with %s, but it moves, so that it cannot touch",
+                         key->text, strut_owner_text(reader, owner));
+    else if (node >= 0 && complete)
+      strut_report_error(reader, key->place, "node '%s' has a contact, but 'nodes' of %s lacks it",
+                         key->text, strut_owner_text(reader, owner));
+  }
+  return fine;
+}
+
+/* The contacts that copies of parts bring with them. */
+static bool add_copied(strut_reader *reader, unsigned char *touches, const strut_tree **entry) {
+  bool fine = true;
+  const strut_tree *map = reader->copies ? reader->copies->contacts : NULL;
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
+    strut_owner owner = {"part", reader->scope ? reader->scope->placement->part->name : NULL};
+    strut_tree name = *key;
+    name.text = strut_local_name(reader, key->text);
+    name.placed = false;
+    int32_t node = strut_read_reference(reader, &name, "contacts", owner, STRUT_THING_NODE);
+    if (node < 0) {
+      fine = false;
+    } else if (entry[node] && entry[node]->next->first != key->next->first) {
+      fine = strut_report_error(reader, key->place,
+                                "node '%s' has two different contacts, of the parts that share it",
+                                reader->scene->nodes[node].name);
+    } else {
+      touches[node] = 1, entry[node] = key;
+    }
+  }
+  return fine;
+}
+
+/* Contacts of one ground, in the order of their nodes. */
+typedef struct contact_list {
+  strut_contact *contact;
+  strut_source *source;
+  size_t count;
+} contact_list;
+
+/* Memory for the contacts of `nodes` nodes with all pieces. False: there are too many, which was reported. */
+static bool make_contacts(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                          size_t nodes, size_t pieces, contact_list *list) {
+  const strut_slot *profile = strut_slot_of(fields, STRUT_KEY_GROUND_PROFILE);
+  double count = (double)nodes * (double)pieces;
+  if (pieces > 1 && count > reader->limit_things) {
+    strut_report_error(reader, profile->value->place,
+                       "%zu nodes with the %zu parts of the profile of %s make %.3g contacts, at "
+                       "most %.0f are possible%s",
+                       nodes, pieces, strut_owner_text(reader, owner), count, reader->limit_things,
+                       strut_limit_hint(reader));
+    fields->broken = true;
+    return false;
+  }
+  list->contact =
+      strut_reader_allocate(reader, &reader->scene->arena, nodes * pieces, sizeof *list->contact);
+  list->source =
+      strut_reader_allocate(reader, &reader->scratch, nodes * pieces, sizeof *list->source);
+  return list->contact && list->source;
+}
+
+/* The contacts of a ground with its nodes; of each node one for each convex piece. */
+static void read_contacts(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                          ground_defaults *defaults, size_t pieces, contact_list *list) {
+  size_t count = reader->scene->node_count, touching = 0;
+  unsigned char *touches = strut_reader_allocate(reader, &reader->scratch, count, 1);
+  const strut_tree **entry = strut_reader_allocate(reader, &reader->scratch, count, sizeof *entry);
+  if (!touches || !entry) return;
+  bool complete = mark_nodes(reader, fields, owner, touches);
+  complete = add_copied(reader, touches, entry) && complete;
+  if (!find_entries(reader, fields, owner, touches, complete, entry) || !complete)
+    fields->broken = true;
+  for (size_t i = 0; i < count; i++) touching += touches[i];
+  if (!make_contacts(reader, fields, owner, touching, pieces, list)) return;
+  for (size_t i = 0; i < count; i++) {
+    if (!touches[i]) continue;
+    size_t c = list->count++;
+    list->contact[c] = defaults->contact;
+    list->contact[c].node = (int32_t)i;
+    read_contact(reader, entry[i], defaults, &list->contact[c], &list->source[c]);
+    for (size_t piece = 1; piece < pieces; piece++) {
+      size_t more = list->count++;
+      list->contact[more] = list->contact[c];
+      list->contact[more].piece = (int32_t)piece;
+      list->source[more] = list->source[c];
+    }
+  }
+}
+
+/* What all contacts of a ground begin with. */
+static ground_defaults read_defaults(strut_reader *reader, strut_fields *fields,
+                                     const strut_contact *contact, strut_owner owner) {
+  ground_defaults defaults = {.contact = *contact, .broken = fields->broken};
+  const strut_slot *friction = strut_slot_of(fields, STRUT_KEY_GROUND_FRICTION);
+  if (friction->state != STRUT_GIVEN) return defaults;
+  strut_fields nested;
+  char text[200];
+  snprintf(text, sizeof text, "the friction of %.150s", strut_owner_text(reader, owner));
+  strut_owner mine = {strut_keep_text(reader, text), NULL};
+  strut_read_fields(reader, STRUT_SECTION_FRICTION, friction->value, mine, &nested);
+  add_layer(reader, &defaults.friction, &nested, mine);
+  return defaults;
+}
+
+/* ---- shape and motion ---- */
+
+/* Keys of a line beside those of another shape. */
+static bool shape_is_alone(strut_reader *reader, strut_fields *fields, strut_owner owner) {
+  static const int of_lines[] = {STRUT_KEY_GROUND_HEIGHT, STRUT_KEY_GROUND_SLOPE,
+                                 STRUT_KEY_GROUND_THROUGH, STRUT_KEY_GROUND_NORMAL};
+  const strut_slot *profile = strut_slot_of(fields, STRUT_KEY_GROUND_PROFILE);
+  const strut_slot *shape = profile->key ? profile : strut_slot_of(fields, STRUT_KEY_GROUND_CIRCLE);
+  for (size_t i = 0; shape->key && i < sizeof of_lines / sizeof of_lines[0]; i++) {
+    const strut_slot *slot = strut_slot_of(fields, of_lines[i]);
+    if (!slot->key) continue;
+    return strut_report_error(reader, slot->key->place, "%s is a %s, so it has no '%s'",
+                              strut_owner_text(reader, owner), shape->key->text, slot->key->text);
+  }
+  return true;
+}
+
+/* The slope of a line by its normal vector. */
+static bool read_normal(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                        strut_ground_section *section) {
+  strut_ground *ground = &section->ground;
+  const strut_slot *normal = strut_slot_of(fields, STRUT_KEY_GROUND_NORMAL);
+  if (normal->state != STRUT_GIVEN) return true;
+  const double *n = section->normal;
+  if (n[0] == 0.0 && n[1] == 0.0)
+    return strut_report_error(reader, normal->value->place, "the normal of %s has no direction",
+                              strut_owner_text(reader, owner));
+  ground->slope = n[0] == 0.0 ? (n[1] > 0.0 ? 0.0 : STRUT_PI) : atan2(-n[0], n[1]);
+  if (!ground->placed && n[1] < 0.0) { /* steeper than a ground without a point may be */
+    ground->placed = true;
+    ground->through[1] = ground->height;
+    ground->height = 0.0;
+  }
+  return true;
+}
+
+/* Is it the straight line at rest that `ground` was at first? A point of the line gives its height. */
+static bool is_plain(strut_ground *ground, const contact_list *list) {
+  for (size_t i = 0; i < list->count; i++)
+    if (list->contact[i].friction.driven) return false;
+  if (ground->shape != STRUT_GROUND_LINE || ground->moves[0] || ground->moves[1]) return false;
+  if (!ground->placed) return true;
+  if (!(fabs(ground->slope) < 0.25 * STRUT_TAU)) return false;
+  ground->height = ground->through[1];
+  if (ground->slope != 0.0) ground->height -= ground->through[0] * tan(ground->slope);
+  ground->placed = false;
+  ground->through[0] = ground->through[1] = 0.0;
+  return true;
+}
+
+static size_t pieces_of(const strut_ground *ground) {
+  size_t segment, other;
+  if (ground->shape != STRUT_GROUND_PROFILE) return 1;
+  return strut_profile_check(ground, &segment, &other) ? 1 : strut_ground_pieces(ground);
+}
+
+static bool nodes_are_known(strut_reader *reader) {
+  return strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
+}
+
+/* Names of contacts where a node may have several: NODE, NODE.GROUND, NODE.PIECE or NODE.GROUND.PIECE. */
+static void name_contacts(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  size_t surfaces = 0, *pieces = strut_reader_allocate(reader, &reader->scratch,
+                                                       scene->ground_count, sizeof *pieces);
+  for (size_t g = 0; g < scene->ground_count && pieces; g++)
+    surfaces += pieces[g] = pieces_of(&scene->grounds[g]);
+  for (size_t i = 0; surfaces > 1 && i < scene->contact_count; i++) {
+    strut_contact *c = &scene->contacts[i];
+    const char *node = scene->nodes[c->node].name, *ground = scene->grounds[c->ground].name;
+    size_t size = strlen(node) + strlen(ground) + 16, used;
+    char *name = strut_reader_allocate(reader, &scene->arena, size, 1);
+    if (!name) return;
+    used = (size_t)snprintf(name, size, "%s%s%s", node, *ground ? "." : "", ground);
+    if (pieces[c->ground] > 1) snprintf(name + used, size - used, ".%d", (int)c->piece + 1);
+    c->name = name;
+  }
+}
+
+/* All contacts in the order of their nodes; those of one node in the order of the grounds. */
+static void merge_contacts(strut_reader *reader, const contact_list *lists) {
+  strut_scene *scene = reader->scene;
+  size_t grounds = scene->ground_count, total = 0;
+  size_t *next = strut_reader_allocate(reader, &reader->scratch, grounds, sizeof *next);
+  for (size_t g = 0; g < grounds; g++) total += lists[g].count;
+  if (!next || !strut_reserve_things(reader, STRUT_THING_CONTACT, total)) return;
+  for (int32_t node = 0; (size_t)node < scene->node_count; node++)
+    for (size_t g = 0; g < grounds; g++)
+      for (; next[g] < lists[g].count && lists[g].contact[next[g]].node == node; next[g]++) {
+        size_t c = scene->contact_count++;
+        scene->contacts[c] = lists[g].contact[next[g]];
+        scene->contacts[c].ground = (int32_t)g;
+        reader->things[STRUT_THING_CONTACT].source[c] = lists[g].source[next[g]];
+      }
+  name_contacts(reader);
+}
+
+/* A belt that rubs on nothing carries nothing. */
+static void check_belt(strut_reader *reader, const strut_slot *belt, const contact_list *list) {
+  bool rubs = belt->state != STRUT_GIVEN || !list->count;
+  for (size_t i = 0; i < list->count && !rubs; i++)
+    rubs = list->contact[i].friction.law != STRUT_FRICTION_NONE || list->source[i].broken;
+  if (!rubs)
+    strut_report_error(reader, belt->key->place,
+                       "'belt_speed' has no meaning without 'friction' of a contact");
+}
+
+/* One ground of the scene: its fields, itself and its contacts. */
+static void read_one(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                     strut_place place, strut_ground *ground, contact_list *list) {
+  strut_require(reader, fields, owner, place);
+  strut_ground_section section = {.ground = *ground, .contact = strut_contact_default()};
+  if (!strut_store(reader, fields, owner, &section) || !shape_is_alone(reader, fields, owner) ||
+      !read_normal(reader, fields, owner, &section))
+    fields->broken = true;
+  *ground = section.ground;
+  ground_defaults defaults = read_defaults(reader, fields, &section.contact, owner);
+  bool line = ground->shape == STRUT_GROUND_LINE;
+  defaults.along[0] = line ? cos(ground->slope) : 1.0;
+  defaults.along[1] = line ? sin(ground->slope) : 0.0;
+  if (nodes_are_known(reader))
+    read_contacts(reader, fields, owner, &defaults, pieces_of(ground), list);
+  else
+    fields->broken = true;
+  check_belt(reader, strut_slot_of(fields, STRUT_KEY_GROUND_BELT_SPEED), list);
+}
+
+static void read_single(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  strut_fields *fields = &reader->ground;
+  strut_owner owner = {"the ground", NULL};
+  strut_ground ground = {.present = true, .name = ""};
+  contact_list list = {0};
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_GROUND, STRUT_SECTION_GROUND, owner.kind, fields))
+    return;
+  read_one(reader, fields, owner, strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key->place,
+           &ground, &list);
+  if (is_plain(&ground, &list)) {
+    scene->ground = ground;
+    scene->contacts = list.contact, scene->contact_count = list.count;
+    reader->things[STRUT_THING_CONTACT].source = list.source;
+    return;
+  }
+  scene->grounds = strut_reader_allocate(reader, &scene->arena, 1, sizeof *scene->grounds);
+  if (!scene->grounds) return;
+  ground.present = false;
+  scene->grounds[scene->ground_count++] = ground;
+  reader->grounds = fields;
+  merge_contacts(reader, &list);
+}
+
+/* Contacts of parts wait for a ground; those of a used file come along with one that was not taken. */
+static void note_contacts_without_ground(strut_reader *reader) {
+  const strut_tree *map = reader->copies ? reader->copies->contacts : NULL;
+  if (!map || !map->first || strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key ||
+      strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUNDS)->key)
+    return;
+  for (const strut_copy *s = strut_scope_of(reader, map->first); s; s = s->outer)
+    if (s->closed) return;
+  strut_note(reader->diagnostics, map->first->place,
+             "the scene has no ground that the contacts of the part could touch");
+}
+
+void strut_read_ground(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  read_single(reader);
+  note_contacts_without_ground(reader);
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUNDS);
+  if (!map || strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key) return;
+  contact_list *lists = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *lists);
+  reader->grounds =
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->grounds);
+  if (!lists || !reader->grounds || !strut_reserve_things(reader, STRUT_THING_GROUND, map->count))
+    return;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    size_t g = scene->ground_count;
+    strut_owner owner = {"ground", strut_keep_text(reader, key->text)};
+    strut_add_thing(reader, STRUT_THING_GROUND, key, owner.name);
+    lists[g] = (contact_list){0};
+    bool fine = strut_read_name(reader, key, "ground");
+    strut_read_fields(reader, STRUT_SECTION_GROUND, key->next, owner, &reader->grounds[g]);
+    read_one(reader, &reader->grounds[g], owner, key->place, &scene->grounds[g], &lists[g]);
+    if (!fine) reader->grounds[g].broken = true;
+    if (reader->grounds[g].broken)
+      reader->ground.broken = true; /* so that what depends on it is not reported */
+    reader->things[STRUT_THING_GROUND].source[g].broken = reader->grounds[g].broken;
+  }
+  merge_contacts(reader, lists);
+}

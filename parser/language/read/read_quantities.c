@@ -1,0 +1,465 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Measured quantities: `quantities` of the measurement. See reader.h. */
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/scene/study.h"
+#include "parser/language/read/reader.h"
+
+/* Most characters of a name that a message repeats. */
+enum { SHOWN_MOST = 40 };
+
+static const strut_observable *row_at(size_t k) {
+  return strut_observable_at((strut_column_kind)k);
+}
+
+strut_dimension strut_column_dimension(strut_column_kind kind) {
+  const strut_observable *o = strut_observable_at(kind);
+  return (strut_dimension){(float)o->kg, (float)o->m, (float)o->s, (float)o->angle};
+}
+
+/* What every scene has stands before the dot: the i-th of them, or NULL. */
+static const strut_owner_row *group_at(size_t i) {
+  for (size_t owner = 0; owner < STRUT_OWNER_COUNT; owner++) {
+    const strut_owner_row *row = strut_owner_row_of((strut_channel_owner)owner);
+    if (row->group && i-- == 0) return row;
+  }
+  return NULL;
+}
+
+static bool is(strut_piece piece, const char *word) {
+  return strlen(word) == piece.length && memcmp(word, piece.text, piece.length) == 0;
+}
+
+/* The kinds of things with columns, in the order in which messages prefer them. */
+static const strut_thing kinds[] = {STRUT_THING_NODE,    STRUT_THING_MEMBER, STRUT_THING_HINGE,
+                                    STRUT_THING_CELL,    STRUT_THING_SLIDER, STRUT_THING_COLLISION,
+                                    STRUT_THING_DISTANCE};
+enum { KIND_COUNT = sizeof kinds / sizeof kinds[0] };
+
+/* The owners that a name may refer to, and their words in messages. */
+typedef struct found_owner {
+  unsigned owners;  /* bits 1 << strut_channel_owner */
+  bool thing;       /* some are things */
+  const char *what; /* "node", "member", "hinge", "the energy" */
+  int32_t
+      item[STRUT_THING_COUNT]; /* the thing of each kind, where its columns are among the owners */
+} found_owner;
+
+static int shown(size_t length) { return length > SHOWN_MOST ? SHOWN_MOST : (int)length; }
+
+/* A copy of the piece, in scratch. */
+static const char *text_of(strut_reader *reader, strut_piece piece) {
+  const char *text = strut_arena_text(&reader->scratch, piece.text, piece.length);
+  if (!text) reader->out_of_memory = true;
+  return text ? text : "";
+}
+
+/* Things of all kinds and the owners above, for suggestions. */
+static const char *owner_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  for (size_t k = 0; k < KIND_COUNT; k++) {
+    size_t count = strut_thing_count(reader->scene, kinds[k]);
+    if (i < count) return strut_thing_name(reader->scene, kinds[k], i);
+    i -= count;
+  }
+  const strut_owner_row *group = group_at(i);
+  return group ? group->group : NULL;
+}
+
+static bool all_known(strut_reader *reader) {
+  bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
+  for (size_t k = 0; k < KIND_COUNT; k++)
+    known =
+        known && strut_slot_of(&reader->top, strut_key_of_things(kinds[k]))->state != STRUT_BROKEN;
+  return known;
+}
+
+static found_owner find_owner(strut_reader *reader, const char *kind, strut_piece name) {
+  found_owner found = {.owners = 0};
+  const char *text = text_of(reader, name);
+  for (size_t k = 0; k < KIND_COUNT; k++) {
+    const char *word = strut_thing_at(kinds[k])->word;
+    if (kind && strcmp(kind, word) != 0) continue;
+    int32_t item = kinds[k] == STRUT_THING_SLIDER
+                       ? strut_name_map_find(&reader->things[STRUT_THING_SLIDER].names, text)
+                       : strut_find_thing(reader, kinds[k], NULL, text);
+    if (item < 0) continue;
+    for (int owner = 0; owner < STRUT_OWNER_COUNT; owner++)
+      if (strut_thing_of_owner((strut_channel_owner)owner) == kinds[k]) found.owners |= 1u << owner;
+    if (!found.what) found.what = word;
+    found.item[kinds[k]] = item;
+    found.thing = true;
+  }
+  for (int owner = 0; owner < STRUT_OWNER_COUNT && !kind; owner++) {
+    const strut_owner_row *row = strut_owner_row_of((strut_channel_owner)owner);
+    if (!row->group || !is(name, row->group)) continue;
+    found.owners |= 1u << owner;
+    if (!found.what) found.what = row->phrase;
+  }
+  return found;
+}
+
+/* The words of some owners, one after the other, for suggestions. */
+static const char *field_name(const void *context, size_t i) {
+  const unsigned *owners = context;
+  for (size_t k = 0; k < STRUT_COLUMN_COUNT; k++)
+    if (*owners >> row_at(k)->owner & 1u && i-- == 0) return row_at(k)->word;
+  return NULL;
+}
+
+static size_t field_count(unsigned owners) {
+  size_t count = 0;
+  while (field_name(&owners, count)) count++;
+  return count;
+}
+
+/* "x, y or vx" */
+static const char *field_list(unsigned owners, char *text, size_t size) {
+  size_t count = field_count(owners), used = 0;
+  text[0] = '\0';
+  for (size_t i = 0; i < count && used < size; i++)
+    used += (size_t)snprintf(text + used, size - used, "%s%s",
+                             i == 0           ? ""
+                             : i + 1 == count ? " or "
+                                              : ", ",
+                             field_name(&owners, i));
+  return text;
+}
+
+static int refuse_owner(strut_reader *reader, const char *kind, strut_piece owner,
+                        strut_refusal *refusal) {
+  if (!all_known(reader)) return -1;
+  size_t count = 0;
+  while (group_at(count)) count++;
+  for (size_t k = 0; k < KIND_COUNT; k++) count += strut_thing_count(reader->scene, kinds[k]);
+  snprintf(refusal->text, sizeof refusal->text, "unknown %s '%.*s'%s",
+           kind                         ? kind
+           : reader->scene->hinge_count ? "node, member or hinge"
+                                        : "node or member",
+           shown(owner.length), owner.text,
+           strut_hint(reader, text_of(reader, owner), owner_name, reader, count));
+  return -1;
+}
+
+static int refuse_field(strut_reader *reader, const found_owner *found, strut_piece owner,
+                        strut_piece field, strut_refusal *refusal) {
+  char list[200];
+  bool thing = found->thing;
+  const char *hint = strut_hint(reader, text_of(reader, field), field_name, &found->owners,
+                                field_count(found->owners));
+  snprintf(refusal->text, sizeof refusal->text, "%s%s%.*s%s has no column '%.*s'%s%s%s",
+           found->what, thing ? " '" : "", thing ? shown(owner.length) : 0, owner.text,
+           thing ? "'" : "", shown(field.length), field.text, hint, *hint ? "" : ", expected ",
+           *hint ? "" : field_list(found->owners, list, sizeof list));
+  return -1;
+}
+
+static bool has_contact(const strut_scene *scene, int32_t node) {
+  for (size_t i = 0; i < scene->contact_count; i++)
+    if (scene->contacts[i].node == node) return true;
+  return false;
+}
+
+/* Does the node have the columns of the ground? If not, that is reported. */
+static bool touches(strut_reader *reader, strut_column_kind kind, int32_t node,
+                    strut_refusal *refusal) {
+  const strut_scene *scene = reader->scene;
+  bool of_contact = strut_observable_at(kind)->owner == STRUT_OWNER_CONTACT;
+  if (!of_contact && kind != STRUT_COLUMN_HEIGHT) return true;
+  const strut_slot *ground = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND);
+  const strut_slot *grounds = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUNDS);
+  if (ground->state == STRUT_BROKEN || grounds->state == STRUT_BROKEN || reader->ground.broken)
+    return false; /* reported */
+  if (ground->state == STRUT_ABSENT && grounds->state == STRUT_ABSENT)
+    snprintf(refusal->text, sizeof refusal->text,
+             "there is no ground, so node '%s' has no '%s'; add 'ground' to the scene",
+             scene->nodes[node].name, strut_observable_at(kind)->word);
+  else if (of_contact && !has_contact(scene, node))
+    snprintf(refusal->text, sizeof refusal->text,
+             "node '%s' does not touch the ground, so it has no '%s'; list it in 'nodes' "
+             "of the ground",
+             scene->nodes[node].name, strut_observable_at(kind)->word);
+  else
+    return true;
+  return false;
+}
+
+/* A word alone: time, or a thing whose column is missing. */
+static int find_word(strut_reader *reader, strut_piece word, strut_column *column,
+                     strut_dimension *dimension, strut_refusal *refusal) {
+  char list[200];
+  for (size_t k = 0; k < STRUT_COLUMN_COUNT; k++)
+    if (row_at(k)->owner == STRUT_OWNER_RUN && is(word, row_at(k)->word)) {
+      column->kind = (strut_column_kind)k;
+      *dimension = strut_column_dimension((strut_column_kind)k);
+      if (k != STRUT_COLUMN_LEAST_GAP || reader->setup->scene.collision_count) return 1;
+      snprintf(refusal->text, sizeof refusal->text, "'%s' is of collisions, and the scene has none",
+               row_at(k)->word);
+      return -1;
+    }
+  if (strut_find_variable(reader, word, column, dimension)) return column->item >= 0 ? 1 : -1;
+  found_owner found = find_owner(reader, NULL, word);
+  if (!found.owners) return 0;
+  snprintf(refusal->text, sizeof refusal->text,
+           "'%.*s' alone is not a number; write '%.*s.' and %s", shown(word.length), word.text,
+           shown(word.length), word.text, field_list(found.owners, list, sizeof list));
+  return -1;
+}
+
+static int find_anywhere(void *context, const char *kind, strut_piece owner, strut_piece field,
+                         strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
+  strut_reader *reader = context;
+  if (kind && strcmp(kind, "rate") == 0)
+    return strut_find_sensor_rate(reader, owner, column, dimension, refusal);
+  if (!owner.length && !kind) return find_word(reader, field, column, dimension, refusal);
+  found_owner found = find_owner(reader, kind, owner);
+  if (!found.owners && !kind &&
+      strut_find_variable(reader, strut_whole_name(owner, field), column, dimension))
+    return column->item >= 0 ? 1 : -1;
+  if (!found.owners) return refuse_owner(reader, kind, owner, refusal);
+  int count = 0;
+  for (size_t k = 0; k < STRUT_COLUMN_COUNT; k++) {
+    if (!(found.owners >> row_at(k)->owner & 1u) || !is(field, row_at(k)->word)) continue;
+    count++;
+    column->kind = (strut_column_kind)k;
+    *dimension = strut_column_dimension((strut_column_kind)k);
+  }
+  if (!count) return refuse_field(reader, &found, owner, field, refusal);
+  if (count > 1) {
+    bool hinges = reader->scene->hinge_count > 0;
+    char text[80];
+    snprintf(text, sizeof text, " or hinge(%.*s)", shown(owner.length), owner.text);
+    snprintf(refusal->text, sizeof refusal->text,
+             "'%.*s.%.*s' means two things, since a node%s is called '%.*s'; rename it, or write "
+             "node(%.*s)%smember(%.*s)%s for it",
+             shown(owner.length), owner.text, shown(field.length), field.text,
+             hinges ? ", a member or a hinge" : " or a member", shown(owner.length), owner.text,
+             shown(owner.length), owner.text, hinges ? ", " : " or ", shown(owner.length),
+             owner.text, hinges ? text : "");
+    return -1;
+  }
+  strut_channel_owner of = strut_observable_at(column->kind)->owner;
+  strut_thing thing = strut_thing_of_owner(of);
+  if (thing < STRUT_THING_COUNT) column->item = found.item[thing];
+  return 1;
+}
+
+/* Where contacts are known. */
+static int find_column(void *context, const char *kind, strut_piece owner, strut_piece field,
+                       strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
+  int found = find_anywhere(context, kind, owner, field, column, dimension, refusal);
+  if (found <= 0) return found;
+  strut_channel_owner of = strut_observable_at(column->kind)->owner;
+  if (of != STRUT_OWNER_NODE && of != STRUT_OWNER_CONTACT) return 1;
+  return touches(context, column->kind, column->item, refusal) ? 1 : -1;
+}
+
+static int find_pair(void *context, strut_piece word, strut_piece first, strut_piece second,
+                     strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
+  strut_reader *reader = context;
+  const strut_piece names[2] = {first, second};
+  int32_t node[2];
+  for (size_t k = 0; k < STRUT_COLUMN_COUNT; k++)
+    if (row_at(k)->owner == STRUT_OWNER_PAIR && is(word, row_at(k)->word)) {
+      column->kind = (strut_column_kind)k;
+      *dimension = strut_column_dimension((strut_column_kind)k);
+    }
+  for (int k = 0; k < 2; k++) {
+    const char *name = text_of(reader, names[k]);
+    node[k] = strut_find_thing(reader, STRUT_THING_NODE, NULL, name);
+    if (node[k] >= 0) continue;
+    if (all_known(reader))
+      snprintf(refusal->text, sizeof refusal->text, "unknown node '%.*s'%s", shown(names[k].length),
+               names[k].text, strut_hint_of_things(reader, name, STRUT_THING_NODE));
+    return -1;
+  }
+  if (node[0] == node[1]) {
+    snprintf(refusal->text, sizeof refusal->text, "'%.*s' needs two different nodes",
+             (int)word.length, word.text);
+    return -1;
+  }
+  column->item = node[0], column->other = node[1];
+  return 1;
+}
+
+static strut_instruction *keep_program(strut_reader *reader, const strut_compiler *c) {
+  strut_scene *scene = reader->scene;
+  char unit[STRUT_SUFFIX_TEXT];
+  strut_instruction *program =
+      strut_reader_allocate(reader, &scene->arena, c->length, sizeof *program);
+  for (size_t i = 0; i < c->length && program; i++) {
+    const strut_compiled *from = &c->program[i];
+    program[i] = from->instruction;
+    if (from->instruction.operation != STRUT_OPERATION_NUMBER) continue;
+    strut_dimension_suffix(from->dimension, unit, sizeof unit);
+    if (*unit) program[i].unit = strut_keep_text(reader, unit);
+  }
+  return program;
+}
+
+strut_instruction *strut_compile(strut_reader *reader, const strut_tree *value, const char *key,
+                                 strut_owner owner, strut_compiler *compiler, strut_quantity *q) {
+  compiler->context = reader;
+  compiler->program = strut_reader_allocate(reader, &reader->scratch, strlen(value->text) + 1,
+                                            sizeof *compiler->program);
+  if (!compiler->program) return NULL;
+  if (strut_read_program(reader, value, key, owner, compiler, q))
+    return keep_program(reader, compiler);
+  reader->failed = true;
+  return NULL;
+}
+
+strut_instruction *strut_read_column(strut_reader *reader, const strut_tree *value, const char *key,
+                                     strut_owner owner, strut_column *column) {
+  strut_compiler compiler = {.column = find_anywhere, .pair = find_pair};
+  strut_quantity q;
+  strut_instruction *program = strut_compile(reader, value, key, owner, &compiler, &q);
+  if (!program) return NULL;
+  *column = program->column;
+  if (compiler.length == 1 && q.varies) return program;
+  strut_report_error(reader, value->place,
+                     "expected one column of the motion for '%s' of %s, such as com.vy, NODE.y or "
+                     "MEMBER.force; what follows from several is an expression of a signal",
+                     key, strut_owner_text(reader, owner));
+  return NULL;
+}
+
+/* The expression; *dimension is that of its values. */
+static bool read_expression(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                            strut_quantity_definition *d, strut_dimension *dimension) {
+  strut_compiler compiler = {.column = find_column, .pair = find_pair};
+  strut_quantity q;
+  d->program = strut_compile(reader, value, "of", owner, &compiler, &q);
+  if (!d->program) return false;
+  if (!q.varies) {
+    strut_report_error(
+        reader, value->place,
+        "'of' of %s does not change in time, expected a column of the motion such as com.vy, "
+        "NODE.y or MEMBER.force",
+        strut_owner_text(reader, owner));
+    return false;
+  }
+  d->length = compiler.length;
+  d->depth = compiler.depth;
+  *dimension = q.bare ? STRUT_DIM_NONE : q.dimension;
+  return true;
+}
+
+/* Without a unit the accuracy is relative, otherwise absolute. */
+static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                          strut_dimension dimension, bool known, strut_quantity_definition *d) {
+  char expected[120], found[80];
+  strut_quantity q;
+  if (slot->state != STRUT_GIVEN) return;
+  bool fine = strut_read_scalar(reader, slot->value, "accuracy", owner, "a number such as '1 %'") &&
+              strut_read_quantity(reader, slot->value, "accuracy", owner, &q);
+  if (!fine) return;
+  bool relative = q.bare || strut_dimension_equal(q.dimension, STRUT_DIM_NONE);
+  bool plain = strut_dimension_equal(dimension, STRUT_DIM_NONE);
+  if (!relative && known && !strut_dimension_equal(q.dimension, dimension))
+    strut_report_error(
+        reader, slot->value->place,
+        "expected a number without unit such as '1 %%'%s%s for 'accuracy' of %s, found %s",
+        plain ? "" : " or ",
+        plain ? "" : strut_dimension_name(dimension, expected, sizeof expected),
+        strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
+  else if (!(q.value > 0.0))
+    strut_report_error(reader, slot->value->place, "'accuracy' of %s must be above zero, found %g",
+                       strut_owner_text(reader, owner), q.value);
+  else
+    d->accuracy = q.value, d->accuracy_unit = relative ? NULL : d->unit;
+}
+
+/* The value that an arrival waits for, of the expression's dimension; NULL: that is not known. */
+static void read_target(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                        const strut_dimension *dimension, strut_quantity_definition *d) {
+  const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_QUANTITY_TARGET);
+  bool wanted = d->take == STRUT_TAKE_ARRIVAL, given = slot->state == STRUT_GIVEN;
+  char unit[STRUT_SUFFIX_TEXT];
+  if (slot->state == STRUT_BROKEN) return;
+  if (!given && wanted)
+    strut_report_error(reader, fields->key->place, "%s lacks 'target', the value that it waits for",
+                       strut_owner_text(reader, owner));
+  if (!given || !wanted || !dimension) return;
+  strut_read_number(reader, slot->value, "target", owner, *dimension, STRUT_RANGE_ANY, &d->target);
+  strut_dimension_suffix(*dimension, unit, sizeof unit);
+  d->target_unit = *unit ? strut_keep_text(reader, unit) : "1";
+}
+
+bool strut_ends_at_comma(strut_reader *reader, const strut_tree *of, const char *key,
+                         strut_owner owner) {
+  int open = 0;
+  if (!of || of->kind != STRUT_TREE_SCALAR || of->quoted) return false;
+  for (const char *c = of->text; *c; c++) open += *c == '(' ? 1 : *c == ')' ? -1 : 0;
+  if (open <= 0 || !of->next) return false;
+  strut_report_error(
+      reader, of->place,
+      "in '%s' of %s: the text ends here, since a comma ends it within '{...}'; put the whole "
+      "expression in quotes",
+      key, strut_owner_text(reader, owner));
+  return true;
+}
+
+/* A moment is no energy, though the dimension is that of one. */
+static bool is_moment(const strut_quantity_definition *d) {
+  return d->length == 1 && d->program[0].operation == STRUT_OPERATION_COLUMN &&
+         d->program[0].column.kind == STRUT_COLUMN_MOMENT && d->take != STRUT_TAKE_RATE &&
+         d->take != STRUT_TAKE_ARRIVAL;
+}
+
+static void read_quantity(strut_reader *reader, const strut_tree *key,
+                          strut_quantity_definition *d) {
+  strut_owner owner = {"quantity", key->text};
+  char unit[STRUT_SUFFIX_TEXT];
+  strut_dimension dimension = STRUT_DIM_NONE;
+  strut_fields fields = {.section = STRUT_SECTION_QUANTITY};
+  const strut_tree *of = key->next;
+  bool map = of->kind == STRUT_TREE_MAP;
+  if (strut_ends_at_comma(reader, map ? strut_tree_find(of, "of", NULL) : of, "of", owner)) return;
+  if (map) {
+    strut_read_fields_of(reader, STRUT_SECTION_QUANTITY, key, owner, &fields);
+    strut_require(reader, &fields, owner, key->place);
+    const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_QUANTITY_OF);
+    of = slot->state == STRUT_GIVEN ? slot->value : NULL;
+  } else if (!strut_read_scalar(reader, of, key->text, (strut_owner){"the quantities", NULL},
+                                "an expression such as com.vy, or a mapping such as {of: com.vy, "
+                                "take: max}")) {
+    return;
+  }
+  bool known = of && read_expression(reader, of, owner, d, &dimension);
+  strut_store_fields(reader, &fields, owner, &reader->scene->arena, d, sizeof *d);
+  if (of && map) read_target(reader, &fields, owner, known ? &dimension : NULL, d);
+  if (d->take == STRUT_TAKE_RATE) dimension.s -= 1.0f;
+  if (d->take == STRUT_TAKE_ARRIVAL) dimension = STRUT_DIM_TIME;
+  strut_dimension_suffix(dimension, unit, sizeof unit);
+  d->unit = is_moment(d) ? "N m" : *unit ? strut_keep_text(reader, unit) : "1";
+  read_accuracy(reader, strut_slot_of(&fields, STRUT_KEY_QUANTITY_ACCURACY), owner, dimension,
+                known, d);
+}
+
+/* The name becomes a column of a study's table and a word of `keep`. */
+static bool may_be_called(strut_reader *reader, const strut_tree *key) {
+  if (!strut_read_name(reader, key, "quantity")) return false;
+  if (strut_keep_find(key->text, STRUT_COMPUTE_RUN) < 0) return true;
+  strut_report_error(
+      reader, key->place,
+      "a quantity cannot be called '%s', since 'keep' of a study means something else by it",
+      key->text);
+  return false;
+}
+
+void strut_read_quantities(strut_reader *reader, const strut_slot *slot) {
+  strut_experiment *e = reader->experiment;
+  if (slot->state != STRUT_GIVEN) return;
+  const strut_tree *map = slot->value;
+  e->quantities =
+      strut_reader_allocate(reader, &reader->scene->arena, map->count, sizeof *e->quantities);
+  if (!e->quantities) return;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    strut_quantity_definition *d = &e->quantities[e->quantity_count++];
+    d->name = strut_keep_text(reader, key->text);
+    d->unit = "1";
+    if (may_be_called(reader, key)) read_quantity(reader, key, d);
+  }
+}

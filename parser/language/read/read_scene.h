@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * From YAML text to a checked scene.
+ */
+#ifndef STRUT_PARSER_READ_READ_SCENE_H
+#define STRUT_PARSER_READ_READ_SCENE_H
+
+#include "engine/scene/checks/check.h"
+#include "engine/scene/experiment.h"
+#include "parser/language/expression/units.h"
+#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
+
+/** One --set name=value. */
+typedef struct strut_override {
+  const char *name, *value;
+} strut_override;
+
+/** A parameter given from outside of the scene's text: by --set, or by a study. */
+typedef struct strut_setting {
+  const char *name, *text; /* an expression in the scene's own parameters, or a text */
+  bool known, bare;        /* known: what the text says is the value below */
+  double value;            /* SI; with bare it takes the dimension that the scene declares */
+  strut_dimension dimension;
+  strut_place place; /* where it is given; line 0: on the command line */
+} strut_setting;
+
+/**
+ * Reads and checks a scene and its experiment in text[0..length). On STRUT_OK both are complete and
+ * valid for
+ * its purpose. On STRUT_BAD_SCENE diagnostics holds every finding and both are empty. `file` is
+ * the name that messages show. Neither file nor text is copied: diagnostics refers to both.
+ */
+STRUT_API strut_status strut_setup_read(strut_setup *setup, const char *file, const char *text,
+                                        size_t length, const strut_override *overrides,
+                                        size_t override_count, strut_purpose purpose,
+                                        strut_diagnostics *diagnostics);
+
+/** A text as a tree, read once, of which scenes are made again and again. Constant: threads share it. */
+typedef struct strut_scene_source strut_scene_source;
+
+/** The declaration of a parameter in a scene's text. */
+typedef struct strut_declared {
+  const char *name;
+  bool text, bare; /* a text; a number that fits any dimension */
+  strut_dimension dimension;
+} strut_declared;
+
+/**
+ * Reads the text as a tree and its parameters. STRUT_BAD_SCENE with every finding about the whole
+ * scene where the tree or a parameter cannot be read. file, text and diagnostics as strut_setup_read.
+ */
+STRUT_API strut_status strut_scene_source_open(const char *file, const char *text, size_t length,
+                                               strut_diagnostics *diagnostics,
+                                               strut_scene_source **source);
+STRUT_API void strut_scene_source_free(strut_scene_source *source); /* NULL is allowed */
+/** The *count parameters, in the text's order. */
+STRUT_API const strut_declared *strut_scene_source_parameters(const strut_scene_source *source,
+                                                              size_t *count);
+/** The parameter of that name, or NULL. */
+STRUT_API const strut_declared *strut_scene_source_parameter(const strut_scene_source *source,
+                                                             const char *name);
+/** Name of the i-th parameter of a source, NULL after the last; for strut_did_you_mean. */
+STRUT_API const char *strut_scene_source_parameter_name(const void *source, size_t i);
+/** Does the text name files, which the tree has taken in? */
+STRUT_API bool strut_scene_source_uses_files(const strut_scene_source *source);
+/** The tree, which may be changed until the first scene is made. */
+STRUT_API strut_document *strut_scene_source_document(strut_scene_source *source);
+/** As strut_setup_read, from the tree, with settings in place of overrides. */
+STRUT_API strut_status strut_scene_source_read(const strut_scene_source *source,
+                                               const strut_setting *settings, size_t setting_count,
+                                               strut_purpose purpose,
+                                               strut_diagnostics *diagnostics, strut_setup *setup);
+
+/**
+ * Reads a whole file into a block of strut_allocate (NUL-terminated; *length without it); "-" is
+ * standard input. STRUT_FILE_TROUBLE with the reason, or STRUT_BAD_SCENE above the size limit.
+ */
+STRUT_API strut_status strut_file_read(const char *path, char **text, size_t *length,
+                                       strut_error *error);
+
+#endif

@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Groups: keys of a member, a node, a contact or a hinge that many things share. See reader.h. */
+#include <assert.h>
+#include <string.h>
+
+#include "parser/language/read/reader.h"
+#include "parser/language/read/reuse/copies.h"
+
+enum { SECTIONS = STRUT_GROUP_SECTIONS, HINGE = 3 };
+
+static const char *group_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  return i < reader->group_count ? reader->groups[i].name : NULL;
+}
+
+static size_t section_index(strut_section section) {
+  size_t i = 0;
+  while (i < SECTIONS && strut_group_sections[i] != section) i++;
+  assert(i < SECTIONS);
+  return i;
+}
+
+/* An earlier key of the group that belongs to the same set as `key`, or NULL. */
+static const strut_tree *rival(const strut_group *group, int key) {
+  int set = strut_key_at(key)->set;
+  for (size_t i = 0; set && i < group->count; i++)
+    if (group->items[i].key[0] >= 0 && strut_key_at(group->items[i].key[0])->set == set)
+      return group->items[i].slot.key;
+  return NULL;
+}
+
+/* The value, by the unit of each section that uses the group: a stiffness of hinges is no force per length. */
+static void read_value(strut_reader *reader, const strut_group *group, const strut_tree *key,
+                       strut_owner owner, int found, strut_group_item *item) {
+  int hinge = item->key[HINGE];
+  bool apart = hinge >= 0 && strut_key_at(hinge)->measure != strut_key_at(found)->measure;
+  if (group->of_others || !apart)
+    strut_read_slot(reader, found, key, key->next, owner, &item->slot);
+  if (group->of_hinges && apart)
+    strut_read_slot(reader, hinge, key, key->next, owner, &item->of_hinge);
+  else
+    item->of_hinge = item->slot;
+  if (!group->of_others && apart) item->slot = item->of_hinge;
+}
+
+static void read_item(strut_reader *reader, strut_group *group, const strut_tree *key,
+                      strut_owner owner) {
+  strut_group_item item = {.key = {-1, -1, -1, -1}};
+  int found = -1;
+  for (size_t r = 0; r < SECTIONS; r++) {
+    item.key[r] = strut_key_named(reader, strut_group_sections[r], key);
+    if (found < 0) found = item.key[r];
+  }
+  if (found >= 0 && strut_key_at(found)->type == STRUT_TYPE_GROUPS) {
+    strut_report_error(reader, key->place, "a group cannot have a group, found '%s' in %s",
+                       key->text, strut_owner_text(reader, owner));
+    group->broken = true;
+    return;
+  }
+  if (found < 0) {
+    int meant = strut_unknown_key(reader, key, strut_group_sections, SECTIONS, owner);
+    group->broken = true;
+    if (meant < 0) return;
+    for (size_t r = 0; r < SECTIONS; r++)
+      item.key[r] = strut_key_find(strut_group_sections[r], strut_key_at(meant)->name);
+    item.slot = (strut_slot){.state = STRUT_BROKEN, .key = key, .value = key->next};
+    group->items[group->count++] = item;
+    return;
+  }
+  read_value(reader, group, key, owner, found, &item);
+  const strut_tree *other = rival(group, found);
+  if (other) {
+    strut_report_error(reader, key->place, "%s gives both '%s' and '%s', expected one of them",
+                       strut_owner_text(reader, owner), other->text, key->text);
+    item.slot.state = STRUT_BROKEN;
+  }
+  if (item.slot.state == STRUT_GIVEN && strcmp(strut_key_at(found)->name, "friction") == 0) {
+    item.nested = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *item.nested);
+    if (!item.nested) return;
+    strut_read_fields(reader, STRUT_SECTION_FRICTION, key->next,
+                      (strut_owner){"the friction of group", group->name}, item.nested);
+  }
+  group->items[group->count++] = item;
+}
+
+static void read_group(strut_reader *reader, const strut_tree *key, strut_group *group) {
+  const strut_tree *map = key->next;
+  strut_owner owner = {"group", key->text};
+  if (!strut_read_name(reader, key, "group")) group->broken = true;
+  if (map->kind != STRUT_TREE_MAP) {
+    strut_report_error(reader, map->place,
+                       "expected keys of a member, a node, a contact or a hinge for %s, found %s",
+                       strut_owner_text(reader, owner), strut_found(reader, map));
+    group->broken = true;
+    return;
+  }
+  group->items = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *group->items);
+  for (const strut_tree *k = map->first; k && group->items; k = k->next->next)
+    read_item(reader, group, k, owner);
+}
+
+size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_group **groups) {
+  size_t count = 0;
+  const strut_tree *item = value->kind == STRUT_TREE_LIST ? value->first : value;
+  for (; item && count < STRUT_MOST_GROUPS; item = value == item ? NULL : item->next) {
+    int32_t index = item->kind == STRUT_TREE_SCALAR
+                        ? strut_find_named(reader, &reader->group_names, item, item->text)
+                        : -1;
+    if (index >= 0) groups[count++] = &reader->groups[index];
+  }
+  return count;
+}
+
+/* Marks the groups that the things of a mapping name. */
+static void mark_users(strut_reader *reader, const strut_tree *map, bool hinges) {
+  strut_group *groups[STRUT_MOST_GROUPS];
+  if (!map || map->kind != STRUT_TREE_MAP) return;
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
+    const strut_tree *value = key->next;
+    const strut_tree *named = strut_tree_find(value, "group", NULL);
+    size_t count = named ? strut_groups_named(reader, named, groups) : 0;
+    while (count-- > 0) *(hinges ? &groups[count]->of_hinges : &groups[count]->of_others) = true;
+  }
+}
+
+static void mark_contacts(strut_reader *reader, const strut_tree *ground) {
+  if (ground && ground->kind == STRUT_TREE_MAP)
+    mark_users(reader, strut_tree_find(ground, "contacts", NULL), false);
+}
+
+static void find_users(strut_reader *reader) {
+  const strut_tree *hinges = strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES)->value;
+  for (size_t i = 0; i < reader->group_count && !hinges; i++) reader->groups[i].of_others = true;
+  if (!hinges) return;
+  mark_users(reader, hinges, true);
+  mark_users(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->value, false);
+  mark_users(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->value, false);
+  mark_contacts(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->value);
+  const strut_tree *grounds = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUNDS)->value;
+  if (grounds && grounds->kind == STRUT_TREE_MAP)
+    for (const strut_tree *key = grounds->first; key; key = key->next->next)
+      mark_contacts(reader, key->next);
+  if (reader->copies) mark_users(reader, reader->copies->contacts, false);
+  for (size_t i = 0; i < reader->group_count; i++)
+    if (!reader->groups[i].of_hinges) reader->groups[i].of_others = true;
+}
+
+void strut_read_groups(strut_reader *reader) {
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUPS);
+  size_t i = 0;
+  if (!map) return;
+  reader->groups =
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->groups);
+  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
+       key = strut_following_entry(reader, key)) {
+    reader->groups[reader->group_count] = (strut_group){.name = key->text, .key = key};
+    strut_add_name(reader, &reader->group_names, key->text, reader->group_count++);
+  }
+  find_users(reader);
+  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
+       key = strut_following_entry(reader, key))
+    read_group(reader, key, &reader->groups[i++]);
+}
+
+/* Does every name in `group:` name a group? Unknown ones are reported. */
+static bool check_names(strut_reader *reader, const strut_tree *value, const char *key,
+                        strut_owner owner) {
+  bool fine = true,
+       known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUPS)->state != STRUT_BROKEN;
+  const strut_tree *item = value->kind == STRUT_TREE_LIST ? value->first : value;
+  if (value->kind == STRUT_TREE_LIST && value->count > STRUT_MOST_GROUPS)
+    return strut_report_error(reader, value->place, "%s names %u groups, expected at most %d",
+                              strut_owner_text(reader, owner), (unsigned)value->count,
+                              STRUT_MOST_GROUPS);
+  const strut_namespace names = {"group", &reader->group_names, group_name, reader,
+                                 reader->group_count};
+  for (; item && known; item = value == item ? NULL : item->next)
+    if (strut_read_name_of(reader, item, key, owner, &names) < 0) fine = false;
+  return fine && known;
+}
+
+/* True where the fields have the key, or another one of its set, already. */
+static bool taken(strut_fields *fields, int key) {
+  int set = strut_key_at(key)->set;
+  if (strut_slot_of(fields, key)->state != STRUT_ABSENT) return true;
+  if (!set) return false;
+  int size = strut_section_size(fields->section);
+  const strut_key *keys = strut_key_at(strut_section_first(fields->section));
+  for (int i = 0; i < size; i++)
+    if (keys[i].set == set && fields->slot[i].state != STRUT_ABSENT) return true;
+  return false;
+}
+
+/* Lengths of a group outside of a scaled copy are scaled with the thing that uses it. */
+static double scale_to(const strut_reader *reader, const strut_group *group) {
+  double own = strut_scope_scale(reader, group->key);
+  return group->key->placed ? strut_scope_scale(reader, NULL) / own
+                            : strut_scope_scale(reader, NULL);
+}
+
+static void apply_group(strut_reader *reader, strut_fields *fields, strut_group *group,
+                        strut_owner owner) {
+  size_t section = section_index(fields->section);
+  group->used = true;
+  for (size_t i = 0; i < group->count; i++) {
+    strut_group_item *item = &group->items[i];
+    int key = item->key[section];
+    if (key >= 0) {
+      if (taken(fields, key)) continue;
+      const strut_slot *slot = section == HINGE ? &item->of_hinge : &item->slot;
+      *strut_slot_of(fields, key) = *slot;
+      strut_slot_of(fields, key)->from = item;
+      if (strut_key_at(key)->measure == STRUT_MEASURE_LENGTH)
+        strut_slot_of(fields, key)->number[0] *= scale_to(reader, group);
+      if (slot->state == STRUT_BROKEN || (item->nested && item->nested->broken))
+        fields->broken = true;
+    } else if (!item->refused[section]) {
+      item->refused[section] = true;
+      if (item->slot.state == STRUT_BROKEN) continue;
+      strut_report_error(reader, item->slot.key->place,
+                         "group '%s' gives '%s' to %s, but a %s has no '%s'", group->name,
+                         item->slot.key->text, strut_owner_text(reader, owner),
+                         strut_section_name(fields->section), item->slot.key->text);
+    }
+  }
+  if (group->broken) fields->broken = true;
+}
+
+void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_key,
+                        strut_owner owner) {
+  const strut_slot *slot = strut_slot_of(fields, group_key);
+  strut_group *groups[STRUT_MOST_GROUPS];
+  if (slot->state == STRUT_BROKEN) {
+    reader->groups_unknown = true;
+    strut_suppress_missing(fields);
+  }
+  if (slot->state != STRUT_GIVEN) return;
+  bool fine = check_names(reader, slot->value, strut_key_at(group_key)->name, owner);
+  size_t count = strut_groups_named(reader, slot->value, groups);
+  while (count > 0) apply_group(reader, fields, groups[--count], owner);
+  if (fine) return;
+  reader->groups_unknown = true;
+  fields->broken = true; /* the unknown group may have given what seems to be missing */
+  strut_suppress_missing(fields);
+}
+
+/* Does some `group` of a tree name the group? Then copies that are not made would use it. */
+static bool is_mentioned(const strut_tree *tree, const char *name) {
+  if (!tree || tree->kind == STRUT_TREE_SCALAR) return false;
+  for (const strut_tree *k = tree->first; k; k = k->next) {
+    bool group = tree->kind == STRUT_TREE_MAP && strcmp(k->text, "group") == 0;
+    if (tree->kind == STRUT_TREE_MAP) k = k->next;
+    if (group && k->kind == STRUT_TREE_SCALAR && strcmp(k->text, name) == 0) return true;
+    for (const strut_tree *item = group ? k->first : NULL; item; item = item->next)
+      if (item->kind == STRUT_TREE_SCALAR && strcmp(item->text, name) == 0) return true;
+    if (!group && is_mentioned(k, name)) return true;
+  }
+  return false;
+}
+
+static bool parts_mention(strut_reader *reader, const char *name) {
+  return is_mentioned(strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARTS)->value, name) ||
+         is_mentioned(strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE)->value, name);
+}
+
+void strut_report_unused_groups(strut_reader *reader) {
+  if (reader->groups_unknown || reader->top.broken) return;
+  for (size_t i = 0; i < reader->group_count; i++) {
+    const strut_group *group = &reader->groups[i];
+    if (group->used || group->broken || group->key->placed) continue;
+    if (parts_mention(reader, group->name)) continue;
+    strut_report_error(reader, group->key->place, "nothing uses group '%s'", group->name);
+  }
+}

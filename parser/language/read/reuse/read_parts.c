@@ -1,0 +1,577 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Parts and their placement: every copy becomes entries of the scene's own mappings. See copies.h.
+ *
+ * An entry of a copy has a name and a head of its own and shares all below with the part, so that a copy
+ * costs little. Sizes are known before anything is copied: the copies of the first copy are counted all
+ * the way down, and counts that are too large are refused at their number.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "parser/language/read/reuse/copies.h"
+
+/* ---- parts ---- */
+
+static const char *part_name(const void *context, size_t i) {
+  const strut_part_list *list = context;
+  return i < list->count ? list->part[i].name : NULL;
+}
+
+static void read_part_list(strut_reader *reader, const strut_slot *slot, strut_copy *home,
+                           strut_part_list *list) {
+  const strut_tree *map = slot->state == STRUT_GIVEN ? slot->value : NULL;
+  *list = (strut_part_list){0};
+  if (!map) return;
+  list->part = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *list->part);
+  for (const strut_tree *key = map->first; key && list->part; key = key->next->next) {
+    strut_part *part = &list->part[list->count++];
+    *part = (strut_part){.name = key->text, .key = key, .home = home};
+    strut_owner owner = {"part", key->text};
+    bool fine = strut_read_name(reader, key, "part");
+    strut_read_fields(reader, STRUT_SECTION_PART, key->next, owner, &part->fields);
+    strut_store(reader, &part->fields, owner, &part->keys);
+    part->broken = !fine || part->fields.broken || part->keys.use; /* a file that was not read */
+  }
+}
+
+/* The part of that name which a scope sees. */
+static strut_part *find_part(strut_reader *reader, const strut_copy *scope, const char *name,
+                             const strut_part_list **nearest) {
+  for (;; scope = scope->home) {
+    const strut_part_list *list = scope ? &scope->parts : &reader->copies->parts;
+    for (size_t i = 0; i < list->count; i++)
+      if (strcmp(list->part[i].name, name) == 0) return &list->part[i];
+    if (list->count || !scope) *nearest = list;
+    if (!scope || scope->closed) return NULL;
+  }
+}
+
+static strut_part *read_part_name(strut_reader *reader, const strut_copy *scope,
+                                  const strut_tree *name, strut_owner owner) {
+  const strut_part_list *nearest = &reader->copies->parts;
+  if (!name) return NULL;
+  strut_part *part = find_part(reader, scope, name->text, &nearest);
+  if (part || strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARTS)->state == STRUT_BROKEN)
+    return part;
+  strut_report_error(reader, name->place, "unknown part '%s' in 'part' of %s%s",
+                     strut_sanitised_text(reader, name->text), strut_owner_text(reader, owner),
+                     strut_hint(reader, name->text, part_name, nearest, nearest->count));
+  return NULL;
+}
+
+/* ---- scopes of copies ---- */
+
+static strut_copy *new_scope(strut_expansion *e, strut_scope_kind kind, const strut_placement *p,
+                             strut_copy *outer) {
+  strut_copy *copy = strut_reader_allocate(e->reader, &e->reader->scratch, 1, sizeof *copy);
+  if (!copy) {
+    e->stopped = true;
+    return NULL;
+  }
+  *copy = (strut_copy){.kind = kind,
+                       .placement = p,
+                       .outer = outer,
+                       .home = outer,
+                       .prefix = "",
+                       .frame = strut_frame_of_scene};
+  return copy;
+}
+
+/* "cell.3." */
+static const char *make_prefix(strut_expansion *e, const strut_placement *p,
+                               const int64_t number[2]) {
+  strut_arena *arena = &e->reader->scratch;
+  const char *text =
+      p->numbers == 2   ? strut_arena_format(arena, "%s.%lld.%lld.", p->name, (long long)number[0],
+                                             (long long)number[1])
+      : p->numbers == 1 ? strut_arena_format(arena, "%s.%lld.", p->name, (long long)number[0])
+                        : strut_arena_format(arena, "%s.", p->name);
+  if (text) return text;
+  e->reader->out_of_memory = e->stopped = true;
+  return "";
+}
+
+static const char *copy_parameter_name(const void *context, size_t i) {
+  const strut_copy *copy = context;
+  return i < copy->parameter_count ? copy->parameters[i].name : NULL;
+}
+
+/* The parameters of a copy: those of the part, with the values of `set`. */
+static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_copy *place,
+                                 const strut_tree *set) {
+  const strut_tree *map = copy->placement->part->keys.parameters;
+  const strut_tree *given = set ? set->first : NULL;
+  bool fine = true;
+  copy->parameters = strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0,
+                                           sizeof *copy->parameters);
+  strut_part_value *values =
+      strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0, sizeof *values);
+  if (!copy->parameters || !values) return false;
+  for (const strut_tree *key = map ? map->first : NULL; key; key = key->next->next) {
+    strut_parameter_state *p = &copy->parameters[copy->parameter_count++];
+    strut_declare_parameter(reader, key, p);
+    p->of_part = values++;
+    p->of_part->scope = copy;
+    if (!copy->closed && strut_parameter_find(reader, key->text))
+      fine = strut_report_error(
+          reader, key->place,
+          "the scene has a parameter '%s' already, which the part sees; give this "
+          "one another name",
+          key->text);
+  }
+  for (; given; given = given->next->next) {
+    size_t i = 0;
+    while (i < copy->parameter_count && strcmp(copy->parameters[i].name, given->text) != 0) i++;
+    if (i < copy->parameter_count) {
+      copy->parameters[i].of_part->given = given->next;
+      copy->parameters[i].of_part->given_scope = place;
+      continue;
+    }
+    fine = strut_report_error(
+        reader, given->place, "part '%s' has no parameter '%s'%s", copy->placement->part->name,
+        strut_sanitised_text(reader, given->text),
+        strut_hint(reader, given->text, copy_parameter_name, copy, copy->parameter_count));
+  }
+  for (size_t i = 0; i < copy->parameter_count; i++) {
+    strut_parameter_state *p = &copy->parameters[i];
+    const strut_tree *value = p->of_part->given;
+    if (value && (value->kind != STRUT_TREE_SCALAR || strut_is_null(value))) {
+      strut_report_error(reader, value->place, "expected an expression for '%s' in 'set', found %s",
+                         p->name, strut_found(reader, value));
+      p->state = STRUT_FAILED;
+    }
+    strut_resolve_parameter(reader, p);
+    fine = fine && p->state == STRUT_READ;
+  }
+  return fine;
+}
+
+/* ---- one placement ---- */
+
+/* Does an expression of the mapping mention i or j? */
+static bool mentions_number(const strut_tree *tree) {
+  if (tree->kind != STRUT_TREE_SCALAR) {
+    for (const strut_tree *k = tree->first; k; k = k->next)
+      if (mentions_number(k)) return true;
+    return false;
+  }
+  for (const char *c = tree->text; *c; c++) {
+    size_t word = strspn(c, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789");
+    if (word == 1 && (*c == 'i' || *c == 'j')) return true;
+    if (word) c += word - 1;
+  }
+  return false;
+}
+
+static void expand_places(strut_expansion *e, const strut_slot *place, strut_copy *outer);
+
+strut_copy *strut_make_copy(strut_expansion *e, strut_placing *p, const int64_t number[2],
+                            strut_frame *base, strut_copy **place_scope) {
+  strut_reader *reader = e->reader;
+  strut_part *part = p->placement->part;
+  strut_copy *place = new_scope(e, STRUT_SCOPE_PLACE, p->placement, p->outer);
+  strut_copy *copy = place ? new_scope(e, STRUT_SCOPE_COPY, p->placement, p->outer) : NULL;
+  if (!copy) return NULL;
+  *place_scope = place;
+  memcpy(place->number, number, sizeof place->number);
+  memcpy(copy->number, number, sizeof copy->number);
+  place->numbers = p->placement->numbers;
+  place->prefix = copy->prefix = make_prefix(e, p->placement, number);
+  place->prefix_length = copy->prefix_length = strlen(copy->prefix);
+  copy->home = part->home;
+  copy->closed = part->keys.isolated;
+  read_part_list(reader, strut_slot_of(&part->fields, STRUT_KEY_PART_PARTS), copy, &copy->parts);
+  bool first = number[0] == 0 && number[1] == 0;
+  reader->scope = place;
+  if (!first && p->varies) {
+    strut_owner owner = {"place", p->placement->key->text};
+    strut_read_fields(reader, STRUT_SECTION_PLACE, p->placement->key->next, owner, &p->fields);
+    strut_store(reader, &p->fields, owner, &p->keys);
+  }
+  bool fine = read_copy_parameters(reader, copy, place, p->keys.set) && !p->fields.broken;
+  if (fine && (first || p->varies)) fine = strut_read_frame(e, p, copy, base);
+  if (!fine) return NULL;
+  strut_frame repeated = strut_repeated_frame(&p->repeat, number);
+  copy->frame = strut_frame_within(base, &repeated);
+  if (p->outer) copy->frame = strut_frame_within(&p->outer->frame, &copy->frame);
+  reader->scope = NULL;
+  return copy;
+}
+
+/* Lets `onto` find the node of a port. */
+static void enter_port(strut_expansion *e, const strut_port *port) {
+  strut_reader *reader = e->reader;
+  const strut_tree *inner = port->key->next;
+  if (inner->kind != STRUT_TREE_SCALAR) return;
+  const char *own = strut_arena_format(&reader->scratch, "%s%s", port->scope->prefix, inner->text);
+  const char *seen =
+      strut_arena_format(&reader->scratch, "%s%s", port->scope->prefix, port->key->text);
+  if (!own || !seen) reader->out_of_memory = true;
+  int32_t node = own && seen ? strut_name_map_find(&e->copies->node_entries, own) : -1;
+  if (node >= 0) strut_add_name(reader, &e->copies->node_entries, seen, (size_t)node);
+}
+
+/* The names by which the copy is seen from outside. */
+static void add_ports(strut_expansion *e, strut_copy *copy) {
+  struct strut_copies *c = e->copies;
+  strut_reader *reader = e->reader;
+  const strut_tree *ports = copy->placement->part->keys.ports;
+  if (!ports) return;
+  if (!strut_grow(&c->ported_copies, &c->ported_capacity, c->ported_count,
+                  sizeof *c->ported_copies)) {
+    reader->out_of_memory = e->stopped = true;
+    return;
+  }
+  const char *name = strut_arena_text(&reader->scratch, copy->prefix, copy->prefix_length - 1);
+  if (!name) return;
+  c->ported_copies[c->ported_count] = copy;
+  strut_add_name(reader, &c->ported, name, c->ported_count++);
+  for (const strut_tree *key = ports->first; key; key = key->next->next) {
+    strut_port *port = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *port);
+    if (!port) return;
+    *port = (strut_port){.scope = copy, .key = key, .node = -1};
+    if (!c->ports_end) c->ports_end = &c->ports;
+    *c->ports_end = port;
+    c->ports_end = &port->next;
+    enter_port(e, port);
+  }
+}
+
+/* The entries of a copy, and of the parts that it places. */
+static void fill_copy(strut_expansion *e, strut_copy *copy) {
+  strut_part *part = copy->placement->part;
+  e->reader->scope = NULL;
+  if (!e->weighing) strut_copy_things(e, &part->fields, copy);
+  strut_read_merge(e, part->keys.merge, copy, STRUT_KEY_PART_MERGE);
+  expand_places(e, strut_slot_of(&part->fields, STRUT_KEY_PART_PLACE), copy);
+  if (!e->weighing) add_ports(e, copy);
+}
+
+/* What ties a copy to the next one. */
+static void link_copies(strut_expansion *e, strut_fields *next, strut_copy *place, strut_copy *copy,
+                        const strut_copy *other, const strut_tree *twist) {
+  strut_copy *link = new_scope(e, STRUT_SCOPE_LINK, copy->placement, copy->outer);
+  if (!link) return;
+  link->home = place;
+  link->prefix = copy->prefix, link->prefix_length = copy->prefix_length;
+  memcpy(link->number, copy->number, sizeof link->number);
+  link->frame = copy->frame;
+  link->next = other, link->twist = twist;
+  strut_copy_things(e, next, link);
+  strut_next_keys keys = {0};
+  strut_store(e->reader, next, ((strut_owner){"'next'", NULL}), &keys);
+  strut_read_merge(e, keys.merge, link, STRUT_KEY_NEXT_MERGE);
+}
+
+/* The keys of `next` in each direction, read once for all copies. False: one is broken. */
+static bool read_links(strut_expansion *e, strut_placing *p) {
+  bool fine = true;
+  e->reader->scope = p->outer;
+  for (int d = 0; d < 2; d++) {
+    if (!p->repeat.next[d]) continue;
+    strut_read_fields(e->reader, STRUT_SECTION_NEXT, p->repeat.next[d],
+                      (strut_owner){"'next'", NULL}, &p->next[d]);
+    fine = fine && !p->next[d].broken;
+  }
+  e->reader->scope = NULL;
+  if (!fine) e->copies->incomplete = true;
+  return fine;
+}
+
+/* The names of a twist must be those of nodes. */
+static void check_twist(strut_expansion *e, const strut_tree *twist, const strut_copy *copy) {
+  strut_reader *reader = e->reader;
+  const strut_placement *p = copy->placement;
+  for (const strut_tree *k = twist ? twist->first : NULL; k; k = k->next->next) {
+    const strut_tree *const names[] = {k, k->next};
+    for (int n = 0; n < 2; n++) {
+      strut_full_name full;
+      if (!strut_read_scalar(reader, names[n], "closed", (strut_owner){"place", p->key->text},
+                             "the name of a node"))
+        continue;
+      int length = snprintf(full.text, sizeof full.text, "%s%s", copy->prefix, names[n]->text);
+      if (length > 0 && (size_t)length < sizeof full.text &&
+          strut_name_map_find(&e->copies->node_entries, full.text) >= 0)
+        continue;
+      strut_report_error(reader, names[n]->place, "unknown node '%s' of '%s' in 'closed'",
+                         strut_sanitised_text(reader, names[n]->text), p->key->text);
+    }
+  }
+}
+
+static void link_all(strut_expansion *e, strut_placing *p, strut_copy **copies,
+                     strut_copy **places) {
+  const strut_repetition *r = &p->repeat;
+  int64_t all = r->count[0] * r->count[1];
+  if (copies[0]) check_twist(e, r->twist, copies[0]);
+  for (int64_t n = 0; n < all && !e->stopped; n++) {
+    int64_t i = n / r->count[1], j = n % r->count[1];
+    if (!copies[n]) continue;
+    bool wraps = r->closed && i == r->count[0] - 1;
+    if (r->next[0] && (i + 1 < r->count[0] || wraps)) {
+      strut_copy *other = copies[wraps ? 0 : n + r->count[1]];
+      if (other) link_copies(e, &p->next[0], places[n], copies[n], other, wraps ? r->twist : NULL);
+    }
+    if (r->next[1] && j + 1 < r->count[1] && copies[n + 1])
+      link_copies(e, &p->next[1], places[n], copies[n], copies[n + 1], NULL);
+  }
+}
+
+/* Refuses what would become too large, before it is copied. */
+static bool check_size(strut_expansion *e, const strut_placing *p, double copies, double each) {
+  double all = (double)e->copies->things + copies * each, most = e->reader->limit_things;
+  if (all <= most) return true;
+  strut_report_error(e->reader, p->keys.repeat ? p->keys.repeat->place : p->placement->key->place,
+                     "the copies would have %.3g nodes, members and other things, at most %.0f are "
+                     "possible%s",
+                     all, most, strut_limit_hint(e->reader));
+  e->stopped = true;
+  return false;
+}
+
+/* All copies; while weighing, the first one only, counted as many times. */
+static void make_copies(strut_expansion *e, strut_placing *p) {
+  strut_reader *reader = e->reader;
+  const strut_repetition *r = &p->repeat;
+  int64_t all = r->count[0] * r->count[1];
+  strut_frame base = strut_frame_of_scene;
+  if (!read_links(e, p)) return;
+  if (e->weighing) {
+    const int64_t number[2] = {0, 0};
+    strut_copy *place, *copy = strut_make_copy(e, p, number, &base, &place);
+    size_t before = e->copies->things, own = strut_count_things(&p->placement->part->fields) + 1;
+    if (copy) fill_copy(e, copy);
+    if (e->stopped) return;
+    double each = (double)(e->copies->things - before + own);
+    for (int d = 0; d < r->numbers; d++)
+      if (r->next[d]) each += (double)strut_count_things(&p->next[d]);
+    e->copies->things = before;
+    if (check_size(e, p, (double)all, each)) e->copies->things += (size_t)all * (size_t)each;
+    return;
+  }
+  strut_copy **copies =
+      strut_reader_allocate(reader, &reader->scratch, (size_t)all, sizeof *copies);
+  strut_copy **places =
+      strut_reader_allocate(reader, &reader->scratch, (size_t)all, sizeof *places);
+  if (!copies || !places) return;
+  for (int64_t n = 0; n < all && !e->stopped; n++) {
+    const int64_t number[2] = {n / r->count[1], n % r->count[1]};
+    copies[n] = strut_make_copy(e, p, number, &base, &places[n]);
+    if (copies[n])
+      fill_copy(e, copies[n]);
+    else
+      e->copies->incomplete = true;
+    if (n == 0 && !check_size(e, p, 1.0, 0.0)) return;
+    if (strut_diagnostics_full(reader->diagnostics)) e->stopped = true;
+  }
+  link_all(e, p, copies, places);
+  const strut_tree *k = p->keys.onto ? p->keys.onto->first : NULL;
+  for (; k && copies[0]; k = k->next->next) {
+    /* own names are the copy's, the others those of the scope around it */
+    strut_copy *link = new_scope(e, STRUT_SCOPE_LINK, p->placement, p->outer);
+    strut_copy *around = new_scope(e, STRUT_SCOPE_COPY, p->placement, p->outer);
+    if (!link || !around) return;
+    around->prefix = p->outer ? p->outer->prefix : "";
+    link->prefix = copies[0]->prefix, link->prefix_length = copies[0]->prefix_length;
+    link->next = around;
+    strut_placed_tree *other = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *other);
+    if (!other) return;
+    *other = (strut_placed_tree){*k->next, link};
+    other->tree.placed = true;
+    other->tree.text = strut_arena_format(&reader->scratch, "next.%s", k->next->text);
+    if (!other->tree.text) return;
+    strut_add_merger(e, link, k, &other->tree,
+                     strut_slot_of(&p->fields, STRUT_KEY_PLACE_ONTO)->key);
+  }
+}
+
+/* Reports a part that contains itself. */
+static bool enter_part(strut_expansion *e, const strut_part *part, const strut_tree *name) {
+  struct strut_copies *c = e->copies;
+  char chain[600] = "";
+  size_t used = 0;
+  if (!part->open && c->depth < STRUT_DEEPEST_PARTS) {
+    c->chain[c->depth++] = part->name;
+    return true;
+  }
+  for (int i = 0; i < c->depth && used < sizeof chain - 80; i++)
+    used += (size_t)snprintf(chain + used, sizeof chain - used, "%.60s -> ", c->chain[i]);
+  strut_report_error(e->reader, name->place,
+                     part->open ? "part '%s' contains itself: %s%s"
+                                : "parts are placed within parts more than 16 deep: '%s' in %s%s",
+                     part->name, chain, part->name);
+  e->stopped = true;
+  return false;
+}
+
+/* How many numbers a copy has, as far as the form of `repeat` says. */
+static int count_numbers(const strut_tree *place) {
+  const strut_tree *repeat = strut_tree_find(place, "repeat", NULL);
+  const strut_tree *count = repeat ? strut_tree_find(repeat, "count", NULL) : NULL;
+  if (!repeat) return 0;
+  if (!count) count = repeat;
+  return count->kind == STRUT_TREE_LIST ? 2 : 1;
+}
+
+bool strut_read_placement(strut_expansion *e, const strut_tree *key, strut_copy *outer,
+                          strut_placing *p) {
+  strut_reader *reader = e->reader;
+  strut_owner owner = {"place", key->text};
+  strut_placement *placement =
+      strut_reader_allocate(reader, &reader->scratch, 1, sizeof *placement);
+  strut_copy *scope = new_scope(e, STRUT_SCOPE_PLACE, placement, outer);
+  *p = (strut_placing){.placement = placement, .outer = outer};
+  if (!placement || !scope) return false;
+  *placement = (strut_placement){.key = key, .count = {1, 1}};
+  placement->name =
+      strut_arena_format(&reader->scratch, "%s%s", outer ? outer->prefix : "", key->text);
+  if (!placement->name) return false;
+  scope->numbers = count_numbers(key->next); /* as in the first copy */
+  reader->scope = scope;
+  bool fine = strut_read_name(reader, key, "placement");
+  strut_read_fields(reader, STRUT_SECTION_PLACE, key->next, owner, &p->fields);
+  strut_require(reader, &p->fields, owner, key->place);
+  strut_store(reader, &p->fields, owner, &p->keys);
+  scope->numbers = 0;
+  placement->part = read_part_name(reader, outer, p->keys.part, owner);
+  fine = strut_read_repeat(reader, strut_slot_of(&p->fields, STRUT_KEY_PLACE_REPEAT), key->text,
+                           &p->repeat) &&
+         fine;
+  reader->scope = NULL;
+  if (!placement->part || !fine || p->fields.broken || placement->part->broken) {
+    reader->failed = true;
+    reader->copies->incomplete = true;
+    return false;
+  }
+  memcpy(placement->count, p->repeat.count, sizeof placement->count);
+  placement->numbers = p->repeat.numbers;
+  p->varies = p->repeat.numbers && mentions_number(key->next);
+  return true;
+}
+
+static void expand_place(strut_expansion *e, const strut_tree *key, strut_copy *outer) {
+  strut_reader *reader = e->reader;
+  struct strut_copies *c = e->copies;
+  strut_placing p;
+  if (!strut_read_placement(e, key, outer, &p)) return;
+  strut_placement *placement = p.placement;
+  strut_part *part = placement->part;
+  if (!enter_part(e, part, p.keys.part)) return;
+  if (!e->weighing) {
+    if (!strut_grow(&c->placements, &c->placement_capacity, c->placement_count,
+                    sizeof *c->placements)) {
+      reader->out_of_memory = e->stopped = true;
+      return;
+    }
+    c->placements[c->placement_count] = placement;
+    strut_add_name(reader, &c->placement_names, placement->name, c->placement_count++);
+  }
+  part->open = part->placed = true;
+  make_copies(e, &p);
+  part->open = false;
+  c->depth--;
+}
+
+static void expand_places(strut_expansion *e, const strut_slot *place, strut_copy *outer) {
+  const strut_tree *map = place->state == STRUT_GIVEN ? place->value : NULL;
+  for (const strut_tree *key = map ? map->first : NULL; key && !e->stopped; key = key->next->next)
+    expand_place(e, key, outer);
+}
+
+/* ---- the scene ---- */
+
+static void report_unplaced(strut_reader *reader) {
+  const strut_part_list *parts = &reader->copies->parts;
+  for (size_t i = 0; i < parts->count; i++)
+    if (!parts->part[i].placed && !parts->part[i].broken)
+      strut_note(reader->diagnostics, parts->part[i].key->place, "part '%s' is placed nowhere",
+                 parts->part[i].name);
+}
+
+static void read_limit(strut_reader *reader) {
+  const strut_key *key = strut_key_at(STRUT_KEY_SCENE_LIMIT_THINGS);
+  const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_LIMIT_THINGS);
+  strut_owner owner = {"the scene", NULL};
+  double most;
+  reader->limit_things = strtod(key->fallback, NULL);
+  if (slot->state == STRUT_GIVEN &&
+      strut_read_number(reader, slot->value, key->name, owner, STRUT_DIM_NONE, STRUT_RANGE_ANY,
+                        &most) &&
+      strut_check_whole(reader, slot->value, key, owner, most))
+    reader->limit_things = most;
+}
+
+const char *strut_limit_hint(strut_reader *reader) {
+  char text[100];
+  if (reader->limit_things >= STRUT_MOST_THINGS) return "";
+  snprintf(text, sizeof text, "; 'limit_things' of the scene allows up to %d", STRUT_MOST_THINGS);
+  return strut_keep_text(reader, text);
+}
+
+/* Counts first, then copies. */
+static void expand_scene(strut_expansion *e) {
+  strut_reader *reader = e->reader;
+  const strut_slot *place = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE);
+  const strut_slot *nodes = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES);
+  e->weighing = true;
+  expand_places(e, place, NULL);
+  if (e->stopped || reader->failed) {
+    e->copies->incomplete = true;
+    return;
+  }
+  e->weighing = false;
+  e->copies->things = 0;
+  const strut_tree *own = nodes->state == STRUT_GIVEN ? nodes->value->first : NULL;
+  for (; own; own = own->next->next)
+    if (own->next->kind == STRUT_TREE_LIST || strut_tree_find(own->next, "position", NULL))
+      strut_remember_node(e, own); /* others are laid over copies */
+  expand_places(e, place, NULL);
+  if (e->stopped) e->copies->incomplete = true;
+}
+
+void strut_read_parts(strut_reader *reader) {
+  const strut_slot *parts = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARTS);
+  const strut_slot *place = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE);
+  const strut_slot *merge = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MERGE);
+  read_limit(reader);
+  if (!parts->key && !place->key && !merge->key) {
+    strut_require_nodes(reader);
+    return;
+  }
+  strut_expansion e = {.reader = reader};
+  reader->copies = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *reader->copies);
+  e.copies = reader->copies;
+  if (!e.copies) return;
+  read_part_list(reader, parts, NULL, &e.copies->parts);
+  expand_scene(&e);
+  strut_read_merge(&e, merge->state == STRUT_GIVEN ? merge->value : NULL, NULL,
+                   STRUT_KEY_SCENE_MERGE);
+  int first = strut_section_first(STRUT_SECTION_SCENE);
+  for (int k = 0; k < strut_section_size(STRUT_SECTION_SCENE); k++)
+    strut_join_entries(&e, first + k);
+  if (e.contacts.count) {
+    strut_tree *map = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *map);
+    if (map) *map = (strut_tree){.kind = STRUT_TREE_MAP, .first = e.contacts.first};
+    e.copies->contacts = map;
+  }
+  if (e.copies->incomplete)
+    strut_mark_incomplete(reader);
+  else
+    strut_require_nodes(reader);
+  report_unplaced(reader);
+}
+
+void strut_copies_free(strut_reader *reader) {
+  struct strut_copies *copies = reader->copies;
+  if (!copies) return;
+  strut_name_map_free(&copies->placement_names);
+  strut_name_map_free(&copies->node_entries);
+  strut_name_map_free(&copies->ported);
+  strut_name_map_free(&copies->removed);
+  strut_release(copies->ported_copies);
+  strut_release(copies->placements);
+  strut_release(copies->nodes);
+}

@@ -1,0 +1,475 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a study searches: variables, scenarios, and its texts as written. See study_reader.h. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "parser/language/expression/expression.h"
+#include "parser/language/study/read_study.h"
+#include "parser/language/study/study_reader.h"
+#include "parser/language/yaml/diagnostics.h"
+
+static const strut_owner search_owner = {"the search", NULL};
+/* Scenarios of one evaluation, at most. */
+enum { MOST_SCENARIOS = 1000 };
+
+size_t strut_study_search_columns(const strut_slot *slot) {
+  size_t count = 0;
+  if (slot->state != STRUT_GIVEN || slot->value->kind != STRUT_TREE_MAP) return 0;
+  for (const strut_tree *key = slot->value->first; key; key = key->next->next)
+    count += key->next->kind == STRUT_TREE_MAP ? key->next->count : 0;
+  return count + 4; /* search, evaluation; an axis each for them and the variables */
+}
+
+static bool refuse(strut_study_reader *r, const strut_study_along *a, const char *why) {
+  return strut_report_error(r->reader, a->value->place, "variable '%s' of the search %s",
+                            a->parameter->name, why);
+}
+
+static bool read_choices(strut_study_reader *r, strut_study_along *a, strut_search_variable *v) {
+  if (a->value->count < 2)
+    return refuse(r, a, "has no choice: list two values or more, or write its value under 'set'");
+  v->choice_count = (size_t)a->count;
+  v->numbers = a->column->number;
+  v->words = a->column->words;
+  return true;
+}
+
+/* An angle that wraps must go once around. */
+static bool wraps_around(const strut_study_along *a, const strut_search_variable *v) {
+  const double turn = 6.283185307179586;
+  bool angle = !a->setting->bare && strut_dimension_equal(a->setting->dimension, STRUT_DIM_ANGLE);
+  return !angle || fabs((v->to - v->from) / turn - 1.0) < 1e-9;
+}
+
+static bool check_range(strut_study_reader *r, const strut_study_along *a,
+                        const strut_search_variable *v) {
+  if (v->from == v->to)
+    return refuse(r, a, "has a range of one value: write it under 'set' of the study");
+  if (v->from > v->to) return refuse(r, a, "has a reversed range: 'from' must be below 'to'");
+  if (!isfinite(v->to - v->from)) return refuse(r, a, "has too wide a range for a number");
+  if (v->logarithmic && v->from * v->to <= 0.0)
+    return refuse(r, a, "cannot be logarithmic: 'from' and 'to' must be on one side of 0");
+  if (v->wraps && (v->logarithmic || v->integer))
+    return refuse(r, a, "cannot wrap: only even ranges of any number do");
+  if (v->wraps && !wraps_around(a, v))
+    return refuse(r, a, "cannot wrap: its range is no full turn, such as 0 deg to 360 deg");
+  if (v->integer && floor(v->to) < ceil(v->from) + 1.0)
+    return refuse(r, a, "has no two whole numbers in its range");
+  if (!(v->start >= v->from && v->start <= v->to))
+    return refuse(r, a, "has a 'start' outside of its range");
+  return true;
+}
+
+static bool read_range(strut_study_reader *r, strut_study_along *a, strut_search_variable *v) {
+  strut_fields fields;
+  const strut_owner owner = {"variable", a->parameter->name};
+  if (a->parameter->text) return refuse(r, a, "is a text: give a list of the texts to choose from");
+  if (!strut_read_object(r->reader, STRUT_SECTION_VARIABLE, a->value, owner, &fields, v))
+    return false;
+  const strut_slot *start = strut_slot_of(&fields, STRUT_KEY_VARIABLE_START);
+  bool fine = strut_study_store_value(r, a, &fields, STRUT_KEY_VARIABLE_FROM, true, v);
+  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_VARIABLE_TO, false, v) && fine;
+  v->start = v->from + 0.5 * (v->to - v->from);
+  if (fine && v->logarithmic && v->from * v->to > 0.0)
+    v->start = copysign(sqrt(v->from) * sqrt(v->to), v->from);
+  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_VARIABLE_START, false, v) && fine;
+  if (fine && v->logarithmic && v->from < 0.0)
+    return refuse(r, a, "cannot be logarithmic below 0: search over its negative");
+  if (fine && v->integer && start->state != STRUT_GIVEN) v->start = round(v->start);
+  return fine && check_range(r, a, v);
+}
+
+/* A variable: its column has the value at which the search begins. */
+static bool read_variable(strut_study_reader *r, strut_study_along *a, strut_search_variable *v) {
+  bool list = a->value->kind == STRUT_TREE_LIST, fine;
+  double *start = strut_reader_allocate(r->reader, &r->file->arena, 1, sizeof *start);
+  if (!start) return false;
+  if (list) {
+    fine = strut_study_read_along(r, a) && read_choices(r, a, v);
+  } else {
+    a->parameter = strut_study_parameter(r, a->key);
+    fine = a->parameter && strut_study_begin_along(r, a, a->key->place);
+    if (fine && a->value->kind != STRUT_TREE_MAP)
+      fine = refuse(r, a, "needs a range such as {from: 1, to: 2}, or a list of choices");
+    fine = fine && read_range(r, a, v);
+    *start = v->start;
+    a->column->kind = STRUT_RANGE_LIST;
+    a->column->number = start;
+    a->column->unit = fine && !a->setting->bare ? strut_dimension_unit(a->setting->dimension) : "1";
+  }
+  if (!fine) return false;
+  v->name = a->parameter->name;
+  v->unit = a->column->unit;
+  v->word = a->parameter->text;
+  return true;
+}
+
+static void read_variables(strut_study_reader *r, const strut_slot *over,
+                           strut_study_search *search) {
+  strut_study *study = &r->file->study;
+  strut_arena *arena = &r->file->arena;
+  size_t count = over->value->count;
+  if (count == 0 || count > STRUT_SEARCH_MOST_VARIABLES) {
+    strut_report_error(r->reader, over->value->place,
+                       "a search is 'over' 1 to %d parameters, found %zu",
+                       STRUT_SEARCH_MOST_VARIABLES, count);
+    return;
+  }
+  strut_study_axis *axis = &study->axes[study->axis_count++];
+  *axis = (strut_study_axis){.count = 1};
+  axis->columns = strut_reader_allocate(r->reader, arena, count, sizeof *axis->columns);
+  search->variables = strut_reader_allocate(r->reader, arena, count, sizeof *search->variables);
+  search->column = r->file->column_count;
+  if (!axis->columns || !search->variables) return;
+  for (const strut_tree *key = over->value->first; key; key = key->next->next) {
+    strut_study_along a = {.key = key, .value = key->next};
+    a.column = &axis->columns[axis->column_count++];
+    a.setting = &r->file->columns[r->file->column_count++];
+    read_variable(r, &a, &search->variables[search->variable_count++]);
+  }
+}
+
+/* The axes of the scenarios. */
+static void read_scenarios(strut_study_reader *r, const strut_slot *slot,
+                           strut_study_search *search) {
+  strut_study *study = &r->file->study;
+  double scenarios = 1.0;
+  if (slot->state != STRUT_GIVEN) return;
+  for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
+    strut_study_axis *axis = &study->axes[study->axis_count++];
+    *axis = (strut_study_axis){.count = 1, .column_count = 1};
+    axis->columns = strut_reader_allocate(r->reader, &r->file->arena, 1, sizeof *axis->columns);
+    strut_study_along a = {.key = key, .value = key->next, .column = axis->columns};
+    a.setting = &r->file->columns[r->file->column_count++];
+    if (axis->columns && strut_study_read_along(r, &a)) axis->count = a.count;
+    scenarios *= (double)axis->count;
+    search->scenario_axes++;
+  }
+  if (scenarios > MOST_SCENARIOS)
+    strut_report_error(r->reader, slot->value->place,
+                       "'worst_over' makes %.4g scenarios, an evaluation may have %d", scenarios,
+                       MOST_SCENARIOS);
+}
+
+/*
+ * The axis that numbers evaluations: those of each search, then as `search` 0 the best point computed more
+ * exactly, and its neighbours.
+ */
+static void add_evaluations(strut_study_reader *r, const strut_study_search *search,
+                            strut_study_axis *axis, size_t variables) {
+  int64_t checks = 1 + 2 * (int64_t)variables;
+  axis->count = search->starts * search->evaluations + checks;
+  axis->column_count = 2;
+  size_t count = (size_t)axis->count;
+  strut_arena *arena = &r->file->arena;
+  double *numbers = strut_reader_allocate(r->reader, arena, 2 * count, sizeof *numbers);
+  axis->columns = strut_reader_allocate(r->reader, arena, 2, sizeof *axis->columns);
+  if (!numbers || !axis->columns) {
+    axis->count = 1;
+    return;
+  }
+  for (int64_t i = 0; i < axis->count; i++) {
+    bool proper = i < search->starts * search->evaluations;
+    int64_t checked = i - search->starts * search->evaluations;
+    numbers[i] = proper ? (double)(i / search->evaluations + 1) : 0.0;
+    numbers[axis->count + i] = proper ? (double)(i % search->evaluations + 1) : (double)checked;
+  }
+  axis->columns[0] = (strut_study_column){.name = "search", .unit = "1", .number = numbers};
+  axis->columns[1] =
+      (strut_study_column){.name = "evaluation", .unit = "1", .number = numbers + axis->count};
+  r->file->column_count += 2; /* settings without a name: no parameters */
+}
+
+static void keep_text(const strut_tree *value, strut_search_formula *formula) {
+  formula->text = value->text;
+  formula->place =
+      (strut_search_place){value->place.line, value->place.column + (value->quoted ? 1 : 0)};
+}
+
+/* One expression, or a list of two. */
+static void read_goals(strut_study_reader *r, const strut_tree *value, strut_study_search *search) {
+  bool two = value->kind == STRUT_TREE_LIST && value->count == 2;
+  const strut_tree *first = two ? value->first : value;
+  bool fine = first->kind == STRUT_TREE_SCALAR &&
+              (!two || first->next->kind == STRUT_TREE_SCALAR) && !strut_is_null(first);
+  if (!fine) {
+    strut_report_error(r->reader, value->place,
+                       "expected a column, an expression of columns, or a list of two of them for "
+                       "'%s' of the search, found %s",
+                       search->maximise ? "maximise" : "minimise", strut_found(r->reader, value));
+    return;
+  }
+  keep_text(first, &search->goal);
+  if (two) keep_text(first->next, &search->second);
+}
+
+static void read_goal(strut_study_reader *r, strut_fields *fields, const strut_slot *slot,
+                      strut_study_search *search) {
+  const strut_slot *most = strut_slot_of(fields, STRUT_KEY_SEARCH_MAXIMISE);
+  const strut_slot *least = strut_slot_of(fields, STRUT_KEY_SEARCH_MINIMISE);
+  const strut_slot *method = strut_slot_of(fields, STRUT_KEY_SEARCH_METHOD);
+  search->maximise = most->state == STRUT_GIVEN;
+  const strut_slot *goal = search->maximise ? most : least;
+  if (goal->state == STRUT_GIVEN)
+    read_goals(r, goal->value, search);
+  else if (!fields->broken)
+    strut_report_error(r->reader, slot->value->place,
+                       "the search lacks 'maximise' or 'minimise', a column of the table or an "
+                       "expression of columns");
+  bool two = search->second.text != NULL, given = method->state == STRUT_GIVEN;
+  if (given && goal->state == STRUT_GIVEN && two != (search->method == STRUT_SEARCH_NSGA2))
+    strut_report_error(r->reader, method->value->place,
+                       two ? "two goals need the method 'nsga2'"
+                           : "the method 'nsga2' is for two goals: [velocity, -cost_of_transport]");
+  if (two) search->method = STRUT_SEARCH_NSGA2;
+}
+
+static void read_conditions(strut_study_reader *r, const strut_slot *slot,
+                            strut_study_search *search) {
+  if (slot->state != STRUT_GIVEN) return;
+  if (slot->value->count > STRUT_SEARCH_MOST_CONDITIONS)
+    strut_report_error(r->reader, slot->value->place,
+                       "'subject_to' may have %d conditions, found %zu",
+                       STRUT_SEARCH_MOST_CONDITIONS, (size_t)slot->value->count);
+  search->conditions = strut_reader_allocate(r->reader, &r->file->arena, slot->value->count + 1,
+                                             sizeof *search->conditions);
+  for (const strut_tree *item = slot->value->first; item && search->conditions; item = item->next) {
+    strut_search_condition *c = &search->conditions[search->condition_count];
+    if (!strut_read_scalar(r->reader, item, "subject_to", search_owner,
+                           "a text such as \"work < 2 mJ\""))
+      continue;
+    search->condition_count++;
+    keep_text(item, &c->left);
+    c->text = c->left.text;
+    c->place = c->left.place;
+  }
+}
+
+/* Keys of a study that a search has no use for. */
+static void refuse_others(strut_study_reader *r, const strut_slot *slot) {
+  const strut_study *study = &r->file->study;
+  const strut_tree *root = r->file->document.root;
+  strut_tree *key = NULL;
+  if (study->trajectories && strut_tree_find(root, "trajectories", &key))
+    strut_report_error(r->reader, key ? key->place : slot->key->place,
+                       "a study that searches records no trajectories: run its best.yaml for that");
+  if (strut_tree_find(root, "refine", &key))
+    strut_report_error(r->reader, key ? key->place : slot->key->place,
+                       "a study that searches has no grid to refine");
+}
+
+void strut_study_read_search(strut_study_reader *r, const strut_slot *slot) {
+  strut_study *study = &r->file->study;
+  strut_fields fields;
+  if (slot->state != STRUT_GIVEN) return;
+  strut_study_search *search = strut_reader_allocate(r->reader, &r->file->arena, 1, sizeof *search);
+  if (!search) return;
+  *search = (strut_study_search){.starts = 1, .evaluations = 200, .seed = 1};
+  strut_read_object(r->reader, STRUT_SECTION_SEARCH, slot->value, search_owner, &fields, search);
+  read_goal(r, &fields, slot, search);
+  read_conditions(r, strut_slot_of(&fields, STRUT_KEY_SEARCH_SUBJECT_TO), search);
+  refuse_others(r, slot);
+  const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SEARCH_OVER);
+  const strut_slot *starts = strut_slot_of(&fields, STRUT_KEY_SEARCH_STARTS);
+  if (search->method == STRUT_SEARCH_DIRECT && search->starts > 1)
+    strut_report_error(r->reader, starts->value->place,
+                       "'direct' has no seed, all its searches would be the same: give another "
+                       "method, or no 'starts'");
+  if (over->state != STRUT_GIVEN) return;
+  search->axis = study->axis_count;
+  strut_study_axis *evaluations = &study->axes[study->axis_count++];
+  add_evaluations(r, search, evaluations, over->value->count);
+  read_scenarios(r, strut_slot_of(&fields, STRUT_KEY_SEARCH_WORST_OVER), search);
+  read_variables(r, over, search);
+  study->search = search;
+}
+
+/* ---- columns in expressions ---- */
+
+typedef struct binder {
+  strut_study_file *file;
+  const strut_table_name *columns; /* (count) */
+  size_t count;
+  bool no_memory;
+} binder;
+
+static const char *column_name(const void *context, size_t i) {
+  const binder *b = context;
+  return i < b->count ? b->columns[i].name : NULL;
+}
+
+static size_t find_column(const binder *b, const char *name, size_t length) {
+  size_t i = 0;
+  while (i < b->count &&
+         (strlen(b->columns[i].name) != length || memcmp(b->columns[i].name, name, length) != 0))
+    i++;
+  return i;
+}
+
+/* The dimension of a column, NAN where it fits any. */
+static strut_dimension dimension_of(const char *unit) {
+  const strut_scope none = {.unread = true};
+  strut_expression_error error;
+  strut_quantity q;
+  char text[80];
+  if (!*unit || strcmp(unit, "1") == 0) return STRUT_DIM_NONE;
+  snprintf(text, sizeof text, "1 %s", unit);
+  if (strut_expression_evaluate(text, &none, &q, &error) && !q.bare) return q.dimension;
+  return (strut_dimension){.kg = NAN};
+}
+
+/* As strut_find_column: columns of the table are words alone; names may have dots. */
+static int find(void *context, const char *kind, strut_piece owner, strut_piece field,
+                strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
+  binder *b = context;
+  if (kind) return 0;
+  const char *name = owner.length ? owner.text : field.text;
+  size_t length = owner.length ? owner.length + 1 + field.length : field.length;
+  size_t i = find_column(b, name, length);
+  if (i < b->count && !b->columns[i].word) {
+    *column = (strut_column){.item = (int32_t)i, .other = -1};
+    *dimension = dimension_of(b->columns[i].unit);
+    return 1;
+  }
+  if (i == b->count) return 0;
+  snprintf(refusal->text, sizeof refusal->text, "column '%.60s' holds texts, no numbers",
+           b->columns[i].name);
+  return -1;
+}
+
+static int find_pair(void *context, strut_piece word, strut_piece first, strut_piece second,
+                     strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
+  (void)context, (void)word, (void)first, (void)second, (void)column, (void)dimension;
+  (void)refusal;
+  return 0;
+}
+
+static int look_up(void *context, const char *name, size_t length, strut_quantity *quantity) {
+  (void)context, (void)name, (void)length, (void)quantity;
+  return 0;
+}
+
+static strut_place place_of(strut_search_place place, size_t offset, size_t length) {
+  return (strut_place){
+      .line = place.line, .column = place.column + (uint32_t)offset, .length = length & 0xffffffu};
+}
+
+/* Compiles text[0..), which lies `offset` bytes behind the place. False where something was reported. */
+static bool compile(binder *b, const char *text, size_t offset, strut_search_formula *f,
+                    strut_quantity *q) {
+  strut_arena *arena = &b->file->arena;
+  const strut_scope scope = {.lookup = look_up, .names = column_name, .context = b};
+  strut_expression_error error = {0};
+  strut_compiled *program = strut_arena_allocate(arena, strlen(text) + 1, sizeof *program);
+  strut_instruction *kept = strut_arena_allocate(arena, strlen(text) + 1, sizeof *kept);
+  if (!program || !kept) {
+    b->no_memory = true;
+    return false;
+  }
+  strut_compiler compiler = {.column = find, .pair = find_pair, .context = b, .program = program};
+  if (!strut_expression_compile(text, &scope, &compiler, q, &error)) {
+    strut_diagnose(&b->file->diagnostics, place_of(f->place, offset + error.offset, error.length),
+                   "in '%s' of the search: %s; 'keep' chooses the columns of the table", f->text,
+                   error.message);
+    return false;
+  }
+  for (size_t i = 0; i < compiler.length; i++) kept[i] = program[i].instruction;
+  f->program =
+      (strut_quantity_definition){.name = f->text,
+                                  .unit = q->bare ? "1" : strut_dimension_unit(q->dimension),
+                                  .length = compiler.length,
+                                  .depth = compiler.depth,
+                                  .program = kept};
+  return true;
+}
+
+static void bind_goal(binder *b, strut_search_formula *goal) {
+  strut_quantity q;
+  if (!compile(b, goal->text, 0, goal, &q) || q.varies) return;
+  strut_diagnose(&b->file->diagnostics, place_of(goal->place, 0, strlen(goal->text)),
+                 "'%s' of the search is the same everywhere: it names no column", goal->text);
+}
+
+/* The text [from..to) without blanks about it; *from moves to its beginning. */
+static char *part_of(binder *b, const char *text, size_t *from, size_t to) {
+  while (*from < to && text[*from] == ' ') ++*from;
+  while (to > *from && text[to - 1] == ' ') to--;
+  char *part = strut_arena_text(&b->file->arena, text + *from, to - *from);
+  b->no_memory = b->no_memory || !part;
+  return part;
+}
+
+static void refuse_condition(binder *b, const strut_search_condition *c, const char *why) {
+  strut_diagnose(&b->file->diagnostics, place_of(c->place, 0, strlen(c->text)),
+                 "'%s' of 'subject_to': %s", c->text, why);
+}
+
+/* COLUMN = WORD */
+static void bind_word(binder *b, strut_search_condition *c, const char *left, const char *right) {
+  c->column = find_column(b, left, strlen(left));
+  c->word = right;
+  if (c->column == b->count)
+    refuse_condition(b, c, "the table has no such column; 'keep' chooses the columns");
+  else if (!b->columns[c->column].word)
+    refuse_condition(b, c, "numbers are compared by <, <=, > or >=");
+  else if (!*right)
+    refuse_condition(b, c, "the word is missing");
+}
+
+static void bind_numbers(binder *b, strut_search_condition *c, const char *left, const char *right,
+                         size_t offset) {
+  strut_quantity l, r;
+  c->right = c->left;
+  bool fine = compile(b, left, 0, &c->left, &l);
+  fine = compile(b, right, offset, &c->right, &r) && fine;
+  if (!fine) return;
+  if (!l.varies && !r.varies) refuse_condition(b, c, "neither side names a column");
+  if (!l.bare && !r.bare && !strut_dimension_equal(l.dimension, r.dimension)) {
+    char first[80], second[80], why[200];
+    snprintf(why, sizeof why, "%s cannot be compared with %s",
+             strut_dimension_name(l.dimension, first, sizeof first),
+             strut_dimension_name(r.dimension, second, sizeof second));
+    refuse_condition(b, c, why);
+  }
+}
+
+static void bind_condition(binder *b, strut_search_condition *c) {
+  size_t at = strcspn(c->text, "<>=!"), behind = at + strspn(c->text + at, "<>=!"), from = 0;
+  size_t sign = behind - at;
+  const char *text = c->text;
+  bool below = sign && text[at] == '<', above = sign && text[at] == '>';
+  bool is = sign == 1 && text[at] == '=', is_not = sign == 2 && memcmp(text + at, "!=", 2) == 0;
+  bool known =
+      is || is_not || ((below || above) && (sign == 1 || (sign == 2 && text[at + 1] == '=')));
+  char *left = part_of(b, text, &from, at);
+  char *right = part_of(b, text, &behind, strlen(text));
+  if (!left || !right) return;
+  if (!known || strcspn(right, "<>=!") < strlen(right)) {
+    refuse_condition(b, c, "expected one comparison, such as work < 2 mJ or outcome = I");
+    return;
+  }
+  c->relation = below    ? STRUT_SEARCH_BELOW
+                : above  ? STRUT_SEARCH_ABOVE
+                : is_not ? STRUT_SEARCH_IS_NOT
+                         : STRUT_SEARCH_IS;
+  if (is || is_not)
+    bind_word(b, c, left, right);
+  else
+    bind_numbers(b, c, left, right, behind);
+}
+
+strut_status strut_study_search_bind(strut_study_file *file, const strut_table_name *columns,
+                                     size_t count) {
+  binder b = {.file = file, .columns = columns, .count = count};
+  strut_study_search *search = file->study.search;
+  size_t before = file->diagnostics.count;
+  strut_c_locale locale = strut_c_locale_enter();
+  bind_goal(&b, &search->goal);
+  if (search->second.text) bind_goal(&b, &search->second);
+  for (size_t i = 0; i < search->condition_count; i++) bind_condition(&b, &search->conditions[i]);
+  strut_c_locale_leave(locale);
+  if (b.no_memory) return STRUT_NO_MEMORY;
+  return file->diagnostics.count > before ? STRUT_BAD_SCENE : STRUT_OK;
+}

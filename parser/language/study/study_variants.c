@@ -1,0 +1,425 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The models of a study, one for each variant, and its own text. See study_reader.h. */
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/number_text.h"
+#include "parser/language/read/reuse/used_files.h"
+#include "parser/language/study/read_study.h"
+#include "parser/language/study/study_reader.h"
+#include "parser/language/write/write_scene.h"
+#include "parser/language/write/writer.h"
+#include "parser/language/yaml/text.h"
+
+strut_place strut_overlay_place(strut_place place) {
+  place.line |= STRUT_OVERLAY_LINE;
+  return place;
+}
+
+/*
+ * Lays the mapping `value` over the section of that name: its keys replace those of the section, within
+ * nested mappings too, and keys that say the same in another way. False: memory is out.
+ */
+static bool lay_map_over(strut_document *document, const char *section, const strut_tree *value) {
+  strut_tree *root = document->root;
+  if (root->kind != STRUT_TREE_MAP || value->kind != STRUT_TREE_MAP) return true;
+  const strut_tree *below = strut_tree_find(root, section, NULL);
+  if (below && below->kind != STRUT_TREE_MAP) return true; /* the reader reports it */
+  const strut_overlay overlay = {.arena = &document->arena, .mark = STRUT_OVERLAY_LINE};
+  strut_tree inner = *value;
+  strut_tree key = {.kind = STRUT_TREE_SCALAR, .place = value->place, .text = section};
+  const strut_tree over = {
+      .kind = STRUT_TREE_MAP, .place = value->place, .count = 1, .first = &key};
+  key.next = &inner;
+  inner.next = NULL;
+  strut_tree *whole =
+      strut_lay_over(&overlay, (strut_mapping_kind){STRUT_SECTION_SCENE, false}, root, &over);
+  if (whole) document->root = whole;
+  return whole != NULL;
+}
+
+bool strut_study_measure(strut_study_file *file, const strut_tree *column) {
+  static const char *const path[] = {"measure", "quantities"};
+  strut_tree end = {.place = column->place, .text = "final"},
+             take = {.place = column->place, .text = "take", .next = &end},
+             value = {.place = column->place, .text = column->text, .next = &take},
+             of = {.place = column->place, .text = "of", .next = &value},
+             quantity = {.place = column->place, .kind = STRUT_TREE_MAP, .count = 2, .first = &of},
+             name = *column;
+  strut_tree keys[2], maps[3] = {quantity};
+  name.next = &maps[0];
+  strut_tree *first = &name;
+  for (int i = 1; i >= 0; i--) {
+    strut_tree *map = &maps[2 - i];
+    *map = (strut_tree){.place = column->place, .kind = STRUT_TREE_MAP, .count = 1, .first = first};
+    keys[i] = (strut_tree){.place = column->place, .text = path[i], .next = map};
+    first = &keys[i];
+  }
+  const strut_tree run = {
+      .place = column->place, .kind = STRUT_TREE_MAP, .count = 1, .first = first};
+  bool fine = true;
+  for (size_t i = 0; i < file->source_count && fine; i++)
+    fine = lay_map_over(strut_scene_source_document(file->sources[i]), "run", &run);
+  return fine;
+}
+
+static void split_notes(strut_diagnostics *from, strut_diagnostics *over) {
+  size_t kept = 0;
+  for (size_t i = 0; i < from->note_count; i++) {
+    strut_diagnostic note = from->notes[i];
+    if (note.place.line & STRUT_OVERLAY_LINE) {
+      note.place.line &= ~STRUT_OVERLAY_LINE;
+      strut_note(over, note.place, "%s", note.message);
+    } else {
+      from->notes[kept++] = note;
+    }
+  }
+  from->note_count = kept;
+}
+
+bool strut_overlay_split(strut_diagnostics *from, strut_diagnostics *over) {
+  size_t kept = 0;
+  split_notes(from, over);
+  for (size_t i = 0; i < from->count; i++) {
+    strut_diagnostic item = from->items[i];
+    if (!(item.place.line & STRUT_OVERLAY_LINE)) {
+      from->items[kept++] = item;
+      continue;
+    }
+    item.place.line &= ~STRUT_OVERLAY_LINE;
+    strut_diagnose(over, item.place, "%s", item.message);
+  }
+  from->count = kept;
+  return !over->out_of_memory;
+}
+
+/* Sections of the model that are laid over, and the keys that do so. */
+static const struct {
+  const char *section;
+  int study, variant;
+} sections[] = {{"solver", STRUT_KEY_STUDY_SOLVER, STRUT_KEY_VARIANT_SOLVER},
+                {"run", STRUT_KEY_STUDY_RUN, STRUT_KEY_VARIANT_RUN},
+                {"initial", STRUT_KEY_STUDY_INITIAL, STRUT_KEY_VARIANT_INITIAL},
+                {"output", STRUT_KEY_STUDY_OUTPUT, STRUT_KEY_VARIANT_OUTPUT}};
+
+/* Reads the model's file: below the folder of the study, as all files that a file names. */
+static strut_status read_model(strut_study_reader *r, const strut_tree *name, strut_error *error) {
+  strut_study_file *file = r->file;
+  strut_safe_text text;
+  const char *folder = strut_folder_of(file->path, &file->arena);
+  if (!folder) return STRUT_NO_MEMORY;
+  strut_status status =
+      strut_safe_read(folder, file->path, name->text, STRUT_TEXT_MOST, &text, error);
+  if (status == STRUT_BAD_SCENE) {
+    strut_report_error(r->reader, name->place, "%s", error->message);
+    *error = (strut_error){0}; /* said where it is */
+  }
+  if (status) return status;
+  file->model_path = text.path, file->model_text = text.text, file->model_length = text.length;
+  return STRUT_OK;
+}
+
+static bool lay_over(strut_document *document, const char *section, const strut_slot *slot) {
+  return slot->state != STRUT_GIVEN || lay_map_over(document, section, slot->value);
+}
+
+bool strut_study_is_its_model(const strut_study_file *file) {
+  strut_document document = {0};
+  strut_diagnostics unsaid = {0};
+  strut_diagnostics_source(&unsaid, file->model_path, file->model_text, file->model_length);
+  strut_document_read(&document, &unsaid);
+  bool found = document.root && strut_tree_is_study(document.root);
+  strut_document_free(&document);
+  strut_diagnostics_free(&unsaid);
+  return found;
+}
+
+/* A model whose files are elsewhere could not stand beside the results. False: memory is out. */
+static bool keep_copy(strut_study_file *file, strut_scene_source *source) {
+  if (file->model_copy || !strut_scene_source_uses_files(source)) return true;
+  file->model_copy = strut_tree_write(strut_scene_source_document(source)->root,
+                                      "The model and the files that it uses.");
+  return file->model_copy != NULL;
+}
+
+/* The text of the model as a tree, with the study's keys over it and those of a variant, or NULL. */
+static strut_status open_source(strut_study_reader *r, strut_fields *top, strut_fields *variant) {
+  strut_study_file *file = r->file;
+  strut_scene_source **source = &file->sources[file->source_count];
+  strut_status status = strut_scene_source_open(
+      file->model_path, file->model_text, file->model_length, &file->model_diagnostics, source);
+  if (status == STRUT_BAD_SCENE && strut_study_is_its_model(file)) {
+    strut_diagnostics_free(&file->model_diagnostics);
+    strut_report_error(r->reader, strut_slot_of(top, STRUT_KEY_STUDY_MODEL)->value->place,
+                       "'%s' is a study, expected a model",
+                       strut_sanitised_text(r->reader, file->study.model));
+  }
+  if (status != STRUT_OK) return status;
+  file->source_count++;
+  strut_document *document = strut_scene_source_document(*source);
+  if (!keep_copy(file, *source)) return STRUT_NO_MEMORY;
+  for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
+    const char *section = sections[i].section;
+    if (!lay_over(document, section, strut_slot_of(top, sections[i].study)) ||
+        (variant && !lay_over(document, section, strut_slot_of(variant, sections[i].variant))))
+      return STRUT_NO_MEMORY;
+  }
+  return STRUT_OK;
+}
+
+/* Names stand in the table, as texts of axes do. */
+static void check_name(strut_study_reader *r, const strut_tree *key) {
+  strut_read_name(r->reader, key, "variant");
+  if (strlen(key->text) >= 24)
+    strut_report_error(r->reader, key->place,
+                       "names of variants may have at most 23 bytes, found %zu", strlen(key->text));
+}
+
+static strut_status open_variants(strut_study_reader *r, strut_fields *top,
+                                  const strut_tree *variants) {
+  strut_status status = STRUT_OK;
+  for (const strut_tree *key = variants->first; key && status == STRUT_OK; key = key->next->next) {
+    strut_fields fields;
+    strut_owner owner = {"variant", key->text};
+    check_name(r, key);
+    strut_read_fields(r->reader, STRUT_SECTION_VARIANT, key->next, owner, &fields);
+    r->variant_names[r->variant_count++] = key->text;
+    status = open_source(r, top, &fields);
+  }
+  return status;
+}
+
+strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top,
+                                      strut_error *error) {
+  strut_study_file *file = r->file;
+  const strut_slot *model = strut_slot_of(top, STRUT_KEY_STUDY_MODEL);
+  const strut_slot *variants = strut_slot_of(top, STRUT_KEY_STUDY_VARIANTS);
+  size_t count = variants->state == STRUT_GIVEN ? variants->value->count : 0;
+  if (variants->state == STRUT_GIVEN && !count)
+    strut_report_error(r->reader, variants->value->place, "there are no variants in 'variants'");
+  if (model->state != STRUT_GIVEN) return STRUT_BAD_SCENE;
+  strut_status status = read_model(r, model->value, error);
+  if (status != STRUT_OK) return status;
+  file->sources = strut_reader_allocate(r->reader, &file->arena, count + 1, sizeof *file->sources);
+  r->variant_names =
+      strut_reader_allocate(r->reader, &file->arena, count + 1, sizeof *r->variant_names);
+  if (!file->sources || !r->variant_names) return STRUT_NO_MEMORY;
+  status = count ? open_variants(r, top, variants->value) : open_source(r, top, NULL);
+  if (status == STRUT_OK)
+    r->declared = strut_scene_source_parameters(file->sources[0], &r->declared_count);
+  return status;
+}
+
+/* ---- texts of a study: identity, copy, messages ---- */
+
+static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+/* First and last byte of a node's text. */
+static void find_span(const strut_study_file *file, strut_place place, size_t *from, size_t *to) {
+  strut_cursor at = strut_cursor_begin(file->text, file->length);
+  strut_cursor_to_line(&at, place.line);
+  while (at.column < place.column && strut_cursor_step(&at)) continue;
+  *from = at.offset;
+  strut_cursor_to_index(&at, at.index + place.length);
+  *to = at.offset;
+  while (*to > *from && is_blank(file->text[*to - 1])) --*to; /* of a block */
+}
+
+/* One line of comment; what would end it becomes a blank. */
+static void put_note(strut_writer *w, const char *what, const char *text, const char *value) {
+  const char *const parts[] = {text, value ? "=" : "", value ? value : ""};
+  strut_put(w, "# ");
+  strut_put(w, what);
+  for (int i = 0; i < 3; i++)
+    for (const char *at = parts[i]; *at;) {
+      size_t length = 0, left = strlen(at), end = 0;
+      while (at[length] && !end)
+        if ((end = strut_text_break(at + length, left - length)) == 0) length++;
+      strut_put_part(w, at, length);
+      if (end) strut_put(w, " ");
+      at += length + end;
+    }
+  strut_put(w, "\n");
+}
+
+/* A part of the study's text that its copy replaces. */
+typedef struct replacement {
+  size_t from, to;
+  const char *text;
+} replacement;
+
+static void replace_node(const strut_study_file *file, const strut_tree *node, const char *text,
+                         replacement *list, size_t *count) {
+  replacement new = {.text = text};
+  if (!node || strcmp(node->text, text) == 0) return;
+  find_span(file, node->place, &new.from, &new.to);
+  size_t at = (*count)++;
+  for (; at > 0 && list[at - 1].from > new.from; at--) list[at] = list[at - 1];
+  list[at] = new;
+}
+
+char *strut_study_copy(const strut_study_file *file, const char *model, const char *const *words,
+                       size_t word_count) {
+  strut_writer w = {.scene = NULL};
+  const strut_tree *node = strut_tree_find(file->document.root, "model", NULL);
+  replacement *list = strut_allocate(file->table_count + 1, sizeof *list);
+  size_t count = 0, done = 0;
+  if (!list) return NULL;
+  replace_node(file, node, model, list, &count);
+  for (size_t i = 0; i < file->table_count; i++)
+    replace_node(file, file->tables[i].node, file->tables[i].copy, list, &count);
+  for (size_t i = 0; i < count; i++) {
+    strut_put_part(&w, file->text + done, list[i].from - done);
+    strut_put(&w, list[i].text);
+    done = list[i].to;
+  }
+  strut_put_part(&w, file->text + done, file->length - done);
+  strut_release(list);
+  if (count || word_count) strut_put(&w, "\n");
+  if (node && strcmp(node->text, model) != 0)
+    put_note(&w, "A copy; its model was ", node->text, NULL);
+  for (size_t i = 0; i < file->table_count; i++)
+    if (strcmp(file->tables[i].node->text, file->tables[i].copy) != 0)
+      put_note(&w, "A copy; a file of points was ", file->tables[i].node->text, NULL);
+  for (size_t i = 0; i + 1 < word_count; i += 2) {
+    bool set = strcmp(words[i], "--set") == 0;
+    put_note(&w, set ? "It was run with --set " : "It was run with ", words[i + set],
+             set ? NULL : words[i + 1]);
+  }
+  return strut_buffer_take(&w.out);
+}
+
+static void put_number(strut_writer *w, double value) {
+  char text[STRUT_NUMBER_TEXT];
+  strut_number_text(value, text);
+  strut_put(w, text);
+  strut_put(w, " ");
+}
+
+/* Texts are preceded by their length, so that different trees give different texts. */
+static void put_word(strut_writer *w, const char *text) {
+  put_number(w, (double)strlen(text));
+  strut_put(w, text);
+  strut_put(w, "\n");
+}
+
+static void put_tree(strut_writer *w, const strut_tree *node) {
+  static const char *const kinds[] = {"scalar", "list", "map"};
+  strut_put(w, kinds[node->kind]);
+  strut_put(w, node->quoted ? " quoted " : " ");
+  if (node->kind == STRUT_TREE_SCALAR) {
+    put_word(w, node->text);
+    return;
+  }
+  put_number(w, (double)node->count);
+  for (const strut_tree *child = node->first; child; child = child->next) put_tree(w, child);
+}
+
+static void put_axis(strut_writer *w, const strut_study_axis *axis) {
+  put_number(w, (double)axis->count);
+  for (size_t i = 0; i < axis->column_count; i++) {
+    const strut_study_column *c = &axis->columns[i];
+    put_word(w, c->name);
+    put_word(w, c->unit);
+    put_number(w, (double)c->kind);
+    put_number(w, c->from);
+    put_number(w, c->to);
+    put_number(w, c->step);
+    for (int64_t k = 0; c->kind == STRUT_RANGE_LIST && k < axis->count; k++) {
+      if (c->word)
+        put_word(w, c->words[k]);
+      else
+        put_number(w, c->number[k]);
+    }
+  }
+}
+
+/* What is computed where it is no run. */
+static void put_computed(strut_writer *w, const strut_study *study) {
+  if (study->compute == STRUT_COMPUTE_RUN) return;
+  put_number(w, (double)study->compute);
+  put_number(w, (double)study->lowest);
+  put_word(w, study->at ? study->at : "");
+  put_word(w, study->path.load ? study->path.load : "");
+  put_word(w, study->path.over ? study->path.over : "");
+  put_number(w, study->path.from);
+  put_number(w, study->path.until);
+  put_word(w, study->path.from_unit ? study->path.from_unit : "");
+  put_word(w, study->path.until_unit ? study->path.until_unit : "");
+  put_number(w, study->path.from_given + 2 * study->path.until_given);
+  put_number(w, (double)study->path.steps);
+  put_number(w, (double)study->form.from);
+  put_number(w, (double)study->form.objective);
+  put_number(w, study->form.least_tension);
+  put_number(w, study->form.least_density);
+}
+
+/* What is searched; the goal decides the column `objective`. */
+static void put_search(strut_writer *w, const strut_study_search *search) {
+  put_number(w, search->maximise);
+  put_word(w, search->goal.text);
+  if (search->second.text) put_word(w, search->second.text);
+  for (size_t i = 0; i < search->condition_count; i++) put_word(w, search->conditions[i].text);
+  for (size_t i = 0; i < search->variable_count; i++) {
+    const strut_search_variable *v = &search->variables[i];
+    put_word(w, v->name);
+    put_number(w, v->from);
+    put_number(w, v->to);
+    put_number(w, v->start);
+    put_number(w, v->logarithmic + 2 * v->wraps + 4 * v->integer);
+    for (size_t k = 0; k < v->choice_count; k++) {
+      if (v->word)
+        put_word(w, v->words[k]);
+      else
+        put_number(w, v->numbers[k]);
+    }
+  }
+  put_number(w, (double)search->method);
+  put_number(w, (double)search->starts);
+  put_number(w, (double)search->evaluations);
+  put_number(w, (double)search->seed);
+}
+
+/* What is followed at each point. */
+static void put_follow(strut_writer *w, const strut_study_follow *f) {
+  put_word(w, f->over);
+  put_number(w, f->from);
+  put_number(w, f->to);
+  put_number(w, (double)f->at_count);
+  for (size_t i = 0; i < f->at_count; i++) put_number(w, f->at[i]);
+  for (size_t i = 0; i < f->start_count; i++) put_word(w, f->start_from[i]);
+  put_number(w, f->accuracy);
+  put_word(w, f->integrator ? f->integrator : "");
+  put_number(w, (double)f->steps);
+  put_number(w, f->basins);
+}
+
+char *strut_study_identity(const strut_study_file *file) {
+  strut_writer w = {.scene = NULL};
+  const strut_study *study = &file->study;
+  for (size_t i = 0; i < file->source_count; i++)
+    put_tree(&w, strut_scene_source_document(file->sources[i])->root);
+  for (size_t i = 0; i < file->setting_count; i++) {
+    put_word(&w, file->settings[i].name);
+    put_word(&w, file->settings[i].text);
+  }
+  for (size_t i = 0; i < study->axis_count; i++) put_axis(&w, &study->axes[i]);
+  for (size_t i = 0; i < STRUT_KEEP_WORDS; i++) {
+    put_number(&w, (double)(study->keep.bits[i] >> 32));
+    put_number(&w, (double)(study->keep.bits[i] & UINT32_MAX));
+  }
+  for (size_t i = 0; i < study->quantity_count; i++) put_word(&w, study->quantities[i]);
+  put_number(&w, study->trajectories);
+  put_number(&w, study->half_step);
+  put_number(&w, study->check_accuracy);
+  put_computed(&w, study);
+  if (study->refine.depth) {
+    put_number(&w, (double)study->refine.depth);
+    put_number(&w, study->refine.by);
+    put_word(&w, study->refine.where);
+  }
+  if (study->search) put_search(&w, study->search);
+  if (study->follow) put_follow(&w, study->follow);
+  if (study->limit.evaluations) put_number(&w, (double)study->limit.evaluations);
+  return strut_buffer_take(&w.out);
+}

@@ -1,0 +1,336 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is wrong with a text before it is a tree: characters, directives, and syntax in plain words. */
+#include <string.h>
+
+#include "parser/language/yaml/document_parts.h"
+#include "parser/language/yaml/text.h"
+
+/* Most forbidden characters that are reported. */
+enum { REPORT_MOST = 10 };
+
+static strut_place place_of(const strut_cursor *cursor) {
+  return strut_place_at(cursor->line, cursor->column, 1);
+}
+
+/* Byte offset of the first character at or after `at` that is not allowed, or the length. */
+static size_t find_forbidden(const char *text, size_t length, size_t at, uint32_t *code) {
+  while (at < length) {
+    unsigned char byte = (unsigned char)text[at];
+    if (byte >= 0x20 && byte < 0x7F) {
+      at++;
+      continue;
+    }
+    size_t size = strut_text_decode(text + at, length - at, code);
+    if (*code == STRUT_BAD_CODE || strut_text_forbidden(*code)) return at;
+    at += size;
+  }
+  return length;
+}
+
+/* Reports one character; false if the following ones would be reported likewise. */
+static bool report_character(strut_diagnostics *diagnostics, const strut_cursor *cursor,
+                             uint32_t code) {
+  unsigned byte = (unsigned char)cursor->text[cursor->offset];
+  if (code == STRUT_BAD_CODE) {
+    strut_diagnose(diagnostics, place_of(cursor),
+                   "byte 0x%02X is not valid UTF-8; save the file as UTF-8", byte);
+    return false;
+  }
+  if (code == 0)
+    strut_diagnose(diagnostics, place_of(cursor), "a NUL byte is not allowed");
+  else if (code == 0xFEFF)
+    strut_diagnose(diagnostics, place_of(cursor),
+                   "a byte order mark is allowed only at the beginning of the file");
+  else
+    strut_diagnose(diagnostics, place_of(cursor), "control character U+%04X is not allowed",
+                   (unsigned)code);
+  return true;
+}
+
+static bool scan_characters(strut_diagnostics *diagnostics) {
+  const char *text = diagnostics->text;
+  size_t length = diagnostics->length, at = strut_text_mark(text, length);
+  strut_cursor cursor = strut_cursor_begin(text, length);
+  uint32_t code = 0;
+  int reported = 0;
+  while ((at = find_forbidden(text, length, at, &code)) < length && reported < REPORT_MOST) {
+    strut_cursor_to_offset(&cursor, at);
+    reported++;
+    if (!report_character(diagnostics, &cursor, code)) break;
+    at += strut_text_decode(text + at, length - at, &code);
+  }
+  return reported == 0;
+}
+
+/*
+ * Directives stand before the document: libyaml is quadratic in their number, and one %YAML is all
+ * that anybody needs.
+ */
+static bool scan_directives(strut_diagnostics *diagnostics) {
+  strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+  bool seen = false;
+  while (cursor.offset < cursor.length) {
+    const char *line = cursor.text + cursor.offset;
+    size_t left = cursor.length - cursor.offset;
+    size_t blanks = 0;
+    while (blanks < left && (line[blanks] == ' ' || line[blanks] == '\t')) blanks++;
+    bool nothing =
+        blanks == left || line[blanks] == '#' || strut_text_break(line + blanks, left - blanks);
+    if (*line == '%') {
+      bool version = left > 6 && memcmp(line, "%YAML ", 6) == 0;
+      if (!version || seen) {
+        strut_diagnose(
+            diagnostics, place_of(&cursor),
+            version ? "a second %%YAML line" : "directives such as %%TAG are not allowed");
+        return false;
+      }
+      seen = true;
+    } else if (!nothing) {
+      return true;
+    }
+    strut_cursor_to_line(&cursor, cursor.line + 1);
+  }
+  return true;
+}
+
+bool strut_document_scan(strut_diagnostics *diagnostics) {
+  const char *text = diagnostics->text;
+  size_t length = diagnostics->length;
+  if (length > STRUT_TEXT_MOST) {
+    strut_diagnose(diagnostics, (strut_place){0}, "the text has %zu MiB, at most %zu are read",
+                   length >> 20, STRUT_TEXT_MOST >> 20);
+    return false;
+  }
+  bool wide =
+      length >= 4 && (memcmp(text, "\xFF\xFE\0\0", 4) == 0 || memcmp(text, "\0\0\xFE\xFF", 4) == 0);
+  if (wide) {
+    strut_diagnose(diagnostics, (strut_place){0}, "the file is UTF-32; save it as UTF-8");
+    return false;
+  }
+  if (length >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0)) {
+    strut_diagnose(diagnostics, (strut_place){0}, "the file is UTF-16; save it as UTF-8");
+    return false;
+  }
+  return scan_characters(diagnostics) && scan_directives(diagnostics);
+}
+
+/* libyaml's problem and context, and the message that replaces them. */
+static const struct rule {
+  const char *problem, *context; /* stretches of libyaml's words; NULL: any */
+  const char *message;
+  const char *begun; /* what began in the context's line, appended; or NULL */
+  bool at_context;   /* the place is where the context begins */
+  bool is_key;       /* the place is that of a key without a value */
+  bool at_margin; /* holds only at the beginning of a line; elsewhere a value is followed by text */
+} rules[] = {
+    {.problem = "mapping values are not allowed",
+     .message = "unexpected ':'; a key begins a new line, and a text that holds ': ' needs quotes"},
+    {.problem = "tab character", .message = "a tab is not allowed as indentation; use spaces"},
+    {.problem = "end of stream",
+     .context = "quoted scalar",
+     .at_context = true,
+     .message = "this quote is never closed"},
+    {.problem = "document indicator",
+     .context = "quoted scalar",
+     .at_context = true,
+     .message = "this quote is not closed before the document ends"},
+    {.problem = "expected ',' or ']'",
+     .begun = "the list that begins",
+     .message = "expected ',' or ']'"},
+    {.problem = "expected ',' or '}'",
+     .begun = "the mapping that begins",
+     .message = "expected ',' or '}'"},
+    {.problem = "could not find expected ':'",
+     .at_context = true,
+     .is_key = true,
+     .message = "expected ':' and a value after this key"},
+    {.problem = "expected key",
+     .begun = "the mapping that begins",
+     .at_margin = true,
+     .message = "expected a key at the same indentation as the other keys"},
+    {.problem = "expected '-' indicator",
+     .begun = "the list that begins",
+     .at_margin = true,
+     .message = "expected '- ' at the same indentation as the other items"},
+    {.problem = "block sequence entries are not allowed",
+     .message = "a '- ' item is not allowed here; begin it on a new line, or write [a, b]"},
+    {.problem = "mapping keys are not allowed", .message = "a '? ' key is not allowed here"},
+    {.problem = "expected node content", .message = "a value is missing here"},
+    {.problem = "unknown escape character",
+     .message = "unknown escape; in double quotes a backslash is written '\\\\'"},
+    {.problem = "hexdecimal number",
+     .context = "quoted scalar",
+     .message = "an escape lacks hexadecimal digits"},
+    {.problem = "invalid Unicode", .message = "the escape is not a character of Unicode"},
+    {.problem = "alphabetic or numeric character",
+     .context = "anchor",
+     .message = "expected a name after '&'; a text that begins with '&' needs quotes"},
+    {.problem = "alphabetic or numeric character",
+     .context = "alias",
+     .message = "expected a name after '*'; a text that begins with '*' needs quotes"},
+    {.problem = "undefined tag handle",
+     .message = "tags (words that begin with '!') are not allowed"},
+    {.context = "a tag", .message = "tags (words that begin with '!') are not allowed"},
+    {.problem = "incompatible YAML document", .message = "only YAML 1.1 and 1.2 can be read"},
+    {.context = "directive", .message = "expected '%YAML 1.2'"},
+    {.problem = "<document start>", .message = "expected '---' after a %YAML line"},
+    {.context = "block scalar", .message = "expected '|' or '>' and then a new line"},
+};
+
+static bool has(const char *text, const char *part) {
+  return !part || (text && strstr(text, part));
+}
+
+static strut_place place_at(const strut_diagnostics *diagnostics, yaml_mark_t mark, char *here) {
+  strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+  strut_cursor_to_index(&cursor, mark.index);
+  *here = cursor.offset < cursor.length ? cursor.text[cursor.offset] : '\0';
+  return strut_place_at((uint32_t)mark.line + 1, (uint32_t)mark.column + 1, 1);
+}
+
+/* "found character that cannot start any token" */
+static void report_start(strut_diagnostics *diagnostics, strut_place place, char here) {
+  if (here == '\t')
+    strut_diagnose(diagnostics, place, "a tab is not allowed as indentation; use spaces");
+  else
+    strut_diagnose(diagnostics, place, "a value cannot begin with '%c'; put it in quotes", here);
+}
+
+/* True if the line has anything but blanks before the place. */
+static bool behind_something(const strut_diagnostics *diagnostics, strut_place place) {
+  strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+  strut_cursor_to_line(&cursor, place.line);
+  while (cursor.line == place.line && cursor.column < place.column) {
+    char c = cursor.offset < cursor.length ? cursor.text[cursor.offset] : ' ';
+    if (c != ' ' && c != '\t') return true;
+    if (!strut_cursor_step(&cursor)) break;
+  }
+  return false;
+}
+
+/* Is the word at the place followed by a colon without a space after it, as in `mass:1 kg`? */
+static bool lacks_space(const strut_diagnostics *diagnostics, strut_place place) {
+  strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+  strut_cursor_to_line(&cursor, place.line);
+  while (cursor.column < place.column && strut_cursor_step(&cursor)) continue;
+  const char *text = cursor.text + cursor.offset, *end = diagnostics->text + diagnostics->length;
+  while (text < end && *text && !strchr(": \t\r\n", *text)) text++;
+  return text + 1 < end && text[0] == ':' && !strchr(" \t\r\n", text[1]);
+}
+
+bool strut_document_syntax_error(const yaml_parser_t *parser, const strut_tree *open,
+                                 strut_diagnostics *diagnostics) {
+  if (parser->error == YAML_MEMORY_ERROR) return false;
+  char here;
+  strut_place place = place_at(diagnostics, parser->problem_mark, &here);
+  if (has(parser->problem, "cannot start any token")) {
+    report_start(diagnostics, place, here);
+    return true;
+  }
+  if (here == '\0' && open && !has(parser->context, "quoted scalar")) {
+    /* At the end of the text the open bracket is reported, at its place. */
+    strut_diagnose(diagnostics, open->place, "this '%c' is never closed",
+                   open->kind == STRUT_TREE_LIST ? '[' : '{');
+    return true;
+  }
+  for (size_t i = 0; i < sizeof rules / sizeof rules[0]; i++) {
+    const struct rule *rule = &rules[i];
+    if (!has(parser->problem, rule->problem) || !has(parser->context, rule->context)) continue;
+    if (rule->at_context) place = place_at(diagnostics, parser->context_mark, &here);
+    if (rule->is_key && lacks_space(diagnostics, place)) {
+      strut_diagnose(diagnostics, place, "this key needs a space after its colon");
+      return true;
+    }
+    if (rule->at_margin && behind_something(diagnostics, place))
+      strut_diagnose(diagnostics, place, "unexpected text after a value");
+    else if (rule->begun)
+      strut_diagnose(diagnostics, place, "%s (%s in line %zu)", rule->message, rule->begun,
+                     parser->context_mark.line + 1);
+    else
+      strut_diagnose(diagnostics, place, "%s", rule->message);
+    return true;
+  }
+  strut_diagnose(diagnostics, place, "not valid YAML: %s%s%s",
+                 parser->problem ? parser->problem : "unknown trouble", parser->context ? " " : "",
+                 parser->context ? parser->context : "");
+  return true;
+}
+
+/* The keys of a mapping: none twice, none empty. */
+
+enum { FEW_KEYS = 8 };
+
+uint64_t strut_document_hash(const char *text, size_t length, uint64_t seed) {
+  uint64_t hash = seed ^ UINT64_C(0xCBF29CE484222325);
+  for (size_t i = 0; i < length; i++)
+    hash = (hash ^ (unsigned char)text[i]) * UINT64_C(0x100000001B3);
+  hash ^= hash >> 32;
+  hash *= UINT64_C(0x9E3779B97F4A7C15);
+  return hash ^ hash >> 29;
+}
+
+static bool clear_table(strut_key_table *table, size_t count) {
+  size_t capacity = 32;
+  while (capacity < 2 * count) capacity *= 2;
+  if (capacity > table->capacity) {
+    strut_release(table->slots);
+    table->slots = strut_allocate(capacity, sizeof(strut_tree *));
+    table->capacity = table->slots ? capacity : 0;
+    return table->slots != NULL;
+  }
+  memset(table->slots, 0, capacity * sizeof(strut_tree *));
+  return true;
+}
+
+/* An earlier key of the same text; otherwise NULL, and `key` is stored. */
+static strut_tree *find_or_add_key(strut_key_table *table, size_t mask, strut_tree *key) {
+  size_t slot = (size_t)strut_document_hash(key->text, strlen(key->text), table->seed) & mask;
+  for (; table->slots[slot]; slot = (slot + 1) & mask)
+    if (strcmp(table->slots[slot]->text, key->text) == 0) return table->slots[slot];
+  table->slots[slot] = key;
+  return NULL;
+}
+
+static strut_tree *find_among_few(strut_tree *map, strut_tree *key) {
+  for (strut_tree *other = map->first; other != key; other = other->next->next)
+    if (strcmp(other->text, key->text) == 0) return other;
+  return NULL;
+}
+
+/* Longest stretch of a key that a message repeats, in bytes. */
+enum { SHOWN_MOST = 64 };
+
+static bool refuse_key(strut_tree *key, strut_tree *earlier, strut_diagnostics *diagnostics) {
+  bool plain = !key->quoted;
+  if (plain && key->text[0] == '\0')
+    strut_diagnose(diagnostics, key->place, "a key is missing before this ':'");
+  else if (plain && strcmp(key->text, "<<") == 0)
+    strut_diagnose(diagnostics, key->place,
+                   "'<<' is not allowed; use groups to share keys between things");
+  else if (earlier)
+    strut_diagnose(diagnostics, key->place, "duplicate key '%.*s'; the first one is in line %u",
+                   strut_text_cut(key->text, SHOWN_MOST), key->text, earlier->place.line);
+  else
+    return false;
+  return true;
+}
+
+bool strut_document_check_keys(strut_tree *map, strut_key_table *table,
+                               strut_diagnostics *diagnostics) {
+  bool few = map->count <= FEW_KEYS;
+  if (!few && !clear_table(table, map->count)) return false;
+  size_t mask = 31;
+  while (mask + 1 < 2 * (size_t)map->count) mask = 2 * mask + 1;
+  strut_tree **link = &map->first;
+  while (*link) {
+    strut_tree *key = *link;
+    strut_tree *earlier = few ? find_among_few(map, key) : find_or_add_key(table, mask, key);
+    if (refuse_key(key, earlier, diagnostics)) {
+      *link = key->next->next;
+      map->count--;
+    } else {
+      link = &key->next->next;
+    }
+  }
+  return true;
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * What the files of the document reader share; nobody else includes it.
+ */
+#ifndef STRUT_PARSER_YAML_DOCUMENT_PARTS_H
+#define STRUT_PARSER_YAML_DOCUMENT_PARTS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <yaml.h>
+
+#include "engine/base/status.h"
+#include "parser/language/yaml/document.h"
+
+/** Reports what must not reach libyaml: bad UTF-8, control characters, directives. False if any. */
+bool strut_document_scan(strut_diagnostics *diagnostics);
+
+/**
+ * Turns libyaml's error into one located message. `open` is the innermost bracketed list or mapping
+ * that is open, or NULL. False: memory was out.
+ */
+bool strut_document_syntax_error(const yaml_parser_t *parser, const strut_tree *open,
+                                 strut_diagnostics *diagnostics);
+
+/** Not the same from seed to seed, so that no text can be made to collide on purpose. */
+uint64_t strut_document_hash(const char *text, size_t length, uint64_t seed);
+
+/** A hash table of the keys of a map, reused for the next map. Zero but for the seed; release `slots`. */
+typedef struct strut_key_table {
+  strut_tree **slots;
+  size_t capacity;
+  uint64_t seed;
+} strut_key_table;
+
+/** Reports keys that may not be, and takes them out of the map. False: memory is out. */
+bool strut_document_check_keys(strut_tree *map, strut_key_table *table,
+                               strut_diagnostics *diagnostics);
+
+#endif

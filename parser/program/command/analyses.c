@@ -1,0 +1,507 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/program/command/analyses.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/memory.h"
+#include "engine/base/number_text.h"
+#include "engine/output/figures/statics_figures.h"
+#include "engine/output/path_csv.h"
+#include "engine/output/result_values.h"
+#include "engine/scene/things.h"
+#include "parser/language/yaml/diagnostics.h"
+
+strut_status strut_analysis_compute(strut_analysis *a, strut_error *error) {
+  strut_status status = a->kind->compute(a, error);
+  a->arguments = NULL;
+  return status;
+}
+
+void strut_analysis_free(strut_analysis *a) {
+  if (a->kind && a->kind->release) a->kind->release(a);
+  strut_varied_scenes_free(&a->scenes);
+  strut_arena_free(&a->arena);
+}
+
+/* ---- options ---- */
+
+static const char *node_name_at(const void *context, size_t i) {
+  const strut_scene *scene = context;
+  return i < scene->node_count ? scene->nodes[i].name : NULL;
+}
+
+static strut_status refuse_node(const strut_arguments *arguments, const strut_scene *scene,
+                                const char *name, const char *why) {
+  const char *near = strut_did_you_mean(name, node_name_at, scene);
+  if (near && strcmp(near, name) == 0) near = NULL;
+  return strut_usage_error(arguments, "--supports: %s '%s'%s%s%s", why, name,
+                           near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+}
+
+/* "n1,n4" as nodes, in the scene's arena; *set stays NULL without --supports. */
+static strut_status read_supports(const strut_arguments *arguments, strut_scene *scene,
+                                  strut_node_set **set) {
+  const char *text = arguments->supports;
+  if (!text) return STRUT_OK;
+  size_t most = strlen(text) + 1;
+  strut_node_set *to = strut_arena_allocate(&scene->arena, 1, sizeof *to);
+  char *word = strut_arena_allocate(&scene->arena, most, 1);
+  if (to) to->node = strut_arena_allocate(&scene->arena, most, sizeof *to->node);
+  if (!to || !word || !to->node) {
+    strut_tell(arguments->listener, STRUT_MESSAGE_ERROR, NULL, "out of memory");
+    return STRUT_NO_MEMORY;
+  }
+  for (const char *at = text;; at++) {
+    size_t length = strcspn(at, ","), found = 0;
+    memcpy(word, at, length);
+    word[length] = '\0';
+    while (found < scene->node_count && strcmp(scene->nodes[found].name, word) != 0) found++;
+    if (found == scene->node_count) return refuse_node(arguments, scene, word, "there is no node");
+    for (size_t i = 0; i < to->count; i++)
+      if (to->node[i] == (int32_t)found) return refuse_node(arguments, scene, word, "named twice:");
+    to->node[to->count++] = (int32_t)found;
+    at += length;
+    if (!*at) break;
+  }
+  *set = to;
+  return STRUT_OK;
+}
+
+strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
+                                    const strut_experiment *experiment, strut_arena *arena,
+                                    strut_named_shape *shape, strut_error *error) {
+  const char *name = arguments->at;
+  strut_rest_state stand = {0};
+  strut_status status =
+      strut_rest_state_find(model, experiment, name ? name : "drawn", arena, &stand, error);
+  if (status != STRUT_OK) return status;
+  *shape = (strut_named_shape){.name = stand.name, .q = stand.q};
+  return STRUT_OK;
+}
+
+/* Everything that --over may name: candidates for suggestions. */
+typedef struct candidates {
+  const strut_scene *scene;
+  strut_arena *arena; /* for "node.x" */
+} candidates;
+
+static const char *candidate_at(const void *context, size_t i) {
+  const candidates *c = context;
+  const strut_scene *scene = c->scene;
+  if (i < scene->parameter_count) return scene->parameters[i].name;
+  i -= scene->parameter_count;
+  if (i < scene->actuator_count) return scene->actuators[i].name;
+  i -= scene->actuator_count;
+  if (i >= 2 * scene->node_count) return NULL;
+  return strut_arena_format(c->arena, "%s.%c", scene->nodes[i / 2].name, i % 2 ? 'y' : 'x');
+}
+
+static strut_status reject_name(const strut_arguments *arguments, const strut_scene *scene,
+                                const char *name) {
+  strut_arena arena = {0};
+  const candidates all = {.scene = scene, .arena = &arena};
+  if (strut_thing_find(scene, STRUT_THING_LOAD, name) >= 0)
+    return strut_usage_error(arguments, "--over: '%s' is a load; use --load %s", name, name);
+  const char *near = strut_did_you_mean(name, candidate_at, &all);
+  strut_usage_error(arguments,
+                    "--over: no parameter, actuator, or coordinate of a node (such as '%s.x') is "
+                    "called '%s'%s%s%s",
+                    scene->node_count ? scene->nodes[0].name : "node", name,
+                    near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+  strut_arena_free(&arena);
+  return STRUT_USAGE;
+}
+
+static strut_status choose_followed(const strut_arguments *arguments, const strut_scene *scene,
+                                    const char *name, strut_varied_scenes *scenes,
+                                    strut_path_options *wanted, strut_dimension *dimension) {
+  const strut_parameter *parameter = strut_find_parameter(scene, name);
+  *dimension = STRUT_DIM_LENGTH;
+  if (parameter && !isfinite(parameter->value))
+    return strut_usage_error(arguments, "--over: parameter '%s' is a text, expected a number",
+                             name);
+  if (parameter) {
+    wanted->over = STRUT_PATH_OVER_SCENE;
+    wanted->name = parameter->name;
+    wanted->from = parameter->value;
+    wanted->scene_at = strut_varied_scenes_at;
+    wanted->context = scenes;
+    scenes->purpose = STRUT_FOR_STATICS;
+    strut_status status = strut_varied_scenes_open(arguments, &wanted->name, 1, scenes, dimension);
+    wanted->unit = strut_unit_of(*dimension);
+    return status;
+  }
+  wanted->over = STRUT_PATH_OVER_ACTUATOR;
+  wanted->index = strut_thing_find(scene, STRUT_THING_ACTUATOR, name);
+  if (wanted->index >= 0) {
+    const strut_actuator *a = &scene->actuators[wanted->index];
+    if (a->member < 0) *dimension = a->hinge >= 0 ? STRUT_DIM_ANGLE : STRUT_DIM_STIFFNESS;
+    return STRUT_OK;
+  }
+  wanted->over = STRUT_PATH_OVER_COORDINATE;
+  wanted->index = strut_coordinate_find(scene, name);
+  return wanted->index >= 0 ? STRUT_OK : reject_name(arguments, scene, name);
+}
+
+/* NODE.x=VALUE */
+static strut_status read_stop(const strut_arguments *arguments, const strut_scene *scene,
+                              strut_path_stop *stop) {
+  const char *text = arguments->stop;
+  strut_arena arena = {0};
+  if (!text) return STRUT_OK;
+  const char *equal = strrchr(text, '=');
+  const char *name = equal ? strut_arena_text(&arena, text, (size_t)(equal - text)) : NULL;
+  stop->coordinate = name ? strut_coordinate_find(scene, name) : -1;
+  stop->given = true;
+  bool number = equal &&
+                strut_quantities_read(equal + 1, STRUT_DIM_LENGTH, &stop->displacement, 1) == 1 &&
+                isfinite(stop->displacement) && stop->displacement != 0.0;
+  strut_arena_free(&arena);
+  if (stop->coordinate >= 0 && number) return STRUT_OK;
+  return strut_usage_error(arguments,
+                           "--stop expects a node's displacement, not 0, such as %s.x=10mm, not "
+                           "'%s'",
+                           scene->node_count ? scene->nodes[0].name : "node", text);
+}
+
+static strut_status read_followed(const strut_arguments *arguments, const strut_scene *scene,
+                                  strut_varied_scenes *scenes, strut_path_options *wanted) {
+  const strut_given_range *over = &arguments->over;
+  const char *name = over->text ? over->name : NULL;
+  const char *from = over->high ? over->low : arguments->from;
+  const char *until = over->high ? over->high : arguments->until;
+  strut_dimension dimension = STRUT_DIM_NONE;
+  strut_status status = STRUT_OK;
+  wanted->load = arguments->load;
+  wanted->until = 1.0;
+  if (over->high && (arguments->from || arguments->until))
+    return strut_usage_error(arguments,
+                             "give either --over WHAT=FROM..UNTIL, or --from and --until");
+  if (name && wanted->load)
+    return strut_usage_error(arguments, "give either --load or --over, not both");
+  if (name) status = choose_followed(arguments, scene, name, scenes, wanted, &dimension);
+  if (!status && name && !until) {
+    const char *example = strut_dimension_example(dimension);
+    return strut_usage_error(arguments, "missing --until VALUE, the end value of %s%s%s%s", name,
+                             example ? ": such as --until \"" : "", example ? example : "",
+                             example ? "\"" : "");
+  }
+  if (!status)
+    status = strut_quantity_read(arguments, over->high ? "over" : "from", from, dimension,
+                                 &wanted->from);
+  if (!status)
+    status = strut_quantity_read(arguments, over->high ? "over" : "until", until, dimension,
+                                 &wanted->until);
+  if (!status &&
+      !(isfinite(wanted->from) && isfinite(wanted->until) && wanted->from != wanted->until))
+    return strut_usage_error(arguments, "--from and --until are equal");
+  return status ? status : read_stop(arguments, scene, &wanted->stop);
+}
+
+/* ---- equilibria ---- */
+
+static strut_status compute_equilibria(strut_analysis *a, strut_error *error) {
+  const strut_arguments *arguments = a->arguments;
+  const uint64_t seed =
+      arguments->seed.text ? (uint64_t)arguments->seed.value : a->setup->experiment.search.seed;
+  strut_node_set *set = NULL;
+  strut_status status = read_supports(arguments, &a->setup->scene, &set);
+  if (status != STRUT_OK) return status;
+  const strut_equilibria_options wanted = {.starts = arguments->starts.value,
+                                           .seed = &seed,
+                                           .supports = set,
+                                           .interrupt = a->setup->experiment.interrupt};
+  status =
+      strut_equilibria_find(a->model, &a->setup->experiment, &wanted, &a->result.equilibria, error);
+  a->result.equilibria.shows_all = arguments->all;
+  return status;
+}
+
+static strut_status judge_equilibria(const strut_analysis *a, strut_error *error) {
+  const strut_equilibria *all = &a->result.equilibria;
+  return all->count > 0 ? STRUT_OK : strut_fail(error, STRUT_NOT_SETTLED, "%s", all->remark);
+}
+
+static const strut_value_rows *equilibria_values(const strut_analysis *a, const void **result) {
+  *result = &a->result.equilibria;
+  return &strut_equilibria_values;
+}
+
+static void warn_of_equilibria(const strut_analysis *a, const strut_listener *listener) {
+  strut_warn_of_equilibria(listener, a->model, &a->result.equilibria);
+}
+
+static strut_status draw_equilibria(const strut_analysis *a, const strut_plot *plot,
+                                    strut_error *error) {
+  if (a->result.equilibria.count == 0) return STRUT_OK;
+  return strut_equilibria_figure(plot, a->model, &a->result.equilibria, error);
+}
+
+static void free_equilibria(strut_analysis *a) { strut_equilibria_free(&a->result.equilibria); }
+
+/* JSON readers represent integers exactly up to here. */
+#define MOST_SEED INT64_C(9007199254740992)
+
+const strut_option strut_equilibria_analysis_options[] = {
+    {STRUT_FILLS(supports), "supports", "NODES", "hold only these contact nodes, such as n1,n4"},
+    {STRUT_FILLS(starts), "starts", "N", "number of random starts per search (default automatic)",
+     .most = 1000000000},
+    {STRUT_FILLS(seed), "seed", "S", "seed of the random starts (default as the scene says)",
+     .most = MOST_SEED},
+    {STRUT_FILLS(all), "all", NULL,
+     "list every equilibrium, and the positions of those that stand"},
+    {.name = NULL}};
+
+const strut_analysis_kind strut_equilibria_analysis = {.files = {"equilibria.json"},
+                                                       .asks = true,
+                                                       .compute = compute_equilibria,
+                                                       .verdict = judge_equilibria,
+                                                       .values = equilibria_values,
+                                                       .warn = warn_of_equilibria,
+                                                       .draw = draw_equilibria,
+                                                       .release = free_equilibria};
+
+/* ---- modes ---- */
+
+static strut_status compute_modes(strut_analysis *a, strut_error *error) {
+  const strut_arguments *arguments = a->arguments;
+  const int32_t count = (int32_t)arguments->count.value;
+  if (arguments->wave && arguments->stuck)
+    return strut_usage_error(arguments,
+                             "--stuck holds contacts with the ground; --wave knows no ground");
+  a->result.modes.count = (size_t)count;
+  a->result.modes.wave = arguments->wave;
+  const strut_waves_options waves = {.at = arguments->at, .count = count};
+  const strut_modes_options modes = {
+      .at = arguments->at, .count = count, .stuck = arguments->stuck};
+  if (arguments->wave)
+    return strut_waves_find(a->model, &a->setup->experiment, &waves, &a->result.modes.waves, error);
+  return strut_modes_find(a->model, &a->setup->experiment, &modes, &a->result.modes.found, error);
+}
+
+static const strut_value_rows *modes_values(const strut_analysis *a, const void **result) {
+  bool wave = a->result.modes.wave;
+  *result = wave ? (const void *)&a->result.modes.waves : &a->result.modes.found;
+  return wave ? &strut_waves_values : &strut_modes_values;
+}
+
+static char *modes_csv(const strut_analysis *a) {
+  const void *result;
+  const strut_value_rows *rows = modes_values(a, &result);
+  bool wave = a->result.modes.wave;
+  return strut_values_csv(rows, wave ? "waves" : "modes", NULL, result, &a->setup->scene);
+}
+
+static void warn_of_modes(const strut_analysis *a, const strut_listener *listener) {
+  const double *q = a->result.modes.wave ? a->result.modes.waves.q : a->result.modes.found.q;
+  strut_warn_of_overload(listener, a->model, q, "in this shape");
+}
+
+static strut_status draw_modes(const strut_analysis *a, const strut_plot *plot,
+                               strut_error *error) {
+  if (a->result.modes.wave)
+    return strut_waves_figure(plot, a->model, &a->result.modes.waves, error);
+  return strut_modes_figure(plot, a->model, &a->result.modes.found, a->result.modes.count, error);
+}
+
+static void free_modes(strut_analysis *a) {
+  strut_modes_free(&a->result.modes.found);
+  strut_waves_free(&a->result.modes.waves);
+}
+
+const strut_option strut_modes_analysis_options[] = {
+    {STRUT_FILLS(at), "at", "NAME",
+     "equilibrium to linearise about (default: that of the start), or drawn"},
+    {STRUT_FILLS(count), "count", "N", "number of modes or bands, lowest first", .least = 1,
+     .most = 1000},
+    {STRUT_FILLS(wave), "wave", NULL,
+     "instead: waves of the structure repeated by its lattice, bands and gaps"},
+    {STRUT_FILLS(stuck), "stuck", NULL, "treat closed contacts as stuck instead of frictionless"},
+    {.name = NULL}};
+
+const strut_analysis_kind strut_modes_analysis = {.files = {"modes.json", "modes.csv"},
+                                                  .compute = compute_modes,
+                                                  .values = modes_values,
+                                                  .csv = modes_csv,
+                                                  .warn = warn_of_modes,
+                                                  .draw = draw_modes,
+                                                  .release = free_modes};
+
+/* ---- rigidity ---- */
+
+static strut_status compute_rigidity(strut_analysis *a, strut_error *error) {
+  const strut_named_shape *shape = &a->result.rigidity.shape;
+  strut_status status = strut_named_shape_find(a->arguments, a->model, &a->setup->experiment,
+                                               &a->arena, &a->result.rigidity.shape, error);
+  if (status != STRUT_OK) return status;
+  strut_status found = strut_rigidity_find(a->model, shape->q, &a->result.rigidity.found, error);
+  a->result.rigidity.found.at = shape->name;
+  return found;
+}
+
+static const strut_value_rows *rigidity_values(const strut_analysis *a, const void **result) {
+  *result = &a->result.rigidity.found;
+  return &strut_rigidity_values;
+}
+
+static strut_status draw_rigidity(const strut_analysis *a, const strut_plot *plot,
+                                  strut_error *error) {
+  const strut_named_shape *shape = &a->result.rigidity.shape;
+  return strut_rigidity_figure(plot, a->model, shape->q, shape->name, &a->result.rigidity.found,
+                               error);
+}
+
+static void free_rigidity(strut_analysis *a) { strut_rigidity_free(&a->result.rigidity.found); }
+
+const strut_option strut_rigidity_analysis_options[] = {
+    {STRUT_FILLS(at), "at", "NAME", "the shape: drawn (default), start, or an equilibrium"},
+    {.name = NULL}};
+
+const strut_analysis_kind strut_rigidity_analysis = {.files = {"rigidity.json"},
+                                                     .compute = compute_rigidity,
+                                                     .values = rigidity_values,
+                                                     .draw = draw_rigidity,
+                                                     .release = free_rigidity};
+
+/* ---- form: the setup becomes that of the form ---- */
+
+static strut_status compute_form(strut_analysis *a, strut_error *error) {
+  const strut_scene *scene = &a->setup->scene;
+  const strut_arguments *arguments = a->arguments;
+  const double least = arguments->least_tension.value;
+  /* 0 asks for none, while without the option a part of the forces is taken */
+  const strut_form_options wanted = {
+      .least_tension = arguments->least_tension.text && least == 0.0 ? DBL_MIN : least,
+      .least_density = arguments->least_density.value,
+      .from = (strut_form_source)(arguments->given.text ? arguments->given.index + 1 : 0),
+      .objective = (strut_form_objective)arguments->objective.index};
+  if (wanted.least_tension < 0 || wanted.least_density < 0)
+    return strut_usage_error(
+        arguments, "--least-tension and --least-density must not be negative: cables only pull");
+  double(*drawn)[2] = strut_arena_allocate(&a->arena, scene->node_count, sizeof *drawn);
+  if (!drawn) return strut_no_memory(error, "");
+  for (size_t i = 0; i < scene->node_count; i++)
+    memcpy(drawn[i], scene->nodes[i].position, sizeof *drawn);
+  a->result.form.drawn = drawn;
+  return strut_form_find(a->setup, &wanted, &a->result.form.found, error);
+}
+
+static const strut_value_rows *form_values(const strut_analysis *a, const void **result) {
+  *result = &a->result.form.found;
+  return &strut_form_values;
+}
+
+static strut_status draw_form(const strut_analysis *a, const strut_plot *plot, strut_error *error) {
+  strut_model *model = NULL;
+  strut_status status = strut_model_compile(&a->setup->scene, &model, error);
+  if (status == STRUT_OK)
+    status = strut_form_figure(plot, model, (const double(*)[2])a->result.form.drawn, error);
+  strut_model_free(model);
+  return status;
+}
+
+const strut_option strut_form_analysis_options[] = {
+    {STRUT_FILLS(given), "given", "WHAT",
+     "densities, lengths or prestress (default: by what the model gives)",
+     .words = "densities|lengths|prestress"},
+    {STRUT_FILLS(least_tension), "least-tension", "FORCE",
+     "lower bound on the tension of every cable", .measure = STRUT_MEASURE_FORCE},
+    {STRUT_FILLS(least_density), "least-density", "DENSITY",
+     "lower bound on the force density of every cable", .measure = STRUT_MEASURE_STIFFNESS},
+    {STRUT_FILLS(objective), "objective", "WHAT",
+     "which prestress: minimal largest (default), sum or squares", .words = "largest|sum|squares"},
+    {.name = NULL}};
+
+const strut_analysis_kind strut_form_analysis = {
+    .uncompiled = true, .compute = compute_form, .values = form_values, .draw = draw_form};
+
+/* ---- path ---- */
+
+/* The file's stages are followed unless the command says what to follow. */
+static bool has_stages(const strut_analysis *a) {
+  const strut_arguments *w = a->arguments;
+  return a->setup->experiment.stage_count > 0 &&
+         !(w->load || w->over.text || w->from || w->until || w->stop);
+}
+
+static strut_status compute_path(strut_analysis *a, strut_error *error) {
+  const strut_arguments *arguments = a->arguments;
+  strut_path_options wanted = {.at = arguments->at,
+                               .steps = (int32_t)arguments->steps.value,
+                               .branches = (int32_t)arguments->branches.value,
+                               .friction = arguments->friction.text
+                                               ? arguments->friction.index == 1
+                                               : a->setup->experiment.path_friction};
+  if (has_stages(a))
+    return strut_path_follow_stages(a->model, &a->setup->experiment, &wanted, &a->result.path,
+                                    error);
+  strut_status status = read_followed(arguments, &a->setup->scene, &a->scenes, &wanted);
+  if (status != STRUT_OK) return status;
+  return strut_path_follow(a->model, &a->setup->experiment, &wanted, &a->result.path, error);
+}
+
+static const strut_value_rows *path_values(const strut_analysis *a, const void **result) {
+  *result = &a->result.path;
+  return &strut_path_values;
+}
+
+static char *path_csv(const strut_analysis *a) {
+  return strut_path_csv(&a->result.path, &a->setup->scene);
+}
+
+static void warn_of_path(const strut_analysis *a, const strut_listener *listener) {
+  strut_warn_of_path(listener, &a->setup->scene, &a->result.path);
+}
+
+static strut_status draw_path(const strut_analysis *a, const strut_plot *plot, strut_error *error) {
+  return strut_path_figure(plot, a->model, &a->result.path, error);
+}
+
+static void free_path(strut_analysis *a) { strut_path_free(&a->result.path); }
+
+const strut_option strut_path_analysis_options[] = {
+    {STRUT_FILLS(load), "load", "NAME",
+     "load to scale, or several: P,Q (default: all without a signal)"},
+    {STRUT_FILLS(over), "over", "WHAT",
+     "vary a parameter, an actuator, or a displacement NODE.x or NODE.y; also WHAT=FROM..UNTIL",
+     .expected = "WHAT or WHAT=FROM..UNTIL"},
+    {STRUT_FILLS(from), "from", "VALUE", "start value: a load factor, or in the unit of WHAT"},
+    {STRUT_FILLS(until), "until", "VALUE", "end value, likewise (default: load factor 1)"},
+    {STRUT_FILLS(stop), "stop", "NODE.x=VALUE",
+     "or end earlier, where a node has moved so far along x or y"},
+    {STRUT_FILLS(at), "at", "NAME", "equilibrium to start from (default: that of the start)"},
+    {STRUT_FILLS(friction), "friction", "none|kept",
+     "kept: contacts stick and slide as the path goes (default: as the file says)",
+     .words = "none|kept"},
+    {STRUT_FILLS(branches), "branches", "DEPTH",
+     "follow paths that leave at bifurcations: 1 of this path, 2 of its branches too, ...",
+     .least = 1, .most = 10},
+    {STRUT_FILLS(steps), "steps", "N",
+     "maximum number of steps (default " STRUT_TEXT_OF(STRUT_PATH_USUAL_STEPS) ")", .least = 1,
+     .most = 1000000},
+    {.name = NULL}};
+
+const strut_analysis_kind strut_path_analysis = {.files = {"path.json", "path.csv"},
+                                                 .compute = compute_path,
+                                                 .values = path_values,
+                                                 .csv = path_csv,
+                                                 .warn = warn_of_path,
+                                                 .draw = draw_path,
+                                                 .release = free_path};
+
+char *strut_analysis_json(const strut_analysis *a) {
+  const void *result;
+  const strut_value_rows *rows = a->kind->values(a, &result);
+  return strut_values_json(rows, result, &a->setup->scene);
+}
+
+char *strut_analysis_text(const strut_analysis *a, int width) {
+  const void *result;
+  const strut_value_rows *rows = a->kind->values(a, &result);
+  bool all = a->kind == &strut_equilibria_analysis && a->result.equilibria.shows_all;
+  return strut_values_text(rows, result, &a->setup->scene, width,
+                           all ? SIZE_MAX : STRUT_REPORT_ROWS);
+}

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/program/command/follow_options.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/scene/things.h"
+#include "parser/program/command/arguments.h"
+
+enum { MOST_AT = 8 };
+
+void strut_follow_source_free(strut_follow_source *source) {
+  strut_varied_scenes_free(&source->scenes);
+}
+
+static const char *parameter_at(const void *context, size_t i) {
+  const strut_scene *scene = context;
+  return i < scene->parameter_count ? scene->parameters[i].name : NULL;
+}
+
+/* A range whose ends may be those of --from and --until. */
+typedef struct followed {
+  const char *option; /* "--over" */
+  const strut_given_range *given;
+  const char *low, *high;
+} followed;
+
+/* The name must be that of a number of the scene. */
+static strut_status check_range(const strut_arguments *arguments, const strut_scene *scene,
+                                const followed *r) {
+  const bool apart = r->given == &arguments->over && (arguments->from || arguments->until);
+  const char *name = r->given->name;
+  if (!r->given->text || !r->low || !r->high || (apart && r->given->high))
+    return strut_usage_error(
+        arguments, "missing %s NAME=LOW..HIGH, such as %s frequency=8Hz..12Hz%s", r->option,
+        r->option, apart ? ", or --over NAME, --from and --until" : "");
+  const strut_parameter *parameter = strut_find_parameter(scene, name);
+  const char *near = parameter ? NULL : strut_did_you_mean(name, parameter_at, scene);
+  if (!parameter)
+    return strut_usage_error(arguments, "%s: the model has no parameter '%s'%s%s%s", r->option,
+                             name, near ? "; did you mean '" : "", near ? near : "",
+                             near ? "'?" : "");
+  if (!isfinite(parameter->value))
+    return strut_usage_error(arguments, "%s: parameter '%s' is a text, expected a number",
+                             r->option, name);
+  return STRUT_OK;
+}
+
+static strut_status read_ends(const strut_arguments *arguments, const followed *r,
+                              strut_dimension dimension, double *low, double *high) {
+  if (strut_quantities_read(r->low, dimension, low, 1) == 1 &&
+      strut_quantities_read(r->high, dimension, high, 1) == 1 && *low < *high && isfinite(*low) &&
+      isfinite(*high))
+    return STRUT_OK;
+  const char *example = strut_dimension_example(dimension);
+  return strut_usage_error(
+      arguments, "%s %s: expected two values LOW..HIGH, the lower one first%s%s", r->option,
+      r->given->name, example ? ", each such as " : "", example ? example : "");
+}
+
+/* The scene of a value of the first parameter, the second one being where the branches are. */
+static strut_status setup_first(void *context, double value, strut_setup *setup,
+                                strut_error *error) {
+  strut_follow_source *source = context;
+  const strut_study_value values[] = {{.number = value}, {.number = source->second_value}};
+  return strut_varied_scenes_read(&source->scenes, values, setup, error);
+}
+
+static strut_status setup_both(void *context, const double values[2], strut_setup *setup,
+                               strut_error *error) {
+  const strut_follow_source *source = context;
+  const strut_study_value both[] = {{.number = values[0]}, {.number = values[1]}};
+  return strut_varied_scenes_read(&source->scenes, both, setup, error);
+}
+
+/* The scene's own value where it is within the range, or the middle. */
+static double own_value(const strut_scene *scene, const char *name, double low, double high) {
+  double own = strut_find_parameter(scene, name)->value;
+  return own >= low && own <= high ? own : 0.5 * (low + high);
+}
+
+/* --over and --and */
+static strut_status read_ranges(const strut_arguments *arguments, const strut_scene *scene,
+                                strut_follow_source *source, strut_follow_options *wanted,
+                                strut_dimension *dimension) {
+  const strut_given_range *over = &arguments->over, *and_over = &arguments->and_over;
+  const bool both = and_over->text;
+  const followed first = {"--over", over, over->high ? over->low : arguments->from,
+                          over->high ? over->high : arguments->until};
+  const followed other = {"--and", and_over, and_over->low, and_over->high};
+  const char *const names[2] = {over->name, and_over->name};
+  strut_dimension dimensions[2] = {STRUT_DIM_NONE};
+  strut_follow_second *second = &wanted->second;
+  strut_status status = check_range(arguments, scene, &first);
+  if (!status && both) status = check_range(arguments, scene, &other);
+  if (!status && both && strcmp(names[0], names[1]) == 0)
+    status =
+        strut_usage_error(arguments, "--over and --and name the same parameter '%s'", names[0]);
+  if (status) return status;
+  source->scenes.purpose = STRUT_FOR_RUN_STEP_LATER;
+  status = strut_varied_scenes_open(arguments, names, both ? 2 : 1, &source->scenes, dimensions);
+  if (!status) status = read_ends(arguments, &first, dimensions[0], &wanted->low, &wanted->high);
+  if (!status && both)
+    status = read_ends(arguments, &other, dimensions[1], &second->low, &second->high);
+  if (status) return status;
+  *dimension = dimensions[0];
+  wanted->name = names[0];
+  wanted->unit = strut_unit_of(dimensions[0]);
+  wanted->scenes = (strut_follow_scenes){setup_first, source};
+  if (!both) return STRUT_OK;
+  second->name = names[1];
+  second->unit = strut_unit_of(dimensions[1]);
+  second->value = source->second_value = own_value(scene, names[1], second->low, second->high);
+  second->scenes = (strut_follow_plane){setup_both, source};
+  return STRUT_OK;
+}
+
+/* Values of --values, or the scene's own where it is within the range, or the middle. */
+static strut_status read_values(const strut_arguments *arguments, const strut_scene *scene,
+                                strut_dimension dimension, const strut_follow_options *wanted,
+                                double values[MOST_AT], size_t *count) {
+  const char *at = arguments->values;
+  *count = 1;
+  values[0] = own_value(scene, wanted->name, wanted->low, wanted->high);
+  if (!at) return STRUT_OK;
+  *count = strut_quantities_read(at, dimension, values, MOST_AT);
+  bool good = *count > 0;
+  for (size_t i = 0; i < *count; i++)
+    good = good && values[i] >= wanted->low && values[i] <= wanted->high;
+  if (good) return STRUT_OK;
+  return strut_usage_error(arguments,
+                           "--values expects values of %s within the range, with commas between",
+                           wanted->name);
+}
+
+/* Names of --at into source->from; returns how many, 0 where there are none. */
+static size_t read_names(const strut_arguments *arguments, strut_follow_source *source,
+                         const char *names[STRUT_FOLLOW_MOST_STARTS]) {
+  const char *from = arguments->at;
+  size_t count = 0, used = 0;
+  while (from && *from && count < STRUT_FOLLOW_MOST_STARTS / MOST_AT) {
+    while (*from == ' ') from++;
+    size_t length = strcspn(from, ","), kept = length;
+    while (kept > 0 && from[kept - 1] == ' ') kept--;
+    if (used + kept + 1 > sizeof source->from) break;
+    memcpy(source->from + used, from, kept);
+    source->from[used + kept] = '\0';
+    names[count++] = source->from + used;
+    used += kept + 1;
+    from += length + (from[length] == ',');
+  }
+  return count;
+}
+
+static strut_status check_names(const strut_arguments *arguments, const strut_scene *scene,
+                                const char *const *names, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (strut_thing_find(scene, STRUT_THING_CONFIGURATION, names[i]) < 0)
+      return strut_usage_error(arguments, "--at: the model has no configuration '%s'", names[i]);
+  return STRUT_OK;
+}
+
+strut_status strut_follow_options_read(const strut_arguments *arguments, const strut_scene *scene,
+                                       strut_follow_source *source, strut_follow_options *wanted) {
+  strut_dimension dimension = STRUT_DIM_NONE;
+  const char *names[STRUT_FOLLOW_MOST_STARTS] = {NULL};
+  double values[MOST_AT];
+  size_t value_count = 0, name_count = read_names(arguments, source, names);
+  strut_status status = read_ranges(arguments, scene, source, wanted, &dimension);
+  if (!status) status = read_values(arguments, scene, dimension, wanted, values, &value_count);
+  if (!status) status = check_names(arguments, scene, names, name_count);
+  if (status) return status;
+  for (size_t v = 0; v < value_count; v++)
+    for (size_t k = 0; k < (name_count ? name_count : 1); k++)
+      source->starts[wanted->start_count++] = (strut_follow_start){values[v], names[k]};
+  wanted->starts = source->starts;
+  wanted->steps = (int32_t)arguments->steps.value;
+  wanted->accuracy = arguments->accuracy.value;
+  wanted->basins = arguments->basins;
+  wanted->method = arguments->integrator.text;
+  return STRUT_OK;
+}

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/program/command/plot_options.h"
+
+#include <string.h>
+
+const strut_option strut_width_options[] = {
+    {STRUT_FILLS(width), "width", "WIDTH",
+     "width of the figure: page (180 mm, default), column (88 mm) or a length", .of_figure = true,
+     .words = "page|column"},
+    {.name = NULL}};
+
+const strut_option strut_plot_setting_options[] = {
+    {.table = strut_width_options},
+    {STRUT_FILLS(title), "title", "TEXT", "title of the figure (default: the model's name)",
+     .of_figure = true},
+    {.name = NULL}};
+
+const strut_option strut_run_figure_options[] = {
+    {STRUT_FILLS(draw), "draw", "WHAT", "overview (default), period, snapshots or curves",
+     .of_figure = true, .words = "overview|period|snapshots|curves"},
+    {STRUT_FILLS(scale), "scale", "X,Y", "magnification of the motion in the figure period"},
+    {STRUT_FILLS(times), "times", "TIME,...", "instants of the snapshots, such as 0 s,80 ms"},
+    {.name = NULL}};
+
+const strut_option strut_axis_options[] = {
+    {STRUT_FILLS(x_label), "x-label", "TEXT", "label of the x axis, without unit",
+     .of_figure = true},
+    {STRUT_FILLS(y_label), "y-label", "TEXT", "label of the (left) y axis, without unit",
+     .of_figure = true},
+    {STRUT_FILLS(x_limits), "x-limits", "LOW,HIGH", "range of the x axis, in its base unit",
+     .of_figure = true},
+    {STRUT_FILLS(y_limits), "y-limits", "LOW,HIGH", "range of the (left) y axis, likewise",
+     .of_figure = true},
+    {.name = NULL}};
+
+static const double POINTS = 72.0 / 0.0254;                                      /* in a metre */
+static const double PAGE = 0.18, COLUMN = 0.088, NARROWEST = 0.04, WIDEST = 1.0; /* [m] */
+
+strut_status strut_plot_settings_read(const strut_arguments *arguments, double usual,
+                                      strut_plot *plot) {
+  const char *text = arguments->width;
+  bool column = text && strcmp(text, "column") == 0, page = !text || strcmp(text, "page") == 0;
+  double width = column ? COLUMN : PAGE;
+  plot->title = arguments->title;
+  if (!column && !page) {
+    strut_status status = strut_quantity_read(arguments, "width", text, STRUT_DIM_LENGTH, &width);
+    if (status) return status;
+  }
+  if (!(width >= NARROWEST && width <= WIDEST))
+    return strut_usage_error(arguments, "--width %s: expected a width between 40 mm and 1 m", text);
+  plot->width = text || !(usual > 0) ? width * POINTS : usual;
+  return strut_axes_read(arguments, false, false, &plot->x, &plot->y);
+}
+
+static strut_status read_limits(const strut_arguments *arguments, char letter, bool logarithmic,
+                                strut_axis_choice *axis) {
+  const char *text = letter == 'x' ? arguments->x_limits : arguments->y_limits;
+  double range[2];
+  if (!text) return STRUT_OK;
+  axis->limited = strut_quantities_read(text, STRUT_DIM_NONE, range, 2) == 2 &&
+                  range[0] < range[1] && (!logarithmic || range[0] > 0);
+  if (!axis->limited)
+    return strut_usage_error(arguments,
+                             "--%c-limits expects two ascending numbers%s, such as 1,10; not '%s'",
+                             letter, logarithmic ? " above 0" : "", text);
+  axis->low = range[0];
+  axis->high = range[1];
+  return STRUT_OK;
+}
+
+strut_status strut_axes_read(const strut_arguments *arguments, bool log_x, bool log_y,
+                             strut_axis_choice *x, strut_axis_choice *y) {
+  *x = (strut_axis_choice){.label = arguments->x_label};
+  *y = (strut_axis_choice){.label = arguments->y_label};
+  strut_status status = read_limits(arguments, 'x', log_x, x);
+  return status ? status : read_limits(arguments, 'y', log_y, y);
+}
+
+/* ---- of runs ---- */
+
+strut_status strut_run_figure_read(const strut_arguments *arguments, const strut_plot *plot,
+                                   strut_run_figure *figure, double *times) {
+  const char *scale = arguments->scale, *text = arguments->times;
+  figure->view = (strut_run_view)arguments->draw.index;
+  figure->width = plot->width;
+  figure->title = plot->title;
+  if (scale && !(plot->path && figure->view == STRUT_RUN_PERIOD))
+    return strut_usage_error(arguments, "--scale goes with --plot FILE --draw period");
+  if (scale && !(strut_quantities_read(scale, STRUT_DIM_NONE, figure->scale, 2) == 2 &&
+                 figure->scale[0] > 0 && figure->scale[1] > 0))
+    return strut_usage_error(arguments,
+                             "--scale expects two numbers above 0, such as 10,2; not '%s'", scale);
+  if (!text) return STRUT_OK;
+  if (!(plot->path && figure->view == STRUT_RUN_SNAPSHOTS))
+    return strut_usage_error(arguments, "--times goes with --plot FILE --draw snapshots");
+  figure->time_count = strut_quantities_read(text, STRUT_DIM_TIME, times, STRUT_MOST_TIMES);
+  figure->times = times;
+  if (figure->time_count > 0) return STRUT_OK;
+  return strut_usage_error(
+      arguments,
+      "--times expects up to %d times with a comma between, such as \"0 s, 80 ms\"; not '%s'",
+      STRUT_MOST_TIMES, text);
+}

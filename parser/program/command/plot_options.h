@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Options of figures: width, title, axes, and what a figure of a run shows.
+ */
+#ifndef STRUT_PARSER_COMMAND_PLOT_OPTIONS_H
+#define STRUT_PARSER_COMMAND_PLOT_OPTIONS_H
+
+#include "engine/output/draw/chart.h"
+#include "engine/output/figures/run_figure.h"
+#include "parser/program/command/arguments.h"
+
+/** Tables of options: width; this and the title; what a figure of a run shows; labels and limits of one pair of axes. */
+extern const strut_option strut_width_options[], strut_plot_setting_options[],
+    strut_run_figure_options[], strut_axis_options[];
+
+/**
+ * Reads all but the file into a plot. `usual` is the default width [pt]; 0: a page's. STRUT_USAGE; the
+ * listener hears why.
+ */
+strut_status strut_plot_settings_read(const strut_arguments *arguments, double usual,
+                                      strut_plot *plot);
+/** Reads labels and limits; limits of a logarithmic axis must be above 0. STRUT_USAGE as above. */
+strut_status strut_axes_read(const strut_arguments *arguments, bool log_x, bool log_y,
+                             strut_axis_choice *x, strut_axis_choice *y);
+
+enum { STRUT_MOST_TIMES = 100 };
+
+/** Reads what a figure of a run shows; `times` has room for STRUT_MOST_TIMES and stays in place. As above. */
+strut_status strut_run_figure_read(const strut_arguments *arguments, const strut_plot *plot,
+                                   strut_run_figure *figure, double *times);
+
+#endif

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Scenes of one model over values of some of its parameters, as paths, branches and sweeps need them.
+ */
+#ifndef STRUT_PARSER_COMMAND_VARIED_SCENES_H
+#define STRUT_PARSER_COMMAND_VARIED_SCENES_H
+
+#include "engine/scene/study.h"
+#include "parser/program/command/arguments.h"
+
+/** Zero-initialise but for what stands before `own`. */
+typedef struct strut_varied_scenes {
+  const char *file, *text; /* of the model; not owned */
+  size_t length;
+  strut_purpose purpose;            /* what the scenes are for */
+  const strut_scene_source *source; /* its tree; NULL: it is read from the text */
+  strut_scene_source *own;
+  strut_setting *settings; /* (setting_count) those of --set, and last the varied ones */
+  size_t setting_count, varied;
+} strut_varied_scenes;
+
+/** The parameter of the scene with that name, or NULL. */
+const strut_parameter *strut_find_parameter(const strut_scene *scene, const char *name);
+/**
+ * Varies the parameters `names`, which the scene has; the names are kept. Their dimensions go to
+ * `dimensions`, unless it is NULL. STRUT_NO_MEMORY; the listener hears it. Free `scenes` in any case.
+ */
+strut_status strut_varied_scenes_open(const strut_arguments *arguments, const char *const *names,
+                                      size_t count, strut_varied_scenes *scenes,
+                                      strut_dimension *dimensions);
+/**
+ * The scene where the parameters have these values. STRUT_BAD_SCENE with the first finding and its place. From any
+ * thread.
+ */
+strut_status strut_varied_scenes_read(const strut_varied_scenes *scenes,
+                                      const strut_study_value *values, strut_setup *setup,
+                                      strut_error *error);
+/** The same of a single parameter; `context` is the strut_varied_scenes. */
+strut_status strut_varied_scenes_at(void *context, double value, strut_setup *setup,
+                                    strut_error *error);
+void strut_varied_scenes_free(strut_varied_scenes *scenes);
+
+/** The unit to print behind values of a dimension, "" where there is none. */
+const char *strut_unit_of(strut_dimension dimension);
+
+#endif
